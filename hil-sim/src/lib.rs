@@ -1,0 +1,1 @@
+//! Simulated plant and emulated microcontroller for the thermal display.

@@ -1,0 +1,2 @@
+//! The `hil-sim` command.
+fn main() {}

@@ -1,0 +1,3 @@
+//! The firmware (RTIC application).
+#![no_std]
+#![no_main]

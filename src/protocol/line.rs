@@ -1,0 +1,60 @@
+//! Bytes from the host to lines.
+
+use heapless::String;
+
+/// Longest line from the host, in bytes, without its end.
+pub const LINE_MAX: usize = 96;
+
+/// One complete line.
+pub type Line = String<LINE_MAX>;
+
+/// Why bytes did not make a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LineError {
+    /// More than [`LINE_MAX`] bytes before the end of the line.
+    TooLong,
+    /// A byte that is not printable ASCII.
+    NotText(u8),
+}
+
+/// Collects bytes into lines; a bad line is dropped whole, up to its end.
+#[derive(Debug, Default)]
+pub struct LineReader {
+    line: Line,
+    error: Option<LineError>,
+}
+
+impl LineReader {
+    /// An empty reader.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self {
+            line: String::new(),
+            error: None,
+        }
+    }
+
+    /// Takes one byte; carriage return or line feed ends a line, empty lines are skipped.
+    pub fn push(&mut self, byte: u8) -> Option<Result<Line, LineError>> {
+        match byte {
+            b'\r' | b'\n' => {
+                let line = core::mem::take(&mut self.line);
+                match self.error.take() {
+                    Some(error) => Some(Err(error)),
+                    None if line.is_empty() => None,
+                    None => Some(Ok(line)),
+                }
+            }
+            b' '..=b'~' => {
+                if self.line.push(char::from(byte)).is_err() {
+                    self.error.get_or_insert(LineError::TooLong);
+                }
+                None
+            }
+            other => {
+                self.error.get_or_insert(LineError::NotText(other));
+                None
+            }
+        }
+    }
+}

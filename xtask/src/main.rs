@@ -1,0 +1,2 @@
+//! The front door: set-up, build, demo, test.
+fn main() {}
