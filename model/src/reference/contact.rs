@@ -1,0 +1,107 @@
+//! Contact resistance (Eq. 6-8 to 6-11), interface temperature (Eq. 3-1) and the response to contact
+//! (Eq. 6-5 to 6-7 and 6-12).
+
+use super::{Real, erfcx};
+use crate::material::{Material, SKIN_MICROHARDNESS_PA, Surface};
+
+/// Conductance `1.25 k_s da / R_q` of two finishes at `P = H`, in W/(m² K) (Eq. 6-8 to 6-11).
+#[must_use]
+pub fn mean_conductance<F: Real>(a: &Surface, b: &Surface) -> F {
+    let (ka, kb) = (F::from_f64(a.conductivity_w_mk), F::from_f64(b.conductivity_w_mk));
+    let root_sum_square = |x: f64, y: f64| {
+        let (x, y) = (F::from_f64(x), F::from_f64(y));
+        (x * x + y * y).sqrt()
+    };
+    let harmonic_mean = F::from_f64(2.0) * ka * kb / (ka + kb);
+    let roughness_m = root_sum_square(a.roughness_um, b.roughness_um) * F::from_f64(1e-6);
+    let slope = root_sum_square(a.slope_rad, b.slope_rad);
+    F::from_f64(1.25) * harmonic_mean * slope / roughness_m
+}
+
+/// Contact resistance in m² K/W between skin and another finish under `pressure_pa` (Eq. 6-8).
+#[must_use]
+pub fn contact_resistance<F: Real>(skin: &Surface, other: &Surface, pressure_pa: F) -> F {
+    let relative = pressure_pa / F::from_f64(SKIN_MICROHARDNESS_PA);
+    F::from_f64(1.0) / (mean_conductance::<F>(skin, other) * relative.powf(F::from_f64(0.95)))
+}
+
+/// Temperature in °C that both surfaces take at perfect contact, for ever (Eq. 3-1).
+#[must_use]
+pub fn interface_temperature<F: Real>(skin: &Material, skin_c: F, object: &Material, object_c: F) -> F {
+    let (es, eo) = (F::from_f64(skin.effusivity()), F::from_f64(object.effusivity()));
+    (object_c * eo + skin_c * es) / (eo + es)
+}
+
+/// A finger that has landed on an object, and the display that stands in for it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact<F> {
+    /// Skin temperature before contact, °C.
+    pub skin_c: F,
+    /// Object temperature before contact, °C.
+    pub object_c: F,
+    /// Contact resistance of skin and object, m² K/W.
+    pub resistance_m2k_w: F,
+    /// `R_skin-display / R_skin-object`; does not depend on pressure.
+    pub ratio: F,
+    /// `e_object / (e_object + e_skin)`.
+    pub weight: F,
+    /// `b² = ((1/e_skin + 1/e_object) / R)²`, 1/s.
+    pub rate_per_s: F,
+}
+
+/// The state of a contact at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Response<F> {
+    /// `erfcx(b sqrt(t))`.
+    pub erfcx: F,
+    /// Skin surface, °C (Eq. 6-5).
+    pub skin_c: F,
+    /// Object surface, °C (Eq. 6-6).
+    pub object_c: F,
+    /// Heat flux out of the skin, W/m² (Eq. 6-7, positive for a cold object).
+    pub flux_w_m2: F,
+    /// Display surface that puts the skin there, °C (Eq. 6-12).
+    pub display_c: F,
+}
+
+impl<F: Real> Contact<F> {
+    /// Contact of `skin` at `skin_c` with `object` at `object_c` under `pressure_pa`, on a display whose
+    /// surface is `display`.
+    #[must_use]
+    pub fn new(
+        (skin, skin_c): (&Material, F),
+        (object, object_c): (&Material, F),
+        display: &Surface,
+        pressure_pa: F,
+    ) -> Self {
+        let (es, eo) = (F::from_f64(skin.effusivity()), F::from_f64(object.effusivity()));
+        let one = F::from_f64(1.0);
+        let resistance_m2k_w = contact_resistance(&skin.surface, &object.surface, pressure_pa);
+        let b = (one / es + one / eo) / resistance_m2k_w;
+        Self {
+            skin_c,
+            object_c,
+            resistance_m2k_w,
+            ratio: mean_conductance::<F>(&skin.surface, &object.surface)
+                / mean_conductance::<F>(&skin.surface, display),
+            weight: eo / (eo + es),
+            rate_per_s: b * b,
+        }
+    }
+
+    /// State `t_s` seconds after landing (not negative).
+    #[must_use]
+    pub fn at(&self, t_s: F) -> Response<F> {
+        let erfcx = erfcx((self.rate_per_s * t_s).sqrt());
+        let step = self.skin_c - self.object_c;
+        let done = F::from_f64(1.0) - erfcx;
+        let skin_c = self.skin_c - step * self.weight * done;
+        Response {
+            erfcx,
+            skin_c,
+            object_c: self.object_c + step * (F::from_f64(1.0) - self.weight) * done,
+            flux_w_m2: step / self.resistance_m2k_w * erfcx,
+            display_c: skin_c - self.ratio * step * erfcx,
+        }
+    }
+}
