@@ -29,11 +29,16 @@ impl Contact {
     #[must_use]
     #[inline]
     pub fn at(&self, elapsed: u32, skin_before: Celsius, object_before: Celsius) -> Response {
-        Response { contact: *self, skin_before, object_before, erfcx: erfcx(elapsed, self.per_tick) }
+        Response {
+            contact: *self,
+            skin_before,
+            object_before,
+            erfcx: erfcx(elapsed, self.per_tick),
+        }
     }
 }
 
-/// Outputs; for temperatures within [`super::TEMPERATURE_RANGE_C`] their error is that of `E` (2^-29) times
+/// Outputs; for temperatures within [`super::TEMPERATURE_RANGE_C`] their error is that of `E` (below 2^-28) times
 /// the temperature step, plus at most 1 µK.
 impl Response {
     /// `erfcx(b sqrt(t))`.
@@ -46,14 +51,18 @@ impl Response {
     #[must_use]
     pub fn skin(&self) -> Celsius {
         let full = part(self.step(), self.contact.weight);
-        self.skin_before.saturating_sub(full).saturating_add(part(full, self.erfcx))
+        self.skin_before
+            .saturating_sub(full)
+            .saturating_add(part(full, self.erfcx))
     }
 
     /// Object surface (Eq. 6-6).
     #[must_use]
     pub fn object(&self) -> Celsius {
         let full = self.step().saturating_sub(part(self.step(), self.contact.weight));
-        self.object_before.saturating_add(full).saturating_sub(part(full, self.erfcx))
+        self.object_before
+            .saturating_add(full)
+            .saturating_sub(part(full, self.erfcx))
     }
 
     /// Display surface that puts the skin where the object would (Eq. 6-12).
