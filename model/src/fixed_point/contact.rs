@@ -69,8 +69,7 @@ impl Response {
     #[must_use]
     pub fn display(&self) -> Celsius {
         let across = part(self.step(), self.erfcx);
-        let scaled = (i64::from(across.to_bits()) * i64::from(self.contact.ratio.to_bits())) >> 28;
-        self.skin().saturating_sub(saturate(scaled))
+        self.skin().saturating_sub(scaled(across, self.contact.ratio))
     }
 
     /// Heat flux out of the skin (Eq. 6-7, positive for a cold object); relative error below 2^-20 of
@@ -99,6 +98,8 @@ pub(super) fn part(difference: Celsius, fraction: Fraction) -> Celsius {
     Celsius::from_bits(((i64::from(difference.to_bits()) * i64::from(fraction.to_bits())) >> 32) as i32)
 }
 
-fn saturate(bits: i64) -> Celsius {
+/// A temperature difference times `R_display / R_object`; saturates.
+pub(super) fn scaled(difference: Celsius, ratio: Ratio) -> Celsius {
+    let bits = (i64::from(difference.to_bits()) * i64::from(ratio.to_bits())) >> 28;
     Celsius::from_bits(bits.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
 }

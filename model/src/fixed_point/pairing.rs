@@ -114,6 +114,16 @@ impl Pairing {
         }
     }
 
+    /// Display temperature at `t = 0`, which is also what it is preset to before contact (Eq. 6-12);
+    /// does not depend on pressure. Error below 1 µK.
+    #[must_use]
+    pub fn preset(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
+        skin_c.saturating_sub(super::contact::scaled(
+            skin_c.saturating_sub(object_c),
+            self.ratio,
+        ))
+    }
+
     /// Interface temperature of perfect contact (Eq. 3-1); error below 1 µK.
     #[must_use]
     pub fn interface_temperature(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
