@@ -45,3 +45,27 @@ impl Bridge {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mean_v(a: Leg, b: Leg, enabled: bool) -> Option<f64> {
+        Bridge { supply_v: 12.0 }.mean_v(&Legs { a, b, enabled })
+    }
+
+    #[test]
+    fn voltage_is_the_difference_of_the_duties() {
+        assert_eq!(mean_v(Leg::Duty(0.75), Leg::Duty(0.25), true), Some(6.0));
+        assert_eq!(mean_v(Leg::Duty(0.0), Leg::Duty(0.5), true), Some(-6.0));
+        assert_eq!(mean_v(Leg::Duty(7.0), Leg::Duty(-1.0), true), Some(12.0));
+    }
+
+    #[test]
+    fn no_current_without_two_driven_legs() {
+        assert_eq!(mean_v(Leg::Off, Leg::Off, true), None);
+        assert_eq!(mean_v(Leg::Duty(1.0), Leg::Off, true), None);
+        assert_eq!(mean_v(Leg::Duty(1.0), Leg::Duty(0.0), false), None);
+        assert_eq!(Bridge::NOMINAL.mean_v(&Legs::default()), None);
+    }
+}

@@ -218,3 +218,6 @@ fn solve(inverse: &[f64], lower: &[f64], upper: &[f64], x: &mut [f64]) {
         x[i] = carry;
     }
 }
+
+#[cfg(test)]
+mod tests;

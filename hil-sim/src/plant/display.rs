@@ -129,3 +129,6 @@ impl FingerOnDisplay {
         self.energy
     }
 }
+
+#[cfg(test)]
+mod tests;

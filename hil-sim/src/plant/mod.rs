@@ -191,3 +191,6 @@ impl Plant {
         self.display.energy()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -18,3 +18,26 @@ pub fn sub_steps_s(step_s: f64, age: u32) -> impl Iterator<Item = f64> {
         (0..parts).map(move |_| span_s / f64::from(parts))
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sub_steps_fill_the_step_and_grow_with_time() {
+        let mut passed = 0.0;
+        for age in 0..10 {
+            let mut sum = 0.0;
+            for h in sub_steps_s(1.0, age) {
+                assert!(
+                    passed == 0.0 || h <= passed / 2.0 + 1e-12 || age > 3,
+                    "{h} after {passed}"
+                );
+                passed += h;
+                sum += h;
+            }
+            assert_eq!(sum, 1.0, "age {age}");
+        }
+        assert_eq!(sub_steps_s(1.0, u32::MAX).count(), 1);
+    }
+}

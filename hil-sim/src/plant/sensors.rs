@@ -170,7 +170,7 @@ impl Sensors {
         self.read(state);
     }
 
-    /// Converts one channel. Each conversion draws noise: the order of calls is part of the experiment.
+    /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is part of the experiment.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         let normal: f64 = StandardNormal.sample(&mut self.noise);
         let code = (self.counts[channel as usize] + self.params.noise * normal).round();
@@ -201,3 +201,6 @@ fn seen_c(params: &SensorParams, state: &Sensed) -> [f64; 5] {
         state.room_c,
     ]
 }
+
+#[cfg(test)]
+mod tests;

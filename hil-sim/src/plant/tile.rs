@@ -167,3 +167,6 @@ impl Tile {
         chain.temperature_c(self.face + SINK)
     }
 }
+
+#[cfg(test)]
+mod tests;
