@@ -91,16 +91,3 @@ fn responds_like_its_class() {
         "{reached_s:?}"
     );
 }
-
-#[test]
-fn answers_after_an_apparent_dead_time() {
-    // Where the steepest tangent meets the start: 6 to 10 ms in the study, 15 % either side here.
-    let face_c = response_c(1.0, 400);
-    let (k, fall_c) = face_c
-        .windows(2)
-        .map(|w| w[0] - w[1])
-        .enumerate()
-        .fold((0, 0.0), |best, next| if next.1 > best.1 { next } else { best });
-    let dead_s = (k as f64 + 1.5) * STEP_S - (34.0 - 0.5 * (face_c[k] + face_c[k + 1])) / fall_c * STEP_S;
-    assert!((5.1e-3..11.5e-3).contains(&dead_s), "{dead_s} s");
-}
