@@ -1,1 +1,3 @@
 //! Simulated plant and emulated microcontroller for the thermal display.
+
+pub mod plant;

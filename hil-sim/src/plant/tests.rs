@@ -1,0 +1,138 @@
+//! The plant as runs use it: its own mesh, steps and events.
+
+mod truth;
+
+use contact_model::material::find;
+
+use super::bridge::Leg;
+use super::sensors::SensorParams;
+use super::tile::TileParams;
+use super::*;
+
+fn config(material: &str) -> PlantConfig {
+    PlantConfig {
+        skin_c: 34.0,
+        room_c: 24.0,
+        object: *find(material).unwrap_or_else(|| panic!("no material {material}")),
+        object_start_c: 24.0,
+        start_s: 0.0,
+        appears_s: 0.0,
+        duration_s: 60.0,
+        seed: 1,
+        tile: TileParams::CLASS,
+        sensors: SensorParams::NOMINAL,
+        bridge: Bridge::NOMINAL,
+    }
+}
+
+fn plant(material: &str) -> Plant {
+    Plant::new(&config(material)).expect("a good configuration")
+}
+
+fn legs(a: f64, b: f64) -> Legs {
+    Legs {
+        a: Leg::Duty(a),
+        b: Leg::Duty(b),
+        enabled: true,
+    }
+}
+
+fn run(plant: &mut Plant, duration_s: f64, legs: &Legs) {
+    for _ in 0..(duration_s / STEP_S).round() as usize {
+        plant.step(legs);
+    }
+}
+
+#[test]
+fn leg_a_above_leg_b_cools_and_the_other_way_heats() {
+    for (a, b, sign) in [(0.7, 0.3, -1.0), (0.3, 0.7, 1.0)] {
+        let mut plant = plant("copper");
+        run(&mut plant, 1.0, &legs(a, b));
+        assert!(sign * (plant.display_c() - 24.0) > 3.0, "{}", plant.display_c());
+        assert!(sign * plant.current_a() < -3.0, "{}", plant.current_a());
+        let codes = Channel::ALL.map(|channel| f64::from(plant.convert(channel)));
+        let mirror_a = codes[Channel::Current as usize] / 400.0;
+        assert!((mirror_a - plant.current_a().abs()).abs() < 0.02, "{mirror_a}");
+    }
+}
+
+#[test]
+fn disabled_bridge_leaves_the_tile_alone() {
+    let mut plant = plant("copper");
+    run(
+        &mut plant,
+        0.5,
+        &Legs {
+            enabled: false,
+            ..legs(1.0, 0.0)
+        },
+    );
+    assert_eq!(plant.current_a(), 0.0);
+    assert!((plant.display_c() - 24.0).abs() < 1e-9);
+}
+
+#[test]
+fn object_that_has_not_appeared_takes_no_heat() {
+    let mut plant = Plant::new(&PlantConfig {
+        appears_s: 0.2,
+        ..config("copper")
+    })
+    .expect("good");
+    plant.set_force(1.0);
+    run(&mut plant, 0.2, &Legs::default());
+    assert_eq!(plant.skin_real_c(), 34.0);
+    assert!(plant.skin_c() < 33.5, "the display is there: {}", plant.skin_c());
+    run(&mut plant, 0.1, &Legs::default());
+    assert!(plant.skin_real_c() < 32.5, "{}", plant.skin_real_c());
+}
+
+#[test]
+fn time_counts_from_the_start() {
+    let mut plant = Plant::new(&PlantConfig {
+        start_s: -1.0,
+        ..config("abs")
+    })
+    .expect("good");
+    run(&mut plant, 1.5, &Legs::default());
+    assert!((plant.time_s() - 0.5).abs() < 1e-12);
+}
+
+#[test]
+fn runs_repeat_bit_for_bit() {
+    let trace = || {
+        let mut plant = plant("granite");
+        let mut seen = Vec::new();
+        for k in 0..2000 {
+            plant.set_force(if (500..1500).contains(&k) { 1.5 } else { 0.0 });
+            plant.step(&legs(0.5, 0.2));
+            seen.push((Channel::ALL.map(|c| plant.convert(c)), plant.skin_c().to_bits()));
+        }
+        seen
+    };
+    assert!(trace() == trace());
+}
+
+#[test]
+fn bad_configuration_is_named() {
+    let cold = PlantConfig {
+        skin_c: -300.0,
+        ..config("abs")
+    };
+    let message = Plant::new(&cold).expect_err("too cold").to_string();
+    assert_eq!(
+        message,
+        "skin temperature in deg C is -300; allowed is -40 to 100"
+    );
+    let mut hollow = config("abs");
+    hollow.object.density_kg_m3 = 0.0;
+    let message = Plant::new(&hollow).expect_err("no mass").to_string();
+    assert_eq!(
+        message,
+        "object density in kg/m3 is 0; allowed is a finite number above 0"
+    );
+    let endless = PlantConfig {
+        duration_s: f64::NAN,
+        ..config("abs")
+    };
+    assert!(Plant::new(&endless).is_err());
+}
