@@ -26,6 +26,20 @@ impl Duty {
     pub const fn fraction(self) -> I1F15 {
         self.0
     }
+
+    /// Time at the supply of the legs that cool and warm, in steps of a PWM period of `full` steps.
+    ///
+    /// Slow decay: one leg stays high while the other takes away its share of the period, so the current
+    /// circulates between the pulses and the mean voltage is the fraction of the supply, rounded to the
+    /// nearest step. With fast decay (the other leg low) it would also depend on the current.
+    #[must_use]
+    pub fn legs(self, full: u16) -> (u16, u16) {
+        let fraction = self.0.to_bits();
+        let taken = (u32::from(full) * u32::from(fraction.unsigned_abs()) + (1 << 14)) >> 15;
+        // `taken` is at most `full`, because the fraction is below one.
+        let rest = full.saturating_sub(taken as u16);
+        if fraction >= 0 { (full, rest) } else { (rest, full) }
+    }
 }
 
 /// Command to the bridge.

@@ -1,0 +1,76 @@
+//! What runs the device: the release image in the emulated microcontroller, or the same logic natively.
+//!
+//! # Time
+//! The plant advances in steps of [`STEP_S`](crate::plant::STEP_S); the device runs between its boundaries and
+//! sees it stand still. Boundaries lie at 0.23 and 0.73 ms after the first conversion, modulo 1 ms:
+//!
+//! ```text
+//! ms     0         0.23             0.73        0.94 0.96  1.0       1.23
+//!        | scans 0-3 | scans 4-11     | scans 12-15 |tick| | scans 0-3 |
+//!                    ^ boundary       ^ boundary                       ^ boundary: the tick's duty counts
+//! ```
+//!
+//! A tick has 0.27 ms to set its duty; an image that needs longer is off by one step, which the comparison of
+//! both engines would show.
+
+mod image;
+mod native;
+
+pub use image::{Image, ImageError};
+pub use native::Native;
+
+use crate::plant::bridge::Legs;
+use crate::world::World;
+
+/// Baud rate of the host, as the board sets it.
+pub const BAUD: u64 = 1_000_000;
+
+/// A device and the world around it.
+pub trait Engine {
+    /// Why it can stop before its time.
+    type Stop: std::error::Error + Send + Sync + 'static;
+
+    /// Name, as the command line has it.
+    const NAME: &'static str;
+
+    /// The world.
+    fn world(&mut self) -> &mut World;
+
+    /// The bridge's legs, as the device drives them now.
+    fn legs(&self) -> Legs;
+
+    /// Runs the device to the next boundary.
+    ///
+    /// # Errors
+    /// The device cannot go on.
+    fn run_half_ms(&mut self) -> Result<(), Self::Stop>;
+
+    /// Bytes leave the host now, one after the other.
+    fn send(&mut self, bytes: &[u8]);
+
+    /// Appends what the host has received since it last asked.
+    fn receive(&mut self, into: &mut Vec<u8>);
+
+    /// Starts the measurement of [`Self::cost`] anew.
+    fn reset_cost(&mut self);
+
+    /// What the device's program costs, if the engine knows.
+    fn cost(&self) -> Option<Cost>;
+}
+
+/// What the program costs, emulated; cycles are estimates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Instructions of one control tick, mean.
+    pub instructions_mean: f64,
+    /// Instructions of the longest control tick.
+    pub instructions_max: u64,
+    /// Cycles of one control tick, mean.
+    pub cycles_mean: f64,
+    /// Cycles of the longest control tick.
+    pub cycles_max: u64,
+    /// Part of the time in which the CPU does not sleep.
+    pub load: f64,
+    /// Most of the stack that was ever used, bytes.
+    pub stack_bytes: u64,
+}

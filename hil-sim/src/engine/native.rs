@@ -1,0 +1,155 @@
+//! The device's logic, called directly.
+
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::fmt::Display;
+
+use thermal_display::drive::Drive;
+use thermal_display::protocol::{Command, Error, LineReader};
+use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
+use thermal_display::settings::Settings;
+use thermal_display::Station;
+
+use super::{BAUD, Cost, Engine};
+use crate::plant::bridge::{Leg, Legs};
+use crate::plant::sensors::Channel;
+use crate::world::World;
+
+/// Nanoseconds of one half millisecond, of one byte on the line, and of the tick after the whole-millisecond
+/// boundary that lies before it.
+const HALF_NS: u64 = 500_000;
+const BYTE_NS: u64 = 10 * 1_000_000_000 / BAUD;
+const TICK_NS: u64 = 730_000;
+
+/// Steps of the board's PWM period: 180 MHz / 96 kHz.
+const PWM_STEPS: u16 = 1875;
+
+/// Scans between the boundaries: four end the first step's tick, eight and four follow.
+const SCANS_BEFORE_START: usize = 4;
+const SCANS_IN_FIRST_HALF: usize = 8;
+
+/// The logic of one finger without its microcontroller.
+#[derive(Debug)]
+pub struct Native {
+    world: World,
+    settings: Settings,
+    station: Station,
+    reader: LineReader,
+    /// Bytes on their way to the device, and when they arrive.
+    incoming: VecDeque<(u64, u8)>,
+    outgoing: Vec<u8>,
+    scans: [Scan; SCANS_PER_TICK],
+    filled: usize,
+    drive: Drive,
+    /// Half milliseconds since the first boundary.
+    halves: u64,
+}
+
+impl Native {
+    /// A device that has just started its first tick.
+    #[must_use]
+    pub fn new(world: World) -> Self {
+        let settings = Settings::default();
+        let mut native = Self {
+            world,
+            settings,
+            station: Station::new(&settings),
+            reader: LineReader::new(),
+            incoming: VecDeque::new(),
+            outgoing: Vec::new(),
+            scans: [Scan::default(); SCANS_PER_TICK],
+            filled: 0,
+            drive: Drive::Off,
+            halves: 0,
+        };
+        native.scan(SCANS_BEFORE_START);
+        native
+    }
+
+    fn scan(&mut self, count: usize) {
+        for scan in &mut self.scans[self.filled..self.filled + count] {
+            *scan = Channel::ALL.map(|channel| self.world.convert(channel));
+        }
+        self.filled += count;
+    }
+
+    fn answer(&mut self, line: &dyn Display) {
+        self.outgoing.extend(format!("{line}\n").into_bytes());
+    }
+
+    /// Lines whose last byte has arrived before the tick.
+    fn serve(&mut self, now_ns: u64) {
+        while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
+            let Some(line) = self.reader.push(byte) else { continue };
+            let executed = line
+                .map_err(Error::from)
+                .and_then(|line| Command::parse(&line, &self.settings))
+                .and_then(|command| self.station.execute(command));
+            match executed {
+                Ok(reply) => self.answer(&reply),
+                Err(error) => self.answer(&error),
+            }
+        }
+    }
+}
+
+impl Engine for Native {
+    type Stop = Infallible;
+
+    const NAME: &'static str = "native";
+
+    fn world(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    fn legs(&self) -> Legs {
+        match self.drive {
+            Drive::Off => Legs::default(),
+            Drive::On(duty) => {
+                let (a, b) = duty.legs(PWM_STEPS);
+                let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(PWM_STEPS));
+                Legs { a: leg(a), b: leg(b), enabled: true }
+            }
+        }
+    }
+
+    fn run_half_ms(&mut self) -> Result<(), Infallible> {
+        if self.halves.is_multiple_of(2) {
+            self.scan(SCANS_IN_FIRST_HALF);
+        } else {
+            self.scan(SCANS_PER_TICK - self.filled);
+            let tick_ns = (self.halves - 1) * HALF_NS + TICK_NS;
+            self.serve(tick_ns);
+            let samples = Samples::from_scans(&self.scans, false);
+            self.drive = self.station.step(&samples);
+            if let Some(telemetry) = self.station.telemetry() {
+                self.answer(&telemetry);
+            }
+            self.filled = 0;
+            self.scan(SCANS_BEFORE_START);
+        }
+        self.halves += 1;
+        Ok(())
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        let mut at = self.halves * HALF_NS;
+        if let Some((last, _)) = self.incoming.back() {
+            at = at.max(*last);
+        }
+        for &byte in bytes {
+            at += BYTE_NS;
+            self.incoming.push_back((at, byte));
+        }
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        into.append(&mut self.outgoing);
+    }
+
+    fn reset_cost(&mut self) {}
+
+    fn cost(&self) -> Option<Cost> {
+        None
+    }
+}

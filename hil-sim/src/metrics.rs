@@ -1,0 +1,177 @@
+//! Figures of a run.
+
+use contact_model::material::{REFERENCE_DISPLAY, SKIN};
+use contact_model::pressure::pressure_pa;
+use contact_model::reference::{Contact, interface_temperature};
+use serde::Serialize;
+use thermal_display::render::Mode;
+
+use crate::engine::Engine;
+use crate::run::Outcome;
+use crate::scene::Scene;
+
+/// Time after landing from which the largest error counts, s.
+const AFTER_S: f64 = 0.05;
+
+/// Errors during contact, mK.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Errors {
+    /// Largest magnitude from 50 ms after each landing on.
+    pub max_after_50ms: f64,
+    /// Root mean square over all contact time.
+    pub rms: f64,
+}
+
+/// Extremes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Range {
+    /// Smallest.
+    pub min: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// Mean and largest value; null if the engine cannot know.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PerTick {
+    /// Mean.
+    pub mean: Option<f64>,
+    /// Largest.
+    pub max: Option<u64>,
+}
+
+/// A fault that the device reported.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tripped {
+    /// When, s.
+    pub t_s: f64,
+    /// What.
+    pub fault: String,
+}
+
+/// The figures of a run, as `--json` prints them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figures {
+    /// Engine.
+    pub engine: &'static str,
+    /// Material.
+    pub material: String,
+    /// Control ticks of the scene.
+    pub ticks: usize,
+    /// Skin on the display minus skin on the real object.
+    pub skin_error_mk: Option<Errors>,
+    /// Display minus the exact set-point for a nominal finger.
+    pub display_error_mk: Option<Errors>,
+    /// Skin on the display, °C.
+    pub skin_c: Range,
+    /// Evaluations of `erfcx`.
+    pub kernel_evaluations: Option<u64>,
+    /// Instructions of the control tick, emulated.
+    pub instructions_per_tick: PerTick,
+    /// Cycles of the control tick, estimated.
+    pub cycles_per_tick: PerTick,
+    /// Part of the time in which the CPU does not sleep, estimated.
+    pub cpu_load: Option<f64>,
+    /// Most of the stack that was used, emulated.
+    pub stack_bytes: Option<u64>,
+    /// Simulated seconds per second.
+    pub real_time_factor: f64,
+    /// Faults that the device reported.
+    pub faults: Vec<Tripped>,
+}
+
+/// Time since the last landing on an object that is there, for each row; `None` without contact.
+#[must_use]
+pub fn contact_times(scene: &Scene, outcome: &Outcome) -> Vec<Option<f64>> {
+    let mut landed_s = None;
+    let rows = outcome.trace.rows().iter();
+    rows.map(|row| {
+        if row.force_n > 0.0 && row.t_s >= scene.object.appears_t_s {
+            Some(row.t_s - *landed_s.get_or_insert(row.t_s))
+        } else {
+            landed_s = None;
+            None
+        }
+    })
+    .collect()
+}
+
+/// The exact set-point for a nominal finger: its temperature before contact known, its force that of the scene.
+#[must_use]
+pub fn exact_setpoint_c(scene: &Scene, since_s: f64, force_n: f64) -> f64 {
+    let object = &scene.object.material;
+    match scene.mode {
+        Mode::SemiInfinite => interface_temperature(&SKIN, scene.skin_c, object, scene.object_c()),
+        Mode::ContactResistance => {
+            let (finger, object) = ((&SKIN, scene.skin_c), (object, scene.object_c()));
+            Contact::new(finger, object, &REFERENCE_DISPLAY, pressure_pa(force_n)).at(since_s).display_c
+        }
+    }
+}
+
+/// Computes the figures.
+#[must_use]
+pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
+    let rows = outcome.trace.rows();
+    let contacts = contact_times(scene, outcome);
+    let touching = || rows.iter().zip(&contacts).filter_map(|(row, since)| Some((row, (*since)?)));
+    let skin = touching().map(|(row, since_s)| (since_s, row.skin_c - row.skin_real_c));
+    let display = touching().map(|(row, since_s)| {
+        (since_s, row.display_c - exact_setpoint_c(scene, since_s, row.force_n))
+    });
+    let evaluations = || rows.iter().filter_map(|row| row.device.as_ref()).map(|device| device.evaluations);
+    let skins = || rows.iter().map(|row| row.skin_c);
+    Figures {
+        engine: E::NAME,
+        material: scene.object.name.clone(),
+        ticks: rows.len().saturating_sub(1),
+        skin_error_mk: errors(skin),
+        display_error_mk: errors(display),
+        skin_c: Range {
+            min: skins().fold(f64::INFINITY, f64::min),
+            max: skins().fold(f64::NEG_INFINITY, f64::max),
+        },
+        kernel_evaluations: evaluations().next().zip(evaluations().last()).map(|(a, b)| b.saturating_sub(a)),
+        instructions_per_tick: PerTick {
+            mean: outcome.cost.map(|cost| cost.instructions_mean),
+            max: outcome.cost.map(|cost| cost.instructions_max),
+        },
+        cycles_per_tick: PerTick {
+            mean: outcome.cost.map(|cost| cost.cycles_mean),
+            max: outcome.cost.map(|cost| cost.cycles_max),
+        },
+        cpu_load: outcome.cost.map(|cost| cost.load),
+        stack_bytes: outcome.cost.map(|cost| cost.stack_bytes),
+        real_time_factor: outcome.real_time_factor,
+        faults: faults(outcome),
+    }
+}
+
+/// Errors in mK from time since landing in s and error in K; `None` without contact.
+fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<Errors> {
+    let (mut count, mut squares, mut max_k) = (0u32, 0.0, 0.0f64);
+    for (since_s, error_k) in samples {
+        count += 1;
+        squares += error_k * error_k;
+        if since_s >= AFTER_S {
+            max_k = max_k.max(error_k.abs());
+        }
+    }
+    let rms = (squares / f64::from(count)).sqrt() * 1e3;
+    (count > 0).then_some(Errors { max_after_50ms: max_k * 1e3, rms })
+}
+
+/// Every change into a tripped state.
+fn faults(outcome: &Outcome) -> Vec<Tripped> {
+    let mut faults = Vec::new();
+    let mut tripped = false;
+    for row in outcome.trace.rows() {
+        let Some(device) = &row.device else { continue };
+        let now = device.state == "tripped";
+        if now && !tripped {
+            faults.push(Tripped { t_s: row.t_s, fault: device.remark.clone().unwrap_or_default() });
+        }
+        tripped = now;
+    }
+    faults
+}

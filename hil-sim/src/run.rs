@@ -1,0 +1,103 @@
+//! A scene on an engine, from switch-on to the last row.
+
+use std::time::Instant;
+
+use crate::engine::{Cost, Engine};
+use crate::host::Host;
+use crate::scene::{FaultKind, Scene};
+use crate::telemetry::Telemetry;
+use crate::trace::{Row, Trace};
+
+/// Time after the last row in which its telemetry arrives, ms.
+const DRAIN_MS: u64 = 5;
+
+/// What a run has given.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// One row a millisecond.
+    pub trace: Trace,
+    /// Every line of the device that is not telemetry, with the time at which it was complete, s.
+    pub answers: Vec<(f64, String)>,
+    /// Cost of the scene, without set-up and settling.
+    pub cost: Option<Cost>,
+    /// Simulated seconds per second of this machine, settling included.
+    pub real_time_factor: f64,
+}
+
+/// Runs a scene; `progress` is told the part that is done.
+///
+/// # Errors
+/// The engine stopped: the device did something that is not modelled.
+pub fn run<E: Engine>(scene: &Scene, engine: &mut E, mut progress: impl FnMut(f64)) -> Result<Outcome, E::Stop> {
+    let began = Instant::now();
+    let zero_ms = (scene.settle_s * 1e3).round() as u64;
+    let end_ms = zero_ms + (scene.duration_s * 1e3).round() as u64;
+    let mut session = Session { scene, engine, host: Host::new(scene), zero_ms, received: Vec::new() };
+    let (mut trace, mut answers) = (Trace::default(), Vec::new());
+    for ms in 0..=end_ms + DRAIN_MS {
+        if ms == zero_ms {
+            session.engine.reset_cost();
+        }
+        session.boundary(2 * ms);
+        if (zero_ms..=end_ms).contains(&ms) {
+            let row = Row::now(session.t_s(2 * ms), session.engine.world().plant());
+            trace.push(ms, row);
+        }
+        session.half_ms()?;
+        session.boundary(2 * ms + 1);
+        session.half_ms()?;
+        for line in session.lines() {
+            match Telemetry::parse(&line) {
+                Some(telemetry) => trace.join(telemetry),
+                None => answers.push((session.t_s(2 * ms + 2), line)),
+            }
+        }
+        progress(ms as f64 / (end_ms + DRAIN_MS) as f64);
+    }
+    let simulated_s = (end_ms + DRAIN_MS) as f64 * 1e-3;
+    let real_time_factor = simulated_s / began.elapsed().as_secs_f64();
+    Ok(Outcome { trace, answers, cost: session.engine.cost(), real_time_factor })
+}
+
+struct Session<'a, E> {
+    scene: &'a Scene,
+    engine: &'a mut E,
+    host: Host,
+    zero_ms: u64,
+    received: Vec<u8>,
+}
+
+impl<E: Engine> Session<'_, E> {
+    /// Time of a half millisecond since the start.
+    fn t_s(&self, half_ms: u64) -> f64 {
+        (half_ms as f64 - 2.0 * self.zero_ms as f64) / 2e3
+    }
+
+    /// What the scene changes at the boundary.
+    fn boundary(&mut self, half_ms: u64) {
+        let t_s = self.t_s(half_ms);
+        let lasting = |kind: &FaultKind| *kind != FaultKind::HostGarbage;
+        let broken = self.scene.faults.iter().filter(|fault| fault.t_s <= t_s).map(|fault| fault.kind);
+        self.engine.world().set(self.scene.force_n(t_s), broken.filter(lasting));
+        if let Some(bytes) = self.host.send(half_ms) {
+            self.engine.send(bytes);
+        }
+    }
+
+    /// Runs device and plant to the next boundary: the device sees the plant as it is at this one, the plant
+    /// the legs as they are at this one.
+    fn half_ms(&mut self) -> Result<(), E::Stop> {
+        let legs = self.engine.legs();
+        self.engine.run_half_ms()?;
+        self.engine.world().step(legs);
+        Ok(())
+    }
+
+    /// The lines that are complete.
+    fn lines(&mut self) -> Vec<String> {
+        self.engine.receive(&mut self.received);
+        let Some(end) = self.received.iter().rposition(|byte| *byte == b'\n') else { return Vec::new() };
+        let complete: Vec<u8> = self.received.drain(..=end).collect();
+        String::from_utf8_lossy(&complete).lines().map(|line| line.trim_end().to_owned()).collect()
+    }
+}

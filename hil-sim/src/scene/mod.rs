@@ -1,0 +1,137 @@
+//! Scenes: what happens to the finger, the object and the device.
+
+mod check;
+mod file;
+
+use std::path::Path;
+
+use contact_model::material::Material;
+use thermal_display::render::Mode;
+
+pub use check::SceneError;
+
+/// A scene that has passed every check.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Length, s.
+    pub duration_s: f64,
+    /// Time before zero in which the device is switched on, armed and settles, s.
+    pub settle_s: f64,
+    /// Skin before contact, °C.
+    pub skin_c: f64,
+    /// Room, °C.
+    pub room_c: f64,
+    /// Of every random draw.
+    pub seed: u64,
+    /// Model that the device is told to use.
+    pub mode: Mode,
+    /// What the finger should feel.
+    pub object: Object,
+    /// Force over time, in order of time.
+    pub forces: Vec<Force>,
+    /// What breaks.
+    pub faults: Vec<Fault>,
+    /// Lines that the host sends.
+    pub host: Vec<HostLine>,
+}
+
+/// The real object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Name of the material, or `custom`.
+    pub name: String,
+    /// Its properties.
+    pub material: Material,
+    /// Temperature before contact, °C, told to the device; the room's if absent.
+    pub start_c: Option<f64>,
+    /// Time from which it is there, s.
+    pub appears_t_s: f64,
+}
+
+/// A force that is held from a time on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Force {
+    /// From when, s.
+    pub t_s: f64,
+    /// How much, N.
+    pub force_n: f64,
+    /// How long it takes to get there from the force before, linearly, s.
+    pub ramp_s: f64,
+}
+
+/// Something that breaks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fault {
+    /// What.
+    pub kind: FaultKind,
+    /// When, s.
+    pub t_s: f64,
+}
+
+/// What can break.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FaultKind {
+    /// The display thermistor reads full scale.
+    ThermistorOpen,
+    /// The display thermistor reads zero.
+    ThermistorShort,
+    /// Leg A of the bridge stays at the supply.
+    BridgeStuckHigh,
+    /// The module's wires are swapped.
+    PolaritySwapped,
+    /// Every channel repeats its last code.
+    AdcStuck,
+    /// The host sends bytes that are no line.
+    HostGarbage,
+}
+
+/// A line that the host sends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HostLine {
+    /// When, s.
+    pub t_s: f64,
+    /// The line, without its end.
+    pub line: String,
+}
+
+impl Scene {
+    /// Reads and checks a scene.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with file and line, and what is allowed.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|error| SceneError::unreadable(path, &error))?;
+        Self::parse(&text, path)
+    }
+
+    /// Checks a scene's text; `path` is for messages.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, SceneError> {
+        check::scene(text, path)
+    }
+
+    /// Temperature of the object before contact, °C.
+    #[must_use]
+    pub fn object_c(&self) -> f64 {
+        self.object.start_c.unwrap_or(self.room_c)
+    }
+
+    /// Force at a time, N.
+    #[must_use]
+    pub fn force_n(&self, t_s: f64) -> f64 {
+        let mut held_n = 0.0;
+        for force in self.forces.iter().take_while(|force| force.t_s <= t_s) {
+            let since_s = t_s - force.t_s;
+            held_n = if since_s < force.ramp_s {
+                held_n + (force.force_n - held_n) * since_s / force.ramp_s
+            } else {
+                force.force_n
+            };
+        }
+        held_n
+    }
+}
