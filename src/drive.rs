@@ -1,6 +1,9 @@
 //! What the bridge is told.
 
-use fixed::types::I1F15;
+use fixed::types::{I1F15, I8F24};
+
+/// Current through the module in A, ±128; positive cools the display.
+pub type Current = I8F24;
 
 /// Signed fraction of the bridge supply; positive cools the display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,124 @@
-//! Constants of one built device.
+//! What differs between two built devices, in physical units.
 
-/// Everything that differs between two built devices.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Settings {}
+use contact_model::material::{REFERENCE_DISPLAY, Surface};
+
+/// Everything that is derived from these is derived once, at start-up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// All five thermistors.
+    pub thermistor: Thermistor,
+    /// Force sensor.
+    pub force: ForceSensor,
+    /// Current mirror of the bridge: counts (of 4096) per ampere.
+    pub current_counts_per_a: f64,
+    /// Thermoelectric module, as the bridge sees it.
+    pub module: Module,
+    /// Temperature loop.
+    pub gains: Gains,
+    /// Finish of the display's surface.
+    pub display: Surface,
+}
+
+/// A thermistor to ground under a pull-up resistor, read ratiometrically.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thermistor {
+    /// Pull-up resistor, ohm.
+    pub pull_up_ohm: f64,
+    /// Resistance to temperature.
+    pub curve: Curve,
+}
+
+/// Resistance to temperature, `R` in ohm and `T` in kelvin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Curve {
+    /// `1/T = 1/298.15 + ln(R / r25_ohm) / beta_k`.
+    Beta {
+        /// Resistance at 25 °C, ohm.
+        r25_ohm: f64,
+        /// Beta, K.
+        beta_k: f64,
+    },
+    /// `1/T = a + b ln R + c (ln R)^3`.
+    SteinhartHart {
+        /// 1/K.
+        a: f64,
+        /// 1/K.
+        b: f64,
+        /// 1/K.
+        c: f64,
+    },
+}
+
+impl Curve {
+    /// The coefficients `a`, `b`, `c` of the Steinhart-Hart form.
+    #[must_use]
+    pub fn steinhart_hart(&self) -> (f64, f64, f64) {
+        match *self {
+            Self::Beta { r25_ohm, beta_k } => (1.0 / 298.15 - libm::log(r25_ohm) / beta_k, 1.0 / beta_k, 0.0),
+            Self::SteinhartHart { a, b, c } => (a, b, c),
+        }
+    }
+}
+
+/// A force sensor with a live zero, so that a broken wire reads below it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ForceSensor {
+    /// Counts (of 4096) without force.
+    pub zero_counts: f64,
+    /// Counts per newton.
+    pub counts_per_n: f64,
+}
+
+/// A thermoelectric module on its supply.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Module {
+    /// Electrical resistance, ohm.
+    pub resistance_ohm: f64,
+    /// Seebeck coefficient, V/K.
+    pub seebeck_v_k: f64,
+    /// Supply of the bridge, V.
+    pub supply_v: f64,
+    /// Largest current either way, A.
+    pub current_limit_a: f64,
+}
+
+/// A proportional-integral law from temperature error to current.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gains {
+    /// A/K.
+    pub proportional_a_k: f64,
+    /// Integral time, s.
+    pub integral_s: f64,
+}
+
+impl Default for Settings {
+    /// The class values that the wiring table names: 10 k thermistors of beta 3950 K under 10 k, a 30 mm,
+    /// 6 A module on 12 V. Gains by the SIMC rule for 2.7 K/s per ampere behind 0.1 s of sensor lag.
+    fn default() -> Self {
+        Self {
+            thermistor: Thermistor {
+                pull_up_ohm: 10e3,
+                curve: Curve::Beta {
+                    r25_ohm: 10e3,
+                    beta_k: 3950.0,
+                },
+            },
+            force: ForceSensor {
+                zero_counts: 410.0,
+                counts_per_n: 300.0,
+            },
+            current_counts_per_a: 400.0,
+            module: Module {
+                resistance_ohm: 1.061,
+                seebeck_v_k: 0.0273,
+                supply_v: 12.0,
+                current_limit_a: 6.0,
+            },
+            gains: Gains {
+                proportional_a_k: 1.85,
+                integral_s: 0.8,
+            },
+            display: REFERENCE_DISPLAY,
+        }
+    }
+}

@@ -1,37 +1,238 @@
 //! One finger's device, without its hardware.
+//!
+//! ```text
+//!            arm                 start
+//!     off ---------> armed ---------------> preset <--> contact
+//!      ^               ^                      |  lands / lifts |
+//!      |               +------- arm ----------+----------------+
+//!      |  abort, from anywhere but tripped
+//!      +--- clear --- tripped <--- any fault, from anywhere
+//! ```
+//!
+//! Armed, the display is neutral: at skin temperature, touched or not. The bridge is driven in `armed`,
+//! `preset` and `contact` only.
 
-use crate::drive::Drive;
-use crate::protocol::{Command, Error, Reply, Telemetry};
-use crate::sense::Samples;
+use contact_model::fixed_point::{Celsius, Force, Pairing};
+
+use crate::TICK_HZ;
+use crate::control::{Pi, Voltage};
+use crate::drive::{Current, Drive};
+use crate::guard::{self, Fault, Setpoint, Sound};
+use crate::protocol::{Command, Error, Reply, Status, Telemetry};
+use crate::render::{Mode, Render, Scene};
+use crate::sense::{Readings, Samples, Sensors, Touch};
 use crate::settings::Settings;
 
+/// What the device is doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Bridge off.
+    Off,
+    /// Display at skin temperature.
+    Armed,
+    /// An object is presented, no finger on it.
+    Preset,
+    /// An object is presented to the finger on it.
+    Contact,
+    /// Bridge off, until the host clears the fault.
+    Tripped(Fault),
+}
+
+impl State {
+    /// The word for it in the protocol.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Off => "off",
+            Self::Armed => "armed",
+            Self::Preset => "preset",
+            Self::Contact => "contact",
+            Self::Tripped(_) => "tripped",
+        }
+    }
+
+    /// Why it is off, if tripped.
+    #[must_use]
+    pub const fn fault(self) -> Option<Fault> {
+        match self {
+            Self::Tripped(fault) => Some(fault),
+            _ => None,
+        }
+    }
+}
+
 /// One finger's display: samples in, bridge command out, once per tick.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Station {
+    sensors: Sensors,
+    voltage: Voltage,
+    pi: Pi,
+
+    state: State,
+    /// Fault present in the last tick.
+    fault: Option<Fault>,
+    touch: Touch,
+    render: Render,
+    material: Option<(&'static str, Pairing)>,
+    object: Option<Celsius>,
+    mode: Mode,
+
     tick: u32,
+    stream_ticks: u32,
+    telemetry: Telemetry,
 }
 
 impl Station {
     /// A station that is off.
     #[must_use]
-    pub const fn new(_settings: Settings) -> Self {
-        Self { tick: 0 }
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            sensors: Sensors::new(settings),
+            voltage: Voltage::new(&settings.module),
+            pi: Pi::new(&settings.gains, settings.module.current_limit_a),
+            state: State::Off,
+            fault: None,
+            touch: Touch::default(),
+            render: Render::default(),
+            material: None,
+            object: None,
+            mode: Mode::default(),
+            tick: 0,
+            stream_ticks: 0,
+            telemetry: Telemetry::before_first_tick(),
+        }
     }
 
-    /// One control tick.
-    pub fn step(&mut self, _samples: &Samples) -> Drive {
+    /// One control tick: sense, render, control, guard.
+    pub fn step(&mut self, samples: &Samples) -> Drive {
         self.tick = self.tick.wrapping_add(1);
-        Drive::Off
+        let readings = self.sensors.read(samples);
+        let checked = guard::check(&readings, self.pi.limit());
+        self.fault = checked.err();
+        if let (Err(fault), false) = (checked, matches!(self.state, State::Tripped(_))) {
+            self.state = State::Tripped(fault);
+        }
+        let followed = checked.ok().and_then(|sound| Some((sound, self.follow(&sound)?)));
+        let (drive, current) = match followed {
+            Some((sound, (setpoint, _))) => {
+                let current = self.pi.update(setpoint, sound.display);
+                (
+                    Drive::On(self.voltage.duty(current, sound.sink, sound.display)),
+                    current,
+                )
+            }
+            None => {
+                self.pi.reset();
+                (Drive::Off, Current::ZERO)
+            }
+        };
+        self.report(&readings, followed.map(|(_, wanted)| wanted), current);
+        drive
     }
 
-    /// Telemetry of the last tick, if the host asked for it.
+    /// Follows finger and scene; the set-point of this tick, and whether it was limited.
+    fn follow(&mut self, sound: &Sound) -> Option<(Setpoint, bool)> {
+        let before = self.touch.touching();
+        self.touch.update(sound.force);
+        let touching = self.touch.touching();
+        self.render.observe(sound.skin, sound.room, touching);
+        let wanted = match self.state {
+            State::Off | State::Tripped(_) => return None,
+            State::Armed => self.render.neutral()?,
+            State::Preset | State::Contact => {
+                self.state = if touching { State::Contact } else { State::Preset };
+                let landed = if before { 0 } else { Touch::detection_ticks() };
+                let touch: Option<Force> = touching.then_some(sound.force);
+                self.render.present(&self.scene()?, touch, landed)?
+            }
+        };
+        Some(Setpoint::limited(wanted))
+    }
+
+    fn scene(&self) -> Option<Scene> {
+        let (_, pairing) = self.material?;
+        Some(Scene {
+            pairing,
+            object: self.object,
+            mode: self.mode,
+        })
+    }
+
+    fn report(&mut self, readings: &Readings, setpoint: Option<(Setpoint, bool)>, current: Current) {
+        self.telemetry = Telemetry {
+            tick: self.tick,
+            state: self.state,
+            setpoint: setpoint.map(|(setpoint, _)| setpoint.celsius()),
+            limited: setpoint.is_some_and(|(_, limited)| limited),
+            display: readings.display.ok(),
+            sink: readings.sink.ok(),
+            skin: readings.skin.ok(),
+            room: readings.room.ok(),
+            force: readings.force,
+            demand: current,
+            current: readings.current,
+            evaluations: self.render.evaluations(),
+        };
+    }
+
+    /// Telemetry of the last tick, if it is due.
     #[must_use]
     pub fn telemetry(&self) -> Option<Telemetry> {
-        Some(Telemetry { tick: self.tick })
+        let due = self.stream_ticks != 0 && self.tick.is_multiple_of(self.stream_ticks);
+        due.then_some(self.telemetry)
+    }
+
+    fn status(&self) -> Status {
+        Status {
+            state: self.state,
+            material: self.material.map(|(name, _)| name),
+            object: self.object,
+            mode: self.mode,
+            setpoint: self.telemetry.setpoint,
+            limited: self.telemetry.limited,
+            display: self.telemetry.display,
+            ticks: self.tick,
+        }
     }
 
     /// Executes a command of the host, in bounded and short time.
-    pub fn execute(&mut self, _command: Command) -> Result<Reply, Error> {
-        Ok(Reply)
+    ///
+    /// # Errors
+    /// The command does not fit the state; nothing has changed.
+    pub fn execute(&mut self, command: Command) -> Result<Reply, Error> {
+        match command {
+            Command::Identify => return Ok(Reply::Identity),
+            Command::Status => return Ok(Reply::Status(self.status())),
+            Command::Stream { interval_ms } => self.stream_ticks = interval_ms * (TICK_HZ / 1000),
+            Command::Material { name, pairing } => self.material = Some((name, pairing)),
+            Command::Object(object) => self.object = object,
+            Command::Mode(mode) => self.mode = mode,
+            Command::Arm => match self.state {
+                State::Tripped(fault) => return Err(Error::Tripped(fault)),
+                _ => self.state = State::Armed,
+            },
+            Command::Start => match (self.state, self.material) {
+                (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),
+                (State::Off, _) => return Err(Error::NotArmed),
+                (_, None) => return Err(Error::NoMaterial),
+                (State::Armed, Some(_)) => {
+                    self.render.forget_contact();
+                    self.state = State::Preset;
+                }
+                (State::Preset | State::Contact, Some(_)) => return Err(Error::AlreadyStarted),
+            },
+            // Never refused: off is what it asks for, and tripped is off.
+            Command::Abort => {
+                if !matches!(self.state, State::Tripped(_)) {
+                    self.state = State::Off;
+                }
+            }
+            Command::Clear => match (self.state, self.fault) {
+                (State::Tripped(_), None) => self.state = State::Off,
+                (State::Tripped(_), Some(fault)) => return Err(Error::StillFaulty(fault)),
+                _ => return Err(Error::NothingToClear),
+            },
+        }
+        Ok(Reply::Done)
     }
 }

@@ -45,7 +45,11 @@ impl Material {
 /// The fingertip: a half-space with `k` 0.37 W/(m K) and diffusivity 1e-7 m²/s (section 2.1); finish is the
 /// mean over both sexes (Table 6-1).
 pub const SKIN: Material = Material {
-    surface: Surface { conductivity_w_mk: 0.37, roughness_um: 21.69, slope_rad: 0.30 },
+    surface: Surface {
+        conductivity_w_mk: 0.37,
+        roughness_um: 21.69,
+        slope_rad: 0.30,
+    },
     density_kg_m3: 1000.0,
     specific_heat_j_kgk: 3700.0,
 };
@@ -54,12 +58,19 @@ pub const SKIN: Material = Material {
 pub const SKIN_MICROHARDNESS_PA: f64 = 0.1225e6;
 
 /// The display surface that reproduces the ratios `R_display / R_object` of section 6.3.
-pub const REFERENCE_DISPLAY: Surface =
-    Surface { conductivity_w_mk: 36.0, roughness_um: 1.0, slope_rad: 0.138 };
+pub const REFERENCE_DISPLAY: Surface = Surface {
+    conductivity_w_mk: 36.0,
+    roughness_um: 1.0,
+    slope_rad: 0.138,
+};
 
 const fn solid(k: f64, rho: f64, c: f64, roughness_um: f64, slope_rad: f64) -> Material {
     Material {
-        surface: Surface { conductivity_w_mk: k, roughness_um, slope_rad },
+        surface: Surface {
+            conductivity_w_mk: k,
+            roughness_um,
+            slope_rad,
+        },
         density_kg_m3: rho,
         specific_heat_j_kgk: c,
     }
@@ -81,5 +92,8 @@ pub const MATERIALS: [(&str, Material); 9] = [
 /// The material of that name, as [`MATERIALS`] spells it.
 #[must_use]
 pub fn find(name: &str) -> Option<&'static Material> {
-    MATERIALS.iter().find(|(known, _)| *known == name).map(|(_, material)| material)
+    MATERIALS
+        .iter()
+        .find(|(known, _)| *known == name)
+        .map(|(_, material)| material)
 }

@@ -4,8 +4,13 @@
 //! force between the points and constant outside them.
 
 /// Force in N and mean contact pressure in Pa, as stated.
-pub const STATED: [(f64, f64); 5] =
-    [(0.1, 730.0), (0.25, 1680.0), (0.5, 3140.0), (1.0, 5900.0), (2.0, 10980.0)];
+pub const STATED: [(f64, f64); 5] = [
+    (0.1, 730.0),
+    (0.25, 1680.0),
+    (0.5, 3140.0),
+    (1.0, 5900.0),
+    (2.0, 10980.0),
+];
 
 /// Contact area in m² of a fingertip pressed with `force_n` (N, not negative).
 #[must_use]

@@ -1,43 +1,15 @@
-//! The line protocol between host and device.
+//! The line protocol between host and device: one line of words to the device, one line back.
+//!
+//! Answers start with `ok` or `err`, streamed telemetry with `T`.
 
+mod command;
+mod error;
 mod line;
+mod reply;
 mod telemetry;
 
-pub use line::{Line, LineError, LineReader};
+pub use command::Command;
+pub use error::{Error, Number, Word};
+pub use line::{LINE_MAX, Line, LineError, LineReader};
+pub use reply::{Reply, Status};
 pub use telemetry::Telemetry;
-
-use core::fmt;
-
-/// A command of the host, checked and ready to execute.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Command {
-    /// `id`: who is there.
-    Identify,
-}
-
-/// What a command is answered with; `Display` writes the line without its end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reply;
-
-/// Why a line was refused; `Display` writes the line without its end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Error;
-
-impl Command {
-    /// Reads one line. Does the costly part of a command, so that executing it is short.
-    pub fn parse(_line: &str) -> Result<Self, Error> {
-        Ok(Self::Identify)
-    }
-}
-
-impl fmt::Display for Reply {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("ok")
-    }
-}
-
-impl fmt::Display for Error {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("error")
-    }
-}

@@ -1,5 +1,16 @@
 //! From converter counts to temperatures, force and current.
 
+mod force;
+mod thermistor;
+
+pub use force::{ForceScale, Touch};
+pub use thermistor::{SensorFault, Thermistor};
+
+use contact_model::fixed_point::{Celsius, Force};
+
+use crate::drive::Current;
+use crate::settings::Settings;
+
 /// Signals of one finger, in the order in which the converter scans them.
 pub const CHANNELS: usize = 7;
 
@@ -50,6 +61,65 @@ impl Samples {
             force,
             current,
             bridge_fault,
+        }
+    }
+}
+
+/// What the samples of one tick say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Readings {
+    /// Display surface, in the contact patch.
+    pub display: Result<Celsius, SensorFault>,
+    /// The same, by the second thermistor.
+    pub display_check: Result<Celsius, SensorFault>,
+    /// Sink.
+    pub sink: Result<Celsius, SensorFault>,
+    /// Skin at the edge of the contact.
+    pub skin: Result<Celsius, SensorFault>,
+    /// Room.
+    pub room: Result<Celsius, SensorFault>,
+    /// Force; `None` if the sensor's wire is broken.
+    pub force: Option<Force>,
+    /// Magnitude of the module's current.
+    pub current: Current,
+    /// The bridge driver pulls its fault pin.
+    pub bridge_fault: bool,
+}
+
+/// The sensors of one finger.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sensors {
+    thermistor: Thermistor,
+    force: ForceScale,
+    /// Current of one unit of the sum, in 2^-24 A.
+    current_per_unit: i32,
+}
+
+impl Sensors {
+    /// `f64`, once.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        let per_unit = 1.0 / (settings.current_counts_per_a * SCANS_PER_TICK as f64);
+        Self {
+            thermistor: Thermistor::new(&settings.thermistor),
+            force: ForceScale::new(&settings.force),
+            current_per_unit: Current::saturating_from_num(per_unit).to_bits(),
+        }
+    }
+
+    /// Converts the samples of one tick.
+    #[must_use]
+    pub fn read(&self, samples: &Samples) -> Readings {
+        let temperature = |sum| self.thermistor.temperature(sum);
+        Readings {
+            display: temperature(samples.display),
+            display_check: temperature(samples.display_check),
+            sink: temperature(samples.sink),
+            skin: temperature(samples.skin),
+            room: temperature(samples.room),
+            force: self.force.force(samples.force),
+            current: Current::from_bits(self.current_per_unit.saturating_mul(i32::from(samples.current))),
+            bridge_fault: samples.bridge_fault,
         }
     }
 }

@@ -29,11 +29,16 @@ impl Contact {
     #[must_use]
     #[inline]
     pub fn at(&self, elapsed: u32, skin_before: Celsius, object_before: Celsius) -> Response {
-        Response { contact: *self, skin_before, object_before, erfcx: erfcx(elapsed, self.per_tick) }
+        Response {
+            contact: *self,
+            skin_before,
+            object_before,
+            erfcx: erfcx(elapsed, self.per_tick),
+        }
     }
 }
 
-/// Outputs; for temperatures within [`super::TEMPERATURE_RANGE_C`] their error is that of `E` (2^-29) times
+/// Outputs; for temperatures within [`super::TEMPERATURE_RANGE_C`] their error is that of `E` (below 2^-28) times
 /// the temperature step, plus at most 1 µK.
 impl Response {
     /// `erfcx(b sqrt(t))`.
@@ -46,22 +51,25 @@ impl Response {
     #[must_use]
     pub fn skin(&self) -> Celsius {
         let full = part(self.step(), self.contact.weight);
-        self.skin_before.saturating_sub(full).saturating_add(part(full, self.erfcx))
+        self.skin_before
+            .saturating_sub(full)
+            .saturating_add(part(full, self.erfcx))
     }
 
     /// Object surface (Eq. 6-6).
     #[must_use]
     pub fn object(&self) -> Celsius {
         let full = self.step().saturating_sub(part(self.step(), self.contact.weight));
-        self.object_before.saturating_add(full).saturating_sub(part(full, self.erfcx))
+        self.object_before
+            .saturating_add(full)
+            .saturating_sub(part(full, self.erfcx))
     }
 
     /// Display surface that puts the skin where the object would (Eq. 6-12).
     #[must_use]
     pub fn display(&self) -> Celsius {
         let across = part(self.step(), self.erfcx);
-        let scaled = (i64::from(across.to_bits()) * i64::from(self.contact.ratio.to_bits())) >> 28;
-        self.skin().saturating_sub(saturate(scaled))
+        self.skin().saturating_sub(scaled(across, self.contact.ratio))
     }
 
     /// Heat flux out of the skin (Eq. 6-7, positive for a cold object); relative error below 2^-20 of
@@ -90,6 +98,8 @@ pub(super) fn part(difference: Celsius, fraction: Fraction) -> Celsius {
     Celsius::from_bits(((i64::from(difference.to_bits()) * i64::from(fraction.to_bits())) >> 32) as i32)
 }
 
-fn saturate(bits: i64) -> Celsius {
+/// A temperature difference times `R_display / R_object`; saturates.
+pub(super) fn scaled(difference: Celsius, ratio: Ratio) -> Celsius {
+    let bits = (i64::from(difference.to_bits()) * i64::from(ratio.to_bits())) >> 28;
     Celsius::from_bits(bits.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
 }

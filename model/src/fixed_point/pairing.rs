@@ -41,7 +41,10 @@ impl fmt::Display for PairingError {
         match self {
             Self::Property { name, value } => write!(f, "{name} is {value}; it must be above 0"),
             Self::Ratio(value) => write!(f, "R_display / R_object is {value}; it must be below 16"),
-            Self::Rate(value) => write!(f, "the contact's rate is {value}; it must be within 2^-100 to 2^100"),
+            Self::Rate(value) => write!(
+                f,
+                "the contact's rate is {value}; it must be within 2^-100 to 2^100"
+            ),
         }
     }
 }
@@ -111,6 +114,16 @@ impl Pairing {
         }
     }
 
+    /// Display temperature at `t = 0`, which is also what it is preset to before contact (Eq. 6-12);
+    /// does not depend on pressure. Error below 1 µK.
+    #[must_use]
+    pub fn preset(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
+        skin_c.saturating_sub(super::contact::scaled(
+            skin_c.saturating_sub(object_c),
+            self.ratio,
+        ))
+    }
+
     /// Interface temperature of perfect contact (Eq. 3-1); error below 1 µK.
     #[must_use]
     pub fn interface_temperature(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
@@ -121,5 +134,9 @@ impl Pairing {
 
 fn log2_of(value: f64) -> Result<Log2, PairingError> {
     let log2 = libm::log2(value);
-    if log2.abs() <= 100.0 { Ok(Log2::from_num(log2)) } else { Err(PairingError::Rate(value)) }
+    if log2.abs() <= 100.0 {
+        Ok(Log2::from_num(log2))
+    } else {
+        Err(PairingError::Rate(value))
+    }
 }

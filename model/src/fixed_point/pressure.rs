@@ -51,7 +51,9 @@ const LOG2_MICROHARDNESS: Log2 = Log2::lit("16.902422223664658");
 pub fn log2_relative_pressure(force: Force) -> Log2 {
     let log2_force = log2(force.to_bits()).saturating_sub(Log2::const_from_int(24));
     let log2_area = log2(area(force)).saturating_sub(Log2::const_from_int(AREA_BITS));
-    log2_force.saturating_sub(log2_area).saturating_sub(LOG2_MICROHARDNESS)
+    log2_force
+        .saturating_sub(log2_area)
+        .saturating_sub(LOG2_MICROHARDNESS)
 }
 
 /// Contact area in units of 2^-40 m².

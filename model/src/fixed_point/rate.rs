@@ -13,7 +13,10 @@ pub struct Rate {
 
 impl Rate {
     /// The number one.
-    pub const ONE: Self = Self { mantissa: 1 << 31, exponent: 0 };
+    pub const ONE: Self = Self {
+        mantissa: 1 << 31,
+        exponent: 0,
+    };
 
     /// Rounds a positive, normal number; `None` for anything else.
     #[must_use]
@@ -26,9 +29,15 @@ impl Rate {
         // 52 fraction bits rounded to 31; a carry out of the fraction doubles the number.
         let fraction = ((bits & ((1 << 52) - 1)) + (1 << 20)) >> 21;
         Some(if fraction >> 31 == 0 {
-            Self { mantissa: 1 << 31 | fraction as u32, exponent }
+            Self {
+                mantissa: 1 << 31 | fraction as u32,
+                exponent,
+            }
         } else {
-            Self { mantissa: 1 << 31, exponent: exponent + 1 }
+            Self {
+                mantissa: 1 << 31,
+                exponent: exponent + 1,
+            }
         })
     }
 
@@ -36,7 +45,10 @@ impl Rate {
     #[must_use]
     pub fn from_log2(log2: Log2) -> Self {
         let whole = log2.to_bits() >> 24;
-        Self { mantissa: exp2((log2.to_bits() as u32) << 8), exponent: whole as i16 }
+        Self {
+            mantissa: exp2((log2.to_bits() as u32) << 8),
+            exponent: whole as i16,
+        }
     }
 
     /// The number, exactly.

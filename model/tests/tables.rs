@@ -1,0 +1,16 @@
+//! The committed tables are what the generator writes.
+
+mod fit;
+
+#[test]
+fn committed_tables_are_generated() {
+    let again = "run `cargo run -p contact-model --example tables`";
+    assert!(
+        include_str!("../src/fixed_point/kernel_table.rs") == fit::kernel_table(),
+        "{again}"
+    );
+    assert!(
+        include_str!("../src/fixed_point/log_table.rs") == fit::log_table(),
+        "{again}"
+    );
+}

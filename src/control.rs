@@ -1,0 +1,156 @@
+//! Set-point to current, and current to bridge voltage.
+
+use contact_model::fixed_point::Celsius;
+use fixed::types::{I1F15, I16F16, I24F40};
+
+use crate::TICK_HZ;
+use crate::drive::{Current, Duty};
+use crate::guard::Setpoint;
+use crate::settings::{Gains, Module};
+
+/// Proportional-integral law with limited output.
+///
+/// The integral stops while the output is at its limit and the error would drive it further, so there is
+/// nothing to unwind afterwards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Pi {
+    proportional: I16F16,
+    /// A per K and tick.
+    integral: I24F40,
+    limit: Current,
+    /// Integral part of the output, A.
+    state: I24F40,
+}
+
+impl Pi {
+    /// `f64`, once; gains saturate at 32768 A/K.
+    #[must_use]
+    pub fn new(gains: &Gains, limit_a: f64) -> Self {
+        let integral = gains.proportional_a_k / (gains.integral_s * f64::from(TICK_HZ));
+        Self {
+            proportional: I16F16::saturating_from_num(gains.proportional_a_k),
+            integral: I24F40::saturating_from_num(integral),
+            limit: Current::saturating_from_num(limit_a),
+            state: I24F40::ZERO,
+        }
+    }
+
+    /// Forgets the past.
+    pub fn reset(&mut self) {
+        self.state = I24F40::ZERO;
+    }
+
+    /// The largest current that [`Self::update`] returns.
+    #[must_use]
+    pub const fn limit(&self) -> Current {
+        self.limit
+    }
+
+    /// Current for one tick; positive cools, so it rises when the display is above its set-point.
+    pub fn update(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
+        let error = I24F40::from_num(display.saturating_sub(setpoint.celsius()));
+        let proportional = error.saturating_mul(I24F40::from_num(self.proportional));
+        let state = self.state.saturating_add(error.saturating_mul(self.integral));
+        let limit = I24F40::from_num(self.limit);
+        let wanted = proportional.saturating_add(state);
+        let output = wanted.clamp(-limit, limit);
+        if output == wanted || (wanted > output) != (error > 0) {
+            self.state = state.clamp(-limit, limit);
+        }
+        Current::from_num(output)
+    }
+}
+
+/// The module's electrical side: `V = R I + a (T_sink - T_display)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Voltage {
+    /// Part of the supply per A.
+    per_a: I16F16,
+    /// Part of the supply per K.
+    per_k: I16F16,
+}
+
+impl Voltage {
+    /// `f64`, once.
+    #[must_use]
+    pub fn new(module: &Module) -> Self {
+        Self {
+            per_a: I16F16::saturating_from_num(module.resistance_ohm / module.supply_v),
+            per_k: I16F16::saturating_from_num(module.seebeck_v_k / module.supply_v),
+        }
+    }
+
+    /// Mean voltage for a current, as a part of the supply.
+    #[must_use]
+    pub fn duty(&self, current: Current, sink: Celsius, display: Celsius) -> Duty {
+        let across = I16F16::saturating_from_num(sink.saturating_sub(display));
+        let resistive = I16F16::from_num(current).saturating_mul(self.per_a);
+        let voltage = resistive.saturating_add(across.saturating_mul(self.per_k));
+        Duty::saturating(I1F15::saturating_from_num(voltage))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::Settings;
+
+    fn pi() -> Pi {
+        Pi::new(
+            &Gains {
+                proportional_a_k: 2.0,
+                integral_s: 0.5,
+            },
+            6.0,
+        )
+    }
+
+    fn at(t_c: f64) -> Celsius {
+        Celsius::from_num(t_c)
+    }
+
+    /// A constant error e gives kp e (1 + t / ti).
+    #[test]
+    fn pi_answers_a_step_as_its_equation_says() {
+        let (setpoint, mut pi) = (Setpoint::limited(at(25.0)).0, pi());
+        for tick in 1..=1000 {
+            let expected = 2.0 * 0.5 * (1.0 + f64::from(tick) * 1e-3 / 0.5);
+            let output = pi.update(setpoint, at(25.5)).to_num::<f64>();
+            assert!(
+                (output - expected).abs() < 1e-4,
+                "tick {tick}: {output}, expected {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn pi_holds_its_limit_and_leaves_it_without_delay() {
+        let (setpoint, mut pi) = (Setpoint::limited(at(25.0)).0, pi());
+        for _ in 0..10_000 {
+            assert_eq!(pi.update(setpoint, at(40.0)), Current::lit("6"));
+        }
+        // Without anti-windup the integral would hold 600 A by now.
+        let output = pi.update(setpoint, at(24.0));
+        assert!(output <= Current::lit("4"), "{output}");
+    }
+
+    #[test]
+    fn pi_is_odd_in_its_error() {
+        let (setpoint, mut up, mut down) = (Setpoint::limited(at(30.0)).0, pi(), pi());
+        for _ in 0..100 {
+            let (a, b) = (up.update(setpoint, at(30.25)), down.update(setpoint, at(29.75)));
+            assert!((a + b).abs() <= Current::from_bits(4));
+        }
+    }
+
+    #[test]
+    fn voltage_is_resistive_plus_seebeck() {
+        let voltage = Voltage::new(&Settings::default().module);
+        let duty = voltage
+            .duty(Current::lit("3"), at(30.0), at(20.0))
+            .fraction()
+            .to_num::<f64>();
+        let expected = (3.0 * 1.061 + 0.0273 * 10.0) / 12.0;
+        assert!((duty - expected).abs() < 3e-4, "{duty}, expected {expected}");
+    }
+}
