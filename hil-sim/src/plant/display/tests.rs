@@ -127,7 +127,7 @@ fn lifted_finger_keeps_its_heat() {
         bench.display.step(STEP_S, Some(6.0));
     }
     let (after_j_m2, _) = bench.gained();
-    assert!((after_j_m2 / before_j_m2 - 1.0).abs() < 1e-12);
+    assert!((after_j_m2 / before_j_m2 - 1.0).abs() < 1e-10);
     assert!(
         bench.display.skin_c() > cooled_c + 1.0,
         "its surface warms from within"

@@ -2,7 +2,9 @@
 
 use std::f64::consts::PI;
 
-use contact_model::material::{Material, SKIN, find};
+use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, find};
+use contact_model::pressure::pressure_pa;
+use contact_model::reference::Contact;
 
 use super::{plant, run};
 use crate::plant::bridge::Legs;
@@ -164,5 +166,33 @@ fn gentle_ramp_needs_no_sub_steps() {
         exact.advance(t_s, touch(force_n).map(|t| t.resistance_m2k_w), 10, kappa);
         let off_mk = 1e3 * (plant.skin_real_c() - (34.0 - per_skin * exact.memory(t_s))).abs();
         assert!(off_mk < 1.0, "at {force_n} N: off by {off_mk} mK");
+    }
+}
+
+#[test]
+fn first_steps_after_landing_are_resolved() {
+    for material in ["copper", "granite", "abs", "foam"] {
+        let object = find(material).expect("known");
+        for force_n in [0.1, 0.5, 2.0] {
+            let exact = Contact::new(
+                (&SKIN, 34.0),
+                (object, 24.0),
+                &REFERENCE_DISPLAY,
+                pressure_pa(force_n),
+            );
+            let mut plant = plant(material);
+            plant.set_force(force_n);
+            for k in 1..=40 {
+                plant.step(&Legs::default());
+                let want = exact.at(f64::from(k) * STEP_S);
+                let skin_off_mk = 1e3 * (plant.skin_real_c() - want.skin_c).abs();
+                let object_off_mk = 1e3 * (plant.object_c() - want.object_c).abs();
+                let off_mk = skin_off_mk.max(object_off_mk);
+                assert!(
+                    off_mk < 3.0,
+                    "{material} at {force_n} N, step {k}: off by {off_mk} mK"
+                );
+            }
+        }
     }
 }
