@@ -1,3 +1,20 @@
-//! Simulated plant and emulated microcontroller for the thermal display.
+//! Stand-in for the hardware of the thermal display: a simulated Peltier tile, finger and sensors
+//! ([`plant`]), an emulated microcontroller that runs the release image ([`machine`]), and what runs scenes on
+//! them.
+//!
+//! Links Unicorn (GPL-2.0); firmware and contact model do not.
 
+pub mod engine;
+pub mod firmware;
+pub mod host;
+pub mod machine;
+pub mod metrics;
 pub mod plant;
+pub mod report;
+pub mod run;
+pub mod scene;
+pub mod telemetry;
+pub mod trace;
+mod world;
+
+pub use world::World;

@@ -63,6 +63,25 @@ fn response_follows_equations_6_5_to_6_12() {
 }
 
 #[test]
+fn skin_at_depth_meets_golden_values() {
+    for row in rows("contact_interior") {
+        let object = find(&row["material"]).expect("material");
+        let skin_c = number(&row, "T_skin_i_C");
+        let mut contact = Contact::<f64>::new(
+            (&SKIN, skin_c),
+            (object, number(&row, "T_object_i_C")),
+            &REFERENCE_DISPLAY,
+            1e4,
+        );
+        // The rows give R, not the pressure.
+        let r = number(&row, "R_m2K_W");
+        contact.rate_per_s *= (contact.resistance_m2k_w / r).powi(2);
+        let t = contact.skin_at_depth(&SKIN, number(&row, "x_m"), number(&row, "t_s"));
+        assert!((t - number(&row, "T_skin_x_t_C")).abs() < 1e-10, "{t} {row:?}");
+    }
+}
+
+#[test]
 fn resistance_follows_equations_6_8_to_6_11() {
     for row in rows("resistance") {
         let object = find(&row["material"]).expect("material");

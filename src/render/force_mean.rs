@@ -29,7 +29,10 @@ impl ForceMean {
     pub(super) fn update(&mut self, force: Force) -> Force {
         let (low, high) = (force.min(self.mean), force.max(self.mean));
         if high - low > (self.mean >> NEW_FORCE_SHIFT).max(NEW_FORCE_FLOOR) {
-            *self = Self { mean: force, ticks: 1 };
+            *self = Self {
+                mean: force,
+                ticks: 1,
+            };
             return force;
         }
         self.ticks = (self.ticks + 1).min(WINDOW);

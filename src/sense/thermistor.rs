@@ -61,8 +61,8 @@ impl Thermistor {
         if sum > OPEN_ABOVE {
             return Err(SensorFault::Open);
         }
-        // The middle of the last code: half a count, times 16 conversions.
-        let low = u32::from(sum) + 8;
+        // The converter's codes are centred on whole multiples of 1/4096 of its reference.
+        let low = u32::from(sum);
         let x = i64::from((log2(low) - log2((1 << 16) - low)).to_bits());
         let inverse = self
             .cubic
@@ -84,7 +84,7 @@ mod tests {
     /// The sum that the divider's ideal converter gives at a temperature, by the beta equation.
     fn sum_at(t_c: f64) -> f64 {
         let r = 10e3 * (3950.0 * (1.0 / (t_c + 273.15) - 1.0 / 298.15)).exp();
-        r / (r + 10e3) * 65536.0 - 8.0
+        r / (r + 10e3) * 65536.0
     }
 
     #[test]
@@ -93,7 +93,7 @@ mod tests {
         for milli in (-20_000..=100_000).step_by(7) {
             let sum = sum_at(f64::from(milli) * 1e-3).round();
             // The temperature of exactly this sum, by the equation solved for T.
-            let r = 10e3 * (sum + 8.0) / (65536.0 - sum - 8.0);
+            let r = 10e3 * sum / (65536.0 - sum);
             let exact = 1.0 / (1.0 / 298.15 + (r / 10e3).ln() / 3950.0) - 273.15;
             let error = thermistor
                 .temperature(sum as u16)
@@ -117,7 +117,7 @@ mod tests {
             curve,
         });
         for (t_c, ohm) in [(0.0, 32_650.0), (25.0, 10_000.0), (50.0, 3_603.0)] {
-            let sum = (ohm / (ohm + 10e3) * 65536.0f64 - 8.0).round() as u16;
+            let sum = (ohm / (ohm + 10e3) * 65536.0f64).round() as u16;
             let t = thermistor.temperature(sum).expect("in range").to_num::<f64>();
             assert!((t - t_c).abs() < 0.05, "{t_c}: {t}");
         }

@@ -37,7 +37,7 @@ pub trait Engine {
     fn world(&mut self) -> &mut World;
 
     /// The bridge's legs, as the device drives them now.
-    fn legs(&self) -> Legs;
+    fn legs(&mut self) -> Legs;
 
     /// Runs the device to the next boundary.
     ///

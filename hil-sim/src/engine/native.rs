@@ -102,7 +102,7 @@ impl Engine for Native {
         &mut self.world
     }
 
-    fn legs(&self) -> Legs {
+    fn legs(&mut self) -> Legs {
         match self.drive {
             Drive::Off => Legs::default(),
             Drive::On(duty) => {

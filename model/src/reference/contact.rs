@@ -104,4 +104,20 @@ impl<F: Real> Contact<F> {
             display_c: skin_c - self.ratio * step * erfcx,
         }
     }
+
+    /// Temperature in °C inside of the skin, `depth_m` below its surface, `t_s` seconds after landing: Eq. 6-5
+    /// continued into the half-space, `T_i - dT w (erfc x - exp(-x²) erfcx(x + z))` with
+    /// `x = depth / (2 sqrt(alpha t))` and `z = b sqrt(t)`.
+    #[must_use]
+    pub fn skin_at_depth(&self, skin: &Material, depth_m: F, t_s: F) -> F {
+        let zero = F::from_f64(0.0);
+        if t_s <= zero {
+            return self.skin_c;
+        }
+        let spread_m = F::from_f64(2.0) * (F::from_f64(skin.diffusivity_m2_s()) * t_s).sqrt();
+        let x = depth_m / spread_m;
+        let z = (self.rate_per_s * t_s).sqrt();
+        let part = x.erfc() - (-(x * x)).exp() * erfcx(x + z);
+        self.skin_c - (self.skin_c - self.object_c) * self.weight * part
+    }
 }

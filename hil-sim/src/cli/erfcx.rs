@@ -1,0 +1,50 @@
+//! `hil-sim erfcx`: the firmware's kernel, one value a line.
+
+use std::io::{self, BufRead, BufWriter, Write};
+
+use anyhow::anyhow;
+use contact_model::fixed_point::{Rate, erfcx};
+
+use super::Failure;
+
+/// Reads z, a decimal or C hexadecimal float, and prints `z,E_bits`.
+pub fn run() -> Result<(), Failure> {
+    let mut out = BufWriter::new(io::stdout().lock());
+    writeln!(out, "z,E_bits").map_err(Failure::run)?;
+    for (index, line) in io::stdin().lock().lines().enumerate() {
+        let line = line.map_err(Failure::run)?;
+        let word = line.trim();
+        if word.is_empty() {
+            continue;
+        }
+        let z = parse(word)
+            .filter(|z| *z >= 0.0 && z.is_finite())
+            .ok_or_else(|| {
+                Failure::input(anyhow!(
+                    "standard input:{}: z = {word:?}; allowed is a finite number from 0 on, decimal or C hex",
+                    index + 1
+                ))
+            })?;
+        writeln!(out, "{word},{}", bits(z)).map_err(Failure::run)?;
+    }
+    out.flush().map_err(Failure::run)
+}
+
+/// `E` at z, in units of 2^-32: one tick of `u = z²`.
+fn bits(z: f64) -> u32 {
+    match Rate::from_f64(z * z) {
+        Some(u) => erfcx(1, u).to_bits(),
+        // z² is zero or subnormal, or beyond the largest number.
+        None if z < 1.0 => erfcx(0, Rate::ONE).to_bits(),
+        None => 0,
+    }
+}
+
+fn parse(word: &str) -> Option<f64> {
+    let unsigned = word.trim_start_matches(['+', '-']);
+    if unsigned.starts_with("0x") || unsigned.starts_with("0X") {
+        hexf_parse::parse_hexf64(&word.to_ascii_lowercase(), false).ok()
+    } else {
+        word.parse().ok()
+    }
+}

@@ -1,0 +1,163 @@
+//! The release image in the emulated microcontroller, wired as the NUCLEO-F446RE board is.
+
+use super::{BAUD, Cost, Engine};
+use crate::machine::{Firmware, LegState, Machine, Stop, Wiring};
+use crate::plant::bridge::{Leg, Legs};
+use crate::plant::sensors::Channel;
+use crate::world::World;
+
+/// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2.
+const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12];
+/// Fault line of the bridge, pulled up: PA6.
+const FAULT_PIN: (u8, u8) = (0, 6);
+/// Enable input of the bridge: PB10.
+const ENABLE_PIN: (u8, u8) = (1, 10);
+/// The interrupt that a control tick runs in.
+const TICK: &str = "DMA2_STREAM0";
+
+/// From the first conversion to the first boundary, and between boundaries, microseconds.
+const FIRST_BOUNDARY_US: u64 = 230;
+const HALF_MS_US: u64 = 500;
+/// Longest time from power-up to the first conversion.
+const BOOT_S: u64 = 1;
+/// Cycles of one search step for the first conversion.
+const SEARCH_CYCLES: u64 = 200;
+
+/// Why the image does not run, or stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum ImageError {
+    /// The emulated machine stopped.
+    #[error(transparent)]
+    Stop(#[from] Stop),
+    /// The image runs, but samples nothing.
+    #[error("the image started no conversion within {BOOT_S} s of power-up")]
+    NoConversion,
+}
+
+/// The emulated microcontroller on the plant.
+pub struct Image {
+    machine: Machine<Pins>,
+    /// CPU cycle of the first boundary.
+    first_boundary: u64,
+    halves: u64,
+    cycles_per_us: u64,
+    before: Before,
+}
+
+/// Totals when the measurement began.
+#[derive(Clone, Copy, Debug, Default)]
+struct Before {
+    cycles: u64,
+    awake: f64,
+}
+
+impl Image {
+    /// Powers the device up and runs it to the first boundary after its first conversion.
+    ///
+    /// # Errors
+    /// The image cannot run, or does not start its converter.
+    pub fn new(firmware: &Firmware, world: World) -> Result<Self, ImageError> {
+        let mut machine = Machine::new(firmware, Pins::new(world))?;
+        machine.set_host_baud(BAUD as u32);
+        let started = loop {
+            if let Some(at) = machine.wiring().first_conversion {
+                break at;
+            }
+            let now = machine.now();
+            if now > BOOT_S * u64::from(machine.clocks().hclk) {
+                return Err(ImageError::NoConversion);
+            }
+            machine.run_until(now + SEARCH_CYCLES)?;
+        };
+        let cycles_per_us = u64::from(machine.clocks().hclk) / 1_000_000;
+        let first_boundary = started + FIRST_BOUNDARY_US * cycles_per_us;
+        machine.run_until(first_boundary)?;
+        let mut image = Self { machine, first_boundary, halves: 0, cycles_per_us, before: Before::default() };
+        image.reset_cost();
+        Ok(image)
+    }
+}
+
+impl Engine for Image {
+    type Stop = Stop;
+
+    const NAME: &'static str = "image";
+
+    fn world(&mut self) -> &mut World {
+        &mut self.machine.wiring_mut().world
+    }
+
+    fn legs(&mut self) -> Legs {
+        let mut leg = |channel| match self.machine.leg_duty(channel) {
+            LegState::Off => Leg::Off,
+            LegState::Duty { high, period } => Leg::Duty(f64::from(high) / f64::from(period)),
+        };
+        let (a, b) = (leg(1), leg(2));
+        Legs { a, b, enabled: self.machine.gpio_output(ENABLE_PIN.0, ENABLE_PIN.1) == Some(true) }
+    }
+
+    fn run_half_ms(&mut self) -> Result<(), Stop> {
+        self.halves += 1;
+        self.machine.run_until(self.first_boundary + self.halves * HALF_MS_US * self.cycles_per_us)
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.machine.uart_send(bytes);
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        into.append(&mut self.machine.wiring_mut().received);
+    }
+
+    fn reset_cost(&mut self) {
+        let stats = self.machine.stats();
+        self.before = Before {
+            cycles: stats.cycles,
+            awake: stats.cycles as f64 * (1.0 - stats.sleep_share),
+        };
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        let stats = self.machine.stats();
+        let tick = stats.interrupts.iter().find(|interrupt| interrupt.name == TICK)?;
+        let awake = stats.cycles as f64 * (1.0 - stats.sleep_share) - self.before.awake;
+        Some(Cost {
+            instructions_mean: tick.instructions_mean,
+            instructions_max: tick.instructions_max,
+            cycles_mean: tick.cycles_mean,
+            cycles_max: tick.cycles_max,
+            load: awake / (stats.cycles - self.before.cycles) as f64,
+            stack_bytes: self.machine.stack_high_water().map_or(0, u64::from),
+        })
+    }
+}
+
+/// What the pins of the microcontroller are soldered to.
+struct Pins {
+    world: World,
+    first_conversion: Option<u64>,
+    received: Vec<u8>,
+}
+
+impl Pins {
+    const fn new(world: World) -> Self {
+        Self { world, first_conversion: None, received: Vec::new() }
+    }
+}
+
+impl Wiring for Pins {
+    fn adc(&mut self, channel: u8, now: u64) -> u16 {
+        self.first_conversion.get_or_insert(now);
+        // An input that nothing is wired to floats; it reads as the middle of the range.
+        let input = ADC_INPUTS.iter().position(|input| *input == channel);
+        input.map_or(0x800, |index| self.world.convert(Channel::ALL[index]))
+    }
+
+    fn pin(&self, port: u8, bit: u8) -> Option<bool> {
+        ((port, bit) == FAULT_PIN).then_some(true)
+    }
+
+    fn uart_tx(&mut self, byte: u8, _at: u64, _baud: u32) {
+        self.received.push(byte);
+    }
+}
