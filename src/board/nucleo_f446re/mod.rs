@@ -1,22 +1,25 @@
 //! NUCLEO-F446RE with a DRV8873-class bridge and a sensor front end on its Arduino headers.
 //!
-//! | pin  | header | signal                | notes                                                  |
-//! |------|--------|-----------------------|--------------------------------------------------------|
-//! | PA0  | A0     | display thermistor    | ADC1 channel 0                                         |
-//! | PA1  | A1     | display check         | ADC1 channel 1; also feeds the comparator              |
-//! | PA4  | A2     | sink thermistor       | ADC1 channel 4                                         |
-//! | PB0  | A3     | skin thermistor       | ADC1 channel 8                                         |
-//! | PC1  | A4     | room thermistor       | ADC1 channel 11                                        |
-//! | PC0  | A5     | force                 | ADC1 channel 10                                        |
-//! | PC2  | CN7-35 | bridge current mirror | ADC1 channel 12                                        |
-//! | PA8  | D7     | bridge IN1            | TIM1 channel 1; external pull-down                     |
-//! | PA9  | D8     | bridge IN2            | TIM1 channel 2; external pull-down                     |
-//! | PB10 | D6     | bridge nSLEEP         | high enables; external pull-down                       |
+//! | pin  | header | signal                | notes                                                   |
+//! |------|--------|-----------------------|---------------------------------------------------------|
+//! | PA0  | A0     | display thermistor    | ADC1 channel 0                                          |
+//! | PA1  | A1     | display check         | ADC1 channel 1; also feeds the comparator               |
+//! | PA4  | A2     | sink thermistor       | ADC1 channel 4                                          |
+//! | PB0  | A3     | skin thermistor       | ADC1 channel 8                                          |
+//! | PC1  | A4     | room thermistor       | ADC1 channel 11                                         |
+//! | PC0  | A5     | force                 | ADC1 channel 10                                         |
+//! | PC2  | CN7-35 | bridge current mirror | ADC1 channel 12                                         |
+//! | PA8  | D7     | bridge IN1            | TIM1 channel 1; external pull-down                      |
+//! | PA9  | D8     | bridge IN2            | TIM1 channel 2; external pull-down                      |
+//! | PB10 | D6     | bridge enable         | high enables; external pull-down                        |
 //! | PA6  | D12    | bridge nFAULT         | TIM1 break input, low is a fault; external 4.7k pull-up |
-//! | PA5  | D13    | LED LD2               | lit while the bridge may drive                         |
-//! | PA2  | -      | to the host           | USART2 by way of the on-board probe                    |
-//! | PA3  | -      | from the host         | USART2 by way of the on-board probe                    |
-//! | PH0  | -      | 8 MHz from the probe  | HSE, bypassed oscillator                               |
+//! | PA5  | D13    | LED LD2               | lit while the bridge may drive                          |
+//! | PA2  | -      | to the host           | USART2 by way of the on-board probe                     |
+//! | PA3  | -      | from the host         | USART2 by way of the on-board probe                     |
+//! | PH0  | -      | 8 MHz from the probe  | HSE, bypassed oscillator                                |
+//!
+//! `bridge enable` acts on DISABLE of the DRV8873, through a transistor that inverts it (DISABLE is pulled up).
+//! nSLEEP stays high: a bridge that wakes up may report a fault until its charge pump runs.
 //!
 //! The comparator that watches the second display thermistor pulls nFAULT low too. Its cut of the bridge
 //! supply needs no processor; the break input makes the processor know.
@@ -60,7 +63,7 @@ impl Memory {
     pub const fn new() -> Self {
         Self {
             scans: [sampler::EMPTY; sampler::BLOCKS],
-            frames: [serial::EMPTY; serial::FRAMES],
+            frames: [const { serial::Bytes::new() }; serial::FRAMES],
             links: serial::Links::new(),
             mailbox: Mailbox::new(),
             telemetry: Queue::new(),
@@ -89,7 +92,8 @@ pub struct Board {
 impl Board {
     /// Sets everything up; the bridge is off before anything else happens and stays off.
     pub fn new(device: pac::Peripherals, memory: &'static mut Memory) -> Self {
-        // Runs from its own oscillator: also a missing 8 MHz clock ends in a reset and a line in the log.
+        // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
+        // again, and the log tells.
         let watchdog = Watchdog::start(device.IWDG);
         log::reset_cause(&device.RCC);
         let mut rcc = device.RCC.freeze(clocks());

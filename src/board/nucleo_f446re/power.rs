@@ -59,6 +59,8 @@ impl PowerStage {
             w.moe().disabled_idle();
             w.lock().level3()
         });
+        // Switching the break on may have set its flag.
+        timer.sr().write(|w| w.bif().clear());
         in1.enable();
         in2.enable();
         Self {

@@ -5,6 +5,7 @@
 use core::fmt::{self, Write as _};
 
 use embedded_dma::ReadBuffer;
+use heapless::Vec;
 use heapless::spsc::{Consumer, Producer, Queue};
 use stm32f4xx_hal::dma::config::DmaConfig;
 use stm32f4xx_hal::dma::traits::DmaFlagExt;
@@ -31,40 +32,19 @@ pub const FRAMES: usize = 4;
 const FRAME_MAX: usize = 129;
 
 /// The store of a frame.
-pub type Bytes = [u8; FRAME_MAX];
-
-/// The store of an empty frame.
-pub const EMPTY: Bytes = [0; FRAME_MAX];
+pub type Bytes = Vec<u8, FRAME_MAX>;
 
 /// One line to the host.
-pub struct Frame {
-    bytes: &'static mut Bytes,
-    len: usize,
-}
+struct Frame(&'static mut Bytes);
 
 impl Frame {
     /// Replaces the content by `line` and an end of line.
     fn fill(&mut self, line: &impl fmt::Display) {
-        self.len = 0;
-        // Lines that the library writes fit; of any other the host gets the beginning.
-        let _ = write!(self, "{line}");
-        self.bytes[self.len] = b'\n';
-        self.len += 1;
-    }
-}
-
-impl fmt::Write for Frame {
-    fn write_str(&mut self, text: &str) -> fmt::Result {
-        // The last byte is kept for the end of the line.
-        let room = &mut self.bytes[self.len..FRAME_MAX - 1];
-        let part = text.len().min(room.len());
-        room[..part].copy_from_slice(&text.as_bytes()[..part]);
-        self.len += part;
-        if part == text.len() {
-            Ok(())
-        } else {
-            Err(fmt::Error)
-        }
+        self.0.clear();
+        // Lines of the library fit; of any other the host gets the beginning.
+        let _ = write!(self.0, "{line}");
+        self.0.truncate(FRAME_MAX - 1);
+        let _ = self.0.push(b'\n');
     }
 }
 
@@ -73,7 +53,7 @@ unsafe impl ReadBuffer for Frame {
     type Word = u8;
 
     unsafe fn read_buffer(&self) -> (*const u8, usize) {
-        (self.bytes.as_ptr(), self.len)
+        (self.0.as_ptr(), self.0.len())
     }
 }
 
@@ -187,7 +167,7 @@ pub fn start(
 
     let (full_in, full_out) = links.full.split();
     let (mut empty_in, empty_out) = links.empty.split();
-    let [first, rest @ ..] = bytes.each_mut().map(|bytes| Frame { bytes, len: 0 });
+    let [first, rest @ ..] = bytes.each_mut().map(Frame);
     for frame in rest {
         let _ = empty_in.enqueue(frame);
     }

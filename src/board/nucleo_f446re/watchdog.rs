@@ -23,7 +23,8 @@ impl Watchdog {
         iwdg.kr().write(|w| w.key().unlock());
         iwdg.pr().write(|w| w.pr().divide_by32());
         iwdg.rlr().write(|w| w.rl().set(PERIOD - 1));
-        // Five periods of the oscillator, 0.3 ms at most, which it is already running for.
+        // Five periods of the oscillator, 0.3 ms at most. If that does not run there is no watchdog, and
+        // without one the device must not start: it stays here, with the bridge off.
         while iwdg.sr().read().bits() != 0 {}
         let mut watchdog = Self(iwdg);
         watchdog.feed();
