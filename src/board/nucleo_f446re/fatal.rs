@@ -26,6 +26,7 @@ fn first_report() -> bool {
     !REPORTED.swap(true, Ordering::Relaxed)
 }
 
+/// At most 188 ms; awake, so that the probe can read the log.
 fn wait_for_watchdog() -> ! {
     loop {
         cortex_m::asm::nop();
