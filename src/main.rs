@@ -1,18 +1,18 @@
 //! The firmware: which task runs when, at which priority, and what it may touch. Nothing else.
 //!
-//! | task      | runs when                         | priority | must be done within              |
-//! |-----------|-----------------------------------|----------|----------------------------------|
-//! | `receive` | a byte came from the host         | 4        | 20 us: two bytes at 1 Mbaud      |
-//! | `tick`    | the scans of 1 ms are in memory   | 3        | 1 ms                             |
-//! | `overrun` | the converter lost a conversion   | 3        | -                                |
-//! | `refill`  | a line has been sent              | 2        | 20 us keeps the line gapless     |
-//! | `host`    | a line or telemetry waits         | 1        | 68 ms: the watchdog at its fastest |
-//! | `idle`    | otherwise                         | -        | 68 ms: the watchdog at its fastest |
+//! | task      | runs when                       | priority | must be done within                   |
+//! |-----------|---------------------------------|----------|---------------------------------------|
+//! | `receive` | a byte came from the host       | 4        | 20 us: two bytes at 1 Mbaud           |
+//! | `tick`    | the scans of 1 ms are in memory | 3        | 1 ms                                  |
+//! | `overrun` | the converter lost a conversion | 3        | -                                     |
+//! | `refill`  | a line has been sent            | 2        | 20 us, or the line to the host pauses |
+//! | `host`    | a line or telemetry waits       | 1        | 68 ms: the watchdog at its fastest    |
+//! | `idle`    | otherwise                       | -        | 68 ms: the watchdog at its fastest    |
 //!
 //! Priorities are rate-monotonic. A byte that is not fetched before the next but one is lost, whereas
-//! nothing is lost when a tick starts a microsecond late: a timer starts the conversions, and
-//! a new duty takes effect at the next period of the PWM. A flood of bytes costs 100 000 short interrupts
-//! a second, no more, so `receive` cannot starve the tick.
+//! nothing is lost when a tick starts a microsecond late: a timer starts the conversions, and a new duty
+//! takes effect at the next period of the PWM. A flood of bytes costs 100 000 short interrupts a second, no
+//! more, so `receive` cannot starve the tick. The tick may make the line to the host pause for its own length.
 #![no_std]
 #![no_main]
 
