@@ -10,7 +10,9 @@ use anyhow::{Context, bail};
 /// # Errors
 /// The build failed, or the cross compiler cannot be had; what to do is on standard error.
 pub fn build() -> anyhow::Result<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().context("hil-sim has no parent folder")?;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .context("hil-sim has no parent folder")?;
     let built = Command::new("cargo")
         .args(["xtask", "firmware", "--print-path"])
         .current_dir(root)
@@ -18,7 +20,10 @@ pub fn build() -> anyhow::Result<PathBuf> {
         .output()
         .context("cargo cannot be started")?;
     if !built.status.success() {
-        bail!("the image could not be built: `cargo xtask firmware` ended with {}", built.status);
+        bail!(
+            "the image could not be built: `cargo xtask firmware` ended with {}",
+            built.status
+        );
     }
     let path = String::from_utf8(built.stdout).context("the path of the image is no text")?;
     Ok(PathBuf::from(path.trim()))

@@ -33,20 +33,29 @@ impl Host {
             "custom" => custom_line(&scene.object.material),
             name => format!("material {name}"),
         };
-        let object = scene.object.start_c.map_or("object room".into(), |c| format!("object {c}"));
+        let object = scene
+            .object
+            .start_c
+            .map_or("object room".into(), |c| format!("object {c}"));
         let mode = match scene.mode {
             Mode::ContactResistance => "mode contact",
             Mode::SemiInfinite => "mode semi-infinite",
         };
         let set_up = [material, object, mode.into(), "arm".into()];
-        let mut queue: Vec<_> =
-            (set_up.into_iter().zip(0..)).map(|(line, i)| (ARM_MS + i * SPACING_MS, line)).collect();
-        let start_ms =
-            if scene.object.appears_t_s > 0.0 { at(scene.object.appears_t_s) } else { ARM_MS + WATCH_MS };
+        let mut queue: Vec<_> = (set_up.into_iter().zip(0..))
+            .map(|(line, i)| (ARM_MS + i * SPACING_MS, line))
+            .collect();
+        let start_ms = if scene.object.appears_t_s > 0.0 {
+            at(scene.object.appears_t_s)
+        } else {
+            ARM_MS + WATCH_MS
+        };
         queue.push((start_ms, "start".into()));
         queue.push((zero_ms - STREAM_MS, "stream 1".into()));
         queue.extend(scene.host.iter().map(|host| (at(host.t_s), host.line.clone())));
-        let lines = queue.into_iter().map(|(ms, line)| (ms, [line.as_bytes(), b"\n"].concat()));
+        let lines = queue
+            .into_iter()
+            .map(|(ms, line)| (ms, [line.as_bytes(), b"\n"].concat()));
         let garbage = (scene.faults.iter())
             .filter(|fault| fault.kind == FaultKind::HostGarbage)
             .map(|fault| (at(fault.t_s), GARBAGE.to_vec()));

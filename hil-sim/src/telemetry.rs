@@ -24,12 +24,31 @@ impl Telemetry {
     #[must_use]
     pub fn parse(line: &str) -> Option<Self> {
         let words: Vec<_> = line.split(' ').collect();
-        let &["T", tick, state, setpoint, display, _sink, _skin, _room, _force, demand, _current, evaluations, remark] =
-            words.as_slice()
+        let &[
+            "T",
+            tick,
+            state,
+            setpoint,
+            display,
+            _sink,
+            _skin,
+            _room,
+            _force,
+            demand,
+            _current,
+            evaluations,
+            remark,
+        ] = words.as_slice()
         else {
             return None;
         };
-        let number = |word: &str| if word == "-" { Some(None) } else { word.parse().ok().map(Some) };
+        let number = |word: &str| {
+            if word == "-" {
+                Some(None)
+            } else {
+                word.parse().ok().map(Some)
+            }
+        };
         Some(Self {
             tick: tick.parse().ok()?,
             state: state.into(),

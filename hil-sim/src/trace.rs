@@ -115,7 +115,9 @@ impl<'a> From<&'a Row> for Record<'a> {
     fn from(row: &'a Row) -> Self {
         let device = row.device.as_ref();
         let said = |field: fn(&Telemetry) -> Option<f64>, digits: usize| {
-            device.and_then(field).map_or(String::new(), |value| format!("{value:.digits$}"))
+            device
+                .and_then(field)
+                .map_or(String::new(), |value| format!("{value:.digits$}"))
         };
         Self {
             t_s: format!("{:.3}", row.t_s),

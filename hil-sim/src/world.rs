@@ -37,7 +37,11 @@ impl World {
             sensors: SensorParams::NOMINAL,
             bridge: Bridge::NOMINAL,
         };
-        Ok(Self { plant: Plant::new(&config)?, broken: Vec::new(), codes: [0; Channel::ALL.len()] })
+        Ok(Self {
+            plant: Plant::new(&config)?,
+            broken: Vec::new(),
+            codes: [0; Channel::ALL.len()],
+        })
     }
 
     /// The plant, to read.

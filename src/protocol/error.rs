@@ -70,8 +70,6 @@ pub enum Error {
     StillFaulty(Fault),
     /// `clear` without a fault.
     NothingToClear,
-    /// More lines than the device could take.
-    Busy,
 }
 
 impl From<LineError> for Error {
@@ -92,6 +90,10 @@ impl fmt::Display for Error {
         match self {
             Self::Line(LineError::TooLong) => write!(f, "line too long; at most {LINE_MAX} bytes"),
             Self::Line(LineError::NotText(byte)) => write!(f, "byte 0x{byte:02x} is not printable ASCII"),
+            Self::Line(LineError::Reception) => {
+                f.write_str("a byte was damaged or lost; send the line again")
+            }
+            Self::Line(LineError::Refused) => f.write_str("busy; wait for the answer before the next line"),
             Self::UnknownCommand(word) => {
                 write!(f, "unknown command {word}; known:")?;
                 Command::WORDS.iter().try_for_each(|known| write!(f, " {known}"))
@@ -117,7 +119,6 @@ impl fmt::Display for Error {
             Self::Tripped(fault) => write!(f, "tripped by {}; clear it first", fault.name()),
             Self::StillFaulty(fault) => write!(f, "fault {} is still present", fault.name()),
             Self::NothingToClear => f.write_str("no fault to clear"),
-            Self::Busy => f.write_str("busy; wait for the answer before the next line"),
         }
     }
 }

@@ -39,7 +39,11 @@ impl std::error::Error for SceneError {}
 
 impl SceneError {
     pub(super) fn unreadable(file: &Path, error: &std::io::Error) -> Self {
-        Self { file: file.into(), line: None, problem: format!("cannot be read: {error}") }
+        Self {
+            file: file.into(),
+            line: None,
+            problem: format!("cannot be read: {error}"),
+        }
     }
 }
 
@@ -55,7 +59,11 @@ impl Source<'_> {
             let before = self.text.as_bytes().iter().take(span.start);
             before.filter(|byte| **byte == b'\n').count() + 1
         });
-        SceneError { file: self.file.into(), line, problem: problem.into() }
+        SceneError {
+            file: self.file.into(),
+            line,
+            problem: problem.into(),
+        }
     }
 
     /// The number, if it lies within the range.
@@ -75,8 +83,7 @@ impl Source<'_> {
 
 pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let source = Source { file: path, text };
-    let file: File =
-        toml::from_str(text).map_err(|error| source.error(error.span(), error.message()))?;
+    let file: File = toml::from_str(text).map_err(|error| source.error(error.span(), error.message()))?;
     let duration_s = source.within("duration_s", &file.duration_s, 0.001, 86_400.0)?;
     let settle_s = match &file.settle_s {
         Some(number) => source.within("settle_s", number, 3.0, 3600.0)?,
@@ -102,13 +109,19 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         faults: (file.fault.iter())
             .map(|fault| {
                 let t_s = source.time("fault.t_s", &fault.t_s, duration_s)?;
-                Ok(Fault { kind: fault.kind, t_s })
+                Ok(Fault {
+                    kind: fault.kind,
+                    t_s,
+                })
             })
             .collect::<Result<_, _>>()?,
         host: (file.host.iter())
             .map(|host| {
                 let t_s = source.time("host.t_s", &host.t_s, duration_s)?;
-                Ok(HostLine { t_s, line: host.line.get_ref().clone() })
+                Ok(HostLine {
+                    t_s,
+                    line: host.line.get_ref().clone(),
+                })
             })
             .collect::<Result<_, _>>()?,
     };
@@ -134,14 +147,21 @@ fn object(
         ("slope_rad", &object.slope_rad),
     ];
     let (name, material) = if let Some(name) = &object.material {
-        if let Some((key, number)) = properties.iter().find_map(|(key, number)| Some((key, number.as_ref()?))) {
-            let problem = format!("object.{key} beside object.material; allowed is either a name or properties");
+        if let Some((key, number)) = properties
+            .iter()
+            .find_map(|(key, number)| Some((key, number.as_ref()?)))
+        {
+            let problem =
+                format!("object.{key} beside object.material; allowed is either a name or properties");
             return Err(source.error(Some(number.span()), problem));
         }
         let Some(material) = find(name.get_ref()) else {
             let known: Vec<_> = MATERIALS.iter().map(|(known, _)| *known).collect();
-            let problem =
-                format!("object.material = {:?}; known are {}", name.get_ref(), known.join(", "));
+            let problem = format!(
+                "object.material = {:?}; known are {}",
+                name.get_ref(),
+                known.join(", ")
+            );
             return Err(source.error(Some(name.span()), problem));
         };
         (name.get_ref().clone(), *material)
@@ -156,7 +176,12 @@ fn object(
         Some(number) => source.time("object.appears_t_s", number, duration_s)?,
         None => 0.0,
     };
-    Ok(Object { name, material, start_c, appears_t_s })
+    Ok(Object {
+        name,
+        material,
+        start_c,
+        appears_t_s,
+    })
 }
 
 /// A material given by its properties; the ranges are those that the device itself accepts.
@@ -168,14 +193,29 @@ fn custom(
     let mut values = [0.0; 5];
     for (value, (key, number)) in values.iter_mut().zip(properties) {
         let Some(number) = number else {
-            let problem = format!("object.{key} is missing; an object has a material or all of its properties");
+            let problem =
+                format!("object.{key} is missing; an object has a material or all of its properties");
             return Err(source.error(Some(span.clone()), problem));
         };
         *value = *number.get_ref();
     }
-    let [conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad] = values;
-    let surface = Surface { conductivity_w_mk, roughness_um, slope_rad };
-    let material = Material { surface, density_kg_m3, specific_heat_j_kgk };
+    let [
+        conductivity_w_mk,
+        density_kg_m3,
+        specific_heat_j_kgk,
+        roughness_um,
+        slope_rad,
+    ] = values;
+    let surface = Surface {
+        conductivity_w_mk,
+        roughness_um,
+        slope_rad,
+    };
+    let material = Material {
+        surface,
+        density_kg_m3,
+        specific_heat_j_kgk,
+    };
     match Command::parse(&custom_line(&material), &Settings::default()) {
         Ok(_) => Ok(material),
         Err(refused) => {
@@ -187,7 +227,11 @@ fn custom(
 
 /// The line that tells the device of a material by its properties.
 pub(crate) fn custom_line(material: &Material) -> String {
-    let Surface { conductivity_w_mk, roughness_um, slope_rad } = material.surface;
+    let Surface {
+        conductivity_w_mk,
+        roughness_um,
+        slope_rad,
+    } = material.surface;
     let (density, heat) = (material.density_kg_m3, material.specific_heat_j_kgk);
     format!("material custom {conductivity_w_mk} {density} {heat} {roughness_um} {slope_rad}")
 }

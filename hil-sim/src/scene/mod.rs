@@ -101,8 +101,7 @@ impl Scene {
     /// # Errors
     /// The first thing that is wrong, with file and line, and what is allowed.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| SceneError::unreadable(path, &error))?;
+        let text = std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
         Self::parse(&text, path)
     }
 
