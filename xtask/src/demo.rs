@@ -3,7 +3,7 @@ use anyhow::Result;
 
 use crate::firmware;
 use crate::process::{Invocation, workspace};
-use crate::setup::{self, CHOICE_VARIABLE, Needs, Permission};
+use crate::setup::{self, Needs, Permission};
 use crate::step::Steps;
 
 const SCENE: &str = "scenes/copper.toml";
@@ -24,7 +24,7 @@ pub fn run(permission: Permission) -> Result<()> {
         Invocation::cargo(["build", "--release", "-p", "hil-sim"]).run_to_stderr()
     })?;
     steps.run("running the image: a finger lands on \"copper\"", "", || {
-        Invocation::cargo([
+        let run = [
             "run",
             "--release",
             "-p",
@@ -34,9 +34,8 @@ pub fn run(permission: Permission) -> Result<()> {
             SCENE,
             "--out",
             OUT,
-        ])
-        .env(CHOICE_VARIABLE, permission.choice.to_string())
-        .run()
+        ];
+        permission.choice.handed_to(Invocation::cargo(run)).run()
     })?;
     println!("\n{}", firmware::describe(&toolchain)?);
     println!("report and trace: {}", workspace().join(OUT).display());

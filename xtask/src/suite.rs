@@ -3,7 +3,7 @@ use anyhow::{Result, anyhow};
 
 use crate::firmware;
 use crate::process::Invocation;
-use crate::setup::{self, CHOICE_VARIABLE, Choice, Lints, Needs, Permission, Toolchain};
+use crate::setup::{self, Choice, Lints, Needs, Permission, Toolchain};
 use crate::step::Steps;
 
 /// One check of the suite: a command, or why there is none.
@@ -16,7 +16,7 @@ struct Check {
 /// The checks in their order: cheap ones first. Whatever compiles the emulator does so in the release profile, and
 /// so once.
 fn checks(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Check> {
-    let cargo = |line: &str| Invocation::cargo(line.split(' ')).env(CHOICE_VARIABLE, choice.to_string());
+    let cargo = |line: &str| Invocation::cargo(line.split(' '));
     let only = |there: bool, command: Invocation, why| if there { Ok(command) } else { Err(why) };
     let no_clippy = "the active toolchain has no clippy";
     let clippy_for_firmware = lints.clippy || matches!(toolchain, Toolchain::Distribution(_));
@@ -64,7 +64,7 @@ fn checks(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Check> {
         Check {
             title: "whole system, the image on the plant",
             hint: "several minutes",
-            command: Ok(cargo("test --release --workspace")),
+            command: Ok(choice.handed_to(cargo("test --release --workspace"))),
         },
     ]
 }
@@ -96,13 +96,9 @@ fn run_steps(steps: &mut Steps, permission: Permission) -> Result<()> {
     })?;
     for Check { title, hint, command } in checks(&toolchain, permission.choice, lints) {
         match command {
-            Ok(command) => steps.run(title, hint, || command.run()).map_err(|error| {
-                anyhow!(
-                    "{title}: {error}
-to repeat this step alone:
-  {command}"
-                )
-            })?,
+            Ok(command) => steps
+                .run(title, hint, || command.run())
+                .map_err(|error| anyhow!("{title}: {error}; to repeat this step, run that command"))?,
             Err(why) => steps.skip(title, why),
         }
     }

@@ -58,7 +58,7 @@ pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
         if decision == target::Decision::AddWithRustup {
             rustup_tried = true;
             if let Err(error) = target::add_with_rustup() {
-                eprintln!("{error}; the distribution's compiler is next");
+                eprintln!("{error}");
             }
             continue;
         }

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 
-use super::Missing;
+use super::{CHOICE_VARIABLE, Missing};
 use crate::process::{Invocation, on_path};
 
 /// The microcontroller's target: Cortex-M4 with FPU.
@@ -29,6 +29,18 @@ pub enum Choice {
     Rustup,
     /// The distribution's compiler only, with the core library built from its source.
     Distribution,
+}
+
+impl Choice {
+    /// Has `invocation` make the same choice in its own calls of `cargo xtask firmware`.
+    pub fn handed_to(self, invocation: Invocation) -> Invocation {
+        let inherited = std::env::var(CHOICE_VARIABLE).unwrap_or(Self::Auto.to_string());
+        if inherited == self.to_string() {
+            invocation
+        } else {
+            invocation.env(CHOICE_VARIABLE, self.to_string())
+        }
+    }
 }
 
 /// As the command line takes it.
