@@ -15,6 +15,10 @@ pub enum LineError {
     TooLong,
     /// A byte that is not printable ASCII.
     NotText(u8),
+    /// A byte was damaged or lost on the line.
+    Reception,
+    /// More lines were waiting for their answers than there is room for.
+    Refused,
 }
 
 /// Collects bytes into lines; a bad line is dropped whole, up to its end.
@@ -32,6 +36,11 @@ impl LineReader {
             line: String::new(),
             error: None,
         }
+    }
+
+    /// Spoils the line that is being collected; its end is then answered with `error`.
+    pub fn fail(&mut self, error: LineError) {
+        self.error.get_or_insert(error);
     }
 
     /// Takes one byte; carriage return or line feed ends a line, empty lines are skipped.

@@ -30,6 +30,12 @@ impl Command {
     }
 }
 
+impl From<LineError> for Error {
+    fn from(_error: LineError) -> Self {
+        Self
+    }
+}
+
 impl fmt::Display for Reply {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("ok")

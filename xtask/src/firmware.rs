@@ -11,13 +11,9 @@ const PROFILE: &str = "firmware";
 const PACKAGE: &str = "thermal-display";
 const BOARD: &str = "nucleo-f446re";
 
-/// What would change the image behind the back of the workspace's own settings.
-const FOREIGN_FLAGS: [&str; 4] = [
-    "RUSTFLAGS",
-    "CARGO_ENCODED_RUSTFLAGS",
-    "CARGO_BUILD_RUSTFLAGS",
-    "CARGO_BUILD_TARGET",
-];
+/// What in a user's environment would change the image; the log level is that of `.cargo/config.toml`.
+const FOREIGN_FLAGS: [&str; 5] =
+    ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET", "DEFMT_LOG"];
 
 /// The folder that cargo builds the image in. One for each compiler, neither that of host builds: compilers that
 /// share a folder rebuild each other's work.

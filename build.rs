@@ -1,0 +1,12 @@
+//! Tells the linker of the firmware where `memory.x` is; host builds need nothing.
+
+use std::env::var;
+
+fn main() {
+    println!("cargo::rerun-if-changed=memory.x");
+    if var("CARGO_CFG_TARGET_OS").is_ok_and(|os| os == "none")
+        && let Ok(root) = var("CARGO_MANIFEST_DIR")
+    {
+        println!("cargo::rustc-link-search={root}");
+    }
+}

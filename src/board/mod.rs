@@ -1,0 +1,18 @@
+//! What the firmware needs of a board, and the boards that have it.
+//!
+//! A board is a module with a `Board` that sets up its pins, clocks and peripherals and hands out what the
+//! tasks own, and with the handlers that leave the bridge off when the program cannot go on. What does not
+//! depend on the board lies beside it: the bridge driver, the queues between the tasks and the roll-call.
+
+mod bridge;
+mod console;
+mod mailbox;
+mod vigil;
+
+#[cfg(feature = "nucleo-f446re")]
+mod nucleo_f446re;
+
+pub use console::Console;
+#[cfg(feature = "nucleo-f446re")]
+pub use nucleo_f446re::{Board, Memory, Outbox, PowerStage, Receiver, Sampler, Transmitter, Watchdog, pac};
+pub use vigil::{Task, Vigil};

@@ -1,0 +1,177 @@
+//! NUCLEO-F446RE with a DRV8873-class bridge and a sensor front end on its Arduino headers.
+//!
+//! | pin  | header | signal                | notes                                                   |
+//! |------|--------|-----------------------|---------------------------------------------------------|
+//! | PA0  | A0     | display thermistor    | ADC1 channel 0                                          |
+//! | PA1  | A1     | display check         | ADC1 channel 1; also feeds the comparator               |
+//! | PA4  | A2     | sink thermistor       | ADC1 channel 4                                          |
+//! | PB0  | A3     | skin thermistor       | ADC1 channel 8                                          |
+//! | PC1  | A4     | room thermistor       | ADC1 channel 11                                         |
+//! | PC0  | A5     | force                 | ADC1 channel 10                                         |
+//! | PC2  | CN7-35 | bridge current mirror | ADC1 channel 12                                         |
+//! | PA8  | D7     | bridge IN1            | TIM1 channel 1; external pull-down                      |
+//! | PA9  | D8     | bridge IN2            | TIM1 channel 2; external pull-down                      |
+//! | PB10 | D6     | bridge enable         | high enables; external pull-down                        |
+//! | PA6  | D12    | bridge nFAULT         | TIM1 break input, low is a fault; external 4.7k pull-up |
+//! | PA5  | D13    | LED LD2               | lit while the bridge may drive                          |
+//! | PA2  | -      | to the host           | USART2 by way of the on-board probe                     |
+//! | PA3  | -      | from the host         | USART2 by way of the on-board probe                     |
+//! | PH0  | -      | 8 MHz from the probe  | HSE, bypassed oscillator                                |
+//!
+//! `bridge enable` acts on DISABLE of the DRV8873, through a transistor that inverts it (DISABLE is pulled up).
+//! nSLEEP stays high: a bridge that wakes up may report a fault until its charge pump runs.
+//!
+//! The comparator that watches the second display thermistor pulls nFAULT low too. Its cut of the bridge
+//! supply needs no processor; the break input makes the processor know.
+
+mod fatal;
+mod log;
+mod power;
+mod sampler;
+mod serial;
+mod watchdog;
+
+use heapless::spsc::{Producer, Queue};
+use stm32f4xx_hal::dma::StreamsTuple;
+use stm32f4xx_hal::prelude::*;
+use stm32f4xx_hal::rcc::{Config, Rcc};
+use thermal_display::protocol::Telemetry;
+
+pub use power::PowerStage;
+pub use sampler::Sampler;
+pub use serial::{Outbox, Receiver, Transmitter};
+pub use stm32f4xx_hal::pac;
+pub use watchdog::Watchdog;
+
+use super::console::Console;
+use super::mailbox::Mailbox;
+
+/// Telemetry that may wait for the host task: what it can be late, in ticks, before a line is left out.
+const TELEMETRY_DEPTH: usize = 8;
+
+/// What the hardware and the tasks share by reference; it must live as long as the program.
+pub struct Memory {
+    scans: [sampler::Block; sampler::BLOCKS],
+    frames: [serial::Bytes; serial::FRAMES],
+    links: serial::Links,
+    mailbox: Mailbox,
+    telemetry: Queue<Telemetry, { TELEMETRY_DEPTH + 1 }>,
+}
+
+impl Memory {
+    /// Empty buffers and queues.
+    pub const fn new() -> Self {
+        Self {
+            scans: [sampler::EMPTY; sampler::BLOCKS],
+            frames: [const { serial::Bytes::new() }; serial::FRAMES],
+            links: serial::Links::new(),
+            mailbox: Mailbox::new(),
+            telemetry: Queue::new(),
+        }
+    }
+}
+
+/// The board, set up and taking samples; the parts go to the tasks that own them.
+pub struct Board {
+    /// Scans of the sensors.
+    pub sampler: Sampler,
+    /// Bridge, its fault line and the lamp.
+    pub stage: PowerStage,
+    /// Bytes of the host.
+    pub receiver: Receiver,
+    /// Lines to the host, at the hardware's end.
+    pub transmitter: Transmitter,
+    /// Lines to the host, at the other end.
+    pub console: Console,
+    /// Telemetry on its way to the console.
+    pub telemetry: Producer<'static, Telemetry>,
+    /// The independent watchdog, already running.
+    pub watchdog: Watchdog,
+}
+
+impl Board {
+    /// Sets everything up; the bridge is off before anything else happens and stays off.
+    pub fn new(device: pac::Peripherals, memory: &'static mut Memory) -> Self {
+        // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
+        // again, and the log tells.
+        let watchdog = Watchdog::start(device.IWDG);
+        log::reset_cause(&device.RCC);
+        let mut rcc = device.RCC.freeze(clocks());
+        watch_clock(&mut rcc);
+
+        let gpioa = device.GPIOA.split(&mut rcc);
+        let gpiob = device.GPIOB.split(&mut rcc);
+        let gpioc = device.GPIOC.split(&mut rcc);
+
+        let stage = PowerStage::new(
+            device.TIM1,
+            gpioa.pa8,
+            gpioa.pa9,
+            gpiob.pb10.into_push_pull_output(),
+            gpioa.pa6,
+            gpioa.pa5.into_push_pull_output(),
+            &mut rcc,
+        );
+
+        let (inlet, outlet) = memory.mailbox.split();
+        let (telemetry, telemetry_out) = memory.telemetry.split();
+        let dma1 = StreamsTuple::new(device.DMA1, &mut rcc);
+        let (receiver, transmitter, outbox) = serial::start(
+            device.USART2,
+            (gpioa.pa2, gpioa.pa3),
+            dma1.6,
+            &mut memory.frames,
+            &mut memory.links,
+            inlet,
+            &mut rcc,
+        );
+        let console = Console::new(outlet, telemetry_out, outbox);
+
+        let inputs = sampler::Inputs {
+            display: gpioa.pa0.into_analog(),
+            display_check: gpioa.pa1.into_analog(),
+            sink: gpioa.pa4.into_analog(),
+            skin: gpiob.pb0.into_analog(),
+            room: gpioc.pc1.into_analog(),
+            force: gpioc.pc0.into_analog(),
+            current: gpioc.pc2.into_analog(),
+        };
+        let dma2 = StreamsTuple::new(device.DMA2, &mut rcc);
+        let sampler = Sampler::start(
+            device.ADC1,
+            device.TIM2,
+            dma2.0,
+            inputs,
+            &mut memory.scans,
+            &mut rcc,
+        );
+
+        Self {
+            sampler,
+            stage,
+            receiver,
+            transmitter,
+            console,
+            telemetry,
+            watchdog,
+        }
+    }
+}
+
+/// 180 MHz, the most this part can do, from the crystal of the on-board probe: the internal oscillator's
+/// 1 % would be an error of time in every rendered contact. 45 MHz is 45 times the baud rate and 90 MHz
+/// (both timer clocks are multiples of it) a multiple of the scan and PWM rates: all are exact.
+fn clocks() -> Config {
+    Config::hse(8.MHz())
+        .bypass_hse_oscillator()
+        .sysclk(180.MHz())
+        .hclk(180.MHz())
+        .pclk1(45.MHz())
+        .pclk2(90.MHz())
+}
+
+/// Lets the clock security system watch the probe's clock. When it fails, TIM1's outputs are cut by its
+/// break input, without a program, and the non-maskable interrupt follows (RM0390, 6.2.7).
+fn watch_clock(rcc: &mut Rcc) {
+    rcc.cr().modify(|_, w| w.csson().on());
+}
