@@ -12,8 +12,13 @@ const PACKAGE: &str = "thermal-display";
 const BOARD: &str = "nucleo-f446re";
 
 /// What in a user's environment would change the image; the log level is that of `.cargo/config.toml`.
-const FOREIGN_FLAGS: [&str; 5] =
-    ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_BUILD_RUSTFLAGS", "CARGO_BUILD_TARGET", "DEFMT_LOG"];
+const FOREIGN_FLAGS: [&str; 5] = [
+    "RUSTFLAGS",
+    "CARGO_ENCODED_RUSTFLAGS",
+    "CARGO_BUILD_RUSTFLAGS",
+    "CARGO_BUILD_TARGET",
+    "DEFMT_LOG",
+];
 
 /// The folder that cargo builds the image in. One for each compiler, neither that of host builds: compilers that
 /// share a folder rebuild each other's work.
