@@ -1,2 +1,74 @@
-//! The front door: set-up, build, demo, test.
-fn main() {}
+//! The front door of the thermal display: set-up, build, demo, test.
+//!
+//! Headings and the output of tools go to standard error, results to standard output. Exit status 1 means that
+//! something failed or is missing, 2 that the command line is wrong.
+mod demo;
+mod firmware;
+mod image;
+mod process;
+mod setup;
+mod step;
+mod suite;
+
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+use setup::{Choice, Permission};
+
+/// Set-up, build, demo and test of the thermal display.
+#[derive(Parser)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    /// Build the image and run it in the emulator: a finger lands on "copper"
+    Demo(SetUp),
+    /// Run the whole test suite: formatting, lints, documentation, units, the image on the simulated plant
+    Test(SetUp),
+    /// Build the image exactly as it is flashed; print its path, flash and RAM use
+    Firmware {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// Print the path of the ELF file on standard output and nothing else there
+        #[arg(long)]
+        print_path: bool,
+    },
+}
+
+#[derive(Args, Clone, Copy)]
+struct SetUp {
+    /// Install missing system packages (as root) without asking; implied where CI is set
+    #[arg(long, short)]
+    yes: bool,
+    /// The compiler for the microcontroller
+    #[arg(long, value_enum, default_value_t, env = setup::CHOICE_VARIABLE)]
+    toolchain: Choice,
+}
+
+impl SetUp {
+    fn permission(self) -> Permission {
+        Permission {
+            yes: self.yes || setup::in_ci(),
+            choice: self.toolchain,
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Task::Demo(set_up) => demo::run(set_up.permission()),
+        Task::Test(set_up) => suite::run(set_up.permission()),
+        Task::Firmware { set_up, print_path } => firmware::run(set_up.permission(), print_path),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("\nerror: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! A finger lands on "copper", in the emulator.
+use anyhow::Result;
+
+use crate::firmware;
+use crate::process::{Invocation, workspace};
+use crate::setup::{self, Needs, Permission};
+use crate::step::Steps;
+
+const SCENE: &str = "scenes/copper.toml";
+const OUT: &str = "target/demo";
+
+/// `cargo xtask demo`
+pub fn run(permission: Permission) -> Result<()> {
+    let mut steps = Steps::new(4);
+    let needs = Needs {
+        emulator: true,
+        lints: false,
+    };
+    let toolchain = steps.run("set-up", "", || setup::prepare(needs, permission))?;
+    steps.run("building the firmware", "about 1 min the first time", || {
+        firmware::build(&toolchain).run_to_stderr()
+    })?;
+    steps.run("building the emulator", "about 2 min the first time", || {
+        Invocation::cargo(["build", "--release", "-p", "hil-sim"]).run_to_stderr()
+    })?;
+    steps.run("running the image: a finger lands on \"copper\"", "", || {
+        let run = [
+            "run",
+            "--release",
+            "-p",
+            "hil-sim",
+            "--",
+            "run",
+            SCENE,
+            "--out",
+            OUT,
+        ];
+        permission.choice.handed_to(Invocation::cargo(run)).run()
+    })?;
+    println!("\n{}", firmware::describe(&toolchain)?);
+    println!("report and trace: {}", workspace().join(OUT).display());
+    Ok(())
+}

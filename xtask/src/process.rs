@@ -1,0 +1,230 @@
+//! Commands as they are run, shown to the user for repeating, and waited for.
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail};
+
+/// How often a bounded wait looks whether the command has ended.
+const POLL: Duration = Duration::from_millis(20);
+
+/// The longest that a question such as `rustc --version` may take.
+const PROBE_LIMIT: Duration = Duration::from_secs(20);
+
+/// The root of the workspace: where every command runs.
+pub fn workspace() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap_or(Path::new("."))
+}
+
+/// A command line with the environment it changes. Its `Display` is a line for a shell in the workspace's root.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Invocation {
+    program: String,
+    shown: String,
+    args: Vec<String>,
+    set: Vec<(String, String)>,
+    unset: Vec<&'static str>,
+}
+
+impl Invocation {
+    /// `program` with `args`, both as a shell would see them after quoting.
+    pub fn new<A: Into<String>>(program: &str, args: impl IntoIterator<Item = A>) -> Self {
+        Self {
+            program: program.into(),
+            shown: program.into(),
+            args: args.into_iter().map(Into::into).collect(),
+            set: Vec::new(),
+            unset: Vec::new(),
+        }
+    }
+
+    /// The cargo that runs this program, shown as plain `cargo`.
+    pub fn cargo<A: Into<String>>(args: impl IntoIterator<Item = A>) -> Self {
+        let program = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
+        Self {
+            program,
+            ..Self::new("cargo", args)
+        }
+    }
+
+    /// Appends to the command line.
+    pub fn args(mut self, args: impl IntoIterator<Item = &'static str>) -> Self {
+        self.args.extend(args.into_iter().map(Into::into));
+        self
+    }
+
+    /// Sets an environment variable; shown as part of the command.
+    pub fn env(mut self, name: &str, value: impl Into<String>) -> Self {
+        self.set.push((name.into(), value.into()));
+        self
+    }
+
+    /// Hides variables of the surrounding environment; not shown, as a user's own shell rarely has them.
+    pub fn without(mut self, names: &[&'static str]) -> Self {
+        self.unset.extend(names);
+        self
+    }
+
+    fn command(&self) -> Command {
+        let mut command = Command::new(&self.program);
+        command.args(&self.args).current_dir(workspace());
+        for name in &self.unset {
+            command.env_remove(name);
+        }
+        command.envs(self.set.iter().map(|(name, value)| (name, value)));
+        command
+    }
+
+    /// Runs to the end with the terminal's streams; an error if it does not start or does not succeed.
+    pub fn run(&self) -> Result<()> {
+        self.check(self.command().status())
+    }
+
+    /// As [`run`](Self::run), with everything the command prints on standard error.
+    pub fn run_to_stderr(&self) -> Result<()> {
+        self.check(self.command().stdout(std::io::stderr()).status())
+    }
+
+    /// As [`run_to_stderr`](Self::run_to_stderr) without standard input, killed after `limit`.
+    ///
+    /// Only the process itself is killed: a program that does its work in children needs another way.
+    pub fn run_bounded(&self, limit: Duration) -> Result<()> {
+        let mut command = self.command();
+        command.stdin(Stdio::null()).stdout(std::io::stderr());
+        let child = command
+            .spawn()
+            .with_context(|| format!("`{self}` did not start"))?;
+        let Some(child) = wait(child, limit)? else {
+            bail!(
+                "`{self}` did not end within {} s and was stopped",
+                limit.as_secs()
+            );
+        };
+        self.check(Ok(child))
+    }
+
+    fn check(&self, status: std::io::Result<ExitStatus>) -> Result<()> {
+        let status = status.with_context(|| format!("`{self}` did not start"))?;
+        if !status.success() {
+            bail!("`{self}` failed ({status})");
+        }
+        Ok(())
+    }
+
+    /// What a short question prints on standard output; `None` if it cannot be asked, fails or does not end.
+    pub fn answer(&self) -> Option<String> {
+        let mut command = self.command();
+        command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null());
+        let mut child = command.spawn().ok()?;
+        let stdout = child.stdout.take()?;
+        // Read beside the wait: a full pipe would keep the command from ending.
+        let text = std::thread::spawn(|| std::io::read_to_string(stdout));
+        if !wait(child, PROBE_LIMIT).ok()??.success() {
+            return None;
+        }
+        text.join().ok()?.ok()
+    }
+}
+
+/// The status of a child, or `None` if it had to be killed after `limit`.
+fn wait(mut child: std::process::Child, limit: Duration) -> Result<Option<ExitStatus>> {
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        if start.elapsed() > limit {
+            child.kill()?;
+            child.wait()?;
+            return Ok(None);
+        }
+        sleep(POLL);
+    }
+}
+
+impl fmt::Display for Invocation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (name, value) in &self.set {
+            write!(f, "{name}={} ", quoted(value))?;
+        }
+        f.write_str(&quoted(&self.shown))?;
+        for arg in &self.args {
+            write!(f, " {}", quoted(arg))?;
+        }
+        Ok(())
+    }
+}
+
+/// `word` so that a shell reads it as one word.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.into()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+/// Where `program` is found on the search path.
+pub fn on_path(program: &str) -> Option<PathBuf> {
+    let paths = std::env::var_os("PATH")?;
+    std::env::split_paths(&paths)
+        .map(|dir| dir.join(program))
+        .find(|path| path.is_file())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shown_command_reads_back_in_a_shell() {
+        let odd = "it's $HOME; \"two  words\"";
+        let shown = Invocation::new("printf", ["%s", odd])
+            .env("UNUSED", "a b")
+            .to_string();
+        let echoed = Invocation::new("sh", ["-c", &shown]).answer();
+        assert_eq!(echoed.as_deref(), Some(odd), "{shown}");
+    }
+
+    #[test]
+    fn a_hanging_command_is_stopped_and_named() {
+        let error = Invocation::new("sleep", ["600"])
+            .run_bounded(Duration::from_millis(50))
+            .unwrap_err();
+        assert!(error.to_string().contains("`sleep 600`"), "{error}");
+    }
+
+    #[test]
+    fn failures_are_told_from_success() {
+        assert!(Invocation::new("true", [""; 0]).run().is_ok());
+        assert!(Invocation::new("false", [""; 0]).run().is_err());
+        assert!(
+            Invocation::new("no-such-program-anywhere", [""; 0])
+                .run()
+                .is_err()
+        );
+        assert_eq!(Invocation::new("sh", ["-c", "echo lost; exit 3"]).answer(), None);
+    }
+
+    #[test]
+    fn an_answer_longer_than_a_pipe_holds_is_read_whole() {
+        let answer = Invocation::new("head", ["-c", "300000", "/dev/zero"]).answer();
+        assert_eq!(answer.map(|text| text.len()), Some(300_000));
+    }
+
+    #[test]
+    fn hidden_variables_do_not_reach_the_command() {
+        let question = Invocation::new("sh", ["-c", "echo ${PATH-none} $ADDED"]).env("ADDED", "here");
+        assert_ne!(question.answer().as_deref(), Some("none here\n"));
+        let hidden = Invocation::new("/bin/sh", ["-c", "echo ${HOME-none} $ADDED"]).env("ADDED", "here");
+        assert_eq!(hidden.without(&["HOME"]).answer().as_deref(), Some("none here\n"));
+    }
+}

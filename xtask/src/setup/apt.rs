@@ -1,0 +1,255 @@
+//! Packages of the distribution: asked for first, installed by apt, or named for the user to install.
+use std::io::{IsTerminal, Write};
+
+use anyhow::{Result, bail};
+
+use super::Missing;
+use crate::process::{Invocation, on_path};
+
+/// The longest that one run of apt-get may take, in seconds; its children are its own, so `timeout` ends it.
+const APT_LIMIT_S: &str = "900";
+
+/// Who may install, and whether anybody can be asked.
+#[derive(Clone, Copy, Debug)]
+struct Situation {
+    apt: bool,
+    root: bool,
+    sudo: bool,
+    /// `--yes`, or continuous integration.
+    agreed: bool,
+    terminal: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Consent {
+    Given,
+    Ask,
+    /// Why nothing is installed.
+    Refused(&'static str),
+}
+
+fn consent(situation: &Situation) -> Consent {
+    match situation {
+        Situation { apt: false, .. } => Consent::Refused("there is no apt-get to install it with"),
+        Situation {
+            root: false,
+            sudo: false,
+            ..
+        } => Consent::Refused("installing needs root, and there is no sudo"),
+        Situation { agreed: true, .. } => Consent::Given,
+        Situation { terminal: true, .. } => Consent::Ask,
+        _ => Consent::Refused("installing needs root, and there is no terminal to ask on; --yes allows it"),
+    }
+}
+
+/// Installs what is missing, after asking if need be; an error names the commands that would.
+pub fn install(missing: &[Missing], yes: bool) -> Result<()> {
+    let root = Invocation::new("id", ["-u"])
+        .answer()
+        .is_some_and(|uid| uid.trim() == "0");
+    let situation = Situation {
+        apt: on_path("apt-get").is_some(),
+        root,
+        sudo: on_path("sudo").is_some(),
+        agreed: yes,
+        terminal: std::io::stdin().is_terminal() && std::io::stderr().is_terminal(),
+    };
+    let packages = packages(missing);
+    if packages.is_empty() {
+        bail!("missing:\n{}", advice(missing));
+    }
+    let [update, install] = commands(&packages, root);
+    match consent(&situation) {
+        Consent::Given => {}
+        Consent::Refused(why) => bail!("missing, and {why}:\n{}", advice(missing)),
+        Consent::Ask => {
+            eprint!(
+                "missing: {}\nTo be run as root:\n  {update}\n  {install}\nRun this now? [y/N] ",
+                names(missing)
+            );
+            std::io::stderr().flush()?;
+            let mut answer = String::new();
+            std::io::stdin().read_line(&mut answer)?;
+            if !matches!(answer.trim().to_ascii_lowercase().as_str(), "y" | "yes") {
+                bail!("not installed:\n{}", advice(missing));
+            }
+        }
+    }
+    eprintln!("{update}");
+    if let Err(error) = update.run_to_stderr() {
+        // The lists of an earlier update may do; if not, the installation says so.
+        eprintln!("{error}; going on with the package lists at hand");
+    }
+    eprintln!("{install}");
+    install
+        .run_to_stderr()
+        .map_err(|error| error.context(format!("could not install:\n{}", advice(missing))))
+}
+
+/// What is missing and the commands that provide it, indented for the end of a message.
+pub fn advice(missing: &[Missing]) -> String {
+    let mut lines: Vec<String> = missing
+        .iter()
+        .map(|missing| format!("  {}", missing.what))
+        .collect();
+    let packages = packages(missing);
+    let mut ways = Vec::new();
+    if !packages.is_empty() {
+        let list = packages.join(" ");
+        ways.push(format!(
+            "apt-get update && apt-get install -y --no-install-recommends {list}"
+        ));
+    }
+    for way in missing.iter().flat_map(|missing| missing.elsewhere) {
+        if !ways.iter().any(|known| known == way) {
+            ways.push((*way).into());
+        }
+    }
+    lines.push("provided by (whichever your system has)".into());
+    lines.extend(ways.iter().map(|way| format!("  {way}")));
+    lines.join("\n")
+}
+
+fn names(missing: &[Missing]) -> String {
+    missing
+        .iter()
+        .map(|missing| missing.what)
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+fn packages(missing: &[Missing]) -> Vec<&'static str> {
+    missing.iter().flat_map(|missing| missing.apt).copied().collect()
+}
+
+/// Updating the lists and installing, each within its time.
+fn commands(packages: &[&str], root: bool) -> [Invocation; 2] {
+    let bounded = [
+        "env",
+        "DEBIAN_FRONTEND=noninteractive",
+        "timeout",
+        "--foreground",
+        APT_LIMIT_S,
+        "apt-get",
+    ];
+    let options = ["-o", "Acquire::http::Timeout=30", "-o", "DPkg::Lock::Timeout=120"];
+    [
+        &["update"][..],
+        &[&["install", "-y", "--no-install-recommends"], packages].concat(),
+    ]
+    .map(|verb| {
+        let mut words = [&bounded[..], &options, verb].concat();
+        if !root {
+            words.insert(0, "sudo");
+        }
+        Invocation::new(words[0], words[1..].iter().copied())
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn root_is_used_only_with_leave() {
+        let user = Situation {
+            apt: true,
+            root: false,
+            sudo: true,
+            agreed: false,
+            terminal: true,
+        };
+        let root = Situation {
+            root: true,
+            sudo: false,
+            ..user
+        };
+        let cases = [
+            (user, Consent::Ask),
+            (root, Consent::Ask),
+            (
+                Situation {
+                    agreed: true,
+                    terminal: false,
+                    ..user
+                },
+                Consent::Given,
+            ),
+            (
+                Situation {
+                    agreed: true,
+                    terminal: false,
+                    ..root
+                },
+                Consent::Given,
+            ),
+        ];
+        for (situation, expected) in cases {
+            assert_eq!(consent(&situation), expected, "{situation:?}");
+        }
+        let refused = [
+            (
+                Situation {
+                    terminal: false,
+                    ..root
+                },
+                "--yes",
+            ),
+            (
+                Situation {
+                    sudo: false,
+                    agreed: true,
+                    ..user
+                },
+                "sudo",
+            ),
+            (
+                Situation {
+                    apt: false,
+                    agreed: true,
+                    ..root
+                },
+                "apt-get",
+            ),
+        ];
+        for (situation, word) in refused {
+            let Consent::Refused(why) = consent(&situation) else {
+                panic!("{situation:?} was not refused")
+            };
+            assert!(why.contains(word), "{why}");
+        }
+    }
+
+    #[test]
+    fn sudo_comes_before_what_others_than_root_run() {
+        let install = |root| commands(&["cmake"], root)[1].to_string();
+        assert!(install(false).starts_with("sudo env "), "{}", install(false));
+        assert!(install(true).starts_with("env "), "{}", install(true));
+        assert!(
+            install(true).ends_with(" install -y --no-install-recommends cmake"),
+            "{}",
+            install(true)
+        );
+    }
+
+    #[test]
+    fn advice_names_the_thing_and_every_way_once() {
+        let one = Missing {
+            what: "a",
+            apt: &["a-dev", "b"],
+            elsewhere: &["dnf install a", "xcode-select --install"],
+        };
+        let two = Missing {
+            what: "c",
+            apt: &["c"],
+            elsewhere: &["dnf install c", "xcode-select --install"],
+        };
+        let advice = advice(&[one, two]);
+        assert!(
+            advice.contains("install -y --no-install-recommends a-dev b c\n"),
+            "{advice}"
+        );
+        assert_eq!(advice.matches("xcode-select").count(), 1, "{advice}");
+        assert!(advice.contains("\n  dnf install c"), "{advice}");
+    }
+}

@@ -1,0 +1,83 @@
+//! rustfmt and clippy of the active toolchain.
+use anyhow::{Result, bail};
+
+use super::target::RUSTUP_LIMIT;
+use crate::process::{Invocation, on_path};
+
+/// Which of the checking tools can be run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lints {
+    /// `cargo fmt`
+    pub rustfmt: bool,
+    /// `cargo clippy`
+    pub clippy: bool,
+}
+
+impl Lints {
+    fn probe() -> Self {
+        let runs = |tool: &str| Invocation::cargo([tool, "--version"]).answer().is_some();
+        Self {
+            rustfmt: runs("fmt"),
+            clippy: runs("clippy"),
+        }
+    }
+
+    fn missing(self) -> Vec<&'static str> {
+        let tools = [(self.rustfmt, "rustfmt"), (self.clippy, "clippy")];
+        tools
+            .into_iter()
+            .filter(|(there, _)| !there)
+            .map(|(_, name)| name)
+            .collect()
+    }
+
+    /// Whether to go on: a developer's machine may lack them, continuous integration may not.
+    fn accept(self, ci: bool) -> Result<Self> {
+        let missing = self.missing();
+        if ci && !missing.is_empty() {
+            bail!(
+                "CI is set, and {0} missing: rustup component add {0}",
+                missing.join(" ")
+            );
+        }
+        Ok(self)
+    }
+}
+
+/// Has rustup add what is missing; what cannot be had is left out, except in continuous integration.
+pub fn prepare(ci: bool) -> Result<Lints> {
+    let found = Lints::probe();
+    let missing = found.missing();
+    if missing.is_empty() || on_path("rustup").is_none() {
+        return found.accept(ci);
+    }
+    let add = Invocation::new("rustup", ["component", "add"].iter().chain(&missing).copied());
+    eprintln!("fetching: {add} (at most {} s)", RUSTUP_LIMIT.as_secs());
+    if let Err(error) = add.run_bounded(RUSTUP_LIMIT) {
+        eprintln!("{error}");
+    }
+    Lints::probe().accept(ci)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_continuous_integration_insists() {
+        let (all, no_clippy) = (
+            Lints {
+                rustfmt: true,
+                clippy: true,
+            },
+            Lints {
+                rustfmt: true,
+                clippy: false,
+            },
+        );
+        assert_eq!(all.accept(true).unwrap(), all);
+        assert_eq!(no_clippy.accept(false).unwrap(), no_clippy);
+        let error = no_clippy.accept(true).unwrap_err().to_string();
+        assert!(error.contains("rustup component add clippy"), "{error}");
+    }
+}

@@ -1,0 +1,93 @@
+//! What a fresh machine needs, looked for and, where allowed, installed.
+mod apt;
+mod components;
+mod emulator;
+mod target;
+
+use anyhow::{Result, bail};
+
+pub use components::Lints;
+pub use target::{Choice, TARGET, Toolchain};
+
+/// The environment variable that says which cross toolchain to use; the emulator's own calls of
+/// `cargo xtask firmware` follow it.
+pub const CHOICE_VARIABLE: &str = "THERMAL_DISPLAY_TOOLCHAIN";
+
+/// What the user lets set-up do.
+#[derive(Clone, Copy, Debug)]
+pub struct Permission {
+    /// Install system packages without asking (`--yes`, or continuous integration).
+    pub yes: bool,
+    /// Which cross toolchain to use.
+    pub choice: Choice,
+}
+
+/// What a command needs beside the cross target.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Needs {
+    /// cmake, a C compiler and libclang, to compile the emulator.
+    pub emulator: bool,
+    /// clippy for the cross target, too.
+    pub lints: bool,
+}
+
+/// Something missing and what provides it with the common package managers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Missing {
+    what: &'static str,
+    apt: &'static [&'static str],
+    /// Command line for each of dnf, pacman, brew; or one for any machine.
+    elsewhere: &'static [&'static str],
+}
+
+/// Whether this is a run of continuous integration, where nobody can be asked.
+pub fn in_ci() -> bool {
+    std::env::var("CI").is_ok_and(|value| !matches!(value.as_str(), "" | "0" | "false"))
+}
+
+/// Provides the cross target and what else is needed, or says what is missing and how to install it.
+///
+/// Every installation is tried once at most: rustup without asking (it needs no root), then all missing packages of
+/// the distribution together.
+pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
+    let mut rustup_tried = false;
+    let mut packages_tried = false;
+    loop {
+        let found = target::probe();
+        let decision = target::decide(permission.choice, &found, needs.lints, rustup_tried);
+        if decision == target::Decision::AddWithRustup {
+            rustup_tried = true;
+            if let Err(error) = target::add_with_rustup() {
+                eprintln!("{error}");
+            }
+            continue;
+        }
+        let mut missing = if needs.emulator {
+            emulator::missing(&emulator::probe())
+        } else {
+            Vec::new()
+        };
+        let ready = match decision {
+            target::Decision::Use(toolchain) => Some(toolchain),
+            target::Decision::Lacks(lacks) => {
+                missing.extend(lacks);
+                None
+            }
+            target::Decision::AddWithRustup => None,
+        };
+        match (ready, missing.is_empty()) {
+            (Some(toolchain), true) => {
+                eprintln!("cross compiler: {toolchain}");
+                return Ok(toolchain);
+            }
+            _ if packages_tried => bail!("still missing after the installation:\n{}", apt::advice(&missing)),
+            _ => apt::install(&missing, permission.yes)?,
+        }
+        packages_tried = true;
+    }
+}
+
+/// rustfmt and clippy for the host, installed by rustup where it can.
+pub fn lints() -> Result<Lints> {
+    components::prepare(in_ci())
+}

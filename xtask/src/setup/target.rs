@@ -1,0 +1,410 @@
+//! The compiler for the microcontroller: the active toolchain with rustup's target, else the distribution's.
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::Result;
+
+use super::{CHOICE_VARIABLE, Missing};
+use crate::process::{Invocation, on_path};
+
+/// The microcontroller's target: Cortex-M4 with FPU.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// The longest that rustup may take to fetch a target or component; it can hang for ever where the net is filtered.
+pub const RUSTUP_LIMIT: Duration = Duration::from_secs(60);
+
+/// Where the distribution's packages put the compiler.
+const RUSTC: &str = "/usr/bin/rustc";
+const CARGO: &str = "/usr/bin/cargo";
+const CARGO_CLIPPY: &str = "/usr/bin/cargo-clippy";
+
+/// Which cross toolchain to use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Choice {
+    /// The active toolchain if it has or can be given the target, else the distribution's.
+    #[default]
+    Auto,
+    /// The active toolchain only, its target added by rustup if need be.
+    Rustup,
+    /// The distribution's compiler only, with the core library built from its source.
+    Distribution,
+}
+
+impl Choice {
+    /// Has `invocation` make the same choice in its own calls of `cargo xtask firmware`.
+    pub fn handed_to(self, invocation: Invocation) -> Invocation {
+        let inherited = std::env::var(CHOICE_VARIABLE).unwrap_or(Self::Auto.to_string());
+        if inherited == self.to_string() {
+            invocation
+        } else {
+            invocation.env(CHOICE_VARIABLE, self.to_string())
+        }
+    }
+}
+
+/// As the command line takes it.
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Rustup => "rustup",
+            Self::Distribution => "distribution",
+        })
+    }
+}
+
+/// A cross toolchain that can be used as it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Toolchain {
+    /// The toolchain that runs this program has the target installed.
+    Active,
+    /// The distribution's compiler.
+    Distribution(Distribution),
+}
+
+/// The distribution's compiler and what it lacks from its own packages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Distribution {
+    /// A linker for the target: the host toolchain's `rust-lld`, or `ld.lld`.
+    pub linker: PathBuf,
+}
+
+impl Distribution {
+    /// The distribution's `cargo SUBCOMMAND` for the target, undisturbed by the toolchain that runs this program.
+    pub fn cargo(&self, subcommand: &str) -> Invocation {
+        let (program, args) = match subcommand {
+            // Not by way of cargo: it would prefer the clippy in the user's own folder of cargo programs.
+            "clippy" => (CARGO_CLIPPY, ["clippy", "-Zbuild-std=core,compiler_builtins"]),
+            _ => (CARGO, [subcommand, "-Zbuild-std=core,compiler_builtins"]),
+        };
+        Invocation::new(program, args)
+            .env("RUSTC", RUSTC)
+            .env("RUSTC_BOOTSTRAP", "1")
+            .env(
+                "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER",
+                self.linker.to_string_lossy(),
+            )
+            .without(&[
+                "RUSTUP_TOOLCHAIN",
+                "RUSTDOC",
+                "RUSTC_WRAPPER",
+                "RUSTC_WORKSPACE_WRAPPER",
+                "LD_LIBRARY_PATH",
+            ])
+            .without(&[
+                "CARGO_BUILD_RUSTC",
+                "CARGO_BUILD_RUSTC_WRAPPER",
+                "CARGO_BUILD_RUSTC_WORKSPACE_WRAPPER",
+            ])
+            .env("CARGO", CARGO)
+    }
+}
+
+impl fmt::Display for Toolchain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Active => write!(f, "the active toolchain with {TARGET}"),
+            Self::Distribution(_) => write!(f, "the distribution's {RUSTC}, core library built for {TARGET}"),
+        }
+    }
+}
+
+/// What was found on the machine.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Found {
+    /// The active toolchain has the target's core library.
+    active_has_target: bool,
+    /// rustup is on the search path.
+    rustup: bool,
+    /// Version (major, minor) of the distribution's rustc and cargo, if there.
+    rustc: Option<(u32, u32)>,
+    cargo: Option<(u32, u32)>,
+    /// The distribution's compiler has the source of its core library.
+    source: bool,
+    /// The distribution's clippy is there.
+    clippy: bool,
+    /// A linker for the target outside the distribution's compiler.
+    linker: Option<PathBuf>,
+}
+
+/// What follows from what was found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Decision {
+    Use(Toolchain),
+    AddWithRustup,
+    Lacks(Vec<Missing>),
+}
+
+const COMPILER: Missing = Missing {
+    what: "a Rust compiler for thumbv7em-none-eabihf",
+    apt: &["rustc-web", "cargo-web", "rust-web-src"],
+    elsewhere: &["rustup target add thumbv7em-none-eabihf"],
+};
+const RUSTUP_TARGET: Missing = Missing {
+    what: "the Rust target thumbv7em-none-eabihf",
+    apt: &[],
+    elsewhere: COMPILER.elsewhere,
+};
+const LINKER: Missing = Missing {
+    what: "a linker for thumbv7em-none-eabihf",
+    apt: &["lld"],
+    elsewhere: &["dnf install lld", "pacman -S lld", "brew install lld"],
+};
+const CLIPPY: Missing = Missing {
+    what: "clippy of the distribution's Rust",
+    apt: &["rust-web-clippy"],
+    elsewhere: &["rustup target add thumbv7em-none-eabihf"],
+};
+
+/// The next move. A complete toolchain of the distribution comes before rustup's download, so that a machine that
+/// cannot download waits for it once and not at every build.
+pub fn decide(choice: Choice, found: &Found, lints: bool, rustup_tried: bool) -> Decision {
+    if choice != Choice::Distribution && found.active_has_target {
+        return Decision::Use(Toolchain::Active);
+    }
+    if choice == Choice::Rustup {
+        let can_add = found.rustup && !rustup_tried;
+        return if can_add {
+            Decision::AddWithRustup
+        } else {
+            Decision::Lacks(vec![RUSTUP_TARGET])
+        };
+    }
+    let needed = needed_version();
+    let new_enough = |version: Option<(u32, u32)>| version.is_some_and(|version| version >= needed);
+    let compiles = new_enough(found.rustc) && new_enough(found.cargo) && found.source;
+    let lacks = [
+        (compiles, COMPILER),
+        (found.linker.is_some(), LINKER),
+        (found.clippy || !lints, CLIPPY),
+    ];
+    match &found.linker {
+        Some(linker) if lacks.iter().all(|(there, _)| *there) => {
+            Decision::Use(Toolchain::Distribution(Distribution {
+                linker: linker.clone(),
+            }))
+        }
+        _ if choice == Choice::Auto && found.rustup && !rustup_tried => Decision::AddWithRustup,
+        _ => Decision::Lacks(
+            lacks
+                .iter()
+                .filter(|(there, _)| !there)
+                .map(|(_, missing)| *missing)
+                .collect(),
+        ),
+    }
+}
+
+/// Looks at the machine.
+pub fn probe() -> Found {
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
+    let print = |program: &str, args: &[&str]| Invocation::new(program, args.iter().copied()).answer();
+    let folder = |text: Option<String>| text.map(|text| PathBuf::from(text.trim()));
+    let target_libraries = folder(print(&rustc, &["--print", "target-libdir", "--target", TARGET]));
+    let distribution_root = folder(print(RUSTC, &["--print", "sysroot"]));
+    Found {
+        active_has_target: target_libraries.is_some_and(|path| path.is_dir()),
+        rustup: on_path("rustup").is_some(),
+        rustc: print(RUSTC, &["--version"]).as_deref().and_then(version),
+        cargo: print(CARGO, &["--version"]).as_deref().and_then(version),
+        source: distribution_root
+            .is_some_and(|root| root.join("lib/rustlib/src/rust/library/Cargo.toml").is_file()),
+        clippy: Path::new(CARGO_CLIPPY).is_file(),
+        linker: folder(print(&rustc, &["--print", "target-libdir"]))
+            .and_then(|libraries| Some(libraries.parent()?.join("bin/rust-lld")))
+            .filter(|linker| linker.is_file())
+            .or_else(|| on_path("ld.lld")),
+    }
+}
+
+/// Has rustup fetch the target for the active toolchain.
+pub fn add_with_rustup() -> Result<()> {
+    let add = Invocation::new("rustup", ["target", "add", TARGET]);
+    eprintln!(
+        "fetching the target: {add} (at most {} s)",
+        RUSTUP_LIMIT.as_secs()
+    );
+    add.run_bounded(RUSTUP_LIMIT)
+}
+
+/// The oldest Rust (major, minor) that compiles this workspace, from its manifest.
+fn needed_version() -> (u32, u32) {
+    major_minor(env!("CARGO_PKG_RUST_VERSION")).unwrap_or_default()
+}
+
+/// The version in the answer of `rustc --version` or `cargo --version`.
+fn version(answer: &str) -> Option<(u32, u32)> {
+    major_minor(answer.split_whitespace().nth(1)?)
+}
+
+fn major_minor(version: &str) -> Option<(u32, u32)> {
+    let mut numbers = version.split(['.', '-']);
+    Some((numbers.next()?.parse().ok()?, numbers.next()?.parse().ok()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn complete() -> Found {
+        Found {
+            active_has_target: false,
+            rustup: false,
+            rustc: Some((1, 96)),
+            cargo: Some((1, 96)),
+            source: true,
+            clippy: true,
+            linker: Some("/lib/rust-lld".into()),
+        }
+    }
+
+    fn distribution() -> Decision {
+        Decision::Use(Toolchain::Distribution(Distribution {
+            linker: "/lib/rust-lld".into(),
+        }))
+    }
+
+    /// The names of the packages of each case are those of Debian 12.
+    #[test]
+    fn what_is_found_decides_the_next_move() {
+        use Choice::{Auto, Distribution, Rustup};
+        let nothing = Found::default();
+        let bare = Found {
+            rustup: true,
+            linker: complete().linker,
+            ..nothing.clone()
+        };
+        let has_target = Found {
+            active_has_target: true,
+            ..complete()
+        };
+        let active = || Decision::Use(Toolchain::Active);
+        let lacks = |missing: &[Missing]| Decision::Lacks(missing.to_vec());
+        let cases = [
+            ("the target is there", Auto, &has_target, false, active()),
+            (
+                "the switch overrides it",
+                Distribution,
+                &has_target,
+                false,
+                distribution(),
+            ),
+            (
+                "rustup comes first on a bare machine",
+                Auto,
+                &bare,
+                false,
+                Decision::AddWithRustup,
+            ),
+            (
+                "packages follow when it failed",
+                Auto,
+                &bare,
+                true,
+                lacks(&[COMPILER]),
+            ),
+            (
+                "they are not a choice when forced",
+                Rustup,
+                &bare,
+                true,
+                lacks(&[RUSTUP_TARGET]),
+            ),
+            (
+                "no rustup, no linker of its toolchain",
+                Auto,
+                &nothing,
+                false,
+                lacks(&[COMPILER, LINKER]),
+            ),
+            (
+                "complete packages spare the download",
+                Auto,
+                &Found {
+                    rustup: true,
+                    ..complete()
+                },
+                false,
+                distribution(),
+            ),
+            (
+                "unless rustup is forced",
+                Rustup,
+                &Found {
+                    rustup: true,
+                    ..complete()
+                },
+                false,
+                Decision::AddWithRustup,
+            ),
+            (
+                "Debian 12's own rustc",
+                Auto,
+                &Found {
+                    rustc: Some((1, 63)),
+                    ..complete()
+                },
+                true,
+                lacks(&[COMPILER]),
+            ),
+            (
+                "no source",
+                Distribution,
+                &Found {
+                    source: false,
+                    ..complete()
+                },
+                false,
+                lacks(&[COMPILER]),
+            ),
+        ];
+        for (case, choice, found, tried, expected) in cases {
+            assert_eq!(decide(choice, found, false, tried), expected, "{case}");
+        }
+    }
+
+    #[test]
+    fn clippy_is_asked_for_only_where_lints_run() {
+        let found = Found {
+            clippy: false,
+            ..complete()
+        };
+        assert_eq!(decide(Choice::Auto, &found, false, true), distribution());
+        assert_eq!(
+            decide(Choice::Auto, &found, true, true),
+            Decision::Lacks(vec![CLIPPY])
+        );
+    }
+
+    #[test]
+    fn versions_are_read_from_what_the_tools_print() {
+        let cases = [
+            (
+                "rustc 1.96.0 (ac68faa20 2026-05-25) (built from a source tarball)",
+                Some((1, 96)),
+            ),
+            ("cargo 1.98.0-nightly (f298b8c82 2026-05-22)", Some((1, 98))),
+            ("rustc 2.0", Some((2, 0))),
+            ("rustc", None),
+            ("rustc unknown", None),
+        ];
+        for (answer, expected) in cases {
+            assert_eq!(version(answer), expected, "{answer}");
+        }
+        assert!(needed_version() > (1, 85), "the 2024 edition needs 1.85 at least");
+    }
+
+    #[test]
+    fn the_distribution_is_called_by_its_own_paths() {
+        let Decision::Use(Toolchain::Distribution(distribution)) = distribution() else {
+            unreachable!()
+        };
+        let line = distribution.cargo("build").to_string();
+        assert!(line.contains("RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 "), "{line}");
+        assert!(
+            line.ends_with(" /usr/bin/cargo build -Zbuild-std=core,compiler_builtins"),
+            "{line}"
+        );
+    }
+}
