@@ -1,1 +1,2 @@
 //! Simulated plant and emulated microcontroller for the thermal display.
+pub mod machine;
