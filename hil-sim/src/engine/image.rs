@@ -64,12 +64,12 @@ impl Image {
                 break at;
             }
             let now = machine.now();
-            if now > BOOT_S * u64::from(machine.clocks().hclk) {
+            if now > BOOT_S * u64::from(machine.clocks().hclk_hz) {
                 return Err(ImageError::NoConversion);
             }
             machine.run_until(now + SEARCH_CYCLES)?;
         };
-        let cycles_per_us = u64::from(machine.clocks().hclk) / 1_000_000;
+        let cycles_per_us = u64::from(machine.clocks().hclk_hz) / 1_000_000;
         let first_boundary = started + FIRST_BOUNDARY_US * cycles_per_us;
         machine.run_until(first_boundary)?;
         let mut image = Self { machine, first_boundary, halves: 0, cycles_per_us, before: Before::default() };

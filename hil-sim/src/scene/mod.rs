@@ -9,6 +9,7 @@ use contact_model::material::Material;
 use thermal_display::render::Mode;
 
 pub use check::SceneError;
+pub(crate) use check::custom_line;
 
 /// A scene that has passed every check.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,0 +1,240 @@
+//! Cases of the core: exceptions, masks, stacks, floating-point context, faults, sleep.
+use crate::{LOG, done, log, read, write};
+use core::arch::asm;
+use core::hint::black_box;
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use cortex_m::asm::{dsb, isb, wfe, wfi};
+
+const SYST_CSR: usize = 0xe000_e010;
+const ISER0: usize = 0xe000_e100;
+const ISPR0: usize = 0xe000_e200;
+const IPR: usize = 0xe000_e400;
+const ICSR: usize = 0xe000_ed04;
+const AIRCR: usize = 0xe000_ed0c;
+const SHPR2: usize = 0xe000_ed1c;
+const SHPR3: usize = 0xe000_ed20;
+const CFSR: usize = 0xe000_ed28;
+const HFSR: usize = 0xe000_ed2c;
+const RCC_CSR: usize = 0x4002_3874;
+
+/// Three interrupts that nothing else uses: middle, high and low priority.
+const MIDDLE: u32 = 6;
+const HIGH: u32 = 7;
+const LOW: u32 = 8;
+
+static TICKS: AtomicU32 = AtomicU32::new(0);
+static FAULT_AGAIN: AtomicU32 = AtomicU32::new(0);
+
+pub fn ipsr() -> u32 {
+    let value;
+    // SAFETY: reads a special register.
+    unsafe { asm!("mrs {}, ipsr", out(reg) value) };
+    value
+}
+
+fn pend(interrupt: u32) {
+    write(ISPR0, 1 << interrupt);
+    dsb();
+    isb();
+}
+
+fn mask_below(basepri: u8) {
+    // SAFETY: only delays interrupts.
+    unsafe { cortex_m::register::basepri::write(basepri) };
+    isb();
+}
+
+fn unmask() {
+    // SAFETY: the cases use no critical sections around it.
+    unsafe { cortex_m::interrupt::enable() };
+    isb();
+}
+
+/// Nesting, tail chaining, PRIMASK, BASEPRI, SVC, PendSV, the process stack, sleep under PRIMASK, IT blocks.
+pub fn exceptions() {
+    write(IPR + 4, 0x4080_0000); // interrupts 6 and 7
+    write(IPR + 8, 0x0000_00c0); // 8
+    write(SHPR2, 0x1000_0000);
+    write(SHPR3, 0x20f0_0000);
+    write(ISER0, 1 << MIDDLE | 1 << HIGH | 1 << LOW);
+    log(1);
+    pend(MIDDLE);
+    log(2);
+    cortex_m::interrupt::disable();
+    pend(MIDDLE);
+    log(3);
+    unmask();
+    log(4);
+    mask_below(0x80);
+    write(ISPR0, 1 << MIDDLE | 1 << HIGH);
+    dsb();
+    isb();
+    log(5);
+    mask_below(0);
+    log(6);
+    // SAFETY: the handler returns.
+    unsafe { asm!("svc 7") };
+    log(7);
+    log(on_process_stack());
+    cortex_m::interrupt::disable();
+    pend(LOW);
+    wfi();
+    log(8);
+    unmask();
+    log(9);
+    for (a, b) in [(3, 2), (2, 3), (0x8000_0000, 1)] {
+        log(it_block(a, b));
+    }
+}
+
+/// Calls the supervisor from thread mode on the process stack; a register of the upper floating-point half must
+/// survive. Returns it, plus CONTROL.SPSEL as seen on the process stack.
+fn on_process_stack() -> u32 {
+    static STACK: [AtomicU32; 64] = [const { AtomicU32::new(0) }; 64];
+    let top = STACK.as_ptr_range().end as usize;
+    let (kept, control): (u32, u32);
+    // SAFETY: SP goes back to the main stack before the block ends; the process stack is large enough for two
+    // frames with floating-point state.
+    unsafe {
+        asm!(
+            "msr psp, {top}",
+            "mrs {old}, control", "orr {old}, {old}, #2", "msr control, {old}", "isb",
+            "mov {kept}, #0x11", "vmov s20, {kept}",
+            "svc 3",
+            "vmov {kept}, s20", "mrs {control}, control",
+            "bic {old}, {control}, #2", "msr control, {old}", "isb",
+            top = in(reg) top & !7, old = out(reg) _, kept = out(reg) kept, control = out(reg) control,
+            out("s20") _,
+        );
+    }
+    kept | (control & 2) << 8
+}
+
+/// `a > b ? (a + 1) << 1 : (b + 2) ^ 5`, unsigned, as one IT block.
+#[inline(never)]
+fn it_block(a: u32, b: u32) -> u32 {
+    let result;
+    // SAFETY: arithmetic only.
+    unsafe {
+        asm!(
+            "cmp {a}, {b}", "itete hi", "addhi {r}, {a}, #1", "addls {r}, {b}, #2", "lslhi {r}, {r}, #1",
+            "eorls {r}, {r}, #5",
+            a = in(reg) a, b = in(reg) b, r = out(reg) result,
+        );
+    }
+    result
+}
+
+pub fn software_interrupt(interrupt: i16) {
+    match interrupt as u32 {
+        MIDDLE => {
+            log(0x100 | ipsr());
+            pend(HIGH);
+            log(0x101);
+            pend(LOW);
+            log(0x102);
+        }
+        HIGH => log(0x200 | ipsr()),
+        _ => log(0x300 | ipsr()),
+    }
+}
+
+pub fn supervisor_call() {
+    log(0x2000 | ipsr());
+    write(ICSR, 1 << 28);
+    dsb();
+    isb();
+    log(0x2100);
+}
+
+/// A computation whose intermediate results live in floating-point registers.
+#[inline(never)]
+fn compute(seed: f32) -> f32 {
+    let mut x = seed;
+    for i in 0..50u8 {
+        x = x * 0.75 + f32::from(i) / (x + 2.0);
+    }
+    x
+}
+
+pub fn tick() {
+    let count = TICKS.fetch_add(1, Relaxed);
+    // SAFETY: registers are declared as changed; FPSCR is restored by the exception return.
+    unsafe {
+        asm!(
+            "vmov s0, {n}", "vmov s1, {n}", "vmov s7, {n}", "vmov s15, {n}",
+            "vmrs {t}, fpscr", "orr {t}, {t}, #0xc00000", "vmsr fpscr, {t}",
+            n = in(reg) count, t = out(reg) _, out("s0") _, out("s1") _, out("s7") _, out("s15") _,
+        );
+    }
+    black_box(compute(count as f32));
+}
+
+/// Floating-point work must not notice that an interrupt uses every register and another rounding mode.
+pub fn float_context() {
+    let wanted = compute(black_box(2.5)).to_bits();
+    write(SYST_CSR + 4, 4_999);
+    write(SYST_CSR + 8, 0);
+    write(SYST_CSR, 7);
+    let wrong = (0..500)
+        .filter(|_| compute(black_box(2.5)).to_bits() != wanted)
+        .count();
+    write(SYST_CSR, 0);
+    log(wrong as u32);
+    log(u32::from(TICKS.load(Relaxed) > 100));
+}
+
+pub fn bad_load() {
+    log(1);
+    read(0x6000_0000);
+    log(2);
+}
+
+pub fn undefined() {
+    log(1);
+    cortex_m::asm::udf();
+}
+
+pub fn lockup() {
+    FAULT_AGAIN.store(1, Relaxed);
+    read(0x6000_0000);
+}
+
+pub fn hard_fault(pc: u32) -> ! {
+    log(ipsr());
+    log(read(CFSR));
+    log(read(HFSR));
+    log(pc);
+    if FAULT_AGAIN.load(Relaxed) != 0 {
+        read(0x6000_0000);
+    }
+    done()
+}
+
+/// Resets itself once; the second time it tells the reset flags and a word that RAM kept.
+pub fn software_reset() {
+    let flags = read(RCC_CSR) >> 24;
+    if flags & 0x10 != 0 {
+        log(flags);
+        log(ipsr());
+        return;
+    }
+    LOG[200].store(0xabcd, Relaxed);
+    write(AIRCR, 0x05fa_0004);
+    dsb();
+    loop {
+        cortex_m::asm::nop();
+    }
+}
+
+/// WFE falls through after SEV, else sleeps until the tick.
+pub fn sleep_by_events() {
+    cortex_m::asm::sev();
+    wfe();
+    log(TICKS.load(Relaxed));
+    write(SYST_CSR + 4, 9_999);
+    write(SYST_CSR, 7);
+    wfe();
+    log(TICKS.load(Relaxed));
+    write(SYST_CSR, 0);
+}

@@ -1,0 +1,153 @@
+//! Cases of the peripherals.
+use crate::{log, read, set, write};
+use core::sync::atomic::{AtomicU8, AtomicU16};
+
+const RCC: usize = 0x4002_3800;
+const FLASH_ACR: usize = 0x4002_3c00;
+const PWR: usize = 0x4000_7000;
+const GPIOA: usize = 0x4002_0000;
+const TIM1: usize = 0x4001_0000;
+const TIM2: usize = 0x4000_0000;
+const TIM3: usize = 0x4000_0400;
+const ADC1: usize = 0x4001_2000;
+const USART2: usize = 0x4000_4400;
+const DMA1: usize = 0x4002_6000;
+const DMA2: usize = 0x4002_6400;
+const IWDG: usize = 0x4000_3000;
+const SYST_CSR: usize = 0xe000_e010;
+const ISER1: usize = 0xe000_e104;
+
+static SAMPLES: [AtomicU16; 224] = [const { AtomicU16::new(0) }; 224];
+static TEXT: [AtomicU8; 64] = [const { AtomicU8::new(b'.') }; 64];
+
+pub fn unmodelled_register() {
+    set(RCC + 0x44, 1 << 12);
+    read(0x4001_3000);
+}
+
+pub fn clock_off() {
+    write(TIM2 + 0x2c, 99);
+}
+
+pub fn encoder_mode() {
+    set(RCC + 0x40, 1 << 1);
+    write(TIM3 + 0x08, 3);
+}
+
+fn clock_180_mhz(wait_states: u32) {
+    write(FLASH_ACR, 0x700 | wait_states);
+    set(RCC, 1 << 18 | 1 << 16);
+    while read(RCC) >> 17 & 1 == 0 {}
+    write(RCC + 4, 4 << 24 | 1 << 22 | 180 << 6 | 4);
+    set(RCC, 1 << 24);
+    set(RCC + 0x40, 1 << 28);
+    set(PWR, 1 << 16);
+    while read(PWR + 4) >> 16 & 1 == 0 {}
+    set(PWR, 1 << 17);
+    while read(PWR + 4) >> 17 & 1 == 0 {}
+    while read(RCC) >> 25 & 1 == 0 {}
+    write(RCC + 8, 5 << 10 | 4 << 13);
+    write(RCC + 8, 5 << 10 | 4 << 13 | 2);
+    while read(RCC + 8) >> 2 & 3 != 2 {}
+}
+
+pub fn too_few_wait_states() {
+    clock_180_mhz(4);
+}
+
+/// Feeds the watchdog three times, then no more.
+pub fn watchdog() {
+    let flags = read(RCC + 0x74) >> 24;
+    log(flags);
+    if flags & 0x20 != 0 {
+        write(RCC + 0x74, 1 << 24);
+        log(read(RCC + 0x74) >> 24);
+        return;
+    }
+    write(IWDG, 0x5555);
+    write(IWDG + 4, 0);
+    write(IWDG + 8, 79); // 80 * 4 / 32 kHz = 10 ms
+    write(IWDG, 0xcccc);
+    for _ in 0..3 {
+        cortex_m::asm::delay(128_000); // 8 ms at 16 MHz
+        write(IWDG, 0xaaaa);
+    }
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+fn usart2_at_1_mbaud() {
+    set(RCC + 0x30, 1 | 1 << 21 | 1 << 22);
+    set(RCC + 0x40, 1 << 17);
+    write(GPIOA, read(GPIOA) & !0xf0 | 0xa0);
+    set(GPIOA + 0x20, 0x7700);
+    write(USART2 + 0x08, 45); // PCLK1 of 45 MHz
+    write(USART2 + 0x14, 1 << 7);
+    write(USART2 + 0x0c, 1 << 13 | 1 << 5 | 1 << 3 | 1 << 2);
+    write(ISER1, 1 << 6);
+}
+
+pub fn usart2() {
+    log(0x5a00_0000 | read(USART2) & 0xff00_002f);
+    log(read(USART2 + 4));
+}
+
+/// The device at 1 Mbit/s; the host's rate is the test's choice.
+pub fn baud_mismatch() {
+    clock_180_mhz(5);
+    usart2_at_1_mbaud();
+}
+
+/// What the product's image does, without its arithmetic: 16 kHz scans of seven channels by DMA, PWM at 100 kHz,
+/// a steady stream of bytes by DMA, received bytes by interrupt, a 1 kHz tick, and sleep.
+pub fn product_load() {
+    clock_180_mhz(5);
+    usart2_at_1_mbaud();
+    set(RCC + 0x44, 1 | 1 << 8);
+    set(RCC + 0x40, 1);
+    pwm();
+    adc_scan();
+    text_stream();
+    write(SYST_CSR + 4, 179_999);
+    write(SYST_CSR + 8, 0);
+    write(SYST_CSR, 7);
+    log(1);
+}
+
+fn pwm() {
+    write(GPIOA, read(GPIOA) & !0xf_0000 | 0xa_0000);
+    set(GPIOA + 0x24, 0x11);
+    write(TIM1 + 0x2c, 1799);
+    write(TIM1 + 0x34, 450);
+    write(TIM1 + 0x38, 0);
+    write(TIM1 + 0x18, 0x6868); // PWM mode 1 with preload
+    write(TIM1 + 0x20, 0x11);
+    write(TIM1 + 0x14, 1);
+    write(TIM1 + 0x44, 1 << 15);
+    write(TIM1, 0x81);
+}
+
+fn adc_scan() {
+    write(DMA2 + 0x18, (ADC1 + 0x4c) as u32);
+    write(DMA2 + 0x1c, SAMPLES.as_ptr() as u32);
+    write(DMA2 + 0x14, SAMPLES.len() as u32);
+    write(DMA2 + 0x10, 1 << 13 | 1 << 11 | 1 << 10 | 1 << 8 | 1);
+    write(ADC1 + 0x304, 1 << 16);
+    write(ADC1 + 0x04, 1 << 8);
+    write(ADC1 + 0x10, 0o3_333_333_333);
+    write(ADC1 + 0x2c, 6 << 20);
+    write(ADC1 + 0x34, 5 << 25 | 4 << 20 | 3 << 15 | 2 << 10 | 1 << 5);
+    write(ADC1 + 0x30, 6);
+    write(ADC1 + 0x08, 1 << 28 | 6 << 24 | 1 << 9 | 1 << 8 | 1);
+    write(TIM2 + 0x2c, 5624); // 90 MHz / 5625 = 16 kHz
+    write(TIM2 + 0x04, 2 << 4);
+    write(TIM2, 1);
+}
+
+fn text_stream() {
+    write(DMA1 + 0xa8, (USART2 + 4) as u32);
+    write(DMA1 + 0xac, TEXT.as_ptr() as u32);
+    write(DMA1 + 0xa4, TEXT.len() as u32);
+    write(DMA1 + 0xa0, 4 << 25 | 1 << 10 | 1 << 8 | 1 << 6 | 1);
+}

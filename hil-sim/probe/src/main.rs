@@ -1,0 +1,116 @@
+//! Test image for the emulated microcontroller. The level of port C's pins selects what it does; what it saw it
+//! writes to [`LOG`].
+#![no_std]
+#![no_main]
+
+mod core_cases;
+mod device_cases;
+
+use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
+use cortex_m_rt::{entry, exception};
+
+/// Entries of the log.
+const ENTRIES: usize = 256;
+
+/// What happened, in order. The first word counts the entries.
+#[unsafe(no_mangle)]
+pub static LOG: [AtomicU32; ENTRIES + 1] = [const { AtomicU32::new(0) }; ENTRIES + 1];
+
+/// Appends a word to the log.
+pub fn log(word: u32) {
+    cortex_m::interrupt::free(|_| {
+        let used = LOG[0].load(Relaxed) as usize;
+        if let Some(entry) = LOG.get(used + 1) {
+            entry.store(word, Relaxed);
+            LOG[0].store(used as u32 + 1, Relaxed);
+        }
+    });
+}
+
+/// Reads a register.
+pub fn read(address: usize) -> u32 {
+    // SAFETY: called with addresses of registers, or of nothing when a fault is wanted; no Rust object is there.
+    unsafe { (address as *const u32).read_volatile() }
+}
+
+/// Writes a register.
+pub fn write(address: usize, value: u32) {
+    // SAFETY: as in `read`.
+    unsafe { (address as *mut u32).write_volatile(value) }
+}
+
+/// Sets bits of a register.
+pub fn set(address: usize, bits: u32) {
+    write(address, read(address) | bits);
+}
+
+const AHB1ENR: usize = 0x4002_3830;
+const GPIOC_IDR: usize = 0x4002_0810;
+
+#[entry]
+fn main() -> ! {
+    set(AHB1ENR, 1 << 2);
+    match read(GPIOC_IDR) {
+        0 => core_cases::exceptions(),
+        1 => core_cases::float_context(),
+        2 => core_cases::bad_load(),
+        3 => core_cases::undefined(),
+        4 => core_cases::lockup(),
+        5 => core_cases::software_reset(),
+        6 => core_cases::sleep_by_events(),
+        8 => device_cases::unmodelled_register(),
+        9 => device_cases::clock_off(),
+        10 => device_cases::too_few_wait_states(),
+        11 => device_cases::encoder_mode(),
+        12 => device_cases::watchdog(),
+        13 => device_cases::product_load(),
+        14 => device_cases::baud_mismatch(),
+        _ => {}
+    }
+    done()
+}
+
+/// End of a case.
+pub fn done() -> ! {
+    log(0xd0e);
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+#[panic_handler]
+fn panic(_: &core::panic::PanicInfo) -> ! {
+    log(0xbad);
+    loop {
+        cortex_m::asm::wfi();
+    }
+}
+
+#[exception]
+unsafe fn DefaultHandler(interrupt: i16) {
+    match interrupt {
+        6..=8 => core_cases::software_interrupt(interrupt),
+        38 => device_cases::usart2(),
+        _ => log(0x0bad_0000 | interrupt as u32),
+    }
+}
+
+#[exception]
+fn SysTick() {
+    core_cases::tick();
+}
+
+#[exception]
+fn SVCall() {
+    core_cases::supervisor_call();
+}
+
+#[exception]
+fn PendSV() {
+    log(0x1000 | core_cases::ipsr());
+}
+
+#[exception]
+unsafe fn HardFault(frame: &cortex_m_rt::ExceptionFrame) -> ! {
+    core_cases::hard_fault(frame.pc())
+}

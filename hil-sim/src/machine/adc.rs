@@ -1,0 +1,338 @@
+//! ADC1 (RM0390 chapter 13): regular scan sequence, software or timer trigger, sample times, end-of-conversion,
+//! overrun, DMA requests. Injected channels, analog watchdog and multi-ADC modes are refused.
+use super::stop::{Answer, Refusal, only};
+
+const EOC: u32 = 1 << 1;
+const STRT: u32 = 1 << 4;
+const OVR: u32 = 1 << 5;
+const ADON: u32 = 1;
+const CONT: u32 = 1 << 1;
+const DMA: u32 = 1 << 8;
+const DDS: u32 = 1 << 9;
+const EOCS: u32 = 1 << 10;
+const ALIGN: u32 = 1 << 11;
+const SWSTART: u32 = 1 << 30;
+/// Sample times in ADC clock cycles (13.13.4).
+const SAMPLE: [u64; 8] = [3, 15, 28, 56, 84, 112, 144, 480];
+/// Highest ADC clock at 2.4 to 3.6 V (DS10693 table 74).
+const ADCCLK_MAX_HZ: u32 = 36_000_000;
+
+/// Trigger outputs that can start a sequence (13.13.3, EXTSEL): timer number.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Trigger {
+    Tim2,
+    Tim3,
+}
+
+pub(crate) struct Adc {
+    sr: u32,
+    cr1: u32,
+    cr2: u32,
+    smpr: [u32; 2],
+    sqr: [u32; 3],
+    dr: u32,
+    ccr: u32,
+    limits: [u32; 2],
+    /// CPU cycles per APB2 clock.
+    bus_divider: u64,
+    pclk2_hz: u32,
+    /// Position in the running sequence.
+    position: u32,
+    dma_ended: bool,
+    dma_waiting: bool,
+    /// End of the running conversion.
+    pub due: u64,
+}
+
+impl Adc {
+    pub fn new(bus_divider: u64, pclk2_hz: u32) -> Self {
+        Self {
+            sr: 0,
+            cr1: 0,
+            cr2: 0,
+            smpr: [0; 2],
+            sqr: [0; 3],
+            dr: 0,
+            ccr: 0,
+            limits: [0xfff, 0],
+            bus_divider,
+            pclk2_hz,
+            position: 0,
+            dma_ended: false,
+            dma_waiting: false,
+            due: u64::MAX,
+        }
+    }
+
+    pub fn set_clock(&mut self, bus_divider: u64, pclk2_hz: u32) {
+        (self.bus_divider, self.pclk2_hz) = (bus_divider, pclk2_hz);
+    }
+
+    /// Back to the reset values; the bus clock stays.
+    pub fn reset(&mut self) {
+        *self = Self::new(self.bus_divider, self.pclk2_hz);
+    }
+
+    /// CPU cycles per ADC clock.
+    fn adc_clock(&self) -> u64 {
+        self.bus_divider * u64::from(2 * ((self.ccr >> 16 & 3) + 1))
+    }
+
+    /// Channel at a position of the sequence.
+    fn channel_at(&self, position: u32) -> u8 {
+        let (register, slot) = (2 - (position / 6) as usize, position % 6);
+        (self.sqr[register] >> (5 * slot) & 0x1f) as u8
+    }
+
+    /// Channel of the conversion that runs.
+    pub fn channel(&self) -> u8 {
+        self.channel_at(self.position)
+    }
+
+    fn length(&self) -> u32 {
+        if self.cr1 >> 8 & 1 != 0 {
+            (self.sqr[0] >> 20 & 0xf) + 1
+        } else {
+            1
+        }
+    }
+
+    /// Conversion time: sample time plus one ADC clock per bit (13.5).
+    fn conversion_cycles(&self, channel: u8) -> u64 {
+        let (register, slot) = (usize::from(channel < 10), u32::from(channel % 10));
+        let sample = SAMPLE[(self.smpr[register] >> (3 * slot) & 7) as usize];
+        let bits = 12 - 2 * u64::from(self.cr1 >> 24 & 3);
+        (sample + bits) * self.adc_clock()
+    }
+
+    /// Trigger that a rising edge of would start a sequence.
+    pub fn trigger(&self) -> Option<Trigger> {
+        match (self.cr2 >> 28 & 3, self.cr2 >> 24 & 0xf) {
+            (0, _) => None,
+            (_, 6) => Some(Trigger::Tim2),
+            _ => Some(Trigger::Tim3),
+        }
+    }
+
+    /// An edge of the selected trigger, or SWSTART. Ignored during a sequence, when off, and after an overrun
+    /// with DMA until OVR is cleared (13.8.1).
+    pub fn start(&mut self, now: u64) {
+        let overrun = self.sr & OVR != 0 && self.cr2 & DMA != 0;
+        if self.cr2 & ADON != 0 && self.due == u64::MAX && !overrun {
+            self.position = 0;
+            self.sr |= STRT;
+            self.due = now + self.conversion_cycles(self.channel());
+        }
+    }
+
+    /// An item waits for its DMA transfer.
+    pub fn wants_dma(&self) -> bool {
+        self.dma_waiting
+    }
+
+    /// End of the running conversion with this 12-bit code.
+    pub fn finish(&mut self, code: u16) {
+        let bits = 12 - 2 * (self.cr1 >> 24 & 3);
+        let code = u32::from(code & 0xfff) >> (12 - bits);
+        let at = self.due;
+        let last = self.position + 1 >= self.length();
+        let uses_dma = self.cr2 & DMA != 0;
+        let overruns = self.sr & EOC != 0 && (uses_dma || self.cr2 & EOCS != 0);
+        if overruns {
+            self.sr |= OVR;
+            if uses_dma {
+                self.due = u64::MAX;
+                self.dma_waiting = false;
+                return;
+            }
+        } else {
+            self.dr = if self.cr2 & ALIGN != 0 {
+                code << (if bits == 6 { 2 } else { 16 - bits })
+            } else {
+                code
+            };
+        }
+        // with DMA each item must raise EOC, or a transfer that does not happen could not overrun
+        if last || self.cr2 & EOCS != 0 || uses_dma {
+            self.sr |= EOC;
+        }
+        if !last {
+            self.position += 1;
+        } else {
+            self.position = 0;
+        }
+        self.due = if !last || self.cr2 & CONT != 0 {
+            at + self.conversion_cycles(self.channel())
+        } else {
+            u64::MAX
+        };
+        self.dma_waiting = uses_dma && !self.dma_ended;
+    }
+
+    /// The DMA read the data register; `last` when its stream's count ran out.
+    pub fn dma_read(&mut self, last: bool) {
+        self.sr &= !EOC;
+        self.dma_waiting = false;
+        self.dma_ended |= last && self.cr2 & DDS == 0;
+    }
+
+    /// Value that a DMA request offers.
+    pub fn data(&self) -> u32 {
+        self.dr
+    }
+
+    /// Interrupt request.
+    pub fn request(&self) -> bool {
+        self.sr & EOC != 0 && self.cr1 >> 5 & 1 != 0 || self.sr & OVR != 0 && self.cr1 >> 26 & 1 != 0
+    }
+
+    /// Registers of ADC1 at 0x00.. and the common ones at 0x300..
+    pub fn read(&mut self, offset: u32) -> Answer<u32> {
+        Ok(match offset {
+            0x00 => self.sr,
+            0x04 => self.cr1,
+            0x08 => self.cr2,
+            0x0c | 0x10 => self.smpr[(offset as usize - 0x0c) / 4],
+            0x24 | 0x28 => self.limits[(offset as usize - 0x24) / 4],
+            0x2c..=0x34 => self.sqr[(offset as usize - 0x2c) / 4],
+            0x38 => 0,
+            0x4c => {
+                self.sr &= !EOC;
+                self.dr
+            }
+            0x300 => self.sr & 0x3f,
+            0x304 => self.ccr,
+            _ => return Err(Refusal::Offset),
+        })
+    }
+
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
+        match offset {
+            0x00 => self.sr &= value,
+            0x04 => {
+                only(value, 0x0700_0120, "ADC_CR1 beyond RES, SCAN, EOCIE and OVRIE")?;
+                self.cr1 = value;
+            }
+            0x08 => self.write_cr2(value, now)?,
+            0x0c | 0x10 => self.smpr[(offset as usize - 0x0c) / 4] = value,
+            0x24 | 0x28 => self.limits[(offset as usize - 0x24) / 4] = value,
+            0x2c..=0x34 => self.sqr[(offset as usize - 0x2c) / 4] = value,
+            0x38 => only(value, 0, "ADC_JSQR (injected channels)")?,
+            0x304 => {
+                only(value, 0x00c3_0000, "ADC_CCR multi-ADC modes")?;
+                self.ccr = value;
+            }
+            _ => return Err(Refusal::Offset),
+        }
+        Ok(())
+    }
+
+    fn write_cr2(&mut self, value: u32, now: u64) -> Answer<()> {
+        only(value, 0x7f00_0f03, "ADC_CR2 injected channels")?;
+        if value >> 28 & 3 > 1 {
+            return Err(Refusal::NotModelled("ADC_CR2.EXTEN = falling edge"));
+        }
+        if value >> 28 & 3 == 1 && !matches!(value >> 24 & 0xf, 6 | 8) {
+            return Err(Refusal::NotModelled(
+                "ADC_CR2.EXTSEL other than TIM2_TRGO and TIM3_TRGO",
+            ));
+        }
+        if value & ADON != 0 {
+            let hz = self.pclk2_hz / (2 * ((self.ccr >> 16 & 3) + 1));
+            if hz > ADCCLK_MAX_HZ {
+                return Err(Refusal::ClockRange {
+                    clock: "ADCCLK",
+                    hz,
+                    min_hz: 600_000,
+                    max_hz: ADCCLK_MAX_HZ,
+                });
+            }
+        } else {
+            self.due = u64::MAX;
+        }
+        if value & DMA == 0 {
+            self.dma_ended = false;
+            self.dma_waiting = false;
+        }
+        self.cr2 = value & !SWSTART;
+        if value & SWSTART != 0 {
+            self.start(now);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// PCLK2 = 90 MHz at HCLK = 180 MHz, ADCCLK = PCLK2/4 = 22.5 MHz: 8 CPU cycles per ADC clock.
+    fn adc(cr1: u32, cr2: u32) -> Adc {
+        let mut adc = Adc::new(2, 90_000_000);
+        adc.write(0x304, 1 << 16, 0).unwrap();
+        adc.write(0x04, cr1, 0).unwrap();
+        adc.write(0x08, cr2 | ADON, 0).unwrap();
+        adc
+    }
+
+    #[test]
+    fn conversion_takes_sample_time_plus_12_adc_clocks() {
+        for (smp, sample) in [(0, 3), (3, 56), (7, 480)] {
+            let mut adc = adc(0, 0);
+            adc.write(0x10, smp << 12, 0).unwrap();
+            adc.write(0x34, 4, 0).unwrap();
+            adc.start(1000);
+            assert_eq!(adc.due, 1000 + (sample + 12) * 8);
+        }
+    }
+
+    #[test]
+    fn a_scan_converts_in_order_and_raises_eoc_at_its_end() {
+        let mut adc = adc(1 << 8, 0);
+        adc.write(0x34, 7 | 11 << 5, 0).unwrap();
+        adc.write(0x2c, 1 << 20, 0).unwrap();
+        adc.start(0);
+        assert_eq!((adc.channel(), adc.due), (7, 120));
+        adc.finish(1);
+        assert_eq!((adc.read(0).unwrap() & EOC, adc.channel(), adc.due), (0, 11, 240));
+        adc.start(200);
+        assert_eq!(adc.due, 240, "a trigger during a sequence is lost");
+        adc.finish(2);
+        assert_eq!((adc.read(0).unwrap() & EOC, adc.due), (EOC, u64::MAX));
+        assert_eq!((adc.read(0x4c).unwrap(), adc.read(0).unwrap() & EOC), (2, 0));
+    }
+
+    #[test]
+    fn an_unread_item_overruns_and_stops_dma_requests() {
+        let mut adc = adc(0, DMA | DDS | CONT);
+        adc.start(0);
+        adc.finish(1);
+        assert!(adc.wants_dma());
+        adc.finish(2);
+        assert!(!adc.wants_dma(), "nobody read the first");
+        assert_eq!(adc.read(0).unwrap() & OVR, OVR);
+        assert_eq!(adc.data(), 1, "the old item stays");
+        adc.start(5000);
+        assert_eq!(adc.due, u64::MAX, "until OVR is cleared");
+    }
+
+    #[test]
+    fn without_dds_requests_end_with_the_stream() {
+        let mut adc = adc(0, DMA | CONT);
+        adc.start(0);
+        adc.finish(1);
+        assert!(adc.wants_dma());
+        adc.dma_read(true);
+        adc.finish(2);
+        assert!(!adc.wants_dma());
+    }
+
+    #[test]
+    fn the_converter_has_a_clock_limit() {
+        let mut adc = Adc::new(2, 90_000_000);
+        assert!(matches!(
+            adc.write(0x08, ADON, 0),
+            Err(Refusal::ClockRange { hz: 45_000_000, .. })
+        ));
+    }
+}

@@ -1,0 +1,183 @@
+//! Instruction counts and estimated cycles of a basic block.
+//!
+//! Counts are exact: every instruction of an executed block is counted, those skipped inside an IT block
+//! included (they pass the pipeline as one-cycle no-operations). Cycles are an estimate after the Cortex-M4
+//! Technical Reference Manual (r0p1, tables 3-1 and 7-1): zero-wait-state memory (the flash accelerator hides
+//! the wait states of straight code), two cycles of refill for a taken branch, a conditional branch taken half
+//! the time, divisions at the middle of their range, no pairing of neighbouring loads.
+
+/// Cycles from recognition of an exception to its first instruction (TRM section 3.9.1).
+pub(crate) const EXCEPTION_ENTRY: u64 = 12;
+/// Cycles of a return from an exception (ARM's figure, without floating-point unstacking).
+pub(crate) const EXCEPTION_RETURN: u64 = 10;
+/// Cycles between two tail-chained exceptions.
+pub(crate) const TAIL_CHAIN: u64 = 6;
+
+/// What a block holds beyond its cost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Block {
+    pub bytes: u16,
+    pub instructions: u16,
+    pub cycles: u16,
+    /// The block holds an instruction of the floating-point unit.
+    pub float: bool,
+    /// The block holds SEV, which sets the event register of the only core.
+    pub sev: bool,
+    pub last: Last,
+}
+
+/// Last instruction of a block, as far as it matters to the run loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Last {
+    #[default]
+    Other,
+    Wfi,
+    Wfe,
+    Yield,
+}
+
+/// Costs of all blocks met so far, by address; the flash does not change while the machine runs.
+pub(crate) struct CostTable {
+    blocks: Vec<Block>,
+}
+
+impl CostTable {
+    pub fn new(flash_bytes: usize) -> Self {
+        Self {
+            blocks: vec![Block::default(); flash_bytes / 2],
+        }
+    }
+
+    /// The block of `bytes` bytes at `offset` into the flash; `None` outside it.
+    #[inline]
+    pub fn flash_block(&mut self, flash: &[u8], offset: usize, bytes: u32) -> Option<Block> {
+        let known = self.blocks.get_mut(offset / 2)?;
+        if u32::from(known.bytes) != bytes {
+            *known = decode(flash.get(offset..offset + bytes as usize)?);
+        }
+        Some(*known)
+    }
+}
+
+/// Decodes straight-line code.
+pub(crate) fn decode(code: &[u8]) -> Block {
+    let mut block = Block {
+        bytes: code.len() as u16,
+        ..Block::default()
+    };
+    let half = |at: usize| {
+        code.get(at..at + 2)
+            .map_or(0, |b| u32::from(u16::from_le_bytes([b[0], b[1]])))
+    };
+    let mut at = 0;
+    while at < code.len() {
+        let first = half(at);
+        let wide = first >> 11 >= 0b11101;
+        let second = if wide { half(at + 2) } else { 0 };
+        block.cycles += if wide {
+            wide_cost(first, second)
+        } else {
+            narrow_cost(first)
+        };
+        block.instructions += 1;
+        block.float |= wide && is_float(first);
+        block.sev |= first == 0xbf40;
+        block.last = match first {
+            0xbf10 => Last::Yield,
+            0xbf20 => Last::Wfe,
+            0xbf30 => Last::Wfi,
+            _ => Last::Other,
+        };
+        at += if wide { 4 } else { 2 };
+    }
+    block
+}
+
+/// Coprocessor space with coprocessor number 10 or 11 is the floating-point unit.
+fn is_float(first: u32) -> bool {
+    first & 0xec00 == 0xec00
+}
+
+fn narrow_cost(op: u32) -> u16 {
+    let registers = (op & 0xff).count_ones() as u16;
+    match op >> 12 {
+        0x4 if op & 0xff00 == 0x4700 => 3,  // BX, BLX
+        0x4 if op & 0xfc87 == 0x4487 => 3,  // ADD or MOV to PC
+        0x4 if op & 0xf800 == 0x4800 => 2,  // LDR literal
+        0x5 if op & 0x0e00 >= 0x0600 => 2,  // LDR register, LDRSB
+        0x6..=0x9 if op & 0x0800 != 0 => 2, // LDR immediate
+        0xb if op & 0xfe00 == 0xb400 => 1 + registers + (op >> 8 & 1) as u16, // PUSH
+        0xb if op & 0xff00 == 0xbd00 => 4 + registers, // POP with PC
+        0xb if op & 0xff00 == 0xbc00 => 1 + registers, // POP
+        0xb if op & 0xf500 == 0xb100 => 2,  // CBZ, CBNZ
+        0xc => 1 + registers,               // LDM, STM
+        0xd => 2,                           // conditional branch
+        0xe => 3,                           // B
+        _ => 1,
+    }
+}
+
+fn wide_cost(first: u32, second: u32) -> u16 {
+    let registers = second.count_ones() as u16;
+    if is_float(first) {
+        return float_cost(first, second);
+    }
+    match first >> 11 & 3 {
+        1 if first & 0x0640 == 0 => {
+            1 + registers
+                + if second >> 15 == 1 && first & 0x10 != 0 {
+                    2
+                } else {
+                    0
+                }
+        } // LDM, STM
+        1 if first & 0x0600 == 0 => {
+            if first & 0xfff0 == 0xe8d0 && second & 0xe0 == 0 {
+                4
+            } else {
+                3
+            }
+        } // TBB; LDRD, STRD, LDREX
+        1 => 1,                         // data processing, shifted register
+        2 if second & 0x8000 == 0 => 1, // data processing, immediate
+        2 if second & 0x5000 == 0 => {
+            if first & 0x0380 == 0x0380 {
+                1
+            } else {
+                2
+            }
+        } // MSR, MRS, hints; conditional branch
+        2 => 3,                         // B, BL
+        _ if first & 0x0600 == 0 => {
+            if first & 0x10 != 0 {
+                2
+            } else {
+                1
+            }
+        } // loads; stores are buffered
+        _ if first & 0xffd0 == 0xfb90 => 7, // SDIV, UDIV: 2 to 12
+        _ => 1,                         // multiplication, also long
+    }
+}
+
+fn float_cost(first: u32, second: u32) -> u16 {
+    if first & 0x0e00 == 0x0c00 {
+        let single = first & 0x0120 == 0x0100; // VLDR, VSTR; else VLDM, VSTM or a pair move
+        return if first & 0x0fe0 == 0x0c40 {
+            2
+        } else if single {
+            2
+        } else {
+            1 + (second & 0xff) as u16
+        };
+    }
+    if second & 0x10 != 0 {
+        return 1; // moves to and from core registers
+    }
+    match first >> 4 & 0xb {
+        0x8 => 14,                                              // VDIV
+        0xb if second & 0xc0 == 0xc0 && first & 0xf == 1 => 14, // VSQRT
+        0x0 | 0x1 | 0x9 | 0xa => 3,                             // VMLA, VNMLA, VFMA, VFNMA
+        _ => 1,
+    }
+}

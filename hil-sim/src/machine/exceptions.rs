@@ -1,0 +1,216 @@
+//! Exception entry and return on the emulated CPU (ARMv7-M Architecture Reference Manual B1.5.6 to B1.5.8).
+//!
+//! Floating-point state is stacked at entry, not lazily: what the program sees is the same, FPCAR is not kept.
+use super::Wiring;
+use super::cost;
+use super::nvic::exception;
+use super::state::{Cpu, get, masks, service};
+use unicorn_engine::RegisterARM as Reg;
+
+/// Why an entry or return went wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FrameError {
+    /// The frame would lie, or lies, outside of memory.
+    Stack(u32),
+    /// No valid EXC_RETURN, or return from an exception that is not active.
+    Return(u32),
+    /// The CPU emulation refused a register.
+    Emulator,
+}
+
+const CORE: [Reg; 6] = [Reg::R0, Reg::R1, Reg::R2, Reg::R3, Reg::R12, Reg::LR];
+const FLOAT: [Reg; 8] = [
+    Reg::D0,
+    Reg::D1,
+    Reg::D2,
+    Reg::D3,
+    Reg::D4,
+    Reg::D5,
+    Reg::D6,
+    Reg::D7,
+];
+const NO_FLOAT: u32 = 0x10;
+const FRAME: u32 = 0x20;
+const FLOAT_FRAME: u32 = 0x68;
+
+fn set<W: Wiring>(cpu: &mut Cpu<'_, W>, register: Reg, value: u32) -> Result<(), FrameError> {
+    cpu.reg_write(register, u64::from(value))
+        .map_err(|_| FrameError::Emulator)
+}
+
+/// Writes IPSR and the flags. The second write makes the emulation take over the new mode.
+fn set_xpsr<W: Wiring>(cpu: &mut Cpu<'_, W>, xpsr: u32) -> Result<(), FrameError> {
+    set(cpu, Reg::XPSR_NZCVQG, xpsr)?;
+    set(cpu, Reg::APSR_NZCV, xpsr & 0xf000_0000)
+}
+
+/// Stacks the context and enters `exception`; `return_pc` is the address to come back to. A more urgent exception
+/// that arrives while stacking is entered instead (late arrival).
+pub(crate) fn enter<W: Wiring>(
+    cpu: &mut Cpu<'_, W>,
+    exception: usize,
+    return_pc: u32,
+) -> Result<(), FrameError> {
+    let control = get(cpu, Reg::CONTROL);
+    let xpsr = get(cpu, Reg::XPSR);
+    let sp = get(cpu, Reg::SP);
+    let float = control & 4 != 0;
+    let size = if float { FLOAT_FRAME } else { FRAME };
+    let frame = sp.wrapping_sub(size) & !4;
+    let mut bytes = [0; FLOAT_FRAME as usize];
+    let mut put = |at: usize, word: u32| bytes[4 * at..4 * at + 4].copy_from_slice(&word.to_le_bytes());
+    for (i, register) in CORE.into_iter().enumerate() {
+        put(i, get(cpu, register));
+    }
+    put(6, return_pc);
+    put(7, xpsr & !(1 << 9) | (sp >> 2 & 1) << 9);
+    if float {
+        for (i, register) in FLOAT.into_iter().enumerate() {
+            let pair = cpu.reg_read(register).map_err(|_| FrameError::Emulator)?;
+            put(8 + 2 * i, pair as u32);
+            put(9 + 2 * i, (pair >> 32) as u32);
+        }
+        put(24, get(cpu, Reg::FPSCR));
+    }
+    cpu.mem_write(u64::from(frame), &bytes[..size as usize])
+        .map_err(|_| FrameError::Stack(frame))?;
+    let from_thread = xpsr & 0x1ff == 0;
+    let mut exc_return = match (from_thread, control & 2 != 0) {
+        (false, _) => 0xffff_fff1,
+        (true, false) => 0xffff_fff9,
+        (true, true) => 0xffff_fffd,
+    };
+    if float {
+        exc_return &= !NO_FLOAT;
+    }
+    set(cpu, Reg::SP, frame)?;
+    // SPSEL can be written in thread mode only, so before IPSR; this also selects the main stack
+    set(cpu, Reg::CONTROL, control & 1)?;
+    let state = cpu.get_data_mut();
+    state.cycles += cost::EXCEPTION_ENTRY;
+    let now = state.cycles;
+    service(cpu, now);
+    let nvic = &cpu.get_data().chip_ref().nvic;
+    let late = nvic
+        .best()
+        .filter(|(_, priority)| *priority < nvic.priority_of(exception))
+        .map(|(n, _)| n);
+    start_handler(cpu, late.unwrap_or(exception), exc_return)
+}
+
+/// Activates `exception` and points the CPU at its handler.
+fn start_handler<W: Wiring>(
+    cpu: &mut Cpu<'_, W>,
+    exception: usize,
+    exc_return: u32,
+) -> Result<(), FrameError> {
+    let flags = get(cpu, Reg::XPSR) & 0xf80f_0000;
+    set_xpsr(cpu, flags | 1 << 24 | exception as u32)?;
+    set(cpu, Reg::LR, exc_return)?;
+    let state = cpu.get_data_mut();
+    let (now, instructions) = (state.cycles, state.instructions);
+    let vector_at = state.chip().ppb.vtor.wrapping_add(4 * exception as u32);
+    let pended_at = state.chip().nvic.enter(exception);
+    state.exceptions += 1;
+    state.event_register = true;
+    state
+        .profile
+        .enter(exception, now.saturating_sub(pended_at), instructions, now);
+    let mut vector = [0; 4];
+    cpu.mem_read(u64::from(vector_at), &mut vector)
+        .map_err(|_| FrameError::Stack(vector_at))?;
+    set(cpu, Reg::PC, u32::from_le_bytes(vector) | 1)
+}
+
+/// Returns from the running exception, or goes straight on to the next pending one (tail chaining).
+pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<(), FrameError> {
+    let xpsr = get(cpu, Reg::XPSR);
+    let running = (xpsr & 0x1ff) as usize;
+    let state = cpu.get_data_mut();
+    let (now, instructions) = (state.cycles, state.instructions);
+    let valid = matches!(exc_return | NO_FLOAT, 0xffff_fff1 | 0xffff_fff9 | 0xffff_fffd);
+    if !valid || !state.chip().nvic.is_active(running) {
+        return Err(FrameError::Return(exc_return));
+    }
+    state.chip().nvic.leave(running, now);
+    state.event_register = true;
+    if running != exception::NMI {
+        set(cpu, Reg::FAULTMASK, 0)?;
+    }
+    let (primask, basepri, faultmask) = masks(cpu);
+    let state = cpu.get_data_mut();
+    let nvic = &state.chip_ref().nvic;
+    let level = nvic.execution_priority(primask, basepri, faultmask);
+    if let Some((next, _)) = nvic.best().filter(|(_, priority)| *priority < level) {
+        state.cycles += cost::TAIL_CHAIN;
+        let now = state.cycles;
+        state.profile.leave(instructions, now);
+        let control = get(cpu, Reg::CONTROL);
+        set(cpu, Reg::CONTROL, control & !4)?;
+        return start_handler(cpu, next, exc_return);
+    }
+    state.cycles += cost::EXCEPTION_RETURN;
+    let now = state.cycles;
+    state.profile.leave(instructions, now);
+    unstack(cpu, exc_return, xpsr)
+}
+
+fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Result<(), FrameError> {
+    let control = get(cpu, Reg::CONTROL);
+    if exc_return & 8 != 0 {
+        // to thread mode: leave handler mode first, so that SP is the one that SPSEL names
+        set_xpsr(cpu, xpsr & !0x1ff)?;
+        set(cpu, Reg::CONTROL, control & !2 | (exc_return >> 2 & 1) << 1)?;
+    }
+    let sp = get(cpu, Reg::SP);
+    let float = exc_return & NO_FLOAT == 0;
+    let size = if float { FLOAT_FRAME } else { FRAME };
+    let mut bytes = [0; FLOAT_FRAME as usize];
+    cpu.mem_read(u64::from(sp), &mut bytes[..size as usize])
+        .map_err(|_| FrameError::Stack(sp))?;
+    let word = |at: usize| {
+        u32::from_le_bytes([
+            bytes[4 * at],
+            bytes[4 * at + 1],
+            bytes[4 * at + 2],
+            bytes[4 * at + 3],
+        ])
+    };
+    for (i, register) in CORE.into_iter().enumerate() {
+        set(cpu, register, word(i))?;
+    }
+    if float {
+        for (i, register) in FLOAT.into_iter().enumerate() {
+            let pair = u64::from(word(8 + 2 * i)) | u64::from(word(9 + 2 * i)) << 32;
+            cpu.reg_write(register, pair).map_err(|_| FrameError::Emulator)?;
+        }
+        set(cpu, Reg::FPSCR, word(24))?;
+    }
+    let stacked = word(7);
+    set(cpu, Reg::SP, sp.wrapping_add(size) | (stacked >> 9 & 1) << 2)?;
+    let control = get(cpu, Reg::CONTROL);
+    set(cpu, Reg::CONTROL, control & !4 | u32::from(float) << 2)?;
+    set_xpsr(cpu, stacked & !(1 << 9))?;
+    set(cpu, Reg::PC, word(6) | 1)
+}
+
+/// Registers as a reset leaves them (B1.5.5); the stack pointer and the PC come from the vector table.
+pub(crate) fn reset<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
+    set_xpsr(cpu, 1 << 24)?;
+    for register in [
+        Reg::CONTROL,
+        Reg::PRIMASK,
+        Reg::BASEPRI,
+        Reg::FAULTMASK,
+        Reg::FPSCR,
+    ] {
+        set(cpu, register, 0)?;
+    }
+    let mut vectors = [0; 8];
+    cpu.mem_read(0, &mut vectors).map_err(|_| FrameError::Stack(0))?;
+    let word =
+        |at: usize| u32::from_le_bytes([vectors[at], vectors[at + 1], vectors[at + 2], vectors[at + 3]]);
+    set(cpu, Reg::SP, word(0))?;
+    set(cpu, Reg::LR, 0xffff_ffff)?;
+    set(cpu, Reg::PC, word(4))
+}

@@ -1,0 +1,141 @@
+//! Pin interrupts: EXTI lines 0 to 15 (RM0390 chapter 10) and their port selection in SYSCFG (8.2).
+use super::stop::{Answer, Refusal, only};
+
+/// Interrupt number of each group of lines, and the lines.
+const GROUPS: [(usize, u32); 7] = [
+    (6, 1),
+    (7, 2),
+    (8, 4),
+    (9, 8),
+    (10, 0x10),
+    (23, 0x3e0),
+    (40, 0xfc00),
+];
+
+#[derive(Default)]
+pub(crate) struct Exti {
+    imr: u32,
+    rtsr: u32,
+    ftsr: u32,
+    pr: u32,
+    levels: u32,
+    exticr: [u32; 4],
+}
+
+impl Exti {
+    /// Lines whose pins must be watched, as `(line, port)`.
+    pub fn watched(&self) -> impl Iterator<Item = (u8, usize)> + '_ {
+        let lines = self.imr & (self.rtsr | self.ftsr);
+        (0..16u8).filter(move |l| lines >> l & 1 != 0).map(|l| {
+            (
+                l,
+                (self.exticr[usize::from(l / 4)] >> (4 * (l % 4)) & 0xf) as usize,
+            )
+        })
+    }
+
+    pub fn is_idle(&self) -> bool {
+        self.imr & (self.rtsr | self.ftsr) == 0
+    }
+
+    /// New level of a line's pin.
+    pub fn set_level(&mut self, line: u8, level: bool) {
+        let bit = 1 << line;
+        if (self.levels & bit != 0) != level {
+            self.levels ^= bit;
+            if (if level { self.rtsr } else { self.ftsr }) & bit != 0 {
+                self.pr |= bit;
+            }
+        }
+    }
+
+    /// Interrupt requests as `(interrupt, level)`.
+    pub fn requests(&self) -> impl Iterator<Item = (usize, bool)> {
+        let raised = self.pr & self.imr;
+        GROUPS.iter().map(move |(irq, lines)| (*irq, raised & lines != 0))
+    }
+
+    pub fn read(&self, offset: u32) -> Answer<u32> {
+        Ok(match offset {
+            0x00 => self.imr,
+            0x04 => 0,
+            0x08 => self.rtsr,
+            0x0c => self.ftsr,
+            0x10 => 0,
+            0x14 => self.pr,
+            _ => return Err(Refusal::Offset),
+        })
+    }
+
+    pub fn write(&mut self, offset: u32, value: u32) -> Answer<()> {
+        only(value, 0xffff, "EXTI lines above 15")?;
+        match offset {
+            0x00 => self.imr = value,
+            0x04 => only(value, 0, "EXTI_EMR")?,
+            0x08 => self.rtsr = value,
+            0x0c => self.ftsr = value,
+            0x10 => self.pr |= value & self.imr,
+            0x14 => self.pr &= !value,
+            _ => return Err(Refusal::Offset),
+        }
+        Ok(())
+    }
+
+    pub fn reset_syscfg(&mut self) {
+        self.exticr = [0; 4];
+    }
+
+    pub fn read_syscfg(&self, offset: u32) -> Answer<u32> {
+        match offset {
+            0x00 | 0x04 => Ok(0),
+            0x08..=0x14 => Ok(self.exticr[(offset as usize - 8) / 4]),
+            _ => Err(Refusal::Offset),
+        }
+    }
+
+    pub fn write_syscfg(&mut self, offset: u32, value: u32) -> Answer<()> {
+        match offset {
+            0x00 => only(value, 0, "SYSCFG_MEMRMP"),
+            0x08..=0x14 => {
+                only(value, 0x7777, "SYSCFG_EXTICR port")?;
+                self.exticr[(offset as usize - 8) / 4] = value;
+                Ok(())
+            }
+            _ => Err(Refusal::Offset),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_falling_edge_pends_until_written_one() {
+        let mut exti = Exti::default();
+        exti.write(0x00, 1 << 5).unwrap();
+        exti.write(0x0c, 1 << 5).unwrap();
+        exti.set_level(5, true);
+        assert!(
+            exti.requests().all(|(_, level)| !level),
+            "a rising edge is not selected"
+        );
+        exti.set_level(5, false);
+        assert_eq!(
+            exti.requests().filter(|r| r.1).map(|r| r.0).collect::<Vec<_>>(),
+            [23],
+            "EXTI9_5"
+        );
+        exti.write(0x14, 1 << 5).unwrap();
+        assert!(exti.requests().all(|(_, level)| !level));
+    }
+
+    #[test]
+    fn exticr_selects_the_port() {
+        let mut exti = Exti::default();
+        exti.write(0x00, 1 << 13).unwrap();
+        exti.write(0x08, 1 << 13).unwrap();
+        exti.write_syscfg(0x14, 2 << 4).unwrap();
+        assert_eq!(exti.watched().collect::<Vec<_>>(), [(13, 2)]);
+    }
+}

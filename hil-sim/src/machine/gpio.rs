@@ -1,0 +1,154 @@
+//! General-purpose I/O ports A to H (RM0390 chapter 7).
+use super::stop::{Answer, Refusal, only};
+
+/// Ports of the chip.
+pub(crate) const PORTS: usize = 8;
+
+/// One port of 16 pins.
+pub(crate) struct Port {
+    moder: u32,
+    otyper: u32,
+    ospeedr: u32,
+    pupdr: u32,
+    odr: u32,
+    afr: [u32; 2],
+}
+
+/// What a pin is switched to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Mode {
+    Input,
+    Output,
+    Alternate(u8),
+    Analog,
+}
+
+impl Port {
+    /// Port 0 is A. Reset values: 7.4.1 to 7.4.4; the debug pins start as alternate functions.
+    pub fn new(port: usize) -> Self {
+        let (moder, ospeedr, pupdr) = match port {
+            0 => (0xa800_0000, 0x0c00_0000, 0x6400_0000),
+            1 => (0x0000_0280, 0x0000_00c0, 0x0000_0100),
+            _ => (0, 0, 0),
+        };
+        Self {
+            moder,
+            otyper: 0,
+            ospeedr,
+            pupdr,
+            odr: 0,
+            afr: [0; 2],
+        }
+    }
+
+    pub fn mode(&self, bit: u8) -> Mode {
+        match self.moder >> (2 * bit) & 3 {
+            0 => Mode::Input,
+            1 => Mode::Output,
+            2 => Mode::Alternate((self.afr[usize::from(bit / 8)] >> (4 * (bit % 8)) & 0xf) as u8),
+            _ => Mode::Analog,
+        }
+    }
+
+    /// Level that the pin drives as a general-purpose output; `None` when it is none, or open-drain and high.
+    pub fn output(&self, bit: u8) -> Option<bool> {
+        let high = self.odr >> bit & 1 != 0;
+        let floats = high && self.otyper >> bit & 1 != 0;
+        (self.mode(bit) == Mode::Output && !floats).then_some(high)
+    }
+
+    /// Bits driven as general-purpose outputs, and their levels; for cheap comparison.
+    pub fn outputs(&self) -> (u32, u32) {
+        let driven = (0..16)
+            .filter(|b| self.output(*b).is_some())
+            .map(|b| 1 << b)
+            .sum();
+        (driven, self.odr & driven)
+    }
+
+    /// Input level of a pin that the outside drives to `external`. A floating pin reads low.
+    pub fn level(&self, bit: u8, external: Option<bool>) -> bool {
+        let pulled_up = self.pupdr >> (2 * bit) & 3 == 1;
+        self.output(bit).or(external).unwrap_or(pulled_up) && self.mode(bit) != Mode::Analog
+    }
+
+    /// Reads a register; `external` answers for the pins.
+    pub fn read(&self, offset: u32, external: impl Fn(u8) -> Option<bool>) -> Answer<u32> {
+        Ok(match offset {
+            0x00 => self.moder,
+            0x04 => self.otyper,
+            0x08 => self.ospeedr,
+            0x0c => self.pupdr,
+            0x10 => (0..16)
+                .filter(|b| self.level(*b, external(*b)))
+                .map(|b| 1 << b)
+                .sum(),
+            0x14 => self.odr,
+            0x18 => 0,
+            0x20 | 0x24 => self.afr[(offset as usize - 0x20) / 4],
+            _ => return Err(Refusal::Offset),
+        })
+    }
+
+    pub fn write(&mut self, offset: u32, value: u32) -> Answer<()> {
+        match offset {
+            0x00 => self.moder = value,
+            0x04 => {
+                only(value, 0xffff, "GPIO_OTYPER reserved bits")?;
+                self.otyper = value;
+            }
+            0x08 => self.ospeedr = value,
+            0x0c => self.pupdr = value,
+            0x14 => {
+                only(value, 0xffff, "GPIO_ODR reserved bits")?;
+                self.odr = value;
+            }
+            0x18 => self.odr = self.odr & !(value >> 16) | value & 0xffff, // a set wins over a reset (7.4.7)
+            0x20 | 0x24 => self.afr[(offset as usize - 0x20) / 4] = value,
+            _ => return Err(Refusal::Offset),
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn set_wins_over_reset_in_one_write() {
+        let mut port = Port::new(2);
+        port.write(0x00, 0b01).unwrap();
+        port.write(0x18, 1 << 16 | 1).unwrap();
+        assert_eq!(port.output(0), Some(true));
+        port.write(0x18, 1 << 16).unwrap();
+        assert_eq!(port.output(0), Some(false));
+    }
+
+    #[test]
+    fn open_drain_lets_go_when_high() {
+        let mut port = Port::new(2);
+        port.write(0x00, 0b01).unwrap();
+        port.write(0x04, 1).unwrap();
+        port.write(0x14, 1).unwrap();
+        assert_eq!(port.output(0), None);
+        assert_eq!(
+            port.read(0x10, |_| Some(false)).unwrap() & 1,
+            0,
+            "the outside pulls it low"
+        );
+    }
+
+    #[test]
+    fn an_undriven_input_follows_its_pull_up() {
+        let mut port = Port::new(2);
+        assert_eq!(port.read(0x10, |_| None).unwrap(), 0);
+        port.write(0x0c, 0b01 << 10).unwrap();
+        assert_eq!(port.read(0x10, |_| None).unwrap(), 1 << 5);
+        assert_eq!(
+            port.read(0x10, |_| Some(false)).unwrap(),
+            0,
+            "a driver is stronger"
+        );
+    }
+}

@@ -1,0 +1,125 @@
+//! Independent watchdog (RM0390 chapter 19), clocked by the LSI at its nominal 32 kHz.
+use super::rcc::LSI_HZ;
+use super::stop::{Answer, Refusal, only};
+
+const KEY_UNLOCK: u32 = 0x5555;
+const KEY_RELOAD: u32 = 0xaaaa;
+const KEY_START: u32 = 0xcccc;
+/// A new prescaler or reload value takes up to five LSI cycles to arrive (19.4.4).
+const UPDATE_LSI_CYCLES: u64 = 5;
+
+pub(crate) struct Iwdg {
+    unlocked: bool,
+    running: bool,
+    prescaler: u32,
+    reload: u32,
+    updating_until: [u64; 2],
+    /// Cycle at which the counter reaches zero.
+    pub due: u64,
+}
+
+impl Iwdg {
+    pub fn new() -> Self {
+        Self {
+            unlocked: false,
+            running: false,
+            prescaler: 0,
+            reload: 0xfff,
+            updating_until: [0; 2],
+            due: u64::MAX,
+        }
+    }
+
+    /// Time-out in LSI cycles: (RL + 1) * 4 * 2^PR (19.3, table 107).
+    fn timeout_lsi(&self) -> u64 {
+        u64::from(self.reload + 1) << (2 + self.prescaler.min(6))
+    }
+
+    fn cycles(lsi: u64, hclk_hz: u32) -> u64 {
+        (u128::from(lsi) * u128::from(hclk_hz)).div_ceil(u128::from(LSI_HZ)) as u64
+    }
+
+    /// Keeps the remaining time when the CPU clock, the unit of `due`, changes.
+    pub fn rescale(&mut self, now: u64, old_hz: u32, new_hz: u32) {
+        if self.running {
+            let left = self.due.saturating_sub(now);
+            self.due = now + (u128::from(left) * u128::from(new_hz) / u128::from(old_hz)) as u64;
+        }
+    }
+
+    pub fn read(&self, offset: u32, now: u64) -> Answer<u32> {
+        match offset {
+            0x00 => Ok(0),
+            0x04 => Ok(self.prescaler),
+            0x08 => Ok(self.reload),
+            0x0c => {
+                Ok(u32::from(now < self.updating_until[0]) | u32::from(now < self.updating_until[1]) << 1)
+            }
+            _ => Err(Refusal::Offset),
+        }
+    }
+
+    pub fn write(&mut self, offset: u32, value: u32, now: u64, hclk_hz: u32) -> Answer<()> {
+        match (offset, value) {
+            (0x00, KEY_UNLOCK) => self.unlocked = true,
+            (0x00, KEY_RELOAD | KEY_START) => {
+                self.unlocked = false;
+                self.running |= value == KEY_START;
+                if self.running {
+                    self.due = now + Self::cycles(self.timeout_lsi(), hclk_hz);
+                }
+            }
+            (0x00, _) => self.unlocked = false,
+            (0x04 | 0x08, _) if !self.unlocked => {} // write-protected: ignored (19.3.2)
+            (0x04, _) => {
+                only(value, 7, "IWDG_PR reserved bits")?;
+                self.prescaler = value;
+                self.updating_until[0] = now + Self::cycles(UPDATE_LSI_CYCLES, hclk_hz);
+            }
+            (0x08, _) => {
+                only(value, 0xfff, "IWDG_RLR reserved bits")?;
+                self.reload = value;
+                self.updating_until[1] = now + Self::cycles(UPDATE_LSI_CYCLES, hclk_hz);
+            }
+            _ => return Err(Refusal::Offset),
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    const HCLK: u32 = 180_000_000;
+
+    #[test]
+    fn longest_timeout_is_that_of_the_manual() {
+        let mut iwdg = Iwdg::new();
+        iwdg.write(0, KEY_UNLOCK, 0, HCLK).unwrap();
+        iwdg.write(4, 6, 0, HCLK).unwrap();
+        iwdg.write(0, KEY_START, 0, HCLK).unwrap();
+        assert_eq!(
+            iwdg.due,
+            32_768 * u64::from(HCLK) / 1000,
+            "table 107: 32768 ms for PR = 6, RL = 0xfff"
+        );
+    }
+
+    #[test]
+    fn registers_need_the_key_and_reload_restarts() {
+        let mut iwdg = Iwdg::new();
+        iwdg.write(8, 31, 0, HCLK).unwrap();
+        assert_eq!(iwdg.read(8, 0).unwrap(), 0xfff, "locked");
+        iwdg.write(0, KEY_UNLOCK, 0, HCLK).unwrap();
+        iwdg.write(8, 31, 0, HCLK).unwrap();
+        assert_eq!(iwdg.read(0xc, 1).unwrap(), 2, "RVU");
+        iwdg.write(0, KEY_RELOAD, 0, HCLK).unwrap();
+        assert_eq!(iwdg.due, u64::MAX, "not started");
+        iwdg.write(0, KEY_START, 0, HCLK).unwrap();
+        assert_eq!(iwdg.due, 720_000, "32 * 4 / 32 kHz = 4 ms");
+        iwdg.write(0, KEY_RELOAD, 500_000, HCLK).unwrap();
+        assert_eq!(iwdg.due, 1_220_000);
+        iwdg.rescale(500_000, HCLK, 16_000_000);
+        assert_eq!(iwdg.due, 564_000, "4 ms at 16 MHz");
+    }
+}

@@ -1,0 +1,316 @@
+//! Names of registers for messages: address to `PERIPHERAL_REGISTER` (RM0390 table 1 and the register maps).
+
+const TIM: &[(u32, &str)] = &[
+    (0x00, "CR1"),
+    (0x04, "CR2"),
+    (0x08, "SMCR"),
+    (0x0c, "DIER"),
+    (0x10, "SR"),
+    (0x14, "EGR"),
+    (0x18, "CCMR1"),
+    (0x1c, "CCMR2"),
+    (0x20, "CCER"),
+    (0x24, "CNT"),
+    (0x28, "PSC"),
+    (0x2c, "ARR"),
+    (0x30, "RCR"),
+    (0x34, "CCR1"),
+    (0x38, "CCR2"),
+    (0x3c, "CCR3"),
+    (0x40, "CCR4"),
+    (0x44, "BDTR"),
+    (0x48, "DCR"),
+    (0x4c, "DMAR"),
+    (0x50, "OR"),
+];
+const USART: &[(u32, &str)] = &[
+    (0x00, "SR"),
+    (0x04, "DR"),
+    (0x08, "BRR"),
+    (0x0c, "CR1"),
+    (0x10, "CR2"),
+    (0x14, "CR3"),
+    (0x18, "GTPR"),
+];
+const ADC: &[(u32, &str)] = &[
+    (0x00, "SR"),
+    (0x04, "CR1"),
+    (0x08, "CR2"),
+    (0x0c, "SMPR1"),
+    (0x10, "SMPR2"),
+    (0x14, "JOFR1"),
+    (0x18, "JOFR2"),
+    (0x1c, "JOFR3"),
+    (0x20, "JOFR4"),
+    (0x24, "HTR"),
+    (0x28, "LTR"),
+    (0x2c, "SQR1"),
+    (0x30, "SQR2"),
+    (0x34, "SQR3"),
+    (0x38, "JSQR"),
+    (0x3c, "JDR1"),
+    (0x4c, "DR"),
+    (0x300, "CSR"),
+    (0x304, "CCR"),
+    (0x308, "CDR"),
+];
+const GPIO: &[(u32, &str)] = &[
+    (0x00, "MODER"),
+    (0x04, "OTYPER"),
+    (0x08, "OSPEEDR"),
+    (0x0c, "PUPDR"),
+    (0x10, "IDR"),
+    (0x14, "ODR"),
+    (0x18, "BSRR"),
+    (0x1c, "LCKR"),
+    (0x20, "AFRL"),
+    (0x24, "AFRH"),
+];
+const RCC: &[(u32, &str)] = &[
+    (0x00, "CR"),
+    (0x04, "PLLCFGR"),
+    (0x08, "CFGR"),
+    (0x0c, "CIR"),
+    (0x10, "AHB1RSTR"),
+    (0x14, "AHB2RSTR"),
+    (0x18, "AHB3RSTR"),
+    (0x20, "APB1RSTR"),
+    (0x24, "APB2RSTR"),
+    (0x30, "AHB1ENR"),
+    (0x34, "AHB2ENR"),
+    (0x38, "AHB3ENR"),
+    (0x40, "APB1ENR"),
+    (0x44, "APB2ENR"),
+    (0x50, "AHB1LPENR"),
+    (0x54, "AHB2LPENR"),
+    (0x58, "AHB3LPENR"),
+    (0x60, "APB1LPENR"),
+    (0x64, "APB2LPENR"),
+    (0x70, "BDCR"),
+    (0x74, "CSR"),
+    (0x80, "SSCGR"),
+    (0x84, "PLLI2SCFGR"),
+    (0x88, "PLLSAICFGR"),
+    (0x8c, "DCKCFGR"),
+    (0x90, "CKGATENR"),
+    (0x94, "DCKCFGR2"),
+];
+const FLASH: &[(u32, &str)] = &[
+    (0x00, "ACR"),
+    (0x04, "KEYR"),
+    (0x08, "OPTKEYR"),
+    (0x0c, "SR"),
+    (0x10, "CR"),
+    (0x14, "OPTCR"),
+];
+const PWR: &[(u32, &str)] = &[(0x00, "CR"), (0x04, "CSR")];
+const EXTI: &[(u32, &str)] = &[
+    (0x00, "IMR"),
+    (0x04, "EMR"),
+    (0x08, "RTSR"),
+    (0x0c, "FTSR"),
+    (0x10, "SWIER"),
+    (0x14, "PR"),
+];
+const SYSCFG: &[(u32, &str)] = &[
+    (0x00, "MEMRMP"),
+    (0x04, "PMC"),
+    (0x08, "EXTICR1"),
+    (0x0c, "EXTICR2"),
+    (0x10, "EXTICR3"),
+    (0x14, "EXTICR4"),
+    (0x20, "CMPCR"),
+    (0x2c, "CFGR"),
+];
+const IWDG: &[(u32, &str)] = &[(0x00, "KR"), (0x04, "PR"), (0x08, "RLR"), (0x0c, "SR")];
+const NONE: &[(u32, &str)] = &[];
+
+/// First address, name and registers of every peripheral of the STM32F446, ascending. The next entry's address
+/// bounds a peripheral; an empty name marks a reserved range.
+const MAP: &[(u32, &str, &[(u32, &str)])] = &[
+    (0x4000_0000, "TIM2", TIM),
+    (0x4000_0400, "TIM3", TIM),
+    (0x4000_0800, "TIM4", TIM),
+    (0x4000_0c00, "TIM5", TIM),
+    (0x4000_1000, "TIM6", TIM),
+    (0x4000_1400, "TIM7", TIM),
+    (0x4000_1800, "TIM12", TIM),
+    (0x4000_1c00, "TIM13", TIM),
+    (0x4000_2000, "TIM14", TIM),
+    (0x4000_2400, "", NONE),
+    (0x4000_2800, "RTC", NONE),
+    (0x4000_2c00, "WWDG", NONE),
+    (0x4000_3000, "IWDG", IWDG),
+    (0x4000_3400, "", NONE),
+    (0x4000_3800, "SPI2", NONE),
+    (0x4000_3c00, "SPI3", NONE),
+    (0x4000_4000, "SPDIFRX", NONE),
+    (0x4000_4400, "USART2", USART),
+    (0x4000_4800, "USART3", USART),
+    (0x4000_4c00, "UART4", USART),
+    (0x4000_5000, "UART5", USART),
+    (0x4000_5400, "I2C1", NONE),
+    (0x4000_5800, "I2C2", NONE),
+    (0x4000_5c00, "I2C3", NONE),
+    (0x4000_6000, "FMPI2C1", NONE),
+    (0x4000_6400, "CAN1", NONE),
+    (0x4000_6800, "CAN2", NONE),
+    (0x4000_6c00, "HDMI_CEC", NONE),
+    (0x4000_7000, "PWR", PWR),
+    (0x4000_7400, "DAC", NONE),
+    (0x4000_7800, "", NONE),
+    (0x4001_0000, "TIM1", TIM),
+    (0x4001_0400, "TIM8", TIM),
+    (0x4001_0800, "", NONE),
+    (0x4001_1000, "USART1", USART),
+    (0x4001_1400, "USART6", USART),
+    (0x4001_1800, "", NONE),
+    (0x4001_2000, "ADC1", ADC),
+    (0x4001_2100, "ADC2", ADC),
+    (0x4001_2200, "ADC3", ADC),
+    (
+        0x4001_2300,
+        "ADC_COMMON",
+        &[(0x00, "CSR"), (0x04, "CCR"), (0x08, "CDR")],
+    ),
+    (0x4001_2400, "", NONE),
+    (0x4001_2c00, "SDIO", NONE),
+    (0x4001_3000, "SPI1", NONE),
+    (0x4001_3400, "SPI4", NONE),
+    (0x4001_3800, "SYSCFG", SYSCFG),
+    (0x4001_3c00, "EXTI", EXTI),
+    (0x4001_4000, "TIM9", TIM),
+    (0x4001_4400, "TIM10", TIM),
+    (0x4001_4800, "TIM11", TIM),
+    (0x4001_4c00, "", NONE),
+    (0x4001_5800, "SAI1", NONE),
+    (0x4001_5c00, "SAI2", NONE),
+    (0x4001_6000, "", NONE),
+    (0x4002_0000, "GPIOA", GPIO),
+    (0x4002_0400, "GPIOB", GPIO),
+    (0x4002_0800, "GPIOC", GPIO),
+    (0x4002_0c00, "GPIOD", GPIO),
+    (0x4002_1000, "GPIOE", GPIO),
+    (0x4002_1400, "GPIOF", GPIO),
+    (0x4002_1800, "GPIOG", GPIO),
+    (0x4002_1c00, "GPIOH", GPIO),
+    (0x4002_2000, "", NONE),
+    (0x4002_3000, "CRC", NONE),
+    (0x4002_3400, "", NONE),
+    (0x4002_3800, "RCC", RCC),
+    (0x4002_3c00, "FLASH", FLASH),
+    (0x4002_4000, "BKPSRAM", NONE),
+    (0x4002_5000, "", NONE),
+    (0x4002_6000, "DMA1", NONE),
+    (0x4002_6400, "DMA2", NONE),
+    (0x4002_6800, "", NONE),
+    (0x4004_0000, "OTG_HS", NONE),
+    (0x4008_0000, "", NONE),
+    (0x5000_0000, "OTG_FS", NONE),
+    (0x5004_0000, "", NONE),
+    (0x5005_0000, "DCMI", NONE),
+    (0x5005_0400, "", NONE),
+    (0xe000_0000, "ITM", NONE),
+    (
+        0xe000_1000,
+        "DWT",
+        &[(0x00, "CTRL"), (0x04, "CYCCNT"), (0x20, "COMP0"), (0xfb0, "LAR")],
+    ),
+    (0xe000_2000, "FPB", NONE),
+    (0xe000_3000, "", NONE),
+    (
+        0xe000_e000,
+        "SCS",
+        &[
+            (0x04, "ICTR"),
+            (0x08, "ACTLR"),
+            (0x10, "SYST_CSR"),
+            (0x14, "SYST_RVR"),
+            (0x18, "SYST_CVR"),
+            (0x1c, "SYST_CALIB"),
+            (0xd00, "CPUID"),
+            (0xd04, "ICSR"),
+            (0xd08, "VTOR"),
+            (0xd0c, "AIRCR"),
+            (0xd10, "SCR"),
+            (0xd14, "CCR"),
+            (0xd24, "SHCSR"),
+            (0xd28, "CFSR"),
+            (0xd2c, "HFSR"),
+            (0xd88, "CPACR"),
+            (0xd94, "MPU_CTRL"),
+            (0xd98, "MPU_RNR"),
+            (0xd9c, "MPU_RBAR"),
+            (0xda0, "MPU_RASR"),
+            (0xdf0, "DHCSR"),
+            (0xdfc, "DEMCR"),
+            (0xf00, "STIR"),
+            (0xf34, "FPCCR"),
+            (0xf38, "FPCAR"),
+            (0xf3c, "FPDSCR"),
+        ],
+    ),
+    (0xe000_f000, "", NONE),
+    (0xe004_0000, "TPIU", NONE),
+    (0xe004_1000, "ETM", NONE),
+    (
+        0xe004_2000,
+        "DBGMCU",
+        &[
+            (0x00, "IDCODE"),
+            (0x04, "CR"),
+            (0x08, "APB1_FZ"),
+            (0x0c, "APB2_FZ"),
+        ],
+    ),
+    (0xe004_3000, "", NONE),
+];
+const DMA_GLOBAL: [&str; 4] = ["LISR", "HISR", "LIFCR", "HIFCR"];
+const DMA_STREAM: [&str; 6] = ["CR", "NDTR", "PAR", "M0AR", "M1AR", "FCR"];
+
+fn entry(address: u32) -> Option<(u32, &'static str, &'static [(u32, &'static str)])> {
+    let after = MAP.partition_point(|(base, ..)| *base <= address);
+    MAP.get(after.checked_sub(1)?).copied()
+}
+
+/// Name of the peripheral at an address; `None` in reserved ranges, where silicon answers with a bus error.
+pub(crate) fn peripheral(address: u32) -> Option<&'static str> {
+    entry(address).map(|e| e.1).filter(|name| !name.is_empty())
+}
+
+/// Name of the register at an address.
+pub(crate) fn register(address: u32) -> String {
+    let Some((base, name, registers)) = entry(address).filter(|e| !e.1.is_empty()) else {
+        return format!("{address:#010x}");
+    };
+    let offset = address - base & !3;
+    if name.starts_with("DMA") {
+        let stream = (offset.wrapping_sub(0x10) / 0x18) as usize;
+        return match DMA_GLOBAL.get(offset as usize / 4) {
+            Some(register) => format!("{name}_{register}"),
+            None if stream < 8 => format!(
+                "{name}_S{stream}{}",
+                DMA_STREAM[(offset as usize - 0x10) % 0x18 / 4]
+            ),
+            None => format!("{name}+{offset:#x}"),
+        };
+    }
+    match registers.iter().find(|(at, _)| *at == offset) {
+        Some((_, register)) => format!("{name}_{register}"),
+        None => format!("{name}+{offset:#x}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_map_ascends_and_names_registers() {
+        assert!(MAP.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        assert_eq!(register(0x4001_2304), "ADC_COMMON_CCR");
+        assert_eq!(register(0x4002_64b8), "DMA2_S7CR");
+        assert_eq!(register(0x4001_300c), "SPI1+0xc");
+        assert_eq!(peripheral(0x4002_2800), None);
+    }
+}

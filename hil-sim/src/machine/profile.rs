@@ -1,0 +1,125 @@
+//! Where instructions and cycles go, by exception.
+use super::nvic::{self, EXCEPTIONS};
+
+/// Figures of one exception handler over the whole run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InterruptStats {
+    /// Name in the reference manual's vector table.
+    pub name: &'static str,
+    /// Times entered.
+    pub count: u64,
+    /// Instructions of one activation, those of handlers that preempted it excluded.
+    pub instructions_mean: f64,
+    /// Most instructions of one activation.
+    pub instructions_max: u64,
+    /// Estimated cycles of one activation with its entry and return, preemption excluded.
+    pub cycles_mean: f64,
+    /// Most cycles of one activation.
+    pub cycles_max: u64,
+    /// Longest time in cycles from request to first instruction (to the block, so a few cycles coarse).
+    pub latency_max: u64,
+}
+
+/// Figures of a whole run since power-up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stats {
+    /// Instructions executed, exact to the block that runs when the figures are taken.
+    pub instructions: u64,
+    /// CPU cycles passed, sleep included.
+    pub cycles: u64,
+    /// Exceptions entered.
+    pub exceptions: u64,
+    /// Share of the cycles spent asleep, 0 to 1.
+    pub sleep_share: f64,
+    /// Every exception that was entered at least once, by number.
+    pub interrupts: Vec<InterruptStats>,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct Total {
+    count: u64,
+    instructions: u64,
+    instructions_max: u64,
+    cycles: u64,
+    cycles_max: u64,
+    latency_max: u64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Open {
+    exception: usize,
+    instructions: u64,
+    cycles: u64,
+}
+
+/// Running account.
+pub(crate) struct Profile {
+    totals: Vec<Total>,
+    open: Vec<Open>,
+    mark: (u64, u64),
+}
+
+impl Profile {
+    pub fn new() -> Self {
+        Self {
+            totals: vec![Total::default(); EXCEPTIONS],
+            open: Vec::with_capacity(16),
+            mark: (0, 0),
+        }
+    }
+
+    /// Charges what ran since the last switch to the activation on top.
+    fn charge(&mut self, instructions: u64, cycles: u64) {
+        if let Some(top) = self.open.last_mut() {
+            top.instructions += instructions - self.mark.0;
+            top.cycles += cycles - self.mark.1;
+        }
+        self.mark = (instructions, cycles);
+    }
+
+    pub fn enter(&mut self, exception: usize, latency: u64, instructions: u64, cycles: u64) {
+        self.charge(instructions, cycles);
+        self.open.push(Open {
+            exception,
+            instructions: 0,
+            cycles: 0,
+        });
+        let total = &mut self.totals[exception];
+        total.latency_max = total.latency_max.max(latency);
+    }
+
+    pub fn leave(&mut self, instructions: u64, cycles: u64) {
+        self.charge(instructions, cycles);
+        if let Some(done) = self.open.pop() {
+            let total = &mut self.totals[done.exception];
+            total.count += 1;
+            total.instructions += done.instructions;
+            total.instructions_max = total.instructions_max.max(done.instructions);
+            total.cycles += done.cycles;
+            total.cycles_max = total.cycles_max.max(done.cycles);
+        }
+    }
+
+    /// A reset ends every activation.
+    pub fn abandon(&mut self) {
+        self.open.clear();
+    }
+
+    pub fn interrupts(&self) -> Vec<InterruptStats> {
+        let mean = |sum: u64, count: u64| sum as f64 / count as f64;
+        self.totals
+            .iter()
+            .enumerate()
+            .filter(|(_, t)| t.count > 0)
+            .map(|(n, t)| InterruptStats {
+                name: nvic::name(n),
+                count: t.count,
+                instructions_mean: mean(t.instructions, t.count),
+                instructions_max: t.instructions_max,
+                cycles_mean: mean(t.cycles, t.count),
+                cycles_max: t.cycles_max,
+                latency_max: t.latency_max,
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,495 @@
+//! Reset and clock control (RM0390 chapter 6), the voltage regulator (5.4) and the flash interface (3.8):
+//! oscillators, PLL, bus prescalers, peripheral clock enables and resets, reset flags.
+use super::stop::{Answer, Refusal, only};
+
+/// High-speed internal oscillator.
+pub const HSI_HZ: u32 = 16_000_000;
+/// Clock that the NUCLEO board's probe feeds into OSC_IN.
+pub const HSE_HZ: u32 = 8_000_000;
+/// Low-speed internal oscillator, nominal.
+pub const LSI_HZ: u32 = 32_000;
+
+/// Start-up times in microseconds, of the order the data sheet (DS10693 section 6.3) gives as typical.
+const HSI_START_US: u64 = 2;
+const HSE_START_US: u64 = 10; // an external clock, not a crystal
+const PLL_LOCK_US: u64 = 100;
+const LSI_START_US: u64 = 20;
+const OVER_DRIVE_US: u64 = 45;
+
+/// Frequencies in Hz as the RCC registers set them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Clocks {
+    /// System clock before the AHB prescaler.
+    pub sysclk_hz: u32,
+    /// CPU, AHB and DMA clock; the machine's unit of time is one period of it.
+    pub hclk_hz: u32,
+    /// APB1 clock (USART2, TIM2 to TIM7 registers).
+    pub pclk1_hz: u32,
+    /// APB2 clock (ADC, TIM1 registers).
+    pub pclk2_hz: u32,
+    /// Counting clock of the timers on APB1.
+    pub timclk1_hz: u32,
+    /// Counting clock of the timers on APB2.
+    pub timclk2_hz: u32,
+}
+
+/// What reset the chip last (RCC_CSR).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ResetCause {
+    /// Supply came up.
+    PowerOn,
+    /// SYSRESETREQ written to AIRCR.
+    Software,
+    /// The independent watchdog ran out.
+    IndependentWatchdog,
+}
+
+impl ResetCause {
+    /// RCC_CSR flags (6.3.21). Every internal reset also pulls NRST low, hence PINRSTF in all of them.
+    fn flags(self) -> u32 {
+        match self {
+            ResetCause::PowerOn => 0x0e00_0000,
+            ResetCause::Software => 0x1400_0000,
+            ResetCause::IndependentWatchdog => 0x2400_0000,
+        }
+    }
+}
+
+/// Bus enable register of a peripheral, by its place in [`ENR_NAMES`]; no modelled one is on AHB2 or AHB3.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Enr {
+    Ahb1,
+    Apb1 = 3,
+    Apb2 = 4,
+}
+
+const ENR_NAMES: [&str; 5] = [
+    "RCC_AHB1ENR",
+    "RCC_AHB2ENR",
+    "RCC_AHB3ENR",
+    "RCC_APB1ENR",
+    "RCC_APB2ENR",
+];
+
+pub(crate) struct Rcc {
+    cr: u32,
+    pllcfgr: u32,
+    cfgr: u32,
+    enr: [u32; 5],
+    rstr: [u32; 5],
+    lpenr: [u32; 5],
+    csr: u32,
+    dckcfgr: u32,
+    /// Cycle from which HSI, HSE, PLL, LSI are ready.
+    ready_at: [u64; 4],
+    /// PWR
+    pwr_cr: u32,
+    over_drive_at: [u64; 2],
+    /// FLASH
+    acr: u32,
+    clocks: Clocks,
+}
+
+const HSI: usize = 0;
+const HSE: usize = 1;
+const PLL: usize = 2;
+const LSI: usize = 3;
+
+impl Rcc {
+    pub fn new(cause: ResetCause, old_flags: u32) -> Self {
+        let hsi = HSI_HZ;
+        Self {
+            cr: 0x81,
+            pllcfgr: 0x2400_3010,
+            cfgr: 0,
+            enr: [0x0010_0000, 0, 0, 0, 0],
+            rstr: [0; 5],
+            lpenr: [0x7e67_91ff, 0xf1, 0x01, 0x36fe_c9ff, 0x0007_5f33],
+            csr: cause.flags() | old_flags & 0xfe00_0000,
+            dckcfgr: 0,
+            ready_at: [0; 4],
+            pwr_cr: 0xc000,
+            over_drive_at: [u64::MAX; 2],
+            acr: 0,
+            clocks: Clocks {
+                sysclk_hz: hsi,
+                hclk_hz: hsi,
+                pclk1_hz: hsi,
+                pclk2_hz: hsi,
+                timclk1_hz: hsi,
+                timclk2_hz: hsi,
+            },
+        }
+    }
+
+    pub fn clocks(&self) -> Clocks {
+        self.clocks
+    }
+
+    /// Reset flags, which survive resets until RMVF clears them.
+    pub fn flags(&self) -> u32 {
+        self.csr & 0xfe00_0000
+    }
+
+    /// Whether a peripheral's clock runs; else the refusal that names the enable bit.
+    #[inline]
+    pub fn check_clock(&self, enr: Enr, bit: u8) -> Answer<()> {
+        if self.enr[enr as usize] >> bit & 1 != 0 {
+            Ok(())
+        } else {
+            Err(Refusal::ClockOff(ENR_NAMES[enr as usize], bit))
+        }
+    }
+
+    /// Whether a reset bit is held.
+    pub fn in_reset(&self, enr: Enr, bit: u8) -> bool {
+        self.rstr[enr as usize] >> bit & 1 != 0
+    }
+
+    fn after(&self, now: u64, us: u64) -> u64 {
+        now + us * u64::from(self.clocks.hclk_hz) / 1_000_000
+    }
+
+    fn is_ready(&self, source: usize, now: u64) -> bool {
+        let on = match source {
+            HSI => self.cr & 1,
+            HSE => self.cr >> 16 & 1,
+            PLL => self.cr >> 24 & 1,
+            _ => self.csr & 1,
+        };
+        on != 0 && now >= self.ready_at[source]
+    }
+
+    pub fn read(&self, offset: u32, now: u64) -> Answer<u32> {
+        let ready = |source: usize| u32::from(self.is_ready(source, now));
+        Ok(match offset {
+            0x00 => self.cr | ready(HSI) << 1 | ready(HSE) << 17 | ready(PLL) << 25,
+            0x04 => self.pllcfgr,
+            0x08 => self.cfgr | (self.cfgr & 3) << 2,
+            0x0c => 0, // no clock interrupt is modelled, so none is enabled or pending
+            0x10 | 0x14 | 0x18 => self.rstr[(offset / 4 - 4) as usize],
+            0x20 | 0x24 => self.rstr[(offset / 4 - 5) as usize],
+            0x30 | 0x34 | 0x38 => self.enr[(offset / 4 - 12) as usize],
+            0x40 | 0x44 => self.enr[(offset / 4 - 13) as usize],
+            0x50 | 0x54 | 0x58 => self.lpenr[(offset / 4 - 20) as usize],
+            0x60 | 0x64 => self.lpenr[(offset / 4 - 21) as usize],
+            0x74 => self.csr | ready(LSI) << 1,
+            0x8c => self.dckcfgr,
+            _ => return Err(Refusal::Offset),
+        })
+    }
+
+    /// Writes a register. `Ok(true)`: the clock tree changed.
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<bool> {
+        match offset {
+            0x00 => {
+                only(value, 0x0307_ffff, "RCC_CR.PLLI2SON, PLLSAION or CSSON")?;
+                self.write_cr(value, now)?;
+            }
+            0x04 => {
+                if self.cr >> 24 & 1 != 0 {
+                    return Err(Refusal::NotModelled("RCC_PLLCFGR while the PLL is on"));
+                }
+                self.pllcfgr = value;
+            }
+            0x08 => return self.write_cfgr(value, now).map(|()| true),
+            0x0c => only(value, 0x00ff_0000, "RCC_CIR interrupt enables")?,
+            0x10 | 0x14 | 0x18 => self.rstr[(offset / 4 - 4) as usize] = value,
+            0x20 | 0x24 => self.rstr[(offset / 4 - 5) as usize] = value,
+            0x30 | 0x34 | 0x38 => self.enr[(offset / 4 - 12) as usize] = value,
+            0x40 | 0x44 => self.enr[(offset / 4 - 13) as usize] = value,
+            0x50 | 0x54 | 0x58 => self.lpenr[(offset / 4 - 20) as usize] = value,
+            0x60 | 0x64 => self.lpenr[(offset / 4 - 21) as usize] = value,
+            0x74 => {
+                if value & 1 != 0 && self.csr & 1 == 0 {
+                    self.ready_at[LSI] = self.after(now, LSI_START_US);
+                }
+                let flags = if value >> 24 & 1 != 0 { 0 } else { self.flags() };
+                self.csr = flags | value & 1;
+            }
+            0x8c => {
+                only(value, 1 << 24, "RCC_DCKCFGR audio clocks")?;
+                self.dckcfgr = value;
+                self.clocks = self.computed(self.cfgr)?;
+                return Ok(true);
+            }
+            _ => return Err(Refusal::Offset),
+        }
+        Ok(false)
+    }
+
+    fn write_cr(&mut self, value: u32, now: u64) -> Answer<()> {
+        let turned_on = value & !self.cr;
+        for (bit, source, us) in [
+            (0, HSI, HSI_START_US),
+            (16, HSE, HSE_START_US),
+            (24, PLL, PLL_LOCK_US),
+        ] {
+            if turned_on >> bit & 1 != 0 {
+                self.ready_at[source] = self.after(now, us);
+            }
+        }
+        let in_use = match self.cfgr & 3 {
+            0 => 0x0000_0001,
+            1 => 0x0001_0000,
+            _ => {
+                0x0100_0000
+                    | if self.pllcfgr >> 22 & 1 != 0 {
+                        0x0001_0000
+                    } else {
+                        1
+                    }
+            }
+        };
+        if turned_on >> 24 & 1 != 0 {
+            self.pll_hz()?;
+            if self.pllcfgr >> 22 & 1 != 0 && !self.is_ready(HSE, now) {
+                return Err(Refusal::NotModelled(
+                    "RCC_CR.PLLON with HSE as source before HSERDY",
+                ));
+            }
+        }
+        // hardware keeps a clock on that drives the system (6.3.1)
+        self.cr = value & 0x010d_00f9 | self.cr & 0xff00 | in_use;
+        Ok(())
+    }
+
+    /// PLL output for the system clock (6.3.2).
+    fn pll_hz(&self) -> Answer<u32> {
+        let (m, n) = (self.pllcfgr & 0x3f, self.pllcfgr >> 6 & 0x1ff);
+        let p = 2 * ((self.pllcfgr >> 16 & 3) + 1);
+        let source = if self.pllcfgr >> 22 & 1 != 0 {
+            HSE_HZ
+        } else {
+            HSI_HZ
+        };
+        let input = source / m.max(1);
+        within("PLL input", input, 950_000, 2_100_000)?;
+        let vco = source as u64 * u64::from(n) / u64::from(m.max(1));
+        within("PLL VCO", vco as u32, 100_000_000, 432_000_000)?;
+        Ok((vco / u64::from(p)) as u32)
+    }
+
+    fn write_cfgr(&mut self, value: u32, now: u64) -> Answer<()> {
+        let source = (value & 3) as usize;
+        if source == 3 {
+            return Err(Refusal::NotModelled("RCC_CFGR.SW = PLL_R"));
+        }
+        if !self.is_ready([HSI, HSE, PLL][source], now) {
+            return Err(Refusal::NotModelled("RCC_CFGR.SW = a source that is not ready"));
+        }
+        only(value, 0x001f_fcff, "RCC_CFGR clock outputs")?;
+        self.clocks = self.computed(value)?;
+        self.cfgr = value & 0x001f_fcf3;
+        self.check_latency()
+    }
+
+    fn computed(&self, cfgr: u32) -> Answer<Clocks> {
+        let sysclk_hz = match cfgr & 3 {
+            0 => HSI_HZ,
+            1 => HSE_HZ,
+            _ => self.pll_hz()?,
+        };
+        let hpre = cfgr >> 4 & 0xf;
+        let hclk_hz = sysclk_hz
+            >> match hpre {
+                0..8 => 0,
+                8..12 => hpre - 7,
+                _ => hpre - 6,
+            };
+        let apb = |bits: u32| if bits & 4 == 0 { 0 } else { (bits & 3) + 1 };
+        let (shift1, shift2) = (apb(cfgr >> 10 & 7), apb(cfgr >> 13 & 7));
+        let (pclk1_hz, pclk2_hz) = (hclk_hz >> shift1, hclk_hz >> shift2);
+        // 6.2: HCLK where the APB divides by 1 (TIMPRE: up to 4), else twice (four times) the APB clock
+        let timer = |shift: u32| match self.dckcfgr >> 24 & 1 {
+            0 => hclk_hz >> shift.saturating_sub(1),
+            _ => hclk_hz >> shift.saturating_sub(2),
+        };
+        let over_drive = self.pwr_cr >> 17 & 1 != 0;
+        let limit = match (self.pwr_cr >> 14 & 3, over_drive) {
+            (3, true) => 180_000_000,
+            (3, false) | (2, true) => 168_000_000,
+            (2, false) => 144_000_000,
+            _ => 120_000_000,
+        };
+        within(
+            "HCLK for the regulator's voltage scale and over-drive",
+            hclk_hz,
+            1,
+            limit,
+        )?;
+        within("PCLK1", pclk1_hz, 1, 45_000_000)?;
+        within("PCLK2", pclk2_hz, 1, 90_000_000)?;
+        Ok(Clocks {
+            sysclk_hz,
+            hclk_hz,
+            pclk1_hz,
+            pclk2_hz,
+            timclk1_hz: timer(shift1),
+            timclk2_hz: timer(shift2),
+        })
+    }
+
+    fn check_latency(&self) -> Answer<()> {
+        let needed = self.clocks.hclk_hz.div_ceil(30_000_000) - 1;
+        let latency = self.acr & 0xf;
+        if latency < needed {
+            return Err(Refusal::FlashLatency {
+                hclk_hz: self.clocks.hclk_hz,
+                latency,
+                needed,
+            });
+        }
+        Ok(())
+    }
+
+    /// PWR registers (5.4).
+    pub fn read_pwr(&self, offset: u32, now: u64) -> Answer<u32> {
+        match offset {
+            0 => Ok(self.pwr_cr),
+            4 => {
+                let ready = |i: usize| u32::from(now >= self.over_drive_at[i]);
+                let vos_ready = u32::from(self.is_ready(PLL, now));
+                Ok(vos_ready << 14 | ready(0) << 16 | ready(1) << 17)
+            }
+            _ => Err(Refusal::Offset),
+        }
+    }
+
+    pub fn write_pwr(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
+        if offset != 0 {
+            return Err(Refusal::Offset);
+        }
+        // DBP protects a domain that is not modelled; the clear bits act on wake-up flags that stay 0
+        only(value, 0x0003_c10c, "PWR_CR beyond VOS, ODEN, ODSWEN and DBP")?;
+        for (i, bit) in [(0, 16), (1, 17)] {
+            if value >> bit & 1 == 0 {
+                self.over_drive_at[i] = u64::MAX;
+            } else if self.pwr_cr >> bit & 1 == 0 {
+                if i == 1 && now < self.over_drive_at[0] {
+                    return Err(Refusal::NotModelled("PWR_CR.ODSWEN before ODRDY"));
+                }
+                self.over_drive_at[i] = self.after(now, OVER_DRIVE_US);
+            }
+        }
+        self.pwr_cr = value & !0xc;
+        Ok(())
+    }
+
+    /// FLASH registers (3.8); programming and erasing are not modelled.
+    pub fn read_flash(&self, offset: u32) -> Answer<u32> {
+        match offset {
+            0x00 => Ok(self.acr),
+            0x0c => Ok(0),
+            0x10 => Ok(0x8000_0000),
+            _ => Err(Refusal::Offset),
+        }
+    }
+
+    pub fn write_flash(&mut self, offset: u32, value: u32) -> Answer<()> {
+        if offset != 0 {
+            return Err(Refusal::Offset);
+        }
+        only(value, 0x1f0f, "FLASH_ACR")?;
+        self.acr = value & 0x070f;
+        self.check_latency()
+    }
+}
+
+fn within(clock: &'static str, hz: u32, min_hz: u32, max_hz: u32) -> Answer<()> {
+    if (min_hz..=max_hz).contains(&hz) {
+        Ok(())
+    } else {
+        Err(Refusal::ClockRange {
+            clock,
+            hz,
+            min_hz,
+            max_hz,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ready_at_180_mhz() -> Rcc {
+        let mut rcc = Rcc::new(ResetCause::PowerOn, 0);
+        rcc.write_flash(0, 0x705).unwrap();
+        rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18, 0).unwrap();
+        rcc.write(0x04, 0x2040_0000 | 8 | 360 << 6, 200).unwrap();
+        rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18 | 1 << 24, 200).unwrap();
+        rcc.write_pwr(0, 0x1_c000, 200).unwrap();
+        rcc.write_pwr(0, 0x3_c000, 2000).unwrap();
+        rcc
+    }
+
+    #[test]
+    fn ready_bits_follow_enables_after_the_start_up_time() {
+        let rcc = ready_at_180_mhz();
+        assert_eq!(rcc.read(0, 201).unwrap() >> 24 & 3, 1, "on, not locked");
+        assert_eq!(
+            rcc.read(0, 200 + 1600).unwrap() >> 24 & 3,
+            3,
+            "100 us at 16 MHz later"
+        );
+        assert_eq!(
+            rcc.read_pwr(4, 2000).unwrap() >> 16 & 3,
+            1,
+            "over-drive ready, not switched"
+        );
+        assert_eq!(rcc.read_pwr(4, 3000).unwrap() >> 16 & 3, 3);
+    }
+
+    #[test]
+    fn clock_tree_of_180_mhz() {
+        let mut rcc = ready_at_180_mhz();
+        assert_eq!(rcc.write(0x08, 2 | 5 << 10 | 4 << 13, 3000), Ok(true));
+        let c = rcc.clocks();
+        assert_eq!((c.sysclk_hz, c.hclk_hz), (180_000_000, 180_000_000));
+        assert_eq!((c.pclk1_hz, c.pclk2_hz), (45_000_000, 90_000_000));
+        assert_eq!((c.timclk1_hz, c.timclk2_hz), (90_000_000, 180_000_000));
+        assert_eq!(rcc.read(0x08, 3000).unwrap() & 0xf, 0b1010, "SWS follows SW");
+    }
+
+    #[test]
+    fn too_few_wait_states_are_refused() {
+        let mut rcc = ready_at_180_mhz();
+        rcc.write_flash(0, 4).unwrap();
+        let refusal = Refusal::FlashLatency {
+            hclk_hz: 180_000_000,
+            latency: 4,
+            needed: 5,
+        };
+        assert_eq!(rcc.write(0x08, 2 | 5 << 10 | 4 << 13, 3000), Err(refusal));
+    }
+
+    #[test]
+    fn buses_and_regulator_have_limits() {
+        let mut rcc = ready_at_180_mhz();
+        let too_fast = Refusal::ClockRange {
+            clock: "PCLK1",
+            hz: 90_000_000,
+            min_hz: 1,
+            max_hz: 45_000_000,
+        };
+        assert_eq!(rcc.write(0x08, 2 | 4 << 10 | 4 << 13, 3000), Err(too_fast));
+        rcc.write_pwr(0, 0xc000, 3000).unwrap();
+        assert!(matches!(
+            rcc.write(0x08, 2 | 5 << 10 | 4 << 13, 3000),
+            Err(Refusal::ClockRange {
+                hz: 180_000_000,
+                max_hz: 168_000_000,
+                ..
+            })
+        ));
+    }
+
+    #[test]
+    fn reset_flags_gather_until_cleared() {
+        let mut rcc = Rcc::new(ResetCause::IndependentWatchdog, 0x0e00_0000);
+        assert_eq!(rcc.read(0x74, 0).unwrap(), 0x2e00_0000);
+        rcc.write(0x74, 1 << 24, 0).unwrap();
+        assert_eq!(rcc.read(0x74, 0).unwrap(), 0);
+    }
+}

@@ -1,0 +1,302 @@
+//! What the hooks of the CPU emulation share: the chip, the clock of the run, and why the CPU paused.
+use super::Wiring;
+use super::chip::Chip;
+use super::cost::{self, Block, CostTable, Last};
+use super::elf::{FLASH_BASE, RAM_BASE, RAM_SIZE};
+use super::profile::Profile;
+use super::ram::{Memory, NoMemory};
+use super::stop::{Access, Refusal};
+use std::sync::Arc;
+use unicorn_engine::{RegisterARM as Reg, Unicorn};
+
+pub(crate) type Cpu<'u, W> = Unicorn<'u, State<W>>;
+
+/// A register access that a model refused.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Refused {
+    pub refusal: Refusal,
+    pub address: u32,
+    pub access: Access,
+    pub value: u32,
+    pub pc: u32,
+}
+
+/// Why the CPU emulation returned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Event {
+    /// A hook asked for the run loop before the block at the PC.
+    Pause,
+    /// Nothing was said: a sleep instruction, or an error that the return value tells.
+    None,
+    /// The emulation raised its exception of that number.
+    Raised(u32),
+    /// The block at the PC uses the floating-point unit, which CPACR denies.
+    FloatDenied,
+}
+
+pub(crate) struct State<W> {
+    /// Taken out while it is serviced, so that it and the memory can be borrowed together.
+    chip: Option<Box<Chip<W>>>,
+    pub cost: CostTable,
+    pub flash: Arc<[u8]>,
+    pub profile: Profile,
+    pub cycles: u64,
+    pub instructions: u64,
+    pub exceptions: u64,
+    /// Start of the running block: the time of every register access in it.
+    pub block_at: u64,
+    pub block_pc: u32,
+    pub block: Block,
+    pub limit: u64,
+    /// Leave the CPU before the next block.
+    pub attention: bool,
+    pub event: Event,
+    pub refused: Option<Refused>,
+    /// A store or load that no device answered (imprecise bus fault).
+    pub bus_error: Option<u32>,
+    /// The access to unmapped memory that ended the emulation: address and whether it was a store to flash.
+    pub invalid: Option<(u32, u32, bool)>,
+    /// Event register of WFE.
+    pub event_register: bool,
+}
+
+impl<W: Wiring> State<W> {
+    pub fn new(chip: Chip<W>, flash: Arc<[u8]>) -> Self {
+        Self {
+            chip: Some(Box::new(chip)),
+            cost: CostTable::new(flash.len()),
+            flash,
+            profile: Profile::new(),
+            cycles: 0,
+            instructions: 0,
+            exceptions: 0,
+            block_at: 0,
+            block_pc: 0,
+            block: Block::default(),
+            limit: 0,
+            attention: false,
+            event: Event::None,
+            refused: None,
+            bus_error: None,
+            invalid: None,
+            event_register: false,
+        }
+    }
+
+    /// The chip.
+    ///
+    /// # Panics
+    /// Only from within [`service`], which nothing that it calls does.
+    #[inline]
+    pub fn chip(&mut self) -> &mut Chip<W> {
+        self.chip
+            .as_mut()
+            .expect("the chip is in its place outside of service()")
+    }
+
+    #[inline]
+    pub fn chip_ref(&self) -> &Chip<W> {
+        self.chip
+            .as_ref()
+            .expect("the chip is in its place outside of service()")
+    }
+
+    fn refuse(&mut self, refusal: Refusal, address: u32, access: Access, value: u32) {
+        self.attention = true;
+        if refusal == Refusal::BusError {
+            self.bus_error = Some(address);
+        } else if self.refused.is_none() {
+            self.refused = Some(Refused {
+                refusal,
+                address,
+                access,
+                value,
+                pc: self.block_pc,
+            });
+        }
+    }
+}
+
+/// DMA's view of the memories.
+struct Ram<'a, 'u, W: Wiring>(&'a mut Cpu<'u, W>);
+
+impl<W: Wiring> Memory for Ram<'_, '_, W> {
+    fn load(&mut self, address: u32, bytes: u8) -> Result<u32, NoMemory> {
+        let mut word = [0; 4];
+        let bytes = word.get_mut(..usize::from(bytes)).ok_or(NoMemory)?;
+        self.0.mem_read(u64::from(address), bytes).map_err(|_| NoMemory)?;
+        Ok(u32::from_le_bytes(word))
+    }
+
+    fn store(&mut self, address: u32, bytes: u8, value: u32) -> Result<(), NoMemory> {
+        let word = value.to_le_bytes();
+        if !(RAM_BASE..RAM_BASE + RAM_SIZE).contains(&address) {
+            return Err(NoMemory);
+        }
+        let bytes = word.get(..usize::from(bytes)).ok_or(NoMemory)?;
+        self.0.mem_write(u64::from(address), bytes).map_err(|_| NoMemory)
+    }
+}
+
+/// Runs `work` with the chip and the memories side by side.
+pub(crate) fn with_chip<W: Wiring, R>(
+    cpu: &mut Cpu<'_, W>,
+    work: impl FnOnce(&mut Chip<W>, &mut dyn FnMut(&mut Chip<W>, u64)) -> R,
+) -> Option<R> {
+    let mut chip = cpu.get_data_mut().chip.take()?;
+    let mut ram = Ram(cpu);
+    let result = work(&mut chip, &mut |chip, now| chip.service(now, &mut ram));
+    cpu.get_data_mut().chip = Some(chip);
+    Some(result)
+}
+
+/// Handles the device events up to `now`.
+pub(crate) fn service<W: Wiring>(cpu: &mut Cpu<'_, W>, now: u64) {
+    if cpu.get_data_mut().chip().next <= now {
+        with_chip(cpu, |chip, service| service(chip, now));
+    }
+}
+
+/// Value of a core register.
+pub(crate) fn get<D>(cpu: &Unicorn<'_, D>, register: Reg) -> u32 {
+    cpu.reg_read(register).map_or(0, |v| v as u32)
+}
+
+/// PRIMASK, BASEPRI, FAULTMASK.
+pub(crate) fn masks<D>(cpu: &Unicorn<'_, D>) -> (u32, u32, u32) {
+    (
+        get(cpu, Reg::PRIMASK),
+        get(cpu, Reg::BASEPRI),
+        get(cpu, Reg::FAULTMASK),
+    )
+}
+
+/// The exception that would be taken now.
+#[inline]
+pub(crate) fn takeable<W: Wiring>(cpu: &Cpu<'_, W>) -> Option<usize> {
+    let nvic = &cpu.get_data().chip_ref().nvic;
+    let (exception, priority) = nvic.best()?;
+    if priority >= nvic.active_priority() {
+        return None;
+    }
+    let (primask, basepri, faultmask) = masks(cpu);
+    (priority < nvic.execution_priority(primask, basepri, faultmask)).then_some(exception)
+}
+
+/// Called before each basic block: pauses for what is due, else charges the block.
+pub(crate) fn on_block<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
+    let state = cpu.get_data_mut();
+    let now = state.cycles;
+    state.block_pc = address;
+    if state.chip().next <= now {
+        service(cpu, now);
+    }
+    let pause = {
+        let state = cpu.get_data_mut();
+        let (limit, chip) = (state.limit, state.chip_ref());
+        state.attention || now >= limit || chip.reset.is_some()
+    } || takeable(cpu).is_some();
+    let state = cpu.get_data_mut();
+    if pause {
+        state.event = Event::Pause;
+    } else {
+        let offset = if address >= FLASH_BASE {
+            address - FLASH_BASE
+        } else {
+            address
+        } as usize;
+        let block = match state.cost.flash_block(&state.flash, offset, bytes) {
+            Some(block) => block,
+            None => {
+                let code = cpu
+                    .mem_read_as_vec(u64::from(address), bytes as usize)
+                    .unwrap_or_default();
+                cost::decode(&code)
+            }
+        };
+        let state = cpu.get_data_mut();
+        if !block.float || state.chip().ppb.float_enabled() {
+            state.block = block;
+            state.block_at = now;
+            state.cycles += u64::from(block.cycles);
+            state.instructions += u64::from(block.instructions);
+            state.event_register |= block.sev;
+            return;
+        }
+        state.event = Event::FloatDenied;
+    }
+    let state = cpu.get_data_mut();
+    state.block = Block::default();
+    if let Err(error) = cpu.emu_stop() {
+        debug_assert!(false, "{error:?}");
+    }
+}
+
+/// Takes back the part of a block that did not run because the instruction at `pc` stopped it.
+pub(crate) fn refund<W: Wiring>(state: &mut State<W>, pc: u32) {
+    let ran = pc.wrapping_sub(state.block_pc);
+    if ran >= u32::from(state.block.bytes) {
+        return;
+    }
+    let start = (state.block_pc & 0x07ff_ffff) as usize;
+    let code = state.flash.get(start..start + ran as usize).unwrap_or_default();
+    let part = cost::decode(code);
+    state.cycles = state.block_at + u64::from(part.cycles);
+    state.instructions -= u64::from(state.block.instructions - part.instructions);
+    state.block = Block {
+        last: Last::Other,
+        ..part
+    };
+}
+
+/// Load from a device register.
+pub(crate) fn on_read<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8) -> u32 {
+    let ipsr = if address & !3 == 0xe000_ed04 {
+        get(cpu, Reg::XPSR) & 0x1ff
+    } else {
+        0
+    };
+    let state = cpu.get_data_mut();
+    let now = state.block_at;
+    let (register, shift, mask) = match bit_band(address) {
+        Some((register, bit)) => (register, bit, 1),
+        None => (
+            address & !3,
+            8 * (address & 3),
+            u32::MAX >> (32 - 8 * u32::from(bytes.clamp(1, 4))),
+        ),
+    };
+    match state.chip().read(register, now, ipsr) {
+        Ok(value) => value >> shift & mask,
+        Err(refusal) => {
+            state.refuse(refusal, register, Access::Read(bytes), 0);
+            0
+        }
+    }
+}
+
+/// Store to a device register.
+pub(crate) fn on_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8, value: u32) {
+    let state = cpu.get_data_mut();
+    let now = state.block_at;
+    let (register, result) = match bit_band(address) {
+        // the bus matrix turns the store into a read and a write of the whole register (ARMv7-M B3.1)
+        Some((register, bit)) => {
+            let result = state.chip().read(register, now, 0).and_then(|old| {
+                let new = old & !(1 << bit) | (value & 1) << bit;
+                state.chip().write(register, 4, new, now)
+            });
+            (register, result)
+        }
+        None => (address, state.chip().write(address, bytes, value, now)),
+    };
+    if let Err(refusal) = result {
+        state.refuse(refusal, register, Access::Write(bytes), value);
+    }
+}
+
+/// Register and bit behind an address of the peripheral bit-band alias.
+fn bit_band(address: u32) -> Option<(u32, u32)> {
+    let offset = address.checked_sub(0x4200_0000).filter(|o| *o < 0x0200_0000)?;
+    Some((0x4000_0000 + (offset >> 5 & !3), offset >> 2 & 31))
+}

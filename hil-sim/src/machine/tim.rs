@@ -1,0 +1,506 @@
+//! Timers 1 to 7 (RM0390 chapters 16, 17, 20): edge-aligned up-counting, preload, update events, output compare
+//! flags, trigger output, PWM levels, and the main output enable with break of the advanced timer.
+//!
+//! The counter is not ticked: its value follows from the time of its last restart, and [`Tim::sync`] brings flags
+//! and preloaded registers up to date. Capture, encoder, slave, centre-aligned and down-counting modes are refused.
+use super::stop::{Answer, Refusal, only};
+
+/// What distinguishes one timer from another.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Kind {
+    pub counter_max: u32,
+    pub channels: usize,
+    pub advanced: bool,
+}
+
+/// TIM1.
+pub(crate) const ADVANCED: Kind = Kind {
+    counter_max: 0xffff,
+    channels: 4,
+    advanced: true,
+};
+/// TIM2 and TIM5.
+pub(crate) const WIDE: Kind = Kind {
+    counter_max: u32::MAX,
+    channels: 4,
+    advanced: false,
+};
+/// TIM3 and TIM4.
+pub(crate) const GENERAL: Kind = Kind {
+    counter_max: 0xffff,
+    channels: 4,
+    advanced: false,
+};
+/// TIM6 and TIM7.
+pub(crate) const BASIC: Kind = Kind {
+    counter_max: 0xffff,
+    channels: 0,
+    advanced: false,
+};
+
+const UIF: u32 = 1;
+const BIF: u32 = 1 << 7;
+const MOE: u32 = 1 << 15;
+const AOE: u32 = 1 << 14;
+const BKP: u32 = 1 << 13;
+const BKE: u32 = 1 << 12;
+const OSSR: u32 = 1 << 11;
+const OSSI: u32 = 1 << 10;
+
+/// What a channel's output does to its pin (RM0390 table 88).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Output {
+    /// The timer does not drive the pin.
+    Released,
+    /// High for `high` of every `period` counter ticks.
+    High { high: u32, period: u32 },
+}
+
+pub(crate) struct Tim {
+    kind: Kind,
+    /// CPU cycles per timer clock.
+    divider: u64,
+    cr1: u32,
+    cr2: u32,
+    dier: u32,
+    sr: u32,
+    ccmr: [u32; 2],
+    ccer: u32,
+    psc: u32,
+    arr: u32,
+    rcr: u32,
+    ccr: [u32; 4],
+    bdtr: u32,
+    lock: u32,
+    /// Active (shadow) registers.
+    psc_now: u32,
+    arr_now: u32,
+    ccr_now: [u32; 4],
+    repeats_left: u32,
+    /// Cycle at which the counter was 0; meaningful while counting.
+    zero_at: u64,
+    /// Counter while stopped.
+    stopped_at: u32,
+    /// Flags are up to date to here.
+    seen: u64,
+    /// Set by each update event that is a trigger output; taken by the owner.
+    pub trigger: bool,
+    /// Someone listens to the trigger output, so update events must not be skipped.
+    trigger_used: bool,
+    /// Next cycle at which something visible happens.
+    pub due: u64,
+}
+
+impl Tim {
+    pub fn new(kind: Kind, divider: u64) -> Self {
+        Self {
+            kind,
+            divider,
+            cr1: 0,
+            cr2: 0,
+            dier: 0,
+            sr: 0,
+            ccmr: [0; 2],
+            ccer: 0,
+            psc: 0,
+            arr: kind.counter_max,
+            rcr: 0,
+            ccr: [0; 4],
+            bdtr: 0,
+            lock: 0,
+            psc_now: 0,
+            arr_now: kind.counter_max,
+            ccr_now: [0; 4],
+            repeats_left: 0,
+            zero_at: 0,
+            stopped_at: 0,
+            seen: 0,
+            trigger: false,
+            trigger_used: false,
+            due: u64::MAX,
+        }
+    }
+
+    /// Back to the reset values; the clock stays.
+    pub fn reset(&mut self) {
+        *self = Self {
+            trigger_used: self.trigger_used,
+            ..Self::new(self.kind, self.divider)
+        };
+    }
+
+    /// Whether someone acts on the trigger output.
+    pub fn listen(&mut self, used: bool, now: u64) {
+        if used != self.trigger_used {
+            self.sync(now);
+            self.trigger = false;
+            self.trigger_used = used;
+            self.schedule();
+        }
+    }
+
+    fn is_counting(&self) -> bool {
+        // 17.3.2: with auto-reload 0 the counter is blocked
+        self.cr1 & 1 != 0 && self.arr_now != 0
+    }
+
+    fn tick(&self) -> u64 {
+        self.divider * (u64::from(self.psc_now) + 1)
+    }
+
+    /// CPU cycles from one overflow to the next.
+    pub fn period(&self) -> u64 {
+        self.tick() * (u64::from(self.arr_now) + 1)
+    }
+
+    /// The timer clock changes at `now`; the count goes on from its value.
+    pub fn set_divider(&mut self, divider: u64, now: u64) {
+        if divider != self.divider {
+            self.sync(now);
+            let count = self.count(now);
+            self.divider = divider;
+            self.set_count(count, now);
+            self.schedule();
+        }
+    }
+
+    fn count(&self, now: u64) -> u32 {
+        if self.is_counting() {
+            (now.wrapping_sub(self.zero_at) / self.tick()) as u32
+        } else {
+            self.stopped_at
+        }
+    }
+
+    fn set_count(&mut self, count: u32, now: u64) {
+        self.stopped_at = count;
+        self.zero_at = now.wrapping_sub(u64::from(count) * self.tick());
+        self.seen = now;
+    }
+
+    /// Brings counter, flags and shadow registers up to `now`.
+    pub fn sync(&mut self, now: u64) {
+        while self.is_counting() {
+            let overflow = self.zero_at.wrapping_add(self.period());
+            self.compare_flags(now.min(overflow - 1));
+            if now < overflow {
+                break;
+            }
+            self.zero_at = overflow;
+            self.seen = overflow - 1;
+            if self.repeats_left > 0 {
+                self.repeats_left -= 1;
+            } else {
+                self.update(true);
+                if self.cr1 & 8 != 0 {
+                    self.cr1 &= !1; // one-pulse mode
+                    self.stopped_at = 0;
+                } else if !self.is_preloading() && !self.trigger_used {
+                    self.skip_whole_periods(now);
+                }
+            }
+        }
+        self.seen = self.seen.max(now);
+        self.schedule();
+    }
+
+    /// Nothing but the flags changes from period to period: goes to the last one.
+    fn skip_whole_periods(&mut self, now: u64) {
+        let all = self.period() * u64::from(self.rcr + 1);
+        let whole = (now - self.zero_at) / all;
+        if whole > 0 {
+            self.compare_flags(self.zero_at + self.period() - 1);
+            self.zero_at += whole * all;
+            self.seen = self.zero_at - 1;
+        }
+    }
+
+    /// Sets CCxIF for every match in `(seen, to]` (17.3.8), `to` within the running period.
+    fn compare_flags(&mut self, to: u64) {
+        for channel in 0..self.kind.channels {
+            let compare = self.ccr_now[channel];
+            if compare <= self.arr_now {
+                let matches = self.zero_at.wrapping_add(u64::from(compare) * self.tick());
+                if matches > self.seen && matches <= to {
+                    self.sr |= 2 << channel;
+                }
+            }
+        }
+        self.seen = self.seen.max(to);
+    }
+
+    fn is_preloading(&self) -> bool {
+        self.psc != self.psc_now || self.arr != self.arr_now || self.ccr != self.ccr_now
+    }
+
+    /// Update event: shadow registers take the preload values.
+    fn update(&mut self, overflow: bool) {
+        if self.cr1 & 2 != 0 {
+            return; // UDIS
+        }
+        self.psc_now = self.psc;
+        self.arr_now = self.arr;
+        self.ccr_now = self.ccr;
+        self.repeats_left = self.rcr;
+        if overflow || self.cr1 & 4 == 0 {
+            self.sr |= UIF;
+        }
+        if self.bdtr & (AOE | MOE) == AOE {
+            self.bdtr |= MOE;
+        }
+        self.trigger |= self.cr2 >> 4 & 7 == 2;
+    }
+
+    fn schedule(&mut self) {
+        self.due = u64::MAX;
+        if !self.is_counting() {
+            return;
+        }
+        let wants_update = self.dier & UIF != 0 && self.sr & UIF == 0
+            || self.trigger_used && self.cr2 >> 4 & 7 == 2
+            || self.cr1 & 8 != 0
+            || self.bdtr & (AOE | MOE) == AOE
+            || self.is_preloading();
+        if wants_update {
+            self.due = self
+                .zero_at
+                .wrapping_add(self.period() * (u64::from(self.repeats_left) + 1));
+        }
+        for channel in 0..self.kind.channels {
+            let flag = 2 << channel;
+            if self.dier & flag != 0 && self.sr & flag == 0 && self.ccr_now[channel] <= self.arr_now {
+                let at = self
+                    .zero_at
+                    .wrapping_add(u64::from(self.ccr_now[channel]) * self.tick());
+                self.due = self.due.min(if at > self.seen { at } else { at + self.period() });
+            }
+        }
+    }
+
+    /// Level of the break input; active at the polarity BKP selects (16.3.12).
+    pub fn set_break(&mut self, level: bool) {
+        if self.watches_break() && level == (self.bdtr & BKP != 0) {
+            self.bdtr &= !MOE;
+            self.sr |= BIF;
+        }
+    }
+
+    /// The break input is enabled.
+    pub fn watches_break(&self) -> bool {
+        self.bdtr & BKE != 0
+    }
+
+    /// Interrupt requests: break, update, trigger, compare.
+    pub fn requests(&self) -> [bool; 4] {
+        let raised = self.sr & self.dier;
+        [
+            raised & BIF != 0,
+            raised & UIF != 0,
+            raised & 0x40 != 0,
+            raised & 0x1e != 0,
+        ]
+    }
+
+    /// What channel `channel` (0 is CH1) drives (16.3.10, table 88).
+    pub fn output(&self, channel: usize) -> Output {
+        let inverted = self.ccer >> (4 * channel + 1) & 1 != 0;
+        let constant = |high: bool| Output::High {
+            high: u32::from(high),
+            period: 1,
+        };
+        if self.kind.advanced && self.bdtr & MOE == 0 {
+            let idle = self.cr2 >> (8 + 2 * channel) & 1 != 0;
+            let enabled = self.ccer >> (4 * channel) & 1 != 0;
+            return if self.bdtr & OSSI != 0 && enabled {
+                constant(idle)
+            } else {
+                Output::Released
+            };
+        }
+        if self.ccer >> (4 * channel) & 1 == 0 {
+            let held = self.kind.advanced && self.bdtr & OSSR != 0;
+            return if held {
+                constant(inverted)
+            } else {
+                Output::Released
+            };
+        }
+        let period = self.arr_now.saturating_add(1);
+        let below = self.ccr_now[channel].min(period);
+        let mode = self.ccmr[channel / 2] >> (8 * (channel % 2) + 4) & 7;
+        let high = match mode {
+            6 => below,
+            7 => period - below,
+            5 => period,
+            _ => 0, // forced inactive; frozen at the reset level
+        };
+        Output::High {
+            high: if inverted { period - high } else { high },
+            period,
+        }
+    }
+
+    pub fn read(&mut self, offset: u32, now: u64) -> Answer<u32> {
+        self.sync(now);
+        if offset > 0x0c && self.kind.channels == 0 && !matches!(offset, 0x10 | 0x14 | 0x24 | 0x28 | 0x2c) {
+            return Err(Refusal::Offset);
+        }
+        Ok(match offset {
+            0x00 => self.cr1,
+            0x04 => self.cr2,
+            0x08 => 0,
+            0x0c => self.dier,
+            0x10 => self.sr,
+            0x14 => 0,
+            0x18 | 0x1c => self.ccmr[(offset as usize - 0x18) / 4],
+            0x20 => self.ccer,
+            0x24 => self.count(now),
+            0x28 => self.psc,
+            0x2c => self.arr,
+            0x30 if self.kind.advanced => self.rcr,
+            0x34..=0x40 => self.ccr[(offset as usize - 0x34) / 4],
+            0x44 if self.kind.advanced => self.bdtr,
+            0x50 if self.kind.counter_max == u32::MAX => 0,
+            _ => return Err(Refusal::Offset),
+        })
+    }
+
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
+        self.sync(now);
+        let result = self.write_synced(offset, value, now);
+        self.schedule();
+        result
+    }
+
+    fn write_synced(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
+        if offset > 0x0c && self.kind.channels == 0 && !matches!(offset, 0x10 | 0x14 | 0x24 | 0x28 | 0x2c) {
+            return Err(Refusal::Offset);
+        }
+        match offset {
+            0x00 => {
+                only(
+                    value,
+                    0x038f,
+                    "TIM CR1.DIR or CMS (down- or centre-aligned counting)",
+                )?;
+                let count = self.count(now);
+                self.cr1 = value;
+                if self.cr1 & 0x80 == 0 {
+                    self.arr_now = self.arr;
+                }
+                self.set_count(count, now);
+            }
+            0x04 => {
+                let allowed = if self.kind.advanced { 0x7f70 } else { 0x70 };
+                only(value, allowed, "TIM CR2.CCPC, CCUS, CCDS or TI1S")?;
+                if value >> 4 & 7 > 2 {
+                    return Err(Refusal::NotModelled(
+                        "TIM CR2.MMS (trigger output from a compare match)",
+                    ));
+                }
+                let protected = if self.lock >= 1 { 0x7f00 } else { 0 };
+                self.cr2 = value & !protected | self.cr2 & protected;
+            }
+            0x08 => only(value, 0, "TIM SMCR (slave modes)")?,
+            0x0c => {
+                let channels = ((1u32 << self.kind.channels) - 1) << 1;
+                let advanced = if self.kind.advanced { 0xa0 } else { 0 };
+                only(value, UIF | channels | 0x40 | advanced, "TIM DIER (DMA requests)")?;
+                self.dier = value;
+            }
+            0x10 => self.sr &= value,
+            0x14 => {
+                let channels = ((1u32 << self.kind.channels) - 1) << 1;
+                only(
+                    value,
+                    UIF | channels | if self.kind.advanced { BIF } else { 0 },
+                    "TIM EGR.TG or COMG",
+                )?;
+                if value & BIF != 0 {
+                    self.bdtr &= !MOE;
+                }
+                self.sr |= value & (channels | BIF);
+                if value & UIF != 0 {
+                    self.set_count(0, now);
+                    self.update(false);
+                    self.set_count(0, now);
+                    self.trigger |= self.cr2 >> 4 & 7 == 0;
+                }
+            }
+            0x18 | 0x1c => self.write_ccmr((offset as usize - 0x18) / 4, value)?,
+            0x20 => {
+                let mut allowed = 0x3333;
+                if self.kind.advanced {
+                    only(value & 0x0444, 0, "TIM CCER.CCxNE (complementary outputs)")?;
+                    allowed |= 0x0888;
+                }
+                only(value, allowed, "TIM CCER reserved bits")?;
+                let protected = if self.lock >= 2 { 0x2aaa } else { 0 };
+                self.ccer = value & !protected | self.ccer & protected;
+            }
+            0x24 => self.set_count(value & self.kind.counter_max, now),
+            0x28 => {
+                only(value, 0xffff, "TIM PSC reserved bits")?;
+                self.psc = value;
+            }
+            0x2c => {
+                self.arr = value & self.kind.counter_max;
+                if self.cr1 & 0x80 == 0 {
+                    let count = self.count(now);
+                    self.arr_now = self.arr;
+                    self.set_count(count, now);
+                }
+            }
+            0x30 if self.kind.advanced => {
+                only(value, 0xff, "TIM RCR reserved bits")?;
+                self.rcr = value;
+            }
+            0x34..=0x40 => {
+                let channel = (offset as usize - 0x34) / 4;
+                self.ccr[channel] = value & self.kind.counter_max;
+                if self.ccmr[channel / 2] >> (8 * (channel % 2) + 3) & 1 == 0 {
+                    self.ccr_now[channel] = self.ccr[channel];
+                }
+            }
+            0x44 if self.kind.advanced => self.write_bdtr(value)?,
+            0x50 if self.kind.counter_max == u32::MAX => only(value, 0, "TIM OR (trigger remap)")?,
+            _ => return Err(Refusal::Offset),
+        }
+        Ok(())
+    }
+
+    fn write_ccmr(&mut self, half: usize, value: u32) -> Answer<()> {
+        only(value & 0x0303, 0, "TIM CCMR.CCxS (input capture)")?;
+        only(value & 0x8080, 0, "TIM CCMR.OCxCE (clear by ETRF)")?;
+        for channel in 0..2 {
+            let mode = value >> (8 * channel + 4) & 7;
+            if matches!(mode, 1..=3) {
+                return Err(Refusal::NotModelled(
+                    "TIM CCMR.OCxM = active, inactive or toggle on match",
+                ));
+            }
+        }
+        let protected = if self.lock >= 3 { 0x7878 } else { 0 };
+        self.ccmr[half] = value & !protected | self.ccmr[half] & protected;
+        for channel in 2 * half..2 * half + 2 {
+            if self.ccmr[half] >> (8 * (channel % 2) + 3) & 1 == 0 {
+                self.ccr_now[channel] = self.ccr[channel];
+            }
+        }
+        Ok(())
+    }
+
+    /// Dead time concerns complementary outputs only, which are refused; LOCK can be written once (16.4.18).
+    fn write_bdtr(&mut self, value: u32) -> Answer<()> {
+        only(value, 0xffff, "TIM BDTR reserved bits")?;
+        let protected = match self.lock {
+            0 => 0,
+            1 => BKE | BKP | AOE | 0xff,
+            _ => BKE | BKP | AOE | 0xff | OSSR | OSSI,
+        };
+        let locked_bits = if self.lock > 0 { 0x300 } else { 0 };
+        self.bdtr = value & !(protected | locked_bits) | self.bdtr & (protected | locked_bits);
+        self.lock = self.bdtr >> 8 & 3;
+        Ok(())
+    }
+}

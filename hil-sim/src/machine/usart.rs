@@ -1,0 +1,302 @@
+//! USART2 (RM0390 chapter 25) as an asynchronous 8N1 port with interrupts and DMA, and the host at its other end.
+use super::stop::{Answer, Refusal, only};
+use std::collections::VecDeque;
+
+const FE: u32 = 1 << 1;
+const ORE: u32 = 1 << 3;
+const IDLE: u32 = 1 << 4;
+const RXNE: u32 = 1 << 5;
+const TC: u32 = 1 << 6;
+const TXE: u32 = 1 << 7;
+const UE: u32 = 1 << 13;
+const TE: u32 = 1 << 3;
+const RE: u32 = 1 << 2;
+/// Bits of a frame: start, eight data, stop.
+const FRAME_BITS: u64 = 10;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Shift {
+    Nothing,
+    /// The idle frame that TE sends first (25.4.2).
+    Preamble,
+    Byte(u8),
+}
+
+pub(crate) struct Usart {
+    sr: u32,
+    /// Error and idle flags as software last read them; a read of DR then clears those (25.6.1).
+    sr_seen: u32,
+    received: u32,
+    waiting: u8,
+    shift: Shift,
+    brr: u32,
+    cr1: u32,
+    cr2: u32,
+    cr3: u32,
+    bus_divider: u64,
+    hclk_hz: u32,
+    host_baud: u32,
+    incoming: VecDeque<u8>,
+    /// First bit of the byte at the front of `incoming`, in 1/65536 cycles.
+    arrival: u128,
+    idle_at: u64,
+    pub tx_due: u64,
+    pub rx_due: u64,
+}
+
+impl Usart {
+    pub fn new(bus_divider: u64, hclk_hz: u32, host_baud: u32) -> Self {
+        Self {
+            sr: TC | TXE,
+            sr_seen: 0,
+            received: 0,
+            waiting: 0,
+            shift: Shift::Nothing,
+            brr: 0,
+            cr1: 0,
+            cr2: 0,
+            cr3: 0,
+            bus_divider,
+            hclk_hz,
+            host_baud,
+            incoming: VecDeque::new(),
+            arrival: 0,
+            idle_at: u64::MAX,
+            tx_due: u64::MAX,
+            rx_due: u64::MAX,
+        }
+    }
+
+    /// A reset of the peripheral; the host and what it still sends stay.
+    pub fn reset(&mut self) {
+        let fresh = Self::new(self.bus_divider, self.hclk_hz, self.host_baud);
+        let incoming = std::mem::take(&mut self.incoming);
+        let (arrival, rx_due) = (
+            self.arrival,
+            if incoming.is_empty() {
+                u64::MAX
+            } else {
+                self.rx_due
+            },
+        );
+        *self = Self {
+            incoming,
+            arrival,
+            rx_due,
+            ..fresh
+        };
+    }
+
+    pub fn set_clock(&mut self, bus_divider: u64, hclk_hz: u32) {
+        (self.bus_divider, self.hclk_hz) = (bus_divider, hclk_hz);
+    }
+
+    pub fn set_host_baud(&mut self, baud: u32) {
+        self.host_baud = baud.max(1);
+    }
+
+    /// CPU cycles per bit: USARTDIV * 16 (or 8) bus clocks, which is BRR itself, its fraction at OVER8 in
+    /// three bits (25.4.4).
+    fn bit_cycles(&self) -> u64 {
+        let brr = u64::from(self.brr);
+        self.bus_divider
+            * if self.cr1 >> 15 != 0 {
+                (brr >> 4 << 3) + (brr & 7)
+            } else {
+                brr
+            }
+    }
+
+    /// Baud rate of the transmitter, rounded to 1 Bd; 0 while BRR is 0.
+    pub fn baud(&self) -> u32 {
+        let bit = self.bit_cycles();
+        (u64::from(self.hclk_hz) + bit / 2)
+            .checked_div(bit)
+            .map_or(0, |b| b as u32)
+    }
+
+    fn host_frame(&self) -> u128 {
+        (u128::from(self.hclk_hz) * u128::from(FRAME_BITS) << 16) / u128::from(self.host_baud)
+    }
+
+    /// The host starts to send `bytes` at `now`, or after what it is still sending.
+    pub fn send(&mut self, bytes: &[u8], now: u64) {
+        if self.incoming.is_empty() {
+            self.arrival = u128::from(now) << 16;
+        }
+        self.incoming.extend(bytes);
+        self.schedule_rx();
+    }
+
+    /// Bytes that the host has not finished sending.
+    pub fn sending(&self) -> usize {
+        self.incoming.len()
+    }
+
+    fn schedule_rx(&mut self) {
+        self.rx_due = if self.incoming.is_empty() {
+            self.idle_at
+        } else {
+            ((self.arrival + self.host_frame()) >> 16) as u64
+        };
+    }
+
+    /// The stop bit of a byte has arrived, or the line has been idle for a frame. `connected`: PA3 is the receiver.
+    pub fn receive(&mut self, connected: bool) {
+        let Some(byte) = self.incoming.pop_front() else {
+            self.idle_at = u64::MAX;
+            self.rx_due = u64::MAX;
+            if self.is_receiving() {
+                self.sr |= IDLE;
+            }
+            return;
+        };
+        self.arrival += self.host_frame();
+        let now = self.rx_due;
+        if connected && self.is_receiving() {
+            let (value, framed) = self.sampled(byte);
+            if self.sr & RXNE != 0 {
+                self.sr |= ORE; // the newcomer is lost (25.4.3)
+            } else {
+                self.received = value;
+                self.sr |= RXNE | if framed { 0 } else { FE };
+            }
+            self.idle_at = now + FRAME_BITS * self.bit_cycles();
+        }
+        self.schedule_rx();
+    }
+
+    fn is_receiving(&self) -> bool {
+        self.cr1 & (UE | RE) == UE | RE && self.brr != 0
+    }
+
+    /// What the receiver makes of a byte sent at the host's rate: it samples the middle of its own bits. The rates
+    /// may differ by 3 % (25.4.5 allows 3.3 to 3.9 %); beyond that the frame counts as broken.
+    fn sampled(&self, byte: u8) -> (u32, bool) {
+        let (own, host) = (
+            self.bit_cycles() * u64::from(self.host_baud),
+            u64::from(self.hclk_hz),
+        );
+        let line = u32::from(byte) << 1 | 1 << 9;
+        let level = |bit: u64| {
+            let at = (2 * bit + 1) * own / (2 * host);
+            at >= FRAME_BITS || line >> at & 1 != 0
+        };
+        let value = (0..8).filter(|b| level(b + 1)).map(|b| 1 << b).sum();
+        let close = own.abs_diff(host) * 100 <= 3 * host;
+        (value, close && level(FRAME_BITS - 1))
+    }
+
+    /// The frame in the shift register has left. Returns its byte (not for the preamble).
+    pub fn transmitted(&mut self) -> Option<u8> {
+        let sent = self.shift;
+        let at = self.tx_due;
+        self.shift = Shift::Nothing;
+        self.tx_due = u64::MAX;
+        if self.sr & TXE == 0 {
+            self.load_shift(at);
+        } else {
+            self.sr |= TC;
+        }
+        match sent {
+            Shift::Byte(byte) => Some(byte),
+            _ => None,
+        }
+    }
+
+    fn load_shift(&mut self, now: u64) {
+        self.shift = Shift::Byte(self.waiting);
+        self.sr |= TXE;
+        self.tx_due = now + FRAME_BITS * self.bit_cycles();
+    }
+
+    /// The transmitter asks for a byte by DMA.
+    pub fn wants_tx(&self) -> bool {
+        self.cr3 >> 7 & 1 != 0 && self.sr & TXE != 0 && self.cr1 & (UE | TE) == UE | TE
+    }
+
+    /// The receiver offers a byte by DMA.
+    pub fn offers_rx(&self) -> bool {
+        self.cr3 >> 6 & 1 != 0 && self.sr & RXNE != 0
+    }
+
+    /// Data register as the CPU or a DMA writes it.
+    pub fn write_data(&mut self, value: u32, now: u64) {
+        self.sr &= !TC;
+        self.waiting = value as u8;
+        self.sr &= !TXE;
+        let on = self.cr1 & (UE | TE) == UE | TE && self.brr != 0;
+        if on && self.shift == Shift::Nothing {
+            self.load_shift(now);
+        }
+    }
+
+    /// Data register as the CPU or a DMA reads it.
+    pub fn read_data(&mut self) -> u32 {
+        self.sr &= !RXNE & !self.sr_seen;
+        self.sr_seen = 0;
+        self.received
+    }
+
+    /// Interrupt request (25.5).
+    pub fn request(&self) -> bool {
+        let enabled = (self.cr1 & 0x80 != 0 && self.sr & TXE != 0)
+            || (self.cr1 & 0x40 != 0 && self.sr & TC != 0)
+            || (self.cr1 & 0x20 != 0 && self.sr & (RXNE | ORE) != 0)
+            || (self.cr1 & 0x10 != 0 && self.sr & IDLE != 0)
+            || (self.cr3 & 1 != 0 && self.cr3 & 0x40 != 0 && self.sr & (FE | ORE) != 0);
+        enabled && self.cr1 & UE != 0
+    }
+
+    pub fn read(&mut self, offset: u32) -> Answer<u32> {
+        Ok(match offset {
+            0x00 => {
+                self.sr_seen = self.sr & (FE | ORE | IDLE);
+                self.sr
+            }
+            0x04 => self.read_data(),
+            0x08 => self.brr,
+            0x0c => self.cr1,
+            0x10 => self.cr2,
+            0x14 => self.cr3,
+            0x18 => 0,
+            _ => return Err(Refusal::Offset),
+        })
+    }
+
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
+        match offset {
+            0x00 => self.sr &= value | !(TC | RXNE), // the others clear by reading SR, then DR
+            0x04 => self.write_data(value, now),
+            0x08 => {
+                only(value, 0xffff, "USART_BRR reserved bits")?;
+                self.brr = value;
+            }
+            0x0c => {
+                only(value, 0xa1fc, "USART_CR1 beyond 8N1 (M, PCE, WAKE, RWU, SBK)")?;
+                only(value & 0x0100, 0, "USART_CR1.PEIE")?;
+                let starts = value & (UE | TE) == UE | TE && self.cr1 & (UE | TE) != UE | TE;
+                self.cr1 = value;
+                if starts && self.shift == Shift::Nothing && self.brr != 0 {
+                    self.shift = Shift::Preamble;
+                    self.tx_due = now + FRAME_BITS * self.bit_cycles();
+                }
+                if value & (UE | TE) != UE | TE {
+                    self.shift = Shift::Nothing;
+                    self.tx_due = u64::MAX;
+                }
+            }
+            0x10 => {
+                only(value, 0, "USART_CR2 (stop bits, clock, LIN)")?;
+                self.cr2 = value;
+            }
+            0x14 => {
+                only(value, 0x08c1, "USART_CR3 beyond DMAT, DMAR, EIE and ONEBIT")?;
+                self.cr3 = value;
+            }
+            0x18 => only(value, 0, "USART_GTPR")?,
+            _ => return Err(Refusal::Offset),
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,201 @@
+//! The emulated peripherals under a real image: strictness, clocks, converters, serial port, watchdog, repeatability.
+mod probe;
+use hil_sim::machine::{Access, LegState, ResetCause, Stop};
+
+const SECOND: u64 = 180_000_000;
+
+#[test]
+fn an_unmodelled_register_stops_the_run_by_name() {
+    let Stop::NotModelled {
+        register,
+        address,
+        access,
+        place,
+        ..
+    } = probe::stop(8)
+    else {
+        panic!()
+    };
+    assert_eq!(
+        (register.as_str(), address, access),
+        ("SPI1+0x0", 0x4001_3000, Access::Read(4))
+    );
+    assert_eq!(probe::firmware().function_at(place.pc), place.function);
+    assert!(place.function.starts_with("probe::"), "{place}");
+}
+
+#[test]
+fn a_peripheral_without_clock_stops_the_run() {
+    let Stop::ClockOff {
+        peripheral,
+        enable,
+        access,
+        ..
+    } = probe::stop(9)
+    else {
+        panic!()
+    };
+    assert_eq!(
+        (peripheral.as_str(), enable.as_str(), access),
+        ("TIM2", "RCC_APB1ENR bit 0", Access::Write(4))
+    );
+}
+
+#[test]
+fn too_few_wait_states_stop_the_run() {
+    let Stop::FlashLatency {
+        hclk_hz,
+        latency,
+        needed,
+        ..
+    } = probe::stop(10)
+    else {
+        panic!()
+    };
+    assert_eq!((hclk_hz, latency, needed), (180_000_000, 4, 5));
+}
+
+#[test]
+fn an_unmodelled_mode_stops_the_run() {
+    let Stop::NotModelled { register, value, .. } = probe::stop(11) else {
+        panic!()
+    };
+    assert_eq!(
+        (register.as_str(), value),
+        ("TIM3_SMCR (TIM SMCR (slave modes))", 3)
+    );
+}
+
+#[test]
+fn the_watchdog_resets_ten_milliseconds_after_the_last_feed() {
+    let (machine, log) = probe::run(12, 1_000_000);
+    assert_eq!(log, [0x0e, 0x2e, 0, 0xd0e], "flags before, after, cleared");
+    let [_, reset] = machine.resets() else {
+        panic!("{:?}", machine.resets())
+    };
+    assert_eq!(reset.cause, ResetCause::IndependentWatchdog);
+    let fed_for = 3 * 128_000;
+    let timeout = 160_000;
+    assert!(
+        (fed_for + timeout..fed_for + timeout + 20_000).contains(&reset.at),
+        "{reset:?}"
+    );
+}
+
+#[test]
+fn the_products_load_keeps_its_rates() {
+    let (mut machine, log) = probe::run(13, SECOND / 10);
+    assert_eq!(log, [1, 0xd0e]);
+    let clocks = machine.clocks();
+    assert_eq!(
+        (clocks.hclk_hz, clocks.pclk1_hz, clocks.pclk2_hz),
+        (180_000_000, 45_000_000, 90_000_000)
+    );
+    assert_eq!(
+        machine.leg_duty(1),
+        LegState::Duty {
+            high: 450,
+            period: 1800
+        }
+    );
+    assert_eq!(machine.leg_duty(1).duty(), Some(0.25));
+    assert_eq!(machine.leg_duty(2).duty(), Some(0.0));
+    let from = machine.now();
+    let (conversions, bytes) = (machine.wiring().conversions.len(), machine.wiring().sent.len());
+    let ticks = |m: &hil_sim::machine::Machine<probe::Bench>| {
+        m.stats()
+            .interrupts
+            .iter()
+            .find(|i| i.name == "SysTick")
+            .map_or(0, |i| i.count)
+    };
+    let ticks_before = ticks(&machine);
+    machine.run_until(from + SECOND).expect("runs");
+    let bench = machine.wiring();
+    assert!((bench.conversions.len() - conversions).abs_diff(112_000) <= 7);
+    assert!(
+        (bench.sent.len() - bytes).abs_diff(100_000) <= 1,
+        "10 bits a byte at 1 Mbit/s"
+    );
+    assert_eq!(bench.baud, 1_000_000);
+    assert_eq!((ticks(&machine) - ticks_before).abs_diff(1000), 0);
+    let starts: Vec<u64> = bench
+        .conversions
+        .iter()
+        .filter(|c| c.0 == 0)
+        .map(|c| c.1)
+        .collect();
+    assert!(
+        starts.windows(2).all(|pair| pair[1] - pair[0] == SECOND / 16_000),
+        "sampling has no jitter"
+    );
+    let scan: Vec<_> = bench.conversions[..7]
+        .iter()
+        .map(|c| (c.0, c.1 - bench.conversions[0].1))
+        .collect();
+    let conversion = (56 + 12) * 8;
+    assert_eq!(
+        scan,
+        (0..7).map(|i| (i, u64::from(i) * conversion)).collect::<Vec<_>>()
+    );
+    assert!(bench.sent.windows(2).all(|pair| pair[1].1 - pair[0].1 == 1800));
+    let samples = probe::words(&machine, "SAMPLES", 7);
+    let wanted = [(0, 1), (2, 3), (4, 5), (6, 0), (1, 2), (3, 4), (5, 6)];
+    let code = |channel: u32| 100 * channel + 7;
+    assert_eq!(samples, wanted.map(|(low, high)| code(low) | code(high) << 16));
+}
+
+#[test]
+fn received_bytes_arrive_by_interrupt() {
+    let (mut machine, _) = probe::run(13, SECOND / 100);
+    machine.uart_send(b"ok?");
+    let from = machine.now();
+    machine.run_until(from + 3 * 1800 - 1).expect("runs");
+    assert_eq!(
+        probe::log(&machine)[2..],
+        [0x5a00_0020, b'o'.into(), 0x5a00_0020, b'k'.into()]
+    );
+    machine.run_until(from + 4 * 1800).expect("runs");
+    assert_eq!(probe::log(&machine)[6..], [0x5a00_0020, b'?'.into()]);
+}
+
+#[test]
+fn a_host_at_another_rate_breaks_frames() {
+    for (baud, framing_error) in [(1_029_000, 0), (972_000, 0), (1_040_000, 2), (500_000, 2)] {
+        let (mut machine, _) = probe::run(14, SECOND / 100);
+        machine.set_host_baud(baud);
+        machine.uart_send(b"U");
+        machine.run_until(machine.now() + 10_000).expect("runs");
+        assert_eq!(
+            probe::log(&machine)[1],
+            0x5a00_0020 | framing_error,
+            "host at {baud}"
+        );
+    }
+}
+
+#[test]
+fn two_runs_are_the_same_to_the_bit() {
+    let run = |steps: u64| {
+        let mut machine = probe::machine(13);
+        for step in 1..=steps {
+            machine.run_until(step * SECOND / steps / 5).expect("runs");
+        }
+        (
+            machine.stats(),
+            machine.stack_high_water(),
+            std::mem::take(machine.wiring_mut()),
+        )
+    };
+    let (stats, stack, bench) = run(1);
+    let (stats_again, stack_again, bench_again) = run(1);
+    assert_eq!((&stats, stack), (&stats_again, stack_again));
+    assert_eq!(bench.conversions, bench_again.conversions);
+    assert_eq!(bench.sent, bench_again.sent);
+    let (_, _, in_steps) = run(777);
+    assert_eq!(
+        bench.conversions, in_steps.conversions,
+        "nor does it matter where the run is cut"
+    );
+    assert!(stack.is_some_and(|bytes| bytes > 0 && bytes < 4096), "{stack:?}");
+}
