@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::plant::Plant;
 use crate::telemetry::Telemetry;
 
-/// Rows that wait for their telemetry.
+/// Rows that wait for their telemetry, and telemetry that waits for its row.
 const WAITING: usize = 20;
 
 /// The state at one time: of the plant, and what the device says of its last tick.
@@ -25,6 +25,8 @@ pub struct Row {
     pub skin_c: f64,
     /// Surface of the same skin on the real object, °C.
     pub skin_real_c: f64,
+    /// Surface of the real object, °C.
+    pub object_real_c: f64,
     /// Sink, °C.
     pub sink_c: f64,
     /// Current through the module, A.
@@ -43,6 +45,7 @@ impl Row {
             display_c: plant.display_c(),
             skin_c: plant.skin_c(),
             skin_real_c: plant.skin_real_c(),
+            object_real_c: plant.object_c(),
             sink_c: plant.sink_c(),
             current_a: plant.current_a(),
             device: None,
@@ -56,22 +59,25 @@ pub struct Trace {
     rows: Vec<Row>,
     /// Tick before each of the last rows, and its index.
     waiting: VecDeque<(u64, usize)>,
+    early: VecDeque<Telemetry>,
 }
 
 impl Trace {
     /// Adds a row; `tick` is the number of the device's last tick before it.
-    pub fn push(&mut self, tick: u64, row: Row) {
-        self.waiting.push_back((tick, self.rows.len()));
-        if self.waiting.len() > WAITING {
-            self.waiting.pop_front();
+    pub fn push(&mut self, tick: u64, mut row: Row) {
+        if let Some(index) = self.early.iter().position(|telemetry| telemetry.tick == tick) {
+            row.device = self.early.remove(index);
+        } else {
+            keep(&mut self.waiting, (tick, self.rows.len()));
         }
         self.rows.push(row);
     }
 
-    /// Gives the telemetry to its row.
+    /// Gives the telemetry to its row, which may be still to come.
     pub fn join(&mut self, telemetry: Telemetry) {
-        if let Some((_, index)) = self.waiting.iter().find(|(tick, _)| *tick == telemetry.tick) {
-            self.rows[*index].device = Some(telemetry);
+        match self.waiting.iter().find(|(tick, _)| *tick == telemetry.tick) {
+            Some((_, index)) => self.rows[*index].device = Some(telemetry),
+            None => keep(&mut self.early, telemetry),
         }
     }
 
@@ -94,6 +100,13 @@ impl Trace {
     }
 }
 
+fn keep<T>(last: &mut VecDeque<T>, new: T) {
+    if last.len() == WAITING {
+        last.pop_front();
+    }
+    last.push_back(new);
+}
+
 /// A row as it stands in the file.
 #[derive(Serialize)]
 struct Record<'a> {
@@ -108,6 +121,7 @@ struct Record<'a> {
     current_a: String,
     state: &'a str,
     demand_a: String,
+    object_real_c: String,
     remark: &'a str,
 }
 
@@ -131,6 +145,7 @@ impl<'a> From<&'a Row> for Record<'a> {
             current_a: format!("{:.6}", row.current_a),
             state: device.map_or("", |device| &device.state),
             demand_a: said(|device| device.demand_a, 3),
+            object_real_c: format!("{:.6}", row.object_real_c),
             remark: device.and_then(|device| device.remark.as_deref()).unwrap_or(""),
         }
     }
