@@ -71,7 +71,7 @@ fn a_fault_in_the_fault_handler_is_lockup() {
 }
 
 #[test]
-fn a_software_reset_keeps_ram_and_sets_its_flag() {
+fn a_software_reset_sets_its_flag() {
     let (machine, log) = probe::run(5, 100_000);
     assert_eq!(
         log,

@@ -1,5 +1,5 @@
 //! Cases of the core: exceptions, masks, stacks, floating-point context, faults, sleep.
-use crate::{LOG, done, log, read, write};
+use crate::{done, log, read, write};
 use core::arch::asm;
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
@@ -211,7 +211,7 @@ pub fn hard_fault(pc: u32) -> ! {
     done()
 }
 
-/// Resets itself once; the second time it tells the reset flags and a word that RAM kept.
+/// Resets itself once; the second time it tells the reset flags and the mode.
 pub fn software_reset() {
     let flags = read(RCC_CSR) >> 24;
     if flags & 0x10 != 0 {
@@ -219,7 +219,6 @@ pub fn software_reset() {
         log(ipsr());
         return;
     }
-    LOG[200].store(0xabcd, Relaxed);
     write(AIRCR, 0x05fa_0004);
     dsb();
     loop {

@@ -17,6 +17,8 @@ const IWDG: usize = 0x4000_3000;
 const SYST_CSR: usize = 0xe000_e010;
 const ISER1: usize = 0xe000_e104;
 
+/// Circular buffer of the converter.
+#[unsafe(no_mangle)]
 static SAMPLES: [AtomicU16; 224] = [const { AtomicU16::new(0) }; 224];
 static TEXT: [AtomicU8; 64] = [const { AtomicU8::new(b'.') }; 64];
 
@@ -55,7 +57,7 @@ pub fn too_few_wait_states() {
     clock_180_mhz(4);
 }
 
-/// Feeds the watchdog three times, then no more.
+/// Feeds the watchdog three times, then no more. PA5 changes with each feed.
 pub fn watchdog() {
     let flags = read(RCC + 0x74) >> 24;
     log(flags);
@@ -68,8 +70,11 @@ pub fn watchdog() {
     write(IWDG + 4, 0);
     write(IWDG + 8, 79); // 80 * 4 / 32 kHz = 10 ms
     write(IWDG, 0xcccc);
-    for _ in 0..3 {
-        cortex_m::asm::delay(128_000); // 8 ms at 16 MHz
+    set(RCC + 0x30, 1);
+    write(GPIOA, read(GPIOA) | 1 << 10);
+    for feed in 0..3 {
+        cortex_m::asm::delay(30_000); // about 6 ms at 16 MHz
+        write(GPIOA + 0x14, (feed + 1) << 5);
         write(IWDG, 0xaaaa);
     }
     loop {

@@ -2,9 +2,9 @@
 use super::Wiring;
 use super::chip::Chip;
 use super::cost::{self, Block, CostTable, Last};
-use super::elf::{FLASH_BASE, RAM_BASE, RAM_SIZE};
+use super::elf::FLASH_BASE;
 use super::profile::Profile;
-use super::ram::{Memory, NoMemory};
+use super::ram::Ram;
 use super::stop::{Access, Refusal};
 use std::sync::Arc;
 use unicorn_engine::{RegisterARM as Reg, Unicorn};
@@ -117,35 +117,15 @@ impl<W: Wiring> State<W> {
     }
 }
 
-/// DMA's view of the memories.
-struct Ram<'a, 'u, W: Wiring>(&'a mut Cpu<'u, W>);
-
-impl<W: Wiring> Memory for Ram<'_, '_, W> {
-    fn load(&mut self, address: u32, bytes: u8) -> Result<u32, NoMemory> {
-        let mut word = [0; 4];
-        let bytes = word.get_mut(..usize::from(bytes)).ok_or(NoMemory)?;
-        self.0.mem_read(u64::from(address), bytes).map_err(|_| NoMemory)?;
-        Ok(u32::from_le_bytes(word))
-    }
-
-    fn store(&mut self, address: u32, bytes: u8, value: u32) -> Result<(), NoMemory> {
-        let word = value.to_le_bytes();
-        if !(RAM_BASE..RAM_BASE + RAM_SIZE).contains(&address) {
-            return Err(NoMemory);
-        }
-        let bytes = word.get(..usize::from(bytes)).ok_or(NoMemory)?;
-        self.0.mem_write(u64::from(address), bytes).map_err(|_| NoMemory)
-    }
-}
-
 /// Runs `work` with the chip and the memories side by side.
 pub(crate) fn with_chip<W: Wiring, R>(
     cpu: &mut Cpu<'_, W>,
     work: impl FnOnce(&mut Chip<W>, &mut dyn FnMut(&mut Chip<W>, u64)) -> R,
 ) -> Option<R> {
     let mut chip = cpu.get_data_mut().chip.take()?;
-    let mut ram = Ram(cpu);
+    let mut ram = Ram::new(cpu);
     let result = work(&mut chip, &mut |chip, now| chip.service(now, &mut ram));
+    ram.flush();
     cpu.get_data_mut().chip = Some(chip);
     Some(result)
 }

@@ -45,6 +45,8 @@ pub struct Bench {
     pub baud: u32,
     /// Channels and times of all conversions.
     pub conversions: Vec<(u8, u64)>,
+    /// Changes of general-purpose outputs: port, bit, level, time.
+    pub outputs: Vec<(u8, u8, Option<bool>, u64)>,
     /// Changes of the bridge legs.
     pub bridge: Vec<([LegState; 2], u64)>,
 }
@@ -66,6 +68,10 @@ impl Wiring for Bench {
     fn uart_tx(&mut self, byte: u8, at: u64, baud: u32) {
         self.sent.push((byte, at));
         self.baud = baud;
+    }
+
+    fn output(&mut self, port: u8, bit: u8, level: Option<bool>, at: u64) {
+        self.outputs.push((port, bit, level, at));
     }
 
     fn bridge(&mut self, legs: [LegState; 2], at: u64) {
