@@ -175,8 +175,8 @@ impl Dma {
             0x00 | 0x04 => return Ok(()), // read-only
             0x08 | 0x0c => {
                 let first = if offset == 0x08 { 0 } else { 4 };
-                for i in 0..4 {
-                    self.streams[first + i].flags &= !(value >> FLAG_SHIFT[i] & 0x3d);
+                for (stream, shift) in self.streams[first..].iter_mut().zip(FLAG_SHIFT) {
+                    stream.flags &= !(value >> shift & 0x3d);
                 }
                 return Ok(());
             }
