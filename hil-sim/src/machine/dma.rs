@@ -19,7 +19,7 @@ const FLAG_SHIFT: [u32; 4] = [0, 6, 16, 22];
 /// Interrupt number of each stream.
 const IRQ: [[usize; 8]; 2] = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]];
 
-/// A request line that a modelled peripheral has: controller, stream, channel (9.3.4, tables 28 and 29), and
+/// A request line that a modelled peripheral has: controller, stream, channel (the request mapping of 9.3.4), and
 /// the data register that the stream's PAR must hold.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Route {
@@ -219,7 +219,7 @@ impl Stream {
         if self.cr & EN != 0 {
             if value & EN == 0 {
                 self.cr = value;
-                self.flags |= TCIF; // 9.3.14: a stream that software stops reports the end
+                self.flags |= TCIF; // a stream that software stops reports the end (chapter 9, stream disable)
                 return Ok(());
             }
             only(

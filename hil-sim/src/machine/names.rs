@@ -1,4 +1,4 @@
-//! Names of registers for messages: address to `PERIPHERAL_REGISTER` (RM0390 table 1 and the register maps).
+//! Names of registers for messages: address to `PERIPHERAL_REGISTER` (RM0390 memory map and register maps).
 
 /// Offset and name of registers.
 type Registers = &'static [(u32, &'static str)];

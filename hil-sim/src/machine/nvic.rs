@@ -2,7 +2,7 @@
 //! (ARMv7-M Architecture Reference Manual B1.5, B3.4). Exceptions are numbered as in IPSR; 16 is interrupt 0.
 use super::stop::{Answer, Refusal, only};
 
-/// Exceptions of the STM32F446: 16 of the core, 97 interrupts (RM0390 table 38).
+/// Exceptions of the STM32F446: 16 of the core, 97 interrupts (RM0390 vector table).
 pub(crate) const EXCEPTIONS: usize = 16 + 97;
 /// Priority below every exception: nothing is active and nothing is masked.
 pub(crate) const THREAD_PRIORITY: i32 = 256;

@@ -1,4 +1,4 @@
-//! Timers 1 to 7 (RM0390 chapters 16, 17, 20): edge-aligned up-counting, preload, update events, output compare
+//! Timers 1 to 7 (RM0390 chapters 16, 17, 19): edge-aligned up-counting, preload, update events, output compare
 //! flags, trigger output, PWM levels, and the main output enable with break of the advanced timer.
 //!
 //! The counter is not ticked: its value follows from the time of its last restart, and [`Tim::sync`] brings flags
@@ -45,7 +45,7 @@ pub(super) const BKE: u32 = 1 << 12;
 pub(super) const OSSR: u32 = 1 << 11;
 pub(super) const OSSI: u32 = 1 << 10;
 
-/// What a channel's output does to its pin (RM0390 table 88).
+/// What a channel's output does to its pin (RM0390 16.4.9, output control bits).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Output {
     /// The timer does not drive the pin.
@@ -302,7 +302,7 @@ impl Tim {
         ]
     }
 
-    /// What channel `channel` (0 is CH1) drives (16.3.10, table 88).
+    /// What channel `channel` (0 is CH1) drives (16.4.9).
     pub fn output(&self, channel: usize) -> Output {
         let inverted = self.ccer >> (4 * channel + 1) & 1 != 0;
         let constant = |high: bool| Output::High {
@@ -420,7 +420,7 @@ mod tests {
     }
 
     #[test]
-    fn outputs_follow_table_88() {
+    fn outputs_follow_the_output_control_bits() {
         assert_eq!(pwm(0).output(0), Output::Released, "MOE = 0, OSSI = 0");
         assert_eq!(
             pwm(OSSI).output(0),

@@ -1,4 +1,4 @@
-//! Register access of the timers (RM0390 16.4, 17.4, 20.4).
+//! Register access of the timers (RM0390 16.4, 17.4, 19.4).
 use super::stop::{Answer, Refusal, only};
 use super::tim::{AOE, BIF, BKE, BKP, MOE, OSSI, OSSR, Tim, UIF};
 
