@@ -69,16 +69,31 @@ fn an_unmodelled_mode_stops_the_run() {
 #[test]
 fn the_watchdog_resets_ten_milliseconds_after_the_last_feed() {
     let (machine, log) = probe::run(12, 1_000_000);
-    assert_eq!(log, [0x2e, 0, 0xd0e], "flags after the reset (start-up has cleared the log), flags cleared");
+    assert_eq!(
+        log,
+        [0x2e, 0, 0xd0e],
+        "flags after the reset (start-up has cleared the log), flags cleared"
+    );
     let [_, reset] = machine.resets() else {
         panic!("{:?}", machine.resets())
     };
     assert_eq!(reset.cause, ResetCause::IndependentWatchdog);
-    let feeds: Vec<u64> = machine.wiring().outputs.iter().filter(|o| o.1 == 5).map(|o| o.3).collect();
-    let [_low, first, second, third, _gone] = feeds[..] else { panic!("{feeds:?}") };
+    let feeds: Vec<u64> = machine
+        .wiring()
+        .outputs
+        .iter()
+        .filter(|o| o.1 == 5)
+        .map(|o| o.3)
+        .collect();
+    let [_low, first, second, third, _gone] = feeds[..] else {
+        panic!("{feeds:?}")
+    };
     assert!(second - first > 30_000 && third - second > 30_000);
     let ten_milliseconds = 160_000;
-    assert!((ten_milliseconds..ten_milliseconds + 100).contains(&(reset.at - third)), "{reset:?}, fed at {third}");
+    assert!(
+        (ten_milliseconds..ten_milliseconds + 100).contains(&(reset.at - third)),
+        "{reset:?}, fed at {third}"
+    );
 }
 
 #[test]

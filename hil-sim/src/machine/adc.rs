@@ -14,7 +14,7 @@ const ALIGN: u32 = 1 << 11;
 const SWSTART: u32 = 1 << 30;
 /// Sample times in ADC clock cycles (13.13.4).
 const SAMPLE: [u64; 8] = [3, 15, 28, 56, 84, 112, 144, 480];
-/// Highest ADC clock at 2.4 to 3.6 V (DS10693 table 74).
+/// Highest ADC clock at 2.4 to 3.6 V (DS10693, ADC characteristics).
 const ADCCLK_MAX_HZ: u32 = 36_000_000;
 
 /// Trigger outputs that can start a sequence (13.13.3, EXTSEL): timer number.

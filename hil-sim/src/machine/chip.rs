@@ -1,23 +1,21 @@
-//! Everything of the chip that is not the CPU: the peripherals, how they are wired to each other, and the address
-//! map. It knows registers and time, not the CPU emulation.
+//! Everything of the chip that is not the CPU: the peripherals, how they are wired to each other, and their events
+//! in order of time. It knows nothing of the CPU emulation; register accesses enter through `bus.rs`.
 use super::adc::{Adc, Trigger};
 use super::dma::{self, Dma, Route, Served};
 use super::exti::Exti;
 use super::gpio::{Mode, PORTS, Port};
 use super::iwdg::Iwdg;
-use super::names;
 use super::nvic::{Nvic, exception};
 use super::ppb::Ppb;
 use super::ram::Memory;
-use super::rcc::{Clocks, Enr, HSI_HZ, Rcc, ResetCause};
-use super::stop::{Answer, Refusal};
+use super::rcc::{Clocks, HSI_HZ, Rcc, ResetCause};
 use super::tim::{self, Output, Tim};
 use super::usart::Usart;
 use super::{LegState, Wiring};
 
-const TIMERS: usize = 7;
-const ADC_IRQ: usize = 18;
-const USART2_IRQ: usize = 38;
+pub(super) const TIMERS: usize = 7;
+pub(super) const ADC_IRQ: usize = 18;
+pub(super) const USART2_IRQ: usize = 38;
 /// Bit rate of the host until told otherwise.
 const HOST_BAUD: u32 = 1_000_000;
 /// Codes of the internal channels at 3.3 V and 25 degC: VREFINT 1.21 V, temperature sensor 0.76 V (DS10693 6.3.22
@@ -25,59 +23,22 @@ const HOST_BAUD: u32 = 1_000_000;
 const INTERNAL_REFERENCE: u16 = 1502;
 const INTERNAL_TEMPERATURE: u16 = 943;
 
-/// Peripheral behind an address, with its clock enable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Device {
-    Gpio(usize),
-    Rcc,
-    Flash,
-    Pwr,
-    Dma(usize),
-    Tim(usize),
-    Adc,
-    Usart2,
-    Iwdg,
-    Syscfg,
-    Exti,
-}
-
-/// Modelled device at an address, with its clock enable where it has one.
-fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
-    let page = address >> 10 & 0xff;
-    Some(match address & 0xffff_fc00 {
-        0x4002_0000..0x4002_2000 => (Device::Gpio(page as usize & 7), Some((Enr::Ahb1, page as u8 & 7))),
-        0x4002_3800 => (Device::Rcc, None),
-        0x4002_3c00 => (Device::Flash, None),
-        0x4002_6000 => (Device::Dma(0), Some((Enr::Ahb1, 21))),
-        0x4002_6400 => (Device::Dma(1), Some((Enr::Ahb1, 22))),
-        0x4001_0000 => (Device::Tim(0), Some((Enr::Apb2, 0))),
-        0x4000_0000..0x4000_1800 => (Device::Tim(page as usize + 1), Some((Enr::Apb1, page as u8))),
-        0x4001_2000 if !(0x100..0x300).contains(&(address & 0x3ff)) => (Device::Adc, Some((Enr::Apb2, 8))),
-        0x4000_4400 => (Device::Usart2, Some((Enr::Apb1, 17))),
-        0x4000_7000 => (Device::Pwr, Some((Enr::Apb1, 28))),
-        0x4000_3000 => (Device::Iwdg, None),
-        0x4001_3800 => (Device::Syscfg, Some((Enr::Apb2, 14))),
-        0x4001_3c00 => (Device::Exti, None),
-        _ => return None,
-    })
-}
-
 pub(crate) struct Chip<W> {
     pub wiring: W,
     pub nvic: Nvic,
     pub ppb: Ppb,
-    rcc: Rcc,
-    ports: [Port; PORTS],
-    exti: Exti,
-    dma: [Dma; 2],
-    adc: Adc,
-    tims: [Tim; TIMERS],
-    usart: Usart,
-    iwdg: Iwdg,
+    pub(super) rcc: Rcc,
+    pub(super) ports: [Port; PORTS],
+    pub(super) exti: Exti,
+    pub(super) dma: [Dma; 2],
+    pub(super) adc: Adc,
+    pub(super) tims: [Tim; TIMERS],
+    pub(super) usart: Usart,
+    pub(super) iwdg: Iwdg,
     legs: [LegState; 2],
     outputs: [(u32, u32); PORTS],
     /// A store made a DMA request possible; served before the next block.
-    kick: bool,
+    pub(super) kick: bool,
     /// Cycles asleep since power-up.
     pub slept: u64,
     pub reset: Option<ResetCause>,
@@ -115,28 +76,6 @@ impl<W: Wiring> Chip<W> {
             reset: None,
             next: u64::MAX,
         }
-    }
-
-    /// System reset: every register to its reset value, reset flags kept; the host goes on sending.
-    pub fn system_reset(&mut self, cause: ResetCause, now: u64) {
-        let slept = self.ppb.slept;
-        self.nvic = Nvic::new();
-        self.ppb = Ppb::new();
-        self.ppb.slept = slept;
-        self.rcc = Rcc::new(cause, self.rcc.flags());
-        self.ports = std::array::from_fn(Port::new);
-        self.exti = Exti::default();
-        self.dma = [Dma::new(1), Dma::new(2)];
-        for timer in 0..TIMERS {
-            self.reset_device(Device::Tim(timer));
-        }
-        self.reset_device(Device::Adc);
-        self.usart.set_clock(1, HSI_HZ);
-        self.usart.reset();
-        self.iwdg = Iwdg::new();
-        self.reset = None;
-        self.clocks_changed(self.rcc.clocks(), now);
-        self.after_change(now);
     }
 
     pub fn clocks(&self) -> Clocks {
@@ -268,7 +207,7 @@ impl<W: Wiring> Chip<W> {
         served
     }
 
-    fn timer_changed(&mut self, timer: usize, at: u64) {
+    pub(super) fn timer_changed(&mut self, timer: usize, at: u64) {
         let [brk, update, trigger, compare] = self.tims[timer].requests();
         match timer {
             0 => {
@@ -295,7 +234,7 @@ impl<W: Wiring> Chip<W> {
     }
 
     /// Tells the wiring when the state of a bridge leg has changed.
-    fn bridge_changed(&mut self, at: u64) {
+    pub(super) fn bridge_changed(&mut self, at: u64) {
         let legs = [self.leg(0), self.leg(1)];
         if legs != self.legs {
             self.legs = legs;
@@ -331,8 +270,9 @@ impl<W: Wiring> Chip<W> {
             for (port, bit) in [(0, 6), (1, 12)] {
                 if self.ports[port].mode(bit) == Mode::Alternate(1) {
                     let level = self.pin(port, bit);
-                    self.tims[0].set_break(level);
-                    self.timer_changed(0, at);
+                    if self.tims[0].set_break(level) {
+                        self.timer_changed(0, at);
+                    }
                 }
             }
         }
@@ -341,7 +281,7 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
-    fn sample_exti(&mut self, at: u64) {
+    pub(super) fn sample_exti(&mut self, at: u64) {
         let mut levels = [None; 16];
         for (line, port) in self.exti.watched() {
             levels[usize::from(line)] = Some(self.pin(port, line));
@@ -354,154 +294,13 @@ impl<W: Wiring> Chip<W> {
         self.exti_changed(at);
     }
 
-    fn exti_changed(&mut self, at: u64) {
+    pub(super) fn exti_changed(&mut self, at: u64) {
         for (irq, level) in self.exti.requests() {
             self.nvic.set_line(irq, level, at);
         }
     }
 
-    /// Loads from a peripheral or core register. `ipsr`: the running exception.
-    pub fn read(&mut self, address: u32, now: u64, ipsr: u32) -> Answer<u32> {
-        if address >= 0xe000_0000 {
-            if names::peripheral(address).is_none() {
-                return Err(Refusal::BusError);
-            }
-            return self.ppb.read(&self.nvic, address, now, ipsr);
-        }
-        let Some((device, enable)) = device(address) else {
-            return Err(if names::peripheral(address).is_some() {
-                Refusal::Offset
-            } else {
-                Refusal::BusError
-            });
-        };
-        if let Some((enr, bit)) = enable {
-            self.rcc.check_clock(enr, bit)?;
-        }
-        let offset = address & 0x3ff;
-        match device {
-            Device::Gpio(port) => {
-                let wiring = &self.wiring;
-                self.ports[port].read(offset, |bit| wiring.pin(port as u8, bit))
-            }
-            Device::Rcc => self.rcc.read(offset, now),
-            Device::Flash => self.rcc.read_flash(offset),
-            Device::Pwr => self.rcc.read_pwr(offset, now),
-            Device::Dma(i) => self.dma[i].read(offset),
-            Device::Tim(i) => {
-                let value = self.tims[i].read(offset, now)?;
-                self.timer_changed(i, now);
-                self.refresh_next(now);
-                Ok(value)
-            }
-            Device::Adc => {
-                let value = self.adc.read(offset)?;
-                self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
-                Ok(value)
-            }
-            Device::Usart2 => {
-                let value = self.usart.read(offset)?;
-                self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
-                Ok(value)
-            }
-            Device::Iwdg => self.iwdg.read(offset, now),
-            Device::Syscfg => self.exti.read_syscfg(offset),
-            Device::Exti => self.exti.read(offset),
-        }
-    }
-
-    /// Stores to a peripheral or core register. Byte and half-word stores reach the registers that take them:
-    /// priorities, GPIO BSRR, USART DR; any register takes a half-word at its lower half, the rest written 0.
-    pub fn write(&mut self, address: u32, bytes: u8, value: u32, now: u64) -> Answer<()> {
-        if address >= 0xe000_0000 {
-            if names::peripheral(address).is_none() {
-                return Err(Refusal::BusError);
-            }
-            if self
-                .ppb
-                .write(&mut self.nvic, address, bytes, value, now)?
-                .is_some()
-            {
-                self.reset = Some(ResetCause::Software);
-            }
-            self.refresh_next(now);
-            return Ok(());
-        }
-        let Some((device, enable)) = device(address) else {
-            return Err(if names::peripheral(address).is_some() {
-                Refusal::Offset
-            } else {
-                Refusal::BusError
-            });
-        };
-        if let Some((enr, bit)) = enable {
-            self.rcc.check_clock(enr, bit)?;
-        }
-        let (mut offset, mut value) = (address & 0x3ff, value);
-        match (device, bytes) {
-            (Device::Gpio(_), 2) if offset == 0x1a => (offset, value) = (0x18, value << 16),
-            (Device::Usart2, 1) if offset == 4 => {}
-            (_, 2) if offset & 3 == 0 => {}
-            (_, 4) => {}
-            _ => return Err(Refusal::Width),
-        }
-        self.write_device(device, offset, value, now)?;
-        self.refresh_next(now);
-        Ok(())
-    }
-
-    fn write_device(&mut self, device: Device, offset: u32, value: u32, now: u64) -> Answer<()> {
-        match device {
-            Device::Gpio(port) => {
-                self.ports[port].write(offset, value)?;
-                self.outputs_changed(port, now);
-                self.bridge_changed(now);
-            }
-            Device::Rcc => {
-                let old = self.rcc.clocks();
-                if self.rcc.write(offset, value, now)? {
-                    self.clocks_changed(old, now);
-                }
-                self.apply_resets(now);
-            }
-            Device::Flash => self.rcc.write_flash(offset, value)?,
-            Device::Pwr => self.rcc.write_pwr(offset, value, now)?,
-            Device::Dma(i) => {
-                self.dma[i].write(offset, value)?;
-                for stream in 0..8 {
-                    let (irq, level) = self.dma[i].request_line(stream);
-                    self.nvic.set_line(irq, level, now);
-                }
-                self.kick = true;
-            }
-            Device::Tim(i) => {
-                self.tims[i].write(offset, value, now)?;
-                self.timer_changed(i, now);
-            }
-            Device::Adc => {
-                self.adc.write(offset, value, now)?;
-                self.tims[1].listen(self.adc.trigger() == Some(Trigger::Tim2), now);
-                self.tims[2].listen(self.adc.trigger() == Some(Trigger::Tim3), now);
-                self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
-                self.kick = true;
-            }
-            Device::Usart2 => {
-                self.usart.write(offset, value, now)?;
-                self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
-                self.kick = true;
-            }
-            Device::Iwdg => self.iwdg.write(offset, value, now, self.rcc.clocks().hclk_hz)?,
-            Device::Syscfg => self.exti.write_syscfg(offset, value)?,
-            Device::Exti => {
-                self.exti.write(offset, value)?;
-                self.sample_exti(now);
-                self.exti_changed(now);
-            }
-        }
-        Ok(())
-    }
-
-    fn outputs_changed(&mut self, port: usize, now: u64) {
+    pub(super) fn outputs_changed(&mut self, port: usize, now: u64) {
         let (old_driven, old_levels) = self.outputs[port];
         let (driven, levels) = self.ports[port].outputs();
         self.outputs[port] = (driven, levels);
@@ -512,71 +311,11 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
-    fn after_change(&mut self, now: u64) {
+    pub(super) fn after_change(&mut self, now: u64) {
         for port in 0..PORTS {
             self.outputs_changed(port, now);
         }
         self.bridge_changed(now);
         self.refresh_next(now);
-    }
-
-    fn clocks_changed(&mut self, old: Clocks, now: u64) {
-        let clocks = self.rcc.clocks();
-        let ratio = |hz: u32| u64::from(clocks.hclk_hz / hz.max(1)).max(1);
-        for (i, timer) in self.tims.iter_mut().enumerate() {
-            timer.set_divider(
-                ratio(if i == 0 {
-                    clocks.timclk2_hz
-                } else {
-                    clocks.timclk1_hz
-                }),
-                now,
-            );
-        }
-        self.adc.set_clock(ratio(clocks.pclk2_hz), clocks.pclk2_hz);
-        self.usart.set_clock(ratio(clocks.pclk1_hz), clocks.hclk_hz);
-        self.iwdg.rescale(now, old.hclk_hz, clocks.hclk_hz);
-    }
-
-    /// Peripherals whose reset bit is set go back to their reset values.
-    fn apply_resets(&mut self, now: u64) {
-        const RESETS: [(Enr, u8, Device); 18] = [
-            (Enr::Apb2, 0, Device::Tim(0)),
-            (Enr::Apb1, 0, Device::Tim(1)),
-            (Enr::Apb1, 1, Device::Tim(2)),
-            (Enr::Apb1, 2, Device::Tim(3)),
-            (Enr::Apb1, 3, Device::Tim(4)),
-            (Enr::Apb1, 4, Device::Tim(5)),
-            (Enr::Apb1, 5, Device::Tim(6)),
-            (Enr::Apb2, 8, Device::Adc),
-            (Enr::Apb1, 17, Device::Usart2),
-            (Enr::Apb2, 14, Device::Syscfg),
-            (Enr::Ahb1, 21, Device::Dma(0)),
-            (Enr::Ahb1, 22, Device::Dma(1)),
-            (Enr::Ahb1, 0, Device::Gpio(0)),
-            (Enr::Ahb1, 1, Device::Gpio(1)),
-            (Enr::Ahb1, 2, Device::Gpio(2)),
-            (Enr::Ahb1, 3, Device::Gpio(3)),
-            (Enr::Ahb1, 4, Device::Gpio(4)),
-            (Enr::Ahb1, 7, Device::Gpio(7)),
-        ];
-        for (enr, bit, device) in RESETS {
-            if self.rcc.in_reset(enr, bit) {
-                self.reset_device(device);
-                self.after_change(now);
-            }
-        }
-    }
-
-    fn reset_device(&mut self, device: Device) {
-        match device {
-            Device::Gpio(port) => self.ports[port] = Port::new(port),
-            Device::Dma(i) => self.dma[i] = Dma::new(i + 1),
-            Device::Tim(i) => self.tims[i].reset(),
-            Device::Adc => self.adc.reset(),
-            Device::Usart2 => self.usart.reset(),
-            Device::Syscfg => self.exti.reset_syscfg(),
-            Device::Rcc | Device::Flash | Device::Pwr | Device::Iwdg | Device::Exti => {}
-        }
     }
 }

@@ -119,65 +119,71 @@ fn narrow_cost(op: u32) -> u16 {
 
 fn wide_cost(first: u32, second: u32) -> u16 {
     let registers = second.count_ones() as u16;
-    if is_float(first) {
-        return float_cost(first, second);
-    }
+    let loads = first & 0x10 != 0;
     match first >> 11 & 3 {
-        1 if first & 0x0640 == 0 => {
-            1 + registers
-                + if second >> 15 == 1 && first & 0x10 != 0 {
-                    2
-                } else {
-                    0
-                }
-        } // LDM, STM
-        1 if first & 0x0600 == 0 => {
-            if first & 0xfff0 == 0xe8d0 && second & 0xe0 == 0 {
-                4
-            } else {
-                3
-            }
-        } // TBB; LDRD, STRD, LDREX
-        1 => 1,                         // data processing, shifted register
-        2 if second & 0x8000 == 0 => 1, // data processing, immediate
-        2 if second & 0x5000 == 0 => {
-            if first & 0x0380 == 0x0380 {
-                1
-            } else {
-                2
-            }
-        } // MSR, MRS, hints; conditional branch
-        2 => 3,                         // B, BL
-        _ if first & 0x0600 == 0 => {
-            if first & 0x10 != 0 {
-                2
-            } else {
-                1
-            }
-        } // loads; stores are buffered
+        _ if is_float(first) => float_cost(first, second),
+        1 if first & 0x0640 == 0 && loads && second >> 15 == 1 => 3 + registers, // LDM with PC
+        1 if first & 0x0640 == 0 => 1 + registers,                               // LDM, STM
+        1 if first & 0xfff0 == 0xe8d0 && second & 0xe0 == 0 => 4,                // TBB, TBH
+        1 if first & 0x0600 == 0 => 3,                                           // LDRD, STRD, LDREX
+        1 => 1,                                                     // data processing, shifted register
+        2 if second & 0x8000 == 0 => 1,                             // data processing, immediate
+        2 if second & 0x5000 == 0 && first & 0x0380 == 0x0380 => 1, // MSR, MRS, hints
+        2 if second & 0x5000 == 0 => 2,                             // conditional branch
+        2 => 3,                                                     // B, BL
+        _ if first & 0x0600 == 0 && loads => 2,
         _ if first & 0xffd0 == 0xfb90 => 7, // SDIV, UDIV: 2 to 12
-        _ => 1,                         // multiplication, also long
+        _ => 1,                             // stores are buffered; multiplication, also long
     }
 }
 
 fn float_cost(first: u32, second: u32) -> u16 {
-    if first & 0x0e00 == 0x0c00 {
-        let single = first & 0x0120 == 0x0100; // VLDR, VSTR; else VLDM, VSTM or a pair move
-        return if first & 0x0fe0 == 0x0c40 {
-            2
-        } else if single {
-            2
-        } else {
-            1 + (second & 0xff) as u16
-        };
-    }
-    if second & 0x10 != 0 {
-        return 1; // moves to and from core registers
-    }
+    let memory = first & 0x0e00 == 0x0c00;
+    let pair_or_single = first & 0x0fe0 == 0x0c40 || first & 0x0120 == 0x0100;
     match first >> 4 & 0xb {
-        0x8 => 14,                                              // VDIV
+        _ if memory && pair_or_single => 2,        // VMOV of a pair, VLDR, VSTR
+        _ if memory => 1 + (second & 0xff) as u16, // VLDM, VSTM, VPUSH, VPOP
+        _ if second & 0x10 != 0 => 1,              // moves to and from core registers
+        0x8 => 14,                                 // VDIV
         0xb if second & 0xc0 == 0xc0 && first & 0xf == 1 => 14, // VSQRT
-        0x0 | 0x1 | 0x9 | 0xa => 3,                             // VMLA, VNMLA, VFMA, VFNMA
+        0x0 | 0x1 | 0x9 | 0xa => 3,                // VMLA, VNMLA, VFMA, VFNMA
         _ => 1,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block(halves: &[u16]) -> Block {
+        decode(&halves.iter().flat_map(|h| h.to_le_bytes()).collect::<Vec<_>>())
+    }
+
+    #[test]
+    fn costs_are_those_of_the_reference_manual() {
+        let cycles = |halves: &[u16]| block(halves).cycles;
+        assert_eq!(cycles(&[0x1840]), 1, "adds r0, r0, r1");
+        assert_eq!(cycles(&[0x6808]), 2, "ldr r0, [r1]");
+        assert_eq!(cycles(&[0x6008]), 1, "str r0, [r1]");
+        assert_eq!(cycles(&[0xb5f0]), 6, "push of r4 to r7 and lr: 1 + 5");
+        assert_eq!(
+            cycles(&[0xbdf0]),
+            8,
+            "pop of r4 to r7 and pc: 1 + 5 and the refill"
+        );
+        assert_eq!(cycles(&[0xfb00, 0xf001]), 1, "mul r0, r0, r1");
+        assert_eq!(cycles(&[0xfba0, 0x2301]), 1, "umull r2, r3, r0, r1");
+        assert_eq!(cycles(&[0xfbb0, 0xf0f1]), 7, "udiv r0, r0, r1");
+        assert_eq!(cycles(&[0xee30, 0x0a20]), 1, "vadd.f32 s0, s0, s1");
+        assert_eq!(cycles(&[0xee80, 0x0a20]), 14, "vdiv.f32 s0, s0, s1");
+        assert_eq!(cycles(&[0xeeb1, 0x0ac0]), 14, "vsqrt.f32 s0, s0");
+        assert_eq!(cycles(&[0xee00, 0x0a81]), 3, "vmla.f32 s0, s1, s2");
+    }
+
+    #[test]
+    fn a_block_counts_its_instructions_and_its_last_one() {
+        let b = block(&[0xbf40, 0xee30, 0x0a20, 0xbf30]);
+        assert_eq!((b.instructions, b.bytes, b.last), (3, 8, Last::Wfi));
+        assert!(b.float && b.sev);
     }
 }

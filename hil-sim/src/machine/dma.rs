@@ -19,7 +19,7 @@ const FLAG_SHIFT: [u32; 4] = [0, 6, 16, 22];
 /// Interrupt number of each stream.
 const IRQ: [[usize; 8]; 2] = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]];
 
-/// A request line that a modelled peripheral has: controller, stream, channel (9.3.4, tables 28 and 29), and
+/// A request line that a modelled peripheral has: controller, stream, channel (the request mapping of 9.3.4), and
 /// the data register that the stream's PAR must hold.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Route {
@@ -175,8 +175,8 @@ impl Dma {
             0x00 | 0x04 => return Ok(()), // read-only
             0x08 | 0x0c => {
                 let first = if offset == 0x08 { 0 } else { 4 };
-                for i in 0..4 {
-                    self.streams[first + i].flags &= !(value >> FLAG_SHIFT[i] & 0x3d);
+                for (stream, shift) in self.streams[first..].iter_mut().zip(FLAG_SHIFT) {
+                    stream.flags &= !(value >> shift & 0x3d);
                 }
                 return Ok(());
             }
@@ -219,7 +219,7 @@ impl Stream {
         if self.cr & EN != 0 {
             if value & EN == 0 {
                 self.cr = value;
-                self.flags |= TCIF; // 9.3.14: a stream that software stops reports the end
+                self.flags |= TCIF; // a stream that software stops reports the end (chapter 9, stream disable)
                 return Ok(());
             }
             only(

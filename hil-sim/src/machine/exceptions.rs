@@ -3,6 +3,7 @@
 //! Floating-point state is stacked at entry, not lazily: what the program sees is the same, FPCAR is not kept.
 use super::Wiring;
 use super::cost;
+use super::elf::{FLASH_BASE, RAM_BASE};
 use super::nvic::exception;
 use super::state::{Cpu, get, masks, service};
 use unicorn_engine::RegisterARM as Reg;
@@ -116,10 +117,22 @@ fn start_handler<W: Wiring>(
     state
         .profile
         .enter(exception, now.saturating_sub(pended_at), instructions, now);
-    let mut vector = [0; 4];
-    cpu.mem_read(u64::from(vector_at), &mut vector)
-        .map_err(|_| FrameError::Stack(vector_at))?;
-    set(cpu, Reg::PC, u32::from_le_bytes(vector) | 1)
+    let vector = vector(cpu, vector_at)?;
+    set(cpu, Reg::PC, vector | 1)
+}
+
+/// Handler address in the vector table, which mostly lies in flash.
+fn vector<W: Wiring>(cpu: &Cpu<'_, W>, address: u32) -> Result<u32, FrameError> {
+    let offset = (address & !FLASH_BASE) as usize;
+    let flash = &cpu.get_data().flash;
+    let mut word = [0; 4];
+    match flash.get(offset..offset + 4) {
+        Some(bytes) if address < RAM_BASE => word.copy_from_slice(bytes),
+        _ => cpu
+            .mem_read(u64::from(address), &mut word)
+            .map_err(|_| FrameError::Stack(address))?,
+    }
+    Ok(u32::from_le_bytes(word))
 }
 
 /// Returns from the running exception, or goes straight on to the next pending one (tail chaining).
@@ -206,11 +219,8 @@ pub(crate) fn reset<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
     ] {
         set(cpu, register, 0)?;
     }
-    let mut vectors = [0; 8];
-    cpu.mem_read(0, &mut vectors).map_err(|_| FrameError::Stack(0))?;
-    let word =
-        |at: usize| u32::from_le_bytes([vectors[at], vectors[at + 1], vectors[at + 2], vectors[at + 3]]);
-    set(cpu, Reg::SP, word(0))?;
+    let (sp, pc) = (vector(cpu, 0)?, vector(cpu, 4)?);
+    set(cpu, Reg::SP, sp)?;
     set(cpu, Reg::LR, 0xffff_ffff)?;
-    set(cpu, Reg::PC, word(4))
+    set(cpu, Reg::PC, pc)
 }

@@ -1,11 +1,11 @@
-//! Independent watchdog (RM0390 chapter 19), clocked by the LSI at its nominal 32 kHz.
+//! Independent watchdog (RM0390 chapter 20), clocked by the LSI at its nominal 32 kHz.
 use super::rcc::LSI_HZ;
 use super::stop::{Answer, Refusal, only};
 
 const KEY_UNLOCK: u32 = 0x5555;
 const KEY_RELOAD: u32 = 0xaaaa;
 const KEY_START: u32 = 0xcccc;
-/// A new prescaler or reload value takes up to five LSI cycles to arrive (19.4.4).
+/// A new prescaler or reload value takes up to five LSI cycles to arrive.
 const UPDATE_LSI_CYCLES: u64 = 5;
 
 pub(crate) struct Iwdg {
@@ -30,7 +30,7 @@ impl Iwdg {
         }
     }
 
-    /// Time-out in LSI cycles: (RL + 1) * 4 * 2^PR (19.3, table 107).
+    /// Time-out in LSI cycles: (RL + 1) * 4 * 2^PR.
     fn timeout_lsi(&self) -> u64 {
         u64::from(self.reload + 1) << (2 + self.prescaler.min(6))
     }
@@ -70,7 +70,7 @@ impl Iwdg {
                 }
             }
             (0x00, _) => self.unlocked = false,
-            (0x04 | 0x08, _) if !self.unlocked => {} // write-protected: ignored (19.3.2)
+            (0x04 | 0x08, _) if !self.unlocked => {} // write-protected: ignored
             (0x04, _) => {
                 only(value, 7, "IWDG_PR reserved bits")?;
                 self.prescaler = value;
@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(
             iwdg.due,
             32_768 * u64::from(HCLK) / 1000,
-            "table 107: 32768 ms for PR = 6, RL = 0xfff"
+            "32768 ms for PR = 6, RL = 0xfff (table of time-outs at 32 kHz)"
         );
     }
 

@@ -9,30 +9,36 @@
 //! register access happens at the time its basic block began; an interrupt is taken between two blocks. While the
 //! CPU sleeps, time jumps from event to event.
 mod adc;
+mod bus;
 mod chip;
 mod cost;
 mod dma;
 mod elf;
 mod exceptions;
 mod exti;
+mod faults;
 mod gpio;
 mod iwdg;
+mod mcu;
 mod names;
 mod nvic;
+mod power;
 mod ppb;
 mod profile;
 mod ram;
 mod rcc;
 mod run;
+mod setup;
 mod state;
 mod stop;
 mod tim;
+mod tim_registers;
 mod usart;
 
 pub use elf::{FLASH_BASE, FLASH_SIZE, Firmware, ImageError, RAM_BASE, RAM_SIZE};
+pub use mcu::{Machine, Reset};
 pub use profile::{InterruptStats, Stats};
 pub use rcc::{Clocks, HSE_HZ, HSI_HZ, LSI_HZ, ResetCause};
-pub use run::{Machine, Reset};
 pub use stop::{Access, Place, Stop};
 
 /// What is soldered to the pins. Times are CPU cycles since power-up and never go back.

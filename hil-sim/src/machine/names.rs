@@ -1,6 +1,11 @@
-//! Names of registers for messages: address to `PERIPHERAL_REGISTER` (RM0390 table 1 and the register maps).
+//! Names of registers for messages: address to `PERIPHERAL_REGISTER` (RM0390 memory map and register maps).
 
-const TIM: &[(u32, &str)] = &[
+/// Offset and name of registers.
+type Registers = &'static [(u32, &'static str)];
+/// First address, name and registers of a peripheral.
+type Entry = (u32, &'static str, Registers);
+
+const TIM: Registers = &[
     (0x00, "CR1"),
     (0x04, "CR2"),
     (0x08, "SMCR"),
@@ -23,7 +28,7 @@ const TIM: &[(u32, &str)] = &[
     (0x4c, "DMAR"),
     (0x50, "OR"),
 ];
-const USART: &[(u32, &str)] = &[
+const USART: Registers = &[
     (0x00, "SR"),
     (0x04, "DR"),
     (0x08, "BRR"),
@@ -32,7 +37,7 @@ const USART: &[(u32, &str)] = &[
     (0x14, "CR3"),
     (0x18, "GTPR"),
 ];
-const ADC: &[(u32, &str)] = &[
+const ADC: Registers = &[
     (0x00, "SR"),
     (0x04, "CR1"),
     (0x08, "CR2"),
@@ -54,7 +59,7 @@ const ADC: &[(u32, &str)] = &[
     (0x304, "CCR"),
     (0x308, "CDR"),
 ];
-const GPIO: &[(u32, &str)] = &[
+const GPIO: Registers = &[
     (0x00, "MODER"),
     (0x04, "OTYPER"),
     (0x08, "OSPEEDR"),
@@ -66,7 +71,7 @@ const GPIO: &[(u32, &str)] = &[
     (0x20, "AFRL"),
     (0x24, "AFRH"),
 ];
-const RCC: &[(u32, &str)] = &[
+const RCC: Registers = &[
     (0x00, "CR"),
     (0x04, "PLLCFGR"),
     (0x08, "CFGR"),
@@ -95,7 +100,7 @@ const RCC: &[(u32, &str)] = &[
     (0x90, "CKGATENR"),
     (0x94, "DCKCFGR2"),
 ];
-const FLASH: &[(u32, &str)] = &[
+const FLASH: Registers = &[
     (0x00, "ACR"),
     (0x04, "KEYR"),
     (0x08, "OPTKEYR"),
@@ -103,8 +108,8 @@ const FLASH: &[(u32, &str)] = &[
     (0x10, "CR"),
     (0x14, "OPTCR"),
 ];
-const PWR: &[(u32, &str)] = &[(0x00, "CR"), (0x04, "CSR")];
-const EXTI: &[(u32, &str)] = &[
+const PWR: Registers = &[(0x00, "CR"), (0x04, "CSR")];
+const EXTI: Registers = &[
     (0x00, "IMR"),
     (0x04, "EMR"),
     (0x08, "RTSR"),
@@ -112,7 +117,7 @@ const EXTI: &[(u32, &str)] = &[
     (0x10, "SWIER"),
     (0x14, "PR"),
 ];
-const SYSCFG: &[(u32, &str)] = &[
+const SYSCFG: Registers = &[
     (0x00, "MEMRMP"),
     (0x04, "PMC"),
     (0x08, "EXTICR1"),
@@ -122,12 +127,12 @@ const SYSCFG: &[(u32, &str)] = &[
     (0x20, "CMPCR"),
     (0x2c, "CFGR"),
 ];
-const IWDG: &[(u32, &str)] = &[(0x00, "KR"), (0x04, "PR"), (0x08, "RLR"), (0x0c, "SR")];
-const NONE: &[(u32, &str)] = &[];
+const IWDG: Registers = &[(0x00, "KR"), (0x04, "PR"), (0x08, "RLR"), (0x0c, "SR")];
+const NONE: Registers = &[];
 
 /// First address, name and registers of every peripheral of the STM32F446, ascending. The next entry's address
 /// bounds a peripheral; an empty name marks a reserved range.
-const MAP: &[(u32, &str, &[(u32, &str)])] = &[
+const MAP: &[Entry] = &[
     (0x4000_0000, "TIM2", TIM),
     (0x4000_0400, "TIM3", TIM),
     (0x4000_0800, "TIM4", TIM),
@@ -268,7 +273,7 @@ const MAP: &[(u32, &str, &[(u32, &str)])] = &[
 const DMA_GLOBAL: [&str; 4] = ["LISR", "HISR", "LIFCR", "HIFCR"];
 const DMA_STREAM: [&str; 6] = ["CR", "NDTR", "PAR", "M0AR", "M1AR", "FCR"];
 
-fn entry(address: u32) -> Option<(u32, &'static str, &'static [(u32, &'static str)])> {
+fn entry(address: u32) -> Option<Entry> {
     let after = MAP.partition_point(|(base, ..)| *base <= address);
     MAP.get(after.checked_sub(1)?).copied()
 }
@@ -283,7 +288,7 @@ pub(crate) fn register(address: u32) -> String {
     let Some((base, name, registers)) = entry(address).filter(|e| !e.1.is_empty()) else {
         return format!("{address:#010x}");
     };
-    let offset = address - base & !3;
+    let offset = (address - base) & !3;
     if name.starts_with("DMA") {
         let stream = (offset.wrapping_sub(0x10) / 0x18) as usize;
         return match DMA_GLOBAL.get(offset as usize / 4) {

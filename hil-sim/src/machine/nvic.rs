@@ -2,7 +2,7 @@
 //! (ARMv7-M Architecture Reference Manual B1.5, B3.4). Exceptions are numbered as in IPSR; 16 is interrupt 0.
 use super::stop::{Answer, Refusal, only};
 
-/// Exceptions of the STM32F446: 16 of the core, 97 interrupts (RM0390 table 38).
+/// Exceptions of the STM32F446: 16 of the core, 97 interrupts (RM0390 vector table).
 pub(crate) const EXCEPTIONS: usize = 16 + 97;
 /// Priority below every exception: nothing is active and nothing is masked.
 pub(crate) const THREAD_PRIORITY: i32 = 256;
@@ -330,7 +330,7 @@ impl Nvic {
 
     /// Registers at 0xE000E100..0xE000E4FF.
     pub fn read(&self, offset: u32) -> Answer<u32> {
-        let word = |set: u128| (set >> (16 + 32 * (offset / 4 & 7))) as u32;
+        let word = |set: u128| (set >> (16 + 32 * (offset >> 2 & 7))) as u32;
         match offset {
             0x100..0x120 | 0x180..0x1a0 if offset & 0x1f < 16 => Ok(word(self.enabled)),
             0x200..0x220 | 0x280..0x2a0 if offset & 0x1f < 16 => Ok(word(self.pending)),
@@ -354,7 +354,7 @@ impl Nvic {
         if !(0x100..0x300).contains(&offset) || offset & 0x7f >= 16 {
             return Err(Refusal::Offset);
         }
-        let word = offset / 4 & 7;
+        let word = offset >> 2 & 7;
         only(
             value,
             if word == 3 { 1 } else { u32::MAX },

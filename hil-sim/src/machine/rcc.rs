@@ -1,4 +1,4 @@
-//! Reset and clock control (RM0390 chapter 6), the voltage regulator (5.4) and the flash interface (3.8):
+//! Reset and clock control (RM0390 chapter 6):
 //! oscillators, PLL, bus prescalers, peripheral clock enables and resets, reset flags.
 use super::stop::{Answer, Refusal, only};
 
@@ -14,7 +14,6 @@ const HSI_START_US: u64 = 2;
 const HSE_START_US: u64 = 10; // an external clock, not a crystal
 const PLL_LOCK_US: u64 = 100;
 const LSI_START_US: u64 = 20;
-const OVER_DRIVE_US: u64 = 45;
 
 /// Frequencies in Hz as the RCC registers set them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -83,16 +82,16 @@ pub(crate) struct Rcc {
     /// Cycle from which HSI, HSE, PLL, LSI are ready.
     ready_at: [u64; 4],
     /// PWR
-    pwr_cr: u32,
-    over_drive_at: [u64; 2],
+    pub(super) pwr_cr: u32,
+    pub(super) over_drive_at: [u64; 2],
     /// FLASH
-    acr: u32,
+    pub(super) acr: u32,
     clocks: Clocks,
 }
 
 const HSI: usize = 0;
 const HSE: usize = 1;
-const PLL: usize = 2;
+pub(super) const PLL: usize = 2;
 const LSI: usize = 3;
 
 impl Rcc {
@@ -146,11 +145,11 @@ impl Rcc {
         self.rstr[enr as usize] >> bit & 1 != 0
     }
 
-    fn after(&self, now: u64, us: u64) -> u64 {
+    pub(super) fn after(&self, now: u64, us: u64) -> u64 {
         now + us * u64::from(self.clocks.hclk_hz) / 1_000_000
     }
 
-    fn is_ready(&self, source: usize, now: u64) -> bool {
+    pub(super) fn is_ready(&self, source: usize, now: u64) -> bool {
         let on = match source {
             HSI => self.cr & 1,
             HSE => self.cr >> 16 & 1,
@@ -331,7 +330,7 @@ impl Rcc {
         })
     }
 
-    fn check_latency(&self) -> Answer<()> {
+    pub(super) fn check_latency(&self) -> Answer<()> {
         let needed = self.clocks.hclk_hz.div_ceil(30_000_000) - 1;
         let latency = self.acr & 0xf;
         if latency < needed {
@@ -342,58 +341,6 @@ impl Rcc {
             });
         }
         Ok(())
-    }
-
-    /// PWR registers (5.4).
-    pub fn read_pwr(&self, offset: u32, now: u64) -> Answer<u32> {
-        match offset {
-            0 => Ok(self.pwr_cr),
-            4 => {
-                let ready = |i: usize| u32::from(now >= self.over_drive_at[i]);
-                let vos_ready = u32::from(self.is_ready(PLL, now));
-                Ok(vos_ready << 14 | ready(0) << 16 | ready(1) << 17)
-            }
-            _ => Err(Refusal::Offset),
-        }
-    }
-
-    pub fn write_pwr(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
-        if offset != 0 {
-            return Err(Refusal::Offset);
-        }
-        // DBP protects a domain that is not modelled; the clear bits act on wake-up flags that stay 0
-        only(value, 0x0003_c10c, "PWR_CR beyond VOS, ODEN, ODSWEN and DBP")?;
-        for (i, bit) in [(0, 16), (1, 17)] {
-            if value >> bit & 1 == 0 {
-                self.over_drive_at[i] = u64::MAX;
-            } else if self.pwr_cr >> bit & 1 == 0 {
-                if i == 1 && now < self.over_drive_at[0] {
-                    return Err(Refusal::NotModelled("PWR_CR.ODSWEN before ODRDY"));
-                }
-                self.over_drive_at[i] = self.after(now, OVER_DRIVE_US);
-            }
-        }
-        self.pwr_cr = value & !0xc;
-        Ok(())
-    }
-
-    /// FLASH registers (3.8); programming and erasing are not modelled.
-    pub fn read_flash(&self, offset: u32) -> Answer<u32> {
-        match offset {
-            0x00 => Ok(self.acr),
-            0x0c => Ok(0),
-            0x10 => Ok(0x8000_0000),
-            _ => Err(Refusal::Offset),
-        }
-    }
-
-    pub fn write_flash(&mut self, offset: u32, value: u32) -> Answer<()> {
-        if offset != 0 {
-            return Err(Refusal::Offset);
-        }
-        only(value, 0x1f0f, "FLASH_ACR")?;
-        self.acr = value & 0x070f;
-        self.check_latency()
     }
 }
 

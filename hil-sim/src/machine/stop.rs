@@ -67,7 +67,7 @@ pub enum Stop {
         /// Where in the image.
         place: Place,
     },
-    /// Fewer flash wait states than the new core clock needs (RM0390 table 5, 2.7 to 3.6 V).
+    /// Fewer flash wait states than the new core clock needs (RM0390 3.4.1, supply of 2.7 to 3.6 V).
     #[error(
         "FLASH_ACR.LATENCY = {latency} is too small for HCLK = {hclk_hz} Hz, which needs {needed} (in {place})"
     )]

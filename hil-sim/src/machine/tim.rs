@@ -1,10 +1,8 @@
-//! Timers 1 to 7 (RM0390 chapters 16, 17, 20): edge-aligned up-counting, preload, update events, output compare
+//! Timers 1 to 7 (RM0390 chapters 16, 17, 19): edge-aligned up-counting, preload, update events, output compare
 //! flags, trigger output, PWM levels, and the main output enable with break of the advanced timer.
 //!
 //! The counter is not ticked: its value follows from the time of its last restart, and [`Tim::sync`] brings flags
 //! and preloaded registers up to date. Capture, encoder, slave, centre-aligned and down-counting modes are refused.
-use super::stop::{Answer, Refusal, only};
-
 /// What distinguishes one timer from another.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Kind {
@@ -38,16 +36,16 @@ pub(crate) const BASIC: Kind = Kind {
     advanced: false,
 };
 
-const UIF: u32 = 1;
-const BIF: u32 = 1 << 7;
-const MOE: u32 = 1 << 15;
-const AOE: u32 = 1 << 14;
-const BKP: u32 = 1 << 13;
-const BKE: u32 = 1 << 12;
-const OSSR: u32 = 1 << 11;
-const OSSI: u32 = 1 << 10;
+pub(super) const UIF: u32 = 1;
+pub(super) const BIF: u32 = 1 << 7;
+pub(super) const MOE: u32 = 1 << 15;
+pub(super) const AOE: u32 = 1 << 14;
+pub(super) const BKP: u32 = 1 << 13;
+pub(super) const BKE: u32 = 1 << 12;
+pub(super) const OSSR: u32 = 1 << 11;
+pub(super) const OSSI: u32 = 1 << 10;
 
-/// What a channel's output does to its pin (RM0390 table 88).
+/// What a channel's output does to its pin (RM0390 16.4.9, output control bits).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Output {
     /// The timer does not drive the pin.
@@ -57,36 +55,36 @@ pub(crate) enum Output {
 }
 
 pub(crate) struct Tim {
-    kind: Kind,
+    pub(super) kind: Kind,
     /// CPU cycles per timer clock.
-    divider: u64,
-    cr1: u32,
-    cr2: u32,
-    dier: u32,
-    sr: u32,
-    ccmr: [u32; 2],
-    ccer: u32,
-    psc: u32,
-    arr: u32,
-    rcr: u32,
-    ccr: [u32; 4],
-    bdtr: u32,
-    lock: u32,
+    pub(super) divider: u64,
+    pub(super) cr1: u32,
+    pub(super) cr2: u32,
+    pub(super) dier: u32,
+    pub(super) sr: u32,
+    pub(super) ccmr: [u32; 2],
+    pub(super) ccer: u32,
+    pub(super) psc: u32,
+    pub(super) arr: u32,
+    pub(super) rcr: u32,
+    pub(super) ccr: [u32; 4],
+    pub(super) bdtr: u32,
+    pub(super) lock: u32,
     /// Active (shadow) registers.
-    psc_now: u32,
-    arr_now: u32,
-    ccr_now: [u32; 4],
-    repeats_left: u32,
+    pub(super) psc_now: u32,
+    pub(super) arr_now: u32,
+    pub(super) ccr_now: [u32; 4],
+    pub(super) repeats_left: u32,
     /// Cycle at which the counter was 0; meaningful while counting.
-    zero_at: u64,
+    pub(super) zero_at: u64,
     /// Counter while stopped.
-    stopped_at: u32,
+    pub(super) stopped_at: u32,
     /// Flags are up to date to here.
-    seen: u64,
+    pub(super) seen: u64,
     /// Set by each update event that is a trigger output; taken by the owner.
     pub trigger: bool,
     /// Someone listens to the trigger output, so update events must not be skipped.
-    trigger_used: bool,
+    pub(super) trigger_used: bool,
     /// Next cycle at which something visible happens.
     pub due: u64,
 }
@@ -139,7 +137,7 @@ impl Tim {
         }
     }
 
-    fn is_counting(&self) -> bool {
+    pub(super) fn is_counting(&self) -> bool {
         // 17.3.2: with auto-reload 0 the counter is blocked
         self.cr1 & 1 != 0 && self.arr_now != 0
     }
@@ -164,7 +162,7 @@ impl Tim {
         }
     }
 
-    fn count(&self, now: u64) -> u32 {
+    pub(super) fn count(&self, now: u64) -> u32 {
         if self.is_counting() {
             (now.wrapping_sub(self.zero_at) / self.tick()) as u32
         } else {
@@ -172,7 +170,7 @@ impl Tim {
         }
     }
 
-    fn set_count(&mut self, count: u32, now: u64) {
+    pub(super) fn set_count(&mut self, count: u32, now: u64) {
         self.stopped_at = count;
         self.zero_at = now.wrapping_sub(u64::from(count) * self.tick());
         self.seen = now;
@@ -234,7 +232,7 @@ impl Tim {
     }
 
     /// Update event: shadow registers take the preload values.
-    fn update(&mut self, overflow: bool) {
+    pub(super) fn update(&mut self, overflow: bool) {
         if self.cr1 & 2 != 0 {
             return; // UDIS
         }
@@ -251,7 +249,7 @@ impl Tim {
         self.trigger |= self.cr2 >> 4 & 7 == 2;
     }
 
-    fn schedule(&mut self) {
+    pub(super) fn schedule(&mut self) {
         self.due = u64::MAX;
         if !self.is_counting() {
             return;
@@ -277,12 +275,15 @@ impl Tim {
         }
     }
 
-    /// Level of the break input; active at the polarity BKP selects (16.3.12).
-    pub fn set_break(&mut self, level: bool) {
-        if self.watches_break() && level == (self.bdtr & BKP != 0) {
+    /// Level of the break input; active at the polarity BKP selects (16.3.12). `true`: something changed.
+    pub fn set_break(&mut self, level: bool) -> bool {
+        let active = self.watches_break() && level == (self.bdtr & BKP != 0);
+        let changes = active && (self.bdtr & MOE != 0 || self.sr & BIF == 0);
+        if active {
             self.bdtr &= !MOE;
             self.sr |= BIF;
         }
+        changes
     }
 
     /// The break input is enabled.
@@ -301,7 +302,7 @@ impl Tim {
         ]
     }
 
-    /// What channel `channel` (0 is CH1) drives (16.3.10, table 88).
+    /// What channel `channel` (0 is CH1) drives (16.4.9).
     pub fn output(&self, channel: usize) -> Output {
         let inverted = self.ccer >> (4 * channel + 1) & 1 != 0;
         let constant = |high: bool| Output::High {
@@ -339,168 +340,162 @@ impl Tim {
             period,
         }
     }
+}
 
-    pub fn read(&mut self, offset: u32, now: u64) -> Answer<u32> {
-        self.sync(now);
-        if offset > 0x0c && self.kind.channels == 0 && !matches!(offset, 0x10 | 0x14 | 0x24 | 0x28 | 0x2c) {
-            return Err(Refusal::Offset);
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// TIM1 as the bridge's PWM: 180 MHz / 1800 = 100 kHz, preload, CH1 in PWM mode 1.
+    fn pwm(bdtr: u32) -> Tim {
+        let mut tim = Tim::new(ADVANCED, 1);
+        for (offset, value) in [
+            (0x2c, 1799),
+            (0x34, 450),
+            (0x18, 0x6868),
+            (0x20, 0x11),
+            (0x14, 1),
+            (0x44, bdtr),
+            (0x00, 0x81),
+        ] {
+            tim.write(offset, value, 0).unwrap();
         }
-        Ok(match offset {
-            0x00 => self.cr1,
-            0x04 => self.cr2,
-            0x08 => 0,
-            0x0c => self.dier,
-            0x10 => self.sr,
-            0x14 => 0,
-            0x18 | 0x1c => self.ccmr[(offset as usize - 0x18) / 4],
-            0x20 => self.ccer,
-            0x24 => self.count(now),
-            0x28 => self.psc,
-            0x2c => self.arr,
-            0x30 if self.kind.advanced => self.rcr,
-            0x34..=0x40 => self.ccr[(offset as usize - 0x34) / 4],
-            0x44 if self.kind.advanced => self.bdtr,
-            0x50 if self.kind.counter_max == u32::MAX => 0,
-            _ => return Err(Refusal::Offset),
-        })
+        tim
     }
 
-    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
-        self.sync(now);
-        let result = self.write_synced(offset, value, now);
-        self.schedule();
-        result
+    #[test]
+    fn update_rate_is_clock_over_prescaler_and_reload() {
+        let mut tim = Tim::new(WIDE, 2);
+        tim.write(0x28, 8, 0).unwrap();
+        tim.write(0x2c, 624, 0).unwrap();
+        tim.write(0x14, 1, 0).unwrap();
+        tim.write(0x10, 0, 0).unwrap();
+        tim.write(0x0c, 1, 0).unwrap();
+        tim.write(0x00, 1, 100).unwrap();
+        assert_eq!(tim.due, 100 + 2 * 9 * 625);
+        assert_eq!(tim.read(0x24, 100 + 2 * 9 * 10).unwrap(), 10);
+        tim.sync(tim.due);
+        assert_eq!(tim.requests(), [false, true, false, false]);
+        assert_eq!(tim.read(0x24, 100 + 2 * 9 * 625).unwrap(), 0);
     }
 
-    fn write_synced(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
-        if offset > 0x0c && self.kind.channels == 0 && !matches!(offset, 0x10 | 0x14 | 0x24 | 0x28 | 0x2c) {
-            return Err(Refusal::Offset);
-        }
-        match offset {
-            0x00 => {
-                only(
-                    value,
-                    0x038f,
-                    "TIM CR1.DIR or CMS (down- or centre-aligned counting)",
-                )?;
-                let count = self.count(now);
-                self.cr1 = value;
-                if self.cr1 & 0x80 == 0 {
-                    self.arr_now = self.arr;
-                }
-                self.set_count(count, now);
+    #[test]
+    fn preloaded_compare_values_wait_for_the_update() {
+        let mut tim = pwm(MOE);
+        assert_eq!(
+            tim.output(0),
+            Output::High {
+                high: 450,
+                period: 1800
             }
-            0x04 => {
-                let allowed = if self.kind.advanced { 0x7f70 } else { 0x70 };
-                only(value, allowed, "TIM CR2.CCPC, CCUS, CCDS or TI1S")?;
-                if value >> 4 & 7 > 2 {
-                    return Err(Refusal::NotModelled(
-                        "TIM CR2.MMS (trigger output from a compare match)",
-                    ));
-                }
-                let protected = if self.lock >= 1 { 0x7f00 } else { 0 };
-                self.cr2 = value & !protected | self.cr2 & protected;
+        );
+        tim.write(0x34, 900, 1000).unwrap();
+        assert_eq!(
+            tim.output(0),
+            Output::High {
+                high: 450,
+                period: 1800
             }
-            0x08 => only(value, 0, "TIM SMCR (slave modes)")?,
-            0x0c => {
-                let channels = ((1u32 << self.kind.channels) - 1) << 1;
-                let advanced = if self.kind.advanced { 0xa0 } else { 0 };
-                only(value, UIF | channels | 0x40 | advanced, "TIM DIER (DMA requests)")?;
-                self.dier = value;
+        );
+        assert_eq!(tim.due, 1800);
+        tim.sync(1800);
+        assert_eq!(
+            tim.output(0),
+            Output::High {
+                high: 900,
+                period: 1800
             }
-            0x10 => self.sr &= value,
-            0x14 => {
-                let channels = ((1u32 << self.kind.channels) - 1) << 1;
-                only(
-                    value,
-                    UIF | channels | if self.kind.advanced { BIF } else { 0 },
-                    "TIM EGR.TG or COMG",
-                )?;
-                if value & BIF != 0 {
-                    self.bdtr &= !MOE;
-                }
-                self.sr |= value & (channels | BIF);
-                if value & UIF != 0 {
-                    self.set_count(0, now);
-                    self.update(false);
-                    self.set_count(0, now);
-                    self.trigger |= self.cr2 >> 4 & 7 == 0;
-                }
-            }
-            0x18 | 0x1c => self.write_ccmr((offset as usize - 0x18) / 4, value)?,
-            0x20 => {
-                let mut allowed = 0x3333;
-                if self.kind.advanced {
-                    only(value & 0x0444, 0, "TIM CCER.CCxNE (complementary outputs)")?;
-                    allowed |= 0x0888;
-                }
-                only(value, allowed, "TIM CCER reserved bits")?;
-                let protected = if self.lock >= 2 { 0x2aaa } else { 0 };
-                self.ccer = value & !protected | self.ccer & protected;
-            }
-            0x24 => self.set_count(value & self.kind.counter_max, now),
-            0x28 => {
-                only(value, 0xffff, "TIM PSC reserved bits")?;
-                self.psc = value;
-            }
-            0x2c => {
-                self.arr = value & self.kind.counter_max;
-                if self.cr1 & 0x80 == 0 {
-                    let count = self.count(now);
-                    self.arr_now = self.arr;
-                    self.set_count(count, now);
-                }
-            }
-            0x30 if self.kind.advanced => {
-                only(value, 0xff, "TIM RCR reserved bits")?;
-                self.rcr = value;
-            }
-            0x34..=0x40 => {
-                let channel = (offset as usize - 0x34) / 4;
-                self.ccr[channel] = value & self.kind.counter_max;
-                if self.ccmr[channel / 2] >> (8 * (channel % 2) + 3) & 1 == 0 {
-                    self.ccr_now[channel] = self.ccr[channel];
-                }
-            }
-            0x44 if self.kind.advanced => self.write_bdtr(value)?,
-            0x50 if self.kind.counter_max == u32::MAX => only(value, 0, "TIM OR (trigger remap)")?,
-            _ => return Err(Refusal::Offset),
-        }
-        Ok(())
+        );
+        assert_eq!(tim.due, u64::MAX, "nobody waits for the next update");
+        tim.write(0x34, 5000, 1900).unwrap();
+        tim.sync(3600);
+        assert_eq!(
+            tim.output(0),
+            Output::High {
+                high: 1800,
+                period: 1800
+            },
+            "above ARR: always high"
+        );
     }
 
-    fn write_ccmr(&mut self, half: usize, value: u32) -> Answer<()> {
-        only(value & 0x0303, 0, "TIM CCMR.CCxS (input capture)")?;
-        only(value & 0x8080, 0, "TIM CCMR.OCxCE (clear by ETRF)")?;
-        for channel in 0..2 {
-            let mode = value >> (8 * channel + 4) & 7;
-            if matches!(mode, 1..=3) {
-                return Err(Refusal::NotModelled(
-                    "TIM CCMR.OCxM = active, inactive or toggle on match",
-                ));
-            }
-        }
-        let protected = if self.lock >= 3 { 0x7878 } else { 0 };
-        self.ccmr[half] = value & !protected | self.ccmr[half] & protected;
-        for channel in 2 * half..2 * half + 2 {
-            if self.ccmr[half] >> (8 * (channel % 2) + 3) & 1 == 0 {
-                self.ccr_now[channel] = self.ccr[channel];
-            }
-        }
-        Ok(())
+    #[test]
+    fn outputs_follow_the_output_control_bits() {
+        assert_eq!(pwm(0).output(0), Output::Released, "MOE = 0, OSSI = 0");
+        assert_eq!(
+            pwm(OSSI).output(0),
+            Output::High { high: 0, period: 1 },
+            "idle level"
+        );
+        assert_eq!(pwm(MOE).output(2), Output::Released, "CC3E = 0, OSSR = 0");
+        assert_eq!(
+            pwm(MOE | OSSR).output(2),
+            Output::High { high: 0, period: 1 },
+            "inactive level"
+        );
     }
 
-    /// Dead time concerns complementary outputs only, which are refused; LOCK can be written once (16.4.18).
-    fn write_bdtr(&mut self, value: u32) -> Answer<()> {
-        only(value, 0xffff, "TIM BDTR reserved bits")?;
-        let protected = match self.lock {
-            0 => 0,
-            1 => BKE | BKP | AOE | 0xff,
-            _ => BKE | BKP | AOE | 0xff | OSSR | OSSI,
-        };
-        let locked_bits = if self.lock > 0 { 0x300 } else { 0 };
-        self.bdtr = value & !(protected | locked_bits) | self.bdtr & (protected | locked_bits);
-        self.lock = self.bdtr >> 8 & 3;
-        Ok(())
+    #[test]
+    fn break_switches_the_outputs_off_and_holds_them() {
+        let mut tim = pwm(MOE | BKE);
+        assert!(!tim.set_break(true), "active low");
+        assert!(tim.set_break(false));
+        assert_eq!(tim.output(0), Output::Released);
+        tim.write(0x44, MOE | BKE, 100).unwrap();
+        assert!(
+            tim.set_break(false),
+            "MOE does not hold while the input is active"
+        );
+        assert_eq!(tim.output(0), Output::Released);
+        tim.write(0x10, 0, 200).unwrap();
+        tim.write(0x44, MOE | BKE, 200).unwrap();
+        assert!(!tim.set_break(true));
+        assert_eq!(
+            tim.output(0),
+            Output::High {
+                high: 450,
+                period: 1800
+            }
+        );
+    }
+
+    #[test]
+    fn lock_level_1_keeps_the_break_configuration() {
+        let mut tim = pwm(MOE | BKE | 1 << 8);
+        tim.write(0x44, MOE | OSSR, 0).unwrap();
+        assert_eq!(tim.read(0x44, 0).unwrap(), MOE | OSSR | BKE | 1 << 8);
+    }
+
+    #[test]
+    fn compare_flags_rise_at_the_match() {
+        let mut tim = pwm(MOE);
+        assert_eq!(tim.read(0x10, 449).unwrap() & 2, 0);
+        assert_eq!(tim.read(0x10, 450).unwrap() & 2, 2);
+        tim.write(0x10, 0, 500).unwrap();
+        assert_eq!(
+            tim.read(0x10, 1800 * 100 + 300).unwrap() & 3,
+            3,
+            "a hundred periods later"
+        );
+    }
+
+    #[test]
+    fn one_pulse_mode_stops_at_the_update() {
+        let mut tim = Tim::new(BASIC, 2);
+        tim.write(0x2c, 99, 0).unwrap();
+        tim.write(0x00, 9, 0).unwrap();
+        assert_eq!(tim.read(0x00, 199).unwrap() & 1, 1);
+        assert_eq!(
+            (tim.read(0x00, 200).unwrap() & 1, tim.read(0x10, 200).unwrap()),
+            (0, 1)
+        );
+    }
+
+    #[test]
+    fn other_modes_are_refused() {
+        let mut tim = Tim::new(GENERAL, 2);
+        assert!(tim.write(0x08, 3, 0).is_err(), "encoder");
+        assert!(tim.write(0x18, 1, 0).is_err(), "input capture");
+        assert!(tim.write(0x00, 0x20, 0).is_err(), "centre-aligned");
     }
 }

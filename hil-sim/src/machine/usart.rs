@@ -116,7 +116,7 @@ impl Usart {
     }
 
     fn host_frame(&self) -> u128 {
-        (u128::from(self.hclk_hz) * u128::from(FRAME_BITS) << 16) / u128::from(self.host_baud)
+        ((u128::from(self.hclk_hz) * u128::from(FRAME_BITS)) << 16) / u128::from(self.host_baud)
     }
 
     /// The host starts to send `bytes` at `now`, or after what it is still sending.
@@ -298,5 +298,87 @@ impl Usart {
             _ => return Err(Refusal::Offset),
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// PCLK1 = 45 MHz at HCLK = 180 MHz, receiver and transmitter on, past the first idle frame.
+    fn usart(brr: u32, over8: bool, extra: u32) -> Usart {
+        let mut usart = Usart::new(4, 180_000_000, 1_000_000);
+        usart.write(0x08, brr, 0).unwrap();
+        usart
+            .write(0x0c, UE | TE | RE | u32::from(over8) << 15 | extra, 0)
+            .unwrap();
+        assert_eq!(usart.transmitted(), None);
+        usart
+    }
+
+    #[test]
+    fn baud_is_that_of_the_divider() {
+        assert_eq!(usart(45, false, 0).baud(), 1_000_000, "USARTDIV = 2.8125");
+        assert_eq!(
+            usart(5 << 4 | 5, true, 0).baud(),
+            1_000_000,
+            "OVER8: USARTDIV = 5.625, three bits of fraction"
+        );
+        // 45 MHz / (16 * 24.4375) = 115 089.5
+        assert_eq!(usart(24 * 16 + 7, false, 0).baud(), 115_090);
+    }
+
+    #[test]
+    fn transmission_keeps_one_byte_waiting() {
+        let mut usart = usart(45, false, 0);
+        usart.write(0x04, 0x41, 10_000).unwrap();
+        assert_eq!(
+            (usart.sr & (TXE | TC), usart.tx_due),
+            (TXE, 11_800),
+            "ten bits of 180 cycles"
+        );
+        usart.write(0x04, 0x42, 10_100).unwrap();
+        assert_eq!(usart.sr & (TXE | TC), 0);
+        assert_eq!(
+            (usart.transmitted(), usart.tx_due),
+            (Some(0x41), 13_600),
+            "back to back"
+        );
+        assert_eq!(usart.transmitted(), Some(0x42));
+        assert_eq!(usart.sr & (TXE | TC), TXE | TC);
+    }
+
+    #[test]
+    fn an_unread_byte_overruns_and_the_new_one_is_lost() {
+        let mut usart = usart(45, false, 0x20);
+        usart.send(b"ab", 20_000);
+        assert_eq!(usart.rx_due, 21_800);
+        usart.receive(true);
+        assert!(usart.request());
+        usart.receive(true);
+        assert_eq!(usart.read(0).unwrap() & (RXNE | ORE), RXNE | ORE);
+        assert_eq!(usart.read(4).unwrap(), u32::from(b'a'));
+        assert_eq!(usart.read(0).unwrap() & (RXNE | ORE), 0, "SR then DR clears both");
+        assert!(!usart.request());
+    }
+
+    #[test]
+    fn the_line_is_idle_a_frame_after_the_last_byte() {
+        let mut usart = usart(45, false, 0x10);
+        usart.send(b"a", 20_000);
+        usart.receive(true);
+        assert_eq!(usart.rx_due, 21_800 + 1800);
+        usart.receive(true);
+        assert!(usart.request());
+        usart.read(0).unwrap();
+        usart.read(4).unwrap();
+        assert!(!usart.request());
+    }
+
+    #[test]
+    fn parity_and_other_frames_are_refused() {
+        let mut usart = Usart::new(4, 180_000_000, 1_000_000);
+        assert!(usart.write(0x0c, UE | 1 << 10, 0).is_err(), "PCE");
+        assert!(usart.write(0x10, 2 << 12, 0).is_err(), "two stop bits");
     }
 }

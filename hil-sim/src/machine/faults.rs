@@ -1,0 +1,173 @@
+//! Exceptions that the program itself causes: supervisor calls, faults and their escalation, lockup (ARMv7-M B1.5).
+use super::Wiring;
+use super::exceptions::{self, FrameError};
+use super::mcu::Machine;
+use super::nvic::exception;
+use super::state::masks;
+use super::stop::{Access, Stop};
+use unicorn_engine::uc_error;
+
+/// A fault as the core reports it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fault {
+    pub(super) exception: usize,
+    /// Bits for CFSR.
+    pub(super) status: u32,
+    pub(super) address: Option<u32>,
+    pub(super) cause: &'static str,
+}
+
+const fn usage(status: u32, cause: &'static str) -> Fault {
+    Fault {
+        exception: exception::USAGE_FAULT,
+        status,
+        address: None,
+        cause,
+    }
+}
+
+pub(super) const UNDEFINED: Fault = usage(1 << 16, "undefined instruction");
+pub(super) const INVALID_STATE: Fault = usage(1 << 17, "branch to an ARM address");
+pub(super) const INVALID_RETURN: Fault = usage(1 << 18, "invalid exception return");
+pub(super) const NO_COPROCESSOR: Fault = usage(1 << 19, "floating-point instruction while CPACR denies it");
+pub(super) const UNALIGNED: Fault = usage(1 << 24, "unaligned access");
+
+impl<W: Wiring + 'static> Machine<W> {
+    /// An exception that the CPU emulation raised by itself.
+    pub(super) fn raised(&mut self, number: u32, pc: u32) -> Result<(), Stop> {
+        match number {
+            2 => self.supervisor_call(pc),
+            7 => {
+                // no debugger is attached and the debug monitor is off (C1.5): a HardFault with DEBUGEVT
+                self.cpu.get_data_mut().chip().ppb.hfsr |= 1 << 31;
+                let fault = Fault {
+                    exception: exception::HARD_FAULT,
+                    status: 0,
+                    address: None,
+                    cause: "BKPT",
+                };
+                self.fault(fault, pc)
+            }
+            8 => match exceptions::leave(&mut self.cpu, pc | 1) {
+                Err(FrameError::Return(_)) => self.fault(INVALID_RETURN, pc),
+                other => self.framed(other, "unstacking"),
+            },
+            17 => self.fault(NO_COPROCESSOR, pc),
+            18 => self.fault(INVALID_STATE, pc),
+            22 => self.fault(UNALIGNED, pc),
+            _ => Err(Stop::Emulator(format!(
+                "exception {number} of the CPU emulation at {pc:#010x}"
+            ))),
+        }
+    }
+
+    /// SVC: taken at once, or a HardFault when its priority does not allow it (B1.5.4).
+    fn supervisor_call(&mut self, pc: u32) -> Result<(), Stop> {
+        let (primask, basepri, faultmask) = masks(&self.cpu);
+        let state = self.cpu.get_data_mut();
+        let now = state.cycles;
+        let nvic = &mut state.chip().nvic;
+        let level = nvic.execution_priority(primask, basepri, faultmask);
+        if nvic.priority_of(exception::SVCALL) < level {
+            nvic.pend(exception::SVCALL, now);
+            return self.enter(exception::SVCALL, pc);
+        }
+        let cause = "SVC at or above its own priority";
+        self.fault(
+            Fault {
+                exception: exception::HARD_FAULT,
+                status: 0,
+                address: None,
+                cause,
+            },
+            pc,
+        )
+    }
+
+    /// An access that no memory answered, as the CPU emulation reports it.
+    pub(super) fn bad_access(
+        &mut self,
+        error: uc_error,
+        address: u32,
+        value: u32,
+        to_flash: bool,
+        pc: u32,
+    ) -> Result<(), Stop> {
+        if to_flash {
+            return Err(Stop::NotModelled {
+                register: "flash programming".into(),
+                address,
+                access: Access::Write(4),
+                value,
+                place: self.place(pc),
+            });
+        }
+        let fetch = matches!(error, uc_error::FETCH_UNMAPPED | uc_error::FETCH_PROT);
+        let (status, cause) = match error {
+            uc_error::FETCH_UNMAPPED | uc_error::FETCH_PROT => {
+                (1 << 8, "instruction fetch where no memory is")
+            }
+            uc_error::READ_UNMAPPED | uc_error::READ_PROT => (1 << 9 | 1 << 15, "load where no memory is"),
+            _ => (1 << 9 | 1 << 15, "store where no memory is"),
+        };
+        let address = (!fetch).then_some(address);
+        self.fault(
+            Fault {
+                exception: exception::BUS_FAULT,
+                status,
+                address,
+                cause,
+            },
+            pc,
+        )
+    }
+
+    /// Takes a fault: its own handler if enabled and urgent enough, else HardFault, else lockup.
+    pub(super) fn fault(&mut self, fault: Fault, pc: u32) -> Result<(), Stop> {
+        let (primask, basepri, faultmask) = masks(&self.cpu);
+        let state = self.cpu.get_data_mut();
+        let now = state.cycles;
+        let chip = state.chip();
+        let level = chip.nvic.execution_priority(primask, basepri, faultmask);
+        chip.ppb.cfsr |= fault.status;
+        if let Some(address) = fault.address {
+            chip.ppb.fault_address = address;
+        }
+        let own = chip.ppb.fault_enabled(fault.exception) && chip.nvic.priority_of(fault.exception) < level;
+        let taken = if own {
+            fault.exception
+        } else {
+            exception::HARD_FAULT
+        };
+        if taken != fault.exception {
+            chip.ppb.hfsr |= 1 << 30;
+        }
+        if chip.nvic.priority_of(taken) >= level {
+            return Err(Stop::Lockup {
+                cause: fault.cause.into(),
+                priority: level,
+                place: self.place(pc),
+            });
+        }
+        chip.nvic.pend(taken, now);
+        self.enter(taken, pc)
+    }
+
+    pub(super) fn enter(&mut self, exception: usize, pc: u32) -> Result<(), Stop> {
+        let result = exceptions::enter(&mut self.cpu, exception, pc);
+        self.framed(result, "stacking")
+    }
+
+    /// A frame that does not fit into memory: silicon derives a fault whose handler has no stack either.
+    fn framed(&mut self, result: Result<(), FrameError>, what: &str) -> Result<(), Stop> {
+        match result {
+            Ok(()) => Ok(()),
+            Err(FrameError::Stack(address)) => Err(Stop::Lockup {
+                cause: format!("exception {what} at {address:#010x}, where no memory is"),
+                priority: self.cpu.get_data().chip_ref().nvic.active_priority(),
+                place: self.place(self.cpu.get_data().block_pc),
+            }),
+            Err(error) => Err(Stop::Emulator(format!("{error:?} while {what}"))),
+        }
+    }
+}

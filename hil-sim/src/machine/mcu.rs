@@ -1,0 +1,166 @@
+//! The machine as its user sees it.
+use super::chip::Chip;
+use super::elf::Firmware;
+use super::exceptions;
+use super::profile::Stats;
+use super::rcc::{Clocks, ResetCause};
+use super::run::Sleep;
+use super::setup::set_up;
+use super::state::{Cpu, State};
+use super::stop::Stop;
+use super::{LegState, Wiring};
+use std::sync::Arc;
+use unicorn_engine::uc_error;
+
+/// Byte that fills the RAM at power-up.
+pub(super) const PAINT: u8 = 0xc5;
+/// A reset that happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Reset {
+    /// Cycles since power-up.
+    pub at: u64,
+    /// What caused it.
+    pub cause: ResetCause,
+}
+
+/// An emulated STM32F446RE with an image in its flash.
+pub struct Machine<W: Wiring + 'static> {
+    pub(super) cpu: Cpu<'static, W>,
+    pub(super) firmware: Firmware,
+    pub(super) sleep: Option<Sleep>,
+    pub(super) resets: Vec<Reset>,
+    stopped: Option<Stop>,
+}
+
+impl<W: Wiring + 'static> Machine<W> {
+    /// Powers the chip up with `firmware` in flash and `wiring` at its pins; nothing has run yet.
+    ///
+    /// # Errors
+    /// [`Stop::Emulator`] when the CPU emulation cannot be set up.
+    pub fn new(firmware: &Firmware, wiring: W) -> Result<Self, Stop> {
+        let flash: Arc<[u8]> = firmware.flash().into();
+        let state = State::new(Chip::new(wiring), Arc::clone(&flash));
+        let cpu = set_up(state, &flash).map_err(emulator)?;
+        let mut machine = Self {
+            cpu,
+            firmware: firmware.clone(),
+            sleep: None,
+            resets: Vec::new(),
+            stopped: None,
+        };
+        exceptions::reset(&mut machine.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))?;
+        machine.resets.push(Reset {
+            at: 0,
+            cause: ResetCause::PowerOn,
+        });
+        Ok(machine)
+    }
+
+    /// Runs until `cycle` (to the end of the basic block that reaches it), with every device event up to there.
+    ///
+    /// # Errors
+    /// The reason why the run cannot go on; the same again on every later call.
+    pub fn run_until(&mut self, cycle: u64) -> Result<(), Stop> {
+        if let Some(stop) = &self.stopped {
+            return Err(stop.clone());
+        }
+        let result = self.run(cycle);
+        if let Err(stop) = &result {
+            self.stopped = Some(stop.clone());
+        }
+        result
+    }
+
+    /// CPU cycles since power-up.
+    pub fn now(&self) -> u64 {
+        self.cpu.get_data().cycles
+    }
+
+    /// The clock tree as the image has set it.
+    pub fn clocks(&self) -> Clocks {
+        self.cpu.get_data().chip_ref().clocks()
+    }
+
+    /// What is at the pins.
+    pub fn wiring(&self) -> &W {
+        &self.cpu.get_data().chip_ref().wiring
+    }
+
+    /// What is at the pins, to be changed between two calls of [`run_until`](Self::run_until).
+    pub fn wiring_mut(&mut self) -> &mut W {
+        &mut self.cpu.get_data_mut().chip().wiring
+    }
+
+    /// The host starts to send `bytes` on USART2 now, or right after what it is still sending.
+    pub fn uart_send(&mut self, bytes: &[u8]) {
+        let now = self.now();
+        let chip = self.cpu.get_data_mut().chip();
+        chip.usart_mut().send(bytes, now);
+        chip.refresh_next(now);
+    }
+
+    /// Bytes that the host has not finished sending.
+    pub fn uart_sending(&self) -> usize {
+        self.cpu.get_data().chip_ref().usart().sending()
+    }
+
+    /// Bit rate of the host, both ways; 1 Mbit/s at the start.
+    pub fn set_host_baud(&mut self, baud: u32) {
+        self.cpu.get_data_mut().chip().usart_mut().set_host_baud(baud);
+    }
+
+    /// State of the bridge leg on TIM1 `channel` (1 or 2); other channels drive nothing.
+    pub fn leg_duty(&mut self, channel: usize) -> LegState {
+        let now = self.now();
+        let legs = self.cpu.get_data_mut().chip().legs(now);
+        channel
+            .checked_sub(1)
+            .and_then(|i| legs.get(i))
+            .copied()
+            .unwrap_or(LegState::Off)
+    }
+
+    /// Level that a general-purpose output drives (port 0 is A); `None` when the pin is no driven output.
+    pub fn gpio_output(&self, port: u8, bit: u8) -> Option<bool> {
+        self.cpu.get_data().chip_ref().output(port, bit)
+    }
+
+    /// Counts since power-up.
+    pub fn stats(&self) -> Stats {
+        let state = self.cpu.get_data();
+        Stats {
+            instructions: state.instructions,
+            cycles: state.cycles,
+            exceptions: state.exceptions,
+            sleep_share: state.chip_ref().slept as f64 / state.cycles.max(1) as f64,
+            interrupts: state.profile.interrupts(),
+        }
+    }
+
+    /// Resets since power-up, the power-up itself first.
+    pub fn resets(&self) -> &[Reset] {
+        &self.resets
+    }
+
+    /// Deepest use of the main stack since power-up, bytes; the RAM was painted then. `None` when the image has no
+    /// symbol that tells where its static data end (`__sheap`, `__euninit` or `__ebss`).
+    pub fn stack_high_water(&self) -> Option<u32> {
+        let bottom = ["__sheap", "__euninit", "__ebss"]
+            .iter()
+            .find_map(|name| self.firmware.symbol(name))?;
+        let top = self.firmware.initial_sp();
+        let size = top.checked_sub(bottom)? as usize;
+        let stack = self.cpu.mem_read_as_vec(u64::from(bottom), size).ok()?;
+        let untouched = stack.iter().take_while(|b| **b == PAINT).count();
+        Some((size - untouched) as u32)
+    }
+
+    /// Contents of RAM or flash, for tests and probes.
+    pub fn memory(&self, address: u32, bytes: usize) -> Option<Vec<u8>> {
+        self.cpu.mem_read_as_vec(u64::from(address), bytes).ok()
+    }
+}
+
+pub(super) fn emulator(error: uc_error) -> Stop {
+    Stop::Emulator(format!("{error:?}"))
+}

@@ -1,0 +1,64 @@
+//! Memories and hooks of the CPU emulation.
+use super::Wiring;
+use super::elf::{FLASH_BASE, FLASH_SIZE, RAM_BASE, RAM_SIZE};
+use super::mcu::PAINT;
+use super::state::{self, Cpu, Event, State};
+use unicorn_engine::{Arch, ArmCpuModel, HookType, MemType, Mode, Prot, Unicorn, uc_error};
+
+/// Maps the memories and installs the hooks.
+pub(super) fn set_up<W: Wiring + 'static>(
+    state: State<W>,
+    flash: &[u8],
+) -> Result<Cpu<'static, W>, uc_error> {
+    let mut cpu = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::MCLASS, state)?;
+    cpu.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32)?;
+    // BOOT0 is low: the flash also appears at 0 (RM0390 2.4)
+    for base in [0, FLASH_BASE] {
+        cpu.mem_map(u64::from(base), flash.len() as u64, Prot::READ | Prot::EXEC)?;
+        cpu.mem_write(u64::from(base), flash)?;
+    }
+    cpu.mem_map(u64::from(RAM_BASE), u64::from(RAM_SIZE), Prot::ALL)?;
+    cpu.mem_write(u64::from(RAM_BASE), &[PAINT; RAM_SIZE as usize])?;
+    for (base, size) in [
+        (0x4000_0000u64, 0x8_0000u64),
+        (0x4200_0000, 0x100_0000),
+        (0x5000_0000, 0x6_1000),
+        (0xe000_0000, 0x10_0000),
+    ] {
+        cpu.mmio_map(
+            base,
+            size,
+            Some(
+                move |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize| {
+                    u64::from(state::on_read(cpu, (base + offset) as u32, bytes as u8))
+                },
+            ),
+            Some(
+                move |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize, value: u64| {
+                    state::on_write(cpu, (base + offset) as u32, bytes as u8, value as u32);
+                },
+            ),
+        )?;
+    }
+    cpu.add_block_hook(1, 0, |cpu, address, bytes| {
+        state::on_block(cpu, address as u32, bytes)
+    })?;
+    cpu.add_intr_hook(|cpu, number| {
+        cpu.get_data_mut().event = Event::Raised(number);
+        if let Err(error) = cpu.emu_stop() {
+            debug_assert!(false, "{error:?}");
+        }
+    })?;
+    cpu.add_mem_hook(
+        HookType::MEM_UNMAPPED | HookType::MEM_PROT,
+        1,
+        0,
+        |cpu, kind, address, _, value| {
+            let flash = FLASH_BASE..FLASH_BASE + FLASH_SIZE;
+            let to_flash = kind == MemType::WRITE_PROT && flash.contains(&(address as u32));
+            cpu.get_data_mut().invalid = Some((address as u32, value as u32, to_flash));
+            false
+        },
+    )?;
+    Ok(cpu)
+}
