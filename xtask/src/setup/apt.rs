@@ -92,21 +92,22 @@ pub fn advice(missing: &[Missing]) -> String {
         .iter()
         .map(|missing| format!("  {}", missing.what))
         .collect();
-    let packages = packages(missing);
-    let mut ways = Vec::new();
-    if !packages.is_empty() {
-        let list = packages.join(" ");
-        ways.push(format!(
-            "apt-get update && apt-get install -y --no-install-recommends {list}"
-        ));
-    }
-    for way in missing.iter().flat_map(|missing| missing.elsewhere) {
-        if !ways.iter().any(|known| known == way) {
-            ways.push((*way).into());
+    // One line for each command, in the order they first appear.
+    let apt = "apt-get update && apt-get install -y --no-install-recommends";
+    let mut ways: Vec<(&str, Vec<&str>)> = vec![(apt, packages(missing))];
+    for &(command, operand) in missing.iter().flat_map(|missing| missing.elsewhere) {
+        match ways.iter_mut().find(|(known, _)| *known == command) {
+            Some((_, operands)) if operands.contains(&operand) => {}
+            Some((_, operands)) => operands.push(operand),
+            None => ways.push((command, vec![operand])),
         }
     }
+    ways.retain(|(_, operands)| !operands.is_empty());
     lines.push("provided by (whichever your system has)".into());
-    lines.extend(ways.iter().map(|way| format!("  {way}")));
+    lines.extend(
+        ways.iter()
+            .map(|(command, operands)| format!("  {command} {}", operands.join(" "))),
+    );
     lines.join("\n")
 }
 
@@ -237,12 +238,12 @@ mod tests {
         let one = Missing {
             what: "a",
             apt: &["a-dev", "b"],
-            elsewhere: &["dnf install a", "xcode-select --install"],
+            elsewhere: &[("dnf install", "a"), ("xcode-select", "--install")],
         };
         let two = Missing {
             what: "c",
             apt: &["c"],
-            elsewhere: &["dnf install c", "xcode-select --install"],
+            elsewhere: &[("dnf install", "c"), ("xcode-select", "--install")],
         };
         let advice = advice(&[one, two]);
         assert!(
@@ -250,6 +251,6 @@ mod tests {
             "{advice}"
         );
         assert_eq!(advice.matches("xcode-select").count(), 1, "{advice}");
-        assert!(advice.contains("\n  dnf install c"), "{advice}");
+        assert!(advice.contains("\n  dnf install a c"), "{advice}");
     }
 }

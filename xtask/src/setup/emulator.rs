@@ -23,7 +23,11 @@ pub fn missing(found: &Found) -> Vec<Missing> {
             Missing {
                 what: "cmake",
                 apt: &["cmake"],
-                elsewhere: &["dnf install cmake", "pacman -S cmake", "brew install cmake"],
+                elsewhere: &[
+                    ("dnf install", "cmake"),
+                    ("pacman -S", "cmake"),
+                    ("brew install", "cmake"),
+                ],
             },
         ),
         (
@@ -31,7 +35,11 @@ pub fn missing(found: &Found) -> Vec<Missing> {
             Missing {
                 what: "make",
                 apt: &["make"],
-                elsewhere: &["dnf install make", "pacman -S make", "xcode-select --install"],
+                elsewhere: &[
+                    ("dnf install", "make"),
+                    ("pacman -S", "make"),
+                    ("xcode-select", "--install"),
+                ],
             },
         ),
         (
@@ -39,7 +47,11 @@ pub fn missing(found: &Found) -> Vec<Missing> {
             Missing {
                 what: "a C compiler",
                 apt: &["gcc", "libc6-dev"],
-                elsewhere: &["dnf install gcc", "pacman -S gcc", "xcode-select --install"],
+                elsewhere: &[
+                    ("dnf install", "gcc"),
+                    ("pacman -S", "gcc"),
+                    ("xcode-select", "--install"),
+                ],
             },
         ),
         (
@@ -47,7 +59,11 @@ pub fn missing(found: &Found) -> Vec<Missing> {
             Missing {
                 what: "libclang with its headers",
                 apt: &["libclang-dev"],
-                elsewhere: &["dnf install clang-devel", "pacman -S clang", "brew install llvm"],
+                elsewhere: &[
+                    ("dnf install", "clang-devel"),
+                    ("pacman -S", "clang"),
+                    ("brew install", "llvm"),
+                ],
             },
         ),
     ];

@@ -36,8 +36,8 @@ pub struct Needs {
 struct Missing {
     what: &'static str,
     apt: &'static [&'static str],
-    /// Command line for each of dnf, pacman, brew; or one for any machine.
-    elsewhere: &'static [&'static str],
+    /// Other commands that provide it, each with what it is to be told.
+    elsewhere: &'static [(&'static str, &'static str)],
 }
 
 /// Whether this is a run of continuous integration, where nobody can be asked.
