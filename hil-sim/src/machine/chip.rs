@@ -20,7 +20,7 @@ pub(super) const USART2_IRQ: usize = 38;
 const HOST_BAUD: u32 = 1_000_000;
 /// Codes of the internal channels at 3.3 V and 25 degC: VREFINT 1.21 V, temperature sensor 0.76 V (DS10693 6.3.22
 /// and 6.3.24).
-const INTERNAL_REFERENCE: u16 = 1502;
+pub(super) const INTERNAL_REFERENCE: u16 = 1502;
 const INTERNAL_TEMPERATURE: u16 = 943;
 
 pub(crate) struct Chip<W> {
