@@ -1,13 +1,13 @@
 //! The address map: which device answers at an address, whether its clock runs, and what a store sets in motion.
-use super::adc::Trigger;
-use super::chip::{ADC_IRQ, Chip, INTERNAL_REFERENCE, TIMERS, USART2_IRQ};
-use super::dma::Dma;
-use super::gpio::Port;
-use super::iwdg::Iwdg;
-use super::rcc::{Clocks, Enr, HSI_HZ, Rcc, ResetCause};
-use super::stop::{Answer, Refusal};
-use super::{Wiring, names};
-use super::{exti::Exti, nvic::Nvic, ppb::Ppb};
+use super::{ADC_IRQ, Chip, INTERNAL_REFERENCE, TIMERS, USART2_IRQ};
+use crate::machine::adc::Trigger;
+use crate::machine::dma::Dma;
+use crate::machine::gpio::Port;
+use crate::machine::iwdg::Iwdg;
+use crate::machine::rcc::{Clocks, Enr, HSI_HZ, Rcc, ResetCause};
+use crate::machine::stop::{Answer, Refusal};
+use crate::machine::{Wiring, names};
+use crate::machine::{exti::Exti, nvic::Nvic, ppb::Ppb};
 
 /// Peripheral behind an address, with its clock enable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
