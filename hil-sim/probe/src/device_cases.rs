@@ -40,6 +40,13 @@ pub fn external_memory() {
     read(0xa000_1000);
 }
 
+/// The store and the sleep share a basic block.
+pub fn encoder_mode_then_sleep() {
+    set(RCC + 0x40, 1 << 1);
+    // SAFETY: a store to a register of TIM3.
+    unsafe { core::arch::asm!("str {v}, [{a}]", "wfi", v = in(reg) 3, a = in(reg) TIM3 + 8) };
+}
+
 pub fn encoder_mode() {
     set(RCC + 0x40, 1 << 1);
     write(TIM3 + 0x08, 3);

@@ -67,6 +67,7 @@ fn main() -> ! {
         13 => device_cases::product_load(),
         14 => device_cases::baud_mismatch(),
         15 => device_cases::external_memory(),
+        16 => device_cases::encoder_mode_then_sleep(),
         _ => {}
     }
     done()
