@@ -42,6 +42,42 @@ fn a_peripheral_without_clock_stops_the_run() {
 }
 
 #[test]
+fn reading_without_clock_stops_too() {
+    let Stop::ClockOff {
+        peripheral, access, ..
+    } = probe::stop(7)
+    else {
+        panic!()
+    };
+    assert_eq!((peripheral.as_str(), access), ("USART2", Access::Read(4)));
+}
+
+#[test]
+fn the_signature_tells_the_flash_size_and_other_memories_stop_the_run() {
+    let mut machine = probe::machine(15);
+    let stop = machine.run_until(100_000).expect_err("stops");
+    assert_eq!(probe::log(&machine), [512]);
+    assert!(
+        matches!(&stop, Stop::NotModelled { register, .. } if register == "QUADSPI+0x0"),
+        "{stop}"
+    );
+    assert_eq!(machine.run_until(200_000), Err(stop), "for good");
+}
+
+#[test]
+fn the_break_input_releases_both_legs() {
+    let (mut machine, _) = probe::run(13, SECOND / 100);
+    assert_ne!(machine.leg_duty(1), LegState::Off);
+    machine.wiring_mut().break_pin = Some(true);
+    machine.run_until(machine.now() + SECOND / 16_000).expect("runs");
+    assert_eq!([machine.leg_duty(1), machine.leg_duty(2)], [LegState::Off; 2]);
+    assert_eq!(
+        machine.wiring().bridge.last().map(|b| b.0),
+        Some([LegState::Off; 2])
+    );
+}
+
+#[test]
 fn too_few_wait_states_stop_the_run() {
     let Stop::FlashLatency {
         hclk_hz,
@@ -57,13 +93,16 @@ fn too_few_wait_states_stop_the_run() {
 
 #[test]
 fn an_unmodelled_mode_stops_the_run() {
-    let Stop::NotModelled { register, value, .. } = probe::stop(11) else {
-        panic!()
-    };
-    assert_eq!(
-        (register.as_str(), value),
-        ("TIM3_SMCR (TIM SMCR (slave modes))", 3)
-    );
+    for case in [11, 16] {
+        let Stop::NotModelled { register, value, .. } = probe::stop(case) else {
+            panic!()
+        };
+        assert_eq!(
+            (register.as_str(), value),
+            ("TIM3_SMCR (TIM SMCR (slave modes))", 3),
+            "case {case}"
+        );
+    }
 }
 
 #[test]

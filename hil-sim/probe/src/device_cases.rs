@@ -31,6 +31,22 @@ pub fn clock_off() {
     write(TIM2 + 0x2c, 99);
 }
 
+pub fn clock_off_read() {
+    read(USART2);
+}
+
+pub fn external_memory() {
+    log(read(0x1fff_7a20) >> 16); // flash size in KiB
+    read(0xa000_1000);
+}
+
+/// The store and the sleep share a basic block.
+pub fn encoder_mode_then_sleep() {
+    set(RCC + 0x40, 1 << 1);
+    // SAFETY: a store to a register of TIM3.
+    unsafe { core::arch::asm!("str {v}, [{a}]", "wfi", v = in(reg) 3, a = in(reg) TIM3 + 8) };
+}
+
 pub fn encoder_mode() {
     set(RCC + 0x40, 1 << 1);
     write(TIM3 + 0x08, 3);
@@ -121,15 +137,16 @@ pub fn product_load() {
 }
 
 fn pwm() {
-    write(GPIOA, read(GPIOA) & !0xf_0000 | 0xa_0000);
+    write(GPIOA, read(GPIOA) & !0xf_3000 | 0xa_2000); // PA8 and PA9, and PA6 as the break input
     set(GPIOA + 0x24, 0x11);
+    set(GPIOA + 0x20, 1 << 24);
     write(TIM1 + 0x2c, 1799);
     write(TIM1 + 0x34, 450);
     write(TIM1 + 0x38, 0);
     write(TIM1 + 0x18, 0x6868); // PWM mode 1 with preload
     write(TIM1 + 0x20, 0x11);
     write(TIM1 + 0x14, 1);
-    write(TIM1 + 0x44, 1 << 15);
+    write(TIM1 + 0x44, 1 << 15 | 1 << 13 | 1 << 12); // outputs on, break when high
     write(TIM1, 0x81);
 }
 

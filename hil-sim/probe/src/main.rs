@@ -58,6 +58,7 @@ fn main() -> ! {
         4 => core_cases::lockup(),
         5 => core_cases::software_reset(),
         6 => core_cases::sleep_by_events(),
+        7 => device_cases::clock_off_read(),
         8 => device_cases::unmodelled_register(),
         9 => device_cases::clock_off(),
         10 => device_cases::too_few_wait_states(),
@@ -65,6 +66,8 @@ fn main() -> ! {
         12 => device_cases::watchdog(),
         13 => device_cases::product_load(),
         14 => device_cases::baud_mismatch(),
+        15 => device_cases::external_memory(),
+        16 => device_cases::encoder_mode_then_sleep(),
         _ => {}
     }
     done()

@@ -1,5 +1,5 @@
 //! Everything of the chip that is not the CPU: the peripherals, how they are wired to each other, and their events
-//! in order of time. It knows nothing of the CPU emulation; register accesses enter through `bus.rs`.
+//! in order of time. It knows nothing of the CPU emulation; register accesses enter through `chip/bus.rs`.
 use super::adc::{Adc, Trigger};
 use super::dma::{self, Dma, Route, Served};
 use super::exti::Exti;
@@ -13,9 +13,11 @@ use super::tim::{self, Output, Tim};
 use super::usart::Usart;
 use super::{LegState, Wiring};
 
-pub(super) const TIMERS: usize = 7;
-pub(super) const ADC_IRQ: usize = 18;
-pub(super) const USART2_IRQ: usize = 38;
+mod bus;
+
+const TIMERS: usize = 7;
+const ADC_IRQ: usize = 18;
+const USART2_IRQ: usize = 38;
 /// Bit rate of the host until told otherwise.
 const HOST_BAUD: u32 = 1_000_000;
 /// Codes of the internal channels at 3.3 V and 25 degC: VREFINT 1.21 V, temperature sensor 0.76 V (DS10693 6.3.22
@@ -27,18 +29,18 @@ pub(crate) struct Chip<W> {
     pub wiring: W,
     pub nvic: Nvic,
     pub ppb: Ppb,
-    pub(super) rcc: Rcc,
-    pub(super) ports: [Port; PORTS],
-    pub(super) exti: Exti,
-    pub(super) dma: [Dma; 2],
-    pub(super) adc: Adc,
-    pub(super) tims: [Tim; TIMERS],
-    pub(super) usart: Usart,
-    pub(super) iwdg: Iwdg,
+    rcc: Rcc,
+    ports: [Port; PORTS],
+    exti: Exti,
+    dma: [Dma; 2],
+    adc: Adc,
+    tims: [Tim; TIMERS],
+    usart: Usart,
+    iwdg: Iwdg,
     legs: [LegState; 2],
     outputs: [(u32, u32); PORTS],
     /// A store made a DMA request possible; served before the next block.
-    pub(super) kick: bool,
+    kick: bool,
     /// Cycles asleep since power-up.
     pub slept: u64,
     pub reset: Option<ResetCause>,
@@ -207,7 +209,7 @@ impl<W: Wiring> Chip<W> {
         served
     }
 
-    pub(super) fn timer_changed(&mut self, timer: usize, at: u64) {
+    fn timer_changed(&mut self, timer: usize, at: u64) {
         let [brk, update, trigger, compare] = self.tims[timer].requests();
         match timer {
             0 => {
@@ -234,7 +236,7 @@ impl<W: Wiring> Chip<W> {
     }
 
     /// Tells the wiring when the state of a bridge leg has changed.
-    pub(super) fn bridge_changed(&mut self, at: u64) {
+    fn bridge_changed(&mut self, at: u64) {
         let legs = [self.leg(0), self.leg(1)];
         if legs != self.legs {
             self.legs = legs;
@@ -281,7 +283,7 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
-    pub(super) fn sample_exti(&mut self, at: u64) {
+    fn sample_exti(&mut self, at: u64) {
         let mut levels = [None; 16];
         for (line, port) in self.exti.watched() {
             levels[usize::from(line)] = Some(self.pin(port, line));
@@ -294,13 +296,13 @@ impl<W: Wiring> Chip<W> {
         self.exti_changed(at);
     }
 
-    pub(super) fn exti_changed(&mut self, at: u64) {
+    fn exti_changed(&mut self, at: u64) {
         for (irq, level) in self.exti.requests() {
             self.nvic.set_line(irq, level, at);
         }
     }
 
-    pub(super) fn outputs_changed(&mut self, port: usize, now: u64) {
+    fn outputs_changed(&mut self, port: usize, now: u64) {
         let (old_driven, old_levels) = self.outputs[port];
         let (driven, levels) = self.ports[port].outputs();
         self.outputs[port] = (driven, levels);
@@ -311,7 +313,7 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
-    pub(super) fn after_change(&mut self, now: u64) {
+    fn after_change(&mut self, now: u64) {
         for port in 0..PORTS {
             self.outputs_changed(port, now);
         }

@@ -9,7 +9,6 @@
 //! register access happens at the time its basic block began; an interrupt is taken between two blocks. While the
 //! CPU sleeps, time jumps from event to event.
 mod adc;
-mod bus;
 mod chip;
 mod cost;
 mod dma;
@@ -22,7 +21,6 @@ mod iwdg;
 mod mcu;
 mod names;
 mod nvic;
-mod power;
 mod ppb;
 mod profile;
 mod ram;
@@ -32,7 +30,6 @@ mod setup;
 mod state;
 mod stop;
 mod tim;
-mod tim_registers;
 mod usart;
 
 pub use elf::{FLASH_BASE, FLASH_SIZE, Firmware, ImageError, RAM_BASE, RAM_SIZE};

@@ -133,6 +133,14 @@ const NONE: Registers = &[];
 /// First address, name and registers of every peripheral of the STM32F446, ascending. The next entry's address
 /// bounds a peripheral; an empty name marks a reserved range.
 const MAP: &[Entry] = &[
+    (0x1fff_0000, "SYSTEM_MEMORY", NONE),
+    (0x1fff_7800, "OTP", NONE),
+    (0x1fff_7a10, "SIGNATURE", NONE),
+    (0x1fff_7a30, "", NONE),
+    (0x1fff_c000, "OPTION_BYTES", NONE),
+    (0x1fff_c010, "", NONE),
+    (0x2200_0000, "SRAM_BIT_BAND", NONE),
+    (0x2240_0000, "", NONE),
     (0x4000_0000, "TIM2", TIM),
     (0x4000_0400, "TIM3", TIM),
     (0x4000_0800, "TIM4", TIM),
@@ -215,6 +223,9 @@ const MAP: &[Entry] = &[
     (0x5004_0000, "", NONE),
     (0x5005_0000, "DCMI", NONE),
     (0x5005_0400, "", NONE),
+    (0xa000_0000, "FMC", NONE),
+    (0xa000_1000, "QUADSPI", NONE),
+    (0xa000_2000, "", NONE),
     (0xe000_0000, "ITM", NONE),
     (
         0xe000_1000,

@@ -34,6 +34,7 @@ impl<W: Wiring + 'static> Machine<W> {
                 self.system_reset(cause)?;
                 continue;
             }
+            self.pending_errors()?;
             if now >= cycle {
                 return Ok(());
             }
@@ -41,7 +42,6 @@ impl<W: Wiring + 'static> Machine<W> {
                 self.sleep_until(cycle, sleep);
                 continue;
             }
-            self.pending_errors()?;
             if let Some(exception) = takeable(&self.cpu) {
                 let pc = get(&self.cpu, Reg::PC);
                 self.enter(exception, pc)?;
@@ -53,7 +53,9 @@ impl<W: Wiring + 'static> Machine<W> {
     /// Register accesses that ended the last block badly.
     fn pending_errors(&mut self) -> Result<(), Stop> {
         let state = self.cpu.get_data_mut();
-        state.attention = false;
+        if !std::mem::take(&mut state.attention) {
+            return Ok(());
+        }
         if let Some(refused) = state.refused.take() {
             return Err(self.refusal(refused));
         }
@@ -66,6 +68,7 @@ impl<W: Wiring + 'static> Machine<W> {
                 address: None,
                 cause: "access to a reserved peripheral address",
             };
+            self.sleep = None;
             return self.fault(fault, pc);
         }
         Ok(())

@@ -5,6 +5,18 @@ use super::mcu::PAINT;
 use super::state::{self, Cpu, Event, State};
 use unicorn_engine::{Arch, ArmCpuModel, HookType, MemType, Mode, Prot, Unicorn, uc_error};
 
+/// Ranges whose accesses go to the register models, reserved gaps included: signature and option bytes, bit-band
+/// aliases, APB and AHB1, AHB2, external memory controllers, the core's own peripherals.
+const DEVICES: [(u64, u64); 7] = [
+    (0x1fff_0000, 0x1_0000),
+    (0x2200_0000, 0x40_0000),
+    (0x4000_0000, 0x8_0000),
+    (0x4200_0000, 0x100_0000),
+    (0x5000_0000, 0x6_1000),
+    (0xa000_0000, 0x2000),
+    (0xe000_0000, 0x10_0000),
+];
+
 /// Maps the memories and installs the hooks.
 pub(super) fn set_up<W: Wiring + 'static>(
     state: State<W>,
@@ -19,12 +31,7 @@ pub(super) fn set_up<W: Wiring + 'static>(
     }
     cpu.mem_map(u64::from(RAM_BASE), u64::from(RAM_SIZE), Prot::ALL)?;
     cpu.mem_write(u64::from(RAM_BASE), &[PAINT; RAM_SIZE as usize])?;
-    for (base, size) in [
-        (0x4000_0000u64, 0x8_0000u64),
-        (0x4200_0000, 0x100_0000),
-        (0x5000_0000, 0x6_1000),
-        (0xe000_0000, 0x10_0000),
-    ] {
+    for (base, size) in DEVICES {
         cpu.mmio_map(
             base,
             size,

@@ -3,6 +3,8 @@
 //!
 //! The counter is not ticked: its value follows from the time of its last restart, and [`Tim::sync`] brings flags
 //! and preloaded registers up to date. Capture, encoder, slave, centre-aligned and down-counting modes are refused.
+mod registers;
+
 /// What distinguishes one timer from another.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Kind {
@@ -36,14 +38,14 @@ pub(crate) const BASIC: Kind = Kind {
     advanced: false,
 };
 
-pub(super) const UIF: u32 = 1;
-pub(super) const BIF: u32 = 1 << 7;
-pub(super) const MOE: u32 = 1 << 15;
-pub(super) const AOE: u32 = 1 << 14;
-pub(super) const BKP: u32 = 1 << 13;
-pub(super) const BKE: u32 = 1 << 12;
-pub(super) const OSSR: u32 = 1 << 11;
-pub(super) const OSSI: u32 = 1 << 10;
+const UIF: u32 = 1;
+const BIF: u32 = 1 << 7;
+const MOE: u32 = 1 << 15;
+const AOE: u32 = 1 << 14;
+const BKP: u32 = 1 << 13;
+const BKE: u32 = 1 << 12;
+const OSSR: u32 = 1 << 11;
+const OSSI: u32 = 1 << 10;
 
 /// What a channel's output does to its pin (RM0390 16.4.9, output control bits).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,36 +57,36 @@ pub(crate) enum Output {
 }
 
 pub(crate) struct Tim {
-    pub(super) kind: Kind,
+    kind: Kind,
     /// CPU cycles per timer clock.
-    pub(super) divider: u64,
-    pub(super) cr1: u32,
-    pub(super) cr2: u32,
-    pub(super) dier: u32,
-    pub(super) sr: u32,
-    pub(super) ccmr: [u32; 2],
-    pub(super) ccer: u32,
-    pub(super) psc: u32,
-    pub(super) arr: u32,
-    pub(super) rcr: u32,
-    pub(super) ccr: [u32; 4],
-    pub(super) bdtr: u32,
-    pub(super) lock: u32,
+    divider: u64,
+    cr1: u32,
+    cr2: u32,
+    dier: u32,
+    sr: u32,
+    ccmr: [u32; 2],
+    ccer: u32,
+    psc: u32,
+    arr: u32,
+    rcr: u32,
+    ccr: [u32; 4],
+    bdtr: u32,
+    lock: u32,
     /// Active (shadow) registers.
-    pub(super) psc_now: u32,
-    pub(super) arr_now: u32,
-    pub(super) ccr_now: [u32; 4],
-    pub(super) repeats_left: u32,
+    psc_now: u32,
+    arr_now: u32,
+    ccr_now: [u32; 4],
+    repeats_left: u32,
     /// Cycle at which the counter was 0; meaningful while counting.
-    pub(super) zero_at: u64,
+    zero_at: u64,
     /// Counter while stopped.
-    pub(super) stopped_at: u32,
+    stopped_at: u32,
     /// Flags are up to date to here.
-    pub(super) seen: u64,
+    seen: u64,
     /// Set by each update event that is a trigger output; taken by the owner.
     pub trigger: bool,
     /// Someone listens to the trigger output, so update events must not be skipped.
-    pub(super) trigger_used: bool,
+    trigger_used: bool,
     /// Next cycle at which something visible happens.
     pub due: u64,
 }
@@ -137,7 +139,7 @@ impl Tim {
         }
     }
 
-    pub(super) fn is_counting(&self) -> bool {
+    fn is_counting(&self) -> bool {
         // 17.3.2: with auto-reload 0 the counter is blocked
         self.cr1 & 1 != 0 && self.arr_now != 0
     }
@@ -162,7 +164,7 @@ impl Tim {
         }
     }
 
-    pub(super) fn count(&self, now: u64) -> u32 {
+    fn count(&self, now: u64) -> u32 {
         if self.is_counting() {
             (now.wrapping_sub(self.zero_at) / self.tick()) as u32
         } else {
@@ -170,7 +172,7 @@ impl Tim {
         }
     }
 
-    pub(super) fn set_count(&mut self, count: u32, now: u64) {
+    fn set_count(&mut self, count: u32, now: u64) {
         self.stopped_at = count;
         self.zero_at = now.wrapping_sub(u64::from(count) * self.tick());
         self.seen = now;
@@ -232,7 +234,7 @@ impl Tim {
     }
 
     /// Update event: shadow registers take the preload values.
-    pub(super) fn update(&mut self, overflow: bool) {
+    fn update(&mut self, overflow: bool) {
         if self.cr1 & 2 != 0 {
             return; // UDIS
         }
@@ -249,7 +251,7 @@ impl Tim {
         self.trigger |= self.cr2 >> 4 & 7 == 2;
     }
 
-    pub(super) fn schedule(&mut self) {
+    fn schedule(&mut self) {
         self.due = u64::MAX;
         if !self.is_counting() {
             return;
@@ -343,159 +345,4 @@ impl Tim {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// TIM1 as the bridge's PWM: 180 MHz / 1800 = 100 kHz, preload, CH1 in PWM mode 1.
-    fn pwm(bdtr: u32) -> Tim {
-        let mut tim = Tim::new(ADVANCED, 1);
-        for (offset, value) in [
-            (0x2c, 1799),
-            (0x34, 450),
-            (0x18, 0x6868),
-            (0x20, 0x11),
-            (0x14, 1),
-            (0x44, bdtr),
-            (0x00, 0x81),
-        ] {
-            tim.write(offset, value, 0).unwrap();
-        }
-        tim
-    }
-
-    #[test]
-    fn update_rate_is_clock_over_prescaler_and_reload() {
-        let mut tim = Tim::new(WIDE, 2);
-        tim.write(0x28, 8, 0).unwrap();
-        tim.write(0x2c, 624, 0).unwrap();
-        tim.write(0x14, 1, 0).unwrap();
-        tim.write(0x10, 0, 0).unwrap();
-        tim.write(0x0c, 1, 0).unwrap();
-        tim.write(0x00, 1, 100).unwrap();
-        assert_eq!(tim.due, 100 + 2 * 9 * 625);
-        assert_eq!(tim.read(0x24, 100 + 2 * 9 * 10).unwrap(), 10);
-        tim.sync(tim.due);
-        assert_eq!(tim.requests(), [false, true, false, false]);
-        assert_eq!(tim.read(0x24, 100 + 2 * 9 * 625).unwrap(), 0);
-    }
-
-    #[test]
-    fn preloaded_compare_values_wait_for_the_update() {
-        let mut tim = pwm(MOE);
-        assert_eq!(
-            tim.output(0),
-            Output::High {
-                high: 450,
-                period: 1800
-            }
-        );
-        tim.write(0x34, 900, 1000).unwrap();
-        assert_eq!(
-            tim.output(0),
-            Output::High {
-                high: 450,
-                period: 1800
-            }
-        );
-        assert_eq!(tim.due, 1800);
-        tim.sync(1800);
-        assert_eq!(
-            tim.output(0),
-            Output::High {
-                high: 900,
-                period: 1800
-            }
-        );
-        assert_eq!(tim.due, u64::MAX, "nobody waits for the next update");
-        tim.write(0x34, 5000, 1900).unwrap();
-        tim.sync(3600);
-        assert_eq!(
-            tim.output(0),
-            Output::High {
-                high: 1800,
-                period: 1800
-            },
-            "above ARR: always high"
-        );
-    }
-
-    #[test]
-    fn outputs_follow_the_output_control_bits() {
-        assert_eq!(pwm(0).output(0), Output::Released, "MOE = 0, OSSI = 0");
-        assert_eq!(
-            pwm(OSSI).output(0),
-            Output::High { high: 0, period: 1 },
-            "idle level"
-        );
-        assert_eq!(pwm(MOE).output(2), Output::Released, "CC3E = 0, OSSR = 0");
-        assert_eq!(
-            pwm(MOE | OSSR).output(2),
-            Output::High { high: 0, period: 1 },
-            "inactive level"
-        );
-    }
-
-    #[test]
-    fn break_switches_the_outputs_off_and_holds_them() {
-        let mut tim = pwm(MOE | BKE);
-        assert!(!tim.set_break(true), "active low");
-        assert!(tim.set_break(false));
-        assert_eq!(tim.output(0), Output::Released);
-        tim.write(0x44, MOE | BKE, 100).unwrap();
-        assert!(
-            tim.set_break(false),
-            "MOE does not hold while the input is active"
-        );
-        assert_eq!(tim.output(0), Output::Released);
-        tim.write(0x10, 0, 200).unwrap();
-        tim.write(0x44, MOE | BKE, 200).unwrap();
-        assert!(!tim.set_break(true));
-        assert_eq!(
-            tim.output(0),
-            Output::High {
-                high: 450,
-                period: 1800
-            }
-        );
-    }
-
-    #[test]
-    fn lock_level_1_keeps_the_break_configuration() {
-        let mut tim = pwm(MOE | BKE | 1 << 8);
-        tim.write(0x44, MOE | OSSR, 0).unwrap();
-        assert_eq!(tim.read(0x44, 0).unwrap(), MOE | OSSR | BKE | 1 << 8);
-    }
-
-    #[test]
-    fn compare_flags_rise_at_the_match() {
-        let mut tim = pwm(MOE);
-        assert_eq!(tim.read(0x10, 449).unwrap() & 2, 0);
-        assert_eq!(tim.read(0x10, 450).unwrap() & 2, 2);
-        tim.write(0x10, 0, 500).unwrap();
-        assert_eq!(
-            tim.read(0x10, 1800 * 100 + 300).unwrap() & 3,
-            3,
-            "a hundred periods later"
-        );
-    }
-
-    #[test]
-    fn one_pulse_mode_stops_at_the_update() {
-        let mut tim = Tim::new(BASIC, 2);
-        tim.write(0x2c, 99, 0).unwrap();
-        tim.write(0x00, 9, 0).unwrap();
-        assert_eq!(tim.read(0x00, 199).unwrap() & 1, 1);
-        assert_eq!(
-            (tim.read(0x00, 200).unwrap() & 1, tim.read(0x10, 200).unwrap()),
-            (0, 1)
-        );
-    }
-
-    #[test]
-    fn other_modes_are_refused() {
-        let mut tim = Tim::new(GENERAL, 2);
-        assert!(tim.write(0x08, 3, 0).is_err(), "encoder");
-        assert!(tim.write(0x18, 1, 0).is_err(), "input capture");
-        assert!(tim.write(0x00, 0x20, 0).is_err(), "centre-aligned");
-    }
-}
+mod tests;

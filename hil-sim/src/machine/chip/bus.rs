@@ -1,13 +1,13 @@
 //! The address map: which device answers at an address, whether its clock runs, and what a store sets in motion.
-use super::adc::Trigger;
-use super::chip::{ADC_IRQ, Chip, TIMERS, USART2_IRQ};
-use super::dma::Dma;
-use super::gpio::Port;
-use super::iwdg::Iwdg;
-use super::rcc::{Clocks, Enr, HSI_HZ, Rcc, ResetCause};
-use super::stop::{Answer, Refusal};
-use super::{Wiring, names};
-use super::{exti::Exti, nvic::Nvic, ppb::Ppb};
+use super::{ADC_IRQ, Chip, INTERNAL_REFERENCE, TIMERS, USART2_IRQ};
+use crate::machine::adc::Trigger;
+use crate::machine::dma::Dma;
+use crate::machine::gpio::Port;
+use crate::machine::iwdg::Iwdg;
+use crate::machine::rcc::{Clocks, Enr, HSI_HZ, Rcc, ResetCause};
+use crate::machine::stop::{Answer, Refusal};
+use crate::machine::{Wiring, names};
+use crate::machine::{exti::Exti, nvic::Nvic, ppb::Ppb};
 
 /// Peripheral behind an address, with its clock enable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,6 +46,18 @@ fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
     })
 }
 
+/// Factory words of the system memory (RM0390 chapter 34, DS10693): unique identifier, flash size in KiB,
+/// calibration codes of the internal reference and of the temperature sensor at 30 and 110 degC, all nominal.
+fn signature(address: u32) -> Option<u32> {
+    Some(match address {
+        0x1fff_7a10 | 0x1fff_7a14 | 0x1fff_7a18 => 0x0046_0000 | address & 0xff,
+        0x1fff_7a20 => 512 << 16,
+        0x1fff_7a28 => u32::from(INTERNAL_REFERENCE) << 16,
+        0x1fff_7a2c => 1207 << 16 | 959,
+        _ => return None,
+    })
+}
+
 impl<W: Wiring> Chip<W> {
     /// System reset: every register to its reset value, reset flags kept; the host goes on sending.
     pub fn system_reset(&mut self, cause: ResetCause, now: u64) {
@@ -76,6 +88,9 @@ impl<W: Wiring> Chip<W> {
                 return Err(Refusal::BusError);
             }
             return self.ppb.read(&self.nvic, address, now, ipsr);
+        }
+        if let Some(word) = signature(address) {
+            return Ok(word);
         }
         let Some((device, enable)) = device(address) else {
             return Err(if names::peripheral(address).is_some() {

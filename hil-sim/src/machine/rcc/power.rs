@@ -1,6 +1,6 @@
 //! What the clock tree depends on: the voltage regulator (RM0390 5.4) and the flash interface (3.8).
-use super::rcc::{PLL, Rcc};
-use super::stop::{Answer, Refusal, only};
+use super::{PLL, Rcc};
+use crate::machine::stop::{Answer, Refusal, only};
 
 /// Time until over-drive, and the switch to it, is ready (of the order of DS10693 section 6.3.5).
 const OVER_DRIVE_US: u64 = 45;

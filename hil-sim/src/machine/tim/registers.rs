@@ -1,6 +1,6 @@
 //! Register access of the timers (RM0390 16.4, 17.4, 19.4).
-use super::stop::{Answer, Refusal, only};
-use super::tim::{AOE, BIF, BKE, BKP, MOE, OSSI, OSSR, Tim, UIF};
+use super::{AOE, BIF, BKE, BKP, MOE, OSSI, OSSR, Tim, UIF};
+use crate::machine::stop::{Answer, Refusal, only};
 
 impl Tim {
     pub fn read(&mut self, offset: u32, now: u64) -> Answer<u32> {

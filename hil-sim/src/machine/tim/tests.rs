@@ -1,0 +1,155 @@
+//! The timer against the manual.
+use super::*;
+
+/// TIM1 as the bridge's PWM: 180 MHz / 1800 = 100 kHz, preload, CH1 in PWM mode 1.
+fn pwm(bdtr: u32) -> Tim {
+    let mut tim = Tim::new(ADVANCED, 1);
+    for (offset, value) in [
+        (0x2c, 1799),
+        (0x34, 450),
+        (0x18, 0x6868),
+        (0x20, 0x11),
+        (0x14, 1),
+        (0x44, bdtr),
+        (0x00, 0x81),
+    ] {
+        tim.write(offset, value, 0).unwrap();
+    }
+    tim
+}
+
+#[test]
+fn update_rate_is_clock_over_prescaler_and_reload() {
+    let mut tim = Tim::new(WIDE, 2);
+    tim.write(0x28, 8, 0).unwrap();
+    tim.write(0x2c, 624, 0).unwrap();
+    tim.write(0x14, 1, 0).unwrap();
+    tim.write(0x10, 0, 0).unwrap();
+    tim.write(0x0c, 1, 0).unwrap();
+    tim.write(0x00, 1, 100).unwrap();
+    assert_eq!(tim.due, 100 + 2 * 9 * 625);
+    assert_eq!(tim.read(0x24, 100 + 2 * 9 * 10).unwrap(), 10);
+    tim.sync(tim.due);
+    assert_eq!(tim.requests(), [false, true, false, false]);
+    assert_eq!(tim.read(0x24, 100 + 2 * 9 * 625).unwrap(), 0);
+}
+
+#[test]
+fn preloaded_compare_values_wait_for_the_update() {
+    let mut tim = pwm(MOE);
+    assert_eq!(
+        tim.output(0),
+        Output::High {
+            high: 450,
+            period: 1800
+        }
+    );
+    tim.write(0x34, 900, 1000).unwrap();
+    assert_eq!(
+        tim.output(0),
+        Output::High {
+            high: 450,
+            period: 1800
+        }
+    );
+    assert_eq!(tim.due, 1800);
+    tim.sync(1800);
+    assert_eq!(
+        tim.output(0),
+        Output::High {
+            high: 900,
+            period: 1800
+        }
+    );
+    assert_eq!(tim.due, u64::MAX, "nobody waits for the next update");
+    tim.write(0x34, 5000, 1900).unwrap();
+    tim.sync(3600);
+    assert_eq!(
+        tim.output(0),
+        Output::High {
+            high: 1800,
+            period: 1800
+        },
+        "above ARR: always high"
+    );
+}
+
+#[test]
+fn outputs_follow_the_output_control_bits() {
+    assert_eq!(pwm(0).output(0), Output::Released, "MOE = 0, OSSI = 0");
+    assert_eq!(
+        pwm(OSSI).output(0),
+        Output::High { high: 0, period: 1 },
+        "idle level"
+    );
+    assert_eq!(pwm(MOE).output(2), Output::Released, "CC3E = 0, OSSR = 0");
+    assert_eq!(
+        pwm(MOE | OSSR).output(2),
+        Output::High { high: 0, period: 1 },
+        "inactive level"
+    );
+}
+
+#[test]
+fn break_switches_the_outputs_off_and_holds_them() {
+    let mut tim = pwm(MOE | BKE);
+    assert!(!tim.set_break(true), "active low");
+    assert!(tim.set_break(false));
+    assert_eq!(tim.output(0), Output::Released);
+    tim.write(0x44, MOE | BKE, 100).unwrap();
+    assert!(
+        tim.set_break(false),
+        "MOE does not hold while the input is active"
+    );
+    assert_eq!(tim.output(0), Output::Released);
+    tim.write(0x10, 0, 200).unwrap();
+    tim.write(0x44, MOE | BKE, 200).unwrap();
+    assert!(!tim.set_break(true));
+    assert_eq!(
+        tim.output(0),
+        Output::High {
+            high: 450,
+            period: 1800
+        }
+    );
+}
+
+#[test]
+fn lock_level_1_keeps_the_break_configuration() {
+    let mut tim = pwm(MOE | BKE | 1 << 8);
+    tim.write(0x44, MOE | OSSR, 0).unwrap();
+    assert_eq!(tim.read(0x44, 0).unwrap(), MOE | OSSR | BKE | 1 << 8);
+}
+
+#[test]
+fn compare_flags_rise_at_the_match() {
+    let mut tim = pwm(MOE);
+    assert_eq!(tim.read(0x10, 449).unwrap() & 2, 0);
+    assert_eq!(tim.read(0x10, 450).unwrap() & 2, 2);
+    tim.write(0x10, 0, 500).unwrap();
+    assert_eq!(
+        tim.read(0x10, 1800 * 100 + 300).unwrap() & 3,
+        3,
+        "a hundred periods later"
+    );
+}
+
+#[test]
+fn one_pulse_mode_stops_at_the_update() {
+    let mut tim = Tim::new(BASIC, 2);
+    tim.write(0x2c, 99, 0).unwrap();
+    tim.write(0x00, 9, 0).unwrap();
+    assert_eq!(tim.read(0x00, 199).unwrap() & 1, 1);
+    assert_eq!(
+        (tim.read(0x00, 200).unwrap() & 1, tim.read(0x10, 200).unwrap()),
+        (0, 1)
+    );
+}
+
+#[test]
+fn other_modes_are_refused() {
+    let mut tim = Tim::new(GENERAL, 2);
+    assert!(tim.write(0x08, 3, 0).is_err(), "encoder");
+    assert!(tim.write(0x18, 1, 0).is_err(), "input capture");
+    assert!(tim.write(0x00, 0x20, 0).is_err(), "centre-aligned");
+}
