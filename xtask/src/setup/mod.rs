@@ -3,11 +3,12 @@ mod apt;
 mod components;
 mod emulator;
 mod target;
+mod toolchain;
 
 use anyhow::{Result, bail};
 
 pub use components::Lints;
-pub use target::{Choice, TARGET, Toolchain};
+pub use toolchain::{Choice, TARGET, Toolchain};
 
 /// The environment variable that says which cross toolchain to use; the emulator's own calls of
 /// `cargo xtask firmware` follow it.

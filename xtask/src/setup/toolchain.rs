@@ -1,0 +1,126 @@
+//! The cross toolchains there are, and how their cargo is called.
+use std::fmt;
+use std::path::PathBuf;
+
+use super::CHOICE_VARIABLE;
+use crate::process::Invocation;
+
+/// The microcontroller's target: Cortex-M4 with FPU.
+pub const TARGET: &str = "thumbv7em-none-eabihf";
+
+/// Where the distribution's packages put the compiler.
+pub const RUSTC: &str = "/usr/bin/rustc";
+/// Its cargo.
+pub const CARGO: &str = "/usr/bin/cargo";
+/// Its clippy, a package of its own.
+pub const CARGO_CLIPPY: &str = "/usr/bin/cargo-clippy";
+
+/// Which cross toolchain to use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Choice {
+    /// The active toolchain if it has or can be given the target, else the distribution's.
+    #[default]
+    Auto,
+    /// The active toolchain only, its target added by rustup if need be.
+    Rustup,
+    /// The distribution's compiler only, with the core library built from its source.
+    Distribution,
+}
+
+impl Choice {
+    /// Has `invocation` make the same choice in its own calls of `cargo xtask firmware`.
+    pub fn handed_to(self, invocation: Invocation) -> Invocation {
+        let inherited = std::env::var(CHOICE_VARIABLE).unwrap_or(Self::Auto.to_string());
+        if inherited == self.to_string() {
+            invocation
+        } else {
+            invocation.env(CHOICE_VARIABLE, self.to_string())
+        }
+    }
+}
+
+/// As the command line takes it.
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Auto => "auto",
+            Self::Rustup => "rustup",
+            Self::Distribution => "distribution",
+        })
+    }
+}
+
+/// A cross toolchain that can be used as it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Toolchain {
+    /// The toolchain that runs this program has the target installed.
+    Active,
+    /// The distribution's compiler.
+    Distribution(Distribution),
+}
+
+/// The distribution's compiler with what its own packages lack.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Distribution {
+    /// A linker for the target: the host toolchain's `rust-lld`, or `ld.lld`.
+    pub linker: PathBuf,
+}
+
+impl Distribution {
+    /// The distribution's `cargo SUBCOMMAND` for the target, undisturbed by the toolchain that runs this program.
+    pub fn cargo(&self, subcommand: &str) -> Invocation {
+        let (program, args) = match subcommand {
+            // Not by way of cargo: it would prefer the clippy in the user's own folder of cargo programs.
+            "clippy" => (CARGO_CLIPPY, ["clippy", "-Zbuild-std=core,compiler_builtins"]),
+            _ => (CARGO, [subcommand, "-Zbuild-std=core,compiler_builtins"]),
+        };
+        Invocation::new(program, args)
+            .env("RUSTC", RUSTC)
+            .env("RUSTC_BOOTSTRAP", "1")
+            .env(
+                "CARGO_TARGET_THUMBV7EM_NONE_EABIHF_LINKER",
+                self.linker.to_string_lossy(),
+            )
+            .without(&[
+                "RUSTUP_TOOLCHAIN",
+                "RUSTDOC",
+                "RUSTC_WRAPPER",
+                "RUSTC_WORKSPACE_WRAPPER",
+                "LD_LIBRARY_PATH",
+            ])
+            .without(&[
+                "CARGO_BUILD_RUSTC",
+                "CARGO_BUILD_RUSTC_WRAPPER",
+                "CARGO_BUILD_RUSTC_WORKSPACE_WRAPPER",
+            ])
+            .env("CARGO", CARGO)
+    }
+}
+
+impl fmt::Display for Toolchain {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Active => write!(f, "the active toolchain with {TARGET}"),
+            Self::Distribution(_) => write!(f, "the distribution's {RUSTC}, core library built for {TARGET}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_distribution_is_called_by_its_own_paths() {
+        let line = Distribution {
+            linker: "/lib/rust-lld".into(),
+        }
+        .cargo("build")
+        .to_string();
+        assert!(line.contains("RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 "), "{line}");
+        assert!(
+            line.ends_with(" /usr/bin/cargo build -Zbuild-std=core,compiler_builtins"),
+            "{line}"
+        );
+    }
+}
