@@ -1,12 +1,20 @@
 //! Set-point to current, and current to bridge voltage.
 
 use contact_model::fixed_point::Celsius;
-use fixed::types::{I1F15, I16F16, I24F40};
+use fixed::types::{I1F15, I16F16};
 
 use crate::TICK_HZ;
 use crate::drive::{Current, Duty};
 use crate::guard::Setpoint;
 use crate::settings::{Gains, Module};
+
+/// Binary places of the integral: a millikelvin for one tick still counts.
+const STATE_BITS: u32 = 52;
+/// Binary places of error, gains and current.
+const ERROR_BITS: u32 = 22;
+const GAIN_BITS: u32 = 16;
+const RATE_BITS: u32 = STATE_BITS - ERROR_BITS;
+const CURRENT_BITS: u32 = 24;
 
 /// Proportional-integral law with limited output.
 ///
@@ -14,30 +22,31 @@ use crate::settings::{Gains, Module};
 /// nothing to unwind afterwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pi {
-    proportional: I16F16,
+    /// A/K.
+    proportional: i32,
     /// A per K and tick.
-    integral: I24F40,
+    integral: i32,
     limit: Current,
-    /// Integral part of the output, A.
-    state: I24F40,
+    /// Integral part of the output, A; never beyond the limit.
+    state: i64,
 }
 
 impl Pi {
-    /// `f64`, once; gains saturate at 32768 A/K.
+    /// `f64`, once; gains saturate at 32768 A/K and 2 A/K a tick.
     #[must_use]
     pub fn new(gains: &Gains, limit_a: f64) -> Self {
-        let integral = gains.proportional_a_k / (gains.integral_s * f64::from(TICK_HZ));
+        let per_tick = gains.proportional_a_k / (gains.integral_s * f64::from(TICK_HZ));
         Self {
-            proportional: I16F16::saturating_from_num(gains.proportional_a_k),
-            integral: I24F40::saturating_from_num(integral),
+            proportional: libm::ldexp(gains.proportional_a_k, GAIN_BITS as i32) as i32,
+            integral: libm::ldexp(per_tick, RATE_BITS as i32) as i32,
             limit: Current::saturating_from_num(limit_a),
-            state: I24F40::ZERO,
+            state: 0,
         }
     }
 
     /// Forgets the past.
     pub fn reset(&mut self) {
-        self.state = I24F40::ZERO;
+        self.state = 0;
     }
 
     /// The largest current that [`Self::update`] returns.
@@ -47,17 +56,21 @@ impl Pi {
     }
 
     /// Current for one tick; positive cools, so it rises when the display is above its set-point.
+    ///
+    /// No sum overflows: the state stays within 128 A (59 bits), the integral's step within 2^10 A, the
+    /// proportional part within 2^24 A of 38 bits.
     pub fn update(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
-        let error = I24F40::from_num(display.saturating_sub(setpoint.celsius()));
-        let proportional = error.saturating_mul(I24F40::from_num(self.proportional));
-        let state = self.state.saturating_add(error.saturating_mul(self.integral));
-        let limit = I24F40::from_num(self.limit);
-        let wanted = proportional.saturating_add(state);
+        let error = i64::from(display.saturating_sub(setpoint.celsius()).to_bits());
+        let proportional = (error * i64::from(self.proportional)) >> (ERROR_BITS + GAIN_BITS - CURRENT_BITS);
+        let state = self.state.saturating_add(error * i64::from(self.integral));
+        let limit = i64::from(self.limit.to_bits());
+        let wanted = proportional + (state >> (STATE_BITS - CURRENT_BITS));
         let output = wanted.clamp(-limit, limit);
         if output == wanted || (wanted > output) != (error > 0) {
+            let limit = limit << (STATE_BITS - CURRENT_BITS);
             self.state = state.clamp(-limit, limit);
         }
-        Current::from_num(output)
+        Current::from_bits(output as i32)
     }
 }
 

@@ -52,9 +52,11 @@ mod app {
     #[init(local = [memory: Memory = Memory::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let settings = Settings::default();
+        // Takes milliseconds, so it comes before the board starts to sample.
+        let station = Station::new(&settings);
         let board = Board::new(cx.device, cx.local.memory, settings);
         let shared = Shared {
-            station: Station::new(&settings),
+            station,
             vigil: Vigil::new(),
             stage: board.stage,
             sampler: board.sampler,

@@ -28,6 +28,19 @@ pub struct Thermistor {
     pub curve: Curve,
 }
 
+impl Thermistor {
+    /// Temperature in °C for a voltage in 65536ths of the reference, which codes are centred on; within
+    /// -100 to 300 °C.
+    #[must_use]
+    pub fn temperature_c(&self, part: f64) -> f64 {
+        let ohm = self.pull_up_ohm * part / (65536.0 - part);
+        let (a, b, c) = self.curve.steinhart_hart();
+        let log = libm::log(ohm.clamp(1e-3, 1e12));
+        let inverse = (a + b * log + c * log * log * log).clamp(1.0 / 573.0, 1.0 / 173.0);
+        1.0 / inverse - 273.15
+    }
+}
+
 /// Resistance to temperature, `R` in ohm and `T` in kelvin.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Curve {

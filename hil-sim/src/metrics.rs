@@ -104,7 +104,9 @@ pub fn exact_setpoint_c(scene: &Scene, since_s: f64, force_n: f64) -> f64 {
         Mode::SemiInfinite => interface_temperature(&SKIN, scene.skin_c, object, scene.object_c()),
         Mode::ContactResistance => {
             let (finger, object) = ((&SKIN, scene.skin_c), (object, scene.object_c()));
-            Contact::new(finger, object, &REFERENCE_DISPLAY, pressure_pa(force_n)).at(since_s).display_c
+            Contact::new(finger, object, &REFERENCE_DISPLAY, pressure_pa(force_n))
+                .at(since_s)
+                .display_c
         }
     }
 }
@@ -114,12 +116,23 @@ pub fn exact_setpoint_c(scene: &Scene, since_s: f64, force_n: f64) -> f64 {
 pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
     let rows = outcome.trace.rows();
     let contacts = contact_times(scene, outcome);
-    let touching = || rows.iter().zip(&contacts).filter_map(|(row, since)| Some((row, (*since)?)));
+    let touching = || {
+        rows.iter()
+            .zip(&contacts)
+            .filter_map(|(row, since)| Some((row, (*since)?)))
+    };
     let skin = touching().map(|(row, since_s)| (since_s, row.skin_c - row.skin_real_c));
     let display = touching().map(|(row, since_s)| {
-        (since_s, row.display_c - exact_setpoint_c(scene, since_s, row.force_n))
+        (
+            since_s,
+            row.display_c - exact_setpoint_c(scene, since_s, row.force_n),
+        )
     });
-    let evaluations = || rows.iter().filter_map(|row| row.device.as_ref()).map(|device| device.evaluations);
+    let evaluations = || {
+        rows.iter()
+            .filter_map(|row| row.device.as_ref())
+            .map(|device| device.evaluations)
+    };
     let skins = || rows.iter().map(|row| row.skin_c);
     Figures {
         engine: E::NAME,
@@ -131,7 +144,10 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
             min: skins().fold(f64::INFINITY, f64::min),
             max: skins().fold(f64::NEG_INFINITY, f64::max),
         },
-        kernel_evaluations: evaluations().next().zip(evaluations().last()).map(|(a, b)| b.saturating_sub(a)),
+        kernel_evaluations: evaluations()
+            .next()
+            .zip(evaluations().last())
+            .map(|(a, b)| b.saturating_sub(a)),
         instructions_per_tick: PerTick {
             mean: outcome.cost.map(|cost| cost.instructions_mean),
             max: outcome.cost.map(|cost| cost.instructions_max),
@@ -158,7 +174,10 @@ fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<Errors> {
         }
     }
     let rms = (squares / f64::from(count)).sqrt() * 1e3;
-    (count > 0).then_some(Errors { max_after_50ms: max_k * 1e3, rms })
+    (count > 0).then_some(Errors {
+        max_after_50ms: max_k * 1e3,
+        rms,
+    })
 }
 
 /// Every change into a tripped state.
@@ -169,7 +188,10 @@ fn faults(outcome: &Outcome) -> Vec<Tripped> {
         let Some(device) = &row.device else { continue };
         let now = device.state == "tripped";
         if now && !tripped {
-            faults.push(Tripped { t_s: row.t_s, fault: device.remark.clone().unwrap_or_default() });
+            faults.push(Tripped {
+                t_s: row.t_s,
+                fault: device.remark.clone().unwrap_or_default(),
+            });
         }
         tripped = now;
     }

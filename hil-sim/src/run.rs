@@ -28,11 +28,21 @@ pub struct Outcome {
 ///
 /// # Errors
 /// The engine stopped: the device did something that is not modelled.
-pub fn run<E: Engine>(scene: &Scene, engine: &mut E, mut progress: impl FnMut(f64)) -> Result<Outcome, E::Stop> {
+pub fn run<E: Engine>(
+    scene: &Scene,
+    engine: &mut E,
+    mut progress: impl FnMut(f64),
+) -> Result<Outcome, E::Stop> {
     let began = Instant::now();
     let zero_ms = (scene.settle_s * 1e3).round() as u64;
     let end_ms = zero_ms + (scene.duration_s * 1e3).round() as u64;
-    let mut session = Session { scene, engine, host: Host::new(scene), zero_ms, received: Vec::new() };
+    let mut session = Session {
+        scene,
+        engine,
+        host: Host::new(scene),
+        zero_ms,
+        received: Vec::new(),
+    };
     let (mut trace, mut answers) = (Trace::default(), Vec::new());
     for ms in 0..=end_ms + DRAIN_MS {
         if ms == zero_ms {
@@ -56,7 +66,12 @@ pub fn run<E: Engine>(scene: &Scene, engine: &mut E, mut progress: impl FnMut(f6
     }
     let simulated_s = (end_ms + DRAIN_MS) as f64 * 1e-3;
     let real_time_factor = simulated_s / began.elapsed().as_secs_f64();
-    Ok(Outcome { trace, answers, cost: session.engine.cost(), real_time_factor })
+    Ok(Outcome {
+        trace,
+        answers,
+        cost: session.engine.cost(),
+        real_time_factor,
+    })
 }
 
 struct Session<'a, E> {
@@ -77,8 +92,15 @@ impl<E: Engine> Session<'_, E> {
     fn boundary(&mut self, half_ms: u64) {
         let t_s = self.t_s(half_ms);
         let lasting = |kind: &FaultKind| *kind != FaultKind::HostGarbage;
-        let broken = self.scene.faults.iter().filter(|fault| fault.t_s <= t_s).map(|fault| fault.kind);
-        self.engine.world().set(self.scene.force_n(t_s), broken.filter(lasting));
+        let broken = self
+            .scene
+            .faults
+            .iter()
+            .filter(|fault| fault.t_s <= t_s)
+            .map(|fault| fault.kind);
+        self.engine
+            .world()
+            .set(self.scene.force_n(t_s), broken.filter(lasting));
         if let Some(bytes) = self.host.send(half_ms) {
             self.engine.send(bytes);
         }
@@ -96,8 +118,13 @@ impl<E: Engine> Session<'_, E> {
     /// The lines that are complete.
     fn lines(&mut self) -> Vec<String> {
         self.engine.receive(&mut self.received);
-        let Some(end) = self.received.iter().rposition(|byte| *byte == b'\n') else { return Vec::new() };
+        let Some(end) = self.received.iter().rposition(|byte| *byte == b'\n') else {
+            return Vec::new();
+        };
         let complete: Vec<u8> = self.received.drain(..=end).collect();
-        String::from_utf8_lossy(&complete).lines().map(|line| line.trim_end().to_owned()).collect()
+        String::from_utf8_lossy(&complete)
+            .lines()
+            .map(|line| line.trim_end().to_owned())
+            .collect()
     }
 }

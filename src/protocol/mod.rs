@@ -3,6 +3,7 @@
 //! Answers start with `ok` or `err`, streamed telemetry with `T`.
 
 mod command;
+mod decimal;
 mod error;
 mod line;
 mod reply;

@@ -4,7 +4,7 @@ use core::fmt;
 
 use contact_model::fixed_point::Celsius;
 
-use super::telemetry::OrDash;
+use super::decimal::{CELSIUS, Decimal};
 use crate::render::Mode;
 use crate::station::State;
 use crate::{SCANS_PER_SECOND, TICK_HZ};
@@ -70,15 +70,15 @@ impl fmt::Display for Status {
         )?;
         write!(f, " material={} object_c=", self.material.unwrap_or("-"))?;
         match self.object {
-            Some(object) => write!(f, "{object:.2}")?,
+            Some(_) => write!(f, "{}", Decimal::<CELSIUS, 2>::from(self.object))?,
             None => f.write_str("room")?,
         }
         write!(
             f,
-            " mode={mode} setpoint_c={:.3} display_c={:.3}",
-            OrDash(self.setpoint),
-            OrDash(self.display)
+            " mode={mode} setpoint_c={}",
+            Decimal::<CELSIUS, 3>::from(self.setpoint)
         )?;
+        write!(f, " display_c={}", Decimal::<CELSIUS, 3>::from(self.display))?;
         write!(f, " limited={} ticks={}", u8::from(self.limited), self.ticks)
     }
 }

@@ -4,6 +4,7 @@ use core::fmt;
 
 use contact_model::fixed_point::{Celsius, Force};
 
+use super::decimal::{CELSIUS, CURRENT, Count, Decimal, FORCE};
 use crate::drive::Current;
 use crate::station::State;
 
@@ -60,41 +61,33 @@ impl Telemetry {
     }
 }
 
-/// A value, or a dash.
-pub(super) struct OrDash<T>(pub(super) Option<T>);
-
-impl<T: fmt::Display> fmt::Display for OrDash<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.0 {
-            Some(value) => value.fmt(f),
-            None => f.write_str("-"),
-        }
-    }
-}
-
 impl fmt::Display for Telemetry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "T {} {}", self.tick, self.state.name())?;
-        write!(f, " {:.5} {:.4}", OrDash(self.setpoint), OrDash(self.display))?;
-        write!(
-            f,
-            " {:.2} {:.2} {:.2}",
-            OrDash(self.sink),
-            OrDash(self.skin),
-            OrDash(self.room)
-        )?;
-        write!(
-            f,
-            " {:.3} {:.3} {:.3}",
-            OrDash(self.force),
-            self.demand,
-            self.current
-        )?;
-        let remark = match self.state.fault() {
+        f.write_str("T ")?;
+        Count(self.tick).fmt(f)?;
+        f.write_str(" ")?;
+        f.write_str(self.state.name())?;
+        f.write_str(" ")?;
+        Decimal::<CELSIUS, 5>::from(self.setpoint).fmt(f)?;
+        f.write_str(" ")?;
+        Decimal::<CELSIUS, 4>::from(self.display).fmt(f)?;
+        for temperature in [self.sink, self.skin, self.room] {
+            f.write_str(" ")?;
+            Decimal::<CELSIUS, 2>::from(temperature).fmt(f)?;
+        }
+        f.write_str(" ")?;
+        Decimal::<FORCE, 3>::force(self.force).fmt(f)?;
+        for current in [self.demand, self.current] {
+            f.write_str(" ")?;
+            Decimal::<CURRENT, 3>::current(current).fmt(f)?;
+        }
+        f.write_str(" ")?;
+        Count(self.evaluations).fmt(f)?;
+        f.write_str(" ")?;
+        f.write_str(match self.state.fault() {
             Some(fault) => fault.name(),
             None if self.limited => "limited",
             None => "-",
-        };
-        write!(f, " {} {remark}", self.evaluations)
+        })
     }
 }

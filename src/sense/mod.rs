@@ -48,7 +48,8 @@ impl Samples {
         let mut sum = [0u16; CHANNELS];
         for scan in scans {
             for (s, &count) in sum.iter_mut().zip(scan) {
-                *s = s.saturating_add(count & 0x0fff);
+                // 16 times 4095 fits.
+                *s = s.wrapping_add(count & 0x0fff);
             }
         }
         let [display, display_check, sink, skin, room, force, current] = sum;
@@ -87,7 +88,7 @@ pub struct Readings {
 }
 
 /// The sensors of one finger.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sensors {
     thermistor: Thermistor,
     force: ForceScale,

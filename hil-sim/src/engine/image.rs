@@ -72,7 +72,13 @@ impl Image {
         let cycles_per_us = u64::from(machine.clocks().hclk_hz) / 1_000_000;
         let first_boundary = started + FIRST_BOUNDARY_US * cycles_per_us;
         machine.run_until(first_boundary)?;
-        let mut image = Self { machine, first_boundary, halves: 0, cycles_per_us, before: Before::default() };
+        let mut image = Self {
+            machine,
+            first_boundary,
+            halves: 0,
+            cycles_per_us,
+            before: Before::default(),
+        };
         image.reset_cost();
         Ok(image)
     }
@@ -93,12 +99,17 @@ impl Engine for Image {
             LegState::Duty { high, period } => Leg::Duty(f64::from(high) / f64::from(period)),
         };
         let (a, b) = (leg(1), leg(2));
-        Legs { a, b, enabled: self.machine.gpio_output(ENABLE_PIN.0, ENABLE_PIN.1) == Some(true) }
+        Legs {
+            a,
+            b,
+            enabled: self.machine.gpio_output(ENABLE_PIN.0, ENABLE_PIN.1) == Some(true),
+        }
     }
 
     fn run_half_ms(&mut self) -> Result<(), Stop> {
         self.halves += 1;
-        self.machine.run_until(self.first_boundary + self.halves * HALF_MS_US * self.cycles_per_us)
+        self.machine
+            .run_until(self.first_boundary + self.halves * HALF_MS_US * self.cycles_per_us)
     }
 
     fn send(&mut self, bytes: &[u8]) {
@@ -141,7 +152,11 @@ struct Pins {
 
 impl Pins {
     const fn new(world: World) -> Self {
-        Self { world, first_conversion: None, received: Vec::new() }
+        Self {
+            world,
+            first_conversion: None,
+            received: Vec::new(),
+        }
     }
 }
 

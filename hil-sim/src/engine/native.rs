@@ -4,11 +4,11 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::fmt::Display;
 
+use thermal_display::Station;
 use thermal_display::drive::Drive;
 use thermal_display::protocol::{Command, Error, LineReader};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::Settings;
-use thermal_display::Station;
 
 use super::{BAUD, Cost, Engine};
 use crate::plant::bridge::{Leg, Legs};
@@ -80,7 +80,9 @@ impl Native {
     /// Lines whose last byte has arrived before the tick.
     fn serve(&mut self, now_ns: u64) {
         while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
-            let Some(line) = self.reader.push(byte) else { continue };
+            let Some(line) = self.reader.push(byte) else {
+                continue;
+            };
             let executed = line
                 .map_err(Error::from)
                 .and_then(|line| Command::parse(&line, &self.settings))
@@ -108,7 +110,11 @@ impl Engine for Native {
             Drive::On(duty) => {
                 let (a, b) = duty.legs(PWM_STEPS);
                 let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(PWM_STEPS));
-                Legs { a: leg(a), b: leg(b), enabled: true }
+                Legs {
+                    a: leg(a),
+                    b: leg(b),
+                    enabled: true,
+                }
             }
         }
     }

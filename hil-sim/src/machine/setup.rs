@@ -3,7 +3,9 @@ use super::Wiring;
 use super::elf::{FLASH_BASE, FLASH_SIZE, RAM_BASE, RAM_SIZE};
 use super::mcu::PAINT;
 use super::state::{self, Cpu, Event, State};
-use unicorn_engine::{Arch, ArmCpuModel, HookType, MemType, Mode, Prot, TlbEntry, TlbType, Unicorn, uc_error};
+use unicorn_engine::{
+    Arch, ArmCpuModel, HookType, MemType, Mode, Prot, TlbEntry, TlbType, Unicorn, uc_error,
+};
 
 /// Ranges whose accesses go to the register models, reserved gaps included: signature and option bytes, bit-band
 /// aliases, APB and AHB1, AHB2, external memory controllers, the core's own peripherals.
@@ -60,7 +62,11 @@ pub(super) fn set_up<W: Wiring + 'static>(
     // get pages without execution (a fetch maps the page anew, with it), and the hooks leave the RAM out.
     cpu.ctl_set_tlb_type(TlbType::VIRTUAL)?;
     cpu.add_tlb_hook(0, u64::from(u32::MAX), |_, page, kind| {
-        let perms = if kind == MemType::FETCH { Prot::ALL } else { Prot::READ | Prot::WRITE };
+        let perms = if kind == MemType::FETCH {
+            Prot::ALL
+        } else {
+            Prot::READ | Prot::WRITE
+        };
         Some(TlbEntry { paddr: page, perms })
     })?;
     for (first, last) in [(0, RAM_BASE - 1), (RAM_BASE + RAM_SIZE, u32::MAX)] {

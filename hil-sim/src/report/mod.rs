@@ -45,7 +45,11 @@ fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> Str
     }
     let mut answers = String::new();
     for (t_s, line) in &outcome.answers {
-        let _ = write!(answers, "<tr><td>{t_s:.3}</td><td><code>{}</code></td></tr>", escape(line));
+        let _ = write!(
+            answers,
+            "<tr><td>{t_s:.3}</td><td><code>{}</code></td></tr>",
+            escape(line)
+        );
     }
     let svg = plots.find("<svg").map_or("", |start| &plots[start..]);
     format!(
@@ -60,5 +64,7 @@ fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> Str
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
 }

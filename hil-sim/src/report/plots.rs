@@ -25,10 +25,21 @@ struct Curve {
 }
 
 impl Curve {
-    fn new(name: &'static str, color: RGBColor, rows: &[Row], value: impl Fn(usize, &Row) -> Option<f64>) -> Self {
+    fn new(
+        name: &'static str,
+        color: RGBColor,
+        rows: &[Row],
+        value: impl Fn(usize, &Row) -> Option<f64>,
+    ) -> Self {
         let every = rows.len().div_ceil(POINTS).max(1);
         let points = rows.iter().enumerate().step_by(every);
-        Self { name, color, points: points.filter_map(|(i, row)| Some((row.t_s, value(i, row)?))).collect() }
+        Self {
+            name,
+            color,
+            points: points
+                .filter_map(|(i, row)| Some((row.t_s, value(i, row)?)))
+                .collect(),
+        }
     }
 }
 
@@ -40,10 +51,14 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
     let rows = outcome.trace.rows();
     let contacts = contact_times(scene, outcome);
     let temperatures = [
-        Curve::new("skin on the real object", REAL, rows, |_, row| Some(row.skin_real_c)),
+        Curve::new("skin on the real object", REAL, rows, |_, row| {
+            Some(row.skin_real_c)
+        }),
         Curve::new("skin on the display", SKIN, rows, |_, row| Some(row.skin_c)),
         Curve::new("display", DISPLAY, rows, |_, row| Some(row.display_c)),
-        Curve::new("set-point", SETPOINT, rows, |_, row| row.device.as_ref()?.setpoint_c),
+        Curve::new("set-point", SETPOINT, rows, |_, row| {
+            row.device.as_ref()?.setpoint_c
+        }),
     ];
     let errors = [
         Curve::new("skin minus skin on the real object", SKIN, rows, |i, row| {
@@ -53,7 +68,9 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
             contacts[i].map(|since_s| (row.display_c - exact_setpoint_c(scene, since_s, row.force_n)) * 1e3)
         }),
     ];
-    let current = [Curve::new("current (positive cools)", CURRENT, rows, |_, row| Some(row.current_a))];
+    let current = [Curve::new("current (positive cools)", CURRENT, rows, |_, row| {
+        Some(row.current_a)
+    })];
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
@@ -74,8 +91,14 @@ fn panel(
     unit: &str,
     curves: &[Curve],
 ) -> anyhow::Result<()> {
-    let values = || curves.iter().flat_map(|curve| curve.points.iter().map(|(_, value)| *value));
-    let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    let values = || {
+        curves
+            .iter()
+            .flat_map(|curve| curve.points.iter().map(|(_, value)| *value))
+    };
+    let (low, high) = values().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| {
+        (l.min(v), h.max(v))
+    });
     let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
     let margin = ((high - low) * 0.08).max(0.05);
     let mut chart = ChartBuilder::on(area)
@@ -93,7 +116,10 @@ fn panel(
     for curve in curves {
         let color = curve.color;
         chart
-            .draw_series(LineSeries::new(curve.points.iter().copied(), color.stroke_width(2)))?
+            .draw_series(LineSeries::new(
+                curve.points.iter().copied(),
+                color.stroke_width(2),
+            ))?
             .label(curve.name)
             .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 22, y)], color.stroke_width(2)));
     }

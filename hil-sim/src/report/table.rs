@@ -8,41 +8,70 @@ use crate::metrics::{Errors, Figures, PerTick};
 pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
     let errors = |errors: Option<Errors>| {
         errors.map_or("no contact".into(), |errors| {
-            format!("{:.1} mK after 50 ms, {:.1} mK RMS", errors.max_after_50ms, errors.rms)
+            format!(
+                "{:.1} mK after 50 ms, {:.1} mK RMS",
+                errors.max_after_50ms, errors.rms
+            )
         })
     };
     let cost = |cost: PerTick| match cost {
-        PerTick { mean: Some(mean), max: Some(max) } => format!("{mean:.0} mean, {max} max"),
+        PerTick {
+            mean: Some(mean),
+            max: Some(max),
+        } => format!("{mean:.0} mean, {max} max"),
         _ => "unknown to this engine".into(),
     };
-    let faults: Vec<_> =
-        figures.faults.iter().map(|fault| format!("{} at {:.3} s", fault.fault, fault.t_s)).collect();
+    let faults: Vec<_> = figures
+        .faults
+        .iter()
+        .map(|fault| format!("{} at {:.3} s", fault.fault, fault.t_s))
+        .collect();
     let mut rows = vec![
         ("material", figures.material.clone()),
         ("engine", figures.engine.into()),
         ("control ticks", figures.ticks.to_string()),
         ("skin error", errors(figures.skin_error_mk)),
         ("display error", errors(figures.display_error_mk)),
-        ("skin on the display", format!("{:.2} to {:.2} C", figures.skin_c.min, figures.skin_c.max)),
-        ("kernel evaluations", figures.kernel_evaluations.map_or("unknown".into(), |n| n.to_string())),
+        (
+            "skin on the display",
+            format!("{:.2} to {:.2} C", figures.skin_c.min, figures.skin_c.max),
+        ),
+        (
+            "kernel evaluations",
+            figures
+                .kernel_evaluations
+                .map_or("unknown".into(), |n| n.to_string()),
+        ),
         ("instructions a tick", cost(figures.instructions_per_tick)),
-        ("cycles a tick", format!("{} (estimated)", cost(figures.cycles_per_tick))),
+        (
+            "cycles a tick",
+            format!("{} (estimated)", cost(figures.cycles_per_tick)),
+        ),
     ];
     if let (Some(load), Some(stack)) = (figures.cpu_load, figures.stack_bytes) {
         rows.push(("CPU load", format!("{:.1} % (estimated)", load * 100.0)));
         rows.push(("stack used", format!("{stack} bytes")));
     }
     rows.push(("real-time factor", format!("{:.0}", figures.real_time_factor)));
-    rows.push(("faults", if faults.is_empty() { "none".into() } else { faults.join(", ") }));
+    rows.push((
+        "faults",
+        if faults.is_empty() {
+            "none".into()
+        } else {
+            faults.join(", ")
+        },
+    ));
     rows
 }
 
 /// The figures, one a line.
 #[must_use]
 pub fn table(figures: &Figures) -> String {
-    rows(figures).into_iter().fold(String::new(), |mut text, (name, value)| {
-        // Writing to a String cannot fail.
-        let _ = writeln!(text, "{name:<21}{value}");
-        text
-    })
+    rows(figures)
+        .into_iter()
+        .fold(String::new(), |mut text, (name, value)| {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "{name:<21}{value}");
+            text
+        })
 }
