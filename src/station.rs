@@ -190,8 +190,6 @@ impl Station {
             mode: self.mode,
             setpoint: self.telemetry.setpoint,
             limited: self.telemetry.limited,
-            display: self.telemetry.display,
-            ticks: self.tick,
         }
     }
 

@@ -3,11 +3,11 @@
 //! Answers start with `ok` or `err`, streamed telemetry with `T`.
 
 mod command;
-mod decimal;
 mod error;
 mod line;
 mod reply;
 mod telemetry;
+mod text;
 
 pub use command::Command;
 pub use error::{Error, Number, Word};

@@ -4,7 +4,7 @@ use core::fmt;
 
 use contact_model::fixed_point::Celsius;
 
-use super::decimal::{CELSIUS, Decimal};
+use super::text::Text;
 use crate::render::Mode;
 use crate::station::State;
 use crate::{SCANS_PER_SECOND, TICK_HZ};
@@ -35,10 +35,6 @@ pub struct Status {
     pub setpoint: Option<Celsius>,
     /// The set-point was limited to the safe range.
     pub limited: bool,
-    /// Display temperature.
-    pub display: Option<Celsius>,
-    /// Ticks since reset.
-    pub ticks: u32,
 }
 
 impl fmt::Display for Reply {
@@ -58,27 +54,25 @@ impl fmt::Display for Reply {
 
 impl fmt::Display for Status {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mode = match self.mode {
-            Mode::ContactResistance => "contact",
-            Mode::SemiInfinite => "semi-infinite",
-        };
-        write!(
-            f,
-            "state={} fault={}",
-            self.state.name(),
-            self.state.fault().map_or("-", |f| f.name())
-        )?;
-        write!(f, " material={} object_c=", self.material.unwrap_or("-"))?;
+        let mut line = Text::new();
+        line.word("state=");
+        line.word(self.state.name());
+        line.word(" fault=");
+        line.word(self.state.fault().map_or("-", |fault| fault.name()));
+        line.word(" material=");
+        line.word(self.material.unwrap_or("-"));
+        line.word(" object_c=");
         match self.object {
-            Some(_) => write!(f, "{}", Decimal::<CELSIUS, 2>::from(self.object))?,
-            None => f.write_str("room")?,
+            Some(_) => line.celsius::<2>(self.object),
+            None => line.word("room"),
         }
-        write!(
-            f,
-            " mode={mode} setpoint_c={}",
-            Decimal::<CELSIUS, 3>::from(self.setpoint)
-        )?;
-        write!(f, " display_c={}", Decimal::<CELSIUS, 3>::from(self.display))?;
-        write!(f, " limited={} ticks={}", u8::from(self.limited), self.ticks)
+        line.word(match self.mode {
+            Mode::ContactResistance => " mode=contact",
+            Mode::SemiInfinite => " mode=semi-infinite",
+        });
+        line.word(" setpoint_c=");
+        line.celsius::<2>(self.setpoint);
+        line.word(if self.limited { " limited" } else { "" });
+        line.fmt(f)
     }
 }

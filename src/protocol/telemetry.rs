@@ -4,7 +4,7 @@ use core::fmt;
 
 use contact_model::fixed_point::{Celsius, Force};
 
-use super::decimal::{CELSIUS, CURRENT, Count, Decimal, FORCE};
+use super::text::Text;
 use crate::drive::Current;
 use crate::station::State;
 
@@ -63,31 +63,33 @@ impl Telemetry {
 
 impl fmt::Display for Telemetry {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("T ")?;
-        Count(self.tick).fmt(f)?;
-        f.write_str(" ")?;
-        f.write_str(self.state.name())?;
-        f.write_str(" ")?;
-        Decimal::<CELSIUS, 5>::from(self.setpoint).fmt(f)?;
-        f.write_str(" ")?;
-        Decimal::<CELSIUS, 4>::from(self.display).fmt(f)?;
+        let mut line = Text::new();
+        line.word("T ");
+        line.count(self.tick);
+        line.word(" ");
+        line.word(self.state.name());
+        line.word(" ");
+        line.celsius::<5>(self.setpoint);
+        line.word(" ");
+        line.celsius::<4>(self.display);
         for temperature in [self.sink, self.skin, self.room] {
-            f.write_str(" ")?;
-            Decimal::<CELSIUS, 2>::from(temperature).fmt(f)?;
+            line.word(" ");
+            line.celsius::<2>(temperature);
         }
-        f.write_str(" ")?;
-        Decimal::<FORCE, 3>::force(self.force).fmt(f)?;
+        line.word(" ");
+        line.force(self.force);
         for current in [self.demand, self.current] {
-            f.write_str(" ")?;
-            Decimal::<CURRENT, 3>::current(current).fmt(f)?;
+            line.word(" ");
+            line.current(current);
         }
-        f.write_str(" ")?;
-        Count(self.evaluations).fmt(f)?;
-        f.write_str(" ")?;
-        f.write_str(match self.state.fault() {
+        line.word(" ");
+        line.count(self.evaluations);
+        line.word(" ");
+        line.word(match self.state.fault() {
             Some(fault) => fault.name(),
             None if self.limited => "limited",
             None => "-",
-        })
+        });
+        line.fmt(f)
     }
 }
