@@ -6,6 +6,8 @@
 //! the wait states of straight code), two cycles of refill for a taken branch, a conditional branch taken half
 //! the time, divisions at the middle of their range, no pairing of neighbouring loads.
 
+use super::elf::FLASH_BASE;
+
 /// Cycles from recognition of an exception to its first instruction (TRM section 3.9.1).
 pub(crate) const EXCEPTION_ENTRY: u64 = 12;
 /// Cycles of a return from an exception (ARM's figure, without floating-point unstacking).
@@ -15,6 +17,7 @@ pub(crate) const TAIL_CHAIN: u64 = 6;
 
 /// What a block holds beyond its cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(align(4))]
 pub(crate) struct Block {
     pub bytes: u16,
     pub instructions: u16,
@@ -46,6 +49,14 @@ impl CostTable {
         Self {
             blocks: vec![Block::default(); flash_bytes / 2],
         }
+    }
+
+    /// The block last met at an address in the flash.
+    #[inline]
+    pub fn known(&self, address: u32) -> Option<Block> {
+        self.blocks
+            .get((address.wrapping_sub(FLASH_BASE) / 2) as usize)
+            .copied()
     }
 
     /// The block of `bytes` bytes at `offset` into the flash; `None` outside it.

@@ -183,6 +183,13 @@ impl Nvic {
         self.best
     }
 
+    /// Whether a pending exception is more urgent than the active ones; the mask registers may still hold it.
+    #[inline]
+    pub fn may_preempt(&self) -> bool {
+        self.best
+            .is_some_and(|(_, priority)| priority < self.active_priority)
+    }
+
     /// Most urgent priority among the active exceptions.
     #[inline]
     pub fn active_priority(&self) -> i32 {

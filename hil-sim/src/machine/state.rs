@@ -101,6 +101,28 @@ impl<W: Wiring> State<W> {
             .expect("the chip is in its place outside of service()")
     }
 
+    /// Charges a block of known cost if nothing is due before it; most blocks are such.
+    #[inline]
+    fn run_on(&mut self, address: u32, bytes: u32) -> bool {
+        let (Some(chip), Some(block)) = (&self.chip, self.cost.known(address)) else {
+            return false;
+        };
+        let undisturbed = self.cycles < chip.next
+            && self.cycles < self.limit
+            && !self.attention
+            && chip.reset.is_none()
+            && !chip.nvic.may_preempt();
+        if !undisturbed || u32::from(block.bytes) != bytes || block.float || block.sev {
+            return false;
+        }
+        self.block_pc = address;
+        self.block_at = self.cycles;
+        self.block = block;
+        self.cycles += u64::from(block.cycles);
+        self.instructions += u64::from(block.instructions);
+        true
+    }
+
     fn refuse(&mut self, refusal: Refusal, address: u32, access: Access, value: u32) {
         self.attention = true;
         if refusal == Refusal::BusError {
@@ -164,7 +186,16 @@ pub(crate) fn takeable<W: Wiring>(cpu: &Cpu<'_, W>) -> Option<usize> {
 }
 
 /// Called before each basic block: pauses for what is due, else charges the block.
+#[inline]
 pub(crate) fn on_block<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
+    if !cpu.get_data_mut().run_on(address, bytes) {
+        on_block_with_care(cpu, address, bytes);
+    }
+}
+
+/// A block before which something may be due, or whose cost is not known yet.
+#[cold]
+fn on_block_with_care<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     let state = cpu.get_data_mut();
     let now = state.cycles;
     state.block_pc = address;
