@@ -14,6 +14,12 @@ use crate::settings::Settings;
 /// Signals of one finger, in the order in which the converter scans them.
 pub const CHANNELS: usize = 7;
 
+/// The first of them are thermistors.
+const THERMISTORS: usize = 5;
+
+/// Highest code of the converter.
+const FULL_SCALE: u16 = 4095;
+
 /// Scans that are summed into the [`Samples`] of one control tick.
 pub const SCANS_PER_TICK: usize = 16;
 
@@ -43,13 +49,22 @@ pub struct Samples {
 
 impl Samples {
     /// Sums the scans of one tick.
+    ///
+    /// A thermistor whose last conversion is at an end of the range counts as being there for the whole tick:
+    /// the mean of a tick in which a wire broke would be a temperature.
     #[must_use]
     pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], bridge_fault: bool) -> Self {
         let mut sum = [0u16; CHANNELS];
         for scan in scans {
             for (s, &count) in sum.iter_mut().zip(scan) {
                 // 16 times 4095 fits.
-                *s = s.wrapping_add(count & 0x0fff);
+                *s = s.wrapping_add(count & FULL_SCALE);
+            }
+        }
+        let [.., last] = scans;
+        for (s, &count) in sum.iter_mut().zip(last).take(THERMISTORS) {
+            if thermistor::is_at_an_end(count & FULL_SCALE) {
+                *s = (count & FULL_SCALE).wrapping_mul(SCANS_PER_TICK as u16);
             }
         }
         let [display, display_check, sink, skin, room, force, current] = sum;

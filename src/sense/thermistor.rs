@@ -9,6 +9,11 @@ use crate::settings;
 const SHORT_BELOW: u16 = 40 * 16;
 const OPEN_ABOVE: u16 = 4060 * 16;
 
+/// Whether one code is beyond the range of temperatures.
+pub(super) const fn is_at_an_end(code: u16) -> bool {
+    code < SHORT_BELOW / 16 || code > OPEN_ABOVE / 16
+}
+
 /// Equal parts of the range of sums, as a power of two.
 const PARTS_SHIFT: u32 = 6;
 const PARTS: usize = 1 << PARTS_SHIFT;
