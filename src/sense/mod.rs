@@ -17,9 +17,6 @@ pub const CHANNELS: usize = 7;
 /// The first of them are thermistors.
 const THERMISTORS: usize = 5;
 
-/// Highest code of the converter.
-const FULL_SCALE: u16 = 4095;
-
 /// Scans that are summed into the [`Samples`] of one control tick.
 pub const SCANS_PER_TICK: usize = 16;
 
@@ -54,17 +51,13 @@ impl Samples {
     /// the mean of a tick in which a wire broke would be a temperature.
     #[must_use]
     pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], bridge_fault: bool) -> Self {
-        let mut sum = [0u16; CHANNELS];
-        for scan in scans {
-            for (s, &count) in sum.iter_mut().zip(scan) {
-                // 16 times 4095 fits.
-                *s = s.wrapping_add(count & FULL_SCALE);
-            }
-        }
+        let column = |channel: usize| scans.iter().fold(0u16, |sum, scan| sum.wrapping_add(scan[channel]));
+        // 16 times 4095 fits.
+        let mut sum: [u16; CHANNELS] = core::array::from_fn(column);
         let [.., last] = scans;
         for (s, &count) in sum.iter_mut().zip(last).take(THERMISTORS) {
-            if thermistor::is_at_an_end(count & FULL_SCALE) {
-                *s = (count & FULL_SCALE).wrapping_mul(SCANS_PER_TICK as u16);
+            if thermistor::is_at_an_end(count) {
+                *s = count.saturating_mul(SCANS_PER_TICK as u16);
             }
         }
         let [display, display_check, sink, skin, room, force, current] = sum;

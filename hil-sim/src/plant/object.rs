@@ -13,6 +13,8 @@ pub struct FingerOnObject {
     surface: usize,
     object_half_m2k_w: f64,
     skin_half_m2k_w: f64,
+    /// They have touched. Before, each is at one temperature and insulated, so nothing moves.
+    touched: bool,
 }
 
 impl FingerOnObject {
@@ -41,6 +43,7 @@ impl FingerOnObject {
             surface: object.cells() - 1,
             object_half_m2k_w: object.half_cell_m2k_w,
             skin_half_m2k_w: skin.half_cell_m2k_w,
+            touched: false,
         }
     }
 
@@ -49,12 +52,15 @@ impl FingerOnObject {
         let link = touch.map_or(Link::OPEN, |t| {
             Link::symmetric(1.0 / (self.object_half_m2k_w + t.resistance_m2k_w + self.skin_half_m2k_w))
         });
+        self.touched |= touch.is_some();
         self.chain.set_link(self.surface, link);
     }
 
     /// Advances by one step, s.
     pub fn step(&mut self, step_s: f64) {
-        self.chain.step(step_s);
+        if self.touched {
+            self.chain.step(step_s);
+        }
     }
 
     /// Heat flux out of the skin, W/m2.
