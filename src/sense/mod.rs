@@ -51,7 +51,11 @@ impl Samples {
     /// the mean of a tick in which a wire broke would be a temperature.
     #[must_use]
     pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], bridge_fault: bool) -> Self {
-        let column = |channel: usize| scans.iter().fold(0u16, |sum, scan| sum.wrapping_add(scan[channel]));
+        let column = |channel: usize| {
+            scans
+                .iter()
+                .fold(0u16, |sum, scan| sum.wrapping_add(scan[channel]))
+        };
         // 16 times 4095 fits.
         let mut sum: [u16; CHANNELS] = core::array::from_fn(column);
         let [.., last] = scans;

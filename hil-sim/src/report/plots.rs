@@ -21,6 +21,7 @@ const CURRENT: RGBColor = RGBColor(0x94, 0x67, 0xbd);
 struct Curve {
     name: &'static str,
     color: RGBColor,
+    width: u32,
     points: Vec<(f64, f64)>,
 }
 
@@ -36,6 +37,8 @@ impl Curve {
         Self {
             name,
             color,
+            // The real skin's curve lies on it.
+            width: if color == SKIN { 4 } else { 2 },
             points: points
                 .filter_map(|(i, row)| Some((row.t_s, value(i, row)?)))
                 .collect(),
@@ -51,10 +54,10 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
     let rows = outcome.trace.rows();
     let contacts = contact_times(scene, outcome);
     let temperatures = [
+        Curve::new("skin on the display", SKIN, rows, |_, row| Some(row.skin_c)),
         Curve::new("skin on the real object", REAL, rows, |_, row| {
             Some(row.skin_real_c)
         }),
-        Curve::new("skin on the display", SKIN, rows, |_, row| Some(row.skin_c)),
         Curve::new("display", DISPLAY, rows, |_, row| Some(row.display_c)),
         Curve::new("set-point", SETPOINT, rows, |_, row| {
             row.device.as_ref()?.setpoint_c
@@ -110,18 +113,20 @@ fn panel(
         .configure_mesh()
         .x_desc("time / s")
         .y_desc(unit)
+        // Adding zero turns a negative zero into zero.
+        .y_label_formatter(&|value| format!("{:.1}", (value * 10.0).round() / 10.0 + 0.0))
         .light_line_style(TRANSPARENT)
         .label_style(("sans-serif", 15))
         .draw()?;
     for curve in curves {
-        let color = curve.color;
+        let (color, width) = (curve.color, curve.width);
         chart
             .draw_series(LineSeries::new(
                 curve.points.iter().copied(),
-                color.stroke_width(2),
+                color.stroke_width(width),
             ))?
             .label(curve.name)
-            .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 22, y)], color.stroke_width(2)));
+            .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 22, y)], color.stroke_width(width)));
     }
     chart
         .configure_series_labels()
