@@ -5,6 +5,7 @@
 mod demo;
 mod firmware;
 mod image;
+mod probe;
 mod process;
 mod setup;
 mod step;
@@ -37,6 +38,8 @@ enum Task {
         #[arg(long)]
         print_path: bool,
     },
+    /// Build the test image of the emulated machine, print its path; its tests call this
+    Probe(SetUp),
 }
 
 #[derive(Args, Clone, Copy)]
@@ -63,6 +66,7 @@ fn main() -> ExitCode {
         Task::Demo(set_up) => demo::run(set_up.permission()),
         Task::Test(set_up) => suite::run(set_up.permission()),
         Task::Firmware { set_up, print_path } => firmware::run(set_up.permission(), print_path),
+        Task::Probe(set_up) => probe::run(set_up.permission()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

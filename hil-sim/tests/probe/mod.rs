@@ -1,7 +1,7 @@
 //! Builds the test image once and runs its cases.
 use hil_sim::machine::{Firmware, LegState, Machine, Stop, Wiring};
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
 static FIRMWARE: LazyLock<Firmware> =
@@ -9,27 +9,17 @@ static FIRMWARE: LazyLock<Firmware> =
 
 /// Builds `hil-sim/probe` for the microcontroller; cargo decides what is stale.
 fn build() -> PathBuf {
-    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let root = package.parent().expect("hil-sim lies in the repository");
-    let target = root.join("target/probe");
-    let flags = format!("-C link-arg=--nmagic -C link-arg=-Tlink.x -L {}", root.display());
-    let status = Command::new(env!("CARGO"))
-        .current_dir(package.join("probe"))
-        .args([
-            "build",
-            "--release",
-            "--quiet",
-            "--target",
-            "thumbv7em-none-eabihf",
-            "--target-dir",
-        ])
-        .arg(&target)
-        .env("RUSTFLAGS", flags)
-        .env_remove("CARGO_ENCODED_RUSTFLAGS")
-        .status()
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .expect("hil-sim lies in the repository");
+    let built = Command::new("cargo")
+        .args(["xtask", "probe"])
+        .current_dir(root)
+        .stderr(Stdio::inherit())
+        .output()
         .expect("cargo runs");
-    assert!(status.success(), "the probe builds");
-    target.join("thumbv7em-none-eabihf/release/probe")
+    assert!(built.status.success(), "the probe builds");
+    PathBuf::from(String::from_utf8_lossy(&built.stdout).trim())
 }
 
 /// Pins of the test bench.

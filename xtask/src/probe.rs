@@ -1,0 +1,40 @@
+//! The test image that the tests of the emulated machine run.
+use anyhow::Result;
+
+use crate::process::{Invocation, workspace};
+use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
+
+/// `cargo xtask probe`: builds the image and prints its path.
+pub fn run(permission: Permission) -> Result<()> {
+    let toolchain = setup::prepare(Needs::default(), permission)?;
+    let folder = match &toolchain {
+        Toolchain::Active => "target/probe",
+        Toolchain::Distribution(_) => "target/probe-distribution",
+    };
+    build(&toolchain, folder).run_to_stderr()?;
+    let elf = workspace().join(folder).join(TARGET).join("release/probe");
+    println!("{}", elf.display());
+    Ok(())
+}
+
+fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
+    let cargo = match toolchain {
+        Toolchain::Active => Invocation::cargo(["build"]),
+        Toolchain::Distribution(distribution) => distribution.cargo("build"),
+    };
+    // In place of the workspace's flags, which link what only the firmware has; the memory layout is the same.
+    let flags = format!(
+        "-C link-arg=--nmagic -C link-arg=-Tlink.x -L {}",
+        workspace().display()
+    );
+    cargo
+        .args([
+            "--locked",
+            "--release",
+            "--manifest-path",
+            "hil-sim/probe/Cargo.toml",
+        ])
+        .args(["--target", TARGET, "--target-dir", folder])
+        .without(&["CARGO_ENCODED_RUSTFLAGS"])
+        .env("RUSTFLAGS", flags)
+}
