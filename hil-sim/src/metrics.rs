@@ -146,7 +146,7 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
         },
         kernel_evaluations: evaluations()
             .next()
-            .zip(evaluations().last())
+            .zip(evaluations().next_back())
             .map(|(a, b)| b.saturating_sub(a)),
         instructions_per_tick: PerTick {
             mean: outcome.cost.map(|cost| cost.instructions_mean),

@@ -18,7 +18,7 @@ pub struct Outcome {
     pub trace: Trace,
     /// Every line of the device that is not telemetry, with the time at which it was complete, s.
     pub answers: Vec<(f64, String)>,
-    /// Cost of the scene, without set-up and settling.
+    /// Cost of the ticks since power-up, and the load of the scene alone.
     pub cost: Option<Cost>,
     /// Simulated seconds per second of this machine, settling included.
     pub real_time_factor: f64,
