@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::Context;
+use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 use hil_sim::engine::{Engine, Image, Native};
 use hil_sim::machine::Firmware;
@@ -47,6 +47,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .with_context(|| arguments.scene.display().to_string())
         .map_err(Failure::input)?;
     let (outcome, figures) = match arguments.engine {
+        Kind::Native if arguments.elf.is_some() => {
+            return Err(Failure::input(anyhow!("--elf is for --engine image; the native engine runs no image")));
+        }
         Kind::Native => measure(&scene, &mut Native::new(world)),
         Kind::Image => {
             let path = match &arguments.elf {
