@@ -241,3 +241,6 @@ impl Station {
         Ok(Reply::Done)
     }
 }
+
+#[cfg(test)]
+mod tests;
