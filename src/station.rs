@@ -202,8 +202,15 @@ impl Station {
             Command::Identify => return Ok(Reply::Identity),
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Stream { interval_ms } => self.stream_ticks = interval_ms * (TICK_HZ / 1000),
-            Command::Material { name, pairing } => self.material = Some((name, pairing)),
-            Command::Object(object) => self.object = object,
+            // Another object, under whatever finger rests there: a new contact.
+            Command::Material { name, pairing } => {
+                self.material = Some((name, pairing));
+                self.render.forget_contact();
+            }
+            Command::Object(object) => {
+                self.object = object;
+                self.render.forget_contact();
+            }
             Command::Mode(mode) => self.mode = mode,
             Command::Arm => match self.state {
                 State::Tripped(fault) => return Err(Error::Tripped(fault)),
@@ -234,3 +241,6 @@ impl Station {
         Ok(Reply::Done)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -155,9 +155,8 @@ static PROPERTIES: [Number; 5] = [
 /// Takes the next word as a decimal number within its range.
 fn number<'a>(words: &mut impl Iterator<Item = &'a str>, expected: &'static Number) -> Result<I32F32, Error> {
     let word = words.next().ok_or(Error::Missing(expected.name))?;
-    let value: I32F32 = word
-        .parse()
-        .map_err(|_| Error::NotANumber(expected, word.into()))?;
+    // Saturates, so that too many digits are out of range.
+    let value = I32F32::saturating_from_str(word).map_err(|_| Error::NotANumber(expected, word.into()))?;
     let range = I32F32::from_num(expected.min)..=I32F32::from_num(expected.max);
     if range.contains(&value) {
         Ok(value)

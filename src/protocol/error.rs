@@ -32,9 +32,9 @@ pub struct Number {
     /// Its unit.
     pub unit: &'static str,
     /// Smallest value allowed.
-    pub min: f32,
+    pub min: f64,
     /// Largest value allowed.
-    pub max: f32,
+    pub max: f64,
 }
 
 /// Why a line was refused; `Display` writes the answer without its end, at most 128 bytes.

@@ -14,3 +14,6 @@ pub use error::{Error, Number, Word};
 pub use line::{LINE_MAX, Line, LineError, LineReader};
 pub use reply::{Reply, Status};
 pub use telemetry::Telemetry;
+
+#[cfg(test)]
+mod tests;

@@ -8,7 +8,7 @@ use super::text::Text;
 use crate::drive::Current;
 use crate::station::State;
 
-/// One tick; `Display` writes the telemetry line without its end, at most 95 bytes.
+/// One tick; `Display` writes the telemetry line without its end, at most 128 bytes.
 ///
 /// `T tick state setpoint_c display_c sink_c skin_c room_c force_n demand_a current_a evaluations remark`,
 /// with `-` for what is not known; the remark is the fault that tripped, `limited` or `-`.

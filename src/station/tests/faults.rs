@@ -1,0 +1,135 @@
+//! Faults switch off, at once and for good; limits hold.
+
+use super::Bench;
+use crate::drive::Drive;
+
+/// What goes wrong with a world, and the word for it.
+type Trouble = (&'static str, fn(&mut Bench));
+
+/// Thermistors at ±200 °C read as shorted and open.
+const TROUBLES: [Trouble; 16] = [
+    ("display-open", |bench| bench.display_c = -200.0),
+    ("display-short", |bench| bench.display_c = 200.0),
+    ("check-open", |bench| bench.check_c = -200.0),
+    ("check-short", |bench| bench.check_c = 200.0),
+    ("sink-open", |bench| bench.sink_c = -200.0),
+    ("sink-short", |bench| bench.sink_c = 200.0),
+    ("skin-open", |bench| bench.skin_c = -200.0),
+    ("skin-short", |bench| bench.skin_c = 200.0),
+    ("room-open", |bench| bench.room_c = -200.0),
+    ("room-short", |bench| bench.room_c = 200.0),
+    ("force-sensor", |bench| bench.force_n = -1.3),
+    ("display-hot", |bench| bench.check_c = 43.1),
+    ("display-cold", |bench| bench.display_c = 13.4),
+    ("sink-hot", |bench| bench.sink_c = 44.1),
+    ("over-current", |bench| bench.current_a = 7.6),
+    ("bridge", |bench| bench.bridge_fault = true),
+];
+
+/// A bench in each of the states but tripped.
+fn everywhere() -> [Bench; 4] {
+    let armed = {
+        let mut bench = Bench::new();
+        bench.obey(&["material copper", "arm"]);
+        bench.step();
+        bench
+    };
+    let preset = Bench::presenting("copper");
+    let mut contact = preset.clone();
+    contact.force_n = 2.0;
+    contact.steps(10);
+    let mut off = Bench::new();
+    off.obey(&["material copper"]);
+    [off, armed, preset, contact]
+}
+
+#[test]
+fn every_fault_trips_in_its_tick_from_every_state_and_stays() {
+    for sound in everywhere() {
+        for (word, happen) in TROUBLES {
+            let mut bench = sound.clone();
+            happen(&mut bench);
+            let (drive, telemetry) = bench.step();
+            let fault = telemetry.state.fault().map(|fault| fault.name());
+            assert_eq!(
+                (drive, fault),
+                (Drive::Off, Some(word)),
+                "from {:?}",
+                sound.state()
+            );
+            assert_eq!(telemetry.demand, 0);
+
+            let tripped = ["err tripped by ", word, "; clear it first"].concat();
+            let present = ["err fault ", word, " is still present"].concat();
+            assert_eq!(bench.host("clear"), present);
+
+            // Gone again, but nobody has said so.
+            bench = Bench {
+                station: bench.station,
+                ..sound.clone()
+            };
+            assert_eq!(bench.host("clear"), present);
+            for _ in 0..100 {
+                assert_eq!(bench.step().0, Drive::Off, "{word}");
+            }
+            for (line, answer) in [("arm", tripped.as_str()), ("start", &tripped), ("abort", "ok")] {
+                assert_eq!(bench.host(line), answer);
+                assert_eq!(bench.step().0, Drive::Off, "{word} after {line}");
+                assert_eq!(bench.state().name(), "tripped");
+            }
+            bench.obey(&["clear"]);
+            assert_eq!((bench.step().0, bench.state().name()), (Drive::Off, "off"));
+            bench.obey(&["arm", "start"]);
+            assert!(matches!(bench.step().0, Drive::On(_)));
+        }
+    }
+}
+
+#[test]
+fn the_first_fault_is_kept_and_a_later_one_keeps_clear_from_passing() {
+    let mut bench = Bench::new();
+    bench.bridge_fault = true;
+    bench.step();
+    bench.bridge_fault = false;
+    bench.sink_c = 50.0;
+    bench.step();
+    assert_eq!(bench.host("arm"), "err tripped by bridge; clear it first");
+    assert_eq!(bench.host("clear"), "err fault sink-hot is still present");
+    bench.sink_c = 25.0;
+    bench.step();
+    bench.obey(&["clear"]);
+}
+
+#[test]
+fn a_fault_ends_the_contact() {
+    let mut bench = Bench::presenting("copper");
+    bench.force_n = 2.0;
+    bench.steps(5000);
+    bench.bridge_fault = true;
+    bench.step();
+    bench.bridge_fault = false;
+    bench.step();
+    bench.obey(&["clear", "arm", "start"]);
+    let expected_c = bench.contact("copper", 24.0).at(0.0).display_c;
+    super::assert_close(bench.setpoint_c(), expected_c);
+}
+
+#[test]
+fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
+    let mut bench = Bench::new();
+    bench.obey(&["arm"]);
+    for (display_c, demand_a, duty) in [(14.0, -6, -0.5), (42.0, 6, 0.5)] {
+        (bench.display_c, bench.check_c) = (display_c, display_c);
+        for _ in 0..3000 {
+            let (drive, telemetry) = bench.step();
+            assert_eq!(telemetry.demand, demand_a);
+            let Drive::On(voltage) = drive else {
+                panic!("{drive:?}")
+            };
+            let voltage = voltage.fraction().to_num::<f64>();
+            // 6 A times 1.061 ohm of 12 V, and what the module gives or takes.
+            let seebeck = 0.0273 * (25.0 - display_c) / 12.0;
+            assert!((voltage - duty * 1.061 - seebeck).abs() < 1e-3, "{voltage}");
+        }
+    }
+}

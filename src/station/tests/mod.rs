@@ -1,0 +1,137 @@
+//! A station on a bench: physical quantities in, set-point and bridge command out.
+
+mod any_input;
+mod faults;
+mod rendering;
+mod states;
+
+use contact_model::material::{self, Material, REFERENCE_DISPLAY, SKIN};
+use contact_model::{pressure, reference};
+use std::string::{String, ToString};
+
+use super::{State, Station};
+use crate::drive::Drive;
+use crate::protocol::{Command, Telemetry};
+use crate::sense::Samples;
+use crate::settings::Settings;
+
+/// A station and the world that its sensors see.
+#[derive(Clone, Debug)]
+struct Bench {
+    station: Station,
+    display_c: f64,
+    check_c: f64,
+    sink_c: f64,
+    skin_c: f64,
+    room_c: f64,
+    force_n: f64,
+    current_a: f64,
+    bridge_fault: bool,
+}
+
+impl Bench {
+    /// Nobody touches, nothing is wrong, telemetry comes on every tick.
+    fn new() -> Self {
+        let mut bench = Self {
+            station: Station::new(&Settings::default()),
+            display_c: 30.0,
+            check_c: 30.0,
+            sink_c: 25.0,
+            skin_c: 34.0,
+            room_c: 24.0,
+            force_n: 0.0,
+            current_a: 0.0,
+            bridge_fault: false,
+        };
+        assert_eq!(bench.host("stream 1"), "ok");
+        bench
+    }
+
+    /// Sends a line, gives the answer.
+    fn host(&mut self, line: &str) -> String {
+        let done =
+            Command::parse(line, &Settings::default()).and_then(|command| self.station.execute(command));
+        done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
+    }
+
+    /// Sends lines that must be obeyed.
+    fn obey(&mut self, lines: &[&str]) {
+        for line in lines {
+            assert_eq!(self.host(line), "ok", "{line}");
+        }
+    }
+
+    /// A bench on which `material` is presented, and nobody touches it.
+    fn presenting(material: &str) -> Self {
+        let mut bench = Self::new();
+        let chosen = ["material ", material].concat();
+        bench.obey(&[&chosen, "arm", "start"]);
+        bench.step();
+        bench
+    }
+
+    /// What the converter makes of the world: 10 k thermistors of beta 3950 K under 10 k, 410 counts and
+    /// 300 counts/N, 400 counts/A, sixteen conversions.
+    fn samples(&self) -> Samples {
+        let thermistor = |t_c: f64| {
+            let ohm = 10e3 * (3950.0 * (1.0 / (t_c + 273.15) - 1.0 / 298.15)).exp();
+            (65536.0 * ohm / (ohm + 10e3)).round() as u16
+        };
+        Samples {
+            display: thermistor(self.display_c),
+            display_check: thermistor(self.check_c),
+            sink: thermistor(self.sink_c),
+            skin: thermistor(self.skin_c),
+            room: thermistor(self.room_c),
+            force: (16.0 * (410.0 + 300.0 * self.force_n)).round() as u16,
+            current: (16.0 * 400.0 * self.current_a).round() as u16,
+            bridge_fault: self.bridge_fault,
+        }
+    }
+
+    /// One tick.
+    fn step(&mut self) -> (Drive, Telemetry) {
+        let samples = self.samples();
+        let drive = self.station.step(&samples);
+        (drive, self.station.telemetry().expect("streamed on every tick"))
+    }
+
+    fn steps(&mut self, ticks: u32) -> (Drive, Telemetry) {
+        for _ in 1..ticks {
+            self.step();
+        }
+        self.step()
+    }
+
+    fn state(&self) -> State {
+        self.station.state
+    }
+
+    /// Set-point of one tick, °C.
+    fn setpoint_c(&mut self) -> f64 {
+        let (_, telemetry) = self.step();
+        telemetry.setpoint.expect("the bridge is driven").to_num()
+    }
+
+    /// The thesis's contact of this finger with an object, in `f64`.
+    fn contact(&self, material: &str, object_c: f64) -> reference::Contact<f64> {
+        let object: &Material = material::find(material).expect("a material of the thesis");
+        let pressure_pa = pressure::pressure_pa(self.force_n);
+        reference::Contact::new(
+            (&SKIN, self.skin_c),
+            (object, object_c),
+            &REFERENCE_DISPLAY,
+            pressure_pa,
+        )
+    }
+}
+
+/// One count of a thermistor's sum is 1.4 mK at 25 to 35 °C, so rounding moves a temperature by 0.7 mK, and
+/// what is computed from skin and room by little more.
+#[track_caller]
+fn assert_close(actual_c: f64, expected_c: f64) {
+    assert!(
+        (actual_c - expected_c).abs() < 2e-3,
+        "{actual_c} °C, expected {expected_c} °C"
+    );
+}
