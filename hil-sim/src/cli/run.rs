@@ -48,7 +48,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(Failure::input)?;
     let (outcome, figures) = match arguments.engine {
         Kind::Native if arguments.elf.is_some() => {
-            return Err(Failure::input(anyhow!("--elf is for --engine image; the native engine runs no image")));
+            return Err(Failure::input(anyhow!(
+                "--elf is for --engine image; the native engine runs no image"
+            )));
         }
         Kind::Native => measure(&scene, &mut Native::new(world)),
         Kind::Image => {
