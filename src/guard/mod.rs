@@ -1,7 +1,7 @@
 //! Limits and faults: what switches the bridge off, and keeps it off.
 //!
-//! Faults are levels, checked on every tick in every state. The first one is latched with its tick; only
-//! the host's `clear` takes it back, and only when no fault is present any more.
+//! Faults are levels, checked on every tick in every state. The first one is latched; only the
+//! host's `clear` takes it back, and only when no fault is present any more.
 
 mod setpoint;
 

@@ -65,9 +65,10 @@ impl Command {
             "abort" => Self::Abort,
             "clear" => Self::Clear,
             "stream" => {
-                let interval = number(&mut words, &STREAM)?;
+                // A part of a millisecond counts as a whole one, so that only 0 ends the stream.
+                let interval_ms = number(&mut words, &STREAM)?.saturating_ceil();
                 Self::Stream {
-                    interval_ms: interval.to_num::<i64>().unsigned_abs() as u32,
+                    interval_ms: interval_ms.to_num::<i64>().unsigned_abs() as u32,
                 }
             }
             "mode" => match words.next().ok_or(Error::Missing("mode"))? {

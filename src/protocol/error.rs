@@ -108,7 +108,9 @@ impl fmt::Display for Error {
             Self::UnknownMode(word) => write!(f, "unknown mode {word}; known: contact semi-infinite"),
             Self::Missing(what) => write!(f, "{what} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
-            Self::NotANumber(number, word) => write!(f, "{} {word} is not a decimal number", number.name),
+            Self::NotANumber(Number { name, unit, min, max }, word) => {
+                write!(f, "{name} {word} is not a decimal number; {min} to {max} {unit}")
+            }
             Self::OutOfRange(Number { name, unit, min, max }, word) => {
                 write!(f, "{name} {word} out of range; {min} to {max} {unit}")
             }

@@ -43,7 +43,7 @@ fn every_command_is_understood() {
     ] {
         assert_eq!(parse(line), Ok(command), "{line}");
     }
-    // Copper by name and by the properties of Table 3-1 and 6-1.
+    // Copper by name and by its properties.
     let of = |line| match parse(line) {
         Ok(Command::Material { pairing, .. }) => pairing,
         other => panic!("{line}: {other:?}"),
@@ -89,15 +89,15 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
         ("object room 3", "err unexpected '3' after the command"),
         (
             "object warm",
-            "err object temperature 'warm' is not a decimal number",
+            "err object temperature 'warm' is not a decimal number; -20 to 60 C",
         ),
         (
             "object nan",
-            "err object temperature 'nan' is not a decimal number",
+            "err object temperature 'nan' is not a decimal number; -20 to 60 C",
         ),
         (
             "object inf",
-            "err object temperature 'inf' is not a decimal number",
+            "err object temperature 'inf' is not a decimal number; -20 to 60 C",
         ),
         (
             "object 60.001",

@@ -113,7 +113,7 @@ fn another_material_replaces_the_one_that_is_touched() {
     follows_from(&mut bench, &contact, 0.0, 300);
 }
 
-/// Section 3: what the sensor beside the contact sees during contact is not the skin that it started from.
+/// What the sensor beside the contact sees during contact is not the skin that it started from.
 #[test]
 fn skin_and_room_are_those_before_contact() {
     let mut bench = Bench::presenting("abs");
