@@ -10,7 +10,7 @@ pub type Current = I8F24;
 pub struct Duty(I1F15);
 
 impl Duty {
-    /// Largest magnitude: leaves the driver's charge pump and current mirror time to work.
+    /// Largest magnitude: 10.8 V of 12 V, more than 6 A through a cold module ever need.
     pub const LIMIT: I1F15 = I1F15::lit("0.9");
     /// No voltage; both legs are driven to the same level.
     pub const ZERO: Self = Self(I1F15::ZERO);

@@ -17,7 +17,7 @@ use contact_model::fixed_point::{Celsius, Force, Pairing};
 use crate::TICK_HZ;
 use crate::control::{Pi, Voltage};
 use crate::drive::{Current, Drive};
-use crate::guard::{self, Fault, Setpoint, Sound};
+use crate::guard::{self, Fault, Setpoint, Sound, Watch};
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
 use crate::render::{Mode, Render, Scene};
 use crate::sense::{Readings, Samples, Sensors, Touch};
@@ -71,6 +71,7 @@ pub struct Station {
     state: State,
     /// Fault present in the last tick.
     fault: Option<Fault>,
+    watch: Watch,
     touch: Touch,
     render: Render,
     material: Option<(&'static str, Pairing)>,
@@ -92,6 +93,7 @@ impl Station {
             pi: Pi::new(&settings.gains, settings.module.current_limit_a),
             state: State::Off,
             fault: None,
+            watch: Watch::default(),
             touch: Touch::default(),
             render: Render::default(),
             material: None,
@@ -107,7 +109,9 @@ impl Station {
     pub fn step(&mut self, samples: &Samples) -> Drive {
         self.tick = self.tick.wrapping_add(1);
         let readings = self.sensors.read(samples);
-        let checked = guard::check(&readings, self.pi.limit());
+        // Both look at every tick; what a tick shows at once is named first.
+        let lasting = self.watch.check(samples, &readings);
+        let checked = guard::check(&readings, self.pi.limit()).and_then(|sound| lasting.map(|()| sound));
         self.fault = checked.err();
         if let (Err(fault), false) = (checked, matches!(self.state, State::Tripped(_))) {
             self.state = State::Tripped(fault);

@@ -14,7 +14,8 @@ fn display_follows_the_set_point_of_each_material() {
         let (skin, display) = (figures.skin_error_mk.unwrap(), figures.display_error_mk.unwrap());
         println!(
             "{material}: skin {:.1} mK after 50 ms, display {:.1} mK RMS",
-            skin.max_after_50ms, display.rms
+            skin.max_after_50ms.unwrap(),
+            display.rms
         );
         assert!(display.rms < 100.0, "{material}: display {display:?}");
         assert!(figures.faults.is_empty(), "{material}: {:?}", figures.faults);

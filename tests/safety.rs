@@ -1,5 +1,6 @@
 //! The release image takes the bridge off when a sensor fails.
 
+use hil_sim::trace::Row;
 use system_tests::{between, forces, on_image, scene};
 
 #[test]
@@ -39,12 +40,52 @@ fn swapped_polarity_trips_before_the_skin_is_hurt() {
         .and_then(|row| row.device.as_ref())
         .expect("telemetry");
     assert_eq!(last.state, "tripped");
+    let tripped = |row: &&Row| {
+        row.device
+            .as_ref()
+            .is_some_and(|device| device.state == "tripped")
+    };
+    // The tick that trips is followed by at most one step of the plant with its old duty.
+    for row in outcome.trace.rows().iter().filter(tripped).skip(2) {
+        assert_eq!(row.current_a, 0.0, "at {} s", row.t_s);
+    }
     for row in outcome.trace.rows() {
+        assert!(
+            (12.0..46.0).contains(&row.display_c),
+            "display {} C at {} s",
+            row.display_c,
+            row.t_s
+        );
         assert!(
             (13.0..45.0).contains(&row.skin_c),
             "skin {} C at {} s",
             row.skin_c,
             row.t_s
+        );
+    }
+}
+
+/// A converter that repeats itself would let the loop integrate its last error for ever.
+#[test]
+fn frozen_converter_trips_before_the_display_drifts() {
+    let tables = forces(&[(0.5, 2.0)]) + "[[fault]]\nkind = \"adc-stuck\"\nt_s = 0.8\n";
+    let outcome = on_image(&scene("copper", 3.0, "", &tables));
+    let frozen = outcome.trace.rows().iter().find(|row| {
+        row.device
+            .as_ref()
+            .is_some_and(|device| device.remark.as_deref() == Some("samples-frozen"))
+    });
+    assert!(
+        frozen.is_some_and(|row| row.t_s < 0.86),
+        "{:?}",
+        frozen.map(|row| row.t_s)
+    );
+    for row in between(&outcome, 0.86, 3.0) {
+        assert_eq!(row.current_a, 0.0, "at {} s", row.t_s);
+        assert!(
+            (15.0..42.0).contains(&row.display_c),
+            "display {} C",
+            row.display_c
         );
     }
 }

@@ -18,7 +18,9 @@ pub fn build() -> anyhow::Result<PathBuf> {
         .current_dir(root)
         .stderr(Stdio::inherit())
         .output()
-        .context("cargo cannot be started")?;
+        .context(
+            "cargo cannot be started to build the image; install Rust by rustup, or give an image by --elf",
+        )?;
     if !built.status.success() {
         bail!(
             "the image could not be built: `cargo xtask firmware` ended with {}",

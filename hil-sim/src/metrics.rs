@@ -16,8 +16,8 @@ const AFTER_S: f64 = 0.05;
 /// Errors during contact, mK.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
-    /// Largest magnitude from 50 ms after each landing on.
-    pub max_after_50ms: f64,
+    /// Largest magnitude from 50 ms after each landing on; null if no contact lasted that long.
+    pub max_after_50ms: Option<f64>,
     /// Root mean square over all contact time.
     pub rms: f64,
 }
@@ -73,7 +73,7 @@ pub struct Figures {
     /// Part of the time in which the CPU does not sleep, estimated.
     pub cpu_load: Option<f64>,
     /// Most of the stack that was used, emulated.
-    pub stack_bytes: Option<u64>,
+    pub stack_bytes: Option<u32>,
     /// Simulated seconds per second.
     pub real_time_factor: f64,
     /// Faults that the device reported.
@@ -157,7 +157,7 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
             max: outcome.cost.map(|cost| cost.cycles_max),
         },
         cpu_load: outcome.cost.map(|cost| cost.load),
-        stack_bytes: outcome.cost.map(|cost| cost.stack_bytes),
+        stack_bytes: outcome.cost.and_then(|cost| cost.stack_bytes),
         real_time_factor: outcome.real_time_factor,
         faults: faults(outcome),
     }
@@ -165,17 +165,17 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
 
 /// Errors in mK from time since landing in s and error in K; `None` without contact.
 fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<Errors> {
-    let (mut count, mut squares, mut max_k) = (0u32, 0.0, 0.0f64);
+    let (mut count, mut squares, mut max_k) = (0u32, 0.0, None::<f64>);
     for (since_s, error_k) in samples {
         count += 1;
         squares += error_k * error_k;
         if since_s >= AFTER_S {
-            max_k = max_k.max(error_k.abs());
+            max_k = Some(max_k.unwrap_or(0.0).max(error_k.abs()));
         }
     }
     let rms = (squares / f64::from(count)).sqrt() * 1e3;
     (count > 0).then_some(Errors {
-        max_after_50ms: max_k * 1e3,
+        max_after_50ms: max_k.map(|error_k| error_k * 1e3),
         rms,
     })
 }

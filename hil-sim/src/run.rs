@@ -18,21 +18,32 @@ pub struct Outcome {
     pub trace: Trace,
     /// Every line of the device that is not telemetry, with the time at which it was complete, s.
     pub answers: Vec<(f64, String)>,
-    /// Cost of the ticks since power-up, and the load of the scene alone.
+    /// Cost of the scene, without set-up and settling.
     pub cost: Option<Cost>,
     /// Simulated seconds per second of this machine, settling included.
     pub real_time_factor: f64,
 }
 
+/// Why a run ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError<S: std::error::Error + 'static> {
+    /// The engine stopped: the device did something that is not modelled.
+    #[error(transparent)]
+    Stop(S),
+    /// The device refused a line that sets the scene up.
+    #[error("the device refused to be set up for the scene: {0}")]
+    Refused(String),
+}
+
 /// Runs a scene; `progress` is told the part that is done.
 ///
 /// # Errors
-/// The engine stopped: the device did something that is not modelled.
+/// The engine stopped, or the device refused the scene.
 pub fn run<E: Engine>(
     scene: &Scene,
     engine: &mut E,
     mut progress: impl FnMut(f64),
-) -> Result<Outcome, E::Stop> {
+) -> Result<Outcome, RunError<E::Stop>> {
     let began = Instant::now();
     let zero_ms = (scene.settle_s * 1e3).round() as u64;
     let end_ms = zero_ms + (scene.duration_s * 1e3).round() as u64;
@@ -53,12 +64,14 @@ pub fn run<E: Engine>(
             let row = Row::now(session.t_s(2 * ms), session.engine.world().plant());
             trace.push(ms, row);
         }
-        session.half_ms()?;
+        session.half_ms().map_err(RunError::Stop)?;
         session.boundary(2 * ms + 1);
-        session.half_ms()?;
+        session.half_ms().map_err(RunError::Stop)?;
         for line in session.lines() {
             match Telemetry::parse(&line) {
                 Some(telemetry) => trace.join(telemetry),
+                // Before time zero only set-up is sent.
+                None if ms < zero_ms && line.starts_with("err") => return Err(RunError::Refused(line)),
                 None => answers.push((session.t_s(2 * ms + 2), line)),
             }
         }

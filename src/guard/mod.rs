@@ -4,8 +4,10 @@
 //! host's `clear` takes it back, and only when no fault is present any more.
 
 mod setpoint;
+mod watch;
 
 pub use setpoint::Setpoint;
+pub use watch::Watch;
 
 use contact_model::fixed_point::Celsius;
 
@@ -37,6 +39,10 @@ pub enum Fault {
     OverCurrent,
     /// The bridge driver reports a fault.
     Bridge,
+    /// All samples have repeated themselves for 50 ms: the converter stands still.
+    SamplesFrozen,
+    /// The display's thermistors have been more than 3 K apart for 100 ms.
+    DisplaysDisagree,
 }
 
 /// One of the five thermistors.
@@ -76,6 +82,8 @@ impl Fault {
             Self::SinkTooHot => "sink-hot",
             Self::OverCurrent => "over-current",
             Self::Bridge => "bridge",
+            Self::SamplesFrozen => "samples-frozen",
+            Self::DisplaysDisagree => "displays-apart",
         }
     }
 }

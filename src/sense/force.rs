@@ -7,6 +7,8 @@ use crate::settings::ForceSensor;
 /// A finger has landed from this force on, and has lifted below the second.
 const LANDED_FROM: Force = Force::lit("0.04");
 const LIFTED_BELOW: Force = Force::lit("0.02");
+/// Sum beyond which the signal is at the end of the converter's range.
+const TOP: u16 = 4060 * 16;
 /// Ticks for which a change must last.
 const DEBOUNCE_TICKS: u32 = 2;
 
@@ -30,10 +32,10 @@ impl ForceScale {
     }
 
     /// Force for the sum of 16 conversions; nothing below zero force. `None`: the signal is below half of
-    /// its live zero, a broken wire.
+    /// its live zero or at the end of the range, a broken or shorted wire.
     #[must_use]
     pub fn force(&self, sum: u16) -> Option<Force> {
-        if sum < self.zero / 2 {
+        if sum < self.zero / 2 || sum > TOP {
             return None;
         }
         let beyond = u64::from(sum.saturating_sub(self.zero));
@@ -103,6 +105,7 @@ mod tests {
         }
         assert_eq!(scale.force(300 * 16).expect("in range"), Force::ZERO);
         assert_eq!(scale.force(100 * 16), None);
+        assert_eq!(scale.force(4095 * 16), None);
     }
 
     #[test]

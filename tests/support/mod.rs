@@ -74,8 +74,7 @@ pub fn on_image(scene: &Scene) -> Outcome {
 #[must_use]
 pub fn natively(scene: &Scene) -> Outcome {
     let mut engine = Native::new(World::new(scene).expect("a plant for the scene"));
-    let Ok(outcome) = run(scene, &mut engine, |_| ());
-    outcome
+    run(scene, &mut engine, |_| ()).expect("the device takes the scene")
 }
 
 /// Rows from one time to another, s.

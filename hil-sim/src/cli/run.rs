@@ -1,5 +1,6 @@
 //! `hil-sim run`: a scene on an engine.
 
+use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
@@ -46,6 +47,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let world = World::new(&scene)
         .with_context(|| arguments.scene.display().to_string())
         .map_err(Failure::input)?;
+    if let Some(folder) = &arguments.out {
+        // Before the run, which may be long.
+        let created = std::fs::create_dir_all(folder);
+        created
+            .with_context(|| format!("--out {}", folder.display()))
+            .map_err(Failure::input)?;
+    }
     let (outcome, figures) = match arguments.engine {
         Kind::Native if arguments.elf.is_some() => {
             return Err(Failure::input(anyhow!(
@@ -67,15 +75,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.out {
         write(folder, &scene, &outcome, &figures).map_err(Failure::run)?;
     }
-    if arguments.json {
-        println!("{}", serde_json::to_string(&figures).map_err(Failure::run)?);
+    let mut text = if arguments.json {
+        serde_json::to_string(&figures).map_err(Failure::run)? + "\n"
     } else {
-        print!("{}", report::table(&figures));
-        if let Some(folder) = &arguments.out {
-            println!("report: {}", folder.join(report::HTML).display());
-        }
+        report::table(&figures)
+    };
+    if let (Some(folder), false) = (&arguments.out, arguments.json) {
+        text += &format!("report: {}\n", folder.join(report::HTML).display());
     }
-    Ok(())
+    stdout()
+        .write_all(text.as_bytes())
+        .context("standard output")
+        .map_err(Failure::run)
 }
 
 fn measure<E: Engine>(scene: &Scene, engine: &mut E) -> Result<(Outcome, Figures), Failure> {
@@ -90,7 +101,6 @@ fn measure<E: Engine>(scene: &Scene, engine: &mut E) -> Result<(Outcome, Figures
 }
 
 fn write(folder: &Path, scene: &Scene, outcome: &Outcome, figures: &Figures) -> anyhow::Result<()> {
-    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
     let trace = folder.join("trace.csv");
     outcome
         .trace

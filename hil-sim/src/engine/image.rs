@@ -121,6 +121,7 @@ impl Engine for Image {
     }
 
     fn reset_cost(&mut self) {
+        self.machine.restart_interrupt_stats();
         let stats = self.machine.stats();
         self.before = Before {
             cycles: stats.cycles,
@@ -138,7 +139,7 @@ impl Engine for Image {
             cycles_mean: tick.cycles_mean,
             cycles_max: tick.cycles_max,
             load: awake / (stats.cycles - self.before.cycles) as f64,
-            stack_bytes: self.machine.stack_high_water().map_or(0, u64::from),
+            stack_bytes: self.machine.stack_high_water(),
         })
     }
 }

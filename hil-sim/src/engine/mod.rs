@@ -71,6 +71,6 @@ pub struct Cost {
     pub cycles_max: u64,
     /// Part of the time in which the CPU does not sleep.
     pub load: f64,
-    /// Most of the stack that was ever used, bytes.
-    pub stack_bytes: u64,
+    /// Most of the stack that was ever used, bytes; none if the image does not say where its stack ends.
+    pub stack_bytes: Option<u32>,
 }

@@ -16,13 +16,8 @@ pub const RAM_SIZE: u32 = 128 * 1024;
 #[derive(Debug, thiserror::Error)]
 pub enum ImageError {
     /// The file could not be read.
-    #[error("cannot read {path}: {source}")]
-    Unreadable {
-        /// File asked for.
-        path: String,
-        /// Reason of the operating system.
-        source: std::io::Error,
-    },
+    #[error("cannot be read: {0}")]
+    Unreadable(std::io::Error),
     /// No ELF at all, or cut short.
     #[error("not a complete 32-bit little-endian ELF file: {0}")]
     NotElf(String),
@@ -79,10 +74,7 @@ impl Firmware {
     /// # Errors
     /// The file cannot be read, or is not an image for the STM32F446RE.
     pub fn from_file(path: &Path) -> Result<Self, ImageError> {
-        let bytes = std::fs::read(path).map_err(|source| ImageError::Unreadable {
-            path: path.display().to_string(),
-            source,
-        })?;
+        let bytes = std::fs::read(path).map_err(ImageError::Unreadable)?;
         Self::from_elf(&bytes)
     }
 

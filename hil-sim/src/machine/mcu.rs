@@ -125,6 +125,11 @@ impl<W: Wiring + 'static> Machine<W> {
         self.cpu.get_data().chip_ref().output(port, bit)
     }
 
+    /// Starts the figures of the interrupts anew.
+    pub fn restart_interrupt_stats(&mut self) {
+        self.cpu.get_data_mut().profile.restart();
+    }
+
     /// Counts since power-up.
     pub fn stats(&self) -> Stats {
         let state = self.cpu.get_data();

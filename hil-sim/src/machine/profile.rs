@@ -1,7 +1,7 @@
 //! Where instructions and cycles go, by exception.
 use super::nvic::{self, EXCEPTIONS};
 
-/// Figures of one exception handler over the whole run.
+/// Figures of one exception handler since power-up or the last restart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InterruptStats {
     /// Name in the reference manual's vector table.
@@ -103,6 +103,11 @@ impl Profile {
     /// A reset ends every activation.
     pub fn abandon(&mut self) {
         self.open.clear();
+    }
+
+    /// Starts the figures of all exceptions anew; what runs now counts when it ends.
+    pub fn restart(&mut self) {
+        self.totals.fill(Total::default());
     }
 
     pub fn interrupts(&self) -> Vec<InterruptStats> {

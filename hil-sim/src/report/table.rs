@@ -8,10 +8,10 @@ use crate::metrics::{Errors, Figures, PerTick};
 pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
     let errors = |errors: Option<Errors>| {
         errors.map_or("no contact".into(), |errors| {
-            format!(
-                "{:.1} mK after 50 ms, {:.1} mK RMS",
-                errors.max_after_50ms, errors.rms
-            )
+            let max = errors
+                .max_after_50ms
+                .map_or("none".into(), |max| format!("{max:.1} mK"));
+            format!("{max} after 50 ms, {:.1} mK RMS", errors.rms)
         })
     };
     let cost = |cost: PerTick| match cost {

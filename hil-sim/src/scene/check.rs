@@ -14,7 +14,7 @@ use thermal_display::settings::Settings;
 use super::file::{self, File, Number};
 use super::{Fault, Force, HostLine, Object, Scene};
 
-/// Settling time of a scene that gives none, s.
+/// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
 
 /// What is wrong with a scene, and where.
@@ -86,7 +86,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let file: File = toml::from_str(text).map_err(|error| source.error(error.span(), error.message()))?;
     let duration_s = source.within("duration_s", &file.duration_s, 0.001, 86_400.0)?;
     let settle_s = match &file.settle_s {
-        Some(number) => source.within("settle_s", number, 3.0, 3600.0)?,
+        Some(number) => source.within("settle_s", number, SETTLE_S, 3600.0)?,
         None => SETTLE_S,
     };
     let (skin_c, room_c) = (
@@ -233,7 +233,13 @@ pub(crate) fn custom_line(material: &Material) -> String {
         slope_rad,
     } = material.surface;
     let (density, heat) = (material.density_kg_m3, material.specific_heat_j_kgk);
-    format!("material custom {conductivity_w_mk} {density} {heat} {roughness_um} {slope_rad}")
+    // Nine decimals are more than the device keeps, and five such numbers fit its line.
+    let numbers =
+        [conductivity_w_mk, density, heat, roughness_um, slope_rad].map(|number| format!("{number:.9}"));
+    let short = numbers
+        .each_ref()
+        .map(|number| number.trim_end_matches('0').trim_end_matches('.'));
+    format!("material custom {}", short.join(" "))
 }
 
 fn forces(source: &Source<'_>, rows: &[file::Force], duration_s: f64) -> Result<Vec<Force>, SceneError> {

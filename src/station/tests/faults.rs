@@ -1,7 +1,8 @@
 //! Faults switch off, at once and for good; limits hold.
 
-use super::Bench;
+use super::{Bench, State};
 use crate::drive::Drive;
+use crate::guard::Fault;
 
 /// What goes wrong with a world, and the word for it.
 type Trouble = (&'static str, fn(&mut Bench));
@@ -132,4 +133,36 @@ fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
             assert!((voltage - duty * 1.061 - seebeck).abs() < 1e-3, "{voltage}");
         }
     }
+}
+
+/// The bench without its noise: a converter that repeats its last conversions.
+#[test]
+fn a_converter_that_stands_still_trips_within_50_ms_and_a_bit() {
+    let mut bench = Bench::presenting("copper");
+    bench.steps(200);
+    assert_eq!(bench.state(), State::Preset);
+    bench.noise = 0;
+    bench.steps(49);
+    assert_eq!(bench.state(), State::Preset);
+    let (drive, _) = bench.steps(3);
+    assert_eq!(
+        (bench.state().fault().map(Fault::name), drive),
+        (Some("samples-frozen"), Drive::Off)
+    );
+}
+
+#[test]
+fn display_thermistors_that_stay_apart_trip() {
+    let mut bench = Bench::presenting("copper");
+    bench.check_c = bench.display_c + 2.9;
+    bench.steps(200);
+    assert_eq!(bench.state(), State::Preset);
+    bench.check_c = bench.display_c - 3.1;
+    bench.steps(99);
+    assert_eq!(bench.state(), State::Preset);
+    let (drive, _) = bench.steps(2);
+    assert_eq!(
+        (bench.state().fault().map(Fault::name), drive),
+        (Some("displays-apart"), Drive::Off)
+    );
 }

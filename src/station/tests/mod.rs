@@ -27,6 +27,8 @@ struct Bench {
     force_n: f64,
     current_a: f64,
     bridge_fault: bool,
+    /// The converter's noise: one unit of one sum, every other tick.
+    noise: u16,
 }
 
 impl Bench {
@@ -42,6 +44,7 @@ impl Bench {
             force_n: 0.0,
             current_a: 0.0,
             bridge_fault: false,
+            noise: 1,
         };
         assert_eq!(bench.host("stream 1"), "ok");
         bench
@@ -91,7 +94,10 @@ impl Bench {
 
     /// One tick.
     fn step(&mut self) -> (Drive, Telemetry) {
-        let samples = self.samples();
+        let mut samples = self.samples();
+        if self.station.tick.is_multiple_of(2) {
+            samples.current += self.noise;
+        }
         let drive = self.station.step(&samples);
         (drive, self.station.telemetry().expect("streamed on every tick"))
     }
