@@ -35,8 +35,12 @@ impl Text {
 
     /// Appends ASCII.
     pub(super) fn word(&mut self, word: &str) {
-        for byte in word.bytes() {
-            self.byte(byte);
+        let end = self.length + word.len();
+        if let Some(place) = self.bytes.get_mut(self.length..end) {
+            for (place, byte) in place.iter_mut().zip(word.bytes()) {
+                *place = byte;
+            }
+            self.length = end;
         }
     }
 
@@ -80,22 +84,30 @@ impl Text {
 
     /// Appends `value / 10^DIGITS`.
     fn digits<const DIGITS: usize>(&mut self, mut value: u32) {
-        let mut digits = [0u8; 10];
-        let mut count = 0;
-        for digit in &mut digits {
-            if value == 0 && count > DIGITS {
-                break;
-            }
-            *digit = (value % 10) as u8;
-            value /= 10;
-            count += 1;
+        // Digits before the point: at least one, and all in all no more than ten.
+        let mut whole = 1;
+        let mut bound = const { 10u32.pow(DIGITS as u32 + 1) };
+        while value >= bound && whole + DIGITS < 10 {
+            whole += 1;
+            bound = bound.saturating_mul(10);
         }
-        for (place, digit) in digits.iter().enumerate().take(count).rev() {
-            self.byte(b'0' + digit);
-            if place == DIGITS && DIGITS != 0 {
-                self.byte(b'.');
+        let end = self.length + whole + if DIGITS == 0 { 0 } else { 1 + DIGITS };
+        let place = self.bytes.get_mut(self.length..end);
+        let Some((whole, rest)) = place.and_then(|place| place.split_at_mut_checked(whole)) else {
+            return;
+        };
+        let mut put = |places: &mut [u8]| {
+            for place in places.iter_mut().rev() {
+                *place = b'0' + (value % 10) as u8;
+                value /= 10;
             }
+        };
+        if let Some((point, decimals)) = rest.split_first_mut() {
+            *point = b'.';
+            put(decimals);
         }
+        put(whole);
+        self.length = end;
     }
 }
 
@@ -150,7 +162,11 @@ mod tests {
     fn what_does_not_fit_is_left_out() {
         assert_eq!(
             text(|text| (0..100).for_each(|_| text.word("ab "))).len(),
-            LONGEST
+            LONGEST / 3 * 3
+        );
+        assert_eq!(
+            text(|text| (0..100).for_each(|_| text.count(12345))).len(),
+            LONGEST / 5 * 5
         );
     }
 }
