@@ -1,7 +1,7 @@
 //! The release image makes a finger feel copper, ABS and foam.
 
 use hil_sim::engine::Image;
-use hil_sim::metrics::{exact_setpoint_c, figures};
+use hil_sim::metrics::figures;
 use system_tests::{between, forces, on_image, scene};
 
 /// 2 N for 10 s: the display stays within 0.1 °C RMS of the exact set-point.
@@ -42,7 +42,7 @@ fn set_point_is_equation_6_12_of_what_the_device_measures() {
     let outcome = on_image(&scene);
     for row in between(&outcome, 0.52, 6.0) {
         let device = row.device.as_ref().expect("telemetry of every tick");
-        let exact_c = exact_setpoint_c(&scene, row.t_s - 0.5, row.force_n);
+        let exact_c = scene.exact_setpoint_c(row.t_s - 0.5, row.force_n);
         let error_k = device.setpoint_c.expect("a set-point in contact") - exact_c;
         assert_eq!(device.state, "contact");
         assert!(error_k.abs() < 0.06, "at {} s: {error_k} K", row.t_s);

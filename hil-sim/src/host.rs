@@ -27,7 +27,7 @@ impl Host {
     /// The lines that set a scene up, and those of the scene itself.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let zero_ms = (scene.settle_s * 1e3).round() as u64;
+        let zero_ms = scene.settle_ms();
         let at = |t_s: f64| zero_ms + (t_s * 1e3).round() as u64;
         let material = match scene.object.name.as_str() {
             "custom" => custom_line(&scene.object.material),

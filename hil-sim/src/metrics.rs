@@ -1,10 +1,6 @@
 //! Figures of a run.
 
-use contact_model::material::{REFERENCE_DISPLAY, SKIN};
-use contact_model::pressure::pressure_pa;
-use contact_model::reference::{Contact, interface_temperature};
 use serde::Serialize;
-use thermal_display::render::Mode;
 
 use crate::engine::Engine;
 use crate::run::Outcome;
@@ -96,21 +92,6 @@ pub fn contact_times(scene: &Scene, outcome: &Outcome) -> Vec<Option<f64>> {
     .collect()
 }
 
-/// The exact set-point for a nominal finger: its temperature before contact known, its force that of the scene.
-#[must_use]
-pub fn exact_setpoint_c(scene: &Scene, since_s: f64, force_n: f64) -> f64 {
-    let object = &scene.object.material;
-    match scene.mode {
-        Mode::SemiInfinite => interface_temperature(&SKIN, scene.skin_c, object, scene.object_c()),
-        Mode::ContactResistance => {
-            let (finger, object) = ((&SKIN, scene.skin_c), (object, scene.object_c()));
-            Contact::new(finger, object, &REFERENCE_DISPLAY, pressure_pa(force_n))
-                .at(since_s)
-                .display_c
-        }
-    }
-}
-
 /// Computes the figures.
 #[must_use]
 pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
@@ -125,7 +106,7 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
     let display = touching().map(|(row, since_s)| {
         (
             since_s,
-            row.display_c - exact_setpoint_c(scene, since_s, row.force_n),
+            row.display_c - scene.exact_setpoint_c(since_s, row.force_n),
         )
     });
     let evaluations = || {

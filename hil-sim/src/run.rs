@@ -45,7 +45,7 @@ pub fn run<E: Engine>(
     mut progress: impl FnMut(f64),
 ) -> Result<Outcome, RunError<E::Stop>> {
     let began = Instant::now();
-    let zero_ms = (scene.settle_s * 1e3).round() as u64;
+    let zero_ms = scene.settle_ms();
     let end_ms = zero_ms + (scene.duration_s * 1e3).round() as u64;
     let mut session = Session {
         scene,

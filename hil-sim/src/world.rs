@@ -59,10 +59,10 @@ impl World {
 
     /// Advances the plant by one step under the bridge's legs.
     pub fn step(&mut self, mut legs: Legs) {
-        if self.is_broken(FaultKind::BridgeStuckHigh) {
+        if self.broken.contains(&FaultKind::BridgeStuckHigh) {
             legs.a = Leg::Duty(1.0);
         }
-        if self.is_broken(FaultKind::PolaritySwapped) {
+        if self.broken.contains(&FaultKind::PolaritySwapped) {
             (legs.a, legs.b) = (legs.b, legs.a);
         }
         self.plant.step(&legs);
@@ -81,9 +81,5 @@ impl World {
             _ => code,
         };
         *last
-    }
-
-    fn is_broken(&self, kind: FaultKind) -> bool {
-        self.broken.contains(&kind)
     }
 }

@@ -40,12 +40,9 @@ pub fn elf(toolchain: &Toolchain) -> PathBuf {
 
 /// `cargo SUBCOMMAND` for the image, in its own folder.
 fn cargo(toolchain: &Toolchain, subcommand: &str) -> Invocation {
-    let cargo = match toolchain {
-        Toolchain::Active => Invocation::cargo([subcommand]),
-        Toolchain::Distribution(distribution) => distribution.cargo(subcommand),
-    };
     let folder = target_folder(toolchain);
-    cargo
+    toolchain
+        .cargo(subcommand)
         .args([
             "--locked",
             "--package",

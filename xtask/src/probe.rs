@@ -18,16 +18,13 @@ pub fn run(permission: Permission) -> Result<()> {
 }
 
 fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
-    let cargo = match toolchain {
-        Toolchain::Active => Invocation::cargo(["build"]),
-        Toolchain::Distribution(distribution) => distribution.cargo("build"),
-    };
     // In place of the workspace's flags, which link what only the firmware has; the memory layout is the same.
     let flags = format!(
         "-C link-arg=--nmagic -C link-arg=-Tlink.x -L {}",
         workspace().display()
     );
-    cargo
+    toolchain
+        .cargo("build")
         .args([
             "--locked",
             "--release",

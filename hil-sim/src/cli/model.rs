@@ -5,11 +5,10 @@ use std::io::{self, Write};
 use anyhow::{Context, anyhow, ensure};
 use clap::{Args, ValueEnum};
 use contact_model::fixed_point::{Celsius, Log2, Pairing, TEMPERATURE_RANGE_C};
-use contact_model::material::{
-    MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface, find,
-};
+use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface, find};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, Real};
+use hil_sim::scene::known_materials;
 
 use super::Failure;
 
@@ -127,10 +126,9 @@ fn print(times: &[f64], rows: &[Row]) -> io::Result<()> {
 /// The material and the pressure in Pa, if everything is in range.
 fn check(arguments: &Arguments) -> anyhow::Result<(Material, f64)> {
     let object = match &arguments.material {
-        Some(name) => *find(name).ok_or_else(|| {
-            let known: Vec<_> = MATERIALS.iter().map(|(known, _)| *known).collect();
-            anyhow!("--material {name}; known are {}", known.join(", "))
-        })?,
+        Some(name) => {
+            *find(name).ok_or_else(|| anyhow!("--material {name}; known are {}", known_materials()))?
+        }
         None => {
             let given = |name, value: Option<f64>| {
                 let value = value.with_context(|| format!("{name} is missing"))?;

@@ -3,7 +3,7 @@
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use crate::metrics::{contact_times, exact_setpoint_c};
+use crate::metrics::contact_times;
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::trace::Row;
@@ -68,7 +68,7 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
             contacts[i].map(|_| (row.skin_c - row.skin_real_c) * 1e3)
         }),
         Curve::new("display minus exact set-point", DISPLAY, rows, |i, row| {
-            contacts[i].map(|since_s| (row.display_c - exact_setpoint_c(scene, since_s, row.force_n)) * 1e3)
+            contacts[i].map(|since_s| (row.display_c - scene.exact_setpoint_c(since_s, row.force_n)) * 1e3)
         }),
     ];
     let current = [Curve::new("current (positive cools)", CURRENT, rows, |_, row| {

@@ -4,15 +4,14 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN, Surface, find};
-use contact_model::reference::{interface_temperature, mean_conductance};
+use contact_model::material::{Material, Surface, find};
 use thermal_display::guard::Setpoint;
 use thermal_display::protocol::Command;
 use thermal_display::render::Mode;
 use thermal_display::settings::Settings;
 
 use super::file::{self, File, Number};
-use super::{Fault, Force, HostLine, Object, Scene};
+use super::{Fault, Force, HostLine, Object, Scene, known_materials};
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
@@ -156,11 +155,10 @@ fn object(
             return Err(source.error(Some(number.span()), problem));
         }
         let Some(material) = find(name.get_ref()) else {
-            let known: Vec<_> = MATERIALS.iter().map(|(known, _)| *known).collect();
             let problem = format!(
                 "object.material = {:?}; known are {}",
                 name.get_ref(),
-                known.join(", ")
+                known_materials()
             );
             return Err(source.error(Some(name.span()), problem));
         };
@@ -270,15 +268,7 @@ fn forces(source: &Source<'_>, rows: &[file::Force], duration_s: f64) -> Result<
 
 /// The display's first set-point must be one that it may take.
 fn setpoint(source: &Source<'_>, scene: &Scene, span: Range<usize>) -> Result<(), SceneError> {
-    let (skin, object) = (&SKIN.surface, &scene.object.material);
-    let preset_c = match scene.mode {
-        Mode::ContactResistance => {
-            let ratio = mean_conductance::<f64>(skin, &object.surface)
-                / mean_conductance::<f64>(skin, &REFERENCE_DISPLAY);
-            scene.skin_c - ratio * (scene.skin_c - scene.object_c())
-        }
-        Mode::SemiInfinite => interface_temperature(&SKIN, scene.skin_c, object, scene.object_c()),
-    };
+    let preset_c = scene.exact_setpoint_c(0.0, 1.0);
     let [least, most] = [Setpoint::MIN, Setpoint::MAX].map(|limit| limit.celsius().to_num::<f64>());
     if (least..=most).contains(&preset_c) {
         return Ok(());

@@ -5,11 +5,19 @@ mod file;
 
 use std::path::Path;
 
-use contact_model::material::Material;
+use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
+use contact_model::pressure::pressure_pa;
+use contact_model::reference::{Contact, interface_temperature};
 use thermal_display::render::Mode;
 
 pub use check::SceneError;
 pub(crate) use check::custom_line;
+
+/// The names of the thesis's materials, for messages.
+#[must_use]
+pub fn known_materials() -> String {
+    MATERIALS.map(|(name, _)| name).join(", ")
+}
 
 /// A scene that has passed every check.
 #[derive(Clone, Debug, PartialEq)]
@@ -118,6 +126,27 @@ impl Scene {
     #[must_use]
     pub fn object_c(&self) -> f64 {
         self.object.start_c.unwrap_or(self.room_c)
+    }
+
+    /// The exact set-point for a nominal finger, °C: its temperature before contact known, `since_s` after it
+    /// landed with `force_n`. At landing, and so for the preset, the force does not matter.
+    #[must_use]
+    pub fn exact_setpoint_c(&self, since_s: f64, force_n: f64) -> f64 {
+        let object = &self.object.material;
+        match self.mode {
+            Mode::SemiInfinite => interface_temperature(&SKIN, self.skin_c, object, self.object_c()),
+            Mode::ContactResistance => {
+                let (finger, object) = ((&SKIN, self.skin_c), (object, self.object_c()));
+                Contact::new(finger, object, &REFERENCE_DISPLAY, pressure_pa(force_n))
+                    .at(since_s)
+                    .display_c
+            }
+        }
+    }
+
+    /// Milliseconds before time zero.
+    pub(crate) fn settle_ms(&self) -> u64 {
+        (self.settle_s * 1e3).round() as u64
     }
 
     /// Force at a time, N.

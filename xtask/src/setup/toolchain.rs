@@ -59,6 +59,16 @@ pub enum Toolchain {
     Distribution(Distribution),
 }
 
+impl Toolchain {
+    /// `cargo SUBCOMMAND` with this compiler.
+    pub fn cargo(&self, subcommand: &str) -> Invocation {
+        match self {
+            Self::Active => Invocation::cargo([subcommand]),
+            Self::Distribution(distribution) => distribution.cargo(subcommand),
+        }
+    }
+}
+
 /// The distribution's compiler with what its own packages lack.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Distribution {

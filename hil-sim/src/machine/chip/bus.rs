@@ -92,16 +92,7 @@ impl<W: Wiring> Chip<W> {
         if let Some(word) = signature(address) {
             return Ok(word);
         }
-        let Some((device, enable)) = device(address) else {
-            return Err(if names::peripheral(address).is_some() {
-                Refusal::Offset
-            } else {
-                Refusal::BusError
-            });
-        };
-        if let Some((enr, bit)) = enable {
-            self.rcc.check_clock(enr, bit)?;
-        }
+        let device = self.clocked(address)?;
         let offset = address & 0x3ff;
         match device {
             Device::Gpio(port) => {
@@ -134,6 +125,21 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
+    /// The device at an address, if its clock is on.
+    fn clocked(&self, address: u32) -> Answer<Device> {
+        let Some((device, enable)) = device(address) else {
+            return Err(if names::peripheral(address).is_some() {
+                Refusal::Offset
+            } else {
+                Refusal::BusError
+            });
+        };
+        if let Some((enr, bit)) = enable {
+            self.rcc.check_clock(enr, bit)?;
+        }
+        Ok(device)
+    }
+
     /// Stores to a peripheral or core register. Byte and half-word stores reach the registers that take them:
     /// priorities, GPIO BSRR, USART DR; any register takes a half-word at its lower half, the rest written 0.
     pub fn write(&mut self, address: u32, bytes: u8, value: u32, now: u64) -> Answer<()> {
@@ -151,16 +157,7 @@ impl<W: Wiring> Chip<W> {
             self.refresh_next(now);
             return Ok(());
         }
-        let Some((device, enable)) = device(address) else {
-            return Err(if names::peripheral(address).is_some() {
-                Refusal::Offset
-            } else {
-                Refusal::BusError
-            });
-        };
-        if let Some((enr, bit)) = enable {
-            self.rcc.check_clock(enr, bit)?;
-        }
+        let device = self.clocked(address)?;
         let (mut offset, mut value) = (address & 0x3ff, value);
         match (device, bytes) {
             (Device::Gpio(_), 2) if offset == 0x1a => (offset, value) = (0x18, value << 16),
