@@ -3,7 +3,7 @@
 use std::io::{self, BufRead, BufWriter, Write};
 
 use anyhow::anyhow;
-use contact_model::fixed_point::{Rate, erfcx};
+use contact_model::fixed_point::{Fraction, Rate, Ticks, erfcx};
 
 use super::Failure;
 
@@ -33,9 +33,9 @@ pub fn run() -> Result<(), Failure> {
 /// `E` at z, in units of 2^-32: one tick of `u = z²`.
 fn bits(z: f64) -> u32 {
     match Rate::from_f64(z * z) {
-        Some(u) => erfcx(1, u).to_bits(),
+        Some(u) => erfcx(Ticks::ONE, u).to_bits(),
         // z² is zero or subnormal, or beyond the largest number.
-        None if z < 1.0 => erfcx(0, Rate::ONE).to_bits(),
+        None if z < 1.0 => Fraction::MAX.to_bits(),
         None => 0,
     }
 }

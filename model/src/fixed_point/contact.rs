@@ -1,6 +1,6 @@
 //! The response to contact, Eq. 6-5 to 6-7 and 6-12.
 
-use super::{Celsius, Flux, Fraction, Rate, Ratio, erfcx};
+use super::{Celsius, Flux, Fraction, Rate, Ratio, Ticks, erfcx};
 
 /// A finger on an object under constant pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub struct Response {
 }
 
 impl Contact {
-    /// State `elapsed` ticks after landing, from the temperatures before it.
+    /// State `elapsed` ticks after landing, from the temperatures before it; holds from [`Ticks::MAX`] on.
     #[must_use]
     #[inline]
     pub fn at(&self, elapsed: u32, skin_before: Celsius, object_before: Celsius) -> Response {
@@ -33,7 +33,8 @@ impl Contact {
             contact: *self,
             skin_before,
             object_before,
-            erfcx: erfcx(elapsed, self.per_tick),
+            erfcx: Ticks::new(elapsed.min(Ticks::MAX.get()))
+                .map_or(Fraction::MAX, |elapsed| erfcx(elapsed, self.per_tick)),
         }
     }
 }
@@ -77,7 +78,8 @@ impl Response {
     #[must_use]
     pub fn flux_w_m2(&self) -> Flux {
         let across = part(self.step(), self.erfcx);
-        let product = i64::from(across.to_bits()) * i64::from(self.contact.conductance_w_m2k.mantissa());
+        let product =
+            i64::from(across.to_bits()) * i64::from(1 << 31 | self.contact.conductance_w_m2k.fraction() >> 1);
         // 22 fraction bits of temperature and 31 of the mantissa, to the 24 of the result.
         let shift = 22 + 31 - 24 - i32::from(self.contact.conductance_w_m2k.exponent());
         Flux::from_bits(match shift {

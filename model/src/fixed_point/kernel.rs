@@ -1,7 +1,7 @@
 //! `erfcx(sqrt(n K))`, the one transcendental function of the model.
 
 use super::kernel_table::TABLE;
-use super::{Fraction, Rate, piecewise};
+use super::{Fraction, Rate, Ticks, piecewise};
 
 /// Degree of the polynomials in the table.
 pub const DEGREE: usize = 5;
@@ -15,23 +15,19 @@ const ROW_BITS: u32 = 2;
 
 /// `E = erfcx(sqrt(u))` for `u = elapsed * per_tick`: `elapsed` ticks since contact, `per_tick = b² dt`.
 ///
-/// The product is exact in 64 bits, so time does not drift; its leading 32 bits are used. There is no
+/// The product is exact, so time does not drift; its leading 32 bits are used. There is no
 /// square root and no division: the octave of `u` and its leading bits pick a row, and a polynomial in the
-/// bits after them gives `E`. `elapsed = 0` gives the largest fraction, `1 - 2^-32`.
+/// bits after them gives `E`.
 ///
 /// Error at most 9 units of 2^-32 in every octave, sampled (`cargo test -p contact-model kernel`);
-/// saturates for every `per_tick` and `elapsed`, never wraps. 12 KiB of table. `elapsed` itself ends at
-/// 2^32 - 1 ticks, 49 days at 1 kHz; hold it there.
+/// saturates for every `per_tick` and `elapsed`, never wraps. 12 KiB of table.
 #[must_use]
 #[inline]
-pub fn erfcx(elapsed: u32, per_tick: Rate) -> Fraction {
-    let product = u64::from(elapsed) * u64::from(per_tick.mantissa());
-    if product == 0 {
-        return Fraction::MAX;
-    }
+pub fn erfcx(elapsed: Ticks, per_tick: Rate) -> Fraction {
+    let product = u64::from(elapsed.get()) * (1 << 32 | u64::from(per_tick.fraction()));
     let shift = product.leading_zeros() as i16;
     let leading = ((product << shift) >> 32) as u32;
-    let octave = per_tick.exponent() + 32 - shift;
+    let octave = per_tick.exponent() + 31 - shift;
     if octave < OCTAVES.start {
         return Fraction::MAX;
     }

@@ -12,6 +12,7 @@ mod pairing;
 mod piecewise;
 mod pressure;
 mod rate;
+mod ticks;
 
 pub use contact::{Contact, Response};
 pub use kernel::{DEGREE as KERNEL_DEGREE, OCTAVES, ROWS_PER_OCTAVE, erfcx};
@@ -19,6 +20,7 @@ pub use logarithm::{Log2, exp2, log2};
 pub use pairing::{Pairing, PairingError};
 pub use pressure::{Force, log2_relative_pressure};
 pub use rate::Rate;
+pub use ticks::Ticks;
 
 use fixed::types::{I10F22, I40F24, U0F32, U4F28};
 

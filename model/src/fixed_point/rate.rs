@@ -2,19 +2,19 @@
 
 use super::{Log2, exp2};
 
-/// A positive number `mantissa * 2^(exponent - 31)` with `mantissa` in `2^31..2^32`: 32 significant bits.
+/// A positive number `(1 + fraction / 2^32) 2^exponent`: 33 significant bits.
 ///
 /// Holds `b² dt` (per tick) and contact conductances (W/(m² K)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rate {
-    mantissa: u32,
+    fraction: u32,
     exponent: i16,
 }
 
 impl Rate {
     /// The number one.
     pub const ONE: Self = Self {
-        mantissa: 1 << 31,
+        fraction: 0,
         exponent: 0,
     };
 
@@ -25,19 +25,11 @@ impl Rate {
             return None;
         }
         let bits = value.to_bits();
-        let exponent = (bits >> 52) as i16 - 1023;
-        // 52 fraction bits rounded to 31; a carry out of the fraction doubles the number.
-        let fraction = ((bits & ((1 << 52) - 1)) + (1 << 20)) >> 21;
-        Some(if fraction >> 31 == 0 {
-            Self {
-                mantissa: 1 << 31 | fraction as u32,
-                exponent,
-            }
-        } else {
-            Self {
-                mantissa: 1 << 31,
-                exponent: exponent + 1,
-            }
+        // 52 fraction bits rounded to 32; a carry out of the fraction doubles the number.
+        let rounded = (bits + (1 << 19)) >> 20;
+        Some(Self {
+            fraction: rounded as u32,
+            exponent: (rounded >> 32) as i16 - 1023,
         })
     }
 
@@ -46,7 +38,7 @@ impl Rate {
     pub fn from_log2(log2: Log2) -> Self {
         let whole = log2.to_bits() >> 24;
         Self {
-            mantissa: exp2((log2.to_bits() as u32) << 8),
+            fraction: exp2((log2.to_bits() as u32) << 8) << 1,
             exponent: whole as i16,
         }
     }
@@ -54,18 +46,30 @@ impl Rate {
     /// The number, exactly.
     #[must_use]
     pub fn to_f64(self) -> f64 {
-        libm::ldexp(f64::from(self.mantissa), i32::from(self.exponent) - 31)
+        libm::ldexp(
+            f64::from(self.fraction) + 4_294_967_296.0,
+            i32::from(self.exponent) - 32,
+        )
     }
 
-    /// Leading 32 bits, `2^31..2^32`.
+    /// The 32 bits after the leading one.
     #[must_use]
-    pub const fn mantissa(self) -> u32 {
-        self.mantissa
+    pub const fn fraction(self) -> u32 {
+        self.fraction
     }
 
     /// Floor of the logarithm to base 2.
     #[must_use]
     pub const fn exponent(self) -> i16 {
         self.exponent
+    }
+
+    /// The number times a power of two.
+    #[must_use]
+    pub const fn doubled(self, times: i16) -> Self {
+        Self {
+            fraction: self.fraction,
+            exponent: self.exponent.saturating_add(times),
+        }
     }
 }

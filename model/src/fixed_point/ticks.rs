@@ -1,0 +1,32 @@
+//! Time since landing.
+
+use core::num::NonZeroU32;
+
+/// Control ticks since landing, 1 to 2^31 - 1. At zero nothing has to be evaluated: `E` is one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Ticks(NonZeroU32);
+
+impl Ticks {
+    /// The first tick.
+    pub const ONE: Self = Self(NonZeroU32::MIN);
+    /// The last one: 24 days at 1 kHz.
+    pub const MAX: Self = match Self::new(u32::MAX >> 1) {
+        Some(ticks) => ticks,
+        None => Self::ONE,
+    };
+
+    /// `None` for 0 and from 2^31 on.
+    #[must_use]
+    pub const fn new(ticks: u32) -> Option<Self> {
+        match NonZeroU32::new(ticks) {
+            Some(count) if ticks <= u32::MAX >> 1 => Some(Self(count)),
+            _ => None,
+        }
+    }
+
+    /// The number.
+    #[must_use]
+    pub const fn get(self) -> u32 {
+        self.0.get()
+    }
+}
