@@ -1,7 +1,8 @@
-//! The front door of the thermal display: set-up, build, demo, test.
+//! The front door of the thermal display: set-up, build, demo, test, benchmark.
 //!
 //! Headings and the output of tools go to standard error, results to standard output. Exit status 1 means that
 //! something failed or is missing, 2 that the command line is wrong.
+mod bench;
 mod demo;
 mod firmware;
 mod image;
@@ -38,6 +39,16 @@ enum Task {
         #[arg(long)]
         print_path: bool,
     },
+    /// Print run time against error of the contact model and its peers; draw it to target/bench
+    Bench {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// Print one JSON object in place of the tables
+        #[arg(long)]
+        json: bool,
+    },
+    /// Build the image that the benchmark runs in the emulator, print its path; the benchmark calls this
+    BenchImage(SetUp),
     /// Build the test image of the emulated machine, print its path; its tests call this
     Probe(SetUp),
 }
@@ -66,6 +77,8 @@ fn main() -> ExitCode {
         Task::Demo(set_up) => demo::run(set_up.permission()),
         Task::Test(set_up) => suite::run(set_up.permission()),
         Task::Firmware { set_up, print_path } => firmware::run(set_up.permission(), print_path),
+        Task::Bench { set_up, json } => bench::run(set_up.permission(), json),
+        Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };
     match result {

@@ -17,12 +17,16 @@ pub fn run(permission: Permission) -> Result<()> {
     Ok(())
 }
 
-fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
-    // In place of the workspace's flags, which link what only the firmware has; the memory layout is the same.
-    let flags = format!(
+/// Compiler flags of an image that is not the firmware: in place of the workspace's flags, which link what only the
+/// firmware has; the memory layout is the same.
+pub fn link_flags() -> String {
+    format!(
         "-C link-arg=--nmagic -C link-arg=-Tlink.x -L {}",
         workspace().display()
-    );
+    )
+}
+
+fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
     toolchain
         .cargo("build")
         .args([
@@ -33,5 +37,5 @@ fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
         ])
         .args(["--target", TARGET, "--target-dir", folder])
         .without(&["CARGO_ENCODED_RUSTFLAGS"])
-        .env("RUSTFLAGS", flags)
+        .env("RUSTFLAGS", link_flags())
 }

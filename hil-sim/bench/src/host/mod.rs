@@ -1,0 +1,13 @@
+//! The host's part: runs everything, here and in the emulator, and says how it went.
+mod accuracy;
+mod emulated;
+mod figures;
+mod plot;
+mod precise;
+mod scenes;
+mod tables;
+mod timing;
+
+pub use figures::{Effort, measure};
+pub use plot::draw;
+pub use tables::{page, tables};

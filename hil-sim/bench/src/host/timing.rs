@@ -1,0 +1,40 @@
+//! Time on this host, side by side.
+use std::time::Instant;
+
+/// Time of one call.
+#[derive(Clone, Copy, Debug)]
+pub struct Time {
+    /// Median over the rounds, ns.
+    pub ns: f64,
+    /// Median over the rounds of the time over that of the candidate `base` in the same round.
+    pub ratio: f64,
+}
+
+/// Runs every candidate once a round, each making `calls` calls, and takes medians over `rounds`: what slows the host
+/// for a while slows all of them.
+pub fn side_by_side(
+    candidates: &mut [Box<dyn FnMut() + '_>],
+    base: usize,
+    calls: usize,
+    rounds: usize,
+) -> Vec<Time> {
+    let mut ns = vec![Vec::with_capacity(rounds); candidates.len()];
+    for _ in 0..rounds {
+        for (candidate, ns) in candidates.iter_mut().zip(&mut ns) {
+            let start = Instant::now();
+            candidate();
+            ns.push(start.elapsed().as_secs_f64() * 1e9 / calls as f64);
+        }
+    }
+    ns.iter()
+        .map(|own| Time {
+            ns: median(own.clone()),
+            ratio: median(own.iter().zip(&ns[base]).map(|(own, base)| own / base).collect()),
+        })
+        .collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}

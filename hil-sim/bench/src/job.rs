@@ -1,0 +1,76 @@
+//! What the image is asked to do, by the level of port C's pins.
+use crate::kernels::{Call, KERNELS};
+use crate::scenes::{SCENES, Scene, only_return_scene};
+
+/// Inputs that a kernel gets on the microcontroller.
+pub const ON_TARGET: u32 = 1000;
+
+/// Pin 7: only return from each call.
+const ONLY_RETURN: u32 = 1 << 7;
+/// Pin 6: scenes instead of kernels.
+const SCENE: u32 = 1 << 6;
+
+/// A series of calls of one function.
+#[derive(Clone, Copy)]
+pub enum Job {
+    /// The kernel inputs with the numbers 0 to [`ON_TARGET`] - 1.
+    Kernel(Call),
+    /// The ticks 1 to [`TICKS`](crate::scenes::TICKS).
+    Scene(Scene),
+}
+
+impl Job {
+    /// The job that the pins select; `None` if there is no such kernel or scene.
+    #[must_use]
+    pub fn selected(pins: u32) -> Option<Self> {
+        let only_return = pins & ONLY_RETURN != 0;
+        let index = (pins & (SCENE - 1)) as usize;
+        Some(if pins & SCENE == 0 {
+            let call = KERNELS.get(index)?.call;
+            Self::Kernel(if only_return { call.only_return() } else { call })
+        } else {
+            let scene = *SCENES.get(index)?;
+            let step = if only_return {
+                only_return_scene
+            } else {
+                scene.step
+            };
+            Self::Scene(Scene { step, ..scene })
+        })
+    }
+
+    /// Pins for the kernel of that place in [`KERNELS`].
+    #[must_use]
+    pub fn kernel_pins(index: usize) -> u32 {
+        index as u32
+    }
+
+    /// Pins for the scene of that place in [`SCENES`].
+    #[must_use]
+    pub fn scene_pins(index: usize) -> u32 {
+        index as u32 | SCENE
+    }
+
+    /// The same calls of an empty function.
+    #[must_use]
+    pub fn only_return(pins: u32) -> u32 {
+        pins | ONLY_RETURN
+    }
+}
+
+/// Tells series of values apart (FNV-1a, 64 bits at a time).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Checksum(pub u64);
+
+impl Default for Checksum {
+    fn default() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+}
+
+impl Checksum {
+    /// Appends the bits of a value.
+    pub fn add(&mut self, bits: u64) {
+        self.0 = (self.0 ^ bits).wrapping_mul(0x0100_0000_01b3);
+    }
+}

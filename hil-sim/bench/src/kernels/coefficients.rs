@@ -1,0 +1,2 @@
+//! What `build.rs` derived.
+include!(concat!(env!("OUT_DIR"), "/coefficients.rs"));

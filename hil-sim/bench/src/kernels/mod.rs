@@ -1,0 +1,236 @@
+//! Ways to compute `E = erfcx(sqrt(u))` for `u = n K`. All take what the firmware has, the ticks since contact and
+//! `K`, so that forming `z = sqrt(u)` is part of their cost.
+
+mod chebyshev;
+mod coefficients;
+mod library;
+mod one_polynomial;
+mod root;
+mod tables;
+
+use contact_model::fixed_point::{Fraction, Rate, Ticks, erfcx};
+
+use crate::inputs::Input;
+
+pub(crate) use chebyshev::shepherd_laframboise;
+pub(crate) use library::{libm_f32, libm_f64};
+
+/// A way to compute `E`.
+#[derive(Clone, Copy)]
+pub struct Kernel {
+    /// Short name, unique.
+    pub id: &'static str,
+    /// What it is.
+    pub title: &'static str,
+    /// Its coefficients and tables.
+    pub table: Table,
+    /// The function.
+    pub call: Call,
+}
+
+/// Where coefficients and tables are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Table {
+    /// So many bytes.
+    Bytes(usize),
+    /// In the firmware's kernel; the image tells how many bytes.
+    Firmware,
+    /// Scattered in the code of a library.
+    Library,
+}
+
+/// A function with the types that are natural to it.
+#[derive(Clone, Copy)]
+pub enum Call {
+    /// Integers.
+    Fixed(fn(Ticks, Rate) -> Fraction),
+    /// Single precision, the width of the FPU.
+    Single(fn(u32, f32) -> f32),
+    /// Double precision, in software on this microcontroller.
+    Double(fn(u32, f64) -> f64),
+}
+
+/// What a call returned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// Of [`Call::Fixed`].
+    Fixed(Fraction),
+    /// Of [`Call::Single`].
+    Single(f32),
+    /// Of [`Call::Double`].
+    Double(f64),
+}
+
+impl Call {
+    /// Calls it.
+    #[inline]
+    #[must_use]
+    pub fn on(self, input: &Input) -> Value {
+        match self {
+            Self::Fixed(f) => Value::Fixed(f(input.elapsed, input.rate)),
+            Self::Single(f) => Value::Single(f(input.elapsed.get(), input.single)),
+            Self::Double(f) => Value::Double(f(input.elapsed.get(), input.double)),
+        }
+    }
+
+    /// A function of the same type that only returns: what a call costs beside the callee's work.
+    #[must_use]
+    pub fn only_return(self) -> Self {
+        match self {
+            Self::Fixed(_) => Self::Fixed(only_return_fixed),
+            Self::Single(_) => Self::Single(only_return_single),
+            Self::Double(_) => Self::Double(only_return_double),
+        }
+    }
+}
+
+/// Names of the functions that only return, as the image's symbols.
+pub const ONLY_RETURN: [&str; 4] = [
+    "only_return_fixed",
+    "only_return_single",
+    "only_return_double",
+    "only_return_scene",
+];
+
+#[unsafe(no_mangle)]
+fn only_return_fixed(elapsed: Ticks, _: Rate) -> Fraction {
+    Fraction::from_bits(elapsed.get())
+}
+
+#[unsafe(no_mangle)]
+fn only_return_single(_: u32, per_tick: f32) -> f32 {
+    per_tick
+}
+
+#[unsafe(no_mangle)]
+fn only_return_double(_: u32, per_tick: f64) -> f64 {
+    per_tick
+}
+
+impl Value {
+    /// The number, exactly.
+    #[must_use]
+    pub fn to_f64(self) -> f64 {
+        match self {
+            Self::Fixed(value) => value.to_num(),
+            Self::Single(value) => f64::from(value),
+            Self::Double(value) => value,
+        }
+    }
+
+    /// 64 bits that tell values apart.
+    #[must_use]
+    pub fn to_bits(self) -> u64 {
+        match self {
+            Self::Fixed(value) => u64::from(value.to_bits()),
+            Self::Single(value) => u64::from(value.to_bits()),
+            Self::Double(value) => value.to_bits(),
+        }
+    }
+}
+
+/// The firmware's kernel; its table is found in the image by its module's name.
+pub const OURS: &str = "firmware";
+
+const fn kernel(id: &'static str, title: &'static str, table: Table, call: Call) -> Kernel {
+    Kernel {
+        id,
+        title,
+        table,
+        call,
+    }
+}
+
+/// All of them, the firmware's first.
+pub static KERNELS: [Kernel; 15] = [
+    kernel(
+        OURS,
+        "the firmware's kernel, integers",
+        Table::Firmware,
+        Call::Fixed(|n, k| erfcx(n, k)),
+    ),
+    kernel(
+        "libm-f64",
+        "libm f64: exp(u) erfc(z)",
+        Table::Library,
+        Call::Double(libm_f64),
+    ),
+    kernel(
+        "libm-f32",
+        "libm f32: exp(u) erfc(z)",
+        Table::Library,
+        Call::Single(libm_f32),
+    ),
+    kernel(
+        "micromath-erfc",
+        "micromath exp(u), libm f32 erfc(z)",
+        Table::Library,
+        Call::Single(library::micromath_erfc),
+    ),
+    kernel(
+        "micromath-as",
+        "micromath exp(u), A&S 7.1.26 erfc(z)",
+        Table::Bytes(24),
+        Call::Single(library::micromath_as),
+    ),
+    kernel(
+        "as",
+        "A&S 7.1.26 without the exp",
+        Table::Bytes(24),
+        Call::Single(library::abramowitz_stegun),
+    ),
+    kernel(
+        "shepherd",
+        "Shepherd-Laframboise f32",
+        Table::Bytes(48),
+        Call::Single(shepherd_laframboise),
+    ),
+    kernel(
+        "faddeeva",
+        "Faddeeva structure f64",
+        Table::Bytes(5600),
+        Call::Double(chebyshev::faddeeva),
+    ),
+    kernel(
+        "one-polynomial",
+        "one polynomial in 1/(1 + z/2), integers",
+        Table::Bytes(60),
+        Call::Fixed(one_polynomial::one_polynomial),
+    ),
+    kernel(
+        "linear-4",
+        "table in z, linear, 4 KiB",
+        Table::Bytes(4 << 10),
+        Call::Single(tables::linear_4),
+    ),
+    kernel(
+        "linear-16",
+        "table in z, linear, 16 KiB",
+        Table::Bytes(16 << 10),
+        Call::Single(tables::linear_16),
+    ),
+    kernel(
+        "linear-64",
+        "table in z, linear, 64 KiB",
+        Table::Bytes(64 << 10),
+        Call::Single(tables::linear_64),
+    ),
+    kernel(
+        "quadratic-4",
+        "table in z, quadratic, 4 KiB",
+        Table::Bytes(4 << 10),
+        Call::Single(tables::quadratic_4),
+    ),
+    kernel(
+        "quadratic-16",
+        "table in z, quadratic, 16 KiB",
+        Table::Bytes(16 << 10),
+        Call::Single(tables::quadratic_16),
+    ),
+    kernel(
+        "quadratic-64",
+        "table in z, quadratic, 64 KiB",
+        Table::Bytes(64 << 10),
+        Call::Single(tables::quadratic_64),
+    ),
+];

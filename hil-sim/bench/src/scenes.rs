@@ -1,0 +1,212 @@
+//! The model's share of a control tick, in each kind of scene: set-points (Eq. 6-12, 3-1) from ticks, force and the
+//! temperatures before contact. By the firmware's integers, and by the same formulas in floating point.
+
+mod floating;
+
+use contact_model::fixed_point::{Celsius, Contact, Force, Pairing, PairingError, log2_relative_pressure};
+use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
+
+use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
+use floating::Finger as FloatingFinger;
+
+/// Length of a control tick.
+pub const TICK_S: f64 = 1e-3;
+/// Ticks of a scene: 10 s.
+pub const TICKS: u32 = 10_000;
+/// Temperatures before contact.
+pub const SKIN_C: f64 = 34.0;
+/// See [`SKIN_C`].
+pub const OBJECT_C: f64 = 24.0;
+/// The constant force.
+pub const FORCE_N: f64 = 2.0;
+/// Materials of the five fingers, by their place in [`MATERIALS`]: granite, which is also that of scenes with one
+/// finger, copper, stainless steel, ABS, foam.
+pub const FINGERS: [usize; 5] = [3, 0, 2, 5, 6];
+
+/// A kind of scene, in one arithmetic.
+#[derive(Clone, Copy)]
+pub struct Scene {
+    /// Name of the kind.
+    pub kind: &'static str,
+    /// How it is computed.
+    pub arithmetic: Arithmetic,
+    /// What is done in a tick since contact: leaves the set-point in the station.
+    pub step: fn(&mut Station, u32),
+}
+
+/// How a set-point is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// As in the firmware.
+    Integers,
+    /// Single precision, erfcx after Shepherd and Laframboise.
+    Shepherd,
+    /// Single precision, erfcx by libm.
+    LibmF32,
+    /// Double precision, erfcx by libm.
+    LibmF64,
+}
+
+/// A finger by the firmware's integers.
+struct Finger {
+    pairing: Pairing,
+    contact: Contact,
+    set_point: Celsius,
+}
+
+/// Everything that was set up before the first tick.
+pub struct Station {
+    skin: Celsius,
+    object: Celsius,
+    fixed: [Finger; 5],
+    single: [FloatingFinger<f32>; 5],
+    double: [FloatingFinger<f64>; 5],
+}
+
+impl Station {
+    /// Five fingers on the materials of [`FINGERS`], all under [`FORCE_N`].
+    ///
+    /// # Errors
+    /// None for these materials.
+    pub fn new() -> Result<Self, PairingError> {
+        let force = Force::from_num(FORCE_N);
+        let fixed = |finger: usize| {
+            let object = &MATERIALS[FINGERS[finger]].1;
+            let pairing = Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
+            Ok(Finger {
+                pairing,
+                contact: pairing.under(log2_relative_pressure(force)),
+                set_point: Celsius::ZERO,
+            })
+        };
+        Ok(Self {
+            skin: Celsius::from_num(SKIN_C),
+            object: Celsius::from_num(OBJECT_C),
+            fixed: [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?],
+            single: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
+            double: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
+        })
+    }
+}
+
+impl Station {
+    /// Set-point of the first finger, °C.
+    #[must_use]
+    pub fn set_point_c(&self, arithmetic: Arithmetic) -> f64 {
+        match arithmetic {
+            Arithmetic::Integers => self.fixed[0].set_point.to_num(),
+            Arithmetic::Shepherd | Arithmetic::LibmF32 => f64::from(self.single[0].set_point_c),
+            Arithmetic::LibmF64 => self.double[0].set_point_c,
+        }
+    }
+}
+
+/// The force that streams: 1 to 2 N and again, different in every tick; in units of 2^-12 N above 1 N.
+fn streaming(tick: u32) -> u32 {
+    tick & 0xfff
+}
+
+/// The force that streams, N.
+#[must_use]
+pub fn streaming_n(tick: u32) -> f64 {
+    1.0 + f64::from(streaming(tick)) / 4096.0
+}
+
+impl Finger {
+    /// Set-point under a force that does not change: the one place that says how the firmware computes it.
+    #[inline]
+    fn constant_force(&mut self, skin: Celsius, object: Celsius, tick: u32) {
+        self.set_point = self.contact.at(tick, skin, object).display();
+    }
+}
+
+fn idle(station: &mut Station, _: u32) {
+    let [finger, ..] = &mut station.fixed;
+    finger.set_point = finger.pairing.preset(station.skin, station.object);
+}
+
+fn semi_infinite(station: &mut Station, _: u32) {
+    let [finger, ..] = &mut station.fixed;
+    finger.set_point = finger.pairing.interface_temperature(station.skin, station.object);
+}
+
+fn constant_force(station: &mut Station, tick: u32) {
+    station.fixed[0].constant_force(station.skin, station.object, tick);
+}
+
+fn streaming_force(station: &mut Station, tick: u32) {
+    let [finger, ..] = &mut station.fixed;
+    let force = Force::from_bits((1 << 24) + (streaming(tick) << 12));
+    let contact = finger.pairing.under(log2_relative_pressure(force));
+    finger.set_point = contact.at(tick, station.skin, station.object).display();
+}
+
+fn five_fingers(station: &mut Station, tick: u32) {
+    for finger in &mut station.fixed {
+        finger.constant_force(station.skin, station.object, tick);
+    }
+}
+
+/// Only returns: what a call costs beside the callee's work.
+#[unsafe(no_mangle)]
+pub fn only_return_scene(_: &mut Station, _: u32) {}
+
+/// Kinds of scenes, as [`Scene::kind`] names them.
+pub mod kind {
+    /// Nothing touches: the display is preset.
+    pub const IDLE: &str = "idle";
+    /// A finger under a constant force.
+    pub const CONSTANT: &str = "constant force";
+    /// A finger whose force changes in every tick, and R with it.
+    pub const STREAMING: &str = "streaming force";
+    /// Perfect contact (Eq. 3-1).
+    pub const SEMI_INFINITE: &str = "semi-infinite";
+    /// Five fingers under a constant force.
+    pub const FIVE: &str = "five fingers";
+}
+
+const fn scene(kind: &'static str, arithmetic: Arithmetic, step: fn(&mut Station, u32)) -> Scene {
+    Scene {
+        kind,
+        arithmetic,
+        step,
+    }
+}
+
+use Arithmetic::{Integers, LibmF32, LibmF64, Shepherd};
+
+/// All kinds in all arithmetics.
+pub static SCENES: [Scene; 16] = [
+    scene(kind::IDLE, Integers, idle),
+    scene(kind::IDLE, LibmF32, |s, _| s.single[0].idle()),
+    scene(kind::IDLE, LibmF64, |s, _| s.double[0].idle()),
+    scene(kind::CONSTANT, Integers, constant_force),
+    scene(kind::CONSTANT, Shepherd, |s, n| {
+        s.single[0].constant_force(n, shepherd_laframboise)
+    }),
+    scene(kind::CONSTANT, LibmF32, |s, n| {
+        s.single[0].constant_force(n, libm_f32)
+    }),
+    scene(kind::CONSTANT, LibmF64, |s, n| {
+        s.double[0].constant_force(n, libm_f64)
+    }),
+    scene(kind::STREAMING, Integers, streaming_force),
+    scene(kind::STREAMING, Shepherd, |s, n| {
+        s.single[0].streaming_force(streaming(n), n, shepherd_laframboise);
+    }),
+    scene(kind::STREAMING, LibmF32, |s, n| {
+        s.single[0].streaming_force(streaming(n), n, libm_f32)
+    }),
+    scene(kind::STREAMING, LibmF64, |s, n| {
+        s.double[0].streaming_force(streaming(n), n, libm_f64)
+    }),
+    scene(kind::SEMI_INFINITE, Integers, semi_infinite),
+    scene(kind::SEMI_INFINITE, LibmF32, |s, _| s.single[0].semi_infinite()),
+    scene(kind::SEMI_INFINITE, LibmF64, |s, _| s.double[0].semi_infinite()),
+    scene(kind::FIVE, Integers, five_fingers),
+    scene(kind::FIVE, Shepherd, |s, n| {
+        for finger in &mut s.single {
+            finger.constant_force(n, shepherd_laframboise);
+        }
+    }),
+];

@@ -1,0 +1,46 @@
+//! Run time against error of the contact model and its peers.
+use anyhow::Result;
+
+use crate::probe;
+use crate::process::{Invocation, workspace};
+use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
+
+/// The profile of the flashed image, so that the kernel is compiled as it is there.
+const PROFILE: &str = "firmware";
+
+/// `cargo xtask bench`
+pub fn run(permission: Permission, json: bool) -> Result<()> {
+    let needs = Needs {
+        emulator: true,
+        lints: false,
+    };
+    setup::prepare(needs, permission)?;
+    let mut bench = Invocation::cargo(["run", "--release", "--package", "model-bench", "--"]);
+    if json {
+        bench = bench.args(["--json"]);
+    }
+    permission.choice.handed_to(bench).run()
+}
+
+/// `cargo xtask bench-image`: builds the image that the benchmark runs and prints its path.
+pub fn build_image(permission: Permission) -> Result<()> {
+    let toolchain = setup::prepare(Needs::default(), permission)?;
+    let folder = match &toolchain {
+        Toolchain::Active => "target/bench-image",
+        Toolchain::Distribution(_) => "target/bench-image-distribution",
+    };
+    image(&toolchain, folder).run_to_stderr()?;
+    let elf = workspace().join(folder).join(TARGET).join(PROFILE).join("image");
+    println!("{}", elf.display());
+    Ok(())
+}
+
+fn image(toolchain: &Toolchain, folder: &'static str) -> Invocation {
+    toolchain
+        .cargo("build")
+        .args(["--locked", "--package", "model-bench", "--bin", "image"])
+        .args(["--features", "image", "--profile", PROFILE])
+        .args(["--target", TARGET, "--target-dir", folder])
+        .without(&["CARGO_ENCODED_RUSTFLAGS"])
+        .env("RUSTFLAGS", probe::link_flags())
+}
