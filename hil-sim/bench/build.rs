@@ -51,13 +51,18 @@ fn faddeeva(text: &mut String) -> std::fmt::Result {
     constant(text, "FADDEEVA", "[[f64; 7]; 100]", &parts)
 }
 
-/// `erfcx` in powers of `s = 2 y - 1` with `y = 1 / (1 + z / 2)`, in units of 2^-31.
+/// `erfcx` in powers of `s = 2 y - 1` with `y = 1 / (1 + z / 2)`, in units of 2^-30; that of the power `k` times
+/// `2^k`.
 fn one_polynomial(text: &mut String) -> std::fmt::Result {
     let powers = fit(15, |s| {
         let y = 0.5 + 0.5 * s;
-        2f64.powi(31) * erfcx(2.0 / y - 2.0)
+        2f64.powi(30) * erfcx(2.0 / y - 2.0)
     });
-    let powers: Vec<i32> = powers.iter().map(|c| c.round() as i32).collect();
+    let doubled = powers
+        .iter()
+        .zip(0..)
+        .map(|(c, k)| (c * 2f64.powi(k)).round() as i32);
+    let powers: Vec<i32> = doubled.collect();
     constant(text, "ONE_POLYNOMIAL", "[i32; 15]", &powers)
 }
 

@@ -61,7 +61,7 @@ impl Frame {
 
 /// Room that a text takes, generously.
 fn width(text: &str) -> i32 {
-    text.chars().count() as i32 * FONT * 58 / 100
+    text.chars().count() as i32 * FONT * 53 / 100
 }
 
 /// The plot as an SVG document.
@@ -88,7 +88,7 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
             .margin(16)
             .margin_right(30)
             .caption(
-                "erfcx on a Cortex-M4F: worst error against run time",
+                "E = erfcx(sqrt(n K)) on a Cortex-M4F: worst error against run time",
                 ("sans-serif", 22),
             )
             .x_label_area_size(56)
@@ -102,7 +102,7 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
             .x_desc("most cycles of a call on the emulated STM32F446 (estimated)")
             .y_desc("worst error of E / 2^-32")
             .x_label_formatter(&|x| format!("{x}"))
-            .y_label_formatter(&|y| format!("{y:e}"))
+            .y_label_formatter(&|y| format!("1e{}", y.log10().round() as i32))
             .light_line_style(TRANSPARENT)
             .bold_line_style(BLACK.mix(0.12))
             .label_style(("sans-serif", FONT))
@@ -150,6 +150,7 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
             .map(|k| pixel(k.cost.cycles_max as f64, k.accuracy.worst))
             .collect();
         taken.extend(places.iter().map(|place| Frame::around(*place, RADIUS + 2)));
+        // The firmware's first: it gets the best place.
         for (kernel, place) in figures.kernels.iter().zip(places) {
             let color = if kernel.id == OURS { FIRMWARE } else { PEER };
             let style = match kernel.accuracy.breaks_at_z {
@@ -212,8 +213,8 @@ fn write(
     let style = ("sans-serif", FONT)
         .into_font()
         .color(color)
-        .pos(Pos::new(HPos::Left, VPos::Center));
-    let middle = (frame.top + frame.bottom) / 2;
-    root.draw(&Text::new(text.to_owned(), (frame.left, middle), style))?;
+        .pos(Pos::new(HPos::Center, VPos::Center));
+    let middle = ((frame.left + frame.right) / 2, (frame.top + frame.bottom) / 2);
+    root.draw(&Text::new(text.to_owned(), middle, style))?;
     Ok(())
 }

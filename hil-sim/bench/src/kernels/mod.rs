@@ -118,10 +118,12 @@ impl Value {
         }
     }
 
-    /// 64 bits that tell values apart.
+    /// 64 bits that tell values apart; the same for every NaN, whose sign differs between processors.
     #[must_use]
     pub fn to_bits(self) -> u64 {
         match self {
+            Self::Single(value) if value.is_nan() => u64::MAX,
+            Self::Double(value) if value.is_nan() => u64::MAX,
             Self::Fixed(value) => u64::from(value.to_bits()),
             Self::Single(value) => u64::from(value.to_bits()),
             Self::Double(value) => value.to_bits(),
