@@ -30,9 +30,8 @@ pub const COUNT_SHIFT: u32 = 12;
 /// The input is the leading 33 bits of the exact product, so time does not drift; what is cut off moves `E`
 /// by at most 0.07 units of 2^-32. From that input on, the error is at most 0.51 units for `u` from 2^-24 to
 /// 2^16, checked for every input, and at most 0.54 from 2^-63 to 2^63, proven
-/// (`cargo run --release -p contact-model --example verify`). Below, `E` is 1 - 2^-32, and above it is 0, for
-/// every `elapsed` and `per_tick`; it never wraps.
-///
+/// (`cargo run --release -p contact-model --example verify`). Outside it saturates and never wraps, for every
+/// `elapsed` and `per_tick`: below at 1 - 2^-32, the largest fraction, off by at most 0.6; above at 0, by 0.8.
 /// Later times never give more than one unit above an earlier one.
 ///
 /// Constant time: no square root, no division, no branch. On a Cortex-M4 34 instructions where it is inlined,
