@@ -12,6 +12,8 @@ use verify::{INPUTS, LIVED_IN, TRUTH_ERROR, Tally, exact, exhaustive, kernel, pr
 const LIVED_IN_UNITS: f64 = 0.51;
 const ELSEWHERE_UNITS: f64 = 0.54;
 const CUT_UNITS: f64 = 0.07;
+/// Least share of results that are the nearest of all.
+const CORRECTLY_ROUNDED: f64 = 0.998;
 
 const UNIT: f64 = 1.0 / 4_294_967_296.0;
 
@@ -30,6 +32,8 @@ fn sampled_inputs_stay_within_the_stated_error_and_rise_by_one_unit_at_most() {
     println!("{all:?}");
     assert!(all.worst + TRUTH_ERROR <= LIVED_IN_UNITS, "{all:?}");
     assert!(all.largest_rise <= 1, "{all:?}");
+    let share = all.correctly_rounded as f64 / all.inputs as f64;
+    assert!(share > CORRECTLY_ROUNDED, "{share}");
 }
 
 #[test]
