@@ -165,7 +165,7 @@ fn erfcx_meets_golden_values_in_decimal_and_hexadecimal() {
                 .expect("z,E_bits");
             assert_eq!(z, row[column]);
             let error = bits.parse::<f64>().expect("an integer") - exact;
-            assert!(error.abs() <= 9.0, "z = {z}: {error} units of 2^-32");
+            assert!(error.abs() <= 0.51 + 0.07, "z = {z}: {error} units of 2^-32");
         }
     }
 }

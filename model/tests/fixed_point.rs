@@ -3,83 +3,17 @@
 mod golden;
 
 use contact_model::fixed_point::{
-    Celsius, Contact, Force, Fraction, OCTAVES, Pairing, PairingError, Rate, Ticks, erfcx, exp2, log2,
-    log2_relative_pressure,
+    Celsius, Contact, Force, Pairing, PairingError, exp2, log2, log2_relative_pressure,
 };
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN, find};
-use contact_model::{pressure, reference};
+use contact_model::pressure;
 use golden::{number, rows};
 use proptest::prelude::*;
 
 /// One unit of `E`.
 const UNIT: f64 = 1.0 / 4_294_967_296.0;
-/// Stated error of the kernel, in units.
-const KERNEL_UNITS: f64 = 9.0;
-
-fn e_of(elapsed: u32, per_tick: Rate) -> f64 {
-    f64::from(erfcx(Ticks::new(elapsed).expect("in range"), per_tick).to_bits()) * UNIT
-}
-
-/// The exact `E`, as close as it can be had in `f64`, but not above the largest fraction.
-fn truth(elapsed: u32, per_tick: Rate) -> f64 {
-    reference::erfcx((f64::from(elapsed) * per_tick.to_f64()).sqrt()).min(1.0 - UNIT)
-}
-
-#[test]
-fn kernel_meets_golden_values() {
-    for row in rows("erfcx") {
-        let z = number(&row, "x");
-        let Some(u) = Rate::from_f64(z * z) else { continue };
-        let error = e_of(1, u) - number(&row, "erfcx").min(1.0 - UNIT);
-        assert!(
-            error.abs() <= KERNEL_UNITS * UNIT,
-            "z = {z}: {} units",
-            error / UNIT
-        );
-    }
-}
-
-/// Every octave with 4096 mantissas, beyond both ends of the table too.
-#[test]
-fn kernel_stays_within_its_stated_error_in_every_octave() {
-    let mut worst: f64 = 0.0;
-    for octave in OCTAVES.start - 8..OCTAVES.end + 8 {
-        for i in 0..4096u32 {
-            let fraction = f64::from(i << 20 | i.wrapping_mul(2_654_435_761) >> 12) * UNIT;
-            let per_tick = Rate::from_f64((1.0 + fraction) * f64::from(octave).exp2()).expect("normal");
-            worst = worst.max((e_of(1, per_tick) - truth(1, per_tick)).abs());
-        }
-    }
-    println!("worst error of the kernel: {:.2} units of 2^-32", worst / UNIT);
-    assert!(worst <= KERNEL_UNITS * UNIT, "{} units", worst / UNIT);
-}
-
-#[test]
-fn kernel_saturates_for_the_longest_contact_and_the_extreme_rates() {
-    for exponent in [-1022, -300, -65, 64, 300, 1023] {
-        let per_tick = Rate::from_f64(f64::from(exponent).exp2()).expect("normal");
-        for elapsed in [1, 1000, Ticks::MAX.get()] {
-            assert!((e_of(elapsed, per_tick) - truth(elapsed, per_tick)).abs() <= KERNEL_UNITS * UNIT);
-        }
-    }
-    assert_eq!(
-        erfcx(Ticks::MAX, Rate::from_f64(1e300).expect("normal")),
-        Fraction::ZERO
-    );
-}
 
 proptest! {
-    #[test]
-    fn kernel_holds_for_any_elapsed_time_and_rate(
-        elapsed in 1..=Ticks::MAX.get(),
-        exponent in -90i32..70,
-        fraction in 0.0..1.0f64,
-    ) {
-        let per_tick = Rate::from_f64((1.0 + fraction) * f64::from(exponent).exp2()).expect("normal");
-        let error = e_of(elapsed, per_tick) - truth(elapsed, per_tick);
-        prop_assert!(error.abs() <= KERNEL_UNITS * UNIT, "{} units", error / UNIT);
-    }
-
     #[test]
     fn response_stays_between_skin_and_object(
         skin in -40.0..125.0f64,

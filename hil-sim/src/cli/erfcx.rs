@@ -30,13 +30,16 @@ pub fn run() -> Result<(), Failure> {
     out.flush().map_err(Failure::run)
 }
 
-/// `E` at z, in units of 2^-32: one tick of `u = z²`.
+/// `E` at z, in units of 2^-32: one tick of `u = z²`, cut to 33 bits as the kernel cuts every product.
 fn bits(z: f64) -> u32 {
-    match Rate::from_f64(z * z) {
-        Some(u) => erfcx(Ticks::ONE, u).to_bits(),
-        // z² is zero or subnormal, or beyond the largest number.
-        None if z < 1.0 => Fraction::MAX.to_bits(),
-        None => 0,
+    let u = z * z;
+    if u.is_normal() {
+        let (exponent, fraction) = ((u.to_bits() >> 52) as i16 - 1023, (u.to_bits() >> 20) as u32);
+        erfcx(Ticks::ONE, Rate::new(exponent, fraction)).to_bits()
+    } else if z < 1.0 {
+        Fraction::MAX.to_bits()
+    } else {
+        0
     }
 }
 

@@ -81,7 +81,7 @@ impl Response {
         let product =
             i64::from(across.to_bits()) * i64::from(1 << 31 | self.contact.conductance_w_m2k.fraction() >> 1);
         // 22 fraction bits of temperature and 31 of the mantissa, to the 24 of the result.
-        let shift = 22 + 31 - 24 - i32::from(self.contact.conductance_w_m2k.exponent());
+        let shift = 22 + 31 - 24 - self.contact.conductance_w_m2k.exponent();
         Flux::from_bits(match shift {
             64.. => 0,
             0..64 => product >> shift,

@@ -4,7 +4,7 @@
 //! ([`Pairing::new`]) is in `f64` and happens once per material, not per tick.
 
 mod contact;
-mod kernel;
+pub mod kernel;
 mod kernel_table;
 mod log_table;
 mod logarithm;
@@ -15,7 +15,7 @@ mod rate;
 mod ticks;
 
 pub use contact::{Contact, Response};
-pub use kernel::{DEGREE as KERNEL_DEGREE, OCTAVES, ROWS_PER_OCTAVE, erfcx};
+pub use kernel::erfcx;
 pub use logarithm::{Log2, exp2, log2};
 pub use pairing::{Pairing, PairingError};
 pub use pressure::{Force, log2_relative_pressure};

@@ -8,7 +8,8 @@ use super::{Log2, exp2};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rate {
     fraction: u32,
-    exponent: i16,
+    /// Within 16 bits; held in a word because the kernel adds to it.
+    exponent: i32,
 }
 
 impl Rate {
@@ -17,6 +18,15 @@ impl Rate {
         fraction: 0,
         exponent: 0,
     };
+
+    /// `(1 + fraction / 2^32) 2^exponent`.
+    #[must_use]
+    pub const fn new(exponent: i16, fraction: u32) -> Self {
+        Self {
+            fraction,
+            exponent: exponent as i32,
+        }
+    }
 
     /// Rounds a positive, normal number; `None` for anything else.
     #[must_use]
@@ -29,7 +39,7 @@ impl Rate {
         let rounded = (bits + (1 << 19)) >> 20;
         Some(Self {
             fraction: rounded as u32,
-            exponent: (rounded >> 32) as i16 - 1023,
+            exponent: (rounded >> 32) as i32 - 1023,
         })
     }
 
@@ -39,17 +49,14 @@ impl Rate {
         let whole = log2.to_bits() >> 24;
         Self {
             fraction: exp2((log2.to_bits() as u32) << 8) << 1,
-            exponent: whole as i16,
+            exponent: whole,
         }
     }
 
     /// The number, exactly.
     #[must_use]
     pub fn to_f64(self) -> f64 {
-        libm::ldexp(
-            f64::from(self.fraction) + 4_294_967_296.0,
-            i32::from(self.exponent) - 32,
-        )
+        libm::ldexp(f64::from(self.fraction) + 4_294_967_296.0, self.exponent - 32)
     }
 
     /// The 32 bits after the leading one.
@@ -58,18 +65,19 @@ impl Rate {
         self.fraction
     }
 
-    /// Floor of the logarithm to base 2.
+    /// Floor of the logarithm to base 2, within 16 bits.
     #[must_use]
-    pub const fn exponent(self) -> i16 {
+    pub const fn exponent(self) -> i32 {
         self.exponent
     }
 
-    /// The number times a power of two.
+    /// The number times `2^times`; its exponent saturates at 16 bits.
     #[must_use]
-    pub const fn doubled(self, times: i16) -> Self {
+    pub fn doubled(self, times: i16) -> Self {
+        let exponent = self.exponent + i32::from(times);
         Self {
             fraction: self.fraction,
-            exponent: self.exponent.saturating_add(times),
+            exponent: exponent.clamp(i16::MIN.into(), i16::MAX.into()),
         }
     }
 }

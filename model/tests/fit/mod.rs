@@ -1,8 +1,8 @@
 //! Fits the tables of the fixed-point path to the reference and writes them as source text.
 
-use contact_model::fixed_point::{KERNEL_DEGREE, OCTAVES, ROWS_PER_OCTAVE};
-use contact_model::reference;
 use std::fmt::Write;
+
+pub mod kernel;
 
 /// Coefficients, lowest power first, of the polynomial of degree `N - 1` through `f` at the Chebyshev points
 /// of `[0, 1]`.
@@ -26,31 +26,6 @@ fn fit<const N: usize>(f: impl Fn(f64) -> f64) -> [f64; N] {
         powers[0] = differences[i] - nodes[i] * powers[0];
     }
     powers
-}
-
-/// Text of `kernel_table.rs`.
-pub fn kernel_table() -> String {
-    let mut text = String::from(
-        "//! Written by `cargo run -p contact-model --example tables`; do not edit.\n\n\
-         use super::kernel::{DEGREE, OCTAVES, ROWS_PER_OCTAVE, Row};\n\n\
-         const fn row(constant: u32, rest: [i32; DEGREE]) -> Row {\n    Row { constant, rest }\n}\n\n\
-         #[rustfmt::skip]\n\
-         pub(super) static TABLE: [Row; (OCTAVES.end - OCTAVES.start) as usize * ROWS_PER_OCTAVE] = [\n",
-    );
-    for octave in OCTAVES {
-        for part in 0..ROWS_PER_OCTAVE {
-            let e = |t: f64| {
-                let u = (1.0 + (part as f64 + t) / ROWS_PER_OCTAVE as f64) * f64::from(octave).exp2();
-                reference::erfcx(u.sqrt()) * 2f64.powi(32)
-            };
-            let powers = fit::<{ KERNEL_DEGREE + 1 }>(e);
-            let rounded = powers.map(|c| c.round() as i64);
-            let constant = rounded[0].clamp(0, i64::from(u32::MAX));
-            writeln!(text, "    row({constant}, {:?}),", &rounded[1..]).unwrap();
-        }
-    }
-    text.push_str("];\n");
-    text
 }
 
 /// Text of `log_table.rs`.
