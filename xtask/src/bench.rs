@@ -1,25 +1,32 @@
 //! Run time against error of the contact model and its peers.
+use std::path::PathBuf;
+
 use anyhow::Result;
 
 use crate::probe;
 use crate::process::{Invocation, workspace};
 use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 
-/// The profile of the flashed image, so that the kernel is compiled as it is there.
+/// The profile of the flashed image, so that the model is compiled as it is there.
 const PROFILE: &str = "firmware";
 
 /// `cargo xtask bench`
-pub fn run(permission: Permission, json: bool) -> Result<()> {
+pub fn run(permission: Permission, json: bool, out: Option<PathBuf>) -> Result<()> {
     let needs = Needs {
         emulator: true,
         lints: false,
     };
     setup::prepare(needs, permission)?;
-    let mut bench = Invocation::cargo(["run", "--release", "--package", "model-bench", "--"]);
+    let mut line: Vec<String> = ["run", "--release", "--package", "model-bench", "--"]
+        .map(String::from)
+        .into();
     if json {
-        bench = bench.args(["--json"]);
+        line.push("--json".into());
     }
-    permission.choice.handed_to(bench).run()
+    if let Some(folder) = out {
+        line.extend(["--out".into(), folder.to_string_lossy().into()]);
+    }
+    permission.choice.handed_to(Invocation::cargo(line)).run()
 }
 
 /// `cargo xtask bench-image`: builds the image that the benchmark runs and prints its path.

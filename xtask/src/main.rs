@@ -12,6 +12,7 @@ mod setup;
 mod step;
 mod suite;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
@@ -39,13 +40,16 @@ enum Task {
         #[arg(long)]
         print_path: bool,
     },
-    /// Print run time against error of the contact model and its peers; draw it to target/bench
+    /// Print run time against error of the contact model and its peers, and draw it
     Bench {
         #[command(flatten)]
         set_up: SetUp,
         /// Print one JSON object in place of the tables
         #[arg(long)]
         json: bool,
+        /// Folder for benchmark.md and benchmark.svg [default: target/bench]
+        #[arg(long)]
+        out: Option<PathBuf>,
     },
     /// Build the image that the benchmark runs in the emulator, print its path; the benchmark calls this
     BenchImage(SetUp),
@@ -77,7 +81,7 @@ fn main() -> ExitCode {
         Task::Demo(set_up) => demo::run(set_up.permission()),
         Task::Test(set_up) => suite::run(set_up.permission()),
         Task::Firmware { set_up, print_path } => firmware::run(set_up.permission(), print_path),
-        Task::Bench { set_up, json } => bench::run(set_up.permission(), json),
+        Task::Bench { set_up, json, out } => bench::run(set_up.permission(), json, out),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

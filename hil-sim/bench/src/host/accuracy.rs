@@ -21,9 +21,9 @@ const STEPS: f64 = 256.0;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Accuracy {
     /// Largest absolute error, in 2^-32.
-    pub worst: f64,
+    pub worst_units: f64,
     /// Mean absolute error, in 2^-32.
-    pub mean: f64,
+    pub mean_units: f64,
     /// Largest absolute error times [`STEP_K`], mK.
     pub worst_mk: f64,
     /// Smallest z from which the result is NaN, infinite or off by more than 1 %.
@@ -63,8 +63,8 @@ impl Truth {
             .collect();
         let worst = errors.iter().copied().fold(0.0, f64::max);
         Accuracy {
-            worst,
-            mean: errors.iter().sum::<f64>() / errors.len().max(1) as f64,
+            worst_units: worst,
+            mean_units: errors.iter().sum::<f64>() / errors.len().max(1) as f64,
             worst_mk: worst / UNITS * STEP_K * 1e3,
             breaks_at_z: breaks_at(call),
         }

@@ -73,7 +73,7 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
         figures
             .kernels
             .iter()
-            .map(move |k| of((k.cost.cycles_max as f64, k.accuracy.worst)))
+            .map(move |k| of((k.cost.cycles_max as f64, k.accuracy.worst_units)))
     };
     let range = |values: &mut dyn Iterator<Item = f64>| {
         values.fold((f64::INFINITY, 0f64), |(low, high), v| (low.min(v), high.max(v)))
@@ -147,7 +147,7 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
         let places: Vec<_> = figures
             .kernels
             .iter()
-            .map(|k| pixel(k.cost.cycles_max as f64, k.accuracy.worst))
+            .map(|k| pixel(k.cost.cycles_max as f64, k.accuracy.worst_units))
             .collect();
         taken.extend(places.iter().map(|place| Frame::around(*place, RADIUS + 2)));
         // The firmware's first: it gets the best place.

@@ -70,8 +70,8 @@ fn kernel_row(kernel: &KernelFigures) -> Vec<String> {
     let cost = &kernel.cost;
     vec![
         kernel.title.into(),
-        short(accuracy.worst),
-        short(accuracy.mean),
+        short(accuracy.worst_units),
+        short(accuracy.mean_units),
         short(accuracy.worst_mk),
         accuracy.breaks_at_z.map_or("never".into(), |z| format!("{z:.2}")),
         kernel

@@ -1,0 +1,210 @@
+//! The benchmark as its user runs it, on few inputs: figures against values from outside of it.
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+use std::sync::LazyLock;
+
+use serde_json::Value;
+
+/// 2^32: errors are in units of the fixed-point result.
+const UNITS: f64 = 4_294_967_296.0;
+
+/// Two runs.
+static RUNS: LazyLock<[Value; 2]> = LazyLock::new(|| [run("first"), run("second")]);
+
+fn out(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_TARGET_TMPDIR"))
+        .join("bench")
+        .join(name)
+}
+
+fn run(name: &str) -> Value {
+    let done = Command::new(env!("CARGO_BIN_EXE_model-bench"))
+        .args(["--json", "--inputs", "20000", "--rounds", "3", "--out"])
+        .arg(out(name))
+        .stderr(Stdio::inherit())
+        .output()
+        .expect("the benchmark starts");
+    assert!(done.status.success(), "the benchmark ends well");
+    serde_json::from_slice(&done.stdout).expect("one JSON object on standard output")
+}
+
+fn rows<'a>(run: &'a Value, table: &str) -> &'a Vec<Value> {
+    run[table].as_array().expect("a table")
+}
+
+fn kernel(id: &str) -> &'static Value {
+    let mut found = rows(&RUNS[0], "kernels").iter().filter(|row| row["id"] == id);
+    let row = found.next().unwrap_or_else(|| panic!("no kernel {id}"));
+    assert!(found.next().is_none(), "{id} is unique");
+    row
+}
+
+fn scene(kind: &str, arithmetic: &str) -> &'static Value {
+    rows(&RUNS[0], "scenes")
+        .iter()
+        .find(|row| row["kind"] == kind && row["arithmetic"] == arithmetic)
+        .unwrap_or_else(|| panic!("no scene {kind}, {arithmetic}"))
+}
+
+fn number(row: &Value, name: &str) -> f64 {
+    row[name]
+        .as_f64()
+        .unwrap_or_else(|| panic!("{name} of {row} is a number"))
+}
+
+/// The factor between `value` and `expected`, whichever way round, is below `1 + share`.
+fn assert_near(what: &str, value: f64, expected: f64, share: f64) {
+    let factor = (value / expected).max(expected / value);
+    assert!(factor < 1.0 + share, "{what}: {value} for {expected}");
+}
+
+/// `exp` of libm overflows where the type does.
+#[test]
+fn products_break_where_exp_overflows() {
+    let single = f64::from(f32::MAX).ln().sqrt();
+    let double = f64::MAX.ln().sqrt();
+    for (id, z) in [("libm-f32", single), ("libm-f64", double)] {
+        assert_near(id, number(kernel(id), "breaks_at_z"), z, 1e-4);
+    }
+    for id in [
+        "firmware",
+        "shepherd",
+        "faddeeva",
+        "one-polynomial",
+        "linear-4",
+        "quadratic-64",
+    ] {
+        assert!(kernel(id)["breaks_at_z"].is_null(), "{id} never breaks");
+    }
+}
+
+/// Interpolation errors by their formulas, with the derivatives of erfcx at 0: `h²/8 E''` with `E'' = 2`, and
+/// `h³/16 |E'''|` with `E''' = -8/sqrt(pi)` between a node and the middle; Abramowitz and Stegun's error by that
+/// of their polynomial, 2^-8.2 at its worst (a fact of the formula, found with 50 digits).
+#[test]
+fn errors_are_those_of_the_formulas() {
+    for (id, nodes) in [("linear-4", 1024.0), ("linear-16", 4096.0)] {
+        let h: f64 = 16.0 / nodes;
+        assert_near(
+            id,
+            number(kernel(id), "worst_units"),
+            h.powi(2) / 4.0 * UNITS,
+            0.03,
+        );
+    }
+    let h: f64 = 16.0 / 1024.0;
+    let third = 8.0 / std::f64::consts::PI.sqrt();
+    let quadratic = h.powi(3) / 16.0 * third * UNITS;
+    assert_near(
+        "quadratic-4",
+        number(kernel("quadratic-4"), "worst_units"),
+        quadratic,
+        0.1,
+    );
+    assert_near(
+        "as",
+        number(kernel("as"), "worst_units"),
+        (-8.2f64).exp2() * UNITS,
+        0.05,
+    );
+}
+
+/// Of the firmware's kernel what it states: 0.51 for its input and 0.07 for what is cut off before; of the others the
+/// last bits of their type.
+#[test]
+fn errors_stay_within_what_the_types_allow() {
+    for (id, bound) in [
+        ("firmware", 0.58),
+        ("one-polynomial", 8.0),
+        ("shepherd", (-21.5f64).exp2() * UNITS),
+        ("libm-f32", (-20.5f64).exp2() * UNITS),
+        ("faddeeva", (-47.0f64).exp2() * UNITS),
+        ("libm-f64", (-48.0f64).exp2() * UNITS),
+    ] {
+        let worst = number(kernel(id), "worst_units");
+        assert!(worst <= bound, "{id}: {worst} for {bound}");
+        // Half a unit cannot be beaten by what returns whole ones.
+        assert!(id != "firmware" || worst > 0.49, "{id}: {worst}");
+    }
+}
+
+/// The set-points of all arithmetics are those of Eq. 6-12 and 3-1.
+#[test]
+fn set_points_are_right() {
+    for row in rows(&RUNS[0], "scenes") {
+        let worst_mk = number(row, "worst_mk");
+        assert!(worst_mk < 0.01, "{row}");
+        assert!(row["breaks_at_s"].is_null(), "{row}");
+    }
+}
+
+/// Both processors compute the same, so the costs are those of the results whose errors are shown.
+#[test]
+fn host_and_microcontroller_agree_to_the_bit() {
+    for table in ["kernels", "scenes"] {
+        for row in rows(&RUNS[0], table) {
+            assert_eq!(row["same_on_target"], true, "{row}");
+        }
+    }
+}
+
+#[test]
+fn costs_repeat_exactly() {
+    for table in ["kernels", "scenes"] {
+        for (first, second) in rows(&RUNS[0], table).iter().zip(rows(&RUNS[1], table)) {
+            for name in [
+                "instructions_mean",
+                "instructions_max",
+                "cycles_mean",
+                "cycles_max",
+            ] {
+                assert_eq!(first[name], second[name], "{name} of {first}");
+            }
+        }
+    }
+}
+
+/// Semi-infinite in `f32`: three loads, a subtraction, a multiplication with subtraction, a store, and a frame of
+/// three around it; with the call ten instructions. The firmware's kernel takes the same time for every input.
+#[test]
+fn costs_are_those_of_a_call() {
+    let row = scene("semi-infinite", "f32, libm");
+    assert_eq!(number(row, "instructions_max"), 10.0);
+    assert_eq!(number(row, "instructions_mean"), 10.0);
+    let firmware = kernel("firmware");
+    for cost in ["instructions", "cycles"] {
+        let (mean, max) = (format!("{cost}_mean"), format!("{cost}_max"));
+        assert_eq!(number(firmware, &mean), number(firmware, &max), "{firmware}");
+    }
+    assert!(
+        number(firmware, "table_bytes") >= 1024.0,
+        "its table is found in the image"
+    );
+}
+
+#[test]
+fn page_and_plot_name_every_kernel() {
+    LazyLock::force(&RUNS);
+    for name in ["benchmark.md", "benchmark.svg"] {
+        let text = std::fs::read_to_string(out("first").join(name)).expect("it is written");
+        let plain = text.replace("&amp;", "&").replace("&apos;", "'");
+        for row in rows(&RUNS[0], "kernels") {
+            let title = row["title"].as_str().expect("a title");
+            assert!(plain.contains(title), "{title} in {name}");
+        }
+    }
+}
+
+#[test]
+fn too_few_inputs_are_refused() {
+    let done = Command::new(env!("CARGO_BIN_EXE_model-bench"))
+        .args(["--inputs", "0"])
+        .output()
+        .expect("the benchmark starts");
+    assert_eq!(done.status.code(), Some(2));
+    let message = String::from_utf8_lossy(&done.stderr);
+    assert!(
+        message.contains("'0'") && message.contains("--inputs"),
+        "{message}"
+    );
+}
