@@ -80,7 +80,7 @@ fn products_break_where_exp_overflows() {
 
 /// Interpolation errors by their formulas, with the derivatives of erfcx at 0: `h²/8 E''` with `E'' = 2`, and
 /// `h³/16 |E'''|` with `E''' = -8/sqrt(pi)` between a node and the middle; Abramowitz and Stegun's error by that
-/// of their polynomial, 2^-8.2 at its worst (a fact of the formula, found with 50 digits).
+/// of their polynomial, 3.48793e-3 at z = 21.6 (found with 50 digits).
 #[test]
 fn errors_are_those_of_the_formulas() {
     for (id, nodes) in [("linear-4", 1024.0), ("linear-16", 4096.0)] {

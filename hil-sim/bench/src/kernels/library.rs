@@ -32,11 +32,19 @@ pub(super) fn abramowitz_stegun(elapsed: u32, per_tick: f32) -> f32 {
     polynomial(sqrt(elapsed as f32 * per_tick))
 }
 
+/// Abramowitz and Stegun's coefficients, lowest power first.
+const A: [f32; 5] = [
+    0.254_829_592_f64 as f32,
+    -0.284_496_736_f64 as f32,
+    1.421_413_741_f64 as f32,
+    -1.453_152_027_f64 as f32,
+    1.061_405_429_f64 as f32,
+];
+
 /// `erfc(z) exp(z²)` after M. Abramowitz and I. A. Stegun, *Handbook of Mathematical Functions*, 7.1.26: its error
 /// of 1.5e-7 is that of `erfc`, so here it grows as `exp(z²)`.
 #[inline]
 fn polynomial(z: f32) -> f32 {
     let t = 1.0 / (1.0 + 0.327_591_1 * z);
-    t * (0.254_829_592
-        + t * (-0.284_496_736 + t * (1.421_413_741 + t * (-1.453_152_027 + t * 1.061_405_429))))
+    t * (A[0] + t * (A[1] + t * (A[2] + t * (A[3] + t * A[4]))))
 }

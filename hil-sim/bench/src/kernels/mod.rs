@@ -149,7 +149,7 @@ pub static KERNELS: [Kernel; 15] = [
         OURS,
         "the firmware's kernel, integers",
         Table::Firmware,
-        Call::Fixed(|n, k| erfcx(n, k)),
+        Call::Fixed(erfcx),
     ),
     kernel(
         "libm-f64",

@@ -11,7 +11,7 @@ pub(super) fn one_polynomial(elapsed: Ticks, per_tick: Rate) -> Fraction {
     let zeros = product.leading_zeros();
     // u = square 2^exponent with an even exponent and square in 2^62..2^64, so z = root 2^(exponent / 2) with root
     // in 2^31..2^32.
-    let exponent = i32::from(per_tick.exponent()) - 32 - zeros as i32;
+    let exponent = per_tick.exponent() - 32 - zeros as i32;
     let odd = exponent & 1;
     let root = root(product << zeros >> odd);
     // 1 + z/2 = denominator 2^(scale - 31) with denominator in 2^31..2^32.
