@@ -6,7 +6,7 @@ use anyhow::{Context, bail, ensure};
 use hil_sim::machine::{FLASH_BASE, Firmware, Machine, Stats, Wiring};
 use model_bench::job::{Checksum, Job};
 use model_bench::kernels::{Call, KERNELS, ONLY_RETURN};
-use object::{Object, ObjectSymbol, SymbolKind};
+use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 use serde::Serialize;
 
 /// Cycles after which a job is given up: far more than any needs.
@@ -53,6 +53,7 @@ impl Wiring for Pins {
 pub struct Emulated {
     firmware: Firmware,
     kernel_table_bytes: usize,
+    compiler: String,
     /// Of the types of [`Call`] in their order, then of scenes.
     overheads: Vec<Overhead>,
 }
@@ -75,6 +76,7 @@ impl Emulated {
         let firmware = Firmware::from_elf(&elf).with_context(|| path.display().to_string())?;
         let mut new = Self {
             kernel_table_bytes: table_bytes(&elf)?,
+            compiler: compiler(&elf)?,
             firmware,
             overheads: Vec::new(),
         };
@@ -103,6 +105,11 @@ impl Emulated {
     /// Bytes of static data of the firmware's kernel in the image.
     pub fn kernel_table_bytes(&self) -> usize {
         self.kernel_table_bytes
+    }
+
+    /// What compiled the image.
+    pub fn compiler(&self) -> &str {
+        &self.compiler
     }
 
     /// Cost of the kernel of that place, and the checksum of what it returned.
@@ -219,6 +226,17 @@ fn table_bytes(elf: &[u8]) -> anyhow::Result<usize> {
         })
         .map(|symbol| symbol.size() as usize);
     Ok(sizes.sum())
+}
+
+/// Name and version of the compiler, as it leaves them in the image.
+fn compiler(elf: &[u8]) -> anyhow::Result<String> {
+    let file = object::File::parse(elf)?;
+    let section = file
+        .section_by_name(".comment")
+        .context("the image names no compiler")?;
+    let comments = String::from_utf8_lossy(section.data()?);
+    let name = comments.split('\0').find(|comment| comment.starts_with("rustc"));
+    Ok(name.context("the image was not compiled by rustc")?.into())
 }
 
 /// Builds the image; cargo decides what is stale.

@@ -39,6 +39,8 @@ pub struct Figures {
     pub step_k: f64,
     /// What runs the instructions that are counted.
     pub target: &'static str,
+    /// What compiled those instructions.
+    pub compiler: String,
     /// What took the nanoseconds.
     pub host: String,
     /// `erfcx` by the firmware and its peers.
@@ -135,6 +137,7 @@ pub fn measure(effort: Effort, progress: impl Fn(&str)) -> anyhow::Result<Figure
         ticks: TICKS,
         step_k: STEP_K,
         target: "emulated STM32F446: instructions exact, cycles estimated, no wait states",
+        compiler: emulated.compiler().into(),
         host: host(),
         kernels,
         scenes,

@@ -59,9 +59,9 @@ impl Frame {
     }
 }
 
-/// Room that a text takes, generously.
+/// Room that a text takes, generously: the backend draws letters smaller than their nominal size.
 fn width(text: &str) -> i32 {
-    text.chars().count() as i32 * FONT * 53 / 100
+    text.chars().count() as i32 * FONT * 44 / 100
 }
 
 /// The plot as an SVG document.
@@ -131,7 +131,12 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
                 GUIDE.mix(0.7).stroke_width(1),
             ))?;
             write(&root, name, text, &GUIDE)?;
-            taken.push(text);
+            let line = Frame {
+                top: y,
+                bottom: y + 1,
+                ..inside
+            };
+            taken.extend([text, line]);
         }
         let better = "better: sooner done and closer";
         let corner = Frame::of_text(better, inside.left + 30, inside.bottom - 18);

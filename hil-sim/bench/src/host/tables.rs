@@ -43,13 +43,19 @@ pub fn tables(figures: &Figures) -> String {
         "{kernels}\n\
          Errors over {} inputs, u = n K from 2^-24 to 2^16, against a 100-bit reference, of the results that are \
          numbers; in mK of a set-point at a step of {} K. \"Breaks\": NaN, infinite or off by more than 1 %, for z up \
-         to 256. Costs of a call, call and return included: mean and most of {} inputs on the {}. Host: {}, median of \
+         to 256. Costs of a call, call and return included: mean and most of {} inputs on the {}; {}. Host: {}, median of \
          calls side by side.\n\n\
          {scenes}\n\
          The model's share of a control tick over {} ticks of 1 ms, skin 34 C, object 24 C, granite at 2 N (streaming: \
          1 to 2 N); five fingers: granite, copper, stainless steel, ABS, foam. Errors of the set-point against \
          Eq. 6-12 or 3-1 in f64.\n",
-        figures.inputs, figures.step_k, figures.inputs_on_target, figures.target, figures.host, figures.ticks,
+        figures.inputs,
+        figures.step_k,
+        figures.inputs_on_target,
+        figures.target,
+        figures.compiler,
+        figures.host,
+        figures.ticks,
     )
 }
 
@@ -82,8 +88,8 @@ Rust keeps a frame in every function of this target, three instructions of each 
 pub fn page(figures: &Figures) -> String {
     format!(
         "# Run time against error\n\n\
-         Written by `cargo xtask bench --out docs`. Instructions and cycles are those of an emulated STM32F446 and \
-         repeat on every machine; the nanoseconds do not. Nobody has run this on silicon.\n\n\
+         Written by `cargo xtask bench --out docs`. Instructions and cycles are those of an emulated STM32F446: a \
+         compiler gives the same ones on every machine, but not the same nanoseconds. Nobody has run this on silicon.\n\n\
          ![Worst error against estimated cycles]({SVG})\n\n{}\n{PEERS}",
         tables(figures)
     )
