@@ -223,3 +223,27 @@ fn write(
     root.draw(&Text::new(text.to_owned(), middle, style))?;
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_of_one_place_keep_apart_and_inside() {
+        let inside = Frame {
+            left: 0,
+            top: 0,
+            right: 600,
+            bottom: 400,
+        };
+        for place in [(300, 200), (5, 5), (595, 395)] {
+            let mut taken = vec![Frame::around(place, RADIUS)];
+            for _ in 0..12 {
+                let label = free_place("a label of some length", place, &inside, &taken);
+                assert!(label.lies_in(&inside), "{place:?}");
+                assert!(!taken.iter().any(|other| other.meets(&label)), "{place:?}");
+                taken.push(label);
+            }
+        }
+    }
+}
