@@ -48,6 +48,7 @@ pub enum Arithmetic {
 }
 
 /// A finger by the firmware's integers.
+#[derive(Clone)]
 struct Finger {
     pairing: Pairing,
     contact: Contact,
@@ -55,6 +56,7 @@ struct Finger {
 }
 
 /// Everything that was set up before the first tick.
+#[derive(Clone)]
 pub struct Station {
     skin: Celsius,
     object: Celsius,

@@ -10,10 +10,14 @@ pub struct InterruptStats {
     pub count: u64,
     /// Instructions of one activation, those of handlers that preempted it excluded.
     pub instructions_mean: f64,
+    /// Fewest instructions of one activation.
+    pub instructions_min: u64,
     /// Most instructions of one activation.
     pub instructions_max: u64,
     /// Estimated cycles of one activation with its entry and return, preemption excluded.
     pub cycles_mean: f64,
+    /// Fewest cycles of one activation.
+    pub cycles_min: u64,
     /// Most cycles of one activation.
     pub cycles_max: u64,
     /// Longest time in cycles from request to first instruction (to the block, so a few cycles coarse).
@@ -39,8 +43,10 @@ pub struct Stats {
 struct Total {
     count: u64,
     instructions: u64,
+    instructions_min: u64,
     instructions_max: u64,
     cycles: u64,
+    cycles_min: u64,
     cycles_max: u64,
     latency_max: u64,
 }
@@ -92,10 +98,15 @@ impl Profile {
         self.charge(instructions, cycles);
         if let Some(done) = self.open.pop() {
             let total = &mut self.totals[done.exception];
+            if total.count == 0 {
+                (total.instructions_min, total.cycles_min) = (done.instructions, done.cycles);
+            }
             total.count += 1;
             total.instructions += done.instructions;
+            total.instructions_min = total.instructions_min.min(done.instructions);
             total.instructions_max = total.instructions_max.max(done.instructions);
             total.cycles += done.cycles;
+            total.cycles_min = total.cycles_min.min(done.cycles);
             total.cycles_max = total.cycles_max.max(done.cycles);
         }
     }
@@ -120,8 +131,10 @@ impl Profile {
                 name: nvic::name(n),
                 count: t.count,
                 instructions_mean: mean(t.instructions, t.count),
+                instructions_min: t.instructions_min,
                 instructions_max: t.instructions_max,
                 cycles_mean: mean(t.cycles, t.count),
+                cycles_min: t.cycles_min,
                 cycles_max: t.cycles_max,
                 latency_max: t.latency_max,
             })

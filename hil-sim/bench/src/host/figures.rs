@@ -14,9 +14,6 @@ use super::timing::{Time, side_by_side};
 
 /// Inputs of a timed round.
 const TIMED: usize = 4096;
-/// Ticks of a timed round: few, as the slowest take long.
-const TIMED_TICKS: u32 = 200;
-
 /// How much is done.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
@@ -195,17 +192,19 @@ fn each<T>(inputs: &[Input], call: impl Fn(&Input) -> T) {
 }
 
 fn scene_times(rounds: usize) -> anyhow::Result<Vec<Time>> {
+    let start = Station::new()?;
     let mut candidates: Vec<Box<dyn FnMut()>> = Vec::new();
     for scene in &SCENES {
-        let mut station = Station::new()?;
         let step = black_box(scene.step);
+        let start = &start;
         candidates.push(Box::new(move || {
-            for tick in 1..=TIMED_TICKS {
-                step(black_box(&mut station), tick * (TICKS / TIMED_TICKS));
+            let mut station = start.clone();
+            for tick in 1..=TICKS {
+                step(black_box(&mut station), tick);
             }
         }));
     }
-    Ok(side_by_side(&mut candidates, 0, TIMED_TICKS as usize, rounds))
+    Ok(side_by_side(&mut candidates, 0, TICKS as usize, rounds))
 }
 
 /// The arithmetic in words.
