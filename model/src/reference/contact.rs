@@ -1,5 +1,4 @@
-//! Contact resistance (Eq. 6-8 to 6-11), interface temperature (Eq. 3-1) and the response to contact
-//! (Eq. 6-5 to 6-7 and 6-12).
+//! Contact resistance (Eq. 6-8 to 6-11) and the response to contact (Eq. 6-5 to 6-7 and 6-12).
 
 use super::{Real, erfcx};
 use crate::material::{Material, SKIN_MICROHARDNESS_PA, Surface};
@@ -23,13 +22,6 @@ pub fn mean_conductance<F: Real>(a: &Surface, b: &Surface) -> F {
 pub fn contact_resistance<F: Real>(skin: &Surface, other: &Surface, pressure_pa: F) -> F {
     let relative = pressure_pa / F::from_f64(SKIN_MICROHARDNESS_PA);
     F::from_f64(1.0) / (mean_conductance::<F>(skin, other) * relative.powf(F::from_f64(0.95)))
-}
-
-/// Temperature in °C that both surfaces take at perfect contact, for ever (Eq. 3-1).
-#[must_use]
-pub fn interface_temperature<F: Real>(skin: &Material, skin_c: F, object: &Material, object_c: F) -> F {
-    let (es, eo) = (F::from_f64(skin.effusivity()), F::from_f64(object.effusivity()));
-    (object_c * eo + skin_c * es) / (eo + es)
 }
 
 /// A finger that has landed on an object, and the display that stands in for it.
@@ -67,6 +59,9 @@ pub struct Response<F> {
 impl<F: Real> Contact<F> {
     /// Contact of `skin` at `skin_c` with `object` at `object_c` under `pressure_pa`, on a display whose
     /// surface is `display`.
+    ///
+    /// No pressure is no contact: nothing is exchanged. An infinite one, and so no resistance, is
+    /// [`super::SemiInfinite`]; here its flux is not a number.
     #[must_use]
     pub fn new(
         (skin, skin_c): (&Material, F),
