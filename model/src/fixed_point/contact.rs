@@ -106,7 +106,10 @@ impl Response {
 pub(super) fn less<const BITS: u32>(from: Celsius, change: i64) -> Celsius {
     let rounded = change.saturating_add(1 << BITS >> 1) >> BITS;
     let bits = i64::from(from.to_bits()).saturating_sub(rounded);
-    Celsius::from_bits(bits.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
+    let low = bits as i32;
+    // Shorter than a clamp in 64 bits: what does not fit has the sign of its high half.
+    let end = (bits >> 63) as i32 ^ i32::MAX;
+    Celsius::from_bits(if i64::from(low) == bits { low } else { end })
 }
 
 /// `fraction` of a temperature difference; error at most half of its resolution.
