@@ -15,7 +15,7 @@ const SLOPE_BITS: u32 = 33;
 /// One piece of the table.
 pub(super) type ErfRow = Row<5, SLOPE_BITS>;
 
-/// `erf(x)`; error below 5 units of 2^-32 for every argument. From 4.5 on, one.
+/// `erf(x)`; error below 3 units of 2^-32 for every argument. From 4.5 on, one.
 #[must_use]
 pub fn erf(x: ErfArgument) -> Fraction {
     let bits = x.to_bits();

@@ -14,7 +14,7 @@ const SLOPE_BITS: u32 = 35;
 /// One piece of either table.
 pub(super) type LogRow = Row<4, SLOPE_BITS>;
 
-/// `log2(x)` of an integer; error below 1.5 * 2^-32. Zero gives -1, as one half would.
+/// `log2(x)` of an integer; error below 1.4 * 2^-32. Zero gives -1, as one half would.
 #[must_use]
 #[inline]
 pub fn log2(x: u32) -> Log2 {
@@ -28,7 +28,7 @@ pub fn log2(x: u32) -> Log2 {
     Log2::from_bits(i64::from(31 - zeros) << 32 | i64::from(part))
 }
 
-/// `2^(f / 2^32) - 1` in units of 2^-32, for `f / 2^32` in `[0, 1)`; error below 1.5 units.
+/// `2^(f / 2^32) - 1` in units of 2^-32, for `f / 2^32` in `[0, 1)`; error below 1.4 units.
 #[must_use]
 #[inline]
 pub fn exp2(f: u32) -> u32 {

@@ -59,7 +59,7 @@ impl Pairing {
 
     /// The contact under a pressure, given as `log2(P / H)`, any (Eq. 6-8). Relative error, beside that of the
     /// logarithm, of `b² dt` below 2^-29, of the conductance below 2^-30, for logarithms within ±64; together
-    /// with [`super::log2_relative_pressure`] at most 3e-9 and 1.5e-9.
+    /// with [`super::log2_relative_pressure`] at most 4e-9 and 2e-9.
     #[must_use]
     pub fn under(&self, log2_relative_pressure: Log2) -> Contact {
         let pressure_term = Rate::from_log2(logarithm::power_0_95(log2_relative_pressure));

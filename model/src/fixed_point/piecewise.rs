@@ -27,8 +27,9 @@ impl<const N: usize, const SLOPE_BITS: u32> Row<N, SLOPE_BITS> {
     #[inline]
     pub(super) fn at(&self, t: u32) -> u32 {
         let spare = SLOPE_BITS - 32;
-        let rest = variable_part(&self.rest, t);
-        self.constant
-            .saturating_add_signed(rest.wrapping_add(1 << spare >> 1) >> spare)
+        // Half a unit of the result rounds it; half of the `N` units lost at most centres their error.
+        let rounding = (1 << spare >> 1) + N as i32 / 2;
+        let rest = variable_part(&self.rest, t).wrapping_add(rounding) >> spare;
+        self.constant.saturating_add_signed(rest)
     }
 }

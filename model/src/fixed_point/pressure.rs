@@ -16,8 +16,8 @@ const SLOPE_BITS: i32 = 25;
 struct Piece {
     /// The piece holds above this force. Rounded down, as no force lies between it and the stated one.
     above: Force,
-    /// Area.
-    intercept: u32,
+    /// Area, with the slope's bits.
+    intercept: u64,
     /// Area per 2^-24 N.
     slope: u32,
 }
@@ -25,8 +25,8 @@ struct Piece {
 /// The pieces between the stated points of section 6.4.2 and, flat, the one after them. Slopes refer to the
 /// stated forces themselves, not to those that [`Force`] can hold: the difference would cost 2e-8 of the area.
 const PIECES: [Piece; STATED.len()] = {
-    const fn scaled(value: f64, bits: i32) -> u32 {
-        (value * (1u64 << bits) as f64 + 0.5) as u32
+    const fn scaled(value: f64, bits: i32) -> u64 {
+        (value * (1u128 << bits) as f64 + 0.5) as u64
     }
     let mut pieces = [Piece {
         above: Force::ZERO,
@@ -43,8 +43,8 @@ const PIECES: [Piece; STATED.len()] = {
         };
         pieces[i] = Piece {
             above: Force::from_bits((force * (1u64 << Force::FRAC_NBITS) as f64) as u32),
-            intercept: scaled(area - slope * force, AREA_BITS),
-            slope: scaled(slope, AREA_BITS + SLOPE_BITS - Force::FRAC_NBITS as i32),
+            intercept: scaled(area - slope * force, AREA_BITS + SLOPE_BITS),
+            slope: scaled(slope, AREA_BITS + SLOPE_BITS - Force::FRAC_NBITS as i32) as u32,
         };
         i += 1;
     }
@@ -57,7 +57,7 @@ const FIRST_AREA: u32 = (STATED[0].0 / STATED[0].1 * (1u64 << AREA_BITS) as f64 
 /// `log2(H)` of the skin's microhardness in Pa (Eq. 6-8).
 const LOG2_MICROHARDNESS: Log2 = Log2::lit("16.902422223664658");
 
-/// `log2(P / H)` under a force (section 6.4.2, as [`crate::pressure::pressure_pa`]); error below 4 * 2^-32 for
+/// `log2(P / H)` under a force (section 6.4.2, as [`crate::pressure::pressure_pa`]); error below 6 * 2^-32 for
 /// every force.
 ///
 /// A force of zero counts as one half of the smallest force above it.
@@ -75,9 +75,7 @@ fn area(force: Force) -> u32 {
     for piece in &PIECES {
         if force > piece.above {
             let rise = u64::from(force.to_bits()) * u64::from(piece.slope);
-            area = piece
-                .intercept
-                .saturating_add(((rise + (1 << (SLOPE_BITS - 1))) >> SLOPE_BITS) as u32);
+            area = ((piece.intercept + rise + (1 << SLOPE_BITS >> 1)) >> SLOPE_BITS) as u32;
         }
     }
     area

@@ -46,7 +46,7 @@ impl Rate {
         Some(Self::new(rounded as u32, (rounded >> 32) as i32 - 1023))
     }
 
-    /// Two to the power of `log2`; relative error below 1.5 * 2^-32.
+    /// Two to the power of `log2`; relative error below 1.4 * 2^-32.
     #[must_use]
     pub fn from_log2(log2: Log2) -> Self {
         let bits = log2.to_bits();
