@@ -97,6 +97,19 @@ fn exchange_of_skin_and_object_mirrors_the_response() {
     }
 }
 
+/// `b² dt` leaves the range of `f64`, on either side.
+#[test]
+fn ticks_of_any_length_saturate() {
+    for (_, object) in &MATERIALS {
+        let contact =
+            |tick_s| at_2_n(&Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("any tick"));
+        let shortest = contact(f64::from_bits(1)).at(1, SKIN_C, OBJECT_C);
+        assert_eq!((shortest.skin(), shortest.object()), (SKIN_C, OBJECT_C));
+        let longest = contact(f64::MAX).at(1, SKIN_C, OBJECT_C);
+        assert!(near(longest.skin(), longest.object(), 1));
+    }
+}
+
 #[test]
 fn response_holds_when_the_tick_counter_is_full() {
     for pairing in pairings() {

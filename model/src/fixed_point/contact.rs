@@ -39,8 +39,9 @@ impl Contact {
     }
 }
 
-/// Outputs, for temperatures within [`super::TEMPERATURE_RANGE_C`] and steps `dT` up to 60 K, with `e` the error of
-/// `E` ([`erfcx`]'s own and 0.14 of the relative error of `per_tick`). Beyond, errors grow with `dT`; nothing wraps.
+/// Outputs, for temperatures within [`super::TEMPERATURE_RANGE_C`] and steps `dT` up to 60 K, with `e` the error
+/// of `E` ([`erfcx`]'s own and 0.14 of the relative error of `per_tick`). Beyond, errors grow with `dT`; nothing
+/// wraps.
 impl Response {
     /// `erfcx(b sqrt(t))`.
     #[must_use]
@@ -75,8 +76,9 @@ impl Response {
         less::<27>(self.skin_before, change)
     }
 
-    /// Heat flux out of the skin (Eq. 6-7, positive for a cold object); error below `(e + 2^-30) dT / R` and the
-    /// resolution of [`Flux`]. Saturates at 5e11 W/m².
+    /// Heat flux out of the skin (Eq. 6-7, positive for a cold object); error below `dT / R` times the sum of
+    /// `e`, 2^-30 and the relative error of the conductance, and the resolution of [`Flux`]. Saturates at
+    /// 5e11 W/m².
     #[must_use]
     pub fn flux_w_m2(&self) -> Flux {
         flux(

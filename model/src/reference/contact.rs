@@ -86,8 +86,8 @@ impl<F: Real> Contact<F> {
         }
     }
 
-    /// State `t_s` seconds after landing (not negative). For the thesis's conditions temperatures are in error by at
-    /// most 1e-7 µK in `f64` and 10 µK in `f32`, the flux by 5e-15 of itself in `f64`.
+    /// State `t_s` seconds after landing (not negative). For the thesis's conditions temperatures are in error
+    /// by at most 1e-7 µK in `f64` and 10 µK in `f32`, the flux by 5e-15 of itself in `f64`.
     #[must_use]
     pub fn at(&self, t_s: F) -> Response<F> {
         let erfcx = erfcx((self.rate_per_s * t_s).sqrt());
@@ -104,7 +104,9 @@ impl<F: Real> Contact<F> {
     }
 
     /// Temperature in °C inside of the skin, `depth_m` below its surface, `t_s` seconds after landing, neither
-    /// negative; error at most 1e-7 µK in `f64` to 10 mm. Eq. 6-5 continued into the half-space, `T_i - dT w (erfc x - exp(-x²) erfcx(x + z))` with
+    /// negative; error at most 1e-7 µK in `f64` down to 10 mm.
+    ///
+    /// Eq. 6-5 continued into the half-space: `T_i - dT w (erfc x - exp(-x²) erfcx(x + z))` with
     /// `x = depth / (2 sqrt(alpha t))` and `z = b sqrt(t)`.
     #[must_use]
     pub fn skin_at_depth(&self, skin: &Material, depth_m: F, t_s: F) -> F {

@@ -3,15 +3,16 @@
 use super::Real;
 use crate::material::Material;
 
-/// Temperature in °C that both surfaces take at perfect contact, for ever (Eq. 3-1); error at most 1e-7 µK in `f64`.
+/// Temperature in °C that both surfaces take at perfect contact, for ever (Eq. 3-1); error at most 1e-7 µK
+/// in `f64`.
 #[must_use]
 pub fn interface_temperature<F: Real>(skin: &Material, skin_c: F, object: &Material, object_c: F) -> F {
     let (es, eo) = (F::from_f64(skin.effusivity()), F::from_f64(object.effusivity()));
     (object_c * eo + skin_c * es) / (eo + es)
 }
 
-/// Fourier number `alpha t / L²` (Eq. 3-4) of a body whose volume over contact area is `length_m`; relative error a few
-/// roundings of `F`. The bodies count as half-spaces below 0.05.
+/// Fourier number `alpha t / L²` (Eq. 3-4) of a body whose volume over contact area is `length_m`; relative
+/// error a few roundings of `F`. The bodies count as half-spaces below 0.05.
 #[must_use]
 pub fn fourier_number<F: Real>(material: &Material, length_m: F, t_s: F) -> F {
     F::from_f64(material.diffusivity_m2_s()) * t_s / (length_m * length_m)
@@ -43,7 +44,8 @@ impl<F: Real> SemiInfinite<F> {
     }
 
     /// Skin temperature in °C, `depth_m` below its surface, `t_s` seconds after landing, neither negative
-    /// (Eq. 3-2); error at most 1e-7 µK in `f64`. At time zero that before contact, except on the surface itself.
+    /// (Eq. 3-2); error at most 1e-7 µK in `f64`. At time zero that before contact, except on the surface
+    /// itself.
     #[must_use]
     pub fn skin_at_depth(&self, depth_m: F, t_s: F) -> F {
         if depth_m <= F::from_f64(0.0) {
@@ -54,7 +56,8 @@ impl<F: Real> SemiInfinite<F> {
     }
 
     /// Heat flux in W/m² in the skin at its surface, signed as Eq. 3-3 has it: negative for a cold object, where
-    /// [`super::Response::flux_w_m2`] is positive; relative error below 1e-13 in `f64`. `None` at time zero, where it is singular, and before.
+    /// [`super::Response::flux_w_m2`] is positive; relative error below 1e-13 in `f64`. `None` at time zero,
+    /// where it is singular, and before.
     #[must_use]
     pub fn flux_w_m2(&self, t_s: F) -> Option<F> {
         if t_s <= F::from_f64(0.0) {

@@ -29,6 +29,8 @@ struct Budget {
 const KERNEL_UNITS: f64 = 9.0;
 /// Relative error of `b² dt` under a streaming force.
 const PER_TICK: f64 = 4e-9;
+/// Relative error of the conductance.
+const CONDUCTANCE: f64 = 2e-9;
 /// Error of `E` in the chain; `E` changes by at most 0.14 per relative change of `b² dt`.
 const E_ERROR: f64 = KERNEL_UNITS / 4_294_967_296.0 + 0.14 * PER_TICK;
 /// The same in µK, for a step of 60 K.
@@ -67,7 +69,7 @@ const BUDGETS: [Budget; 33] = [
     Budget { function: "Rate::times", domain: "2^-500..2^500", bound: 1.0, unit: "2^-32 relative", against: F64, how: elementary::rate_times },
     Budget { function: "log2_relative_pressure", domain: "any force above 0", bound: 6.0, unit: "2^-32", against: F64, how: chain::log2_pressure },
     // Fixed point: from material and force to outputs.
-    Budget { function: "Pairing, Contact: R", domain: MATERIALS, bound: 2.0, unit: "1e-9 relative", against: BOTH, how: chain::resistance },
+    Budget { function: "Pairing, Contact: R", domain: MATERIALS, bound: CONDUCTANCE * 1e9, unit: "1e-9 relative", against: BOTH, how: chain::resistance },
     Budget { function: "Pairing, Contact: K = b2 dt", domain: MATERIALS, bound: PER_TICK * 1e9, unit: "1e-9 relative", against: BOTH, how: chain::per_tick },
     Budget { function: "Pairing: r", domain: "9 materials, own ones up to 16", bound: 2.0, unit: "1e-9", against: BOTH, how: chain::ratio },
     Budget { function: "Pairing: w", domain: "9 materials, own ones", bound: 0.25, unit: "1e-9", against: BOTH, how: chain::weight },
@@ -75,7 +77,7 @@ const BUDGETS: [Budget; 33] = [
     Budget { function: "Response: object", domain: RESISTANCES, bound: INPUT_UK + 0.2 + E_UK, unit: "uK", against: BOTH, how: chain::object },
     Budget { function: "Response: display, r up to 2", domain: RESISTANCES, bound: INPUT_UK + 0.6 + 2.0 * E_UK, unit: "uK", against: BOTH, how: chain::display },
     Budget { function: "Response: display, r up to 16", domain: RESISTANCES, bound: 0.6 + 16.0 * E_UK, unit: "uK", against: F64, how: chain::display_steep },
-    Budget { function: "Response: flux", domain: RESISTANCES, bound: 1e9 * E_ERROR + 1.0, unit: "1e-9 dT/R", against: BOTH, how: chain::flux },
+    Budget { function: "Response: flux", domain: RESISTANCES, bound: 1e9 * (E_ERROR + CONDUCTANCE) + 1.0, unit: "1e-9 dT/R", against: BOTH, how: chain::flux },
     Budget { function: "Pairing: preset", domain: "-40..125 C, dT 60 K", bound: INPUT_UK + 0.3, unit: "uK", against: BOTH, how: chain::preset },
     Budget { function: "Eq. 3-1", domain: "-40..125 C", bound: INPUT_UK + 0.15, unit: "uK", against: BOTH, how: half_spaces::interface_fixed },
     Budget { function: "Eq. 3-2", domain: "any depth, n; dt 10us..100ms, dT 60 K", bound: INPUT_UK + 0.45, unit: "uK", against: BOTH, how: half_spaces::depth_fixed },
