@@ -11,7 +11,7 @@ pub struct Contact {
     pub ratio: Ratio,
     /// `b² dt`.
     pub per_tick: Rate,
-    /// `1 / R`, W/(m² K); as good as absent below 2^-58, no heat flows then.
+    /// `1 / R`, W/(m² K); below 2^-33 no difference gives a flux that [`Flux`] could hold.
     pub conductance_w_m2k: Rate,
 }
 

@@ -82,7 +82,7 @@ impl Pairing {
         )
     }
 
-    /// Interface temperature of perfect contact (Eq. 3-1); error below 0.15 µK.
+    /// Interface temperature of perfect contact (Eq. 3-1); error below 0.16 µK.
     #[must_use]
     pub fn interface_temperature(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
         contact::interface(self.weight, skin_c, object_c)

@@ -17,7 +17,7 @@ pub enum PairingError {
     },
     /// `R_display / R_object` does not fit: the object is too smooth or conducts too well.
     Ratio(f64),
-    /// `b²` (1/s), the conductance (W/(m² K)) at `P = H` or the skin's effusivity is beyond 2^±100.
+    /// `b²` (1/s), the conductance (W/(m² K)) at `P = H`, or the skin's effusivity or diffusivity is beyond 2^±100.
     Rate(f64),
 }
 

@@ -40,7 +40,7 @@ impl SemiInfinite {
         })
     }
 
-    /// Temperature of both surfaces from landing on (Eq. 3-1); error below 0.15 µK.
+    /// Temperature of both surfaces from landing on (Eq. 3-1); error below 0.16 µK.
     #[must_use]
     pub fn interface_temperature(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
         contact::interface(self.weight, skin_c, object_c)

@@ -79,7 +79,7 @@ const BUDGETS: [Budget; 33] = [
     Budget { function: "Response: display, r up to 16", domain: RESISTANCES, bound: 0.6 + 16.0 * E_UK, unit: "uK", against: F64, how: chain::display_steep },
     Budget { function: "Response: flux", domain: RESISTANCES, bound: 1e9 * (E_ERROR + CONDUCTANCE) + 1.0, unit: "1e-9 dT/R", against: BOTH, how: chain::flux },
     Budget { function: "Pairing: preset", domain: "-40..125 C, dT 60 K", bound: INPUT_UK + 0.3, unit: "uK", against: BOTH, how: chain::preset },
-    Budget { function: "Eq. 3-1", domain: "-40..125 C", bound: INPUT_UK + 0.15, unit: "uK", against: BOTH, how: half_spaces::interface_fixed },
+    Budget { function: "Eq. 3-1", domain: "-40..125 C", bound: INPUT_UK + 0.16, unit: "uK", against: BOTH, how: half_spaces::interface_fixed },
     Budget { function: "Eq. 3-2", domain: "any depth, n; dt 10us..100ms, dT 60 K", bound: INPUT_UK + 0.45, unit: "uK", against: BOTH, how: half_spaces::depth_fixed },
     Budget { function: "Eq. 3-3", domain: "any n; dt 10us..100ms, dT from 1 K", bound: 2.0, unit: "1e-9 relative", against: BOTH, how: half_spaces::flux_fixed },
     Budget { function: "Eq. 3-4", domain: "any n; Fo up to 1000", bound: 1.01, unit: "2^-32", against: F64, how: half_spaces::fourier_fixed },
