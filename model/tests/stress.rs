@@ -8,7 +8,7 @@ use proptest::prelude::*;
 /// What the integers may be off, K.
 const FIXED_K: f64 = 2e-6;
 /// What the integer flux may be off as a part of `dT / R`.
-const FIXED_FLUX_PART: f64 = 1e-6;
+const FIXED_FLUX_PART: f64 = 4e-9;
 /// What `f32` may be off as a part of the temperatures: some roundings.
 const F32_PART: f64 = 2e-6;
 
