@@ -74,7 +74,7 @@ fn model_meets_golden_values_in_f64_and_fixed_point() {
         if number(&row, "t_s") != 10.0 {
             continue;
         }
-        for (arithmetic, bound) in [("f64", 1e-12), ("fixed", 2f64.powi(-20))] {
+        for (arithmetic, bound) in [("f64", 1e-12), ("fixed", 5e-9)] {
             let mut arguments: Vec<&str> = vec!["model", "--arith", arithmetic];
             arguments.extend(common.iter().map(String::as_str));
             let text = good(&arguments, "");

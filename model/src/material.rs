@@ -11,6 +11,15 @@ pub struct Surface {
     pub slope_rad: f64,
 }
 
+/// Absolute average slope `da` from the RMS slope `R dq` of a profile, both in rad (Eq. 6-13).
+///
+/// The 1.25 is `sqrt(pi / 2)`, that of Gaussian surfaces; a sinusoid would have 1.11. Average the slope of a
+/// profile that is at hand.
+#[must_use]
+pub fn average_slope_rad(rms_slope_rad: f64) -> f64 {
+    rms_slope_rad / 1.25
+}
+
 /// A homogeneous solid, seen as a half-space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {

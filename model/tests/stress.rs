@@ -8,7 +8,7 @@ use proptest::prelude::*;
 /// What the integers may be off, K.
 const FIXED_K: f64 = 2e-6;
 /// What the integer flux may be off as a part of `dT / R`.
-const FIXED_FLUX_PART: f64 = 1e-6;
+const FIXED_FLUX_PART: f64 = 4e-9;
 /// What `f32` may be off as a part of the temperatures: some roundings.
 const F32_PART: f64 = 2e-6;
 
@@ -201,56 +201,21 @@ proptest! {
     }
 }
 
-/// At landing nothing has flowed yet; after ages Eq. 3-1 holds.
+/// After ages Eq. 3-1 holds.
 #[test]
-fn time_runs_from_the_temperatures_before_contact_to_equation_3_1() {
-    let mut longest_s: f64 = 0.0;
+fn time_runs_to_equation_3_1() {
     for (name, object) in &MATERIALS {
         for (skin_c, object_c) in [(34.0, 24.0), (28.0, 60.0), (-40.0, 125.0), (36.0, -24.0)] {
             let exact = contact::<f64>(skin_c, object, object_c, 10_980.0);
-            let pairing = fixed(&SKIN, object, 10_980.0, 1e-3);
-            let landing = pairing.at(0, celsius(skin_c), celsius(object_c));
-            // The largest fraction stands for one: 2^-32 of the step is missing.
-            let near = |t: Celsius, wanted: f64| (t.to_num::<f64>() - wanted).abs() < FIXED_K;
-            assert!(near(landing.skin(), skin_c), "{name}");
-            assert!(near(landing.object(), object_c), "{name}");
-            assert!(
-                near(landing.display(), skin_c - exact.ratio * (skin_c - object_c)),
-                "{name}"
-            );
             // So long that 1 / (z sqrt(pi)) of the step is below a microkelvin.
             let t_s = 1e16 / exact.rate_per_s;
-            longest_s = longest_s.max(t_s);
             let ages = fixed(&SKIN, object, 10_980.0, t_s).at(1, celsius(skin_c), celsius(object_c));
             let meeting_c = interface_temperature(&SKIN, skin_c, object, object_c);
             for t in [ages.skin(), ages.object(), ages.display()] {
-                assert!(near(t, meeting_c), "{name}: {t} {meeting_c}");
+                let error_k = t.to_num::<f64>() - meeting_c;
+                assert!(error_k.abs() < FIXED_K, "{name}: {t} {meeting_c}");
             }
         }
-    }
-    println!("longest: {longest_s:e} s");
-}
-
-/// Pressure from nothing to far beyond the skin's hardness: from no exchange to perfect contact.
-#[test]
-fn resistance_runs_from_no_exchange_to_perfect_contact() {
-    for (name, object) in &MATERIALS {
-        let meeting_c = interface_temperature(&SKIN, 34.0, object, 24.0);
-        let (skin, start) = (celsius(34.0), celsius(24.0));
-        let faint = fixed(&SKIN, object, 1e-12, 1e-3).at(1, skin, start);
-        assert!((faint.skin().to_num::<f64>() - 34.0).abs() < FIXED_K, "{name}");
-        assert!((faint.object().to_num::<f64>() - 24.0).abs() < FIXED_K, "{name}");
-        let firm = fixed(&SKIN, object, 1e16, 1e-3).at(1, skin, start);
-        assert!(
-            (firm.skin().to_num::<f64>() - meeting_c).abs() < 2.0 * FIXED_K,
-            "{name}: {}",
-            firm.skin()
-        );
-        assert!(
-            (firm.object().to_num::<f64>() - meeting_c).abs() < 2.0 * FIXED_K,
-            "{name}: {}",
-            firm.object()
-        );
     }
 }
 
@@ -270,14 +235,4 @@ fn days_of_contact_do_not_drift() {
             );
         }
     }
-}
-
-/// A contact that outlasts its counter stays where it is: it neither wraps nor starts anew.
-#[test]
-fn the_end_of_the_counter_holds() {
-    let copper = &MATERIALS[0].1;
-    let integer = fixed(&SKIN, copper, 10_980.0, 1e-3);
-    let at = |ticks| integer.at(ticks, celsius(34.0), celsius(24.0)).display();
-    assert_eq!(at(u32::MAX), at(Ticks::MAX.get()));
-    assert_eq!(at(Ticks::MAX.get() + 1), at(Ticks::MAX.get()));
 }

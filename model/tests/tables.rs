@@ -13,4 +13,8 @@ fn committed_tables_are_generated() {
         include_str!("../src/fixed_point/log_table.rs") == fit::log_table(),
         "{again}"
     );
+    assert!(
+        include_str!("../src/fixed_point/erf_table.rs") == fit::erf_table(),
+        "{again}"
+    );
 }

@@ -187,16 +187,19 @@ fn check(arguments: &Arguments) -> anyhow::Result<(Material, f64)> {
 fn fixed(arguments: &Arguments, object: &Material, pressure_pa: f64, t_s: f64) -> anyhow::Result<Row> {
     let (elapsed, tick_s) = if t_s == 0.0 { (0, 1.0) } else { (1, t_s) };
     let relative = (pressure_pa / SKIN_MICROHARDNESS_PA).log2();
-    let contact = Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)
-        .with_context(|| format!("at t = {t_s} s"))?
-        .under(Log2::saturating_from_num(relative));
+    let contact =
+        Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)?.under(Log2::saturating_from_num(relative));
     let (skin, object) = (
         Celsius::from_num(arguments.skin_c),
         Celsius::from_num(arguments.object_c),
     );
     let at = contact.at(elapsed, skin, object);
     Ok(Row {
-        z: (f64::from(elapsed) * contact.per_tick.to_f64()).sqrt(),
+        z: if elapsed == 0 {
+            0.0
+        } else {
+            contact.per_tick.to_f64().sqrt()
+        },
         erfcx: at.erfcx().to_num(),
         t_skin_c: at.skin().to_num(),
         t_object_c: at.object().to_num(),

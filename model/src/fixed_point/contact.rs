@@ -11,7 +11,7 @@ pub struct Contact {
     pub ratio: Ratio,
     /// `b² dt`.
     pub per_tick: Rate,
-    /// `1 / R`, W/(m² K).
+    /// `1 / R`, W/(m² K); below 2^-33 no difference gives a flux that [`Flux`] could hold.
     pub conductance_w_m2k: Rate,
 }
 
@@ -39,8 +39,9 @@ impl Contact {
     }
 }
 
-/// Outputs; for temperatures within [`super::TEMPERATURE_RANGE_C`] their error is that of `E` (below 2^-28) times
-/// the temperature step, plus at most 1 µK.
+/// Outputs, for temperatures within [`super::TEMPERATURE_RANGE_C`] and steps `dT` up to 60 K, with `e` the error
+/// of `E` ([`erfcx`]'s own and 0.14 of the relative error of `per_tick`). Beyond, errors grow with `dT`; nothing
+/// wraps.
 impl Response {
     /// `erfcx(b sqrt(t))`.
     #[must_use]
@@ -48,60 +49,97 @@ impl Response {
         self.erfcx
     }
 
-    /// Skin surface (Eq. 6-5).
+    /// Skin surface (Eq. 6-5); error below 0.2 µK + `w e dT`.
     #[must_use]
     pub fn skin(&self) -> Celsius {
-        let full = part(self.step(), self.contact.weight);
         self.skin_before
-            .saturating_sub(full)
-            .saturating_add(part(full, self.erfcx))
+            .saturating_sub(part(self.step(), self.skin_part()))
     }
 
-    /// Object surface (Eq. 6-6).
+    /// Object surface (Eq. 6-6); error below 0.2 µK + `(1 - w) e dT`.
     #[must_use]
     pub fn object(&self) -> Celsius {
-        let full = self.step().saturating_sub(part(self.step(), self.contact.weight));
-        self.object_before
-            .saturating_add(full)
-            .saturating_sub(part(full, self.erfcx))
+        let object_part = self.done().saturating_sub(self.skin_part());
+        self.object_before.saturating_add(part(self.step(), object_part))
     }
 
-    /// Display surface that puts the skin where the object would (Eq. 6-12).
+    /// Display surface that puts the skin where the object would (Eq. 6-12); error below
+    /// 0.6 µK + `|r - w| e dT`.
     #[must_use]
     pub fn display(&self) -> Celsius {
-        let across = part(self.step(), self.erfcx);
-        self.skin().saturating_sub(scaled(across, self.contact.ratio))
+        // `w (1 - E) + r E` lies between w and r, so that 60 fraction bits fit below 16.
+        let (weight, done) = (self.contact.weight.to_bits(), self.done().to_bits());
+        let (ratio, left) = (self.contact.ratio.to_bits(), self.erfcx.to_bits());
+        let gain = ((u64::from(weight) * u64::from(done)) >> 4) + u64::from(ratio) * u64::from(left);
+        let gain = (gain + (1 << 32)) >> 33;
+        let change = i64::from(self.step().to_bits()) * i64::from(gain as i32);
+        less::<27>(self.skin_before, change)
     }
 
-    /// Heat flux out of the skin (Eq. 6-7, positive for a cold object); relative error below 2^-20 of
-    /// `dT / R`. Saturates at 5e11 W/m².
+    /// Heat flux out of the skin (Eq. 6-7, positive for a cold object); error below `dT / R` times the sum of
+    /// `e`, 2^-30 and the relative error of the conductance, and the resolution of [`Flux`]. Saturates at
+    /// 5e11 W/m².
     #[must_use]
     pub fn flux_w_m2(&self) -> Flux {
-        let across = part(self.step(), self.erfcx);
-        let product =
-            i64::from(across.to_bits()) * i64::from(1 << 31 | self.contact.conductance_w_m2k.fraction() >> 1);
-        // 22 fraction bits of temperature and 31 of the mantissa, to the 24 of the result.
-        let shift = 22 + 31 - 24 - self.contact.conductance_w_m2k.exponent();
-        Flux::from_bits(match shift {
-            64.. => 0,
-            0..64 => product >> shift,
-            _ => product.saturating_mul(1i64.checked_shl(shift.unsigned_abs()).unwrap_or(i64::MAX)),
-        })
+        flux(
+            i64::from(self.step().to_bits()) * i64::from(self.erfcx.to_bits()),
+            self.contact.conductance_w_m2k,
+        )
     }
 
     fn step(&self) -> Celsius {
         self.skin_before.saturating_sub(self.object_before)
     }
+
+    /// `1 - E`, where the largest `E` counts as one.
+    fn done(&self) -> Fraction {
+        !self.erfcx
+    }
+
+    /// `w (1 - E)`.
+    fn skin_part(&self) -> Fraction {
+        let product = u64::from(self.contact.weight.to_bits()) * u64::from(self.done().to_bits());
+        Fraction::from_bits(((product + (1 << 31)) >> 32) as u32)
+    }
 }
 
-/// `fraction` of a temperature difference, rounded down to its resolution.
+/// `from` less a change with `BITS` more fraction bits; error at most half of the resolution; saturates.
+#[inline]
+pub(super) fn less<const BITS: u32>(from: Celsius, change: i64) -> Celsius {
+    let rounded = change.saturating_add(1 << BITS >> 1) >> BITS;
+    let bits = i64::from(from.to_bits()).saturating_sub(rounded);
+    let low = bits as i32;
+    // Shorter than a clamp in 64 bits: what does not fit has the sign of its high half.
+    let end = (bits >> 63) as i32 ^ i32::MAX;
+    Celsius::from_bits(if i64::from(low) == bits { low } else { end })
+}
+
+/// `fraction` of a temperature difference; error at most half of its resolution.
 #[inline]
 pub(super) fn part(difference: Celsius, fraction: Fraction) -> Celsius {
-    Celsius::from_bits(((i64::from(difference.to_bits()) * i64::from(fraction.to_bits())) >> 32) as i32)
+    let product = i64::from(difference.to_bits()) * i64::from(fraction.to_bits());
+    Celsius::from_bits((product.saturating_add(1 << 31) >> 32) as i32)
 }
 
-/// A temperature difference times `R_display / R_object`; saturates.
-pub(super) fn scaled(difference: Celsius, ratio: Ratio) -> Celsius {
-    let bits = (i64::from(difference.to_bits()) * i64::from(ratio.to_bits())) >> 28;
-    Celsius::from_bits(bits.clamp(i64::from(i32::MIN), i64::from(i32::MAX)) as i32)
+/// Eq. 3-1: where both surfaces go for a part `weight` of the way from skin to object.
+pub(super) fn interface(weight: Fraction, skin_c: Celsius, object_c: Celsius) -> Celsius {
+    skin_c.saturating_sub(part(skin_c.saturating_sub(object_c), weight))
+}
+
+/// Flux from a temperature difference with 54 fraction bits and a conductance; relative error below 2^-30,
+/// rounded towards zero; saturates.
+pub(super) fn flux(difference: i64, conductance_w_m2k: Rate) -> Flux {
+    let magnitude = difference.unsigned_abs();
+    let zeros = magnitude.leading_zeros();
+    let leading = (magnitude.checked_shl(zeros).unwrap_or(0) >> 32) as u32;
+    let product = u64::from(leading) * u64::from(conductance_w_m2k.leading());
+    // Fraction bits of the difference, without those cut off, and of the mantissa, to those of the flux.
+    let shift = 54 - (32 - zeros as i32) + 31 - Flux::FRAC_NBITS as i32 - conductance_w_m2k.exponent();
+    let bits = match shift {
+        64.. => 0,
+        1..64 => (product >> shift) as i64,
+        _ if product == 0 => 0,
+        _ => i64::MAX,
+    };
+    Flux::from_bits(if difference < 0 { -bits } else { bits })
 }

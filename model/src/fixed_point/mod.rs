@@ -4,6 +4,8 @@
 //! ([`Pairing::new`]) is in `f64` and happens once per material, not per tick.
 
 mod contact;
+mod erf;
+mod erf_table;
 pub mod kernel;
 mod kernel_table;
 mod log_table;
@@ -11,15 +13,20 @@ mod logarithm;
 mod pairing;
 mod piecewise;
 mod pressure;
+mod properties;
 mod rate;
+mod semi_infinite;
 mod ticks;
 
 pub use contact::{Contact, Response};
+pub use erf::{ErfArgument, erf};
 pub use kernel::erfcx;
 pub use logarithm::{Log2, exp2, log2};
-pub use pairing::{Pairing, PairingError};
+pub use pairing::Pairing;
 pub use pressure::{Force, log2_relative_pressure};
+pub use properties::PairingError;
 pub use rate::Rate;
+pub use semi_infinite::{Depth, FourierNumber, SemiInfinite, fourier_number};
 pub use ticks::Ticks;
 
 use fixed::types::{I10F22, I40F24, U0F32, U4F28};

@@ -13,3 +13,23 @@ pub(super) fn variable_part<const N: usize>(coefficients: &[i32; N], t: u32) -> 
     }
     sum
 }
+
+/// One piece of a function in `[0, 1)`: the constant in units of 2^-32, the rest, of `N` powers, in units of
+/// `2^-SLOPE_BITS`, which spares the rounding of the rest.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Row<const N: usize, const SLOPE_BITS: u32> {
+    pub(super) constant: u32,
+    pub(super) rest: [i32; N],
+}
+
+impl<const N: usize, const SLOPE_BITS: u32> Row<N, SLOPE_BITS> {
+    /// The piece at `t / 2^32` of its length, in units of 2^-32; saturates.
+    #[inline]
+    pub(super) fn at(&self, t: u32) -> u32 {
+        let spare = SLOPE_BITS - 32;
+        // Half a unit of the result rounds it; half of the `N` units lost at most centres their error.
+        let rounding = (1 << spare >> 1) + N as i32 / 2;
+        let rest = variable_part(&self.rest, t).wrapping_add(rounding) >> spare;
+        self.constant.saturating_add_signed(rest)
+    }
+}

@@ -6,64 +6,77 @@ use crate::pressure::STATED;
 /// Force in N: 0 to 256 at a resolution of 6e-8.
 pub type Force = fixed::types::U8F24;
 
-/// Area is held in units of 2^-40 m².
-const AREA_BITS: i32 = 40;
-const POINTS: usize = STATED.len();
+/// Area is held in units of 2^-44 m².
+const AREA_BITS: i32 = 44;
+/// Slopes of area have this many more.
+const SLOPE_BITS: i32 = 25;
 
-/// The stated forces, the contact areas there, and the slopes between them (24 fraction bits).
-const FORCES: [Force; POINTS] = {
-    let mut forces = [Force::ZERO; POINTS];
+/// A straight piece of area over force: `intercept + slope * force`.
+#[derive(Clone, Copy)]
+struct Piece {
+    /// The piece holds above this force. Rounded down, as no force lies between it and the stated one.
+    above: Force,
+    /// Area, with the slope's bits.
+    intercept: u64,
+    /// Area per 2^-24 N.
+    slope: u32,
+}
+
+/// The pieces between the stated points of section 6.4.2 and, flat, the one after them. Slopes refer to the
+/// stated forces themselves, not to those that [`Force`] can hold: the difference would cost 2e-8 of the area.
+const PIECES: [Piece; STATED.len()] = {
+    const fn scaled(value: f64, bits: i32) -> u64 {
+        (value * (1u128 << bits) as f64 + 0.5) as u64
+    }
+    let mut pieces = [Piece {
+        above: Force::ZERO,
+        intercept: 0,
+        slope: 0,
+    }; STATED.len()];
     let mut i = 0;
-    while i < POINTS {
-        forces[i] = Force::from_bits((STATED[i].0 * (1u64 << 24) as f64) as u32);
+    while i < STATED.len() {
+        let (force, area) = (STATED[i].0, STATED[i].0 / STATED[i].1);
+        let slope = if i + 1 < STATED.len() {
+            (STATED[i + 1].0 / STATED[i + 1].1 - area) / (STATED[i + 1].0 - force)
+        } else {
+            0.0
+        };
+        pieces[i] = Piece {
+            above: Force::from_bits((force * (1u64 << Force::FRAC_NBITS) as f64) as u32),
+            intercept: scaled(area - slope * force, AREA_BITS + SLOPE_BITS),
+            slope: scaled(slope, AREA_BITS + SLOPE_BITS - Force::FRAC_NBITS as i32) as u32,
+        };
         i += 1;
     }
-    forces
-};
-const AREAS: [u32; POINTS] = {
-    let mut areas = [0; POINTS];
-    let mut i = 0;
-    while i < POINTS {
-        areas[i] = (STATED[i].0 / STATED[i].1 * (1u64 << AREA_BITS) as f64) as u32;
-        i += 1;
-    }
-    areas
+    pieces
 };
 
-const SLOPES: [u32; POINTS - 1] = {
-    let mut slopes = [0; POINTS - 1];
-    let mut i = 0;
-    while i < POINTS - 1 {
-        let rise = ((AREAS[i + 1] - AREAS[i]) as u64) << 24;
-        slopes[i] = (rise / (FORCES[i + 1].to_bits() - FORCES[i].to_bits()) as u64) as u32;
-        i += 1;
-    }
-    slopes
-};
+/// Area up to the first stated force.
+const FIRST_AREA: u32 = (STATED[0].0 / STATED[0].1 * (1u64 << AREA_BITS) as f64 + 0.5) as u32;
 
 /// `log2(H)` of the skin's microhardness in Pa (Eq. 6-8).
 const LOG2_MICROHARDNESS: Log2 = Log2::lit("16.902422223664658");
 
-/// `log2(P / H)` under a force (section 6.4.2, as [`crate::pressure::pressure_pa`]); error below 2^-21.
+/// `log2(P / H)` under a force (section 6.4.2, as [`crate::pressure::pressure_pa`]); error below 6 * 2^-32 for
+/// every force.
 ///
-/// A force of zero counts as the smallest force above it.
+/// A force of zero counts as one half of the smallest force above it.
 #[must_use]
 pub fn log2_relative_pressure(force: Force) -> Log2 {
-    let log2_force = log2(force.to_bits()).saturating_sub(Log2::const_from_int(24));
-    let log2_area = log2(area(force)).saturating_sub(Log2::const_from_int(AREA_BITS));
-    log2_force
-        .saturating_sub(log2_area)
-        .saturating_sub(LOG2_MICROHARDNESS)
+    const UNITS: Log2 = Log2::const_from_int(AREA_BITS as i64 - Force::FRAC_NBITS as i64);
+    log2(force.to_bits())
+        .saturating_sub(log2(area(force)))
+        .saturating_add(UNITS.saturating_sub(LOG2_MICROHARDNESS))
 }
 
-/// Contact area in units of 2^-40 m².
+/// Contact area in units of 2^-44 m².
 fn area(force: Force) -> u32 {
-    let mut area = AREAS[0];
-    for ((&start, &from), &slope) in FORCES.iter().zip(&AREAS).zip(&SLOPES) {
-        if force > start {
-            let beyond = u64::from(force.to_bits() - start.to_bits());
-            area = from + ((beyond * u64::from(slope)) >> 24) as u32;
+    let mut area = FIRST_AREA;
+    for piece in &PIECES {
+        if force > piece.above {
+            let rise = u64::from(force.to_bits()) * u64::from(piece.slope);
+            area = ((piece.intercept + rise + (1 << SLOPE_BITS >> 1)) >> SLOPE_BITS) as u32;
         }
     }
-    area.min(AREAS[POINTS - 1])
+    area
 }

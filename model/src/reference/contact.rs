@@ -1,10 +1,10 @@
-//! Contact resistance (Eq. 6-8 to 6-11), interface temperature (Eq. 3-1) and the response to contact
-//! (Eq. 6-5 to 6-7 and 6-12).
+//! Contact resistance (Eq. 6-8 to 6-11) and the response to contact (Eq. 6-5 to 6-7 and 6-12).
 
 use super::{Real, erfcx};
 use crate::material::{Material, SKIN_MICROHARDNESS_PA, Surface};
 
-/// Conductance `1.25 k_s da / R_q` of two finishes at `P = H`, in W/(m² K) (Eq. 6-8 to 6-11).
+/// Conductance `1.25 k_s da / R_q` of two finishes at `P = H`, in W/(m² K) (Eq. 6-8 to 6-11), for positive
+/// properties; relative error a few roundings of `F`.
 #[must_use]
 pub fn mean_conductance<F: Real>(a: &Surface, b: &Surface) -> F {
     let (ka, kb) = (F::from_f64(a.conductivity_w_mk), F::from_f64(b.conductivity_w_mk));
@@ -18,18 +18,12 @@ pub fn mean_conductance<F: Real>(a: &Surface, b: &Surface) -> F {
     F::from_f64(1.25) * harmonic_mean * slope / roughness_m
 }
 
-/// Contact resistance in m² K/W between skin and another finish under `pressure_pa` (Eq. 6-8).
+/// Contact resistance in m² K/W between skin and another finish under `pressure_pa`, not negative (Eq. 6-8);
+/// relative error below 2e-15 (`f64`). Infinite for no pressure.
 #[must_use]
 pub fn contact_resistance<F: Real>(skin: &Surface, other: &Surface, pressure_pa: F) -> F {
     let relative = pressure_pa / F::from_f64(SKIN_MICROHARDNESS_PA);
     F::from_f64(1.0) / (mean_conductance::<F>(skin, other) * relative.powf(F::from_f64(0.95)))
-}
-
-/// Temperature in °C that both surfaces take at perfect contact, for ever (Eq. 3-1).
-#[must_use]
-pub fn interface_temperature<F: Real>(skin: &Material, skin_c: F, object: &Material, object_c: F) -> F {
-    let (es, eo) = (F::from_f64(skin.effusivity()), F::from_f64(object.effusivity()));
-    (object_c * eo + skin_c * es) / (eo + es)
 }
 
 /// A finger that has landed on an object, and the display that stands in for it.
@@ -67,6 +61,9 @@ pub struct Response<F> {
 impl<F: Real> Contact<F> {
     /// Contact of `skin` at `skin_c` with `object` at `object_c` under `pressure_pa`, on a display whose
     /// surface is `display`.
+    ///
+    /// No pressure is no contact: nothing is exchanged. An infinite one, and so no resistance, is
+    /// [`super::SemiInfinite`]; here its flux is not a number.
     #[must_use]
     pub fn new(
         (skin, skin_c): (&Material, F),
@@ -89,7 +86,8 @@ impl<F: Real> Contact<F> {
         }
     }
 
-    /// State `t_s` seconds after landing (not negative).
+    /// State `t_s` seconds after landing (not negative). For the thesis's conditions temperatures are in error
+    /// by at most 1e-7 µK in `f64` and 10 µK in `f32`, the flux by 5e-15 of itself in `f64`.
     #[must_use]
     pub fn at(&self, t_s: F) -> Response<F> {
         let erfcx = erfcx((self.rate_per_s * t_s).sqrt());
@@ -105,8 +103,10 @@ impl<F: Real> Contact<F> {
         }
     }
 
-    /// Temperature in °C inside of the skin, `depth_m` below its surface, `t_s` seconds after landing: Eq. 6-5
-    /// continued into the half-space, `T_i - dT w (erfc x - exp(-x²) erfcx(x + z))` with
+    /// Temperature in °C inside of the skin, `depth_m` below its surface, `t_s` seconds after landing, neither
+    /// negative; error at most 1e-7 µK in `f64` down to 10 mm.
+    ///
+    /// Eq. 6-5 continued into the half-space: `T_i - dT w (erfc x - exp(-x²) erfcx(x + z))` with
     /// `x = depth / (2 sqrt(alpha t))` and `z = b sqrt(t)`.
     #[must_use]
     pub fn skin_at_depth(&self, skin: &Material, depth_m: F, t_s: F) -> F {

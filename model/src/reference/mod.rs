@@ -5,7 +5,9 @@
 mod contact;
 mod erfcx;
 mod real;
+mod semi_infinite;
 
-pub use contact::{Contact, Response, contact_resistance, interface_temperature, mean_conductance};
+pub use contact::{Contact, Response, contact_resistance, mean_conductance};
 pub use erfcx::erfcx;
 pub use real::Real;
+pub use semi_infinite::{SemiInfinite, fourier_number, interface_temperature};

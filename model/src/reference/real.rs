@@ -20,6 +20,8 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// `e` to the power of `self`.
     fn exp(self) -> Self;
+    /// Error function.
+    fn erf(self) -> Self;
     /// Complementary error function.
     fn erfc(self) -> Self;
     /// `self` to a real power.
@@ -40,6 +42,9 @@ impl Real for f64 {
     }
     fn exp(self) -> Self {
         libm::exp(self)
+    }
+    fn erf(self) -> Self {
+        libm::erf(self)
     }
     fn erfc(self) -> Self {
         libm::erfc(self)
@@ -64,6 +69,9 @@ impl Real for f32 {
     }
     fn exp(self) -> Self {
         libm::expf(self)
+    }
+    fn erf(self) -> Self {
+        libm::erff(self)
     }
     fn erfc(self) -> Self {
         libm::erfcf(self)

@@ -1,5 +1,6 @@
 //! Fits the tables of the fixed-point path to the reference and writes them as source text.
 
+use contact_model::reference::Real;
 use std::fmt::Write;
 
 pub mod kernel;
@@ -28,25 +29,45 @@ fn fit<const N: usize>(f: impl Fn(f64) -> f64) -> [f64; N] {
     powers
 }
 
+/// Rows of a table of `f` in pieces of the length `1 / per_unit`: the constants in 2^-32, the `N - 1` powers
+/// after them in `2^-slope_bits`.
+fn pieces<const N: usize>(rows: u32, per_unit: u32, slope_bits: i32, f: impl Fn(f64) -> f64) -> String {
+    let mut text = String::new();
+    for part in 0..rows {
+        let powers = fit::<N>(|t| f((f64::from(part) + t) / f64::from(per_unit)));
+        let constant = (powers[0] * 2f64.powi(32)).round().max(0.0) as u64;
+        let rest: Vec<i64> = powers[1..]
+            .iter()
+            .map(|c| (c * 2f64.powi(slope_bits)).round() as i64)
+            .collect();
+        writeln!(text, "    row({constant}, {rest:?}),").unwrap();
+    }
+    text + "];\n"
+}
+
 /// Text of `log_table.rs`.
 pub fn log_table() -> String {
-    let mut text = String::from(
-        "//! Written by `cargo run -p contact-model --example tables`; do not edit.\n\n\
-         /// `2^31 log2(1 + f)`: cubics on 32 equal parts of `f` in `[0, 1)`.\n\
-         #[rustfmt::skip]\npub(super) static LOG2: [[i32; 4]; 32] = [\n",
-    );
-    for part in 0..32 {
-        let powers = fit::<4>(|t| (1.0 + (f64::from(part) + t) / 32.0).log2() * 2f64.powi(31));
-        writeln!(text, "    {:?},", powers.map(|c| c.round() as i64)).unwrap();
-    }
-    text.push_str(
-        "];\n\n/// `2^30 (2^f - 1)`: cubics on 16 equal parts of `f` in `[0, 1)`.\n\
-         #[rustfmt::skip]\npub(super) static EXP2: [[i32; 4]; 16] = [\n",
-    );
-    for part in 0..16 {
-        let powers = fit::<4>(|t| (((f64::from(part) + t) / 16.0).exp2() - 1.0) * 2f64.powi(30));
-        writeln!(text, "    {:?},", powers.map(|c| c.round() as i64)).unwrap();
-    }
-    text.push_str("];\n");
-    text
+    format!(
+        "//! Written by `cargo run --release -p contact-model --example tables`; do not edit.\n\n\
+         use super::logarithm::LogRow;\n\n\
+         const fn row(constant: u32, rest: [i32; 4]) -> LogRow {{\n    LogRow {{ constant, rest }}\n}}\n\n\
+         /// `log2(1 + f)` on 32 equal parts of `f` in `[0, 1)`.\n\
+         #[rustfmt::skip]\npub(super) static LOG2: [LogRow; 32] = [\n{}\n\
+         /// `2^f - 1` on 32 equal parts of `f` in `[0, 1)`.\n\
+         #[rustfmt::skip]\npub(super) static EXP2: [LogRow; 32] = [\n{}",
+        pieces::<5>(32, 32, 35, |f| libm::log1p(f) / std::f64::consts::LN_2),
+        pieces::<5>(32, 32, 35, |f| libm::expm1(f * std::f64::consts::LN_2)),
+    )
+}
+
+/// Text of `erf_table.rs`.
+pub fn erf_table() -> String {
+    format!(
+        "//! Written by `cargo run --release -p contact-model --example tables`; do not edit.\n\n\
+         use super::erf::ErfRow;\n\n\
+         const fn row(constant: u32, rest: [i32; 5]) -> ErfRow {{\n    ErfRow {{ constant, rest }}\n}}\n\n\
+         /// `erf(x)` on 36 equal parts of `x` in `[0, 4.5)`.\n\
+         #[rustfmt::skip]\npub(super) static ERF: [ErfRow; 36] = [\n{}",
+        pieces::<6>(36, 8, 33, Real::erf),
+    )
 }

@@ -1,0 +1,110 @@
+//! Nothing panics or overflows for any bits whatever: run with overflow checks, `cargo test -p contact-model`.
+
+use contact_model::fixed_point::{
+    Celsius, Contact, Depth, ErfArgument, Flux, Force, Fraction, Log2, Pairing, Rate, Ratio, SemiInfinite,
+    Ticks, erf, erfcx, exp2, fourier_number, log2, log2_relative_pressure,
+};
+use contact_model::material::{Material, Surface};
+use proptest::num::f64::ANY;
+use proptest::prelude::*;
+
+/// Bits of which the extreme ones are as likely as the others.
+fn word() -> impl Strategy<Value = u32> {
+    prop_oneof![
+        any::<u32>(),
+        (0u32..32, 0u32..3).prop_map(|(bit, below)| (1u32 << bit).wrapping_sub(below)),
+        Just(0),
+        Just(u32::MAX)
+    ]
+}
+
+fn celsius() -> impl Strategy<Value = Celsius> {
+    word().prop_map(|bits| Celsius::from_bits(bits.cast_signed()))
+}
+
+fn rate() -> impl Strategy<Value = Rate> {
+    (word(), word()).prop_map(|(high, low)| {
+        Rate::from_log2(Log2::from_bits(
+            (i64::from(high) << 32 | i64::from(low)) >> (high % 32),
+        ))
+    })
+}
+
+fn ticks() -> impl Strategy<Value = Ticks> {
+    word().prop_map(|bits| Ticks::new(bits).unwrap_or(Ticks::MAX))
+}
+
+/// Mostly what set-up accepts.
+fn property() -> impl Strategy<Value = f64> {
+    prop_oneof![30 => 1e-3..1e3f64, 1 => ANY]
+}
+
+fn surface() -> impl Strategy<Value = Surface> {
+    (property(), property(), property()).prop_map(|(conductivity_w_mk, roughness_um, slope_rad)| Surface {
+        conductivity_w_mk,
+        roughness_um,
+        slope_rad,
+    })
+}
+
+fn material() -> impl Strategy<Value = Material> {
+    (surface(), property(), property()).prop_map(|(surface, density_kg_m3, specific_heat_j_kgk)| Material {
+        surface,
+        density_kg_m3,
+        specific_heat_j_kgk,
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn functions_of_numbers_are_total(a in word(), b in rate(), c in rate(), n in ticks(), times in any::<i16>()) {
+        let _ = (exp2(a), erfcx(n, b), fourier_number(b, n), b.to_f64());
+        prop_assert!(log2(a) >= -1 && log2(a) < 32);
+        prop_assert!(log2_relative_pressure(Force::from_bits(a)).abs() < 64);
+        let product = b.times(c).doubled(times);
+        prop_assert!(product.exponent().unsigned_abs() <= 1 << 14);
+        // Anything beyond 4.5 has the same error function, and nothing has a larger one.
+        prop_assert!(erf(ErfArgument::from_bits(a)) <= erf(ErfArgument::MAX));
+    }
+
+    #[test]
+    fn response_is_total_and_saturates(
+        weight in word(), ratio in word(), per_tick in rate(), conductance_w_m2k in rate(),
+        elapsed in word(), skin in celsius(), object in celsius(),
+    ) {
+        let contact = Contact {
+            weight: Fraction::from_bits(weight),
+            ratio: Ratio::from_bits(ratio),
+            per_tick,
+            conductance_w_m2k,
+        };
+        let at = contact.at(elapsed, skin, object);
+        // Between the temperatures before, the display on the side that its ratio says, the flux downhill.
+        let (low, high) = (skin.min(object), skin.max(object));
+        for t in [at.skin(), at.object()] {
+            prop_assert!(low <= t && t <= high);
+        }
+        let (display, flux) = (at.display(), at.flux_w_m2());
+        prop_assert!((skin >= object && display <= skin && flux >= 0)
+            || (skin <= object && display >= skin && flux <= 0));
+    }
+
+    #[test]
+    fn set_up_refuses_or_is_total(
+        (skin, object, display) in (material(), material(), surface()), tick_s in property(),
+        (high, low) in (word(), word()), (a, b) in (celsius(), celsius()), depth in word(), n in ticks(),
+    ) {
+        if let Ok(pairing) = Pairing::new(&skin, &object, &display, tick_s) {
+            let pressure = Log2::from_bits(i64::from(high.cast_signed()) << 32 | i64::from(low));
+            let at = pairing.under(pressure).at(n.get(), a, b);
+            let _ = (at.display(), at.flux_w_m2(), pairing.preset(a, b), pairing.interface_temperature(a, b));
+        }
+        if let Ok(perfect) = SemiInfinite::new(&skin, &object, tick_s) {
+            let t = perfect.skin_at_depth(Depth::from_bits(depth), n, a, b);
+            prop_assert!(a.min(b) <= t && t <= a.max(b));
+            prop_assert!(perfect.flux_w_m2(n, a, b).abs() <= Flux::MAX);
+        }
+    }
+}

@@ -1,0 +1,47 @@
+//! Points that fill a box evenly, its corners among them.
+
+use contact_model::fixed_point::Celsius;
+
+/// One unit of a fraction.
+pub const UNIT: f64 = 1.0 / 4_294_967_296.0;
+
+/// All corners of the unit cube of `N` dimensions, then `count` points of an additive recurrence, whose steps are
+/// the powers of the inverse of the root of `x^(N+1) = x + 1`.
+pub fn points<const N: usize>(count: u32) -> impl Iterator<Item = [f64; N]> {
+    let mut root = 1.5f64;
+    for _ in 0..40 {
+        root = (1.0 + root).powf(1.0 / (N + 1) as f64);
+    }
+    let corners = (0..1u32 << N).map(|bits| std::array::from_fn(|i| f64::from(bits >> i & 1)));
+    let inside = (1..=count)
+        .map(move |n| std::array::from_fn(|i| (f64::from(n) * root.powi(-(i as i32) - 1)).fract()));
+    corners.chain(inside)
+}
+
+/// From `low` at 0 to `high` at 1, evenly in the logarithm.
+pub fn log_between(part: f64, low: f64, high: f64) -> f64 {
+    (low.ln() + part * (high / low).ln()).exp().clamp(low, high)
+}
+
+/// The largest, NaN if any is.
+pub fn worst(errors: impl Iterator<Item = f64>) -> f64 {
+    errors.map(f64::abs).fold(0.0, |worst, error| {
+        if worst.is_nan() || error <= worst {
+            worst
+        } else {
+            error
+        }
+    })
+}
+
+/// Relative error.
+pub fn relative(value: f64, truth: f64) -> f64 {
+    if value == truth { 0.0 } else { value / truth - 1.0 }
+}
+
+/// Skin and object within the range of temperatures, at most 60 K apart, either way.
+pub fn pair(skin: f64, step: f64) -> (Celsius, Celsius) {
+    let skin_c = 165.0 * skin - 40.0;
+    let object_c = (skin_c + 120.0 * step - 60.0).clamp(-40.0, 125.0);
+    (Celsius::from_num(skin_c), Celsius::from_num(object_c))
+}
