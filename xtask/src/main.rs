@@ -18,7 +18,7 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand};
 use setup::{Choice, Permission};
 
-/// Set-up, build, demo and test of the thermal display.
+/// Set-up, build, demo, test and benchmark of the thermal display.
 #[derive(Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", max_term_width = 100)]
 struct Cli {
