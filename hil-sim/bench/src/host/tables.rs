@@ -64,9 +64,10 @@ pub fn tables(figures: &Figures) -> String {
 /// What the peers are, and what a reader may stumble over.
 const PEERS: &str = "\
 ## The peers
+\n\
 All take what the firmware has, the ticks since contact `n` and `K = b² dt`, each in the type that is natural to it, and \
 return `E`; forming `z = sqrt(n K)` is part of their cost and of their error. In `f32` rounding `K`, the product and its \
-root costs up to 141 units before anything is evaluated, rounding the result 128 more: no table can be better. Coefficients are \
+root costs up to 141 units before anything is evaluated, rounding the result 128 more: nearly all of the larger tables' error. Coefficients are \
 derived by `hil-sim/bench/build.rs`.
 
 - libm: `exp(u) erfc(z)`. On this FPU `f64` is software. Near the break the rounding of `z`, amplified by `2 z²`, is all of \
