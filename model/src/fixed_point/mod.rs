@@ -4,6 +4,7 @@
 //! ([`Pairing::new`]) is in `f64` and happens once per material, not per tick.
 
 mod contact;
+mod course;
 mod kernel;
 mod kernel_table;
 mod log_table;
@@ -15,6 +16,7 @@ mod rate;
 mod ticks;
 
 pub use contact::{Contact, Response};
+pub use course::Course;
 pub use kernel::{DEGREE as KERNEL_DEGREE, OCTAVES, ROWS_PER_OCTAVE, erfcx};
 pub use logarithm::{Log2, exp2, log2};
 pub use pairing::{Pairing, PairingError};
