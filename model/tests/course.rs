@@ -30,7 +30,7 @@ impl Watched {
     }
 
     fn next_c(&mut self) -> f64 {
-        let setpoint = self.course.next();
+        let setpoint = self.course.advance();
         assert_eq!(setpoint, self.course.setpoint());
         self.evaluations += u32::from(self.course.has_turned());
         setpoint.to_num()

@@ -87,26 +87,22 @@ impl Course {
             ..Self::held(preset)
         };
         let elapsed = elapsed.min(LAST);
-        let (first, length) = match elapsed {
-            0 => {
-                let length = first_length((bits << 32) / size, contact.per_tick);
-                (1 << length, length)
-            }
-            _ => (elapsed, 0),
+        let from_landing = first_length((bits << 32) / size, contact.per_tick);
+        let mut evaluations = 0;
+        let length = if elapsed == 0 {
+            from_landing
+        } else {
+            let e = erfcx_at(elapsed, contact.per_tick);
+            evaluations += 1;
+            course.to = course.at(e);
+            course.length_at(elapsed, e).max(from_landing)
         };
-        let e = erfcx_at(first, contact.per_tick);
-        if part(gain.abs(), e) <= tolerance {
-            return (Self::held(base), 1);
+        let e = erfcx_at(((elapsed >> length) + 1) << length, contact.per_tick);
+        if length == 0 && part(gain.abs(), e) <= tolerance {
+            return (Self::held(base), evaluations + 1);
         }
-        if elapsed == 0 {
-            course.begin(contact.per_tick, 0, length, e);
-            return (course, 1);
-        }
-        course.to = course.at(e);
-        let length = course.length_at(elapsed, e);
-        let end = ((elapsed >> length) + 1) << length;
-        course.begin(contact.per_tick, elapsed, length, erfcx_at(end, contact.per_tick));
-        (course, 2)
+        course.begin(contact.per_tick, elapsed, length, e);
+        (course, evaluations + 1)
     }
 
     /// Follows a contact of slightly different resistance from the next knot on, without a step.
@@ -136,7 +132,7 @@ impl Course {
 
     /// The next tick's set-point.
     #[inline]
-    pub fn next(&mut self) -> Celsius {
+    pub fn advance(&mut self) -> Celsius {
         let left = self.left.wrapping_add(self.per_tick as i32);
         if left >= 0 {
             return self.turn();
@@ -220,8 +216,8 @@ impl Course {
     }
 }
 
-/// Length of the chord from landing on, as a power of two of ticks: over a square root it rises
-/// `sqrt(u / pi) / 2` above, for `u` at its end. `tolerance` is in 2^-32 of the gain.
+/// Length of a chord from landing on, or from a later tick to the same end, as a power of two of ticks: it rises
+/// `sqrt(u / pi) / 2` above a square root, for `u` at its end. `tolerance` is in 2^-32 of the gain.
 fn first_length(tolerance: u64, per_tick: Rate) -> u32 {
     // u <= 4 pi tolerance², in whole octaves: u is below 2^(length + exponent + 1), 4 pi above 2^3.
     let octave = -1 - (tolerance * tolerance).leading_zeros() as i32;
