@@ -144,7 +144,7 @@ impl Render {
             touching.at = mean;
         }
         let setpoint = touching.course.advance();
-        let evaluations = touching.course.has_turned().into();
+        let evaluations = touching.course.is_at_knot().into();
         self.evaluations = self.evaluations.wrapping_add(evaluations);
         Some(setpoint)
     }

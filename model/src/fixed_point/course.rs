@@ -1,60 +1,61 @@
 //! The set-point of a lasting contact, evaluated only where a straight line would leave its tolerance.
 //!
 //! Under constant force Eq. 6-12 is `base + gain E(u)`, with `base = T_skin,i - dT w`, `gain = dT (w - r)` and
-//! `u = t b²`. `E` is completely monotone, so a chord lies above it, by at most `B(u) G(m)` if it begins at `u`,
-//! `m` of its own lengths after landing:
+//! `u = b² t`. `E` is completely monotone, so a chord lies above it, by at most `u² E''(u) G(m)` if it begins at
+//! `u`, `m` of its own lengths after landing:
 //!
 //! ```text
-//! B(u) = u² E''(u) <= 0.43 E (1 - E) (2 - E)
-//! G(m) <= 1 / (4 m (2 m + 1))
+//! u² E''(u) <= 0.1495        G(m) = y² / (y + 2) <= 1 / (4 m (2 m + 1))        y = sqrt(1 + 1/m) - 1
 //! ```
 //!
-//! `G` is what a chord does to a square root: `u^1.5 E''` falls. All knots but the first lie one tolerance beyond
-//! `E`, so a chord may rise two tolerances above. Lengths are powers of two of ticks, and double where the bound
-//! allows it. Time is counted in lengths, so that count stays small however long the contact lasts.
+//! `G` is what a chord does to a square root; `u^1.5 E''` falls, so `E` bends less. Knots lie one tolerance
+//! beyond `E`, so a chord may rise two tolerances above it.
+//!
+//! A chord's end is counted in lengths of the chord, from `m` to `2 m`; then the length doubles. So each octave
+//! of time takes `m` evaluations, and counts stay small however long the contact lasts.
+
+use core::sync::atomic::{Ordering, compiler_fence};
 
 use super::contact::{part, scaled};
 use super::{Celsius, Contact, Fraction, Rate, Ticks, erfcx};
 
-/// What the kernel and three roundings may add to the error of a chord.
-const ROUNDING: Celsius = Celsius::from_bits(8);
+/// What the kernel and roundings may add to the error of a chord.
+const ROUNDING: Celsius = Celsius::from_bits(6);
 /// Temperatures along a course saturate at this magnitude.
 const LIMIT_C: Celsius = Celsius::const_from_int(127);
-/// `4 / 0.43` with 28 fraction bits, rounded down.
-const FOUR_OVER_BOUND: u64 = 2_497_074_009;
-/// Largest `allowed`: what a course of hardly any rise needs.
-const MOST_ALLOWED: u64 = 1 << 27;
+/// Bound of `u² E''(u)`, in units of 1e-4.
+const BEND: u64 = 1495;
 /// The longest chord, as a power of two of ticks.
 const LONGEST: u32 = 31;
-/// Contact time in ticks at which it stops: 700 000 years of 10 us.
-const LAST: u64 = 1 << 61;
+/// Contact time in ticks at which a new course stops to count: 180 000 years of 10 us.
+const LAST: u64 = 1 << 59;
 
 /// Set-point of one finger's contact, tick by tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Course {
-    /// What is left of the chord, as a negative part of 2^31, and what a tick adds to it.
-    left: i32,
+    /// Twice this is what is left of the chord, in 2^-32; 0 at a knot.
+    countdown: u32,
+    /// What a tick takes off the countdown.
     per_tick: u32,
-    /// Set-point at the chord's end, and twice the rise to it.
-    to: Celsius,
-    twice_rise: Celsius,
-    /// `b² dt` of one length, and the chord's end in lengths since landing.
-    rate: Rate,
-    end: u32,
-    /// `per_tick` of the next chord.
-    next_per_tick: u32,
+    /// `E` at the chord's end, and its fall along the chord, in 2^-31.
+    to: u32,
+    fall: u32,
     base: Celsius,
     twice_gain: Celsius,
-    /// Largest bound, over `m (m + 1)`, for which a chord may be twice as long; 28 fraction bits.
-    allowed: u32,
+    /// `b² dt` of one length.
+    rate: Rate,
+    /// The chord's end in lengths since landing. At twice `lengths` the length doubles.
+    end: Ticks,
+    lengths: Ticks,
 }
 
 impl Course {
-    /// Where the set-point is `elapsed` ticks after landing, and its way from there: within `tolerance` (3 µK
-    /// at least) of Eq. 6-12. Second is how often `E` was evaluated for this, up to two times.
+    /// The set-point from `elapsed` ticks after landing on, within `tolerance` (2 µK at least) of Eq. 6-12.
+    /// Second is how often `E` was evaluated for it, up to two times.
     ///
-    /// The preset of Eq. 6-12 must be within ±127 °C; beyond, the course saturates. Contact that is perfect
-    /// for the tolerance is at the temperature of Eq. 3-1 from landing on.
+    /// The preset of Eq. 6-12 must be within ±127 °C; beyond, the course saturates. Where the tolerance does not
+    /// tell a contact from a perfect one (or `dT (w - r)` from 0), it is at the temperature of Eq. 3-1 (the preset)
+    /// for ever.
     #[must_use]
     pub fn new(
         contact: &Contact,
@@ -73,55 +74,62 @@ impl Course {
             return (Self::held(preset), 0);
         }
         let (bits, size) = (
-            u64::from(tolerance.to_bits() as u32),
+            u64::from(tolerance.to_bits().unsigned_abs()),
             u64::from(gain.to_bits().unsigned_abs()),
         );
-        let mut course = Self {
+        let elapsed = elapsed.min(LAST);
+        let lengths = lengths_per_octave(size, bits);
+        let length = first_length((bits << 32) / size, contact.per_tick)
+            .max((elapsed / lengths).checked_ilog2().unwrap_or(0).min(LONGEST));
+        let end = (elapsed >> length) + 1;
+        let to = erfcx_at(end << length, contact.per_tick);
+        if length == 0 && part(gain.abs(), to) <= tolerance {
+            return (Self::held(base), 1);
+        }
+        let (from, evaluations) = match elapsed {
+            0 => (Fraction::MAX, 1),
+            _ => (erfcx_at(elapsed, contact.per_tick), 2),
+        };
+        let ticks = (end << length) - elapsed;
+        // As if the chord had begun at a multiple of its length.
+        let fall = (u64::from(from.to_bits().saturating_sub(to.to_bits())) << length) / ticks;
+        let per_tick = (1 << LONGEST) >> length;
+        let course = Self {
+            countdown: per_tick * ticks as u32,
+            per_tick,
+            to: to.to_bits() >> 1,
+            fall: (fall >> 1) as u32,
             base: if gain > 0 {
                 base - tolerance
             } else {
                 base + tolerance
             },
             twice_gain: gain + gain,
-            allowed: (bits * FOUR_OVER_BOUND / size).min(MOST_ALLOWED) as u32,
-            ..Self::held(preset)
+            rate: contact.per_tick.doubled(length as i16),
+            end: Ticks::new(end as u32).unwrap_or(Ticks::MAX),
+            lengths: Ticks::new(lengths as u32).unwrap_or(Ticks::MAX),
         };
-        let elapsed = elapsed.min(LAST);
-        let from_landing = first_length((bits << 32) / size, contact.per_tick);
-        let mut evaluations = 0;
-        let length = if elapsed == 0 {
-            from_landing
-        } else {
-            let e = erfcx_at(elapsed, contact.per_tick);
-            evaluations += 1;
-            course.to = course.at(e);
-            course.length_at(elapsed, e).max(from_landing)
-        };
-        let e = erfcx_at(((elapsed >> length) + 1) << length, contact.per_tick);
-        if length == 0 && part(gain.abs(), e) <= tolerance {
-            return (Self::held(base), evaluations + 1);
-        }
-        course.begin(contact.per_tick, elapsed, length, e);
-        (course, evaluations + 1)
+        (course, evaluations)
     }
 
     /// Follows a contact of slightly different resistance from the next knot on, without a step.
     pub fn follow(&mut self, contact: &Contact) {
-        self.rate = contact
-            .per_tick
-            .doubled(self.next_per_tick.leading_zeros() as i16);
+        self.rate = contact.per_tick.doubled(self.per_tick.leading_zeros() as i16);
     }
 
     /// Set-point now.
     #[must_use]
     pub fn setpoint(&self) -> Celsius {
-        add_part(self.to, self.twice_rise, self.left)
+        self.at(match self.countdown << 1 {
+            0 => self.to + self.fall,
+            left => self.along(left),
+        })
     }
 
-    /// Whether the last [`Self::next`] evaluated `E`.
+    /// Whether the last [`Self::advance`] evaluated `E`.
     #[must_use]
-    pub const fn has_turned(&self) -> bool {
-        self.left == i32::MIN
+    pub const fn is_at_knot(&self) -> bool {
+        self.countdown << 1 == 0
     }
 
     /// Size of what `E` is multiplied with, `|dT (w - r)|`.
@@ -130,117 +138,89 @@ impl Course {
         Celsius::from_bits(self.twice_gain.to_bits() >> 1).abs()
     }
 
-    /// The next tick's set-point.
+    /// Set-point of the next tick.
     #[inline]
     pub fn advance(&mut self) -> Celsius {
-        let left = self.left.wrapping_add(self.per_tick as i32);
-        if left >= 0 {
-            return self.turn();
+        let countdown = self.countdown.wrapping_sub(self.per_tick);
+        let left = countdown << 1;
+        if left == 0 {
+            return self.turn(countdown, self.per_tick);
         }
-        self.left = left;
-        add_part(self.to, self.twice_rise, left)
+        self.countdown = countdown;
+        self.at(self.along(left))
     }
 
-    /// Ends a chord, lays the next, and settles the length of the one after it.
+    /// Ends a chord and lays the next, twice as long if that is due and possible.
     #[cold]
     #[inline(never)]
-    fn turn(&mut self) -> Celsius {
-        let start = self.to;
-        let m = self.end + 1;
-        self.end = m;
-        let e = Ticks::new(m).map_or(Fraction::ZERO, |end| erfcx(end, self.rate));
-        self.to = self.at(e);
-        self.twice_rise = Celsius::from_bits(self.to.to_bits().wrapping_sub(start.to_bits()) << 1);
-        self.left = i32::MIN;
-        self.per_tick = self.next_per_tick;
-        if (m | self.next_per_tick) & 1 == 0
-            && m.wrapping_mul(m.wrapping_add(1)).wrapping_mul(self.allowed) > bound(e)
-        {
-            self.end = m >> 1;
-            self.next_per_tick >>= 1;
+    fn turn(&mut self, countdown: u32, per_tick: u32) -> Celsius {
+        self.countdown = countdown;
+        let mut begin = self.end;
+        if begin.get() == self.lengths.get() << 1 && per_tick != 1 {
+            begin = self.lengths;
+            self.per_tick = per_tick >> 1;
             self.rate = self.rate.doubled(1);
         }
-        start
+        self.end = begin.next();
+        let e = erfcx(self.end, self.rate).to_bits() >> 1;
+        // Costs no instruction: what follows is loaded only now, so the kernel has the registers to itself.
+        compiler_fence(Ordering::SeqCst);
+        let from = self.to;
+        self.to = e;
+        self.fall = from.wrapping_sub(e);
+        self.at(from)
     }
 
     /// No chord, for ever.
     const fn held(at: Celsius) -> Self {
         Self {
-            left: -1,
+            countdown: 1,
             per_tick: 0,
-            to: at,
-            twice_rise: Celsius::ZERO,
-            rate: Rate::ONE,
-            end: 0,
-            next_per_tick: 0,
+            to: 0,
+            fall: 0,
             base: at,
             twice_gain: Celsius::ZERO,
-            allowed: 0,
+            rate: Rate::ONE,
+            end: Ticks::ONE,
+            lengths: Ticks::MAX,
         }
     }
 
-    /// Lays the first chord, from `to` at `elapsed` to `e` at the next multiple of its length.
-    fn begin(&mut self, per_tick: Rate, elapsed: u64, length: u32, e: Fraction) {
-        let end = (elapsed >> length) + 1;
-        let ticks = (end << length) - elapsed;
-        let start = self.to;
-        self.to = self.at(e);
-        // The chord as if it had begun at a multiple of its length.
-        let rise = i64::from(self.to.to_bits() - start.to_bits());
-        let twice_rise = (rise << (length + 1)) / ticks as i64;
-        self.twice_rise = Celsius::from_bits(twice_rise.clamp(i32::MIN.into(), i32::MAX.into()) as i32);
-        self.rate = per_tick.doubled(length as i16);
-        self.end = end as u32;
-        self.per_tick = (1 << LONGEST) >> length;
-        self.next_per_tick = self.per_tick;
-        self.left = (self.per_tick.wrapping_mul(ticks as u32) as i32).wrapping_neg();
-    }
-
-    /// Length of a chord that begins at `elapsed`, where `E` is `e`, as a power of two of ticks.
-    fn length_at(&self, elapsed: u64, e: Fraction) -> u32 {
-        let bound = u64::from(bound(e));
-        let mut length = elapsed.ilog2().min(LONGEST);
-        while length > 0 {
-            let m = (elapsed >> length) << 1;
-            if m.saturating_mul(m + 1).saturating_mul(self.allowed.into()) > bound {
-                break;
-            }
-            length -= 1;
-        }
-        length
-    }
-
+    /// `E` on the chord.
     #[inline]
-    fn at(&self, e: Fraction) -> Celsius {
-        add_part(self.base, self.twice_gain, (e.to_bits() >> 1) as i32)
+    fn along(&self, left: u32) -> u32 {
+        self.to + ((u64::from(self.fall) * u64::from(left)) >> 32) as u32
+    }
+
+    /// Set-point where `E` is `e` in 2^-31.
+    #[inline]
+    fn at(&self, e: u32) -> Celsius {
+        let above = (i64::from(self.twice_gain.to_bits()) * i64::from(e as i32)) >> 32;
+        Celsius::from_bits(self.base.to_bits().wrapping_add(above as i32))
     }
 }
 
+/// Smallest `m` for which a chord that begins `m` lengths after landing rises no more than two `tolerance` above a
+/// set-point of `gain`.
+fn lengths_per_octave(gain: u64, tolerance: u64) -> u64 {
+    // gain * BEND / (4 m (2 m + 1)) <= 2 tolerance
+    let needed = (gain * BEND).div_ceil(20_000 * tolerance);
+    let m = (needed / 8).isqrt().max(1);
+    if 4 * m * (2 * m + 1) >= needed { m } else { m + 1 }
+}
+
 /// Length of a chord from landing on, or from a later tick to the same end, as a power of two of ticks: it rises
-/// `sqrt(u / pi) / 2` above a square root, for `u` at its end. `tolerance` is in 2^-32 of the gain.
+/// at most `sqrt(u / pi) / 2` above `E`, for `u` at its end. `tolerance` is in 2^-32 of the gain.
 fn first_length(tolerance: u64, per_tick: Rate) -> u32 {
-    // u <= 4 pi tolerance², in whole octaves: u is below 2^(length + exponent + 1), 4 pi above 2^3.
-    let octave = -1 - (tolerance * tolerance).leading_zeros() as i32;
-    (octave + 3 - (i32::from(per_tick.exponent()) + 1)).clamp(0, LONGEST as i32) as u32
+    // u <= 4 pi (2 tolerance)² in whole octaves: u is below 2^(length + exponent + 1), 16 pi above 2^5.
+    let octave = 5 - 1 - (tolerance * tolerance).leading_zeros() as i32;
+    (octave - (i32::from(per_tick.exponent()) + 1)).clamp(0, LONGEST as i32) as u32
 }
 
 /// `E` at `elapsed` ticks, which may be more than [`Ticks`] holds.
 fn erfcx_at(elapsed: u64, per_tick: Rate) -> Fraction {
-    let shift = (33 - elapsed.leading_zeros().min(33)) as i16;
-    Ticks::new((elapsed >> shift) as u32).map_or(Fraction::MAX, |ticks| erfcx(ticks, per_tick.doubled(shift)))
-}
-
-/// `E (1 - E) (2 - E)` with 28 fraction bits.
-#[inline]
-fn bound(e: Fraction) -> u32 {
-    let (e, rest) = (u64::from(e.to_bits()), u64::from(!e.to_bits()));
-    let p = (e * rest) >> 32;
-    ((p + ((p * rest) >> 32)) >> 4) as u32
-}
-
-/// `from` plus half of `twice` times `part / 2^31`.
-#[inline]
-fn add_part(from: Celsius, twice: Celsius, part: i32) -> Celsius {
-    let change = (i64::from(twice.to_bits()) * i64::from(part)) >> 32;
-    Celsius::from_bits(from.to_bits().wrapping_add(change as i32))
+    let excess = (u64::BITS - elapsed.leading_zeros()).saturating_sub(LONGEST);
+    Ticks::new((elapsed >> excess) as u32).map_or(Fraction::MAX, |ticks| {
+        erfcx(ticks, per_tick.doubled(excess as i16))
+    })
 }

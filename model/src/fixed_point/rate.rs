@@ -66,6 +66,7 @@ impl Rate {
 
     /// The number times a power of two.
     #[must_use]
+    #[inline]
     pub const fn doubled(self, times: i16) -> Self {
         Self {
             fraction: self.fraction,

@@ -29,4 +29,14 @@ impl Ticks {
     pub const fn get(self) -> u32 {
         self.0.get()
     }
+
+    /// The next one, for counts below 2^30: further, it starts anew.
+    #[must_use]
+    #[inline]
+    pub(super) const fn next(self) -> Self {
+        match Self::new((self.get() & Self::MAX.get() >> 1) + 1) {
+            Some(next) => next,
+            None => Self::ONE,
+        }
+    }
 }
