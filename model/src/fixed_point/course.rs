@@ -144,7 +144,7 @@ impl Course {
         let countdown = self.countdown.wrapping_sub(self.per_tick);
         let left = countdown << 1;
         if left == 0 {
-            return self.turn(countdown, self.per_tick);
+            return self.turn(countdown);
         }
         self.countdown = countdown;
         self.at(self.along(left))
@@ -153,16 +153,17 @@ impl Course {
     /// Ends a chord and lays the next, twice as long if that is due and possible.
     #[cold]
     #[inline(never)]
-    fn turn(&mut self, countdown: u32, per_tick: u32) -> Celsius {
+    fn turn(&mut self, countdown: u32) -> Celsius {
         self.countdown = countdown;
-        let mut begin = self.end;
-        if begin.get() == self.lengths.get() << 1 && per_tick != 1 {
+        let (mut begin, mut rate) = (self.end, self.rate);
+        if begin.get() == self.lengths.get() << 1 && self.per_tick != 1 {
             begin = self.lengths;
-            self.per_tick = per_tick >> 1;
-            self.rate = self.rate.doubled(1);
+            self.per_tick >>= 1;
+            rate = rate.doubled(1);
+            self.rate = rate;
         }
         self.end = begin.next();
-        let e = erfcx(self.end, self.rate).to_bits() >> 1;
+        let e = erfcx(self.end, rate).to_bits() >> 1;
         // Costs no instruction: what follows is loaded only now, so the kernel has the registers to itself.
         compiler_fence(Ordering::SeqCst);
         let from = self.to;
