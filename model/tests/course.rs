@@ -193,7 +193,7 @@ fn the_longest_chords_follow_one_another() {
 /// A contact of slightly different resistance: without a step, and Eq. 6-12 of the new one from the next knot on.
 #[test]
 fn a_followed_contact_is_reached_without_a_step() {
-    let (before, after) = (contact_of(3, 2.0), contact_of(3, 2.002));
+    let (before, after) = (contact_of(3, 2.0), contact_of(3, 2.05));
     let mut watched = Watched::new(&before, 24.0, 0, TOLERANCE_K);
     let mut last_c = watched.setpoint_c();
     let mut knots = 0;

@@ -62,7 +62,8 @@ impl ForceMean {
     }
 }
 
-/// Whether contact resistance must be computed again after a change of the mean from `before`.
+/// Whether contact resistance must be computed again after a change of the mean from `before`: the set-point
+/// could move by more than 0.1 mK, at the time at which `E` is most sensitive.
 ///
 /// R moves by 0.95 of the force's relative change (Eq. 6-8), `E` by at most 0.277 of R's, and the set-point by
 /// `gain` times as much: 0.264 in all, rounded up.
@@ -74,6 +75,10 @@ pub(super) fn matters(now: Force, before: Force, gain: Celsius) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
+    use contact_model::pressure;
+    use contact_model::reference::Contact;
+
     use super::*;
 
     #[test]
@@ -92,5 +97,36 @@ mod tests {
         assert!(error.abs() < 5e-4, "{error}");
         assert_eq!(mean.update(Force::lit("1")), Change::New);
         assert_eq!(mean.mean(), Force::lit("1"));
+    }
+
+    /// By Eq. 6-12 in `f64`: the smallest change that matters moves the set-point by 0.1 mK, at the worst time.
+    #[test]
+    fn what_matters_is_a_tenth_of_a_millikelvin() {
+        for (name, material) in MATERIALS {
+            for force_n in [0.1, 0.5, 2.0] {
+                let contact = |force_n| {
+                    let pressure_pa = pressure::pressure_pa(2.0) * force_n / 2.0;
+                    Contact::<f64>::new((&SKIN, 34.0), (&material, 24.0), &REFERENCE_DISPLAY, pressure_pa)
+                };
+                let gain = Celsius::from_num(10.0 * (contact(1.0).weight - contact(1.0).ratio));
+                let before = Force::from_num(force_n);
+                let relative = (1..4000).find(|&i| {
+                    let now = Force::from_num(force_n * (1.0 + f64::from(i) / 65536.0));
+                    matters(now, before, gain.abs())
+                });
+                let relative = f64::from(relative.expect("some change matters")) / 65536.0;
+                let (old, new) = (contact(force_n), contact(force_n * (1.0 + relative)));
+                let moved_k = (-200..200)
+                    .map(|i| (f64::from(i) / 10.0).exp2())
+                    .map(|t_s| (old.at(t_s).display_c - new.at(t_s).display_c).abs())
+                    .fold(0.0, f64::max);
+                // The grid of changes is 0.25 K per 65536.
+                let grid_k = gain.abs().to_num::<f64>() / 65536.0;
+                assert!(
+                    moved_k < 0.1e-3 + grid_k && moved_k > 0.09e-3,
+                    "{name}, {force_n} N: {moved_k} K"
+                );
+            }
+        }
     }
 }

@@ -167,8 +167,9 @@ impl Course {
         // Costs no instruction: what follows is loaded only now, so the kernel has the registers to itself.
         compiler_fence(Ordering::SeqCst);
         let from = self.to;
-        self.to = e;
-        self.fall = from.wrapping_sub(e);
+        // Never up: where `E` is all but level, the kernel's error could make it rise.
+        self.fall = (from as i32).wrapping_sub(e as i32).max(0) as u32;
+        self.to = from.wrapping_sub(self.fall);
         self.at(from)
     }
 
