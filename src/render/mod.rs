@@ -6,9 +6,13 @@
 
 mod force_mean;
 
-use contact_model::fixed_point::{Celsius, Contact, Force, Pairing, log2_relative_pressure};
+use contact_model::fixed_point::{Celsius, Course, Force, Pairing, log2_relative_pressure};
 
-use force_mean::ForceMean;
+use force_mean::{Change, ForceMean};
+
+/// How far the set-point may be from Eq. 6-12 at the force for which contact resistance was computed. What
+/// [`force_mean`] leaves to the force makes this 0.5 mK.
+const TOLERANCE: Celsius = Celsius::lit("0.0004");
 
 /// Time constant of the filters before contact, as a power of two of ticks (0.26 s).
 const FILTER_SHIFT: u32 = 8;
@@ -50,10 +54,11 @@ fn filter(state: Celsius, input: Celsius) -> Celsius {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Touching {
     /// Ticks since landing.
-    elapsed: u32,
+    elapsed: u64,
     force: ForceMean,
-    /// The contact under `force`, and the force for which it was computed.
-    contact: Option<(Contact, Force)>,
+    /// The force for which contact resistance was computed.
+    at: Force,
+    course: Course,
 }
 
 /// Follows skin and contact; gives the wanted display temperature.
@@ -112,23 +117,35 @@ impl Render {
             self.touching = None;
             return Some(scene.pairing.preset(skin, object));
         };
-        let touching = self.touching.get_or_insert(Touching {
-            elapsed: landed_ticks,
-            force: ForceMean::new(force),
-            contact: None,
-        });
-        let mean = touching.force.update(force);
-        let contact = match touching.contact {
-            Some((contact, at)) if !ForceMean::matters(mean, at) => contact,
-            _ => {
-                let contact = scene.pairing.under(log2_relative_pressure(mean));
-                touching.contact = Some((contact, mean));
-                contact
-            }
+        let under = |force| scene.pairing.under(log2_relative_pressure(force));
+        let begin = |force, elapsed| Course::new(&under(force), skin, object, elapsed, TOLERANCE);
+        let Some(touching) = &mut self.touching else {
+            let elapsed = landed_ticks.into();
+            let (course, evaluations) = begin(force, elapsed);
+            self.evaluations = self.evaluations.wrapping_add(evaluations);
+            self.touching = Some(Touching {
+                elapsed,
+                force: ForceMean::new(force),
+                at: force,
+                course,
+            });
+            return Some(course.setpoint());
         };
-        let response = contact.at(touching.elapsed, skin, object);
-        touching.elapsed = touching.elapsed.saturating_add(1);
-        self.evaluations = self.evaluations.wrapping_add(1);
-        Some(response.display())
+        touching.elapsed += 1;
+        if touching.force.update(force) == Change::New {
+            let (course, evaluations) = begin(force, touching.elapsed);
+            self.evaluations = self.evaluations.wrapping_add(evaluations);
+            (touching.course, touching.at) = (course, force);
+            return Some(course.setpoint());
+        }
+        let mean = touching.force.mean();
+        if force_mean::matters(mean, touching.at, touching.course.gain()) {
+            touching.course.follow(&under(mean));
+            touching.at = mean;
+        }
+        let setpoint = touching.course.advance();
+        let evaluations = touching.course.is_at_knot().into();
+        self.evaluations = self.evaluations.wrapping_add(evaluations);
+        Some(setpoint)
     }
 }

@@ -121,6 +121,12 @@ pub(super) fn part(difference: Celsius, fraction: Fraction) -> Celsius {
     Celsius::from_bits((product.saturating_add(1 << 31) >> 32) as i32)
 }
 
+/// Eq. 6-12 at landing.
+pub(super) fn preset(ratio: Ratio, skin_c: Celsius, object_c: Celsius) -> Celsius {
+    let step = skin_c.saturating_sub(object_c);
+    less::<{ Ratio::FRAC_NBITS }>(skin_c, i64::from(step.to_bits()) * i64::from(ratio.to_bits()))
+}
+
 /// Eq. 3-1: where both surfaces go for a part `weight` of the way from skin to object.
 pub(super) fn interface(weight: Fraction, skin_c: Celsius, object_c: Celsius) -> Celsius {
     skin_c.saturating_sub(part(skin_c.saturating_sub(object_c), weight))

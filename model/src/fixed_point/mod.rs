@@ -4,6 +4,7 @@
 //! ([`Pairing::new`]) is in `f64` and happens once per material, not per tick.
 
 mod contact;
+mod course;
 mod erf;
 mod erf_table;
 pub mod kernel;
@@ -19,6 +20,7 @@ mod semi_infinite;
 mod ticks;
 
 pub use contact::{Contact, Response};
+pub use course::Course;
 pub use erf::{ErfArgument, erf};
 pub use kernel::erfcx;
 pub use logarithm::{Log2, exp2, log2};

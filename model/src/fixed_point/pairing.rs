@@ -75,11 +75,7 @@ impl Pairing {
     /// does not depend on pressure. Error below 0.15 µK + 2^-29 of the difference of the temperatures.
     #[must_use]
     pub fn preset(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
-        let step = skin_c.saturating_sub(object_c);
-        contact::less::<{ Ratio::FRAC_NBITS }>(
-            skin_c,
-            i64::from(step.to_bits()) * i64::from(self.ratio.to_bits()),
-        )
+        contact::preset(self.ratio, skin_c, object_c)
     }
 
     /// Interface temperature of perfect contact (Eq. 3-1); error below 0.16 µK.

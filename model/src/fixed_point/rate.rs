@@ -95,7 +95,16 @@ impl Rate {
 
     /// The number times a power of two, exactly.
     #[must_use]
+    #[inline]
     pub const fn doubled(self, times: i16) -> Self {
         Self::clamped(self.fraction, self.exponent + times as i32)
+    }
+
+    /// The number times two, without the limit of the exponent: for a few dozen times.
+    pub(super) const fn twice(self) -> Self {
+        Self {
+            fraction: self.fraction,
+            exponent: self.exponent.wrapping_add(1),
+        }
     }
 }

@@ -29,4 +29,14 @@ impl Ticks {
     pub const fn get(self) -> u32 {
         self.0.get()
     }
+
+    /// The one after `ticks`, which must be below 2^30: further on it starts anew.
+    #[must_use]
+    #[inline]
+    pub(super) const fn after(ticks: u32) -> Self {
+        match Self::new((ticks & Self::MAX.get() >> 1) + 1) {
+            Some(next) => next,
+            None => Self::ONE,
+        }
+    }
 }
