@@ -16,7 +16,7 @@
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
-use super::contact::{interface, part, preset};
+use super::contact::{interface, preset};
 use super::{Celsius, Contact, Fraction, Rate, Ticks, erfcx};
 
 /// What the kernel and roundings may add to the error of a chord.
@@ -27,8 +27,8 @@ const LIMIT_C: Celsius = Celsius::const_from_int(127);
 const BEND: u64 = 1495;
 /// The longest chord, as a power of two of ticks.
 const LONGEST: u32 = 31;
-/// Its step: what a tick takes off it.
-const SHORTEST_STEP: u32 = 1 << (32 - LONGEST);
+/// All of a chord but its beginning, where as much is left as at its end.
+const LEFT: u32 = (1 << LONGEST) - 1;
 /// Contact time in ticks at which a new course stops to count: 180 000 years of 10 us.
 const LAST: u64 = 1 << 59;
 
@@ -39,13 +39,13 @@ pub struct Course {
     /// Where the length of a chord doubles, and where the chord ends, in lengths since landing.
     doubles: Ticks,
     end: Ticks,
-    /// What is left of the chord, in 2^-32; 0 at a knot.
+    /// What is left of the chord, in 2^-31 of it; 0 at a knot.
     left: u32,
-    /// What a tick takes off it; 0 is 2^32, the whole of a chord of one tick.
+    /// What a tick takes off it.
     per_tick: u32,
-    /// `E` at the chord's end, and its fall along the chord, in 2^-31.
-    to: u32,
-    fall: u32,
+    /// Set-point at the chord's end, and twice its fall along the chord.
+    to: Celsius,
+    twice_fall: Celsius,
     base: Celsius,
     twice_gain: Celsius,
     /// `b² dt` of one length.
@@ -56,9 +56,9 @@ impl Course {
     /// The set-point from `elapsed` ticks after landing on, within `tolerance` (2 µK at least) of Eq. 6-12.
     /// Second is how often `E` was evaluated for it, up to two times.
     ///
-    /// The preset of Eq. 6-12 must be within ±127 °C; beyond, the course saturates. Where the tolerance does not
-    /// tell a contact from a perfect one (or `dT (w - r)` from 0), it is at the temperature of Eq. 3-1 (the preset)
-    /// for ever.
+    /// The preset of Eq. 6-12 must be within ±127 °C; beyond, the course saturates. Nothing is evaluated where the
+    /// tolerance does not tell a contact from a perfect one, which is at the temperature of Eq. 3-1 for ever, or from
+    /// an absent one or `dT (w - r)` from 0, which leave the preset.
     #[must_use]
     pub fn new(
         contact: &Contact,
@@ -80,32 +80,41 @@ impl Course {
             u64::from(gain.to_bits().unsigned_abs()),
         );
         let elapsed = elapsed.min(LAST);
+        // `E` is below 1 / sqrt(pi u): all but perfect contact.
+        let octave = (elapsed + 1).ilog2() as i32 + contact.per_tick.exponent();
+        if octave > 2 * (size.ilog2() as i32 - bits.ilog2() as i32) {
+            return (Self::held(base), 0);
+        }
+        let first = first_octave((bits << 32) / size) - contact.per_tick.exponent();
+        if first > LAST.ilog2() as i32 {
+            return (Self::held(preset), 0);
+        }
         let lengths = lengths_per_octave(size, bits);
-        let length = first_length((bits << 32) / size, contact.per_tick)
-            .max((elapsed / lengths).checked_ilog2().unwrap_or(0).min(LONGEST));
+        let later = (elapsed / lengths).checked_ilog2().unwrap_or(0);
+        let length = (first.max(0) as u32).max(later).min(LONGEST);
         let end = (elapsed >> length) + 1;
         let to = erfcx_at(end << length, contact.per_tick);
-        if length == 0 && part(gain.abs(), to) <= tolerance {
-            return (Self::held(base), 1);
-        }
         let (from, evaluations) = match elapsed {
             0 => (Fraction::MAX, 1),
             _ => (erfcx_at(elapsed, contact.per_tick), 2),
         };
+        let base = if gain > 0 {
+            base - tolerance
+        } else {
+            base + tolerance
+        };
+        let at = |e: Fraction| along(base, gain + gain, e.to_bits() >> 1);
+        let (from, to) = (at(from), at(to));
         let ticks = (end << length) - elapsed;
         // As if the chord had begun at a multiple of its length.
-        let fall = (u64::from(from.to_bits().saturating_sub(to.to_bits())) << length) / ticks;
-        let per_tick = ((1u64 << 32) >> length) as u32;
+        let fall = (i64::from((from - to).to_bits()) << length) / ticks as i64;
+        let per_tick = (1 << LONGEST) >> length;
         let course = Self {
-            left: per_tick.wrapping_mul(ticks as u32),
+            left: per_tick * ticks as u32,
             per_tick,
-            to: to.to_bits() >> 1,
-            fall: (fall >> 1) as u32,
-            base: if gain > 0 {
-                base - tolerance
-            } else {
-                base + tolerance
-            },
+            to,
+            twice_fall: Celsius::from_bits((2 * fall) as i32),
+            base,
             twice_gain: gain + gain,
             rate: contact.per_tick.doubled(length as i16),
             end: Ticks::new(end as u32).unwrap_or(Ticks::MAX),
@@ -116,17 +125,17 @@ impl Course {
 
     /// Follows a contact of slightly different resistance from the next knot on, without a step.
     pub fn follow(&mut self, contact: &Contact) {
-        let length = self.per_tick.checked_ilog2().map_or(0, |log2| u32::BITS - log2);
-        self.rate = contact.per_tick.doubled(length as i16);
+        self.rate = contact.per_tick.doubled(self.per_tick.leading_zeros() as i16);
     }
 
     /// Set-point now.
     #[must_use]
     pub fn setpoint(&self) -> Celsius {
-        self.at(match self.left {
-            0 => self.to + self.fall,
-            left => self.along(left),
-        })
+        let left = match self.left {
+            0 => 1 << LONGEST,
+            left => left,
+        };
+        along(self.to, self.twice_fall, left)
     }
 
     /// Whether the last [`Self::advance`] evaluated `E`.
@@ -144,37 +153,42 @@ impl Course {
     /// Set-point of the next tick.
     #[inline]
     pub fn advance(&mut self) -> Celsius {
-        let left = self.left.wrapping_sub(self.per_tick);
+        let left = self.left.wrapping_sub(self.per_tick) & LEFT;
         if left == 0 {
             return self.turn();
         }
         self.left = left;
-        self.at(self.along(left))
+        // Costs no instruction: keeps the compiler from making all of this conditional.
+        compiler_fence(Ordering::SeqCst);
+        along(self.to, self.twice_fall, left)
     }
 
     /// Ends a chord and lays the next, twice as long if that is due and possible.
-    #[cold]
-    #[inline(never)]
+    #[inline]
     fn turn(&mut self) -> Celsius {
         let (mut begin, mut rate) = (self.end.get(), self.rate);
-        if begin == self.doubles.get() && self.per_tick != SHORTEST_STEP {
-            begin >>= 1;
-            self.per_tick = match self.per_tick {
-                0 => 1 << 31,
-                per_tick => per_tick >> 1,
-            };
-            rate = rate.twice();
-            self.rate = rate;
+        if begin == self.doubles.get() {
+            // As above.
+            compiler_fence(Ordering::SeqCst);
+            if self.per_tick == 1 {
+                // The longest chord: from here on, as many of them as there is time.
+                self.doubles = Ticks::MAX;
+            } else {
+                begin >>= 1;
+                self.per_tick >>= 1;
+                rate = rate.twice();
+                self.rate = rate;
+            }
         }
         (self.end, self.left) = (Ticks::after(begin), 0);
         let e = erfcx(self.end, rate).to_bits() >> 1;
         // Costs no instruction: what follows is loaded only now, so the kernel has the registers to itself.
         compiler_fence(Ordering::SeqCst);
         let from = self.to;
-        // Never up: where `E` is all but level, the kernel's error could make it rise.
-        self.fall = (from as i32).wrapping_sub(e as i32).max(0) as u32;
-        self.to = from.wrapping_sub(self.fall);
-        self.at(from)
+        self.to = along(self.base, self.twice_gain, e);
+        let fall = from.wrapping_sub(self.to);
+        self.twice_fall = fall.wrapping_add(fall);
+        from
     }
 
     /// No chord, for ever.
@@ -182,8 +196,8 @@ impl Course {
         Self {
             left: 1,
             per_tick: 0,
-            to: 0,
-            fall: 0,
+            to: at,
+            twice_fall: Celsius::ZERO,
             base: at,
             twice_gain: Celsius::ZERO,
             rate: Rate::ONE,
@@ -191,19 +205,13 @@ impl Course {
             doubles: Ticks::MAX,
         }
     }
+}
 
-    /// `E` on the chord.
-    #[inline]
-    fn along(&self, left: u32) -> u32 {
-        self.to + ((u64::from(self.fall) * u64::from(left)) >> 32) as u32
-    }
-
-    /// Set-point where `E` is `e` in 2^-31.
-    #[inline]
-    fn at(&self, e: u32) -> Celsius {
-        let above = (i64::from(self.twice_gain.to_bits()) * i64::from(e as i32)) >> 32;
-        Celsius::from_bits(self.base.to_bits().wrapping_add(above as i32))
-    }
+/// `end` and a part of `twice`, in 2^-32: one instruction, rounded down.
+#[inline]
+const fn along(end: Celsius, twice: Celsius, part: u32) -> Celsius {
+    let above = (twice.to_bits() as i64 * part as i64) >> 32;
+    Celsius::from_bits(end.to_bits().wrapping_add(above as i32))
 }
 
 /// Smallest `m` for which a chord that begins `m` lengths after landing rises no more than two `tolerance` above a
@@ -215,12 +223,11 @@ fn lengths_per_octave(gain: u64, tolerance: u64) -> u64 {
     if 4 * m * (2 * m + 1) >= needed { m } else { m + 1 }
 }
 
-/// Length of a chord from landing on, or from a later tick to the same end, as a power of two of ticks: it rises
-/// at most `sqrt(u / pi) / 2` above `E`, for `u` at its end. `tolerance` is in 2^-32 of the gain.
-fn first_length(tolerance: u64, per_tick: Rate) -> u32 {
-    // u <= 4 pi (2 tolerance)² in whole octaves: u is below 2^(length + exponent + 1), 16 pi above 2^5.
-    let octave = 5 - 1 - (tolerance * tolerance).leading_zeros() as i32;
-    (octave - (per_tick.exponent() + 1)).clamp(0, LONGEST as i32) as u32
+/// Length of a chord from landing on, or from a later tick to the same end, as a power of two in units of `1 / K`: it
+/// rises at most `sqrt(u / pi) / 2` above `E`, for `u` at its end. `tolerance` is in 2^-32 of the gain.
+fn first_octave(tolerance: u64) -> i32 {
+    // u <= 4 pi (2 tolerance)² in whole octaves: a length of 2^first has u below 2^(first + 1), 16 pi is above 2^5.
+    5 - 1 - (tolerance * tolerance).leading_zeros() as i32 - 1
 }
 
 /// `E` at `elapsed` ticks, which may be more than [`Ticks`] holds.

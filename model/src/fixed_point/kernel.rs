@@ -35,7 +35,7 @@ pub const COUNT_SHIFT: u32 = 12;
 /// Later times never give more than one unit above an earlier one.
 ///
 /// Constant time: no square root, no division, no branch. On a Cortex-M4 34 instructions where it is inlined,
-/// 39 as a call (emulated, `cargo xtask bench`); 8.25 KiB of table.
+/// 40 with call and return (emulated, `cargo xtask bench`); 8.25 KiB of table.
 #[must_use]
 #[inline]
 pub fn erfcx(elapsed: Ticks, per_tick: Rate) -> Fraction {
