@@ -3,7 +3,7 @@
 
 mod floating;
 
-use contact_model::fixed_point::{Celsius, Contact, Force, Pairing, PairingError, log2_relative_pressure};
+use contact_model::fixed_point::{Celsius, Course, Force, Pairing, PairingError, log2_relative_pressure};
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
@@ -19,6 +19,8 @@ pub const SKIN_C: f64 = 34.0;
 pub const OBJECT_C: f64 = 24.0;
 /// The constant force.
 pub const FORCE_N: f64 = 2.0;
+/// How far a course may be from Eq. 6-12, K; as the firmware has it.
+pub const TOLERANCE_K: f64 = 0.0004;
 /// Materials of the five fingers, by their place in [`MATERIALS`]: granite, which is also that of scenes with one
 /// finger, copper, stainless steel, ABS, foam.
 pub const FINGERS: [usize; 5] = [3, 0, 2, 5, 6];
@@ -51,7 +53,7 @@ pub enum Arithmetic {
 #[derive(Clone)]
 struct Finger {
     pairing: Pairing,
-    contact: Contact,
+    course: Course,
     set_point: Celsius,
 }
 
@@ -72,18 +74,22 @@ impl Station {
     /// None for these materials.
     pub fn new() -> Result<Self, PairingError> {
         let force = Force::from_num(FORCE_N);
+        let (skin, object_c) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
+        let tolerance = Celsius::from_num(TOLERANCE_K);
         let fixed = |finger: usize| {
             let object = &MATERIALS[FINGERS[finger]].1;
             let pairing = Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
+            let contact = pairing.under(log2_relative_pressure(force));
+            let (course, _) = Course::new(&contact, skin, object_c, 0, tolerance);
             Ok(Finger {
                 pairing,
-                contact: pairing.under(log2_relative_pressure(force)),
+                course,
                 set_point: Celsius::ZERO,
             })
         };
         Ok(Self {
-            skin: Celsius::from_num(SKIN_C),
-            object: Celsius::from_num(OBJECT_C),
+            skin,
+            object: object_c,
             fixed: [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?],
             single: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
             double: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
@@ -117,8 +123,8 @@ pub fn streaming_n(tick: u32) -> f64 {
 impl Finger {
     /// Set-point under a force that does not change: the one place that says how the firmware computes it.
     #[inline]
-    fn constant_force(&mut self, skin: Celsius, object: Celsius, tick: u32) {
-        self.set_point = self.contact.at(tick, skin, object).display();
+    fn constant_force(&mut self) {
+        self.set_point = self.course.advance();
     }
 }
 
@@ -132,8 +138,8 @@ fn semi_infinite(station: &mut Station, _: u32) {
     finger.set_point = finger.pairing.interface_temperature(station.skin, station.object);
 }
 
-fn constant_force(station: &mut Station, tick: u32) {
-    station.fixed[0].constant_force(station.skin, station.object, tick);
+fn constant_force(station: &mut Station, _: u32) {
+    station.fixed[0].constant_force();
 }
 
 fn streaming_force(station: &mut Station, tick: u32) {
@@ -143,9 +149,9 @@ fn streaming_force(station: &mut Station, tick: u32) {
     finger.set_point = contact.at(tick, station.skin, station.object).display();
 }
 
-fn five_fingers(station: &mut Station, tick: u32) {
+fn five_fingers(station: &mut Station, _: u32) {
     for finger in &mut station.fixed {
-        finger.constant_force(station.skin, station.object, tick);
+        finger.constant_force();
     }
 }
 

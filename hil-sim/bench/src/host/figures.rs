@@ -4,7 +4,7 @@ use std::hint::black_box;
 use model_bench::inputs::Input;
 use model_bench::job::{Checksum, ON_TARGET};
 use model_bench::kernels::{Call, KERNELS, Kernel, Table};
-use model_bench::scenes::{Arithmetic, SCENES, Station, TICKS};
+use model_bench::scenes::{Arithmetic, SCENES, Station, TICKS, TOLERANCE_K};
 use serde::Serialize;
 
 use super::accuracy::{Accuracy, STEP_K, Truth};
@@ -34,6 +34,8 @@ pub struct Figures {
     pub ticks: u32,
     /// Temperature step of errors in mK, K.
     pub step_k: f64,
+    /// Tolerance of the firmware's chords, mK.
+    pub tolerance_mk: f64,
     /// What runs the instructions that are counted.
     pub target: &'static str,
     /// What compiled those instructions.
@@ -133,6 +135,7 @@ pub fn measure(effort: Effort, progress: impl Fn(&str)) -> anyhow::Result<Figure
         inputs_on_target: ON_TARGET,
         ticks: TICKS,
         step_k: STEP_K,
+        tolerance_mk: 1e3 * TOLERANCE_K,
         target: "emulated STM32F446: instructions exact, cycles estimated, no wait states",
         compiler: emulated.compiler().into(),
         host: host(),

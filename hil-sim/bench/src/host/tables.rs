@@ -50,7 +50,8 @@ pub fn tables(figures: &Figures) -> String {
          {scenes}\n\
          The model's share of a control tick over {} ticks of 1 ms, skin 34 C, object 24 C, granite at 2 N (streaming: \
          1 to 2 N); five fingers: granite, copper, stainless steel, ABS, foam. Errors of the set-point against \
-         Eq. 6-12 or 3-1 in f64.\n",
+         Eq. 6-12 or 3-1 in f64. Under constant force the firmware follows chords within {} mK and evaluates E where \
+         one ends: fewest are ticks without, most with an evaluation.\n",
         figures.inputs,
         figures.step_k,
         figures.inputs_on_target,
@@ -58,6 +59,7 @@ pub fn tables(figures: &Figures) -> String {
         figures.compiler,
         figures.host,
         figures.ticks,
+        figures.tolerance_mk,
     )
 }
 
