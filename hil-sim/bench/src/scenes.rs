@@ -32,8 +32,9 @@ pub struct Scene {
     pub kind: &'static str,
     /// How it is computed.
     pub arithmetic: Arithmetic,
-    /// What is done in a tick since contact: leaves the set-point in the station.
-    pub step: fn(&mut Station, u32),
+    /// What is done in a tick since contact. Gives the bits of the first finger's set-point in integers; in floating
+    /// point 0, and leaves it in the station.
+    pub step: fn(&mut Station, u32) -> u32,
 }
 
 /// How a set-point is computed.
@@ -54,15 +55,17 @@ pub enum Arithmetic {
 struct Finger {
     pairing: Pairing,
     course: Course,
+    /// Of five fingers, each is left here.
     set_point: Celsius,
 }
 
 /// Everything that was set up before the first tick.
 #[derive(Clone)]
+#[repr(C)] // The fingers first, where loads in pairs reach them.
 pub struct Station {
+    fixed: [Finger; 5],
     skin: Celsius,
     object: Celsius,
-    fixed: [Finger; 5],
     single: [FloatingFinger<f32>; 5],
     double: [FloatingFinger<f64>; 5],
 }
@@ -98,11 +101,11 @@ impl Station {
 }
 
 impl Station {
-    /// Set-point of the first finger, °C.
+    /// Set-point of the first finger, °C, after a step that gave `bits`.
     #[must_use]
-    pub fn set_point_c(&self, arithmetic: Arithmetic) -> f64 {
+    pub fn set_point_c(&self, arithmetic: Arithmetic, bits: u32) -> f64 {
         match arithmetic {
-            Arithmetic::Integers => self.fixed[0].set_point.to_num(),
+            Arithmetic::Integers => Celsius::from_bits(bits as i32).to_num(),
             Arithmetic::Shepherd | Arithmetic::LibmF32 => f64::from(self.single[0].set_point_c),
             Arithmetic::LibmF64 => self.double[0].set_point_c,
         }
@@ -120,44 +123,41 @@ pub fn streaming_n(tick: u32) -> f64 {
     1.0 + f64::from(streaming(tick)) / 4096.0
 }
 
-impl Finger {
-    /// Set-point under a force that does not change: the one place that says how the firmware computes it.
-    #[inline]
-    fn constant_force(&mut self) {
-        self.set_point = self.course.advance();
-    }
+fn bits(set_point: Celsius) -> u32 {
+    set_point.to_bits() as u32
 }
 
-fn idle(station: &mut Station, _: u32) {
-    let [finger, ..] = &mut station.fixed;
-    finger.set_point = finger.pairing.preset(station.skin, station.object);
+fn idle(station: &mut Station, _: u32) -> u32 {
+    bits(station.fixed[0].pairing.preset(station.skin, station.object))
 }
 
-fn semi_infinite(station: &mut Station, _: u32) {
-    let [finger, ..] = &mut station.fixed;
-    finger.set_point = finger.pairing.interface_temperature(station.skin, station.object);
+fn semi_infinite(station: &mut Station, _: u32) -> u32 {
+    let [finger, ..] = &station.fixed;
+    bits(finger.pairing.interface_temperature(station.skin, station.object))
 }
 
-fn constant_force(station: &mut Station, _: u32) {
-    station.fixed[0].constant_force();
+fn constant_force(station: &mut Station, _: u32) -> u32 {
+    bits(station.fixed[0].course.advance())
 }
 
-fn streaming_force(station: &mut Station, tick: u32) {
-    let [finger, ..] = &mut station.fixed;
+fn streaming_force(station: &mut Station, tick: u32) -> u32 {
     let force = Force::from_bits((1 << 24) + (streaming(tick) << 12));
-    let contact = finger.pairing.under(log2_relative_pressure(force));
-    finger.set_point = contact.at(tick, station.skin, station.object).display();
+    let contact = station.fixed[0].pairing.under(log2_relative_pressure(force));
+    bits(contact.at(tick, station.skin, station.object).display())
 }
 
-fn five_fingers(station: &mut Station, _: u32) {
+fn five_fingers(station: &mut Station, _: u32) -> u32 {
     for finger in &mut station.fixed {
-        finger.constant_force();
+        finger.set_point = finger.course.advance();
     }
+    bits(station.fixed[0].set_point)
 }
 
 /// Only returns: what a call costs beside the callee's work.
 #[unsafe(no_mangle)]
-pub fn only_return_scene(_: &mut Station, _: u32) {}
+pub fn only_return_scene(_: &mut Station, _: u32) -> u32 {
+    0
+}
 
 /// Kinds of scenes, as [`Scene::kind`] names them.
 pub mod kind {
@@ -173,7 +173,7 @@ pub mod kind {
     pub const FIVE: &str = "five fingers";
 }
 
-const fn scene(kind: &'static str, arithmetic: Arithmetic, step: fn(&mut Station, u32)) -> Scene {
+const fn scene(kind: &'static str, arithmetic: Arithmetic, step: fn(&mut Station, u32) -> u32) -> Scene {
     Scene {
         kind,
         arithmetic,
@@ -181,40 +181,50 @@ const fn scene(kind: &'static str, arithmetic: Arithmetic, step: fn(&mut Station
     }
 }
 
+/// The set-point was left in the station.
+const fn left((): ()) -> u32 {
+    0
+}
+
 use Arithmetic::{Integers, LibmF32, LibmF64, Shepherd};
 
 /// All kinds in all arithmetics.
 pub static SCENES: [Scene; 16] = [
     scene(kind::IDLE, Integers, idle),
-    scene(kind::IDLE, LibmF32, |s, _| s.single[0].idle()),
-    scene(kind::IDLE, LibmF64, |s, _| s.double[0].idle()),
+    scene(kind::IDLE, LibmF32, |s, _| left(s.single[0].idle())),
+    scene(kind::IDLE, LibmF64, |s, _| left(s.double[0].idle())),
     scene(kind::CONSTANT, Integers, constant_force),
     scene(kind::CONSTANT, Shepherd, |s, n| {
-        s.single[0].constant_force(n, shepherd_laframboise)
+        left(s.single[0].constant_force(n, shepherd_laframboise))
     }),
     scene(kind::CONSTANT, LibmF32, |s, n| {
-        s.single[0].constant_force(n, libm_f32)
+        left(s.single[0].constant_force(n, libm_f32))
     }),
     scene(kind::CONSTANT, LibmF64, |s, n| {
-        s.double[0].constant_force(n, libm_f64)
+        left(s.double[0].constant_force(n, libm_f64))
     }),
     scene(kind::STREAMING, Integers, streaming_force),
     scene(kind::STREAMING, Shepherd, |s, n| {
-        s.single[0].streaming_force(streaming(n), n, shepherd_laframboise);
+        left(s.single[0].streaming_force(streaming(n), n, shepherd_laframboise))
     }),
     scene(kind::STREAMING, LibmF32, |s, n| {
-        s.single[0].streaming_force(streaming(n), n, libm_f32)
+        left(s.single[0].streaming_force(streaming(n), n, libm_f32))
     }),
     scene(kind::STREAMING, LibmF64, |s, n| {
-        s.double[0].streaming_force(streaming(n), n, libm_f64)
+        left(s.double[0].streaming_force(streaming(n), n, libm_f64))
     }),
     scene(kind::SEMI_INFINITE, Integers, semi_infinite),
-    scene(kind::SEMI_INFINITE, LibmF32, |s, _| s.single[0].semi_infinite()),
-    scene(kind::SEMI_INFINITE, LibmF64, |s, _| s.double[0].semi_infinite()),
+    scene(kind::SEMI_INFINITE, LibmF32, |s, _| {
+        left(s.single[0].semi_infinite())
+    }),
+    scene(kind::SEMI_INFINITE, LibmF64, |s, _| {
+        left(s.double[0].semi_infinite())
+    }),
     scene(kind::FIVE, Integers, five_fingers),
     scene(kind::FIVE, Shepherd, |s, n| {
         for finger in &mut s.single {
             finger.constant_force(n, shepherd_laframboise);
         }
+        0
     }),
 ];

@@ -150,8 +150,8 @@ impl Course {
         Celsius::from_bits(self.twice_gain.to_bits() >> 1).abs()
     }
 
-    /// Set-point of the next tick.
-    #[inline]
+    /// Set-point of the next tick: 8 instructions, 59 where `E` is evaluated, 67 where the chords' length doubles too.
+    #[inline(always)]
     pub fn advance(&mut self) -> Celsius {
         let left = self.left.wrapping_sub(self.per_tick) & LEFT;
         if left == 0 {
@@ -164,7 +164,7 @@ impl Course {
     }
 
     /// Ends a chord and lays the next, twice as long if that is due and possible.
-    #[inline]
+    #[inline(always)]
     fn turn(&mut self) -> Celsius {
         let (mut begin, mut rate) = (self.end.get(), self.rate);
         if begin == self.doubles.get() {

@@ -32,6 +32,7 @@ struct Desk {
     work: Option<Work>,
     station: Option<Station>,
     value: Option<Value>,
+    set_point: u32,
 }
 
 enum Work {
@@ -43,6 +44,7 @@ static DESK: Mutex<RefCell<Desk>> = Mutex::new(RefCell::new(Desk {
     work: None,
     station: None,
     value: None,
+    set_point: 0,
 }));
 
 #[exception]
@@ -53,7 +55,7 @@ fn PendSV() {
             Some(Work::Kernel(call, input)) => desk.value = Some(call.on(input)),
             Some(Work::Scene(scene, tick)) => {
                 if let Some(station) = &mut desk.station {
-                    (scene.step)(station, *tick);
+                    desk.set_point = (scene.step)(station, *tick);
                 }
             }
             None => {}
@@ -70,7 +72,9 @@ fn measure(work: Work) -> u64 {
     free(|section| {
         let desk = DESK.borrow(section).borrow();
         match (&desk.work, &desk.station) {
-            (Some(Work::Scene(scene, _)), Some(station)) => station.set_point_c(scene.arithmetic).to_bits(),
+            (Some(Work::Scene(scene, _)), Some(station)) => {
+                station.set_point_c(scene.arithmetic, desk.set_point).to_bits()
+            }
             _ => desk.value.map_or(0, Value::to_bits),
         }
     })

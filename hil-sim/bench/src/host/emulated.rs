@@ -183,14 +183,16 @@ impl Emulated {
             .with_context(|| format!("the image has no {name}"))?
             & !1;
         let start = (address - FLASH_BASE) as usize;
-        let halves: Vec<u16> = self.firmware.flash()[start..start + 6]
+        let halves: Vec<u16> = self.firmware.flash()[start..start + 8]
             .chunks_exact(2)
             .map(|half| u16::from_le_bytes([half[0], half[1]]))
             .collect();
         const BLX: (u64, u64) = (1, 3);
         let (instructions, cycles) = match halves[..] {
             // push {r7, lr}; mov r7, sp; pop {r7, pc}
-            [0xb580, 0x466f, 0xbd80] => (3, 3 + 1 + 5),
+            [0xb580, 0x466f, 0xbd80, _] => (3, 3 + 1 + 5),
+            // the same with movs r0, #0 within
+            [0xb580, 0x466f, 0x2000, 0xbd80] => (4, 3 + 1 + 1 + 5),
             // bx lr
             [0x4770, ..] => (1, 3),
             _ => bail!("{name} does more than return: {halves:04x?}"),

@@ -29,8 +29,8 @@ pub fn judge(scene: &Scene) -> anyhow::Result<Judgement> {
         checksum: Checksum::default(),
     };
     for tick in 1..=TICKS {
-        (scene.step)(&mut station, tick);
-        let found = station.set_point_c(scene.arithmetic);
+        let bits = (scene.step)(&mut station, tick);
+        let found = station.set_point_c(scene.arithmetic, bits);
         judgement.checksum.add(found.to_bits());
         if found.is_finite() {
             let error_mk = (found - exact_c(scene.kind, tick)).abs() * 1e3;
