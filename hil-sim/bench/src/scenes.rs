@@ -181,44 +181,53 @@ const fn scene(kind: &'static str, arithmetic: Arithmetic, step: fn(&mut Station
     }
 }
 
-/// The set-point was left in the station.
-const fn left((): ()) -> u32 {
-    0
-}
-
 use Arithmetic::{Integers, LibmF32, LibmF64, Shepherd};
 
 /// All kinds in all arithmetics.
 pub static SCENES: [Scene; 16] = [
     scene(kind::IDLE, Integers, idle),
-    scene(kind::IDLE, LibmF32, |s, _| left(s.single[0].idle())),
-    scene(kind::IDLE, LibmF64, |s, _| left(s.double[0].idle())),
+    scene(kind::IDLE, LibmF32, |s, _| {
+        s.single[0].idle();
+        0
+    }),
+    scene(kind::IDLE, LibmF64, |s, _| {
+        s.double[0].idle();
+        0
+    }),
     scene(kind::CONSTANT, Integers, constant_force),
     scene(kind::CONSTANT, Shepherd, |s, n| {
-        left(s.single[0].constant_force(n, shepherd_laframboise))
+        s.single[0].constant_force(n, shepherd_laframboise);
+        0
     }),
     scene(kind::CONSTANT, LibmF32, |s, n| {
-        left(s.single[0].constant_force(n, libm_f32))
+        s.single[0].constant_force(n, libm_f32);
+        0
     }),
     scene(kind::CONSTANT, LibmF64, |s, n| {
-        left(s.double[0].constant_force(n, libm_f64))
+        s.double[0].constant_force(n, libm_f64);
+        0
     }),
     scene(kind::STREAMING, Integers, streaming_force),
     scene(kind::STREAMING, Shepherd, |s, n| {
-        left(s.single[0].streaming_force(streaming(n), n, shepherd_laframboise))
+        s.single[0].streaming_force(streaming(n), n, shepherd_laframboise);
+        0
     }),
     scene(kind::STREAMING, LibmF32, |s, n| {
-        left(s.single[0].streaming_force(streaming(n), n, libm_f32))
+        s.single[0].streaming_force(streaming(n), n, libm_f32);
+        0
     }),
     scene(kind::STREAMING, LibmF64, |s, n| {
-        left(s.double[0].streaming_force(streaming(n), n, libm_f64))
+        s.double[0].streaming_force(streaming(n), n, libm_f64);
+        0
     }),
     scene(kind::SEMI_INFINITE, Integers, semi_infinite),
     scene(kind::SEMI_INFINITE, LibmF32, |s, _| {
-        left(s.single[0].semi_infinite())
+        s.single[0].semi_infinite();
+        0
     }),
     scene(kind::SEMI_INFINITE, LibmF64, |s, _| {
-        left(s.double[0].semi_infinite())
+        s.double[0].semi_infinite();
+        0
     }),
     scene(kind::FIVE, Integers, five_fingers),
     scene(kind::FIVE, Shepherd, |s, n| {
