@@ -190,32 +190,6 @@ fn the_longest_chords_follow_one_another() {
     }
 }
 
-/// A contact of slightly different resistance: without a step, and Eq. 6-12 of the new one from the next knot on.
-#[test]
-fn a_followed_contact_is_reached_without_a_step() {
-    let (before, after) = (contact_of(3, 2.0), contact_of(3, 2.05));
-    let mut watched = Watched::new(&before, 24.0, 0, TOLERANCE_K);
-    let mut last_c = watched.setpoint_c();
-    let mut knots = 0;
-    for tick in 1..10_000 {
-        if tick == 1000 {
-            watched.course.follow(&after);
-        }
-        let now_c = watched.next_c();
-        if tick >= 1000 {
-            assert!((now_c - last_c).abs() < 0.5e-3, "{tick}: a jump");
-            knots += u32::from(watched.course.is_at_knot());
-        }
-        // The first knot may belong to the chord before, the second is the new one's.
-        if knots >= 2 {
-            let error_k = now_c - exact_c(&after, 24.0, f64::from(tick));
-            assert!(error_k.abs() <= TOLERANCE_K, "{tick}: {error_k} K");
-        }
-        last_c = now_c;
-    }
-    assert!(knots > 10);
-}
-
 proptest! {
     /// Any resistance and tick (together the rate), either sign of `dT`, any tolerance, from any tick on.
     #[test]

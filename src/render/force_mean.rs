@@ -1,23 +1,52 @@
 //! The mean of a steady force.
 
+use core::num::NonZeroU32;
+use core::ops::RangeInclusive;
+
 use contact_model::fixed_point::{Celsius, Force};
 
-/// A force this far from the mean is a new force, not noise.
-const NEW_FORCE_FLOOR: Force = Force::lit("0.01");
-const NEW_FORCE_SHIFT: u32 = 4;
+/// A force this far from that of the last ticks is a new force, not noise: this part of it, and this much at least.
+const NEW: Threshold = Threshold {
+    shift: 4,
+    floor: Force::lit("0.01"),
+};
+/// The same for the mean of the last ticks against the force in use: noise is smaller there.
+const MOVED: Threshold = Threshold {
+    shift: 11,
+    floor: Force::lit("0.00025"),
+};
+/// Ticks that count as the last ones.
+const LAST: u32 = 64;
 /// The mean reaches back over this part of the time since the force was new, as a power of two, and within
-/// these limits in ticks. What a force has done to the set-point follows the logarithm of time, so late noise
+/// `LAST` and `LONGEST` ticks. What a force has done to the set-point follows the logarithm of time, so late noise
 /// may be averaged for longer.
 const REACH_SHIFT: u32 = 2;
-const SHORTEST: u32 = 64;
 const LONGEST: u32 = 4096;
+/// Ticks after which a mean is first better than the force it began with.
+const FIRST_LOOK: u32 = 16;
 /// Change of the set-point that matters.
 const MATTERS: Celsius = Celsius::lit("0.0001");
+
+/// A part of a force as a power of two, and an amount below which it does not fall.
+struct Threshold {
+    shift: u32,
+    floor: Force,
+}
+
+impl Threshold {
+    fn tells(&self, force: Force, from: Force) -> bool {
+        force.max(from) - force.min(from) > (from >> self.shift).max(self.floor)
+    }
+}
 
 /// Running mean that starts anew when the force changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ForceMean {
+    /// Of the last ticks.
+    recent: Force,
     mean: Force,
+    /// The mean that was last taken.
+    in_use: Force,
     /// Ticks since the force was new; stops where the mean reaches back no further.
     ticks: u32,
 }
@@ -27,14 +56,16 @@ pub(super) struct ForceMean {
 pub(super) enum Change {
     /// The same as before, and noise.
     Noise,
-    /// A new force, which is the mean from now on.
+    /// A new force; the mean has started anew.
     New,
 }
 
 impl ForceMean {
     pub(super) const fn new(force: Force) -> Self {
         Self {
+            recent: force,
             mean: force,
+            in_use: force,
             ticks: 1,
         }
     }
@@ -43,34 +74,63 @@ impl ForceMean {
         self.mean
     }
 
+    /// The mean, which is in use from now on.
+    pub(super) fn take(&mut self) -> Force {
+        self.in_use = self.mean;
+        self.mean
+    }
+
+    /// Whether the mean is worth a look: each time it has seen twice as much, and always once it has seen all that it
+    /// reaches back over. In between it is hardly better than it was.
+    pub(super) const fn is_better(&self) -> bool {
+        self.ticks >= FIRST_LOOK && self.ticks.is_power_of_two()
+    }
+
     /// Takes the force of one tick.
     pub(super) fn update(&mut self, force: Force) -> Change {
-        let (low, high) = (force.min(self.mean), force.max(self.mean));
-        if high - low > (self.mean >> NEW_FORCE_SHIFT).max(NEW_FORCE_FLOOR) {
+        if NEW.tells(force, self.recent) {
             *self = Self::new(force);
             return Change::New;
         }
         self.ticks = (self.ticks + 1).min(LONGEST << REACH_SHIFT);
-        let reach = self.ticks.min(SHORTEST.max(self.ticks >> REACH_SHIFT));
-        let part = Force::from_bits((high - low).to_bits() / reach);
-        self.mean = if force >= self.mean {
-            self.mean.saturating_add(part)
-        } else {
-            self.mean.saturating_sub(part)
-        };
+        self.recent = towards(self.recent, force, self.ticks.min(LAST));
+        self.mean = towards(
+            self.mean,
+            force,
+            self.ticks.min(LAST.max(self.ticks >> REACH_SHIFT)),
+        );
+        if self.ticks >= LAST && MOVED.tells(self.recent, self.in_use) {
+            self.mean = self.recent;
+            self.ticks = LAST;
+            return Change::New;
+        }
         Change::Noise
     }
 }
 
-/// Whether contact resistance must be computed again after a change of the mean from `before`: the set-point
-/// could move by more than 0.1 mK, at the time at which `E` is most sensitive.
+/// A mean over `ticks` (1 at least) after one more.
+fn towards(mean: Force, force: Force, ticks: u32) -> Force {
+    let ticks = NonZeroU32::new(ticks).unwrap_or(NonZeroU32::MIN);
+    let part = Force::from_bits((force.max(mean) - force.min(mean)).to_bits() / ticks);
+    if force >= mean {
+        mean.saturating_add(part)
+    } else {
+        mean.saturating_sub(part)
+    }
+}
+
+/// Forces around `force` for which contact resistance need not be computed again, where `gain` is what `E` is
+/// multiplied with in the set-point.
 ///
 /// R moves by 0.95 of the force's relative change (Eq. 6-8), `E` by at most 0.277 of R's, and the set-point by
-/// `gain` times as much: 0.264 in all, rounded up.
-pub(super) fn matters(now: Force, before: Force, gain: Celsius) -> bool {
-    let change =
-        u64::from((now.max(before) - now.min(before)).to_bits()) * u64::from(gain.to_bits().unsigned_abs());
-    change * 17 > u64::from(before.to_bits()) * (u64::from(MATTERS.to_bits().unsigned_abs()) * 64)
+/// `gain` times as much: 0.264 in all, rounded up to 17/64.
+pub(super) fn all_the_same(force: Force, gain: Celsius) -> RangeInclusive<Force> {
+    let change = u64::from(force.to_bits()) * u64::from(MATTERS.to_bits().unsigned_abs()) * 64;
+    let allowed = change
+        .checked_div(u64::from(gain.to_bits().unsigned_abs()) * 17)
+        .and_then(|bits| u32::try_from(bits).ok())
+        .map_or(Force::MAX, Force::from_bits);
+    force.saturating_sub(allowed)..=force.saturating_add(allowed)
 }
 
 #[cfg(test)]
@@ -101,7 +161,7 @@ mod tests {
 
     /// By Eq. 6-12 in `f64`: the smallest change that matters moves the set-point by 0.1 mK, at the worst time.
     #[test]
-    fn what_matters_is_a_tenth_of_a_millikelvin() {
+    fn what_is_the_same_is_so_to_a_tenth_of_a_millikelvin() {
         for (name, material) in MATERIALS {
             for force_n in [0.1, 0.5, 2.0] {
                 let contact = |force_n| {
@@ -110,9 +170,10 @@ mod tests {
                 };
                 let gain = Celsius::from_num(10.0 * (contact(1.0).weight - contact(1.0).ratio));
                 let before = Force::from_num(force_n);
+                let same = all_the_same(before, gain.abs());
                 let relative = (1..4000).find(|&i| {
                     let now = Force::from_num(force_n * (1.0 + f64::from(i) / 65536.0));
-                    matters(now, before, gain.abs())
+                    !same.contains(&now)
                 });
                 let relative = f64::from(relative.expect("some change matters")) / 65536.0;
                 let (old, new) = (contact(force_n), contact(force_n * (1.0 + relative)));

@@ -6,9 +6,11 @@
 
 mod force_mean;
 
+use core::ops::RangeInclusive;
+
 use contact_model::fixed_point::{Celsius, Course, Force, Pairing, log2_relative_pressure};
 
-use force_mean::{Change, ForceMean};
+use force_mean::{Change, ForceMean, all_the_same};
 
 /// How far the set-point may be from Eq. 6-12 at the force for which contact resistance was computed. What
 /// [`force_mean`] leaves to the force makes this 0.5 mK.
@@ -51,18 +53,18 @@ fn filter(state: Celsius, input: Celsius) -> Celsius {
 }
 
 /// A contact that lasts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 struct Touching {
     /// Ticks since landing.
     elapsed: u64,
     force: ForceMean,
-    /// The force for which contact resistance was computed.
-    at: Force,
+    /// Forces for which contact resistance need not be computed again.
+    same: RangeInclusive<Force>,
     course: Course,
 }
 
 /// Follows skin and contact; gives the wanted display temperature.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Render {
     /// Skin and room before contact, filtered.
     before: Option<Before>,
@@ -117,35 +119,41 @@ impl Render {
             self.touching = None;
             return Some(scene.pairing.preset(skin, object));
         };
-        let under = |force| scene.pairing.under(log2_relative_pressure(force));
-        let begin = |force, elapsed| Course::new(&under(force), skin, object, elapsed, TOLERANCE);
-        let Some(touching) = &mut self.touching else {
-            let elapsed = landed_ticks.into();
-            let (course, evaluations) = begin(force, elapsed);
-            self.evaluations = self.evaluations.wrapping_add(evaluations);
-            self.touching = Some(Touching {
-                elapsed,
-                force: ForceMean::new(force),
-                at: force,
-                course,
-            });
-            return Some(course.setpoint());
+        let lay = |force, elapsed| {
+            let contact = scene.pairing.under(log2_relative_pressure(force));
+            let (course, evaluations) = Course::new(&contact, skin, object, elapsed, TOLERANCE);
+            (course, all_the_same(force, course.gain()), evaluations)
         };
-        touching.elapsed += 1;
-        if touching.force.update(force) == Change::New {
-            let (course, evaluations) = begin(force, touching.elapsed);
-            self.evaluations = self.evaluations.wrapping_add(evaluations);
-            (touching.course, touching.at) = (course, force);
-            return Some(course.setpoint());
-        }
-        let mean = touching.force.mean();
-        if force_mean::matters(mean, touching.at, touching.course.gain()) {
-            touching.course.follow(&under(mean));
-            touching.at = mean;
-        }
-        let setpoint = touching.course.advance();
-        let evaluations = touching.course.is_at_knot().into();
+        let (setpoint, evaluations) = match &mut self.touching {
+            None => {
+                let elapsed = landed_ticks.into();
+                let (course, same, evaluations) = lay(force, elapsed);
+                self.touching = Some(Touching {
+                    elapsed,
+                    force: ForceMean::new(force),
+                    same,
+                    course,
+                });
+                (course.setpoint(), evaluations)
+            }
+            Some(touching) => {
+                touching.elapsed += 1;
+                let change = touching.force.update(force);
+                let same = || !touching.force.is_better() || touching.same.contains(&touching.force.mean());
+                if change == Change::Noise && same() {
+                    let setpoint = touching.course.advance();
+                    (setpoint, touching.course.is_at_knot().into())
+                } else {
+                    let (course, same, evaluations) = lay(touching.force.take(), touching.elapsed);
+                    (touching.course, touching.same) = (course, same);
+                    (course.setpoint(), evaluations)
+                }
+            }
+        };
         self.evaluations = self.evaluations.wrapping_add(evaluations);
         Some(setpoint)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -81,12 +81,13 @@ impl Course {
         );
         let elapsed = elapsed.min(LAST);
         // `E` is below 1 / sqrt(pi u): all but perfect contact.
-        let octave = (elapsed + 1).ilog2() as i32 + contact.per_tick.exponent();
+        let octave = elapsed.max(1).ilog2() as i32 + contact.per_tick.exponent();
         if octave > 2 * (size.ilog2() as i32 - bits.ilog2() as i32) {
             return (Self::held(base), 0);
         }
         let first = first_octave((bits << 32) / size) - contact.per_tick.exponent();
-        if first > LAST.ilog2() as i32 {
+        // Within two tolerances over the first chord means within eight of the preset: an eighth of it is 2^6 earlier.
+        if first > LAST.ilog2() as i32 + 6 {
             return (Self::held(preset), 0);
         }
         let lengths = lengths_per_octave(size, bits);
@@ -121,11 +122,6 @@ impl Course {
             doubles: Ticks::new(2 * lengths as u32).unwrap_or(Ticks::MAX),
         };
         (course, evaluations)
-    }
-
-    /// Follows a contact of slightly different resistance from the next knot on, without a step.
-    pub fn follow(&mut self, contact: &Contact) {
-        self.rate = contact.per_tick.doubled(self.per_tick.leading_zeros() as i16);
     }
 
     /// Set-point now.
@@ -168,7 +164,7 @@ impl Course {
     fn turn(&mut self) -> Celsius {
         let (mut begin, mut rate) = (self.end.get(), self.rate);
         if begin == self.doubles.get() {
-            // As above.
+            // Costs no instruction: keeps a branch around what is seldom due.
             compiler_fence(Ordering::SeqCst);
             if self.per_tick == 1 {
                 // The longest chord: from here on, as many of them as there is time.
