@@ -78,9 +78,13 @@ impl Record {
     fn open() -> io::Result<Self> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/verify");
         fs::create_dir_all(&folder)?;
+        // All that the result depends on.
         let sources = concat!(
             include_str!("../src/fixed_point/kernel.rs"),
-            include_str!("../src/fixed_point/kernel_table.rs")
+            include_str!("../src/fixed_point/kernel_table.rs"),
+            include_str!("../src/fixed_point/rate.rs"),
+            include_str!("../src/reference/erfcx.rs"),
+            include_str!("../tests/verify/mod.rs"),
         );
         let hash = sources.bytes().fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
@@ -105,10 +109,10 @@ impl Record {
             largest_rise,
         } = tally;
         let (octave, number) = piece;
-        writeln!(
-            file,
-            "{octave} {number} {inputs} {worst} {correctly_rounded} {rises} {largest_rise} end"
-        )?;
+        // In one piece, and on a line of its own whatever an ended run has left.
+        let line =
+            format!("\n{octave} {number} {inputs} {worst} {correctly_rounded} {rises} {largest_rise} end");
+        file.write_all(line.as_bytes())?;
         self.done.insert(piece, tally);
         Ok(())
     }

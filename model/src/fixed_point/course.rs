@@ -227,6 +227,7 @@ fn first_octave(tolerance: u64) -> i32 {
 }
 
 /// `E` at `elapsed` ticks, which may be more than [`Ticks`] holds.
+#[inline(never)] // Called twice where time does not count.
 fn erfcx_at(elapsed: u64, per_tick: Rate) -> Fraction {
     let excess = (u64::BITS - elapsed.leading_zeros()).saturating_sub(LONGEST);
     Ticks::new((elapsed >> excess) as u32).map_or(Fraction::MAX, |ticks| {

@@ -48,7 +48,16 @@ pub fn bound(octave: i32) -> f64 {
                 &kernel_table::TABLE.rows[usize::from(first + index)],
             )
         })
-        .fold(0.0, f64::max)
+        .fold(0.0, worse)
+}
+
+/// The larger; infinite if one is no number.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() {
+        f64::INFINITY
+    } else {
+        a.max(b)
+    }
 }
 
 fn row_bound(octave: i32, index: u16, count: u16, row: &kernel::Row) -> f64 {
@@ -77,10 +86,14 @@ fn row_bound(octave: i32, index: u16, count: u16, row: &kernel::Row) -> f64 {
         let place = (f64::from(index) + 0.5 + t) / count + 0.5 * UNIT;
         (polynomial - exact((1.0 + place) * u)).abs()
     });
-    if !fits(row) {
+    let off = 1.0 / GUARD + CURVATURE + TRUTH_ERROR + at_grid.fold(0.0, worse);
+    // `E` falls: with what it may be off, and the half that rounds, it stays within the result's 32 bits.
+    let place = |index: u16| exact((1.0 + f64::from(index) / count) * u);
+    let within = place(index) + off + 0.5 < 1.0 / UNIT && place(index + 1) - off + 0.5 >= 0.0;
+    if !within || !fits(row) {
         return f64::INFINITY;
     }
-    0.5 + 1.0 / GUARD + CURVATURE + TRUTH_ERROR + at_grid.fold(0.0, f64::max)
+    0.5 + off
 }
 
 /// Whether every sum of the evaluation stays within 32 bits for any `t`.
