@@ -1,8 +1,8 @@
 //! Nothing panics or overflows for any bits whatever: run with overflow checks, `cargo test -p contact-model`.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, Depth, ErfArgument, Flux, Force, Fraction, Log2, Pairing, Rate, Ratio, SemiInfinite,
-    Ticks, erf, erfcx, exp2, fourier_number, log2, log2_relative_pressure,
+    Celsius, Contact, Course, Depth, ErfArgument, Flux, Force, Fraction, Log2, Pairing, Rate, Ratio,
+    SemiInfinite, Ticks, erf, erfcx, exp2, fourier_number, log2, log2_relative_pressure,
 };
 use contact_model::material::{Material, Surface};
 use proptest::num::f64::ANY;
@@ -89,6 +89,28 @@ proptest! {
         let (display, flux) = (at.display(), at.flux_w_m2());
         prop_assert!((skin >= object && display <= skin && flux >= 0)
             || (skin <= object && display >= skin && flux <= 0));
+    }
+
+    /// Whatever the contact, a course neither panics nor leaves ±255 °C.
+    #[test]
+    fn course_is_total(
+        (weight, ratio) in (word(), word()), (per_tick, conductance_w_m2k) in (rate(), rate()),
+        (skin, object, tolerance) in (celsius(), celsius(), celsius()),
+        elapsed: u64,
+    ) {
+        let contact = Contact {
+            weight: Fraction::from_bits(weight),
+            ratio: Ratio::from_bits(ratio),
+            per_tick,
+            conductance_w_m2k,
+        };
+        let (mut course, evaluations) = Course::new(&contact, skin, object, elapsed, tolerance);
+        prop_assert!(evaluations <= 2);
+        for _ in 0..100 {
+            let setpoint = course.advance();
+            prop_assert_eq!(setpoint, course.setpoint());
+            prop_assert!(setpoint.abs() <= 255, "{}", setpoint);
+        }
     }
 
     #[test]

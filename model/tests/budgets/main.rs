@@ -3,6 +3,7 @@
 //! `cargo test --release -p contact-model --test budgets -- --nocapture` prints it; a row over its bound fails.
 
 mod chain;
+mod course;
 mod elementary;
 mod float;
 #[path = "../golden/mod.rs"]
@@ -49,7 +50,7 @@ const F64: &str = "f64, sweep + corners";
 const BOTH: &str = "golden; f64, sweep + corners";
 
 #[rustfmt::skip]
-const BUDGETS: [Budget; 34] = [
+const BUDGETS: [Budget; 35] = [
     // Floating point.
     Budget { function: "reference::erfcx f64", domain: "z 0..1e308", bound: 2e-15, unit: "relative", against: GOLDEN, how: float::erfcx_f64 },
     Budget { function: "reference::erfcx f32", domain: "z 0..1e37", bound: 5e-7, unit: "relative", against: BOTH, how: float::erfcx_f32 },
@@ -82,6 +83,7 @@ const BUDGETS: [Budget; 34] = [
     Budget { function: "Response: display, r up to 2", domain: RESISTANCES, bound: INPUT_UK + 0.6 + 2.0 * E_UK, unit: "uK", against: BOTH, how: chain::display },
     Budget { function: "Response: display, r up to 16", domain: RESISTANCES, bound: 0.6 + 16.0 * E_UK, unit: "uK", against: F64, how: chain::display_steep },
     Budget { function: "Response: flux", domain: RESISTANCES, bound: 1e9 * (E_ERROR + CONDUCTANCE) + 1.0, unit: "1e-9 dT/R", against: BOTH, how: chain::flux },
+    Budget { function: "Course: set-point, tolerance 500 uK", domain: "9 materials, 5 forces, dT +-10 K, 1 kHz, 10 s", bound: 500.0, unit: "uK", against: F64, how: course::setpoint },
     Budget { function: "Pairing: preset", domain: "-40..125 C, dT 60 K", bound: INPUT_UK + 0.3, unit: "uK", against: BOTH, how: chain::preset },
     Budget { function: "Eq. 3-1", domain: "-40..125 C", bound: INPUT_UK + 0.16, unit: "uK", against: BOTH, how: half_spaces::interface_fixed },
     Budget { function: "Eq. 3-2", domain: "any depth, n; dt 10us..100ms, dT 60 K", bound: INPUT_UK + 0.45, unit: "uK", against: BOTH, how: half_spaces::depth_fixed },
