@@ -238,3 +238,21 @@ fn too_few_inputs_are_refused() {
         "{message}"
     );
 }
+
+/// A folder that cannot be is named at once, before anything is measured.
+#[test]
+fn a_folder_that_cannot_be_is_refused() {
+    let file = out("a-file");
+    std::fs::create_dir_all(out("")).expect("a folder of the tests");
+    std::fs::write(&file, "").expect("a file of the tests");
+    let done = Command::new(env!("CARGO_BIN_EXE_model-bench"))
+        .arg("--out")
+        .arg(&file)
+        .output()
+        .expect("the benchmark starts");
+    assert_eq!(done.status.code(), Some(1));
+    let message = String::from_utf8_lossy(&done.stderr);
+    let named = format!("model-bench: --out {}: ", file.display());
+    assert!(message.starts_with(&named), "{message}");
+    assert!(done.stdout.is_empty(), "nothing was measured");
+}
