@@ -13,8 +13,8 @@ use contact_model::fixed_point::{Celsius, Course, Force, Pairing, log2_relative_
 use force_mean::{Change, ForceMean, all_the_same};
 
 /// How far the set-point may be from Eq. 6-12 at the force for which contact resistance was computed. What
-/// [`force_mean`] leaves to the force makes this 0.5 mK.
-const TOLERANCE: Celsius = Celsius::lit("0.0004");
+/// is left to noise of the force makes this 0.5 mK.
+pub const TOLERANCE: Celsius = Celsius::lit("0.0004");
 
 /// Time constant of the filters before contact, as a power of two of ticks (0.26 s).
 const FILTER_SHIFT: u32 = 8;

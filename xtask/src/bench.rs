@@ -1,7 +1,8 @@
 //! Run time against error of the contact model and its peers.
+use std::ffi::OsString;
 use std::path::PathBuf;
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 
 use crate::probe;
 use crate::process::{Invocation, workspace};
@@ -10,21 +11,26 @@ use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 /// The profile of the flashed image, so that the model is compiled as it is there.
 const PROFILE: &str = "firmware";
 
-/// `cargo xtask bench`
+/// `cargo xtask bench`; a relative `out` is one of the caller's folder.
 pub fn run(permission: Permission, json: bool, out: Option<PathBuf>) -> Result<()> {
+    let out = out.map(|folder| {
+        // Commands run in the workspace's root.
+        std::path::absolute(&folder).with_context(|| format!("--out {}", folder.display()))
+    });
+    let out = out.transpose()?;
     let needs = Needs {
         emulator: true,
         lints: false,
     };
     setup::prepare(needs, permission)?;
-    let mut line: Vec<String> = ["run", "--release", "--package", "model-bench", "--"]
-        .map(String::from)
+    let mut line: Vec<OsString> = ["run", "--release", "--package", "model-bench", "--"]
+        .map(OsString::from)
         .into();
     if json {
         line.push("--json".into());
     }
     if let Some(folder) = out {
-        line.extend(["--out".into(), folder.to_string_lossy().into()]);
+        line.extend(["--out".into(), folder.into()]);
     }
     permission.choice.handed_to(Invocation::cargo(line)).run()
 }

@@ -1,4 +1,5 @@
 //! Commands as they are run, shown to the user for repeating, and waited for.
+use std::ffi::OsString;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
@@ -20,19 +21,20 @@ pub fn workspace() -> &'static Path {
         .unwrap_or(Path::new("."))
 }
 
-/// A command line with the environment it changes. Its `Display` is a line for a shell in the workspace's root.
+/// A command line with the environment it changes. Its `Display` is a line for a shell in the workspace's root; what is
+/// not Unicode is marked there, but passed on as it is.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Invocation {
     program: String,
     shown: String,
-    args: Vec<String>,
+    args: Vec<OsString>,
     set: Vec<(String, String)>,
     unset: Vec<&'static str>,
 }
 
 impl Invocation {
     /// `program` with `args`, both as a shell would see them after quoting.
-    pub fn new<A: Into<String>>(program: &str, args: impl IntoIterator<Item = A>) -> Self {
+    pub fn new<A: Into<OsString>>(program: &str, args: impl IntoIterator<Item = A>) -> Self {
         Self {
             program: program.into(),
             shown: program.into(),
@@ -43,7 +45,7 @@ impl Invocation {
     }
 
     /// The cargo that runs this program, shown as plain `cargo`.
-    pub fn cargo<A: Into<String>>(args: impl IntoIterator<Item = A>) -> Self {
+    pub fn cargo<A: Into<OsString>>(args: impl IntoIterator<Item = A>) -> Self {
         let program = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
         Self {
             program,
@@ -156,7 +158,7 @@ impl fmt::Display for Invocation {
         }
         f.write_str(&quoted(&self.shown))?;
         for arg in &self.args {
-            write!(f, " {}", quoted(arg))?;
+            write!(f, " {}", quoted(&arg.to_string_lossy()))?;
         }
         Ok(())
     }
@@ -192,6 +194,17 @@ mod tests {
             .to_string();
         let echoed = Invocation::new("sh", ["-c", &shown]).answer();
         assert_eq!(echoed.as_deref(), Some(odd), "{shown}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn arguments_need_not_be_unicode() {
+        use std::os::unix::ffi::OsStringExt;
+        // One byte that begins no character: it counts as one, its replacement would be three.
+        let odd = OsString::from_vec(vec![0xff]);
+        let script = "printf %s \"$1\" | wc -c | tr -d ' '";
+        let args = ["-c".into(), script.into(), "sh".into(), odd];
+        assert_eq!(Invocation::new("sh", args).answer().as_deref(), Some("1\n"));
     }
 
     #[test]

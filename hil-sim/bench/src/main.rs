@@ -32,9 +32,15 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         inputs: arguments.inputs,
         rounds: arguments.rounds.into(),
     };
-    let figures = host::measure(effort, |what| eprintln!("{what}"))?;
+    // Before time is spent on what cannot be written.
     let folder = &arguments.out;
-    std::fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    std::fs::create_dir_all(folder).with_context(|| format!("--out {}", folder.display()))?;
+    let figures = host::measure(effort, |what| eprintln!("{what}"))?;
+    if arguments.json {
+        println!("{}", serde_json::to_string_pretty(&figures)?);
+    } else {
+        print!("{}", host::tables(&figures));
+    }
     for (name, text) in [
         ("benchmark.md", host::page(&figures)),
         ("benchmark.svg", host::draw(&figures)?),
@@ -42,11 +48,6 @@ fn run(arguments: &Arguments) -> anyhow::Result<()> {
         let path = folder.join(name);
         std::fs::write(&path, text).with_context(|| path.display().to_string())?;
         eprintln!("wrote {}", path.display());
-    }
-    if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&figures)?);
-    } else {
-        print!("{}", host::tables(&figures));
     }
     Ok(())
 }

@@ -1,10 +1,12 @@
 //! The model's share of a control tick, in each kind of scene: set-points (Eq. 6-12, 3-1) from ticks, force and the
-//! temperatures before contact. By the firmware's integers, and by the same formulas in floating point.
+//! temperatures before contact. By the model's integers, by the same formulas in floating point, and by the firmware's own
+//! step, which follows the force.
 
 mod floating;
 
 use contact_model::fixed_point::{Celsius, Course, Force, Pairing, PairingError, log2_relative_pressure};
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
+use thermal_display::render::{self, Mode, Render, TOLERANCE};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
 use floating::Finger as FloatingFinger;
@@ -19,8 +21,6 @@ pub const SKIN_C: f64 = 34.0;
 pub const OBJECT_C: f64 = 24.0;
 /// The constant force.
 pub const FORCE_N: f64 = 2.0;
-/// How far a course may be from Eq. 6-12, K; as the firmware has it.
-pub const TOLERANCE_K: f64 = 0.0004;
 /// Materials of the five fingers, by their place in [`MATERIALS`]: granite, which is also that of scenes with one
 /// finger, copper, stainless steel, ABS, foam.
 pub const FINGERS: [usize; 5] = [3, 0, 2, 5, 6];
@@ -40,8 +40,10 @@ pub struct Scene {
 /// How a set-point is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arithmetic {
-    /// As in the firmware.
+    /// The model's.
     Integers,
+    /// The firmware's whole step from force to set-point.
+    Firmware,
     /// Single precision, erfcx after Shepherd and Laframboise.
     Shepherd,
     /// Single precision, erfcx by libm.
@@ -50,7 +52,7 @@ pub enum Arithmetic {
     LibmF64,
 }
 
-/// A finger by the firmware's integers.
+/// A finger by the model's integers.
 #[derive(Clone)]
 struct Finger {
     pairing: Pairing,
@@ -68,6 +70,8 @@ pub struct Station {
     object: Celsius,
     single: [FloatingFinger<f32>; 5],
     double: [FloatingFinger<f64>; 5],
+    render: Render,
+    scene: render::Scene,
 }
 
 impl Station {
@@ -78,22 +82,30 @@ impl Station {
     pub fn new() -> Result<Self, PairingError> {
         let force = Force::from_num(FORCE_N);
         let (skin, object_c) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
-        let tolerance = Celsius::from_num(TOLERANCE_K);
         let fixed = |finger: usize| {
             let object = &MATERIALS[FINGERS[finger]].1;
             let pairing = Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
             let contact = pairing.under(log2_relative_pressure(force));
-            let (course, _) = Course::new(&contact, skin, object_c, 0, tolerance);
+            let (course, _) = Course::new(&contact, skin, object_c, 0, TOLERANCE);
             Ok(Finger {
                 pairing,
                 course,
                 set_point: Celsius::ZERO,
             })
         };
+        let fixed = [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?];
+        let mut render = Render::default();
+        render.observe(skin, object_c, false);
         Ok(Self {
             skin,
             object: object_c,
-            fixed: [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?],
+            render,
+            scene: render::Scene {
+                pairing: fixed[0].pairing,
+                object: Some(object_c),
+                mode: Mode::ContactResistance,
+            },
+            fixed,
             single: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
             double: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
         })
@@ -105,7 +117,7 @@ impl Station {
     #[must_use]
     pub fn set_point_c(&self, arithmetic: Arithmetic, bits: u32) -> f64 {
         match arithmetic {
-            Arithmetic::Integers => Celsius::from_bits(bits as i32).to_num(),
+            Arithmetic::Integers | Arithmetic::Firmware => Celsius::from_bits(bits as i32).to_num(),
             Arithmetic::Shepherd | Arithmetic::LibmF32 => f64::from(self.single[0].set_point_c),
             Arithmetic::LibmF64 => self.double[0].set_point_c,
         }
@@ -115,6 +127,11 @@ impl Station {
 /// The force that streams: 1 to 2 N and again, different in every tick; in units of 2^-12 N above 1 N.
 fn streaming(tick: u32) -> u32 {
     tick & 0xfff
+}
+
+/// The force that streams, in integers.
+fn streaming_fixed(tick: u32) -> Force {
+    Force::from_bits((1 << 24) + (streaming(tick) << 12))
 }
 
 /// The force that streams, N.
@@ -141,8 +158,9 @@ fn constant_force(station: &mut Station, _: u32) -> u32 {
 }
 
 fn streaming_force(station: &mut Station, tick: u32) -> u32 {
-    let force = Force::from_bits((1 << 24) + (streaming(tick) << 12));
-    let contact = station.fixed[0].pairing.under(log2_relative_pressure(force));
+    let contact = station.fixed[0]
+        .pairing
+        .under(log2_relative_pressure(streaming_fixed(tick)));
     bits(contact.at(tick, station.skin, station.object).display())
 }
 
@@ -153,8 +171,24 @@ fn five_fingers(station: &mut Station, _: u32) -> u32 {
     bits(station.fixed[0].set_point)
 }
 
+/// The firmware's step under a force; in the first tick a finger has landed one tick before. The skin was observed: 0
+/// °C for none is never seen.
+#[inline]
+fn render_step(station: &mut Station, force: Force) -> u32 {
+    let set_point = station.render.present(&station.scene, Some(force), 1);
+    set_point.map_or(0, bits)
+}
+
+fn render_constant(station: &mut Station, _: u32) -> u32 {
+    render_step(station, const { Force::lit("2") })
+}
+
+fn render_streaming(station: &mut Station, tick: u32) -> u32 {
+    render_step(station, streaming_fixed(tick))
+}
+
 /// Only returns: what a call costs beside the callee's work.
-#[unsafe(no_mangle)]
+#[inline(never)]
 pub fn only_return_scene(_: &mut Station, _: u32) -> u32 {
     0
 }
@@ -165,12 +199,16 @@ pub mod kind {
     pub const IDLE: &str = "idle";
     /// A finger under a constant force.
     pub const CONSTANT: &str = "constant force";
-    /// A finger whose force changes in every tick, and R with it.
+    /// A finger whose force changes in every tick: R and E in every tick.
     pub const STREAMING: &str = "streaming force";
     /// Perfect contact (Eq. 3-1).
     pub const SEMI_INFINITE: &str = "semi-infinite";
     /// Five fingers under a constant force.
     pub const FIVE: &str = "five fingers";
+    /// [`CONSTANT`] by the firmware, from landing on.
+    pub const RENDER_CONSTANT: &str = "render step, constant force";
+    /// [`STREAMING`] by the firmware, from landing on: R only where a mean of the force has moved.
+    pub const RENDER_STREAMING: &str = "render step, streaming force";
 }
 
 const fn scene(kind: &'static str, arithmetic: Arithmetic, step: fn(&mut Station, u32) -> u32) -> Scene {
@@ -181,10 +219,10 @@ const fn scene(kind: &'static str, arithmetic: Arithmetic, step: fn(&mut Station
     }
 }
 
-use Arithmetic::{Integers, LibmF32, LibmF64, Shepherd};
+use Arithmetic::{Firmware, Integers, LibmF32, LibmF64, Shepherd};
 
-/// All kinds in all arithmetics.
-pub static SCENES: [Scene; 16] = [
+/// All kinds, in the arithmetics that each has.
+pub static SCENES: [Scene; 18] = [
     scene(kind::IDLE, Integers, idle),
     scene(kind::IDLE, LibmF32, |s, _| {
         s.single[0].idle();
@@ -236,4 +274,6 @@ pub static SCENES: [Scene; 16] = [
         }
         0
     }),
+    scene(kind::RENDER_CONSTANT, Firmware, render_constant),
+    scene(kind::RENDER_STREAMING, Firmware, render_streaming),
 ];

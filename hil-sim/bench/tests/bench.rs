@@ -3,14 +3,19 @@ use std::path::PathBuf;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
-use model_bench::scenes::{TICKS, TOLERANCE_K, kind};
+use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
+use contact_model::reference::Contact;
+use model_bench::scenes::{FINGERS, TICKS, kind};
 use serde_json::Value;
+use thermal_display::render::TOLERANCE;
 
 /// 2^32: errors are in units of the fixed-point result.
 const UNITS: f64 = 4_294_967_296.0;
 
-/// The firmware's arithmetic, as the figures name it.
-const FIRMWARE: &str = "integers (firmware)";
+/// The model's arithmetic, as the figures name it.
+const INTEGERS: &str = "integers";
+/// The firmware's step, as the figures name it.
+const FIRMWARE: &str = "firmware";
 
 /// Two runs.
 static RUNS: LazyLock<[Value; 2]> = LazyLock::new(|| [run("first"), run("second")]);
@@ -132,15 +137,23 @@ fn errors_stay_within_what_the_types_allow() {
     }
 }
 
-/// The set-points of all arithmetics are those of Eq. 6-12 and 3-1; the firmware's chords keep their
-/// tolerance.
+/// The set-points of all arithmetics are those of Eq. 6-12 and 3-1; chords keep the firmware's tolerance. Where the
+/// firmware follows a mean of the force, only a loose bound: of a force that is off by a fifth, R is by Eq. 6-8 off by less,
+/// `E` by at most 0.277 of that, and the set-point by that of `dT (w - r)`.
 #[test]
 fn set_points_are_right() {
+    let granite = &MATERIALS[FINGERS[0]].1;
+    let contact = Contact::<f64>::new((&SKIN, 34.0), (granite, 24.0), &REFERENCE_DISPLAY, 1.0);
+    let lag_mk = 0.2 * 0.277 * 10e3 * (contact.weight - contact.ratio).abs();
     for row in rows(&RUNS[0], "scenes") {
-        let chords =
-            row["arithmetic"] == FIRMWARE && (row["kind"] == kind::CONSTANT || row["kind"] == kind::FIVE);
-        let bound_mk = if chords { 1e3 * TOLERANCE_K } else { 0.01 };
-        assert!(number(row, "worst_mk") < bound_mk, "{row}");
+        let chords = row["arithmetic"] == FIRMWARE
+            || row["arithmetic"] == INTEGERS && (row["kind"] == kind::CONSTANT || row["kind"] == kind::FIVE);
+        let bound_mk = match chords {
+            _ if row["kind"] == kind::RENDER_STREAMING => lag_mk,
+            true => 1e3 * TOLERANCE.to_num::<f64>(),
+            false => 0.01,
+        };
+        assert!(number(row, "worst_mk") < bound_mk, "{row} below {bound_mk}");
         assert!(row["breaks_at_s"].is_null(), "{row}");
     }
 }
@@ -148,7 +161,7 @@ fn set_points_are_right() {
 /// At most 100 evaluations in 10 s: so many ticks at most cost more than the fewest instructions.
 #[test]
 fn few_ticks_evaluate() {
-    let row = scene(kind::CONSTANT, FIRMWARE);
+    let row = scene(kind::CONSTANT, INTEGERS);
     let [fewest, mean, most] =
         ["min", "mean", "max"].map(|which| number(row, &format!("instructions_{which}")));
     assert!(most > 2.0 * fewest, "{row}");
@@ -184,13 +197,14 @@ fn costs_repeat_exactly() {
     }
 }
 
-/// Semi-infinite in `f32`: three loads, a subtraction, a multiplication with subtraction, a store, and a frame of
-/// three around it; with the call ten instructions. The firmware's kernel takes the same time for every input.
+/// Semi-infinite in `f32`: three loads, a subtraction, a multiplication with subtraction, a store, the 0 that is
+/// returned, and a frame of three around it; with the call eleven instructions. The firmware's kernel takes the same
+/// time for every input.
 #[test]
 fn costs_are_those_of_a_call() {
     let row = scene("semi-infinite", "f32, libm");
     for name in ["instructions_min", "instructions_mean", "instructions_max"] {
-        assert_eq!(number(row, name), 10.0, "{name}");
+        assert_eq!(number(row, name), 11.0, "{name}");
     }
     let firmware = kernel("firmware");
     for cost in ["instructions", "cycles"] {
@@ -228,4 +242,22 @@ fn too_few_inputs_are_refused() {
         message.contains("'0'") && message.contains("--inputs"),
         "{message}"
     );
+}
+
+/// A folder that cannot be is named at once, before anything is measured.
+#[test]
+fn a_folder_that_cannot_be_is_refused() {
+    let file = out("a-file");
+    std::fs::create_dir_all(out("")).expect("a folder of the tests");
+    std::fs::write(&file, "").expect("a file of the tests");
+    let done = Command::new(env!("CARGO_BIN_EXE_model-bench"))
+        .arg("--out")
+        .arg(&file)
+        .output()
+        .expect("the benchmark starts");
+    assert_eq!(done.status.code(), Some(1));
+    let message = String::from_utf8_lossy(&done.stderr);
+    let named = format!("model-bench: --out {}: ", file.display());
+    assert!(message.starts_with(&named), "{message}");
+    assert!(done.stdout.is_empty(), "nothing was measured");
 }

@@ -14,12 +14,12 @@ use model_bench::job::{Checksum, Job, ON_TARGET};
 use model_bench::kernels::{Call, Value};
 use model_bench::scenes::{Scene, Station, TICKS};
 
-/// 0 until the job is done, then [`DONE_WELL`] or [`DONE_BADLY`].
-#[unsafe(no_mangle)]
-pub static DONE: AtomicU32 = AtomicU32::new(0);
-/// What the calls returned, low word first.
-#[unsafe(no_mangle)]
-pub static CHECKSUM: [AtomicU32; 2] = [const { AtomicU32::new(0) }; 2];
+/// 0 until the job is done, then [`DONE_WELL`] or [`DONE_BADLY`]. Read from outside only.
+#[used]
+static DONE: AtomicU32 = AtomicU32::new(0);
+/// What the calls returned, low word first. Read from outside only.
+#[used]
+static CHECKSUM: [AtomicU32; 2] = [const { AtomicU32::new(0) }; 2];
 
 const DONE_WELL: u32 = 1;
 const DONE_BADLY: u32 = 2;

@@ -1,24 +1,27 @@
 //! Instructions and cycles on the emulated microcontroller.
-use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
-
 use anyhow::{Context, bail, ensure};
 use hil_sim::machine::{FLASH_BASE, Firmware, Machine, Stats, Wiring};
 use model_bench::job::{Checksum, Job};
 use model_bench::kernels::{Call, KERNELS, ONLY_RETURN};
-use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 use serde::Serialize;
+
+use super::image::{Image, build};
 
 /// Cycles after which a job is given up: far more than any needs.
 const LIMIT: u64 = 20_000_000_000;
 /// Cycles between two looks at whether a job is done.
 const STRIDE: u64 = 10_000_000;
-/// Words of the image's `DONE`.
+/// Values of the image's `DONE`.
 const RUNNING: u32 = 0;
 /// See [`RUNNING`].
 const DONE_WELL: u32 = 1;
 
-/// Where the module of the firmware's kernel keeps its tables, as the image's symbols name it.
+/// What the image reports its progress and the result in.
+const DONE: &str = "image::DONE";
+/// See [`DONE`].
+const CHECKSUM: &str = "image::CHECKSUM";
+
+/// Begin of the paths of the firmware's kernel and its tables.
 const KERNEL_MODULE: &str = "contact_model::fixed_point::kernel";
 
 /// Instructions (exact) and cycles (estimated) of a call, call and return included, over all inputs.
@@ -56,8 +59,7 @@ impl Wiring for Pins {
 /// The image and what a call costs in it without the callee's work.
 pub struct Emulated {
     firmware: Firmware,
-    kernel_table_bytes: usize,
-    compiler: String,
+    image: Image,
     /// Of the types of [`Call`] in their order, then of scenes.
     overheads: Vec<Overhead>,
 }
@@ -79,8 +81,7 @@ impl Emulated {
         let elf = std::fs::read(&path).with_context(|| path.display().to_string())?;
         let firmware = Firmware::from_elf(&elf).with_context(|| path.display().to_string())?;
         let mut new = Self {
-            kernel_table_bytes: table_bytes(&elf)?,
-            compiler: compiler(&elf)?,
+            image: Image::new(&elf).with_context(|| path.display().to_string())?,
             firmware,
             overheads: Vec::new(),
         };
@@ -107,12 +108,12 @@ impl Emulated {
 
     /// Bytes of static data of the firmware's kernel in the image.
     pub fn kernel_table_bytes(&self) -> usize {
-        self.kernel_table_bytes
+        self.image.data_bytes(KERNEL_MODULE)
     }
 
     /// What compiled the image.
     pub fn compiler(&self) -> &str {
-        &self.compiler
+        self.image.compiler()
     }
 
     /// Cost of the kernel of that place, and the checksum of what it returned.
@@ -148,18 +149,17 @@ impl Emulated {
     /// Cost of the handler's activations in a job.
     fn run(&self, pins: u32) -> anyhow::Result<(Cost, Checksum)> {
         let mut machine = Machine::new(&self.firmware, Pins(pins))?;
-        let word = |machine: &Machine<Pins>, name: &str, index: u32| {
-            let address = self.firmware.symbol(name)?;
-            let bytes = machine.memory(address + 4 * index, 4)?;
-            Some(u32::from_le_bytes(bytes.try_into().ok()?))
-        };
-        let read = |machine: &Machine<Pins>, name: &str, index| {
-            word(machine, name, index).with_context(|| format!("the image has no {name}"))
+        let (done, checksum) = (self.image.address(DONE)?, self.image.address(CHECKSUM)?);
+        let word = |machine: &Machine<Pins>, address: u32| {
+            let bytes = machine.memory(address, 4).and_then(|bytes| bytes.try_into().ok());
+            bytes
+                .map(u32::from_le_bytes)
+                .with_context(|| format!("the machine has no memory at {address:#x}"))
         };
         // The first look comes after the start-up code has cleared the RAM.
         loop {
             machine.run_until(machine.now() + STRIDE)?;
-            match read(&machine, "DONE", 0)? {
+            match word(&machine, done)? {
                 RUNNING if machine.now() < LIMIT => {}
                 DONE_WELL => break,
                 state => bail!(
@@ -168,8 +168,8 @@ impl Emulated {
                 ),
             }
         }
-        let low = read(&machine, "CHECKSUM", 0)?;
-        let high = read(&machine, "CHECKSUM", 1)?;
+        let low = word(&machine, checksum)?;
+        let high = word(&machine, checksum + 4)?;
         let cost = cost_of_handler(&machine.stats()).context("the image made no calls")?;
         Ok((cost, Checksum(u64::from(high) << 32 | u64::from(low))))
     }
@@ -177,11 +177,7 @@ impl Emulated {
     /// Instructions and cycles of calling and returning from a function that only returns, by its code: with or
     /// without a frame. Cycles as the machine estimates them.
     fn call_and_return(&self, name: &str) -> anyhow::Result<(u64, u64)> {
-        let address = self
-            .firmware
-            .symbol(name)
-            .with_context(|| format!("the image has no {name}"))?
-            & !1;
+        let address = self.image.address(name)? & !1;
         let start = (address - FLASH_BASE) as usize;
         let halves: Vec<u16> = self.firmware.flash()[start..start + 8]
             .chunks_exact(2)
@@ -220,50 +216,4 @@ fn cost_of_handler(stats: &Stats) -> Option<Cost> {
         cycles_mean: handler.cycles_mean,
         cycles_max: handler.cycles_max,
     })
-}
-
-/// Bytes of the data of the kernel's module.
-fn table_bytes(elf: &[u8]) -> anyhow::Result<usize> {
-    let file = object::File::parse(elf)?;
-    let sizes = file
-        .symbols()
-        .filter(|symbol| symbol.kind() == SymbolKind::Data)
-        .filter(|symbol| {
-            symbol
-                .name()
-                .is_ok_and(|name| format!("{:#}", rustc_demangle::demangle(name)).starts_with(KERNEL_MODULE))
-        })
-        .map(|symbol| symbol.size() as usize);
-    Ok(sizes.sum())
-}
-
-/// Name and version of the compiler, as it leaves them in the image.
-fn compiler(elf: &[u8]) -> anyhow::Result<String> {
-    let file = object::File::parse(elf)?;
-    let section = file
-        .section_by_name(".comment")
-        .context("the image names no compiler")?;
-    let comments = String::from_utf8_lossy(section.data()?);
-    let name = comments.split('\0').find(|comment| comment.starts_with("rustc"));
-    Ok(name.context("the image was not compiled by rustc")?.into())
-}
-
-/// Builds the image; cargo decides what is stale.
-fn build() -> anyhow::Result<PathBuf> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .ancestors()
-        .nth(2)
-        .context("the benchmark has no workspace")?;
-    let built = Command::new("cargo")
-        .args(["xtask", "bench-image"])
-        .current_dir(root)
-        .stderr(Stdio::inherit())
-        .output()
-        .context("cargo cannot be started to build the image")?;
-    ensure!(
-        built.status.success(),
-        "the image could not be built: `cargo xtask bench-image` ended with {}",
-        built.status
-    );
-    Ok(PathBuf::from(String::from_utf8_lossy(&built.stdout).trim()))
 }

@@ -4,8 +4,9 @@ use std::hint::black_box;
 use model_bench::inputs::Input;
 use model_bench::job::{Checksum, ON_TARGET};
 use model_bench::kernels::{Call, KERNELS, Kernel, Table};
-use model_bench::scenes::{Arithmetic, SCENES, Station, TICKS, TOLERANCE_K};
+use model_bench::scenes::{Arithmetic, SCENES, Station, TICKS};
 use serde::Serialize;
+use thermal_display::render::TOLERANCE;
 
 use super::accuracy::{Accuracy, STEP_K, Truth};
 use super::emulated::{Cost, Emulated};
@@ -135,7 +136,7 @@ pub fn measure(effort: Effort, progress: impl Fn(&str)) -> anyhow::Result<Figure
         inputs_on_target: ON_TARGET,
         ticks: TICKS,
         step_k: STEP_K,
-        tolerance_mk: 1e3 * TOLERANCE_K,
+        tolerance_mk: 1e3 * TOLERANCE.to_num::<f64>(),
         target: "emulated STM32F446: instructions exact, cycles estimated, no wait states",
         compiler: emulated.compiler().into(),
         host: host(),
@@ -213,7 +214,8 @@ fn scene_times(rounds: usize) -> anyhow::Result<Vec<Time>> {
 /// The arithmetic in words.
 fn name(arithmetic: Arithmetic) -> &'static str {
     match arithmetic {
-        Arithmetic::Integers => "integers (firmware)",
+        Arithmetic::Integers => "integers",
+        Arithmetic::Firmware => "firmware",
         Arithmetic::Shepherd => "f32, Shepherd-Laframboise",
         Arithmetic::LibmF32 => "f32, libm",
         Arithmetic::LibmF64 => "f64, libm",

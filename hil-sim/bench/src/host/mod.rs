@@ -2,6 +2,7 @@
 mod accuracy;
 mod emulated;
 mod figures;
+mod image;
 mod plot;
 mod precise;
 mod scenes;

@@ -49,9 +49,13 @@ pub fn tables(figures: &Figures) -> String {
          calls side by side.\n\n\
          {scenes}\n\
          The model's share of a control tick over {} ticks of 1 ms, skin 34 C, object 24 C, granite at 2 N (streaming: \
-         1 to 2 N); five fingers: granite, copper, stainless steel, ABS, foam. Errors of the set-point against \
-         Eq. 6-12 or 3-1 in f64. Under constant force the firmware follows chords within {} mK and evaluates E where \
-         one ends: fewest are ticks without, most with an evaluation.\n",
+         1 to 2 N, R and E in every tick); five fingers: granite, copper, stainless steel, ABS, foam. Errors of the \
+         set-point against Eq. 6-12 or 3-1 in f64. Under constant force integers follow chords within {:.1} mK and \
+         evaluate E where one ends: fewest are ticks without an evaluation, most those that double the length of the \
+         chords as well; an evaluation alone is between them.\n\n\
+         Render step: the firmware's own step from force to set-point, landing included. R is computed anew only when \
+         the force has moved, and taken up where a chord ends. So the set-point under a streaming force follows a mean \
+         of it and lags behind: this is the error shown.\n",
         figures.inputs,
         figures.step_k,
         figures.inputs_on_target,

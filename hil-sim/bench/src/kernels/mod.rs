@@ -89,25 +89,25 @@ impl Call {
     }
 }
 
-/// Names of the functions that only return, as the image's symbols.
+/// Paths of the functions that only return, by which they are found in the image.
 pub const ONLY_RETURN: [&str; 4] = [
-    "only_return_fixed",
-    "only_return_single",
-    "only_return_double",
-    "only_return_scene",
+    "model_bench::kernels::only_return_fixed",
+    "model_bench::kernels::only_return_single",
+    "model_bench::kernels::only_return_double",
+    "model_bench::scenes::only_return_scene",
 ];
 
-#[unsafe(no_mangle)]
+#[inline(never)]
 fn only_return_fixed(elapsed: Ticks, _: Rate) -> Fraction {
     Fraction::from_bits(elapsed.get())
 }
 
-#[unsafe(no_mangle)]
+#[inline(never)]
 fn only_return_single(_: u32, per_tick: f32) -> f32 {
     per_tick
 }
 
-#[unsafe(no_mangle)]
+#[inline(never)]
 fn only_return_double(_: u32, per_tick: f64) -> f64 {
     per_tick
 }

@@ -1,0 +1,101 @@
+//! The image that runs on the emulated microcontroller, as its ELF file shows it.
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, ensure};
+use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+
+/// Builds the image; cargo decides what is stale.
+///
+/// # Errors
+/// Cargo cannot be started or fails.
+pub fn build() -> anyhow::Result<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .nth(2)
+        .context("the benchmark has no workspace")?;
+    let built = Command::new("cargo")
+        .args(["xtask", "bench-image"])
+        .current_dir(root)
+        .stderr(Stdio::inherit())
+        .output()
+        .context("cargo cannot be started to build the image")?;
+    ensure!(
+        built.status.success(),
+        "the image could not be built: `cargo xtask bench-image` ended with {}",
+        built.status
+    );
+    Ok(PathBuf::from(String::from_utf8_lossy(&built.stdout).trim()))
+}
+
+/// A function or a static.
+struct Symbol {
+    /// Its path in the source.
+    path: String,
+    address: u32,
+    size: u64,
+    kind: SymbolKind,
+}
+
+/// What an ELF file says of functions and data, by their paths in the source.
+pub struct Image {
+    symbols: Vec<Symbol>,
+    compiler: String,
+}
+
+impl Image {
+    /// Reads an ELF file.
+    ///
+    /// # Errors
+    /// It is none, or names no compiler.
+    pub fn new(elf: &[u8]) -> anyhow::Result<Self> {
+        let file = object::File::parse(elf)?;
+        let symbols = file.symbols().filter_map(|symbol| {
+            Some(Symbol {
+                path: format!("{:#}", rustc_demangle::demangle(symbol.name().ok()?)),
+                address: symbol.address().try_into().ok()?,
+                size: symbol.size(),
+                kind: symbol.kind(),
+            })
+        });
+        Ok(Self {
+            symbols: symbols.collect(),
+            compiler: compiler(&file)?,
+        })
+    }
+
+    /// Address of the function or static of that path; a function's with the bit that marks Thumb code.
+    ///
+    /// # Errors
+    /// There is none, or more than one.
+    pub fn address(&self, path: &str) -> anyhow::Result<u32> {
+        let mut found = self.symbols.iter().filter(|symbol| symbol.path == path);
+        let symbol = found.next().with_context(|| format!("the image has no {path}"))?;
+        ensure!(found.next().is_none(), "the image has more than one {path}");
+        Ok(symbol.address)
+    }
+
+    /// Bytes of all data whose path begins so.
+    pub fn data_bytes(&self, prefix: &str) -> usize {
+        let data = self
+            .symbols
+            .iter()
+            .filter(|symbol| symbol.kind == SymbolKind::Data && symbol.path.starts_with(prefix));
+        data.map(|symbol| symbol.size as usize).sum()
+    }
+
+    /// Name and version of the compiler.
+    pub fn compiler(&self) -> &str {
+        &self.compiler
+    }
+}
+
+/// Name and version of the compiler, as it leaves them in the image.
+fn compiler(file: &object::File<'_>) -> anyhow::Result<String> {
+    let section = file
+        .section_by_name(".comment")
+        .context("the image names no compiler")?;
+    let comments = String::from_utf8_lossy(section.data()?);
+    let name = comments.split('\0').find(|comment| comment.starts_with("rustc"));
+    Ok(name.context("the image was not compiled by rustc")?.into())
+}
