@@ -138,13 +138,13 @@ fn errors_stay_within_what_the_types_allow() {
 }
 
 /// The set-points of all arithmetics are those of Eq. 6-12 and 3-1; chords keep the firmware's tolerance. Where the
-/// firmware follows a mean of the force, only a loose bound: of a force that is off by a fifth, R is by Eq. 6-8 off by less,
-/// `E` by at most 0.277 of that, and the set-point by that of `dT (w - r)`.
+/// firmware follows a mean of the force, that lags by 32 ms of a rise of 1 N in 4.1 s, 0.8 %, and by as much again until it is
+/// told from noise: R is by Eq. 6-8 off by less, `E` by at most 0.277 of that, and the set-point by that of `dT (w - r)`.
 #[test]
 fn set_points_are_right() {
     let granite = &MATERIALS[FINGERS[0]].1;
     let contact = Contact::<f64>::new((&SKIN, 34.0), (granite, 24.0), &REFERENCE_DISPLAY, 1.0);
-    let lag_mk = 0.2 * 0.277 * 10e3 * (contact.weight - contact.ratio).abs();
+    let lag_mk = 0.016 * 0.277 * 10e3 * (contact.weight - contact.ratio).abs();
     for row in rows(&RUNS[0], "scenes") {
         let chords = row["arithmetic"] == FIRMWARE
             || row["arithmetic"] == INTEGERS && (row["kind"] == kind::CONSTANT || row["kind"] == kind::FIVE);

@@ -54,8 +54,8 @@ pub fn tables(figures: &Figures) -> String {
          evaluate E where one ends: fewest are ticks without an evaluation, most those that double the length of the \
          chords as well; an evaluation alone is between them.\n\n\
          Render step: the firmware's own step from force to set-point, landing included. R is computed anew only when \
-         the force has moved, and taken up where a chord ends. So the set-point under a streaming force follows a mean \
-         of it and lags behind: this is the error shown.\n",
+         the force has moved, and a new chord laid. So the set-point under a streaming force follows a mean of its last \
+         64 ticks and lags behind: this is the error shown.\n",
         figures.inputs,
         figures.step_k,
         figures.inputs_on_target,

@@ -28,7 +28,7 @@ pub struct Kernel {
     pub call: Call,
 }
 
-/// The firmware's kernel as a function of its own; the firmware itself inlines it.
+/// The firmware's kernel as a function of its own.
 fn firmware(elapsed: Ticks, per_tick: Rate) -> Fraction {
     erfcx(elapsed, per_tick)
 }
