@@ -98,9 +98,15 @@ impl Response {
 
     /// `w (1 - E)`.
     fn skin_part(&self) -> Fraction {
-        let product = u64::from(self.contact.weight.to_bits()) * u64::from(self.done().to_bits());
-        Fraction::from_bits(((product + (1 << 31)) >> 32) as u32)
+        product(self.contact.weight, self.done())
     }
+}
+
+/// The product of two fractions; error at most half of the resolution.
+#[inline]
+pub(super) fn product(a: Fraction, b: Fraction) -> Fraction {
+    let bits = u64::from(a.to_bits()) * u64::from(b.to_bits());
+    Fraction::from_bits(((bits + (1 << 31)) >> 32) as u32)
 }
 
 /// `from` less a change with `BITS` more fraction bits; error at most half of the resolution; saturates.

@@ -58,8 +58,8 @@ impl SemiInfinite {
             .saturating_sub(UNITS)
             .saturating_add(self.log2_reach)
             .saturating_sub(log2(elapsed.get()) >> 1);
-        let gone = u64::from((!erf(argument(Rate::from_log2(log2_argument)))).to_bits());
-        let gain = Fraction::from_bits(((u64::from(self.weight.to_bits()) * gone + (1 << 31)) >> 32) as u32);
+        let gone = !erf(argument(Rate::from_log2(log2_argument)));
+        let gain = contact::product(self.weight, gone);
         skin_c.saturating_sub(contact::part(skin_c.saturating_sub(object_c), gain))
     }
 
