@@ -59,20 +59,21 @@ pub fn run<E: Engine>(
         if ms == zero_ms {
             session.engine.reset_cost();
         }
-        session.boundary(2 * ms);
+        session.boundary(ms);
         if (zero_ms..=end_ms).contains(&ms) {
-            let row = Row::now(session.t_s(2 * ms), session.engine.world().plant());
+            let row = Row::now(session.t_s(ms), session.engine.world().plant());
             trace.push(ms, row);
         }
-        session.half_ms().map_err(RunError::Stop)?;
-        session.boundary(2 * ms + 1);
-        session.half_ms().map_err(RunError::Stop)?;
+        session.step_plant();
+        session.engine.run_half_ms().map_err(RunError::Stop)?;
+        session.send(2 * ms + 1);
+        session.engine.run_half_ms().map_err(RunError::Stop)?;
         for line in session.lines() {
             match Telemetry::parse(&line) {
                 Some(telemetry) => trace.join(telemetry),
                 // Before time zero only set-up is sent.
                 None if ms < zero_ms && line.starts_with("err") => return Err(RunError::Refused(line)),
-                None => answers.push((session.t_s(2 * ms + 2), line)),
+                None => answers.push((session.t_s(ms + 1), line)),
             }
         }
         progress(ms as f64 / (end_ms + DRAIN_MS) as f64);
@@ -96,14 +97,14 @@ struct Session<'a, E> {
 }
 
 impl<E: Engine> Session<'_, E> {
-    /// Time of a half millisecond since the start.
-    fn t_s(&self, half_ms: u64) -> f64 {
-        (half_ms as f64 - 2.0 * self.zero_ms as f64) / 2e3
+    /// Time of a millisecond since the start.
+    fn t_s(&self, ms: u64) -> f64 {
+        (ms as f64 - self.zero_ms as f64) / 1e3
     }
 
     /// What the scene changes at the boundary.
-    fn boundary(&mut self, half_ms: u64) {
-        let t_s = self.t_s(half_ms);
+    fn boundary(&mut self, ms: u64) {
+        let t_s = self.t_s(ms);
         let lasting = |kind: &FaultKind| *kind != FaultKind::HostGarbage;
         let broken = self
             .scene
@@ -114,18 +115,20 @@ impl<E: Engine> Session<'_, E> {
         self.engine
             .world()
             .set(self.scene.force_n(t_s), broken.filter(lasting));
+        self.send(2 * ms);
+    }
+
+    /// What the host sends at a half millisecond since the start.
+    fn send(&mut self, half_ms: u64) {
         if let Some(bytes) = self.host.send(half_ms) {
             self.engine.send(bytes);
         }
     }
 
-    /// Runs device and plant to the next boundary: the device sees the plant as it is at this one, the plant
-    /// the legs as they are at this one.
-    fn half_ms(&mut self) -> Result<(), E::Stop> {
+    /// Advances the plant to the next boundary, under the legs as they are at this one.
+    fn step_plant(&mut self) {
         let legs = self.engine.legs();
-        self.engine.run_half_ms()?;
         self.engine.world().step(legs);
-        Ok(())
     }
 
     /// The lines that are complete.

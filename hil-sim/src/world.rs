@@ -1,9 +1,9 @@
 //! What surrounds the device: the plant, and what breaks in it.
 
-use crate::plant::bridge::{Bridge, Leg, Legs};
-use crate::plant::sensors::{Channel, SensorParams};
-use crate::plant::tile::TileParams;
-use crate::plant::{ConfigError, Plant, PlantConfig};
+use crate::plant::bridge::{Leg, Legs};
+use crate::plant::object::ObjectConfig;
+use crate::plant::sensors::Channel;
+use crate::plant::{ConfigError, Params, Plant, PlantConfig};
 use crate::scene::{FaultKind, Scene};
 
 /// Highest code of the converter.
@@ -27,15 +27,12 @@ impl World {
         let config = PlantConfig {
             skin_c: scene.skin_c,
             room_c: scene.room_c,
-            object: scene.object.material,
-            object_start_c: scene.object_c(),
+            object: ObjectConfig::half_space(scene.object.material, scene.object_c()),
             start_s: -scene.settle_s,
             appears_s: scene.object.appears_t_s,
             duration_s: scene.duration_s,
             seed: scene.seed,
-            tile: TileParams::CLASS,
-            sensors: SensorParams::NOMINAL,
-            bridge: Bridge::NOMINAL,
+            params: Params::nominal(),
         };
         Ok(Self {
             plant: Plant::new(&config)?,

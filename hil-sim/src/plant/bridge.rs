@@ -22,6 +22,24 @@ pub struct Legs {
     pub enabled: bool,
 }
 
+/// The tile as the bridge sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// Voltage that opposes a cooling current, V.
+    pub seebeck_v: f64,
+    /// Resistance, ohm.
+    pub resistance_ohm: f64,
+}
+
+/// Current through the tile; positive cools the display.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Current {
+    /// Mean, A.
+    pub mean_a: f64,
+    /// Mean square of the ripple around it, A2.
+    pub ripple_a2: f64,
+}
+
 /// The power stage.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bridge {
@@ -32,6 +50,16 @@ pub struct Bridge {
 impl Bridge {
     /// The reference design's.
     pub const NOMINAL: Self = Self { supply_v: 12.0 };
+
+    /// Current through the load.
+    pub fn current(&mut self, legs: &Legs, load: &Load) -> Current {
+        Current {
+            mean_a: self
+                .mean_v(legs)
+                .map_or(0.0, |v| (v - load.seebeck_v) / load.resistance_ohm),
+            ripple_a2: 0.0,
+        }
+    }
 
     /// Mean voltage at the tile, V. With a leg high-impedance no current has a way round (`None`): the tile's
     /// Seebeck voltage stays far below what would open the driver's diodes.

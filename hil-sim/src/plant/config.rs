@@ -1,36 +1,61 @@
 //! What a plant is built from.
 
-use contact_model::material::Material;
+use contact_model::material::{Material, REFERENCE_DISPLAY, Surface};
 
 use super::bridge::Bridge;
+use super::finger::FingerParams;
+use super::object::ObjectConfig;
 use super::sensors::SensorParams;
 use super::tile::TileParams;
 
 /// One finger, its display and the real object that the display stands for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PlantConfig {
     /// Skin before contact, deg C.
     pub skin_c: f64,
     /// Room, and tile and sink at the start, deg C.
     pub room_c: f64,
     /// The real object.
-    pub object: Material,
-    /// The real object at the start, deg C.
-    pub object_start_c: f64,
+    pub object: ObjectConfig,
     /// Time of the first step, s; negative to let the device settle before zero.
     pub start_s: f64,
     /// From this time on the real object is there to be touched, s.
     pub appears_s: f64,
-    /// How long temperatures must stay right, s: fixes how deep finger and object are meshed.
+    /// How long temperatures must stay right, s: fixes how deep half-spaces are cut.
     pub duration_s: f64,
     /// Of every random draw.
     pub seed: u64,
+    /// What the parts are like.
+    pub params: Params,
+}
+
+/// Parameters of all parts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    /// The finger.
+    pub finger: FingerParams,
+    /// The display's surface.
+    pub display: Surface,
     /// Tile and sink.
     pub tile: TileParams,
     /// Sensors and converter.
     pub sensors: SensorParams,
     /// Power stage.
     pub bridge: Bridge,
+}
+
+impl Params {
+    /// The reference design under the thesis's finger.
+    #[must_use]
+    pub fn nominal() -> Self {
+        Self {
+            finger: FingerParams::homogeneous(),
+            display: REFERENCE_DISPLAY,
+            tile: TileParams::CLASS,
+            sensors: SensorParams::NOMINAL,
+            bridge: Bridge::NOMINAL,
+        }
+    }
 }
 
 /// Coldest and warmest start temperature, deg C.
@@ -50,6 +75,16 @@ pub struct ConfigError {
     pub allowed: String,
 }
 
+impl ConfigError {
+    pub(super) fn cold_finger(air_w_m2k: f64) -> Self {
+        Self {
+            what: "film of air in W/(m2 K) of a finger without blood or core",
+            value: air_w_m2k,
+            allowed: "0".into(),
+        }
+    }
+}
+
 impl PlantConfig {
     /// Checks what a scene can set.
     ///
@@ -60,7 +95,7 @@ impl PlantConfig {
         for (what, value) in [
             ("skin temperature in deg C", self.skin_c),
             ("room temperature in deg C", self.room_c),
-            ("object temperature in deg C", self.object_start_c),
+            ("object temperature in deg C", self.object.start_c),
         ] {
             within(what, value, coldest, warmest)?;
         }
@@ -75,7 +110,7 @@ impl PlantConfig {
             surface,
             density_kg_m3,
             specific_heat_j_kgk,
-        } = self.object;
+        } = self.object.material;
         for (what, value) in [
             ("duration in s", self.duration_s),
             ("object conductivity in W/(m K)", surface.conductivity_w_mk),

@@ -1,37 +1,52 @@
 //! The simulated world around the device: Peltier tile, finger, real material, sensors and bridge.
 //!
 //! ```text
-//! legs -> bridge -> volts -> [ sink | tile | display face ] - R - [ finger ]     what the device does
-//!                                                 |           force  |
-//!                                              sensors -> counts      [ object ] - R - [ finger ]   the truth
+//! legs -> bridge -> current -> [ sink | tile | patch ] - R - [ finger ]     what the device does
+//!                                               |        force   |
+//!                                            sensors -> counts   [ object ] - R - [ finger ]   the truth
 //! ```
 //!
-//! First version: one-dimensional, a plate at one temperature (no spreading around the finger), homogeneous skin
-//! without blood, no ripple of the bridge. Parameters are class values; nothing here was measured on hardware.
+//! | part | what it is | where |
+//! |---|---|---|
+//! | finger | layers of tissue, blood and metabolism (Pennes), or the thesis's half-space | [`finger`], [`slab`] |
+//! | object | one material, endless or with a back | [`object`], [`slab`] |
+//! | contact | resistance of Eq. 6-8 to 6-11 and area, both of the force | [`touch`] |
+//! | tile | legs, plates in three zones, sink | [`tile`] |
+//! | electronics | bridge, thermistors, converter | [`bridge`], [`sensors`] |
+//! | step | TR-BDF2 of all bodies at once, sub-steps after contacts | [`heat`], [`scheme`], [`schedule`] |
+//!
+//! Parameters are class values; nothing here was measured on hardware.
 
 pub mod bridge;
-pub mod chain;
 mod config;
-pub mod display;
-pub mod half_space;
+pub mod finger;
+pub mod heat;
+pub mod ledger;
 pub mod object;
 mod schedule;
+mod scheme;
 pub mod sensors;
+pub mod slab;
 pub mod tile;
 pub mod touch;
 
-use contact_model::material::{REFERENCE_DISPLAY, SKIN, Surface};
-
 use bridge::{Bridge, Legs};
-pub use config::{ConfigError, PlantConfig};
-use display::{Energy, FingerOnDisplay};
-use half_space::HalfSpace;
-use object::FingerOnObject;
+pub use config::{ConfigError, Params, PlantConfig};
+use contact_model::material::Surface;
+use finger::Vessels;
+pub use heat::Finger;
+use heat::Heat;
+use ledger::Energy;
 use sensors::{Channel, Sensed, Sensors};
+use slab::{Grading, Probe, Slab, equilibrium};
+use tile::Tile;
 use touch::Touch;
 
 /// One step of the plant, s; legs and force are held over it.
-pub const STEP_S: f64 = 0.5e-3;
+pub const STEP_S: f64 = 1e-3;
+
+/// Depths of the receptors of cold and of warmth, m (thesis, section 2.2: 0.15 to 0.17 mm, 0.3 to 0.6 mm).
+pub const RECEPTORS_M: [f64; 2] = [0.16e-3, 0.45e-3];
 
 /// The plant of one finger.
 #[derive(Clone, Debug)]
@@ -40,18 +55,29 @@ pub struct Plant {
     appears_s: f64,
     skin_before_c: f64,
     room_c: f64,
-    object_surface: Surface,
+    surfaces: Surfaces,
+    vessels: Option<Vessels>,
     bridge: Bridge,
-    display: FingerOnDisplay,
-    truth: FingerOnObject,
+    heat: Heat,
+    receptors: [Option<Probe>; RECEPTORS_M.len()],
     sensors: Sensors,
     /// Steps made.
     steps: u64,
     force_n: f64,
+    /// Force, and whether the object is there, for which the contacts stand.
+    settled: Option<(f64, bool)>,
     on_display: Option<Touch>,
     on_object: Option<Touch>,
     /// Steps made since temperatures last changed abruptly.
     age: u32,
+}
+
+/// What meets in the contacts.
+#[derive(Clone, Copy, Debug)]
+struct Surfaces {
+    skin: Surface,
+    display: Surface,
+    object: Surface,
 }
 
 impl Plant {
@@ -61,9 +87,25 @@ impl Plant {
     /// If the configuration does not pass its [check](PlantConfig::check).
     pub fn new(config: &PlantConfig) -> Result<Self, ConfigError> {
         config.check()?;
-        let skin = HalfSpace::new(&SKIN, config.duration_s);
-        let object = HalfSpace::new(&config.object, config.duration_s);
-        let display = FingerOnDisplay::new(config.tile, &skin, config.skin_c, config.room_c);
+        let params = &config.params;
+        let cut = |layers: &[slab::Layer], back| Slab::new(layers, back, config.duration_s, &Grading::RUN);
+        let finger = cut(&params.finger.layers, params.finger.back());
+        let object = cut(&[config.object.layer()], config.object.back);
+        let air_w_m2k = params.finger.air_w_m2k;
+        let rest = equilibrium(
+            &finger,
+            config.skin_c,
+            air_w_m2k * (config.skin_c - config.room_c),
+        )
+        .ok_or_else(|| ConfigError::cold_finger(air_w_m2k))?;
+        let mut heat = Heat::new(
+            (&finger, config.skin_c),
+            (&object, config.object.start_c),
+            Tile::new(params.tile, config.room_c),
+            (air_w_m2k, config.room_c),
+            STEP_S,
+        );
+        heat.rest_finger(&rest.node_c, rest.core_c);
         let at_rest = Sensed {
             display_c: config.room_c,
             sink_c: config.room_c,
@@ -78,13 +120,19 @@ impl Plant {
             appears_s: config.appears_s,
             skin_before_c: config.skin_c,
             room_c: config.room_c,
-            object_surface: config.object.surface,
-            bridge: config.bridge,
-            display,
-            truth: FingerOnObject::new(&object, config.object_start_c, &skin, config.skin_c),
-            sensors: Sensors::new(config.sensors, &at_rest, config.seed),
+            surfaces: Surfaces {
+                skin: params.finger.surface,
+                display: params.display,
+                object: config.object.material.surface,
+            },
+            vessels: params.finger.vessels,
+            bridge: params.bridge,
+            heat,
+            receptors: RECEPTORS_M.map(|depth_m| Probe::at(&finger, depth_m)),
+            sensors: Sensors::new(params.sensors, &at_rest, config.seed),
             steps: 0,
             force_n: 0.0,
+            settled: None,
             on_display: None,
             on_object: None,
             age: u32::MAX,
@@ -99,10 +147,8 @@ impl Plant {
     /// Advances by [`STEP_S`] with the bridge's legs held.
     pub fn step(&mut self, legs: &Legs) {
         self.settle_contacts();
-        let voltage_v = self.bridge.mean_v(legs);
-        for sub_step_s in schedule::sub_steps_s(STEP_S, self.age) {
-            self.display.step(sub_step_s, voltage_v);
-            self.truth.step(sub_step_s);
+        for index in schedule::sub_steps(self.age) {
+            self.heat.step(index, &mut self.bridge, legs);
         }
         self.steps += 1;
         self.age = self.age.saturating_add(1);
@@ -120,16 +166,28 @@ impl Plant {
 
     /// Contacts as force and time have them in the coming step.
     fn settle_contacts(&mut self) {
-        let on_display = Touch::under(self.force_n, &SKIN.surface, &REFERENCE_DISPLAY);
         // Half a step of slack: the sum of steps is not exact.
-        let appeared = self.time_s() + 0.5 * STEP_S > self.appears_s;
-        let on_object = Touch::under(self.force_n, &SKIN.surface, &self.object_surface).filter(|_| appeared);
+        let appeared = self.time_s() + 0.5 * STEP_S > self.appears_s.max(0.0);
+        let settled = Some((self.force_n, appeared));
+        if self.settled == settled {
+            return;
+        }
+        self.settled = settled;
+        let Surfaces {
+            skin,
+            display,
+            object,
+        } = &self.surfaces;
+        let on_display = Touch::under(self.force_n, skin, display);
+        let on_object = Touch::under(self.force_n, skin, object).filter(|_| appeared);
         if touch::is_event(self.on_display, on_display) || touch::is_event(self.on_object, on_object) {
             self.age = 0;
         }
-        self.display.touch(on_display);
-        self.truth.touch(on_object);
+        self.heat.touch(on_display, on_object, appeared);
         (self.on_display, self.on_object) = (on_display, on_object);
+        if let Some(vessels) = &self.vessels {
+            self.heat.set_flow(vessels.flow(self.force_n));
+        }
     }
 
     /// Converts one channel as it was at the end of the last step; each conversion draws its own noise.
@@ -152,43 +210,53 @@ impl Plant {
     /// True surface of the display, deg C.
     #[must_use]
     pub fn display_c(&self) -> f64 {
-        self.display.display_c()
+        self.heat.display_c()
     }
 
     /// Surface of the skin on the display, deg C.
     #[must_use]
     pub fn skin_c(&self) -> f64 {
-        self.display.skin_c()
+        self.heat.skin_c(Finger::OnDisplay)
     }
 
     /// Surface of the same skin on the real object, deg C.
     #[must_use]
     pub fn skin_real_c(&self) -> f64 {
-        self.truth.skin_c()
+        self.heat.skin_c(Finger::OnObject)
     }
 
+    /// The skin at the depth of its receptors of cold and of warmth ([`RECEPTORS_M`]), deg C; none where the finger is
+    /// thinner than that.
+    #[must_use]
+    pub fn receptors_c(&self, finger: Finger) -> [Option<f64>; RECEPTORS_M.len()] {
+        let read = |probe: Option<Probe>| probe.map(|probe| self.heat.depth_c(finger, &probe));
+        self.receptors.map(read)
+    }
+
+        self.heat.flux_w_m2(Finger::OnObject)
+    }
     /// Surface of the real object, deg C.
     #[must_use]
     pub fn object_c(&self) -> f64 {
-        self.truth.object_c()
+        self.heat.object_c()
     }
 
     /// The sink, deg C.
     #[must_use]
     pub fn sink_c(&self) -> f64 {
-        self.display.sink_c()
+        self.heat.tile().sink_c()
     }
 
     /// Current through the tile, A; positive cools the display.
     #[must_use]
-    pub const fn current_a(&self) -> f64 {
-        self.display.current_a()
+    pub fn current_a(&self) -> f64 {
+        self.heat.tile().current().mean_a
     }
 
     /// What has crossed the tile's borders since the start.
     #[must_use]
-    pub const fn energy(&self) -> Energy {
-        self.display.energy()
+    pub fn energy(&self) -> Energy {
+        self.heat.energy()
     }
 }
 

@@ -5,23 +5,22 @@ mod truth;
 use contact_model::material::find;
 
 use super::bridge::Leg;
-use super::sensors::SensorParams;
-use super::tile::TileParams;
+use super::object::ObjectConfig;
 use super::*;
 
 fn config(material: &str) -> PlantConfig {
     PlantConfig {
         skin_c: 34.0,
         room_c: 24.0,
-        object: *find(material).unwrap_or_else(|| panic!("no material {material}")),
-        object_start_c: 24.0,
+        object: ObjectConfig::half_space(
+            *find(material).unwrap_or_else(|| panic!("no material {material}")),
+            24.0,
+        ),
         start_s: 0.0,
         appears_s: 0.0,
         duration_s: 60.0,
         seed: 1,
-        tile: TileParams::CLASS,
-        sensors: SensorParams::NOMINAL,
-        bridge: Bridge::NOMINAL,
+        params: Params::nominal(),
     }
 }
 
@@ -124,7 +123,7 @@ fn bad_configuration_is_named() {
         "skin temperature in deg C is -300; allowed is -40 to 100"
     );
     let mut hollow = config("abs");
-    hollow.object.density_kg_m3 = 0.0;
+    hollow.object.material.density_kg_m3 = 0.0;
     let message = Plant::new(&hollow).expect_err("no mass").to_string();
     assert_eq!(
         message,
