@@ -233,8 +233,6 @@ impl Plant {
         self.receptors.map(read)
     }
 
-        self.heat.flux_w_m2(Finger::OnObject)
-    }
     /// Surface of the real object, deg C.
     #[must_use]
     pub fn object_c(&self) -> f64 {
