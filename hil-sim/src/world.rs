@@ -1,6 +1,6 @@
 //! What surrounds the device: the plant, and what breaks in it.
 
-use crate::plant::bridge::{Bridge, Leg, Legs};
+use crate::plant::bridge::{BridgeParams, Leg, Legs};
 use crate::plant::sensors::{Channel, SensorParams};
 use crate::plant::tile::TileParams;
 use crate::plant::{ConfigError, Plant, PlantConfig};
@@ -35,7 +35,7 @@ impl World {
             seed: scene.seed,
             tile: TileParams::CLASS,
             sensors: SensorParams::NOMINAL,
-            bridge: Bridge::NOMINAL,
+            bridge: BridgeParams::NOMINAL,
         };
         Ok(Self {
             plant: Plant::new(&config)?,

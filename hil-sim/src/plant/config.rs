@@ -2,7 +2,7 @@
 
 use contact_model::material::Material;
 
-use super::bridge::Bridge;
+use super::bridge::BridgeParams;
 use super::sensors::SensorParams;
 use super::tile::TileParams;
 
@@ -30,7 +30,7 @@ pub struct PlantConfig {
     /// Sensors and converter.
     pub sensors: SensorParams,
     /// Power stage.
-    pub bridge: Bridge,
+    pub bridge: BridgeParams,
 }
 
 /// Coldest and warmest start temperature, deg C.

@@ -1,5 +1,6 @@
 //! The finger on the display.
 
+use super::bridge::{Current, Load};
 use super::chain::{Chain, Link};
 use super::half_space::HalfSpace;
 use super::tile::{self, Tile, TileParams};
@@ -75,11 +76,15 @@ impl FingerOnDisplay {
         self.chain.set_link(self.skin, link);
     }
 
-    /// Advances by one step, s, with a mean voltage at the tile or, without one, no current. The current is that of
-    /// the temperatures at the start of the step.
-    pub fn step(&mut self, step_s: f64, voltage_v: Option<f64>) {
-        let current_a = voltage_v.map_or(0.0, |v| self.tile.current_for_a(&self.chain, v));
-        self.tile.drive(&mut self.chain, current_a, self.room_c);
+    /// The tile as the bridge sees it now.
+    #[must_use]
+    pub fn load(&self) -> Load {
+        self.tile.load(&self.chain)
+    }
+
+    /// Advances by one step, s, with a current held.
+    pub fn step(&mut self, step_s: f64, current: &Current) {
+        self.tile.drive(&mut self.chain, current, self.room_c);
         self.chain.step(step_s);
         let from_finger_w = self.chain.link(self.skin).behind
             * (self.chain.mean_c(self.skin) - self.chain.mean_c(self.skin + 1));
@@ -115,12 +120,6 @@ impl FingerOnDisplay {
     #[must_use]
     pub fn sink_c(&self) -> f64 {
         self.tile.sink_c(&self.chain)
-    }
-
-    /// Current through the tile, A; positive cools the display.
-    #[must_use]
-    pub const fn current_a(&self) -> f64 {
-        self.tile.current_a()
     }
 
     /// What has crossed the tile's borders so far.

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! First version: one-dimensional, a plate at one temperature (no spreading around the finger), homogeneous skin
-//! without blood, no ripple of the bridge. Parameters are class values; nothing here was measured on hardware.
+//! without blood. Parameters are class values; nothing here was measured on hardware.
 
 pub mod bridge;
 pub mod chain;
@@ -22,7 +22,7 @@ pub mod touch;
 
 use contact_model::material::{REFERENCE_DISPLAY, SKIN, Surface};
 
-use bridge::{Bridge, Legs};
+use bridge::{Bridge, Current, Legs};
 pub use config::{ConfigError, PlantConfig};
 use display::{Energy, FingerOnDisplay};
 use half_space::HalfSpace;
@@ -42,6 +42,7 @@ pub struct Plant {
     room_c: f64,
     object_surface: Surface,
     bridge: Bridge,
+    current: Current,
     display: FingerOnDisplay,
     truth: FingerOnObject,
     sensors: Sensors,
@@ -71,7 +72,7 @@ impl Plant {
             skin_c: config.skin_c,
             room_c: config.room_c,
             force_n: 0.0,
-            current_a: 0.0,
+            mirror_a: 0.0,
         };
         Ok(Self {
             start_s: config.start_s,
@@ -79,7 +80,8 @@ impl Plant {
             skin_before_c: config.skin_c,
             room_c: config.room_c,
             object_surface: config.object.surface,
-            bridge: config.bridge,
+            bridge: Bridge::new(config.bridge, config.tile.resistance_ohm),
+            current: Current::default(),
             display,
             truth: FingerOnObject::new(&object, config.object_start_c, &skin, config.skin_c),
             sensors: Sensors::new(config.sensors, &at_rest, config.seed),
@@ -99,9 +101,9 @@ impl Plant {
     /// Advances by [`STEP_S`] with the bridge's legs held.
     pub fn step(&mut self, legs: &Legs) {
         self.settle_contacts();
-        let voltage_v = self.bridge.mean_v(legs);
+        self.current = self.bridge.current(STEP_S, legs, &self.display.load());
         for sub_step_s in schedule::sub_steps_s(STEP_S, self.age) {
-            self.display.step(sub_step_s, voltage_v);
+            self.display.step(sub_step_s, &self.current);
             self.truth.step(sub_step_s);
         }
         self.steps += 1;
@@ -113,7 +115,7 @@ impl Plant {
             skin_c: self.skin_c(),
             room_c: self.room_c,
             force_n: self.force_n,
-            current_a: self.current_a(),
+            mirror_a: self.current.mirror_a,
         };
         self.sensors.step(STEP_S, &state);
     }
@@ -135,6 +137,12 @@ impl Plant {
     /// Converts one channel as it was at the end of the last step; each conversion draws its own noise.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         self.sensors.convert(channel)
+    }
+
+    /// The bridge's driver pulls its fault pin.
+    #[must_use]
+    pub fn bridge_fault(&self) -> bool {
+        self.bridge.fault()
     }
 
     /// Time, s.
@@ -182,7 +190,7 @@ impl Plant {
     /// Current through the tile, A; positive cools the display.
     #[must_use]
     pub const fn current_a(&self) -> f64 {
-        self.display.current_a()
+        self.current.mean_a
     }
 
     /// What has crossed the tile's borders since the start.

@@ -120,8 +120,8 @@ pub struct Sensed {
     pub room_c: f64,
     /// Force of the finger, N.
     pub force_n: f64,
-    /// Current of the bridge, A.
-    pub current_a: f64,
+    /// What the driver's current mirror sees, A.
+    pub mirror_a: f64,
 }
 
 /// The sensors of one finger and the converter that reads them.
@@ -183,7 +183,7 @@ impl Sensors {
         let temperature = self.reached_c.map(|t| p.thermistor.ratio(t) * CODES);
         self.counts[..5].copy_from_slice(&temperature);
         self.counts[Channel::Force as usize] = p.force_zero + p.force_per_n * state.force_n;
-        self.counts[Channel::Current as usize] = p.current_per_a * state.current_a.abs();
+        self.counts[Channel::Current as usize] = p.current_per_a * state.mirror_a;
         for counts in &mut self.counts {
             let x = (*counts / CODES).clamp(0.0, 1.0);
             *counts += self.bow * 4.0 * x * (1.0 - x);

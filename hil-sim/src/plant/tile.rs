@@ -8,6 +8,7 @@
 //! `Qc = a I Tc - I^2 R/2 - K (Th - Tc)` at the tabs, and after a change of current Joule heat reaches the face
 //! only as fast as the legs conduct it. Material constants do not depend on temperature here (no Thomson effect).
 
+use super::bridge::{Current, Load};
 use super::chain::{Chain, Link};
 
 /// Cells through one ceramic face.
@@ -106,7 +107,7 @@ pub struct Tile {
     params: TileParams,
     /// The node of the chain at the display's surface.
     face: usize,
-    current_a: f64,
+    current: Current,
 }
 
 impl Tile {
@@ -116,24 +117,31 @@ impl Tile {
         Self {
             params,
             face,
-            current_a: 0.0,
+            current: Current {
+                mean_a: 0.0,
+                ripple_a2: 0.0,
+                mirror_a: 0.0,
+            },
         }
     }
 
-    /// The current that a mean voltage drives against the Seebeck voltage, A; positive cools the display. The
-    /// bridge's filter leaves no ripple to speak of; its own inductance is far faster than a step.
+    /// What it is to the bridge at the present temperatures.
     #[must_use]
-    pub fn current_for_a(&self, chain: &Chain, voltage_v: f64) -> f64 {
+    pub fn load(&self, chain: &Chain) -> Load {
         let rise_c = chain.temperature_c(self.face + HOT_TAB) - chain.temperature_c(self.face + COLD_TAB);
-        (voltage_v - self.params.seebeck_v_k * rise_c) / self.params.resistance_ohm
+        Load {
+            seebeck_v: self.params.seebeck_v_k * rise_c,
+            resistance_ohm: self.params.resistance_ohm,
+        }
     }
 
-    /// Lets a current flow, A, with the sink in a room of the given temperature, deg C.
-    pub fn drive(&mut self, chain: &mut Chain, current_a: f64, room_c: f64) {
-        self.current_a = current_a;
+    /// Lets a current flow, with the sink in a room of the given temperature, deg C.
+    pub fn drive(&mut self, chain: &mut Chain, current: &Current, room_c: f64) {
+        self.current = *current;
+        let current_a = current.mean_a;
         let peltier_w_k = self.params.seebeck_v_k * current_a;
         chain.set_source(self.face + COLD_TAB, -peltier_w_k * ZERO_C_K, -peltier_w_k);
-        let joule_w = current_a * current_a * self.params.resistance_ohm / LEG_CELLS as f64;
+        let joule_w = self.joule_w() / LEG_CELLS as f64;
         for leg in LEGS..HOT_TAB {
             chain.set_source(self.face + leg, joule_w, 0.0);
         }
@@ -142,17 +150,19 @@ impl Tile {
         chain.set_source(self.face + SINK, sink_w_k * room_c, -sink_w_k);
     }
 
-    /// Current that flows, A.
-    #[must_use]
-    pub const fn current_a(&self) -> f64 {
-        self.current_a
+    /// Joule heat, that of the ripple included, W.
+    fn joule_w(&self) -> f64 {
+        let Current {
+            mean_a, ripple_a2, ..
+        } = self.current;
+        (mean_a * mean_a + ripple_a2) * self.params.resistance_ohm
     }
 
     /// Electrical power taken up, mean over the last step, W.
     #[must_use]
     pub fn electrical_w(&self, chain: &Chain) -> f64 {
         let rise_c = chain.mean_c(self.face + HOT_TAB) - chain.mean_c(self.face + COLD_TAB);
-        self.current_a * (self.params.seebeck_v_k * rise_c + self.current_a * self.params.resistance_ohm)
+        self.current.mean_a * self.params.seebeck_v_k * rise_c + self.joule_w()
     }
 
     /// Heat that goes to the room, mean over the last step, W.

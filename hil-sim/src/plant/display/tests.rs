@@ -25,6 +25,18 @@ impl Bench {
         }
     }
 
+    /// A step with a mean voltage at the tile, V, and a tenth of its current's square as ripple.
+    fn drive(&mut self, step_s: f64, volts: f64) {
+        let load = self.display.load();
+        let mean_a = (volts - load.seebeck_v) / load.resistance_ohm;
+        let current = Current {
+            mean_a,
+            ripple_a2: 0.1 * mean_a * mean_a,
+            mirror_a: 0.0,
+        };
+        self.display.step(step_s, &current);
+    }
+
     /// Heat above the start in the finger, J/m2, and in the tile, J.
     fn gained(&self) -> (f64, f64) {
         let warmth = |i: usize, start_c: f64| self.display.chain.temperature_c(i) - start_c;
@@ -50,8 +62,12 @@ fn energy_closes_over_a_minute_with_two_contacts() {
         let t_s = f64::from(k) * STEP_S;
         let touching = (5.0..25.0).contains(&t_s) || (35.0..55.0).contains(&t_s);
         bench.display.touch(bench.touch.filter(|_| touching));
-        let voltage_v = (t_s < 50.0).then(|| 2.0 * (0.7 * t_s).sin() + 0.5);
-        bench.display.step(STEP_S, voltage_v);
+        let volts = if t_s < 50.0 {
+            2.0 * (0.7 * t_s).sin() + 0.5
+        } else {
+            0.0
+        };
+        bench.drive(STEP_S, volts);
     }
     let Energy {
         electrical_j,
@@ -82,7 +98,7 @@ fn without_current_heat_only_flows_down() {
     bench.display.touch(bench.touch);
     let mut given_j = 0.0;
     for _ in 0..20_000 {
-        bench.display.step(STEP_S, None);
+        bench.display.step(STEP_S, &Current::default());
         let energy = bench.display.energy();
         assert!(energy.from_finger_j > given_j && energy.electrical_j == 0.0);
         given_j = energy.from_finger_j;
@@ -93,7 +109,7 @@ fn without_current_heat_only_flows_down() {
         assert!(bench.display.skin_c() > bench.display.display_c());
     }
     for _ in 0..10 {
-        bench.display.step(1e9, None);
+        bench.display.step(1e9, &Current::default());
     }
     for i in 0..bench.skin.cells() + tile::NODES {
         let c = bench.display.chain.temperature_c(i);
@@ -106,7 +122,7 @@ fn flux_is_what_the_resistance_lets_through() {
     let mut bench = Bench::new();
     bench.display.touch(bench.touch);
     for _ in 0..200 {
-        bench.display.step(STEP_S, Some(3.0));
+        bench.drive(STEP_S, 3.0);
     }
     let fall_c = bench.display.skin_c() - bench.display.display_c();
     let resistance_m2k_w = bench.touch.map_or(f64::NAN, |t| t.resistance_m2k_w);
@@ -118,13 +134,13 @@ fn lifted_finger_keeps_its_heat() {
     let mut bench = Bench::new();
     bench.display.touch(bench.touch);
     for _ in 0..2000 {
-        bench.display.step(STEP_S, Some(6.0));
+        bench.drive(STEP_S, 6.0);
     }
     bench.display.touch(None);
     let (before_j_m2, _) = bench.gained();
     let cooled_c = bench.display.skin_c();
     for _ in 0..20_000 {
-        bench.display.step(STEP_S, Some(6.0));
+        bench.drive(STEP_S, 6.0);
     }
     let (after_j_m2, _) = bench.gained();
     assert!((after_j_m2 / before_j_m2 - 1.0).abs() < 1e-10);

@@ -9,7 +9,7 @@ const REST: Sensed = Sensed {
     skin_c: 34.0,
     room_c: 22.0,
     force_n: 0.0,
-    current_a: 0.0,
+    mirror_a: 0.0,
 };
 
 fn quiet() -> SensorParams {
@@ -44,7 +44,7 @@ fn channels_come_in_scan_order() {
         skin_c: 30.0,
         room_c: 40.0,
         force_n: 2.0,
-        current_a: -3.0,
+        mirror_a: 3.0,
     };
     let [display, check, sink, skin, room, force, current] = counts(quiet(), &state);
     assert!(display == check && display > sink && sink > skin && skin > room);
@@ -57,7 +57,7 @@ fn counts_stay_within_twelve_bits() {
         display_c: -100.0,
         sink_c: 500.0,
         force_n: 13.0,
-        current_a: 11.0,
+        mirror_a: 11.0,
         ..REST
     };
     let [display, _, sink, .., force, current] = counts(quiet(), &low);

@@ -17,6 +17,13 @@ fn warm() -> (Tile, Chain) {
     (Tile::new(params, 0), chain)
 }
 
+fn mean(mean_a: f64) -> Current {
+    Current {
+        mean_a,
+        ..Current::default()
+    }
+}
+
 #[test]
 fn at_rest_obeys_the_module_equations() {
     let TileParams {
@@ -28,7 +35,7 @@ fn at_rest_obeys_the_module_equations() {
     for current_a in [-3.0, -0.5, 0.0, 1.0, 4.0, 6.0] {
         for load_w in [0.0, 1.0, 5.0] {
             let (mut tile, mut chain) = warm();
-            tile.drive(&mut chain, current_a, 24.0);
+            tile.drive(&mut chain, &mean(current_a), 24.0);
             chain.set_source(0, load_w, 0.0);
             for _ in 0..4 {
                 chain.step(REST_S);
@@ -40,7 +47,8 @@ fn at_rest_obeys_the_module_equations() {
             let given_w = a * current_a * hot_k + joule_w / 2.0 - k * (hot_k - cold_k);
             let volts = a * (hot_k - cold_k) + current_a * r;
             let to_room_w = (tile.sink_c(&chain) - 24.0) / TileParams::CLASS.sink_k_w;
-            let driven_a = tile.current_for_a(&chain, volts);
+            let load = tile.load(&chain);
+            let driven_a = (volts - load.seebeck_v) / load.resistance_ohm;
             assert!(
                 (driven_a - current_a).abs() < 1e-9,
                 "{volts} V drives {driven_a} A"
@@ -65,7 +73,7 @@ fn response_c(current_a: f64, steps: usize) -> Vec<f64> {
     let (mut tile, mut chain) = warm();
     (0..steps)
         .map(|_| {
-            tile.drive(&mut chain, current_a, 24.0);
+            tile.drive(&mut chain, &mean(current_a), 24.0);
             chain.step(STEP_S);
             chain.temperature_c(0)
         })
