@@ -2,14 +2,25 @@
 //!
 //! The constants are the simulated parts' own. What the device believes of its sensors is in its settings.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
-use rand_distr::{Distribution, StandardNormal, StandardUniform};
+mod converter;
+mod follow;
+mod params;
+mod thermistor;
+
+use rand::SeedableRng;
+use rand::rngs::Xoshiro256PlusPlus;
 use thermal_display::sense::CHANNELS;
 
-/// Codes of the 12-bit converter.
-const CODES: f64 = 4096.0;
-const ZERO_C_K: f64 = 273.15;
+pub use converter::ConverterParams;
+pub use params::{ForceParams, MirrorParams, ReferenceParams, SensorParams};
+pub use thermistor::ThermistorParams;
+
+use converter::{CODES, Converter};
+use follow::Lag;
+use thermistor::{Site, Thermistor};
+
+/// Thermistors of one finger: the first of the channels.
+pub const THERMISTORS: usize = 5;
 
 /// A signal of one finger, in the converter's scan order (that of `thermal_display::sense::Samples`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,68 +54,6 @@ impl Channel {
     ];
 }
 
-/// A thermistor from the converter's pin to ground, with a resistor from the pin to the converter's reference.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thermistor {
-    /// Resistance at 25 deg C, ohm.
-    pub at_25c_ohm: f64,
-    /// Beta, K.
-    pub beta_k: f64,
-    /// Resistor to the reference, ohm.
-    pub pull_up_ohm: f64,
-}
-
-impl Thermistor {
-    /// Voltage at the pin in fractions of the reference, at a temperature, deg C. Falls as it warms.
-    #[must_use]
-    pub fn ratio(&self, temperature_c: f64) -> f64 {
-        let exponent = self.beta_k * ((temperature_c + ZERO_C_K).recip() - (25.0 + ZERO_C_K).recip());
-        let ohm = self.at_25c_ohm * exponent.exp();
-        ohm / (ohm + self.pull_up_ohm)
-    }
-}
-
-/// What the sensors are made of.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SensorParams {
-    /// Every thermistor.
-    pub thermistor: Thermistor,
-    /// First-order lag of each thermistor, s: display, second display, sink, skin, room.
-    pub lag_s: [f64; 5],
-    /// Share of the contact's skin surface in what the skin thermistor at its edge sees; the rest is the skin as
-    /// it was before contact.
-    pub skin_sees_contact: f64,
-    /// Force sensor without force, counts.
-    pub force_zero: f64,
-    /// Force sensor, counts/N.
-    pub force_per_n: f64,
-    /// Current mirror, counts/A of either sign.
-    pub current_per_a: f64,
-    /// Standard deviation of one conversion, counts.
-    pub noise: f64,
-    /// Integral non-linearity: a bow of at most this height at mid-scale, counts; how much and which way is drawn
-    /// from the seed.
-    pub bow: f64,
-}
-
-impl SensorParams {
-    /// The reference design's.
-    pub const NOMINAL: Self = Self {
-        thermistor: Thermistor {
-            at_25c_ohm: 10e3,
-            beta_k: 3950.0,
-            pull_up_ohm: 10e3,
-        },
-        lag_s: [0.1, 0.1, 1.0, 0.3, 2.0],
-        skin_sees_contact: 0.05,
-        force_zero: 410.0,
-        force_per_n: 300.0,
-        current_per_a: 400.0,
-        noise: 0.7,
-        bow: 1.5,
-    };
-}
-
 /// The physical state that the sensors follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sensed {
@@ -128,79 +77,81 @@ pub struct Sensed {
 #[derive(Clone, Debug)]
 pub struct Sensors {
     params: SensorParams,
-    /// Height of this converter's bow, counts.
-    bow: f64,
-    /// What each thermistor follows and what it has reached, deg C.
-    target_c: [f64; 5],
-    reached_c: [f64; 5],
-    /// Noiseless reading of each channel, counts.
+    excitation_v: f64,
+    thermistors: [Thermistor; THERMISTORS],
+    force_lag: Lag,
+    /// What the force sensor has reached, N.
+    force_n: f64,
+    /// Noiseless level of each channel, counts.
     counts: [f64; CHANNELS],
-    noise: ChaCha8Rng,
+    converter: Converter,
 }
 
 impl Sensors {
-    /// Sensors at rest in a state; the seed fixes the converter's bow and every later draw of noise.
+    /// Sensors at rest in a state; the seed fixes the converter's profile and every later draw of noise.
     #[must_use]
     pub fn new(params: SensorParams, state: &Sensed, seed: u64) -> Self {
-        let mut noise = ChaCha8Rng::seed_from_u64(seed);
-        let unit: f64 = StandardUniform.sample(&mut noise);
-        let target_c = seen_c(&params, state);
+        let excitation_v = params.reference.volt * params.reference.excitation_duty.sqrt();
+        let sites = sites(&params, state, excitation_v);
         let mut sensors = Self {
             params,
-            bow: params.bow * (2.0 * unit - 1.0),
-            target_c,
-            reached_c: target_c,
+            excitation_v,
+            thermistors: std::array::from_fn(|i| Thermistor::new(params.thermistors[i], &sites[i])),
+            force_lag: Lag::new(params.force.lag_s),
+            force_n: state.force_n,
             counts: [0.0; CHANNELS],
-            noise,
+            converter: Converter::new(params.converter, Xoshiro256PlusPlus::seed_from_u64(seed)),
         };
         sensors.read(state);
         sensors
     }
 
-    /// Follows the state over a step, s, at whose end it is `state`.
+    /// Follows the state over a step, s, at whose end it is `state`: temperatures have moved there evenly, the force
+    /// was what it is for the whole step.
     pub fn step(&mut self, step_s: f64, state: &Sensed) {
-        let target_c = seen_c(&self.params, state);
-        for (i, &lag_s) in self.params.lag_s.iter().enumerate() {
-            // Exact for a target that moves evenly over the step: a lag trails a ramp by its own time.
-            let trail_c = lag_s * (target_c[i] - self.target_c[i]) / step_s;
-            let off_ramp_c = self.reached_c[i] - self.target_c[i] + trail_c;
-            self.reached_c[i] = target_c[i] - trail_c + off_ramp_c * (-step_s / lag_s).exp();
+        let sites = sites(&self.params, state, self.excitation_v);
+        for (thermistor, site) in self.thermistors.iter_mut().zip(&sites) {
+            thermistor.step(step_s, site);
         }
-        self.target_c = target_c;
+        self.force_n = self.force_lag.towards(step_s, self.force_n, state.force_n);
         self.read(state);
     }
 
-    /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is part of the experiment.
+    /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is
+    /// part of the experiment.
     pub fn convert(&mut self, channel: Channel) -> u16 {
-        let normal: f64 = StandardNormal.sample(&mut self.noise);
-        let counts = self.counts[channel as usize] + self.params.noise * normal;
-        // The cast rounds down, and a library call for each conversion would show in the run time.
-        (counts.clamp(0.0, CODES - 1.0) + 0.5) as u16
+        self.converter.convert(self.counts[channel as usize])
     }
 
     fn read(&mut self, state: &Sensed) {
         let p = &self.params;
-        let temperature = self.reached_c.map(|t| p.thermistor.ratio(t) * CODES);
-        self.counts[..5].copy_from_slice(&temperature);
-        self.counts[Channel::Force as usize] = p.force_zero + p.force_per_n * state.force_n;
-        self.counts[Channel::Current as usize] = p.current_per_a * state.mirror_a;
-        for counts in &mut self.counts {
-            let x = (*counts / CODES).clamp(0.0, 1.0);
-            *counts += self.bow * 4.0 * x * (1.0 - x);
+        let mut ideal = [0.0; CHANNELS];
+        for (counts, thermistor) in ideal.iter_mut().zip(&self.thermistors) {
+            *counts = thermistor.ratio() * CODES;
         }
+        // The reference carries the dividers with it, but not what has a scale of its own.
+        let per_volt = 1.0 / (1.0 + p.reference.error);
+        ideal[Channel::Force as usize] = p.force.counts(self.force_n) * per_volt;
+        ideal[Channel::Current as usize] = p.mirror.counts(state.mirror_a) * per_volt;
+        self.counts = ideal.map(|counts| self.converter.seen(counts));
     }
 }
 
-/// What each thermistor sits on, deg C.
-fn seen_c(params: &SensorParams, state: &Sensed) -> [f64; 5] {
+/// What each thermistor has around it.
+fn sites(params: &SensorParams, state: &Sensed, excitation_v: f64) -> [Site; THERMISTORS] {
     let edge_c = state.skin_before_c + params.skin_sees_contact * (state.skin_c - state.skin_before_c);
-    [
+    let surfaces_c = [
         state.display_c,
         state.display_c,
         state.sink_c,
         edge_c,
         state.room_c,
-    ]
+    ];
+    surfaces_c.map(|surface_c| Site {
+        surface_c,
+        room_c: state.room_c,
+        excitation_v,
+    })
 }
 
 #[cfg(test)]
