@@ -29,78 +29,122 @@ pub struct Pulses {
     pub ohm: f64,
 }
 
-/// Peak-to-peak ripple of the inductor's current, A, for pulses of a part of the period: a triangle, since the
-/// filter keeps the tile's voltage nearly constant.
-pub fn inductor_ripple_a(params: &BridgeParams, width: f64) -> f64 {
-    params.supply_v * width * (1.0 - width) / (params.filter_h * params.pwm_hz)
+/// The dead times of a bridge.
+#[derive(Clone, Copy, Debug)]
+pub struct DeadTime {
+    supply_v: f64,
+    diode_v: f64,
+    /// Part of the period that one takes.
+    part: f64,
+    /// What a volt across the inductor adds to its current in a period, A.
+    per_v: f64,
 }
 
-/// Mean current of the pulses, A.
-pub fn mean_current_a(params: &BridgeParams, pulses: &Pulses) -> f64 {
-    let drive_v = params.supply_v * pulses.width - pulses.seebeck_v;
-    let corners = corners(params, pulses.width);
-    // What drives the current, less what it costs, falls along the corners.
-    let left_v = |&(at_a, lost_v): &(f64, f64)| drive_v - lost_v - pulses.ohm * at_a;
-    let [first, .., last] = corners;
-    if left_v(&first) <= 0.0 {
-        return (drive_v - first.1) / pulses.ohm;
-    }
-    for pair in corners.windows(2) {
-        let (before_v, after_v) = (left_v(&pair[0]), left_v(&pair[1]));
-        if after_v <= 0.0 {
-            let part = before_v / (before_v - after_v);
-            return pair[0].0 + part * (pair[1].0 - pair[0].0);
+impl DeadTime {
+    /// Of a bridge.
+    pub fn new(params: &BridgeParams) -> Self {
+        Self {
+            supply_v: params.supply_v,
+            diode_v: params.diode_v,
+            part: params.dead_time_s * params.pwm_hz,
+            per_v: 1.0 / (params.filter_h * params.pwm_hz),
         }
     }
-    (drive_v - last.1) / pulses.ohm
-}
 
-/// Corners of the mean voltage lost, V, over the mean current, A; both rise. Before the first and after the last the
-/// loss is constant.
-fn corners(params: &BridgeParams, width: f64) -> [(f64, f64); 6] {
-    let (supply_v, diode_v) = (params.supply_v, params.diode_v);
-    let dead = params.dead_time_s * params.pwm_hz;
-    // A pulse cannot lose more than itself, nor gain more than the pause.
-    let (lost, gained) = (dead.min(width), dead.min(1.0 - width));
-    let per_v = 1.0 / (params.filter_h * params.pwm_hz);
-    let drops_v = diode_v * dead;
-    let half_ripple_a = |width: f64| 0.5 * inductor_ripple_a(params, width);
-    let half_floating_a = |width: f64, tile_v: f64| 0.5 * (supply_v - tile_v) * width * per_v * (1.0 - dead);
-
-    // Where the current touches zero: with the pulses, and floating for a whole dead time before they begin.
-    let with = (
-        half_ripple_a(width - lost),
-        supply_v * lost + diode_v * (lost + dead),
-    );
-    let tile_v = supply_v * (width - lost) / (1.0 - dead);
-    let floating_before = (
-        half_floating_a(width - lost, tile_v),
-        (supply_v - tile_v) * lost + drops_v.min(supply_v * (width - lost)),
-    );
-    // Likewise against the pulses, and after they end.
-    let against = (
-        -half_ripple_a(width + gained),
-        -supply_v * gained - diode_v * (gained + dead),
-    );
-    let tile_v = (supply_v * width / (1.0 - dead)).min(supply_v);
-    let floating_after = (-half_floating_a(width, tile_v), -tile_v * gained - drops_v);
-    // Where it crosses within the pulses, and still flows in the diode at the end of each dead time.
-    let crossing_a = half_ripple_a(width);
-    let from_a = (diode_v + supply_v * width) * dead * per_v - crossing_a;
-    let to_a = crossing_a - (diode_v + supply_v * (1.0 - width)) * dead * per_v;
-    let middle_a = 0.5 * (from_a + to_a);
-
-    let mut corners = [
-        against,
-        floating_after,
-        (from_a.min(middle_a), 0.0),
-        (to_a.max(middle_a), 0.0),
-        floating_before,
-        with,
-    ];
-    // With ripple smaller than what a dead time changes, cases are passed over.
-    for k in 1..corners.len() {
-        corners[k].0 = corners[k].0.max(corners[k - 1].0);
+    /// Half the peak-to-peak ripple of the inductor's current, A, for pulses of a part of the period: a triangle,
+    /// since the filter keeps the tile's voltage nearly constant.
+    pub fn half_ripple_a(&self, width: f64) -> f64 {
+        0.5 * self.per_v * self.supply_v * width * (1.0 - width)
     }
-    corners
+
+    /// Mean current of the pulses, A.
+    pub fn mean_current_a(&self, pulses: &Pulses) -> f64 {
+        let drive_v = self.supply_v * pulses.width - pulses.seebeck_v;
+        let (from_a, with_v) = self.with(pulses.width);
+        let with_a = (drive_v - with_v) / pulses.ohm;
+        if with_a >= from_a {
+            return with_a;
+        }
+        let (to_a, against_v) = self.against(pulses.width);
+        let against_a = (drive_v - against_v) / pulses.ohm;
+        if against_a <= to_a {
+            return against_a;
+        }
+        // What drives the current, less what it costs, falls along the corners, from above zero to below.
+        let left_v = |(at_a, lost_v): (f64, f64)| drive_v - lost_v - pulses.ohm * at_a;
+        let mut before = (to_a, left_v((to_a, against_v)));
+        for corner in self.corners_between(pulses.width, to_a, (from_a, with_v)) {
+            let after = (corner.0, left_v(corner));
+            if after.1 <= 0.0 {
+                return before.0 + before.1 / (before.1 - after.1) * (after.0 - before.0);
+            }
+            before = after;
+        }
+        before.0
+    }
+
+    /// A pulse cannot lose more than itself, nor gain more than the pause.
+    fn lost_and_gained(&self, width: f64) -> (f64, f64) {
+        (self.part.min(width), self.part.min(1.0 - width))
+    }
+
+    /// Mean current from which on it always flows with the pulses, A, and the voltage that it then loses, V.
+    fn with(&self, width: f64) -> (f64, f64) {
+        let (lost, _) = self.lost_and_gained(width);
+        (
+            self.half_ripple_a(width - lost),
+            self.supply_v * lost + self.diode_v * (lost + self.part),
+        )
+    }
+
+    /// Mean current up to which it always flows against the pulses, A, and the voltage that it then loses, V.
+    fn against(&self, width: f64) -> (f64, f64) {
+        let (_, gained) = self.lost_and_gained(width);
+        (
+            -self.half_ripple_a(width + gained),
+            -self.supply_v * gained - self.diode_v * (gained + self.part),
+        )
+    }
+
+    /// Corners of the voltage lost, V, over the mean current, A, above a current; both rise to the last.
+    fn corners_between(&self, width: f64, above_a: f64, last: (f64, f64)) -> [(f64, f64); 5] {
+        let Self {
+            supply_v,
+            diode_v,
+            part,
+            per_v,
+        } = *self;
+        let (lost, gained) = self.lost_and_gained(width);
+        let drop_v = diode_v * part;
+        let half_floating_a =
+            |width: f64, tile_v: f64| 0.5 * (supply_v - tile_v) * width * per_v * (1.0 - part);
+        // With the pulses, and floating for a whole dead time before they begin.
+        let tile_v = supply_v * (width - lost) / (1.0 - part);
+        let floating_before = (
+            half_floating_a(width - lost, tile_v),
+            (supply_v - tile_v) * lost + drop_v.min(supply_v * (width - lost)),
+        );
+        // Against the pulses, and floating for a whole dead time after they end.
+        let tile_v = (supply_v * width / (1.0 - part)).min(supply_v);
+        let floating_after = (-half_floating_a(width, tile_v), -tile_v * gained - drop_v);
+        // Crossing zero within the pulses, with current in a diode to the end of each dead time.
+        let crossing_a = self.half_ripple_a(width);
+        let from_a = (diode_v + supply_v * width) * part * per_v - crossing_a;
+        let to_a = crossing_a - (diode_v + supply_v * (1.0 - width)) * part * per_v;
+        let middle_a = 0.5 * (from_a + to_a);
+        let mut corners = [
+            floating_after,
+            (from_a.min(middle_a), 0.0),
+            (to_a.max(middle_a), 0.0),
+            floating_before,
+            last,
+        ];
+        // With ripple smaller than what a dead time changes, cases are passed over.
+        let mut least_a = above_a;
+        for (at_a, _) in &mut corners {
+            *at_a = at_a.max(least_a);
+            least_a = *at_a;
+        }
+        corners
+    }
 }

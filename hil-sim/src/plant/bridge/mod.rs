@@ -18,7 +18,7 @@ mod ripple;
 
 pub use params::BridgeParams;
 
-use dead_time::Pulses;
+use dead_time::{DeadTime, Pulses};
 use ripple::Ripple;
 
 /// One leg of the bridge over one step.
@@ -72,6 +72,7 @@ pub struct Current {
 #[derive(Clone, Debug)]
 pub struct Bridge {
     params: BridgeParams,
+    dead_time: DeadTime,
     ripple: Ripple,
     /// Time until an overloaded driver tries again, s.
     retry_in_s: f64,
@@ -86,6 +87,7 @@ impl Bridge {
     pub fn new(params: BridgeParams, load_ohm: f64) -> Self {
         Self {
             params,
+            dead_time: DeadTime::new(&params),
             ripple: Ripple::new(&params, load_ohm),
             retry_in_s: 0.0,
         }
@@ -114,7 +116,7 @@ impl Bridge {
             _ => return Current::default(),
         };
         let current = self.driven(a, b, load);
-        let peak_a = current.mean_a.abs() + 0.5 * dead_time::inductor_ripple_a(&self.params, (a - b).abs());
+        let peak_a = current.mean_a.abs() + self.dead_time.half_ripple_a((a - b).abs());
         if peak_a > self.params.trip_a {
             return self.trip();
         }
@@ -138,14 +140,11 @@ impl Bridge {
         let (width, sign) = ((a - b).abs(), (a - b).signum());
         let mean_a = if width > 0.0 && width < 1.0 {
             let seebeck_v = sign * load.seebeck_v;
-            sign * dead_time::mean_current_a(
-                params,
-                &Pulses {
-                    width,
-                    seebeck_v,
-                    ohm,
-                },
-            )
+            sign * self.dead_time.mean_current_a(&Pulses {
+                width,
+                seebeck_v,
+                ohm,
+            })
         } else {
             (params.supply_v * (a - b) - load.seebeck_v) / ohm
         };
