@@ -77,7 +77,6 @@ pub struct Sensed {
 #[derive(Clone, Debug)]
 pub struct Sensors {
     params: SensorParams,
-    excitation_v: f64,
     thermistors: [Thermistor; THERMISTORS],
     force_lag: Lag,
     /// What the force sensor has reached, N.
@@ -92,11 +91,12 @@ impl Sensors {
     #[must_use]
     pub fn new(params: SensorParams, state: &Sensed, seed: u64) -> Self {
         let excitation_v = params.reference.volt * params.reference.excitation_duty.sqrt();
-        let sites = sites(&params, state, excitation_v);
+        let sites = sites(&params, state);
         let mut sensors = Self {
             params,
-            excitation_v,
-            thermistors: std::array::from_fn(|i| Thermistor::new(params.thermistors[i], &sites[i])),
+            thermistors: std::array::from_fn(|i| {
+                Thermistor::new(params.thermistors[i], &sites[i], excitation_v)
+            }),
             force_lag: Lag::new(params.force.lag_s),
             force_n: state.force_n,
             counts: [0.0; CHANNELS],
@@ -109,7 +109,7 @@ impl Sensors {
     /// Follows the state over a step, s, at whose end it is `state`: temperatures have moved there evenly, the force
     /// was what it is for the whole step.
     pub fn step(&mut self, step_s: f64, state: &Sensed) {
-        let sites = sites(&self.params, state, self.excitation_v);
+        let sites = sites(&self.params, state);
         for (thermistor, site) in self.thermistors.iter_mut().zip(&sites) {
             thermistor.step(step_s, site);
         }
@@ -138,7 +138,7 @@ impl Sensors {
 }
 
 /// What each thermistor has around it.
-fn sites(params: &SensorParams, state: &Sensed, excitation_v: f64) -> [Site; THERMISTORS] {
+fn sites(params: &SensorParams, state: &Sensed) -> [Site; THERMISTORS] {
     let edge_c = state.skin_before_c + params.skin_sees_contact * (state.skin_c - state.skin_before_c);
     let surfaces_c = [
         state.display_c,
@@ -150,7 +150,6 @@ fn sites(params: &SensorParams, state: &Sensed, excitation_v: f64) -> [Site; THE
     surfaces_c.map(|surface_c| Site {
         surface_c,
         room_c: state.room_c,
-        excitation_v,
     })
 }
 

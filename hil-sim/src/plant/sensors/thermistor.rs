@@ -38,10 +38,11 @@ impl ThermistorParams {
         ohm / (ohm + self.pull_up_ohm)
     }
 
-    /// Power in the thermistor, W, at a fraction of a reference, V.
+    /// Power in the thermistor, W, with a root mean square of the voltage on the divider, V, is this times the
+    /// divider's ratio times what the ratio leaves of one.
     #[must_use]
-    pub fn heat_w(&self, ratio: f64, reference_v: f64) -> f64 {
-        reference_v * reference_v / self.pull_up_ohm * ratio * (1.0 - ratio)
+    pub fn heat_scale_w(&self, excitation_v: f64) -> f64 {
+        excitation_v * excitation_v / self.pull_up_ohm
     }
 }
 
@@ -52,14 +53,14 @@ pub struct Site {
     pub surface_c: f64,
     /// The room, deg C.
     pub room_c: f64,
-    /// Root mean square of the voltage on the divider, V.
-    pub excitation_v: f64,
 }
 
 /// A thermistor at work.
 #[derive(Clone, Copy, Debug)]
 pub struct Thermistor {
     params: ThermistorParams,
+    /// Self-heating over the product of both parts of the divider, K.
+    heat_k: f64,
     lag: Lag,
     /// What it moves towards, and where it is, deg C.
     target_c: f64,
@@ -71,10 +72,11 @@ pub struct Thermistor {
 const ROUNDS: usize = 8;
 
 impl Thermistor {
-    /// At rest.
-    pub fn new(params: ThermistorParams, site: &Site) -> Self {
+    /// At rest, with a root mean square of the voltage on its divider, V.
+    pub fn new(params: ThermistorParams, site: &Site, excitation_v: f64) -> Self {
         let mut thermistor = Self {
             params,
+            heat_k: params.heat_scale_w(excitation_v) / params.dissipation_w_k,
             lag: Lag::new(params.lag_s),
             target_c: site.surface_c,
             reached_c: site.surface_c,
@@ -105,9 +107,8 @@ impl Thermistor {
 
     /// Where it would come to rest; it heats itself as it did at the end of the step before.
     fn target_c(&self, site: &Site) -> f64 {
-        let p = &self.params;
-        let heat_w = p.heat_w(self.ratio, site.excitation_v);
-        site.surface_c + p.lead_share * (site.room_c - site.surface_c) + heat_w / p.dissipation_w_k
+        let heat_k = self.heat_k * self.ratio * (1.0 - self.ratio);
+        site.surface_c + self.params.lead_share * (site.room_c - site.surface_c) + heat_k
     }
 }
 

@@ -9,7 +9,6 @@ fn site(surface_c: f64) -> Site {
     Site {
         surface_c,
         room_c: surface_c,
-        excitation_v: 0.0,
     }
 }
 
@@ -58,7 +57,8 @@ fn tolerances_shift_the_reading_as_the_beta_equation_has_it() {
 
 #[test]
 fn divider_heats_its_thermistor_by_a_quarter_milliwatt() {
-    let heat_mw = 1e3 * DISPLAY.heat_w(DISPLAY.ratio(34.0), 3.3);
+    let ratio = DISPLAY.ratio(34.0);
+    let heat_mw = 1e3 * DISPLAY.heat_scale_w(3.3) * ratio * (1.0 - ratio);
     assert!((heat_mw - 0.26).abs() < 0.005, "{heat_mw} mW");
 }
 
@@ -70,11 +70,7 @@ fn heated_thermistor_rests_where_power_and_loss_balance() {
             lead_share: 0.0,
             ..DISPLAY
         };
-        let warm = Site {
-            excitation_v: 3.3,
-            ..site(surface_c)
-        };
-        let at_rest = Thermistor::new(params, &warm);
+        let at_rest = Thermistor::new(params, &site(surface_c), 3.3);
         let above_c = at_rest.reached_c - surface_c;
         let ohm = 10e3 * (3950.0 * ((at_rest.reached_c + 273.15).recip() - 298.15f64.recip())).exp();
         let power_w = (3.3 / (ohm + 10e3)).powi(2) * ohm;
@@ -83,9 +79,9 @@ fn heated_thermistor_rests_where_power_and_loss_balance() {
             "{above_c} K above"
         );
         // It gets there from cold as well.
-        let mut cold = Thermistor::new(params, &site(surface_c));
+        let mut cold = Thermistor::new(params, &site(0.0), 3.3);
         for _ in 0..2000 {
-            cold.step(1e-3, &warm);
+            cold.step(1e-3, &site(surface_c));
         }
         assert!((cold.reached_c - at_rest.reached_c).abs() < 1e-6);
     }
@@ -101,14 +97,14 @@ fn leads_let_their_share_of_the_room_in() {
         room_c: 24.0,
         ..site(34.0)
     };
-    let thermistor = Thermistor::new(params, &cool_room);
+    let thermistor = Thermistor::new(params, &cool_room, 0.0);
     assert!((thermistor.reached_c - 33.8).abs() < 1e-12);
 }
 
 #[test]
 fn thermistor_trails_by_its_lag() {
     let step_s = 0.5e-3;
-    let mut thermistor = Thermistor::new(DISPLAY, &site(24.0));
+    let mut thermistor = Thermistor::new(DISPLAY, &site(24.0), 0.0);
     // A ramp of 10 K/s: after many lags the reading trails by lag times rate.
     for k in 1..=4000 {
         thermistor.step(step_s, &site(24.0 + 10.0 * step_s * f64::from(k)));
