@@ -2,7 +2,7 @@
 
 use hil_sim::machine::Firmware;
 use hil_sim::run::Outcome;
-use system_tests::{forces, image, natively, on, on_image, scene};
+use system_tests::{between, forces, host, image, natively, on, on_image, scene};
 
 fn csv(outcome: &Outcome, name: &str) -> String {
     let path = std::env::temp_dir().join(format!("thermal-display-{}-{name}.csv", std::process::id()));
@@ -26,6 +26,32 @@ fn native_and_image_write_the_same_trace_over_two_contacts() {
     assert_eq!(native.len(), image.len());
     // Blank cells would be equal too.
     assert!(native.lines().all(|line| !line.contains(",,,")));
+}
+
+/// The driver trips, its fault pin stops the device, and the driver tries again in vain until it has; on one tick
+/// in both engines.
+#[test]
+fn overload_of_the_bridge_is_seen_alike_and_stops_both() {
+    let fault = forces(&[(0.5, 2.0)]) + "[[fault]]\nkind = \"bridge-shorted\"\nt_s = 1.0\n";
+    let again = host(&[(1.5, "clear"), (1.6, "arm")]);
+    let scene = scene("copper", 2.0, "", &(fault + &again));
+    let (native, image) = (natively(&scene), on_image(&scene));
+    assert_eq!(csv(&native, "native-short"), csv(&image, "image-short"));
+    for row in between(&image, 1.001, 2.0) {
+        assert_eq!(row.current_a, 0.0, "at {} s", row.t_s);
+    }
+    for row in between(&image, 1.003, 1.5) {
+        let device = row.device.as_ref().expect("telemetry of every tick");
+        let said = (device.state.as_str(), device.remark.as_deref());
+        assert_eq!(said, ("tripped", Some("bridge")), "at {} s", row.t_s);
+    }
+    // Armed again, it drives, and trips again.
+    let state_at = |from_s: f64| {
+        let row = between(&image, from_s, 2.0).next().expect("a row");
+        row.device.as_ref().map(|device| device.state.clone())
+    };
+    assert_eq!(state_at(1.55).as_deref(), Some("off"));
+    assert_eq!(state_at(1.7).as_deref(), Some("tripped"));
 }
 
 #[test]

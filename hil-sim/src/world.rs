@@ -59,10 +59,20 @@ impl World {
         if self.broken.contains(&FaultKind::BridgeStuckHigh) {
             legs.a = Leg::Duty(1.0);
         }
+        if self.broken.contains(&FaultKind::BridgeShorted) && matches!(legs.a, Leg::Duty(duty) if duty > 0.0)
+        {
+            legs.a = Leg::Shorted;
+        }
         if self.broken.contains(&FaultKind::PolaritySwapped) {
             (legs.a, legs.b) = (legs.b, legs.a);
         }
         self.plant.step(&legs);
+    }
+
+    /// The bridge's driver pulls its fault pin.
+    #[must_use]
+    pub fn bridge_fault(&self) -> bool {
+        self.plant.bridge_fault()
     }
 
     /// Code of a channel now.

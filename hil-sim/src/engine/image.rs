@@ -8,7 +8,7 @@ use crate::world::World;
 
 /// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2.
 const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12];
-/// Fault line of the bridge, pulled up: PA6.
+/// Fault line of the bridge, low is a fault: PA6.
 const FAULT_PIN: (u8, u8) = (0, 6);
 /// Enable input of the bridge: PB10.
 const ENABLE_PIN: (u8, u8) = (1, 10);
@@ -170,7 +170,7 @@ impl Wiring for Pins {
     }
 
     fn pin(&self, port: u8, bit: u8) -> Option<bool> {
-        ((port, bit) == FAULT_PIN).then_some(true)
+        ((port, bit) == FAULT_PIN).then(|| !self.world.bridge_fault())
     }
 
     fn uart_tx(&mut self, byte: u8, _at: u64, _baud: u32) {

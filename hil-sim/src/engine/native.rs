@@ -40,6 +40,8 @@ pub struct Native {
     outgoing: Vec<u8>,
     scans: [Scan; SCANS_PER_TICK],
     filled: usize,
+    /// The bridge has pulled its fault pin since the last tick: the board's break flag keeps that.
+    fault: bool,
     drive: Drive,
     /// Half milliseconds since the first boundary.
     halves: u64,
@@ -59,6 +61,7 @@ impl Native {
             outgoing: Vec::new(),
             scans: [Scan::default(); SCANS_PER_TICK],
             filled: 0,
+            fault: false,
             drive: Drive::Off,
             halves: 0,
         };
@@ -120,13 +123,15 @@ impl Engine for Native {
     }
 
     fn run_half_ms(&mut self) -> Result<(), Infallible> {
+        self.fault |= self.world.bridge_fault();
         if self.halves.is_multiple_of(2) {
             self.scan(SCANS_IN_FIRST_HALF);
         } else {
             self.scan(SCANS_PER_TICK - self.filled);
             let tick_ns = (self.halves - 1) * HALF_NS + TICK_NS;
             self.serve(tick_ns);
-            let samples = Samples::from_scans(&self.scans, false);
+            let samples = Samples::from_scans(&self.scans, self.fault);
+            self.fault = self.world.bridge_fault();
             self.drive = self.station.step(&samples);
             if let Some(telemetry) = self.station.telemetry() {
                 self.answer(&telemetry);

@@ -2,7 +2,7 @@
 
 use contact_model::material::{Material, REFERENCE_DISPLAY, Surface};
 
-use super::bridge::Bridge;
+use super::bridge::BridgeParams;
 use super::finger::FingerParams;
 use super::object::ObjectConfig;
 use super::sensors::SensorParams;
@@ -41,7 +41,7 @@ pub struct Params {
     /// Sensors and converter.
     pub sensors: SensorParams,
     /// Power stage.
-    pub bridge: Bridge,
+    pub bridge: BridgeParams,
 }
 
 impl Params {
@@ -53,7 +53,7 @@ impl Params {
             display: REFERENCE_DISPLAY,
             tile: TileParams::CLASS,
             sensors: SensorParams::NOMINAL,
-            bridge: Bridge::NOMINAL,
+            bridge: BridgeParams::NOMINAL,
         }
     }
 }

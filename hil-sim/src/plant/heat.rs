@@ -119,7 +119,7 @@ impl Heat {
     pub fn step(&mut self, index: usize, bridge: &mut Bridge, legs: &Legs) {
         let step_s = schedule::length_s(self.step_s, index);
         self.tile.prepare(step_s);
-        self.tile.drive(bridge.current(legs, &self.tile.load()));
+        self.tile.drive(bridge.current(step_s, legs, &self.tile.load()));
 
         let out = self.out_w_m2();
         let inflow_w = self.area_m2 * self.flux_w_m2(Finger::OnDisplay);

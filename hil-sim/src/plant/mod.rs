@@ -113,7 +113,7 @@ impl Plant {
             skin_c: config.skin_c,
             room_c: config.room_c,
             force_n: 0.0,
-            current_a: 0.0,
+            mirror_a: 0.0,
         };
         Ok(Self {
             start_s: config.start_s,
@@ -126,7 +126,7 @@ impl Plant {
                 object: config.object.material.surface,
             },
             vessels: params.finger.vessels,
-            bridge: params.bridge,
+            bridge: Bridge::new(params.bridge, params.tile.resistance_ohm()),
             heat,
             receptors: RECEPTORS_M.map(|depth_m| Probe::at(&finger, depth_m)),
             sensors: Sensors::new(params.sensors, &at_rest, config.seed),
@@ -159,7 +159,7 @@ impl Plant {
             skin_c: self.skin_c(),
             room_c: self.room_c,
             force_n: self.force_n,
-            current_a: self.current_a(),
+            mirror_a: self.heat.tile().current().mirror_a,
         };
         self.sensors.step(STEP_S, &state);
     }
@@ -193,6 +193,12 @@ impl Plant {
     /// Converts one channel as it was at the end of the last step; each conversion draws its own noise.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         self.sensors.convert(channel)
+    }
+
+    /// The bridge's driver pulls its fault pin.
+    #[must_use]
+    pub fn bridge_fault(&self) -> bool {
+        self.bridge.fault()
     }
 
     /// Time, s.

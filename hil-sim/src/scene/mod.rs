@@ -87,6 +87,8 @@ pub enum FaultKind {
     ThermistorShort,
     /// Leg A of the bridge stays at the supply.
     BridgeStuckHigh,
+    /// Output A of the bridge is shorted to ground: the driver trips when it is driven high.
+    BridgeShorted,
     /// The module's wires are swapped.
     PolaritySwapped,
     /// Every channel repeats its last code.

@@ -25,7 +25,7 @@ fn after(params: TileParams, current_a: f64, load_w: f64, step_s: f64, steps: us
     }
     let current = Current {
         mean_a: current_a,
-        ripple_a2: 0.0,
+        ..Current::default()
     };
     for _ in 0..steps {
         tile.prepare(step_s);

@@ -40,7 +40,7 @@ fn energy_closes_over_ten_minutes_of_contacts() {
             before_j_m2 = stored;
             bench.touch(on_display, on_object);
         }
-        bench.step((k % 50_000 < 40_000).then(|| 2.0 * (0.7 * t_s).sin() + 0.5));
+        bench.step((k % 50_000 < 40_000).then(|| 4.0 * (0.7 * t_s).sin() + 0.5));
     }
     let stored = stored_j_m2(&bench, 0, &bench.finger, &start_c);
     given_j += bench.heat.area_m2 * (before_j_m2 - stored);

@@ -8,7 +8,7 @@ mod second_law;
 use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN};
 
 use super::*;
-use crate::plant::bridge::Leg;
+use crate::plant::bridge::{BridgeParams, Leg};
 use crate::plant::finger::FingerParams;
 use crate::plant::object::ObjectConfig;
 use crate::plant::slab::{Grading, equilibrium};
@@ -49,7 +49,7 @@ impl Bench {
             heat,
             finger: slab,
             object: object_slab,
-            bridge: Bridge::NOMINAL,
+            bridge: Bridge::new(BridgeParams::NOMINAL, tile.resistance_ohm()),
             age: u32::MAX,
         }
     }
@@ -71,8 +71,8 @@ impl Bench {
         let legs = voltage_v.map_or_else(Legs::default, |v| {
             let supply_v = 12.0;
             Legs {
-                a: Leg::Duty(v.max(0.0) / supply_v),
-                b: Leg::Duty((-v).max(0.0) / supply_v),
+                a: Leg::Duty(1.0 - (-v).max(0.0) / supply_v),
+                b: Leg::Duty(1.0 - v.max(0.0) / supply_v),
                 enabled: true,
             }
         });

@@ -26,10 +26,10 @@ fn bodies_in_contact_converge_at_second_order_in_time() {
     );
     let (on_display, on_object) = touch(material, 1.0);
     heat.touch(on_display, on_object, true);
-    let mut bridge = Bridge::NOMINAL;
+    let mut bridge = Bridge::new(BridgeParams::NOMINAL, TileParams::CLASS.resistance_ohm());
     let legs = Legs {
-        a: Leg::Duty(0.2),
-        b: Leg::Duty(0.0),
+        a: Leg::Duty(1.0),
+        b: Leg::Duty(0.8),
         enabled: true,
     };
     // Away from the contact, where temperatures move with the root of time.
@@ -38,7 +38,7 @@ fn bodies_in_contact_converge_at_second_order_in_time() {
     }
     let steps = 32;
     let run = |halvings: usize| {
-        let (mut heat, mut bridge) = (heat.clone(), bridge);
+        let (mut heat, mut bridge) = (heat.clone(), bridge.clone());
         for _ in 0..steps << halvings {
             heat.step(halvings, &mut bridge, &legs);
         }

@@ -1,0 +1,212 @@
+//! Against the circuit in time, the limits without a filter, and the driver's public behaviour.
+
+mod circuit;
+
+use super::*;
+
+const STEP_S: f64 = 1e-3;
+const TILE: Load = Load {
+    seebeck_v: 0.0,
+    resistance_ohm: 1.061,
+};
+
+fn driven(a: f64, b: f64) -> Legs {
+    Legs {
+        a: Leg::Duty(a),
+        b: Leg::Duty(b),
+        enabled: true,
+    }
+}
+
+fn bridge(params: BridgeParams) -> Bridge {
+    Bridge::new(params, TILE.resistance_ohm)
+}
+
+fn current(params: BridgeParams, legs: &Legs, load: &Load) -> Current {
+    bridge(params).current(STEP_S, legs, load)
+}
+
+/// Ideal switches straight on the tile.
+fn unfiltered(supply_v: f64) -> BridgeParams {
+    BridgeParams {
+        supply_v,
+        dead_time_s: 0.0,
+        on_ohm: 0.0,
+        filter_h: 1e-15,
+        filter_ohm: 0.0,
+        filter_f: 0.0,
+        filter_esr_ohm: 0.0,
+        trip_a: f64::INFINITY,
+        ..BridgeParams::NOMINAL
+    }
+}
+
+#[test]
+fn mean_and_ripple_are_those_of_the_circuit() {
+    let mut crossing = 0;
+    for dead_time_s in [0.0, 0.3e-6, 0.6e-6] {
+        let params = BridgeParams {
+            dead_time_s,
+            ..BridgeParams::NOMINAL
+        };
+        for seebeck_v in [-1.0, -0.2, 0.0, 0.5, 1.0] {
+            for width in [0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7] {
+                let load = Load { seebeck_v, ..TILE };
+                let [mean_a, ripple_a2, least_a, most_a] = circuit::settled(&params, width, &load);
+                let got = current(params, &driven(1.0, 1.0 - width), &load);
+                let at = format!("dead {dead_time_s} s, {seebeck_v} V, width {width}");
+                // While the current keeps its sign the mean is exact; around zero it is a good guess.
+                let clear = dead_time_s == 0.0 || least_a > 0.05 || most_a < -0.05;
+                crossing += u32::from(!clear);
+                let (allowed_a, allowed) = if clear { (1e-3, 0.04) } else { (0.03, 0.15) };
+                let off_a = got.mean_a - mean_a;
+                assert!(off_a.abs() < allowed_a, "{at}: mean {mean_a} A, off by {off_a}");
+                let off_a2 = got.ripple_a2 - ripple_a2;
+                assert!(
+                    off_a2.abs() < allowed * ripple_a2 + 2e-5,
+                    "{at}: ripple {ripple_a2} A2, off by {off_a2}"
+                );
+            }
+        }
+    }
+    assert!((10..40).contains(&crossing), "{crossing} cases around zero");
+}
+
+#[test]
+fn unfiltered_pulses_multiply_the_heat_by_the_inverse_of_their_width() {
+    for width in [0.1, 0.25, 0.5, 0.9] {
+        let Current {
+            mean_a, ripple_a2, ..
+        } = current(unfiltered(12.0), &driven(1.0, 1.0 - width), &TILE);
+        let factor = (mean_a * mean_a + ripple_a2) / (mean_a * mean_a);
+        assert!((factor * width - 1.0).abs() < 2e-3, "{factor} at {width}");
+    }
+}
+
+#[test]
+fn unfiltered_antiphase_burns_what_the_supply_does_at_rest() {
+    // Both legs against each other at half width are pulses of twice the supply less the supply: no mean, and the
+    // ripple of the pulses.
+    let ripple_a2 = current(unfiltered(24.0), &driven(1.0, 0.5), &TILE).ripple_a2;
+    assert!((ripple_a2 * 1.061 / 136.0 - 1.0).abs() < 5e-3, "{ripple_a2} A2");
+}
+
+#[test]
+fn dead_time_costs_its_share_of_the_supply_either_way() {
+    // Well away from zero current: 12 V and two diodes for 0.3 us of each 10.4 us, over all the resistance.
+    let params = BridgeParams::NOMINAL;
+    let ideal = BridgeParams {
+        dead_time_s: 0.0,
+        ..params
+    };
+    let lost_a = (12.0 + 2.0 * 0.9) * 0.3e-6 * 96e3 / (1.061 + 0.17 + 0.02);
+    for (a, b) in [(1.0, 0.5), (0.5, 1.0)] {
+        let [with, without] = [params, ideal].map(|params| current(params, &driven(a, b), &TILE).mean_a);
+        assert!(
+            (without.abs() - with.abs() - lost_a).abs() < 1e-9,
+            "{with} of {without}"
+        );
+    }
+}
+
+#[test]
+fn current_has_no_jump_where_it_changes_sign() {
+    let mut before_a: Option<f64> = None;
+    for k in 0..4000 {
+        let load = Load {
+            seebeck_v: 1e-3 * f64::from(k) - 1.0,
+            ..TILE
+        };
+        let now_a = current(BridgeParams::NOMINAL, &driven(1.0, 0.9), &load).mean_a;
+        // A millivolt over the resistance, or less of it where the loss gives way.
+        if let Some(before_a) = before_a {
+            assert!(
+                (-0.81e-3..=0.0).contains(&(now_a - before_a)),
+                "at {load:?}: {before_a} to {now_a}"
+            );
+        }
+        before_a = Some(now_a);
+    }
+    assert!(before_a.is_some_and(|last_a| last_a < -0.5));
+}
+
+#[test]
+fn legs_that_stand_still_leave_the_seebeck_voltage() {
+    let load = Load {
+        seebeck_v: 0.5,
+        ..TILE
+    };
+    let short = current(BridgeParams::NOMINAL, &driven(1.0, 1.0), &load);
+    assert!((short.mean_a + 0.5 / 1.251).abs() < 1e-12 && short.ripple_a2 == 0.0);
+    let full = current(BridgeParams::NOMINAL, &driven(7.0, -1.0), &load);
+    assert!((full.mean_a - 11.5 / 1.251).abs() < 1e-12 && full.ripple_a2 < 1e-12);
+}
+
+#[test]
+fn no_current_without_two_driven_legs() {
+    let open = |legs| assert_eq!(current(BridgeParams::NOMINAL, &legs, &TILE), Current::default());
+    open(Legs::default());
+    open(Legs {
+        b: Leg::Off,
+        ..driven(1.0, 0.0)
+    });
+    open(Legs {
+        enabled: false,
+        ..driven(1.0, 0.0)
+    });
+    open(driven(0.0, 0.0));
+}
+
+#[test]
+fn mirror_sees_what_the_high_sides_give() {
+    let got = |a, b| current(BridgeParams::NOMINAL, &driven(a, b), &TILE);
+    // The leg that gives the current stays at the supply: all of it, throughout.
+    for (a, b) in [(1.0, 0.6), (0.6, 1.0)] {
+        let got = got(a, b);
+        assert_eq!(got.mirror_a, got.mean_a.abs());
+    }
+    // A current that the tile drives against the pulses comes out of the leg that switches.
+    let load = Load {
+        seebeck_v: 4.0,
+        ..TILE
+    };
+    let back = current(BridgeParams::NOMINAL, &driven(1.0, 0.9), &load);
+    assert!(back.mean_a < 0.0 && (back.mirror_a / back.mean_a + 0.9).abs() < 1e-12);
+}
+
+#[test]
+fn overload_takes_the_legs_off_for_the_retry_time() {
+    let mut bridge = bridge(BridgeParams::NOMINAL);
+    let stalled = Load {
+        resistance_ohm: 0.3,
+        ..TILE
+    };
+    let mut step = |load: &Load| {
+        let current = bridge.current(STEP_S, &driven(1.0, 0.5), load);
+        (current.mean_a > 0.0, bridge.fault())
+    };
+    assert_eq!(step(&TILE), (true, false));
+    // Overloaded and tried again every 4 ms.
+    for _ in 0..8 {
+        assert_eq!(step(&stalled), (false, true));
+    }
+    // What is sound again is found so with the next try.
+    for _ in 0..4 {
+        assert_eq!(step(&stalled), (false, true));
+    }
+    assert_eq!(step(&TILE), (true, false));
+}
+
+#[test]
+fn shorted_output_trips_when_it_is_driven() {
+    let mut bridge = bridge(BridgeParams::NOMINAL);
+    let shorted = |enabled| Legs {
+        a: Leg::Shorted,
+        b: Leg::Duty(0.5),
+        enabled,
+    };
+    assert_eq!(bridge.current(STEP_S, &shorted(false), &TILE), Current::default());
+    assert!(!bridge.fault());
+    assert_eq!(bridge.current(STEP_S, &shorted(true), &TILE), Current::default());
+    assert!(bridge.fault());
+}

@@ -1,0 +1,152 @@
+//! The converter: offset, gain, integral non-linearity, noise, quantisation.
+
+use rand::rngs::Xoshiro256PlusPlus;
+use rand_distr::{Distribution, StandardNormal, StandardUniform};
+
+/// Codes of the 12-bit converter.
+pub const CODES: f64 = 4096.0;
+
+/// Errors of a converter, as its data sheet (STM32F446, 12 bit) has them before calibration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ConverterParams {
+    /// Offset, counts; 0 within 2, at most 3 (data sheet's total error of 2 typical, 5 at most, shared out).
+    pub offset_counts: f64,
+    /// Gain error, fraction; 0 within 2/4096, at most 4/4096 (as above).
+    pub gain_error: f64,
+    /// Bound of the integral non-linearity, counts, 0 to 3; 1.5 (data sheet: 1.5 typical, 3 at most). The largest
+    /// error of a converter lies between half of it and all of it.
+    pub inl_counts: f64,
+    /// Standard deviation of one conversion, counts, 0 or more; 0.7, from 0.4 to 1.2 (class value).
+    pub noise_counts: f64,
+}
+
+impl ConverterParams {
+    /// As the data sheet has it typically; offset and gain belong to a single device.
+    pub const NOMINAL: Self = Self {
+        offset_counts: 0.0,
+        gain_error: 0.0,
+        inl_counts: 1.5,
+        noise_counts: 0.7,
+    };
+}
+
+/// Upper bits whose weights are wrong, each in its own way; between their steps the profile is smooth.
+const BITS: u32 = 5;
+const SEGMENTS: usize = 1 << BITS;
+const SEGMENT_COUNTS: usize = CODES as usize / SEGMENTS;
+
+/// Integral non-linearity of one converter: a bow, and a step at each transition of the upper bits, as capacitors of
+/// a successive-approximation converter that do not quite double make it. Both ends of the range are without error.
+#[derive(Clone, Copy, Debug)]
+struct Profile {
+    /// Height of the bow at mid-scale, counts, times 4/CODES^2.
+    bow: f64,
+    /// Line of each segment: counts at code zero, and per code.
+    base: [f64; SEGMENTS],
+    slope: f64,
+}
+
+impl Profile {
+    /// Drawn; its largest magnitude over all codes is between half the bound and the bound, counts.
+    fn draw(bound_counts: f64, random: &mut Xoshiro256PlusPlus) -> Self {
+        let mut unit = || -> f64 { StandardUniform.sample(random) };
+        let peak_counts = bound_counts * (0.5 + 0.5 * unit());
+        let mut even = || 2.0 * unit() - 1.0;
+        let bow = even();
+        // The error of a sum of unit capacitors grows with the root of their number.
+        let weights: [f64; BITS as usize] =
+            std::array::from_fn(|bit| even() * 2f64.powi(bit as i32).sqrt() * 0.25);
+        let all: f64 = weights.iter().sum();
+        let steps = |segment: usize| -> f64 {
+            let set = |bit: &usize| segment >> bit & 1 == 1;
+            (0..BITS as usize).filter(set).map(|bit| weights[bit]).sum()
+        };
+        let shape = Self {
+            bow: bow * 4.0 / (CODES * CODES),
+            base: std::array::from_fn(steps),
+            // What the upper bits add up to over the range is gain, not non-linearity.
+            slope: -all / CODES,
+        };
+        let largest = (0..CODES as u32).map(|code| shape.at(f64::from(code)).abs());
+        let scale = peak_counts / largest.fold(f64::MIN_POSITIVE, f64::max);
+        Self {
+            bow: scale * shape.bow,
+            base: shape.base.map(|base| scale * base),
+            slope: scale * shape.slope,
+        }
+    }
+
+    /// Error at a level, counts, of 0 to 4095.
+    #[inline]
+    fn at(&self, counts: f64) -> f64 {
+        let segment = nearest(counts) as usize / SEGMENT_COUNTS % SEGMENTS;
+        self.base[segment] + counts * (self.slope + self.bow * (CODES - counts))
+    }
+}
+
+/// The nearest whole number to one of 0 to 2^32. A cast that rounds and minds its limits takes several times as
+/// long, and there are 112 conversions a millisecond.
+#[inline]
+fn nearest(counts: f64) -> u32 {
+    /// From here on a double's last bit counts one.
+    const ONES: f64 = (1u64 << 52) as f64;
+    (counts + ONES).to_bits() as u32
+}
+
+/// One converter.
+#[derive(Clone, Debug)]
+pub struct Converter {
+    params: ConverterParams,
+    profile: Profile,
+    random: Xoshiro256PlusPlus,
+    /// Noise of the conversions to come, counts, from `next` on: drawn together, it costs half.
+    noise: [f64; BATCH],
+    next: usize,
+}
+
+/// Draws of noise at a time: the conversions of one tick.
+const BATCH: usize = 112;
+
+impl Converter {
+    /// A converter whose profile and noise are drawn from `random`.
+    pub fn new(params: ConverterParams, mut random: Xoshiro256PlusPlus) -> Self {
+        Self {
+            params,
+            profile: Profile::draw(params.inl_counts, &mut random),
+            random,
+            noise: [0.0; BATCH],
+            next: BATCH,
+        }
+    }
+
+    /// The level at which it sees an ideal one, both in counts.
+    pub fn seen(&self, ideal_counts: f64) -> f64 {
+        ideal_counts * (1.0 + self.params.gain_error) + self.params.offset_counts
+    }
+
+    /// Converts a level that it [sees](Self::seen): the nearest code, within 0 to 4095. Draws noise.
+    pub fn convert(&mut self, seen_counts: f64) -> u16 {
+        if self.next == BATCH {
+            self.draw();
+        }
+        let noise = self.noise[self.next];
+        self.next += 1;
+        let level = (seen_counts + noise).clamp(0.0, CODES - 1.0);
+        let level = level + self.profile.at(level);
+        nearest(level.clamp(0.0, CODES - 1.0)) as u16
+    }
+
+    #[inline(never)]
+    fn draw(&mut self) {
+        let mut random = self.random.clone();
+        for noise in &mut self.noise {
+            let normal: f64 = StandardNormal.sample(&mut random);
+            *noise = self.params.noise_counts * normal;
+        }
+        self.random = random;
+        self.next = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests;

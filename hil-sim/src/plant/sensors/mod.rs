@@ -1,0 +1,157 @@
+//! What the converter sees: thermistors behind dividers, force sensor, current mirror, and the converter itself.
+//!
+//! The constants are the simulated parts' own. What the device believes of its sensors is in its settings.
+
+mod converter;
+mod follow;
+mod params;
+mod thermistor;
+
+use rand::SeedableRng;
+use rand::rngs::Xoshiro256PlusPlus;
+use thermal_display::sense::CHANNELS;
+
+pub use converter::ConverterParams;
+pub use params::{ForceParams, MirrorParams, ReferenceParams, SensorParams};
+pub use thermistor::ThermistorParams;
+
+use converter::{CODES, Converter};
+use follow::Lag;
+use thermistor::{Site, Thermistor};
+
+/// Thermistors of one finger: the first of the channels.
+pub const THERMISTORS: usize = 5;
+
+/// A signal of one finger, in the converter's scan order (that of `thermal_display::sense::Samples`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// Display thermistor, in the contact patch.
+    Display,
+    /// Second display thermistor.
+    DisplayCheck,
+    /// Thermistor on the sink.
+    Sink,
+    /// Thermistor on the skin, at the edge of the contact.
+    Skin,
+    /// Thermistor in the room.
+    Room,
+    /// Force sensor.
+    Force,
+    /// Current mirror of the bridge.
+    Current,
+}
+
+impl Channel {
+    /// All of them in scan order.
+    pub const ALL: [Self; CHANNELS] = [
+        Self::Display,
+        Self::DisplayCheck,
+        Self::Sink,
+        Self::Skin,
+        Self::Room,
+        Self::Force,
+        Self::Current,
+    ];
+}
+
+/// The physical state that the sensors follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sensed {
+    /// Display surface, deg C.
+    pub display_c: f64,
+    /// Sink, deg C.
+    pub sink_c: f64,
+    /// Skin before contact, deg C.
+    pub skin_before_c: f64,
+    /// Skin surface in the contact, deg C.
+    pub skin_c: f64,
+    /// Room, deg C.
+    pub room_c: f64,
+    /// Force of the finger, N.
+    pub force_n: f64,
+    /// What the driver's current mirror sees, A.
+    pub mirror_a: f64,
+}
+
+/// The sensors of one finger and the converter that reads them.
+#[derive(Clone, Debug)]
+pub struct Sensors {
+    params: SensorParams,
+    thermistors: [Thermistor; THERMISTORS],
+    force_lag: Lag,
+    /// What the force sensor has reached, N.
+    force_n: f64,
+    /// Noiseless level of each channel, counts.
+    counts: [f64; CHANNELS],
+    converter: Converter,
+}
+
+impl Sensors {
+    /// Sensors at rest in a state; the seed fixes the converter's profile and every later draw of noise.
+    #[must_use]
+    pub fn new(params: SensorParams, state: &Sensed, seed: u64) -> Self {
+        let excitation_v = params.reference.volt * params.reference.excitation_duty.sqrt();
+        let sites = sites(&params, state);
+        let mut sensors = Self {
+            params,
+            thermistors: std::array::from_fn(|i| {
+                Thermistor::new(params.thermistors[i], &sites[i], excitation_v)
+            }),
+            force_lag: Lag::new(params.force.lag_s),
+            force_n: state.force_n,
+            counts: [0.0; CHANNELS],
+            converter: Converter::new(params.converter, Xoshiro256PlusPlus::seed_from_u64(seed)),
+        };
+        sensors.read(state);
+        sensors
+    }
+
+    /// Follows the state over a step, s, at whose end it is `state`: temperatures have moved there evenly, the force
+    /// was what it is for the whole step.
+    pub fn step(&mut self, step_s: f64, state: &Sensed) {
+        let sites = sites(&self.params, state);
+        for (thermistor, site) in self.thermistors.iter_mut().zip(&sites) {
+            thermistor.step(step_s, site);
+        }
+        self.force_n = self.force_lag.towards(step_s, self.force_n, state.force_n);
+        self.read(state);
+    }
+
+    /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is
+    /// part of the experiment.
+    pub fn convert(&mut self, channel: Channel) -> u16 {
+        self.converter.convert(self.counts[channel as usize])
+    }
+
+    fn read(&mut self, state: &Sensed) {
+        let p = &self.params;
+        let mut ideal = [0.0; CHANNELS];
+        for (counts, thermistor) in ideal.iter_mut().zip(&self.thermistors) {
+            *counts = thermistor.ratio() * CODES;
+        }
+        // The reference carries the dividers with it, but not what has a scale of its own.
+        let per_volt = 1.0 / (1.0 + p.reference.error);
+        ideal[Channel::Force as usize] = p.force.counts(self.force_n) * per_volt;
+        ideal[Channel::Current as usize] = p.mirror.counts(state.mirror_a) * per_volt;
+        self.counts = ideal.map(|counts| self.converter.seen(counts));
+    }
+}
+
+/// What each thermistor has around it.
+fn sites(params: &SensorParams, state: &Sensed) -> [Site; THERMISTORS] {
+    let edge_c = state.skin_before_c + params.skin_sees_contact * (state.skin_c - state.skin_before_c);
+    let surfaces_c = [
+        state.display_c,
+        state.display_c,
+        state.sink_c,
+        edge_c,
+        state.room_c,
+    ];
+    surfaces_c.map(|surface_c| Site {
+        surface_c,
+        room_c: state.room_c,
+    })
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,116 @@
+//! A thermistor under a pull-up: what it follows, how it warms itself, and what the divider makes of it.
+
+use super::follow::Lag;
+
+const ZERO_C_K: f64 = 273.15;
+/// What beta counts from, 25 deg C, K.
+const REFERENCE_K: f64 = 25.0 + ZERO_C_K;
+
+/// A thermistor from the converter's pin to ground, with a resistor from the pin to the converter's reference.
+///
+/// Tolerances are of parts as they are bought; the device has not been calibrated for any of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ThermistorParams {
+    /// Resistance at 25 deg C, ohm, above 0; 10e3 within 1 % (class value).
+    pub at_25c_ohm: f64,
+    /// Beta, K, above 0; 3950 within 1 % (class value, recalled).
+    pub beta_k: f64,
+    /// Resistor to the reference, ohm, above 0; 10e3 within 0.1 % (reference design, class tolerance).
+    pub pull_up_ohm: f64,
+    /// First-order lag behind what it sits on, s, above 0; 0.1 on the display, from 0.02 to 0.5 (literature's range
+    /// for the class); sink 1, skin 0.3, room 2, each within a factor of 2 (class values).
+    pub lag_s: f64,
+    /// Heat that it gives to what it sits on, per kelvin above it, W/K, above 0: 8e-3 bonded to metal or ceramic,
+    /// 3e-3 glued to skin, 1e-3 in air, each within a factor of 2 (the last recalled of the class; the others
+    /// estimated for a rod of 0.46 mm x 3.2 mm, the thesis's, half in glue and half in skin).
+    pub dissipation_w_k: f64,
+    /// Share of the room that its leads let in, 0 to 1: 0.002 with leads that run along the surface, 0.01 on the
+    /// skin, from 0 to twice as much; 0 in the room (estimated).
+    pub lead_share: f64,
+}
+
+impl ThermistorParams {
+    /// Voltage at the pin in fractions of the reference, at a temperature, deg C. Falls as it warms.
+    #[must_use]
+    pub fn ratio(&self, temperature_c: f64) -> f64 {
+        let exponent = self.beta_k * ((temperature_c + ZERO_C_K).recip() - REFERENCE_K.recip());
+        let ohm = self.at_25c_ohm * exponent.exp();
+        ohm / (ohm + self.pull_up_ohm)
+    }
+
+    /// Power in the thermistor, W, with a root mean square of the voltage on the divider, V, is this times the
+    /// divider's ratio times what the ratio leaves of one.
+    #[must_use]
+    pub fn heat_scale_w(&self, excitation_v: f64) -> f64 {
+        excitation_v * excitation_v / self.pull_up_ohm
+    }
+}
+
+/// What a thermistor has around it at the end of a step.
+#[derive(Clone, Copy, Debug)]
+pub struct Site {
+    /// What it sits on, deg C.
+    pub surface_c: f64,
+    /// The room, deg C.
+    pub room_c: f64,
+}
+
+/// A thermistor at work.
+#[derive(Clone, Copy, Debug)]
+pub struct Thermistor {
+    params: ThermistorParams,
+    /// Self-heating over the product of both parts of the divider, K.
+    heat_k: f64,
+    lag: Lag,
+    /// What it moves towards, and where it is, deg C.
+    target_c: f64,
+    reached_c: f64,
+    ratio: f64,
+}
+
+/// Rounds in which a thermistor at rest finds its own temperature: each round leaves less than a hundredth.
+const ROUNDS: usize = 8;
+
+impl Thermistor {
+    /// At rest, with a root mean square of the voltage on its divider, V.
+    pub fn new(params: ThermistorParams, site: &Site, excitation_v: f64) -> Self {
+        let mut thermistor = Self {
+            params,
+            heat_k: params.heat_scale_w(excitation_v) / params.dissipation_w_k,
+            lag: Lag::new(params.lag_s),
+            target_c: site.surface_c,
+            reached_c: site.surface_c,
+            ratio: params.ratio(site.surface_c),
+        };
+        for _ in 0..ROUNDS {
+            thermistor.target_c = thermistor.target_c(site);
+            thermistor.reached_c = thermistor.target_c;
+            thermistor.ratio = params.ratio(thermistor.reached_c);
+        }
+        thermistor
+    }
+
+    /// Follows over a step, s, in which what is around it has moved evenly.
+    pub fn step(&mut self, step_s: f64, site: &Site) {
+        let target_c = self.target_c(site);
+        self.reached_c = self
+            .lag
+            .along_ramp(step_s, self.reached_c, self.target_c, target_c);
+        self.target_c = target_c;
+        self.ratio = self.params.ratio(self.reached_c);
+    }
+
+    /// Voltage at the pin in fractions of the reference.
+    pub const fn ratio(&self) -> f64 {
+        self.ratio
+    }
+
+    /// Where it would come to rest; it heats itself as it did at the end of the step before.
+    fn target_c(&self, site: &Site) -> f64 {
+        let heat_k = self.heat_k * self.ratio * (1.0 - self.ratio);
+        site.surface_c + self.params.lead_share * (site.room_c - site.surface_c) + heat_k
+    }
+}
+
+#[cfg(test)]
+mod tests;
