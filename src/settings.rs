@@ -85,7 +85,7 @@ pub struct ForceSensor {
 /// A thermoelectric module on its supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Module {
-    /// Electrical resistance, ohm.
+    /// Electrical resistance, with that of the bridge's switches, its filter and the leads, ohm.
     pub resistance_ohm: f64,
     /// Seebeck coefficient, V/K.
     pub seebeck_v_k: f64,
@@ -122,7 +122,7 @@ impl Default for Settings {
             },
             current_counts_per_a: 400.0,
             module: Module {
-                resistance_ohm: 1.061,
+                resistance_ohm: 1.25,
                 seebeck_v_k: 0.0273,
                 supply_v: 12.0,
                 current_limit_a: 6.0,

@@ -1,17 +1,18 @@
 //! What runs the device: the release image in the emulated microcontroller, or the same logic natively.
 //!
 //! # Time
-//! The plant advances in steps of [`STEP_S`](crate::plant::STEP_S); the device runs between its boundaries and
-//! sees it stand still. Boundaries lie at 0.23 and 0.73 ms after the first conversion, modulo 1 ms:
+//! Boundaries lie at 0.23 ms after the first conversion, modulo 1 ms. At each the plant advances by
+//! [`STEP_S`](crate::plant::STEP_S) under the legs as they are; then the device runs to the next, and its 16 scans see the
+//! plant on its way there:
 //!
 //! ```text
 //! ms     0         0.23             0.73        0.94 0.96  1.0       1.23
 //!        | scans 0-3 | scans 4-11     | scans 12-15 |tick| | scans 0-3 |
-//!                    ^ boundary       ^ boundary                       ^ boundary: the tick's duty counts
+//!                    ^ boundary       (host)                           ^ boundary: the tick's duty counts
 //! ```
 //!
-//! A tick has 0.27 ms to set its duty; an image that needs longer is off by one step, which the comparison of
-//! both engines would show.
+//! So a duty acts 0.27 ms after its tick; an image whose tick takes longer is off by one step, which the comparison
+//! of both engines would show.
 
 mod image;
 mod native;
@@ -39,7 +40,7 @@ pub trait Engine {
     /// The bridge's legs, as the device drives them now.
     fn legs(&mut self) -> Legs;
 
-    /// Runs the device to the next boundary.
+    /// Runs the device by half a millisecond.
     ///
     /// # Errors
     /// The device cannot go on.

@@ -9,7 +9,7 @@ mod thermistor;
 
 use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;
-use thermal_display::sense::CHANNELS;
+use thermal_display::sense::{CHANNELS, SCANS_PER_TICK};
 
 pub use converter::ConverterParams;
 pub use params::{ForceParams, MirrorParams, ReferenceParams, SensorParams};
@@ -81,8 +81,11 @@ pub struct Sensors {
     force_lag: Lag,
     /// What the force sensor has reached, N.
     force_n: f64,
-    /// Noiseless level of each channel, counts.
+    /// Noiseless level of each channel at the start and at the end of the last step, counts.
+    before: [f64; CHANNELS],
     counts: [f64; CHANNELS],
+    /// Conversions of each channel since.
+    taken: [u32; CHANNELS],
     converter: Converter,
 }
 
@@ -99,28 +102,37 @@ impl Sensors {
             }),
             force_lag: Lag::new(params.force.lag_s),
             force_n: state.force_n,
+            before: [0.0; CHANNELS],
             counts: [0.0; CHANNELS],
+            taken: [0; CHANNELS],
             converter: Converter::new(params.converter, Xoshiro256PlusPlus::seed_from_u64(seed)),
         };
         sensors.read(state);
+        sensors.before = sensors.counts;
         sensors
     }
 
     /// Follows the state over a step, s, at whose end it is `state`: temperatures have moved there evenly, the force
-    /// was what it is for the whole step.
+    /// was what it is for the whole step. The conversions of a tick that follow see them on their way there.
     pub fn step(&mut self, step_s: f64, state: &Sensed) {
         let sites = sites(&self.params, state);
         for (thermistor, site) in self.thermistors.iter_mut().zip(&sites) {
             thermistor.step(step_s, site);
         }
         self.force_n = self.force_lag.towards(step_s, self.force_n, state.force_n);
+        self.before = self.counts;
+        self.taken = [0; CHANNELS];
         self.read(state);
     }
 
     /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is
     /// part of the experiment.
     pub fn convert(&mut self, channel: Channel) -> u16 {
-        self.converter.convert(self.counts[channel as usize])
+        let i = channel as usize;
+        self.taken[i] = (self.taken[i] + 1).min(SCANS_PER_TICK as u32);
+        let part = f64::from(self.taken[i]) * (1.0 / SCANS_PER_TICK as f64);
+        let level = self.before[i] + part * (self.counts[i] - self.before[i]);
+        self.converter.convert(level)
     }
 
     fn read(&mut self, state: &Sensed) {
