@@ -17,7 +17,7 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     optic: Glass,
     /// True temperatures of the target, °C; one row each
-    #[arg(long, value_delimiter = ',', required = true, allow_negative_numbers = true)]
+    #[arg(long, value_delimiter = ',', required = true, allow_hyphen_values = true)]
     target_c: Vec<f64>,
     /// Room, °C
     #[arg(long, allow_negative_numbers = true)]

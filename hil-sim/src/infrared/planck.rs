@@ -58,13 +58,13 @@ pub fn temperature_c(radiance_w_m2_sr: f64) -> f64 {
     // Newton for ln U over 1/T. ln U is convex in 1/T (U is a sum of exponentials of it) and falls, so each step
     // lands on the hot side of the root, and from there the approach is monotone: no bracket is needed as long as
     // the first step does not leave the range.
-    let hottest = (hottest_c + ZERO_C_K).recip();
+    let (hottest, coldest) = ((hottest_c + ZERO_C_K).recip(), (coldest_c + ZERO_C_K).recip());
     let mut inverse = START_K.recip();
     for _ in 0..MOST_STEPS {
         let kelvin = inverse.recip();
         let here = radiance(kelvin - ZERO_C_K);
         let step = (here / radiance_w_m2_sr).ln() * here / (kelvin * kelvin * slope(kelvin, here));
-        inverse = (inverse + step).max(hottest);
+        inverse = (inverse + step).clamp(hottest, coldest);
         if step.abs() < ENOUGH * inverse {
             break;
         }
