@@ -5,12 +5,14 @@ const REACH: usize = 3;
 
 /// Heights above the least-squares line, m.
 pub(super) fn levelled(x_m: &[f64], z_m: &[f64]) -> Vec<f64> {
-    let (middle, level) = (mean(x_m, x_m), mean(x_m, z_m));
+    // From the first point on, so that a flat profile is flat to the last digit.
+    let z_m: Vec<f64> = z_m.iter().map(|z| z - z_m[0]).collect();
+    let (middle, level) = (mean(x_m, x_m), mean(x_m, &z_m));
     let from_middle: Vec<f64> = x_m.iter().map(|x| x - middle).collect();
     let square = from_middle.iter().map(|x| x * x);
-    let product = from_middle.iter().zip(z_m).map(|(x, z)| x * (z - level));
+    let product = from_middle.iter().zip(&z_m).map(|(x, z)| x * (z - level));
     let tilt = mean(x_m, &product.collect::<Vec<_>>()) / mean(x_m, &square.collect::<Vec<_>>());
-    let above = from_middle.iter().zip(z_m).map(|(x, z)| z - level - tilt * x);
+    let above = from_middle.iter().zip(&z_m).map(|(x, z)| z - level - tilt * x);
     above.collect()
 }
 
