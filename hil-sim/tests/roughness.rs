@@ -206,18 +206,19 @@ fn triangles_and_steps_have_known_slopes() {
 
 #[test]
 fn spacing_ignores_what_is_low_and_what_is_narrow() {
-    let (carrier, ripple) = (Sine(10e-6, 1e-3, 0.3), |height_m| Sine(height_m, 0.11e-3, 0.1));
-    let mixed = |height_m| {
-        let ripple = ripple(height_m);
-        measure(
-            carrier
-                .sampled(30.0, 30_000)
-                .map(move |(x_m, z_m)| (x_m, z_m + ripple.at(x_m))),
-        )
+    // In each millimetre a full wave of 10 µm, then ripples that are wide enough to count. 1 µm is 5 % of Rz,
+    // below the threshold of 10 %; 3 µm are 15 %, and each wave and each ripple is an element.
+    let rippled = |height_m: f64| {
+        let (wave, ripple) = (Sine(10e-6, 0.5e-3, 0.0), Sine(height_m, 0.125e-3, 0.0));
+        let pattern = move |x_m: f64| match x_m.rem_euclid(1e-3) {
+            place if place < 0.5e-3 => wave.at(place),
+            place => ripple.at(place),
+        };
+        measure(even(30.3e-3, 30_300).map(move |x_m| (x_m, pattern(x_m))))
     };
-    // 5 % of Rz is below the threshold of 10 %, though it crosses the mean line; 50 % is a peak of its own.
-    assert!(relative(rsm_m(&mixed(1e-6)), 1e-3) < 5e-3);
-    assert!(rsm_m(&mixed(10e-6)) < 0.5e-3);
+    assert!(relative(rsm_m(&rippled(1e-6)), 1e-3) < 5e-3);
+    assert!(relative(rsm_m(&rippled(3e-6)), 0.2e-3) < 0.01);
+    let carrier = Sine(10e-6, 1e-3, 0.3);
     // Single spikes: 20 µm high, wider or narrower than 5 % of the spacing, one in every valley.
     let spiked = |width_m: f64| {
         measure(carrier.sampled(30.0, 30_000).map(move |(x_m, z_m)| {
@@ -227,6 +228,18 @@ fn spacing_ignores_what_is_low_and_what_is_narrow() {
     };
     assert!(relative(rsm_m(&spiked(0.02e-3)), 1e-3) < 1e-3);
     assert!(relative(rsm_m(&spiked(0.1e-3)), 0.5e-3) < 0.05);
+    // One speck of dust raises one of the five heights of which Rz is the mean, and hides no peak.
+    let dusty = carrier.sampled(30.0, 30_000).map(|(x_m, z_m)| {
+        (
+            x_m,
+            if (2.19e-3..2.2e-3).contains(&x_m) {
+                150e-6
+            } else {
+                z_m
+            },
+        )
+    });
+    assert!(relative(rsm_m(&measure(dusty)), 1e-3) < 1e-3);
 }
 
 #[test]
