@@ -1,7 +1,9 @@
 //! The subcommands.
 
 pub mod erfcx;
+pub mod infrared;
 pub mod model;
+pub mod roughness;
 pub mod run;
 
 /// Why a command failed, and the exit status that says so.
