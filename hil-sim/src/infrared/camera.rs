@@ -1,7 +1,7 @@
 //! The camera: noise, and the temperatures it shows.
 
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::SeedableRng;
+use rand::SeedableRng;
+use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal};
 use thiserror::Error;
 
@@ -76,7 +76,7 @@ pub struct Camera {
     assumed: LineOfSight,
     /// Standard deviation of a reading's signal, W/(m² sr).
     noise: f64,
-    random: ChaCha8Rng,
+    random: Xoshiro256PlusPlus,
 }
 
 impl Camera {
@@ -99,7 +99,7 @@ impl Camera {
             sight,
             assumed,
             noise: params.netd_k * radiance_per_k(NETD_AT_C) / f64::from(params.pixels).sqrt(),
-            random: ChaCha8Rng::seed_from_u64(seed),
+            random: Xoshiro256PlusPlus::seed_from_u64(seed),
         })
     }
 
