@@ -14,6 +14,7 @@ pub mod report;
 pub mod run;
 pub mod scene;
 pub mod telemetry;
+pub mod thesis;
 pub mod trace;
 mod world;
 

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use cli::{Failure, erfcx, model, run};
+use cli::{Failure, erfcx, model, run, thesis};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
@@ -19,6 +19,8 @@ enum Cli {
     Model(model::Arguments),
     /// Evaluate the fixed-point kernel: one z a line on standard input, prints z and the bits of E
     Erfcx,
+    /// Recompute the thesis's tables and model figures and lay them beside what it states
+    Thesis(thesis::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -26,6 +28,7 @@ fn main() -> ExitCode {
         Cli::Run(arguments) => run::run(&arguments),
         Cli::Model(arguments) => model::run(&arguments),
         Cli::Erfcx => erfcx::run(),
+        Cli::Thesis(arguments) => thesis::run(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -3,6 +3,7 @@
 pub mod erfcx;
 pub mod model;
 pub mod run;
+pub mod thesis;
 
 /// Why a command failed, and the exit status that says so.
 #[derive(Debug)]
