@@ -28,53 +28,68 @@ const TABLE_3_3: [(&str, &str, f64); 15] = [
 /// Percentage from which on a pair counts as told apart (section 3.2.2).
 const THRESHOLD: f64 = 72.0;
 
-/// Table 3-5: the two materials, their ratio, and percentage correct and d' of high / low, low / high, total.
-const TABLE_3_5: [(&str, &str, f64, [(f64, f64); 3]); 10] = [
-    (
+/// A line of Table 3-5.
+struct Pair {
+    materials: (&'static str, &'static str),
+    ratio: f64,
+    /// Percentage correct and d' in each of [`MODES`].
+    columns: [(f64, f64); 3],
+}
+
+const fn pair(
+    one: &'static str,
+    other: &'static str,
+    ratio: f64,
+    percent: [f64; 3],
+    sensitivity: [f64; 3],
+) -> Pair {
+    let columns = [
+        (percent[0], sensitivity[0]),
+        (percent[1], sensitivity[1]),
+        (percent[2], sensitivity[2]),
+    ];
+    Pair {
+        materials: (one, other),
+        ratio,
+        columns,
+    }
+}
+
+const TABLE_3_5: [Pair; 10] = [
+    pair(
         "stainless-steel",
         "granite",
         2.96,
-        [(30.0, -0.12), (43.0, 0.33), (37.0, 0.13)],
+        [30.0, 43.0, 37.0],
+        [-0.12, 0.33, 0.13],
     ),
-    ("granite", "abs", 4.76, [(53.0, 0.65), (44.0, 0.36), (49.0, 0.52)]),
-    (
+    pair("granite", "abs", 4.76, [53.0, 44.0, 49.0], [0.65, 0.36, 0.52]),
+    pair(
         "copper",
         "stainless-steel",
         5.25,
-        [(38.0, 0.16), (39.0, 0.20), (38.0, 0.16)],
+        [38.0, 39.0, 38.0],
+        [0.16, 0.20, 0.16],
     ),
-    (
+    pair(
         "stainless-steel",
         "abs",
         14.07,
-        [(72.0, 1.31), (59.0, 0.85), (66.0, 1.09)],
+        [72.0, 59.0, 66.0],
+        [1.31, 0.85, 1.09],
     ),
-    (
-        "copper",
-        "granite",
-        15.52,
-        [(56.0, 0.75), (44.0, 0.36), (50.0, 0.56)],
-    ),
-    ("abs", "foam", 17.28, [(68.0, 1.16), (46.0, 0.43), (57.0, 0.78)]),
-    ("copper", "abs", 73.83, [(69.0, 1.20), (51.0, 0.59), (60.0, 0.89)]),
-    (
-        "granite",
-        "foam",
-        82.21,
-        [(68.0, 1.16), (61.0, 0.92), (64.0, 1.02)],
-    ),
-    (
+    pair("copper", "granite", 15.52, [56.0, 44.0, 50.0], [0.75, 0.36, 0.56]),
+    pair("abs", "foam", 17.28, [68.0, 46.0, 57.0], [1.16, 0.43, 0.78]),
+    pair("copper", "abs", 73.83, [69.0, 51.0, 60.0], [1.20, 0.59, 0.89]),
+    pair("granite", "foam", 82.21, [68.0, 61.0, 64.0], [1.16, 0.92, 1.02]),
+    pair(
         "stainless-steel",
         "foam",
         243.03,
-        [(79.0, 1.61), (62.0, 0.95), (71.0, 1.28)],
+        [79.0, 62.0, 71.0],
+        [1.61, 0.95, 1.28],
     ),
-    (
-        "copper",
-        "foam",
-        1275.59,
-        [(82.0, 1.75), (66.0, 1.09), (74.0, 1.39)],
-    ),
+    pair("copper", "foam", 1275.59, [82.0, 66.0, 74.0], [1.75, 1.09, 1.39]),
 ];
 const MODES: [&str; 3] = ["high / low", "low / high", "total"];
 
@@ -116,9 +131,10 @@ pub(super) fn table_3_3() -> Vec<Row> {
 }
 
 pub(super) fn ratios() -> Vec<Row> {
-    let rows = TABLE_3_5.iter().map(|&(one, other, stated, _)| {
+    let rows = TABLE_3_5.iter().map(|pair| {
+        let (one, other) = pair.materials;
         let tabulated = ratio(one, other, tabulated_effusivity);
-        let stated = printed(stated, 2);
+        let stated = printed(pair.ratio, 2);
         let (why, tabulated) = if stated.agrees(tabulated) {
             ("ratio of the cut coefficients of Table 3-4", tabulated)
         } else {
@@ -146,8 +162,9 @@ pub(super) fn ratios() -> Vec<Row> {
 /// d' of the printed percentages.
 pub(super) fn sensitivities() -> Vec<Row> {
     let mut rows = Vec::new();
-    for (one, other, _, columns) in TABLE_3_5 {
-        for (mode, (percent, stated)) in MODES.iter().zip(columns) {
+    for pair in TABLE_3_5 {
+        let (one, other) = pair.materials;
+        for (mode, (percent, stated)) in MODES.iter().zip(pair.columns) {
             let row = Row::new(
                 "Table 3-5",
                 format!(
@@ -180,10 +197,10 @@ pub(super) fn means() -> Vec<Row> {
         both.contains(&one) && both.contains(&other)
     };
     let first: Vec<f64> = TABLE_3_3.iter().map(|row| row.2).collect();
-    let second: Vec<f64> = TABLE_3_5.iter().map(|row| row.3[2].0).collect();
+    let second: Vec<f64> = TABLE_3_5.iter().map(|pair| pair.columns[2].0).collect();
     let of_shared = |column: usize| {
-        let rows = TABLE_3_5.iter().filter(|row| shared((row.0, row.1)));
-        mean(&rows.map(|row| row.3[column].0).collect::<Vec<_>>())
+        let rows = TABLE_3_5.iter().filter(|pair| shared(pair.materials));
+        mean(&rows.map(|pair| pair.columns[column].0).collect::<Vec<_>>())
     };
     let first_shared = TABLE_3_3.iter().filter(|row| shared((row.0, row.1)));
     let first_shared = mean(&first_shared.map(|row| row.2).collect::<Vec<_>>());

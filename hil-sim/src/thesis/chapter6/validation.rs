@@ -39,14 +39,14 @@ pub(super) fn pressures() -> Vec<Row> {
     let area_mm2 = |force_n| contact_area_m2(force_n) * 1e6;
     let growth = area_mm2(2.0) - area_mm2(0.1);
     let below_1n = (area_mm2(1.0) - area_mm2(0.1)) / growth * 100.0;
-    let stated = [0.73, 1.68, 3.14, 5.90, 10.98];
+    let stated = [730.0, 1680.0, 3140.0, 5900.0, 10_980.0];
     let pressures = STATED.iter().zip(stated).map(|((force_n, pressure_pa), stated)| {
         Row::new(
             "Section 6.4.2",
             format!("pressure of the model at {force_n} N"),
-            "kPa",
-            printed(stated, 2),
-            pressure_pa * 1e-3,
+            "Pa",
+            printed(stated, -1),
+            *pressure_pa,
         )
     });
     let mut rows: Vec<Row> = pressures.collect();

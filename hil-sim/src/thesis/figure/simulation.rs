@@ -57,7 +57,8 @@ pub(super) fn figure_3_2() -> Vec<Figure> {
 }
 
 pub(super) fn figures_6_6_to_6_9(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
-    let parts: [(_, _, _, fn(&Surfaces) -> f64); 4] = [
+    type Value = fn(&Surfaces) -> f64;
+    let parts: [(_, _, _, Value); 4] = [
         ("6-6", "Skin surface", TEMPERATURE, |at| at.skin_c),
         ("6-7", "Material surface", TEMPERATURE, |at| at.object_c),
         ("6-8", "Heat flux exchanged", FLUX, |at| at.flux_w_m2),
