@@ -91,10 +91,10 @@ fn curves_and_rows_of_the_validation_meet_golden_values() {
     let contacts = contacts();
     let mut checked = 0;
     for (material, part) in [("baf2", "A"), ("zns", "B")] {
-        for (condition, label, kpa) in [
-            ("val_0.1N", "0.73 kPa (0.1 N)", 0.73),
-            ("val_0.5N", "3.14 kPa (0.5 N)", 3.14),
-            ("val_2N", "10.98 kPa (2 N)", 10.98),
+        for (condition, label, pressure_pa) in [
+            ("val_0.1N", "0.73 kPa (0.1 N)", 730.0),
+            ("val_0.5N", "3.14 kPa (0.5 N)", 3140.0),
+            ("val_2N", "10.98 kPa (2 N)", 10_980.0),
         ] {
             let golden = |t_s: f64| {
                 let found = contacts.iter().find(|golden| {
@@ -106,6 +106,7 @@ fn curves_and_rows_of_the_validation_meet_golden_values() {
                 });
                 found.unwrap_or_else(|| panic!("{material}, {condition}, {t_s} s"))
             };
+            let kpa = pressure_pa / 1e3;
             let end = golden(10.0);
             let fall_k = 34.0 - end.skin_c;
             let close = |value: Option<f64>, exact: f64| {
