@@ -7,10 +7,12 @@
 pub mod engine;
 pub mod firmware;
 pub mod host;
+pub mod infrared;
 pub mod machine;
 pub mod metrics;
 pub mod plant;
 pub mod report;
+pub mod roughness;
 pub mod run;
 pub mod scene;
 pub mod telemetry;

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use cli::{Failure, erfcx, model, run, thesis};
+use cli::{Failure, erfcx, infrared, model, roughness, run, thesis};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
@@ -19,6 +19,10 @@ enum Cli {
     Model(model::Arguments),
     /// Evaluate the fixed-point kernel: one z a line on standard input, prints z and the bits of E
     Erfcx,
+    /// What the thesis's infrared camera shows of a target, and the way back (Eq. 5-3 and 5-4), as CSV
+    Infrared(infrared::Arguments),
+    /// Roughness, slopes and spacing of a measured profile (Appendix A), as CSV
+    Roughness(roughness::Arguments),
     /// Recompute the thesis's tables and model figures and lay them beside what it states
     Thesis(thesis::Arguments),
 }
@@ -28,6 +32,8 @@ fn main() -> ExitCode {
         Cli::Run(arguments) => run::run(&arguments),
         Cli::Model(arguments) => model::run(&arguments),
         Cli::Erfcx => erfcx::run(),
+        Cli::Infrared(arguments) => infrared::run(&arguments),
+        Cli::Roughness(arguments) => roughness::run(&arguments),
         Cli::Thesis(arguments) => thesis::run(&arguments),
     };
     match done {

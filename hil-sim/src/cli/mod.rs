@@ -1,7 +1,9 @@
 //! The subcommands.
 
 pub mod erfcx;
+pub mod infrared;
 pub mod model;
+pub mod roughness;
 pub mod run;
 pub mod thesis;
 

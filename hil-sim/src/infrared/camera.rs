@@ -1,0 +1,157 @@
+//! The camera: noise, and the temperatures it shows.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use thiserror::Error;
+
+use super::{
+    LineOfSight, Optic, RANGE_C, SKIN_EMISSIVITY, SelfReflection, Surroundings, radiance, radiance_per_k,
+    temperature_c,
+};
+
+/// Black body at which cameras' noise is stated, deg C.
+const NETD_AT_C: f64 = 30.0;
+
+/// What the instrument is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CameraParams {
+    /// What the target is seen through.
+    pub optic: Optic,
+    /// The target's emissivity, above 0 to 1; the way back assumes the same.
+    pub emissivity: f64,
+    /// Noise-equivalent temperature difference of one pixel in one frame: standard deviation of the apparent
+    /// temperature of a black body of 30 deg C, K. Noise is Gaussian in the signal and the same at every signal.
+    pub netd_k: f64,
+    /// Pixels that are averaged into a reading; their noise is independent.
+    pub pixels: u32,
+    /// If the camera sees itself in the window. The way back does not know of it.
+    pub self_reflection: Option<SelfReflection>,
+}
+
+impl CameraParams {
+    /// The thesis's instrument: skin, one pixel, no self-reflection. The thesis gives no noise; 0.08 K is the
+    /// class of its camera, an uncooled bolometer of 2006.
+    #[must_use]
+    pub fn thesis(optic: Optic) -> Self {
+        Self {
+            optic,
+            emissivity: SKIN_EMISSIVITY,
+            netd_k: 0.08,
+            pixels: 1,
+            self_reflection: None,
+        }
+    }
+}
+
+/// A parameter out of range.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("{name} {value}; allowed is {allowed}")]
+pub struct ParameterError {
+    /// Its name.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// What is allowed, in words.
+    pub allowed: &'static str,
+}
+
+/// What the instrument says of a target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reading {
+    /// Radiance that arrives, noise included, W/(m² sr).
+    pub u_tot: f64,
+    /// What the camera shows: the temperature of a black body of that radiance, deg C.
+    pub apparent_c: f64,
+    /// The target's temperature by the thesis's way back, deg C.
+    pub recovered_c: f64,
+}
+
+/// A camera that looks at one target. A reading allocates nothing.
+#[derive(Clone, Debug)]
+pub struct Camera {
+    /// What happens.
+    sight: LineOfSight,
+    /// What the way back believes.
+    assumed: LineOfSight,
+    /// Standard deviation of a reading's signal, W/(m² sr).
+    noise: f64,
+    random: ChaCha8Rng,
+}
+
+impl Camera {
+    /// A camera in fixed surroundings; the seed fixes every later draw of noise.
+    ///
+    /// # Errors
+    /// Emissivity not in (0, 1], NETD negative or not finite, no pixels, share not in 0 to 1, or a temperature
+    /// outside of [`RANGE_C`].
+    pub fn new(
+        params: &CameraParams,
+        surroundings: &Surroundings,
+        seed: u64,
+    ) -> Result<Self, ParameterError> {
+        check(params, surroundings)?;
+        let assumed = LineOfSight::new(params.optic, params.emissivity, surroundings);
+        let sight = params.self_reflection.map_or(assumed, |camera| {
+            assumed.with_self_reflection(params.optic, &camera, surroundings.ambient_c)
+        });
+        Ok(Self {
+            sight,
+            assumed,
+            noise: params.netd_k * radiance_per_k(NETD_AT_C) / f64::from(params.pixels).sqrt(),
+            random: ChaCha8Rng::seed_from_u64(seed),
+        })
+    }
+
+    /// Reads a target of a true temperature, deg C, within [`RANGE_C`]. Each reading draws noise.
+    pub fn read(&mut self, target_c: f64) -> Reading {
+        let normal: f64 = StandardNormal.sample(&mut self.random);
+        let u_tot = self.sight.total(radiance(target_c)) + self.noise * normal;
+        let apparent_c = temperature_c(u_tot);
+        Reading {
+            u_tot,
+            apparent_c,
+            recovered_c: self.recovered_c(apparent_c),
+        }
+    }
+
+    /// The target's temperature, deg C, from what the camera shows, deg C: Eq. 5-3 or 5-4 solved for the target.
+    /// Held at the nearest end of [`RANGE_C`] if no target of it would show that.
+    #[must_use]
+    pub fn recovered_c(&self, apparent_c: f64) -> f64 {
+        temperature_c(self.assumed.target(radiance(apparent_c)))
+    }
+}
+
+fn check(params: &CameraParams, surroundings: &Surroundings) -> Result<(), ParameterError> {
+    let ensure = |holds: bool, name, value, allowed| {
+        if holds {
+            Ok(())
+        } else {
+            Err(ParameterError { name, value, allowed })
+        }
+    };
+    let temperature = |name, value: f64| ensure(RANGE_C.contains(&value), name, value, "-100 to 200");
+    let emissivity = params.emissivity;
+    ensure(
+        emissivity > 0.0 && emissivity <= 1.0,
+        "emissivity",
+        emissivity,
+        "above 0 to 1",
+    )?;
+    ensure(
+        params.netd_k >= 0.0 && params.netd_k.is_finite(),
+        "netd_k",
+        params.netd_k,
+        "a finite number from 0 on",
+    )?;
+    ensure(params.pixels > 0, "pixels", f64::from(params.pixels), "1 or more")?;
+    temperature("ambient_c", surroundings.ambient_c)?;
+    temperature("window_c", surroundings.window_c)?;
+    temperature("splitter_c", surroundings.splitter_c)?;
+    if let Some(SelfReflection { camera_c, share }) = params.self_reflection {
+        temperature("camera_c", camera_c)?;
+        ensure((0.0..=1.0).contains(&share), "camera_share", share, "0 to 1")?;
+    }
+    Ok(())
+}
