@@ -1,13 +1,24 @@
-//! Chapter 5: Table 5-1 and the text about the infrared windows.
+//! Chapter 5: the infrared windows, the skin on them, and the instrument.
 
-use super::case::{Case, sample};
-use super::chapter4::opening;
-use super::row::{Remark, Row};
-use super::stated::{Stated, printed};
+mod infrared;
+
+use crate::thesis::case::{Case, sample};
+use crate::thesis::chapter4::opening;
+use crate::thesis::row::{Remark, Row};
+use crate::thesis::stated::{Stated, printed};
 
 pub(super) fn rows() -> Vec<Row> {
     let opening = opening("Section 5.2.1", 7.5, 10.0, printed(240.0, -1));
-    [table_5_1(), vec![opening], skin_on_window(), sampling()].concat()
+    [
+        table_5_1(),
+        vec![opening],
+        skin_on_window(),
+        infrared::table_5_3(),
+        infrared::limits(),
+        sampling(),
+        infrared::round_trips(),
+    ]
+    .concat()
 }
 
 fn table_5_1() -> Vec<Row> {
