@@ -29,7 +29,7 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(0x17, 0x9e, 0xae),
     RGBColor(0x22, 0x22, 0x22),
 ];
-const STYLE: &str = "body{max-width:76rem}table{font-size:.85rem;width:100%}td.n{text-align:right;white-space:nowrap}\
+const STYLE: &str = "body{max-width:76rem}table{font-size:.85rem;width:100%}td.n{text-align:right}td.n,td.w{white-space:nowrap}\
 td.v{white-space:nowrap;font-weight:600}.agrees{color:#1a7f37}.cut{color:#7a5c00}.differs{color:#b35900}\
 .damaged{color:#6639ba}.wrong{color:#cf222e}figure{margin:2rem 0}figcaption{font-weight:600}";
 
@@ -51,7 +51,7 @@ pub fn write(folder: &Path, chapters: &[Chapter], figures: &[Figure]) -> anyhow:
 fn page(chapters: &[Chapter], figures: &[Figure]) -> anyhow::Result<String> {
     let mut body = format!(
         "<p>Every number of H.-N. Ho's thesis (MIT, 2006) that a program can recompute, beside what the contact model \
-         gives. {}.</p>",
+         and the infrared instrument give. A tolerance (±), a range or a limit is how words of the text are read. {}.</p>",
         Counts::of(chapters).text()
     );
     for chapter in chapters {
@@ -84,7 +84,7 @@ fn page(chapters: &[Chapter], figures: &[Figure]) -> anyhow::Result<String> {
 
 fn line(row: &Row) -> String {
     format!(
-        "<tr><td>{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td>{}</td>\
+        "<tr><td class=\"w\">{}</td><td>{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"w\">{}</td>\
          <td class=\"v {}\">{}</td><td>{}</td></tr>",
         row.place,
         escape(&row.quantity),

@@ -1,10 +1,11 @@
 //! Computed numbers against golden values.
 
-use contact_model::material::average_slope_rad;
+use contact_model::material::{average_slope_rad, find};
+use contact_model::reference::fourier_number;
 use hil_sim::thesis::d_prime;
 use serde::Deserialize;
 
-use super::{computed, name, table};
+use super::{NAMES, all_rows, computed, name, table};
 
 #[test]
 fn sensitivities_meet_golden_values() {
@@ -110,5 +111,43 @@ fn slope_factors_meet_golden_sines() {
         assert!((golden.rms_slope / golden.mean_abs_slope - sine).abs() < 1e-12);
         let estimate = average_slope_rad(golden.rms_slope);
         assert!((estimate / golden.mean_abs_slope - sine / model).abs() < 1e-12);
+    }
+}
+
+/// The lengths that the Fourier numbers need: within these ends every row of a table agrees, beyond not.
+#[test]
+fn fourier_numbers_bound_the_characteristic_lengths() {
+    let agree = |place: &str, t_s: f64, length_m: f64| {
+        let rows = all_rows().into_iter().filter(|row| row.place == place);
+        let mut fourier = rows.filter(|row| row.quantity.contains("Fourier")).peekable();
+        assert!(fourier.peek().is_some(), "no Fourier numbers in {place}");
+        fourier.all(|row| {
+            let known = NAMES
+                .iter()
+                .find(|(_, name)| row.quantity.starts_with(&format!("{name},")));
+            let material = find(known.expect("a known material").0).expect("a material of the model");
+            row.stated.agrees(fourier_number(material, length_m, t_s))
+        })
+    };
+    for (place, t_s, within, beyond) in [
+        (
+            "Table 3-1",
+            5.0,
+            [12.706e-3, 12.71e-3, 12.723e-3],
+            [12.705e-3, 12.725e-3],
+        ),
+        (
+            "Table 3-4",
+            10.0,
+            [149.2e-3, 151.4e-3, 153.8e-3],
+            [149.0e-3, 154.0e-3],
+        ),
+    ] {
+        for length_m in within {
+            assert!(agree(place, t_s, length_m), "{place}: {length_m} m");
+        }
+        for length_m in beyond {
+            assert!(!agree(place, t_s, length_m), "{place}: {length_m} m");
+        }
     }
 }

@@ -15,12 +15,12 @@ pub(in crate::thesis) const EFFUSIVITY: &str = "J/(m² s^½ K)";
 /// Skin and material of Tables 3-1 and 3-4 before contact, °C.
 const BEFORE_C: (f64, f64) = (33.0, 24.0);
 
-/// Characteristic length of Table 3-1, m. The thesis does not print it; all six numbers need 12.706 to 12.724 mm,
+/// Characteristic length of Table 3-1, m. The thesis does not print it; all six numbers need 12.706 to 12.723 mm,
 /// which none of the stated dimensions is.
 const LENGTH_3_1_M: f64 = 12.71e-3;
 /// Thickness of the samples of sections 3.3 and 4.3, m.
 const THICKNESS_M: f64 = 38e-3;
-/// What Table 3-4's numbers need instead of the stated thickness: 0.150 to 0.153 m.
+/// What Table 3-4's numbers need instead of the stated thickness, m: 149.2 to 153.8 mm.
 const LENGTH_3_4_M: f64 = 151.4e-3;
 
 /// One column of a table of materials as printed.
