@@ -14,7 +14,8 @@
 //!
 //! An inductor current that reaches zero within a dead time stays there until a switch turns on: the leg then
 //! floats at the tile's voltage. Between the three cases the loss follows straight lines through the currents at
-//! which it does so for the whole of a dead time.
+//! which it does so for the whole of a dead time. That takes the inductor's current as made of straight lines: with
+//! the nominal filter the mean is exact while the current keeps its sign, and good to 0.03 A around zero.
 
 use super::BridgeParams;
 
@@ -116,21 +117,36 @@ impl DeadTime {
         } = *self;
         let (lost, gained) = self.lost_and_gained(width);
         let drop_v = diode_v * part;
-        let half_floating_a =
-            |width: f64, tile_v: f64| 0.5 * (supply_v - tile_v) * width * per_v * (1.0 - part);
-        // With the pulses, and floating for a whole dead time before they begin.
-        let tile_v = supply_v * (width - lost) / (1.0 - part);
+        // The rest of a pulse after a dead time, and of a pause.
+        let (pulse, pause) = ((width - part).max(0.0), (1.0 - width - part).max(0.0));
+
+        // With the pulses, and floating for a whole dead time before they begin: up to `peak`, in the diode to
+        // `knee`, down to zero. What the inductor takes and gives cancels, which tells the tile's voltage.
+        let end_drop_v = drop_v.min(supply_v * pulse);
+        let tile_v = (supply_v * pulse - end_drop_v) / (1.0 - part);
+        let peak = (supply_v - tile_v) * pulse * per_v;
+        let knee = (peak - (diode_v + tile_v) * part * per_v).max(0.0);
         let floating_before = (
-            half_floating_a(width - lost, tile_v),
-            (supply_v - tile_v) * lost + drop_v.min(supply_v * (width - lost)),
+            0.5 * (peak * pulse + (peak + knee) * part + knee * pause),
+            (supply_v - tile_v) * lost + end_drop_v,
         );
         // Against the pulses, and floating for a whole dead time after they end.
-        let tile_v = (supply_v * width / (1.0 - part)).min(supply_v);
-        let floating_after = (-half_floating_a(width, tile_v), -tile_v * gained - drop_v);
-        // Crossing zero within the pulses, with current in a diode to the end of each dead time.
-        let crossing_a = self.half_ripple_a(width);
-        let from_a = (diode_v + supply_v * width) * part * per_v - crossing_a;
-        let to_a = crossing_a - (diode_v + supply_v * (1.0 - width)) * part * per_v;
+        let tile_v = ((supply_v * width + drop_v) / (1.0 - part)).min(supply_v);
+        let knee = (supply_v - tile_v) * pulse * per_v;
+        let peak = tile_v * pause * per_v;
+        let floating_after = (
+            -0.5 * ((peak + knee) * part + knee * pulse + peak * pause),
+            -tile_v * gained - drop_v,
+        );
+        // Crossing zero within the pulses, and just reaching it at the end of the dead time after or before them.
+        let tile_v = supply_v * width;
+        let after = (diode_v + tile_v) * part * per_v;
+        let before = (supply_v + diode_v - tile_v) * part * per_v;
+        let rise = (supply_v - tile_v) * pulse * per_v;
+        let low = before + rise - after;
+        let from_a = 0.5 * (after * part - low * pause + (after - low) * width);
+        let knee = rise - after;
+        let to_a = 0.5 * (rise * pulse - before * part + (rise + knee) * part + (knee - before) * pause);
         let middle_a = 0.5 * (from_a + to_a);
         let mut corners = [
             floating_after,
