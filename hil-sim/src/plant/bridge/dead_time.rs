@@ -92,19 +92,33 @@ impl DeadTime {
     /// Mean current from which on it always flows with the pulses, A, and the voltage that it then loses, V.
     fn with(&self, width: f64) -> (f64, f64) {
         let (lost, _) = self.lost_and_gained(width);
-        (
-            self.half_ripple_a(width - lost),
-            self.supply_v * lost + self.diode_v * (lost + self.part),
-        )
+        let lost_v = self.supply_v * lost + self.diode_v * (lost + self.part);
+        let (pulse, pause) = self.rests(width);
+        let tile_v = self.supply_v * width - lost_v;
+        // In the diode down to zero, up to `peak`, in the diode to `knee`, down.
+        let falls = (self.diode_v + tile_v) * self.part * self.per_v;
+        let peak = (self.supply_v - tile_v) * pulse * self.per_v;
+        let knee = peak - falls;
+        let mean_a = falls * self.part + peak * pulse + (peak + knee) * self.part + (knee + falls) * pause;
+        (0.5 * mean_a, lost_v)
     }
 
     /// Mean current up to which it always flows against the pulses, A, and the voltage that it then loses, V.
     fn against(&self, width: f64) -> (f64, f64) {
         let (_, gained) = self.lost_and_gained(width);
-        (
-            -self.half_ripple_a(width + gained),
-            -self.supply_v * gained - self.diode_v * (gained + self.part),
-        )
+        let lost_v = -self.supply_v * gained - self.diode_v * (gained + self.part);
+        let (pulse, pause) = self.rests(width);
+        let tile_v = self.supply_v * width - lost_v;
+        let rises = (self.supply_v + self.diode_v - tile_v) * self.part * self.per_v;
+        let peak = tile_v * pause * self.per_v;
+        let knee = peak - rises;
+        let mean_a = rises * self.part + peak * pause + (peak + knee) * self.part + (knee + rises) * pulse;
+        (-0.5 * mean_a, lost_v)
+    }
+
+    /// What a dead time leaves of a pulse and of a pause.
+    fn rests(&self, width: f64) -> (f64, f64) {
+        ((width - self.part).max(0.0), (1.0 - width - self.part).max(0.0))
     }
 
     /// Corners of the voltage lost, V, over the mean current, A, above a current; both rise to the last.
@@ -117,8 +131,7 @@ impl DeadTime {
         } = *self;
         let (lost, gained) = self.lost_and_gained(width);
         let drop_v = diode_v * part;
-        // The rest of a pulse after a dead time, and of a pause.
-        let (pulse, pause) = ((width - part).max(0.0), (1.0 - width - part).max(0.0));
+        let (pulse, pause) = self.rests(width);
 
         // With the pulses, and floating for a whole dead time before they begin: up to `peak`, in the diode to
         // `knee`, down to zero. What the inductor takes and gives cancels, which tells the tile's voltage.
