@@ -88,7 +88,7 @@ fn mean_around_zero_is_exact_for_a_stiff_filter() {
         let load = Load { seebeck_v, ..TILE };
         let [mean_a, ..] = circuit::settled(&params, width, &load);
         let off_a = current(params, &driven(1.0, 1.0 - width), &load).mean_a - mean_a;
-        assert!(off_a.abs() < 3e-3, "{seebeck_v} V: {mean_a} A, off by {off_a}");
+        assert!(off_a.abs() < 2e-3, "{seebeck_v} V: {mean_a} A, off by {off_a}");
     }
 }
 
