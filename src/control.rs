@@ -74,13 +74,17 @@ impl Pi {
     }
 }
 
-/// The module's electrical side: `V = R I + a (T_sink - T_display)`.
+/// The module's electrical side: `V = R I + a (T_sink - T_display) + V_dead`, where `V_dead` is what the bridge loses
+/// in its dead times. It opposes the current, and grows with it until its ripple does not reach zero any more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voltage {
     /// Part of the supply per A.
     per_a: I16F16,
     /// Part of the supply per K.
     per_k: I16F16,
+    /// Part of the supply lost in dead times, and that per A while the current is small.
+    dead: I16F16,
+    dead_per_a: I16F16,
 }
 
 impl Voltage {
@@ -90,6 +94,8 @@ impl Voltage {
         Self {
             per_a: I16F16::saturating_from_num(module.resistance_ohm / module.supply_v),
             per_k: I16F16::saturating_from_num(module.seebeck_v_k / module.supply_v),
+            dead: I16F16::saturating_from_num(module.dead_time_v / module.supply_v),
+            dead_per_a: I16F16::saturating_from_num(module.dead_time_v / (module.supply_v * module.ripple_a)),
         }
     }
 
@@ -97,8 +103,14 @@ impl Voltage {
     #[must_use]
     pub fn duty(&self, current: Current, sink: Celsius, display: Celsius) -> Duty {
         let across = I16F16::saturating_from_num(sink.saturating_sub(display));
-        let resistive = I16F16::from_num(current).saturating_mul(self.per_a);
-        let voltage = resistive.saturating_add(across.saturating_mul(self.per_k));
+        let current = I16F16::from_num(current);
+        let resistive = current.saturating_mul(self.per_a);
+        let dead = current
+            .saturating_mul(self.dead_per_a)
+            .clamp(-self.dead, self.dead);
+        let voltage = resistive
+            .saturating_add(dead)
+            .saturating_add(across.saturating_mul(self.per_k));
         Duty::saturating(I1F15::saturating_from_num(voltage))
     }
 }
@@ -157,13 +169,22 @@ mod tests {
     }
 
     #[test]
-    fn voltage_is_resistive_plus_seebeck() {
+    fn voltage_is_resistive_plus_seebeck_plus_dead_time() {
         let voltage = Voltage::new(&Settings::default().module);
-        let duty = voltage
-            .duty(Current::lit("3"), at(30.0), at(20.0))
-            .fraction()
-            .to_num::<f64>();
-        let expected = (3.0 * 1.061 + 0.0273 * 10.0) / 12.0;
-        assert!((duty - expected).abs() < 3e-4, "{duty}, expected {expected}");
+        // All of the dead time's 0.37 V from 0.5 A on, in proportion below.
+        for (current_a, dead_v) in [
+            (3.0, 0.37),
+            (0.25, 0.185),
+            (0.0, 0.0),
+            (-0.1, -0.074),
+            (-6.0, -0.37),
+        ] {
+            let duty = voltage
+                .duty(Current::saturating_from_num(current_a), at(30.0), at(20.0))
+                .fraction()
+                .to_num::<f64>();
+            let expected = (current_a * 1.25 + 0.0273 * 10.0 + dead_v) / 12.0;
+            assert!((duty - expected).abs() < 3e-4, "{duty}, expected {expected}");
+        }
     }
 }

@@ -7,6 +7,8 @@ use contact_model::material::{REFERENCE_DISPLAY, Surface};
 pub struct Settings {
     /// All five thermistors.
     pub thermistor: Thermistor,
+    /// How much each thermistor warms itself above what it sits on, K: display, second display, sink, skin, room.
+    pub self_heating_k: [f64; 5],
     /// Force sensor.
     pub force: ForceSensor,
     /// Current mirror of the bridge: counts (of 4096) per ampere.
@@ -89,6 +91,10 @@ pub struct Module {
     pub resistance_ohm: f64,
     /// Seebeck coefficient, V/K.
     pub seebeck_v_k: f64,
+    /// Voltage that the bridge loses in its dead times, V, 0 or more.
+    pub dead_time_v: f64,
+    /// Current above which it loses all of that, A, above 0: half of the ripple in its filter's inductor.
+    pub ripple_a: f64,
     /// Supply of the bridge, V.
     pub supply_v: f64,
     /// Largest current either way, A.
@@ -116,6 +122,8 @@ impl Default for Settings {
                     beta_k: 3950.0,
                 },
             },
+            // 0.27 mW of the divider into 8 mW/K when bonded, 3 on the skin, 1 in still air.
+            self_heating_k: [0.034, 0.034, 0.034, 0.09, 0.27],
             force: ForceSensor {
                 zero_counts: 410.0,
                 counts_per_n: 300.0,
@@ -124,6 +132,8 @@ impl Default for Settings {
             module: Module {
                 resistance_ohm: 1.25,
                 seebeck_v_k: 0.0273,
+                dead_time_v: 0.37,
+                ripple_a: 0.5,
                 supply_v: 12.0,
                 current_limit_a: 6.0,
             },

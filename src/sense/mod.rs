@@ -103,6 +103,7 @@ pub struct Readings {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sensors {
     thermistor: Thermistor,
+    self_heating: [Celsius; 5],
     force: ForceScale,
     /// Current of one unit of the sum, in 2^-24 A.
     current_per_unit: i32,
@@ -115,6 +116,7 @@ impl Sensors {
         let per_unit = 1.0 / (settings.current_counts_per_a * SCANS_PER_TICK as f64);
         Self {
             thermistor: Thermistor::new(&settings.thermistor),
+            self_heating: settings.self_heating_k.map(Celsius::saturating_from_num),
             force: ForceScale::new(&settings.force),
             current_per_unit: Current::saturating_from_num(per_unit).to_bits(),
         }
@@ -123,13 +125,17 @@ impl Sensors {
     /// Converts the samples of one tick.
     #[must_use]
     pub fn read(&self, samples: &Samples) -> Readings {
-        let temperature = |sum| self.thermistor.temperature(sum);
+        let [display, display_check, sink, skin, room] = self.self_heating;
+        let temperature = |sum, warmer: Celsius| {
+            let reached = self.thermistor.temperature(sum)?;
+            Ok(reached.saturating_sub(warmer))
+        };
         Readings {
-            display: temperature(samples.display),
-            display_check: temperature(samples.display_check),
-            sink: temperature(samples.sink),
-            skin: temperature(samples.skin),
-            room: temperature(samples.room),
+            display: temperature(samples.display, display),
+            display_check: temperature(samples.display_check, display_check),
+            sink: temperature(samples.sink, sink),
+            skin: temperature(samples.skin, skin),
+            room: temperature(samples.room, room),
             force: self.force.force(samples.force),
             current: Current::from_bits(self.current_per_unit.saturating_mul(i32::from(samples.current))),
             bridge_fault: samples.bridge_fault,

@@ -73,19 +73,19 @@ impl Bench {
         bench
     }
 
-    /// What the converter makes of the world: 10 k thermistors of beta 3950 K under 10 k, 410 counts and
-    /// 300 counts/N, 400 counts/A, sixteen conversions.
+    /// What the converter makes of the world: 10 k thermistors of beta 3950 K under 10 k that warm themselves, 410
+    /// counts and 300 counts/N, 400 counts/A, sixteen conversions.
     fn samples(&self) -> Samples {
-        let thermistor = |t_c: f64| {
-            let ohm = 10e3 * (3950.0 * (1.0 / (t_c + 273.15) - 1.0 / 298.15)).exp();
+        let thermistor = |t_c: f64, warmer_k: f64| {
+            let ohm = 10e3 * (3950.0 * (1.0 / (t_c + warmer_k + 273.15) - 1.0 / 298.15)).exp();
             (65536.0 * ohm / (ohm + 10e3)).round() as u16
         };
         Samples {
-            display: thermistor(self.display_c),
-            display_check: thermistor(self.check_c),
-            sink: thermistor(self.sink_c),
-            skin: thermistor(self.skin_c),
-            room: thermistor(self.room_c),
+            display: thermistor(self.display_c, 0.034),
+            display_check: thermistor(self.check_c, 0.034),
+            sink: thermistor(self.sink_c, 0.034),
+            skin: thermistor(self.skin_c, 0.09),
+            room: thermistor(self.room_c, 0.27),
             force: (16.0 * (410.0 + 300.0 * self.force_n)).round() as u16,
             current: (16.0 * 400.0 * self.current_a).round() as u16,
             bridge_fault: self.bridge_fault,
