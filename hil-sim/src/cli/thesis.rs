@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
-use hil_sim::thesis::figure::figures;
-use hil_sim::thesis::{self, ClosedForm};
+use hil_sim::thesis::figure::{apart, figures};
+use hil_sim::thesis::{self, ClosedForm, FiniteVolumes};
 
 use super::Failure;
 
@@ -28,13 +28,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         created
             .with_context(|| format!("--out {}", folder.display()))
             .map_err(Failure::input)?;
-        let figures = figures(&ClosedForm).map_err(Failure::run)?;
-        thesis::write(folder, &chapters, &figures).map_err(Failure::run)?;
+    }
+    let closed = figures(&ClosedForm).map_err(Failure::run)?;
+    let apart = apart(&closed, &figures(&FiniteVolumes).map_err(Failure::run)?);
+    if let Some(folder) = &arguments.out {
+        thesis::write(folder, &chapters, &closed, &apart).map_err(Failure::run)?;
     }
     let mut text = if arguments.json {
-        serde_json::to_string(&thesis::json(&chapters)).map_err(Failure::run)? + "\n"
+        serde_json::to_string(&thesis::json(&chapters, &apart)).map_err(Failure::run)? + "\n"
     } else {
-        thesis::table(&chapters)
+        thesis::table(&chapters, &apart)
     };
     if let (Some(folder), false) = (&arguments.out, arguments.json) {
         text += &format!("report: {}\n", folder.join(thesis::HTML).display());

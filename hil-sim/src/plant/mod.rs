@@ -29,6 +29,7 @@ pub mod sensors;
 pub mod slab;
 pub mod tile;
 pub mod touch;
+pub mod truth;
 
 use bridge::{Bridge, Legs};
 pub use config::{ConfigError, Params, PlantConfig};

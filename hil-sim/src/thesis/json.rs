@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::figure::Apart;
 use super::{Chapter, Counts};
 
 /// Everything, as one object.
@@ -9,6 +10,8 @@ use super::{Chapter, Counts};
 pub struct Json<'a> {
     counts: Counts,
     rows: Vec<JsonRow<'a>>,
+    /// Model figures by the plant's finite volumes against the closed forms.
+    figures: &'a [Apart],
 }
 
 #[derive(Serialize)]
@@ -27,7 +30,7 @@ struct JsonRow<'a> {
 
 /// The object that `--json` prints.
 #[must_use]
-pub fn json(chapters: &[Chapter]) -> Json<'_> {
+pub fn json<'a>(chapters: &'a [Chapter], figures: &'a [Apart]) -> Json<'a> {
     let rows = chapters.iter().flat_map(|chapter| {
         chapter.rows.iter().map(|row| JsonRow {
             chapter: chapter.number,
@@ -44,5 +47,6 @@ pub fn json(chapters: &[Chapter]) -> Json<'_> {
     Json {
         counts: Counts::of(chapters),
         rows: rows.collect(),
+        figures,
     }
 }

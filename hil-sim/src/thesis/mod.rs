@@ -18,6 +18,7 @@ pub mod row;
 mod sensitivity;
 mod stated;
 mod table;
+mod volumes;
 
 pub use case::{Case, ClosedForm, Source, Surfaces};
 pub use json::{Json, json};
@@ -25,6 +26,7 @@ pub use page::{CSV, HTML, write};
 pub use sensitivity::d_prime;
 pub use stated::Stated;
 pub use table::{Counts, table};
+pub use volumes::FiniteVolumes;
 
 use row::Row;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use anyhow::Context;
 use plotters::prelude::*;
 
-use super::figure::{Figure, Kind};
+use super::figure::{Apart, Figure, Kind};
 use super::row::Row;
 use super::{Chapter, Counts};
 use crate::report::panel::{Curve, Legend, Panel, Stroke};
@@ -37,9 +37,9 @@ td.v{white-space:nowrap;font-weight:600}.agrees{color:#1a7f37}.cut{color:#7a5c00
 ///
 /// # Errors
 /// A file cannot be written, or a figure not be drawn.
-pub fn write(folder: &Path, chapters: &[Chapter], figures: &[Figure]) -> anyhow::Result<()> {
+pub fn write(folder: &Path, chapters: &[Chapter], figures: &[Figure], apart: &[Apart]) -> anyhow::Result<()> {
     for (name, text) in [
-        (HTML, page(chapters, figures)?.into_bytes()),
+        (HTML, page(chapters, figures, apart)?.into_bytes()),
         (CSV, csv(chapters)?),
     ] {
         let path = folder.join(name);
@@ -48,7 +48,7 @@ pub fn write(folder: &Path, chapters: &[Chapter], figures: &[Figure]) -> anyhow:
     Ok(())
 }
 
-fn page(chapters: &[Chapter], figures: &[Figure]) -> anyhow::Result<String> {
+fn page(chapters: &[Chapter], figures: &[Figure], apart: &[Apart]) -> anyhow::Result<String> {
     let mut body = format!(
         "<p>Every number of H.-N. Ho's thesis (MIT, 2006) that a program can recompute, beside what the contact model \
          and the infrared instrument give. A tolerance (±), a range or a limit is how words of the text are read. {}.</p>",
@@ -70,9 +70,13 @@ fn page(chapters: &[Chapter], figures: &[Figure]) -> anyhow::Result<String> {
         let prefix = format!("{}-", chapter.number);
         for figure in figures.iter().filter(|figure| figure.number.starts_with(&prefix)) {
             let svg = draw(figure)?;
+            let compared = apart.iter().find(|apart| apart.number == figure.number);
+            let compared = compared.map_or(String::new(), |apart| {
+                format!("<p>By the plant's finite volumes: {}.</p>", escape(&apart.text()))
+            });
             let _ = write!(
                 body,
-                "<figure><figcaption>Figure {}. {}</figcaption>{}</figure>",
+                "<figure><figcaption>Figure {}. {}</figcaption>{}{compared}</figure>",
                 figure.number,
                 escape(&figure.title),
                 element(&svg)

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::Chapter;
+use super::figure::Apart;
 use super::row::{Row, Verdict};
 
 /// How many rows come out how.
@@ -59,9 +60,9 @@ impl Counts {
     }
 }
 
-/// One line a row, by chapter, and the counts.
+/// One line a row, by chapter, one a figure, and the counts.
 #[must_use]
-pub fn table(chapters: &[Chapter]) -> String {
+pub fn table(chapters: &[Chapter], figures: &[Apart]) -> String {
     let rows = || chapters.iter().flat_map(|chapter| &chapter.rows);
     let width = |text: fn(&Row) -> String| rows().map(|row| text(row).chars().count()).max().unwrap_or(0);
     let quantity = |row: &Row| row.quantity.clone();
@@ -91,6 +92,13 @@ pub fn table(chapters: &[Chapter]) -> String {
         }
         text.push('\n');
     }
-    let _ = writeln!(text, "{}", Counts::of(chapters).text());
+    let _ = writeln!(
+        text,
+        "Model figures by the plant's finite volumes, against the closed forms"
+    );
+    for figure in figures {
+        let _ = writeln!(text, "{}", figure.text());
+    }
+    let _ = writeln!(text, "\n{}", Counts::of(chapters).text());
     text
 }

@@ -1,7 +1,7 @@
 //! The curves against golden values, and where they come from.
 
-use hil_sim::thesis::figure::{Figure, Kind, figures};
-use hil_sim::thesis::{Case, ClosedForm, Source, Surfaces};
+use hil_sim::thesis::figure::{Figure, Kind, apart, figures};
+use hil_sim::thesis::{Case, ClosedForm, FiniteVolumes, Source, Surfaces};
 use serde::Deserialize;
 
 use super::{computed, name, table};
@@ -212,5 +212,26 @@ fn dashed_and_dotted_curves_are_where_the_legend_says() {
             assert_eq!(curve.kind, expected, "{} {}", figure.number, curve.label);
             assert!(!curve.points.is_empty());
         }
+    }
+}
+
+/// The plant's mesh and steps, on every contact that the thesis draws.
+#[test]
+fn finite_volumes_draw_the_same_figures() {
+    let apart = apart(&closed_form(), &figures(&FiniteVolumes).expect("the plant"));
+    assert_eq!(apart.len(), 13);
+    for figure in &apart {
+        // 1 mK; of a flux 1e-4 of what it begins with.
+        let allowed = if figure.y.contains("flux") {
+            1e-4 * figure.range
+        } else {
+            1e-3
+        };
+        assert!(figure.settled < allowed, "{}", figure.text());
+        assert!(
+            figure.largest > 0.0 && figure.largest < 50.0 * allowed,
+            "{}",
+            figure.text()
+        );
     }
 }

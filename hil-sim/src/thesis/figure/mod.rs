@@ -2,8 +2,11 @@
 //!
 //! Every curve over time comes from one [`Source`], so that another than the closed form can draw the same figures.
 
+mod compare;
 mod simulation;
 mod validation;
+
+pub use compare::{Apart, apart};
 
 use crate::thesis::case::{Case, Source, Surfaces};
 

@@ -1,0 +1,83 @@
+//! A finger on an object, without a display: what the plant's truth is made of, by itself.
+
+use super::bridge::{Bridge, BridgeParams, Legs};
+use super::finger::FingerParams;
+use super::heat::{Finger, Heat};
+use super::object::ObjectConfig;
+use super::slab::{Grading, Slab};
+use super::tile::{Tile, TileParams};
+use super::touch::Touch;
+use super::{STEP_S, schedule};
+
+/// The thesis's finger that lands on an object at time zero, in the plant's own steps.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    heat: Heat,
+    idle: Bridge,
+    /// Sub-steps that are left of this step.
+    left: Vec<usize>,
+    /// Steps begun.
+    age: u32,
+    time_s: f64,
+}
+
+impl Truth {
+    /// A homogeneous finger of one temperature, deg C, in contact from now on; right for `duration_s`.
+    #[must_use]
+    pub fn new(skin_c: f64, object: &ObjectConfig, touch: Touch, duration_s: f64) -> Self {
+        let finger = FingerParams::homogeneous();
+        let cut = |layers: &[_], back| Slab::new(layers, back, duration_s, &Grading::RUN);
+        let mut heat = Heat::new(
+            (&cut(&finger.layers, finger.back()), skin_c),
+            (&cut(&[object.layer()], object.back), object.start_c),
+            Tile::new(TileParams::CLASS, skin_c),
+            (finger.air_w_m2k, skin_c),
+            STEP_S,
+        );
+        heat.touch(None, Some(touch), true);
+        Self {
+            heat,
+            idle: Bridge::new(BridgeParams::NOMINAL, TileParams::CLASS.resistance_ohm()),
+            left: Vec::new(),
+            age: 0,
+            time_s: 0.0,
+        }
+    }
+
+    /// Advances by one sub-step: short right after landing, a whole step later.
+    pub fn sub_step(&mut self) {
+        if self.left.is_empty() {
+            self.left.extend(schedule::sub_steps(self.age));
+            self.left.reverse();
+            self.age = self.age.saturating_add(1);
+        }
+        if let Some(index) = self.left.pop() {
+            self.heat.step(index, &mut self.idle, &Legs::default());
+            self.time_s += schedule::length_s(STEP_S, index);
+        }
+    }
+
+    /// Time since landing, s.
+    #[must_use]
+    pub const fn time_s(&self) -> f64 {
+        self.time_s
+    }
+
+    /// Surface of the skin, deg C.
+    #[must_use]
+    pub fn skin_c(&self) -> f64 {
+        self.heat.skin_c(Finger::OnObject)
+    }
+
+    /// Surface of the object, deg C.
+    #[must_use]
+    pub fn object_c(&self) -> f64 {
+        self.heat.object_c()
+    }
+
+    /// Heat flux out of the skin, W/m2.
+    #[must_use]
+    pub fn flux_w_m2(&self) -> f64 {
+        self.heat.flux_w_m2(Finger::OnObject)
+    }
+}

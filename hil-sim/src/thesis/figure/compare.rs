@@ -1,0 +1,62 @@
+//! The same figures from two sources.
+
+use serde::Serialize;
+
+use super::Figure;
+
+/// From this time after landing on a step in time resolves the contact, s.
+const SETTLED_S: f64 = 0.02;
+/// Figures that are always drawn by Eq. 3-1 and 3-3.
+const PERFECT: &str = "3-2";
+
+/// How far the curves of a figure lie apart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Apart {
+    /// The thesis's number.
+    pub number: &'static str,
+    /// Quantity and unit of y.
+    pub y: &'static str,
+    /// Largest difference of any point of any curve.
+    pub largest: f64,
+    /// The same from [`SETTLED_S`] on.
+    pub settled: f64,
+    /// Largest magnitude of y in the figure.
+    pub range: f64,
+}
+
+impl Apart {
+    /// In words.
+    #[must_use]
+    pub fn text(&self) -> String {
+        format!(
+            "Figure {:<6} {}: off by at most {:.1e}, {:.1e} from 20 ms on, of values up to {:.1}",
+            self.number, self.y, self.largest, self.settled, self.range
+        )
+    }
+}
+
+/// Compares figures that were drawn alike; those that no source draws are left out.
+#[must_use]
+pub fn apart(figures: &[Figure], others: &[Figure]) -> Vec<Apart> {
+    let points = |figure: &Figure| -> Vec<(f64, f64)> {
+        let points = figure.curves.iter().flat_map(|curve| &curve.points);
+        points.copied().collect()
+    };
+    let pairs = figures.iter().zip(others);
+    pairs
+        .filter(|(figure, _)| !figure.number.starts_with(PERFECT))
+        .map(|(figure, other)| {
+            let (these, those) = (points(figure), points(other));
+            let most =
+                |values: &mut dyn Iterator<Item = f64>| values.fold(0.0f64, |most, v| most.max(v.abs()));
+            let off = || these.iter().zip(&those).map(|((x, a), (_, b))| (*x, a - b));
+            Apart {
+                number: figure.number,
+                y: figure.y,
+                largest: most(&mut off().map(|(_, off)| off)),
+                settled: most(&mut off().filter(|(x, _)| *x >= SETTLED_S).map(|(_, off)| off)),
+                range: most(&mut these.iter().map(|(_, y)| *y)),
+            }
+        })
+        .collect()
+}
