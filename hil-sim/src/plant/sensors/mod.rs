@@ -81,11 +81,11 @@ pub struct Sensors {
     force_lag: Lag,
     /// What the force sensor has reached, N.
     force_n: f64,
-    /// Noiseless level of each channel at the start and at the end of the last step, counts.
-    before: [f64; CHANNELS],
+    /// Noiseless level of each channel at the end of the last step, counts.
     counts: [f64; CHANNELS],
-    /// Conversions of each channel since.
-    taken: [u32; CHANNELS],
+    /// What its last conversion saw, and how far it moves from one conversion to the next.
+    seen: [f64; CHANNELS],
+    rise: [f64; CHANNELS],
     converter: Converter,
 }
 
@@ -102,13 +102,13 @@ impl Sensors {
             }),
             force_lag: Lag::new(params.force.lag_s),
             force_n: state.force_n,
-            before: [0.0; CHANNELS],
             counts: [0.0; CHANNELS],
-            taken: [0; CHANNELS],
+            seen: [0.0; CHANNELS],
+            rise: [0.0; CHANNELS],
             converter: Converter::new(params.converter, Xoshiro256PlusPlus::seed_from_u64(seed)),
         };
         sensors.read(state);
-        sensors.before = sensors.counts;
+        sensors.seen = sensors.counts;
         sensors
     }
 
@@ -120,19 +120,18 @@ impl Sensors {
             thermistor.step(step_s, site);
         }
         self.force_n = self.force_lag.towards(step_s, self.force_n, state.force_n);
-        self.before = self.counts;
-        self.taken = [0; CHANNELS];
+        self.seen = self.counts;
         self.read(state);
+        // The 16 scans of a tick, spread over the step.
+        self.rise = std::array::from_fn(|i| (self.counts[i] - self.seen[i]) / SCANS_PER_TICK as f64);
     }
 
     /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is
     /// part of the experiment.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         let i = channel as usize;
-        self.taken[i] = (self.taken[i] + 1).min(SCANS_PER_TICK as u32);
-        let part = f64::from(self.taken[i]) * (1.0 / SCANS_PER_TICK as f64);
-        let level = self.before[i] + part * (self.counts[i] - self.before[i]);
-        self.converter.convert(level)
+        self.seen[i] += self.rise[i];
+        self.converter.convert(self.seen[i])
     }
 
     fn read(&mut self, state: &Sensed) {

@@ -136,3 +136,20 @@ fn seed_fixes_every_draw() {
     assert_eq!(run(5), run(5));
     assert_ne!(run(5), run(6));
 }
+
+/// A tick's conversions see the level on its way from the start of the step to its end.
+#[test]
+fn conversions_of_a_tick_move_evenly_to_the_end_of_the_step() {
+    let mut params = SensorParams::NOMINAL;
+    params.force.lag_s = 1e-9;
+    params.converter.noise_counts = 0.0;
+    params.converter.inl_counts = 0.0;
+    let mut sensors = Sensors::new(params, &REST, 1);
+    // 2 N are 600 counts above the zero of 410: 37.5 a conversion.
+    sensors.step(1e-3, &Sensed { force_n: 2.0, ..REST });
+    for k in 1..=16 {
+        let code = sensors.convert(Channel::Force);
+        let level = 410.0 + 37.5 * f64::from(k);
+        assert!((f64::from(code) - level).abs() <= 0.5, "conversion {k}: {code}");
+    }
+}
