@@ -4,6 +4,7 @@ mod energy;
 mod interior;
 mod order;
 mod second_law;
+mod variants;
 
 use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN};
 
