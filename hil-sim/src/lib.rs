@@ -16,6 +16,7 @@ pub mod roughness;
 pub mod run;
 pub mod scene;
 pub mod telemetry;
+pub mod thesis;
 pub mod trace;
 mod world;
 

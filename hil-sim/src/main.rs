@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use cli::{Failure, erfcx, infrared, model, roughness, run};
+use cli::{Failure, erfcx, infrared, model, roughness, run, thesis};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
@@ -23,6 +23,8 @@ enum Cli {
     Infrared(infrared::Arguments),
     /// Roughness, slopes and spacing of a measured profile (Appendix A), as CSV
     Roughness(roughness::Arguments),
+    /// Recompute the thesis's tables and model figures and lay them beside what it states
+    Thesis(thesis::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -32,6 +34,7 @@ fn main() -> ExitCode {
         Cli::Erfcx => erfcx::run(),
         Cli::Infrared(arguments) => infrared::run(&arguments),
         Cli::Roughness(arguments) => roughness::run(&arguments),
+        Cli::Thesis(arguments) => thesis::run(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

@@ -5,6 +5,7 @@ pub mod infrared;
 pub mod model;
 pub mod roughness;
 pub mod run;
+pub mod thesis;
 
 /// Why a command failed, and the exit status that says so.
 #[derive(Debug)]

@@ -1,5 +1,6 @@
 //! What a person reads of a run: a table, plots, a page.
 
+pub(crate) mod panel;
 mod plots;
 mod table;
 
@@ -36,8 +37,22 @@ const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:62rem;margin:2rem a
 table{border-collapse:collapse}td,th{padding:.2rem .8rem;border-bottom:1px solid #ddd;text-align:left}\
 svg{max-width:100%;height:auto}code{background:#f3f3f3}";
 
+/// A page that needs no other file; `style` is added to the style of all pages, `body` is HTML.
+pub(crate) fn document(title: &str, style: &str, body: &str) -> String {
+    let title = escape(title);
+    format!(
+        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>{title}</title>\
+         <style>{STYLE}{style}</style><h1>{title}</h1>{body}</html>\n"
+    )
+}
+
+/// The `<svg>` element of an SVG document.
+pub(crate) fn element(svg: &str) -> &str {
+    svg.find("<svg").map_or("", |start| &svg[start..])
+}
+
 fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> String {
-    let title = format!("{}, engine {}", escape(&figures.material), figures.engine);
+    let title = format!("{}, engine {}", figures.material, figures.engine);
     let mut rows = String::new();
     for (name, value) in table::rows(figures) {
         // Writing to a String cannot fail.
@@ -51,19 +66,20 @@ fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> Str
             escape(line)
         );
     }
-    let svg = plots.find("<svg").map_or("", |start| &plots[start..]);
-    format!(
-        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>{title}</title><style>{STYLE}</style>\
-         <h1>{title}</h1><p>Skin {} °C, room {} °C, object {} °C. Everything here is simulated; costs are \
-         emulated, cycles estimated.</p>{svg}<h2>Figures</h2><table>{rows}</table>\
-         <h2>Answers of the device</h2><table><tr><th>t / s</th><th>line</th></tr>{answers}</table></html>\n",
+    let body = format!(
+        "<p>Skin {} °C, room {} °C, object {} °C. Everything here is simulated; costs are emulated, cycles \
+         estimated.</p>{}<h2>Figures</h2><table>{rows}</table><h2>Answers of the device</h2>\
+         <table><tr><th>t / s</th><th>line</th></tr>{answers}</table>",
         scene.skin_c,
         scene.room_c,
         scene.object_c(),
-    )
+        element(plots),
+    );
+    document(&title, "", &body)
 }
 
-fn escape(text: &str) -> String {
+/// Text as HTML.
+pub(crate) fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
         .replace('<', "&lt;")
         .replace('>', "&gt;")

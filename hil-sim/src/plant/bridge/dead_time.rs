@@ -14,7 +14,8 @@
 //!
 //! An inductor current that reaches zero within a dead time stays there until a switch turns on: the leg then
 //! floats at the tile's voltage. Between the three cases the loss follows straight lines through the currents at
-//! which it does so for the whole of a dead time.
+//! which it does so for the whole of a dead time. That takes the inductor's current as made of straight lines: with
+//! the nominal filter the mean is exact while the current keeps its sign, and good to 0.03 A around zero.
 
 use super::BridgeParams;
 
@@ -91,19 +92,33 @@ impl DeadTime {
     /// Mean current from which on it always flows with the pulses, A, and the voltage that it then loses, V.
     fn with(&self, width: f64) -> (f64, f64) {
         let (lost, _) = self.lost_and_gained(width);
-        (
-            self.half_ripple_a(width - lost),
-            self.supply_v * lost + self.diode_v * (lost + self.part),
-        )
+        let lost_v = self.supply_v * lost + self.diode_v * (lost + self.part);
+        let (pulse, pause) = self.rests(width);
+        let tile_v = self.supply_v * width - lost_v;
+        // In the diode down to zero, up to `peak`, in the diode to `knee`, down.
+        let falls = (self.diode_v + tile_v) * self.part * self.per_v;
+        let peak = (self.supply_v - tile_v) * pulse * self.per_v;
+        let knee = peak - falls;
+        let mean_a = falls * self.part + peak * pulse + (peak + knee) * self.part + (knee + falls) * pause;
+        (0.5 * mean_a, lost_v)
     }
 
     /// Mean current up to which it always flows against the pulses, A, and the voltage that it then loses, V.
     fn against(&self, width: f64) -> (f64, f64) {
         let (_, gained) = self.lost_and_gained(width);
-        (
-            -self.half_ripple_a(width + gained),
-            -self.supply_v * gained - self.diode_v * (gained + self.part),
-        )
+        let lost_v = -self.supply_v * gained - self.diode_v * (gained + self.part);
+        let (pulse, pause) = self.rests(width);
+        let tile_v = self.supply_v * width - lost_v;
+        let rises = (self.supply_v + self.diode_v - tile_v) * self.part * self.per_v;
+        let peak = tile_v * pause * self.per_v;
+        let knee = peak - rises;
+        let mean_a = rises * self.part + peak * pause + (peak + knee) * self.part + (knee + rises) * pulse;
+        (-0.5 * mean_a, lost_v)
+    }
+
+    /// What a dead time leaves of a pulse and of a pause.
+    fn rests(&self, width: f64) -> (f64, f64) {
+        ((width - self.part).max(0.0), (1.0 - width - self.part).max(0.0))
     }
 
     /// Corners of the voltage lost, V, over the mean current, A, above a current; both rise to the last.
@@ -116,21 +131,35 @@ impl DeadTime {
         } = *self;
         let (lost, gained) = self.lost_and_gained(width);
         let drop_v = diode_v * part;
-        let half_floating_a =
-            |width: f64, tile_v: f64| 0.5 * (supply_v - tile_v) * width * per_v * (1.0 - part);
-        // With the pulses, and floating for a whole dead time before they begin.
-        let tile_v = supply_v * (width - lost) / (1.0 - part);
+        let (pulse, pause) = self.rests(width);
+
+        // With the pulses, and floating for a whole dead time before they begin: up to `peak`, in the diode to
+        // `knee`, down to zero. What the inductor takes and gives cancels, which tells the tile's voltage.
+        let end_drop_v = drop_v.min(supply_v * pulse);
+        let tile_v = (supply_v * pulse - end_drop_v) / (1.0 - part);
+        let peak = (supply_v - tile_v) * pulse * per_v;
+        let knee = (peak - (diode_v + tile_v) * part * per_v).max(0.0);
         let floating_before = (
-            half_floating_a(width - lost, tile_v),
-            (supply_v - tile_v) * lost + drop_v.min(supply_v * (width - lost)),
+            0.5 * (peak * pulse + (peak + knee) * part + knee * pause),
+            (supply_v - tile_v) * lost + end_drop_v,
         );
         // Against the pulses, and floating for a whole dead time after they end.
-        let tile_v = (supply_v * width / (1.0 - part)).min(supply_v);
-        let floating_after = (-half_floating_a(width, tile_v), -tile_v * gained - drop_v);
-        // Crossing zero within the pulses, with current in a diode to the end of each dead time.
-        let crossing_a = self.half_ripple_a(width);
-        let from_a = (diode_v + supply_v * width) * part * per_v - crossing_a;
-        let to_a = crossing_a - (diode_v + supply_v * (1.0 - width)) * part * per_v;
+        let tile_v = ((supply_v * width + drop_v) / (1.0 - part)).min(supply_v);
+        let knee = (supply_v - tile_v) * pulse * per_v;
+        let peak = tile_v * pause * per_v;
+        let floating_after = (
+            -0.5 * ((peak + knee) * part + knee * pulse + peak * pause),
+            -tile_v * gained - drop_v,
+        );
+        // Crossing zero within the pulses, and just reaching it at the end of the dead time after or before them.
+        let tile_v = supply_v * width;
+        let after = (diode_v + tile_v) * part * per_v;
+        let before = (supply_v + diode_v - tile_v) * part * per_v;
+        let rise = (supply_v - tile_v) * pulse * per_v;
+        let low = before + rise - after;
+        let from_a = 0.5 * (after * part - low * pause + (after - low) * width);
+        let knee = rise - after;
+        let to_a = 0.5 * (rise * pulse - before * part + (rise + knee) * part + (knee - before) * pause);
         let middle_a = 0.5 * (from_a + to_a);
         let mut corners = [
             floating_after,

@@ -3,8 +3,8 @@
 use super::super::{BridgeParams, Load};
 
 /// Steps in a PWM period, and periods: the slowest of the circuit's time constants is some 20 us.
-const STEPS: u32 = 20_000;
-const PERIODS: u32 = 60;
+const STEPS: u32 = 10_000;
+const PERIODS: u32 = 120;
 
 /// Mean and mean square ripple of the tile's current, and the inductor's current's extremes, with leg `a` at the
 /// supply and leg `b` at ground for a part of each period.

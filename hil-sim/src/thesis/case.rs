@@ -1,0 +1,139 @@
+//! Contacts of the thesis, and who computes them.
+
+use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, find};
+use contact_model::reference::{Contact, SemiInfinite};
+
+/// Force of the simulation of section 6.3, N.
+const SIMULATION_FORCE_N: f64 = 2.0;
+/// Area of section 6.3, m² (measured in section 4.4).
+pub(super) const SIMULATION_AREA_M2: f64 = 135e-6;
+/// Pressure of the simulation of section 6.3, Pa.
+pub(super) const SIMULATION_PRESSURE_PA: f64 = SIMULATION_FORCE_N / SIMULATION_AREA_M2;
+
+/// A material under the name that the thesis gives it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    pub name: &'static str,
+    pub material: Material,
+}
+
+/// The material that [`contact_model`] calls `key`.
+pub(super) fn sample(key: &'static str) -> Sample {
+    let material = *find(key).expect("a name of contact_model::material::MATERIALS");
+    let name = match key {
+        "stainless-steel" => "stainless steel",
+        "g10" => "G10",
+        "abs" => "ABS",
+        "baf2" => "BaF2",
+        "zns" => "ZnS",
+        other => other,
+    };
+    Sample { name, material }
+}
+
+/// The five materials of chapters 4 and 6, by falling contact coefficient.
+pub(super) fn five() -> [Sample; 5] {
+    ["copper", "stainless-steel", "granite", "abs", "foam"].map(sample)
+}
+
+/// The contact coefficient as Tables 3-1, 3-4 and 4-1 print it: cut to a whole number.
+pub(super) fn tabulated_effusivity(material: &Material) -> f64 {
+    super::stated::cut(material.effusivity(), 0)
+}
+
+/// A finger that lands on an object at time zero and stays.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Case {
+    /// What is touched.
+    pub object: Material,
+    /// Skin before contact, °C.
+    pub skin_c: f64,
+    /// Object before contact, °C.
+    pub object_c: f64,
+    /// Contact pressure, Pa.
+    pub pressure_pa: f64,
+}
+
+impl Case {
+    /// Section 6.3: 34 and 24 °C, 2 N on 135 mm².
+    pub(super) fn simulation(object: &Sample) -> Self {
+        Self {
+            object: object.material,
+            skin_c: 34.0,
+            object_c: 24.0,
+            pressure_pa: SIMULATION_PRESSURE_PA,
+        }
+    }
+
+    /// Section 6.4: 34 and 26 °C at one of the measured pressures.
+    pub(super) fn validation(object: &Sample, pressure_pa: f64) -> Self {
+        Self {
+            object: object.material,
+            skin_c: 34.0,
+            object_c: 26.0,
+            pressure_pa,
+        }
+    }
+
+    /// The contact by Eq. 6-5 to 6-12, displayed on the reference display.
+    pub(super) fn contact(&self) -> Contact<f64> {
+        Contact::new(
+            (&SKIN, self.skin_c),
+            (&self.object, self.object_c),
+            &REFERENCE_DISPLAY,
+            self.pressure_pa,
+        )
+    }
+
+    /// The same without contact resistance, Eq. 3-1 to 3-3.
+    pub(super) fn perfect(&self) -> SemiInfinite<f64> {
+        SemiInfinite::new((&SKIN, self.skin_c), (&self.object, self.object_c))
+    }
+
+    /// Fall of the skin's temperature in K, `t_s` seconds after landing.
+    pub(super) fn drop_k(&self, t_s: f64) -> f64 {
+        self.skin_c - self.contact().at(t_s).skin_c
+    }
+}
+
+/// Both surfaces at one time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surfaces {
+    /// Skin surface, °C.
+    pub skin_c: f64,
+    /// Object surface, °C.
+    pub object_c: f64,
+    /// Surface of the reference display that puts the skin there, °C.
+    pub display_c: f64,
+    /// Heat flux out of the skin, W/m².
+    pub flux_w_m2: f64,
+}
+
+/// Somebody who knows how a contact goes on.
+pub trait Source {
+    /// The surfaces at each of `times_s`, rising, seconds after landing.
+    ///
+    /// # Errors
+    /// The case cannot be computed.
+    fn course(&self, case: &Case, times_s: &[f64]) -> anyhow::Result<Vec<Surfaces>>;
+}
+
+/// Eq. 6-5 to 6-7 and 6-12.
+#[derive(Clone, Copy, Debug)]
+pub struct ClosedForm;
+
+impl Source for ClosedForm {
+    fn course(&self, case: &Case, times_s: &[f64]) -> anyhow::Result<Vec<Surfaces>> {
+        let contact = case.contact();
+        let surfaces = times_s.iter().map(|&t_s| {
+            let at = contact.at(t_s);
+            Surfaces {
+                skin_c: at.skin_c,
+                object_c: at.object_c,
+                display_c: at.display_c,
+                flux_w_m2: at.flux_w_m2,
+            }
+        });
+        Ok(surfaces.collect())
+    }
+}

@@ -1,0 +1,116 @@
+//! What the thesis says, and whether a number is that.
+
+use std::fmt;
+
+/// Part of a unit of the last printed digit by which binary fractions may miss an exact half.
+const HALF_SLACK: f64 = 1e-9;
+
+/// A statement of the thesis about one number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Stated {
+    /// A number with its digits after the point; negative if trailing zeros before the point are not digits
+    /// (-1: tens).
+    Printed {
+        /// The number.
+        value: f64,
+        /// Its digits after the point.
+        decimals: i32,
+    },
+    /// A number that only words give ("about", "around", "steady").
+    About {
+        /// The number.
+        value: f64,
+        /// How far off the words are read to allow.
+        within: f64,
+    },
+    /// From `low` to `high`, both allowed.
+    Between {
+        /// Least.
+        low: f64,
+        /// Most.
+        high: f64,
+    },
+    /// Less than this.
+    Below(f64),
+    /// More than this.
+    Above(f64),
+    /// Characters that are no number.
+    Garbled(&'static str),
+}
+
+/// A printed number with that many digits after the point.
+pub(super) const fn printed(value: f64, decimals: i32) -> Stated {
+    Stated::Printed { value, decimals }
+}
+
+/// `value` without what follows that many digits after the point, as the thesis's tables of contact
+/// coefficients have it.
+pub(super) fn cut(value: f64, decimals: i32) -> f64 {
+    let unit = 10f64.powi(-decimals);
+    (value / unit).trunc() * unit
+}
+
+impl Stated {
+    /// Whether `computed` is what is stated. A printed number is met by all that round to it; an exact half
+    /// may be rounded either way.
+    #[must_use]
+    pub fn agrees(&self, computed: f64) -> bool {
+        match *self {
+            Self::Printed { value, decimals } => {
+                let unit = 10f64.powi(-decimals);
+                (computed - value).abs() <= (0.5 + HALF_SLACK) * unit
+            }
+            Self::About { value, within } => (computed - value).abs() <= within,
+            Self::Between { low, high } => (low..=high).contains(&computed),
+            Self::Below(limit) => computed < limit,
+            Self::Above(limit) => computed > limit,
+            Self::Garbled(_) => false,
+        }
+    }
+
+    /// Whether the printed number is `computed` with its further digits cut off.
+    #[must_use]
+    pub fn is_cut(&self, computed: f64) -> bool {
+        match *self {
+            Self::Printed { decimals, .. } => self.agrees(cut(computed, decimals)),
+            _ => false,
+        }
+    }
+
+    /// `computed` minus the number stated, or minus the limit next to it; none for what is no number.
+    #[must_use]
+    pub fn difference(&self, computed: f64) -> Option<f64> {
+        match *self {
+            Self::Printed { value, .. } | Self::About { value, .. } => Some(computed - value),
+            Self::Between { low, high } => Some(computed - computed.clamp(low, high)),
+            Self::Below(limit) | Self::Above(limit) => Some(computed - limit),
+            Self::Garbled(_) => None,
+        }
+    }
+
+    /// Digits after the point with which a computed number can be laid beside it.
+    pub(super) fn decimals_beside(&self) -> usize {
+        let digits = |value: f64| usize::from(value.abs() < 10.0) + 2 * usize::from(value.abs() < 0.1);
+        match *self {
+            Self::Printed { decimals, .. } => usize::try_from(decimals + 2).unwrap_or(0).min(6),
+            Self::About { value, .. } | Self::Below(value) | Self::Above(value) => 2 + digits(value),
+            Self::Between { high, .. } => 2 + digits(high),
+            Self::Garbled(_) => 2,
+        }
+    }
+}
+
+impl fmt::Display for Stated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Printed { value, decimals } => {
+                write!(f, "{value:.*}", usize::try_from(decimals).unwrap_or(0))
+            }
+            Self::About { value, within } => write!(f, "{value} ± {within}"),
+            Self::Between { low, high } => write!(f, "{low} to {high}"),
+            Self::Below(limit) => write!(f, "< {limit}"),
+            Self::Above(limit) => write!(f, "> {limit}"),
+            Self::Garbled(text) => write!(f, "\"{text}\""),
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! The rows as text.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::Chapter;
+use super::row::{Row, Verdict};
+
+/// How many rows come out how.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Counts {
+    /// All rows.
+    pub rows: usize,
+    /// [`Verdict::Agrees`].
+    pub agrees: usize,
+    /// [`Verdict::Cut`].
+    pub cut: usize,
+    /// [`Verdict::Differs`].
+    pub differs: usize,
+    /// [`Verdict::Damaged`].
+    pub damaged: usize,
+    /// [`Verdict::Wrong`].
+    pub wrong: usize,
+}
+
+impl Counts {
+    /// Counts the rows of all chapters.
+    #[must_use]
+    pub fn of(chapters: &[Chapter]) -> Self {
+        let mut counts = Self::default();
+        for row in chapters.iter().flat_map(|chapter| &chapter.rows) {
+            counts.rows += 1;
+            *match row.verdict() {
+                Verdict::Agrees => &mut counts.agrees,
+                Verdict::Cut => &mut counts.cut,
+                Verdict::Differs(_) => &mut counts.differs,
+                Verdict::Damaged => &mut counts.damaged,
+                Verdict::Wrong => &mut counts.wrong,
+            } += 1;
+        }
+        counts
+    }
+
+    /// The counts in words.
+    pub(super) fn text(&self) -> String {
+        let Self {
+            rows,
+            agrees,
+            cut,
+            differs,
+            damaged,
+            wrong,
+        } = self;
+        format!(
+            "{rows} numbers: {agrees} agree, {cut} cut instead of rounded, {damaged} damaged in the text, {wrong} \
+             wrong in the thesis, {differs} differ"
+        )
+    }
+}
+
+/// One line a row, by chapter, and the counts.
+#[must_use]
+pub fn table(chapters: &[Chapter]) -> String {
+    let rows = || chapters.iter().flat_map(|chapter| &chapter.rows);
+    let width = |text: fn(&Row) -> String| rows().map(|row| text(row).chars().count()).max().unwrap_or(0);
+    let quantity = |row: &Row| row.quantity.clone();
+    let stated = |row: &Row| row.stated.to_string();
+    let (quantities, stateds) = (width(quantity), width(stated));
+    let computeds = width(Row::computed_text);
+    let units = width(|row| row.unit.into());
+    let mut text = String::new();
+    for chapter in chapters {
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "Chapter {}: {}", chapter.number, chapter.title);
+        for row in &chapter.rows {
+            let remark = match row.remark_text() {
+                remark if remark.is_empty() || row.verdict() == Verdict::Agrees => String::new(),
+                remark => format!(": {remark}"),
+            };
+            let _ = writeln!(
+                text,
+                "  {:<13}  {:<quantities$}  {:>stateds$}  {:>computeds$}  {:<units$}  {}{remark}",
+                row.place,
+                row.quantity,
+                row.stated.to_string(),
+                row.computed_text(),
+                row.unit,
+                row.verdict(),
+            );
+        }
+        text.push('\n');
+    }
+    let _ = writeln!(text, "{}", Counts::of(chapters).text());
+    text
+}

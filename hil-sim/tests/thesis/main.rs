@@ -1,0 +1,54 @@
+//! `hil-sim thesis`: verdicts, the list of what is known to be wrong, golden values, and the forms of the output.
+
+mod figures;
+mod known;
+mod output;
+mod rows;
+mod verdicts;
+
+use hil_sim::thesis::chapters;
+use hil_sim::thesis::row::Row;
+use serde::de::DeserializeOwned;
+
+fn table<T: DeserializeOwned>(text: &str) -> Vec<T> {
+    let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
+    rows.collect::<Result<_, _>>().expect("a golden table")
+}
+
+fn all_rows() -> Vec<Row> {
+    chapters().into_iter().flat_map(|chapter| chapter.rows).collect()
+}
+
+fn computed(place: &str, quantity: &str) -> f64 {
+    let rows = all_rows();
+    let mut found = rows
+        .iter()
+        .filter(|row| row.place == place && row.quantity == quantity);
+    let row = found
+        .next()
+        .unwrap_or_else(|| panic!("no row {place}, {quantity}"));
+    assert_eq!(found.next(), None, "{place}, {quantity} twice");
+    row.computed
+}
+
+/// Names of the materials in golden tables and in rows.
+const NAMES: [(&str, &str); 9] = [
+    ("copper", "copper"),
+    ("bronze", "bronze"),
+    ("stainless-steel", "stainless steel"),
+    ("granite", "granite"),
+    ("g10", "G10"),
+    ("abs", "ABS"),
+    ("foam", "foam"),
+    ("baf2", "BaF2"),
+    ("zns", "ZnS"),
+];
+
+fn name(golden: &str) -> &'static str {
+    let found = NAMES.iter().find(|(key, _)| *key == golden);
+    found.unwrap_or_else(|| panic!("material {golden}")).1
+}
+
+fn count_of(rows: &[Row], word: &str) -> usize {
+    rows.iter().filter(|row| row.verdict().word() == word).count()
+}
