@@ -1,7 +1,10 @@
 //! Both engines run the same logic, and the image engine runs the given image.
 
+use std::path::Path;
+
 use hil_sim::machine::Firmware;
 use hil_sim::run::Outcome;
+use hil_sim::scene::Scene;
 use system_tests::{between, forces, host, image, natively, on, on_image, scene};
 
 fn csv(outcome: &Outcome, name: &str) -> String {
@@ -52,6 +55,19 @@ fn overload_of_the_bridge_is_seen_alike_and_stops_both() {
     };
     assert_eq!(state_at(1.55).as_deref(), Some("off"));
     assert_eq!(state_at(1.7).as_deref(), Some("tripped"));
+}
+
+/// Another finger, another object, another plant, and a camera that draws of the seed too.
+#[test]
+fn examples_leave_the_same_trace_in_both_engines() {
+    for name in ["layered_finger", "lift_and_replace", "worst_case_box"] {
+        let path = format!("{}/../hil-sim/examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let scene = Scene::read(Path::new(&path)).expect("a good scene");
+        let (native, image) = (natively(&scene), on_image(&scene));
+        let [native, image] = [(&native, "native"), (&image, "image")]
+            .map(|(outcome, engine)| csv(outcome, &format!("{engine}-{name}")));
+        assert!(native == image, "{name}");
+    }
 }
 
 #[test]

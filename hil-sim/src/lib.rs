@@ -20,4 +20,4 @@ pub mod thesis;
 pub mod trace;
 mod world;
 
-pub use world::World;
+pub use world::{World, WorldError};

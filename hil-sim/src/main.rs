@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use cli::{Failure, erfcx, infrared, model, roughness, run, thesis};
+use cli::{Failure, erfcx, infrared, model, parameters, roughness, run, thesis};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
@@ -23,6 +23,8 @@ enum Cli {
     Infrared(infrared::Arguments),
     /// Roughness, slopes and spacing of a measured profile (Appendix A), as CSV
     Roughness(roughness::Arguments),
+    /// The plant's parameters with their tolerances and sources, or a draw of them, as CSV
+    Parameters(parameters::Arguments),
     /// Recompute the thesis's tables and model figures and lay them beside what it states
     Thesis(thesis::Arguments),
 }
@@ -34,6 +36,7 @@ fn main() -> ExitCode {
         Cli::Erfcx => erfcx::run(),
         Cli::Infrared(arguments) => infrared::run(&arguments),
         Cli::Roughness(arguments) => roughness::run(&arguments),
+        Cli::Parameters(arguments) => parameters::run(&arguments),
         Cli::Thesis(arguments) => thesis::run(&arguments),
     };
     match done {

@@ -61,7 +61,10 @@ pub fn run<E: Engine>(
         }
         session.boundary(ms);
         if (zero_ms..=end_ms).contains(&ms) {
-            let row = Row::now(session.t_s(ms), session.engine.world().plant());
+            let t_s = session.t_s(ms);
+            let world = session.engine.world();
+            let camera = world.look(ms - zero_ms);
+            let row = Row::now(t_s, world.plant(), camera);
             trace.push(ms, row);
         }
         session.step_plant();

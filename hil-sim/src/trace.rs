@@ -4,9 +4,8 @@ use std::collections::VecDeque;
 use std::io;
 use std::path::Path;
 
-use serde::Serialize;
-
-use crate::plant::Plant;
+use crate::infrared::Reading;
+use crate::plant::{Finger, Plant, RECEPTORS_M};
 use crate::telemetry::Telemetry;
 
 /// Rows that wait for their telemetry, and telemetry that waits for its row.
@@ -27,10 +26,16 @@ pub struct Row {
     pub skin_real_c: f64,
     /// Surface of the real object, °C.
     pub object_real_c: f64,
+    /// The skin on the display at the depths of [`RECEPTORS_M`], of cold and of warmth, °C; none where it is thinner.
+    pub receptors_c: [Option<f64>; RECEPTORS_M.len()],
+    /// The same on the real object, °C.
+    pub receptors_real_c: [Option<f64>; RECEPTORS_M.len()],
     /// Sink, °C.
     pub sink_c: f64,
     /// Current through the module, A.
     pub current_a: f64,
+    /// What the camera says of the skin on the real object, in its frames.
+    pub camera: Option<Reading>,
     /// What the device said.
     pub device: Option<Telemetry>,
 }
@@ -38,7 +43,7 @@ pub struct Row {
 impl Row {
     /// The plant now; the device has not spoken yet.
     #[must_use]
-    pub fn now(t_s: f64, plant: &Plant) -> Self {
+    pub fn now(t_s: f64, plant: &Plant, camera: Option<Reading>) -> Self {
         Self {
             t_s,
             force_n: plant.force_n(),
@@ -46,8 +51,11 @@ impl Row {
             skin_c: plant.skin_c(),
             skin_real_c: plant.skin_real_c(),
             object_real_c: plant.object_c(),
+            receptors_c: plant.receptors_c(Finger::OnDisplay),
+            receptors_real_c: plant.receptors_c(Finger::OnObject),
             sink_c: plant.sink_c(),
             current_a: plant.current_a(),
+            camera,
             device: None,
         }
     }
@@ -87,14 +95,17 @@ impl Trace {
         &self.rows
     }
 
-    /// Writes `trace.csv`; a cell is empty where the device said nothing.
+    /// Writes `trace.csv`; a cell is empty where the device said nothing, or the camera between its frames.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
+        let watched = self.rows.iter().any(|row| row.camera.is_some());
+        let columns = || COLUMNS.iter().chain(CAMERA_COLUMNS.iter().filter(|_| watched));
         let mut csv = csv::Writer::from_path(path)?;
+        csv.write_record(columns().map(|(name, _)| name))?;
         for row in &self.rows {
-            csv.serialize(Record::from(row))?;
+            csv.write_record(columns().map(|(_, cell)| cell(row)))?;
         }
         csv.flush()
     }
@@ -107,46 +118,49 @@ fn keep<T>(last: &mut VecDeque<T>, new: T) {
     last.push_back(new);
 }
 
-/// A row as it stands in the file.
-#[derive(Serialize)]
-struct Record<'a> {
-    t_s: String,
-    force_n: String,
-    setpoint_c: String,
-    display_c: String,
-    sensor_c: String,
-    skin_c: String,
-    skin_real_c: String,
-    sink_c: String,
-    current_a: String,
-    state: &'a str,
-    demand_a: String,
-    object_real_c: String,
-    remark: &'a str,
+/// A column of the file: its name and the text of its cells.
+type Column = (&'static str, fn(&Row) -> String);
+
+const COLUMNS: [Column; 17] = [
+    ("t_s", |row| format!("{:.3}", row.t_s)),
+    ("force_n", |row| format!("{:.6}", row.force_n)),
+    ("setpoint_c", |row| said(row, |device| device.setpoint_c, 5)),
+    ("display_c", |row| format!("{:.6}", row.display_c)),
+    ("sensor_c", |row| said(row, |device| device.sensor_c, 4)),
+    ("skin_c", |row| format!("{:.6}", row.skin_c)),
+    ("skin_real_c", |row| format!("{:.6}", row.skin_real_c)),
+    ("sink_c", |row| format!("{:.6}", row.sink_c)),
+    ("current_a", |row| format!("{:.6}", row.current_a)),
+    ("state", |row| {
+        row.device.as_ref().map_or("", |device| &device.state).into()
+    }),
+    ("demand_a", |row| said(row, |device| device.demand_a, 3)),
+    ("object_real_c", |row| format!("{:.6}", row.object_real_c)),
+    ("remark", |row| {
+        let device = row.device.as_ref();
+        let remark = device.and_then(|device| device.remark.as_deref());
+        remark.unwrap_or("").into()
+    }),
+    ("skin_cold_c", |row| known(row.receptors_c[0], 6)),
+    ("skin_warm_c", |row| known(row.receptors_c[1], 6)),
+    ("skin_real_cold_c", |row| known(row.receptors_real_c[0], 6)),
+    ("skin_real_warm_c", |row| known(row.receptors_real_c[1], 6)),
+];
+
+/// The columns of a run with a camera.
+const CAMERA_COLUMNS: [Column; 2] = [
+    ("camera_c", |row| {
+        known(row.camera.map(|reading| reading.apparent_c), 6)
+    }),
+    ("camera_skin_c", |row| {
+        known(row.camera.map(|reading| reading.recovered_c), 6)
+    }),
+];
+
+fn said(row: &Row, field: fn(&Telemetry) -> Option<f64>, digits: usize) -> String {
+    known(row.device.as_ref().and_then(field), digits)
 }
 
-impl<'a> From<&'a Row> for Record<'a> {
-    fn from(row: &'a Row) -> Self {
-        let device = row.device.as_ref();
-        let said = |field: fn(&Telemetry) -> Option<f64>, digits: usize| {
-            device
-                .and_then(field)
-                .map_or(String::new(), |value| format!("{value:.digits$}"))
-        };
-        Self {
-            t_s: format!("{:.3}", row.t_s),
-            force_n: format!("{:.6}", row.force_n),
-            setpoint_c: said(|device| device.setpoint_c, 5),
-            display_c: format!("{:.6}", row.display_c),
-            sensor_c: said(|device| device.sensor_c, 4),
-            skin_c: format!("{:.6}", row.skin_c),
-            skin_real_c: format!("{:.6}", row.skin_real_c),
-            sink_c: format!("{:.6}", row.sink_c),
-            current_a: format!("{:.6}", row.current_a),
-            state: device.map_or("", |device| &device.state),
-            demand_a: said(|device| device.demand_a, 3),
-            object_real_c: format!("{:.6}", row.object_real_c),
-            remark: device.and_then(|device| device.remark.as_deref()).unwrap_or(""),
-        }
-    }
+fn known(value: Option<f64>, digits: usize) -> String {
+    value.map_or(String::new(), |value| format!("{value:.digits$}"))
 }

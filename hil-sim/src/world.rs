@@ -1,10 +1,10 @@
-//! What surrounds the device: the plant, and what breaks in it.
+//! What surrounds the device: the plant, what breaks in it, and who watches.
 
+use crate::infrared::{Camera, ParameterError, Reading};
 use crate::plant::bridge::{Leg, Legs};
-use crate::plant::object::ObjectConfig;
 use crate::plant::sensors::Channel;
-use crate::plant::{ConfigError, Params, Plant, PlantConfig};
-use crate::scene::{FaultKind, Scene};
+use crate::plant::{ConfigError, Plant};
+use crate::scene::{FaultKind, Infrared, Scene};
 
 /// Highest code of the converter.
 const FULL_SCALE: u16 = 4095;
@@ -14,31 +14,46 @@ const FULL_SCALE: u16 = 4095;
 pub struct World {
     plant: Plant,
     broken: Vec<FaultKind>,
+    camera: Option<(Infrared, Camera)>,
     /// Last code of every channel.
     codes: [u16; Channel::ALL.len()],
+}
+
+/// What no world can be built from.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WorldError {
+    /// The plant's.
+    #[error(transparent)]
+    Plant(#[from] ConfigError),
+    /// The camera's.
+    #[error("infrared camera: {0}")]
+    Camera(#[from] ParameterError),
 }
 
 impl World {
     /// The world of a scene, [`Scene::settle_s`] before its time zero.
     ///
     /// # Errors
-    /// A value that the plant cannot take.
-    pub fn new(scene: &Scene) -> Result<Self, ConfigError> {
-        let config = PlantConfig {
-            skin_c: scene.skin_c,
-            room_c: scene.room_c,
-            object: ObjectConfig::half_space(scene.object.material, scene.object_c()),
-            start_s: -scene.settle_s,
-            appears_s: scene.object.appears_t_s,
-            duration_s: scene.duration_s,
-            seed: scene.seed,
-            params: Params::nominal(),
+    /// A value that the plant or the camera cannot take.
+    pub fn new(scene: &Scene) -> Result<Self, WorldError> {
+        let camera = match scene.infrared {
+            Some(infrared) => Some((infrared, infrared.camera(scene.seed)?)),
+            None => None,
         };
         Ok(Self {
-            plant: Plant::new(&config)?,
+            plant: Plant::new(&scene.plant_config())?,
             broken: Vec::new(),
+            camera,
             codes: [0; Channel::ALL.len()],
         })
+    }
+
+    /// What the camera says of the skin on the real object, a number of milliseconds after time zero; none between its
+    /// frames.
+    pub fn look(&mut self, ms: u64) -> Option<Reading> {
+        let (infrared, camera) = self.camera.as_mut()?;
+        let skin_c = self.plant.skin_real_c();
+        infrared.has_frame(ms).then(|| camera.read(skin_c))
     }
 
     /// The plant, to read.

@@ -291,3 +291,40 @@ fn bad_arguments_of_the_model_are_refused_by_name() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("standard input:2: z = \"abc\""));
 }
+
+#[test]
+fn parameters_are_printed_with_limits_and_drawn_alike_by_one_seed() {
+    let read = |arguments: &[&str]| -> Vec<Row> {
+        let text = good(&[&["parameters"], arguments].concat(), "");
+        let header = "key,value,unit,low,high,distribution,least,most,source,meaning";
+        assert_eq!(text.lines().next(), Some(header));
+        let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
+        rows.collect::<Result<_, _>>().expect("rows")
+    };
+    let nominal = read(&[]);
+    let supply = (nominal.iter().find(|row| row["key"] == "bridge.supply_v")).expect("a parameter");
+    assert_eq!(
+        ["value", "unit", "low", "high", "source"].map(|column| supply[column].as_str()),
+        ["12.0", "V", "11.4", "12.6", "design"]
+    );
+    let layered = read(&["--tissue", "layered"]);
+    assert!(layered.len() > nominal.len());
+    let drawn = read(&["--draw", "4"]);
+    assert_eq!(drawn, read(&["--draw", "4"]));
+    assert_ne!(drawn, read(&["--draw", "5"]));
+    for (nominal, drawn) in nominal.iter().zip(&drawn) {
+        assert_eq!(
+            nominal["low"], drawn["low"],
+            "limits are those of the nominal value"
+        );
+        let value = number(drawn, "value");
+        assert!(
+            number(drawn, "low") <= value && value <= number(drawn, "high"),
+            "{drawn:?}"
+        );
+    }
+    let json = good(&["parameters", "--json"], "");
+    let json: Vec<serde_json::Value> = serde_json::from_str(&json).expect("an array");
+    assert_eq!(json.len(), nominal.len());
+    refused(&["parameters", "--draw", "x"]);
+}

@@ -3,6 +3,7 @@
 pub mod erfcx;
 pub mod infrared;
 pub mod model;
+pub mod parameters;
 pub mod roughness;
 pub mod run;
 pub mod thesis;

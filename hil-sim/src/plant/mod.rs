@@ -23,6 +23,7 @@ pub mod finger;
 pub mod heat;
 pub mod ledger;
 pub mod object;
+pub mod parameters;
 mod schedule;
 mod scheme;
 pub mod sensors;

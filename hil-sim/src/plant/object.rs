@@ -18,6 +18,9 @@ pub struct ObjectConfig {
 }
 
 impl ObjectConfig {
+    /// The thinnest object, m; thinner ones are surfaces of what lies behind them.
+    pub const THINNEST_M: f64 = 1e-5;
+
     /// The thesis's assumption: a half-space.
     #[must_use]
     pub const fn half_space(material: Material, start_c: f64) -> Self {

@@ -16,6 +16,7 @@ const SKIN: RGBColor = RGBColor(0xd6, 0x27, 0x28);
 const REAL: RGBColor = RGBColor(0x22, 0x22, 0x22);
 const DISPLAY: RGBColor = RGBColor(0x1f, 0x77, 0xb4);
 const SETPOINT: RGBColor = RGBColor(0x2c, 0xa0, 0x2c);
+const CAMERA: RGBColor = RGBColor(0xe3, 0x9c, 0x2a);
 const CURRENT: RGBColor = RGBColor(0x94, 0x67, 0xbd);
 
 fn curve(name: &str, color: RGBColor, rows: &[Row], value: impl Fn(usize, &Row) -> Option<f64>) -> Curve {
@@ -32,6 +33,21 @@ fn curve(name: &str, color: RGBColor, rows: &[Row], value: impl Fn(usize, &Row) 
     }
 }
 
+/// What the camera makes of the skin on the real object. It has rows of its own: most have no frame.
+fn camera(rows: &[Row]) -> Curve {
+    let frames: Vec<_> = rows
+        .iter()
+        .filter_map(|row| Some((row.t_s, row.camera?.recovered_c)))
+        .collect();
+    let every = frames.len().div_ceil(POINTS).max(1);
+    Curve {
+        name: "skin, recovered from the camera".into(),
+        color: CAMERA,
+        stroke: Stroke::Solid(1),
+        points: frames.into_iter().step_by(every).collect(),
+    }
+}
+
 /// The plots of a run as one SVG document.
 ///
 /// # Errors
@@ -39,7 +55,7 @@ fn curve(name: &str, color: RGBColor, rows: &[Row], value: impl Fn(usize, &Row) 
 pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
     let rows = outcome.trace.rows();
     let contacts = contact_times(scene, outcome);
-    let temperatures = [
+    let mut temperatures = vec![
         curve("skin on the display", SKIN, rows, |_, row| Some(row.skin_c)),
         curve("skin on the real object", REAL, rows, |_, row| {
             Some(row.skin_real_c)
@@ -49,6 +65,10 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
             row.device.as_ref()?.setpoint_c
         }),
     ];
+    if scene.infrared.is_some() {
+        // Below the others: it is noise around one of them.
+        temperatures.insert(0, camera(rows));
+    }
     let errors = [
         curve("skin minus skin on the real object", SKIN, rows, |i, row| {
             contacts[i].map(|_| (row.skin_c - row.skin_real_c) * 1e3)

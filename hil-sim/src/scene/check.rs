@@ -1,84 +1,21 @@
 //! From the text of a scene to a scene, or to what is wrong with it.
 
-use std::fmt;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use contact_model::material::{Material, Surface, find};
 use thermal_display::guard::Setpoint;
-use thermal_display::protocol::Command;
 use thermal_display::render::Mode;
-use thermal_display::settings::Settings;
 
-use super::file::{self, File, Number};
-use super::{Fault, Force, HostLine, Object, Scene, known_materials};
+use super::file::{self, File};
+use super::infrared::infrared;
+use super::object::object;
+use super::plant::params;
+use super::source::{SceneError, Source};
+use super::{Fault, Force, HostLine, Scene};
+use crate::plant::ConfigError;
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
-
-/// What is wrong with a scene, and where.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct SceneError {
-    file: PathBuf,
-    line: Option<usize>,
-    problem: String,
-}
-
-impl fmt::Display for SceneError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file.display())?;
-        if let Some(line) = self.line {
-            write!(f, ":{line}")?;
-        }
-        write!(f, ": {}", self.problem)
-    }
-}
-
-impl std::error::Error for SceneError {}
-
-impl SceneError {
-    pub(super) fn unreadable(file: &Path, error: &std::io::Error) -> Self {
-        Self {
-            file: file.into(),
-            line: None,
-            problem: format!("cannot be read: {error}"),
-        }
-    }
-}
-
-/// Where messages point.
-struct Source<'a> {
-    file: &'a Path,
-    text: &'a str,
-}
-
-impl Source<'_> {
-    fn error(&self, span: Option<Range<usize>>, problem: impl Into<String>) -> SceneError {
-        let line = span.map(|span| {
-            let before = self.text.as_bytes().iter().take(span.start);
-            before.filter(|byte| **byte == b'\n').count() + 1
-        });
-        SceneError {
-            file: self.file.into(),
-            line,
-            problem: problem.into(),
-        }
-    }
-
-    /// The number, if it lies within the range.
-    fn within(&self, key: &str, number: &Number, least: f64, most: f64) -> Result<f64, SceneError> {
-        let value = *number.get_ref();
-        if (least..=most).contains(&value) {
-            return Ok(value);
-        }
-        let problem = format!("{key} = {value}; allowed is {least} to {most}");
-        Err(self.error(Some(number.span()), problem))
-    }
-
-    fn time(&self, key: &str, number: &Number, duration_s: f64) -> Result<f64, SceneError> {
-        self.within(key, number, 0.0, duration_s)
-    }
-}
 
 pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let source = Source { file: path, text };
@@ -103,7 +40,12 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         room_c,
         seed: file.seed,
         mode,
-        object: object(&source, file.object.get_ref(), &file.object.span(), duration_s)?,
+        object: object(&source, &file.object, duration_s, room_c)?,
+        params: params(&source, file.finger.as_ref(), file.plant.as_ref())?,
+        infrared: match &file.infrared {
+            Some(file) => Some(infrared(&source, file, room_c)?),
+            None => None,
+        },
         forces: forces(&source, &file.force, duration_s)?,
         faults: (file.fault.iter())
             .map(|fault| {
@@ -129,115 +71,17 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         None => file.object.span(),
     };
     setpoint(&source, &scene, object_at)?;
+    // What is left: parameters that do not suit each other.
+    scene.plant_config().check().map_err(|error| {
+        let finger = file.finger.as_ref().map(|finger| finger.span());
+        let plant = file.plant.as_ref().map(|plant| plant.span());
+        let span = match error {
+            ConfigError::ColdFinger { .. } => finger.or(plant),
+            _ => plant.or(finger),
+        };
+        source.error(span, error.to_string())
+    })?;
     Ok(scene)
-}
-
-fn object(
-    source: &Source<'_>,
-    object: &file::Object,
-    span: &Range<usize>,
-    duration_s: f64,
-) -> Result<Object, SceneError> {
-    let properties = [
-        ("k_w_mk", &object.k_w_mk),
-        ("rho_kg_m3", &object.rho_kg_m3),
-        ("c_j_kgk", &object.c_j_kgk),
-        ("rq_um", &object.rq_um),
-        ("slope_rad", &object.slope_rad),
-    ];
-    let (name, material) = if let Some(name) = &object.material {
-        if let Some((key, number)) = properties
-            .iter()
-            .find_map(|(key, number)| Some((key, number.as_ref()?)))
-        {
-            let problem =
-                format!("object.{key} beside object.material; allowed is either a name or properties");
-            return Err(source.error(Some(number.span()), problem));
-        }
-        let Some(material) = find(name.get_ref()) else {
-            let problem = format!(
-                "object.material = {:?}; known are {}",
-                name.get_ref(),
-                known_materials()
-            );
-            return Err(source.error(Some(name.span()), problem));
-        };
-        (name.get_ref().clone(), *material)
-    } else {
-        ("custom".into(), custom(source, properties, span)?)
-    };
-    let start_c = match &object.start_c {
-        Some(number) => Some(source.within("object.start_c", number, -20.0, 60.0)?),
-        None => None,
-    };
-    let appears_t_s = match &object.appears_t_s {
-        Some(number) => source.time("object.appears_t_s", number, duration_s)?,
-        None => 0.0,
-    };
-    Ok(Object {
-        name,
-        material,
-        start_c,
-        appears_t_s,
-    })
-}
-
-/// A material given by its properties; the ranges are those that the device itself accepts.
-fn custom(
-    source: &Source<'_>,
-    properties: [(&str, &Option<Number>); 5],
-    span: &Range<usize>,
-) -> Result<Material, SceneError> {
-    let mut values = [0.0; 5];
-    for (value, (key, number)) in values.iter_mut().zip(properties) {
-        let Some(number) = number else {
-            let problem =
-                format!("object.{key} is missing; an object has a material or all of its properties");
-            return Err(source.error(Some(span.clone()), problem));
-        };
-        *value = *number.get_ref();
-    }
-    let [
-        conductivity_w_mk,
-        density_kg_m3,
-        specific_heat_j_kgk,
-        roughness_um,
-        slope_rad,
-    ] = values;
-    let surface = Surface {
-        conductivity_w_mk,
-        roughness_um,
-        slope_rad,
-    };
-    let material = Material {
-        surface,
-        density_kg_m3,
-        specific_heat_j_kgk,
-    };
-    match Command::parse(&custom_line(&material), &Settings::default()) {
-        Ok(_) => Ok(material),
-        Err(refused) => {
-            let problem = format!("object: the device would answer {:?}", refused.to_string());
-            Err(source.error(Some(span.clone()), problem))
-        }
-    }
-}
-
-/// The line that tells the device of a material by its properties.
-pub(crate) fn custom_line(material: &Material) -> String {
-    let Surface {
-        conductivity_w_mk,
-        roughness_um,
-        slope_rad,
-    } = material.surface;
-    let (density, heat) = (material.density_kg_m3, material.specific_heat_j_kgk);
-    // Nine decimals are more than the device keeps, and five such numbers fit its line.
-    let numbers =
-        [conductivity_w_mk, density, heat, roughness_um, slope_rad].map(|number| format!("{number:.9}"));
-    let short = numbers
-        .each_ref()
-        .map(|number| number.trim_end_matches('0').trim_end_matches('.'));
-    format!("material custom {}", short.join(" "))
 }
 
 fn forces(source: &Source<'_>, rows: &[file::Force], duration_s: f64) -> Result<Vec<Force>, SceneError> {

@@ -4,6 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::FaultKind;
+pub(super) use super::node::Node;
 
 /// A number with its place in the file; whole numbers are accepted.
 pub(super) type Number = Spanned<f64>;
@@ -20,6 +21,9 @@ pub(super) struct File {
     #[serde(default)]
     pub mode: Mode,
     pub object: Spanned<Object>,
+    pub finger: Option<Spanned<Finger>>,
+    pub plant: Option<Spanned<Node>>,
+    pub infrared: Option<Spanned<Infrared>>,
     #[serde(default)]
     pub force: Vec<Force>,
     #[serde(default)]
@@ -47,6 +51,69 @@ pub(super) struct Object {
     pub slope_rad: Option<Number>,
     pub start_c: Option<Number>,
     pub appears_t_s: Option<Number>,
+    pub thickness_m: Option<Number>,
+    pub back: Option<Spanned<Back>>,
+    pub back_c: Option<Number>,
+    pub back_film_w_m2k: Option<Number>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Back {
+    Insulated,
+    Held,
+    Film,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Finger {
+    pub tissue: Option<Spanned<Tissue>>,
+    pub core_w_m2k: Option<Number>,
+    pub air_w_m2k: Option<Number>,
+    pub vessels: Option<bool>,
+    #[serde(default)]
+    pub layer: Vec<Spanned<Layer>>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Tissue {
+    Homogeneous,
+    Layered,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Layer {
+    pub thickness_m: Option<Number>,
+    pub k_w_mk: Number,
+    pub rho_kg_m3: Number,
+    pub c_j_kgk: Number,
+    pub perfusion_1_s: Option<Number>,
+    pub metabolism_w_m3: Option<Number>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Infrared {
+    pub optic: Spanned<Glass>,
+    pub emissivity: Option<Number>,
+    pub netd_k: Option<Number>,
+    pub pixels: Option<Spanned<u32>>,
+    pub rate_hz: Option<Number>,
+    pub window_c: Option<Number>,
+    pub splitter_c: Option<Number>,
+    pub camera_c: Option<Number>,
+    pub camera_share: Option<Number>,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Glass {
+    None,
+    Baf2,
+    Zns,
 }
 
 #[derive(Deserialize)]

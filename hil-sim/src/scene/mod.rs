@@ -2,6 +2,11 @@
 
 mod check;
 mod file;
+mod infrared;
+mod node;
+mod object;
+mod plant;
+mod source;
 
 use std::path::Path;
 
@@ -10,8 +15,13 @@ use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
 use thermal_display::render::Mode;
 
-pub use check::SceneError;
-pub(crate) use check::custom_line;
+use crate::plant::object::ObjectConfig;
+use crate::plant::slab::Back;
+use crate::plant::{Params, PlantConfig};
+
+pub use infrared::Infrared;
+pub(crate) use object::custom_line;
+pub use source::SceneError;
 
 /// The names of the thesis's materials, for messages.
 #[must_use]
@@ -36,6 +46,10 @@ pub struct Scene {
     pub mode: Mode,
     /// What the finger should feel.
     pub object: Object,
+    /// What finger, display and electronics are like.
+    pub params: Params,
+    /// The camera that watches the finger on the real object, if there is one.
+    pub infrared: Option<Infrared>,
     /// Force over time, in order of time.
     pub forces: Vec<Force>,
     /// What breaks.
@@ -55,6 +69,10 @@ pub struct Object {
     pub start_c: Option<f64>,
     /// Time from which it is there, s.
     pub appears_t_s: f64,
+    /// Thickness, m; infinite for a half-space. The device does not know of it.
+    pub thickness_m: f64,
+    /// What lies behind it.
+    pub back: Back,
 }
 
 /// A force that is held from a time on.
@@ -143,6 +161,26 @@ impl Scene {
                     .at(since_s)
                     .display_c
             }
+        }
+    }
+
+    /// The plant of the scene.
+    #[must_use]
+    pub fn plant_config(&self) -> PlantConfig {
+        PlantConfig {
+            skin_c: self.skin_c,
+            room_c: self.room_c,
+            object: ObjectConfig {
+                material: self.object.material,
+                start_c: self.object_c(),
+                thickness_m: self.object.thickness_m,
+                back: self.object.back,
+            },
+            start_s: -self.settle_s,
+            appears_s: self.object.appears_t_s,
+            duration_s: self.duration_s,
+            seed: self.seed,
+            params: self.params.clone(),
         }
     }
 

@@ -1,0 +1,177 @@
+//! Wrong scenes: file, line, value, what is allowed.
+
+use std::path::Path;
+
+use hil_sim::scene::Scene;
+
+const HEAD: &str = "duration_s = 1\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\n";
+const LAYER: &str = "[[finger.layer]]\nk_w_mk = 0.37\nrho_kg_m3 = 1000\nc_j_kgk = 3700\n";
+
+#[test]
+fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
+    for (tables, line, expected) in [
+        (
+            "thickness_m = 0",
+            6,
+            "object.thickness_m = 0; allowed is 0.00001 to 10",
+        ),
+        (
+            "back = \"held\"",
+            6,
+            "object.back has no meaning here; allowed is back beside object.thickness_m",
+        ),
+        (
+            "thickness_m = 0.1\nback = \"warm\"",
+            7,
+            "unknown variant `warm`, expected one of `insulated`, `held`, `film`",
+        ),
+        (
+            "thickness_m = 0.1\nback = \"film\"",
+            7,
+            "without object.back_film_w_m2k; allowed is 0.1 to 1000000",
+        ),
+        (
+            "thickness_m = 0.1\nback_c = 20",
+            7,
+            "object.back_c has no meaning here; allowed is back_c beside back = \"held\" or \"film\"",
+        ),
+        (
+            "thickness_m = 0.1\nback = \"held\"\nback_film_w_m2k = 9",
+            8,
+            "allowed is back_film_w_m2k beside back = \"film\"",
+        ),
+        (
+            "thickness_m = 0.1\nback = \"held\"\nback_c = 99",
+            8,
+            "object.back_c = 99; allowed is -20 to 60",
+        ),
+        (
+            "[plant]\ntile.imx_a = 5",
+            7,
+            "no parameter is called tile.imx_a; similar are tile.imax_a",
+        ),
+        (
+            "[plant.tile]\nimax_a = 500",
+            7,
+            "tile.imax_a = 500 A; allowed is 0.5 to 30",
+        ),
+        (
+            "[plant]\ntile = 5",
+            7,
+            "no parameter is called tile; similar are ",
+        ),
+        (
+            "[plant.tile]\nimax_a = \"5\"",
+            7,
+            "expected a number or a table of them",
+        ),
+        ("[plant]\ntile.imax_a = nan", 7, "tile.imax_a = NaN A; allowed is"),
+        (
+            "[plant]\nfinger.layer.1.thickness_m = 1e-3",
+            7,
+            "no parameter is called finger.layer.1.thickness_m",
+        ),
+        (
+            "[plant]\ndraw = -1",
+            7,
+            "plant.draw is the seed of a draw; allowed is a whole number",
+        ),
+        ("[plant]\ndraw = 1.5", 7, "plant.draw is the seed of a draw"),
+        (
+            "[plant]\ntile.plate_m = 0.016\ntile.patch_m2 = 3e-4",
+            6,
+            "tile.patch_m2 is 0.0003; allowed is below the plate's area",
+        ),
+        (
+            "[plant]\nbridge.pwm_hz = 1e6\nbridge.dead_time_s = 1e-6",
+            6,
+            "bridge.dead_time_s is 0.000001; allowed is up to half a period",
+        ),
+        (
+            "[finger]\nair_w_m2k = 10",
+            6,
+            "a finger without blood or core has air_w_m2k 10",
+        ),
+        (
+            "[finger]\ncore_w_m2k = 10",
+            6,
+            "behind an endless layer is 10; allowed is none",
+        ),
+        (
+            "[finger]\ntissue = \"thick\"",
+            7,
+            "unknown variant `thick`, expected `homogeneous` or `layered`",
+        ),
+        (
+            "[finger]\ntissue = \"layered\"\nvessels = true\n[plant.finger.vessels]\nopen_n = 2",
+            9,
+            "finger.vessels.open_n is 2; allowed is below finger.vessels.shut_n, 1",
+        ),
+        (
+            &format!("[finger]\ntissue = \"layered\"\n{LAYER}"),
+            7,
+            "finger.tissue beside finger.layer; allowed is either",
+        ),
+        (
+            &format!("{LAYER}{LAYER}"),
+            6,
+            "finger.layer.0.thickness_m is missing; only the last layer may be endless",
+        ),
+        (
+            &LAYER.replace("0.37", "0"),
+            7,
+            "finger.layer.0.conductivity_w_mk = 0 W/(m K); allowed is 0.01 to 500",
+        ),
+        (
+            &LAYER.replace("1000", "-1"),
+            8,
+            "finger.layer.rho_kg_m3 = -1; allowed is 1 to 30000",
+        ),
+        (
+            &LAYER.replace("c_j_kgk", "c_j_kgc"),
+            9,
+            "unknown field `c_j_kgc`, expected one of",
+        ),
+        (
+            "[infrared]\noptic = \"glass\"",
+            7,
+            "unknown variant `glass`, expected one of `none`, `baf2`, `zns`",
+        ),
+        (
+            "[infrared]\noptic = \"zns\"\nemissivity = 0",
+            8,
+            "infrared.emissivity = 0; allowed is above 0 to 1",
+        ),
+        (
+            "[infrared]\noptic = \"zns\"\nrate_hz = 2000",
+            8,
+            "infrared.rate_hz = 2000; allowed is 0.001 to 1000",
+        ),
+        (
+            "[infrared]\noptic = \"none\"\nwindow_c = 20",
+            8,
+            "infrared.window_c beside optic = \"none\"",
+        ),
+        (
+            "[infrared]\noptic = \"zns\"\ncamera_share = 0.5",
+            8,
+            "infrared.camera_share without infrared.camera_c",
+        ),
+        (
+            "[infrared]\noptic = \"zns\"\ncamera_c = 30\ncamera_share = 2",
+            9,
+            "infrared.camera_share = 2; allowed is 0 to 1",
+        ),
+    ] {
+        let text = format!("{HEAD}{tables}\n");
+        let Err(error) = Scene::parse(&text, Path::new("bad.toml")) else {
+            panic!("{tables} is accepted");
+        };
+        let message = error.to_string();
+        assert!(
+            message.starts_with(&format!("bad.toml:{line}: ")),
+            "{tables}: {message}"
+        );
+        assert!(message.contains(expected), "{tables}: {message}");
+    }
+}
