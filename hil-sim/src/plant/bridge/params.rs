@@ -2,35 +2,31 @@
 
 /// Driver, filter and supply of one bridge, class DRV8873 in IN/IN mode with its current regulation switched off.
 ///
-/// "Class value" is typical of such parts, "recalled" a figure remembered and not looked up, "data sheet" read in
-/// the public one (SLVSDY7B). Nothing here was measured.
+/// Tolerances and sources stand in [`parameters`](crate::plant::parameters); the data sheet is SLVSDY7B. Nothing here
+/// was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BridgeParams {
-    /// Supply, V, above 0; 12 within 5 % (reference design, class value of a supply).
+    /// Supply, V.
     pub supply_v: f64,
-    /// PWM frequency, Hz, above 0; 96000, as exact as the crystal (reference design).
+    /// PWM frequency, Hz.
     pub pwm_hz: f64,
-    /// Time for which both switches of a leg are off at each edge, s, 0 to half a period; 0.3e-6, from 0.1e-6 to
-    /// 0.6e-6 (class value, recalled).
+    /// Time for which both switches of a leg are off at each edge, s, 0 to half a period.
     pub dead_time_s: f64,
-    /// Forward voltage of the switches' body diodes, V, 0 or more; 0.9, within 0.2 (class value, recalled).
+    /// Forward voltage of the switches' body diodes, V.
     pub diode_v: f64,
-    /// Both switches that conduct, and the leads to the tile, ohm, 0 or more; 0.15 + 0.02, from 0.12 to 0.30 with
-    /// the driver's temperature (data sheet's typical value, recalled).
+    /// Both switches that conduct (nominally 0.15 ohm, more as the driver warms), and the leads to the tile, ohm.
     pub on_ohm: f64,
-    /// Filter inductor, H, above 0; 10e-6 within 20 % (reference design, class tolerance). It does not saturate.
+    /// Filter inductor, H. It does not saturate.
     pub filter_h: f64,
-    /// Resistance of the inductor, ohm, 0 or more; 0.02, within 50 % (class value).
+    /// Resistance of the inductor, ohm.
     pub filter_ohm: f64,
-    /// Filter capacitor across the tile, F, 0 or more; 10e-6, from -50 % (a ceramic one under bias) to 20 %
-    /// (reference design, class tolerance).
+    /// Filter capacitor across the tile, F; a ceramic one has less under bias.
     pub filter_f: f64,
-    /// Series resistance of the capacitor, ohm, 0 or more; 0.005, up to 0.02 (class value).
+    /// Series resistance of the capacitor, ohm.
     pub filter_esr_ohm: f64,
-    /// Current at which a switch counts as overloaded, A, above 0; 10, up to 16 (data sheet: at least 10).
+    /// Current at which a switch counts as overloaded, A.
     pub trip_a: f64,
-    /// Time after which an overloaded driver tries again, s, 0 or more; 4e-3 within 50 % (class value, recalled;
-    /// that it retries by itself: data sheet, mode 01b).
+    /// Time after which an overloaded driver tries again, s (data sheet, mode 01b: by itself).
     pub retry_s: f64,
 }
 

@@ -9,14 +9,14 @@ pub const CODES: f64 = 4096.0;
 /// Errors of a converter, as its data sheet (STM32F446, 12 bit) has them before calibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConverterParams {
-    /// Offset, counts; 0 within 2, at most 3 (data sheet's total error of 2 typical, 5 at most, shared out).
+    /// Offset, counts.
     pub offset_counts: f64,
-    /// Gain error, fraction; 0 within 2/4096, at most 4/4096 (as above).
+    /// Gain error, fraction.
     pub gain_error: f64,
-    /// Bound of the integral non-linearity, counts, 0 to 3; 1.5 (data sheet: 1.5 typical, 3 at most). The largest
-    /// error of a converter lies between half of it and all of it.
+    /// Bound of the integral non-linearity, counts. The largest error of a converter lies between half of it and all
+    /// of it.
     pub inl_counts: f64,
-    /// Standard deviation of one conversion, counts, 0 or more; 0.7, from 0.4 to 1.2 (class value).
+    /// Standard deviation of one conversion, counts.
     pub noise_counts: f64,
 }
 

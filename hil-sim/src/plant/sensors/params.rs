@@ -7,11 +7,11 @@ use super::thermistor::ThermistorParams;
 /// Force sensor: an amplified transducer with a live zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceParams {
-    /// Without force, counts; 410 within 2 % (reference design, class tolerance).
+    /// Without force, counts.
     pub zero_counts: f64,
-    /// Gain, counts/N; 300 within 2 % (reference design, class tolerance).
+    /// Gain, counts/N.
     pub counts_per_n: f64,
-    /// First-order lag of its amplifier, s, above 0; 1e-3, from 0.2e-3 to 5e-3 (class value).
+    /// First-order lag of its amplifier, s.
     pub lag_s: f64,
 }
 
@@ -26,12 +26,11 @@ impl ForceParams {
 /// Current mirror of the driver and its resistor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirrorParams {
-    /// Gain, counts/A; 400 within 1 % (reference design: 354 ohm on 1/1100 of the current, class tolerance of the
-    /// resistor; the mirror's ratio recalled).
+    /// Gain, counts/A: 354 ohm on 1/1100 of the current, the mirror's ratio recalled.
     pub counts_per_a: f64,
-    /// Error of the mirror's ratio, fraction; 0 within 0.075 (class value, recalled).
+    /// Error of the mirror's ratio, fraction.
     pub gain_error: f64,
-    /// Current that it shows too much, A; 0 within 0.05 (class value). It cannot show less than none.
+    /// Current that it shows too much, A. It cannot show less than none.
     pub offset_a: f64,
 }
 
@@ -46,13 +45,12 @@ impl MirrorParams {
 /// The converter's reference, from which the dividers are fed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceParams {
-    /// Voltage, V, above 0; 3.3 (reference design). Matters to self-heating.
+    /// Voltage, V. Matters to self-heating.
     pub volt: f64,
-    /// Its error, fraction above -1; 0 within 0.02 (class value of a regulator). Thermistors are read ratiometrically
-    /// and do not see it; force and current do.
+    /// Its error, fraction. Thermistors are read ratiometrically and do not see it; force and current do.
     pub error: f64,
-    /// Part of the time for which the dividers are fed, 0 to 1; 1, as the reference design has no pin to gate them
-    /// with.
+    /// Part of the time for which the dividers are fed, 0 to 1; all of it, as the reference design has no pin to gate
+    /// them with.
     pub excitation_duty: f64,
 }
 
@@ -62,8 +60,8 @@ pub struct SensorParams {
     /// Display, second display, sink, skin, room: in the order of [`Channel`](super::Channel).
     pub thermistors: [ThermistorParams; THERMISTORS],
     /// Share of the contact's skin surface in what the skin thermistor at its edge sees, 0 to 1; the rest is the
-    /// skin as it was before contact. 0.0125, from 0 to 0.05 (thesis, section 6.4.3: 0.05 deg C of 3 to 5 deg C in 10
-    /// s, 2 to 3 mm from the contact, which is 0.01 to 0.017; one right on its edge sees more).
+    /// skin as it was before contact. Section 6.4.3 of the thesis saw 0.05 deg C of 3 to 5 deg C in 10 s, 2 to 3 mm from
+    /// the contact; one right on its edge sees more.
     pub skin_sees_contact: f64,
     /// Force sensor.
     pub force: ForceParams,

@@ -11,21 +11,18 @@ const REFERENCE_K: f64 = 25.0 + ZERO_C_K;
 /// Tolerances are of parts as they are bought; the device has not been calibrated for any of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThermistorParams {
-    /// Resistance at 25 deg C, ohm, above 0; 10e3 within 1 % (class value).
+    /// Resistance at 25 deg C, ohm.
     pub at_25c_ohm: f64,
-    /// Beta, K, above 0; 3950 within 1 % (class value, recalled).
+    /// Beta, K.
     pub beta_k: f64,
-    /// Resistor to the reference, ohm, above 0; 10e3 within 0.1 % (reference design, class tolerance).
+    /// Resistor to the reference, ohm.
     pub pull_up_ohm: f64,
-    /// First-order lag behind what it sits on, s, above 0; 0.1 on the display, from 0.02 to 0.5 (literature's range
-    /// for the class); sink 1, skin 0.3, room 2, each within a factor of 2 (class values).
+    /// First-order lag behind what it sits on, s.
     pub lag_s: f64,
-    /// Heat that it gives to what it sits on, per kelvin above it, W/K, above 0: 8e-3 bonded to metal or ceramic,
-    /// 3e-3 glued to skin, 1e-3 in air, each within a factor of 2 (the last recalled of the class; the others
-    /// estimated for a rod of 0.46 mm x 3.2 mm, the thesis's, half in glue and half in skin).
+    /// Heat that it gives to what it sits on, per kelvin above it, W/K. Bonded to metal or glued to skin: estimated
+    /// for a rod of 0.46 mm x 3.2 mm, the thesis's, half in glue; in air recalled of the class.
     pub dissipation_w_k: f64,
-    /// Share of the room that its leads let in, 0 to 1: 0.002 with leads that run along the surface, 0.01 on the
-    /// skin, from 0 to twice as much; 0 in the room (estimated).
+    /// Share of the room that its leads let in, 0 to 1; little with leads that run along the surface (estimated).
     pub lead_share: f64,
 }
 
