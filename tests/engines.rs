@@ -60,8 +60,8 @@ fn overload_of_the_bridge_is_seen_alike_and_stops_both() {
 /// Another finger, another object, another plant, and a camera that draws of the seed too.
 #[test]
 fn examples_leave_the_same_trace_in_both_engines() {
-    for name in ["layered_finger", "lift_and_replace", "worst_case_box"] {
-        let path = format!("{}/../hil-sim/examples/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+    for name in ["layered-finger", "lift-and-replace", "worst-case-box"] {
+        let path = format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
         let scene = Scene::read(Path::new(&path)).expect("a good scene");
         let (native, image) = (natively(&scene), on_image(&scene));
         let [native, image] = [(&native, "native"), (&image, "image")]

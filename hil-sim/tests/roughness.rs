@@ -420,7 +420,7 @@ fn command_names_file_and_line() {
 
 #[test]
 fn example_profile_is_what_its_first_line_says() {
-    let path = format!("{}/examples/profile.csv", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../scenes/profile.csv", env!("CARGO_MANIFEST_DIR"));
     let found = Profile::read(Path::new(&path)).expect("the example").roughness();
     // Gaussian heights of 3 µm with correlation exp(-x²/l²), l = 50 µm: Rdq = sqrt 2 Rq / l. 80 correlation
     // lengths are few: a tenth of scatter.

@@ -13,7 +13,7 @@
 //! | contact | resistance of Eq. 6-8 to 6-11 and area, both of the force | [`touch`] |
 //! | tile | legs, plates in three zones, sink | [`tile`] |
 //! | electronics | bridge, thermistors, converter | [`bridge`], [`sensors`] |
-//! | step | TR-BDF2 of all bodies at once, sub-steps after contacts | [`heat`], [`scheme`], [`schedule`] |
+//! | step | TR-BDF2 of all bodies at once, sub-steps after contacts | [`heat`] |
 //!
 //! Parameters are class values; nothing here was measured on hardware.
 

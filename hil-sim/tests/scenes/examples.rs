@@ -6,7 +6,7 @@ use super::{at, example, rows, scene};
 
 #[test]
 fn layered_finger_rests_in_equilibrium_until_it_touches() {
-    let rows = rows(&example("layered_finger", &[]));
+    let rows = rows(&example("layered-finger", &[]));
     for row in rows.iter().take_while(|row| row.t_s < 1.0) {
         // Nine seconds have passed, settling included. In an epidermis without blood temperature is linear: the film's
         // 10 W/(m2 K) times 10 K over 0.21 W/(m K).
@@ -26,12 +26,12 @@ fn layered_finger_rests_in_equilibrium_until_it_touches() {
 
 #[test]
 fn force_ramps_and_blood_that_it_presses_out_cools_the_skin() {
-    let pressed = rows(&example("layered_finger", &[]));
+    let pressed = rows(&example("layered-finger", &[]));
     for (t_s, force_n) in [(1.0, 0.1), (2.5, 1.05), (3.0, 2.0), (11.0, 1.15), (13.0, 0.0)] {
         assert!((at(&pressed, t_s).force_n - force_n).abs() < 1e-9, "at {t_s} s");
     }
     let flowing = rows(&example(
-        "layered_finger",
+        "layered-finger",
         &[("vessels = true", "vessels = false")],
     ));
     let warmer_c = |t_s| at(&flowing, t_s).skin_real_c - at(&pressed, t_s).skin_real_c;
@@ -42,8 +42,8 @@ fn force_ramps_and_blood_that_it_presses_out_cools_the_skin() {
 #[test]
 fn finite_block_leaves_the_skin_warmer_than_a_half_space() {
     let shape = ("thickness_m = 0.010\nback = \"insulated\"", "");
-    let block = rows(&example("layered_finger", &[]));
-    let endless = rows(&example("layered_finger", &[shape]));
+    let block = rows(&example("layered-finger", &[]));
+    let endless = rows(&example("layered-finger", &[shape]));
     assert!(at(&block, 13.0).skin_real_c > at(&endless, 13.0).skin_real_c);
 }
 
@@ -72,7 +72,7 @@ fn slabs_with_every_back_follow_their_exact_solution() {
 
 #[test]
 fn warm_slab_warms_the_finger_more_with_each_touch() {
-    let rows = rows(&example("lift_and_replace", &[]));
+    let rows = rows(&example("lift-and-replace", &[]));
     let mut before_c = 33.0;
     for contact in 0..5 {
         let landed_s = 1.0 + 2.0 * f64::from(contact);
@@ -94,7 +94,7 @@ fn warm_slab_warms_the_finger_more_with_each_touch() {
 
 /// Errors of the recovered skin temperature, C, in frames.
 fn camera_errors(changes: &[(&str, &str)]) -> Vec<f64> {
-    let rows = rows(&example("worst_case_box", changes));
+    let rows = rows(&example("worst-case-box", changes));
     let frames: Vec<_> = rows.iter().filter(|row| row.camera.is_some()).collect();
     // 25 Hz over 12 s, both ends included.
     assert_eq!(frames.len(), 301);
@@ -153,10 +153,10 @@ fn drawn_plant_is_drawn_by_its_seed_and_what_the_scene_says_stays() {
     ] {
         parameters::set(&mut drawn, key, value).expect("a key");
     }
-    assert_eq!(scene(&example("worst_case_box", &[])).params, drawn);
-    let hot = rows(&example("worst_case_box", &[]));
+    assert_eq!(scene(&example("worst-case-box", &[])).params, drawn);
+    let hot = rows(&example("worst-case-box", &[]));
     let cool = rows(&example(
-        "worst_case_box",
+        "worst-case-box",
         &[("coolant_k = 6.0", "coolant_k = 0.0")],
     ));
     assert!(at(&hot, 12.0).sink_c > at(&cool, 12.0).sink_c + 0.3);

@@ -18,7 +18,7 @@ fn scene(text: &str) -> Scene {
 }
 
 fn example_path(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("examples/{name}.toml"))
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{name}.toml"))
 }
 
 /// Text of an example, each pair's first text replaced by its second; it must be there.

@@ -170,7 +170,8 @@ impl Tile {
         }
     }
 
-    /// First stage of a step, s: see [`Stack::first`]. Gives the increment of the node under the finger.
+    /// First stage of a step, s, with a power into the node under the finger, W, and what a body eliminated before
+    /// the tile leaves in that node's row: pivot, W/K, and right-hand side, W. Gives that node's increment.
     pub fn first(&mut self, step_s: f64, inflow_w: f64, pivot_w_k: f64, rhs_w: f64) -> f64 {
         self.stack.first(step_s, inflow_w, pivot_w_k, rhs_w)
     }

@@ -211,9 +211,8 @@ impl<const N: usize, const Z: usize> Stack<N, Z> {
         let mut block = [[0.0; Z]; Z];
         block[0][0] = extra_w_k;
         for i in 0..N {
-            for z in 0..Z {
-                block[z][z] +=
-                    scheme::inertia(self.capacity[i][z], h) + self.axial[i][z] - self.feedback[i][z];
+            for (z, row) in block.iter_mut().enumerate() {
+                row[z] += scheme::inertia(self.capacity[i][z], h) + self.axial[i][z] - self.feedback[i][z];
             }
             for z in 1..Z {
                 let across = self.lateral[i][z - 1];
@@ -279,17 +278,16 @@ fn product<const Z: usize>(matrix: &[Across<Z>; Z], vector: &Across<Z>) -> Acros
 /// Inverse of a block by Gauss and Jordan. No pivoting: the blocks are diagonally dominant.
 fn invert<const Z: usize>(mut block: [Across<Z>; Z]) -> [Across<Z>; Z] {
     for p in 0..Z {
-        let pivot = 1.0 / block[p][p];
+        let inverse = 1.0 / block[p][p];
         block[p][p] = 1.0;
-        for y in 0..Z {
-            block[p][y] *= pivot;
-        }
-        for z in 0..Z {
+        let pivot = block[p].map(|x| x * inverse);
+        block[p] = pivot;
+        for (z, row) in block.iter_mut().enumerate() {
             if z != p {
-                let factor = block[z][p];
-                block[z][p] = 0.0;
-                for y in 0..Z {
-                    block[z][y] -= factor * block[p][y];
+                let factor = row[p];
+                row[p] = 0.0;
+                for (x, pivot) in row.iter_mut().zip(&pivot) {
+                    *x -= factor * pivot;
                 }
             }
         }

@@ -18,7 +18,7 @@ pub struct Apart {
     pub y: &'static str,
     /// Largest difference of any point of any curve.
     pub largest: f64,
-    /// The same from [`SETTLED_S`] on.
+    /// The same from 20 ms after landing on, where x is time.
     pub settled: f64,
     /// Largest magnitude of y in the figure.
     pub range: f64,
