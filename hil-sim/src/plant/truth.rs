@@ -9,7 +9,7 @@ use super::tile::{Tile, TileParams};
 use super::touch::Touch;
 use super::{STEP_S, schedule};
 
-/// The thesis's finger that lands on an object at time zero, in the plant's own steps.
+/// The thesis's finger that lands on an object at time zero.
 #[derive(Clone, Debug)]
 pub struct Truth {
     heat: Heat,
@@ -18,21 +18,35 @@ pub struct Truth {
     left: Vec<usize>,
     /// Steps begun.
     age: u32,
+    step_s: f64,
     time_s: f64,
 }
 
 impl Truth {
-    /// A homogeneous finger of one temperature, deg C, in contact from now on; right for `duration_s`.
+    /// A homogeneous finger of one temperature, deg C, in contact from now on, on the mesh and in the steps of every
+    /// run; right for `duration_s`.
     #[must_use]
     pub fn new(skin_c: f64, object: &ObjectConfig, touch: Touch, duration_s: f64) -> Self {
+        Self::cut(skin_c, object, touch, duration_s, (&Grading::RUN, STEP_S))
+    }
+
+    /// The same on another mesh or in steps of another length, s.
+    #[must_use]
+    pub fn cut(
+        skin_c: f64,
+        object: &ObjectConfig,
+        touch: Touch,
+        duration_s: f64,
+        (grading, step_s): (&Grading, f64),
+    ) -> Self {
         let finger = FingerParams::homogeneous();
-        let cut = |layers: &[_], back| Slab::new(layers, back, duration_s, &Grading::RUN);
+        let cut = |layers: &[_], back| Slab::new(layers, back, duration_s, grading);
         let mut heat = Heat::new(
             (&cut(&finger.layers, finger.back()), skin_c),
             (&cut(&[object.layer()], object.back), object.start_c),
             Tile::new(TileParams::CLASS, skin_c),
             (finger.air_w_m2k, skin_c),
-            STEP_S,
+            step_s,
         );
         heat.touch(None, Some(touch), true);
         Self {
@@ -40,6 +54,7 @@ impl Truth {
             idle: Bridge::new(BridgeParams::NOMINAL, TileParams::CLASS.resistance_ohm()),
             left: Vec::new(),
             age: 0,
+            step_s,
             time_s: 0.0,
         }
     }
@@ -53,7 +68,7 @@ impl Truth {
         }
         if let Some(index) = self.left.pop() {
             self.heat.step(index, &mut self.idle, &Legs::default());
-            self.time_s += schedule::length_s(STEP_S, index);
+            self.time_s += schedule::length_s(self.step_s, index);
         }
     }
 
