@@ -4,15 +4,16 @@ use super::bridge::{Bridge, BridgeParams, Legs};
 use super::finger::FingerParams;
 use super::heat::{Finger, Heat};
 use super::object::ObjectConfig;
-use super::slab::{Grading, Slab};
+use super::slab::{Grading, Probe, Slab};
 use super::tile::{Tile, TileParams};
 use super::touch::Touch;
-use super::{STEP_S, schedule};
+use super::{RECEPTORS_M, STEP_S, schedule};
 
 /// The thesis's finger that lands on an object at time zero.
 #[derive(Clone, Debug)]
 pub struct Truth {
     heat: Heat,
+    receptors: [Option<Probe>; RECEPTORS_M.len()],
     idle: Bridge,
     /// Sub-steps that are left of this step.
     left: Vec<usize>,
@@ -41,8 +42,9 @@ impl Truth {
     ) -> Self {
         let finger = FingerParams::homogeneous();
         let cut = |layers: &[_], back| Slab::new(layers, back, duration_s, grading);
+        let skin = cut(&finger.layers, finger.back());
         let mut heat = Heat::new(
-            (&cut(&finger.layers, finger.back()), skin_c),
+            (&skin, skin_c),
             (&cut(&[object.layer()], object.back), object.start_c),
             Tile::new(TileParams::CLASS, skin_c),
             (finger.air_w_m2k, skin_c),
@@ -51,6 +53,7 @@ impl Truth {
         heat.touch(None, Some(touch), true);
         Self {
             heat,
+            receptors: RECEPTORS_M.map(|depth_m| Probe::at(&skin, depth_m)),
             idle: Bridge::new(BridgeParams::NOMINAL, TileParams::CLASS.resistance_ohm()),
             left: Vec::new(),
             age: 0,
@@ -82,6 +85,13 @@ impl Truth {
     #[must_use]
     pub fn skin_c(&self) -> f64 {
         self.heat.skin_c(Finger::OnObject)
+    }
+
+    /// The skin at the depth of its receptors of cold and of warmth ([`RECEPTORS_M`]), deg C.
+    #[must_use]
+    pub fn receptors_c(&self) -> [Option<f64>; RECEPTORS_M.len()] {
+        let read = |probe: Option<Probe>| probe.map(|probe| self.heat.depth_c(Finger::OnObject, &probe));
+        self.receptors.map(read)
     }
 
     /// Surface of the object, deg C.

@@ -3,11 +3,11 @@ use anyhow::Context;
 use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, find};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
-use hil_sim::plant::STEP_S;
 use hil_sim::plant::object::ObjectConfig;
 use hil_sim::plant::slab::{Back, Grading, Layer, Medium, Slab};
 use hil_sim::plant::touch::Touch;
 use hil_sim::plant::truth::Truth;
+use hil_sim::plant::{RECEPTORS_M, STEP_S};
 use serde::Serialize;
 
 /// Objects and forces of the contacts whose errors are taken.
@@ -18,8 +18,9 @@ pub const FORCES_N: [f64; 2] = [0.1, 2.0];
 pub const CONTACT_S: f64 = 10.0;
 /// Skin and object before it, deg C.
 const START_C: (f64, f64) = (34.0, 24.0);
-/// From when on errors count, and from when on those before are told, s.
+/// From when on errors count, s.
 pub const COUNTS_FROM_S: f64 = 0.02;
+/// From when on those before are told, s.
 pub const TOLD_FROM_S: f64 = 0.001;
 
 /// How the bodies are cut and stepped.
@@ -72,8 +73,8 @@ impl Cut {
     ///
     /// # Errors
     /// None for these materials.
-    pub fn errors(&self) -> anyhow::Result<Errors> {
-        let mut errors = Errors::default();
+    pub fn errors(&self) -> anyhow::Result<Worst> {
+        let mut worst = Worst::default();
         for name in OBJECTS {
             for force_n in FORCES_N {
                 let (object, touch) = touch(name, force_n)?;
@@ -87,15 +88,35 @@ impl Cut {
                 let mut truth = self.landing(object, touch);
                 while truth.time_s() < CONTACT_S - 0.5 * self.step_s {
                     truth.sub_step();
-                    let want = exact.at(truth.time_s());
+                    let t_s = truth.time_s();
+                    let want = exact.at(t_s);
                     let skin_k = (truth.skin_c() - want.skin_c).abs();
                     let object_k = (truth.object_c() - want.object_c).abs();
-                    let flux = (truth.flux_w_m2() - want.flux_w_m2).abs() / first_flux_w_m2;
-                    errors.take(truth.time_s(), 1e3 * skin_k.max(object_k), flux);
+                    let inside_k = truth
+                        .receptors_c()
+                        .iter()
+                        .zip(RECEPTORS_M)
+                        .map(|(found, depth_m)| {
+                            let want_c = exact.skin_at_depth(&SKIN, depth_m, t_s);
+                            found.map_or(f64::NAN, |found_c| (found_c - want_c).abs())
+                        })
+                        .fold(0.0, larger);
+                    let now = Errors {
+                        surface_mk: 1e3 * larger(skin_k, object_k),
+                        inside_mk: 1e3 * inside_k,
+                        flux: (truth.flux_w_m2() - want.flux_w_m2).abs() / first_flux_w_m2,
+                    };
+                    // Sums of steps are not exact.
+                    let by = |time_s: f64| t_s > time_s - 1e-9;
+                    if by(COUNTS_FROM_S) {
+                        worst.counted.raise(&now);
+                    } else if by(TOLD_FROM_S) {
+                        worst.before.raise(&now);
+                    }
                 }
             }
         }
-        Ok(errors)
+        Ok(worst)
     }
 }
 
@@ -106,35 +127,35 @@ fn touch(object: &str, force_n: f64) -> anyhow::Result<(&'static Material, Touch
     Ok((object, touch))
 }
 
+/// Largest errors over contacts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Worst {
+    /// From [`COUNTS_FROM_S`] on.
+    pub counted: Errors,
+    /// Before, from [`TOLD_FROM_S`] on.
+    pub before: Errors,
+}
+
 /// Largest errors at the ends of steps and sub-steps; not a number if one was not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Errors {
-    /// Of the surfaces of skin and object from [`COUNTS_FROM_S`] on, mK.
+    /// Of the surfaces of skin and object, mK.
     pub surface_mk: f64,
+    /// Of the skin at its receptors, mK.
+    pub inside_mk: f64,
     /// Of the flux, as part of `dT/R`.
     pub flux: f64,
-    /// Of the surfaces before, from [`TOLD_FROM_S`] on, mK.
-    pub surface_before_mk: f64,
-    /// Of the flux then.
-    pub flux_before: f64,
 }
 
 impl Errors {
-    fn take(&mut self, t_s: f64, surface_mk: f64, flux: f64) {
-        // Sums of steps are not exact.
-        let by = |time_s: f64| t_s > time_s - 1e-9;
-        if by(COUNTS_FROM_S) {
-            raise(&mut self.surface_mk, surface_mk);
-            raise(&mut self.flux, flux);
-        } else if by(TOLD_FROM_S) {
-            raise(&mut self.surface_before_mk, surface_mk);
-            raise(&mut self.flux_before, flux);
-        }
+    fn raise(&mut self, now: &Self) {
+        self.surface_mk = larger(self.surface_mk, now.surface_mk);
+        self.inside_mk = larger(self.inside_mk, now.inside_mk);
+        self.flux = larger(self.flux, now.flux);
     }
 }
 
-fn raise(worst: &mut f64, new: f64) {
-    if new.is_nan() || new > *worst {
-        *worst = new;
-    }
+/// The larger one; not a number if either is not.
+fn larger(a: f64, b: f64) -> f64 {
+    if b.is_nan() || b > a { b } else { a }
 }

@@ -1,15 +1,13 @@
 //! All figures of the plant, timed side by side.
-use std::hint::black_box;
-
 use hil_sim::plant::slab::Grading;
 use serde::Serialize;
 
 use super::super::figures::host;
 use super::super::timing::{Time, side_by_side};
-use super::bodies::{Cut, Errors};
+use super::bodies::{Cut, Worst};
 use super::finger::{FORCE_N, Finger, OBJECT};
 use super::fit;
-use super::replay::{Replay, scans};
+use super::parts::{Candidate, Parts};
 
 /// Milliseconds of a finger in a timed round, shared by all fingers of a candidate; steps of bodies.
 const WORK: usize = 400;
@@ -84,8 +82,7 @@ pub struct CutFigures {
     #[serde(flatten)]
     pub cost: Cost,
     /// Errors against Eq. 6-5 to 6-7.
-    #[serde(flatten)]
-    pub errors: Errors,
+    pub errors: Worst,
 }
 
 /// Cost of a simulated millisecond.
@@ -127,12 +124,12 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
         .map(bank)
         .into_iter()
         .collect::<anyhow::Result<Vec<_>>>()?;
-    let mut parts = Parts::new()?;
+    let mut parts = Parts::new(WORK)?;
     let bodies = cuts.iter().map(|cut| cut.in_contact(OBJECT, FORCE_N));
     let mut bodies = bodies.collect::<anyhow::Result<Vec<_>>>()?;
 
     progress("timing on the host");
-    let mut candidates: Vec<Box<dyn FnMut()>> = Vec::new();
+    let mut candidates: Vec<Candidate> = Vec::new();
     for bank in &mut banks {
         candidates.push(Box::new(|| {
             for _ in 0..WORK / bank.len() {
@@ -218,88 +215,4 @@ fn cuts() -> Vec<Cut> {
 /// Fingers that differ in their noise.
 fn bank(count: usize) -> anyhow::Result<Vec<Finger>> {
     (1..=count as u64).map(Finger::in_contact).collect()
-}
-
-/// One finger taken apart, and with something added.
-struct Parts {
-    still: Finger,
-    replay: Replay,
-    moving: Finger,
-    streaming: Finger,
-    /// What a finger that streams said, if that was no telemetry.
-    heard: anyhow::Result<()>,
-}
-
-impl Parts {
-    fn new() -> anyhow::Result<Self> {
-        let mut streaming = Finger::in_contact(1)?;
-        streaming.stream();
-        Ok(Self {
-            still: Finger::in_contact(1)?,
-            replay: Replay::record(1, WORK)?,
-            moving: Finger::in_contact(1)?,
-            streaming,
-            heard: Ok(()),
-        })
-    }
-
-    fn candidates(&mut self) -> Vec<(&'static str, Box<dyn FnMut() + '_>)> {
-        let Self {
-            still,
-            replay,
-            moving,
-            streaming,
-            heard,
-        } = self;
-        let legs = still.legs();
-        let mut plant = still.plant();
-        let mut converted = still.plant();
-        let mut ms = 0u32;
-        vec![
-            (
-                "plant, truth and sensors",
-                Box::new(move || (0..WORK).for_each(|_| plant.step(black_box(&legs)))),
-            ),
-            (
-                "converter: 16 scans of 7 channels",
-                Box::new(move || {
-                    for _ in 0..WORK {
-                        black_box(scans(&mut converted));
-                    }
-                }),
-            ),
-            (
-                "the firmware's logic",
-                Box::new(|| {
-                    black_box(replay.run());
-                }),
-            ),
-            (
-                "all, with a force that moves in every ms",
-                Box::new(move || {
-                    for _ in 0..WORK {
-                        // Up and down by 0.5 N in a second.
-                        let part = (f64::from(ms % 2000) * 1e-3 - 1.0).abs();
-                        moving.step(FORCE_N - 0.5 * part);
-                        ms += 1;
-                    }
-                }),
-            ),
-            (
-                "all, with every tick streamed and parsed",
-                Box::new(|| {
-                    for _ in 0..WORK {
-                        if let Err(error) = streaming.step_and_listen() {
-                            *heard = Err(error);
-                        }
-                    }
-                }),
-            ),
-        ]
-    }
-
-    fn check(mut self) -> anyhow::Result<()> {
-        self.heard?;
-        self.moving.check_contact()
-    }
 }

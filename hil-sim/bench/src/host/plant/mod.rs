@@ -4,6 +4,7 @@ mod bodies;
 mod figures;
 mod finger;
 mod fit;
+mod parts;
 mod plot;
 mod replay;
 mod tables;

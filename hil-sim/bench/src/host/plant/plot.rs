@@ -6,6 +6,7 @@ use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+use super::bodies::Errors;
 use super::figures::{Cost, CutFigures, Figures};
 
 const SIZE: (u32, u32) = (1100, 900);
@@ -22,6 +23,7 @@ const FINGERS: Range<f64> = 0.85..48.0;
 const GUIDE: RGBColor = RGBColor(0x77, 0x77, 0x77);
 const RED: RGBColor = RGBColor(0xd6, 0x27, 0x28);
 const BLUE: RGBColor = RGBColor(0x1f, 0x77, 0xb4);
+const GREEN: RGBColor = RGBColor(0x2c, 0xa0, 0x2c);
 const ORANGE: RGBColor = RGBColor(0xe3, 0x9c, 0x2b);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -31,7 +33,32 @@ type Chart<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;
 struct Series {
     name: &'static str,
     color: RGBColor,
+    dots: Dots,
     points: Vec<(f64, f64)>,
+}
+
+/// How points are drawn.
+#[derive(Clone, Copy)]
+enum Dots {
+    Full,
+    /// Wide and hollow, to be seen around others.
+    Rings,
+}
+
+impl Dots {
+    fn radius(self) -> i32 {
+        match self {
+            Self::Full => RADIUS,
+            Self::Rings => RADIUS + 3,
+        }
+    }
+
+    fn style(self, color: RGBColor) -> ShapeStyle {
+        match self {
+            Self::Full => color.filled(),
+            Self::Rings => color.stroke_width(2),
+        }
+    }
 }
 
 /// The picture as an SVG document.
@@ -70,11 +97,13 @@ fn fingers(area: &Area<'_>, figures: &Figures) -> anyhow::Result<()> {
         Series {
             name: "median of the rounds",
             color: RED,
+            dots: Dots::Full,
             points: points(|cost| cost.ns),
         },
         Series {
             name: "fastest round",
             color: BLUE,
+            dots: Dots::Full,
             points: points(|cost| cost.least_ns),
         },
     ];
@@ -119,19 +148,28 @@ fn errors(
     let points = |of: fn(&CutFigures) -> f64| cuts.iter().map(|cut| (cut.cost.ns * 1e-3, of(cut))).collect();
     let series = [
         Series {
-            name: "surfaces before / mK",
-            color: ORANGE,
-            points: points(|cut| cut.errors.surface_before_mk),
+            name: "flux / (1e-4 dT/R)",
+            color: BLUE,
+            dots: Dots::Rings,
+            points: points(|cut| cut.errors.counted.flux * 1e4),
         },
         Series {
             name: "surfaces / mK",
             color: RED,
-            points: points(|cut| cut.errors.surface_mk),
+            dots: Dots::Full,
+            points: points(|cut| cut.errors.counted.surface_mk),
         },
         Series {
-            name: "flux / (1e-4 dT/R)",
-            color: BLUE,
-            points: points(|cut| cut.errors.flux * 1e4),
+            name: "receptors / mK",
+            color: GREEN,
+            dots: Dots::Full,
+            points: points(|cut| cut.errors.counted.inside_mk),
+        },
+        Series {
+            name: "surfaces, 1 to 20 ms / mK",
+            color: ORANGE,
+            dots: Dots::Full,
+            points: points(|cut| cut.errors.before.surface_mk),
         },
     ];
     let x = range(series[0].points.iter().map(|p| p.0));
@@ -144,12 +182,12 @@ fn errors(
         .y_label_area_size(70)
         .build_cartesian_2d(
             x.clone().log_scale().with_key_points(round_numbers(&x)),
-            (y.start / 3.0..y.end * 30.0).log_scale(),
+            (y.start / 3.0..y.end * 60.0).log_scale(),
         )?;
     chart
         .configure_mesh()
         .x_desc("us a simulated ms, bodies alone")
-        .y_desc("largest error from 20 ms on")
+        .y_desc("largest error (from 20 ms on unless said)")
         .x_label_formatter(&|x| format!("{x}"))
         .y_label_formatter(&|y| format!("{y}"))
         .light_line_style(TRANSPARENT)
@@ -164,9 +202,15 @@ fn errors(
         .color(&BLACK)
         .pos(Pos::new(HPos::Center, VPos::Bottom));
     chart.draw_series(cuts.iter().map(|cut| {
-        let highest = cut.errors.surface_before_mk.max(cut.errors.surface_mk);
-        let top = highest.max(cut.errors.flux * 1e4);
-        EmptyElement::at((cut.cost.ns * 1e-3, top)) + Text::new(name(cut), (0, -9), style.clone())
+        let Errors {
+            surface_mk,
+            inside_mk,
+            flux,
+        } = cut.errors.counted;
+        let top = [surface_mk, inside_mk, flux * 1e4]
+            .into_iter()
+            .fold(cut.errors.before.surface_mk, f64::max);
+        EmptyElement::at((cut.cost.ns * 1e-3, top)) + Text::new(name(cut), (0, -12), style.clone())
     }))?;
     legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
@@ -185,7 +229,7 @@ fn round_numbers(range: &Range<f64>) -> Vec<f64> {
         .collect()
 }
 
-/// A level to compare with, named at its left end.
+/// A level to compare with, named at its right end.
 fn guide<X, Y>(
     chart: &mut Chart<'_, '_, X, Y>,
     (from, to): (f64, f64),
@@ -203,8 +247,8 @@ where
     let style = ("sans-serif", FONT)
         .into_font()
         .color(&GUIDE)
-        .pos(Pos::new(HPos::Left, VPos::Bottom));
-    chart.draw_series([EmptyElement::at((from, level)) + Text::new(name, (8, -5), style)])?;
+        .pos(Pos::new(HPos::Right, VPos::Bottom));
+    chart.draw_series([EmptyElement::at((to, level)) + Text::new(name, (-8, -5), style)])?;
     Ok(())
 }
 
@@ -215,12 +259,12 @@ where
     Y: Ranged<ValueType = f64>,
 {
     for one in series {
-        let color = one.color;
-        chart.draw_series([PathElement::new(one.points.clone(), color.stroke_width(2))])?;
+        let (style, radius) = (one.dots.style(one.color), one.dots.radius());
+        chart.draw_series([PathElement::new(one.points.clone(), one.color.stroke_width(2))])?;
         chart
-            .draw_series(one.points.iter().map(|p| Circle::new(*p, RADIUS, color.filled())))?
+            .draw_series(one.points.iter().map(|p| Circle::new(*p, radius, style)))?
             .label(one.name)
-            .legend(move |(x, y)| Circle::new((x + 8, y), RADIUS, color.filled()));
+            .legend(move |(x, y)| Circle::new((x + 12, y), radius, style));
     }
     Ok(())
 }
@@ -233,7 +277,7 @@ where
     chart
         .configure_series_labels()
         .position(at)
-        .legend_area_size(20)
+        .legend_area_size(28)
         .margin(8)
         .background_style(WHITE)
         .border_style(BLACK.mix(0.3))
