@@ -50,7 +50,7 @@ enum Task {
         /// Print one JSON object in place of the tables
         #[arg(long)]
         json: bool,
-        /// Folder for the page and its picture: benchmark.md and .svg, or plant.md and .svg [default: target/bench]
+        /// Folder for the page and its picture: benchmark.md and .svg, or plant-benchmark.md and .svg [default: target/bench]
         #[arg(long)]
         out: Option<PathBuf>,
     },

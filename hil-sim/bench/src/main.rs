@@ -28,7 +28,7 @@ struct Arguments {
     /// Print one JSON object in place of the tables
     #[arg(long)]
     json: bool,
-    /// Folder for the page and its picture: benchmark.md and benchmark.svg, or plant.md and plant.svg
+    /// Folder for the page and its picture: benchmark.md and benchmark.svg, or plant-benchmark.md and plant-benchmark.svg
     #[arg(long, default_value = "target/bench")]
     out: PathBuf,
     /// Inputs whose error is taken, of the model
@@ -70,8 +70,8 @@ fn plant(arguments: &Arguments, progress: impl Fn(&str)) -> anyhow::Result<Resul
         json: serde_json::to_string_pretty(&figures)?,
         tables: host::plant::tables(&figures),
         files: [
-            ("plant.md", host::plant::page(&figures)),
-            ("plant.svg", host::plant::draw(&figures)?),
+            ("plant-benchmark.md", host::plant::page(&figures)),
+            ("plant-benchmark.svg", host::plant::draw(&figures)?),
         ],
     })
 }

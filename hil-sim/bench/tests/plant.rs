@@ -101,13 +101,13 @@ fn costs_are_consistent() {
 #[test]
 fn page_and_picture_are_written() {
     LazyLock::force(&RUN);
-    let page = std::fs::read_to_string(out().join("plant.md")).expect("a page");
+    let page = std::fs::read_to_string(out().join("plant-benchmark.md")).expect("a page");
     for row in rows("parts") {
         let name = row["name"].as_str().expect("a name");
         assert!(page.contains(name), "{name}");
     }
-    assert!(page.contains("(plant.svg)"));
-    let picture = std::fs::read_to_string(out().join("plant.svg")).expect("a picture");
+    assert!(page.contains("(plant-benchmark.svg)"));
+    let picture = std::fs::read_to_string(out().join("plant-benchmark.svg")).expect("a picture");
     assert!(picture.starts_with("<svg"));
     for name in ["1.03", "0.5 ms", "receptors / mK"] {
         assert!(picture.contains(name), "{name}");

@@ -5,7 +5,7 @@ use super::figures::{Cost, CutFigures, Figures};
 use super::finger::{DURATION_S, FORCE_N, OBJECT};
 
 /// Name of the plot beside the page.
-const SVG: &str = "plant.svg";
+const SVG: &str = "plant-benchmark.svg";
 
 /// All tables with what they mean.
 #[must_use]
