@@ -1,8 +1,9 @@
-//! Run time against error of the contact model and its peers.
+//! Run time against error of the contact model and its peers, and of the simulated plant.
 use std::ffi::OsString;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
+use clap::ValueEnum;
 
 use crate::probe;
 use crate::process::{Invocation, workspace};
@@ -11,8 +12,17 @@ use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 /// The profile of the flashed image, so that the model is compiled as it is there.
 const PROFILE: &str = "firmware";
 
+/// What is measured.
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Job {
+    /// The contact model and its peers
+    Model,
+    /// The simulated plant, on this host
+    Plant,
+}
+
 /// `cargo xtask bench`; a relative `out` is one of the caller's folder.
-pub fn run(permission: Permission, json: bool, out: Option<PathBuf>) -> Result<()> {
+pub fn run(permission: Permission, job: Job, json: bool, out: Option<PathBuf>) -> Result<()> {
     let out = out.map(|folder| {
         // Commands run in the workspace's root.
         std::path::absolute(&folder).with_context(|| format!("--out {}", folder.display()))
@@ -26,6 +36,10 @@ pub fn run(permission: Permission, json: bool, out: Option<PathBuf>) -> Result<(
     let mut line: Vec<OsString> = ["run", "--release", "--package", "model-bench", "--"]
         .map(OsString::from)
         .into();
+    line.push(match job {
+        Job::Model => "model".into(),
+        Job::Plant => "plant".into(),
+    });
     if json {
         line.push("--json".into());
     }

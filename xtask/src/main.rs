@@ -40,14 +40,17 @@ enum Task {
         #[arg(long)]
         print_path: bool,
     },
-    /// Print run time against error of the contact model and its peers, and draw it
+    /// Print run time against error of the contact model and its peers, or of the simulated plant, and draw it
     Bench {
         #[command(flatten)]
         set_up: SetUp,
+        /// What to measure
+        #[arg(value_enum, default_value = "model")]
+        job: bench::Job,
         /// Print one JSON object in place of the tables
         #[arg(long)]
         json: bool,
-        /// Folder for benchmark.md and benchmark.svg [default: target/bench]
+        /// Folder for the page and its picture: benchmark.md and .svg, or plant-benchmark.md and .svg [default: target/bench]
         #[arg(long)]
         out: Option<PathBuf>,
     },
@@ -81,7 +84,12 @@ fn main() -> ExitCode {
         Task::Demo(set_up) => demo::run(set_up.permission()),
         Task::Test(set_up) => suite::run(set_up.permission()),
         Task::Firmware { set_up, print_path } => firmware::run(set_up.permission(), print_path),
-        Task::Bench { set_up, json, out } => bench::run(set_up.permission(), json, out),
+        Task::Bench {
+            set_up,
+            job,
+            json,
+            out,
+        } => bench::run(set_up.permission(), job, json, out),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

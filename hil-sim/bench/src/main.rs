@@ -1,5 +1,5 @@
 //! The benchmark: run time against error of `erfcx` and of the whole model, on this host and on the emulated
-//! microcontroller. Results on standard output, progress on standard error.
+//! microcontroller; and of the simulated plant, on this host. Results on standard output, progress on standard error.
 
 mod host;
 
@@ -7,19 +7,31 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Context;
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 
-/// Run time against error of the contact model and its peers.
+/// What is measured.
+#[derive(Clone, Copy, ValueEnum)]
+enum Job {
+    /// The contact model and its peers
+    Model,
+    /// The simulated plant, on this host
+    Plant,
+}
+
+/// Run time against error of the contact model and its peers, or of the simulated plant.
 #[derive(Parser)]
 #[command(name = "model-bench", max_term_width = 100)]
 struct Arguments {
+    /// What to measure
+    #[arg(value_enum, default_value = "model")]
+    job: Job,
     /// Print one JSON object in place of the tables
     #[arg(long)]
     json: bool,
-    /// Folder for benchmark.md and benchmark.svg
+    /// Folder for the page and its picture: benchmark.md and benchmark.svg, or plant-benchmark.md and plant-benchmark.svg
     #[arg(long, default_value = "target/bench")]
     out: PathBuf,
-    /// Inputs whose error is taken
+    /// Inputs whose error is taken, of the model
     #[arg(long, default_value_t = 100_000, value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     inputs: u32,
     /// Rounds of timing on this host
@@ -27,24 +39,58 @@ struct Arguments {
     rounds: u16,
 }
 
-fn run(arguments: &Arguments) -> anyhow::Result<()> {
+/// What a job gives.
+struct Results {
+    /// One object.
+    json: String,
+    tables: String,
+    /// Names and contents.
+    files: [(&'static str, String); 2],
+}
+
+fn model(arguments: &Arguments, progress: impl Fn(&str)) -> anyhow::Result<Results> {
     let effort = host::Effort {
         inputs: arguments.inputs,
         rounds: arguments.rounds.into(),
     };
+    let figures = host::measure(effort, progress)?;
+    Ok(Results {
+        json: serde_json::to_string_pretty(&figures)?,
+        tables: host::tables(&figures),
+        files: [
+            ("benchmark.md", host::page(&figures)),
+            ("benchmark.svg", host::draw(&figures)?),
+        ],
+    })
+}
+
+fn plant(arguments: &Arguments, progress: impl Fn(&str)) -> anyhow::Result<Results> {
+    let figures = host::plant::measure(arguments.rounds.into(), progress)?;
+    Ok(Results {
+        json: serde_json::to_string_pretty(&figures)?,
+        tables: host::plant::tables(&figures),
+        files: [
+            ("plant-benchmark.md", host::plant::page(&figures)),
+            ("plant-benchmark.svg", host::plant::draw(&figures)?),
+        ],
+    })
+}
+
+fn run(arguments: &Arguments) -> anyhow::Result<()> {
     // Before time is spent on what cannot be written.
     let folder = &arguments.out;
     std::fs::create_dir_all(folder).with_context(|| format!("--out {}", folder.display()))?;
-    let figures = host::measure(effort, |what| eprintln!("{what}"))?;
+    let progress = |what: &str| eprintln!("{what}");
+    let results = match arguments.job {
+        Job::Model => model(arguments, progress)?,
+        Job::Plant => plant(arguments, progress)?,
+    };
     if arguments.json {
-        println!("{}", serde_json::to_string_pretty(&figures)?);
+        println!("{}", results.json);
     } else {
-        print!("{}", host::tables(&figures));
+        print!("{}", results.tables);
     }
-    for (name, text) in [
-        ("benchmark.md", host::page(&figures)),
-        ("benchmark.svg", host::draw(&figures)?),
-    ] {
+    for (name, text) in results.files {
         let path = folder.join(name);
         std::fs::write(&path, text).with_context(|| path.display().to_string())?;
         eprintln!("wrote {}", path.display());

@@ -223,7 +223,7 @@ fn name(arithmetic: Arithmetic) -> &'static str {
 }
 
 /// The class of this machine.
-fn host() -> String {
+pub(super) fn host() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     format!("one of {cores} cores, {}", std::env::consts::ARCH)
 }

@@ -3,6 +3,7 @@ mod accuracy;
 mod emulated;
 mod figures;
 mod image;
+pub mod plant;
 mod plot;
 mod precise;
 mod scenes;

@@ -145,7 +145,7 @@ fn scene_row(scene: &SceneFigures) -> Vec<String> {
 }
 
 /// Three digits.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     match value {
         0.0 => "0".into(),
         v if !(1e-3..1e5).contains(&v) => format!("{v:.1e}"),
@@ -157,7 +157,7 @@ fn short(value: f64) -> String {
 }
 
 /// A Markdown table: the first column to the left, all others to the right.
-fn grid(heads: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
+pub(super) fn grid(heads: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     let rows: Vec<Vec<String>> = rows.collect();
     let width = |column: usize| {
         let cells = rows

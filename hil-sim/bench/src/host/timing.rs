@@ -6,6 +6,8 @@ use std::time::Instant;
 pub struct Time {
     /// Median over the rounds, ns.
     pub ns: f64,
+    /// Of the fastest round, ns.
+    pub least_ns: f64,
     /// Median over the rounds of the time over that of the candidate `base` in the same round.
     pub ratio: f64,
 }
@@ -29,6 +31,7 @@ pub fn side_by_side(
     ns.iter()
         .map(|own| Time {
             ns: median(own.clone()),
+            least_ns: own.iter().copied().fold(f64::NAN, f64::min),
             ratio: median(own.iter().zip(&ns[base]).map(|(own, base)| own / base).collect()),
         })
         .collect()

@@ -1,0 +1,159 @@
+//! A whole finger without its microcontroller: plant and truth, sensors and converter, the firmware's logic.
+use std::hint::black_box;
+use std::path::Path;
+
+use anyhow::{Context, bail};
+use hil_sim::World;
+use hil_sim::engine::{Engine, Native};
+use hil_sim::plant::Plant;
+use hil_sim::plant::bridge::Legs;
+use hil_sim::scene::Scene;
+use hil_sim::telemetry::Telemetry;
+
+/// What is presented.
+pub const OBJECT: &str = "granite";
+/// Force of the finger, N.
+pub const FORCE_N: f64 = 2.0;
+/// Length of the scene for which half-spaces are cut, s: that of the demo.
+pub const DURATION_S: u32 = 12;
+
+/// Lines of the host and the millisecond at which they leave.
+pub const LINES: [(u64, &str); 5] = [
+    (10, "material granite"),
+    (13, "object room"),
+    (16, "mode contact"),
+    (19, "arm"),
+    // The skin is watched before an object is presented.
+    (2600, "start"),
+];
+/// When the finger lands and the scene begins, ms: once the device has settled.
+pub const LANDING_MS: u64 = 8000;
+/// From when on it is measured, ms.
+pub const READY_MS: u64 = 9000;
+/// By then a line is answered and what it asks for has arrived, ms.
+const ANSWER_MS: u64 = 5;
+
+/// A finger on its display.
+pub struct Finger {
+    engine: Native,
+    received: Vec<u8>,
+}
+
+impl Finger {
+    /// A finger, with noise of its own, that has been in contact for a second.
+    ///
+    /// # Errors
+    /// The device refused its set-up, or is not in contact.
+    pub fn in_contact(seed: u64) -> anyhow::Result<Self> {
+        let mut finger = Self::switched_on(seed)?;
+        for ms in 0..READY_MS {
+            finger.send_lines_of(ms);
+            finger.step(force_n(ms));
+        }
+        finger.check_contact()?;
+        Ok(finger)
+    }
+
+    /// A finger at the first boundary.
+    ///
+    /// # Errors
+    /// None for this scene.
+    pub fn switched_on(seed: u64) -> anyhow::Result<Self> {
+        let settle_s = LANDING_MS as f64 * 1e-3;
+        let text = format!(
+            "duration_s = {DURATION_S}\nsettle_s = {settle_s}\nskin_c = 34.0\nroom_c = 24.0\nseed = {seed}\n\
+             [object]\nmaterial = \"{OBJECT}\"\n"
+        );
+        let scene = Scene::parse(&text, Path::new("the benchmark's scene"))?;
+        Ok(Self {
+            engine: Native::new(World::new(&scene)?),
+            received: Vec::new(),
+        })
+    }
+
+    /// Sends what the host has to say at a millisecond.
+    pub fn send_lines_of(&mut self, ms: u64) {
+        for (_, line) in LINES.iter().filter(|(at, _)| *at == ms) {
+            self.send(line);
+        }
+    }
+
+    fn send(&mut self, line: &str) {
+        self.engine.send(line.as_bytes());
+        self.engine.send(b"\n");
+    }
+
+    /// One millisecond in the order of a run: the plant, then the device.
+    pub fn step(&mut self, force_n: f64) {
+        self.engine.world().set(force_n, std::iter::empty());
+        let legs = self.engine.legs();
+        self.engine.world().step(legs);
+        let Ok(()) = self.engine.run_half_ms();
+        let Ok(()) = self.engine.run_half_ms();
+    }
+
+    /// The plant as it is now.
+    pub fn plant(&mut self) -> Plant {
+        self.engine.world().plant().clone()
+    }
+
+    /// The bridge's legs as they are now.
+    pub fn legs(&mut self) -> Legs {
+        self.engine.legs()
+    }
+
+    /// Has every tick streamed from now on.
+    pub fn stream(&mut self) {
+        self.send("stream 1");
+        for _ in 0..ANSWER_MS {
+            self.step(FORCE_N);
+        }
+        self.received.clear();
+        self.engine.receive(&mut self.received);
+    }
+
+    /// One millisecond, and what the device says of its tick.
+    ///
+    /// # Errors
+    /// A line that is no telemetry.
+    pub fn step_and_listen(&mut self) -> anyhow::Result<()> {
+        self.step(FORCE_N);
+        self.received.clear();
+        self.engine.receive(&mut self.received);
+        for line in String::from_utf8_lossy(&self.received).lines() {
+            black_box(Telemetry::parse(line).with_context(|| format!("{line:?} is no telemetry"))?);
+        }
+        Ok(())
+    }
+
+    /// Makes sure that the finger has been what it was meant to be.
+    ///
+    /// # Errors
+    /// The device refused a line or is not in contact.
+    pub fn check_contact(&mut self) -> anyhow::Result<()> {
+        self.send("stream 1");
+        for _ in 0..ANSWER_MS {
+            self.step(FORCE_N);
+        }
+        self.send("stream 0");
+        for _ in 0..ANSWER_MS {
+            self.step(FORCE_N);
+        }
+        self.received.clear();
+        self.engine.receive(&mut self.received);
+        let text = String::from_utf8_lossy(&self.received);
+        if let Some(refused) = text.lines().find(|line| line.starts_with("err")) {
+            bail!("the device refused its set-up: {refused}");
+        }
+        let last = text.lines().filter_map(Telemetry::parse).next_back();
+        match last {
+            Some(telemetry) if telemetry.state == "contact" => Ok(()),
+            other => bail!("the device is not in contact: {other:?}"),
+        }
+    }
+}
+
+/// The force at a millisecond of the set-up, N.
+pub fn force_n(ms: u64) -> f64 {
+    if ms < LANDING_MS { 0.0 } else { FORCE_N }
+}
