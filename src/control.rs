@@ -171,13 +171,13 @@ mod tests {
     #[test]
     fn voltage_is_resistive_plus_seebeck_plus_dead_time() {
         let voltage = Voltage::new(&Settings::default().module);
-        // All of the dead time's 0.37 V from 0.5 A on, in proportion below.
+        // All of the dead time's 0.397 V from 0.5 A on, in proportion below.
         for (current_a, dead_v) in [
-            (3.0, 0.37),
-            (0.25, 0.185),
+            (3.0, 0.397),
+            (0.25, 0.1985),
             (0.0, 0.0),
-            (-0.1, -0.074),
-            (-6.0, -0.37),
+            (-0.1, -0.0794),
+            (-6.0, -0.397),
         ] {
             let duty = voltage
                 .duty(Current::saturating_from_num(current_a), at(30.0), at(20.0))

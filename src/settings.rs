@@ -132,7 +132,7 @@ impl Default for Settings {
             module: Module {
                 resistance_ohm: 1.25,
                 seebeck_v_k: 0.0273,
-                dead_time_v: 0.37,
+                dead_time_v: 0.397,
                 ripple_a: 0.5,
                 supply_v: 12.0,
                 current_limit_a: 6.0,

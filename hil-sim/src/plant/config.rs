@@ -62,6 +62,8 @@ impl Params {
 
 /// Coldest and warmest start temperature, deg C.
 const TEMPERATURE_C: (f64, f64) = (-40.0, 100.0);
+/// Coldest and warmest core of a finger, deg C.
+const CORE_C: (f64, f64) = (0.0, 45.0);
 /// Longest duration, s.
 const LONGEST_S: f64 = 86_400.0;
 
@@ -235,6 +237,16 @@ fn rests(finger: &FingerParams) -> bool {
     finger.core_w_m2k.is_some_and(|core_w_m2k| core_w_m2k > 0.0)
         || media.clone().any(|medium| medium.perfusion_w_m3k > 0.0)
         || (finger.air_w_m2k == 0.0 && media.all(|medium| medium.metabolism_w_m3 == 0.0))
+}
+
+/// A finger can be kept warm by a core of this temperature, deg C.
+pub(super) fn core(core_c: f64) -> Result<(), ConfigError> {
+    within(
+        "temperature in deg C that the finger's core must have for its skin and the room",
+        core_c,
+        CORE_C.0,
+        CORE_C.1,
+    )
 }
 
 fn within(what: &'static str, value: f64, least: f64, most: f64) -> Result<(), ConfigError> {

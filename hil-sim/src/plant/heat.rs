@@ -88,6 +88,13 @@ impl Heat {
         }
     }
 
+    /// Brings the object to one temperature, deg C.
+    pub fn place_object(&mut self, temperature_c: f64) {
+        for node in 0..self.slabs.cells() {
+            self.slabs.set_node_c(OBJECT, node, temperature_c);
+        }
+    }
+
     /// Share of its full flow that the finger's blood has.
     pub fn set_flow(&mut self, share: f64) {
         self.slabs.set_flow(Finger::OnDisplay as usize, share);

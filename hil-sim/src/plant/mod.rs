@@ -55,6 +55,7 @@ pub const RECEPTORS_M: [f64; 2] = [0.16e-3, 0.45e-3];
 pub struct Plant {
     start_s: f64,
     appears_s: f64,
+    object_start_c: f64,
     skin_before_c: f64,
     room_c: f64,
     surfaces: Surfaces,
@@ -83,14 +84,15 @@ struct Surfaces {
 }
 
 impl Plant {
-    /// A plant at rest: finger lifted, tile and sink at room temperature, no current.
+    /// A plant at rest: finger lifted, tile and sink at the temperature of the sink's coolant, no current.
     ///
     /// # Errors
     /// If the configuration does not pass its [check](PlantConfig::check).
     pub fn new(config: &PlantConfig) -> Result<Self, ConfigError> {
         config.check()?;
         let params = &config.params;
-        let cut = |layers: &[slab::Layer], back| Slab::new(layers, back, config.duration_s, &Grading::RUN);
+        let watched_s = config.duration_s - config.start_s;
+        let cut = |layers: &[slab::Layer], back| Slab::new(layers, back, watched_s, &Grading::RUN);
         let finger = cut(&params.finger.layers, params.finger.back());
         let object = cut(&[config.object.layer()], config.object.back);
         let air_w_m2k = params.finger.air_w_m2k;
@@ -100,6 +102,7 @@ impl Plant {
             air_w_m2k * (config.skin_c - config.room_c),
         )
         .ok_or_else(|| ConfigError::cold_finger(air_w_m2k))?;
+        config::core(rest.core_c)?;
         let mut heat = Heat::new(
             (&finger, config.skin_c),
             (&object, config.object.start_c),
@@ -109,8 +112,8 @@ impl Plant {
         );
         heat.rest_finger(&rest.node_c, rest.core_c);
         let at_rest = Sensed {
-            display_c: config.room_c,
-            sink_c: config.room_c,
+            display_c: heat.display_c(),
+            sink_c: heat.tile().sink_c(),
             skin_before_c: config.skin_c,
             skin_c: config.skin_c,
             room_c: config.room_c,
@@ -120,6 +123,7 @@ impl Plant {
         Ok(Self {
             start_s: config.start_s,
             appears_s: config.appears_s,
+            object_start_c: config.object.start_c,
             skin_before_c: config.skin_c,
             room_c: config.room_c,
             surfaces: Surfaces {
@@ -173,6 +177,11 @@ impl Plant {
         let settled = Some((self.force_n, appeared));
         if self.settled == settled {
             return;
+        }
+        if appeared && !self.settled.is_some_and(|(_, appeared)| appeared) {
+            // Until now nothing has happened to the object, whatever lies behind it.
+            self.heat.place_object(self.object_start_c);
+            self.age = 0;
         }
         self.settled = settled;
         let Surfaces {

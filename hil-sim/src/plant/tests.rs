@@ -6,6 +6,7 @@ use contact_model::material::find;
 
 use super::bridge::Leg;
 use super::object::ObjectConfig;
+use super::slab::Back;
 use super::*;
 
 fn config(material: &str) -> PlantConfig {
@@ -134,4 +135,46 @@ fn bad_configuration_is_named() {
         ..config("abs")
     };
     assert!(Plant::new(&endless).is_err());
+}
+
+/// A slab of ABS on something warm, which must not matter before it is there, nor how long it is watched for.
+#[test]
+fn object_is_what_it_starts_as_when_it_appears() {
+    let after = |settle_s: f64, duration_s: f64| {
+        let mut config = config("abs");
+        config.object.thickness_m = 0.01;
+        config.object.back = Back::Film {
+            film_w_m2k: f64::INFINITY,
+            temperature_c: 40.0,
+        };
+        (config.start_s, config.duration_s) = (-settle_s, duration_s);
+        let mut plant = Plant::new(&config).expect("good");
+        run(&mut plant, settle_s, &Legs::default());
+        assert!((plant.object_c() - 24.0).abs() < 2.0, "{}", plant.object_c());
+        plant.set_force(2.0);
+        run(&mut plant, 12.0, &Legs::default());
+        plant.skin_real_c()
+    };
+    let wanted_c = after(8.0, 600.0);
+    for (settle_s, duration_s) in [(8.0, 12.0), (60.0, 12.0)] {
+        let off_mk = 1e3 * (after(settle_s, duration_s) - wanted_c).abs();
+        assert!(
+            off_mk < 1.0,
+            "{settle_s} s of settling, {duration_s} s watched: {off_mk} mK"
+        );
+    }
+}
+
+/// A core that would have to boil to keep the skin warm behind a thick insulation.
+#[test]
+fn core_that_no_finger_has_is_refused() {
+    let mut config = config("abs");
+    config.params.finger.core_w_m2k = Some(0.1);
+    config.params.finger.air_w_m2k = 10.0;
+    config.params.finger.layers[0].thickness_m = 1e-3;
+    let message = Plant::new(&config).expect_err("1000 K").to_string();
+    assert!(
+        message.contains("core") && message.contains("allowed is 0 to 45"),
+        "{message}"
+    );
 }

@@ -130,7 +130,7 @@ fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
             let voltage = voltage.fraction().to_num::<f64>();
             // 6 A times 1.25 ohm of 12 V, the dead time, and what the module gives or takes.
             let seebeck = 0.0273 * (25.0 - display_c) / 12.0;
-            let expected = duty * (1.25 + 0.37 / 6.0) + seebeck;
+            let expected = duty * (1.25 + 0.397 / 6.0) + seebeck;
             assert!((voltage - expected).abs() < 1e-3, "{voltage}");
         }
     }

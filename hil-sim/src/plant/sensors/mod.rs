@@ -86,6 +86,8 @@ pub struct Sensors {
     /// What its last conversion saw, and how far it moves from one conversion to the next.
     seen: [f64; CHANNELS],
     rise: [f64; CHANNELS],
+    /// Conversions until it has arrived.
+    left: [usize; CHANNELS],
     converter: Converter,
 }
 
@@ -105,6 +107,7 @@ impl Sensors {
             counts: [0.0; CHANNELS],
             seen: [0.0; CHANNELS],
             rise: [0.0; CHANNELS],
+            left: [0; CHANNELS],
             converter: Converter::new(params.converter, Xoshiro256PlusPlus::seed_from_u64(seed)),
         };
         sensors.read(state);
@@ -123,6 +126,7 @@ impl Sensors {
         self.seen = self.counts;
         self.read(state);
         // The 16 scans of a tick, spread over the step.
+        self.left = [SCANS_PER_TICK; CHANNELS];
         self.rise = std::array::from_fn(|i| (self.counts[i] - self.seen[i]) / SCANS_PER_TICK as f64);
     }
 
@@ -130,7 +134,10 @@ impl Sensors {
     /// part of the experiment.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         let i = channel as usize;
-        self.seen[i] += self.rise[i];
+        if self.left[i] > 0 {
+            self.left[i] -= 1;
+            self.seen[i] += self.rise[i];
+        }
         self.converter.convert(self.seen[i])
     }
 

@@ -152,4 +152,5 @@ fn conversions_of_a_tick_move_evenly_to_the_end_of_the_step() {
         let level = 410.0 + 37.5 * f64::from(k);
         assert!((f64::from(code) - level).abs() <= 0.5, "conversion {k}: {code}");
     }
+    assert_eq!(sensors.convert(Channel::Force), 1010, "and stay there");
 }

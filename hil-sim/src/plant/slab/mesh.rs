@@ -38,16 +38,24 @@ pub struct Cell {
     pub node_m: f64,
 }
 
+impl Cell {
+    /// A cell in a row in which each is `growth` times as wide as the one before.
+    #[must_use]
+    pub fn graded(width_m: f64, growth: f64) -> Self {
+        Self {
+            width_m,
+            node_m: width_m / (1.0 + growth.sqrt()),
+        }
+    }
+}
+
 /// Cells that fill a thickness, the first at most `first_m` wide and each 1 to `growth` times the one before.
 #[must_use]
 pub fn fill(thickness_m: f64, first_m: f64, growth: f64) -> Vec<Cell> {
     // The geometric sum, read backwards; a hair less, so that a row that fits is not given one cell more.
     let cells = ((thickness_m / first_m * (growth - 1.0)).ln_1p() / growth.ln() - 1e-9).ceil();
     if cells <= 1.0 {
-        return vec![Cell {
-            width_m: thickness_m,
-            node_m: 0.5 * thickness_m,
-        }];
+        return vec![Cell::graded(thickness_m, 1.0)];
     }
     let sum = |g: f64| (0..cells as i32).map(|i| g.powi(i)).sum::<f64>();
     // The factor with which they fill it: the sum rises with it.
@@ -71,13 +79,7 @@ pub fn fill(thickness_m: f64, first_m: f64, growth: f64) -> Vec<Cell> {
     // Even cells may have to be narrower; and what the factor's rounding leaves goes to all alike.
     let first_m = thickness_m / sum(g);
     (0..cells as i32)
-        .map(|i| {
-            let width_m = first_m * g.powi(i);
-            Cell {
-                width_m,
-                node_m: width_m / (1.0 + g.sqrt()),
-            }
-        })
+        .map(|i| Cell::graded(first_m * g.powi(i), g))
         .collect()
 }
 

@@ -7,7 +7,7 @@ mod probe;
 
 pub use equilibrium::{Equilibrium, equilibrium};
 pub use lanes::{Lanes, Row};
-pub use mesh::Grading;
+pub use mesh::{Cell, Grading};
 pub use probe::Probe;
 
 use contact_model::material::Material;
@@ -46,7 +46,7 @@ impl Medium {
 /// A layer; one that is endless must be the last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
-    /// Thickness, m; infinite for a half-space, which is cut where the duration ends to matter.
+    /// Thickness, m; infinite for a half-space, which is cut where nothing is felt within the duration.
     pub thickness_m: f64,
     /// What it consists of.
     pub medium: Medium,
@@ -85,6 +85,11 @@ pub struct Slab {
     pub depth_m: Vec<f64>,
 }
 
+/// Half-spaces are cut for at least this duration, s: deep enough for the receptors.
+const SHORTEST_S: f64 = 1.0;
+/// Depth of a half-space at rest in lengths over which blood evens temperatures out: `exp(-12)` is 6e-6.
+const FELT: f64 = 12.0;
+
 impl Slab {
     /// Cuts layers, of which at least one is given, for a surface that is watched for `duration_s`.
     #[must_use]
@@ -104,8 +109,19 @@ impl Slab {
         for Layer { thickness_m, medium } in layers {
             let k = medium.conductivity_w_mk;
             let a = medium.diffusivity_m2_s();
-            let deep_m = grading.depth * (a * duration_s).sqrt();
-            let cells = mesh::fill(thickness_m.min(deep_m), next * a.sqrt(), grading.growth);
+            let thickness_m = if thickness_m.is_finite() {
+                *thickness_m
+            } else {
+                let moved_m = grading.depth * (a * duration_s.max(SHORTEST_S)).sqrt();
+                // At rest the surface is felt as deep as the blood lets it.
+                let felt_m = if medium.perfusion_w_m3k > 0.0 {
+                    FELT * (k / medium.perfusion_w_m3k).sqrt()
+                } else {
+                    0.0
+                };
+                moved_m.max(felt_m)
+            };
+            let cells = mesh::fill(thickness_m, next * a.sqrt(), grading.growth);
             for cell in &cells {
                 let ahead_m2k_w = behind_m2k_w + cell.node_m / k;
                 if slab.depth_m.is_empty() {

@@ -1,7 +1,7 @@
 //! The thermoelectric tile between the display's surface and what cools its sink.
 //!
 //! ```text
-//! plate (2 cells) - tab - legs (5 cells) - tab - plate (2 cells) - sink - coolant
+//! plate (4 cells) - tab - legs (5 cells) - tab - plate (1 cell) - sink - coolant
 //! ```
 //!
 //! in three zones across: the patch that the finger touches and two rings, joined by the plates. All legs carry one
@@ -19,21 +19,31 @@ pub use params::{TileParams, ZERO_C_K};
 
 use super::bridge::{Current, Load};
 use super::ledger::Energy;
+use super::slab::Cell;
 use legs::Legs;
 use stack::Stack;
 use zones::{ZONES, Zones};
 
-/// Cells through one plate, and along the legs.
-const PLATE_CELLS: usize = 2;
+/// Cells through the display plate, each twice as wide as the one nearer to the finger, and along the legs.
+const PLATE_CELLS: usize = 4;
+const PLATE_GROWTH: f64 = 2.0;
 const LEG_CELLS: usize = 5;
 
 const COLD_TAB: usize = PLATE_CELLS;
 const HOT_TAB: usize = COLD_TAB + LEG_CELLS + 1;
-const LEVELS: usize = HOT_TAB + 1 + PLATE_CELLS;
+const HOT_PLATE: usize = HOT_TAB + 1;
+const LEVELS: usize = HOT_PLATE + 1;
 /// Links of the legs: from the cold tab to the hot one.
 const LINKS: usize = LEG_CELLS + 1;
 /// The zone under the finger.
 const PATCH: usize = 0;
+
+/// The display plate cut into its cells, the surface first.
+fn display_plate(params: &TileParams) -> [Cell; PLATE_CELLS] {
+    let widths: [f64; PLATE_CELLS] = std::array::from_fn(|i| PLATE_GROWTH.powi(i as i32));
+    let unit_m = params.ceramic_m / widths.iter().sum::<f64>();
+    widths.map(|width| Cell::graded(unit_m * width, PLATE_GROWTH))
+}
 
 /// The tile of one finger.
 #[derive(Clone, Debug)]
@@ -44,6 +54,8 @@ pub struct Tile {
     stack: Stack<LEVELS, ZONES>,
     room_c: f64,
     current: Current,
+    /// From the display's surface to the first node, m.
+    surface_m: f64,
     /// Share of each zone in the legs.
     share: [f64; ZONES],
     /// Seebeck coefficient at every link of the legs, V/K, and resistance of all legs, ohm: in the middle of the step.
@@ -54,29 +66,34 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// The tile with its sink at the temperature of the room, deg C, without current.
+    /// The tile without current, all of it at the temperature of what cools its sink, in a room, deg C.
     #[must_use]
     pub fn new(params: TileParams, room_c: f64) -> Self {
         let zones = Zones::new(&params);
         let share = zones.area_m2.map(|m2| m2 / params.plate_m2());
-        let mut stack = Stack::new(room_c);
-        let cell_m = params.ceramic_m / PLATE_CELLS as f64;
+        let mut stack = Stack::new(room_c + params.coolant_k);
+        let plate = display_plate(&params);
         for (z, m2) in zones.area_m2.into_iter().enumerate() {
-            let through = params.ceramic_w_mk * m2 / cell_m;
-            for level in 0..LEVELS {
-                (stack.capacity[level][z], stack.axial[level][z]) = match level {
-                    COLD_TAB | HOT_TAB => (params.tabs_j_k * share[z], 2.0 * through),
-                    _ if (COLD_TAB..HOT_TAB).contains(&level) => {
-                        (params.legs_j_k * share[z] / LEG_CELLS as f64, 0.0)
-                    }
-                    _ => (params.ceramic_j_m3k * m2 * cell_m, through),
-                };
-                if !(COLD_TAB..=HOT_TAB).contains(&level) {
-                    stack.lateral[level][z] = params.ceramic_w_mk * cell_m * zones.shape[z];
-                }
+            let sheet_w = params.ceramic_w_mk * m2;
+            // Display plate, the surface first; its last cell goes to the tab.
+            for (level, cell) in plate.iter().enumerate() {
+                let next_m = plate.get(level + 1).map_or(0.0, |next| next.node_m);
+                stack.capacity[level][z] = params.ceramic_j_m3k * m2 * cell.width_m;
+                stack.axial[level][z] = sheet_w / (cell.width_m - cell.node_m + next_m);
+                stack.lateral[level][z] = params.ceramic_w_mk * cell.width_m * zones.shape[z];
             }
-            stack.axial[COLD_TAB - 1][z] = 2.0 * through;
-            stack.axial[LEVELS - 1][z] = 1.0 / (0.5 / through + 1.0 / (params.paste_w_k * share[z]));
+            for level in COLD_TAB..=HOT_TAB {
+                stack.capacity[level][z] = match level {
+                    COLD_TAB | HOT_TAB => params.tabs_j_k * share[z],
+                    _ => params.legs_j_k * share[z] / LEG_CELLS as f64,
+                };
+            }
+            // The hot plate is one cell.
+            let half_k_w = 0.5 * params.ceramic_m / sheet_w;
+            stack.axial[HOT_TAB][z] = 1.0 / half_k_w;
+            stack.capacity[HOT_PLATE][z] = params.ceramic_j_m3k * m2 * params.ceramic_m;
+            stack.lateral[HOT_PLATE][z] = params.ceramic_w_mk * params.ceramic_m * zones.shape[z];
+            stack.axial[HOT_PLATE][z] = 1.0 / (half_k_w + 1.0 / (params.paste_w_k * share[z]));
         }
         stack.sink.capacity = params.sink_j_k;
         stack.sink.source = (room_c + params.coolant_k) / params.sink_k_w;
@@ -88,6 +105,7 @@ impl Tile {
             stack,
             room_c,
             current: Current::default(),
+            surface_m: plate[0].node_m,
             share,
             seebeck_v_k: [[0.0; ZONES]; LINKS],
             resistance_ohm: 0.0,
@@ -219,8 +237,7 @@ impl Tile {
     /// From the patch's surface to that node, K/W.
     #[must_use]
     pub fn patch_half_k_w(&self) -> f64 {
-        0.5 * self.params.ceramic_m
-            / (PLATE_CELLS as f64 * self.params.ceramic_w_mk * self.zones.area_m2[PATCH])
+        self.surface_m / (self.params.ceramic_w_mk * self.zones.area_m2[PATCH])
     }
 
     /// Current that flows; positive cools the display.

@@ -1,6 +1,8 @@
 //! Bodies in contact: against exact solutions, conservation laws and the second law.
 
+mod air;
 mod energy;
+mod first_moments;
 mod interior;
 mod order;
 mod second_law;

@@ -1,0 +1,43 @@
+//! Right after landing the display's plate is a half-space of ceramic: Eq. 6-5 and 6-6.
+
+use super::*;
+
+#[test]
+fn display_plate_takes_a_landing_as_its_ceramic_does() {
+    let tile = TileParams {
+        patch_m2: contact_model::pressure::contact_area_m2(2.0),
+        ..TileParams::CLASS
+    };
+    let mut bench = Bench::new(
+        &FingerParams::homogeneous(),
+        &ObjectConfig::half_space(SKIN, ROOM_C),
+        tile,
+    );
+    // With the display's finish its resistance is Eq. 6-8's.
+    let ceramic = Material {
+        surface: REFERENCE_DISPLAY,
+        density_kg_m3: 1000.0,
+        specific_heat_j_kgk: tile.ceramic_j_m3k / 1000.0,
+    };
+    let resistance_m2k_w = touch(&ceramic, 2.0).0.expect("pressed").resistance_m2k_w;
+    let exact = |t_s: f64| {
+        let (finger, plate) = (SKIN.effusivity(), (tile.ceramic_w_mk * tile.ceramic_j_m3k).sqrt());
+        let z = (1.0 / finger + 1.0 / plate) / resistance_m2k_w * t_s.sqrt();
+        let made = 1.0 - contact_model::reference::erfcx(z);
+        let w = plate / (plate + finger);
+        (SKIN_C - 10.0 * w * made, ROOM_C + 10.0 * (1.0 - w) * made)
+    };
+    bench.touch(touch(&ceramic, 2.0).0, None);
+    for k in 1..=10 {
+        bench.step(None);
+        // Until heat reaches the back of the plate, 0.8 mm away.
+        let (skin_c, plate_c) = exact(f64::from(k) * STEP_S);
+        let skin_off_mk = 1e3 * (bench.heat.skin_c(Finger::OnDisplay) - skin_c);
+        let plate_off_mk = 1e3 * (bench.heat.display_c() - plate_c);
+        println!("{k} ms: skin off by {skin_off_mk:.2} mK, display by {plate_off_mk:.2} mK");
+        assert!(
+            skin_off_mk.abs() < 1.0 && plate_off_mk.abs() < 1.0,
+            "after {k} ms"
+        );
+    }
+}
