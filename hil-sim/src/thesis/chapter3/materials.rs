@@ -34,8 +34,16 @@ struct Printed {
     fourier: Stated,
 }
 
-pub(super) fn table_3_1() -> Vec<Row> {
-    let column = |key, conductivity, density, specific_heat, effusivity, interface_c, fourier| Printed {
+fn column(
+    key: &'static str,
+    conductivity: (f64, i32),
+    density: f64,
+    specific_heat: f64,
+    effusivity: f64,
+    interface_c: f64,
+    fourier: Stated,
+) -> Printed {
+    Printed {
         key,
         conductivity,
         density,
@@ -43,7 +51,10 @@ pub(super) fn table_3_1() -> Vec<Row> {
         effusivity,
         interface_c,
         fourier,
-    };
+    }
+}
+
+pub(super) fn table_3_1() -> Vec<Row> {
     let columns = [
         column(
             "copper",
@@ -93,15 +104,6 @@ pub(super) fn table_3_1() -> Vec<Row> {
 }
 
 pub(super) fn table_3_4() -> Vec<Row> {
-    let column = |key, conductivity, density, specific_heat, effusivity, interface_c, fourier| Printed {
-        key,
-        conductivity,
-        density,
-        specific_heat,
-        effusivity,
-        interface_c,
-        fourier,
-    };
     let columns = [
         column(
             "copper",

@@ -40,19 +40,14 @@ fn lifted_surfaces_lose_to_the_air_and_touching_ones_do_not() {
             });
             bench.step(None);
             let mean = |lane: usize| bench.heat.slabs.mean_c(lane, 0);
-            let film = |lane: usize, film_w_m2k: f64| {
-                (mean(lane) - ROOM_C) / (bench.heat.surface_m2k_w[lane] + 1.0 / film_w_m2k)
-            };
-            let between = |link_w_m2k: f64, fall_c: f64| link_w_m2k * fall_c;
-            let given = between(bench.heat.on_object_w_m2k, mean(1) - mean(2));
-            let to_plate = between(
-                bench.heat.on_display_w_m2k,
-                mean(0) - bench.heat.tile.mean_patch_c(),
-            );
+            let film =
+                |lane: usize| (mean(lane) - ROOM_C) / (bench.heat.surface_m2k_w[lane] + 1.0 / film_w_m2k);
+            let given = bench.heat.on_object_w_m2k * (mean(1) - mean(2));
+            let to_plate = bench.heat.on_display_w_m2k * (mean(0) - bench.heat.tile.mean_patch_c());
             let lost_w_m2 = match (on.is_some(), there) {
                 (true, _) => [to_plate, given, -given],
-                (false, true) => [0, 1, 2].map(|lane| film(lane, film_w_m2k)),
-                (false, false) => [film(0, film_w_m2k), film(1, film_w_m2k), 0.0],
+                (false, true) => [0, 1, 2].map(film),
+                (false, false) => [film(0), film(1), 0.0],
             };
             for lane in 0..3 {
                 let slab = if lane == 2 { &bench.object } else { &bench.finger };

@@ -13,21 +13,15 @@ fn display_plate_takes_a_landing_as_its_ceramic_does() {
         &ObjectConfig::half_space(SKIN, ROOM_C),
         tile,
     );
-    // With the display's finish its resistance is Eq. 6-8's.
-    let ceramic = Material {
-        surface: REFERENCE_DISPLAY,
-        density_kg_m3: 1000.0,
-        specific_heat_j_kgk: tile.ceramic_j_m3k / 1000.0,
-    };
-    let resistance_m2k_w = touch(&ceramic, 2.0).0.expect("pressed").resistance_m2k_w;
+    let touch = Touch::under(2.0, &SKIN.surface, &REFERENCE_DISPLAY).expect("pressed");
     let exact = |t_s: f64| {
         let (finger, plate) = (SKIN.effusivity(), (tile.ceramic_w_mk * tile.ceramic_j_m3k).sqrt());
-        let z = (1.0 / finger + 1.0 / plate) / resistance_m2k_w * t_s.sqrt();
+        let z = (1.0 / finger + 1.0 / plate) / touch.resistance_m2k_w * t_s.sqrt();
         let made = 1.0 - contact_model::reference::erfcx(z);
         let w = plate / (plate + finger);
         (SKIN_C - 10.0 * w * made, ROOM_C + 10.0 * (1.0 - w) * made)
     };
-    bench.touch(touch(&ceramic, 2.0).0, None);
+    bench.touch(Some(touch), None);
     for k in 1..=10 {
         bench.step(None);
         // Until heat reaches the back of the plate, 0.8 mm away.
