@@ -17,6 +17,8 @@ pub struct Settings {
     pub module: Module,
     /// Temperature loop.
     pub gains: Gains,
+    /// Temperature loop of the law that looks ten times a second.
+    pub gains_10hz: Gains,
     /// Finish of the display's surface.
     pub display: Surface,
 }
@@ -112,7 +114,8 @@ pub struct Gains {
 
 impl Default for Settings {
     /// The class values that the wiring table names: 10 k thermistors of beta 3950 K under 10 k, a 30 mm,
-    /// 6 A module on 12 V. Gains by the SIMC rule for 2.7 K/s per ampere behind 0.1 s of sensor lag.
+    /// 6 A module on 12 V. Gains by the SIMC rule for 2.7 K/s per ampere behind 0.1 s of sensor lag;
+    /// at 10 Hz half a period more.
     fn default() -> Self {
         Self {
             thermistor: Thermistor {
@@ -140,6 +143,10 @@ impl Default for Settings {
             gains: Gains {
                 proportional_a_k: 1.85,
                 integral_s: 0.8,
+            },
+            gains_10hz: Gains {
+                proportional_a_k: 1.23,
+                integral_s: 1.2,
             },
             display: REFERENCE_DISPLAY,
         }

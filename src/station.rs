@@ -15,7 +15,7 @@
 use contact_model::fixed_point::{Celsius, Force, Pairing};
 
 use crate::TICK_HZ;
-use crate::control::{Pi, Voltage};
+use crate::control::{Control, Voltage};
 use crate::drive::{Current, Drive};
 use crate::guard::{self, Fault, Setpoint, Sound, Watch};
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
@@ -66,7 +66,7 @@ impl State {
 pub struct Station {
     sensors: Sensors,
     voltage: Voltage,
-    pi: Pi,
+    control: Control,
 
     state: State,
     /// Fault present in the last tick.
@@ -90,7 +90,7 @@ impl Station {
         Self {
             sensors: Sensors::new(settings),
             voltage: Voltage::new(&settings.module),
-            pi: Pi::new(&settings.gains, settings.module.current_limit_a),
+            control: Control::new(settings),
             state: State::Off,
             fault: None,
             watch: Watch::default(),
@@ -111,7 +111,7 @@ impl Station {
         let readings = self.sensors.read(samples);
         // Both look at every tick; what a tick shows at once is named first.
         let lasting = self.watch.check(samples, &readings);
-        let checked = guard::check(&readings, self.pi.limit()).and_then(|sound| lasting.map(|()| sound));
+        let checked = guard::check(&readings, self.control.limit()).and_then(|sound| lasting.map(|()| sound));
         self.fault = checked.err();
         if let (Err(fault), false) = (checked, matches!(self.state, State::Tripped(_))) {
             self.state = State::Tripped(fault);
@@ -119,14 +119,14 @@ impl Station {
         let followed = checked.ok().and_then(|sound| Some((sound, self.follow(&sound)?)));
         let (drive, current) = match followed {
             Some((sound, (setpoint, _))) => {
-                let current = self.pi.update(setpoint, sound.display);
+                let current = self.control.update(setpoint, sound.display);
                 (
                     Drive::On(self.voltage.duty(current, sound.sink, sound.display)),
                     current,
                 )
             }
             None => {
-                self.pi.reset();
+                self.control.reset();
                 (Drive::Off, Current::ZERO)
             }
         };
@@ -216,6 +216,8 @@ impl Station {
                 self.render.forget_contact();
             }
             Command::Mode(mode) => self.mode = mode,
+            Command::Law(None) => return Ok(Reply::Law(self.control.law())),
+            Command::Law(Some(law)) => self.control.select(law),
             Command::Arm => match self.state {
                 State::Tripped(fault) => return Err(Error::Tripped(fault)),
                 _ => self.state = State::Armed,

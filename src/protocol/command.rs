@@ -7,6 +7,7 @@ use fixed::types::I32F32;
 use super::Error;
 use super::error::Number;
 use crate::TICK_HZ;
+use crate::control::Law;
 use crate::render::Mode;
 use crate::settings::Settings;
 
@@ -33,6 +34,8 @@ pub enum Command {
     Object(Option<Celsius>),
     /// `mode contact` or `mode semi-infinite`.
     Mode(Mode),
+    /// `law pi-10hz` or `law pi`: what finds the current; `law`: what does now.
+    Law(Option<Law>),
     /// `arm`: drive the display to skin temperature.
     Arm,
     /// `start`: the object appears.
@@ -45,8 +48,8 @@ pub enum Command {
 
 impl Command {
     /// Words that begin a command.
-    pub const WORDS: [&'static str; 10] = [
-        "id", "state", "stream", "material", "object", "mode", "arm", "start", "abort", "clear",
+    pub const WORDS: [&'static str; 11] = [
+        "id", "state", "stream", "material", "object", "mode", "law", "arm", "start", "abort", "clear",
     ];
 
     /// Reads one line. Does the costly part of a command (soft-float set-up of a material), so that
@@ -76,6 +79,7 @@ impl Command {
                 "semi-infinite" => Self::Mode(Mode::SemiInfinite),
                 other => return Err(Error::UnknownMode(other.into())),
             },
+            "law" => Self::Law(words.next().map(law).transpose()?),
             "object" => match words.clone().next() {
                 Some("room") => {
                     words.next();
@@ -164,6 +168,11 @@ fn number<'a>(words: &mut impl Iterator<Item = &'a str>, expected: &'static Numb
     } else {
         Err(Error::OutOfRange(expected, word.into()))
     }
+}
+
+fn law(name: &str) -> Result<Law, Error> {
+    let known = Law::WORDS.iter().find(|(known, _)| *known == name);
+    known.map(|(_, law)| *law).ok_or(Error::UnknownLaw(name.into()))
 }
 
 fn custom<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<Material, Error> {

@@ -6,6 +6,7 @@ use contact_model::fixed_point::PairingError;
 use contact_model::material::MATERIALS;
 
 use super::{Command, LINE_MAX, LineError};
+use crate::control::Law;
 use crate::guard::Fault;
 
 /// The beginning of a word from the host.
@@ -48,6 +49,8 @@ pub enum Error {
     UnknownMaterial(Word),
     /// Mode unknown.
     UnknownMode(Word),
+    /// Law unknown.
+    UnknownLaw(Word),
     /// A word is missing.
     Missing(&'static str),
     /// A word too many.
@@ -106,6 +109,10 @@ impl fmt::Display for Error {
                 f.write_str(" custom")
             }
             Self::UnknownMode(word) => write!(f, "unknown mode {word}; known: contact semi-infinite"),
+            Self::UnknownLaw(word) => {
+                write!(f, "unknown law {word}; known:")?;
+                Law::WORDS.iter().try_for_each(|(known, _)| write!(f, " {known}"))
+            }
             Self::Missing(what) => write!(f, "{what} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
             Self::NotANumber(Number { name, unit, min, max }, word) => {

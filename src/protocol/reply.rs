@@ -5,6 +5,7 @@ use core::fmt;
 use contact_model::fixed_point::Celsius;
 
 use super::text::Text;
+use crate::control::Law;
 use crate::render::Mode;
 use crate::station::State;
 use crate::{SCANS_PER_SECOND, TICK_HZ};
@@ -18,6 +19,8 @@ pub enum Reply {
     Identity,
     /// Answer to `state`.
     Status(Status),
+    /// Answer to `law`.
+    Law(Law),
 }
 
 /// What the device is doing.
@@ -48,6 +51,7 @@ impl fmt::Display for Reply {
                 env!("CARGO_PKG_VERSION"),
             ),
             Self::Status(status) => write!(f, "ok {status}"),
+            Self::Law(law) => write!(f, "ok law={}", law.name()),
         }
     }
 }

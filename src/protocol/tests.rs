@@ -7,6 +7,7 @@ use std::vec::Vec;
 use contact_model::fixed_point::{Celsius, Force};
 
 use super::{Command, Error, LINE_MAX, LineError, LineReader, Reply, Status, Telemetry};
+use crate::control::Law;
 use crate::drive::Current;
 use crate::guard::{Fault, Thermistor};
 use crate::render::Mode;
@@ -34,6 +35,9 @@ fn every_command_is_understood() {
         ("object room", Command::Object(None)),
         ("object -20", Command::Object(Some(Celsius::lit("-20")))),
         ("object 23.25", Command::Object(Some(Celsius::lit("23.25")))),
+        ("law", Command::Law(None)),
+        ("law pi-10hz", Command::Law(Some(Law::Pi10Hz))),
+        ("law pi", Command::Law(Some(Law::Pi))),
         ("mode contact", Command::Mode(Mode::ContactResistance)),
         ("mode semi-infinite", Command::Mode(Mode::SemiInfinite)),
         ("arm", Command::Arm),
@@ -71,7 +75,7 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id state stream material object mode arm start abort clear",
+            "err unknown command 'fly'; known: id state stream material object mode law arm start abort clear",
         ),
         (
             "material unobtainium-of-the-first-kind",
@@ -79,6 +83,7 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
              baf2 zns custom",
         ),
         ("mode x", "err unknown mode 'x'; known: contact semi-infinite"),
+        ("law x", "err unknown law 'x'; known: pi-10hz pi"),
         (" ", "err command missing"),
         ("stream", "err interval missing"),
         ("object", "err object temperature missing"),

@@ -1,12 +1,11 @@
-//! Set-point to current, and current to bridge voltage.
+//! Temperature error to current: the plain loop.
 
 use contact_model::fixed_point::Celsius;
-use fixed::types::{I1F15, I16F16};
 
 use crate::TICK_HZ;
-use crate::drive::{Current, Duty};
+use crate::drive::Current;
 use crate::guard::Setpoint;
-use crate::settings::{Gains, Module};
+use crate::settings::Gains;
 
 /// Binary places of the integral: a millikelvin for one tick still counts.
 const STATE_BITS: u32 = 52;
@@ -16,6 +15,15 @@ const GAIN_BITS: u32 = 16;
 const RATE_BITS: u32 = STATE_BITS - ERROR_BITS;
 const CURRENT_BITS: u32 = 24;
 
+/// How often the loop looks at its error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Period {
+    /// At every control tick.
+    EveryTick,
+    /// Ten times a second, as the thesis's display; the current is held in between.
+    TenthOfASecond,
+}
+
 /// Proportional-integral law with limited output.
 ///
 /// The integral stops while the output is at its limit and the error would drive it further, so there is
@@ -24,29 +32,41 @@ const CURRENT_BITS: u32 = 24;
 pub struct Pi {
     /// A/K.
     proportional: i32,
-    /// A per K and tick.
+    /// A per K and update.
     integral: i32,
     limit: Current,
+    /// Ticks from one update of the output to the next.
+    period: u32,
+    /// Ticks until that.
+    wait: u32,
+    output: Current,
     /// Integral part of the output, A; never beyond the limit.
     state: i64,
 }
 
 impl Pi {
-    /// `f64`, once; gains saturate at 32768 A/K and 2 A/K a tick.
+    /// `f64`, once; gains saturate at 32768 A/K and 2 A/K an update.
     #[must_use]
-    pub fn new(gains: &Gains, limit_a: f64) -> Self {
-        let per_tick = gains.proportional_a_k / (gains.integral_s * f64::from(TICK_HZ));
+    pub fn new(gains: &Gains, limit_a: f64, period: Period) -> Self {
+        let period = match period {
+            Period::EveryTick => 1,
+            Period::TenthOfASecond => TICK_HZ / 10,
+        };
+        let per_update = gains.proportional_a_k * f64::from(period) / (gains.integral_s * f64::from(TICK_HZ));
         Self {
             proportional: libm::ldexp(gains.proportional_a_k, GAIN_BITS as i32) as i32,
-            integral: libm::ldexp(per_tick, RATE_BITS as i32) as i32,
+            integral: libm::ldexp(per_update, RATE_BITS as i32) as i32,
             limit: Current::saturating_from_num(limit_a),
+            period,
+            wait: 0,
+            output: Current::ZERO,
             state: 0,
         }
     }
 
     /// Forgets the past.
     pub fn reset(&mut self) {
-        self.state = 0;
+        (self.state, self.wait, self.output) = (0, 0, Current::ZERO);
     }
 
     /// The largest current that [`Self::update`] returns.
@@ -60,6 +80,15 @@ impl Pi {
     /// No sum overflows: the state stays within 128 A (59 bits), the integral's step within 2^10 A, the
     /// proportional part within 2^24 A of 38 bits.
     pub fn update(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
+        if self.wait == 0 {
+            self.wait = self.period;
+            self.output = self.respond(setpoint, display);
+        }
+        self.wait -= 1;
+        self.output
+    }
+
+    fn respond(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
         let error = i64::from(display.saturating_sub(setpoint.celsius()).to_bits());
         let proportional = (error * i64::from(self.proportional)) >> (ERROR_BITS + GAIN_BITS - CURRENT_BITS);
         let state = self.state.saturating_add(error * i64::from(self.integral));
@@ -74,51 +103,9 @@ impl Pi {
     }
 }
 
-/// The module's electrical side: `V = R I + a (T_sink - T_display) + V_dead`, where `V_dead` is what the bridge loses
-/// in its dead times. It opposes the current, and grows with it until its ripple does not reach zero any more.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Voltage {
-    /// Part of the supply per A.
-    per_a: I16F16,
-    /// Part of the supply per K.
-    per_k: I16F16,
-    /// Part of the supply lost in dead times, and that per A while the current is small.
-    dead: I16F16,
-    dead_per_a: I16F16,
-}
-
-impl Voltage {
-    /// `f64`, once.
-    #[must_use]
-    pub fn new(module: &Module) -> Self {
-        Self {
-            per_a: I16F16::saturating_from_num(module.resistance_ohm / module.supply_v),
-            per_k: I16F16::saturating_from_num(module.seebeck_v_k / module.supply_v),
-            dead: I16F16::saturating_from_num(module.dead_time_v / module.supply_v),
-            dead_per_a: I16F16::saturating_from_num(module.dead_time_v / (module.supply_v * module.ripple_a)),
-        }
-    }
-
-    /// Mean voltage for a current, as a part of the supply.
-    #[must_use]
-    pub fn duty(&self, current: Current, sink: Celsius, display: Celsius) -> Duty {
-        let across = I16F16::saturating_from_num(sink.saturating_sub(display));
-        let current = I16F16::from_num(current);
-        let resistive = current.saturating_mul(self.per_a);
-        let dead = current
-            .saturating_mul(self.dead_per_a)
-            .clamp(-self.dead, self.dead);
-        let voltage = resistive
-            .saturating_add(dead)
-            .saturating_add(across.saturating_mul(self.per_k));
-        Duty::saturating(I1F15::saturating_from_num(voltage))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::settings::Settings;
 
     fn pi() -> Pi {
         Pi::new(
@@ -127,6 +114,7 @@ mod tests {
                 integral_s: 0.5,
             },
             6.0,
+            Period::EveryTick,
         )
     }
 
@@ -165,26 +153,6 @@ mod tests {
         for _ in 0..100 {
             let (a, b) = (up.update(setpoint, at(30.25)), down.update(setpoint, at(29.75)));
             assert!((a + b).abs() <= Current::from_bits(4));
-        }
-    }
-
-    #[test]
-    fn voltage_is_resistive_plus_seebeck_plus_dead_time() {
-        let voltage = Voltage::new(&Settings::default().module);
-        // All of the dead time's 0.397 V from 0.5 A on, in proportion below.
-        for (current_a, dead_v) in [
-            (3.0, 0.397),
-            (0.25, 0.1985),
-            (0.0, 0.0),
-            (-0.1, -0.0794),
-            (-6.0, -0.397),
-        ] {
-            let duty = voltage
-                .duty(Current::saturating_from_num(current_a), at(30.0), at(20.0))
-                .fraction()
-                .to_num::<f64>();
-            let expected = (current_a * 1.25 + 0.0273 * 10.0 + dead_v) / 12.0;
-            assert!((duty - expected).abs() < 3e-4, "{duty}, expected {expected}");
         }
     }
 }
