@@ -144,8 +144,6 @@ impl Touch {
 
 #[cfg(test)]
 mod tests {
-    use core::str::FromStr;
-
     use super::*;
     use crate::settings::Settings;
 
