@@ -41,8 +41,10 @@ impl Host {
             Mode::ContactResistance => "mode contact",
             Mode::SemiInfinite => "mode semi-infinite",
         };
-        let set_up = [material, object, mode.into(), "arm".into()];
-        let mut queue: Vec<_> = (set_up.into_iter().zip(0..))
+        let law = scene.law.map(|law| format!("law {}", law.name()));
+        let set_up = [material, object, mode.into()].into_iter().chain(law);
+        let set_up = set_up.chain(["arm".into()]);
+        let mut queue: Vec<_> = (set_up.zip(0..))
             .map(|(line, i)| (ARM_MS + i * SPACING_MS, line))
             .collect();
         let start_ms = if scene.object.appears_t_s > 0.0 {

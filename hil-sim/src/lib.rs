@@ -5,6 +5,7 @@
 //! Links Unicorn (GPL-2.0); firmware and contact model do not.
 
 pub mod engine;
+pub mod fidelity;
 pub mod firmware;
 pub mod host;
 pub mod infrared;

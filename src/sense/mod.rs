@@ -122,6 +122,13 @@ impl Sensors {
         }
     }
 
+    /// Follows the force sensor's zero, after a tick whose force `touch` has taken.
+    pub fn follow_zero(&mut self, samples: &Samples, touch: &Touch) {
+        if !touch.touching() {
+            self.force.follow_zero(samples.force, touch.left_zero());
+        }
+    }
+
     /// Converts the samples of one tick.
     #[must_use]
     pub fn read(&self, samples: &Samples) -> Readings {

@@ -20,6 +20,7 @@ pub(super) struct File {
     pub seed: u64,
     #[serde(default)]
     pub mode: Mode,
+    pub law: Option<Spanned<String>>,
     pub object: Spanned<Object>,
     pub finger: Option<Spanned<Finger>>,
     pub plant: Option<Spanned<Node>>,
