@@ -9,18 +9,19 @@
 //!      +--- clear --- tripped <--- any fault, from anywhere
 //! ```
 //!
-//! Armed, the display is neutral: at skin temperature, touched or not. The bridge is driven in `armed`,
+//! Armed, the display is neutral: at skin temperature, touched or not, or where it is held for calibration. The bridge is driven in `armed`,
 //! `preset` and `contact` only.
 
 use contact_model::fixed_point::{Celsius, Force, Pairing};
 
 use crate::TICK_HZ;
+use crate::commission::PointError;
 use crate::control::{Control, Voltage};
 use crate::drive::{Current, Drive};
 use crate::guard::{self, Fault, Setpoint, Sound, Watch};
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
 use crate::render::{Mode, Render, Scene};
-use crate::sense::{Readings, Samples, Sensors, Touch};
+use crate::sense::{Averages, Readings, Samples, Sensors, Touch};
 use crate::settings::Settings;
 
 /// What the device is doing.
@@ -77,6 +78,9 @@ pub struct Station {
     material: Option<(&'static str, Pairing)>,
     object: Option<Celsius>,
     mode: Mode,
+    /// Where the display is held while armed, instead of neutral.
+    held: Option<Setpoint>,
+    averages: Averages,
 
     tick: u32,
     stream_ticks: u32,
@@ -99,6 +103,8 @@ impl Station {
             material: None,
             object: None,
             mode: Mode::default(),
+            held: None,
+            averages: Averages::default(),
             tick: 0,
             stream_ticks: 0,
             telemetry: Telemetry::before_first_tick(),
@@ -108,6 +114,7 @@ impl Station {
     /// One control tick: sense, render, control, guard.
     pub fn step(&mut self, samples: &Samples) -> Drive {
         self.tick = self.tick.wrapping_add(1);
+        self.averages.take(&samples.thermistors());
         let readings = self.sensors.read(samples);
         // Both look at every tick; what a tick shows at once is named first.
         let lasting = self.watch.check(samples, &readings);
@@ -142,7 +149,10 @@ impl Station {
         self.render.observe(sound.skin, sound.room, touching);
         let wanted = match self.state {
             State::Off | State::Tripped(_) => return None,
-            State::Armed => self.render.neutral()?,
+            State::Armed => match self.held {
+                Some(held) => held.celsius(),
+                None => self.render.neutral()?,
+            },
             State::Preset | State::Contact => {
                 self.state = if touching { State::Contact } else { State::Preset };
                 let landed = if before { 0 } else { Touch::detection_ticks() };
@@ -220,7 +230,15 @@ impl Station {
             Command::Law(Some(law)) => self.control.select(law),
             Command::Arm => match self.state {
                 State::Tripped(fault) => return Err(Error::Tripped(fault)),
-                _ => self.state = State::Armed,
+                _ => {
+                    self.held = None;
+                    self.state = State::Armed;
+                }
+            },
+            Command::Hold(setpoint) => match self.state {
+                State::Tripped(fault) => return Err(Error::Tripped(fault)),
+                State::Armed => self.held = Some(setpoint),
+                _ => return Err(Error::NeedsArmed("hold")),
             },
             Command::Start => match (self.state, self.material) {
                 (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),
@@ -228,6 +246,7 @@ impl Station {
                 (_, None) => return Err(Error::NoMaterial),
                 (State::Armed, Some(_)) => {
                     self.render.forget_contact();
+                    self.held = None;
                     self.state = State::Preset;
                 }
                 (State::Preset | State::Contact, Some(_)) => return Err(Error::AlreadyStarted),
@@ -243,6 +262,12 @@ impl Station {
                 (State::Tripped(_), Some(fault)) => return Err(Error::StillFaulty(fault)),
                 _ => return Err(Error::NothingToClear),
             },
+            Command::Average(thermistor) => {
+                let average = self.averages.of(thermistor);
+                return average.map(Reply::Average).ok_or(Error::Point(PointError::TooEarly));
+            }
+            Command::Calibrate(calibrated) => self.sensors.recalibrate(&calibrated),
+            Command::Retune(tile) => self.control.retune(&tile),
         }
         Ok(Reply::Done)
     }
