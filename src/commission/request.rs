@@ -1,6 +1,5 @@
 //! Lines that commission the device.
 
-use contact_model::fixed_point::Celsius;
 
 use crate::protocol::{Error, Number, number};
 use crate::sense::THERMISTORS;

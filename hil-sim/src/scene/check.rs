@@ -39,6 +39,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         skin_c,
         room_c,
         seed: file.seed,
+        commissioned: file.device.commissioned,
         mode,
         object: object(&source, &file.object, duration_s, room_c)?,
         params: params(&source, file.finger.as_ref(), file.plant.as_ref())?,
