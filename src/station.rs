@@ -15,7 +15,7 @@
 use contact_model::fixed_point::{Celsius, Force, Pairing};
 
 use crate::TICK_HZ;
-use crate::commission::PointError;
+use crate::commission::{Aborted, Experiment, PointError};
 use crate::control::{Control, Voltage};
 use crate::drive::{Current, Drive};
 use crate::guard::{self, Fault, Setpoint, Sound, Watch};
@@ -81,6 +81,8 @@ pub struct Station {
     /// Where the display is held while armed, instead of neutral.
     held: Option<Setpoint>,
     averages: Averages,
+    /// Running while armed, or the last one's outcome.
+    experiment: Option<Experiment>,
 
     tick: u32,
     stream_ticks: u32,
@@ -105,6 +107,7 @@ impl Station {
             mode: Mode::default(),
             held: None,
             averages: Averages::default(),
+            experiment: None,
             tick: 0,
             stream_ticks: 0,
             telemetry: Telemetry::before_first_tick(),
@@ -126,13 +129,15 @@ impl Station {
         let followed = checked.ok().and_then(|sound| Some((sound, self.follow(&sound)?)));
         let (drive, current) = match followed {
             Some((sound, (setpoint, _))) => {
-                let current = self.control.update(setpoint, sound.display);
+                let tuning = self.tuning(&sound);
+                let current = tuning.unwrap_or_else(|| self.control.update(setpoint, sound.display));
                 (
                     Drive::On(self.voltage.duty(current, sound.sink, sound.display)),
                     current,
                 )
             }
             None => {
+                self.end_experiment();
                 self.control.reset();
                 (Drive::Off, Current::ZERO)
             }
@@ -149,9 +154,10 @@ impl Station {
         self.render.observe(sound.skin, sound.room, touching);
         let wanted = match self.state {
             State::Off | State::Tripped(_) => return None,
-            State::Armed => match self.held {
-                Some(held) => held.celsius(),
-                None => self.render.neutral()?,
+            State::Armed => match (&self.experiment, self.held) {
+                (Some(experiment), _) if experiment.drives() => experiment.rest().celsius(),
+                (_, Some(held)) => held.celsius(),
+                (_, None) => self.render.neutral()?,
             },
             State::Preset | State::Contact => {
                 self.state = if touching { State::Contact } else { State::Preset };
@@ -161,6 +167,26 @@ impl Station {
             }
         };
         Some(Setpoint::limited(wanted))
+    }
+
+    /// Current of the experiment, if one goes on.
+    fn tuning(&mut self, sound: &Sound) -> Option<Current> {
+        let experiment = self.experiment.as_mut()?;
+        if self.state != State::Armed {
+            experiment.abort(Aborted::Ended);
+        }
+        if !experiment.drives() {
+            return None;
+        }
+        let current = experiment.update(sound, self.touch.touching());
+        self.control.reset();
+        current
+    }
+
+    fn end_experiment(&mut self) {
+        if let Some(experiment) = &mut self.experiment {
+            experiment.abort(Aborted::Ended);
+        }
     }
 
     fn scene(&self) -> Option<Scene> {
@@ -231,13 +257,17 @@ impl Station {
             Command::Arm => match self.state {
                 State::Tripped(fault) => return Err(Error::Tripped(fault)),
                 _ => {
+                    self.experiment = None;
                     self.held = None;
                     self.state = State::Armed;
                 }
             },
             Command::Hold(setpoint) => match self.state {
                 State::Tripped(fault) => return Err(Error::Tripped(fault)),
-                State::Armed => self.held = Some(setpoint),
+                State::Armed => {
+                    self.experiment = None;
+                    self.held = Some(setpoint);
+                }
                 _ => return Err(Error::NeedsArmed("hold")),
             },
             Command::Start => match (self.state, self.material) {
@@ -266,8 +296,25 @@ impl Station {
                 let average = self.averages.of(thermistor);
                 return average.map(Reply::Average).ok_or(Error::Point(PointError::TooEarly));
             }
+            Command::Tune => match (self.state, self.telemetry.sink) {
+                (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),
+                (State::Armed, _) if self.touch.touching() => return Err(Error::Touched),
+                (State::Armed, Some(sink)) => {
+                    self.experiment = Some(Experiment::new(sink, self.control.limit()));
+                }
+                _ => return Err(Error::NeedsArmed("tune")),
+            },
+            Command::Experiment(row) => {
+                let experiment = self.experiment.as_ref().ok_or(Error::NotTuned)?;
+                let rows = experiment.outcome().ok_or(Error::Tuning)?;
+                let row = rows.map_err(Error::TuneAborted)?.get(row);
+                return row.map(|row| Reply::Row(*row)).ok_or(Error::NotTuned);
+            }
             Command::Calibrate(calibrated) => self.sensors.recalibrate(&calibrated),
-            Command::Retune(tile) => self.control.retune(&tile),
+            Command::Retune(tile) => {
+                self.control.retune(&tile);
+                self.experiment = None;
+            }
         }
         Ok(Reply::Done)
     }

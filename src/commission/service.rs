@@ -1,11 +1,14 @@
 //! Lines to answers: what the host task does with the slow half of a command.
 
+use super::experiment::{Row, UNKNOWNS};
 use super::fit::{fit, reading_c};
+use super::identify::identify;
+use super::margins::Margins;
 use super::points::{PointError, Points};
 use super::request::{Request, SENSORS, STEPS_A_LINE};
 use crate::protocol::{Command, Error, Reply, Setting};
 use crate::sense::Calibrated;
-use crate::settings::{BORDERS, Correction, FIRST_BORDER, Gains, Settings};
+use crate::settings::{BORDERS, Correction, FIRST_BORDER, Gains, Settings, Tile};
 
 /// Lines that hold all commissioned settings: the steps, a correction each, the tile.
 pub const SETTINGS_LINES: usize = BORDERS.div_ceil(STEPS_A_LINE) + SENSORS.len() + 1;
@@ -67,12 +70,38 @@ impl Service {
                 execute(self.calibrated())
             }
             Request::SetTile(tile) => {
-                self.settings.tile = tile;
-                [self.settings.gains, self.settings.gains_10hz] = Gains::of_tile(&tile);
+                self.retune(tile);
                 execute(Command::Retune(self.settings.tile))
             }
-            Request::Tuned | Request::Margins => Err(Error::NothingToClear),
+            Request::Tuned => self.tuned(&mut execute),
+            Request::Margins => Ok(self.tile()),
         }
+    }
+
+    fn tuned(
+        &mut self,
+        execute: &mut impl FnMut(Command) -> Result<Reply, Error>,
+    ) -> Result<Reply, Error> {
+        let mut rows = [Row::default(); UNKNOWNS];
+        for (i, row) in rows.iter_mut().enumerate() {
+            let Reply::Row(sums) = execute(Command::Experiment(i))? else {
+                return Err(Error::NotTuned);
+            };
+            *row = sums;
+        }
+        self.retune(identify(&rows).ok_or(Error::NoTile)?);
+        execute(Command::Retune(self.settings.tile))?;
+        Ok(self.tile())
+    }
+
+    fn retune(&mut self, tile: Tile) {
+        self.settings.tile = tile;
+        [self.settings.gains, self.settings.gains_10hz] = Gains::of_tile(&tile);
+    }
+
+    fn tile(&self) -> Reply {
+        let Settings { tile, gains, .. } = &self.settings;
+        Reply::Tile(*tile, Margins::of(tile, gains))
     }
 
     fn correct(&mut self, sensor: usize, correction: Correction) {

@@ -50,6 +50,10 @@ pub enum Command {
     Clear,
     /// What a thermistor's sums are on average, for [`Service`](crate::commission::Service).
     Average(usize),
+    /// `tune`: find out what the tile is like.
+    Tune,
+    /// A row of what that has shown, for [`Service`](crate::commission::Service).
+    Experiment(usize),
     /// Reads by another calibration, from it.
     Calibrate(Calibrated),
     /// Controls another tile, from it.
@@ -93,6 +97,7 @@ impl Command {
             "start" => Self::Start,
             "abort" => Self::Abort,
             "clear" => Self::Clear,
+            "tune" => Self::Tune,
             "hold" => Self::Hold(hold(number(&mut words, &HOLD)?)),
             "stream" => {
                 // A part of a millisecond counts as a whole one, so that only 0 ends the stream.

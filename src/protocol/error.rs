@@ -6,7 +6,7 @@ use contact_model::fixed_point::PairingError;
 use contact_model::material::MATERIALS;
 
 use super::{Command, LINE_MAX, LineError};
-use crate::commission::{FARTHEST_K, POINTS, PointError, SENSORS};
+use crate::commission::{Aborted, FARTHEST_K, POINTS, PointError, SENSORS};
 use crate::control::Law;
 use crate::guard::Fault;
 
@@ -74,6 +74,16 @@ pub enum Error {
     AlreadyStarted,
     /// `hold` or `tune` before `arm`.
     NeedsArmed(&'static str),
+    /// `tune` with a finger on the display.
+    Touched,
+    /// `tune result` before `tune`.
+    NotTuned,
+    /// `tune result` too early.
+    Tuning,
+    /// `tune` ended early.
+    TuneAborted(Aborted),
+    /// What `tune` saw belongs to no tile within the limits of settings.
+    NoTile,
     /// A point of a calibration that is not taken.
     Point(PointError),
     /// A fault is latched.
@@ -142,6 +152,11 @@ impl fmt::Display for Error {
             Self::NoMaterial => f.write_str("start needs a material first"),
             Self::AlreadyStarted => f.write_str("already started; arm takes the object away"),
             Self::NeedsArmed(command) => write!(f, "{command} needs the state armed"),
+            Self::Touched => f.write_str("tune needs a display without a finger on it"),
+            Self::NotTuned => f.write_str("nothing was tuned since arm; tune first"),
+            Self::Tuning => f.write_str("tuning goes on; ask again in a second"),
+            Self::TuneAborted(why) => write!(f, "tune was ended: {}", why.reason()),
+            Self::NoTile => f.write_str("tune found no tile; look for a loose sensor, then tune again"),
             Self::Point(PointError::TooEarly) => f.write_str("not watched for long enough; wait half a second"),
             Self::Point(PointError::Unsteady) => {
                 f.write_str("the reading moves; wait until it is steady to 3 mK in a quarter of a second")

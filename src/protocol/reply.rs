@@ -5,7 +5,7 @@ use core::fmt;
 use contact_model::fixed_point::Celsius;
 
 use super::text::Text;
-use crate::commission::STEPS_A_LINE;
+use crate::commission::{Margins, Row, STEPS_A_LINE};
 use crate::control::Law;
 use crate::render::Mode;
 use crate::sense::Average;
@@ -26,6 +26,10 @@ pub enum Reply {
     Law(Law),
     /// A thermistor's mean.
     Average(Average),
+    /// A row of the normal equations of an experiment.
+    Row(Row),
+    /// Answer to `tune result` and `margins`.
+    Tile(Tile, Margins),
     /// Answer to `calibrate`.
     Calibrated {
         /// Points of this thermistor.
@@ -69,6 +73,16 @@ impl fmt::Display for Reply {
             Self::Status(status) => write!(f, "ok {status}"),
             Self::Law(law) => write!(f, "ok law={}", law.name()),
             Self::Average(average) => write!(f, "ok sum={:.3} rise={}", average.sum(), average.rise),
+            Self::Row(row) => {
+                f.write_str("ok")?;
+                row.iter().try_for_each(|sum| write!(f, " {sum}"))
+            }
+            Self::Tile(tile, margins) => {
+                let [gain, joule, leak, lag, dead] = tile.to_array();
+                let Margins { phase_deg, gain: times } = margins;
+                write!(f, "ok gain={gain:.4} joule={joule:.4} leak={leak:.4} lag_s={lag:.4} dead_s={dead:.4}")?;
+                write!(f, " phase_deg={phase_deg:.1} margin={times:.2}")
+            }
             Self::Calibrated { points, worst_mk } => write!(f, "ok points={points} worst_mk={worst_mk:.2}"),
             Self::SettingsLines(lines) => write!(f, "ok lines={lines}"),
             Self::Setting(setting) => write!(f, "ok {setting}"),

@@ -17,6 +17,8 @@ const NEEDED: usize = 9;
 const SETTLE_MS: u64 = 3500;
 const RETRY_MS: u64 = 500;
 const RETRIES: u64 = 16;
+/// The longest that tuning takes, s.
+const TUNE_S: u32 = 70;
 /// A thermistor in a bath has come to rest long before; so long does the device watch, ms.
 const BATH_MS: u64 = 900;
 /// Baths of the skin's thermistor, deg C; and pairs of those of the room's with the sink's.
@@ -32,7 +34,10 @@ pub fn commission<E: Engine>(plants: &Plants, engine: &mut E) -> Result<Vec<Stri
     let mut bench = Bench::new(engine, plants.params().host, plants.operator_seed());
     bench.wait(10)?;
     bench.tell("arm")?;
+    tune(&mut bench)?;
     display(&mut bench)?;
+    bench.tell("arm")?;
+    tune(&mut bench)?;
     bench.tell("abort")?;
     for bath_c in SKIN_C {
         bench.move_to(plants.skin_in_bath(bath_c)?);
@@ -51,6 +56,24 @@ pub fn commission<E: Engine>(plants: &Plants, engine: &mut E) -> Result<Vec<Stri
     (1..=lines)
         .map(|line| bench.tell(&format!("settings {line}")))
         .collect()
+}
+
+/// Lets the device find out about its tile.
+fn tune<E: Engine>(bench: &mut Bench<'_, E>) -> Result<(), CommissionError> {
+    bench.tell("tune")?;
+    for _ in 0..TUNE_S {
+        bench.wait(1000)?;
+        let line = "tune result";
+        let answer = bench.ask(line)?;
+        if answer.starts_with("ok") {
+            return Ok(());
+        }
+        if !answer.starts_with("err tuning goes on") {
+            let line = line.into();
+            return Err(CommissionError::Refused { line, answer });
+        }
+    }
+    Err(CommissionError::Silent("tune result".into()))
 }
 
 /// Display temperatures to hold, deg C, warmest first: near both ends of each of the converter's segments.
