@@ -129,7 +129,7 @@ impl Station {
         let followed = checked.ok().and_then(|sound| Some((sound, self.follow(&sound)?)));
         let (drive, current) = match followed {
             Some((sound, (setpoint, _))) => {
-                let tuning = self.tuning(&sound);
+                let tuning = self.tuning(&sound, readings.current);
                 let current = tuning.unwrap_or_else(|| self.control.update(setpoint, sound.display));
                 (
                     Drive::On(self.voltage.duty(current, sound.sink, sound.display)),
@@ -170,7 +170,7 @@ impl Station {
     }
 
     /// Current of the experiment, if one goes on.
-    fn tuning(&mut self, sound: &Sound) -> Option<Current> {
+    fn tuning(&mut self, sound: &Sound, measured: Current) -> Option<Current> {
         let experiment = self.experiment.as_mut()?;
         if self.state != State::Armed {
             experiment.abort(Aborted::Ended);
@@ -178,7 +178,7 @@ impl Station {
         if !experiment.drives() {
             return None;
         }
-        let current = experiment.update(sound, self.touch.touching());
+        let current = experiment.update(sound, measured, self.touch.touching());
         self.control.reset();
         current
     }

@@ -12,7 +12,7 @@ mod request;
 mod service;
 mod solve;
 
-pub use experiment::{Aborted, Experiment, Row, UNKNOWNS};
+pub use experiment::{Aborted, Experiment, Row};
 pub use margins::Margins;
 pub use points::{FARTHEST_K, POINTS, Point, PointError, Points};
 pub use request::{SENSORS, STEPS_A_LINE};

@@ -1,6 +1,6 @@
 //! Lines to answers: what the host task does with the slow half of a command.
 
-use super::experiment::{Row, UNKNOWNS};
+use super::experiment::{ROWS, Row};
 use super::fit::{fit, reading_c};
 use super::identify::identify;
 use super::margins::Margins;
@@ -82,7 +82,7 @@ impl Service {
         &mut self,
         execute: &mut impl FnMut(Command) -> Result<Reply, Error>,
     ) -> Result<Reply, Error> {
-        let mut rows = [Row::default(); UNKNOWNS];
+        let mut rows = [Row::default(); ROWS];
         for (i, row) in rows.iter_mut().enumerate() {
             let Reply::Row(sums) = execute(Command::Experiment(i))? else {
                 return Err(Error::NotTuned);

@@ -15,6 +15,7 @@ use crate::engine::Native;
 use crate::plant::{ConfigError, Params};
 use crate::scene::Scene;
 
+pub use bench::Bench;
 pub use operator::commission;
 pub use plants::Plants;
 
