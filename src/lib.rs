@@ -10,6 +10,7 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod commission;
 pub mod control;
 pub mod drive;
 pub mod guard;

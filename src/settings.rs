@@ -1,5 +1,12 @@
 //! What differs between two built devices, in physical units.
 
+mod calibration;
+mod tile;
+
+pub(crate) use calibration::rounded;
+pub use calibration::{BORDERS, Calibration, Correction, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES};
+pub use tile::Tile;
+
 use contact_model::material::{REFERENCE_DISPLAY, Surface};
 
 /// Everything that is derived from these is derived once, at start-up.
@@ -21,6 +28,10 @@ pub struct Settings {
     pub gains_10hz: Gains,
     /// Finish of the display's surface.
     pub display: Surface,
+    /// What calibration has found.
+    pub calibration: Calibration,
+    /// What tuning has found; the gains follow from it.
+    pub tile: Tile,
 }
 
 /// A thermistor to ground under a pull-up resistor, read ratiometrically.
@@ -149,6 +160,8 @@ impl Default for Settings {
                 integral_s: 1.2,
             },
             display: REFERENCE_DISPLAY,
+            calibration: Calibration::default(),
+            tile: Tile::CLASS,
         }
     }
 }

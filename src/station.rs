@@ -9,18 +9,19 @@
 //!      +--- clear --- tripped <--- any fault, from anywhere
 //! ```
 //!
-//! Armed, the display is neutral: at skin temperature, touched or not. The bridge is driven in `armed`,
+//! Armed, the display is neutral: at skin temperature, touched or not, or where it is held for calibration. The bridge is driven in `armed`,
 //! `preset` and `contact` only.
 
 use contact_model::fixed_point::{Celsius, Force, Pairing};
 
 use crate::TICK_HZ;
+use crate::commission::{Aborted, Experiment, PointError};
 use crate::control::{Control, Voltage};
 use crate::drive::{Current, Drive};
 use crate::guard::{self, Fault, Setpoint, Sound, Watch};
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
 use crate::render::{Mode, Render, Scene};
-use crate::sense::{Readings, Samples, Sensors, Touch};
+use crate::sense::{Averages, Readings, Samples, Sensors, Touch};
 use crate::settings::Settings;
 
 /// What the device is doing.
@@ -77,6 +78,11 @@ pub struct Station {
     material: Option<(&'static str, Pairing)>,
     object: Option<Celsius>,
     mode: Mode,
+    /// Where the display is held while armed, instead of neutral.
+    held: Option<Setpoint>,
+    averages: Averages,
+    /// Running while armed, or the last one's outcome.
+    experiment: Option<Experiment>,
 
     tick: u32,
     stream_ticks: u32,
@@ -99,6 +105,9 @@ impl Station {
             material: None,
             object: None,
             mode: Mode::default(),
+            held: None,
+            averages: Averages::default(),
+            experiment: None,
             tick: 0,
             stream_ticks: 0,
             telemetry: Telemetry::before_first_tick(),
@@ -108,6 +117,7 @@ impl Station {
     /// One control tick: sense, render, control, guard.
     pub fn step(&mut self, samples: &Samples) -> Drive {
         self.tick = self.tick.wrapping_add(1);
+        self.averages.take(&samples.thermistors());
         let readings = self.sensors.read(samples);
         // Both look at every tick; what a tick shows at once is named first.
         let lasting = self.watch.check(samples, &readings);
@@ -121,13 +131,15 @@ impl Station {
             .and_then(|sound| Some((sound, self.follow(samples, &sound)?)));
         let (drive, current) = match followed {
             Some((sound, (setpoint, _))) => {
-                let current = self.control.update(setpoint, sound.display);
+                let tuning = self.tuning(&sound, readings.current);
+                let current = tuning.unwrap_or_else(|| self.control.update(setpoint, sound.display));
                 (
                     Drive::On(self.voltage.duty(current, sound.sink, sound.display)),
                     current,
                 )
             }
             None => {
+                self.end_experiment();
                 self.control.reset();
                 (Drive::Off, Current::ZERO)
             }
@@ -145,7 +157,11 @@ impl Station {
         self.render.observe(sound.skin, sound.room, touching);
         let wanted = match self.state {
             State::Off | State::Tripped(_) => return None,
-            State::Armed => self.render.neutral()?,
+            State::Armed => match (&self.experiment, self.held) {
+                (Some(experiment), _) if experiment.drives() => experiment.rest().celsius(),
+                (_, Some(held)) => held.celsius(),
+                (_, None) => self.render.neutral()?,
+            },
             State::Preset | State::Contact => {
                 self.state = if touching { State::Contact } else { State::Preset };
                 let landed = if before { 0 } else { self.touch.landed_ticks() };
@@ -154,6 +170,26 @@ impl Station {
             }
         };
         Some(Setpoint::limited(wanted))
+    }
+
+    /// Current of the experiment, if one goes on.
+    fn tuning(&mut self, sound: &Sound, measured: Current) -> Option<Current> {
+        let experiment = self.experiment.as_mut()?;
+        if self.state != State::Armed {
+            experiment.abort(Aborted::Ended);
+        }
+        if !experiment.drives() {
+            return None;
+        }
+        let current = experiment.update(sound, measured, self.touch.touching());
+        self.control.reset();
+        current
+    }
+
+    fn end_experiment(&mut self) {
+        if let Some(experiment) = &mut self.experiment {
+            experiment.abort(Aborted::Ended);
+        }
     }
 
     fn scene(&self) -> Option<Scene> {
@@ -223,7 +259,19 @@ impl Station {
             Command::Law(Some(law)) => self.control.select(law),
             Command::Arm => match self.state {
                 State::Tripped(fault) => return Err(Error::Tripped(fault)),
-                _ => self.state = State::Armed,
+                _ => {
+                    self.experiment = None;
+                    self.held = None;
+                    self.state = State::Armed;
+                }
+            },
+            Command::Hold(setpoint) => match self.state {
+                State::Tripped(fault) => return Err(Error::Tripped(fault)),
+                State::Armed => {
+                    self.experiment = None;
+                    self.held = Some(setpoint);
+                }
+                _ => return Err(Error::NeedsArmed("hold")),
             },
             Command::Start => match (self.state, self.material) {
                 (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),
@@ -231,6 +279,7 @@ impl Station {
                 (_, None) => return Err(Error::NoMaterial),
                 (State::Armed, Some(_)) => {
                     self.render.forget_contact();
+                    self.held = None;
                     self.state = State::Preset;
                 }
                 (State::Preset | State::Contact, Some(_)) => return Err(Error::AlreadyStarted),
@@ -246,6 +295,31 @@ impl Station {
                 (State::Tripped(_), Some(fault)) => return Err(Error::StillFaulty(fault)),
                 _ => return Err(Error::NothingToClear),
             },
+            Command::Average(thermistor) => {
+                let average = self.averages.of(thermistor);
+                return average
+                    .map(Reply::Average)
+                    .ok_or(Error::Point(PointError::TooEarly));
+            }
+            Command::Tune => match (self.state, self.telemetry.sink) {
+                (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),
+                (State::Armed, _) if self.touch.touching() => return Err(Error::Touched),
+                (State::Armed, Some(sink)) => {
+                    self.experiment = Some(Experiment::new(sink, self.control.limit()));
+                }
+                _ => return Err(Error::NeedsArmed("tune")),
+            },
+            Command::Experiment(row) => {
+                let experiment = self.experiment.as_ref().ok_or(Error::NotTuned)?;
+                let rows = experiment.outcome().ok_or(Error::Tuning)?;
+                let row = rows.map_err(Error::TuneAborted)?.get(row);
+                return row.map(|row| Reply::Row(*row)).ok_or(Error::NotTuned);
+            }
+            Command::Calibrate(calibrated) => self.sensors.recalibrate(&calibrated),
+            Command::Retune(tile) => {
+                self.control.retune(&tile);
+                self.experiment = None;
+            }
         }
         Ok(Reply::Done)
     }

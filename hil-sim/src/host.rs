@@ -3,6 +3,7 @@
 use thermal_display::protocol::LINE_MAX;
 use thermal_display::render::Mode;
 
+use crate::engine::Engine;
 use crate::scene::{FaultKind, Scene, custom_line};
 
 /// Milliseconds after the device's start at which it is armed, and between two lines.
@@ -24,9 +25,9 @@ pub struct Host {
 }
 
 impl Host {
-    /// The lines that set a scene up, and those of the scene itself.
+    /// The lines that restore a device's settings, those that set a scene up, and those of the scene itself.
     #[must_use]
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(scene: &Scene, settings: &[String]) -> Self {
         let zero_ms = scene.settle_ms();
         let at = |t_s: f64| zero_ms + (t_s * 1e3).round() as u64;
         let material = match scene.object.name.as_str() {
@@ -44,13 +45,14 @@ impl Host {
         let law = scene.law.map(|law| format!("law {}", law.name()));
         let set_up = [material, object, mode.into()].into_iter().chain(law);
         let set_up = set_up.chain(["arm".into()]);
-        let mut queue: Vec<_> = (set_up.zip(0..))
+        let arm_ms = ARM_MS + SPACING_MS * settings.len() as u64;
+        let mut queue: Vec<_> = (settings.iter().cloned().chain(set_up).zip(0..))
             .map(|(line, i)| (ARM_MS + i * SPACING_MS, line))
             .collect();
         let start_ms = if scene.object.appears_t_s > 0.0 {
             at(scene.object.appears_t_s)
         } else {
-            ARM_MS + WATCH_MS
+            arm_ms + WATCH_MS
         };
         queue.push((start_ms, "start".into()));
         queue.push((zero_ms - STREAM_MS, "stream 1".into()));
@@ -68,17 +70,40 @@ impl Host {
     }
 
     /// The bytes that leave at a half millisecond since the device's start, if any.
-    ///
-    /// They leave at that boundary of a millisecond after which their last byte is far from a tick, so that
-    /// both engines execute them in the same tick.
     pub fn send(&mut self, half_ms: u64) -> Option<&[u8]> {
         let (ms, bytes) = self.queue.get(self.next)?;
-        let late_half = (31..=80).contains(&bytes.len());
-        if half_ms < 2 * ms + u64::from(late_half) {
+        if half_ms < 2 * ms + leaves_at_half(bytes) {
             return None;
         }
         self.next += 1;
         self.queue.get(self.next - 1).map(|(_, bytes)| bytes.as_slice())
+    }
+}
+
+/// The half of a millisecond at whose boundary bytes leave: the one after which their last byte is far from a tick, so
+/// that both engines execute them in the same tick.
+pub(crate) fn leaves_at_half(bytes: &[u8]) -> u64 {
+    (31..=80).contains(&bytes.len()).into()
+}
+
+/// What the device has sent.
+#[derive(Debug, Default)]
+pub(crate) struct Inbox {
+    received: Vec<u8>,
+}
+
+impl Inbox {
+    /// The lines that are complete.
+    pub fn lines<E: Engine>(&mut self, engine: &mut E) -> Vec<String> {
+        engine.receive(&mut self.received);
+        let Some(end) = self.received.iter().rposition(|byte| *byte == b'\n') else {
+            return Vec::new();
+        };
+        let complete: Vec<u8> = self.received.drain(..=end).collect();
+        String::from_utf8_lossy(&complete)
+            .lines()
+            .map(|line| line.trim_end().to_owned())
+            .collect()
     }
 }
 

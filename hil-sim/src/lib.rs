@@ -4,6 +4,7 @@
 //!
 //! Links Unicorn (GPL-2.0); firmware and contact model do not.
 
+pub mod commission;
 pub mod engine;
 pub mod fidelity;
 pub mod firmware;

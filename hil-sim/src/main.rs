@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use cli::{Failure, erfcx, fidelity, infrared, model, parameters, roughness, run, thesis};
+use cli::{Failure, commission, erfcx, fidelity, infrared, model, parameters, roughness, run, thesis};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
@@ -15,6 +15,8 @@ use cli::{Failure, erfcx, fidelity, infrared, model, parameters, roughness, run,
 enum Cli {
     /// Run a scene
     Run(run::Arguments),
+    /// Calibrate and tune a device and print its settings as lines
+    Commission(commission::Arguments),
     /// Evaluate the contact model (Eq. 6-5 to 6-12) and print CSV
     Model(model::Arguments),
     /// Evaluate the fixed-point kernel: one z a line on standard input, prints z and the bits of E
@@ -34,6 +36,7 @@ enum Cli {
 fn main() -> ExitCode {
     let done = match Cli::parse() {
         Cli::Run(arguments) => run::run(&arguments),
+        Cli::Commission(arguments) => commission::run(&arguments),
         Cli::Model(arguments) => model::run(&arguments),
         Cli::Erfcx => erfcx::run(),
         Cli::Infrared(arguments) => infrared::run(&arguments),

@@ -2,8 +2,9 @@
 
 use std::time::Instant;
 
+use crate::commission::{self, CommissionError};
 use crate::engine::{Cost, Engine};
-use crate::host::Host;
+use crate::host::{Host, Inbox};
 use crate::scene::{FaultKind, Scene};
 use crate::telemetry::Telemetry;
 use crate::trace::{Row, Trace};
@@ -32,6 +33,9 @@ pub enum RunError<S: std::error::Error + 'static> {
     /// The engine stopped: the device did something that is not modelled.
     #[error(transparent)]
     Stop(S),
+    /// The device cannot be commissioned, so it never comes to the scene.
+    #[error(transparent)]
+    Commission(CommissionError),
     /// The device refused a line that sets the scene up.
     #[error("the device refused to be set up for the scene: {0}")]
     Refused(String),
@@ -46,15 +50,16 @@ pub fn run<E: Engine>(
     engine: &mut E,
     mut progress: impl FnMut(f64),
 ) -> Result<Outcome, RunError<E::Stop>> {
+    let settings = commission::of_scene(scene).map_err(RunError::Commission)?;
     let began = Instant::now();
     let zero_ms = scene.settle_ms();
     let end_ms = zero_ms + (scene.duration_s * 1e3).round() as u64;
     let mut session = Session {
         scene,
         engine,
-        host: Host::new(scene),
+        host: Host::new(scene, &settings),
         zero_ms,
-        received: Vec::new(),
+        inbox: Inbox::default(),
     };
     let (mut trace, mut answers) = (Trace::default(), Vec::new());
     let (mut before_j, mut after_j) = (0.0, 0.0);
@@ -102,7 +107,7 @@ struct Session<'a, E> {
     engine: &'a mut E,
     host: Host,
     zero_ms: u64,
-    received: Vec<u8>,
+    inbox: Inbox,
 }
 
 impl<E: Engine> Session<'_, E> {
@@ -142,14 +147,6 @@ impl<E: Engine> Session<'_, E> {
 
     /// The lines that are complete.
     fn lines(&mut self) -> Vec<String> {
-        self.engine.receive(&mut self.received);
-        let Some(end) = self.received.iter().rposition(|byte| *byte == b'\n') else {
-            return Vec::new();
-        };
-        let complete: Vec<u8> = self.received.drain(..=end).collect();
-        String::from_utf8_lossy(&complete)
-            .lines()
-            .map(|line| line.trim_end().to_owned())
-            .collect()
+        self.inbox.lines(self.engine)
     }
 }

@@ -3,7 +3,7 @@
 use crate::infrared::{Camera, ParameterError, Reading};
 use crate::plant::bridge::{Leg, Legs};
 use crate::plant::sensors::Channel;
-use crate::plant::{ConfigError, Plant};
+use crate::plant::{ConfigError, Plant, PlantConfig};
 use crate::scene::{FaultKind, Infrared, Scene};
 
 /// Highest code of the converter.
@@ -44,6 +44,21 @@ impl World {
             plant: Plant::new(&scene.plant_config())?,
             broken: Vec::new(),
             camera,
+            codes: [0; Channel::ALL.len()],
+        })
+    }
+
+    /// The world of a plant that nobody watches, with the converter's noise of its own seed.
+    ///
+    /// # Errors
+    /// A value that the plant cannot take.
+    pub fn of_plant(config: &PlantConfig, noise_seed: u64) -> Result<Self, ConfigError> {
+        let mut plant = Plant::new(config)?;
+        plant.reseed_noise(noise_seed);
+        Ok(Self {
+            plant,
+            broken: Vec::new(),
+            camera: None,
             codes: [0; Channel::ALL.len()],
         })
     }

@@ -10,7 +10,7 @@ use contact_model::fixed_point::Celsius;
 
 use crate::drive::Current;
 use crate::guard::Setpoint;
-use crate::settings::Settings;
+use crate::settings::{Gains, Settings, Tile};
 
 /// Which law finds the current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,6 +54,14 @@ impl Control {
             pi_10hz: Pi::new(&settings.gains_10hz, limit_a, Period::TenthOfASecond),
             pi: Pi::new(&settings.gains, limit_a, Period::EveryTick),
         }
+    }
+
+    /// Controls another tile, from rest.
+    pub fn retune(&mut self, tile: &Tile) {
+        let limit_a = self.limit().to_num();
+        let [gains, gains_10hz] = Gains::of_tile(tile);
+        self.pi = Pi::new(&gains, limit_a, Period::EveryTick);
+        self.pi_10hz = Pi::new(&gains_10hz, limit_a, Period::TenthOfASecond);
     }
 
     /// The law in use.

@@ -8,8 +8,10 @@ use super::Error;
 use super::error::Number;
 use crate::TICK_HZ;
 use crate::control::Law;
+use crate::guard::Setpoint;
 use crate::render::Mode;
-use crate::settings::Settings;
+use crate::sense::Calibrated;
+use crate::settings::{Settings, Tile};
 
 /// A command of the host, checked and ready to execute.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,18 +40,46 @@ pub enum Command {
     Law(Option<Law>),
     /// `arm`: drive the display to skin temperature.
     Arm,
+    /// `hold CELSIUS`: drive the display to a temperature.
+    Hold(Setpoint),
     /// `start`: the object appears.
     Start,
     /// `abort`: bridge off.
     Abort,
     /// `clear`: take back a fault that is no longer present.
     Clear,
+    /// What a thermistor's sums are on average, for [`Service`](crate::commission::Service).
+    Average(usize),
+    /// `tune`: find out what the tile is like.
+    Tune,
+    /// A row of what that has shown, for [`Service`](crate::commission::Service).
+    Experiment(usize),
+    /// Reads by another calibration, from it.
+    Calibrate(Calibrated),
+    /// Controls another tile, from it.
+    Retune(Tile),
 }
 
 impl Command {
     /// Words that begin a command.
-    pub const WORDS: [&'static str; 11] = [
-        "id", "state", "stream", "material", "object", "mode", "law", "arm", "start", "abort", "clear",
+    pub const WORDS: [&'static str; 17] = [
+        "id",
+        "state",
+        "stream",
+        "material",
+        "object",
+        "mode",
+        "law",
+        "arm",
+        "hold",
+        "start",
+        "abort",
+        "clear",
+        "calibrate",
+        "tune",
+        "margins",
+        "settings",
+        "set",
     ];
 
     /// Reads one line. Does the costly part of a command (soft-float set-up of a material), so that
@@ -67,6 +97,8 @@ impl Command {
             "start" => Self::Start,
             "abort" => Self::Abort,
             "clear" => Self::Clear,
+            "tune" => Self::Tune,
+            "hold" => Self::Hold(hold(number(&mut words, &HOLD)?)),
             "stream" => {
                 // A part of a millisecond counts as a whole one, so that only 0 ends the stream.
                 let interval_ms = number(&mut words, &STREAM)?.saturating_ceil();
@@ -117,6 +149,13 @@ static STREAM: Number = Number {
     min: 0.0,
     max: 60_000.0,
 };
+/// The range of [`Setpoint`].
+static HOLD: Number = Number {
+    name: "temperature",
+    unit: "C",
+    min: 15.0,
+    max: 42.0,
+};
 static OBJECT: Number = Number {
     name: "object temperature",
     unit: "C",
@@ -158,7 +197,10 @@ static PROPERTIES: [Number; 5] = [
 ];
 
 /// Takes the next word as a decimal number within its range.
-fn number<'a>(words: &mut impl Iterator<Item = &'a str>, expected: &'static Number) -> Result<I32F32, Error> {
+pub(crate) fn number<'a>(
+    words: &mut impl Iterator<Item = &'a str>,
+    expected: &'static Number,
+) -> Result<I32F32, Error> {
     let word = words.next().ok_or(Error::Missing(expected.name))?;
     // Saturates, so that too many digits are out of range.
     let value = I32F32::saturating_from_str(word).map_err(|_| Error::NotANumber(expected, word.into()))?;
@@ -168,6 +210,10 @@ fn number<'a>(words: &mut impl Iterator<Item = &'a str>, expected: &'static Numb
     } else {
         Err(Error::OutOfRange(expected, word.into()))
     }
+}
+
+fn hold(celsius: I32F32) -> Setpoint {
+    Setpoint::limited(celsius.to_num()).0
 }
 
 fn law(name: &str) -> Result<Law, Error> {

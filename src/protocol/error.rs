@@ -6,6 +6,7 @@ use contact_model::fixed_point::PairingError;
 use contact_model::material::MATERIALS;
 
 use super::{Command, LINE_MAX, LineError};
+use crate::commission::{Aborted, FARTHEST_K, POINTS, PointError, SENSORS};
 use crate::control::Law;
 use crate::guard::Fault;
 
@@ -38,7 +39,7 @@ pub struct Number {
     pub max: f64,
 }
 
-/// Why a line was refused; `Display` writes the answer without its end, at most 128 bytes.
+/// Why a line was refused; `Display` writes the answer without its end, at most 160 bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
     /// The bytes made no line.
@@ -51,6 +52,10 @@ pub enum Error {
     UnknownMode(Word),
     /// Law unknown.
     UnknownLaw(Word),
+    /// Thermistor unknown.
+    UnknownSensor(Word),
+    /// Setting unknown.
+    UnknownSetting(Word),
     /// A word is missing.
     Missing(&'static str),
     /// A word too many.
@@ -67,6 +72,20 @@ pub enum Error {
     NoMaterial,
     /// `start` twice.
     AlreadyStarted,
+    /// `hold` or `tune` before `arm`.
+    NeedsArmed(&'static str),
+    /// `tune` with a finger on the display.
+    Touched,
+    /// `tune result` before `tune`.
+    NotTuned,
+    /// `tune result` too early.
+    Tuning,
+    /// `tune` ended early.
+    TuneAborted(Aborted),
+    /// What `tune` saw belongs to no tile within the limits of settings.
+    NoTile,
+    /// A point of a calibration that is not taken.
+    Point(PointError),
     /// A fault is latched.
     Tripped(Fault),
     /// `clear` while the fault is still there.
@@ -113,6 +132,13 @@ impl fmt::Display for Error {
                 write!(f, "unknown law {word}; known:")?;
                 Law::WORDS.iter().try_for_each(|(known, _)| write!(f, " {known}"))
             }
+            Self::UnknownSensor(word) => {
+                write!(f, "unknown sensor {word}; known:")?;
+                SENSORS.iter().try_for_each(|known| write!(f, " {known}"))
+            }
+            Self::UnknownSetting(word) => {
+                write!(f, "unknown setting {word}; known: steps correction tile")
+            }
             Self::Missing(what) => write!(f, "{what} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
             Self::NotANumber(Number { name, unit, min, max }, word) => {
@@ -125,6 +151,28 @@ impl fmt::Display for Error {
             Self::NotArmed => f.write_str("start needs arm first"),
             Self::NoMaterial => f.write_str("start needs a material first"),
             Self::AlreadyStarted => f.write_str("already started; arm takes the object away"),
+            Self::NeedsArmed(command) => write!(f, "{command} needs the state armed"),
+            Self::Touched => f.write_str("tune needs a display without a finger on it"),
+            Self::NotTuned => f.write_str("nothing was tuned since arm; tune first"),
+            Self::Tuning => f.write_str("tuning goes on; ask again in a second"),
+            Self::TuneAborted(why) => write!(f, "tune was ended: {}", why.reason()),
+            Self::NoTile => f.write_str("tune found no tile; look for a loose sensor, then tune again"),
+            Self::Point(PointError::TooEarly) => {
+                f.write_str("not watched for long enough; wait half a second")
+            }
+            Self::Point(PointError::Unsteady) => {
+                f.write_str("the reading moves; wait until it is steady to 3 mK in a quarter of a second")
+            }
+            Self::Point(PointError::AtBorder) => {
+                f.write_str("at a step of the converter; take a temperature 0.3 C from here")
+            }
+            Self::Point(PointError::TooFar(reads)) => {
+                write!(
+                    f,
+                    "the device reads {reads:.2} C; allowed is within {FARTHEST_K} C of that"
+                )
+            }
+            Self::Point(PointError::Full) => write!(f, "no room for more than {POINTS} points; clear them"),
             Self::Tripped(fault) => write!(f, "tripped by {}; clear it first", fault.name()),
             Self::StillFaulty(fault) => write!(f, "fault {} is still present", fault.name()),
             Self::NothingToClear => f.write_str("no fault to clear"),

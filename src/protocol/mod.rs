@@ -10,9 +10,10 @@ mod telemetry;
 mod text;
 
 pub use command::Command;
+pub(crate) use command::number;
 pub use error::{Error, Number, Word};
 pub use line::{LINE_MAX, Line, LineError, LineReader};
-pub use reply::{Reply, Status};
+pub use reply::{Reply, Setting, Status};
 pub use telemetry::Telemetry;
 
 #[cfg(test)]

@@ -5,13 +5,16 @@ use core::fmt;
 use contact_model::fixed_point::Celsius;
 
 use super::text::Text;
+use crate::commission::{Margins, Row, STEPS_A_LINE};
 use crate::control::Law;
 use crate::render::Mode;
+use crate::sense::Average;
+use crate::settings::{Calibration, Correction, Tile};
 use crate::station::State;
 use crate::{SCANS_PER_SECOND, TICK_HZ};
 
 /// An answer; `Display` writes the line without its end, at most 128 bytes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
     /// It is done.
     Done,
@@ -21,6 +24,23 @@ pub enum Reply {
     Status(Status),
     /// Answer to `law`.
     Law(Law),
+    /// A thermistor's mean.
+    Average(Average),
+    /// A row of the normal equations of an experiment.
+    Row(Row),
+    /// Answer to `tune result` and `margins`.
+    Tile(Tile, Margins),
+    /// Answer to `calibrate`.
+    Calibrated {
+        /// Points of this thermistor.
+        points: usize,
+        /// Largest difference of the device from the reference in them, mK.
+        worst_mk: f64,
+    },
+    /// Answer to `settings`: so many lines.
+    SettingsLines(usize),
+    /// Answer to `settings N`.
+    Setting(Setting),
 }
 
 /// What the device is doing.
@@ -52,6 +72,26 @@ impl fmt::Display for Reply {
             ),
             Self::Status(status) => write!(f, "ok {status}"),
             Self::Law(law) => write!(f, "ok law={}", law.name()),
+            Self::Average(average) => write!(f, "ok sum={:.3} rise={}", average.sum(), average.rise),
+            Self::Row(row) => {
+                f.write_str("ok")?;
+                row.iter().try_for_each(|sum| write!(f, " {sum}"))
+            }
+            Self::Tile(tile, margins) => {
+                let [gain, joule, leak, lag, dead] = tile.to_array();
+                let Margins {
+                    phase_deg,
+                    gain: times,
+                } = margins;
+                write!(
+                    f,
+                    "ok gain={gain:.4} joule={joule:.4} leak={leak:.4} lag_s={lag:.4} dead_s={dead:.4}"
+                )?;
+                write!(f, " phase_deg={phase_deg:.1} margin={times:.2}")
+            }
+            Self::Calibrated { points, worst_mk } => write!(f, "ok points={points} worst_mk={worst_mk:.2}"),
+            Self::SettingsLines(lines) => write!(f, "ok lines={lines}"),
+            Self::Setting(setting) => write!(f, "ok {setting}"),
         }
     }
 }
@@ -78,5 +118,54 @@ impl fmt::Display for Status {
         line.celsius::<2>(self.setpoint);
         line.word(if self.limited { " limited" } else { "" });
         line.fmt(f)
+    }
+}
+
+/// A part of the settings; `Display` writes the line that sets it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Setting {
+    /// Some of the converter's steps.
+    Steps {
+        /// The first border.
+        first: usize,
+        /// Steps from there on, counts.
+        counts: heapless::Vec<f64, STEPS_A_LINE>,
+    },
+    /// A thermistor's correction.
+    Correction(&'static str, Correction),
+    /// The tile.
+    Tile(Tile),
+}
+
+impl fmt::Display for Setting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Steps { first, counts } => {
+                write!(f, "set steps {first}")?;
+                let decimals = Calibration::STEP_DECIMALS as usize;
+                counts
+                    .iter()
+                    .try_for_each(|count| write!(f, " {count:.decimals$}"))
+            }
+            Self::Correction(sensor, correction) => {
+                let [a, b, c] = Calibration::DECIMALS.map(|decimals| decimals as usize);
+                let Correction {
+                    offset_k,
+                    slope,
+                    curvature_1_k,
+                } = correction;
+                write!(
+                    f,
+                    "set correction {sensor} {offset_k:.a$} {slope:.b$} {curvature_1_k:.c$}"
+                )
+            }
+            Self::Tile(tile) => {
+                f.write_str("set tile")?;
+                let decimals = Tile::DECIMALS;
+                tile.to_array()
+                    .iter()
+                    .try_for_each(|value| write!(f, " {value:.decimals$}"))
+            }
+        }
     }
 }

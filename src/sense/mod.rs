@@ -1,8 +1,12 @@
 //! From converter counts to temperatures, force and current.
 
+mod average;
+mod correction;
 mod force;
 mod thermistor;
 
+pub use average::{Average, Averages};
+pub use correction::{Calibrated, Polynomial, Steps};
 pub use force::{ForceScale, Touch};
 pub use thermistor::{SensorFault, Thermistor};
 
@@ -14,8 +18,8 @@ use crate::settings::Settings;
 /// Signals of one finger, in the order in which the converter scans them.
 pub const CHANNELS: usize = 7;
 
-/// The first of them are thermistors.
-const THERMISTORS: usize = 5;
+/// The first of them are thermistors: display, second display, sink, skin, room.
+pub const THERMISTORS: usize = 5;
 
 /// Scans that are summed into the [`Samples`] of one control tick.
 pub const SCANS_PER_TICK: usize = 16;
@@ -45,6 +49,12 @@ pub struct Samples {
 }
 
 impl Samples {
+    /// Those of the thermistors.
+    #[must_use]
+    pub const fn thermistors(&self) -> [u16; THERMISTORS] {
+        [self.display, self.display_check, self.sink, self.skin, self.room]
+    }
+
     /// Sums the scans of one tick.
     ///
     /// A thermistor whose last conversion is at an end of the range counts as being there for the whole tick:
@@ -103,7 +113,7 @@ pub struct Readings {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sensors {
     thermistor: Thermistor,
-    self_heating: [Celsius; 5],
+    calibrated: Calibrated,
     force: ForceScale,
     /// Current of one unit of the sum, in 2^-24 A.
     current_per_unit: i32,
@@ -116,7 +126,7 @@ impl Sensors {
         let per_unit = 1.0 / (settings.current_counts_per_a * SCANS_PER_TICK as f64);
         Self {
             thermistor: Thermistor::new(&settings.thermistor),
-            self_heating: settings.self_heating_k.map(Celsius::saturating_from_num),
+            calibrated: Calibrated::new(settings),
             force: ForceScale::new(&settings.force),
             current_per_unit: Current::saturating_from_num(per_unit).to_bits(),
         }
@@ -129,13 +139,19 @@ impl Sensors {
         }
     }
 
+    /// Reads by another calibration from now on.
+    pub fn recalibrate(&mut self, calibrated: &Calibrated) {
+        self.calibrated = *calibrated;
+    }
+
     /// Converts the samples of one tick.
     #[must_use]
     pub fn read(&self, samples: &Samples) -> Readings {
-        let [display, display_check, sink, skin, room] = self.self_heating;
-        let temperature = |sum, warmer: Celsius| {
-            let reached = self.thermistor.temperature(sum)?;
-            Ok(reached.saturating_sub(warmer))
+        let Calibrated { steps, polynomials } = &self.calibrated;
+        let [display, display_check, sink, skin, room] = polynomials;
+        let temperature = |sum, correction: &Polynomial| {
+            let reached = self.thermistor.temperature(sum, steps.without(sum))?;
+            Ok(correction.apply(reached))
         };
         Readings {
             display: temperature(samples.display, display),

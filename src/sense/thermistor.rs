@@ -2,6 +2,7 @@
 
 use contact_model::fixed_point::Celsius;
 
+use super::correction::FINE_BITS;
 use crate::settings;
 
 /// Sums of counts at which a thermistor counts as open or shorted. The range between them is wider than
@@ -48,23 +49,24 @@ impl Thermistor {
         }
     }
 
-    /// Temperature for the sum of 16 12-bit conversions (0..=65520).
+    /// Temperature for the sum of 16 12-bit conversions (0..=65520) whose `fine` value, in 2^-[`FINE_BITS`], is free of
+    /// the converter's steps.
     ///
     /// Error against the curve below 0.1 mK from -20 to 80 °C (`cargo test --lib thermistor`).
     ///
     /// # Errors
-    /// Open or shorted.
-    pub fn temperature(&self, sum: u16) -> Result<Celsius, SensorFault> {
+    /// Open or shorted, by the sum itself.
+    pub fn temperature(&self, sum: u16, fine: u32) -> Result<Celsius, SensorFault> {
         if sum < SHORT_BELOW {
             return Err(SensorFault::Short);
         }
         if sum > OPEN_ABOVE {
             return Err(SensorFault::Open);
         }
-        let position_bits = u16::BITS - PARTS_SHIFT;
-        let position = i64::from(sum & ((1 << position_bits) - 1));
-        // The index is below PARTS, because the shift leaves that many bits.
-        let [constant, rest @ ..] = self.parts[usize::from(sum >> position_bits) % PARTS];
+        let position_bits = u16::BITS + FINE_BITS - PARTS_SHIFT;
+        let position = i64::from(fine & ((1 << position_bits) - 1));
+        // Steps are small beside what lies between the ends of the range and those of its last parts.
+        let [constant, rest @ ..] = self.parts[(fine >> position_bits) as usize % PARTS];
         let change = rest
             .iter()
             .rev()
@@ -89,6 +91,11 @@ mod tests {
     use super::*;
     use crate::settings::{Curve, Settings};
 
+    /// Of a sum from a converter without steps.
+    fn temperature(thermistor: &Thermistor, sum: u16) -> Result<Celsius, SensorFault> {
+        thermistor.temperature(sum, u32::from(sum) << FINE_BITS)
+    }
+
     /// The sum that the divider's ideal converter gives at a temperature, by the beta equation.
     fn sum_at(t_c: f64) -> f64 {
         let r = 10e3 * (3950.0 * (1.0 / (t_c + 273.15) - 1.0 / 298.15)).exp();
@@ -103,8 +110,7 @@ mod tests {
             // The temperature of exactly this sum, by the equation solved for T.
             let r = 10e3 * sum / (65536.0 - sum);
             let exact = 1.0 / (1.0 / 298.15 + (r / 10e3).ln() / 3950.0) - 273.15;
-            let error = thermistor
-                .temperature(sum as u16)
+            let error = temperature(&thermistor, sum as u16)
                 .expect("in range")
                 .to_num::<f64>()
                 - exact;
@@ -126,7 +132,7 @@ mod tests {
         });
         for (t_c, ohm) in [(0.0, 32_650.0), (25.0, 10_000.0), (50.0, 3_603.0)] {
             let sum = (ohm / (ohm + 10e3) * 65536.0f64).round() as u16;
-            let t = thermistor.temperature(sum).expect("in range").to_num::<f64>();
+            let t = temperature(&thermistor, sum).expect("in range").to_num::<f64>();
             assert!((t - t_c).abs() < 0.05, "{t_c}: {t}");
         }
     }
@@ -134,13 +140,13 @@ mod tests {
     #[test]
     fn thermistor_range_ends_in_open_and_short() {
         let thermistor = Thermistor::new(&Settings::default().thermistor);
-        assert_eq!(thermistor.temperature(65520), Err(SensorFault::Open));
-        assert_eq!(thermistor.temperature(0), Err(SensorFault::Short));
+        assert_eq!(temperature(&thermistor, 65520), Err(SensorFault::Open));
+        assert_eq!(temperature(&thermistor, 0), Err(SensorFault::Short));
         for t_c in [-40.0, 125.0] {
-            assert!(thermistor.temperature(sum_at(t_c) as u16).is_ok());
+            assert!(temperature(&thermistor, sum_at(t_c) as u16).is_ok());
         }
         for sum in 0..=65520 {
-            let _any_count_has_an_answer = thermistor.temperature(sum);
+            let _any_count_has_an_answer = temperature(&thermistor, sum);
         }
     }
 }

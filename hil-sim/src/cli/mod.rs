@@ -1,5 +1,6 @@
 //! The subcommands.
 
+pub mod commission;
 pub mod erfcx;
 pub mod fidelity;
 pub mod infrared;

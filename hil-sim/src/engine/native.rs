@@ -5,8 +5,9 @@ use std::convert::Infallible;
 use std::fmt::Display;
 
 use thermal_display::Station;
+use thermal_display::commission::Service;
 use thermal_display::drive::Drive;
-use thermal_display::protocol::{Command, Error, LineReader};
+use thermal_display::protocol::{Error, LineReader};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::Settings;
 
@@ -32,7 +33,7 @@ const SCANS_IN_FIRST_HALF: usize = 8;
 #[derive(Debug)]
 pub struct Native {
     world: World,
-    settings: Settings,
+    service: Service,
     station: Station,
     reader: LineReader,
     /// Bytes on their way to the device, and when they arrive.
@@ -54,7 +55,7 @@ impl Native {
         let settings = Settings::default();
         let mut native = Self {
             world,
-            settings,
+            service: Service::new(settings),
             station: Station::new(&settings),
             reader: LineReader::new(),
             incoming: VecDeque::new(),
@@ -86,10 +87,10 @@ impl Native {
             let Some(line) = self.reader.push(byte) else {
                 continue;
             };
-            let executed = line
-                .map_err(Error::from)
-                .and_then(|line| Command::parse(&line, &self.settings))
-                .and_then(|command| self.station.execute(command));
+            let executed = line.map_err(Error::from).and_then(|line| {
+                self.service
+                    .answer(&line, |command| self.station.execute(command))
+            });
             match executed {
                 Ok(reply) => self.answer(&reply),
                 Err(error) => self.answer(&error),

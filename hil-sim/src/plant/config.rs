@@ -44,6 +44,25 @@ pub struct Params {
     pub sensors: SensorParams,
     /// Power stage.
     pub bridge: BridgeParams,
+    /// What the host commissions the device with.
+    pub host: HostParams,
+}
+
+/// The reference thermometer at the host, with a resolution of 1 mK.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HostParams {
+    /// What it shows too much, K.
+    pub reference_offset_k: f64,
+    /// Standard deviation of one reading, K.
+    pub reference_noise_k: f64,
+}
+
+impl HostParams {
+    /// A calibrated resistance thermometer's.
+    pub const NOMINAL: Self = Self {
+        reference_offset_k: 0.0,
+        reference_noise_k: 0.3e-3,
+    };
 }
 
 impl Params {
@@ -56,6 +75,7 @@ impl Params {
             tile: TileParams::CLASS,
             sensors: SensorParams::NOMINAL,
             bridge: BridgeParams::NOMINAL,
+            host: HostParams::NOMINAL,
         }
     }
 }

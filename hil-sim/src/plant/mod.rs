@@ -33,7 +33,7 @@ pub mod touch;
 pub mod truth;
 
 use bridge::{Bridge, Legs};
-pub use config::{ConfigError, Params, PlantConfig};
+pub use config::{ConfigError, HostParams, Params, PlantConfig};
 use contact_model::material::Surface;
 use finger::Vessels;
 pub use heat::Finger;
@@ -148,6 +148,11 @@ impl Plant {
     /// Presses the finger with a force, N, from the next step on; none or less lifts it.
     pub fn set_force(&mut self, force_n: f64) {
         self.force_n = force_n.max(0.0);
+    }
+
+    /// Draws the converter's noise of another seed from now on; its profile stays, as it is the device's own.
+    pub fn reseed_noise(&mut self, seed: u64) {
+        self.sensors.reseed_noise(seed);
     }
 
     /// Advances by [`STEP_S`] with the bridge's legs held.

@@ -41,6 +41,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         skin_c,
         room_c,
         seed: file.seed,
+        commissioned: file.device.commissioned,
         mode,
         law: file.law.as_ref().map(|name| law(&source, name)).transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,

@@ -21,6 +21,8 @@ pub(super) struct File {
     #[serde(default)]
     pub mode: Mode,
     pub law: Option<Spanned<String>>,
+    #[serde(default)]
+    pub device: Device,
     pub object: Spanned<Object>,
     pub finger: Option<Spanned<Finger>>,
     pub plant: Option<Spanned<Node>>,
@@ -31,6 +33,18 @@ pub(super) struct File {
     pub fault: Vec<Fault>,
     #[serde(default)]
     pub host: Vec<Host>,
+}
+
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub(super) struct Device {
+    pub commissioned: bool,
+}
+
+impl Default for Device {
+    fn default() -> Self {
+        Self { commissioned: true }
+    }
 }
 
 #[derive(Default, Deserialize)]

@@ -43,6 +43,8 @@ pub struct Scene {
     pub room_c: f64,
     /// Of every random draw.
     pub seed: u64,
+    /// The device was calibrated and tuned before the scene.
+    pub commissioned: bool,
     /// Model that the device is told to use.
     pub mode: Mode,
     /// Law that the device is told to use; its own choice if none.

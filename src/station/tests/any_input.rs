@@ -79,7 +79,7 @@ proptest! {
             for line in lines {
                 let before = bench.state();
                 let answer = bench.host(line);
-                prop_assert!(answer.len() <= 128);
+                prop_assert!(answer.len() <= 160);
                 prop_assert!(line != "abort" || answer == "ok");
                 if matches!(before, State::Tripped(_)) && line != "clear" {
                     prop_assert_eq!(before, bench.state());

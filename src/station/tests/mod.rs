@@ -10,8 +10,9 @@ use contact_model::{pressure, reference};
 use std::string::{String, ToString};
 
 use super::{State, Station};
+use crate::commission::Service;
 use crate::drive::Drive;
-use crate::protocol::{Command, Telemetry};
+use crate::protocol::Telemetry;
 use crate::sense::Samples;
 use crate::settings::Settings;
 
@@ -19,6 +20,7 @@ use crate::settings::Settings;
 #[derive(Clone, Debug)]
 struct Bench {
     station: Station,
+    service: Service,
     display_c: f64,
     check_c: f64,
     sink_c: f64,
@@ -36,6 +38,7 @@ impl Bench {
     fn new() -> Self {
         let mut bench = Self {
             station: Station::new(&Settings::default()),
+            service: Service::new(Settings::default()),
             display_c: 30.0,
             check_c: 30.0,
             sink_c: 25.0,
@@ -52,8 +55,7 @@ impl Bench {
 
     /// Sends a line, gives the answer.
     fn host(&mut self, line: &str) -> String {
-        let done =
-            Command::parse(line, &Settings::default()).and_then(|command| self.station.execute(command));
+        let done = self.service.answer(line, |command| self.station.execute(command));
         done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
 

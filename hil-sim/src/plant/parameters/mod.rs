@@ -7,6 +7,7 @@
 
 mod bridge;
 mod finger;
+mod host;
 mod sensors;
 mod slot;
 mod spread;
@@ -159,12 +160,14 @@ fn slots(params: &mut Params) -> Vec<Slot<'_>> {
         tile,
         sensors,
         bridge,
+        host,
     } = params;
     let mut all = finger::slots(finger);
     all.extend(surface::slots("display", display, surface::DISPLAY));
     all.extend(tile::slots(tile));
     all.extend(bridge::slots(bridge));
     all.extend(sensors::slots(sensors));
+    all.extend(host::slots(host));
     all
 }
 

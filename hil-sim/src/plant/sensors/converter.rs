@@ -119,6 +119,12 @@ impl Converter {
         }
     }
 
+    /// Draws its noise from another source from now on.
+    pub fn reseed_noise(&mut self, random: Xoshiro256PlusPlus) {
+        self.random = random;
+        self.next = BATCH;
+    }
+
     /// The level at which it sees an ideal one, both in counts.
     pub fn seen(&self, ideal_counts: f64) -> f64 {
         ideal_counts * (1.0 + self.params.gain_error) + self.params.offset_counts

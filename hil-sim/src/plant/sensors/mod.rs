@@ -118,6 +118,12 @@ impl Sensors {
         sensors
     }
 
+    /// Draws the converter's noise of another seed from now on.
+    pub fn reseed_noise(&mut self, seed: u64) {
+        self.converter
+            .reseed_noise(Xoshiro256PlusPlus::seed_from_u64(seed));
+    }
+
     /// Follows the state over a step, s, at whose end it is `state`: temperatures have moved there evenly, the force
     /// was what it is for the whole step. The conversions of a tick that follow see them on their way there.
     pub fn step(&mut self, step_s: f64, state: &Sensed) {

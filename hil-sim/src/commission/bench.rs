@@ -1,0 +1,98 @@
+//! A device on the operator's bench: time goes on, lines go back and forth, and there is a reference thermometer.
+
+use rand::SeedableRng;
+use rand::rngs::Xoshiro256PlusPlus;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::CommissionError;
+use crate::engine::Engine;
+use crate::host::{Inbox, leaves_at_half};
+use crate::plant::HostParams;
+use crate::world::World;
+
+/// Longest wait for an answer, ms.
+const PATIENCE_MS: u64 = 500;
+/// Resolution of the reference thermometer, K.
+const RESOLUTION_K: f64 = 1e-3;
+
+/// A device, and what the operator needs.
+pub struct Bench<'a, E> {
+    engine: &'a mut E,
+    inbox: Inbox,
+    thermometer: HostParams,
+    random: Xoshiro256PlusPlus,
+}
+
+impl<'a, E: Engine> Bench<'a, E> {
+    pub fn new(engine: &'a mut E, thermometer: HostParams, seed: u64) -> Self {
+        Self {
+            engine,
+            inbox: Inbox::default(),
+            thermometer,
+            random: Xoshiro256PlusPlus::seed_from_u64(seed),
+        }
+    }
+
+    /// Puts the device into another place.
+    pub fn move_to(&mut self, world: World) {
+        *self.engine.world() = world;
+    }
+
+    /// What the reference thermometer shows of a temperature, deg C.
+    pub fn reference_c(&mut self, truth: impl Fn(&World) -> f64) -> f64 {
+        let normal: f64 = StandardNormal.sample(&mut self.random);
+        let shown_c = truth(self.engine.world())
+            + self.thermometer.reference_offset_k
+            + self.thermometer.reference_noise_k * normal;
+        (shown_c / RESOLUTION_K).round() * RESOLUTION_K
+    }
+
+    /// Lets milliseconds pass.
+    pub fn wait(&mut self, ms: u64) -> Result<(), CommissionError> {
+        for _ in 0..ms {
+            self.millisecond(None)?;
+        }
+        Ok(())
+    }
+
+    /// Sends a line and waits for its answer.
+    pub fn ask(&mut self, line: &str) -> Result<String, CommissionError> {
+        let bytes = [line.as_bytes(), b"\n"].concat();
+        let mut answer = self.millisecond(Some(&bytes))?;
+        for _ in 0..PATIENCE_MS {
+            if let Some(answer) = answer.into_iter().find(|answer| !answer.starts_with("T ")) {
+                return Ok(answer);
+            }
+            answer = self.millisecond(None)?;
+        }
+        Err(CommissionError::Silent(line.into()))
+    }
+
+    /// Sends a line that must be obeyed; gives what follows "ok".
+    pub fn tell(&mut self, line: &str) -> Result<String, CommissionError> {
+        let answer = self.ask(line)?;
+        match answer.strip_prefix("ok") {
+            Some(rest) => Ok(rest.trim().into()),
+            None => Err(CommissionError::Refused {
+                line: line.into(),
+                answer,
+            }),
+        }
+    }
+
+    /// One millisecond, in which bytes may leave; lines that have arrived.
+    fn millisecond(&mut self, bytes: Option<&[u8]>) -> Result<Vec<String>, CommissionError> {
+        let stop = |stop: E::Stop| CommissionError::Stop(stop.to_string());
+        let legs = self.engine.legs();
+        for half in 0..2 {
+            if let Some(bytes) = bytes.filter(|bytes| leaves_at_half(bytes) == half) {
+                self.engine.send(bytes);
+            }
+            if half == 0 {
+                self.engine.world().step(legs);
+            }
+            self.engine.run_half_ms().map_err(stop)?;
+        }
+        Ok(self.inbox.lines(self.engine))
+    }
+}

@@ -1,0 +1,161 @@
+//! Lines to answers: what the host task does with the slow half of a command.
+
+use super::experiment::{ROWS, Row};
+use super::fit::{fit, reading_c};
+use super::identify::identify;
+use super::margins::Margins;
+use super::points::{PointError, Points};
+use super::request::{Request, SENSORS, STEPS_A_LINE};
+use crate::protocol::{Command, Error, Reply, Setting};
+use crate::sense::Calibrated;
+use crate::settings::{BORDERS, Correction, FIRST_BORDER, Gains, Settings, Tile};
+
+/// Lines that hold all commissioned settings: the steps, a correction each, the tile.
+pub const SETTINGS_LINES: usize = BORDERS.div_ceil(STEPS_A_LINE) + SENSORS.len() + 1;
+
+/// The device's settings, and what changes them.
+#[derive(Clone, Debug)]
+pub struct Service {
+    settings: Settings,
+    points: Points,
+}
+
+impl Service {
+    /// For a device with these settings.
+    #[must_use]
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            settings,
+            points: Points::default(),
+        }
+    }
+
+    /// The settings as they are now.
+    #[must_use]
+    pub const fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Answers a line. `execute` is what the station does with a [`Command`], in bounded and short time; all that
+    /// takes longer is done here, before or between.
+    ///
+    /// # Errors
+    /// Why the line is refused; nothing has changed.
+    pub fn answer(
+        &mut self,
+        line: &str,
+        mut execute: impl FnMut(Command) -> Result<Reply, Error>,
+    ) -> Result<Reply, Error> {
+        let Some(request) = Request::parse(line) else {
+            return execute(Command::parse(line, &self.settings)?);
+        };
+        match request? {
+            Request::Point { sensor, reference_c } => self.point(sensor, reference_c, &mut execute),
+            Request::Clear { sensor } => {
+                self.points.clear(sensor);
+                self.correct(sensor, Correction::default());
+                execute(self.calibrated())
+            }
+            Request::Settings(None) => Ok(Reply::SettingsLines(SETTINGS_LINES)),
+            Request::Settings(Some(line)) => Ok(Reply::Setting(self.line(line - 1))),
+            Request::SetSteps { first, counts } => {
+                let steps = &mut self.settings.calibration.steps_counts;
+                for (step, count) in steps.iter_mut().skip(first - FIRST_BORDER).zip(&counts) {
+                    *step = *count;
+                }
+                execute(self.calibrated())
+            }
+            Request::SetCorrection { sensor, correction } => {
+                self.correct(sensor, correction);
+                execute(self.calibrated())
+            }
+            Request::SetTile(tile) => {
+                self.retune(tile);
+                execute(Command::Retune(self.settings.tile))
+            }
+            Request::Tuned => self.tuned(&mut execute),
+            Request::Margins => Ok(self.tile()),
+        }
+    }
+
+    fn tuned(&mut self, execute: &mut impl FnMut(Command) -> Result<Reply, Error>) -> Result<Reply, Error> {
+        let mut rows = [Row::default(); ROWS];
+        for (i, row) in rows.iter_mut().enumerate() {
+            let Reply::Row(sums) = execute(Command::Experiment(i))? else {
+                return Err(Error::NotTuned);
+            };
+            *row = sums;
+        }
+        self.retune(identify(&rows).ok_or(Error::NoTile)?);
+        execute(Command::Retune(self.settings.tile))?;
+        Ok(self.tile())
+    }
+
+    fn retune(&mut self, tile: Tile) {
+        self.settings.tile = tile;
+        [self.settings.gains, self.settings.gains_10hz] = Gains::of_tile(&tile);
+    }
+
+    fn tile(&self) -> Reply {
+        let Settings { tile, gains, .. } = &self.settings;
+        Reply::Tile(*tile, Margins::of(tile, gains))
+    }
+
+    fn correct(&mut self, sensor: usize, correction: Correction) {
+        if let Some(place) = self.settings.calibration.corrections.get_mut(sensor) {
+            *place = correction;
+        }
+    }
+
+    fn calibrated(&self) -> Command {
+        Command::Calibrate(Calibrated::new(&self.settings))
+    }
+
+    fn point(
+        &mut self,
+        sensor: usize,
+        reference_c: f64,
+        execute: &mut impl FnMut(Command) -> Result<Reply, Error>,
+    ) -> Result<Reply, Error> {
+        let Reply::Average(average) = execute(Command::Average(sensor))? else {
+            return Err(Error::Point(PointError::TooEarly));
+        };
+        let reads_c = reading_c(&self.settings, &self.settings.calibration, sensor, average.sum());
+        (self.points.add(sensor, &average, reads_c, reference_c)).map_err(Error::Point)?;
+        let Some(calibration) = fit(&self.settings, &self.points) else {
+            self.points.drop_last(sensor);
+            return Err(Error::Point(PointError::TooFar(
+                contact_model::fixed_point::Celsius::saturating_from_num(reads_c),
+            )));
+        };
+        self.settings.calibration = calibration;
+        execute(self.calibrated())?;
+        let points = self.points.of(sensor);
+        let errors = points.iter().map(|point| {
+            let reads_c = reading_c(&self.settings, &calibration, sensor, point.sum);
+            libm::fabs(reads_c - point.reference_c)
+        });
+        Ok(Reply::Calibrated {
+            points: points.len(),
+            worst_mk: 1e3 * errors.fold(0.0, f64::max),
+        })
+    }
+
+    /// One line of the settings, from 0.
+    fn line(&self, line: usize) -> Setting {
+        let calibration = &self.settings.calibration;
+        let steps_lines = BORDERS.div_ceil(STEPS_A_LINE);
+        if let Some(steps) = calibration.steps_counts.chunks(STEPS_A_LINE).nth(line) {
+            return Setting::Steps {
+                first: FIRST_BORDER + line * STEPS_A_LINE,
+                counts: heapless::Vec::from_slice(steps).unwrap_or_default(),
+            };
+        }
+        match calibration.corrections.get(line - steps_lines) {
+            Some(correction) => {
+                Setting::Correction(SENSORS[(line - steps_lines) % SENSORS.len()], *correction)
+            }
+            None => Setting::Tile(self.settings.tile),
+        }
+    }
+}

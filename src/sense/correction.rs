@@ -1,0 +1,121 @@
+//! Calibration in integers: the converter's steps and each thermistor's polynomial.
+
+use contact_model::fixed_point::Celsius;
+
+use super::{SCANS_PER_TICK, THERMISTORS};
+use crate::settings::{BORDERS, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES, Settings};
+
+/// Binary places of a sum of conversions after its steps were taken out.
+pub const FINE_BITS: u32 = 4;
+/// Sums of one segment, as a power of two.
+const SEGMENT_BITS: u32 = (SEGMENT_CODES * SCANS_PER_TICK as u32).ilog2();
+const SEGMENTS: usize = 1 << (u16::BITS - SEGMENT_BITS);
+/// Sums around a border over which noise spreads its step, as a power of two: four codes, two either way.
+const BLUR_BITS: u32 = 6;
+const HALF_BLUR: u32 = 1 << (BLUR_BITS - 1);
+
+/// A calibration, ready for the tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Calibrated {
+    /// Of the converter.
+    pub steps: Steps,
+    /// Of the thermistors.
+    pub polynomials: [Polynomial; THERMISTORS],
+}
+
+impl Calibrated {
+    /// `f64`, once.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        let warmer_k = &settings.self_heating_k;
+        let corrections = &settings.calibration.corrections;
+        Self {
+            steps: Steps::new(&settings.calibration.steps_counts),
+            polynomials: core::array::from_fn(|i| Polynomial::new(&corrections[i], warmer_k[i])),
+        }
+    }
+}
+
+/// What the converter reads too much in each segment of its range.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Steps {
+    /// In units of a sum's 2^-[`FINE_BITS`].
+    too_much: [i16; SEGMENTS],
+}
+
+impl Steps {
+    /// From the steps at its borders, counts; `f64`, once.
+    #[must_use]
+    pub fn new(steps_counts: &[f64; BORDERS]) -> Self {
+        let per_count = libm::ldexp(SCANS_PER_TICK as f64, FINE_BITS as i32);
+        let mut sum = 0.0;
+        Self {
+            too_much: core::array::from_fn(|segment| {
+                if let Some(step) = segment
+                    .checked_sub(FIRST_BORDER)
+                    .and_then(|border| steps_counts.get(border))
+                {
+                    sum += step;
+                }
+                libm::round(sum * per_count) as i16
+            }),
+        }
+    }
+
+    /// The sum without them, in 2^-[`FINE_BITS`]. Across a border they change along a line, over the codes into
+    /// which noise spreads it: where in them the border lies, the device does not know.
+    #[must_use]
+    pub fn without(&self, sum: u16) -> u32 {
+        let ahead = u32::from(sum) + HALF_BLUR;
+        let segment = (ahead >> SEGMENT_BITS) as usize;
+        let within = ahead & ((1 << SEGMENT_BITS) - 1);
+        let of = |segment: usize| i32::from(self.too_much[segment % SEGMENTS]);
+        let mut too_much = of(segment.min(SEGMENTS - 1));
+        if within < 1 << BLUR_BITS {
+            let before = of(segment.saturating_sub(1));
+            too_much = before + (((too_much - before) * within as i32) >> BLUR_BITS);
+        }
+        (u32::from(sum) << FINE_BITS).saturating_add_signed(-too_much)
+    }
+}
+
+/// What is added to a thermistor's temperature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Polynomial {
+    offset: Celsius,
+    /// In 2^-32, per K.
+    slope: i32,
+    curvature: i32,
+}
+
+impl Polynomial {
+    const MIDDLE: Celsius = Celsius::const_from_int(MIDDLE_C as i32);
+    const REACH: Celsius = Celsius::const_from_int(REACH_K as i32);
+
+    /// `f64`, once; what the thermistor warms itself, K, is taken away.
+    #[must_use]
+    pub fn new(correction: &crate::settings::Correction, self_heating_k: f64) -> Self {
+        Self {
+            offset: Celsius::saturating_from_num(correction.offset_k - self_heating_k),
+            slope: libm::ldexp(correction.slope, 32) as i32,
+            curvature: libm::ldexp(correction.curvature_1_k, 32) as i32,
+        }
+    }
+
+    /// The corrected temperature. No product overflows: `u` has 26 bits, its square in the same unit 30, slope and
+    /// curvature 31.
+    #[must_use]
+    pub fn apply(&self, reached: Celsius) -> Celsius {
+        let u = i64::from(
+            reached
+                .saturating_sub(Self::MIDDLE)
+                .clamp(-Self::REACH, Self::REACH)
+                .to_bits(),
+        );
+        let square = (u * u) >> Celsius::FRAC_NBITS;
+        let change = (i64::from(self.slope) * u + i64::from(self.curvature) * square) >> 32;
+        reached
+            .saturating_add(self.offset)
+            .saturating_add(Celsius::from_bits(change as i32))
+    }
+}
