@@ -100,14 +100,18 @@ pub struct ForceSensor {
 /// A thermoelectric module on its supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Module {
-    /// Electrical resistance, with that of the bridge's switches, its filter and the leads, ohm.
-    pub resistance_ohm: f64,
+    /// Resistance of the legs at 27 °C, ohm.
+    pub legs_ohm: f64,
+    /// Resistance of the bridge's switches, its filter and the leads, ohm.
+    pub leads_ohm: f64,
     /// Seebeck coefficient, V/K.
     pub seebeck_v_k: f64,
     /// Voltage that the bridge loses in its dead times, V, 0 or more.
     pub dead_time_v: f64,
-    /// Current above which it loses all of that, A, above 0: half of the ripple in its filter's inductor.
+    /// Half of the ripple in its filter's inductor, A, over `w (1 - w)` for pulses of a part `w` of the period.
     pub ripple_a: f64,
+    /// What one dead time changes the inductor's current by, A, above 0.
+    pub dead_time_a: f64,
     /// Supply of the bridge, V.
     pub supply_v: f64,
     /// Largest current either way, A.
@@ -144,10 +148,12 @@ impl Default for Settings {
             },
             current_counts_per_a: 400.0,
             module: Module {
-                resistance_ohm: 1.25,
+                legs_ohm: 1.061,
+                leads_ohm: 0.19,
                 seebeck_v_k: 0.0273,
                 dead_time_v: 0.397,
-                ripple_a: 0.5,
+                ripple_a: 6.75,
+                dead_time_a: 0.386,
                 supply_v: 12.0,
                 current_limit_a: 6.0,
             },

@@ -1,10 +1,15 @@
 //! Set-point to current, and current to bridge voltage.
 
+mod lag;
 mod pi;
+mod plate;
+mod two_degrees;
 mod voltage;
 
 pub use pi::{Period, Pi};
-pub use voltage::Voltage;
+pub use plate::Watt;
+use two_degrees::TwoDegrees;
+pub use voltage::{Legs, Voltage};
 
 use contact_model::fixed_point::Celsius;
 
@@ -18,13 +23,19 @@ pub enum Law {
     /// Proportional-integral, ten times a second, as the thesis's display.
     Pi10Hz,
     /// Proportional-integral, every tick.
-    #[default]
     Pi,
+    /// With a model of plate and finger beside the loop.
+    #[default]
+    Model,
 }
 
 impl Law {
     /// All of them, by their words in the protocol.
-    pub const WORDS: [(&'static str, Self); 2] = [("pi-10hz", Self::Pi10Hz), ("pi", Self::Pi)];
+    pub const WORDS: [(&'static str, Self); 3] = [
+        ("pi-10hz", Self::Pi10Hz),
+        ("pi", Self::Pi),
+        ("model", Self::Model),
+    ];
 
     /// Its word in the protocol.
     #[must_use]
@@ -32,6 +43,7 @@ impl Law {
         match self {
             Self::Pi10Hz => "pi-10hz",
             Self::Pi => "pi",
+            Self::Model => "model",
         }
     }
 }
@@ -42,6 +54,22 @@ pub struct Control {
     law: Law,
     pi_10hz: Pi,
     pi: Pi,
+    two_degrees: TwoDegrees,
+}
+
+/// What a law goes by in one tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Inputs {
+    /// Eq. 6-12, or where the display is held.
+    pub setpoint: Setpoint,
+    /// The set-point, and what brings the skin back to where it should be.
+    pub target: Setpoint,
+    /// Display thermistor.
+    pub display: Celsius,
+    /// Sink thermistor.
+    pub sink: Celsius,
+    /// Heat from the finger into the display.
+    pub finger: Watt,
 }
 
 impl Control {
@@ -53,15 +81,16 @@ impl Control {
             law: Law::default(),
             pi_10hz: Pi::new(&settings.gains_10hz, limit_a, Period::TenthOfASecond),
             pi: Pi::new(&settings.gains, limit_a, Period::EveryTick),
+            two_degrees: TwoDegrees::new(&settings.module, &settings.tile),
         }
     }
 
-    /// Controls another tile, from rest.
+    /// Controls another tile; goes on from where it is.
     pub fn retune(&mut self, tile: &Tile) {
-        let limit_a = self.limit().to_num();
         let [gains, gains_10hz] = Gains::of_tile(tile);
-        self.pi = Pi::new(&gains, limit_a, Period::EveryTick);
-        self.pi_10hz = Pi::new(&gains_10hz, limit_a, Period::TenthOfASecond);
+        self.pi.retune(&gains);
+        self.pi_10hz.retune(&gains_10hz);
+        self.two_degrees.retune(tile);
     }
 
     /// The law in use.
@@ -88,13 +117,39 @@ impl Control {
     pub fn reset(&mut self) {
         self.pi_10hz.reset();
         self.pi.reset();
+        self.two_degrees.reset();
+    }
+
+    /// The display's surface, as well as the law in use knows it from its reading.
+    #[must_use]
+    pub fn surface(&self, reading: Celsius) -> Celsius {
+        self.two_degrees.surface().unwrap_or(reading)
+    }
+
+    /// Ends and mean of the legs.
+    #[must_use]
+    pub fn legs(&self, display: Celsius, sink: Celsius) -> Legs {
+        if self.two_degrees.surface().is_none() {
+            return Legs::between(display, sink);
+        }
+        let plate = self.two_degrees.plate();
+        Legs {
+            cold: plate.surface(),
+            hot: plate.hot(),
+            mean: plate.legs(),
+        }
     }
 
     /// Current for one tick; positive cools.
-    pub fn update(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
+    pub fn update(&mut self, inputs: &Inputs) -> Current {
         match self.law {
-            Law::Pi10Hz => self.pi_10hz.update(setpoint, display),
-            Law::Pi => self.pi.update(setpoint, display),
+            Law::Pi10Hz => self.pi_10hz.update(inputs.setpoint, inputs.display),
+            Law::Pi => self.pi.update(inputs.setpoint, inputs.display),
+            Law::Model => {
+                let (target, display) = (inputs.target.celsius(), inputs.display);
+                self.two_degrees
+                    .update(&mut self.pi, target, display, inputs.sink, inputs.finger)
+            }
         }
     }
 }

@@ -45,23 +45,31 @@ pub struct Pi {
 }
 
 impl Pi {
-    /// `f64`, once; gains saturate at 32768 A/K and 2 A/K an update.
+    /// `f64`; gains saturate at 32768 A/K and 2 A/K an update.
     #[must_use]
     pub fn new(gains: &Gains, limit_a: f64, period: Period) -> Self {
-        let period = match period {
-            Period::EveryTick => 1,
-            Period::TenthOfASecond => TICK_HZ / 10,
-        };
-        let per_update = gains.proportional_a_k * f64::from(period) / (gains.integral_s * f64::from(TICK_HZ));
-        Self {
-            proportional: libm::ldexp(gains.proportional_a_k, GAIN_BITS as i32) as i32,
-            integral: libm::ldexp(per_update, RATE_BITS as i32) as i32,
+        let mut pi = Self {
+            proportional: 0,
+            integral: 0,
             limit: Current::saturating_from_num(limit_a),
-            period,
+            period: match period {
+                Period::EveryTick => 1,
+                Period::TenthOfASecond => TICK_HZ / 10,
+            },
             wait: 0,
             output: Current::ZERO,
             state: 0,
-        }
+        };
+        pi.retune(gains);
+        pi
+    }
+
+    /// Other gains; the integral part of the output stays. `f64`.
+    pub fn retune(&mut self, gains: &Gains) {
+        let per_update =
+            gains.proportional_a_k * f64::from(self.period) / (gains.integral_s * f64::from(TICK_HZ));
+        self.proportional = libm::ldexp(gains.proportional_a_k, GAIN_BITS as i32) as i32;
+        self.integral = libm::ldexp(per_update, RATE_BITS as i32) as i32;
     }
 
     /// Forgets the past.
@@ -82,14 +90,15 @@ impl Pi {
     pub fn update(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
         if self.wait == 0 {
             self.wait = self.period;
-            self.output = self.respond(setpoint, display);
+            self.output = self.respond(display.saturating_sub(setpoint.celsius()));
         }
         self.wait -= 1;
         self.output
     }
 
-    fn respond(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
-        let error = i64::from(display.saturating_sub(setpoint.celsius()).to_bits());
+    /// Answer to an error that is positive when the display is too warm, whatever the period.
+    pub fn respond(&mut self, error: Celsius) -> Current {
+        let error = i64::from(error.to_bits());
         let proportional = (error * i64::from(self.proportional)) >> (ERROR_BITS + GAIN_BITS - CURRENT_BITS);
         let state = self.state.saturating_add(error * i64::from(self.integral));
         let limit = i64::from(self.limit.to_bits());

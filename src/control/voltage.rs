@@ -6,44 +6,113 @@ use fixed::types::{I1F15, I16F16};
 use crate::drive::{Current, Duty};
 use crate::settings::Module;
 
-/// The module's electrical side: `V = R I + a (T_sink - T_display) + V_dead`, where `V_dead` is what the bridge loses
-/// in its dead times. It opposes the current, and grows with it until its ripple does not reach zero any more.
+/// The module's electrical side: `V = R I + a (T_hot - T_cold) + V_dead`, where `V_dead` is what the bridge loses
+/// in its dead times.
+///
+/// It loses all of `V_dead` while the inductor's current stays with the pulses for the whole period, and nothing
+/// while its ripple reaches back far enough to flow against them in every dead time. In between, the loss follows a
+/// straight line over half of what a dead time changes the inductor's current by:
+///
+/// ```text
+/// lost = V_dead (I - from) / (dead_time_a / 2), from 0 to V_dead      from = ripple_a w (1 - w) - dead_time_a
+/// ```
+///
+/// for pulses of a part `w` of the period, and a current `I` that counts along them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voltage {
-    /// Part of the supply per A.
+    /// Part of the supply per A, with the legs at 27 °C, and how it rises per K above.
     per_a: I16F16,
+    per_a_k: I16F16,
     /// Part of the supply per K.
     per_k: I16F16,
-    /// Part of the supply lost in dead times, and that per A while the current is small.
+    /// Part of the supply lost in dead times.
     dead: I16F16,
+    ripple_a: I16F16,
+    dead_time_a: I16F16,
+    /// Part of the supply that one more ampere loses on the line between nothing and all.
     dead_per_a: I16F16,
 }
+
+/// Temperatures of the module's legs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Legs {
+    /// At the display.
+    pub cold: Celsius,
+    /// At the sink.
+    pub hot: Celsius,
+    /// On average.
+    pub mean: Celsius,
+}
+
+impl Legs {
+    /// As display and sink have them while little current flows.
+    #[must_use]
+    pub fn between(display: Celsius, sink: Celsius) -> Self {
+        Self {
+            cold: display,
+            hot: sink,
+            mean: (display >> 1u32).saturating_add(sink >> 1u32),
+        }
+    }
+}
+
+/// Resistivity of bismuth telluride, 1/K.
+const RESISTIVITY_PER_K: f64 = 0.0049;
+const SHEET: Celsius = Celsius::lit("27");
 
 impl Voltage {
     /// `f64`, once.
     #[must_use]
     pub fn new(module: &Module) -> Self {
+        let fixed = I16F16::saturating_from_num::<f64>;
+        let dead = module.dead_time_v / module.supply_v;
         Self {
-            per_a: I16F16::saturating_from_num(module.resistance_ohm / module.supply_v),
-            per_k: I16F16::saturating_from_num(module.seebeck_v_k / module.supply_v),
-            dead: I16F16::saturating_from_num(module.dead_time_v / module.supply_v),
-            dead_per_a: I16F16::saturating_from_num(module.dead_time_v / (module.supply_v * module.ripple_a)),
+            per_a: fixed((module.legs_ohm + module.leads_ohm) / module.supply_v),
+            per_a_k: fixed(module.legs_ohm * RESISTIVITY_PER_K / module.supply_v),
+            per_k: fixed(module.seebeck_v_k / module.supply_v),
+            dead: fixed(dead),
+            ripple_a: fixed(module.ripple_a),
+            dead_time_a: fixed(module.dead_time_a),
+            dead_per_a: fixed(2.0 * dead / module.dead_time_a),
         }
     }
 
     /// Mean voltage for a current, as a part of the supply.
     #[must_use]
-    pub fn duty(&self, current: Current, sink: Celsius, display: Celsius) -> Duty {
-        let across = I16F16::saturating_from_num(sink.saturating_sub(display));
+    pub fn duty(&self, current: Current, legs: &Legs) -> Duty {
+        let across = I16F16::saturating_from_num(legs.hot.saturating_sub(legs.cold));
+        let warmer = I16F16::saturating_from_num(legs.mean.saturating_sub(SHEET));
         let current = I16F16::from_num(current);
-        let resistive = current.saturating_mul(self.per_a);
-        let dead = current
-            .saturating_mul(self.dead_per_a)
-            .clamp(-self.dead, self.dead);
-        let voltage = resistive
-            .saturating_add(dead)
+        let needed = current
+            .saturating_mul(self.per_a.saturating_add(warmer.saturating_mul(self.per_a_k)))
             .saturating_add(across.saturating_mul(self.per_k));
+        let voltage = if needed < 0 {
+            needed.saturating_sub(self.lost(needed.saturating_neg(), current.saturating_neg()))
+        } else {
+            needed.saturating_add(self.lost(needed, current))
+        };
         Duty::saturating(I1F15::saturating_from_num(voltage))
+    }
+
+    /// What pulses that shall leave `needed` of the supply have to be wider by: where the line meets the width that it
+    /// asks for, to first order around half of the loss.
+    fn lost(&self, needed: I16F16, current: I16F16) -> I16F16 {
+        let one = I16F16::ONE;
+        let middle = needed.saturating_add(self.dead >> 1u32).min(one);
+        let from = self
+            .ripple_a
+            .saturating_mul(middle.saturating_mul(one - middle))
+            .saturating_sub(self.dead_time_a);
+        let line = current.saturating_sub(from).saturating_mul(self.dead_per_a);
+        // A wider pulse has more ripple, which takes back a part of the loss.
+        let back = self
+            .ripple_a
+            .saturating_mul(one - (middle << 1))
+            .saturating_mul(self.dead_per_a);
+        let off_middle = line.saturating_sub(self.dead >> 1u32);
+        let half = self.dead >> 1u32;
+        let lost: I16F16 = half.saturating_add(off_middle.saturating_div(one.saturating_add(back).max(one)));
+        lost.clamp(I16F16::ZERO, self.dead)
     }
 }
 

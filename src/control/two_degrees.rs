@@ -1,0 +1,121 @@
+//! The law with two degrees of freedom: a model of the plate says which current the target needs, and the loop only
+//! sees where the plate differs from it.
+//!
+//! ```text
+//!            +-------- plate, sensor (model) <--+
+//!            | predicted                        |
+//! measured - + -> PI -> feedback --+            | feed
+//!                                  + -> limit --+--> current
+//!  target -> missing at horizon ---+
+//! ```
+//!
+//! The model gets what the limit leaves of its own wish, so it never promises more than the bridge gives: there is
+//! nothing to wind up. The reading is compared with what the sensor, lag and all, should show.
+
+use contact_model::fixed_point::Celsius;
+
+use super::lag::{Lag, Share};
+use super::pi::Pi;
+use super::plate::{Plate, Watt};
+use crate::drive::Current;
+use crate::settings::{Module, Tile};
+
+/// Time constant of the difference between plate and model that counts as the plate's, s.
+const APART_LAG_S: f64 = 0.02;
+/// Cooling is taken back from this sink temperature on, to none 4 K above it: more current would warm the sink more
+/// than cool the display.
+const SINK_WARM: Celsius = Celsius::lit("39.5");
+const SINK_SHIFT: u32 = 2;
+
+/// The law's memory.
+#[derive(Clone, Debug)]
+pub struct TwoDegrees {
+    plate: Plate,
+    sensor: Lag,
+    /// Plate without model.
+    apart: Lag,
+    feed: Current,
+    limit: Current,
+    running: bool,
+}
+
+impl TwoDegrees {
+    /// `f64`, once.
+    #[must_use]
+    pub fn new(module: &Module, tile: &Tile) -> Self {
+        Self {
+            plate: Plate::new(module),
+            sensor: Lag::new(Share::of(tile.sensor_lag_s)),
+            apart: Lag::new(Share::of(APART_LAG_S)),
+            feed: Current::ZERO,
+            limit: Current::saturating_from_num(module.current_limit_a),
+            running: false,
+        }
+    }
+
+    /// Goes on with another sensor.
+    pub fn retune(&mut self, tile: &Tile) {
+        let reading = self.sensor.value();
+        self.sensor = Lag::new(Share::of(tile.sensor_lag_s));
+        self.sensor.set(reading);
+    }
+
+    /// Starts anew with the next [`Self::update`].
+    pub fn reset(&mut self) {
+        self.running = false;
+    }
+
+    /// The plate, of the model.
+    #[must_use]
+    pub const fn plate(&self) -> &Plate {
+        &self.plate
+    }
+
+    /// The display's surface as model and reading together have it; before the first update, none.
+    #[must_use]
+    pub fn surface(&self) -> Option<Celsius> {
+        self.running
+            .then(|| self.plate.surface().saturating_add(self.apart.value()))
+    }
+
+    /// Current for one tick; positive cools.
+    pub fn update(
+        &mut self,
+        pi: &mut Pi,
+        target: Celsius,
+        reading: Celsius,
+        sink: Celsius,
+        finger: Watt,
+    ) -> Current {
+        if !self.running {
+            self.plate.start(reading, sink);
+            self.sensor.set(reading);
+            self.apart.set(Celsius::ZERO);
+            self.feed = Current::ZERO;
+            pi.reset();
+            self.running = true;
+        }
+        let apart = reading.saturating_sub(self.sensor.value());
+        self.apart.follow(apart);
+        let feedback = pi.respond(apart);
+        let held = self.plate.heat(self.feed, finger, sink);
+        let wish = self.feed.saturating_add(self.plate.missing(target, &held));
+        let current = wish
+            .saturating_add(feedback)
+            .clamp(-self.limit, self.cooling_limit(sink));
+        self.feed = current.saturating_sub(feedback).clamp(-self.limit, self.limit);
+        let heat = self.plate.heat(self.feed, finger, sink);
+        let before = self.plate.surface();
+        self.plate.step(&heat);
+        // The sensor sees the plate on its way.
+        self.sensor
+            .follow((before >> 1u32).saturating_add(self.plate.surface() >> 1u32));
+        current
+    }
+
+    fn cooling_limit(&self, sink: Celsius) -> Current {
+        let over = sink.saturating_sub(SINK_WARM).max(Celsius::ZERO) >> SINK_SHIFT;
+        let left = i64::from(Celsius::ONE.saturating_sub(over).max(Celsius::ZERO).to_bits());
+        Current::from_bits(((i64::from(self.limit.to_bits()) * left) >> 22) as i32)
+    }
+}
