@@ -13,14 +13,15 @@
 //! `preset` and `contact` only.
 
 use contact_model::fixed_point::{Celsius, Force, Pairing};
+use contact_model::material::{MATERIALS, SKIN};
 
 use crate::TICK_HZ;
 use crate::commission::{Aborted, Experiment, PointError};
-use crate::control::{Control, Voltage};
+use crate::control::{Control, Inputs, Law, Voltage, Watt};
 use crate::drive::{Current, Drive};
 use crate::guard::{self, Fault, Setpoint, Sound, Watch};
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
-use crate::render::{Mode, Render, Scene};
+use crate::render::{Bodies, Mode, Render, Scene, Wanted};
 use crate::sense::{Averages, Readings, Samples, Sensors, Touch};
 use crate::settings::Settings;
 
@@ -76,6 +77,8 @@ pub struct Station {
     touch: Touch,
     render: Render,
     material: Option<(&'static str, Pairing)>,
+    /// Of any material: how skin and display touch.
+    any: Option<Pairing>,
     object: Option<Celsius>,
     mode: Mode,
     /// Where the display is held while armed, instead of neutral.
@@ -87,6 +90,15 @@ pub struct Station {
     tick: u32,
     stream_ticks: u32,
     telemetry: Telemetry,
+}
+
+/// What one tick makes of finger and scene.
+#[derive(Clone, Copy, Debug)]
+struct Followed {
+    setpoint: Setpoint,
+    limited: bool,
+    target: Setpoint,
+    finger: Watt,
 }
 
 impl Station {
@@ -103,6 +115,13 @@ impl Station {
             touch: Touch::default(),
             render: Render::default(),
             material: None,
+            any: Pairing::new(
+                &SKIN,
+                &MATERIALS[0].1,
+                &settings.display,
+                1.0 / f64::from(TICK_HZ),
+            )
+            .ok(),
             object: None,
             mode: Mode::default(),
             held: None,
@@ -129,14 +148,20 @@ impl Station {
         let followed = checked
             .ok()
             .and_then(|sound| Some((sound, self.follow(samples, &sound)?)));
-        let (drive, current) = match followed {
-            Some((sound, (setpoint, _))) => {
-                let tuning = self.tuning(&sound, readings.current);
-                let current = tuning.unwrap_or_else(|| self.control.update(setpoint, sound.display));
-                (
-                    Drive::On(self.voltage.duty(current, sound.sink, sound.display)),
-                    current,
-                )
+        let (drive, current) = match &followed {
+            Some((sound, followed)) => {
+                let tuning = self.tuning(sound, readings.current);
+                let legs = self.control.legs(sound.display, sound.sink);
+                let current = tuning.unwrap_or_else(|| {
+                    self.control.update(&Inputs {
+                        setpoint: followed.setpoint,
+                        target: followed.target,
+                        display: sound.display,
+                        sink: sound.sink,
+                        finger: followed.finger,
+                    })
+                });
+                (Drive::On(self.voltage.duty(current, &legs)), current)
             }
             None => {
                 self.end_experiment();
@@ -144,32 +169,50 @@ impl Station {
                 (Drive::Off, Current::ZERO)
             }
         };
-        self.report(&readings, followed.map(|(_, wanted)| wanted), current);
+        let setpoint = followed.map(|(_, followed)| (followed.setpoint, followed.limited));
+        self.report(&readings, setpoint, current);
         drive
     }
 
-    /// Follows finger and scene; the set-point of this tick, and whether it was limited.
-    fn follow(&mut self, samples: &Samples, sound: &Sound) -> Option<(Setpoint, bool)> {
+    /// Follows finger and scene.
+    fn follow(&mut self, samples: &Samples, sound: &Sound) -> Option<Followed> {
         let before = self.touch.touching();
         self.touch.update(sound.force);
         self.sensors.follow_zero(samples, &self.touch);
         let touching = self.touch.touching();
-        self.render.observe(sound.skin, sound.room, touching);
+        let landed = if before { 0 } else { self.touch.landed_ticks() };
+        let touch: Option<Force> = touching.then_some(sound.force);
+        self.render.observe(sound.skin, sound.room, touch, landed);
+        let live = self.control.law() == Law::Model;
+        let display = self.control.surface(sound.display);
+        let pairing = self.material.map(|(_, pairing)| pairing).or(self.any);
+        let finger = match pairing {
+            Some(pairing) if live => self.render.load(&pairing, display),
+            _ => Watt::ZERO,
+        };
+        let only = |setpoint| Wanted {
+            setpoint,
+            target: setpoint,
+        };
         let wanted = match self.state {
             State::Off | State::Tripped(_) => return None,
-            State::Armed => match (&self.experiment, self.held) {
+            State::Armed => only(match (&self.experiment, self.held) {
                 (Some(experiment), _) if experiment.drives() => experiment.rest().celsius(),
                 (_, Some(held)) => held.celsius(),
                 (_, None) => self.render.neutral()?,
-            },
+            }),
             State::Preset | State::Contact => {
                 self.state = if touching { State::Contact } else { State::Preset };
-                let landed = if before { 0 } else { self.touch.landed_ticks() };
-                let touch: Option<Force> = touching.then_some(sound.force);
-                self.render.present(&self.scene()?, touch, landed)?
+                self.render.present(&self.scene()?, display, live)?
             }
         };
-        Some(Setpoint::limited(wanted))
+        let (setpoint, limited) = Setpoint::limited(wanted.setpoint);
+        Some(Followed {
+            setpoint,
+            limited,
+            target: Setpoint::limited(wanted.target).0,
+            finger,
+        })
     }
 
     /// Current of the experiment, if one goes on.
@@ -196,6 +239,7 @@ impl Station {
         let (_, pairing) = self.material?;
         Some(Scene {
             pairing,
+            bodies: Bodies::new(&pairing),
             object: self.object,
             mode: self.mode,
         })

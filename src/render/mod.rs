@@ -5,12 +5,17 @@
 //! semi-infinite mode (chapter 4 of the thesis) it holds the interface temperature of Eq. 3-1 throughout.
 
 mod force_mean;
+mod skin;
 
 use core::ops::RangeInclusive;
 
-use contact_model::fixed_point::{Celsius, Course, Force, Pairing, log2_relative_pressure};
+use contact_model::fixed_point::{Celsius, Course, Force, Pairing, contact_area, log2_relative_pressure};
 
 use force_mean::{Change, ForceMean, all_the_same};
+pub use skin::Bodies;
+use skin::{Links, Skin};
+
+use crate::control::Watt;
 
 /// How far the set-point may be from Eq. 6-12 at the force for which contact resistance was computed. What
 /// is left to noise of the force makes this 0.5 mK.
@@ -18,6 +23,17 @@ pub const TOLERANCE: Celsius = Celsius::lit("0.0004");
 
 /// Time constant of the filters before contact, as a power of two of ticks (0.26 s).
 const FILTER_SHIFT: u32 = 8;
+
+/// A skin that was touched is believed again after this many ticks: until then its sensor sees what the contact left.
+const RESTED_TICKS: u32 = 2000;
+/// Part of a force, as a power of two, by which it changes nothing that the skin could tell.
+const SAME_SHIFT: u32 = 10;
+/// A force may still rise for this many ticks after landing and count as constant.
+const SETTLED_TICKS: u64 = 16;
+/// A display this far from its preset at landing was not in time.
+const LATE: Celsius = Celsius::lit("0.1");
+/// `e_skin / sqrt(dt)` per mm², W/K in 2^-30: what a drive of one kelvin carries.
+const FLUX_W_MM2K: u32 = 39_728_000;
 
 /// Which model gives the set-point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,6 +50,8 @@ pub enum Mode {
 pub struct Scene {
     /// The material.
     pub pairing: Pairing,
+    /// The same for a skin that is followed.
+    pub bodies: Bodies,
     /// Its temperature; that of the room if none was given.
     pub object: Option<Celsius>,
     /// Model.
@@ -52,15 +70,38 @@ fn filter(state: Celsius, input: Celsius) -> Celsius {
     state.saturating_add(input.saturating_sub(state) >> FILTER_SHIFT)
 }
 
-/// A contact that lasts.
-#[derive(Clone, Debug, PartialEq, Eq)]
-struct Touching {
+/// How the finger holds on, whatever it holds on to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Grip {
+    force: ForceMean,
+    /// What the last tick brought.
+    change: Change,
+    /// The first touch of a rested skin, and its force has not changed since.
+    steady: bool,
     /// Ticks since landing.
     elapsed: u64,
-    force: ForceMean,
+    /// For a force.
+    links: Option<(Force, Links)>,
+}
+
+/// A contact with an object that lasts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Touching {
+    /// Ticks since it began.
+    elapsed: u64,
     /// Forces for which contact resistance need not be computed again.
     same: RangeInclusive<Force>,
-    course: Course,
+    /// Eq. 6-12 in closed form, if that holds.
+    course: Option<Course>,
+}
+
+/// What the display should do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Wanted {
+    /// Eq. 6-12.
+    pub setpoint: Celsius,
+    /// The same, and what brings the skin back to where the object would have it.
+    pub target: Celsius,
 }
 
 /// Follows skin and contact; gives the wanted display temperature.
@@ -68,22 +109,48 @@ struct Touching {
 pub struct Render {
     /// Skin and room before contact, filtered.
     before: Option<Before>,
+    /// Ticks for which nothing has touched.
+    lifted_ticks: u32,
+    grip: Option<Grip>,
+    skin: Skin,
     touching: Option<Touching>,
     evaluations: u32,
 }
 
 impl Render {
-    /// Follows skin and room; before contact only: the skin's sensor sees little of it during contact, and
-    /// Eq. 6-12 starts from the temperatures before it.
-    pub fn observe(&mut self, skin: Celsius, room: Celsius, touching: bool) {
+    /// Follows skin, room and force, of which a contact that begins began `landed_ticks` ago. Temperatures before
+    /// contact only: the skin's sensor sees little of it during contact, and for some time after it what the contact
+    /// left.
+    pub fn observe(&mut self, skin: Celsius, room: Celsius, touch: Option<Force>, landed_ticks: u32) {
+        let at_rest = touch.is_none() && self.lifted_ticks >= RESTED_TICKS;
         self.before = Some(match self.before {
             None => Before { skin, room },
-            Some(before) if touching => before,
+            Some(before) if !at_rest => before,
             Some(before) => Before {
                 skin: filter(before.skin, skin),
                 room: filter(before.room, room),
             },
         });
+        self.grip = match (touch, self.grip) {
+            (None, _) => None,
+            (Some(force), None) => Some(Grip {
+                force: ForceMean::new(force),
+                change: Change::New,
+                steady: self.lifted_ticks >= RESTED_TICKS,
+                elapsed: landed_ticks.into(),
+                links: None,
+            }),
+            (Some(force), Some(mut grip)) => {
+                grip.change = grip.force.update(force);
+                grip.elapsed += 1;
+                grip.steady &= grip.change == Change::Noise || grip.elapsed < SETTLED_TICKS;
+                Some(grip)
+            }
+        };
+        self.lifted_ticks = match touch {
+            Some(_) => 0,
+            None => self.lifted_ticks.saturating_add(1),
+        };
     }
 
     /// Evaluations of `erfcx` since reset.
@@ -102,56 +169,113 @@ impl Render {
     /// A contact that begins with the next [`Self::present`] is a new one.
     pub fn forget_contact(&mut self) {
         self.touching = None;
+        self.skin.forget_object();
+        if let Some(grip) = &mut self.grip {
+            grip.links = None;
+        }
     }
 
-    /// Wanted display temperature of this tick while `scene` is presented.
+    /// Heat into a display, W, whose surface is `display`; `pairing` is any with that display.
+    pub fn load(&mut self, pairing: &Pairing, display: Celsius) -> Watt {
+        let Some(before) = self.before else {
+            return Watt::ZERO;
+        };
+        let Some(grip) = &mut self.grip else {
+            self.skin.touch_display(None, before.skin, display);
+            return Watt::ZERO;
+        };
+        let force = grip.force.mean();
+        let (at, links) = match grip.links {
+            Some((at, links)) if force.abs_diff(at) <= at >> SAME_SHIFT => (at, links),
+            _ => (force, Links::new(&pairing.under(log2_relative_pressure(force)))),
+        };
+        grip.links = Some((at, links));
+        let drive = self.skin.touch_display(Some(&links), before.skin, display);
+        // mm2 in 2^-16 and K in 2^-22 to W in 2^-24.
+        let area = i64::from(contact_area(force).to_bits());
+        let per_mm2 = (i64::from(drive.to_bits()) * i64::from(FLUX_W_MM2K)) >> 30;
+        Watt::from_bits(((per_mm2 * area) >> 14).clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+    }
+
+    /// Wanted display temperature of this tick while `scene` is presented. `None` until the skin was observed.
     ///
-    /// `touch` is the force, if a finger touches; `landed_ticks` is how long ago it landed if it was noticed
-    /// in this tick. `None` until the skin was observed.
-    pub fn present(&mut self, scene: &Scene, touch: Option<Force>, landed_ticks: u32) -> Option<Celsius> {
+    /// `live`: the skin is followed as it is on the display, whose surface is at `display`; otherwise Eq. 6-12 holds
+    /// in closed form, as if every contact were the first and its force had always been what it is.
+    pub fn present(&mut self, scene: &Scene, display: Celsius, live: bool) -> Option<Wanted> {
         let Before { skin, room } = self.before?;
         let object = scene.object.unwrap_or(room);
+        let only = |setpoint| {
+            Some(Wanted {
+                setpoint,
+                target: setpoint,
+            })
+        };
         if scene.mode == Mode::SemiInfinite {
             self.touching = None;
-            return Some(scene.pairing.interface_temperature(skin, object));
+            return only(scene.pairing.interface_temperature(skin, object));
         }
-        let Some(force) = touch else {
+        let apart = skin.saturating_sub(object);
+        let Some(grip) = &mut self.grip else {
             self.touching = None;
-            return Some(scene.pairing.preset(skin, object));
-        };
-        let lay = |force, elapsed| {
-            let contact = scene.pairing.under(log2_relative_pressure(force));
-            let (course, evaluations) = Course::new(&contact, skin, object, elapsed, TOLERANCE);
-            (course, all_the_same(force, course.gain()), evaluations)
-        };
-        let (setpoint, evaluations) = match &mut self.touching {
-            None => {
-                let elapsed = landed_ticks.into();
-                let (course, same, evaluations) = lay(force, elapsed);
-                self.touching = Some(Touching {
-                    elapsed,
-                    force: ForceMean::new(force),
-                    same,
-                    course,
-                });
-                (course.setpoint(), evaluations)
+            if !live {
+                return only(scene.pairing.preset(skin, object));
             }
-            Some(touching) => {
-                touching.elapsed += 1;
-                let change = touching.force.update(force);
-                let same = || !touching.force.is_better() || touching.same.contains(&touching.force.mean());
-                if change == Change::Noise && same() {
-                    let setpoint = touching.course.advance();
-                    (setpoint, touching.course.is_at_knot().into())
-                } else {
-                    let (course, same, evaluations) = lay(touching.force.take(), touching.elapsed);
-                    (touching.course, touching.same) = (course, same);
-                    (course.setpoint(), evaluations)
-                }
+            self.skin.touch_object(None, &scene.bodies, apart);
+            return only(self.skin.display(&scene.bodies, skin, apart, false));
+        };
+        let fresh = self.touching.is_none();
+        let touching = self.touching.get_or_insert_with(|| {
+            // A finger that rests there when the object appears touches it now.
+            let elapsed = if grip.change == Change::New {
+                grip.elapsed
+            } else {
+                0
+            };
+            Touching {
+                elapsed,
+                same: Force::ZERO..=Force::ZERO,
+                course: None,
+            }
+        });
+        if fresh {
+            let late = display.saturating_sub(scene.pairing.preset(skin, object)).abs() > LATE;
+            grip.steady &= !late;
+        } else {
+            touching.elapsed += 1;
+        }
+        if live {
+            let links = grip.links.as_ref().map(|(_, links)| links);
+            self.skin.touch_object(links, &scene.bodies, apart);
+        }
+        let closed = grip.steady || !live;
+        let same = !grip.force.is_better() || touching.same.contains(&grip.force.mean());
+        let setpoint = match &mut touching.course {
+            Some(course) if closed && grip.change == Change::Noise && same => {
+                let setpoint = course.advance();
+                self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
+                setpoint
+            }
+            course if closed => {
+                let force = grip.force.take();
+                let contact = scene.pairing.under(log2_relative_pressure(force));
+                let (laid, evaluations) = Course::new(&contact, skin, object, touching.elapsed, TOLERANCE);
+                self.evaluations = self.evaluations.wrapping_add(evaluations);
+                touching.same = all_the_same(force, laid.gain());
+                *course = Some(laid);
+                laid.setpoint()
+            }
+            course => {
+                *course = None;
+                self.skin.display(&scene.bodies, skin, apart, true)
             }
         };
-        self.evaluations = self.evaluations.wrapping_add(evaluations);
-        Some(setpoint)
+        let correction = match (&grip.links, live) {
+            (Some((_, links)), true) => self.skin.correction(links),
+            _ => Celsius::ZERO,
+        };
+        let target = setpoint.saturating_add(correction);
+        let setpoint = if closed { setpoint } else { target };
+        Some(Wanted { setpoint, target })
     }
 }
 
