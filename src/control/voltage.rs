@@ -20,9 +20,9 @@ use crate::settings::Module;
 /// for pulses of a part `w` of the period, and a current `I` that counts along them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voltage {
-    /// Part of the supply per A, with the legs at 27 °C, and how it rises per K above.
+    /// Part of the supply per A with the legs at 27 °C, and the part of it that it rises by per K above.
     per_a: I16F16,
-    per_a_k: I16F16,
+    rise_per_k: I16F16,
     /// Part of the supply per K.
     per_k: I16F16,
     /// Part of the supply lost in dead times.
@@ -68,7 +68,7 @@ impl Voltage {
         let dead = module.dead_time_v / module.supply_v;
         Self {
             per_a: fixed((module.legs_ohm + module.leads_ohm) / module.supply_v),
-            per_a_k: fixed(module.legs_ohm * RESISTIVITY_PER_K / module.supply_v),
+            rise_per_k: fixed(module.legs_ohm * RESISTIVITY_PER_K / (module.legs_ohm + module.leads_ohm)),
             per_k: fixed(module.seebeck_v_k / module.supply_v),
             dead: fixed(dead),
             ripple_a: fixed(module.ripple_a),
@@ -84,7 +84,10 @@ impl Voltage {
         let warmer = I16F16::saturating_from_num(legs.mean.saturating_sub(SHEET));
         let current = I16F16::from_num(current);
         let needed = current
-            .saturating_mul(self.per_a.saturating_add(warmer.saturating_mul(self.per_a_k)))
+            .saturating_mul(
+                self.per_a
+                    .saturating_add(self.per_a.saturating_mul(warmer.saturating_mul(self.rise_per_k))),
+            )
             .saturating_add(across.saturating_mul(self.per_k));
         let voltage = if needed < 0 {
             needed.saturating_sub(self.lost(needed.saturating_neg(), current.saturating_neg()))
@@ -121,27 +124,53 @@ mod tests {
     use super::*;
     use crate::settings::Settings;
 
-    fn at(t_c: f64) -> Celsius {
-        Celsius::from_num(t_c)
+    /// Legs at 27 °C whose Seebeck voltage is this.
+    fn legs(seebeck_v: f64) -> Legs {
+        let half = Celsius::saturating_from_num(0.5 * seebeck_v / 0.0273);
+        Legs {
+            cold: SHEET - half,
+            hot: SHEET + half,
+            mean: SHEET,
+        }
     }
 
+    /// Widths, currents at them, and the voltage lost: corners of the straight lines that the bridge's currents follow,
+    /// by hand from its inductor, diodes and dead time, and currents far from them.
     #[test]
-    fn voltage_is_resistive_plus_seebeck_plus_dead_time() {
+    fn pulses_make_up_for_what_the_dead_times_take() {
         let voltage = Voltage::new(&Settings::default().module);
-        // All of the dead time's 0.397 V from 0.5 A on, in proportion below.
-        for (current_a, dead_v) in [
-            (3.0, 0.397),
-            (0.25, 0.1985),
-            (0.0, 0.0),
-            (-0.1, -0.0794),
-            (-6.0, -0.397),
+        for (width, current_a, lost_v) in [
+            (0.1, 0.214, 0.0),
+            (0.1, 0.415, 0.397),
+            (0.2, 0.690, 0.0),
+            (0.2, 0.891, 0.397),
+            (0.3, 1.042, 0.0),
+            (0.3, 1.243, 0.397),
+            (0.06, -0.011, 0.0),
+            (0.06, 0.190, 0.397),
+            (0.4, 3.0, 0.397),
+            (0.6, 6.0, 0.397),
         ] {
-            let duty = voltage
-                .duty(Current::saturating_from_num(current_a), at(30.0), at(20.0))
-                .fraction()
-                .to_num::<f64>();
-            let expected = (current_a * 1.25 + 0.0273 * 10.0 + dead_v) / 12.0;
-            assert!((duty - expected).abs() < 3e-4, "{duty}, expected {expected}");
+            let seebeck_v = 12.0 * width - lost_v - 1.251 * current_a;
+            for sign in [1.0, -1.0] {
+                let current = Current::saturating_from_num(sign * current_a);
+                let duty = voltage.duty(current, &legs(sign * seebeck_v));
+                let error_v = 12.0 * (duty.fraction().to_num::<f64>() - sign * width);
+                assert!(error_v.abs() < 0.08, "{width}, {current_a} A: {error_v} V");
+            }
         }
+    }
+
+    /// Legs 10 K warmer have 4.9 % more resistance.
+    #[test]
+    fn warm_legs_need_more_voltage() {
+        let voltage = Voltage::new(&Settings::default().module);
+        let warm = Legs {
+            mean: SHEET + Celsius::lit("10"),
+            ..legs(0.0)
+        };
+        let part = |legs| voltage.duty(Current::lit("4"), legs).fraction().to_num::<f64>();
+        let more_v = 12.0 * (part(&warm) - part(&legs(0.0)));
+        assert!((more_v - 4.0 * 1.061 * 0.049).abs() < 2e-3, "{more_v}");
     }
 }

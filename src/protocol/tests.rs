@@ -75,7 +75,8 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id state stream material object mode law arm start abort clear",
+            "err unknown command 'fly'; known: id state stream material object mode law arm hold start abort clear \
+             calibrate tune margins settings set",
         ),
         (
             "material unobtainium-of-the-first-kind",
@@ -83,7 +84,7 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
              baf2 zns custom",
         ),
         ("mode x", "err unknown mode 'x'; known: contact semi-infinite"),
-        ("law x", "err unknown law 'x'; known: pi-10hz pi"),
+        ("law x", "err unknown law 'x'; known: pi-10hz pi model"),
         (" ", "err command missing"),
         ("stream", "err interval missing"),
         ("object", "err object temperature missing"),

@@ -128,9 +128,11 @@ fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
                 panic!("{drive:?}")
             };
             let voltage = voltage.fraction().to_num::<f64>();
-            // 6 A times 1.25 ohm of 12 V, the dead time, and what the module gives or takes.
+            // 6 A through leads and legs of 12 V, the dead time, and what the module gives or takes.
             let seebeck = 0.0273 * (25.0 - display_c) / 12.0;
-            let expected = duty * (1.25 + 0.397 / 6.0) + seebeck;
+            let legs_k = (25.0 + display_c) / 2.0 - 27.0;
+            let ohm = 0.19 + 1.061 * (1.0 + 0.0049 * legs_k);
+            let expected = duty * (ohm + 0.397 / 6.0) + seebeck;
             assert!((voltage - expected).abs() < 1e-3, "{voltage}");
         }
     }

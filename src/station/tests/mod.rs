@@ -50,6 +50,8 @@ impl Bench {
             noise: 1,
         };
         assert_eq!(bench.host("stream 1"), "ok");
+        // A display that does not answer to its current has no use for a model.
+        assert_eq!(bench.host("law pi"), "ok");
         bench
     }
 
