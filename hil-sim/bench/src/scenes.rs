@@ -6,7 +6,7 @@ mod floating;
 
 use contact_model::fixed_point::{Celsius, Course, Force, Pairing, PairingError, log2_relative_pressure};
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
-use thermal_display::render::{self, Mode, Render, TOLERANCE};
+use thermal_display::render::{self, Bodies, Mode, Render, TOLERANCE};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
 use floating::Finger as FloatingFinger;
@@ -95,13 +95,14 @@ impl Station {
         };
         let fixed = [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?];
         let mut render = Render::default();
-        render.observe(skin, object_c, false);
+        render.observe(skin, object_c, None, 0);
         Ok(Self {
             skin,
             object: object_c,
             render,
             scene: render::Scene {
                 pairing: fixed[0].pairing,
+                bodies: Bodies::new(&fixed[0].pairing),
                 object: Some(object_c),
                 mode: Mode::ContactResistance,
             },
@@ -175,8 +176,11 @@ fn five_fingers(station: &mut Station, _: u32) -> u32 {
 /// °C for none is never seen.
 #[inline]
 fn render_step(station: &mut Station, force: Force) -> u32 {
-    let set_point = station.render.present(&station.scene, Some(force), 1);
-    set_point.map_or(0, bits)
+    station
+        .render
+        .observe(station.skin, station.object, Some(force), 1);
+    let wanted = station.render.present(&station.scene, Celsius::ZERO, false);
+    wanted.map_or(0, |wanted| bits(wanted.setpoint))
 }
 
 fn render_constant(station: &mut Station, _: u32) -> u32 {
