@@ -305,6 +305,9 @@ impl Station {
                 _ => return Err(Error::NeedsArmed("tune")),
             },
             Command::Experiment(row) => {
+                if let State::Tripped(fault) = self.state {
+                    return Err(Error::Tripped(fault));
+                }
                 let experiment = self.experiment.as_ref().ok_or(Error::NotTuned)?;
                 let rows = experiment.outcome().ok_or(Error::Tuning)?;
                 let row = rows.map_err(Error::TuneAborted)?.get(row);

@@ -42,7 +42,7 @@ pub type Row = [i64; COLUMNS];
 pub const ROWS: usize = UNKNOWNS + 1;
 
 /// Pulses: change of current in eighths of [`AMPLITUDE`], and how long, ms. Both signs last equally long at each
-/// height, and heights differ to tell Joule's heat from drift. There are no pauses: near zero the bridge does not give
+/// height, so the display moves by 2.3 K at most, and heights differ to tell Joule's heat from drift. There are no pauses: near zero the bridge does not give
 /// what is asked for, and the mirror not what flows; what that makes of the current at rest is like a drift.
 const PULSES: [(i32, u32); 15] = [
     (8, 150),
@@ -61,7 +61,7 @@ const PULSES: [(i32, u32); 15] = [
     (16, 240),
     (-16, 120),
 ];
-const AMPLITUDE: Current = Current::lit("2");
+const AMPLITUDE: Current = Current::lit("1.5");
 /// Ticks from one equation to the next.
 const EVERY: u32 = 8;
 /// Ticks of an equation's unit of time, as a power of two.
