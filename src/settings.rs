@@ -4,9 +4,7 @@ mod calibration;
 mod tile;
 
 pub(crate) use calibration::rounded;
-pub use calibration::{
-    BORDERS, Calibration, Correction, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES,
-};
+pub use calibration::{BORDERS, Calibration, Correction, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES};
 pub use tile::Tile;
 
 use contact_model::material::{REFERENCE_DISPLAY, Surface};

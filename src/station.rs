@@ -126,7 +126,9 @@ impl Station {
         if let (Err(fault), false) = (checked, matches!(self.state, State::Tripped(_))) {
             self.state = State::Tripped(fault);
         }
-        let followed = checked.ok().and_then(|sound| Some((sound, self.follow(&sound)?)));
+        let followed = checked
+            .ok()
+            .and_then(|sound| Some((sound, self.follow(samples, &sound)?)));
         let (drive, current) = match followed {
             Some((sound, (setpoint, _))) => {
                 let tuning = self.tuning(&sound, readings.current);
@@ -147,9 +149,10 @@ impl Station {
     }
 
     /// Follows finger and scene; the set-point of this tick, and whether it was limited.
-    fn follow(&mut self, sound: &Sound) -> Option<(Setpoint, bool)> {
+    fn follow(&mut self, samples: &Samples, sound: &Sound) -> Option<(Setpoint, bool)> {
         let before = self.touch.touching();
         self.touch.update(sound.force);
+        self.sensors.follow_zero(samples, &self.touch);
         let touching = self.touch.touching();
         self.render.observe(sound.skin, sound.room, touching);
         let wanted = match self.state {
@@ -161,7 +164,7 @@ impl Station {
             },
             State::Preset | State::Contact => {
                 self.state = if touching { State::Contact } else { State::Preset };
-                let landed = if before { 0 } else { Touch::detection_ticks() };
+                let landed = if before { 0 } else { self.touch.landed_ticks() };
                 let touch: Option<Force> = touching.then_some(sound.force);
                 self.render.present(&self.scene()?, touch, landed)?
             }
@@ -294,7 +297,9 @@ impl Station {
             },
             Command::Average(thermistor) => {
                 let average = self.averages.of(thermistor);
-                return average.map(Reply::Average).ok_or(Error::Point(PointError::TooEarly));
+                return average
+                    .map(Reply::Average)
+                    .ok_or(Error::Point(PointError::TooEarly));
             }
             Command::Tune => match (self.state, self.telemetry.sink) {
                 (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),

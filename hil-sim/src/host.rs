@@ -42,7 +42,9 @@ impl Host {
             Mode::ContactResistance => "mode contact",
             Mode::SemiInfinite => "mode semi-infinite",
         };
-        let set_up = [material, object, mode.into(), "arm".into()];
+        let law = scene.law.map(|law| format!("law {}", law.name()));
+        let set_up = [material, object, mode.into()].into_iter().chain(law);
+        let set_up = set_up.chain(["arm".into()]);
         let arm_ms = ARM_MS + SPACING_MS * settings.len() as u64;
         let mut queue: Vec<_> = (settings.iter().cloned().chain(set_up).zip(0..))
             .map(|(line, i)| (ARM_MS + i * SPACING_MS, line))

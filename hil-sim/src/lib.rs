@@ -6,6 +6,7 @@
 
 pub mod commission;
 pub mod engine;
+pub mod fidelity;
 pub mod firmware;
 pub mod host;
 pub mod infrared;

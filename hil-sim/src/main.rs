@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use cli::{Failure, commission, erfcx, infrared, model, parameters, roughness, run, thesis};
+use cli::{Failure, commission, erfcx, fidelity, infrared, model, parameters, roughness, run, thesis};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
@@ -27,6 +27,8 @@ enum Cli {
     Roughness(roughness::Arguments),
     /// The plant's parameters with their tolerances and sources, or a draw of them, as CSV
     Parameters(parameters::Arguments),
+    /// How close the skin on the display comes to the skin on the real material, law by law
+    Fidelity(fidelity::Arguments),
     /// Recompute the thesis's tables and model figures and lay them beside what it states
     Thesis(thesis::Arguments),
 }
@@ -40,6 +42,7 @@ fn main() -> ExitCode {
         Cli::Infrared(arguments) => infrared::run(&arguments),
         Cli::Roughness(arguments) => roughness::run(&arguments),
         Cli::Parameters(arguments) => parameters::run(&arguments),
+        Cli::Fidelity(arguments) => fidelity::run(&arguments),
         Cli::Thesis(arguments) => thesis::run(&arguments),
     };
     match done {

@@ -36,6 +36,15 @@ pub struct PerTick {
     pub max: Option<u64>,
 }
 
+/// Current through the module, A.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Current {
+    /// Largest magnitude.
+    pub max_abs: f64,
+    /// Root mean square.
+    pub rms: f64,
+}
+
 /// A fault that the device reported.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tripped {
@@ -60,6 +69,10 @@ pub struct Figures {
     pub display_error_mk: Option<Errors>,
     /// Skin on the display, °C.
     pub skin_c: Range,
+    /// Current through the module, over the whole scene.
+    pub current_a: Current,
+    /// Electrical work that the module has taken up in the scene, J.
+    pub energy_j: f64,
     /// Evaluations of `erfcx`.
     pub kernel_evaluations: Option<u64>,
     /// Instructions of the control tick, emulated.
@@ -102,7 +115,6 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
             .zip(&contacts)
             .filter_map(|(row, since)| Some((row, (*since)?)))
     };
-    let skin = touching().map(|(row, since_s)| (since_s, row.skin_c - row.skin_real_c));
     let display = touching().map(|(row, since_s)| {
         (
             since_s,
@@ -119,12 +131,14 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
         engine: E::NAME,
         material: scene.object.name.clone(),
         ticks: rows.len().saturating_sub(1),
-        skin_error_mk: errors(skin),
+        skin_error_mk: errors(skin_errors(scene, outcome)),
         display_error_mk: errors(display),
         skin_c: Range {
             min: skins().fold(f64::INFINITY, f64::min),
             max: skins().fold(f64::NEG_INFINITY, f64::max),
         },
+        current_a: current(outcome),
+        energy_j: outcome.electrical_j,
         kernel_evaluations: evaluations()
             .next()
             .zip(evaluations().next_back())
@@ -141,6 +155,21 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
         stack_bytes: outcome.cost.and_then(|cost| cost.stack_bytes),
         real_time_factor: outcome.real_time_factor,
         faults: faults(outcome),
+    }
+}
+
+/// Time since the last landing, s, and error of the skin, K, at every row in contact.
+pub fn skin_errors(scene: &Scene, outcome: &Outcome) -> impl Iterator<Item = (f64, f64)> {
+    let rows = outcome.trace.rows().iter().zip(contact_times(scene, outcome));
+    rows.filter_map(|(row, since_s)| Some((since_s?, row.skin_c - row.skin_real_c)))
+}
+
+fn current(outcome: &Outcome) -> Current {
+    let amperes = || outcome.trace.rows().iter().map(|row| row.current_a);
+    let squares: f64 = amperes().map(|ampere| ampere * ampere).sum();
+    Current {
+        max_abs: amperes().fold(0.0, |most, ampere| ampere.abs().max(most)),
+        rms: (squares / outcome.trace.rows().len().max(1) as f64).sqrt(),
     }
 }
 

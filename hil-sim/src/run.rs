@@ -2,8 +2,8 @@
 
 use std::time::Instant;
 
-use crate::engine::{Cost, Engine};
 use crate::commission::{self, CommissionError};
+use crate::engine::{Cost, Engine};
 use crate::host::{Host, Inbox};
 use crate::scene::{FaultKind, Scene};
 use crate::telemetry::Telemetry;
@@ -19,6 +19,8 @@ pub struct Outcome {
     pub trace: Trace,
     /// Every line of the device that is not telemetry, with the time at which it was complete, s.
     pub answers: Vec<(f64, String)>,
+    /// Electrical work that the module has taken up in the scene, J.
+    pub electrical_j: f64,
     /// Cost of the scene, without set-up and settling.
     pub cost: Option<Cost>,
     /// Simulated seconds per second of this machine, settling included.
@@ -60,9 +62,11 @@ pub fn run<E: Engine>(
         inbox: Inbox::default(),
     };
     let (mut trace, mut answers) = (Trace::default(), Vec::new());
+    let (mut before_j, mut after_j) = (0.0, 0.0);
     for ms in 0..=end_ms + DRAIN_MS {
         if ms == zero_ms {
             session.engine.reset_cost();
+            before_j = session.engine.world().plant().energy().electrical_j;
         }
         session.boundary(ms);
         if (zero_ms..=end_ms).contains(&ms) {
@@ -70,6 +74,7 @@ pub fn run<E: Engine>(
             let world = session.engine.world();
             let camera = world.look(ms - zero_ms);
             let row = Row::now(t_s, world.plant(), camera);
+            after_j = world.plant().energy().electrical_j;
             trace.push(ms, row);
         }
         session.step_plant();
@@ -91,6 +96,7 @@ pub fn run<E: Engine>(
     Ok(Outcome {
         trace,
         answers,
+        electrical_j: after_j - before_j,
         cost: session.engine.cost(),
         real_time_factor,
     })

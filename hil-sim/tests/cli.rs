@@ -328,3 +328,79 @@ fn parameters_are_printed_with_limits_and_drawn_alike_by_one_seed() {
     assert_eq!(json.len(), nominal.len());
     refused(&["parameters", "--draw", "x"]);
 }
+
+/// The thesis's rate leaves more than a thousand updates a second do; every row has its figures.
+#[test]
+fn fidelity_compares_laws_and_is_reproducible_by_seed() {
+    let line = [
+        "fidelity",
+        "--engine",
+        "native",
+        "--json",
+        "--material",
+        "copper",
+        "--force",
+        "2",
+        "--law",
+        "pi-10hz",
+        "pi",
+    ];
+    let text = good(&line, "");
+    let report: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let rows = report["rows"].as_array().expect("rows");
+    let value = |i: usize| rows[i]["judged"]["value"].as_f64().expect("a value");
+    assert_eq!(
+        (rows.len(), rows[0]["law"].as_str(), rows[1]["law"].as_str()),
+        (2, Some("pi-10hz"), Some("pi"))
+    );
+    assert!(value(0) > value(1) && value(1) > 0.0, "{text}");
+    for row in rows {
+        assert_eq!(row["judged"]["value"], row["skin_error_mk"]["max_after_50ms"]);
+        let (max, rms) = (&row["current_a"]["max_abs"], &row["current_a"]["rms"]);
+        assert!(max.as_f64() > rms.as_f64() && rms.as_f64() > Some(0.0), "{row}");
+        assert!(row["energy_j"].as_f64() > Some(0.0), "{row}");
+    }
+    let drawn = || {
+        let mut report: serde_json::Value =
+            serde_json::from_str(&good(&["fidelity", "--box", "3", "--seed", "9", "--json"], ""))
+                .expect("JSON");
+        report["box"].take()
+    };
+    let first = drawn();
+    assert_eq!(first["draws"], 3);
+    assert_eq!(first, drawn());
+}
+
+#[test]
+fn fidelity_refuses_what_it_does_not_know() {
+    for (line, expected) in [
+        (
+            &["fidelity", "--scenario", "E"][..],
+            "[possible values: A, B, C, D, unseen, all]",
+        ),
+        (&["fidelity", "--law", "pid"], "[possible values: pi-10hz, pi"),
+        (
+            &["fidelity", "--without", "gravity"],
+            "sensor-noise, inl, sensor-lag",
+        ),
+        (
+            &["fidelity", "--material", "gold"],
+            "--material \"gold\"; known are copper; bronze",
+        ),
+        (
+            &["fidelity", "--force", "3"],
+            "--force 3; known are [0.1, 0.25, 0.5, 1.0, 2.0]",
+        ),
+        (
+            &["fidelity", "--box", "2", "--elf", "x"],
+            "--elf is for --engine image",
+        ),
+        (
+            &["fidelity", "--box", "2", "--replay", "1"],
+            "cannot be used with",
+        ),
+    ] {
+        let message = refused(line);
+        assert!(message.contains(expected), "{line:?}: {message}");
+    }
+}

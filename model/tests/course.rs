@@ -53,6 +53,7 @@ fn contact_with(weight: f64, ratio: f64, log2_rate: f64) -> Contact {
         weight: Fraction::from_num(weight),
         ratio: Ratio::from_num(ratio),
         per_tick: Rate::from_f64(log2_rate.exp2()).expect("normal"),
+        per_root_tick: Rate::from_f64((0.5 * log2_rate).exp2()).expect("normal"),
         conductance_w_m2k: Rate::ONE,
     }
 }

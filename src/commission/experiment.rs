@@ -270,7 +270,8 @@ impl Experiment {
                 let current = self.current(*eighths);
                 let measured = directed(self.asked, measured);
                 self.sums.compare(self.asked, measured);
-                self.sums.take(reading - self.base_reading, measured, self.base_measured);
+                self.sums
+                    .take(reading - self.base_reading, measured, self.base_measured);
                 self.asked = current;
                 self.phase = if ticks + 1 < *length {
                     Phase::Pulses {

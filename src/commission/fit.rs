@@ -146,7 +146,8 @@ fn swept(settings: &Settings, points: &Points, calibration: &mut Calibration) ->
     for thermistor in 0..SWEPT {
         if !points.of(thermistor).is_empty() {
             let first = thermistor * COEFFICIENTS;
-            calibration.corrections[thermistor] = correction([right[first], right[first + 1], right[first + 2]]);
+            calibration.corrections[thermistor] =
+                correction([right[first], right[first + 1], right[first + 2]]);
         }
     }
     for (border, step) in calibration.steps_counts.iter_mut().enumerate() {

@@ -30,7 +30,11 @@ pub fn identify(rows: &[Row; ROWS]) -> Option<Tile> {
     // First with any dead time, to know the gain; then with what is likely of it.
     let free = fit(rows, 0.0, 0.0)?;
     let likely = fit(rows, WEIGHT, -free[GAIN] / UNIT_S * LIKELY_S)?;
-    let (lag, gain, leak) = (-likely[LAG] * UNIT_S, -likely[GAIN] / UNIT_S, -likely[LEAK] / UNIT_S);
+    let (lag, gain, leak) = (
+        -likely[LAG] * UNIT_S,
+        -likely[GAIN] / UNIT_S,
+        -likely[LEAK] / UNIT_S,
+    );
     // All of them were divided by m = 1 + leak lag.
     let mut m = 1.0;
     for _ in 0..8 {
@@ -43,14 +47,9 @@ pub fn identify(rows: &[Row; ROWS]) -> Option<Tile> {
         lag * m,
         likely[GAIN_DEAD] / gain + ASKED_S,
     ]);
-    let within = |(value, allowed): (f64, &crate::protocol::Number)| {
-        (allowed.min..=allowed.max).contains(&value)
-    };
-    tile.to_array()
-        .into_iter()
-        .zip(&TILE)
-        .all(within)
-        .then_some(tile)
+    let within =
+        |(value, allowed): (f64, &crate::protocol::Number)| (allowed.min..=allowed.max).contains(&value);
+    tile.to_array().into_iter().zip(&TILE).all(within).then_some(tile)
 }
 
 /// Least squares, with a weight on a value of gain times dead time.

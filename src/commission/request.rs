@@ -1,6 +1,5 @@
 //! Lines that commission the device.
 
-
 use crate::protocol::{Error, Number, number};
 use crate::sense::THERMISTORS;
 use crate::settings::{BORDERS, Calibration, Correction, FIRST_BORDER, Tile, rounded};

@@ -78,10 +78,7 @@ impl Service {
         }
     }
 
-    fn tuned(
-        &mut self,
-        execute: &mut impl FnMut(Command) -> Result<Reply, Error>,
-    ) -> Result<Reply, Error> {
+    fn tuned(&mut self, execute: &mut impl FnMut(Command) -> Result<Reply, Error>) -> Result<Reply, Error> {
         let mut rows = [Row::default(); ROWS];
         for (i, row) in rows.iter_mut().enumerate() {
             let Reply::Row(sums) = execute(Command::Experiment(i))? else {
@@ -155,7 +152,9 @@ impl Service {
             };
         }
         match calibration.corrections.get(line - steps_lines) {
-            Some(correction) => Setting::Correction(SENSORS[(line - steps_lines) % SENSORS.len()], *correction),
+            Some(correction) => {
+                Setting::Correction(SENSORS[(line - steps_lines) % SENSORS.len()], *correction)
+            }
             None => Setting::Tile(self.settings.tile),
         }
     }

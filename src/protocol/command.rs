@@ -197,7 +197,10 @@ static PROPERTIES: [Number; 5] = [
 ];
 
 /// Takes the next word as a decimal number within its range.
-pub(crate) fn number<'a>(words: &mut impl Iterator<Item = &'a str>, expected: &'static Number) -> Result<I32F32, Error> {
+pub(crate) fn number<'a>(
+    words: &mut impl Iterator<Item = &'a str>,
+    expected: &'static Number,
+) -> Result<I32F32, Error> {
     let word = words.next().ok_or(Error::Missing(expected.name))?;
     // Saturates, so that too many digits are out of range.
     let value = I32F32::saturating_from_str(word).map_err(|_| Error::NotANumber(expected, word.into()))?;

@@ -157,7 +157,9 @@ impl fmt::Display for Error {
             Self::Tuning => f.write_str("tuning goes on; ask again in a second"),
             Self::TuneAborted(why) => write!(f, "tune was ended: {}", why.reason()),
             Self::NoTile => f.write_str("tune found no tile; look for a loose sensor, then tune again"),
-            Self::Point(PointError::TooEarly) => f.write_str("not watched for long enough; wait half a second"),
+            Self::Point(PointError::TooEarly) => {
+                f.write_str("not watched for long enough; wait half a second")
+            }
             Self::Point(PointError::Unsteady) => {
                 f.write_str("the reading moves; wait until it is steady to 3 mK in a quarter of a second")
             }
@@ -165,7 +167,10 @@ impl fmt::Display for Error {
                 f.write_str("at a step of the converter; take a temperature 0.3 C from here")
             }
             Self::Point(PointError::TooFar(reads)) => {
-                write!(f, "the device reads {reads:.2} C; allowed is within {FARTHEST_K} C of that")
+                write!(
+                    f,
+                    "the device reads {reads:.2} C; allowed is within {FARTHEST_K} C of that"
+                )
             }
             Self::Point(PointError::Full) => write!(f, "no room for more than {POINTS} points; clear them"),
             Self::Tripped(fault) => write!(f, "tripped by {}; clear it first", fault.name()),

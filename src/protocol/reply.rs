@@ -79,8 +79,14 @@ impl fmt::Display for Reply {
             }
             Self::Tile(tile, margins) => {
                 let [gain, joule, leak, lag, dead] = tile.to_array();
-                let Margins { phase_deg, gain: times } = margins;
-                write!(f, "ok gain={gain:.4} joule={joule:.4} leak={leak:.4} lag_s={lag:.4} dead_s={dead:.4}")?;
+                let Margins {
+                    phase_deg,
+                    gain: times,
+                } = margins;
+                write!(
+                    f,
+                    "ok gain={gain:.4} joule={joule:.4} leak={leak:.4} lag_s={lag:.4} dead_s={dead:.4}"
+                )?;
                 write!(f, " phase_deg={phase_deg:.1} margin={times:.2}")
             }
             Self::Calibrated { points, worst_mk } => write!(f, "ok points={points} worst_mk={worst_mk:.2}"),
@@ -137,7 +143,9 @@ impl fmt::Display for Setting {
             Self::Steps { first, counts } => {
                 write!(f, "set steps {first}")?;
                 let decimals = Calibration::STEP_DECIMALS as usize;
-                counts.iter().try_for_each(|count| write!(f, " {count:.decimals$}"))
+                counts
+                    .iter()
+                    .try_for_each(|count| write!(f, " {count:.decimals$}"))
             }
             Self::Correction(sensor, correction) => {
                 let [a, b, c] = Calibration::DECIMALS.map(|decimals| decimals as usize);
@@ -146,7 +154,10 @@ impl fmt::Display for Setting {
                     slope,
                     curvature_1_k,
                 } = correction;
-                write!(f, "set correction {sensor} {offset_k:.a$} {slope:.b$} {curvature_1_k:.c$}")
+                write!(
+                    f,
+                    "set correction {sensor} {offset_k:.a$} {slope:.b$} {curvature_1_k:.c$}"
+                )
             }
             Self::Tile(tile) => {
                 f.write_str("set tile")?;

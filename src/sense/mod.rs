@@ -132,6 +132,13 @@ impl Sensors {
         }
     }
 
+    /// Follows the force sensor's zero, after a tick whose force `touch` has taken.
+    pub fn follow_zero(&mut self, samples: &Samples, touch: &Touch) {
+        if !touch.touching() {
+            self.force.follow_zero(samples.force, touch.left_zero());
+        }
+    }
+
     /// Reads by another calibration from now on.
     pub fn recalibrate(&mut self, calibrated: &Calibrated) {
         self.calibrated = *calibrated;

@@ -4,6 +4,7 @@
 //! something failed or is missing, 2 that the command line is wrong.
 mod bench;
 mod demo;
+mod fidelity;
 mod firmware;
 mod image;
 mod probe;
@@ -12,6 +13,7 @@ mod setup;
 mod step;
 mod suite;
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -54,6 +56,20 @@ enum Task {
         #[arg(long)]
         out: Option<PathBuf>,
     },
+    /// Print how close the skin on the display comes to the skin on the real material, law by law
+    Fidelity {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// Print one JSON object in place of the tables
+        #[arg(long)]
+        json: bool,
+        /// Folder for the page, its picture and CSV
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Of `hil-sim fidelity`, after the above: --scenario, --law, --box and others, see its --help
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<OsString>,
+    },
     /// Build the image that the benchmark runs in the emulator, print its path; the benchmark calls this
     BenchImage(SetUp),
     /// Build the test image of the emulated machine, print its path; its tests call this
@@ -90,6 +106,12 @@ fn main() -> ExitCode {
             json,
             out,
         } => bench::run(set_up.permission(), job, json, out),
+        Task::Fidelity {
+            set_up,
+            json,
+            out,
+            rest,
+        } => fidelity::run(set_up.permission(), json, out, rest),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

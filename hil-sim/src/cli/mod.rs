@@ -2,6 +2,7 @@
 
 pub mod commission;
 pub mod erfcx;
+pub mod fidelity;
 pub mod infrared;
 pub mod model;
 pub mod parameters;

@@ -33,8 +33,9 @@ pub struct Arguments {
     json: bool,
 }
 
+/// What runs the device's logic.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
+pub enum Kind {
     /// The release image in the emulated microcontroller
     Image,
     /// The same logic, called directly: faster, without cost figures

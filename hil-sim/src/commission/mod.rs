@@ -40,7 +40,9 @@ pub enum CommissionError {
     #[error("commissioning: the device does not answer '{0}'")]
     Silent(String),
     /// The display could not be held at enough temperatures.
-    #[error("commissioning: the display came to rest at {points} temperatures; needed are {needed} (the last: {why})")]
+    #[error(
+        "commissioning: the display came to rest at {points} temperatures; needed are {needed} (the last: {why})"
+    )]
     FewPoints {
         /// Points that were taken.
         points: usize,

@@ -26,7 +26,13 @@ const TUNE_S: u32 = 70;
 const BATH_MS: u64 = 900;
 /// Baths of the skin's thermistor, deg C; and pairs of those of the room's with the sink's.
 const SKIN_C: [f64; 5] = [26.7, 29.3, 32.2, 35.0, 37.3];
-const ROOM_AND_SINK_C: [(f64, f64); 5] = [(17.7, 20.5), (20.5, 26.7), (23.5, 32.2), (26.7, 37.3), (30.5, 41.3)];
+const ROOM_AND_SINK_C: [(f64, f64); 5] = [
+    (17.7, 20.5),
+    (20.5, 26.7),
+    (23.5, 32.2),
+    (26.7, 37.3),
+    (30.5, 41.3),
+];
 
 /// Calibrates all sensors of the device on an engine, which is where it is [used](Plants::at_work), and gives its
 /// settings as lines.
@@ -86,7 +92,10 @@ fn holds() -> Vec<f64> {
     (0..4096 / SEGMENT_CODES)
         .flat_map(|segment| {
             let border = segment * SEGMENT_CODES;
-            [border + FROM_BORDER_CODES, border + SEGMENT_CODES - FROM_BORDER_CODES]
+            [
+                border + FROM_BORDER_CODES,
+                border + SEGMENT_CODES - FROM_BORDER_CODES,
+            ]
         })
         .map(|code| thermistor.temperature_c(f64::from(code) * 16.0))
         .filter(|t_c| (coldest_c..=warmest_c).contains(t_c))

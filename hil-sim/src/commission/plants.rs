@@ -65,7 +65,12 @@ impl Plants {
     /// # Errors
     /// A value that the plant cannot take.
     pub fn skin_in_bath(&self, bath_c: f64) -> Result<World, ConfigError> {
-        self.world(self.params.clone(), bath_c, self.room_c, &format!("skin {bath_c}"))
+        self.world(
+            self.params.clone(),
+            bath_c,
+            self.room_c,
+            &format!("skin {bath_c}"),
+        )
     }
 
     /// The room's thermistor in a bath, and the sink on a plate of another temperature, both deg C.

@@ -5,8 +5,8 @@ use std::convert::Infallible;
 use std::fmt::Display;
 
 use thermal_display::Station;
-use thermal_display::drive::Drive;
 use thermal_display::commission::Service;
+use thermal_display::drive::Drive;
 use thermal_display::protocol::{Error, LineReader};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::Settings;
@@ -87,12 +87,10 @@ impl Native {
             let Some(line) = self.reader.push(byte) else {
                 continue;
             };
-            let executed = line
-                .map_err(Error::from)
-                .and_then(|line| {
-                    self.service
-                        .answer(&line, |command| self.station.execute(command))
-                });
+            let executed = line.map_err(Error::from).and_then(|line| {
+                self.service
+                    .answer(&line, |command| self.station.execute(command))
+            });
             match executed {
                 Ok(reply) => self.answer(&reply),
                 Err(error) => self.answer(&error),

@@ -3,8 +3,10 @@
 use std::ops::Range;
 use std::path::Path;
 
+use thermal_display::control::Law;
 use thermal_display::guard::Setpoint;
 use thermal_display::render::Mode;
+use toml::Spanned;
 
 use super::file::{self, File};
 use super::infrared::infrared;
@@ -41,6 +43,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         seed: file.seed,
         commissioned: file.device.commissioned,
         mode,
+        law: file.law.as_ref().map(|name| law(&source, name)).transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,
         params: params(&source, file.finger.as_ref(), file.plant.as_ref())?,
         infrared: match &file.infrared {
@@ -83,6 +86,16 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         source.error(span, error.to_string())
     })?;
     Ok(scene)
+}
+
+/// The law of a name, as the device has it.
+fn law(source: &Source<'_>, name: &Spanned<String>) -> Result<Law, SceneError> {
+    let known = Law::WORDS.iter().find(|(word, _)| word == name.get_ref());
+    known.map(|(_, law)| *law).ok_or_else(|| {
+        let words: Vec<_> = Law::WORDS.iter().map(|(word, _)| *word).collect();
+        let problem = format!("law = {:?}; known are {}", name.get_ref(), words.join(", "));
+        source.error(Some(name.span()), problem)
+    })
 }
 
 fn forces(source: &Source<'_>, rows: &[file::Force], duration_s: f64) -> Result<Vec<Force>, SceneError> {

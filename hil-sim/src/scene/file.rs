@@ -20,6 +20,7 @@ pub(super) struct File {
     pub seed: u64,
     #[serde(default)]
     pub mode: Mode,
+    pub law: Option<Spanned<String>>,
     #[serde(default)]
     pub device: Device,
     pub object: Spanned<Object>,

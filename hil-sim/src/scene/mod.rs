@@ -13,6 +13,7 @@ use std::path::Path;
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
+use thermal_display::control::Law;
 use thermal_display::render::Mode;
 
 use crate::plant::object::ObjectConfig;
@@ -46,6 +47,8 @@ pub struct Scene {
     pub commissioned: bool,
     /// Model that the device is told to use.
     pub mode: Mode,
+    /// Law that the device is told to use; its own choice if none.
+    pub law: Option<Law>,
     /// What the finger should feel.
     pub object: Object,
     /// What finger, display and electronics are like.

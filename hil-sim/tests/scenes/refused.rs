@@ -175,3 +175,14 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
         assert!(message.contains(expected), "{tables}: {message}");
     }
 }
+
+#[test]
+fn an_unknown_law_is_refused_with_line_and_the_known_ones() {
+    let error =
+        Scene::parse(&format!("law = \"pid\"\n{HEAD}"), Path::new("bad.toml")).expect_err("no such law");
+    let message = error.to_string();
+    assert!(
+        message.starts_with("bad.toml:1: law = \"pid\"; known are pi-10hz, pi"),
+        "{message}"
+    );
+}

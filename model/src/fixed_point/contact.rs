@@ -11,6 +11,8 @@ pub struct Contact {
     pub ratio: Ratio,
     /// `b² dt`.
     pub per_tick: Rate,
+    /// `b sqrt(dt)`.
+    pub per_root_tick: Rate,
     /// `1 / R`, W/(m² K); below 2^-33 no difference gives a flux that [`Flux`] could hold.
     pub conductance_w_m2k: Rate,
 }

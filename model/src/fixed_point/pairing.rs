@@ -10,8 +10,9 @@ use crate::reference;
 pub struct Pairing {
     weight: Fraction,
     ratio: Ratio,
-    /// `b² dt` and conductance at `P = H`.
+    /// `b² dt`, its root and conductance at `P = H`.
     per_tick: Rate,
+    per_root_tick: Rate,
     conductance_w_m2k: Rate,
 }
 
@@ -39,6 +40,7 @@ impl Pairing {
         Ok(Self {
             ratio: Ratio::checked_from_num(ratio).ok_or(PairingError::Ratio(ratio))?,
             per_tick: rate(moderate(b * b)? * tick_s)?,
+            per_root_tick: rate(b * libm::sqrt(tick_s))?,
             conductance_w_m2k: rate(conductance)?,
             weight: Fraction::saturating_from_num(weight(es, eo)),
         })
@@ -67,6 +69,7 @@ impl Pairing {
             weight: self.weight,
             ratio: self.ratio,
             per_tick: self.per_tick.times(pressure_term).times(pressure_term),
+            per_root_tick: self.per_root_tick.times(pressure_term),
             conductance_w_m2k: self.conductance_w_m2k.times(pressure_term),
         }
     }

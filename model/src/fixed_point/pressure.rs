@@ -69,6 +69,16 @@ pub fn log2_relative_pressure(force: Force) -> Log2 {
         .saturating_add(UNITS.saturating_sub(LOG2_MICROHARDNESS))
 }
 
+/// Area in mm²: 0 to 65536 at a resolution of 15e-6.
+pub type Area = fixed::types::U16F16;
+
+/// Contact area under a force (section 6.4.2, as [`crate::pressure::contact_area_m2`]); error below 4e-5 mm².
+#[must_use]
+pub fn contact_area(force: Force) -> Area {
+    const MM2: u64 = 1_000_000;
+    Area::from_bits(((u64::from(area(force)) * MM2) >> (AREA_BITS - Area::FRAC_NBITS as i32)) as u32)
+}
+
 /// Contact area in units of 2^-44 m².
 fn area(force: Force) -> u32 {
     let mut area = FIRST_AREA;

@@ -10,8 +10,8 @@ use contact_model::{pressure, reference};
 use std::string::{String, ToString};
 
 use super::{State, Station};
-use crate::drive::Drive;
 use crate::commission::Service;
+use crate::drive::Drive;
 use crate::protocol::Telemetry;
 use crate::sense::Samples;
 use crate::settings::Settings;

@@ -19,7 +19,7 @@ use serde::Serialize;
 use super::Params;
 use slot::Slot;
 pub use spread::Distribution;
-pub(crate) use spread::stream;
+pub(crate) use spread::{Tolerance, absolute, between, relative, stream};
 
 /// Where a nominal value and its tolerance come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

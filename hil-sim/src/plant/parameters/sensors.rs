@@ -4,7 +4,7 @@ use super::Source::{ClassValue, DataSheet, Design, Literature, Recalled, Thesis}
 use super::slot::{Slot, slot, under};
 use super::spread::{FIXED, Tolerance, absolute, between, factor, relative};
 use crate::plant::sensors::{
-    ConverterParams, ForceParams, MirrorParams, ReferenceParams, SensorParams, ThermistorParams,
+    ConverterParams, Delay, ForceParams, MirrorParams, ReferenceParams, SensorParams, ThermistorParams,
 };
 
 /// Lag of a thermistor on the display: literature's range for the class.
@@ -115,11 +115,12 @@ fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Slot<'_>; 6
     ]
 }
 
-fn force(force: &mut ForceParams) -> [Slot<'_>; 3] {
+fn force(force: &mut ForceParams) -> [Slot<'_>; 4] {
     let ForceParams {
         zero_counts,
         counts_per_n,
         lag_s,
+        delay_s,
     } = force;
     [
         slot(
@@ -148,6 +149,15 @@ fn force(force: &mut ForceParams) -> [Slot<'_>; 3] {
             between(0.2e-3, 5e-3).logarithmic(),
             (1e-5, 10.0),
             ClassValue,
+        ),
+        slot(
+            delay_s,
+            "delay_s",
+            "s",
+            "dead time of its interface",
+            FIXED,
+            (0.0, Delay::LONGEST_S),
+            Design,
         ),
     ]
 }

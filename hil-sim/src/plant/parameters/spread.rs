@@ -35,7 +35,7 @@ const LIMIT_SIGMAS: f64 = 2.0;
 
 impl Distribution {
     /// Draws around a value between limits, from the stream of a seed and key.
-    pub(super) fn draw(self, value: f64, (low, high): (f64, f64), seed: u64, key: &str) -> f64 {
+    pub(crate) fn draw(self, value: f64, (low, high): (f64, f64), seed: u64, key: &str) -> f64 {
         if self == Self::Fixed || low >= high {
             return value;
         }

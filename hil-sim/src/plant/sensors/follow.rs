@@ -1,4 +1,6 @@
-//! A first-order lag.
+//! A first-order lag, and a dead time.
+
+use crate::plant::STEP_S;
 
 /// A lag and its decay over the step it was last used with.
 #[derive(Clone, Copy, Debug)]
@@ -41,5 +43,68 @@ impl Lag {
     pub fn towards(&mut self, step_s: f64, at: f64, target: f64) -> f64 {
         self.set_step(step_s);
         target + (at - target) * self.decay
+    }
+}
+
+/// Steps that a dead time can last.
+const LONGEST: usize = 50;
+
+/// A dead time of whole steps of the plant.
+#[derive(Clone, Copy, Debug)]
+pub struct Delay {
+    /// What is under way, in a ring, of which the first `steps` places are used.
+    past: [f64; LONGEST],
+    steps: usize,
+    next: usize,
+}
+
+impl Delay {
+    /// The longest, s.
+    pub const LONGEST_S: f64 = LONGEST as f64 * STEP_S;
+
+    /// A dead time, s, to the nearest step, in which nothing but `at` is under way.
+    pub const fn new(delay_s: f64, at: f64) -> Self {
+        let steps = (delay_s / STEP_S + 0.5) as usize;
+        Self {
+            past: [at; LONGEST],
+            steps: if steps < LONGEST { steps } else { LONGEST },
+            next: 0,
+        }
+    }
+
+    /// What arrives in a step in which `value` sets out.
+    pub fn push(&mut self, value: f64) -> f64 {
+        if self.steps == 0 {
+            return value;
+        }
+        let arrived = std::mem::replace(&mut self.past[self.next], value);
+        self.next = (self.next + 1) % self.steps;
+        arrived
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_dead_time_is_whole_steps() {
+        for (delay_s, steps) in [
+            (0.0, 0),
+            (0.4e-3, 0),
+            (1e-3, 1),
+            (8e-3, 8),
+            (Delay::LONGEST_S, LONGEST),
+        ] {
+            let mut delay = Delay::new(delay_s, -1.0);
+            for value in 0..200 {
+                let expected = if value < steps {
+                    -1.0
+                } else {
+                    (value - steps) as f64
+                };
+                assert_eq!(delay.push(value as f64), expected, "{delay_s} s");
+            }
+        }
     }
 }

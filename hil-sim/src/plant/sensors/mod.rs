@@ -16,6 +16,7 @@ pub use params::{ForceParams, MirrorParams, ReferenceParams, SensorParams};
 pub use thermistor::ThermistorParams;
 
 use converter::{CODES, Converter};
+pub(crate) use follow::Delay;
 use follow::Lag;
 use thermistor::{Site, Thermistor};
 
@@ -78,6 +79,7 @@ pub struct Sensed {
 pub struct Sensors {
     params: SensorParams,
     thermistors: [Thermistor; THERMISTORS],
+    force_delay: Delay,
     force_lag: Lag,
     /// What the force sensor has reached, N.
     force_n: f64,
@@ -102,6 +104,7 @@ impl Sensors {
             thermistors: std::array::from_fn(|i| {
                 Thermistor::new(params.thermistors[i], &sites[i], excitation_v)
             }),
+            force_delay: Delay::new(params.force.delay_s, state.force_n),
             force_lag: Lag::new(params.force.lag_s),
             force_n: state.force_n,
             counts: [0.0; CHANNELS],
@@ -128,7 +131,8 @@ impl Sensors {
         for (thermistor, site) in self.thermistors.iter_mut().zip(&sites) {
             thermistor.step(step_s, site);
         }
-        self.force_n = self.force_lag.towards(step_s, self.force_n, state.force_n);
+        let arrived_n = self.force_delay.push(state.force_n);
+        self.force_n = self.force_lag.towards(step_s, self.force_n, arrived_n);
         self.seen = self.counts;
         self.read(state);
         // The 16 scans of a tick, spread over the step.

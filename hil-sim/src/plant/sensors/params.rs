@@ -13,6 +13,8 @@ pub struct ForceParams {
     pub counts_per_n: f64,
     /// First-order lag of its amplifier, s.
     pub lag_s: f64,
+    /// Dead time of its interface, s; whole steps of the plant.
+    pub delay_s: f64,
 }
 
 impl ForceParams {
@@ -108,6 +110,7 @@ impl SensorParams {
             zero_counts: 410.0,
             counts_per_n: 300.0,
             lag_s: 1e-3,
+            delay_s: 0.0,
         },
         mirror: MirrorParams {
             counts_per_a: 400.0,

@@ -1,0 +1,319 @@
+//! `hil-sim fidelity`: how close the skin comes to that on the real material.
+
+use std::io::{Write, stdout};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use hil_sim::fidelity::{self, Boxed, Case, Device, Draw, Drawn, Row, Scenario, Without};
+use hil_sim::firmware;
+use hil_sim::machine::Firmware;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+use thermal_display::control::Law;
+
+use super::Failure;
+use super::run::Kind;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// What the finger does; several, or all [default: A, or none with --box]
+    #[arg(long, num_args = 1.., value_parser = scenarios())]
+    scenario: Vec<Chosen>,
+    /// Laws to compare [default: all]
+    #[arg(long, num_args = 1.., value_parser = laws())]
+    law: Vec<Law>,
+    /// Cases of these names only, as the table has them
+    #[arg(long, num_args = 1..)]
+    material: Vec<String>,
+    /// Cases with these forces only, N
+    #[arg(long, num_args = 1..)]
+    force: Vec<f64>,
+    /// Bounds that are removed in the plant, one after the other, each beside the plant as it is; or all
+    #[arg(long, num_args = 1.., value_parser = removals())]
+    without: Vec<Removed>,
+    /// Draw so many plants from the box
+    #[arg(long = "box", value_name = "N", num_args = 0..=1, default_missing_value = "100")]
+    draws: Option<u64>,
+    /// Run the draw of this number again; with --out its scenes are written, law by law
+    #[arg(long, value_name = "DRAW", conflicts_with = "draws")]
+    replay: Option<u64>,
+    /// Of the converter, and of the box
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: u64,
+    /// What runs the device's logic [default: image for scenarios, native for the box]
+    #[arg(long, value_enum)]
+    engine: Option<Kind>,
+    /// Image to run instead of the one of the current sources
+    #[arg(long)]
+    elf: Option<PathBuf>,
+    /// Threads [default: one a core]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Print every force, not only the worst
+    #[arg(long)]
+    all: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Folder for fidelity.html, fidelity.svg, fidelity.csv, box.csv and scenes
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// A choice of which there is an `all`.
+type Chosen = Option<Scenario>;
+type Removed = Option<Without>;
+
+fn choice<T: Copy + Send + Sync + 'static>(
+    all: &'static [T],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = Option<T>> {
+    let names: Vec<_> = all.iter().map(|one| name(*one)).chain(["all"]).collect();
+    PossibleValuesParser::new(names).map(move |word| all.iter().copied().find(|one| name(*one) == word))
+}
+
+fn scenarios() -> impl TypedValueParser<Value = Chosen> {
+    choice(&Scenario::ALL, Scenario::name)
+}
+
+fn removals() -> impl TypedValueParser<Value = Removed> {
+    choice(&Without::ALL, Without::name)
+}
+
+fn laws() -> impl TypedValueParser<Value = Law> {
+    PossibleValuesParser::new(Law::WORDS.map(|(word, _)| word)).map(|word| {
+        let known = Law::WORDS.iter().find(|(known, _)| *known == word);
+        known.map_or(Law::default(), |(_, law)| *law)
+    })
+}
+
+/// What was chosen, all if `all` is among it.
+fn expand<T: Copy>(chosen: &[Option<T>], all: &[T]) -> Vec<T> {
+    if chosen.iter().any(Option::is_none) {
+        return all.to_vec();
+    }
+    chosen.iter().copied().flatten().collect()
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report<'a> {
+    seed: u64,
+    laws: Vec<&'static str>,
+    rows: &'a [Row],
+    #[serde(rename = "box")]
+    boxed: Option<&'a Boxed>,
+}
+
+/// Runs, prints, writes.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let laws = match arguments.law.as_slice() {
+        [] => Law::WORDS.map(|(_, law)| law).to_vec(),
+        chosen => chosen.to_vec(),
+    };
+    let cases = cases(arguments)?;
+    if let Some(folder) = &arguments.out {
+        let created = std::fs::create_dir_all(folder);
+        created
+            .with_context(|| format!("--out {}", folder.display()))
+            .map_err(Failure::input)?;
+    }
+    let firmware = firmware(arguments, !cases.is_empty())?;
+    let campaign = Campaign {
+        arguments,
+        firmware,
+        laws,
+    };
+    let rows = campaign.rows(&cases).map_err(Failure::run)?;
+    let drawn = campaign.draws().map_err(Failure::run)?;
+    let boxed = (!drawn.is_empty()).then(|| Boxed {
+        engine: campaign.device(Kind::Native).name(),
+        draws: drawn.len() as u64 / campaign.laws.len().max(1) as u64,
+        seed: arguments.seed,
+        laws: fidelity::summarise(&drawn),
+    });
+    if let Some(folder) = &arguments.out {
+        campaign
+            .write(folder, &rows, &drawn, boxed.as_ref())
+            .map_err(Failure::run)?;
+    }
+    let mut text = if arguments.json {
+        let report = Report {
+            seed: arguments.seed,
+            laws: campaign.laws.iter().map(|law| law.name()).collect(),
+            rows: &rows,
+            boxed: boxed.as_ref(),
+        };
+        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
+    } else {
+        fidelity::table(&rows, arguments.all) + &boxed.as_ref().map_or(String::new(), fidelity::box_table)
+    };
+    if let (Some(folder), false) = (&arguments.out, arguments.json) {
+        text += &format!("report: {}\n", folder.join(fidelity::HTML).display());
+    }
+    stdout()
+        .write_all(text.as_bytes())
+        .context("standard output")
+        .map_err(Failure::run)
+}
+
+/// The cases that are asked for.
+fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
+    let boxed = arguments.draws.is_some() || arguments.replay.is_some();
+    let scenarios = match arguments.scenario.as_slice() {
+        [] if boxed => Vec::new(),
+        [] => vec![Scenario::A],
+        chosen => expand(chosen, &Scenario::ALL),
+    };
+    let mut cases: Vec<_> = scenarios.iter().flat_map(|scenario| scenario.cases()).collect();
+    for name in &arguments.material {
+        if !cases.is_empty() && !cases.iter().any(|case| case.name == *name) {
+            let mut known: Vec<_> = cases.iter().map(|case| case.name.as_str()).collect();
+            known.dedup();
+            let problem = anyhow!("--material {name:?}; known are {}", known.join("; "));
+            return Err(Failure::input(problem));
+        }
+    }
+    for force_n in &arguments.force {
+        if !cases.is_empty() && !cases.iter().any(|case| case.force_n == *force_n) {
+            let mut known: Vec<_> = cases.iter().map(|case| case.force_n).collect();
+            known.sort_by(f64::total_cmp);
+            known.dedup();
+            let problem = anyhow!("--force {force_n}; known are {known:?}");
+            return Err(Failure::input(problem));
+        }
+    }
+    cases.retain(|case| {
+        (arguments.material.is_empty() || arguments.material.contains(&case.name))
+            && (arguments.force.is_empty() || arguments.force.contains(&case.force_n))
+    });
+    Ok(cases)
+}
+
+/// The image, if one is needed.
+fn firmware(arguments: &Arguments, scenarios: bool) -> Result<Option<Firmware>, Failure> {
+    let image = arguments.engine == Some(Kind::Image) || (arguments.engine.is_none() && scenarios);
+    if !image {
+        return match &arguments.elf {
+            Some(_) => Err(Failure::input(anyhow!(
+                "--elf is for --engine image; the native engine runs no image"
+            ))),
+            None => Ok(None),
+        };
+    }
+    let path = match &arguments.elf {
+        Some(path) => path.clone(),
+        None => firmware::build().map_err(Failure::run)?,
+    };
+    let firmware = Firmware::from_file(&path)
+        .with_context(|| path.display().to_string())
+        .map_err(Failure::input)?;
+    Ok(Some(firmware))
+}
+
+struct Campaign<'a> {
+    arguments: &'a Arguments,
+    firmware: Option<Firmware>,
+    laws: Vec<Law>,
+}
+
+impl Campaign<'_> {
+    /// The device, of a kind unless the command line names one.
+    fn device(&self, usual: Kind) -> Device<'_> {
+        match (self.arguments.engine.unwrap_or(usual), &self.firmware) {
+            (Kind::Image, Some(firmware)) => Device::Image(firmware),
+            _ => Device::Native,
+        }
+    }
+
+    fn threads(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.arguments.threads.map_or_else(cores, usize::from)
+    }
+
+    /// Every case under every law, with and without bounds.
+    fn rows(&self, cases: &[Case]) -> anyhow::Result<Vec<Row>> {
+        let bounds = expand(&self.arguments.without, &Without::ALL);
+        let plants: Vec<_> = std::iter::once(None)
+            .chain(bounds.into_iter().map(Some))
+            .collect();
+        let mut jobs = Vec::new();
+        for case in cases {
+            for law in &self.laws {
+                jobs.extend(plants.iter().map(|without| (case, *law, *without)));
+            }
+        }
+        let device = self.device(Kind::Image);
+        self.map("scenarios", &jobs, |(case, law, without)| {
+            Row::run(device, case, *law, *without, self.arguments.seed)
+                .with_context(|| format!("{} {} {} N", case.scenario.name(), case.name, case.force_n))
+        })
+    }
+
+    /// The draws of the box, or the one to replay, under every law.
+    fn draws(&self) -> anyhow::Result<Vec<Drawn>> {
+        let numbers = match (self.arguments.replay, self.arguments.draws) {
+            (Some(number), _) => number..number.saturating_add(1),
+            (None, draws) => 0..draws.unwrap_or(0),
+        };
+        let mut jobs = Vec::new();
+        for number in numbers {
+            jobs.extend(self.laws.iter().map(|law| (number, *law)));
+        }
+        let device = self.device(Kind::Native);
+        self.map("box", &jobs, |(number, law)| {
+            Draw::new(self.arguments.seed, *number)
+                .run(device, *law)
+                .with_context(|| format!("draw {number} of seed {}", self.arguments.seed))
+        })
+    }
+
+    fn map<T: Sync, R: Send>(
+        &self,
+        name: &'static str,
+        jobs: &[T],
+        work: impl Fn(&T) -> anyhow::Result<R> + Sync,
+    ) -> anyhow::Result<Vec<R>> {
+        let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
+        let bar = ProgressBar::new(jobs.len() as u64).with_style(style);
+        bar.set_message(name);
+        let results = fidelity::map(jobs, self.threads(), work, || bar.inc(1));
+        bar.finish_and_clear();
+        results
+    }
+
+    fn write(
+        &self,
+        folder: &Path,
+        rows: &[Row],
+        drawn: &[Drawn],
+        boxed: Option<&Boxed>,
+    ) -> anyhow::Result<()> {
+        let write = |name: &str, bytes: &[u8]| {
+            let path = folder.join(name);
+            std::fs::write(&path, bytes).with_context(|| path.display().to_string())
+        };
+        let svg = fidelity::plot(rows)?;
+        let page = fidelity::page(rows, boxed, svg.as_deref());
+        write(fidelity::HTML, page.as_bytes())?;
+        if let Some(svg) = &svg {
+            write(fidelity::SVG, svg.as_bytes())?;
+            write("fidelity.csv", &fidelity::rows_csv(rows)?)?;
+        }
+        if !drawn.is_empty() {
+            write("box.csv", &fidelity::box_csv(drawn)?)?;
+        }
+        if let Some(number) = self.arguments.replay {
+            let Draw {
+                case, seed, plant, ..
+            } = Draw::new(self.arguments.seed, number);
+            for law in &self.laws {
+                let text = case.text(*law, seed, &plant);
+                write(&format!("draw-{number}-{}.toml", law.name()), text.as_bytes())?;
+            }
+        }
+        Ok(())
+    }
+}

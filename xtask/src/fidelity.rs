@@ -1,0 +1,33 @@
+//! How close the skin on the display comes to the skin on the real material.
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+
+use crate::process::Invocation;
+use crate::setup::{self, Needs, Permission};
+
+/// `cargo xtask fidelity`: what follows is `hil-sim fidelity`'s; a relative `out` is one of the caller's folder.
+pub fn run(permission: Permission, json: bool, out: Option<PathBuf>, rest: Vec<OsString>) -> Result<()> {
+    let out = out.map(|folder| {
+        // Commands run in the workspace's root.
+        std::path::absolute(&folder).with_context(|| format!("--out {}", folder.display()))
+    });
+    let out = out.transpose()?;
+    let needs = Needs {
+        emulator: true,
+        lints: false,
+    };
+    setup::prepare(needs, permission)?;
+    let mut line: Vec<OsString> = ["run", "--release", "--package", "hil-sim", "--", "fidelity"]
+        .map(OsString::from)
+        .into();
+    if json {
+        line.push("--json".into());
+    }
+    if let Some(folder) = out {
+        line.extend(["--out".into(), folder.into()]);
+    }
+    line.extend(rest);
+    permission.choice.handed_to(Invocation::cargo(line)).run()
+}
