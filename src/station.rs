@@ -305,7 +305,7 @@ impl Station {
                 (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),
                 (State::Armed, _) if self.touch.touching() => return Err(Error::Touched),
                 (State::Armed, Some(sink)) => {
-                    self.experiment = Some(Experiment::new(sink, self.control.limit()));
+                    self.experiment = Some(Experiment::new(sink));
                 }
                 _ => return Err(Error::NeedsArmed("tune")),
             },

@@ -75,6 +75,8 @@ const CAUTIOUS: Gains = Gains {
     proportional_a_k: 0.3,
     integral_s: 5.0,
 };
+/// Its largest current, A: the display moves by 3 K/s, at which sensors of different lags stay together.
+const CAUTIOUS_A: f64 = 1.0;
 /// The display is at rest when it stays this near for this long.
 const NEAR: Celsius = Celsius::lit("0.06");
 const REST_TICKS: u32 = 1500;
@@ -168,11 +170,11 @@ struct Sums {
 impl Experiment {
     /// Begins with a sink of some temperature.
     #[must_use]
-    pub fn new(sink: Celsius, limit: Current) -> Self {
+    pub fn new(sink: Celsius) -> Self {
         Self {
             phase: Phase::Settling { ticks: 0, near: 0 },
             rest: Setpoint::limited(sink.clamp(COLDEST, HOTTEST)).0,
-            pi: Pi::new(&CAUTIOUS, limit.to_num(), Period::EveryTick),
+            pi: Pi::new(&CAUTIOUS, CAUTIOUS_A, Period::EveryTick),
             base_current: 0,
             base_reading: 0,
             base_measured: 0,

@@ -13,7 +13,7 @@ const DISPLAY_C: (f64, f64) = (16.3, 41.7);
 const FROM_BORDER_CODES: u32 = 22;
 /// Coldest temperature at which tuning leaves the display, deg C, and time for each step up from there, ms.
 const COLDEST_REST_C: u32 = 22;
-const APPROACH_MS: u64 = 300;
+const APPROACH_MS: u64 = 400;
 /// Fewest points of the display.
 const NEEDED: usize = 9;
 /// Time that the display is given to come to rest at a point, and how much longer at most, ms.
@@ -107,7 +107,7 @@ fn holds() -> Vec<f64> {
 fn display<E: Engine>(bench: &mut Bench<'_, E>) -> Result<(), CommissionError> {
     let (mut points, mut why) = (0, String::new());
     // Two thermistors of different lags part when the display moves fast, so it goes to the warmest point by steps.
-    for approach_c in (COLDEST_REST_C..DISPLAY_C.1 as u32).step_by(2) {
+    for approach_c in COLDEST_REST_C..=DISPLAY_C.1 as u32 {
         bench.tell(&format!("hold {approach_c}"))?;
         bench.wait(APPROACH_MS)?;
     }

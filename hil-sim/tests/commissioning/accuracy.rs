@@ -64,20 +64,45 @@ fn sweep(plants: &Plants, seed: u64, settings: &[String]) -> [Vec<f64>; 4] {
     all
 }
 
+/// With a perfect reference thermometer. Where noise mixes both sides of one of the converter's steps, in two codes on
+/// either side, the device does not know how far it is across: up to half of the step is left there.
 #[test]
 fn calibrated_readings_are_within_millikelvins() {
-    for (draw, seed) in [(None, 1), (None, 2), (None, 3), (Some(4), 4), (Some(5), 5), (Some(6), 6), (Some(8), 8)] {
+    let devices = [(None, 1), (None, 2), (Some(4), 4), (Some(6), 6), (Some(8), 8)];
+    for (draw, seed) in devices {
         let plants = device(draw, seed);
-        let settings = of_device(plants.params(), ROOM_C, seed).expect("settings");
         assert_eq!(plants.params().host, PERFECT);
-        let before = sweep(&plants, seed, &[]).map(|all| errors(&all));
-        let after = sweep(&plants, seed, &settings).map(|all| errors(&all));
+        let settings = of_device(plants.params(), ROOM_C, seed).expect("settings");
+        let (before, after) = (sweep(&plants, seed, &[]), sweep(&plants, seed, &settings));
         println!("draw {draw:?} seed {seed}");
-        for ((sensor, before), after) in ["display", "skin", "room", "sink"].iter().zip(&before).zip(&after) {
+        let sensors = ["display", "skin", "room", "sink"];
+        for ((sensor, before), all) in sensors.iter().zip(&before).zip(&after) {
+            let (before, after) = (errors(before), errors(all));
             println!(
                 "  {sensor}: {:.1} RMS, {:.1} worst before; {:.2} RMS, {:.1} mK worst after",
                 before.rms, before.worst, after.rms, after.worst
             );
+            let (rms, worst) = if *sensor == "sink" { (5.0, 25.0) } else { (3.0, 20.0) };
+            assert!(after.rms < rms && after.worst < worst, "{sensor}: {after:?}");
+            let beyond = all.iter().filter(|error| error.abs() > 6e-3).count();
+            if *sensor != "sink" {
+                assert!(beyond * 30 < all.len(), "{sensor}: {beyond} of {}", all.len());
+            }
+            // The box has sensors that happen to be good, but no device whose sensors are.
+            assert!(*sensor != "display" || before.rms > 5.0 * after.rms, "{sensor}: {before:?}");
         }
+    }
+}
+
+/// The device is as good as the thermometer that the host believes.
+#[test]
+fn what_the_reference_shows_too_much_the_device_reads_too_much() {
+    let mut params = device(None, 1).params().clone();
+    params.host.reference_offset_k = 0.05;
+    let plants = Plants::new(&params, ROOM_C, 1);
+    let settings = of_device(&params, ROOM_C, 1).expect("settings");
+    for (sensor, all) in sweep(&plants, 1, &settings).iter().enumerate() {
+        let mean = all.iter().sum::<f64>() / all.len() as f64;
+        assert!((mean - 0.05).abs() < 4e-3, "{sensor}: {mean}");
     }
 }
