@@ -11,8 +11,7 @@ use crate::world::World;
 const DISPLAY_C: (f64, f64) = (16.3, 41.7);
 /// Codes from a border of the converter's segments to the points beside it.
 const FROM_BORDER_CODES: u32 = 22;
-/// Coldest temperature at which tuning leaves the display, deg C, and time for each step up from there, ms.
-const COLDEST_REST_C: u32 = 22;
+/// Time for each degree on the way to the warmest point, ms.
 const APPROACH_MS: u64 = 400;
 /// Fewest points of the display.
 const NEEDED: usize = 9;
@@ -107,7 +106,8 @@ fn holds() -> Vec<f64> {
 fn display<E: Engine>(bench: &mut Bench<'_, E>) -> Result<(), CommissionError> {
     let (mut points, mut why) = (0, String::new());
     // Two thermistors of different lags part when the display moves fast, so it goes to the warmest point by steps.
-    for approach_c in COLDEST_REST_C..=DISPLAY_C.1 as u32 {
+    let from_c = bench.reference_c(|world| world.plant().display_c());
+    for approach_c in from_c as u32..=DISPLAY_C.1 as u32 {
         bench.tell(&format!("hold {approach_c}"))?;
         bench.wait(APPROACH_MS)?;
     }
