@@ -349,11 +349,14 @@ impl Station {
                 (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),
                 (State::Armed, _) if self.touch.touching() => return Err(Error::Touched),
                 (State::Armed, Some(sink)) => {
-                    self.experiment = Some(Experiment::new(sink, self.control.limit()));
+                    self.experiment = Some(Experiment::new(sink));
                 }
                 _ => return Err(Error::NeedsArmed("tune")),
             },
             Command::Experiment(row) => {
+                if let State::Tripped(fault) = self.state {
+                    return Err(Error::Tripped(fault));
+                }
                 let experiment = self.experiment.as_ref().ok_or(Error::NotTuned)?;
                 let rows = experiment.outcome().ok_or(Error::Tuning)?;
                 let row = rows.map_err(Error::TuneAborted)?.get(row);

@@ -42,7 +42,7 @@ pub type Row = [i64; COLUMNS];
 pub const ROWS: usize = UNKNOWNS + 1;
 
 /// Pulses: change of current in eighths of [`AMPLITUDE`], and how long, ms. Both signs last equally long at each
-/// height, and heights differ to tell Joule's heat from drift. There are no pauses: near zero the bridge does not give
+/// height, so the display moves by 2.3 K at most, and heights differ to tell Joule's heat from drift. There are no pauses: near zero the bridge does not give
 /// what is asked for, and the mirror not what flows; what that makes of the current at rest is like a drift.
 const PULSES: [(i32, u32); 15] = [
     (8, 150),
@@ -61,7 +61,7 @@ const PULSES: [(i32, u32); 15] = [
     (16, 240),
     (-16, 120),
 ];
-const AMPLITUDE: Current = Current::lit("2");
+const AMPLITUDE: Current = Current::lit("1.5");
 /// Ticks from one equation to the next.
 const EVERY: u32 = 8;
 /// Ticks of an equation's unit of time, as a power of two.
@@ -75,6 +75,8 @@ const CAUTIOUS: Gains = Gains {
     proportional_a_k: 0.3,
     integral_s: 5.0,
 };
+/// Its largest current, A: the display moves by 3 K/s, at which sensors of different lags stay together.
+const CAUTIOUS_A: f64 = 1.0;
 /// The display is at rest when it stays this near for this long.
 const NEAR: Celsius = Celsius::lit("0.06");
 const REST_TICKS: u32 = 1500;
@@ -168,11 +170,11 @@ struct Sums {
 impl Experiment {
     /// Begins with a sink of some temperature.
     #[must_use]
-    pub fn new(sink: Celsius, limit: Current) -> Self {
+    pub fn new(sink: Celsius) -> Self {
         Self {
             phase: Phase::Settling { ticks: 0, near: 0 },
             rest: Setpoint::limited(sink.clamp(COLDEST, HOTTEST)).0,
-            pi: Pi::new(&CAUTIOUS, limit.to_num(), Period::EveryTick),
+            pi: Pi::new(&CAUTIOUS, CAUTIOUS_A, Period::EveryTick),
             base_current: 0,
             base_reading: 0,
             base_measured: 0,

@@ -24,6 +24,7 @@ pub struct Bench<'a, E> {
 }
 
 impl<'a, E: Engine> Bench<'a, E> {
+    /// With a reference thermometer, and the seed of its noise.
     pub fn new(engine: &'a mut E, thermometer: HostParams, seed: u64) -> Self {
         Self {
             engine,
@@ -31,6 +32,11 @@ impl<'a, E: Engine> Bench<'a, E> {
             thermometer,
             random: Xoshiro256PlusPlus::seed_from_u64(seed),
         }
+    }
+
+    /// Where the device is.
+    pub fn world(&mut self) -> &mut World {
+        self.engine.world()
     }
 
     /// Puts the device into another place.
@@ -48,6 +54,9 @@ impl<'a, E: Engine> Bench<'a, E> {
     }
 
     /// Lets milliseconds pass.
+    ///
+    /// # Errors
+    /// The engine stopped.
     pub fn wait(&mut self, ms: u64) -> Result<(), CommissionError> {
         for _ in 0..ms {
             self.millisecond(None)?;
@@ -56,6 +65,9 @@ impl<'a, E: Engine> Bench<'a, E> {
     }
 
     /// Sends a line and waits for its answer.
+    ///
+    /// # Errors
+    /// The engine stopped, or there is no answer.
     pub fn ask(&mut self, line: &str) -> Result<String, CommissionError> {
         let bytes = [line.as_bytes(), b"\n"].concat();
         let mut answer = self.millisecond(Some(&bytes))?;
@@ -69,6 +81,9 @@ impl<'a, E: Engine> Bench<'a, E> {
     }
 
     /// Sends a line that must be obeyed; gives what follows "ok".
+    ///
+    /// # Errors
+    /// The engine stopped, there is no answer, or the line is refused.
     pub fn tell(&mut self, line: &str) -> Result<String, CommissionError> {
         let answer = self.ask(line)?;
         match answer.strip_prefix("ok") {
@@ -81,7 +96,10 @@ impl<'a, E: Engine> Bench<'a, E> {
     }
 
     /// One millisecond, in which bytes may leave; lines that have arrived.
-    fn millisecond(&mut self, bytes: Option<&[u8]>) -> Result<Vec<String>, CommissionError> {
+    ///
+    /// # Errors
+    /// The engine stopped.
+    pub fn millisecond(&mut self, bytes: Option<&[u8]>) -> Result<Vec<String>, CommissionError> {
         let stop = |stop: E::Stop| CommissionError::Stop(stop.to_string());
         let legs = self.engine.legs();
         for half in 0..2 {

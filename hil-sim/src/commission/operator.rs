@@ -11,25 +11,24 @@ use crate::world::World;
 const DISPLAY_C: (f64, f64) = (16.3, 41.7);
 /// Codes from a border of the converter's segments to the points beside it.
 const FROM_BORDER_CODES: u32 = 22;
+/// Time for each degree on the way to the warmest point, ms.
+const APPROACH_MS: u64 = 400;
 /// Fewest points of the display.
 const NEEDED: usize = 9;
 /// Time that the display is given to come to rest at a point, and how much longer at most, ms.
-const SETTLE_MS: u64 = 3500;
-const RETRY_MS: u64 = 500;
-const RETRIES: u64 = 16;
+const SETTLE_MS: u64 = 2500;
+const RETRY_MS: u64 = 800;
+const RETRIES: u64 = 24;
+/// At rest, the reference thermometer moves no more than this in that time, K: twice its noise and resolution.
+const REST_K: f64 = 1.5e-3;
 /// The longest that tuning takes, s.
 const TUNE_S: u32 = 70;
 /// A thermistor in a bath has come to rest long before; so long does the device watch, ms.
 const BATH_MS: u64 = 900;
-/// Baths of the skin's thermistor, deg C; and pairs of those of the room's with the sink's.
+/// Baths of the skin's and the room's thermistor and coolants of the sink, deg C: away from the converter's steps.
 const SKIN_C: [f64; 5] = [26.7, 29.3, 32.2, 35.0, 37.3];
-const ROOM_AND_SINK_C: [(f64, f64); 5] = [
-    (17.7, 20.5),
-    (20.5, 26.7),
-    (23.5, 32.2),
-    (26.7, 37.3),
-    (30.5, 41.3),
-];
+const ROOM_C: [f64; 5] = [17.7, 20.5, 23.5, 26.7, 30.5];
+const SINK_C: [f64; 5] = [17.7, 23.5, 29.3, 35.0, 40.7];
 
 /// Calibrates all sensors of the device on an engine, which is where it is [used](Plants::at_work), and gives its
 /// settings as lines.
@@ -51,10 +50,14 @@ pub fn commission<E: Engine>(plants: &Plants, engine: &mut E) -> Result<Vec<Stri
         // Only what lies at a step of the converter is refused here, and may be.
         point(&mut bench, "skin", |_| bath_c)?;
     }
-    for (room_c, sink_c) in ROOM_AND_SINK_C {
-        bench.move_to(plants.room_and_sink_in_baths(room_c, sink_c)?);
+    for bath_c in ROOM_C {
+        bench.move_to(plants.room_in_bath(bath_c)?);
         bench.wait(BATH_MS)?;
-        point(&mut bench, "room", |_| room_c)?;
+        point(&mut bench, "room", |_| bath_c)?;
+    }
+    for coolant_c in SINK_C {
+        bench.move_to(plants.sink_on_coolant(coolant_c)?);
+        bench.wait(BATH_MS)?;
         point(&mut bench, "sink", |world| world.plant().sink_c())?;
     }
     let lines = bench.tell("settings")?;
@@ -102,10 +105,24 @@ fn holds() -> Vec<f64> {
 /// Both of the display's thermistors, from warm to cold.
 fn display<E: Engine>(bench: &mut Bench<'_, E>) -> Result<(), CommissionError> {
     let (mut points, mut why) = (0, String::new());
+    // Two thermistors of different lags part when the display moves fast, so it goes to the warmest point by steps.
+    let from_c = bench.reference_c(|world| world.plant().display_c());
+    for approach_c in from_c as u32..=DISPLAY_C.1 as u32 {
+        bench.tell(&format!("hold {approach_c}"))?;
+        bench.wait(APPROACH_MS)?;
+    }
     for hold_c in holds() {
         bench.tell(&format!("hold {hold_c:.2}"))?;
         bench.wait(SETTLE_MS)?;
+        let mut before_c = f64::NAN;
         for _ in 0..RETRIES {
+            let shown_c = bench.reference_c(|world| world.plant().display_c());
+            if (shown_c - before_c).abs() > REST_K || before_c.is_nan() {
+                before_c = shown_c;
+                why = format!("the reference thermometer shows {shown_c:.3} C, and moves");
+                bench.wait(RETRY_MS)?;
+                continue;
+            }
             match point(bench, "display", |world| world.plant().display_c())? {
                 None => {
                     points += 1;

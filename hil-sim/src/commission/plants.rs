@@ -73,14 +73,24 @@ impl Plants {
         )
     }
 
-    /// The room's thermistor in a bath, and the sink on a plate of another temperature, both deg C.
+    /// The room's thermistor in a bath, deg C.
     ///
     /// # Errors
     /// A value that the plant cannot take.
-    pub fn room_and_sink_in_baths(&self, room_c: f64, sink_c: f64) -> Result<World, ConfigError> {
+    pub fn room_in_bath(&self, bath_c: f64) -> Result<World, ConfigError> {
         let mut params = self.params.clone();
-        params.tile.coolant_k = sink_c - room_c;
-        self.world(params, SKIN_C, room_c, &format!("room {room_c}"))
+        params.tile.coolant_k = 0.0;
+        self.world(params, SKIN_C, bath_c, &format!("room {bath_c}"))
+    }
+
+    /// The sink, and with it the display, on a coolant of a temperature, deg C.
+    ///
+    /// # Errors
+    /// A value that the plant cannot take.
+    pub fn sink_on_coolant(&self, coolant_c: f64) -> Result<World, ConfigError> {
+        let mut params = self.params.clone();
+        params.tile.coolant_k = coolant_c - self.room_c;
+        self.world(params, SKIN_C, self.room_c, &format!("sink {coolant_c}"))
     }
 
     fn world(&self, params: Params, skin_c: f64, room_c: f64, place: &str) -> Result<World, ConfigError> {

@@ -1,0 +1,126 @@
+//! What ends tuning early, and what is refused.
+
+use hil_sim::World;
+use hil_sim::commission::Bench;
+use hil_sim::engine::Native;
+use hil_sim::scene::FaultKind;
+
+use super::{bench, device};
+
+const STATE_OFF: &str = "state=off";
+
+/// A device that has just begun to tune in a world.
+fn tuning(world: World, then: impl FnOnce(&mut Bench<'_, Native>)) {
+    let mut engine = Native::new(world);
+    let mut bench = bench(&mut engine, &[]);
+    bench.wait(5).expect("it runs");
+    bench.tell("arm").expect("armed");
+    bench.tell("tune").expect("tuning");
+    then(&mut bench);
+}
+
+fn at_work() -> World {
+    device(None, 1).at_work().expect("a plant")
+}
+
+fn ask(bench: &mut Bench<'_, Native>, line: &str) -> String {
+    bench.ask(line).expect("an answer")
+}
+
+/// Ten times, from settling to the last pulse.
+#[test]
+fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
+    for after_ms in (500..9500).step_by(1000) {
+        tuning(at_work(), |bench| {
+            bench.wait(after_ms).expect("it runs");
+            assert_eq!(
+                ask(bench, "tune result"),
+                "err tuning goes on; ask again in a second",
+                "after {after_ms} ms"
+            );
+            bench.world().set(0.5, std::iter::empty());
+            bench.wait(50).expect("it runs");
+            assert_eq!(
+                ask(bench, "tune result"),
+                "err tune was ended: a finger touches the display"
+            );
+            assert!(ask(bench, "state").starts_with("ok state=armed fault=-"));
+            assert_eq!(ask(bench, "tune"), "err tune needs a display without a finger on it");
+            // Neutral again, under the finger.
+            bench.wait(3000).expect("it runs");
+            let display_c = bench.world().plant().display_c();
+            assert!((display_c - 33.0).abs() < 0.5, "{display_c}");
+        });
+    }
+}
+
+#[test]
+fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
+    tuning(at_work(), |bench| {
+        bench.wait(4000).expect("it runs");
+        bench.world().set(0.0, std::iter::once(FaultKind::ThermistorOpen));
+        bench.wait(5).expect("it runs");
+        assert_eq!(bench.world().plant().current_a(), 0.0);
+        assert_eq!(
+            ask(bench, "tune result"),
+            "err tripped by display-open; clear it first"
+        );
+        // Even when the fault is gone, nothing of the experiment is used.
+        bench.world().set(0.0, std::iter::empty());
+        bench.wait(5).expect("it runs");
+        bench.tell("clear").expect("cleared");
+        assert_eq!(
+            ask(bench, "tune result"),
+            "err tune was ended: another command or a fault ended it"
+        );
+    });
+}
+
+#[test]
+fn hot_sink_ends_tuning_before_it_trips() {
+    let hot = device(None, 1).sink_on_coolant(42.8).expect("a plant");
+    tuning(hot, |bench| {
+        bench.wait(50).expect("it runs");
+        assert_eq!(ask(bench, "tune result"), "err tune was ended: the sink is above 42.5 C");
+    });
+}
+
+#[test]
+fn other_commands_end_tuning() {
+    for (line, state) in [("abort", STATE_OFF), ("hold 30", "state=armed")] {
+        tuning(at_work(), |bench| {
+            bench.wait(3000).expect("it runs");
+            bench.tell(line).expect("obeyed");
+            bench.wait(5).expect("it runs");
+            let answer = ask(bench, "tune result");
+            assert!(answer.starts_with("err tune was ended") || answer.starts_with("err nothing was tuned"), "{answer}");
+            assert!(ask(bench, "state").contains(state));
+            assert_eq!(bench.world().plant().current_a() == 0.0, state == STATE_OFF);
+        });
+    }
+}
+
+#[test]
+fn what_does_not_fit_the_state_is_refused() {
+    let mut engine = Native::new(at_work());
+    let mut bench = bench(&mut engine, &[]);
+    bench.wait(5).expect("it runs");
+    for (line, answer) in [
+        ("tune", "err tune needs the state armed"),
+        ("hold 30", "err hold needs the state armed"),
+        ("tune result", "err nothing was tuned since arm; tune first"),
+        ("calibrate display 24", "err not watched for long enough; wait half a second"),
+    ] {
+        assert_eq!(ask(&mut bench, line), answer, "{line}");
+    }
+    bench.wait(600).expect("it runs");
+    bench.tell("arm").expect("armed");
+    bench.wait(600).expect("it runs");
+    assert_eq!(
+        ask(&mut bench, "calibrate display 33"),
+        "err the reading moves; wait until it is steady to 3 mK in a quarter of a second"
+    );
+    assert!(ask(&mut bench, "calibrate room 27").starts_with("err the device reads 2"));
+    // Nothing of it has changed the settings.
+    assert_eq!(ask(&mut bench, "settings 6"), "ok set correction skin 0.000000 0.0000000 0.00000000");
+}
