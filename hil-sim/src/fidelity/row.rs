@@ -1,5 +1,7 @@
 //! One run, reduced to its figures.
 
+use std::cmp::Ordering;
+
 use serde::Serialize;
 use thermal_display::control::Law;
 
@@ -64,15 +66,18 @@ impl Row {
         })
     }
 
-    /// How bad it is, to find the worst: what is judged, and no value is worst.
+    /// Which of two is worse, the worse one greater: by what is judged, where no value is worst, then by the error's
+    /// root mean square.
     #[must_use]
-    pub fn badness(&self) -> f64 {
-        let value = self.judged.value.unwrap_or(f64::INFINITY);
-        if self.judged.figure == "limited" {
-            -value
-        } else {
-            value
-        }
+    pub fn compare(&self, other: &Self) -> Ordering {
+        let judged = |row: &Self| match row.judged.value {
+            None => f64::INFINITY,
+            Some(value) if row.judged.figure == "limited" => -value,
+            Some(value) => value,
+        };
+        let rms = |row: &Self| row.figures.skin_error_mk.map_or(0.0, |errors| errors.rms);
+        let by = |value: fn(&Self) -> f64| value(self).total_cmp(&value(other));
+        by(judged).then(by(rms))
     }
 }
 

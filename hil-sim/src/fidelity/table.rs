@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::{Boxed, Row, Scenario};
 use crate::metrics::{Errors, PerTick};
 
-const HEAD: &str = "law           N    judged            skin rms   display max/rms    A max/rms     J     E      instructions   cycles (est.)";
+const HEAD: &str = "   N    judged            skin rms   display max/rms    A max/rms     J     E      instructions   cycles (est.)";
 const NAME: usize = 20;
 
 /// One line for each law and, unless `every` is set, for each case of a name, the force with which it is worst.
@@ -17,20 +17,22 @@ pub fn table(rows: &[Row], every: bool) -> String {
         if own.is_empty() {
             continue;
         }
+        let law_width = own.iter().map(|row| law(row).len()).max().unwrap_or(0);
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "\n{}: {}\n{:NAME$}{HEAD}",
+            "\n{}: {}\n{:NAME$}{:<law_width$} {HEAD}",
             scenario.name(),
             scenario.title(),
-            "material"
+            "material",
+            "law"
         );
         let shown = if every { own.clone() } else { worst(&own) };
         let mut name = "";
         for row in shown {
             let label = if row.case == name { "" } else { &row.case };
             name = &row.case;
-            let _ = writeln!(text, "{label:NAME$}{}", line(row));
+            let _ = writeln!(text, "{label:NAME$}{:<law_width$} {}", law(row), line(row));
         }
         text += &verdicts(&own);
     }
@@ -44,7 +46,7 @@ fn worst<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
         let same =
             |other: &&mut &Row| (&other.case, other.law, other.without) == (&row.case, row.law, row.without);
         match worst.iter_mut().find(same) {
-            Some(other) if other.badness() < row.badness() => *other = row,
+            Some(other) if other.compare(row).is_lt() => *other = row,
             Some(_) => {}
             None => worst.push(row),
         }
@@ -54,21 +56,20 @@ fn worst<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
 
 /// How many rows are within their bound, law by law.
 fn verdicts(rows: &[&Row]) -> String {
-    let mut kinds: Vec<_> = rows.iter().map(|row| (row.law, row.without)).collect();
-    kinds.sort_by_key(|(law, without)| (without.map(|w| w.name()), *law));
-    kinds.dedup();
+    let mut laws: Vec<_> = rows.iter().map(|row| law(row)).collect();
+    laws.sort();
+    laws.dedup();
     let mut text = String::new();
-    for (law, without) in kinds {
-        let own = || rows.iter().filter(|row| (row.law, row.without) == (law, without));
+    for name in laws {
+        let own = || rows.iter().filter(|row| law(row) == name);
         let judged = own().filter(|row| row.judged.bound.is_some()).count();
         let within = own().filter(|row| row.judged.within == Some(true)).count();
-        let worst = own().max_by(|a, b| a.badness().total_cmp(&b.badness()));
+        let worst = own().max_by(|a, b| a.compare(b));
         let Some(worst) = worst else { continue };
-        let without = without.map_or(String::new(), |without| format!(" without {}", without.name()));
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "{law}{without}: {within} of {judged} within their bound; worst {} ({}, {} N)",
+            "{name}: {within} of {judged} within their bound; worst {} ({}, {} N)",
             judged_text(worst),
             worst.case,
             worst.force_n
@@ -77,14 +78,18 @@ fn verdicts(rows: &[&Row]) -> String {
     text
 }
 
+/// The law, and the bound that its plant does not have.
+fn law(row: &Row) -> String {
+    match row.without {
+        Some(without) => format!("{} without {}", row.law, without.name()),
+        None => row.law.into(),
+    }
+}
+
 fn line(row: &Row) -> String {
     let figures = &row.figures;
-    let law = match row.without {
-        Some(without) => format!("{} -{}", row.law, without.name()),
-        None => row.law.into(),
-    };
     let mut line = format!(
-        "{law:<12} {:>4}  {:<16} {}  {}  {:>5.2}/{:<5.2} {:>6.1} {:>5}  {:<14} {:<14}",
+        "{:>4}  {:<16} {}  {}  {:>5.2}/{:<5.2} {:>6.1} {:>5}  {:<14} {:<14}",
         row.force_n,
         judged_text(row),
         figures
@@ -107,15 +112,15 @@ fn line(row: &Row) -> String {
 fn judged_text(row: &Row) -> String {
     let judged = &row.judged;
     let value = judged.value.map_or("never".into(), |value| match judged.unit {
-        "s" => format!("{value:.3}"),
-        _ => format!("{value:.1}"),
+        "s" => format!("{value:.3} s"),
+        unit => format!("{value:.1} {unit}"),
     });
     let verdict = match judged.within {
         _ if judged.bound.is_none() => "",
         Some(true) => "ok",
         _ => "over",
     };
-    format!("{value} {} {verdict}", judged.unit).trim_end().to_owned()
+    format!("{value} {verdict}").trim_end().to_owned()
 }
 
 fn display(errors: Errors) -> String {
