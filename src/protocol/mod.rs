@@ -2,6 +2,7 @@
 //!
 //! Answers start with `ok` or `err`, streamed telemetry with `T`.
 
+mod address;
 mod command;
 mod error;
 mod line;
@@ -9,6 +10,7 @@ mod reply;
 mod telemetry;
 mod text;
 
+pub use address::{Addressed, Request};
 pub use command::Command;
 pub use error::{Error, Number, Word};
 pub use line::{LINE_MAX, Line, LineError, LineReader};
