@@ -10,7 +10,7 @@ const ARM_MS: u64 = 10;
 const SPACING_MS: u64 = 3;
 /// How long the skin is watched before an object is presented, ms: ten time constants of the device's filter.
 const WATCH_MS: u64 = 2600;
-/// Milliseconds before time zero from which every tick is streamed.
+/// Milliseconds before time zero from which telemetry is streamed.
 const STREAM_MS: u64 = 20;
 /// What a host that has lost its mind sends.
 const GARBAGE: &[u8] = b"\x00\xff\xfe\x80arm\x01\n\xc3\x28 start\n";
@@ -24,9 +24,9 @@ pub struct Host {
 }
 
 impl Host {
-    /// The lines that set a scene up, and those of the scene itself.
+    /// The lines that set a scene up, telemetry every `stream_ms` included, and those of the scene itself.
     #[must_use]
-    pub fn new(scene: &Scene) -> Self {
+    pub fn new(scene: &Scene, stream_ms: u32) -> Self {
         let zero_ms = scene.settle_ms();
         let at = |t_s: f64| zero_ms + (t_s * 1e3).round() as u64;
         let material = match scene.object.name.as_str() {
@@ -51,7 +51,7 @@ impl Host {
             ARM_MS + WATCH_MS
         };
         queue.push((start_ms, "start".into()));
-        queue.push((zero_ms - STREAM_MS, "stream 1".into()));
+        queue.push((zero_ms - STREAM_MS, format!("stream {stream_ms}")));
         queue.extend(scene.host.iter().map(|host| (at(host.t_s), host.line.clone())));
         let lines = queue
             .into_iter()

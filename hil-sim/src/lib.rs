@@ -6,6 +6,7 @@
 
 pub mod engine;
 pub mod firmware;
+pub mod hand;
 pub mod host;
 pub mod infrared;
 pub mod machine;

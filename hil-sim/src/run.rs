@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::engine::{Cost, Engine};
+use crate::engine::{Cost, Engine, Lines};
 use crate::host::Host;
 use crate::scene::{FaultKind, Scene};
 use crate::telemetry::Telemetry;
@@ -50,9 +50,9 @@ pub fn run<E: Engine>(
     let mut session = Session {
         scene,
         engine,
-        host: Host::new(scene),
+        host: Host::new(scene, 1),
         zero_ms,
-        received: Vec::new(),
+        received: Lines::default(),
     };
     let (mut trace, mut answers) = (Trace::default(), Vec::new());
     for ms in 0..=end_ms + DRAIN_MS {
@@ -91,12 +91,20 @@ pub fn run<E: Engine>(
     })
 }
 
+/// What is broken at a time.
+pub(crate) fn broken(scene: &Scene, t_s: f64) -> impl Iterator<Item = FaultKind> {
+    let begun = scene.faults.iter().filter(move |fault| fault.t_s <= t_s);
+    begun
+        .map(|fault| fault.kind)
+        .filter(|kind| *kind != FaultKind::HostGarbage)
+}
+
 struct Session<'a, E> {
     scene: &'a Scene,
     engine: &'a mut E,
     host: Host,
     zero_ms: u64,
-    received: Vec<u8>,
+    received: Lines,
 }
 
 impl<E: Engine> Session<'_, E> {
@@ -108,16 +116,9 @@ impl<E: Engine> Session<'_, E> {
     /// What the scene changes at the boundary.
     fn boundary(&mut self, ms: u64) {
         let t_s = self.t_s(ms);
-        let lasting = |kind: &FaultKind| *kind != FaultKind::HostGarbage;
-        let broken = self
-            .scene
-            .faults
-            .iter()
-            .filter(|fault| fault.t_s <= t_s)
-            .map(|fault| fault.kind);
         self.engine
             .world()
-            .set(self.scene.force_n(t_s), broken.filter(lasting));
+            .set(self.scene.force_n(t_s), broken(self.scene, t_s));
         self.send(2 * ms);
     }
 
@@ -136,14 +137,7 @@ impl<E: Engine> Session<'_, E> {
 
     /// The lines that are complete.
     fn lines(&mut self) -> Vec<String> {
-        self.engine.receive(&mut self.received);
-        let Some(end) = self.received.iter().rposition(|byte| *byte == b'\n') else {
-            return Vec::new();
-        };
-        let complete: Vec<u8> = self.received.drain(..=end).collect();
-        String::from_utf8_lossy(&complete)
-            .lines()
-            .map(|line| line.trim_end().to_owned())
-            .collect()
+        self.engine.receive(self.received.received());
+        self.received.complete()
     }
 }

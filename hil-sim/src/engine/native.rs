@@ -40,6 +40,8 @@ pub struct Native {
     outgoing: Vec<u8>,
     scans: [Scan; SCANS_PER_TICK],
     filled: usize,
+    /// Scans before those of a tick that are made and left out, while multiplexers settle.
+    settling_scans: usize,
     /// The bridge has pulled its fault pin since the last tick: the board's break flag keeps that.
     fault: bool,
     drive: Drive,
@@ -51,6 +53,18 @@ impl Native {
     /// A device that has just started its first tick.
     #[must_use]
     pub fn new(world: World) -> Self {
+        Self::with(world, 0, 0)
+    }
+
+    /// One of several fingers that take turns on multiplexers: before the scans of a tick one is made that is left out.
+    /// On the finger that power-up finds the multiplexers `settled` on it is two the first time, because there the first
+    /// scan after a switch does not see the finger before.
+    #[must_use]
+    pub fn in_turn(world: World, settled: bool) -> Self {
+        Self::with(world, 1, settled.into())
+    }
+
+    fn with(world: World, settling_scans: usize, more_at_first: usize) -> Self {
         let settings = Settings::default();
         let mut native = Self {
             world,
@@ -61,12 +75,28 @@ impl Native {
             outgoing: Vec::new(),
             scans: [Scan::default(); SCANS_PER_TICK],
             filled: 0,
+            settling_scans,
             fault: false,
             drive: Drive::Off,
             halves: 0,
         };
-        native.scan(SCANS_BEFORE_START);
+        native.settle(more_at_first);
+        native.begin();
         native
+    }
+
+    /// Converts and leaves out.
+    fn settle(&mut self, scans: usize) {
+        for _ in 0..scans {
+            let _unsettled = Channel::ALL.map(|channel| self.world.convert(channel));
+        }
+    }
+
+    /// The first scans of a tick.
+    fn begin(&mut self) {
+        self.settle(self.settling_scans);
+        self.filled = 0;
+        self.scan(SCANS_BEFORE_START);
     }
 
     fn scan(&mut self, count: usize) {
@@ -136,8 +166,7 @@ impl Engine for Native {
             if let Some(telemetry) = self.station.telemetry() {
                 self.answer(&telemetry);
             }
-            self.filled = 0;
-            self.scan(SCANS_BEFORE_START);
+            self.begin();
         }
         self.halves += 1;
         Ok(())

@@ -109,15 +109,10 @@ impl<W: Wiring + 'static> Machine<W> {
         self.cpu.get_data_mut().chip().usart_mut().set_host_baud(baud);
     }
 
-    /// State of the bridge leg on TIM1 `channel` (1 or 2); other channels drive nothing.
-    pub fn leg_duty(&mut self, channel: usize) -> LegState {
+    /// How a timer drives a pin (port 0 is A), or its level as a general-purpose output.
+    pub fn pwm(&mut self, port: u8, bit: u8) -> LegState {
         let now = self.now();
-        let legs = self.cpu.get_data_mut().chip().legs(now);
-        channel
-            .checked_sub(1)
-            .and_then(|i| legs.get(i))
-            .copied()
-            .unwrap_or(LegState::Off)
+        self.cpu.get_data_mut().chip().pwm(port, bit, now)
     }
 
     /// Level that a general-purpose output drives (port 0 is A); `None` when the pin is no driven output.

@@ -58,7 +58,7 @@ pub trait Wiring {
     fn output(&mut self, _port: u8, _bit: u8, _level: Option<bool>, _at: u64) {}
 }
 
-/// How the timer drives one input of the bridge.
+/// How a timer drives one input of a bridge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LegState {
     /// Nothing drives the pin: main output off, channel off, or the pin is not the timer's.
