@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use cli::{Failure, erfcx, infrared, model, parameters, roughness, run, thesis};
+use cli::{Failure, erfcx, hand, infrared, model, parameters, roughness, run, thesis};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
@@ -15,6 +15,8 @@ use cli::{Failure, erfcx, infrared, model, parameters, roughness, run, thesis};
 enum Cli {
     /// Run a scene
     Run(run::Arguments),
+    /// Run five scenes side by side, on the five fingers of one device
+    Hand(hand::Arguments),
     /// Evaluate the contact model (Eq. 6-5 to 6-12) and print CSV
     Model(model::Arguments),
     /// Evaluate the fixed-point kernel: one z a line on standard input, prints z and the bits of E
@@ -32,6 +34,7 @@ enum Cli {
 fn main() -> ExitCode {
     let done = match Cli::parse() {
         Cli::Run(arguments) => run::run(&arguments),
+        Cli::Hand(arguments) => hand::run(&arguments),
         Cli::Model(arguments) => model::run(&arguments),
         Cli::Erfcx => erfcx::run(),
         Cli::Infrared(arguments) => infrared::run(&arguments),

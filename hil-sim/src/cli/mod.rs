@@ -1,6 +1,7 @@
 //! The subcommands.
 
 pub mod erfcx;
+pub mod hand;
 pub mod infrared;
 pub mod model;
 pub mod parameters;

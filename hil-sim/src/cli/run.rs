@@ -34,7 +34,7 @@ pub struct Arguments {
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
+pub enum Kind {
     /// The release image in the emulated microcontroller
     Image,
     /// The same logic, called directly: faster, without cost figures
@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::Image => {
             let path = match &arguments.elf {
                 Some(path) => path.clone(),
-                None => firmware::build().map_err(Failure::run)?,
+                None => firmware::build(1).map_err(Failure::run)?,
             };
             let firmware = Firmware::from_file(&path)
                 .with_context(|| path.display().to_string())
