@@ -5,6 +5,7 @@ pub mod hand;
 pub mod infrared;
 pub mod model;
 pub mod parameters;
+pub mod profile;
 pub mod roughness;
 pub mod run;
 pub mod thesis;

@@ -1,5 +1,6 @@
 //! The release image in the emulated microcontroller, wired as the NUCLEO-F446RE board is.
 
+use super::meter::TICK;
 use super::{BAUD, Cost, Engine, Meter};
 use crate::machine::{Firmware, LegState, Machine, Stop, Wiring};
 use crate::plant::bridge::{Leg, Legs};
@@ -88,6 +89,19 @@ impl Image {
             cycles_per_us,
             meter,
         })
+    }
+}
+
+impl Image {
+    /// Notes the way of the control tick through the code from now on.
+    pub fn watch_tick(&mut self) {
+        self.machine.watch(TICK);
+    }
+
+    /// The machine, to read.
+    #[must_use]
+    pub fn machine(&self) -> &Machine<impl Wiring + use<>> {
+        &self.machine
     }
 }
 

@@ -4,7 +4,7 @@ use super::Cost;
 use crate::machine::{Machine, Wiring};
 
 /// The interrupt that a control tick runs in.
-const TICK: &str = "DMA2_STREAM0";
+pub const TICK: &str = "DMA2_STREAM0";
 
 /// Totals when the measurement began.
 #[derive(Clone, Copy, Debug)]

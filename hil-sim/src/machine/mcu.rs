@@ -120,6 +120,28 @@ impl<W: Wiring + 'static> Machine<W> {
         self.cpu.get_data().chip_ref().output(port, bit)
     }
 
+    /// Notes which blocks an interrupt's handler runs, from its next activation on; `name` is that of
+    /// [`InterruptStats`](super::InterruptStats).
+    pub fn watch(&mut self, name: &str) {
+        if let Some(exception) = (0..super::nvic::EXCEPTIONS).find(|n| super::nvic::name(*n) == name) {
+            self.cpu.get_data_mut().profile.watch(exception);
+        }
+    }
+
+    /// What [`Self::watch`] has noted.
+    pub fn path(&self) -> Option<&super::Path> {
+        self.cpu.get_data().profile.path()
+    }
+
+    /// Address and estimated cycles of each instruction of a block in the flash.
+    pub fn instructions(&self, (address, bytes): super::Ran) -> Vec<(u32, u16)> {
+        let start = (address & 0x07ff_ffff) as usize;
+        let code = self.firmware.flash().get(start..start + usize::from(bytes));
+        super::cost::instructions(code.unwrap_or_default())
+            .map(|(at, cycles)| (address + at, cycles))
+            .collect()
+    }
+
     /// Starts the figures of the interrupts anew.
     pub fn restart_interrupt_stats(&mut self) {
         self.cpu.get_data_mut().profile.restart();

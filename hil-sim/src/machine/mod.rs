@@ -21,6 +21,7 @@ mod iwdg;
 mod mcu;
 mod names;
 mod nvic;
+mod path;
 mod ppb;
 mod profile;
 mod ram;
@@ -34,6 +35,7 @@ mod usart;
 
 pub use elf::{FLASH_BASE, FLASH_SIZE, Firmware, ImageError, RAM_BASE, RAM_SIZE};
 pub use mcu::{Machine, Reset};
+pub use path::{Path, Ran};
 pub use profile::{InterruptStats, Stats};
 pub use rcc::{Clocks, HSE_HZ, HSI_HZ, LSI_HZ, ResetCause};
 pub use stop::{Access, Place, Stop};
