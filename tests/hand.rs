@@ -1,5 +1,7 @@
 //! The five-finger image on five plants.
 
+use std::sync::OnceLock;
+
 use hil_sim::World;
 use hil_sim::hand::{FINGERS, Hand, ImageHand, NativeHand, run};
 use hil_sim::machine::Firmware;
@@ -10,9 +12,13 @@ use system_tests::{forces, host, natively, scene};
 /// Cycles of a millisecond: 180 MHz.
 const MILLISECOND: f64 = 180_000.0;
 
-fn image() -> Firmware {
-    let path = hil_sim::firmware::build(FINGERS).expect("the image builds");
-    Firmware::from_file(&path).expect("an image for this chip")
+/// The five-finger image of the current sources, built once.
+fn image() -> &'static Firmware {
+    static IMAGE: OnceLock<Firmware> = OnceLock::new();
+    IMAGE.get_or_init(|| {
+        let path = hil_sim::firmware::build(FINGERS).expect("the image builds");
+        Firmware::from_file(&path).expect("an image for this chip")
+    })
 }
 
 fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
@@ -22,7 +28,7 @@ fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
 }
 
 fn on_image(scenes: &[Scene; FINGERS]) -> ([Outcome; FINGERS], ImageHand) {
-    let mut hand = ImageHand::new(&image(), worlds(scenes)).expect("the image starts");
+    let mut hand = ImageHand::new(image(), worlds(scenes)).expect("the image starts");
     let outcomes = run(scenes, &mut hand, |_| ()).expect("the image runs to the end");
     (outcomes, hand)
 }
@@ -94,11 +100,11 @@ fn five_fingers_fit_a_tenth_of_the_cpu() {
     );
 }
 
-/// A broken wire on one finger stops that finger, `abort` to one that one.
+/// A driver that trips stops its own finger, and `abort` to a finger that one.
 #[test]
 fn a_fault_and_an_abort_stop_their_own_finger() {
     let mut scenes = five_contacts();
-    let fault = "[[fault]]\nkind = \"thermistor-open\"\nt_s = 1.5\n";
+    let fault = "[[fault]]\nkind = \"bridge-shorted\"\nt_s = 1.5\n";
     scenes[1] = scene("granite", 3.0, "", &(forces(&[(0.7, 2.0)]) + fault));
     scenes[3] = scene(
         "foam",
