@@ -28,6 +28,7 @@ mod ram;
 mod rcc;
 mod run;
 mod setup;
+mod stalls;
 mod state;
 mod stop;
 mod tim;
@@ -38,6 +39,7 @@ pub use mcu::{Machine, Reset};
 pub use path::{Path, Ran};
 pub use profile::{InterruptStats, Stats};
 pub use rcc::{Clocks, HSE_HZ, HSI_HZ, LSI_HZ, ResetCause};
+pub use stalls::cold_fetch_stalls;
 pub use stop::{Access, Place, Stop};
 
 /// What is soldered to the pins. Times are CPU cycles since power-up and never go back.
