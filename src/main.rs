@@ -92,8 +92,10 @@ mod app {
                 return defmt::error!("sampling stopped: {}", error);
             }
         };
-        // Below FINGERS as it is, which the compiler cannot know.
-        let stage = &mut stages[finger % FINGERS];
+        // There is one for each finger.
+        let Some(stage) = stages.get_mut(finger) else {
+            return;
+        };
         let samples = Samples::from_scans(scans, stage.fault());
         let drive = hand.lock(|hand| hand.step(finger, &samples));
         stage.apply(drive);

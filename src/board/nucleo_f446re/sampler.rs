@@ -114,9 +114,9 @@ impl Sampler {
     /// [`SampleError`]; samples are then missing and control cannot go on.
     pub fn take(&mut self) -> Result<(usize, &[Scan; SCANS_PER_TICK]), SampleError> {
         let finger = self.finger;
-        self.finger = (finger + 1) % FINGERS;
+        self.finger = if finger + 1 < FINGERS { finger + 1 } else { 0 };
         self.multiplexer.select(self.finger);
-        if Multiplexer::SETTLING_SCANS > 0 && self.has_completed_a_scan() {
+        if Multiplexer::SETTLING_SCANS != 0 && self.has_completed_a_scan() {
             return Err(SampleError::LateSwitch);
         }
         if self.transfer.flags().is_transfer_error() {
