@@ -1,4 +1,4 @@
-//! The hardware-free half of a Peltier thermal display: one [`Station`] per finger.
+//! The hardware-free half of a Peltier thermal display: one [`Station`] per finger, together a [`Hand`].
 //!
 //! [`Station::step`] is the product: a pure function of the station and one tick's [`sense::Samples`], without
 //! hardware, clock, allocation or global state. All of it is integer arithmetic, so nothing in the control
@@ -14,12 +14,14 @@ pub mod commission;
 pub mod control;
 pub mod drive;
 pub mod guard;
+mod hand;
 pub mod protocol;
 pub mod render;
 pub mod sense;
 pub mod settings;
 mod station;
 
+pub use hand::Hand;
 pub use station::{State, Station};
 
 /// Control ticks per second.

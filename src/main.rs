@@ -3,7 +3,7 @@
 //! | task      | runs when                       | priority | must be done within                   |
 //! |-----------|---------------------------------|----------|---------------------------------------|
 //! | `receive` | a byte came from the host       | 4        | 20 us: two bytes at 1 Mbaud           |
-//! | `tick`    | the scans of 1 ms are in memory | 3        | 1 ms                                  |
+//! | `tick`    | a finger's scans are in memory  | 3        | 1 ms over the number of fingers       |
 //! | `overrun` | the converter lost a conversion | 3        | -                                     |
 //! | `refill`  | a line has been sent            | 2        | 20 us, or the line to the host pauses |
 //! | `host`    | a line or telemetry waits       | 1        | 68 ms: the watchdog at its fastest    |
@@ -21,28 +21,28 @@ mod board;
 #[rtic::app(device = crate::board::pac, peripherals = true, dispatchers = [EXTI0])]
 mod app {
     use heapless::spsc::Producer;
-    use thermal_display::Station;
-    use thermal_display::protocol::Telemetry;
+    use thermal_display::Hand;
+    use thermal_display::protocol::{Addressed, Telemetry};
     use thermal_display::sense::Samples;
     use thermal_display::settings::Settings;
 
     use crate::board::{
-        Board, Console, Memory, PowerStage, Receiver, Sampler, Task, Transmitter, Vigil, Watchdog,
+        Board, Console, FINGERS, Memory, PowerStage, Receiver, Sampler, Task, Transmitter, Vigil, Watchdog,
     };
 
     #[shared]
     struct Shared {
-        station: Station,
+        hand: Hand<FINGERS>,
         vigil: Vigil,
         #[lock_free]
-        stage: PowerStage,
+        stages: [PowerStage; FINGERS],
         #[lock_free]
         sampler: Sampler,
     }
 
     #[local]
     struct Local {
-        telemetry: Producer<'static, Telemetry>,
+        telemetry: Producer<'static, Addressed<Telemetry>>,
         receiver: Receiver,
         transmitter: Transmitter,
         console: Console,
@@ -53,12 +53,12 @@ mod app {
     fn init(cx: init::Context) -> (Shared, Local) {
         let settings = Settings::default();
         // Takes milliseconds, so it comes before the board starts to sample.
-        let station = Station::new(&settings);
+        let hand = Hand::new(&settings);
         let board = Board::new(cx.device, cx.local.memory, settings);
         let shared = Shared {
-            station,
+            hand,
             vigil: Vigil::new(),
-            stage: board.stage,
+            stages: board.stages,
             sampler: board.sampler,
         };
         let local = Local {
@@ -81,21 +81,25 @@ mod app {
         }
     }
 
-    #[task(binds = DMA2_STREAM0, priority = 3, shared = [station, stage, sampler, &vigil], local = [telemetry])]
+    #[task(binds = DMA2_STREAM0, priority = 3, shared = [hand, stages, sampler, &vigil], local = [telemetry])]
     fn tick(mut cx: tick::Context) {
-        let stage = cx.shared.stage;
-        let scans = match cx.shared.sampler.take() {
-            Ok(scans) => scans,
+        let (hand, stages) = (&mut cx.shared.hand, cx.shared.stages);
+        let (finger, scans) = match cx.shared.sampler.take() {
+            Ok(block) => block,
             Err(error) => {
-                stage.off();
+                stages.iter_mut().for_each(PowerStage::off);
                 cx.shared.sampler.stop();
                 return defmt::error!("sampling stopped: {}", error);
             }
         };
+        // There is one for each finger.
+        let Some(stage) = stages.get_mut(finger) else {
+            return;
+        };
         let samples = Samples::from_scans(scans, stage.fault());
-        let drive = cx.shared.station.lock(|station| station.step(&samples));
+        let drive = hand.lock(|hand| hand.step(finger, &samples));
         stage.apply(drive);
-        if let Some(telemetry) = cx.shared.station.lock(|station| station.telemetry()) {
+        if let Some(telemetry) = hand.lock(|hand| hand.telemetry(finger)) {
             // A full queue means that the host link cannot keep up: this line is left out.
             let _ = cx.local.telemetry.enqueue(telemetry);
         }
@@ -104,9 +108,9 @@ mod app {
         let _ = host::spawn();
     }
 
-    #[task(binds = ADC, priority = 3, shared = [stage, sampler])]
+    #[task(binds = ADC, priority = 3, shared = [stages, sampler])]
     fn overrun(cx: overrun::Context) {
-        cx.shared.stage.off();
+        cx.shared.stages.iter_mut().for_each(PowerStage::off);
         cx.shared.sampler.stop();
         defmt::error!("sampling stopped: converter overrun");
     }
@@ -124,12 +128,12 @@ mod app {
         let _ = host::spawn();
     }
 
-    #[task(priority = 1, shared = [station, &vigil], local = [console])]
+    #[task(priority = 1, shared = [hand, &vigil], local = [console])]
     async fn host(mut cx: host::Context) {
-        let station = &mut cx.shared.station;
+        let hand = &mut cx.shared.hand;
         cx.local
             .console
-            .serve(|command| station.lock(|station| station.execute(command)));
+            .serve(|request| hand.lock(|hand| hand.execute(request)));
         cx.shared.vigil.check_in(Task::Host);
     }
 }

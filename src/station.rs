@@ -286,7 +286,7 @@ impl Station {
     /// The command does not fit the state; nothing has changed.
     pub fn execute(&mut self, command: Command) -> Result<Reply, Error> {
         match command {
-            Command::Identify => return Ok(Reply::Identity),
+            Command::Identify => return Ok(Reply::Identity { fingers: 1 }),
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Stream { interval_ms } => self.stream_ticks = interval_ms * (TICK_HZ / 1000),
             // Another object, under whatever finger rests there: a new contact.

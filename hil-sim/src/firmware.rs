@@ -5,16 +5,17 @@ use std::process::{Command, Stdio};
 
 use anyhow::{Context, bail};
 
-/// Builds the image of the current sources, exactly as it is flashed; cargo decides what is stale.
+/// Builds the image for that many fingers (1 or 5) of the current sources, exactly as it is flashed; cargo decides what is stale.
 ///
 /// # Errors
 /// The build failed, or the cross compiler cannot be had; what to do is on standard error.
-pub fn build() -> anyhow::Result<PathBuf> {
+pub fn build(fingers: usize) -> anyhow::Result<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .context("hil-sim has no parent folder")?;
     let built = Command::new("cargo")
-        .args(["xtask", "firmware", "--print-path"])
+        .args(["xtask", "firmware", "--print-path", "--fingers"])
+        .arg(fingers.to_string())
         .current_dir(root)
         .stderr(Stdio::inherit())
         .output()

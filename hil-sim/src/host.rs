@@ -3,7 +3,6 @@
 use thermal_display::protocol::LINE_MAX;
 use thermal_display::render::Mode;
 
-use crate::engine::Engine;
 use crate::scene::{FaultKind, Scene, custom_line};
 
 /// Milliseconds after the device's start at which it is armed, and between two lines.
@@ -11,7 +10,7 @@ const ARM_MS: u64 = 10;
 const SPACING_MS: u64 = 3;
 /// How long the skin is watched before an object is presented, ms: ten time constants of the device's filter.
 const WATCH_MS: u64 = 2600;
-/// Milliseconds before time zero from which every tick is streamed.
+/// Milliseconds before time zero from which telemetry is streamed.
 const STREAM_MS: u64 = 20;
 /// What a host that has lost its mind sends.
 const GARBAGE: &[u8] = b"\x00\xff\xfe\x80arm\x01\n\xc3\x28 start\n";
@@ -25,9 +24,10 @@ pub struct Host {
 }
 
 impl Host {
-    /// The lines that restore a device's settings, those that set a scene up, and those of the scene itself.
+    /// The lines that restore a device's settings, those that set a scene up, telemetry every `stream_ms` included,
+    /// and those of the scene itself.
     #[must_use]
-    pub fn new(scene: &Scene, settings: &[String]) -> Self {
+    pub fn new(scene: &Scene, settings: &[String], stream_ms: u32) -> Self {
         let zero_ms = scene.settle_ms();
         let at = |t_s: f64| zero_ms + (t_s * 1e3).round() as u64;
         let material = match scene.object.name.as_str() {
@@ -55,7 +55,7 @@ impl Host {
             arm_ms + WATCH_MS
         };
         queue.push((start_ms, "start".into()));
-        queue.push((zero_ms - STREAM_MS, "stream 1".into()));
+        queue.push((zero_ms - STREAM_MS, format!("stream {stream_ms}")));
         queue.extend(scene.host.iter().map(|host| (at(host.t_s), host.line.clone())));
         let lines = queue
             .into_iter()
@@ -84,27 +84,6 @@ impl Host {
 /// that both engines execute them in the same tick.
 pub(crate) fn leaves_at_half(bytes: &[u8]) -> u64 {
     (31..=80).contains(&bytes.len()).into()
-}
-
-/// What the device has sent.
-#[derive(Debug, Default)]
-pub(crate) struct Inbox {
-    received: Vec<u8>,
-}
-
-impl Inbox {
-    /// The lines that are complete.
-    pub fn lines<E: Engine>(&mut self, engine: &mut E) -> Vec<String> {
-        engine.receive(&mut self.received);
-        let Some(end) = self.received.iter().rposition(|byte| *byte == b'\n') else {
-            return Vec::new();
-        };
-        let complete: Vec<u8> = self.received.drain(..=end).collect();
-        String::from_utf8_lossy(&complete)
-            .lines()
-            .map(|line| line.trim_end().to_owned())
-            .collect()
-    }
 }
 
 /// Delays lines that would leave before the line ahead of them was answered.

@@ -8,6 +8,7 @@ pub mod commission;
 pub mod engine;
 pub mod fidelity;
 pub mod firmware;
+pub mod hand;
 pub mod host;
 pub mod infrared;
 pub mod machine;

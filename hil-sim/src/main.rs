@@ -7,7 +7,9 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use cli::{Failure, commission, erfcx, fidelity, infrared, model, parameters, roughness, run, thesis};
+use cli::{
+    Failure, commission, erfcx, fidelity, hand, infrared, model, parameters, profile, roughness, run, thesis,
+};
 
 /// Simulated plant and emulated microcontroller of the thermal display.
 #[derive(Parser)]
@@ -17,6 +19,10 @@ enum Cli {
     Run(run::Arguments),
     /// Calibrate and tune a device and print its settings as lines
     Commission(commission::Arguments),
+    /// Run five scenes side by side, on the five fingers of one device
+    Hand(hand::Arguments),
+    /// Run a scene on the image; say which functions a control tick spends its time in
+    Profile(profile::Arguments),
     /// Evaluate the contact model (Eq. 6-5 to 6-12) and print CSV
     Model(model::Arguments),
     /// Evaluate the fixed-point kernel: one z a line on standard input, prints z and the bits of E
@@ -37,6 +43,8 @@ fn main() -> ExitCode {
     let done = match Cli::parse() {
         Cli::Run(arguments) => run::run(&arguments),
         Cli::Commission(arguments) => commission::run(&arguments),
+        Cli::Hand(arguments) => hand::run(&arguments),
+        Cli::Profile(arguments) => profile::run(&arguments),
         Cli::Model(arguments) => model::run(&arguments),
         Cli::Erfcx => erfcx::run(),
         Cli::Infrared(arguments) => infrared::run(&arguments),

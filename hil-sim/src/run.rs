@@ -3,8 +3,8 @@
 use std::time::Instant;
 
 use crate::commission::{self, CommissionError};
-use crate::engine::{Cost, Engine};
-use crate::host::{Host, Inbox};
+use crate::engine::{Cost, Engine, Lines};
+use crate::host::Host;
 use crate::scene::{FaultKind, Scene};
 use crate::telemetry::Telemetry;
 use crate::trace::{Row, Trace};
@@ -57,9 +57,9 @@ pub fn run<E: Engine>(
     let mut session = Session {
         scene,
         engine,
-        host: Host::new(scene, &settings),
+        host: Host::new(scene, &settings, 1),
         zero_ms,
-        inbox: Inbox::default(),
+        received: Lines::default(),
     };
     let (mut trace, mut answers) = (Trace::default(), Vec::new());
     let (mut before_j, mut after_j) = (0.0, 0.0);
@@ -102,12 +102,20 @@ pub fn run<E: Engine>(
     })
 }
 
+/// What is broken at a time.
+pub(crate) fn broken(scene: &Scene, t_s: f64) -> impl Iterator<Item = FaultKind> {
+    let begun = scene.faults.iter().filter(move |fault| fault.t_s <= t_s);
+    begun
+        .map(|fault| fault.kind)
+        .filter(|kind| *kind != FaultKind::HostGarbage)
+}
+
 struct Session<'a, E> {
     scene: &'a Scene,
     engine: &'a mut E,
     host: Host,
     zero_ms: u64,
-    inbox: Inbox,
+    received: Lines,
 }
 
 impl<E: Engine> Session<'_, E> {
@@ -119,16 +127,9 @@ impl<E: Engine> Session<'_, E> {
     /// What the scene changes at the boundary.
     fn boundary(&mut self, ms: u64) {
         let t_s = self.t_s(ms);
-        let lasting = |kind: &FaultKind| *kind != FaultKind::HostGarbage;
-        let broken = self
-            .scene
-            .faults
-            .iter()
-            .filter(|fault| fault.t_s <= t_s)
-            .map(|fault| fault.kind);
         self.engine
             .world()
-            .set(self.scene.force_n(t_s), broken.filter(lasting));
+            .set(self.scene.force_n(t_s), broken(self.scene, t_s));
         self.send(2 * ms);
     }
 
@@ -147,6 +148,7 @@ impl<E: Engine> Session<'_, E> {
 
     /// The lines that are complete.
     fn lines(&mut self) -> Vec<String> {
-        self.inbox.lines(self.engine)
+        self.engine.receive(self.received.received());
+        self.received.complete()
     }
 }

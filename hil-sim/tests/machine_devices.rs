@@ -67,10 +67,10 @@ fn the_signature_tells_the_flash_size_and_other_memories_stop_the_run() {
 #[test]
 fn the_break_input_releases_both_legs() {
     let (mut machine, _) = probe::run(13, SECOND / 100);
-    assert_ne!(machine.leg_duty(1), LegState::Off);
+    assert_ne!(machine.pwm(0, 8), LegState::Off);
     machine.wiring_mut().break_pin = Some(true);
     machine.run_until(machine.now() + SECOND / 16_000).expect("runs");
-    assert_eq!([machine.leg_duty(1), machine.leg_duty(2)], [LegState::Off; 2]);
+    assert_eq!([machine.pwm(0, 8), machine.pwm(0, 9)], [LegState::Off; 2]);
     assert_eq!(
         machine.wiring().bridge.last().map(|b| b.0),
         Some([LegState::Off; 2])
@@ -145,14 +145,14 @@ fn the_products_load_keeps_its_rates() {
         (180_000_000, 45_000_000, 90_000_000)
     );
     assert_eq!(
-        machine.leg_duty(1),
+        machine.pwm(0, 8),
         LegState::Duty {
             high: 450,
             period: 1800
         }
     );
-    assert_eq!(machine.leg_duty(1).duty(), Some(0.25));
-    assert_eq!(machine.leg_duty(2).duty(), Some(0.0));
+    assert_eq!(machine.pwm(0, 8).duty(), Some(0.25));
+    assert_eq!(machine.pwm(0, 9).duty(), Some(0.0));
     let from = machine.now();
     let (conversions, bytes) = (machine.wiring().conversions.len(), machine.wiring().sent.len());
     let ticks = |m: &hil_sim::machine::Machine<probe::Bench>| {

@@ -71,13 +71,15 @@ proptest! {
 
     #[test]
     fn response_is_total_and_saturates(
-        weight in word(), ratio in word(), per_tick in rate(), conductance_w_m2k in rate(),
+        weight in word(), ratio in word(),
+        (per_tick, per_root_tick, conductance_w_m2k) in (rate(), rate(), rate()),
         elapsed in word(), skin in celsius(), object in celsius(),
     ) {
         let contact = Contact {
             weight: Fraction::from_bits(weight),
             ratio: Ratio::from_bits(ratio),
             per_tick,
+            per_root_tick,
             conductance_w_m2k,
         };
         let at = contact.at(elapsed, skin, object);
@@ -94,7 +96,8 @@ proptest! {
     /// Whatever the contact, a course neither panics nor leaves ±255 °C.
     #[test]
     fn course_is_total(
-        (weight, ratio) in (word(), word()), (per_tick, conductance_w_m2k) in (rate(), rate()),
+        (weight, ratio) in (word(), word()),
+        (per_tick, per_root_tick, conductance_w_m2k) in (rate(), rate(), rate()),
         (skin, object, tolerance) in (celsius(), celsius(), celsius()),
         elapsed: u64,
     ) {
@@ -102,6 +105,7 @@ proptest! {
             weight: Fraction::from_bits(weight),
             ratio: Ratio::from_bits(ratio),
             per_tick,
+            per_root_tick,
             conductance_w_m2k,
         };
         let (mut course, evaluations) = Course::new(&contact, skin, object, elapsed, tolerance);

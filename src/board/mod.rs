@@ -14,5 +14,7 @@ mod nucleo_f446re;
 
 pub use console::Console;
 #[cfg(feature = "nucleo-f446re")]
-pub use nucleo_f446re::{Board, Memory, Outbox, PowerStage, Receiver, Sampler, Transmitter, Watchdog, pac};
+pub use nucleo_f446re::{
+    Board, FINGERS, Memory, Outbox, PowerStage, Receiver, Sampler, Transmitter, Watchdog, pac,
+};
 pub use vigil::{Task, Vigil};

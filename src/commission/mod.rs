@@ -3,6 +3,7 @@
 //! What needs `f64` is done here, by the task that answers the host, while the tick goes on; the station only averages
 //! and adds up.
 
+mod desk;
 mod experiment;
 mod fit;
 mod identify;
@@ -12,8 +13,8 @@ mod request;
 mod service;
 mod solve;
 
+pub use desk::Desk;
 pub use experiment::{Aborted, Experiment, Row};
 pub use margins::Margins;
 pub use points::{FARTHEST_K, POINTS, Point, PointError, Points};
 pub use request::{SENSORS, STEPS_A_LINE};
-pub use service::Service;

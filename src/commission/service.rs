@@ -1,4 +1,4 @@
-//! Lines to answers: what the host task does with the slow half of a command.
+//! One finger's settings, and the slow half of the commands that change them.
 
 use super::experiment::{ROWS, Row};
 use super::fit::{fit, reading_c};
@@ -36,20 +36,17 @@ impl Service {
         &self.settings
     }
 
-    /// Answers a line. `execute` is what the station does with a [`Command`], in bounded and short time; all that
-    /// takes longer is done here, before or between.
+    /// Obeys one finger's line of commissioning. `execute` is what its station does with a [`Command`], in bounded
+    /// and short time; all that takes longer is done here, before or between.
     ///
     /// # Errors
-    /// Why the line is refused; nothing has changed.
+    /// Why it is refused; nothing has changed.
     pub fn answer(
         &mut self,
-        line: &str,
+        request: Request,
         mut execute: impl FnMut(Command) -> Result<Reply, Error>,
     ) -> Result<Reply, Error> {
-        let Some(request) = Request::parse(line) else {
-            return execute(Command::parse(line, &self.settings)?);
-        };
-        match request? {
+        match request {
             Request::Point { sensor, reference_c } => self.point(sensor, reference_c, &mut execute),
             Request::Clear { sensor } => {
                 self.points.clear(sensor);

@@ -7,31 +7,20 @@ pub fn solve<const N: usize>(a: &mut [[f64; N]; N], b: &mut [f64; N], n: usize) 
     let n = n.min(N);
     for i in 0..n {
         for j in 0..i {
-            let mut sum = a[i][j];
-            for k in 0..j {
-                sum -= a[i][k] * a[j][k] * a[k][k];
-            }
-            a[i][j] = sum / a[j][j];
+            let sum: f64 = (0..j).map(|k| a[i][k] * a[j][k] * a[k][k]).sum();
+            a[i][j] = (a[i][j] - sum) / a[j][j];
         }
-        let mut pivot = a[i][i];
-        for k in 0..i {
-            pivot -= a[i][k] * a[i][k] * a[k][k];
-        }
+        let pivot = a[i][i] - (0..i).map(|k| a[i][k] * a[i][k] * a[k][k]).sum::<f64>();
         if pivot.is_nan() || pivot <= 0.0 {
             return None;
         }
         a[i][i] = pivot;
     }
     for i in 0..n {
-        for k in 0..i {
-            b[i] -= a[i][k] * b[k];
-        }
+        b[i] -= (0..i).map(|k| a[i][k] * b[k]).sum::<f64>();
     }
     for i in (0..n).rev() {
-        b[i] /= a[i][i];
-        for k in i + 1..n {
-            b[i] -= a[k][i] * b[k];
-        }
+        b[i] = b[i] / a[i][i] - (i + 1..n).map(|k| a[k][i] * b[k]).sum::<f64>();
     }
     Some(())
 }

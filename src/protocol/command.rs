@@ -48,11 +48,11 @@ pub enum Command {
     Abort,
     /// `clear`: take back a fault that is no longer present.
     Clear,
-    /// What a thermistor's sums are on average, for [`Service`](crate::commission::Service).
+    /// What a thermistor's sums are on average, for [`Desk`](crate::commission::Desk).
     Average(usize),
     /// `tune`: find out what the tile is like.
     Tune,
-    /// A row of what that has shown, for [`Service`](crate::commission::Service).
+    /// A row of what that has shown, for [`Desk`](crate::commission::Desk).
     Experiment(usize),
     /// Reads by another calibration, from it.
     Calibrate(Calibrated),

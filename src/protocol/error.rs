@@ -46,6 +46,8 @@ pub enum Error {
     Line(LineError),
     /// First word unknown.
     UnknownCommand(Word),
+    /// No such finger; there are that many.
+    UnknownFinger(Word, usize),
     /// Material unknown.
     UnknownMaterial(Word),
     /// Mode unknown.
@@ -119,6 +121,13 @@ impl fmt::Display for Error {
             Self::UnknownCommand(word) => {
                 write!(f, "unknown command {word}; known:")?;
                 Command::WORDS.iter().try_for_each(|known| write!(f, " {known}"))
+            }
+            Self::UnknownFinger(word, fingers) => {
+                write!(
+                    f,
+                    "unknown finger {word} after @; known: 0 to {}",
+                    fingers.saturating_sub(1)
+                )
             }
             Self::UnknownMaterial(word) => {
                 write!(f, "unknown material {word}; known:")?;

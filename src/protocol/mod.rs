@@ -2,6 +2,7 @@
 //!
 //! Answers start with `ok` or `err`, streamed telemetry with `T`.
 
+mod address;
 mod command;
 mod error;
 mod line;
@@ -9,6 +10,8 @@ mod reply;
 mod telemetry;
 mod text;
 
+pub(crate) use address::address;
+pub use address::{Addressed, Request};
 pub use command::Command;
 pub(crate) use command::number;
 pub use error::{Error, Number, Word};

@@ -19,7 +19,10 @@ pub enum Reply {
     /// It is done.
     Done,
     /// Answer to `id`.
-    Identity,
+    Identity {
+        /// Fingers of the device.
+        fingers: u8,
+    },
     /// Answer to `state`.
     Status(Status),
     /// Answer to `law`.
@@ -64,9 +67,9 @@ impl fmt::Display for Reply {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Done => f.write_str("ok"),
-            Self::Identity => write!(
+            Self::Identity { fingers } => write!(
                 f,
-                "ok {} {} fingers=1 tick_hz={TICK_HZ} scan_hz={SCANS_PER_SECOND}",
+                "ok {} {} fingers={fingers} tick_hz={TICK_HZ} scan_hz={SCANS_PER_SECOND}",
                 env!("CARGO_PKG_NAME"),
                 env!("CARGO_PKG_VERSION"),
             ),

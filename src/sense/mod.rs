@@ -61,13 +61,7 @@ impl Samples {
     /// the mean of a tick in which a wire broke would be a temperature.
     #[must_use]
     pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], bridge_fault: bool) -> Self {
-        let column = |channel: usize| {
-            scans
-                .iter()
-                .fold(0u16, |sum, scan| sum.wrapping_add(scan[channel]))
-        };
-        // 16 times 4095 fits.
-        let mut sum: [u16; CHANNELS] = core::array::from_fn(column);
+        let mut sum = sums(scans);
         let [.., last] = scans;
         for (s, &count) in sum.iter_mut().zip(last).take(THERMISTORS) {
             if thermistor::is_at_an_end(count) {
@@ -86,6 +80,22 @@ impl Samples {
             bridge_fault,
         }
     }
+}
+
+/// The sum of every channel. Two counts are added at a time: sums of 8 times 4095 and of 16 stay within their halves of
+/// a word.
+fn sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNELS] {
+    // Two scans are as many whole words as a scan has channels.
+    let mut words = [0u32; CHANNELS];
+    let (pairs, _) = scans.as_chunks::<2>();
+    for pair in pairs {
+        let (halves, _) = pair.as_flattened().as_chunks::<2>();
+        for (word, [low, high]) in words.iter_mut().zip(halves) {
+            *word += u32::from(*low) | u32::from(*high) << 16;
+        }
+    }
+    let half = |i: usize| (words[i / 2 % CHANNELS] >> (16 * (i % 2))) as u16;
+    core::array::from_fn(|channel| half(channel).wrapping_add(half(channel + CHANNELS)))
 }
 
 /// What the samples of one tick say.

@@ -16,7 +16,7 @@ use hil_sim::trace::Row;
 /// It cannot be built.
 pub fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
-    IMAGE.get_or_init(|| hil_sim::firmware::build().expect("the image builds"))
+    IMAGE.get_or_init(|| hil_sim::firmware::build(1).expect("the image builds"))
 }
 
 /// A finger of 34 °C on `material`, room and object at 24 °C; `rest` is what else the scene says, tables last.

@@ -1,7 +1,7 @@
 //! A finger lands on "copper", in the emulator.
 use anyhow::Result;
 
-use crate::firmware;
+use crate::firmware::{self, Fingers};
 use crate::process::{Invocation, workspace};
 use crate::setup::{self, Needs, Permission};
 use crate::step::Steps;
@@ -18,7 +18,7 @@ pub fn run(permission: Permission) -> Result<()> {
     };
     let toolchain = steps.run("set-up", "", || setup::prepare(needs, permission))?;
     steps.run("building the firmware", "about 1 min the first time", || {
-        firmware::build(&toolchain).run_to_stderr()
+        firmware::build(&toolchain, Fingers::One).run_to_stderr()
     })?;
     steps.run("building the emulator", "about 2 min the first time", || {
         Invocation::cargo(["build", "--release", "-p", "hil-sim"]).run_to_stderr()
@@ -37,7 +37,7 @@ pub fn run(permission: Permission) -> Result<()> {
         ];
         permission.choice.handed_to(Invocation::cargo(run)).run()
     })?;
-    println!("\n{}", firmware::describe(&toolchain)?);
+    println!("\n{}", firmware::describe(&toolchain, Fingers::One)?);
     println!("report and trace: {}", workspace().join(OUT).display());
     Ok(())
 }

@@ -9,7 +9,27 @@ use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 
 const PROFILE: &str = "firmware";
 const PACKAGE: &str = "thermal-display";
-const BOARD: &str = "nucleo-f446re";
+
+/// For how many fingers an image is built.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Fingers {
+    /// One, on the NUCLEO-F446RE
+    #[default]
+    #[value(name = "1")]
+    One,
+    /// Five, whose signals take turns on multiplexers
+    #[value(name = "5")]
+    Five,
+}
+
+impl Fingers {
+    fn feature(self) -> &'static str {
+        match self {
+            Self::One => "nucleo-f446re",
+            Self::Five => "five-fingers",
+        }
+    }
+}
 
 /// What in a user's environment would change the image; the log level is that of `.cargo/config.toml`.
 const FOREIGN_FLAGS: [&str; 5] = [
@@ -21,26 +41,28 @@ const FOREIGN_FLAGS: [&str; 5] = [
 ];
 
 /// The folder that cargo builds the image in. One for each compiler, neither that of host builds: compilers that
-/// share a folder rebuild each other's work.
-fn target_folder(toolchain: &Toolchain) -> &'static str {
-    match toolchain {
-        Toolchain::Active => "target/firmware",
-        Toolchain::Distribution(_) => "target/firmware-distribution",
+/// share a folder rebuild each other's work, and images that share one replace each other.
+fn target_folder(toolchain: &Toolchain, fingers: Fingers) -> &'static str {
+    match (toolchain, fingers) {
+        (Toolchain::Active, Fingers::One) => "target/firmware",
+        (Toolchain::Active, Fingers::Five) => "target/firmware-five",
+        (Toolchain::Distribution(_), Fingers::One) => "target/firmware-distribution",
+        (Toolchain::Distribution(_), Fingers::Five) => "target/firmware-five-distribution",
     }
 }
 
 /// The ELF file that [`build`] leaves.
-pub fn elf(toolchain: &Toolchain) -> PathBuf {
+pub fn elf(toolchain: &Toolchain, fingers: Fingers) -> PathBuf {
     workspace()
-        .join(target_folder(toolchain))
+        .join(target_folder(toolchain, fingers))
         .join(TARGET)
         .join(PROFILE)
         .join(PACKAGE)
 }
 
 /// `cargo SUBCOMMAND` for the image, in its own folder.
-fn cargo(toolchain: &Toolchain, subcommand: &str) -> Invocation {
-    let folder = target_folder(toolchain);
+fn cargo(toolchain: &Toolchain, fingers: Fingers, subcommand: &str) -> Invocation {
+    let folder = target_folder(toolchain, fingers);
     toolchain
         .cargo(subcommand)
         .args([
@@ -52,25 +74,25 @@ fn cargo(toolchain: &Toolchain, subcommand: &str) -> Invocation {
             "--target",
             TARGET,
             "--features",
-            BOARD,
+            fingers.feature(),
         ])
         .args(["--target-dir", folder])
         .without(&FOREIGN_FLAGS)
 }
 
 /// Builds the image.
-pub fn build(toolchain: &Toolchain) -> Invocation {
-    cargo(toolchain, "build")
+pub fn build(toolchain: &Toolchain, fingers: Fingers) -> Invocation {
+    cargo(toolchain, fingers, "build")
 }
 
 /// Lints what only the microcontroller's target compiles.
-pub fn clippy(toolchain: &Toolchain) -> Invocation {
-    cargo(toolchain, "clippy").args(["--", "-Dwarnings"])
+pub fn clippy(toolchain: &Toolchain, fingers: Fingers) -> Invocation {
+    cargo(toolchain, fingers, "clippy").args(["--", "-Dwarnings"])
 }
 
 /// Path, flash and RAM use of the built image.
-pub fn describe(toolchain: &Toolchain) -> Result<String> {
-    let path = elf(toolchain);
+pub fn describe(toolchain: &Toolchain, fingers: Fingers) -> Result<String> {
+    let path = elf(toolchain, fingers);
     let read =
         |path: &PathBuf| std::fs::read(path).with_context(|| format!("cannot read {}", path.display()));
     let script = workspace().join("memory.x");
@@ -81,13 +103,13 @@ pub fn describe(toolchain: &Toolchain) -> Result<String> {
 }
 
 /// `cargo xtask firmware`
-pub fn run(permission: Permission, print_path: bool) -> Result<()> {
+pub fn run(permission: Permission, fingers: Fingers, print_path: bool) -> Result<()> {
     let toolchain = setup::prepare(Needs::default(), permission)?;
-    build(&toolchain).run_to_stderr()?;
-    let description = describe(&toolchain)?;
+    build(&toolchain, fingers).run_to_stderr()?;
+    let description = describe(&toolchain, fingers)?;
     if print_path {
         eprintln!("{description}");
-        println!("{}", elf(&toolchain).display());
+        println!("{}", elf(&toolchain, fingers).display());
     } else {
         println!("{description}");
     }

@@ -38,6 +38,9 @@ enum Task {
     Firmware {
         #[command(flatten)]
         set_up: SetUp,
+        /// How many fingers the image is for
+        #[arg(long, value_enum, default_value_t)]
+        fingers: firmware::Fingers,
         /// Print the path of the ELF file on standard output and nothing else there
         #[arg(long)]
         print_path: bool,
@@ -99,7 +102,11 @@ fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Task::Demo(set_up) => demo::run(set_up.permission()),
         Task::Test(set_up) => suite::run(set_up.permission()),
-        Task::Firmware { set_up, print_path } => firmware::run(set_up.permission(), print_path),
+        Task::Firmware {
+            set_up,
+            fingers,
+            print_path,
+        } => firmware::run(set_up.permission(), fingers, print_path),
         Task::Bench {
             set_up,
             job,

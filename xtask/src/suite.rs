@@ -1,7 +1,7 @@
 //! The whole test suite.
 use anyhow::{Result, anyhow};
 
-use crate::firmware;
+use crate::firmware::{self, Fingers};
 use crate::process::Invocation;
 use crate::setup::{self, Choice, Lints, Needs, Permission, Toolchain};
 use crate::step::Steps;
@@ -43,12 +43,30 @@ fn checks(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Check> {
         Check {
             title: "firmware image",
             hint: "about 1 min the first time",
-            command: Ok(firmware::build(toolchain)),
+            command: Ok(firmware::build(toolchain, Fingers::One)),
+        },
+        Check {
+            title: "firmware image for five fingers",
+            hint: "about 1 min the first time",
+            command: Ok(firmware::build(toolchain, Fingers::Five)),
         },
         Check {
             title: "lints of the firmware",
             hint: "",
-            command: only(clippy_for_firmware, firmware::clippy(toolchain), no_clippy),
+            command: only(
+                clippy_for_firmware,
+                firmware::clippy(toolchain, Fingers::One),
+                no_clippy,
+            ),
+        },
+        Check {
+            title: "lints of the firmware for five fingers",
+            hint: "",
+            command: only(
+                clippy_for_firmware,
+                firmware::clippy(toolchain, Fingers::Five),
+                no_clippy,
+            ),
         },
         Check {
             title: "lints of the host's code",
@@ -153,6 +171,6 @@ mod tests {
             }),
             1
         );
-        assert_eq!(skipped(Lints { clippy: false, ..ALL }), 2);
+        assert_eq!(skipped(Lints { clippy: false, ..ALL }), 3);
     }
 }

@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Kind::Image => {
             let path = match &arguments.elf {
                 Some(path) => path.clone(),
-                None => firmware::build().map_err(Failure::run)?,
+                None => firmware::build(1).map_err(Failure::run)?,
             };
             let firmware = Firmware::from_file(&path).map_err(Failure::input)?;
             commission(&plants, &mut Image::new(&firmware, world).map_err(Failure::run)?)

@@ -205,7 +205,7 @@ fn firmware(arguments: &Arguments, scenarios: bool) -> Result<Option<Firmware>, 
     }
     let path = match &arguments.elf {
         Some(path) => path.clone(),
-        None => firmware::build().map_err(Failure::run)?,
+        None => firmware::build(1).map_err(Failure::run)?,
     };
     let firmware = Firmware::from_file(&path)
         .with_context(|| path.display().to_string())

@@ -3,9 +3,11 @@
 pub mod commission;
 pub mod erfcx;
 pub mod fidelity;
+pub mod hand;
 pub mod infrared;
 pub mod model;
 pub mod parameters;
+pub mod profile;
 pub mod roughness;
 pub mod run;
 pub mod thesis;

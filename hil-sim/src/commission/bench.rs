@@ -5,8 +5,8 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::CommissionError;
-use crate::engine::Engine;
-use crate::host::{Inbox, leaves_at_half};
+use crate::engine::{Engine, Lines};
+use crate::host::leaves_at_half;
 use crate::plant::HostParams;
 use crate::world::World;
 
@@ -18,7 +18,7 @@ const RESOLUTION_K: f64 = 1e-3;
 /// A device, and what the operator needs.
 pub struct Bench<'a, E> {
     engine: &'a mut E,
-    inbox: Inbox,
+    received: Lines,
     thermometer: HostParams,
     random: Xoshiro256PlusPlus,
 }
@@ -28,7 +28,7 @@ impl<'a, E: Engine> Bench<'a, E> {
     pub fn new(engine: &'a mut E, thermometer: HostParams, seed: u64) -> Self {
         Self {
             engine,
-            inbox: Inbox::default(),
+            received: Lines::default(),
             thermometer,
             random: Xoshiro256PlusPlus::seed_from_u64(seed),
         }
@@ -111,6 +111,7 @@ impl<'a, E: Engine> Bench<'a, E> {
             }
             self.engine.run_half_ms().map_err(stop)?;
         }
-        Ok(self.inbox.lines(self.engine))
+        self.engine.receive(self.received.received());
+        Ok(self.received.complete())
     }
 }

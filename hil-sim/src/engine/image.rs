@@ -1,19 +1,18 @@
 //! The release image in the emulated microcontroller, wired as the NUCLEO-F446RE board is.
 
-use super::{BAUD, Cost, Engine};
+use super::meter::TICK;
+use super::{BAUD, Cost, Engine, Meter};
 use crate::machine::{Firmware, LegState, Machine, Stop, Wiring};
 use crate::plant::bridge::{Leg, Legs};
 use crate::plant::sensors::Channel;
 use crate::world::World;
 
 /// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2.
-const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12];
+pub const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12];
 /// Fault line of the bridge, low is a fault: PA6.
 const FAULT_PIN: (u8, u8) = (0, 6);
 /// Enable input of the bridge: PB10.
 const ENABLE_PIN: (u8, u8) = (1, 10);
-/// The interrupt that a control tick runs in.
-const TICK: &str = "DMA2_STREAM0";
 
 /// From the first conversion to the first boundary, and between boundaries, microseconds.
 const FIRST_BOUNDARY_US: u64 = 230;
@@ -41,14 +40,33 @@ pub struct Image {
     first_boundary: u64,
     halves: u64,
     cycles_per_us: u64,
-    before: Before,
+    meter: Meter,
 }
 
-/// Totals when the measurement began.
-#[derive(Clone, Copy, Debug, Default)]
-struct Before {
-    cycles: u64,
-    awake: f64,
+/// Runs to the first conversion; its end in cycles since power-up.
+///
+/// # Errors
+/// The image cannot run, or does not start its converter.
+pub fn power_up<W: Wiring>(
+    machine: &mut Machine<W>,
+    first_conversion: impl Fn(&W) -> Option<u64>,
+) -> Result<u64, ImageError> {
+    loop {
+        if let Some(at) = first_conversion(machine.wiring()) {
+            return Ok(at);
+        }
+        let now = machine.now();
+        if now > BOOT_S * u64::from(machine.clocks().hclk_hz) {
+            return Err(ImageError::NoConversion);
+        }
+        machine.run_until(now + SEARCH_CYCLES)?;
+    }
+}
+
+impl From<LegState> for Leg {
+    fn from(state: LegState) -> Self {
+        state.duty().map_or(Self::Off, Self::Duty)
+    }
 }
 
 impl Image {
@@ -59,28 +77,31 @@ impl Image {
     pub fn new(firmware: &Firmware, world: World) -> Result<Self, ImageError> {
         let mut machine = Machine::new(firmware, Pins::new(world))?;
         machine.set_host_baud(BAUD as u32);
-        let started = loop {
-            if let Some(at) = machine.wiring().first_conversion {
-                break at;
-            }
-            let now = machine.now();
-            if now > BOOT_S * u64::from(machine.clocks().hclk_hz) {
-                return Err(ImageError::NoConversion);
-            }
-            machine.run_until(now + SEARCH_CYCLES)?;
-        };
+        let started = power_up(&mut machine, |pins| pins.first_conversion)?;
         let cycles_per_us = u64::from(machine.clocks().hclk_hz) / 1_000_000;
         let first_boundary = started + FIRST_BOUNDARY_US * cycles_per_us;
         machine.run_until(first_boundary)?;
-        let mut image = Self {
+        let meter = Meter::new(&mut machine);
+        Ok(Self {
             machine,
             first_boundary,
             halves: 0,
             cycles_per_us,
-            before: Before::default(),
-        };
-        image.reset_cost();
-        Ok(image)
+            meter,
+        })
+    }
+}
+
+impl Image {
+    /// Notes the way of the control tick through the code from now on.
+    pub fn watch_tick(&mut self) {
+        self.machine.watch(TICK);
+    }
+
+    /// The machine, to read.
+    #[must_use]
+    pub fn machine(&self) -> &Machine<impl Wiring + use<>> {
+        &self.machine
     }
 }
 
@@ -94,14 +115,10 @@ impl Engine for Image {
     }
 
     fn legs(&mut self) -> Legs {
-        let mut leg = |channel| match self.machine.leg_duty(channel) {
-            LegState::Off => Leg::Off,
-            LegState::Duty { high, period } => Leg::Duty(f64::from(high) / f64::from(period)),
-        };
-        let (a, b) = (leg(1), leg(2));
+        let (a, b) = (self.machine.pwm(0, 8), self.machine.pwm(0, 9));
         Legs {
-            a,
-            b,
+            a: a.into(),
+            b: b.into(),
             enabled: self.machine.gpio_output(ENABLE_PIN.0, ENABLE_PIN.1) == Some(true),
         }
     }
@@ -121,26 +138,11 @@ impl Engine for Image {
     }
 
     fn reset_cost(&mut self) {
-        self.machine.restart_interrupt_stats();
-        let stats = self.machine.stats();
-        self.before = Before {
-            cycles: stats.cycles,
-            awake: stats.cycles as f64 * (1.0 - stats.sleep_share),
-        };
+        self.meter = Meter::new(&mut self.machine);
     }
 
     fn cost(&self) -> Option<Cost> {
-        let stats = self.machine.stats();
-        let tick = stats.interrupts.iter().find(|interrupt| interrupt.name == TICK)?;
-        let awake = stats.cycles as f64 * (1.0 - stats.sleep_share) - self.before.awake;
-        Some(Cost {
-            instructions_mean: tick.instructions_mean,
-            instructions_max: tick.instructions_max,
-            cycles_mean: tick.cycles_mean,
-            cycles_max: tick.cycles_max,
-            load: awake / (stats.cycles - self.before.cycles) as f64,
-            stack_bytes: self.machine.stack_high_water(),
-        })
+        self.meter.cost(&self.machine)
     }
 }
 

@@ -15,9 +15,14 @@
 //! of both engines would show.
 
 mod image;
+mod lines;
+mod meter;
 mod native;
 
+pub(crate) use image::{ADC_INPUTS, power_up};
 pub use image::{Image, ImageError};
+pub use lines::Lines;
+pub(crate) use meter::Meter;
 pub use native::Native;
 
 use crate::plant::bridge::Legs;
@@ -70,6 +75,8 @@ pub struct Cost {
     pub cycles_mean: f64,
     /// Cycles of the longest control tick.
     pub cycles_max: u64,
+    /// Longest time from the request of a control tick to its first instruction, cycles.
+    pub latency_max: u64,
     /// Part of the time in which the CPU does not sleep.
     pub load: f64,
     /// Most of the stack that was ever used, bytes; none if the image does not say where its stack ends.

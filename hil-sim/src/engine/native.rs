@@ -4,10 +4,10 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::fmt::Display;
 
-use thermal_display::Station;
-use thermal_display::commission::Service;
+use thermal_display::Hand;
+use thermal_display::commission::Desk;
 use thermal_display::drive::Drive;
-use thermal_display::protocol::{Error, LineReader};
+use thermal_display::protocol::{Addressed, Error, LineReader};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::Settings;
 
@@ -33,14 +33,16 @@ const SCANS_IN_FIRST_HALF: usize = 8;
 #[derive(Debug)]
 pub struct Native {
     world: World,
-    service: Service,
-    station: Station,
+    desk: Desk<1>,
+    hand: Hand<1>,
     reader: LineReader,
     /// Bytes on their way to the device, and when they arrive.
     incoming: VecDeque<(u64, u8)>,
     outgoing: Vec<u8>,
     scans: [Scan; SCANS_PER_TICK],
     filled: usize,
+    /// Scans before those of a tick that are made and left out, while multiplexers settle.
+    settling_scans: usize,
     /// The bridge has pulled its fault pin since the last tick: the board's break flag keeps that.
     fault: bool,
     drive: Drive,
@@ -52,22 +54,50 @@ impl Native {
     /// A device that has just started its first tick.
     #[must_use]
     pub fn new(world: World) -> Self {
+        Self::with(world, 0, 0)
+    }
+
+    /// One of several fingers that take turns on multiplexers: before the scans of a tick one is made that is left out.
+    /// On the finger that power-up finds the multiplexers `settled` on it is two the first time, because there the first
+    /// scan after a switch does not see the finger before.
+    #[must_use]
+    pub fn in_turn(world: World, settled: bool) -> Self {
+        Self::with(world, 1, settled.into())
+    }
+
+    fn with(world: World, settling_scans: usize, more_at_first: usize) -> Self {
         let settings = Settings::default();
         let mut native = Self {
             world,
-            service: Service::new(settings),
-            station: Station::new(&settings),
+            desk: Desk::new(settings),
+            hand: Hand::new(&settings),
             reader: LineReader::new(),
             incoming: VecDeque::new(),
             outgoing: Vec::new(),
             scans: [Scan::default(); SCANS_PER_TICK],
             filled: 0,
+            settling_scans,
             fault: false,
             drive: Drive::Off,
             halves: 0,
         };
-        native.scan(SCANS_BEFORE_START);
+        native.settle(more_at_first);
+        native.begin();
         native
+    }
+
+    /// Converts and leaves out.
+    fn settle(&mut self, scans: usize) {
+        for _ in 0..scans {
+            let _unsettled = Channel::ALL.map(|channel| self.world.convert(channel));
+        }
+    }
+
+    /// The first scans of a tick.
+    fn begin(&mut self) {
+        self.settle(self.settling_scans);
+        self.filled = 0;
+        self.scan(SCANS_BEFORE_START);
     }
 
     fn scan(&mut self, count: usize) {
@@ -87,10 +117,9 @@ impl Native {
             let Some(line) = self.reader.push(byte) else {
                 continue;
             };
-            let executed = line.map_err(Error::from).and_then(|line| {
-                self.service
-                    .answer(&line, |command| self.station.execute(command))
-            });
+            let executed = line
+                .map_err(|error| Addressed::device(Error::from(error)))
+                .and_then(|line| self.desk.answer(&line, |request| self.hand.execute(request)));
             match executed {
                 Ok(reply) => self.answer(&reply),
                 Err(error) => self.answer(&error),
@@ -133,12 +162,11 @@ impl Engine for Native {
             self.serve(tick_ns);
             let samples = Samples::from_scans(&self.scans, self.fault);
             self.fault = self.world.bridge_fault();
-            self.drive = self.station.step(&samples);
-            if let Some(telemetry) = self.station.telemetry() {
+            self.drive = self.hand.step(0, &samples);
+            if let Some(telemetry) = self.hand.telemetry(0) {
                 self.answer(&telemetry);
             }
-            self.filled = 0;
-            self.scan(SCANS_BEFORE_START);
+            self.begin();
         }
         self.halves += 1;
         Ok(())

@@ -90,7 +90,7 @@ fn judged(figure: &'static str, value: Option<f64>, unit: &'static str, bound: O
 /// Times after landing, s, and errors, K, to the largest magnitude from a time on, mK.
 fn max_after(errors: impl Iterator<Item = (f64, f64)>, from_s: f64) -> Option<f64> {
     // Half a row of slack: times are differences of sums.
-    let late = errors.filter(|(since_s, _)| *since_s >= 0.0 * from_s);
+    let late = errors.filter(|(since_s, _)| *since_s > from_s - 0.5e-3);
     late.map(|(_, error_k)| error_k.abs() * 1e3).reduce(f64::max)
 }
 
@@ -99,7 +99,7 @@ fn settled(errors: impl Iterator<Item = (f64, f64)>, below_mk: f64) -> Option<f6
     let mut settled_s = None;
     for (since_s, error_k) in errors {
         if error_k.abs() * 1e3 >= below_mk {
-            settled_s = settled_s.or(None);
+            settled_s = None;
         } else if settled_s.is_none() {
             settled_s = Some(since_s);
         }

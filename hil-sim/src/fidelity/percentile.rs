@@ -7,7 +7,7 @@ pub fn percentile(values: &[f64], percent: f64) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let last = sorted.len().checked_sub(1)?;
-    let place = percent.clamp(0.0, 100.0) / 100.0 * sorted.len() as f64;
+    let place = percent.clamp(0.0, 100.0) / 100.0 * last as f64;
     let below = place as usize;
     let (low, high) = (*sorted.get(below)?, *sorted.get((below + 1).min(last))?);
     Some(low + (high - low) * (place - below as f64))

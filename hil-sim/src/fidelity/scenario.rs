@@ -103,7 +103,7 @@ impl Scenario {
             _ => None,
         };
         Case {
-            appears_t_s: 0.2,
+            appears_t_s: 2.0,
             measure: Measure::Settles {
                 below_mk: 50.0,
                 bound_s,
@@ -115,7 +115,7 @@ impl Scenario {
     fn replaced(self, thing: Thing, force_n: f64) -> Case {
         let on_and_off = |i: u32| {
             let t_s = f64::from(2 * i + 1);
-            [(t_s, force_n, 0.0), (t_s + 1.5, 0.0, 0.0)]
+            [(t_s, force_n, 0.0), (t_s + 1.0, 0.0, 0.0)]
         };
         let presses: Vec<_> = (0..10).flat_map(on_and_off).collect();
         Case {
@@ -125,7 +125,7 @@ impl Scenario {
     }
 
     fn ramped(self, thing: Thing) -> Case {
-        let presses = [(1.0, 0.1, 0.0), (2.0, PRESSED_N, 1.0), (5.0, 0.1, 0.5)];
+        let presses = [(1.0, 0.1, 0.0), (2.0, PRESSED_N, 1.0), (5.0, 0.1, 1.0)];
         Case {
             measure: Measure::CHANGING,
             ..self.case(thing, PRESSED_N, 8.0, &presses)

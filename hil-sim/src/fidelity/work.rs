@@ -36,7 +36,7 @@ pub fn map<T: Sync, R: Send>(
         }
     });
     let mut results = results.into_inner().unwrap_or_default();
-    
+    results.sort_by_key(|(index, _)| *index);
     results.into_iter().map(|(_, result)| result).collect()
 }
 

@@ -15,7 +15,27 @@ use super::{LegState, Wiring};
 
 mod bus;
 
-const TIMERS: usize = 7;
+/// The timers' places: TIM1 to TIM7 first.
+const TIMERS: usize = 10;
+const TIM1: usize = 0;
+const TIM8: usize = 7;
+const TIM10: usize = 8;
+const TIM11: usize = 9;
+/// Pins that are outputs of the modelled timers (DS10693, table 11): port, bit, alternate function, timer, channel.
+const TIMER_PINS: [(u8, u8, u8, usize, usize); 10] = [
+    (0, 8, 1, TIM1, 0),
+    (0, 9, 1, TIM1, 1),
+    (0, 10, 1, TIM1, 2),
+    (0, 11, 1, TIM1, 3),
+    (2, 6, 3, TIM8, 0),
+    (2, 7, 3, TIM8, 1),
+    (2, 8, 3, TIM8, 2),
+    (2, 9, 3, TIM8, 3),
+    (1, 8, 3, TIM10, 0),
+    (1, 9, 3, TIM11, 0),
+];
+/// Break inputs (same table): timer, port, bit, alternate function.
+const BREAK_PINS: [(usize, u8, u8, u8); 3] = [(TIM1, 0, 6, 1), (TIM1, 1, 12, 1), (TIM8, 0, 6, 3)];
 const ADC_IRQ: usize = 18;
 const USART2_IRQ: usize = 38;
 /// Bit rate of the host until told otherwise.
@@ -58,6 +78,9 @@ impl<W: Wiring> Chip<W> {
             tim::WIDE,
             tim::BASIC,
             tim::BASIC,
+            tim::ADVANCED,
+            tim::SINGLE,
+            tim::SINGLE,
         ];
         Self {
             wiring,
@@ -84,9 +107,12 @@ impl<W: Wiring> Chip<W> {
         self.rcc.clocks()
     }
 
-    pub fn legs(&mut self, now: u64) -> [LegState; 2] {
-        self.tims[0].sync(now);
-        [self.leg(0), self.leg(1)]
+    /// How a pin is driven by a timer, or as an output.
+    pub fn pwm(&mut self, port: u8, bit: u8, now: u64) -> LegState {
+        for timer in [TIM1, TIM8, TIM10, TIM11] {
+            self.tims[timer].sync(now);
+        }
+        self.driven(port, bit)
     }
 
     pub fn output(&self, port: u8, bit: u8) -> Option<bool> {
@@ -211,17 +237,23 @@ impl<W: Wiring> Chip<W> {
 
     fn timer_changed(&mut self, timer: usize, at: u64) {
         let [brk, update, trigger, compare] = self.tims[timer].requests();
-        match timer {
-            0 => {
-                for (irq, level) in [(24, brk), (25, update), (26, trigger), (27, compare)] {
-                    self.nvic.set_line(irq, level, at);
-                }
-                self.bridge_changed(at);
+        let mut advanced = |first: usize| {
+            for (irq, level) in [brk, update, trigger, compare].into_iter().enumerate() {
+                self.nvic.set_line(first + irq, level, at);
             }
+        };
+        match timer {
+            TIM1 => advanced(24),
+            TIM8 => advanced(43),
+            // their interrupts are those of TIM1 and cannot be switched on
+            TIM10 | TIM11 => {}
             _ => {
                 let irq = [28, 29, 30, 50, 54, 55][timer - 1];
                 self.nvic.set_line(irq, update || trigger || compare, at);
             }
+        }
+        if timer == TIM1 {
+            self.bridge_changed(at);
         }
         if std::mem::take(&mut self.tims[timer].trigger) {
             let source = match timer {
@@ -237,27 +269,36 @@ impl<W: Wiring> Chip<W> {
 
     /// Tells the wiring when the state of a bridge leg has changed.
     fn bridge_changed(&mut self, at: u64) {
-        let legs = [self.leg(0), self.leg(1)];
+        let legs = [self.driven(0, 8), self.driven(0, 9)];
         if legs != self.legs {
             self.legs = legs;
             self.wiring.bridge(legs, at);
         }
     }
 
-    fn leg(&self, channel: usize) -> LegState {
-        match (
-            self.ports[0].mode(8 + channel as u8),
-            self.tims[0].output(channel),
-        ) {
-            (Mode::Alternate(1), Output::High { high, period }) => LegState::Duty { high, period },
-            (Mode::Output, _) => match self.ports[0].output(8 + channel as u8) {
+    fn driven(&self, port: u8, bit: u8) -> LegState {
+        let Some(pins) = self.ports.get(usize::from(port)).filter(|_| bit < 16) else {
+            return LegState::Off;
+        };
+        match pins.mode(bit) {
+            Mode::Alternate(function) => {
+                let here = |pin: &&(u8, u8, u8, usize, usize)| (pin.0, pin.1, pin.2) == (port, bit, function);
+                match TIMER_PINS.iter().find(here) {
+                    Some(&(.., timer, channel)) => match self.tims[timer].output(channel) {
+                        Output::High { high, period } => LegState::Duty { high, period },
+                        Output::Released => LegState::Off,
+                    },
+                    None => LegState::Off,
+                }
+            }
+            Mode::Output => match pins.output(bit) {
                 Some(level) => LegState::Duty {
                     high: u32::from(level),
                     period: 1,
                 },
                 None => LegState::Off,
             },
-            _ => LegState::Off,
+            Mode::Input | Mode::Analog => LegState::Off,
         }
     }
 
@@ -267,14 +308,12 @@ impl<W: Wiring> Chip<W> {
 
     /// Inputs that act without a register access: the break input and enabled EXTI lines.
     pub fn sample_inputs(&mut self, at: u64) {
-        if self.tims[0].watches_break() {
-            // TIM1_BKIN is AF1 of PA6 and PB12
-            for (port, bit) in [(0, 6), (1, 12)] {
-                if self.ports[port].mode(bit) == Mode::Alternate(1) {
-                    let level = self.pin(port, bit);
-                    if self.tims[0].set_break(level) {
-                        self.timer_changed(0, at);
-                    }
+        for (timer, port, bit, function) in BREAK_PINS {
+            let watched = self.tims[timer].watches_break();
+            if watched && self.ports[usize::from(port)].mode(bit) == Mode::Alternate(function) {
+                let level = self.pin(usize::from(port), bit);
+                if self.tims[timer].set_break(level) {
+                    self.timer_changed(timer, at);
                 }
             }
         }

@@ -104,6 +104,17 @@ pub(crate) fn decode(code: &[u8]) -> Block {
     block
 }
 
+/// Each instruction of straight-line code: its offset, and its estimated cycles.
+pub(crate) fn instructions(code: &[u8]) -> impl Iterator<Item = (u32, u16)> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let start = at;
+        let wide = *code.get(at + 1)? >> 3 >= 0b11101;
+        at += if wide { 4 } else { 2 };
+        Some((start as u32, decode(code.get(start..at)?).cycles))
+    })
+}
+
 /// Coprocessor space with coprocessor number 10 or 11 is the floating-point unit.
 fn is_float(first: u32) -> bool {
     first & 0xec00 == 0xec00

@@ -109,20 +109,37 @@ impl<W: Wiring + 'static> Machine<W> {
         self.cpu.get_data_mut().chip().usart_mut().set_host_baud(baud);
     }
 
-    /// State of the bridge leg on TIM1 `channel` (1 or 2); other channels drive nothing.
-    pub fn leg_duty(&mut self, channel: usize) -> LegState {
+    /// How a timer drives a pin (port 0 is A), or its level as a general-purpose output.
+    pub fn pwm(&mut self, port: u8, bit: u8) -> LegState {
         let now = self.now();
-        let legs = self.cpu.get_data_mut().chip().legs(now);
-        channel
-            .checked_sub(1)
-            .and_then(|i| legs.get(i))
-            .copied()
-            .unwrap_or(LegState::Off)
+        self.cpu.get_data_mut().chip().pwm(port, bit, now)
     }
 
     /// Level that a general-purpose output drives (port 0 is A); `None` when the pin is no driven output.
     pub fn gpio_output(&self, port: u8, bit: u8) -> Option<bool> {
         self.cpu.get_data().chip_ref().output(port, bit)
+    }
+
+    /// Notes which blocks an interrupt's handler runs, from its next activation on; `name` is that of
+    /// [`InterruptStats`](super::InterruptStats).
+    pub fn watch(&mut self, name: &str) {
+        if let Some(exception) = (0..super::nvic::EXCEPTIONS).find(|n| super::nvic::name(*n) == name) {
+            self.cpu.get_data_mut().profile.watch(exception);
+        }
+    }
+
+    /// What [`Self::watch`] has noted.
+    pub fn path(&self) -> Option<&super::Path> {
+        self.cpu.get_data().profile.path()
+    }
+
+    /// Address and estimated cycles of each instruction of a block in the flash.
+    pub fn instructions(&self, (address, bytes): super::Ran) -> Vec<(u32, u16)> {
+        let start = (address & 0x07ff_ffff) as usize;
+        let code = self.firmware.flash().get(start..start + usize::from(bytes));
+        super::cost::instructions(code.unwrap_or_default())
+            .map(|(at, cycles)| (address + at, cycles))
+            .collect()
     }
 
     /// Starts the figures of the interrupts anew.

@@ -21,12 +21,14 @@ mod iwdg;
 mod mcu;
 mod names;
 mod nvic;
+mod path;
 mod ppb;
 mod profile;
 mod ram;
 mod rcc;
 mod run;
 mod setup;
+mod stalls;
 mod state;
 mod stop;
 mod tim;
@@ -34,8 +36,10 @@ mod usart;
 
 pub use elf::{FLASH_BASE, FLASH_SIZE, Firmware, ImageError, RAM_BASE, RAM_SIZE};
 pub use mcu::{Machine, Reset};
+pub use path::{Path, Ran};
 pub use profile::{InterruptStats, Stats};
 pub use rcc::{Clocks, HSE_HZ, HSI_HZ, LSI_HZ, ResetCause};
+pub use stalls::cold_fetch_stalls;
 pub use stop::{Access, Place, Stop};
 
 /// What is soldered to the pins. Times are CPU cycles since power-up and never go back.
@@ -58,7 +62,7 @@ pub trait Wiring {
     fn output(&mut self, _port: u8, _bit: u8, _level: Option<bool>, _at: u64) {}
 }
 
-/// How the timer drives one input of the bridge.
+/// How a timer drives one input of a bridge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LegState {
     /// Nothing drives the pin: main output off, channel off, or the pin is not the timer's.

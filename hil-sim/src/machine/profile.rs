@@ -1,5 +1,6 @@
 //! Where instructions and cycles go, by exception.
 use super::nvic::{self, EXCEPTIONS};
+use super::path::Path;
 
 /// Figures of one exception handler since power-up or the last restart.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,6 +64,10 @@ pub(crate) struct Profile {
     totals: Vec<Total>,
     open: Vec<Open>,
     mark: (u64, u64),
+    /// The exception whose blocks are noted, and they.
+    watched: Option<(usize, Box<Path>)>,
+    /// It runs.
+    pub watching: bool,
 }
 
 impl Profile {
@@ -71,6 +76,8 @@ impl Profile {
             totals: vec![Total::default(); EXCEPTIONS],
             open: Vec::with_capacity(16),
             mark: (0, 0),
+            watched: None,
+            watching: false,
         }
     }
 
@@ -90,6 +97,7 @@ impl Profile {
             instructions: 0,
             cycles: 0,
         });
+        self.look();
         let total = &mut self.totals[exception];
         total.latency_max = total.latency_max.max(latency);
     }
@@ -97,6 +105,11 @@ impl Profile {
     pub fn leave(&mut self, instructions: u64, cycles: u64) {
         self.charge(instructions, cycles);
         if let Some(done) = self.open.pop() {
+            if let Some((watched, path)) = &mut self.watched
+                && *watched == done.exception
+            {
+                path.ended(done.cycles);
+            }
             let total = &mut self.totals[done.exception];
             if total.count == 0 {
                 (total.instructions_min, total.cycles_min) = (done.instructions, done.cycles);
@@ -109,11 +122,35 @@ impl Profile {
             total.cycles_min = total.cycles_min.min(done.cycles);
             total.cycles_max = total.cycles_max.max(done.cycles);
         }
+        self.look();
+    }
+
+    fn look(&mut self) {
+        let running = self.open.last().map(|open| open.exception);
+        self.watching = running.is_some() && running == self.watched.as_ref().map(|(watched, _)| *watched);
+    }
+
+    /// Notes the blocks of an exception from its next activation on.
+    pub fn watch(&mut self, exception: usize) {
+        self.watched = Some((exception, Box::default()));
+    }
+
+    /// A block of the watched exception runs.
+    #[cold]
+    pub fn ran(&mut self, address: u32, bytes: u16) {
+        if let Some((_, path)) = &mut self.watched {
+            path.ran((address, bytes));
+        }
+    }
+
+    pub fn path(&self) -> Option<&Path> {
+        self.watched.as_ref().map(|(_, path)| &**path)
     }
 
     /// A reset ends every activation.
     pub fn abandon(&mut self) {
         self.open.clear();
+        self.look();
     }
 
     /// Starts the figures of all exceptions anew; what runs now counts when it ends.

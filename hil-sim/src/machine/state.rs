@@ -120,6 +120,9 @@ impl<W: Wiring> State<W> {
         self.block = block;
         self.cycles += u64::from(block.cycles);
         self.instructions += u64::from(block.instructions);
+        if self.profile.watching {
+            self.profile.ran(address, block.bytes);
+        }
         true
     }
 
@@ -232,6 +235,9 @@ fn on_block_with_care<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32)
             state.cycles += u64::from(block.cycles);
             state.instructions += u64::from(block.instructions);
             state.event_register |= block.sev;
+            if state.profile.watching {
+                state.profile.ran(address, block.bytes);
+            }
             return;
         }
         state.event = Event::FloatDenied;

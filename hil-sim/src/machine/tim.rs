@@ -1,4 +1,4 @@
-//! Timers 1 to 7 (RM0390 chapters 16, 17, 19): edge-aligned up-counting, preload, update events, output compare
+//! Timers 1 to 8, 10 and 11 (RM0390 chapters 16 to 19): edge-aligned up-counting, preload, update events, output compare
 //! flags, trigger output, PWM levels, and the main output enable with break of the advanced timer.
 //!
 //! The counter is not ticked: its value follows from the time of its last restart, and [`Tim::sync`] brings flags
@@ -13,7 +13,7 @@ pub(crate) struct Kind {
     pub advanced: bool,
 }
 
-/// TIM1.
+/// TIM1 and TIM8.
 pub(crate) const ADVANCED: Kind = Kind {
     counter_max: 0xffff,
     channels: 4,
@@ -29,6 +29,12 @@ pub(crate) const WIDE: Kind = Kind {
 pub(crate) const GENERAL: Kind = Kind {
     counter_max: 0xffff,
     channels: 4,
+    advanced: false,
+};
+/// TIM10 and TIM11.
+pub(crate) const SINGLE: Kind = Kind {
+    counter_max: 0xffff,
+    channels: 1,
     advanced: false,
 };
 /// TIM6 and TIM7.

@@ -45,7 +45,10 @@ fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
                 "err tune was ended: a finger touches the display"
             );
             assert!(ask(bench, "state").starts_with("ok state=armed fault=-"));
-            assert_eq!(ask(bench, "tune"), "err tune needs a display without a finger on it");
+            assert_eq!(
+                ask(bench, "tune"),
+                "err tune needs a display without a finger on it"
+            );
             // Neutral again, under the finger.
             bench.wait(3000).expect("it runs");
             let display_c = bench.world().plant().display_c();
@@ -81,7 +84,10 @@ fn hot_sink_ends_tuning_before_it_trips() {
     let hot = device(None, 1).sink_on_coolant(42.8).expect("a plant");
     tuning(hot, |bench| {
         bench.wait(50).expect("it runs");
-        assert_eq!(ask(bench, "tune result"), "err tune was ended: the sink is above 42.5 C");
+        assert_eq!(
+            ask(bench, "tune result"),
+            "err tune was ended: the sink is above 42.5 C"
+        );
     });
 }
 
@@ -93,7 +99,10 @@ fn other_commands_end_tuning() {
             bench.tell(line).expect("obeyed");
             bench.wait(5).expect("it runs");
             let answer = ask(bench, "tune result");
-            assert!(answer.starts_with("err tune was ended") || answer.starts_with("err nothing was tuned"), "{answer}");
+            assert!(
+                answer.starts_with("err tune was ended") || answer.starts_with("err nothing was tuned"),
+                "{answer}"
+            );
             assert!(ask(bench, "state").contains(state));
             assert_eq!(bench.world().plant().current_a() == 0.0, state == STATE_OFF);
         });
@@ -109,7 +118,10 @@ fn what_does_not_fit_the_state_is_refused() {
         ("tune", "err tune needs the state armed"),
         ("hold 30", "err hold needs the state armed"),
         ("tune result", "err nothing was tuned since arm; tune first"),
-        ("calibrate display 24", "err not watched for long enough; wait half a second"),
+        (
+            "calibrate display 24",
+            "err not watched for long enough; wait half a second",
+        ),
     ] {
         assert_eq!(ask(&mut bench, line), answer, "{line}");
     }
@@ -122,5 +134,8 @@ fn what_does_not_fit_the_state_is_refused() {
     );
     assert!(ask(&mut bench, "calibrate room 27").starts_with("err the device reads 2"));
     // Nothing of it has changed the settings.
-    assert_eq!(ask(&mut bench, "settings 6"), "ok set correction skin 0.000000 0.0000000 0.00000000");
+    assert_eq!(
+        ask(&mut bench, "settings 6"),
+        "ok set correction skin 0.000000 0.0000000 0.00000000"
+    );
 }

@@ -30,7 +30,9 @@ fn errors(all: &[f64]) -> Errors {
 
 /// Temperatures of a range, 0.15 K apart: every one of the converter's segments has 20, and its border up to one.
 fn range(from_c: f64, to_c: f64) -> impl Iterator<Item = f64> {
-    (0..).map(move |i| from_c + 0.15 * f64::from(i)).take_while(move |t| *t <= to_c)
+    (0..)
+        .map(move |i| from_c + 0.15 * f64::from(i))
+        .take_while(move |t| *t <= to_c)
 }
 
 /// Errors of display, skin, room and sink of a device with some settings.
@@ -82,14 +84,21 @@ fn calibrated_readings_are_within_millikelvins() {
                 "  {sensor}: {:.1} RMS, {:.1} worst before; {:.2} RMS, {:.1} mK worst after",
                 before.rms, before.worst, after.rms, after.worst
             );
-            let (rms, worst) = if *sensor == "sink" { (5.0, 25.0) } else { (3.0, 20.0) };
+            let (rms, worst) = if *sensor == "sink" {
+                (5.0, 25.0)
+            } else {
+                (3.0, 20.0)
+            };
             assert!(after.rms < rms && after.worst < worst, "{sensor}: {after:?}");
             let beyond = all.iter().filter(|error| error.abs() > 6e-3).count();
             if *sensor != "sink" {
                 assert!(beyond * 30 < all.len(), "{sensor}: {beyond} of {}", all.len());
             }
             // The box has sensors that happen to be good, but no device whose sensors are.
-            assert!(*sensor != "display" || before.rms > 5.0 * after.rms, "{sensor}: {before:?}");
+            assert!(
+                *sensor != "display" || before.rms > 5.0 * after.rms,
+                "{sensor}: {before:?}"
+            );
         }
     }
 }

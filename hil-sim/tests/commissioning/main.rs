@@ -1,7 +1,7 @@
 //! A device commissioned by the simulated operator, against the truth of its plant.
 
-mod accuracy;
 mod aborts;
+mod accuracy;
 mod tile;
 
 use hil_sim::World;
@@ -38,12 +38,7 @@ fn bench<'a>(engine: &'a mut Native, settings: &[String]) -> Bench<'a, Native> {
 }
 
 /// Mean of a field of telemetry over so many milliseconds, and of a truth.
-fn mean(
-    bench: &mut Bench<'_, Native>,
-    field: usize,
-    ms: u64,
-    truth: impl Fn(&World) -> f64,
-) -> (f64, f64) {
+fn mean(bench: &mut Bench<'_, Native>, field: usize, ms: u64, truth: impl Fn(&World) -> f64) -> (f64, f64) {
     bench.tell("stream 1").expect("telemetry");
     let (mut read, mut true_c) = (Vec::new(), 0.0);
     for _ in 0..ms {

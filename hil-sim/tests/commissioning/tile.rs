@@ -41,7 +41,10 @@ fn tune(plants: &Plants, seed: u64) -> (Found, Vec<Row>) {
             if let Some(asked) = line.strip_prefix("T ").and_then(|rest| rest.split(' ').nth(8)) {
                 rows.push((display_c, current_a, asked.parse().expect("a current")));
             }
-            assert!(!line.starts_with("err") || line.starts_with("err tuning goes on"), "{line}");
+            assert!(
+                !line.starts_with("err") || line.starts_with("err tuning goes on"),
+                "{line}"
+            );
         }
     }
     panic!("no result");
@@ -83,7 +86,8 @@ fn true_gain(rows: &[Row], tile: &TileParams) -> f64 {
     let plate_j_k = tile.plate_m2() * tile.ceramic_m * tile.ceramic_j_m3k + tile.tabs_j_k;
     let part = tile.legs_j_k / 3.0 / plate_j_k;
     let legs_s = tile.legs_j_k / tile.conductance_w_k();
-    let (legs_part, legs_lag_s, heat_lag_s) = (part / (1.0 + part), legs_s / 15.0 / (1.0 + part), legs_s / 12.0);
+    let (legs_part, legs_lag_s, heat_lag_s) =
+        (part / (1.0 + part), legs_s / 15.0 / (1.0 + part), legs_s / 12.0);
     let dt = 1e-3;
     let (mut late, mut heat) = (0.0, 0.0);
     let (mut u1, mut u2, mut v1, mut v2, mut y1, mut y2) = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
@@ -133,5 +137,9 @@ fn tile_is_identified_over_the_box() {
         worst[0] = worst[0].max((gain / expected - 1.0).abs());
         worst[1] = worst[1].max((lag_s - true_lag_s).abs() / (0.05 * true_lag_s).max(3e-3));
     }
-    println!("worst: gain {:.2} %, lag {:.2} of what is allowed", 1e2 * worst[0], worst[1]);
+    println!(
+        "worst: gain {:.2} %, lag {:.2} of what is allowed",
+        1e2 * worst[0],
+        worst[1]
+    );
 }

@@ -85,13 +85,13 @@ impl Course {
         if octave > 2 * (size.ilog2() as i32 - bits.ilog2() as i32) {
             return (Self::held(base), 0);
         }
-        let first = first_octave((bits << 32) / size) - contact.per_tick.exponent();
+        let first = first_octave(bits, size) - contact.per_tick.exponent();
         // Within two tolerances over the first chord means within eight of the preset: an eighth of it is 2^6 earlier.
         if first > LAST.ilog2() as i32 + 6 {
             return (Self::held(preset), 0);
         }
         let lengths = lengths_per_octave(size, bits);
-        let later = (elapsed / lengths).checked_ilog2().unwrap_or(0);
+        let later = octaves(elapsed, lengths);
         let length = (first.max(0) as u32).max(later).min(LONGEST);
         let end = (elapsed >> length) + 1;
         let to = erfcx_at(end << length, contact.per_tick);
@@ -108,7 +108,7 @@ impl Course {
         let (from, to) = (at(from), at(to));
         let ticks = (end << length) - elapsed;
         // As if the chord had begun at a multiple of its length.
-        let fall = (i64::from((from - to).to_bits()) << length) / ticks as i64;
+        let fall = per_length((from - to).to_bits(), length, ticks);
         let per_tick = (1 << LONGEST) >> length;
         let course = Self {
             left: per_tick * ticks as u32,
@@ -210,20 +210,52 @@ const fn along(end: Celsius, twice: Celsius, part: u32) -> Celsius {
     Celsius::from_bits(end.to_bits().wrapping_add(above as i32))
 }
 
+/// `floor(log2(elapsed / lengths))`, not below 0, for `lengths` above 0 and both up to 2^60: a long division costs a
+/// hundred cycles.
+const fn octaves(elapsed: u64, lengths: u64) -> u32 {
+    if elapsed < lengths {
+        return 0;
+    }
+    let least = elapsed.ilog2() - lengths.ilog2();
+    least - (lengths << least > elapsed) as u32
+}
+
+/// `fall` over `ticks`, for a length of `2^length` ticks: rounded towards 0, in a short division where that holds it.
+fn per_length(fall: i32, length: u32, ticks: u64) -> i64 {
+    let scaled = u64::from(fall.unsigned_abs()) << length;
+    let size = match (u32::try_from(scaled), u32::try_from(ticks)) {
+        (Ok(scaled), Ok(ticks)) => u64::from(scaled.checked_div(ticks).unwrap_or(0)),
+        _ => scaled.checked_div(ticks).unwrap_or(0),
+    } as i64;
+    if fall < 0 { -size } else { size }
+}
+
 /// Smallest `m` for which a chord that begins `m` lengths after landing rises no more than two `tolerance` above a
 /// set-point of `gain`.
 fn lengths_per_octave(gain: u64, tolerance: u64) -> u64 {
-    // gain * BEND / (4 m (2 m + 1)) <= 2 tolerance
-    let needed = (gain * BEND).div_ceil(20_000 * tolerance);
-    let m = (needed / 8).isqrt().max(1);
-    if 4 * m * (2 * m + 1) >= needed { m } else { m + 1 }
+    // gain * BEND / (4 m (2 m + 1)) <= 2 tolerance, times 1e4
+    let (bend, allowed) = (gain * BEND, 20_000 * tolerance);
+    let too_few = |m: u64| 4 * m * (2 * m + 1) * allowed < bend;
+    // The largest that is too few, bit by bit; it is below the root of this quotient.
+    let bits = octaves(bend, 8 * allowed) / 2;
+    let most = (0..=bits).rev().fold(0, |m, bit| {
+        let more = m | 1 << bit;
+        if too_few(more) { more } else { m }
+    });
+    most + 1
 }
 
 /// Length of a chord from landing on, or from a later tick to the same end, as a power of two in units of `1 / K`: it
-/// rises at most `sqrt(u / pi) / 2` above `E`, for `u` at its end. `tolerance` is in 2^-32 of the gain.
-fn first_octave(tolerance: u64) -> i32 {
-    // u <= 4 pi (2 tolerance)² in whole octaves: a length of 2^first has u below 2^(first + 1), 16 pi is above 2^5.
-    5 - 1 - (tolerance * tolerance).leading_zeros() as i32 - 1
+/// rises at most `sqrt(u / pi) / 2` above `E`, for `u` at its end. For a `tolerance` above 0 and below the `gain`, and
+/// that below 2^32.
+const fn first_octave(tolerance: u64, gain: u64) -> i32 {
+    // The square root of 2, in 2^-31, rounded down.
+    const ROOT: u64 = 3_037_000_499;
+    // u <= 4 pi (2 tolerance / gain)² in whole octaves: a length of 2^first has u below 2^(first + 1), 16 pi is above
+    // 2^5. The quotient's octaves, in 2^-32; those of its square are twice as many, or one more.
+    let octaves = octaves(tolerance << 32, gain);
+    let next = gain * ((ROOT >> (31 - octaves)) + 1);
+    5 - 65 + 2 * octaves as i32 + (tolerance << 32 >= next) as i32
 }
 
 /// `E` at `elapsed` ticks, which may be more than [`Ticks`] holds.
@@ -233,4 +265,61 @@ fn erfcx_at(elapsed: u64, per_tick: Rate) -> Fraction {
     Ticks::new((elapsed >> excess) as u32).map_or(Fraction::MAX, |ticks| {
         erfcx(ticks, per_tick.doubled(excess as i16))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+
+    /// Pseudo-random numbers of all sizes up to 2^`bits`.
+    fn numbers(bits: u32) -> impl Iterator<Item = u64> {
+        let mut state = 1u64;
+        std::iter::repeat_with(move || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let bits = 1 + (state >> 33) as u32 % bits;
+            state >> (64 - bits)
+        })
+    }
+
+    #[test]
+    fn short_ways_are_those_of_division() {
+        let mut short = numbers(31);
+        for (elapsed, lengths) in numbers(60).zip(numbers(31).map(|n| n + 1)).take(200_000) {
+            let quotient = elapsed / lengths;
+            assert_eq!(
+                octaves(elapsed, lengths),
+                quotient.checked_ilog2().unwrap_or(0),
+                "{elapsed} / {lengths}"
+            );
+            let (fall, length) = (short.next().expect("endless") as i32, (elapsed % 32) as u32);
+            for fall in [fall, -fall] {
+                let exact = (i64::from(fall) << length) / lengths as i64;
+                assert_eq!(
+                    per_length(fall, length, lengths),
+                    exact,
+                    "{fall} << {length} / {lengths}"
+                );
+            }
+            let (tolerance, gain) = (elapsed % lengths, lengths);
+            if tolerance > 0 {
+                let part = (tolerance << 32) / gain;
+                let exact = i32::try_from((part * part).ilog2()).expect("below 64") - 60;
+                assert_eq!(first_octave(tolerance, gain), exact, "{tolerance} of {gain}");
+                // The whole root below, or the next.
+                let needed = (gain * BEND).div_ceil(20_000 * tolerance);
+                let root = (needed / 8).isqrt().max(1);
+                let enough = 4 * root * (2 * root + 1) >= needed;
+                let exact = if enough { root } else { root + 1 };
+                assert_eq!(
+                    lengths_per_octave(gain, tolerance),
+                    exact,
+                    "{tolerance} of {gain}"
+                );
+            }
+        }
+    }
 }

@@ -1,4 +1,4 @@
-//! When the program cannot go on: bridge off, say why, wait for the watchdog.
+//! When the program cannot go on: bridges off, say why, wait for the watchdog.
 //!
 //! The watchdog rather than a reset at once, so that the log can be read, and a fault that comes back after
 //! every start does not flicker.
@@ -7,17 +7,13 @@ use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m_rt::{ExceptionFrame, exception};
-use stm32f4xx_hal::pac::{GPIOB, TIM1};
 
-/// Both bridge outputs high-impedance, whatever the program was doing, and for good.
-fn cut_bridge() {
+use super::wiring;
+
+/// Every bridge high-impedance, for good.
+fn cut_bridges() {
     cortex_m::interrupt::disable();
-    // SAFETY: their owner does not run again: interrupts are off and no caller of this returns. Both
-    // writes are to registers that may be written at any time; before the peripherals have a clock they
-    // do nothing, and the bridge is off then.
-    let (timer, pins) = unsafe { (TIM1::steal(), GPIOB::steal()) };
-    timer.bdtr().modify(|_, w| w.moe().disabled_idle());
-    pins.bsrr().write(|w| w.br10().set_bit());
+    wiring::cut();
 }
 
 /// Whether this is the first time that the end is reported: logging may be what failed.
@@ -35,7 +31,7 @@ fn wait_for_watchdog() -> ! {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    cut_bridge();
+    cut_bridges();
     if first_report() {
         defmt::error!("{}", defmt::Display2Format(info));
     }
@@ -45,7 +41,7 @@ fn panic(info: &PanicInfo<'_>) -> ! {
 // SAFETY: `unsafe` because memory may be corrupt. It reads the frame that the processor has just stacked.
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    cut_bridge();
+    cut_bridges();
     if first_report() {
         defmt::error!("hard fault at pc {=u32:#x}, lr {=u32:#x}", frame.pc(), frame.lr());
     }
@@ -55,7 +51,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 // SAFETY: `unsafe` because it interrupts critical sections. It touches nothing that one protects.
 #[exception]
 unsafe fn NonMaskableInt() -> ! {
-    cut_bridge();
+    cut_bridges();
     if first_report() {
         defmt::error!("the 8 MHz clock has failed");
     }
@@ -65,7 +61,7 @@ unsafe fn NonMaskableInt() -> ! {
 // SAFETY: `unsafe` because it may interrupt anything. It touches nothing that others use.
 #[exception]
 unsafe fn DefaultHandler(irqn: i16) -> ! {
-    cut_bridge();
+    cut_bridges();
     if first_report() {
         defmt::error!("interrupt {=i16} has no task", irqn);
     }

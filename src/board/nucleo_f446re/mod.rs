@@ -1,32 +1,30 @@
-//! NUCLEO-F446RE with a DRV8873-class bridge and a sensor front end on its Arduino headers.
+//! NUCLEO-F446RE with DRV8873-class bridges and a sensor front end on its headers, for one finger or for five.
 //!
-//! | pin  | header | signal                | notes                                                   |
-//! |------|--------|-----------------------|---------------------------------------------------------|
-//! | PA0  | A0     | display thermistor    | ADC1 channel 0                                          |
-//! | PA1  | A1     | display check         | ADC1 channel 1; also feeds the comparator               |
-//! | PA4  | A2     | sink thermistor       | ADC1 channel 4                                          |
-//! | PB0  | A3     | skin thermistor       | ADC1 channel 8                                          |
-//! | PC1  | A4     | room thermistor       | ADC1 channel 11                                         |
-//! | PC0  | A5     | force                 | ADC1 channel 10                                         |
-//! | PC2  | CN7-35 | bridge current mirror | ADC1 channel 12                                         |
-//! | PA8  | D7     | bridge IN1            | TIM1 channel 1; external pull-down                      |
-//! | PA9  | D8     | bridge IN2            | TIM1 channel 2; external pull-down                      |
-//! | PB10 | D6     | bridge enable         | high enables; external pull-down                        |
-//! | PA6  | D12    | bridge nFAULT         | TIM1 break input, low is a fault; external 4.7k pull-up |
-//! | PA5  | D13    | LED LD2               | lit while the bridge may drive                          |
-//! | PA2  | -      | to the host           | USART2 by way of the on-board probe                     |
-//! | PA3  | -      | from the host         | USART2 by way of the on-board probe                     |
-//! | PH0  | -      | 8 MHz from the probe  | HSE, bypassed oscillator                                |
+//! | pin | header | signal                | notes                                     |
+//! |-----|--------|-----------------------|-------------------------------------------|
+//! | PA0 | A0     | display thermistor    | ADC1 channel 0                            |
+//! | PA1 | A1     | display check         | ADC1 channel 1; also feeds the comparator |
+//! | PA4 | A2     | sink thermistor       | ADC1 channel 4                            |
+//! | PB0 | A3     | skin thermistor       | ADC1 channel 8                            |
+//! | PC1 | A4     | room thermistor       | ADC1 channel 11                           |
+//! | PC0 | A5     | force                 | ADC1 channel 10                           |
+//! | PC2 | CN7-35 | bridge current mirror | ADC1 channel 12                           |
+//! | PA2 | -      | to the host           | USART2 by way of the on-board probe       |
+//! | PA3 | -      | from the host         | USART2 by way of the on-board probe       |
+//! | PH0 | -      | 8 MHz from the probe  | HSE, bypassed oscillator                  |
+//!
+//! The bridges' pins depend on the number of fingers, a constant of the build: `one`, or `five` with the feature
+//! `five-fingers`.
 //!
 //! `bridge enable` acts on DISABLE of the DRV8873, through a transistor that inverts it (DISABLE is pulled up).
 //! nSLEEP stays high: a bridge that wakes up may report a fault until its charge pump runs.
-//!
-//! The comparator that watches the second display thermistor pulls nFAULT low too. Its cut of the bridge
-//! supply needs no processor; the break input makes the processor know.
 
 mod fatal;
+#[cfg(feature = "five-fingers")]
+mod five;
 mod log;
-mod power;
+#[cfg(not(feature = "five-fingers"))]
+mod one;
 mod sampler;
 mod serial;
 mod watchdog;
@@ -35,20 +33,24 @@ use heapless::spsc::{Producer, Queue};
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use thermal_display::protocol::Telemetry;
+use thermal_display::protocol::{Addressed, Telemetry};
 use thermal_display::settings::Settings;
 
-pub use power::PowerStage;
+#[cfg(feature = "five-fingers")]
+use five as wiring;
+#[cfg(not(feature = "five-fingers"))]
+use one as wiring;
 pub use sampler::Sampler;
 pub use serial::{Outbox, Receiver, Transmitter};
 pub use stm32f4xx_hal::pac;
 pub use watchdog::Watchdog;
+pub use wiring::{FINGERS, PowerStage};
 
 use super::console::Console;
 use super::mailbox::Mailbox;
 
 /// Telemetry that may wait for the host task: what it can be late, in ticks, before a line is left out.
-const TELEMETRY_DEPTH: usize = 8;
+const TELEMETRY_DEPTH: usize = 8 * FINGERS;
 
 /// What the hardware and the tasks share by reference; it must live as long as the program.
 pub struct Memory {
@@ -56,7 +58,7 @@ pub struct Memory {
     frames: [serial::Bytes; serial::FRAMES],
     links: serial::Links,
     mailbox: Mailbox,
-    telemetry: Queue<Telemetry, { TELEMETRY_DEPTH + 1 }>,
+    telemetry: Queue<Addressed<Telemetry>, { TELEMETRY_DEPTH + 1 }>,
 }
 
 impl Memory {
@@ -76,8 +78,8 @@ impl Memory {
 pub struct Board {
     /// Scans of the sensors.
     pub sampler: Sampler,
-    /// Bridge, its fault line and the lamp.
-    pub stage: PowerStage,
+    /// Each finger's bridge and its fault line.
+    pub stages: [PowerStage; FINGERS],
     /// Bytes of the host.
     pub receiver: Receiver,
     /// Lines to the host, at the hardware's end.
@@ -85,7 +87,7 @@ pub struct Board {
     /// Lines to the host, at the other end.
     pub console: Console,
     /// Telemetry on its way to the console.
-    pub telemetry: Producer<'static, Telemetry>,
+    pub telemetry: Producer<'static, Addressed<Telemetry>>,
     /// The independent watchdog, already running.
     pub watchdog: Watchdog,
 }
@@ -104,15 +106,32 @@ impl Board {
         let gpiob = device.GPIOB.split(&mut rcc);
         let gpioc = device.GPIOC.split(&mut rcc);
 
-        let stage = PowerStage::new(
-            device.TIM1,
-            gpioa.pa8,
-            gpioa.pa9,
-            gpiob.pb10.into_push_pull_output(),
-            gpioa.pa6,
-            gpioa.pa5.into_push_pull_output(),
-            &mut rcc,
-        );
+        #[cfg(not(feature = "five-fingers"))]
+        let (stages, multiplexer) = {
+            let stage = PowerStage::new(
+                device.TIM1,
+                gpioa.pa8,
+                gpioa.pa9,
+                gpiob.pb10.into_push_pull_output(),
+                gpioa.pa6,
+                gpioa.pa5.into_push_pull_output(),
+                &mut rcc,
+            );
+            ([stage], wiring::Multiplexer)
+        };
+        #[cfg(feature = "five-fingers")]
+        let (stages, multiplexer) = {
+            let wires = wiring::Wires {
+                timers: (device.TIM1, device.TIM8, device.TIM10, device.TIM11),
+                first: (gpioa.pa8, gpioa.pa9, gpiob.pb10, gpioa.pa6),
+                second: (gpioa.pa10, gpioa.pa11, gpiob.pb13, gpioa.pa7),
+                third: (gpioc.pc6, gpioc.pc7, gpiob.pb14, gpioa.pa12),
+                fourth: (gpioc.pc8, gpioc.pc9, gpiob.pb15, gpiob.pb5),
+                fifth: (gpiob.pb8, gpiob.pb9, gpiob.pb1, gpiob.pb12),
+            };
+            let multiplexer = wiring::Multiplexer::new(gpioc.pc10, gpioc.pc11, gpioc.pc12);
+            (wires.into_stages(&mut rcc), multiplexer)
+        };
 
         let (inlet, outlet) = memory.mailbox.split();
         let (telemetry, telemetry_out) = memory.telemetry.split();
@@ -143,13 +162,14 @@ impl Board {
             device.TIM2,
             dma2.0,
             inputs,
+            multiplexer,
             &mut memory.scans,
             &mut rcc,
         );
 
         Self {
             sampler,
-            stage,
+            stages,
             receiver,
             transmitter,
             console,

@@ -4,6 +4,8 @@
 //! to two blocks in turn without a gap; the tick exchanges the one that is full for a third one. Nothing is
 //! lost if it does so within the millisecond in which the other block fills up, and a block always
 //! begins with the first channel of a scan.
+//!
+//! A block is of one finger; several fingers take turns, block by block.
 
 use stm32f4xx_hal::ReadFlags;
 use stm32f4xx_hal::dma::config::{DmaConfig, Priority};
@@ -18,15 +20,19 @@ use thermal_display::TICK_HZ;
 use thermal_display::sense::{CHANNELS, SCANS_PER_TICK, Scan};
 
 use super::log;
+use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME};
 
-/// The scans of one tick.
-pub type Block = [Scan; SCANS_PER_TICK];
+/// Scans of one block: those of a finger's tick, after those that may show the finger before.
+const SCANS_PER_BLOCK: usize = Multiplexer::SETTLING_SCANS + SCANS_PER_TICK;
+
+/// The scans of one finger's turn.
+pub type Block = [Scan; SCANS_PER_BLOCK];
 
 /// Blocks in circulation: one is filled, one is filled next, one is read.
 pub const BLOCKS: usize = 3;
 
 /// A block before its first scan.
-pub const EMPTY: Block = [[0; CHANNELS]; SCANS_PER_TICK];
+pub const EMPTY: Block = [[0; CHANNELS]; SCANS_PER_BLOCK];
 
 /// The pins of the sensors, named as in `Samples`.
 pub struct Inputs {
@@ -46,6 +52,8 @@ pub enum SampleError {
     Bus,
     /// A block was overwritten before it was taken: the last tick took longer than its period.
     Late,
+    /// The multiplexers were switched too late for the next block.
+    LateSwitch,
 }
 
 /// The samples of the sensors, tick by tick.
@@ -56,15 +64,19 @@ pub struct Sampler {
     /// Which of the stream's two blocks was taken last.
     last: CurrentBuffer,
     trigger: CounterHz<TIM2>,
+    multiplexer: Multiplexer,
+    /// The finger whose block is being filled.
+    finger: usize,
 }
 
 impl Sampler {
-    /// Starts to sample: [`SCANS_PER_TICK`] scans a tick.
+    /// Starts to sample, finger 0 first: a block of each finger a tick.
     pub fn start(
         adc: ADC1,
         timer: TIM2,
         stream: Stream0<DMA2>,
         inputs: Inputs,
+        multiplexer: Multiplexer,
         blocks: &'static mut [Block; BLOCKS],
         rcc: &mut Rcc,
     ) -> Self {
@@ -83,22 +95,30 @@ impl Sampler {
         let mut timer = Timer::new(timer, rcc);
         timer.set_master_mode(tim2::cr2::MMS::Update);
         let mut trigger = timer.counter_hz();
-        // Cannot fail: 90 MHz over 16 kHz fits the counter.
-        let _ = trigger.start((SCANS_PER_TICK as u32 * TICK_HZ).Hz());
+        // Cannot fail: 90 MHz over 16 or 90 kHz fits the counter. Both divide it exactly.
+        let _ = trigger.start(((SCANS_PER_BLOCK * FINGERS) as u32 * TICK_HZ).Hz());
 
         Self {
             transfer,
             spare: Some(spare),
             last: CurrentBuffer::SecondBuffer,
             trigger,
+            multiplexer,
+            finger: 0,
         }
     }
 
-    /// The block that has just been filled.
+    /// The finger whose block has just been filled, and its scans; the next finger's turn has begun.
     ///
     /// # Errors
     /// [`SampleError`]; samples are then missing and control cannot go on.
-    pub fn take(&mut self) -> Result<&Block, SampleError> {
+    pub fn take(&mut self) -> Result<(usize, &[Scan; SCANS_PER_TICK]), SampleError> {
+        let finger = self.finger;
+        self.finger = if finger + 1 < FINGERS { finger + 1 } else { 0 };
+        self.multiplexer.select(self.finger);
+        if Multiplexer::SETTLING_SCANS != 0 && self.has_completed_a_scan() {
+            return Err(SampleError::LateSwitch);
+        }
         if self.transfer.flags().is_transfer_error() {
             return Err(SampleError::Bus);
         }
@@ -111,8 +131,16 @@ impl Sampler {
             return Err(SampleError::Late);
         }
         self.last = which;
-        log::count_tick();
-        Ok(self.spare.insert(block))
+        if finger == 0 {
+            log::count_tick();
+        }
+        let scans = self.spare.insert(block).last_chunk().ok_or(SampleError::Bus)?;
+        Ok((finger, scans))
+    }
+
+    /// Whether the first scan of the block that is being filled is in memory.
+    fn has_completed_a_scan(&self) -> bool {
+        usize::from(self.transfer.number_of_transfers()) <= (SCANS_PER_BLOCK - 1) * CHANNELS
     }
 
     /// Stops for good. No tick follows, so the watchdog resets the device.
@@ -134,25 +162,23 @@ struct Converter {
 }
 
 impl Converter {
-    /// 90 MHz / 4: 22.5 MHz (36 at most).
-    ///
-    /// Sampling for 56 cycles, 2.5 us: settling to a quarter of a step takes 9.7 time constants of 7 pF
-    /// times 6 kOhm inside and 5 kOhm of a 10k/10k divider, 0.75 us; that leaves room for a cold thermistor
-    /// (30 kOhm, with its partner 7.5 kOhm). With 12 more cycles to convert, seven channels take 21 us of
-    /// the 62.5 us between two scans.
+    /// 90 MHz / 4: 22.5 MHz (36 at most), sampling for [`SAMPLE_TIME`].
     fn new(adc: ADC1, inputs: Inputs, rcc: &mut Rcc) -> Self {
         ADC1::enable(rcc);
         ADC1::reset(rcc);
         // SAFETY: the common registers belong to the three converters, of which only ADC1 is used.
         let common = unsafe { ADC_COMMON::steal() };
         common.ccr().write(|w| w.adcpre().div4());
-        adc.smpr1()
-            .write(|w| w.smp10().cycles56().smp11().cycles56().smp12().cycles56());
+        adc.smpr1().write(|w| {
+            w.smp10().set(SAMPLE_TIME);
+            w.smp11().set(SAMPLE_TIME);
+            w.smp12().set(SAMPLE_TIME)
+        });
         adc.smpr2().write(|w| {
-            w.smp0().cycles56();
-            w.smp1().cycles56();
-            w.smp4().cycles56();
-            w.smp8().cycles56()
+            w.smp0().set(SAMPLE_TIME);
+            w.smp1().set(SAMPLE_TIME);
+            w.smp4().set(SAMPLE_TIME);
+            w.smp8().set(SAMPLE_TIME)
         });
         // SAFETY: these are channels that ADC1 has, in the order of `Samples`.
         adc.sqr3().write(|w| unsafe {

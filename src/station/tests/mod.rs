@@ -10,9 +10,9 @@ use contact_model::{pressure, reference};
 use std::string::{String, ToString};
 
 use super::{State, Station};
-use crate::commission::Service;
+use crate::commission::Desk;
 use crate::drive::Drive;
-use crate::protocol::Telemetry;
+use crate::protocol::{Addressed, Telemetry};
 use crate::sense::Samples;
 use crate::settings::Settings;
 
@@ -20,7 +20,7 @@ use crate::settings::Settings;
 #[derive(Clone, Debug)]
 struct Bench {
     station: Station,
-    service: Service,
+    desk: Desk<1>,
     display_c: f64,
     check_c: f64,
     sink_c: f64,
@@ -38,7 +38,7 @@ impl Bench {
     fn new() -> Self {
         let mut bench = Self {
             station: Station::new(&Settings::default()),
-            service: Service::new(Settings::default()),
+            desk: Desk::new(Settings::default()),
             display_c: 30.0,
             check_c: 30.0,
             sink_c: 25.0,
@@ -57,7 +57,10 @@ impl Bench {
 
     /// Sends a line, gives the answer.
     fn host(&mut self, line: &str) -> String {
-        let done = self.service.answer(line, |command| self.station.execute(command));
+        let done = self.desk.answer(line, |request| {
+            let said = self.station.execute(request.said).map_err(Addressed::device)?;
+            Ok(Addressed::device(said))
+        });
         done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
 

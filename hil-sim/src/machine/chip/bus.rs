@@ -1,5 +1,5 @@
 //! The address map: which device answers at an address, whether its clock runs, and what a store sets in motion.
-use super::{ADC_IRQ, Chip, INTERNAL_REFERENCE, TIMERS, USART2_IRQ};
+use super::{ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ};
 use crate::machine::adc::Trigger;
 use crate::machine::dma::Dma;
 use crate::machine::gpio::Port;
@@ -34,7 +34,10 @@ fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
         0x4002_3c00 => (Device::Flash, None),
         0x4002_6000 => (Device::Dma(0), Some((Enr::Ahb1, 21))),
         0x4002_6400 => (Device::Dma(1), Some((Enr::Ahb1, 22))),
-        0x4001_0000 => (Device::Tim(0), Some((Enr::Apb2, 0))),
+        0x4001_0000 => (Device::Tim(TIM1), Some((Enr::Apb2, 0))),
+        0x4001_0400 => (Device::Tim(TIM8), Some((Enr::Apb2, 1))),
+        0x4001_4400 => (Device::Tim(TIM10), Some((Enr::Apb2, 17))),
+        0x4001_4800 => (Device::Tim(TIM11), Some((Enr::Apb2, 18))),
         0x4000_0000..0x4000_1800 => (Device::Tim(page as usize + 1), Some((Enr::Apb1, page as u8))),
         0x4001_2000 if !(0x100..0x300).contains(&(address & 0x3ff)) => (Device::Adc, Some((Enr::Apb2, 8))),
         0x4000_4400 => (Device::Usart2, Some((Enr::Apb1, 17))),
@@ -195,6 +198,11 @@ impl<W: Wiring> Chip<W> {
                 }
                 self.kick = true;
             }
+            Device::Tim(TIM10 | TIM11) if offset == 0x0c && value != 0 => {
+                return Err(Refusal::NotModelled(
+                    "TIM10 or TIM11 DIER (interrupts shared with TIM1)",
+                ));
+            }
             Device::Tim(i) => {
                 self.tims[i].write(offset, value, now)?;
                 self.timer_changed(i, now);
@@ -227,7 +235,7 @@ impl<W: Wiring> Chip<W> {
         let ratio = |hz: u32| u64::from(clocks.hclk_hz / hz.max(1)).max(1);
         for (i, timer) in self.tims.iter_mut().enumerate() {
             timer.set_divider(
-                ratio(if i == 0 {
+                ratio(if matches!(i, TIM1 | TIM8 | TIM10 | TIM11) {
                     clocks.timclk2_hz
                 } else {
                     clocks.timclk1_hz
@@ -242,8 +250,11 @@ impl<W: Wiring> Chip<W> {
 
     /// Peripherals whose reset bit is set go back to their reset values.
     fn apply_resets(&mut self, now: u64) {
-        const RESETS: [(Enr, u8, Device); 18] = [
-            (Enr::Apb2, 0, Device::Tim(0)),
+        const RESETS: [(Enr, u8, Device); 21] = [
+            (Enr::Apb2, 0, Device::Tim(TIM1)),
+            (Enr::Apb2, 1, Device::Tim(TIM8)),
+            (Enr::Apb2, 17, Device::Tim(TIM10)),
+            (Enr::Apb2, 18, Device::Tim(TIM11)),
             (Enr::Apb1, 0, Device::Tim(1)),
             (Enr::Apb1, 1, Device::Tim(2)),
             (Enr::Apb1, 2, Device::Tim(3)),

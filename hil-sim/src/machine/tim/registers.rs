@@ -3,9 +3,22 @@ use super::{AOE, BIF, BKE, BKP, MOE, OSSI, OSSR, Tim, UIF};
 use crate::machine::stop::{Answer, Refusal, only};
 
 impl Tim {
+    /// Whether this kind of timer has a register (register maps 16.4.21, 17.4.21, 18.5.12, 19.4.9).
+    fn has(&self, offset: u32) -> bool {
+        match offset {
+            // CR2 and SMCR: a trigger out, and one in
+            0x04 => self.kind.channels != 1,
+            0x08 => self.kind.channels > 1,
+            // CCMR2 and CCR2 to CCR4
+            0x1c | 0x38..=0x40 => self.kind.channels > 1,
+            0x18 | 0x20 | 0x34 => self.kind.channels > 0,
+            _ => true,
+        }
+    }
+
     pub fn read(&mut self, offset: u32, now: u64) -> Answer<u32> {
         self.sync(now);
-        if offset > 0x0c && self.kind.channels == 0 && !matches!(offset, 0x10 | 0x14 | 0x24 | 0x28 | 0x2c) {
+        if !self.has(offset) {
             return Err(Refusal::Offset);
         }
         Ok(match offset {
@@ -36,7 +49,7 @@ impl Tim {
     }
 
     fn write_synced(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
-        if offset > 0x0c && self.kind.channels == 0 && !matches!(offset, 0x10 | 0x14 | 0x24 | 0x28 | 0x2c) {
+        if !self.has(offset) {
             return Err(Refusal::Offset);
         }
         match offset {

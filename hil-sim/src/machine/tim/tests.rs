@@ -153,3 +153,57 @@ fn other_modes_are_refused() {
     assert!(tim.write(0x18, 1, 0).is_err(), "input capture");
     assert!(tim.write(0x00, 0x20, 0).is_err(), "centre-aligned");
 }
+
+/// Register maps of 16.4.21, 17.4.21 and 18.5.12.
+#[test]
+fn a_timer_has_the_registers_of_its_kind_only() {
+    for (kind, present, absent) in [
+        (ADVANCED, &[0x04, 0x08, 0x1c, 0x30, 0x40, 0x44][..], &[0x50][..]),
+        (GENERAL, &[0x04, 0x08, 0x1c, 0x40], &[0x30, 0x44]),
+        (
+            SINGLE,
+            &[0x0c, 0x18, 0x20, 0x34],
+            &[0x04, 0x08, 0x1c, 0x30, 0x38, 0x3c, 0x40, 0x44],
+        ),
+        (
+            BASIC,
+            &[0x04, 0x0c, 0x2c],
+            &[0x08, 0x18, 0x1c, 0x20, 0x34, 0x40, 0x44],
+        ),
+    ] {
+        let mut tim = Tim::new(kind, 1);
+        for offset in present {
+            assert!(
+                tim.read(*offset, 0).is_ok() && tim.write(*offset, 0, 0).is_ok(),
+                "{kind:?} {offset:#x}"
+            );
+        }
+        for offset in absent {
+            assert!(
+                tim.read(*offset, 0).is_err() && tim.write(*offset, 0, 0).is_err(),
+                "{kind:?} {offset:#x}"
+            );
+        }
+    }
+}
+
+/// TIM10 drives one pin without a main output enable.
+#[test]
+fn a_single_channel_drives_at_once() {
+    let mut tim = Tim::new(SINGLE, 1);
+    for (offset, value) in [
+        (0x2c, 1874),
+        (0x34, 625),
+        (0x18, 0x68),
+        (0x20, 0x1),
+        (0x14, 1),
+        (0x00, 0x81),
+    ] {
+        tim.write(offset, value, 0).unwrap();
+    }
+    let third = Output::High {
+        high: 625,
+        period: 1875,
+    };
+    assert_eq!(tim.output(0), third);
+}

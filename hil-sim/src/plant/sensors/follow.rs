@@ -78,7 +78,7 @@ impl Delay {
             return value;
         }
         let arrived = std::mem::replace(&mut self.past[self.next], value);
-        self.next = (self.next + 1) % LONGEST;
+        self.next = (self.next + 1) % self.steps;
         arrived
     }
 }

@@ -1,0 +1,149 @@
+//! `hil-sim hand`: five scenes on the five fingers of one device.
+
+use std::io::{Write, stdout};
+use std::path::PathBuf;
+
+use anyhow::{Context, anyhow};
+use clap::Args;
+use hil_sim::engine::{Cost, Engine, Image, Native};
+use hil_sim::hand::{FINGERS, Hand, ImageHand, NativeHand, run as run_hand};
+use hil_sim::machine::Firmware;
+use hil_sim::metrics::{Figures, figures as figures_of};
+use hil_sim::scene::Scene;
+use hil_sim::{World, firmware};
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use super::Failure;
+use super::run::Kind;
+
+#[derive(Args)]
+pub struct Arguments {
+    /// The scenes, TOML, from the first finger to the fifth
+    #[arg(num_args = FINGERS, required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// What runs the device's logic
+    #[arg(long, value_enum, default_value_t = Kind::Image)]
+    engine: Kind,
+    /// Image to run instead of the five-finger image of the current sources
+    #[arg(long)]
+    elf: Option<PathBuf>,
+    /// Print the figures as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report {
+    /// Of each finger; costs are those of one finger's tick, the mean and the largest of all fingers.
+    fingers: Vec<Figures>,
+    /// From the request of a tick to its first instruction, cycles, estimated.
+    latency_cycles_max: Option<u64>,
+}
+
+/// Runs the scenes and prints their figures.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let mut scenes = Vec::new();
+    let mut worlds = Vec::new();
+    for path in &arguments.scenes {
+        let scene = Scene::read(path).map_err(Failure::input)?;
+        let world = World::new(&scene)
+            .with_context(|| path.display().to_string())
+            .map_err(Failure::input)?;
+        scenes.push(scene);
+        worlds.push(world);
+    }
+    let five = || Failure::input(anyhow!("a hand has {FINGERS} scenes"));
+    let scenes: [Scene; FINGERS] = scenes.try_into().map_err(|_| five())?;
+    let worlds: [World; FINGERS] = worlds.try_into().map_err(|_| five())?;
+    let (figures, cost) = match arguments.engine {
+        Kind::Native if arguments.elf.is_some() => {
+            return Err(Failure::input(anyhow!(
+                "--elf is for --engine image; the native engine runs no image"
+            )));
+        }
+        Kind::Native => measure::<Native, _>(&scenes, &mut NativeHand::new(worlds)),
+        Kind::Image => {
+            let path = match &arguments.elf {
+                Some(path) => path.clone(),
+                None => firmware::build(FINGERS).map_err(Failure::run)?,
+            };
+            let firmware = Firmware::from_file(&path)
+                .with_context(|| path.display().to_string())
+                .map_err(Failure::input)?;
+            let mut hand = ImageHand::new(&firmware, worlds).map_err(Failure::run)?;
+            measure::<Image, _>(&scenes, &mut hand)
+        }
+    }?;
+    let text = if arguments.json {
+        let report = Report {
+            fingers: figures,
+            latency_cycles_max: cost.map(|cost| cost.latency_max),
+        };
+        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
+    } else {
+        table(&figures, cost)
+    };
+    stdout()
+        .write_all(text.as_bytes())
+        .context("standard output")
+        .map_err(Failure::run)
+}
+
+/// `E` names the engine that each finger would have alone.
+fn measure<E: Engine, H: Hand>(
+    scenes: &[Scene; FINGERS],
+    hand: &mut H,
+) -> Result<(Vec<Figures>, Option<Cost>), Failure> {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed}");
+    let bar = ProgressBar::new(1000).with_style(style.map_err(Failure::run)?);
+    bar.set_message(format!("five fingers on engine {}", E::NAME));
+    let outcomes = run_hand(scenes, hand, |part| bar.set_position((part * 1000.0) as u64));
+    bar.finish_and_clear();
+    let outcomes = outcomes.map_err(Failure::run)?;
+    let figures = scenes.iter().zip(&outcomes);
+    let figures = figures.map(|(scene, outcome)| figures_of::<E>(scene, outcome));
+    Ok((figures.collect(), hand.cost()))
+}
+
+fn table(figures: &[Figures], cost: Option<Cost>) -> String {
+    let mut text = format!(
+        "{:<7}{:<18}{:>20}{:>12}  {}\n",
+        "finger", "material", "skin after 50 ms mK", "RMS mK", "faults"
+    );
+    for (finger, of) in figures.iter().enumerate() {
+        let errors = of.skin_error_mk;
+        let max = errors.and_then(|errors| errors.max_after_50ms);
+        let number = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.1}"));
+        let faults: Vec<_> = of.faults.iter().map(|fault| fault.fault.as_str()).collect();
+        let faults = if faults.is_empty() {
+            "none".into()
+        } else {
+            faults.join(", ")
+        };
+        text += &format!(
+            "{finger:<7}{:<18}{:>20}{:>12}  {faults}\n",
+            of.material,
+            number(max),
+            number(errors.map(|errors| errors.rms)),
+        );
+    }
+    if let Some(cost) = cost {
+        text += &format!(
+            "\na tick of one finger   {:.0} instructions mean, {} max; {:.0} cycles mean, {} max (estimated)\n\
+             until a tick begins    {} cycles at most (estimated)\n\
+             CPU load, all fingers  {:.2} % (estimated)\n",
+            cost.instructions_mean,
+            cost.instructions_max,
+            cost.cycles_mean,
+            cost.cycles_max,
+            cost.latency_max,
+            cost.load * 100.0,
+        );
+        if let Some(stack) = cost.stack_bytes {
+            text += &format!("stack used             {stack} bytes\n");
+        }
+    }
+    text
+}

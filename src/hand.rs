@@ -1,0 +1,82 @@
+//! The stations of all fingers, and lines that are for one or all of them.
+
+use core::array;
+
+use crate::Station;
+use crate::drive::Drive;
+use crate::protocol::{Addressed, Command, Error, Reply, Request, Telemetry};
+use crate::sense::Samples;
+use crate::settings::Settings;
+
+/// As many stations as the device has fingers, ten at most. They share nothing.
+#[derive(Clone, Debug)]
+pub struct Hand<const FINGERS: usize> {
+    stations: [Station; FINGERS],
+}
+
+impl<const FINGERS: usize> Hand<FINGERS> {
+    /// Stations that are off.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            stations: array::from_fn(|_| Station::new(settings)),
+        }
+    }
+
+    /// One control tick of a finger, `finger` counted modulo `FINGERS`.
+    pub fn step(&mut self, finger: usize, samples: &Samples) -> Drive {
+        self.stations[finger % FINGERS].step(samples)
+    }
+
+    /// Telemetry of a finger's last tick, if it is due.
+    #[must_use]
+    pub fn telemetry(&self, finger: usize) -> Option<Addressed<Telemetry>> {
+        let finger = finger % FINGERS;
+        let said = self.stations[finger].telemetry()?;
+        Some(Addressed {
+            finger: Self::name(finger),
+            said,
+        })
+    }
+
+    /// How a finger is called when nobody has asked for it: not at all if it is the only one.
+    fn name(finger: usize) -> Option<u8> {
+        (FINGERS > 1).then_some(finger as u8)
+    }
+
+    /// Executes a line, in bounded and short time: for one finger, or for all. A question to all is answered by
+    /// the first.
+    ///
+    /// # Errors
+    /// The command does not fit the state of a finger; of those, the first. The others have obeyed.
+    pub fn execute(&mut self, request: Request) -> Result<Addressed<Reply>, Addressed<Error>> {
+        let Addressed {
+            finger,
+            said: command,
+        } = request;
+        if matches!(command, Command::Identify) {
+            let fingers = FINGERS as u8;
+            let said = Reply::Identity { fingers };
+            return Ok(Addressed { finger, said });
+        }
+        if let Some(one) = finger {
+            return match self.stations[usize::from(one) % FINGERS].execute(command) {
+                Ok(said) => Ok(Addressed { finger, said }),
+                Err(said) => Err(Addressed { finger, said }),
+            };
+        }
+        let mut refused = None;
+        for (finger, station) in self.stations.iter_mut().enumerate() {
+            let finger = Self::name(finger);
+            match station.execute(command) {
+                Ok(Reply::Done) => {}
+                Ok(said) => return Ok(Addressed { finger, said }),
+                Err(said) => refused = refused.or(Some(Addressed { finger, said })),
+            }
+        }
+        refused.map_or(Ok(Addressed::device(Reply::Done)), Err)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,131 @@
+//! Lines to five fingers, and what each of them makes of its own samples.
+
+use std::format;
+use std::string::{String, ToString};
+
+use super::*;
+use crate::commission::Desk;
+use crate::sense::SCANS_PER_TICK;
+
+const FIVE: usize = 5;
+
+fn host<const FINGERS: usize>(hand: &mut Hand<FINGERS>, line: &str) -> String {
+    let mut desk = Desk::<FINGERS>::new(Settings::default());
+    let done = desk.answer(line, |request| hand.execute(request));
+    done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
+}
+
+/// Samples without a fault: 10 kohm, 25 °C, but for the skin at 34 °C; no force. `noise` keeps them from repeating.
+fn samples(noise: u16) -> Samples {
+    let count = |counts: u16| counts * SCANS_PER_TICK as u16;
+    Samples {
+        display: count(2048) + noise,
+        display_check: count(2048),
+        sink: count(2048),
+        skin: count(1650),
+        room: count(2048),
+        force: count(410),
+        current: 0,
+        bridge_fault: false,
+    }
+}
+
+fn state_of(hand: &mut Hand<FIVE>, finger: usize) -> String {
+    let answer = host(hand, &format!("@{finger} state"));
+    let words = answer
+        .strip_prefix(&format!("@{finger} ok state="))
+        .expect("an answer");
+    words.split(' ').next().expect("a state").into()
+}
+
+#[test]
+fn a_line_is_for_one_finger_or_for_all() {
+    let mut hand = Hand::<FIVE>::new(&Settings::default());
+    assert_eq!(host(&mut hand, "@3 material abs"), "@3 ok");
+    assert_eq!(host(&mut hand, "@3 arm"), "@3 ok");
+    assert_eq!(host(&mut hand, "@3 start"), "@3 ok");
+    for finger in 0..FIVE {
+        let expected = if finger == 3 { "preset" } else { "off" };
+        assert_eq!(state_of(&mut hand, finger), expected, "{finger}");
+    }
+    // Four have no material yet, and the one that has started already is not the first to refuse.
+    assert_eq!(host(&mut hand, "start"), "@0 err start needs arm first");
+    assert_eq!(host(&mut hand, "arm"), "ok");
+    assert_eq!(host(&mut hand, "start"), "@0 err start needs a material first");
+    assert_eq!(state_of(&mut hand, 3), "preset", "the others have obeyed");
+    assert_eq!(host(&mut hand, "abort"), "ok");
+    for finger in 0..FIVE {
+        assert_eq!(state_of(&mut hand, finger), "off", "{finger}");
+    }
+}
+
+/// A fault is its finger's own; the host's `abort` still reaches the fingers behind it.
+#[test]
+fn fingers_share_no_fault() {
+    let mut hand = Hand::<FIVE>::new(&Settings::default());
+    assert_eq!(host(&mut hand, "arm"), "ok");
+    for finger in 0..FIVE {
+        let bridge_fault = finger == 1;
+        let drive = hand.step(
+            finger,
+            &Samples {
+                bridge_fault,
+                ..samples(0)
+            },
+        );
+        assert_eq!(drive == Drive::Off, finger == 1, "{finger}");
+    }
+    assert_eq!(state_of(&mut hand, 1), "tripped");
+    assert_eq!(host(&mut hand, "arm"), "@1 err tripped by bridge; clear it first");
+    assert_eq!(host(&mut hand, "abort"), "ok");
+    for finger in [0, 2, 3, 4] {
+        assert_eq!(hand.step(finger, &samples(1)), Drive::Off, "{finger}");
+    }
+}
+
+#[test]
+fn answers_and_telemetry_say_whose_they_are() {
+    let mut hand = Hand::<FIVE>::new(&Settings::default());
+    assert!(host(&mut hand, "id").contains(" fingers=5 "));
+    assert!(host(&mut hand, "@4 id").starts_with("@4 ok thermal-display "));
+    assert!(host(&mut hand, "state").starts_with("@0 ok state=off"));
+    assert_eq!(
+        host(&mut hand, "@2 frobnicate me").split(';').next(),
+        Some("@2 err unknown command 'frobnicate'")
+    );
+    for (line, named) in [
+        ("@5 arm", "5"),
+        ("@ arm", ""),
+        ("@-1 arm", "-1"),
+        ("@01 arm", "01"),
+        ("@x", "x"),
+    ] {
+        let refused = format!("err unknown finger '{named}' after @; known: 0 to 4");
+        assert_eq!(host(&mut hand, line), refused);
+    }
+    assert_eq!(host(&mut hand, "@2"), "@2 err command missing");
+    assert_eq!(host(&mut hand, "@2 stream 1"), "@2 ok");
+    for finger in 0..FIVE {
+        hand.step(finger, &samples(0));
+        let line = hand.telemetry(finger).map(|telemetry| telemetry.to_string());
+        assert_eq!(line.is_some(), finger == 2, "{finger}");
+        assert!(line.is_none_or(|line| line.starts_with("@2 T 1 off ")));
+    }
+}
+
+/// A single finger is called nothing, but may be called 0.
+#[test]
+fn one_finger_has_no_name() {
+    let mut hand = Hand::<1>::new(&Settings::default());
+    assert_eq!(host(&mut hand, "stream 1"), "ok");
+    assert!(host(&mut hand, "id").contains(" fingers=1 "));
+    assert!(host(&mut hand, "state").starts_with("ok state=off"));
+    assert_eq!(host(&mut hand, "@0 arm"), "@0 ok");
+    assert_eq!(
+        host(&mut hand, "@1 arm"),
+        "err unknown finger '1' after @; known: 0 to 0"
+    );
+    hand.step(0, &samples(0));
+    let line = hand.telemetry(0).expect("telemetry").to_string();
+    assert!(line.starts_with("T 1 armed "), "{line}");
+}
