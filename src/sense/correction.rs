@@ -39,7 +39,7 @@ impl Calibrated {
 /// What the converter reads too much in each segment of its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Steps {
-    /// In units of a sum's 2^-[`FINE_BITS`].
+    /// In sixteenths of a sum.
     too_much: [i16; SEGMENTS],
 }
 
@@ -62,7 +62,7 @@ impl Steps {
         }
     }
 
-    /// The sum without them, in 2^-[`FINE_BITS`]. Across a border they change along a line, over the codes into
+    /// The sum without them, in sixteenths. Across a border they change along a line, over the codes into
     /// which noise spreads it: where in them the border lies, the device does not know.
     #[must_use]
     pub fn without(&self, sum: u16) -> u32 {

@@ -49,7 +49,7 @@ impl Thermistor {
         }
     }
 
-    /// Temperature for the sum of 16 12-bit conversions (0..=65520) whose `fine` value, in 2^-[`FINE_BITS`], is free of
+    /// Temperature for the sum of 16 12-bit conversions (0..=65520) whose `fine` value, in sixteenths, is free of
     /// the converter's steps.
     ///
     /// Error against the curve below 0.1 mK from -20 to 80 °C (`cargo test --lib thermistor`).
