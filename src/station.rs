@@ -363,8 +363,8 @@ impl Station {
                 return row.map(|row| Reply::Row(*row)).ok_or(Error::NotTuned);
             }
             Command::Calibrate(calibrated) => self.sensors.recalibrate(&calibrated),
-            Command::Retune(tile) => {
-                self.control.retune(&tile);
+            Command::Retune(tuned) => {
+                self.control.retune(&tuned);
                 self.experiment = None;
             }
         }

@@ -18,7 +18,7 @@
 use contact_model::fixed_point::Celsius;
 
 use crate::TICK_HZ;
-use crate::control::{Period, Pi};
+use crate::control::{Period, Pi, Response};
 use crate::drive::Current;
 use crate::guard::{Setpoint, Sound};
 use crate::settings::Gains;
@@ -76,7 +76,7 @@ const CAUTIOUS: Gains = Gains {
     integral_s: 5.0,
 };
 /// Its largest current, A: the display moves by 3 K/s, at which sensors of different lags stay together.
-const CAUTIOUS_A: f64 = 1.0;
+const CAUTIOUS_A: Current = Current::ONE;
 /// The display is at rest when it stays this near for this long.
 const NEAR: Celsius = Celsius::lit("0.06");
 const REST_TICKS: u32 = 1500;
@@ -174,7 +174,7 @@ impl Experiment {
         Self {
             phase: Phase::Settling { ticks: 0, near: 0 },
             rest: Setpoint::limited(sink.clamp(COLDEST, HOTTEST)).0,
-            pi: Pi::new(&CAUTIOUS, CAUTIOUS_A, Period::EveryTick),
+            pi: Pi::new(Response::new(&CAUTIOUS, Period::EveryTick), CAUTIOUS_A),
             base_current: 0,
             base_reading: 0,
             base_measured: 0,

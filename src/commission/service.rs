@@ -6,6 +6,7 @@ use super::identify::identify;
 use super::margins::Margins;
 use super::points::{PointError, Points};
 use super::request::{Request, SENSORS, STEPS_A_LINE};
+use crate::control::Tuned;
 use crate::protocol::{Command, Error, Reply, Setting};
 use crate::sense::Calibrated;
 use crate::settings::{BORDERS, Correction, FIRST_BORDER, Gains, Settings, Tile};
@@ -68,7 +69,7 @@ impl Service {
             }
             Request::SetTile(tile) => {
                 self.retune(tile);
-                execute(Command::Retune(self.settings.tile))
+                execute(Command::Retune(Tuned::new(&self.settings)))
             }
             Request::Tuned => self.tuned(&mut execute),
             Request::Margins => Ok(self.tile()),
@@ -84,7 +85,7 @@ impl Service {
             *row = sums;
         }
         self.retune(identify(&rows).ok_or(Error::NoTile)?);
-        execute(Command::Retune(self.settings.tile))?;
+        execute(Command::Retune(Tuned::new(&self.settings)))?;
         Ok(self.tile())
     }
 

@@ -32,6 +32,11 @@ impl Lag {
         Self { share, state: 0 }
     }
 
+    /// Goes on with another share.
+    pub const fn retune(&mut self, share: Share) {
+        self.share = share;
+    }
+
     /// Where it is.
     #[must_use]
     pub const fn value(&self) -> Celsius {
@@ -43,9 +48,9 @@ impl Lag {
         self.state = i64::from(at.to_bits()) << 32;
     }
 
-    /// Follows an input for one tick. It stays between the two, so nothing overflows.
+    /// Follows an input for one tick, at most 512 K a time constant. It stays between the two, so nothing overflows.
     pub fn follow(&mut self, input: Celsius) {
-        let to_go = i64::from(input.to_bits()) - (self.state >> 32);
-        self.state += to_go * i64::from(self.share.0);
+        let to_go = input.saturating_sub(self.value());
+        self.state += i64::from(to_go.to_bits()) * i64::from(self.share.0);
     }
 }

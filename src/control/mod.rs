@@ -3,11 +3,13 @@
 mod lag;
 mod pi;
 mod plate;
+mod tuned;
 mod two_degrees;
 mod voltage;
 
-pub use pi::{Period, Pi};
+pub use pi::{Period, Pi, Response};
 pub use plate::Watt;
+pub use tuned::Tuned;
 use two_degrees::TwoDegrees;
 pub use voltage::{Legs, Voltage};
 
@@ -15,7 +17,7 @@ use contact_model::fixed_point::Celsius;
 
 use crate::drive::Current;
 use crate::guard::Setpoint;
-use crate::settings::{Gains, Settings, Tile};
+use crate::settings::Settings;
 
 /// Which law finds the current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -76,21 +78,21 @@ impl Control {
     /// At rest; `f64`, once.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
-        let limit_a = settings.module.current_limit_a;
+        let tuned = Tuned::new(settings);
+        let limit = Current::saturating_from_num(settings.module.current_limit_a);
         Self {
             law: Law::default(),
-            pi_10hz: Pi::new(&settings.gains_10hz, limit_a, Period::TenthOfASecond),
-            pi: Pi::new(&settings.gains, limit_a, Period::EveryTick),
-            two_degrees: TwoDegrees::new(&settings.module, &settings.tile),
+            pi_10hz: Pi::new(tuned.pi_10hz, limit),
+            pi: Pi::new(tuned.pi, limit),
+            two_degrees: TwoDegrees::new(tuned, limit),
         }
     }
 
     /// Controls another tile; goes on from where it is.
-    pub fn retune(&mut self, tile: &Tile) {
-        let [gains, gains_10hz] = Gains::of_tile(tile);
-        self.pi.retune(&gains);
-        self.pi_10hz.retune(&gains_10hz);
-        self.two_degrees.retune(tile);
+    pub fn retune(&mut self, tuned: &Tuned) {
+        self.pi.retune(tuned.pi);
+        self.pi_10hz.retune(tuned.pi_10hz);
+        self.two_degrees.retune(tuned);
     }
 
     /// The law in use.

@@ -24,19 +24,47 @@ pub enum Period {
     TenthOfASecond,
 }
 
+impl Period {
+    const fn ticks(self) -> u32 {
+        match self {
+            Self::EveryTick => 1,
+            Self::TenthOfASecond => TICK_HZ / 10,
+        }
+    }
+}
+
+/// What a loop makes of an error, ready for the tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Response {
+    /// A/K.
+    proportional: i32,
+    /// A per K and update.
+    integral: i32,
+    period: Period,
+}
+
+impl Response {
+    /// `f64`; gains saturate at 32768 A/K and 2 A/K an update.
+    #[must_use]
+    pub fn new(gains: &Gains, period: Period) -> Self {
+        let per_update =
+            gains.proportional_a_k * f64::from(period.ticks()) / (gains.integral_s * f64::from(TICK_HZ));
+        Self {
+            proportional: libm::ldexp(gains.proportional_a_k, GAIN_BITS as i32) as i32,
+            integral: libm::ldexp(per_update, RATE_BITS as i32) as i32,
+            period,
+        }
+    }
+}
+
 /// Proportional-integral law with limited output.
 ///
 /// The integral stops while the output is at its limit and the error would drive it further, so there is
 /// nothing to unwind afterwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pi {
-    /// A/K.
-    proportional: i32,
-    /// A per K and update.
-    integral: i32,
+    response: Response,
     limit: Current,
-    /// Ticks from one update of the output to the next.
-    period: u32,
     /// Ticks until that.
     wait: u32,
     output: Current,
@@ -45,31 +73,21 @@ pub struct Pi {
 }
 
 impl Pi {
-    /// `f64`; gains saturate at 32768 A/K and 2 A/K an update.
+    /// At rest.
     #[must_use]
-    pub fn new(gains: &Gains, limit_a: f64, period: Period) -> Self {
-        let mut pi = Self {
-            proportional: 0,
-            integral: 0,
-            limit: Current::saturating_from_num(limit_a),
-            period: match period {
-                Period::EveryTick => 1,
-                Period::TenthOfASecond => TICK_HZ / 10,
-            },
+    pub const fn new(response: Response, limit: Current) -> Self {
+        Self {
+            response,
+            limit,
             wait: 0,
             output: Current::ZERO,
             state: 0,
-        };
-        pi.retune(gains);
-        pi
+        }
     }
 
-    /// Other gains; the integral part of the output stays. `f64`.
-    pub fn retune(&mut self, gains: &Gains) {
-        let per_update =
-            gains.proportional_a_k * f64::from(self.period) / (gains.integral_s * f64::from(TICK_HZ));
-        self.proportional = libm::ldexp(gains.proportional_a_k, GAIN_BITS as i32) as i32;
-        self.integral = libm::ldexp(per_update, RATE_BITS as i32) as i32;
+    /// Another response; the integral part of the output stays.
+    pub const fn retune(&mut self, response: Response) {
+        self.response = response;
     }
 
     /// Forgets the past.
@@ -89,7 +107,7 @@ impl Pi {
     /// proportional part within 2^24 A of 38 bits.
     pub fn update(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
         if self.wait == 0 {
-            self.wait = self.period;
+            self.wait = self.response.period.ticks();
             self.output = self.respond(display.saturating_sub(setpoint.celsius()));
         }
         self.wait -= 1;
@@ -99,8 +117,11 @@ impl Pi {
     /// Answer to an error that is positive when the display is too warm, whatever the period.
     pub fn respond(&mut self, error: Celsius) -> Current {
         let error = i64::from(error.to_bits());
-        let proportional = (error * i64::from(self.proportional)) >> (ERROR_BITS + GAIN_BITS - CURRENT_BITS);
-        let state = self.state.saturating_add(error * i64::from(self.integral));
+        let proportional =
+            (error * i64::from(self.response.proportional)) >> (ERROR_BITS + GAIN_BITS - CURRENT_BITS);
+        let state = self
+            .state
+            .saturating_add(error * i64::from(self.response.integral));
         let limit = i64::from(self.limit.to_bits());
         let wanted = proportional + (state >> (STATE_BITS - CURRENT_BITS));
         let output = wanted.clamp(-limit, limit);
@@ -117,14 +138,11 @@ mod tests {
     use super::*;
 
     fn pi() -> Pi {
-        Pi::new(
-            &Gains {
-                proportional_a_k: 2.0,
-                integral_s: 0.5,
-            },
-            6.0,
-            Period::EveryTick,
-        )
+        let gains = Gains {
+            proportional_a_k: 2.0,
+            integral_s: 0.5,
+        };
+        Pi::new(Response::new(&gains, Period::EveryTick), Current::lit("6"))
     }
 
     fn at(t_c: f64) -> Celsius {

@@ -6,35 +6,28 @@
 //! tick follows at once.
 
 use contact_model::fixed_point::{AHEAD_TICKS, Celsius};
-use fixed::types::{I8F24, I20F12};
+use fixed::types::I8F24;
 
+use super::lag::{Lag, Share};
+use crate::TICK_HZ;
 use crate::drive::Current;
-use crate::settings::Module;
-use crate::{
-    TICK_HZ,
-    control::lag::{Lag, Share},
-};
+use crate::settings::{Module, Tile};
 
 /// Power in W, ±128.
 pub type Watt = I8F24;
 
 /// A relaxation: time constant, and where it comes to rest per watt pumped out of the plate, per watt of Joule's heat
 /// in the legs, per watt of a finger on the patch (K/W), and per kelvin of the sink.
+#[derive(Clone, Copy)]
 struct Relaxation {
     lag_s: f64,
-    pump_k_w: f64,
-    joule_k_w: f64,
-    finger_k_w: f64,
-    sink: f64,
+    weights: [f64; 4],
 }
 
-const fn relaxation(lag_s: f64, pump_k_w: f64, joule_k_w: f64, finger_k_w: f64, sink: f64) -> Relaxation {
+const fn relaxation(lag_s: f64, pumped: f64, joule: f64, finger: f64, sink: f64) -> Relaxation {
     Relaxation {
         lag_s,
-        pump_k_w,
-        joule_k_w,
-        finger_k_w,
-        sink,
+        weights: [pumped, joule, finger, sink],
     }
 }
 
@@ -63,26 +56,122 @@ const RESISTIVITY_PER_K: f64 = 0.0049;
 const SHEET: Celsius = Celsius::lit("27");
 const ZERO_C_K: Celsius = Celsius::lit("273.15");
 
+/// What tuning finds of a tile as [`CLASS`] is (`cargo hil-sim commission`, nominal plant).
+const FOUND: Tile = Tile {
+    gain_k_s_a: 2.91,
+    joule_per_a: 0.0585,
+    leak_1_s: 0.103,
+    sensor_lag_s: 0.1,
+    dead_time_s: 0.016,
+};
+/// A gain that differs comes from the module's pumping and from the plate's heat capacity; only the latter changes what
+/// a finger does. Part of the gain's logarithm that is the capacity's.
+const CAPACITY_SHARE: f64 = 0.4;
+/// A tile differs from its class by no more.
+const MOST_TIMES: f64 = 2.0;
+/// Most that is pumped or warms the legs, that a finger gives, and that the sink is off zero: no state overflows.
+const MOST_WATT: i64 = 64 << Watt::FRAC_NBITS;
+const MOST_FINGER: Watt = Watt::lit("8");
+const MOST_SINK: Celsius = Celsius::lit("100");
+/// And the legs off 27 °C.
+const WARMER: Celsius = Celsius::lit("100");
+
 /// Ticks for which a current is held in mind when the next is chosen.
 const HORIZON_TICKS: f64 = 12.0;
 
-/// Binary places of what multiplies powers, and of the sink's part.
-const GAIN_BITS: u32 = 28;
+/// Binary places of a temperature here, and of its state, which no rounding holds back.
+const KELVIN_BITS: u32 = 20;
+const STATE_BITS: u32 = KELVIN_BITS + 32;
+/// Of what multiplies powers and the sink's temperature to give a state's change.
+const POWER_BITS: u32 = STATE_BITS - Watt::FRAC_NBITS;
+const SINK_BITS: u32 = STATE_BITS - Celsius::FRAC_NBITS;
+/// Of a part of the way to rest.
+const AHEAD_BITS: u32 = 30;
+/// What a temperature times that has less than a state.
+const AHEAD_FEWER: u32 = STATE_BITS - KELVIN_BITS - AHEAD_BITS;
 
-/// Fixed-point form of one [`Relaxation`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Part {
-    lag: Lag,
-    /// Part of the way to rest that is gone in [`HORIZON_TICKS`], 2^-31.
-    ahead: i32,
-    pump: i32,
+/// What multiplies the inputs: pumped heat, Joule's, the finger's, the sink's temperature.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Weights {
+    pumped: i32,
     joule: i32,
     finger: i32,
     sink: i32,
 }
 
+impl Weights {
+    /// Of so much per watt and kelvin, in so many binary places less than a state's.
+    fn new([pumped, joule, finger, sink]: [f64; 4], fewer_bits: u32) -> Self {
+        Self {
+            pumped: scaled(pumped, POWER_BITS - fewer_bits),
+            joule: scaled(joule, POWER_BITS - fewer_bits),
+            finger: scaled(finger, POWER_BITS - fewer_bits),
+            sink: scaled(sink, SINK_BITS - fewer_bits),
+        }
+    }
+
+    fn sum(&self, heat: &Heat) -> i64 {
+        times(heat.joule.to_bits(), self.joule) - times(heat.pumped.to_bits(), self.pumped)
+            + times(heat.finger.to_bits(), self.finger)
+            + times(heat.sink.to_bits(), self.sink)
+    }
+}
+
+fn times(a: i32, b: i32) -> i64 {
+    i64::from(a) * i64::from(b)
+}
+
+/// How a tile differs from its class.
+struct Scale {
+    pumped: f64,
+    joule: f64,
+    finger: f64,
+    leak: f64,
+}
+
+impl Scale {
+    fn of(tile: &Tile) -> Self {
+        let times = |found: f64, class: f64| (found / class).clamp(1.0 / MOST_TIMES, MOST_TIMES);
+        let gain = times(tile.gain_k_s_a, FOUND.gain_k_s_a);
+        Self {
+            pumped: gain,
+            joule: times(gain * tile.joule_per_a, FOUND.joule_per_a),
+            finger: libm::pow(gain, CAPACITY_SHARE),
+            leak: times(tile.leak_1_s, FOUND.leak_1_s),
+        }
+    }
+
+    /// The slowest relaxation is the leak to the sink: its slopes stay as they are when its rate changes.
+    fn apply(&self, slowest: bool, class: Relaxation) -> Relaxation {
+        let leak = if slowest { self.leak } else { 1.0 };
+        let [pumped, joule, finger, sink] = class.weights;
+        Relaxation {
+            lag_s: class.lag_s / leak,
+            weights: [
+                pumped * self.pumped / leak,
+                joule * self.joule / leak,
+                finger * self.finger / leak,
+                sink,
+            ],
+        }
+    }
+}
+
+/// Fixed-point form of one [`Relaxation`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Part {
+    /// K, [`STATE_BITS`] binary places.
+    state: i64,
+    /// What the inputs add to it in a tick.
+    given: Weights,
+    /// What it loses in a tick, 2^-32 of itself.
+    lost: i32,
+    /// Part of the way to rest that is gone in [`HORIZON_TICKS`].
+    ahead: i32,
+}
+
 /// What warms and cools the plate in a tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Heat {
     /// Pumped out of the plate.
     pub pumped: Watt,
@@ -95,70 +184,89 @@ pub struct Heat {
 }
 
 /// The plate beside the loop.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plate {
     parts: [Part; RELAXATIONS],
+    /// Sum of the parts' weights, as far as each is on its way at the horizon.
+    ahead: Weights,
+    /// What a finger's heat does at once.
+    finger_at_once: i32,
     /// How much warmer the legs are than the mean of their ends.
     legs: Lag,
     hot: Celsius,
     surface: Celsius,
-    /// V/K at 27 °C in 2^-31, ohm in 2^-24, and both per kelvin above, 2^-36 and 2^-31.
+    /// V/K at 27 °C in 2^-31, ohm in 2^-24.
     seebeck: i32,
     ohm: i32,
-    /// A per K that is missing at the horizon, at 300 K.
-    per_k: I20F12,
+    /// A per K that is missing at the horizon, at 300 K, in 2^-12.
+    per_k: i32,
 }
 
 fn scaled(value: f64, bits: u32) -> i32 {
     libm::round(libm::ldexp(value, bits as i32)) as i32
 }
 
-fn watt(bits: i64) -> Watt {
-    Watt::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
-}
-
 impl Plate {
-    /// `f64`, once.
+    /// Of a module on a tile as tuning has found it; `f64`, once.
     #[must_use]
-    pub fn new(module: &Module) -> Self {
+    pub fn new(module: &Module, tile: &Tile) -> Self {
         let tick_s = 1.0 / f64::from(TICK_HZ);
-        let gone = |lag_s: f64| 1.0 - libm::exp(-HORIZON_TICKS * tick_s / lag_s);
-        let gain: f64 = CLASS.iter().map(|r| gone(r.lag_s) * r.pump_k_w).sum();
+        let gone = |ticks: f64, lag_s: f64| 1.0 - libm::exp(-ticks * tick_s / lag_s);
+        let as_found = Scale::of(tile);
+        let mut slowest = true;
+        let relaxations = CLASS.map(|class| as_found.apply(core::mem::take(&mut slowest), class));
+        let gain: f64 = relaxations
+            .iter()
+            .map(|r| gone(HORIZON_TICKS, r.lag_s) * r.weights[0])
+            .sum();
+        let mut ahead = [0.0; 4];
+        for r in &relaxations {
+            for (sum, weight) in ahead.iter_mut().zip(r.weights) {
+                *sum += gone(HORIZON_TICKS, r.lag_s) * weight;
+            }
+        }
         Self {
-            parts: CLASS.map(|r| Part {
-                lag: Lag::new(Share::of(r.lag_s)),
-                ahead: scaled(gone(r.lag_s), 31),
-                pump: scaled(r.pump_k_w, GAIN_BITS),
-                joule: scaled(r.joule_k_w, GAIN_BITS),
-                finger: scaled(r.finger_k_w, GAIN_BITS),
-                sink: scaled(r.sink, GAIN_BITS),
+            parts: relaxations.map(|r| {
+                let share = gone(1.0, r.lag_s);
+                Part {
+                    state: 0,
+                    given: Weights::new(r.weights.map(|weight| share * weight), 0),
+                    lost: scaled(share, 32),
+                    ahead: scaled(gone(HORIZON_TICKS, r.lag_s), AHEAD_BITS),
+                }
             }),
+            ahead: Weights::new(ahead, AHEAD_FEWER),
+            finger_at_once: scaled(as_found.finger * FINGER_AT_ONCE_K_W, 28),
             legs: Lag::new(Share::of(LEGS_LAG_S)),
             hot: SHEET,
             surface: SHEET,
             seebeck: scaled(module.seebeck_v_k, 31),
             ohm: scaled(module.legs_ohm, 24),
-            per_k: I20F12::saturating_from_num(1.0 / (gain * module.seebeck_v_k * 300.0)),
+            per_k: scaled(1.0 / (gain * module.seebeck_v_k * 300.0), 12),
         }
     }
 
     /// Starts from a surface temperature, with everything else at rest without current.
     pub fn start(&mut self, surface: Celsius, sink: Celsius) {
-        let at_rest = Heat {
-            pumped: Watt::ZERO,
-            joule: Watt::ZERO,
-            finger: Watt::ZERO,
-            sink,
-        };
-        let mut rest = surface;
-        for i in (0..RELAXATIONS).rev() {
-            let part = &mut self.parts[i];
-            let at = if i == 0 { rest } else { part.rest(&at_rest) };
-            part.lag.set(at);
-            rest = rest.saturating_sub(at);
+        let mut rest = i64::from(surface.to_bits()) << (STATE_BITS - Celsius::FRAC_NBITS);
+        let [first, others @ ..] = &mut self.parts;
+        for part in others {
+            part.state = part.rest(sink);
+            rest -= part.state;
         }
+        first.state = rest;
         self.legs.set(Celsius::ZERO);
         (self.hot, self.surface) = (sink, surface);
+    }
+
+    /// Goes on as another one, from where it is.
+    pub fn become_like(&mut self, other: &Self) {
+        let before = *self;
+        *self = *other;
+        for (part, before) in self.parts.iter_mut().zip(&before.parts) {
+            part.state = before.state;
+        }
+        (self.legs, self.hot, self.surface) = (before.legs, before.hot, before.surface);
     }
 
     /// The patch's surface.
@@ -184,69 +292,70 @@ impl Plate {
     /// Seebeck coefficient.
     #[must_use]
     pub fn heat(&self, current: Current, finger: Watt, sink: Celsius) -> Heat {
-        const FRACTION: i64 = 1 << 32;
-        let warmer = i64::from(self.legs().saturating_sub(SHEET).to_bits());
+        let warmer = self.legs().saturating_sub(SHEET).clamp(-WARMER, WARMER);
         let grown = |value: i32, per_k: f64| {
-            let per_k = (per_k * FRACTION as f64) as i64;
-            (i64::from(value) * (FRACTION + ((warmer * per_k) >> 22))) >> 32
+            let part = times(warmer.to_bits(), (per_k * (1u64 << 32) as f64) as i32) >> Celsius::FRAC_NBITS;
+            value.saturating_add((times(value, part as i32) >> 32) as i32)
         };
-        let kelvin = i64::from(self.surface.saturating_add(ZERO_C_K).to_bits());
-        // V/K in 2^-31 times K in 2^-22.
-        let volt = (grown(self.seebeck, SEEBECK_PER_K) * kelvin) >> (31 + 22 - 24);
-        let amp = i64::from(current.to_bits());
-        let square = (amp * amp) >> 24;
+        // V/K in 2^-31 times K in 2^-22, and then A in 2^-24; 64 W at most, and no more than a tile can do.
+        let kelvin = self.surface.saturating_add(ZERO_C_K).to_bits();
+        let volt = (times(grown(self.seebeck, SEEBECK_PER_K), kelvin) >> (31 + 22 - 24)) as i32;
+        let amp = current.to_bits();
+        let square = (times(amp, amp) >> 24).min(i32::MAX.into()) as i32;
+        let watt = |bits: i64| Watt::from_bits((bits >> 24).clamp(-MOST_WATT, MOST_WATT) as i32);
         Heat {
-            pumped: watt((volt * amp) >> 24),
-            joule: watt((grown(self.ohm, RESISTIVITY_PER_K) * square) >> 24),
-            finger,
-            sink,
+            pumped: watt(times(volt, amp)),
+            joule: watt(times(grown(self.ohm, RESISTIVITY_PER_K), square)),
+            finger: finger.clamp(-MOST_FINGER, MOST_FINGER),
+            sink: sink.clamp(-MOST_SINK, MOST_SINK),
         }
     }
 
     /// How much more current brings the surface to `target` at the horizon, if `heat` goes on until then.
     #[must_use]
     pub fn missing(&self, target: Celsius, heat: &Heat) -> Current {
-        let mut there = i64::from(self.surface.to_bits());
+        let mut to_go = self.ahead.sum(heat);
         for part in &self.parts {
-            let to_go = i64::from(part.rest(heat).saturating_sub(part.lag.value()).to_bits());
-            there += (to_go * i64::from(part.ahead)) >> 31;
+            to_go -= times(part.kelvin(), part.ahead);
         }
-        let above = there - i64::from(target.to_bits());
-        let current = (above * i64::from(self.per_k.to_bits())) >> (22 + 12 - 24);
+        let above = (to_go >> (STATE_BITS - AHEAD_FEWER - Celsius::FRAC_NBITS))
+            + i64::from(self.surface.to_bits())
+            - i64::from(target.to_bits());
+        let above = above.clamp(i32::MIN.into(), i32::MAX.into()) as i32;
+        let current = times(above, self.per_k) >> (22 + 12 - 24);
         Current::from_bits(current.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
     }
 
     /// One tick.
     pub fn step(&mut self, heat: &Heat) {
-        let finger = i64::from(heat.finger.to_bits())
-            * const { (FINGER_AT_ONCE_K_W * (1u64 << GAIN_BITS) as f64) as i64 };
-        let mut surface = Celsius::from_bits((finger >> (GAIN_BITS + 2)) as i32);
+        let mut surface = (times(heat.finger.to_bits(), self.finger_at_once) >> 32) as i32;
         for part in &mut self.parts {
-            let rest = part.rest(heat);
-            part.lag.follow(rest);
-            surface = surface.saturating_add(part.lag.value());
+            part.state += part.given.sum(heat) - times(part.kelvin(), part.lost);
+            surface += part.kelvin();
         }
-        self.surface = surface;
-        let per_watt = |watt: i64, k_w: f64| {
-            let k_w = (k_w * (1u64 << GAIN_BITS) as f64) as i64;
-            Celsius::from_bits(((watt * k_w) >> (GAIN_BITS + 2)) as i32)
-        };
-        let joule = i64::from(heat.joule.to_bits());
-        self.legs.follow(per_watt(joule, LEGS_K_W));
-        let out = joule + i64::from(heat.pumped.to_bits());
-        self.hot = heat.sink.saturating_add(per_watt(out, HOT_K_W));
+        let bits = i64::from(surface) << (Celsius::FRAC_NBITS - KELVIN_BITS);
+        self.surface = Celsius::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32);
+        let per_watt = |watt: i32, k_w: i32| Celsius::from_bits((times(watt, k_w) >> 30) as i32);
+        let joule = heat.joule.to_bits();
+        self.legs
+            .follow(per_watt(joule, const { (LEGS_K_W * 268_435_456.0) as i32 }));
+        let out = joule.saturating_add(heat.pumped.to_bits());
+        self.hot = heat
+            .sink
+            .saturating_add(per_watt(out, const { (HOT_K_W * 268_435_456.0) as i32 }));
     }
 }
 
 impl Part {
-    /// Where it comes to rest.
-    fn rest(&self, heat: &Heat) -> Celsius {
-        let times = |watt: Watt, gain: i32| i64::from(watt.to_bits()) * i64::from(gain);
-        let powers =
-            times(heat.joule, self.joule) + times(heat.finger, self.finger) - times(heat.pumped, self.pump);
-        let sink = i64::from(heat.sink.to_bits()) * i64::from(self.sink);
-        let rest = (powers >> (GAIN_BITS + 2)) + (sink >> GAIN_BITS);
-        Celsius::from_bits(rest.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+    /// Where it is, K in 2^-20.
+    const fn kelvin(&self) -> i32 {
+        (self.state >> 32) as i32
+    }
+
+    /// Where it comes to rest with this sink and nothing else.
+    fn rest(&self, sink: Celsius) -> i64 {
+        let given = times(sink.to_bits(), self.given.sink);
+        (given / i64::from(self.lost.max(1))) << 32
     }
 }
 

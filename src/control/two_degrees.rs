@@ -16,9 +16,9 @@ use contact_model::fixed_point::Celsius;
 
 use super::lag::{Lag, Share};
 use super::pi::Pi;
-use super::plate::{Plate, Watt};
+use super::plate::{Heat, Plate, Watt};
+use super::tuned::Tuned;
 use crate::drive::Current;
-use crate::settings::{Module, Tile};
 
 /// Time constant of the difference between plate and model that counts as the plate's, s.
 const APART_LAG_S: f64 = 0.02;
@@ -35,29 +35,31 @@ pub struct TwoDegrees {
     /// Plate without model.
     apart: Lag,
     feed: Current,
+    /// What it did to the plate.
+    heat: Heat,
     limit: Current,
     running: bool,
 }
 
 impl TwoDegrees {
-    /// `f64`, once.
+    /// Within a limit; `f64`, once.
     #[must_use]
-    pub fn new(module: &Module, tile: &Tile) -> Self {
+    pub fn new(tuned: Tuned, limit: Current) -> Self {
         Self {
-            plate: Plate::new(module),
-            sensor: Lag::new(Share::of(tile.sensor_lag_s)),
+            plate: tuned.plate,
+            sensor: Lag::new(tuned.sensor),
             apart: Lag::new(Share::of(APART_LAG_S)),
             feed: Current::ZERO,
-            limit: Current::saturating_from_num(module.current_limit_a),
+            heat: Heat::default(),
+            limit,
             running: false,
         }
     }
 
-    /// Goes on with another sensor.
-    pub fn retune(&mut self, tile: &Tile) {
-        let reading = self.sensor.value();
-        self.sensor = Lag::new(Share::of(tile.sensor_lag_s));
-        self.sensor.set(reading);
+    /// Goes on with another tile.
+    pub fn retune(&mut self, tuned: &Tuned) {
+        self.plate.become_like(&tuned.plate);
+        self.sensor.retune(tuned.sensor);
     }
 
     /// Starts anew with the next [`Self::update`].
@@ -92,21 +94,26 @@ impl TwoDegrees {
             self.sensor.set(reading);
             self.apart.set(Celsius::ZERO);
             self.feed = Current::ZERO;
+            self.heat = Heat::default();
             pi.reset();
             self.running = true;
         }
         let apart = reading.saturating_sub(self.sensor.value());
         self.apart.follow(apart);
         let feedback = pi.respond(apart);
-        let held = self.plate.heat(self.feed, finger, sink);
+        let held = Heat {
+            finger,
+            sink,
+            ..self.heat
+        };
         let wish = self.feed.saturating_add(self.plate.missing(target, &held));
         let current = wish
             .saturating_add(feedback)
             .clamp(-self.limit, self.cooling_limit(sink));
         self.feed = current.saturating_sub(feedback).clamp(-self.limit, self.limit);
-        let heat = self.plate.heat(self.feed, finger, sink);
+        self.heat = self.plate.heat(self.feed, finger, sink);
         let before = self.plate.surface();
-        self.plate.step(&heat);
+        self.plate.step(&self.heat);
         // The sensor sees the plate on its way.
         self.sensor
             .follow((before >> 1u32).saturating_add(self.plate.surface() >> 1u32));

@@ -7,11 +7,11 @@ use fixed::types::I32F32;
 use super::Error;
 use super::error::Number;
 use crate::TICK_HZ;
-use crate::control::Law;
+use crate::control::{Law, Tuned};
 use crate::guard::Setpoint;
 use crate::render::Mode;
 use crate::sense::Calibrated;
-use crate::settings::{Settings, Tile};
+use crate::settings::Settings;
 
 /// A command of the host, checked and ready to execute.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,7 +57,7 @@ pub enum Command {
     /// Reads by another calibration, from it.
     Calibrate(Calibrated),
     /// Controls another tile, from it.
-    Retune(Tile),
+    Retune(Tuned),
 }
 
 impl Command {

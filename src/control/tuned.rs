@@ -1,0 +1,29 @@
+//! What the laws know of a tile, ready for the tick.
+
+use super::lag::Share;
+use super::pi::{Period, Response};
+use super::plate::Plate;
+use crate::settings::Settings;
+
+/// The laws' constants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tuned {
+    pub(super) pi: Response,
+    pub(super) pi_10hz: Response,
+    pub(super) plate: Plate,
+    /// Of the display's thermistor.
+    pub(super) sensor: Share,
+}
+
+impl Tuned {
+    /// `f64`, about a millisecond's worth of it in software: not for the tick.
+    #[must_use]
+    pub fn new(settings: &Settings) -> Self {
+        Self {
+            pi: Response::new(&settings.gains, Period::EveryTick),
+            pi_10hz: Response::new(&settings.gains_10hz, Period::TenthOfASecond),
+            plate: Plate::new(&settings.module, &settings.tile),
+            sensor: Share::of(settings.tile.sensor_lag_s),
+        }
+    }
+}
