@@ -1,7 +1,7 @@
 //! Current to bridge voltage.
 
 use contact_model::fixed_point::Celsius;
-use fixed::types::{I1F15, I16F16};
+use fixed::types::I1F15;
 
 use crate::drive::{Current, Duty};
 use crate::settings::Module;
@@ -20,18 +20,26 @@ use crate::settings::Module;
 /// for pulses of a part `w` of the period, and a current `I` that counts along them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voltage {
-    /// Part of the supply per A with the legs at 27 °C, and the part of it that it rises by per K above.
-    per_a: I16F16,
-    rise_per_k: I16F16,
-    /// Part of the supply per K.
-    per_k: I16F16,
+    /// Part of the supply per A with the legs at 27 °C, 2^-28, and the part of it that it rises by per K above, 2^-32.
+    per_a: i32,
+    rise_per_k: i32,
+    /// Part of the supply per K, 2^-32.
+    per_k: i32,
     /// Part of the supply lost in dead times.
-    dead: I16F16,
-    ripple_a: I16F16,
-    dead_time_a: I16F16,
+    dead: i32,
+    ripple_a: i32,
+    dead_time_a: i32,
     /// Part of the supply that one more ampere loses on the line between nothing and all.
-    dead_per_a: I16F16,
+    dead_per_a: i32,
 }
+
+/// Binary places of what does not say otherwise: A, and parts of the supply.
+const BITS: u32 = Current::FRAC_NBITS;
+const ONE: i32 = 1 << BITS;
+/// No line reaches farther from its middle, in parts of the supply: one sixteenth.
+const FARTHEST: i32 = ONE >> 4;
+/// Of a quotient's divisor.
+const DIVISOR_BITS: u32 = 10;
 
 /// Temperatures of the module's legs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,59 +72,56 @@ impl Voltage {
     /// `f64`, once.
     #[must_use]
     pub fn new(module: &Module) -> Self {
-        let fixed = I16F16::saturating_from_num::<f64>;
+        let fixed = |value: f64, bits: u32| libm::round(libm::ldexp(value, bits as i32)) as i32;
+        let ohm = module.legs_ohm + module.leads_ohm;
         let dead = module.dead_time_v / module.supply_v;
         Self {
-            per_a: fixed((module.legs_ohm + module.leads_ohm) / module.supply_v),
-            rise_per_k: fixed(module.legs_ohm * RESISTIVITY_PER_K / (module.legs_ohm + module.leads_ohm)),
-            per_k: fixed(module.seebeck_v_k / module.supply_v),
-            dead: fixed(dead),
-            ripple_a: fixed(module.ripple_a),
-            dead_time_a: fixed(module.dead_time_a),
-            dead_per_a: fixed(2.0 * dead / module.dead_time_a),
+            per_a: fixed(ohm / module.supply_v, 28),
+            rise_per_k: fixed(module.legs_ohm * RESISTIVITY_PER_K / ohm, 32),
+            per_k: fixed(module.seebeck_v_k / module.supply_v, 32),
+            dead: fixed(dead, BITS),
+            ripple_a: fixed(module.ripple_a, BITS),
+            dead_time_a: fixed(module.dead_time_a, BITS),
+            dead_per_a: fixed(2.0 * dead / module.dead_time_a, BITS),
         }
     }
 
     /// Mean voltage for a current, as a part of the supply.
     #[must_use]
     pub fn duty(&self, current: Current, legs: &Legs) -> Duty {
-        let across = I16F16::saturating_from_num(legs.hot.saturating_sub(legs.cold));
-        let warmer = I16F16::saturating_from_num(legs.mean.saturating_sub(SHEET));
-        let current = I16F16::from_num(current);
-        let needed = current
-            .saturating_mul(
-                self.per_a
-                    .saturating_add(self.per_a.saturating_mul(warmer.saturating_mul(self.rise_per_k))),
-            )
-            .saturating_add(across.saturating_mul(self.per_k));
+        let across = legs.hot.saturating_sub(legs.cold).to_bits();
+        let warmer = legs.mean.saturating_sub(SHEET).to_bits();
+        let rise = times(self.per_a, times(warmer, self.rise_per_k, 32), Celsius::FRAC_NBITS);
+        let needed = times(current.to_bits(), self.per_a.saturating_add(rise), 28)
+            .saturating_add(times(across, self.per_k, 32 + Celsius::FRAC_NBITS - BITS));
         let voltage = if needed < 0 {
-            needed.saturating_sub(self.lost(needed.saturating_neg(), current.saturating_neg()))
+            needed.saturating_sub(self.lost(needed.saturating_neg(), current.to_bits().saturating_neg()))
         } else {
-            needed.saturating_add(self.lost(needed, current))
+            needed.saturating_add(self.lost(needed, current.to_bits()))
         };
-        Duty::saturating(I1F15::saturating_from_num(voltage))
+        Duty::saturating(I1F15::saturating_from_num(Current::from_bits(voltage)))
     }
 
     /// What pulses that shall leave `needed` of the supply have to be wider by: where the line meets the width that it
     /// asks for, to first order around half of the loss.
-    fn lost(&self, needed: I16F16, current: I16F16) -> I16F16 {
-        let one = I16F16::ONE;
-        let middle = needed.saturating_add(self.dead >> 1u32).min(one);
-        let from = self
-            .ripple_a
-            .saturating_mul(middle.saturating_mul(one - middle))
-            .saturating_sub(self.dead_time_a);
-        let line = current.saturating_sub(from).saturating_mul(self.dead_per_a);
+    fn lost(&self, needed: i32, current: i32) -> i32 {
+        let half = self.dead >> 1;
+        let middle = needed.saturating_add(half).min(ONE);
+        let from = times(self.ripple_a, times(middle, ONE - middle, BITS), BITS) - self.dead_time_a;
+        let line = times(current.saturating_sub(from), self.dead_per_a, BITS);
         // A wider pulse has more ripple, which takes back a part of the loss.
-        let back = self
-            .ripple_a
-            .saturating_mul(one - (middle << 1))
-            .saturating_mul(self.dead_per_a);
-        let off_middle = line.saturating_sub(self.dead >> 1u32);
-        let half = self.dead >> 1u32;
-        let lost: I16F16 = half.saturating_add(off_middle.saturating_div(one.saturating_add(back).max(one)));
-        lost.clamp(I16F16::ZERO, self.dead)
+        let ripple_per_width = times(self.ripple_a, ONE - 2 * middle, BITS);
+        let back = times(ripple_per_width, self.dead_per_a, BITS).max(0);
+        let off_middle = line.saturating_sub(half).clamp(-FARTHEST, FARTHEST);
+        let steepness = ONE.saturating_add(back) >> (BITS - DIVISOR_BITS);
+        (half + (off_middle << DIVISOR_BITS) / steepness).clamp(0, self.dead)
     }
+}
+
+/// A product, without so many of its binary places; saturates.
+fn times(a: i32, b: i32, fewer_bits: u32) -> i32 {
+    let product = (i64::from(a) * i64::from(b)) >> fewer_bits;
+    product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
 }
 
 #[cfg(test)]

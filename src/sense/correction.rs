@@ -106,14 +106,13 @@ impl Polynomial {
     /// curvature 31.
     #[must_use]
     pub fn apply(&self, reached: Celsius) -> Celsius {
-        let u = i64::from(
-            reached
-                .saturating_sub(Self::MIDDLE)
-                .clamp(-Self::REACH, Self::REACH)
-                .to_bits(),
-        );
-        let square = (u * u) >> Celsius::FRAC_NBITS;
-        let change = (i64::from(self.slope) * u + i64::from(self.curvature) * square) >> 32;
+        let u = reached
+            .saturating_sub(Self::MIDDLE)
+            .clamp(-Self::REACH, Self::REACH)
+            .to_bits();
+        let times = |a: i32, b: i32| i64::from(a) * i64::from(b);
+        let square = (times(u, u) >> Celsius::FRAC_NBITS) as i32;
+        let change = (times(self.slope, u) + times(self.curvature, square)) >> 32;
         reached
             .saturating_add(self.offset)
             .saturating_add(Celsius::from_bits(change as i32))

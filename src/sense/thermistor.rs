@@ -32,7 +32,7 @@ pub enum SensorFault {
 /// multiplications a sensor, no logarithm and no division.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Thermistor {
-    /// Coefficients in 2^-22 °C, lowest power first, of the position in the part from 0 to 1.
+    /// Coefficients in 2^-22 °C, lowest power first, of the position in the part from 0 to 1/2.
     parts: [[i32; 4]; PARTS],
 }
 
@@ -64,24 +64,25 @@ impl Thermistor {
             return Err(SensorFault::Open);
         }
         let position_bits = u16::BITS + FINE_BITS - PARTS_SHIFT;
-        let position = i64::from(fine & ((1 << position_bits) - 1));
+        // From 0 to 1/2, in 2^-32.
+        let position = i64::from(fine & ((1 << position_bits) - 1)) << (u32::BITS - 1 - position_bits);
         // Steps are small beside what lies between the ends of the range and those of its last parts.
         let [constant, rest @ ..] = self.parts[(fine >> position_bits) as usize % PARTS];
         let change = rest
             .iter()
             .rev()
-            .fold(0i64, |sum, &c| ((sum + i64::from(c)) * position) >> position_bits);
-        Ok(Celsius::from_bits(constant.saturating_add(change as i32)))
+            .fold(0i32, |sum, &c| ((i64::from(sum.saturating_add(c)) * position) >> 32) as i32);
+        Ok(Celsius::from_bits(constant.saturating_add(change)))
     }
 }
 
-/// The cubic through values in °C at 0, 1/3, 2/3 and 1.
+/// The cubic through values in °C at 0, 1/6, 1/3 and 1/2.
 fn cubic([a, b, c, d]: [f64; 4]) -> [i32; 4] {
     let powers = [
         a,
-        (-11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d) / 2.0,
-        (18.0 * a - 45.0 * b + 36.0 * c - 9.0 * d) / 2.0,
-        (-9.0 * a + 27.0 * b - 27.0 * c + 9.0 * d) / 2.0,
+        -11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d,
+        2.0 * (18.0 * a - 45.0 * b + 36.0 * c - 9.0 * d),
+        4.0 * (-9.0 * a + 27.0 * b - 27.0 * c + 9.0 * d),
     ];
     powers.map(|power| Celsius::saturating_from_num(power).to_bits())
 }
