@@ -118,10 +118,10 @@ impl Voltage {
     }
 }
 
-/// A product, without so many of its binary places; saturates.
-fn times(a: i32, b: i32, fewer_bits: u32) -> i32 {
-    let product = (i64::from(a) * i64::from(b)) >> fewer_bits;
-    product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+/// A product, without so many of its binary places. None here overflows with a module of less than half of the supply
+/// per ampere and 64 A of ripple: currents are within ±128 A, temperatures within ±512 K, the rest within the supply.
+const fn times(a: i32, b: i32, fewer_bits: u32) -> i32 {
+    ((a as i64 * b as i64) >> fewer_bits) as i32
 }
 
 #[cfg(test)]

@@ -16,9 +16,7 @@ pub enum Without {
     SensorSite,
     /// Lag of the force sensor.
     ForceLag,
-    /// Time for which heat spreads sideways and through the plates.
-    Spreading,
-    /// Most of the heat that the plates hold, so that the same power moves them faster.
+    /// A quarter of the heat that the plates hold, so that the same power moves them faster.
     Power,
     /// Change of the module's properties with temperature, which a linear model does not identify.
     Identification,
@@ -28,13 +26,12 @@ const LEADS: [&str; 5] = ["display", "check", "sink", "skin", "room"];
 
 impl Without {
     /// All of them.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 7] = [
         Self::SensorNoise,
         Self::Inl,
         Self::SensorLag,
         Self::SensorSite,
         Self::ForceLag,
-        Self::Spreading,
         Self::Power,
         Self::Identification,
     ];
@@ -48,7 +45,6 @@ impl Without {
             Self::SensorLag => "sensor-lag",
             Self::SensorSite => "sensor-site",
             Self::ForceLag => "force-lag",
-            Self::Spreading => "spreading",
             Self::Power => "power",
             Self::Identification => "identification",
         }
@@ -70,8 +66,7 @@ impl Without {
                     .collect()
             }
             Self::ForceLag => keys(&[("sensors.force.lag_s", 1e-5)]),
-            Self::Spreading => keys(&[("tile.ceramic_w_mk", 500.0)]),
-            Self::Power => keys(&[("tile.ceramic_j_m3k", 0.5e6)]),
+            Self::Power => keys(&[("tile.ceramic_j_m3k", 2.3e6)]),
             Self::Identification => keys(&[("tile.variation", 0.0)]),
         }
     }
