@@ -117,6 +117,14 @@ pub struct Render {
     evaluations: u32,
 }
 
+/// How far off its set-point a display waits, away from the skin, for a finger to land: the bridge takes away in the
+/// first 50 ms what the finger brings in the first 10, and half of that in advance halves its trace on the skin. That is
+/// in proportion to the flux, whatever the material, and so to how much warmer than the display the skin is.
+fn landing(skin: Celsius, setpoint: Celsius) -> Celsius {
+    const LANDING_SHIFT: u32 = 7;
+    skin.saturating_sub(setpoint) >> LANDING_SHIFT
+}
+
 impl Render {
     /// Follows skin, room and force, of which a contact that begins began `landed_ticks` ago. Temperatures before
     /// contact only: the skin's sensor sees little of it during contact, and for some time after it what the contact
@@ -221,7 +229,11 @@ impl Render {
                 return only(scene.pairing.preset(skin, object));
             }
             self.skin.touch_object(None, &scene.bodies, apart);
-            return only(self.skin.display(&scene.bodies, skin, apart, false));
+            let setpoint = self.skin.display(&scene.bodies, skin, apart, false);
+            return Some(Wanted {
+                setpoint,
+                target: setpoint.saturating_sub(landing(skin, setpoint)),
+            });
         };
         let fresh = self.touching.is_none();
         let touching = self.touching.get_or_insert_with(|| {
@@ -238,8 +250,11 @@ impl Render {
             }
         });
         if fresh {
-            let late = display.saturating_sub(scene.pairing.preset(skin, object)).abs() > LATE;
-            grip.steady &= !late;
+            let preset = scene.pairing.preset(skin, object);
+            // Half way between where it should be and where it waits for the finger.
+            let half = landing(skin, preset) >> 1u32;
+            let off = display.saturating_sub(preset).saturating_add(half).abs();
+            grip.steady &= off <= LATE.saturating_add(half.abs());
         } else {
             touching.elapsed += 1;
         }
