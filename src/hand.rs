@@ -15,11 +15,12 @@ pub struct Hand<const FINGERS: usize> {
 }
 
 impl<const FINGERS: usize> Hand<FINGERS> {
-    /// Stations that are off.
+    /// Stations that are off. `f64` in software, once for all fingers.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
+        let one = Station::new(settings);
         Self {
-            stations: array::from_fn(|_| Station::new(settings)),
+            stations: array::from_fn(|_| one.clone()),
         }
     }
 
