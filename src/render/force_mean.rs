@@ -125,10 +125,13 @@ fn towards(mean: Force, force: Force, ticks: u32) -> Force {
 /// R moves by 0.95 of the force's relative change (Eq. 6-8), `E` by at most 0.277 of R's, and the set-point by
 /// `gain` times as much: 0.264 in all, rounded up to 17/64.
 pub(super) fn all_the_same(force: Force, gain: Celsius) -> RangeInclusive<Force> {
-    let change = u64::from(force.to_bits()) * u64::from(MATTERS.to_bits().unsigned_abs()) * 64;
-    let allowed = change
-        .checked_div(u64::from(gain.to_bits().unsigned_abs()) * 17)
-        .and_then(|bits| u32::try_from(bits).ok())
+    // Of a gain in 2^-14 K, rounded up, so that one short division holds the part of the force, in 2^-29.
+    const PART: u32 = ((MATTERS.to_bits() as u64 * 64 << 29 >> GAIN_SHIFT) / 17) as u32;
+    const GAIN_SHIFT: u32 = 8;
+    let gain = gain.to_bits().unsigned_abs().div_ceil(1 << GAIN_SHIFT);
+    let allowed = PART
+        .checked_div(gain)
+        .and_then(|part| u32::try_from((u64::from(force.to_bits()) * u64::from(part)) >> 29).ok())
         .map_or(Force::MAX, Force::from_bits);
     force.saturating_sub(allowed)..=force.saturating_add(allowed)
 }

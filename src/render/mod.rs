@@ -12,8 +12,7 @@ use core::ops::RangeInclusive;
 use contact_model::fixed_point::{Celsius, Course, Force, Pairing, contact_area, log2_relative_pressure};
 
 use force_mean::{Change, ForceMean, all_the_same};
-pub use skin::Bodies;
-use skin::{Links, Skin};
+use skin::{Bodies, Links, Skin};
 
 use crate::control::Watt;
 
@@ -26,8 +25,6 @@ const FILTER_SHIFT: u32 = 8;
 
 /// A skin that was touched is believed again after this many ticks: until then its sensor sees what the contact left.
 const RESTED_TICKS: u32 = 2000;
-/// Part of a force, as a power of two, by which it changes nothing that the skin could tell.
-const SAME_SHIFT: u32 = 10;
 /// A force may still rise for this many ticks after landing and count as constant.
 const SETTLED_TICKS: u64 = 16;
 /// A display this far from its preset at landing was not in time.
@@ -50,8 +47,6 @@ pub enum Mode {
 pub struct Scene {
     /// The material.
     pub pairing: Pairing,
-    /// The same for a skin that is followed.
-    pub bodies: Bodies,
     /// Its temperature; that of the room if none was given.
     pub object: Option<Celsius>,
     /// Model.
@@ -80,8 +75,7 @@ struct Grip {
     steady: bool,
     /// Ticks since landing.
     elapsed: u64,
-    /// For a force.
-    links: Option<(Force, Links)>,
+    links: Option<Links>,
 }
 
 /// A contact with an object that lasts.
@@ -113,6 +107,8 @@ pub struct Render {
     lifted_ticks: u32,
     grip: Option<Grip>,
     skin: Skin,
+    /// Of the scene that was last presented.
+    bodies: Option<Bodies>,
     touching: Option<Touching>,
     evaluations: u32,
 }
@@ -131,22 +127,23 @@ impl Render {
                 room: filter(before.room, room),
             },
         });
-        self.grip = match (touch, self.grip) {
-            (None, _) => None,
-            (Some(force), None) => Some(Grip {
-                force: ForceMean::new(force),
-                change: Change::New,
-                steady: self.lifted_ticks >= RESTED_TICKS,
-                elapsed: landed_ticks.into(),
-                links: None,
-            }),
-            (Some(force), Some(mut grip)) => {
+        match (touch, &mut self.grip) {
+            (None, grip) => *grip = None,
+            (Some(force), grip @ None) => {
+                *grip = Some(Grip {
+                    force: ForceMean::new(force),
+                    change: Change::New,
+                    steady: self.lifted_ticks >= RESTED_TICKS,
+                    elapsed: landed_ticks.into(),
+                    links: None,
+                });
+            }
+            (Some(force), Some(grip)) => {
                 grip.change = grip.force.update(force);
                 grip.elapsed += 1;
                 grip.steady &= grip.change == Change::Noise || grip.elapsed < SETTLED_TICKS;
-                Some(grip)
             }
-        };
+        }
         self.lifted_ticks = match touch {
             Some(_) => 0,
             None => self.lifted_ticks.saturating_add(1),
@@ -166,7 +163,7 @@ impl Render {
         self.before.map(|before| before.skin)
     }
 
-    /// A contact that begins with the next [`Self::present`] is a new one.
+    /// A contact that begins with the next [`Self::present`] is a new one, with whatever pairing.
     pub fn forget_contact(&mut self) {
         self.touching = None;
         self.skin.forget_object();
@@ -175,7 +172,8 @@ impl Render {
         }
     }
 
-    /// Heat into a display, W, whose surface is `display`; `pairing` is any with that display.
+    /// Heat into a display, W, whose surface is `display`; `pairing` is that of the scene, or any with that display if
+    /// nothing is presented.
     pub fn load(&mut self, pairing: &Pairing, display: Celsius) -> Watt {
         let Some(before) = self.before else {
             return Watt::ZERO;
@@ -185,12 +183,10 @@ impl Render {
             return Watt::ZERO;
         };
         let force = grip.force.mean();
-        let (at, links) = match grip.links {
-            Some((at, links)) if force.abs_diff(at) <= at >> SAME_SHIFT => (at, links),
-            _ => (force, Links::new(&pairing.under(log2_relative_pressure(force)))),
-        };
-        grip.links = Some((at, links));
-        let drive = self.skin.touch_display(Some(&links), before.skin, display);
+        if !grip.links.as_ref().is_some_and(|links| links.do_for(force)) {
+            grip.links = Some(Links::new(pairing, force));
+        }
+        let drive = self.skin.touch_display(grip.links.as_ref(), before.skin, display);
         // mm2 in 2^-16 and K in 2^-22 to W in 2^-24.
         let area = i64::from(contact_area(force).to_bits());
         let per_mm2 = (i64::from(drive.to_bits()) * i64::from(FLUX_W_MM2K)) >> 30;
@@ -215,13 +211,18 @@ impl Render {
             return only(scene.pairing.interface_temperature(skin, object));
         }
         let apart = skin.saturating_sub(object);
+        let bodies = match self.bodies {
+            Some(bodies) if bodies.are_of(&scene.pairing) => bodies,
+            _ => Bodies::new(&scene.pairing),
+        };
+        self.bodies = Some(bodies);
         let Some(grip) = &mut self.grip else {
             self.touching = None;
             if !live {
                 return only(scene.pairing.preset(skin, object));
             }
-            self.skin.touch_object(None, &scene.bodies, apart);
-            return only(self.skin.display(&scene.bodies, skin, apart, false));
+            self.skin.touch_object(None, &bodies, apart);
+            return only(self.skin.display(&bodies, skin, apart, false));
         };
         let fresh = self.touching.is_none();
         let touching = self.touching.get_or_insert_with(|| {
@@ -244,8 +245,7 @@ impl Render {
             touching.elapsed += 1;
         }
         if live {
-            let links = grip.links.as_ref().map(|(_, links)| links);
-            self.skin.touch_object(links, &scene.bodies, apart);
+            self.skin.touch_object(grip.links.as_ref(), &bodies, apart);
         }
         let closed = grip.steady || !live;
         let same = !grip.force.is_better() || touching.same.contains(&grip.force.mean());
@@ -257,7 +257,8 @@ impl Render {
             }
             course if closed => {
                 let force = grip.force.take();
-                let contact = scene.pairing.under(log2_relative_pressure(force));
+                let known = grip.links.as_ref().and_then(|links| links.contact_under(force));
+                let contact = known.unwrap_or_else(|| scene.pairing.under(log2_relative_pressure(force)));
                 let (laid, evaluations) = Course::new(&contact, skin, object, touching.elapsed, TOLERANCE);
                 self.evaluations = self.evaluations.wrapping_add(evaluations);
                 touching.same = all_the_same(force, laid.gain());
@@ -266,11 +267,11 @@ impl Render {
             }
             course => {
                 *course = None;
-                self.skin.display(&scene.bodies, skin, apart, true)
+                self.skin.display(&bodies, skin, apart, true)
             }
         };
         let correction = match (&grip.links, live) {
-            (Some((_, links)), true) => self.skin.correction(links),
+            (Some(links), true) => self.skin.correction(links),
             _ => Celsius::ZERO,
         };
         let target = setpoint.saturating_add(correction);

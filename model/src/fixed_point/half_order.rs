@@ -100,7 +100,7 @@ pub struct HalfOrder {
     /// What each has at the end of the coming tick if nothing flows, K, 54 binary places. As the drive is bounded,
     /// none leaves ±320 K.
     fast: [i64; FAST],
-    /// What each had when the window began, likewise. They saturate.
+    /// What each had when the window began, likewise. They saturate at ±256 K.
     slow: [i64; SLOW],
     /// Their sum.
     slow_sum: Celsius,
@@ -129,6 +129,13 @@ const fn product(a: i32, b: i32) -> i64 {
 /// A part, in the binary places of [`Celsius`].
 const fn high(part: i64) -> i32 {
     (part >> BELOW) as i32
+}
+
+/// A part within ±256 K, to which a window's drives can be added.
+fn limited(part: i64) -> i64 {
+    const LIMIT: i32 = Celsius::const_from_int(256).to_bits();
+    let size = high(part).clamp(-LIMIT, LIMIT - 1);
+    i64::from(size) << BELOW | (part & ((1 << BELOW) - 1))
 }
 
 /// A drive within ±32 K.
@@ -204,8 +211,8 @@ impl HalfOrder {
         let been = (self.window - self.to_come) as i32;
         let (mut sum, mut loss) = (Celsius::ZERO, 0i64);
         for (state, part) in self.slow.iter_mut().zip(&SLOW_PARTS) {
-            *state = state.saturating_add(product(self.drives, part.given));
-            *state -= product(high(*state), part.lost / WINDOW as i32 * been);
+            *state += product(self.drives, part.given);
+            *state = limited(*state - product(high(*state), part.lost / WINDOW as i32 * been));
             sum = sum.saturating_add(Celsius::from_bits(high(*state)));
             loss += product(high(*state), part.lost);
         }
