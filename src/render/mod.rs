@@ -71,6 +71,8 @@ struct Grip {
     force: ForceMean,
     /// What the last tick brought.
     change: Change,
+    /// It needed new links.
+    relinked: bool,
     /// The first touch of a rested skin, and its force has not changed since.
     steady: bool,
     /// Ticks since landing.
@@ -133,6 +135,7 @@ impl Render {
                 *grip = Some(Grip {
                     force: ForceMean::new(force),
                     change: Change::New,
+                    relinked: false,
                     steady: self.lifted_ticks >= RESTED_TICKS,
                     elapsed: landed_ticks.into(),
                     links: None,
@@ -183,7 +186,8 @@ impl Render {
             return Watt::ZERO;
         };
         let force = grip.force.mean();
-        if !grip.links.as_ref().is_some_and(|links| links.do_for(force)) {
+        grip.relinked = !grip.links.as_ref().is_some_and(|links| links.do_for(force));
+        if grip.relinked {
             grip.links = Some(Links::new(pairing, force));
         }
         let drive = self.skin.touch_display(grip.links.as_ref(), before.skin, display);
@@ -255,7 +259,8 @@ impl Render {
                 self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
                 setpoint
             }
-            course if closed => {
+            // One thing in a tick: a course is laid in one that needs no new links.
+            course if closed && !(live && grip.relinked) => {
                 let force = grip.force.take();
                 let known = grip.links.as_ref().and_then(|links| links.contact_under(force));
                 let contact = known.unwrap_or_else(|| scene.pairing.under(log2_relative_pressure(force)));

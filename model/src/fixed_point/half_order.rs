@@ -86,6 +86,8 @@ const PER_GAIN_AHEAD: i32 = 848_763_970;
 /// What a drive of one kelvin moves the surface by in one tick, in 2^-20: the sum of all `g`, and `2 / pi` for what is
 /// faster than a tick.
 const GAIN: u32 = 1_240_954;
+/// Its binary places.
+const GAIN_BITS: u32 = 20;
 /// Binary places of a part below those of [`Celsius`].
 const BELOW: u32 = 32;
 
@@ -179,7 +181,7 @@ impl HalfOrder {
     /// Where the surface is at the end of a tick in which `drive` flows.
     #[must_use]
     pub fn after(&self, drive: Celsius) -> Celsius {
-        let moved = product(bounded(drive), GAIN as i32) >> 20;
+        let moved = product(bounded(drive), GAIN as i32) >> GAIN_BITS;
         self.left.saturating_add(Celsius::from_bits(moved as i32))
     }
 

@@ -1,7 +1,7 @@
 //! A resistance in front of a half-space.
 
-use super::{GAIN, HalfOrder};
-use crate::fixed_point::{Celsius, Contact, Rate};
+use super::{GAIN, GAIN_BITS, HalfOrder};
+use crate::fixed_point::{Celsius, Contact, Fraction, Rate, Ratio};
 
 /// A contact resistance in front of a half-space: what flows through it in a tick, for a difference of temperatures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -12,19 +12,20 @@ pub struct Link {
     resistance: u32,
 }
 
-/// Binary places of a conductance here.
-const CONDUCTANCE_BITS: u32 = 32;
-/// No contact is as good as this: it would be perfect within 0.2 %.
-const BEST: u64 = 1 << (CONDUCTANCE_BITS + 8);
+/// Binary places of a resistance.
+const RESISTANCE_BITS: u32 = 16;
+/// [`GAIN`] in these, rounded.
+const GAIN_HERE: u32 = (GAIN + (1 << (GAIN_BITS - RESISTANCE_BITS) >> 1)) >> (GAIN_BITS - RESISTANCE_BITS);
 
 impl Link {
-    /// Of a conductance (drive per kelvin across it, 32 binary places) that is divided by `by` (likewise).
-    fn new(conductance: u64, by: u64) -> Self {
-        let conductance = conductance.min(BEST);
-        let resistance_and_gain = by.saturating_add((u64::from(GAIN) * conductance) >> 20);
+    /// Of a resistance; its conductance is right within 1e-5 of itself.
+    const fn new(resistance: u32) -> Self {
+        // 1.2 at least: up to 15 zeros before it.
+        let in_all = resistance.saturating_add(GAIN_HERE);
+        let up = in_all.leading_zeros();
         Self {
-            per_k: quotient(conductance, resistance_and_gain, 32),
-            resistance: quotient(by, conductance, 16),
+            per_k: inverse(in_all << up) << 1 >> (15 - up),
+            resistance,
         }
     }
 
@@ -44,40 +45,31 @@ impl Link {
     }
 }
 
-/// `a / b` in `2^-places`, in a division of 32 bits and a step of Newton's: a long one costs three hundred cycles.
-/// Relative error below 2^-28, and less than one of the result's places; saturates.
-fn quotient(a: u64, b: u64, places: i32) -> u32 {
-    // The leading 32 bits of each: between a half and one.
-    let (up, down) = (a.leading_zeros(), b.leading_zeros());
-    let (Some(a), Some(b)) = (a.checked_shl(up), b.checked_shl(down)) else {
-        return if a == 0 { 0 } else { u32::MAX };
-    };
-    let (a, b) = ((a >> 32) as u32, (b >> 32) as u32);
-    // 2^48 / b within 2^-15 of itself, and 2^62 / b.
-    let rough = i64::from(u32::MAX.checked_div(b >> 16).unwrap_or(u32::MAX));
-    let missing = (1 << 48) - rough * i64::from(b);
-    let inverse = (rough << 14) + ((rough * (missing >> 17)) >> 17);
-    let size = (u64::from(a) * inverse.unsigned_abs()) >> 31;
-    // In 2^-31, of the numbers as they were given.
-    match 31 - places + up as i32 - down as i32 {
-        right @ 0.. => size
-            .checked_shr(right.unsigned_abs())
-            .unwrap_or(0)
-            .min(u64::from(u32::MAX)) as u32,
-        left => u32::try_from(size)
-            .ok()
-            .filter(|size| size.leading_zeros() >= left.unsigned_abs())
-            .map_or(u32::MAX, |size| size << left.unsigned_abs()),
-    }
+/// `2^62 / n` for `n` from 2^31 on: below 2^31, relative error below 2^-28. A division of 32 bits and a step of
+/// Newton's, because a long division costs three hundred cycles.
+pub(super) const fn inverse(n: u32) -> u32 {
+    // 2^48 / n, within 2^-15 of itself.
+    let rough = (u32::MAX / (n >> 16 | 1 << 15)) as i64;
+    let missing = (1 << 48) - rough * n as i64;
+    ((rough << 14) + ((rough * (missing >> 17)) >> 17)) as u32
 }
 
-/// `32` binary places; saturates at [`BEST`].
-fn scaled(rate: Rate) -> u64 {
-    let bits = 1 << 32 | u64::from(rate.fraction());
-    match rate.exponent() {
-        e @ 0..8 => bits << e,
-        8.. => BEST,
-        e => bits.checked_shr(e.unsigned_abs()).unwrap_or(0),
+/// `ratio / (rate part)`, 16 binary places; saturates.
+fn resistance(ratio: Ratio, rate: Rate, part: Fraction) -> u32 {
+    let product = u64::from(rate.leading()) * u64::from(part.to_bits());
+    let up = product.leading_zeros();
+    let Some(leading) = product.checked_shl(up) else {
+        return u32::MAX;
+    };
+    let size = u64::from(ratio.to_bits()) * u64::from(inverse((leading >> 32) as u32));
+    // From the places of the ratio and the inverse to those of a resistance; the product's are 31 and 32, and
+    // 32 of its bits are not in the inverse.
+    const DOWN: i32 = Ratio::FRAC_NBITS as i32 + 62 - (31 + 32 - 32) - RESISTANCE_BITS as i32;
+    match DOWN + rate.exponent() - up as i32 {
+        _ if size == 0 => 0,
+        64.. => 0,
+        down @ 0..64 => (size >> down).min(u64::from(u32::MAX)) as u32,
+        _ => u32::MAX,
     }
 }
 
@@ -86,16 +78,12 @@ impl Contact {
     /// the skin, downwards.
     #[must_use]
     pub fn on_object(&self) -> Link {
-        Link::new(scaled(self.per_root_tick), 1 << CONDUCTANCE_BITS)
+        Link::new(resistance(Ratio::ONE, self.per_root_tick, Fraction::MAX))
     }
 
     /// The skin on the display: `in_front` is `T_skin,i - T_display`.
     #[must_use]
     pub fn on_display(&self) -> Link {
-        let weight = u64::from(self.weight.to_bits() >> 8);
-        Link::new(
-            (weight * scaled(self.per_root_tick)) >> 24,
-            u64::from(self.ratio.to_bits()) << 4,
-        )
+        Link::new(resistance(self.ratio, self.per_root_tick, self.weight))
     }
 }

@@ -231,7 +231,47 @@ fn contact_follows_equation_6_5() {
     assert!(worst_k < 0.02, "{worst_k}");
 }
 
+/// A drive of one tick through a resistance is `in_front / (resistance + gain)`, and what is across it its share.
+#[test]
+fn links_are_the_contacts_they_stand_for() {
+    let mut worst = 0f64;
+    for (name, material) in MATERIALS {
+        let pairing = Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
+        for force_n in [0.005, 0.02, 0.1, 0.3, 1.0, 3.0, 20.0, 250.0] {
+            let contact = pairing.under(log2_relative_pressure(Force::from_num(force_n)));
+            let on_object = 1.0 / contact.per_root_tick.to_f64();
+            let on_display = on_object * contact.ratio.to_num::<f64>() / contact.weight.to_num::<f64>();
+            let gain = EveryTick::gain(1);
+            for (link, resistance) in [
+                (contact.on_object(), on_object),
+                (contact.on_display(), on_display),
+            ] {
+                let (body, front) = (HalfOrder::at_rest(), Celsius::lit("20"));
+                let drive = link.drive(front, &body).to_num::<f64>();
+                let across = link.across(Celsius::lit("0.5")).to_num::<f64>();
+                let errors = [
+                    (drive - 20.0 / (resistance + gain)).abs() / drive - 2f64.powi(-21) / drive,
+                    (across - 0.5 * resistance).abs() / across - 2f64.powi(-16) / across,
+                ];
+                worst = errors.into_iter().fold(worst, f64::max);
+                assert!(
+                    errors.iter().all(|&e| e < 1e-5),
+                    "{name}, {force_n} N: {errors:?}"
+                );
+            }
+        }
+    }
+    std::println!("links: {worst:e}");
+}
+
 proptest! {
+    #[test]
+    fn inverse_is_that_of_a_long_division(n in 1u32 << 31..) {
+        let exact = 2f64.powi(62) / f64::from(n);
+        let inverse = f64::from(link::inverse(n));
+        prop_assert!(inverse < 2f64.powi(31) && (inverse / exact - 1.0).abs() < 2f64.powi(-28));
+    }
+
     /// A body behind a resistance stays between where it was and what is in front of it.
     #[test]
     fn nothing_leaves_the_range_of_its_inputs(
