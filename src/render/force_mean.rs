@@ -45,7 +45,6 @@ pub(super) struct ForceMean {
     /// Of the last ticks.
     recent: Force,
     mean: Force,
-    /// The mean that was last taken.
     in_use: Force,
     /// Ticks since the force was new; stops where the mean reaches back no further.
     ticks: u32,
@@ -74,10 +73,14 @@ impl ForceMean {
         self.mean
     }
 
-    /// The mean, which is in use from now on.
-    pub(super) fn take(&mut self) -> Force {
+    /// The mean that was last taken.
+    pub(super) const fn in_use(&self) -> Force {
+        self.in_use
+    }
+
+    /// Takes the mean into use.
+    pub(super) const fn take(&mut self) {
         self.in_use = self.mean;
-        self.mean
     }
 
     /// Whether the mean is worth a look: each time it has seen twice as much, and always once it has seen all that it

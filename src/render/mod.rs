@@ -9,7 +9,7 @@ mod skin;
 
 use core::ops::RangeInclusive;
 
-use contact_model::fixed_point::{Celsius, Course, Force, Pairing, contact_area, log2_relative_pressure};
+use contact_model::fixed_point::{Celsius, Contact, Course, Force, Pairing, contact_area};
 
 use force_mean::{Change, ForceMean, all_the_same};
 use skin::{Bodies, Links, Skin};
@@ -71,13 +71,26 @@ struct Grip {
     force: ForceMean,
     /// What the last tick brought.
     change: Change,
-    /// It needed new links.
-    relinked: bool,
     /// The first touch of a rested skin, and its force has not changed since.
     steady: bool,
     /// Ticks since landing.
     elapsed: u64,
     links: Option<Links>,
+}
+
+impl Grip {
+    /// What is in use from now on is the mean force.
+    fn use_mean(&mut self, pairing: &Pairing) {
+        self.force.take();
+        if self.contact_in_use().is_none() {
+            self.links = Some(Links::new(pairing, self.force.in_use()));
+        }
+    }
+
+    /// The contact under the force in use, if that is known.
+    fn contact_in_use(&self) -> Option<&Contact> {
+        self.links.as_ref()?.contact_under(self.force.in_use())
+    }
 }
 
 /// A contact with an object that lasts.
@@ -89,6 +102,8 @@ struct Touching {
     same: RangeInclusive<Force>,
     /// Eq. 6-12 in closed form, if that holds.
     course: Option<Course>,
+    /// It is to be laid, for the force in use. What that needs of the force is computed a tick before.
+    due: bool,
 }
 
 /// What the display should do.
@@ -135,7 +150,6 @@ impl Render {
                 *grip = Some(Grip {
                     force: ForceMean::new(force),
                     change: Change::New,
-                    relinked: false,
                     steady: self.lifted_ticks >= RESTED_TICKS,
                     elapsed: landed_ticks.into(),
                     links: None,
@@ -186,8 +200,7 @@ impl Render {
             return Watt::ZERO;
         };
         let force = grip.force.mean();
-        grip.relinked = !grip.links.as_ref().is_some_and(|links| links.do_for(force));
-        if grip.relinked {
+        if !grip.links.as_ref().is_some_and(|links| links.do_for(force)) {
             grip.links = Some(Links::new(pairing, force));
         }
         let drive = self.skin.touch_display(grip.links.as_ref(), before.skin, display);
@@ -240,6 +253,7 @@ impl Render {
                 elapsed,
                 same: Force::ZERO..=Force::ZERO,
                 course: None,
+                due: false,
             }
         });
         if fresh {
@@ -252,27 +266,34 @@ impl Render {
             self.skin.touch_object(grip.links.as_ref(), &bodies, apart);
         }
         let closed = grip.steady || !live;
+        let new = grip.change == Change::New;
         let same = !grip.force.is_better() || touching.same.contains(&grip.force.mean());
-        let setpoint = match &mut touching.course {
-            Some(course) if closed && grip.change == Change::Noise && same => {
-                let setpoint = course.advance();
-                self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
-                setpoint
-            }
-            // One thing in a tick: a course is laid in one that needs no new links.
-            course if closed && !(live && grip.relinked) => {
-                let force = grip.force.take();
-                let known = grip.links.as_ref().and_then(|links| links.contact_under(force));
-                let contact = known.unwrap_or_else(|| scene.pairing.under(log2_relative_pressure(force)));
-                let (laid, evaluations) = Course::new(&contact, skin, object, touching.elapsed, TOLERANCE);
+        if !closed || (new && live) {
+            touching.course = None;
+        }
+        touching.due &= closed && !new;
+        let setpoint = match grip.contact_in_use() {
+            Some(contact) if touching.due => {
+                let (laid, evaluations) = Course::new(contact, skin, object, touching.elapsed, TOLERANCE);
                 self.evaluations = self.evaluations.wrapping_add(evaluations);
-                touching.same = all_the_same(force, laid.gain());
-                *course = Some(laid);
-                laid.setpoint()
+                touching.same = all_the_same(grip.force.in_use(), laid.gain());
+                touching.due = false;
+                touching.course.insert(laid).setpoint()
             }
-            course => {
-                *course = None;
-                self.skin.display(&bodies, skin, apart, true)
+            _ => {
+                if closed && (new || !same || touching.due || touching.course.is_none()) {
+                    grip.use_mean(&scene.pairing);
+                    touching.due = true;
+                }
+                match &mut touching.course {
+                    Some(course) => {
+                        let setpoint = course.advance();
+                        self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
+                        setpoint
+                    }
+                    None if live => self.skin.display(&bodies, skin, apart, true),
+                    None => scene.pairing.preset(skin, object),
+                }
             }
         };
         let correction = match (&grip.links, live) {

@@ -51,8 +51,8 @@ impl Links {
 
     /// Their contact, if it is that under exactly this force.
     #[must_use]
-    pub fn contact_under(&self, force: Force) -> Option<Contact> {
-        (force == self.force).then_some(self.contact)
+    pub fn contact_under(&self, force: Force) -> Option<&Contact> {
+        (force == self.force).then_some(&self.contact)
     }
 }
 

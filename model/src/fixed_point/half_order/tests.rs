@@ -248,10 +248,10 @@ fn links_are_the_contacts_they_stand_for() {
             ] {
                 let (body, front) = (HalfOrder::at_rest(), Celsius::lit("20"));
                 let drive = link.drive(front, &body).to_num::<f64>();
-                let across = link.across(Celsius::lit("0.5")).to_num::<f64>();
+                let across = link.across(Celsius::lit("0.0078125")).to_num::<f64>();
                 let errors = [
                     (drive - 20.0 / (resistance + gain)).abs() / drive - 2f64.powi(-21) / drive,
-                    (across - 0.5 * resistance).abs() / across - 2f64.powi(-16) / across,
+                    (across - resistance / 128.0).abs() / across - 2f64.powi(-21) / across,
                 ];
                 worst = errors.into_iter().fold(worst, f64::max);
                 assert!(
