@@ -271,30 +271,27 @@ impl Render {
         if !closed || (new && live) {
             touching.course = None;
         }
-        touching.due &= closed && !new;
-        let setpoint = match grip.contact_in_use() {
-            Some(contact) if touching.due => {
+        let due = touching.due && closed && !new;
+        touching.due = closed && (new || !same || due || touching.course.is_none());
+        let known = due && grip.contact_in_use().is_some();
+        if touching.due && !known {
+            grip.use_mean(&scene.pairing);
+        }
+        // While the skin is followed, not both in one tick.
+        let setpoint = match (grip.contact_in_use(), &mut touching.course) {
+            (Some(contact), course) if touching.due && (known || !live) => {
                 let (laid, evaluations) = Course::new(contact, skin, object, touching.elapsed, TOLERANCE);
                 self.evaluations = self.evaluations.wrapping_add(evaluations);
                 touching.same = all_the_same(grip.force.in_use(), laid.gain());
                 touching.due = false;
-                touching.course.insert(laid).setpoint()
+                course.insert(laid).setpoint()
             }
-            _ => {
-                if closed && (new || !same || touching.due || touching.course.is_none()) {
-                    grip.use_mean(&scene.pairing);
-                    touching.due = true;
-                }
-                match &mut touching.course {
-                    Some(course) => {
-                        let setpoint = course.advance();
-                        self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
-                        setpoint
-                    }
-                    None if live => self.skin.display(&bodies, skin, apart, true),
-                    None => scene.pairing.preset(skin, object),
-                }
+            (_, Some(course)) => {
+                let setpoint = course.advance();
+                self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
+                setpoint
             }
+            (_, None) => self.skin.display(&bodies, skin, apart, true),
         };
         let correction = match (&grip.links, live) {
             (Some(links), true) => self.skin.correction(links),
