@@ -129,7 +129,7 @@ fn towards(mean: Force, force: Force, ticks: u32) -> Force {
 /// `gain` times as much: 0.264 in all, rounded up to 17/64.
 pub(super) fn all_the_same(force: Force, gain: Celsius) -> RangeInclusive<Force> {
     // Of a gain in 2^-14 K, rounded up, so that one short division holds the part of the force, in 2^-29.
-    const PART: u32 = ((MATTERS.to_bits() as u64 * 64 << 29 >> GAIN_SHIFT) / 17) as u32;
+    const PART: u32 = (((MATTERS.to_bits() as u64 * 64) << (29 - GAIN_SHIFT)) / 17) as u32;
     const GAIN_SHIFT: u32 = 8;
     let gain = gain.to_bits().unsigned_abs().div_ceil(1 << GAIN_SHIFT);
     let allowed = PART

@@ -125,7 +125,7 @@ pub struct Render {
     grip: Option<Grip>,
     skin: Skin,
     /// Of the scene that was last presented.
-    bodies: Option<Bodies>,
+    bodies: Bodies,
     touching: Option<Touching>,
     evaluations: u32,
 }
@@ -228,18 +228,17 @@ impl Render {
             return only(scene.pairing.interface_temperature(skin, object));
         }
         let apart = skin.saturating_sub(object);
-        let bodies = match self.bodies {
-            Some(bodies) if bodies.are_of(&scene.pairing) => bodies,
-            _ => Bodies::new(&scene.pairing),
-        };
-        self.bodies = Some(bodies);
+        if !self.bodies.are_of(&scene.pairing) {
+            self.bodies = Bodies::new(&scene.pairing);
+        }
+        let bodies = &self.bodies;
         let Some(grip) = &mut self.grip else {
             self.touching = None;
             if !live {
                 return only(scene.pairing.preset(skin, object));
             }
-            self.skin.touch_object(None, &bodies, apart);
-            return only(self.skin.display(&bodies, skin, apart, false));
+            self.skin.touch_object(None, bodies, apart);
+            return only(self.skin.display(bodies, skin, apart, false));
         };
         let fresh = self.touching.is_none();
         let touching = self.touching.get_or_insert_with(|| {
@@ -263,7 +262,7 @@ impl Render {
             touching.elapsed += 1;
         }
         if live {
-            self.skin.touch_object(grip.links.as_ref(), &bodies, apart);
+            self.skin.touch_object(grip.links.as_ref(), bodies, apart);
         }
         let closed = grip.steady || !live;
         let new = grip.change == Change::New;
@@ -291,7 +290,7 @@ impl Render {
                 self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
                 setpoint
             }
-            (_, None) => self.skin.display(&bodies, skin, apart, true),
+            (_, None) => self.skin.display(bodies, skin, apart, true),
         };
         let correction = match (&grip.links, live) {
             (Some(links), true) => self.skin.correction(links),

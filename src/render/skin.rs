@@ -56,8 +56,8 @@ impl Links {
     }
 }
 
-/// The materials between which heat flows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The materials between which heat flows; none between those of the default, whatever the inverse says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bodies {
     /// `e_object / (e_object + e_skin)`.
     weight: Fraction,
