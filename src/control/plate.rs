@@ -17,34 +17,33 @@ use crate::settings::{Module, Tile};
 pub type Watt = I8F24;
 
 /// A relaxation: time constant, and where it comes to rest per watt pumped out of the plate, per watt of Joule's heat
-/// in the legs, per watt of a finger on the patch (K/W), and per kelvin of the sink.
+/// in the legs, and per watt of a finger on the patch (K/W).
 #[derive(Clone, Copy)]
 struct Relaxation {
     lag_s: f64,
-    weights: [f64; 4],
+    weights: [f64; 3],
 }
 
-const fn relaxation(lag_s: f64, pumped: f64, joule: f64, finger: f64, sink: f64) -> Relaxation {
+const fn relaxation(lag_s: f64, pumped: f64, joule: f64, finger: f64) -> Relaxation {
     Relaxation {
         lag_s,
-        weights: [pumped, joule, finger, sink],
+        weights: [pumped, joule, finger],
     }
 }
 
-const RELAXATIONS: usize = 7;
+const RELAXATIONS: usize = 5;
 
-/// All of the plate against the sink, the patch against the rest, the legs, the hot plate, and depth.
+/// All of the plate against the sink, the patch against the rest, the legs, the hot plate, and depth. The first comes to
+/// rest where the sink is.
 const CLASS: [Relaxation; RELAXATIONS] = [
-    relaxation(10.241_19, 3.540_82, 1.813_82, 3.555_85, 1.039_67),
-    relaxation(2.361_25, 0.0, 0.0, 3.203_31, 0.0),
-    relaxation(0.186_38, 0.002_37, -0.029_61, 0.016_27, -0.069_41),
-    relaxation(0.078_42, 0.000_14, -0.000_28, 0.002_14, 0.025_64),
-    relaxation(0.010_79, -0.007_31, -0.000_99, 0.047_71, 0.004_10),
-    relaxation(0.003_73, 0.001_38, -0.000_03, 0.002_40, 0.0),
-    relaxation(0.001_66, -0.000_11, 0.0, 0.012_55, 0.0),
+    relaxation(10.241_19, 3.540_82, 1.813_82, 3.555_85),
+    relaxation(2.361_25, 0.0, 0.0, 3.203_31),
+    relaxation(0.186_38, 0.002_51, -0.029_89, 0.018_41),
+    relaxation(0.010_79, -0.007_31, -0.000_99, 0.047_71),
+    relaxation(0.003_73, 0.001_38, -0.000_03, 0.002_40),
 ];
 /// What a finger's heat does to the surface at once, K/W.
-const FINGER_AT_ONCE_K_W: f64 = 0.011_25;
+const FINGER_AT_ONCE_K_W: f64 = 0.023_80;
 /// Joule's heat warms the legs above the mean of their ends, K/W, with this lag, s.
 const LEGS_K_W: f64 = 0.292;
 const LEGS_LAG_S: f64 = 0.186;
@@ -82,38 +81,34 @@ const HORIZON_TICKS: f64 = 12.0;
 /// Binary places of a temperature here, and of its state, which no rounding holds back.
 const KELVIN_BITS: u32 = 20;
 const STATE_BITS: u32 = KELVIN_BITS + 32;
-/// Of what multiplies powers and the sink's temperature to give a state's change.
+/// Of what multiplies powers to give a state's change.
 const POWER_BITS: u32 = STATE_BITS - Watt::FRAC_NBITS;
-const SINK_BITS: u32 = STATE_BITS - Celsius::FRAC_NBITS;
 /// Of a part of the way to rest.
 const AHEAD_BITS: u32 = 30;
 /// What a temperature times that has less than a state.
 const AHEAD_FEWER: u32 = STATE_BITS - KELVIN_BITS - AHEAD_BITS;
 
-/// What multiplies the inputs: pumped heat, Joule's, the finger's, the sink's temperature.
+/// What multiplies the powers: pumped, Joule's, the finger's.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Weights {
     pumped: i32,
     joule: i32,
     finger: i32,
-    sink: i32,
 }
 
 impl Weights {
     /// Of so much per watt and kelvin, in so many binary places less than a state's.
-    fn new([pumped, joule, finger, sink]: [f64; 4], fewer_bits: u32) -> Self {
+    fn new([pumped, joule, finger]: [f64; 3], fewer_bits: u32) -> Self {
         Self {
             pumped: scaled(pumped, POWER_BITS - fewer_bits),
             joule: scaled(joule, POWER_BITS - fewer_bits),
             finger: scaled(finger, POWER_BITS - fewer_bits),
-            sink: scaled(sink, SINK_BITS - fewer_bits),
         }
     }
 
     fn sum(&self, heat: &Heat) -> i64 {
         times(heat.joule.to_bits(), self.joule) - times(heat.pumped.to_bits(), self.pumped)
             + times(heat.finger.to_bits(), self.finger)
-            + times(heat.sink.to_bits(), self.sink)
     }
 }
 
@@ -144,14 +139,13 @@ impl Scale {
     /// The slowest relaxation is the leak to the sink: its slopes stay as they are when its rate changes.
     fn apply(&self, slowest: bool, class: Relaxation) -> Relaxation {
         let leak = if slowest { self.leak } else { 1.0 };
-        let [pumped, joule, finger, sink] = class.weights;
+        let [pumped, joule, finger] = class.weights;
         Relaxation {
             lag_s: class.lag_s / leak,
             weights: [
                 pumped * self.pumped / leak,
                 joule * self.joule / leak,
                 finger * self.finger / leak,
-                sink,
             ],
         }
     }
@@ -219,7 +213,7 @@ impl Plate {
             .iter()
             .map(|r| gone(HORIZON_TICKS, r.lag_s) * r.weights[0])
             .sum();
-        let mut ahead = [0.0; 4];
+        let mut ahead = [0.0; 3];
         for r in &relaxations {
             for (sum, weight) in ahead.iter_mut().zip(r.weights) {
                 *sum += gone(HORIZON_TICKS, r.lag_s) * weight;
@@ -248,13 +242,11 @@ impl Plate {
 
     /// Starts from a surface temperature, with everything else at rest without current.
     pub fn start(&mut self, surface: Celsius, sink: Celsius) {
-        let mut rest = i64::from(surface.to_bits()) << (STATE_BITS - Celsius::FRAC_NBITS);
-        let [first, others @ ..] = &mut self.parts;
-        for part in others {
-            part.state = part.rest(sink);
-            rest -= part.state;
+        for part in &mut self.parts {
+            part.state = 0;
         }
-        first.state = rest;
+        let [slowest, ..] = &mut self.parts;
+        slowest.state = i64::from(surface.to_bits()) << (STATE_BITS - Celsius::FRAC_NBITS);
         self.legs.set(Celsius::ZERO);
         (self.hot, self.surface) = (sink, surface);
     }
@@ -314,7 +306,8 @@ impl Plate {
     /// How much more current brings the surface to `target` at the horizon, if `heat` goes on until then.
     #[must_use]
     pub fn missing(&self, target: Celsius, heat: &Heat) -> Current {
-        let mut to_go = self.ahead.sum(heat);
+        let [slowest, ..] = &self.parts;
+        let mut to_go = self.ahead.sum(heat) + times(kelvin(heat.sink), slowest.ahead);
         for part in &self.parts {
             to_go -= times(part.kelvin(), part.ahead);
         }
@@ -329,6 +322,8 @@ impl Plate {
     /// One tick.
     pub fn step(&mut self, heat: &Heat) {
         let mut surface = (times(heat.finger.to_bits(), self.finger_at_once) >> 32) as i32;
+        let [slowest, ..] = &mut self.parts;
+        slowest.state += times(kelvin(heat.sink), slowest.lost);
         for part in &mut self.parts {
             part.state += part.given.sum(heat) - times(part.kelvin(), part.lost);
             surface += part.kelvin();
@@ -351,12 +346,11 @@ impl Part {
     const fn kelvin(&self) -> i32 {
         (self.state >> 32) as i32
     }
+}
 
-    /// Where it comes to rest with this sink and nothing else.
-    fn rest(&self, sink: Celsius) -> i64 {
-        let given = times(sink.to_bits(), self.given.sink);
-        (given / i64::from(self.lost.max(1))) << 32
-    }
+/// K in 2^-20.
+const fn kelvin(at: Celsius) -> i32 {
+    at.to_bits() >> (Celsius::FRAC_NBITS - KELVIN_BITS)
 }
 
 /// The horizon lies within what the skin's correction looks ahead.
