@@ -174,7 +174,7 @@ impl fmt::Display for Error {
             }
             Self::NoTile(NoTile::Unlike(part)) => write!(
                 f,
-                "tune saw {:.0} % of what the display did come from elsewhere; look for a loose sensor, a draught, a touch",
+                "tune saw {:.2} % of what the display did come from elsewhere; look for a loose sensor, a draught, a touch",
                 100.0 * part
             ),
             Self::NoTile(NoTile::Beyond(Number { name, unit, min, max }, value)) => write!(

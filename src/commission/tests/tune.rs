@@ -196,7 +196,7 @@ fn what_is_no_tile_is_named() {
         (plant.plate_c, plant.reading_c) = (25.0, 25.0);
         plant.disturbance = |tick| {
             if tick > 3000 && tick / 400 % 2 == 0 {
-                0.4
+                1.5
             } else {
                 0.0
             }
