@@ -165,13 +165,23 @@ fn told(tile: &Tile) -> String {
 fn surveyed(devices: u64, json: bool) -> Result<(), Failure> {
     let draws: Vec<u64> = (1..=devices).collect();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let work = |draw: &u64| survey(*draw).with_context(|| format!("device {draw} of the box"));
-    let all = map(&draws, threads, work, || ()).map_err(Failure::run)?;
-    if json {
-        print(&serde_json::to_string(&json!({ "devices": all })).map_err(Failure::run)?)
-    } else {
-        print(table(&all).trim_end())
+    let work = |draw: &u64| Ok((*draw, survey(*draw)));
+    let (mut found, mut failed) = (Vec::new(), Vec::new());
+    for (draw, one) in map(&draws, threads, work, || ()).map_err(Failure::run)? {
+        match one {
+            Ok(one) => found.push(one),
+            Err(why) => failed.push(json!({ "draw": draw, "why": why.to_string() })),
+        }
     }
+    if json {
+        let all = json!({ "devices": found, "failed": failed });
+        return print(&serde_json::to_string(&all).map_err(Failure::run)?);
+    }
+    print(table(&found).trim_end())?;
+    for failed in &failed {
+        print(&format!("not among them: {failed}"))?;
+    }
+    Ok(())
 }
 
 fn print(text: &str) -> Result<(), Failure> {

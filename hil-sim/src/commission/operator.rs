@@ -10,6 +10,8 @@ use crate::world::World;
 
 /// Display temperatures to calibrate at, deg C; within them lies what the display is used for.
 const DISPLAY_C: (f64, f64) = (15.3, 41.7);
+/// Time for a device that was just switched on to find its force sensor's zero, ms.
+const START_MS: u64 = 500;
 /// Codes from a border of the converter's segments to the points beside it.
 const FROM_BORDER_CODES: u32 = 22;
 /// Time for each degree on the way to the warmest point, ms.
@@ -46,7 +48,7 @@ pub fn commission<E: Engine>(
         watch,
         points: Vec::new(),
     };
-    operator.bench.wait(10)?;
+    operator.bench.wait(START_MS)?;
     operator.bench.tell("arm")?;
     operator.begin("tune, as far as sensors from the shelf allow");
     operator.tune()?;

@@ -15,6 +15,12 @@ use crate::plant::tile::ZERO_C_K;
 const ROOM_C: f64 = 24.0;
 /// The longest that tuning takes, ms.
 const TUNE_MS: u64 = 70_000;
+/// A current that is asked for flows a tick later.
+const FLOWS_S: f64 = 1e-3;
+/// Where what delays the plate is plain, rad/s.
+const QUICK: f64 = 20.0;
+/// Time for a force sensor that was just switched on to find its zero, ms.
+const ZERO_MS: u64 = 500;
 /// Word of telemetry that is the current asked for.
 const DEMAND: usize = 9;
 
@@ -25,7 +31,7 @@ pub const QUANTITIES: [(&str, &str); 10] = [
     ("leak, against (K + air) / C", "%"),
     ("sensor's lag", "%"),
     ("sensor's lag", "ms"),
-    ("lag + dead time, against the plant's phase", "ms"),
+    ("dead time, against the plate's phase at 20 rad/s", "ms"),
     ("loop's gain at its crossover, against the plant", "%"),
     ("phase margin reported", "deg"),
     ("gain margin reported", "times"),
@@ -64,9 +70,9 @@ pub fn survey(draw: u64) -> Result<Surveyed, CommissionError> {
     let found_k_a = tile.gain_k_s_a / w.hypot(tile.leak_1_s) / (tile.lag_s * w).hypot(1.0);
     let plant_k_a = plant.k_a * flows / (lag_s * w).hypot(1.0);
     let found_rad = w.atan2(tile.leak_1_s) + (tile.lag_s * w).atan() + tile.dead_s * w;
-    // A current that is asked for flows a tick later.
-    let plant_rad = plant.behind_rad + (lag_s * w).atan() + 1e-3 * w;
-    let delay_s = |rad: f64, leak_1_s: f64| (rad - w.atan2(leak_1_s)) / w;
+    let plant_rad = plant.behind_rad + (lag_s * w).atan() + FLOWS_S * w;
+    let quick = Response::of(&plants, QUICK)?;
+    let dead_s = (quick.behind_rad - quick.w.atan2(true_c.leak_1_s)) / quick.w + FLOWS_S;
     let percent = |found: f64, truth: f64| 100.0 * (found / truth - 1.0);
     let phase_deg = (plant_rad - found_rad).to_degrees();
     Ok(Surveyed {
@@ -79,7 +85,7 @@ pub fn survey(draw: u64) -> Result<Surveyed, CommissionError> {
             percent(tile.leak_1_s, true_c.leak_1_s),
             percent(tile.lag_s, lag_s),
             1e3 * (tile.lag_s - lag_s),
-            1e3 * (delay_s(found_rad, tile.leak_1_s) - delay_s(plant_rad, tile.leak_1_s)),
+            1e3 * (tile.dead_s - dead_s),
             percent(found_k_a, plant_k_a),
             tile.phase_deg,
             tile.gain_margin,
@@ -112,7 +118,7 @@ fn true_constants(params: &Params, plants: &Plants) -> Result<Constants, Commiss
 fn tune(plants: &Plants, settings: &[String]) -> Result<(Tile, f64), CommissionError> {
     let mut engine = Native::new(plants.at_work()?);
     let mut bench = Bench::new(&mut engine, plants.params().host, 0);
-    bench.wait(5)?;
+    bench.wait(ZERO_MS)?;
     for line in settings {
         bench.tell(line)?;
     }

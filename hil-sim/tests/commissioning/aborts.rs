@@ -128,10 +128,8 @@ fn what_tuning_has_found_can_be_asked_for_again() {
             }
         }
         assert!(first.starts_with("ok gain="), "{first}");
-        assert!(
-            bench.world().plant().display_c() < 25.0,
-            "it was held at the sink's temperature"
-        );
+        let display_c = bench.world().plant().display_c();
+        assert!(display_c < 28.0, "held at the sink's temperature: {display_c}");
         bench.wait(3000).expect("it runs");
         assert_eq!(ask(bench, "tune result"), first);
         assert_eq!(ask(bench, "margins"), first);

@@ -203,10 +203,19 @@ fn what_is_no_tile_is_named() {
         };
     });
     assert!(
-        matches!(rubbed, Err(Error::NoTile(NoTile::Unlike(_)))),
+        matches!(&rubbed, Err(Error::NoTile(NoTile::Beyond(what, _))) if what.name == "dead time"),
         "{rubbed:?}"
     );
-    for error in [stuck, dead, rubbed].map(|found| found.expect_err("no tile")) {
+    // A thermistor that comes loose in the long pulses.
+    let loose = with(|plant| {
+        (plant.plate_c, plant.reading_c) = (25.0, 25.0);
+        plant.disturbance = |tick| if tick > 7000 && tick < 8500 { 3.0 } else { 0.0 };
+    });
+    assert!(
+        matches!(loose, Err(Error::NoTile(NoTile::Unlike(_)))),
+        "{loose:?}"
+    );
+    for error in [stuck, dead, rubbed, loose].map(|found| found.expect_err("no tile")) {
         assert!(error.to_string().len() <= 160, "{error}");
     }
 }
