@@ -361,10 +361,16 @@ impl Station {
                 let row = rows.map_err(Error::TuneAborted)?.get(row);
                 return row.map(|row| Reply::Row(*row)).ok_or(Error::NotTuned);
             }
-            Command::Calibrate(calibrated) => self.sensors.recalibrate(&calibrated),
+            Command::Calibrate(calibrated) => {
+                // A reading that jumps would be taken for the tile's.
+                self.end_experiment();
+                self.sensors.recalibrate(&calibrated);
+            }
             Command::Retune(tuned) => {
                 self.control.retune(&tuned);
-                self.experiment = None;
+                if let Some(experiment) = &mut self.experiment {
+                    experiment.release();
+                }
             }
         }
         Ok(Reply::Done)

@@ -17,7 +17,7 @@ use cli::{
 enum Cli {
     /// Run a scene
     Run(run::Arguments),
-    /// Calibrate and tune a device and print its settings as lines
+    /// Calibrate and tune a simulated device as an operator does, and print its settings as lines
     Commission(commission::Arguments),
     /// Run five scenes side by side, on the five fingers of one device
     Hand(hand::Arguments),

@@ -17,6 +17,7 @@
 
 use contact_model::fixed_point::Celsius;
 
+use super::sums::{COLUMNS, ROWS, Sums};
 use crate::TICK_HZ;
 use crate::control::{Period, Pi, Response};
 use crate::drive::Current;
@@ -25,25 +26,13 @@ use crate::settings::Gains;
 
 /// Current below which its direction is not certain, and that asked for is taken.
 const DIRECTED: Current = Current::lit("0.25");
-/// Rates of the filters, of 2^15 a tick: 0.11 s for what the legs take up, 0.149 s for Joule's heat (a fifteenth and a
-/// twelfth of the legs' capacity over their conductance, 1.8 s).
-const LEGS_RATE: i64 = 298;
-const JOULE_RATE: i64 = 220;
-/// Part of the current that acts late, of 2^15: a third of the legs' capacity beside that of the plate.
-const LEGS_PART: i64 = 1933;
-const RATE_BITS: u32 = 15;
-
-/// Unknowns, and what the reading's integral is made of.
-pub const UNKNOWNS: usize = 7;
-const COLUMNS: usize = UNKNOWNS + 1;
 /// A row of the normal equations: sums of products with each unknown's part, and with what they make up.
 pub type Row = [i64; COLUMNS];
-/// One for each unknown; then products of the current that was asked for with itself and with the measured one.
-pub const ROWS: usize = UNKNOWNS + 1;
 
 /// Pulses: change of current in eighths of [`AMPLITUDE`], and how long, ms. Both signs last equally long at each
-/// height, so the display moves by 2.3 K at most, and heights differ to tell Joule's heat from drift. There are no pauses: near zero the bridge does not give
-/// what is asked for, and the mirror not what flows; what that makes of the current at rest is like a drift.
+/// height, so the display moves by 2.3 K at most, and heights differ to tell Joule's heat from drift. There are no
+/// pauses: near zero the bridge does not give what is asked for, and the mirror not what flows; what that makes of the
+/// current at rest is like a drift.
 const PULSES: [(i32, u32); 15] = [
     (8, 150),
     (-8, 300),
@@ -62,13 +51,15 @@ const PULSES: [(i32, u32); 15] = [
     (-16, 120),
 ];
 const AMPLITUDE: Current = Current::lit("1.5");
-/// Ticks from one equation to the next.
-const EVERY: u32 = 8;
-/// Ticks of an equation's unit of time, as a power of two.
-pub const UNIT_BITS: u32 = 11;
-/// Binary places of an equation's parts, which are the reading's, and of currents.
-const PART_BITS: u32 = 22;
-const CURRENT_BITS: u32 = 24;
+/// Ticks of all pulses.
+pub const AFTER: u32 = {
+    let (mut ticks, mut pulse) = (0, 0);
+    while pulse < PULSES.len() {
+        ticks += PULSES[pulse].1;
+        pulse += 1;
+    }
+    ticks
+};
 
 /// A loop that is stable for any tile of its class, whatever its sensor's lag to half a second.
 const CAUTIOUS: Gains = Gains {
@@ -131,6 +122,8 @@ enum Phase {
     Pulses { pulse: usize, ticks: u32 },
     /// All sums are there; the display is held at rest.
     Done,
+    /// The host has them; the display is let go.
+    Taken,
     /// Ended early.
     Aborted(Aborted),
 }
@@ -148,23 +141,6 @@ pub struct Experiment {
     /// Current asked for in the tick before, which flows now.
     asked: Current,
     sums: Sums,
-}
-
-/// The integrals, in ticks, and the normal equations.
-#[derive(Clone, Debug, Default)]
-struct Sums {
-    ticks: u32,
-    u1: i64,
-    u2: i64,
-    v1: i64,
-    v2: i64,
-    /// What the filters have reached: current, and its square.
-    late: i64,
-    heat: i64,
-
-    y1: i64,
-    y2: i64,
-    rows: [Row; ROWS],
 }
 
 impl Experiment {
@@ -189,16 +165,24 @@ impl Experiment {
         self.rest
     }
 
-    /// It has not ended early, so the display follows it.
+    /// The display follows it: it has neither ended early nor been let go.
     #[must_use]
     pub const fn drives(&self) -> bool {
-        !matches!(self.phase, Phase::Aborted(_))
+        !matches!(self.phase, Phase::Taken | Phase::Aborted(_))
     }
 
     /// Ends it, unless it has ended already.
     pub fn abort(&mut self, why: Aborted) {
-        if !matches!(self.phase, Phase::Done | Phase::Aborted(_)) {
+        if !matches!(self.phase, Phase::Done | Phase::Taken | Phase::Aborted(_)) {
             self.phase = Phase::Aborted(why);
+        }
+    }
+
+    /// Lets the display go. What was found stays, so that who has lost the answer can ask again.
+    pub fn release(&mut self) {
+        match self.phase {
+            Phase::Done | Phase::Taken => self.phase = Phase::Taken,
+            _ => self.abort(Aborted::Ended),
         }
     }
 
@@ -209,13 +193,13 @@ impl Experiment {
     #[must_use]
     pub const fn outcome(&self) -> Option<Result<&[Row; ROWS], Aborted>> {
         match self.phase {
-            Phase::Done => Some(Ok(&self.sums.rows)),
+            Phase::Done | Phase::Taken => Some(Ok(&self.sums.rows)),
             Phase::Aborted(why) => Some(Err(why)),
             _ => None,
         }
     }
 
-    /// Current of one tick in which one of a magnitude was measured; `None` when it was ended early.
+    /// Current of one tick in which one of a magnitude was measured; `None` when it does not drive.
     pub fn update(&mut self, sound: &Sound, measured: Current, touching: bool) -> Option<Current> {
         let from_rest = sound.display.saturating_sub(self.rest.celsius());
         if touching {
@@ -224,9 +208,13 @@ impl Experiment {
         if sound.sink > SINK_HOTTEST {
             self.abort(Aborted::Sink);
         }
+        // Before that it may come from anywhere.
+        if matches!(self.phase, Phase::Base { .. } | Phase::Pulses { .. }) && from_rest.abs() > FARTHEST {
+            self.abort(Aborted::Display);
+        }
         let reading = i64::from(sound.display.to_bits());
         match self.phase {
-            Phase::Aborted(_) => return None,
+            Phase::Taken | Phase::Aborted(_) => return None,
             Phase::Done => {}
             Phase::Settling { ticks, near } => {
                 let near = if from_rest.abs() < NEAR { near + 1 } else { 0 };
@@ -262,9 +250,6 @@ impl Experiment {
                 return Some(self.current(0));
             }
             Phase::Pulses { pulse, ticks } => {
-                if from_rest.abs() > FARTHEST {
-                    self.abort(Aborted::Display);
-                }
                 let Some((eighths, length)) = PULSES.get(pulse) else {
                     self.phase = Phase::Done;
                     return Some(self.current(0));
@@ -307,48 +292,5 @@ fn directed(asked: Current, measured: Current) -> Current {
         -measured
     } else {
         measured
-    }
-}
-
-impl Sums {
-    /// Takes the current that was asked for, and what it came to.
-    fn compare(&mut self, asked: Current, measured: Current) {
-        let asked = i64::from(asked.to_bits() >> 8);
-        self.rows[UNKNOWNS][0] += asked * asked;
-        self.rows[UNKNOWNS][1] += asked * i64::from(measured.to_bits() >> 8);
-    }
-
-    /// Takes the change of the reading, 2^-22 K, and the current that has flown meanwhile beside that at rest.
-    fn take(&mut self, y: i64, current: Current, rest: i64) {
-        let current = i64::from(current.to_bits());
-        let (u, v) = (current - rest, (current * current - rest * rest) >> 24);
-        self.late += ((u - self.late) * LEGS_RATE) >> RATE_BITS;
-        self.heat += ((v - self.heat) * JOULE_RATE) >> RATE_BITS;
-        self.ticks += 1;
-        self.u1 += u - ((self.late * LEGS_PART) >> RATE_BITS);
-        self.u2 += self.u1;
-        self.v1 += self.heat;
-        self.v2 += self.v1;
-        self.y1 += y;
-        self.y2 += self.y1;
-        if self.ticks.is_multiple_of(EVERY) {
-            let t = i64::from(self.ticks);
-            // In seconds of 2^UNIT_BITS ticks and 2^-PART_BITS: all below 2^26, so that their products stay in 63 bits.
-            let parts: [i64; COLUMNS] = [
-                y,
-                self.u2 >> (CURRENT_BITS - PART_BITS + 2 * UNIT_BITS),
-                self.u1 >> (CURRENT_BITS - PART_BITS + UNIT_BITS),
-                self.v2 >> (CURRENT_BITS - PART_BITS + 2 * UNIT_BITS),
-                self.y2 >> (2 * UNIT_BITS),
-                t << (PART_BITS - UNIT_BITS),
-                (t * t) >> (2 * UNIT_BITS - PART_BITS + 1),
-                self.y1 >> UNIT_BITS,
-            ];
-            for (row, a) in self.rows.iter_mut().zip(&parts).take(UNKNOWNS) {
-                for (sum, b) in row.iter_mut().zip(&parts) {
-                    *sum += a * b;
-                }
-            }
-        }
     }
 }

@@ -11,7 +11,7 @@ use crate::settings::{
 };
 
 /// Thermistors whose points show the converter's steps: the first of all.
-const SWEPT: usize = 2;
+pub const SWEPT: usize = 2;
 const COEFFICIENTS: usize = 3;
 const UNKNOWNS: usize = SWEPT * COEFFICIENTS + BORDERS;
 /// Standard deviations: of a point, K; of offset, slope and curvature of thermistors of 1 %; of a step, counts.
@@ -77,16 +77,16 @@ fn row(settings: &Settings, steps: &[f64; BORDERS], thermistor: usize, point: &P
     }
 }
 
-/// The calibration that fits all points; a thermistor without points keeps its correction, and the steps stay if
-/// neither of the display's has any.
+/// The calibration that fits all points and is likely beside one of `before` them; a thermistor without points keeps
+/// that correction, and the steps stay if neither of the display's has any.
 ///
-/// `None` if points contradict each other beyond numbers.
+/// `None` if numbers fail.
 #[must_use]
-pub fn fit(settings: &Settings, points: &Points) -> Option<Calibration> {
-    let mut calibration = settings.calibration;
+pub fn fit(settings: &Settings, before: &Calibration, points: &Points) -> Option<Calibration> {
+    let mut calibration = *before;
     if (0..SWEPT).any(|thermistor| !points.of(thermistor).is_empty()) {
         for _ in 0..ROUNDS {
-            swept(settings, points, &mut calibration)?;
+            swept(settings, before, points, &mut calibration)?;
         }
     }
     for thermistor in SWEPT..THERMISTORS {
@@ -115,13 +115,21 @@ fn add<const N: usize>(
 }
 
 /// Both display thermistors and the steps.
-fn swept(settings: &Settings, points: &Points, calibration: &mut Calibration) -> Option<()> {
+fn swept(
+    settings: &Settings,
+    before: &Calibration,
+    points: &Points,
+    calibration: &mut Calibration,
+) -> Option<()> {
     let (mut normal, mut right) = ([[0.0; UNKNOWNS]; UNKNOWNS], [0.0; UNKNOWNS]);
     let steps = calibration.steps_counts;
     for thermistor in 0..SWEPT {
         let first = thermistor * COEFFICIENTS;
-        for (i, deviation) in LIKELY.into_iter().enumerate() {
-            add(&mut normal, &mut right, &[(first + i, 1.0)], 0.0, deviation);
+        let likely = coefficients(&before.corrections[thermistor])
+            .into_iter()
+            .zip(LIKELY);
+        for (i, (value, deviation)) in likely.enumerate() {
+            add(&mut normal, &mut right, &[(first + i, 1.0)], value, deviation);
         }
         for point in points.of(thermistor) {
             let row = row(settings, &steps, thermistor, point);
@@ -133,14 +141,14 @@ fn swept(settings: &Settings, points: &Points, calibration: &mut Calibration) ->
                 let _ = equation.push((SWEPT * COEFFICIENTS + border, row.k_per_count));
             }
             // The steps are found whole, not what they differ from those of the round before.
-            let before: f64 = steps.iter().take(row.borders).sum();
-            let wanted_k = row.wanted_k + row.k_per_count * before;
+            let taken_out: f64 = steps.iter().take(row.borders).sum();
+            let wanted_k = row.wanted_k + row.k_per_count * taken_out;
             add(&mut normal, &mut right, &equation, wanted_k, POINT_K);
         }
     }
-    for border in 0..BORDERS {
+    for (border, step) in before.steps_counts.into_iter().enumerate() {
         let i = SWEPT * COEFFICIENTS + border;
-        add(&mut normal, &mut right, &[(i, 1.0)], 0.0, STEP_COUNTS);
+        add(&mut normal, &mut right, &[(i, 1.0)], step, STEP_COUNTS);
     }
     solve(&mut normal, &mut right, UNKNOWNS)?;
     for thermistor in 0..SWEPT {
@@ -167,8 +175,11 @@ fn single(
         return Some(());
     }
     let (mut normal, mut right) = ([[0.0; COEFFICIENTS]; COEFFICIENTS], [0.0; COEFFICIENTS]);
-    for (i, deviation) in LIKELY.into_iter().enumerate() {
-        add(&mut normal, &mut right, &[(i, 1.0)], 0.0, deviation);
+    let likely = coefficients(&calibration.corrections[thermistor])
+        .into_iter()
+        .zip(LIKELY);
+    for (i, (value, deviation)) in likely.enumerate() {
+        add(&mut normal, &mut right, &[(i, 1.0)], value, deviation);
     }
     for point in points.of(thermistor) {
         let row = row(settings, &calibration.steps_counts, thermistor, point);
@@ -187,4 +198,13 @@ const fn correction([offset_k, slope, curvature_1_k]: [f64; COEFFICIENTS]) -> Co
         slope,
         curvature_1_k,
     }
+}
+
+const fn coefficients(correction: &Correction) -> [f64; COEFFICIENTS] {
+    let Correction {
+        offset_k,
+        slope,
+        curvature_1_k,
+    } = *correction;
+    [offset_k, slope, curvature_1_k]
 }

@@ -1,9 +1,13 @@
 //! From the sums of an experiment to the tile.
 
-use super::experiment::{ROWS, Row, UNIT_BITS, UNKNOWNS};
+use core::ops::RangeInclusive;
+
+use super::experiment::Row;
 use super::request::TILE;
 use super::solve::solve;
+use super::sums::{ROWS, Totals, UNIT_BITS, UNKNOWNS};
 use crate::TICK_HZ;
+use crate::protocol::Number;
 use crate::settings::Tile;
 
 /// The equations' unit of time, s.
@@ -22,24 +26,56 @@ const GAIN_DEAD: usize = 2;
 const GAIN_JOULE: usize = 3;
 const LEAK: usize = 4;
 
-/// The tile that fits best; `None` if the sums belong to none within the limits of settings.
-#[must_use]
-pub fn identify(rows: &[Row; ROWS]) -> Option<Tile> {
-    let [.., [asked_asked, asked_measured, ..]] = rows;
-    let measured_per_asked = *asked_measured as f64 / *asked_asked as f64;
+/// Parts of the current asked for that a sound bridge and mirror measure.
+const CURRENT: RangeInclusive<f64> = 0.5..=1.5;
+/// Dead times that a plate of this class can have. What disturbs the display ends up there first.
+static DEAD: Number = Number {
+    name: "dead time",
+    unit: "s",
+    min: 0.004,
+    max: 0.04,
+};
+/// Largest part of the movement, integrated and RMS, that the tile may leave unexplained; a converter's steps leave 0.7 %.
+const UNEXPLAINED: f64 = 0.02;
+
+/// Why sums belong to no tile.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoTile {
+    /// Measured current, as a part of what was asked for.
+    Current(f64),
+    /// The display did not answer the current.
+    Nothing,
+    /// The display did not move as a tile does: part of its movement that is left over.
+    Unlike(f64),
+    /// A value beyond the limits of settings.
+    Beyond(&'static Number, f64),
+}
+
+/// The tile that fits best.
+///
+/// # Errors
+/// The sums belong to no tile within the limits of settings.
+pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
+    let [.., totals] = rows;
+    let total = |place: Totals| totals[place as usize] as f64;
+    let measured_per_asked = total(Totals::Measured) / total(Totals::Asked);
+    if !CURRENT.contains(&measured_per_asked) {
+        return Err(NoTile::Current(measured_per_asked));
+    }
     // First with any dead time, to know the gain; then with what is likely of it.
-    let free = fit(rows, 0.0, 0.0)?;
-    let likely = fit(rows, WEIGHT, -free[GAIN] / UNIT_S * LIKELY_S)?;
+    let free = fit(rows, 0.0, 0.0).ok_or(NoTile::Nothing)?;
+    let likely = fit(rows, WEIGHT, -free[GAIN] / UNIT_S * LIKELY_S).ok_or(NoTile::Nothing)?;
+    let left = unexplained(rows, &likely, total(Totals::Made));
+    if left.is_nan() || left > UNEXPLAINED {
+        return Err(NoTile::Unlike(left));
+    }
     let (lag, gain, leak) = (
         -likely[LAG] * UNIT_S,
         -likely[GAIN] / UNIT_S,
         -likely[LEAK] / UNIT_S,
     );
-    // All of them were divided by m = 1 + leak lag.
-    let mut m = 1.0;
-    for _ in 0..8 {
-        m = 1.0 + leak * lag * m * m;
-    }
+    // All of them were divided by m = 1 + leak lag, so m is a root of m = 1 + (leak / m) (lag / m) m^2.
+    let m = 2.0 / (1.0 + libm::sqrt((1.0 - 4.0 * leak * lag).max(0.0)));
     let tile = Tile::from_array([
         gain * m * measured_per_asked,
         likely[GAIN_JOULE] / UNIT_S / gain * measured_per_asked,
@@ -47,9 +83,22 @@ pub fn identify(rows: &[Row; ROWS]) -> Option<Tile> {
         lag * m,
         likely[GAIN_DEAD] / gain + ASKED_S,
     ]);
-    let within =
-        |(value, allowed): (f64, &crate::protocol::Number)| (allowed.min..=allowed.max).contains(&value);
-    tile.to_array().into_iter().zip(&TILE).all(within).then_some(tile)
+    let values = tile.to_array().into_iter().zip(&TILE);
+    let beyond = |(value, allowed): &(f64, &Number)| !(allowed.min..=allowed.max).contains(value);
+    match values.chain([(tile.dead_time_s, &DEAD)]).find(beyond) {
+        Some((value, allowed)) => Err(NoTile::Beyond(allowed, value)),
+        None => Ok(tile),
+    }
+}
+
+/// Root of the mean square that a fit leaves, as a part of that of what it explains.
+fn unexplained(rows: &[Row; ROWS], fitted: &[f64; UNKNOWNS], made: f64) -> f64 {
+    let left: f64 = made
+        + rows.iter().zip(fitted).fold(0.0, |sum, (row, x)| {
+            let explained: f64 = row.iter().zip(fitted).map(|(a, y)| *a as f64 * y).sum();
+            sum + x * (explained - 2.0 * row[UNKNOWNS] as f64)
+        });
+    libm::sqrt(left.max(0.0) / made)
 }
 
 /// Least squares, with a weight on a value of gain times dead time.

@@ -2,6 +2,7 @@
 
 use core::f64::consts::PI;
 
+use crate::TICK_HZ;
 use crate::settings::{Gains, Tile};
 
 /// Phase and gain margin.
@@ -13,17 +14,19 @@ pub struct Margins {
     pub gain: f64,
 }
 
-/// Angular frequencies between which both are looked for, rad/s.
-const SLOWEST: f64 = 1e-3;
-const FASTEST: f64 = 1e4;
+/// Angular frequencies between which both are looked for, rad/s: slower than any loop of settings, and what the ticks
+/// can still follow.
+const SLOWEST: f64 = 1e-6;
+const FASTEST: f64 = PI * TICK_HZ as f64;
 /// Halvings of the logarithm of that range: to a part in 10^9.
 const HALVINGS: u32 = 34;
 
 impl Margins {
     /// Of `Kc (1 + 1 / (Ti s)) gain / (s + leak) e^(-dead s) / (1 + lag s)`.
     ///
-    /// Gain and phase fall with frequency from where the leak no longer matters on, so each crossing is found by
-    /// halving.
+    /// The gain falls with frequency, and from the loop's integral time on there is phase left until there is none, so
+    /// each crossing is found by halving. A tile so fast that phase is left at half of the ticks' rate is given the
+    /// margin there.
     #[must_use]
     pub fn of(tile: &Tile, gains: &Gains) -> Self {
         let magnitude = |w: f64| {

@@ -12,9 +12,14 @@ mod points;
 mod request;
 mod service;
 mod solve;
+mod sums;
 
 pub use desk::Desk;
 pub use experiment::{Aborted, Experiment, Row};
+pub use identify::NoTile;
 pub use margins::Margins;
 pub use points::{FARTHEST_K, POINTS, Point, PointError, Points};
 pub use request::{SENSORS, STEPS_A_LINE};
+
+#[cfg(test)]
+mod tests;

@@ -32,6 +32,8 @@ pub enum PointError {
     AtBorder,
     /// The device reads something else, °C.
     TooFar(Celsius),
+    /// No correction within the limits of settings goes with it and those before.
+    Contradicts,
     /// There is no room for more.
     Full,
 }

@@ -56,13 +56,13 @@ static REFERENCE: Number = Number {
 };
 static LINE: Number = Number {
     name: "line of settings",
-    unit: "",
+    unit: "(whole)",
     min: 1.0,
     max: super::service::SETTINGS_LINES as f64,
 };
 static BORDER: Number = Number {
     name: "border",
-    unit: "",
+    unit: "(whole)",
     min: FIRST_BORDER as f64,
     max: (FIRST_BORDER + BORDERS - 1) as f64,
 };
@@ -155,6 +155,40 @@ fn decimal<'a>(words: &mut impl Iterator<Item = &'a str>, expected: &'static Num
     number(words, expected).map(|value| value.to_num())
 }
 
+fn whole<'a>(
+    words: &mut (impl Iterator<Item = &'a str> + Clone),
+    expected: &'static Number,
+) -> Result<usize, Error> {
+    let word = words.clone().next().unwrap_or_default();
+    let value = number(words, expected)?;
+    if value.frac() == 0 {
+        Ok(value.to_num())
+    } else {
+        Err(Error::OutOfRange(expected, word.into()))
+    }
+}
+
+/// Whether the lines of a calibration are within what they may say.
+pub fn is_settable(calibration: &Calibration) -> bool {
+    let within = |value: f64, allowed: &Number| (allowed.min..=allowed.max).contains(&value);
+    let steps = calibration.steps_counts.iter().all(|step| within(*step, &STEP));
+    let mut corrections = calibration.corrections.iter().map(|correction| {
+        let Correction {
+            offset_k,
+            slope,
+            curvature_1_k,
+        } = *correction;
+        [offset_k, slope, curvature_1_k]
+    });
+    steps
+        && corrections.all(|values| {
+            values
+                .into_iter()
+                .zip(&CORRECTION)
+                .all(|(v, allowed)| within(v, allowed))
+        })
+}
+
 fn sensor<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<usize, Error> {
     let name = words.next().ok_or(Error::Missing("sensor"))?;
     let known = SENSORS.iter().position(|known| *known == name);
@@ -175,13 +209,13 @@ fn settings<'a>(words: &mut (impl Iterator<Item = &'a str> + Clone)) -> Result<R
     if words.clone().next().is_none() {
         return Ok(Request::Settings(None));
     }
-    Ok(Request::Settings(Some(decimal(words, &LINE)? as usize)))
+    Ok(Request::Settings(Some(whole(words, &LINE)?)))
 }
 
 fn set<'a>(words: &mut (impl Iterator<Item = &'a str> + Clone)) -> Result<Request, Error> {
     match words.next().ok_or(Error::Missing("setting"))? {
         "steps" => {
-            let first = decimal(words, &BORDER)? as usize;
+            let first = whole(words, &BORDER)?;
             let mut counts = heapless::Vec::new();
             while counts.is_empty() || words.clone().next().is_some() {
                 if counts.len() == STEPS_A_LINE || first + counts.len() == FIRST_BORDER + BORDERS {

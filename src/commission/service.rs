@@ -1,15 +1,16 @@
 //! One finger's settings, and the slow half of the commands that change them.
 
-use super::experiment::{ROWS, Row};
-use super::fit::{fit, reading_c};
+use super::experiment::Row;
+use super::fit::{SWEPT, fit, reading_c};
 use super::identify::identify;
 use super::margins::Margins;
 use super::points::{PointError, Points};
-use super::request::{Request, SENSORS, STEPS_A_LINE};
+use super::request::{Request, SENSORS, STEPS_A_LINE, is_settable};
+use super::sums::ROWS;
 use crate::control::Tuned;
 use crate::protocol::{Command, Error, Reply, Setting};
 use crate::sense::Calibrated;
-use crate::settings::{BORDERS, Correction, FIRST_BORDER, Gains, Settings, Tile};
+use crate::settings::{BORDERS, Calibration, Correction, FIRST_BORDER, Gains, Settings, Tile};
 
 /// Lines that hold all commissioned settings: the steps, a correction each, the tile.
 pub const SETTINGS_LINES: usize = BORDERS.div_ceil(STEPS_A_LINE) + SENSORS.len() + 1;
@@ -19,6 +20,8 @@ pub const SETTINGS_LINES: usize = BORDERS.div_ceil(STEPS_A_LINE) + SENSORS.len()
 pub struct Service {
     settings: Settings,
     points: Points,
+    /// What the points correct: class values, or what the host has set.
+    before: Calibration,
 }
 
 impl Service {
@@ -28,6 +31,7 @@ impl Service {
         Self {
             settings,
             points: Points::default(),
+            before: settings.calibration,
         }
     }
 
@@ -50,8 +54,8 @@ impl Service {
         match request {
             Request::Point { sensor, reference_c } => self.point(sensor, reference_c, &mut execute),
             Request::Clear { sensor } => {
-                self.points.clear(sensor);
                 self.correct(sensor, Correction::default());
+                self.clear_steps();
                 execute(self.calibrated())
             }
             Request::Settings(None) => Ok(Reply::SettingsLines(SETTINGS_LINES)),
@@ -61,6 +65,8 @@ impl Service {
                 for (step, count) in steps.iter_mut().skip(first - FIRST_BORDER).zip(&counts) {
                     *step = *count;
                 }
+                self.before = self.settings.calibration;
+                (0..SWEPT).for_each(|sensor| self.points.clear(sensor));
                 execute(self.calibrated())
             }
             Request::SetCorrection { sensor, correction } => {
@@ -84,7 +90,7 @@ impl Service {
             };
             *row = sums;
         }
-        self.retune(identify(&rows).ok_or(Error::NoTile)?);
+        self.retune(identify(&rows).map_err(Error::NoTile)?);
         execute(Command::Retune(Tuned::new(&self.settings)))?;
         Ok(self.tile())
     }
@@ -99,9 +105,22 @@ impl Service {
         Reply::Tile(*tile, Margins::of(tile, gains))
     }
 
+    /// A correction from elsewhere: points of before count no longer, those to come start from it.
     fn correct(&mut self, sensor: usize, correction: Correction) {
-        if let Some(place) = self.settings.calibration.corrections.get_mut(sensor) {
-            *place = correction;
+        self.points.clear(sensor);
+        for calibration in [&mut self.settings.calibration, &mut self.before] {
+            if let Some(place) = calibration.corrections.get_mut(sensor) {
+                *place = correction;
+            }
+        }
+    }
+
+    /// The converter's steps go with the last of what has shown them.
+    fn clear_steps(&mut self) {
+        let corrections = &self.settings.calibration.corrections;
+        if (corrections.iter().take(SWEPT)).all(|correction| *correction == Correction::default()) {
+            self.settings.calibration.steps_counts = [0.0; BORDERS];
+            self.before.steps_counts = [0.0; BORDERS];
         }
     }
 
@@ -120,11 +139,10 @@ impl Service {
         };
         let reads_c = reading_c(&self.settings, &self.settings.calibration, sensor, average.sum());
         (self.points.add(sensor, &average, reads_c, reference_c)).map_err(Error::Point)?;
-        let Some(calibration) = fit(&self.settings, &self.points) else {
+        let fitted = fit(&self.settings, &self.before, &self.points).filter(is_settable);
+        let Some(calibration) = fitted else {
             self.points.drop_last(sensor);
-            return Err(Error::Point(PointError::TooFar(
-                contact_model::fixed_point::Celsius::saturating_from_num(reads_c),
-            )));
+            return Err(Error::Point(PointError::Contradicts));
         };
         self.settings.calibration = calibration;
         execute(self.calibrated())?;

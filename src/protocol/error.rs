@@ -6,7 +6,7 @@ use contact_model::fixed_point::PairingError;
 use contact_model::material::MATERIALS;
 
 use super::{Command, LINE_MAX, LineError};
-use crate::commission::{Aborted, FARTHEST_K, POINTS, PointError, SENSORS};
+use crate::commission::{Aborted, FARTHEST_K, NoTile, POINTS, PointError, SENSORS};
 use crate::control::Law;
 use crate::guard::Fault;
 
@@ -85,7 +85,7 @@ pub enum Error {
     /// `tune` ended early.
     TuneAborted(Aborted),
     /// What `tune` saw belongs to no tile within the limits of settings.
-    NoTile,
+    NoTile(NoTile),
     /// A point of a calibration that is not taken.
     Point(PointError),
     /// A fault is latched.
@@ -165,7 +165,22 @@ impl fmt::Display for Error {
             Self::NotTuned => f.write_str("nothing was tuned since arm; tune first"),
             Self::Tuning => f.write_str("tuning goes on; ask again in a second"),
             Self::TuneAborted(why) => write!(f, "tune was ended: {}", why.reason()),
-            Self::NoTile => f.write_str("tune found no tile; look for a loose sensor, then tune again"),
+            Self::NoTile(NoTile::Current(part)) => write!(
+                f,
+                "tune measured {part:.2} of the current asked for; look at bridge, module and current mirror"
+            ),
+            Self::NoTile(NoTile::Nothing) => {
+                f.write_str("tune saw no answer of the display to the current; look at its thermistor")
+            }
+            Self::NoTile(NoTile::Unlike(part)) => write!(
+                f,
+                "tune saw {:.2} % of what the display did come from elsewhere; look for a loose sensor, a draught, a touch",
+                100.0 * part
+            ),
+            Self::NoTile(NoTile::Beyond(Number { name, unit, min, max }, value)) => write!(
+                f,
+                "tune found a {name} of {value:.3} {unit}; {min} to {max} is a tile; look at sensor and polarity"
+            ),
             Self::Point(PointError::TooEarly) => {
                 f.write_str("not watched for long enough; wait half a second")
             }
@@ -180,6 +195,9 @@ impl fmt::Display for Error {
                     f,
                     "the device reads {reads:.2} C; allowed is within {FARTHEST_K} C of that"
                 )
+            }
+            Self::Point(PointError::Contradicts) => {
+                f.write_str("no correction fits this and the points before; clear them and begin again")
             }
             Self::Point(PointError::Full) => write!(f, "no room for more than {POINTS} points; clear them"),
             Self::Tripped(fault) => write!(f, "tripped by {}; clear it first", fault.name()),

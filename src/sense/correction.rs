@@ -62,7 +62,7 @@ impl Steps {
         }
     }
 
-    /// The sum without them, in sixteenths. Across a border they change along a line, over the codes into
+    /// The sum without them, in sixteenths, within what 16 bits of sum can be. Across a border they change along a line, over the codes into
     /// which noise spreads it: where in them the border lies, the device does not know.
     #[must_use]
     pub fn without(&self, sum: u16) -> u32 {
@@ -75,7 +75,9 @@ impl Steps {
             let before = of(segment.saturating_sub(1));
             too_much = before + (((too_much - before) * within as i32) >> BLUR_BITS);
         }
-        (u32::from(sum) << FINE_BITS).saturating_add_signed(-too_much)
+        (u32::from(sum) << FINE_BITS)
+            .saturating_add_signed(-too_much)
+            .min((1 << (u16::BITS + FINE_BITS)) - 1)
     }
 }
 

@@ -1,29 +1,48 @@
 //! `hil-sim commission`: what the operator does with a device, and the settings it then has.
 
-use std::io::{Write, stdout};
-use std::path::PathBuf;
+use std::io::{Write, stderr, stdout};
+use std::path::{Path, PathBuf};
 
-use anyhow::anyhow;
+use anyhow::{Context, anyhow, ensure};
 use clap::{Args, ValueEnum};
-use hil_sim::commission::{Plants, commission};
-use hil_sim::engine::{Image, Native};
+use hil_sim::commission::{Commissioned, Event, Plants, Tile, commission, restore, survey, table};
+use hil_sim::engine::{Engine, Image, Native};
+use hil_sim::fidelity::map;
 use hil_sim::firmware;
 use hil_sim::machine::Firmware;
 use hil_sim::plant::{Params, parameters};
 use hil_sim::scene::Scene;
+use serde_json::json;
 
 use super::Failure;
 
+/// What follows the options in the help.
+const USAGE: &str = "\
+The operator holds a reference thermometer to each sensor, types what it shows, and lets the device find out what its
+tile is like. What happens is told on standard error. Standard output has the lines that restore the device: keep
+them, and send them to it whenever it was switched on.
+
+  hil-sim commission scenes/copper.toml > settings.txt
+  hil-sim commission scenes/copper.toml --restore settings.txt
+  hil-sim commission --box 200";
+
 #[derive(Args)]
+#[command(after_help = USAGE)]
 pub struct Arguments {
     /// A scene whose device is commissioned
-    #[arg(conflicts_with = "draw", required_unless_present = "draw")]
+    #[arg(conflicts_with_all = ["draw", "survey"], required_unless_present_any = ["draw", "survey"])]
     scene: Option<PathBuf>,
     /// Instead, a device of the parameter box, drawn by this seed
-    #[arg(long)]
+    #[arg(long, value_name = "SEED")]
     draw: Option<u64>,
+    /// Instead, that many devices of the box, from seed 1 on, native: how well they know themselves, as percentiles
+    #[arg(long = "box", value_name = "N", conflicts_with_all = ["draw", "restore", "engine", "elf"])]
+    survey: Option<u64>,
+    /// Sends the lines of a file to a device that was just switched on, instead of commissioning it
+    #[arg(long, value_name = "FILE")]
+    restore: Option<PathBuf>,
     /// Room of a drawn device, C
-    #[arg(long, default_value_t = 24.0)]
+    #[arg(long, default_value_t = 24.0, conflicts_with_all = ["scene", "survey"])]
     room_c: f64,
     /// What runs the device's logic
     #[arg(long, value_enum, default_value_t = Kind::Native)]
@@ -31,6 +50,9 @@ pub struct Arguments {
     /// Image to run instead of the one of the current sources
     #[arg(long)]
     elf: Option<PathBuf>,
+    /// Print one JSON object: points, tile with margins, settings
+    #[arg(long)]
+    json: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -41,8 +63,11 @@ enum Kind {
     Native,
 }
 
-/// Prints the settings as lines.
+/// Commissions or restores, and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if let Some(devices) = arguments.survey {
+        return surveyed(devices, arguments.json);
+    }
     let plants = match (&arguments.scene, arguments.draw) {
         (Some(path), _) => {
             let scene = Scene::read(path).map_err(Failure::input)?;
@@ -55,24 +80,111 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     };
     let world = plants.at_work().map_err(Failure::input)?;
-    let lines = match arguments.engine {
-        Kind::Native if arguments.elf.is_some() => {
-            return Err(Failure::input(anyhow!(
-                "--elf is for --engine image; the native engine runs no image"
-            )));
-        }
-        Kind::Native => commission(&plants, &mut Native::new(world)),
+    match arguments.engine {
+        Kind::Native if arguments.elf.is_some() => Err(Failure::input(anyhow!(
+            "--elf is for --engine image; the native engine runs no image"
+        ))),
+        Kind::Native => with(arguments, &plants, &mut Native::new(world)),
         Kind::Image => {
             let path = match &arguments.elf {
                 Some(path) => path.clone(),
                 None => firmware::build(1).map_err(Failure::run)?,
             };
             let firmware = Firmware::from_file(&path).map_err(Failure::input)?;
-            commission(&plants, &mut Image::new(&firmware, world).map_err(Failure::run)?)
+            let mut engine = Image::new(&firmware, world).map_err(Failure::run)?;
+            with(arguments, &plants, &mut engine)
         }
-    };
-    let text: String = (lines.map_err(Failure::run)?.iter())
-        .map(|line| format!("{line}\n"))
+    }
+}
+
+fn with<E: Engine>(arguments: &Arguments, plants: &Plants, engine: &mut E) -> Result<(), Failure> {
+    if let Some(path) = &arguments.restore {
+        let settings = lines(path).map_err(Failure::input)?;
+        let tile = restore(plants, engine, &settings).map_err(Failure::run)?;
+        let text = if arguments.json {
+            serde_json::to_string(&tile).map_err(Failure::run)?
+        } else {
+            format!("{} lines taken; {}", settings.len(), told(&tile))
+        };
+        return print(&text);
+    }
+    let done = commission(plants, engine, &mut tell).map_err(Failure::run)?;
+    let Commissioned { settings, .. } = &done;
+    if arguments.json {
+        print(&serde_json::to_string(&done).map_err(Failure::run)?)
+    } else {
+        print(&settings.join("\n"))
+    }
+}
+
+/// Lines of a file, without empty ones.
+fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("--restore {}", path.display()))?;
+    let lines: Vec<String> = (text.lines().map(|line| line.trim().to_owned()))
+        .filter(|line| !line.is_empty())
         .collect();
-    stdout().write_all(text.as_bytes()).map_err(Failure::run)
+    for (number, line) in (1..).zip(&lines) {
+        ensure!(
+            line.starts_with("set "),
+            "--restore {}: line {number} is '{line}'; lines of settings begin with 'set'",
+            path.display()
+        );
+    }
+    ensure!(!lines.is_empty(), "--restore {} has no lines", path.display());
+    Ok(lines)
+}
+
+/// Tells what happens.
+fn tell(event: &Event) {
+    let text = match event {
+        Event::Begins(what) => format!("{what}\n"),
+        Event::Taken(point) => format!(
+            "  {:8} {:7.3} C   point {:2}, fits to {:.2} mK\n",
+            point.sensor, point.reference_c, point.points, point.worst_mk
+        ),
+        Event::Refused { sensor, answer } => format!("  {sensor:8} not taken: {answer}\n"),
+        Event::Found(tile) => format!("  {}\n", told(tile)),
+    };
+    // Whoever closed it does not want to be told.
+    let _unheard = stderr().write_all(text.as_bytes());
+}
+
+fn told(tile: &Tile) -> String {
+    format!(
+        "gain {:.3} K/s/A, Joule {:.4} 1/A, leak {:.3} 1/s, lag {:.1} ms, dead time {:.1} ms; margins {:.1} deg, {:.2} times",
+        tile.gain_k_s_a,
+        tile.joule_per_a,
+        tile.leak_1_s,
+        1e3 * tile.lag_s,
+        1e3 * tile.dead_s,
+        tile.phase_deg,
+        tile.gain_margin
+    )
+}
+
+fn surveyed(devices: u64, json: bool) -> Result<(), Failure> {
+    let draws: Vec<u64> = (1..=devices).collect();
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let work = |draw: &u64| Ok((*draw, survey(*draw)));
+    let (mut found, mut failed) = (Vec::new(), Vec::new());
+    for (draw, one) in map(&draws, threads, work, || ()).map_err(Failure::run)? {
+        match one {
+            Ok(one) => found.push(one),
+            Err(why) => failed.push(json!({ "draw": draw, "why": why.to_string() })),
+        }
+    }
+    if json {
+        let all = json!({ "devices": found, "failed": failed });
+        return print(&serde_json::to_string(&all).map_err(Failure::run)?);
+    }
+    print(table(&found).trim_end())?;
+    for failed in &failed {
+        print(&format!("not among them: {failed}"))?;
+    }
+    Ok(())
+}
+
+fn print(text: &str) -> Result<(), Failure> {
+    let written = writeln!(stdout(), "{text}").context("standard output");
+    written.map_err(Failure::run)
 }

@@ -95,6 +95,23 @@ impl<'a, E: Engine> Bench<'a, E> {
         }
     }
 
+    /// The device's settings, line by line.
+    ///
+    /// # Errors
+    /// The engine stopped, or the device does not answer as it should.
+    pub fn settings(&mut self) -> Result<Vec<String>, CommissionError> {
+        let line = "settings";
+        let answer = self.tell(line)?;
+        let lines = answer.strip_prefix("lines=").and_then(|lines| lines.parse().ok());
+        let lines: usize = lines.ok_or_else(|| CommissionError::Refused {
+            line: line.into(),
+            answer,
+        })?;
+        (1..=lines)
+            .map(|number| self.tell(&format!("{line} {number}")))
+            .collect()
+    }
+
     /// One millisecond, in which bytes may leave; lines that have arrived.
     ///
     /// # Errors

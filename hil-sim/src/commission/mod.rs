@@ -6,6 +6,9 @@
 mod bench;
 mod operator;
 mod plants;
+mod record;
+mod response;
+mod survey;
 
 use std::collections::HashMap;
 use std::convert::Infallible;
@@ -16,8 +19,11 @@ use crate::plant::{ConfigError, Params};
 use crate::scene::Scene;
 
 pub use bench::Bench;
-pub use operator::commission;
+pub use operator::{commission, restore};
 pub use plants::Plants;
+pub use record::{Commissioned, Event, Point, Tile};
+pub use response::Response;
+pub use survey::{QUANTITIES, Surveyed, survey, table};
 
 /// Why a device cannot be commissioned.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -39,6 +45,9 @@ pub enum CommissionError {
     /// The device did not answer a line.
     #[error("commissioning: the device does not answer '{0}'")]
     Silent(String),
+    /// The device does not have a setting that it was given.
+    #[error("commissioning: the device took '{0}', but has other settings")]
+    NotRestored(String),
     /// The display could not be held at enough temperatures.
     #[error(
         "commissioning: the display came to rest at {points} temperatures; needed are {needed} (the last: {why})"
@@ -82,7 +91,7 @@ pub fn of_device(params: &Params, room_c: f64, seed: u64) -> Result<Vec<String>,
     };
     let found = || -> Result<Vec<String>, CommissionError> {
         let mut engine = Native::new(plants.at_work()?);
-        commission(&plants, &mut engine)
+        Ok(commission(&plants, &mut engine, &mut |_| ())?.settings)
     };
     lines.get_or_init(found).clone()
 }

@@ -3,12 +3,15 @@
 use thermal_display::settings::{SEGMENT_CODES, Settings};
 
 use super::bench::Bench;
+use super::record::{Commissioned, Event, Point, Tile};
 use super::{CommissionError, Plants};
 use crate::engine::Engine;
 use crate::world::World;
 
 /// Display temperatures to calibrate at, deg C; within them lies what the display is used for.
-const DISPLAY_C: (f64, f64) = (16.3, 41.7);
+const DISPLAY_C: (f64, f64) = (15.3, 41.7);
+/// Time for a device that was just switched on to find its force sensor's zero, ms.
+const START_MS: u64 = 500;
 /// Codes from a border of the converter's segments to the points beside it.
 const FROM_BORDER_CODES: u32 = 22;
 /// Time for each degree on the way to the warmest point, ms.
@@ -30,59 +33,84 @@ const SKIN_C: [f64; 5] = [26.7, 29.3, 32.2, 35.0, 37.3];
 const ROOM_C: [f64; 5] = [17.7, 20.5, 23.5, 26.7, 30.5];
 const SINK_C: [f64; 5] = [17.7, 23.5, 29.3, 35.0, 40.7];
 
-/// Calibrates all sensors of the device on an engine, which is where it is [used](Plants::at_work), and gives its
-/// settings as lines.
+/// Calibrates all sensors of the device on an engine, which is where it is [used](Plants::at_work), and has it tune
+/// itself; `watch` hears of each step.
 ///
 /// # Errors
 /// The device cannot be commissioned.
-pub fn commission<E: Engine>(plants: &Plants, engine: &mut E) -> Result<Vec<String>, CommissionError> {
-    let mut bench = Bench::new(engine, plants.params().host, plants.operator_seed());
-    bench.wait(10)?;
-    bench.tell("arm")?;
-    tune(&mut bench)?;
-    display(&mut bench)?;
-    bench.tell("arm")?;
-    tune(&mut bench)?;
-    bench.tell("abort")?;
+pub fn commission<E: Engine>(
+    plants: &Plants,
+    engine: &mut E,
+    watch: &mut dyn FnMut(&Event),
+) -> Result<Commissioned, CommissionError> {
+    let mut operator = Operator {
+        bench: Bench::new(engine, plants.params().host, plants.operator_seed()),
+        watch,
+        points: Vec::new(),
+    };
+    operator.bench.wait(START_MS)?;
+    operator.bench.tell("arm")?;
+    operator.begin("tune, as far as sensors from the shelf allow");
+    operator.tune()?;
+    operator.begin("calibrate the display's thermistors, held at temperature after temperature");
+    operator.display()?;
+    operator.bench.tell("arm")?;
+    operator.begin("tune again, with calibrated sensors");
+    let tile = operator.tune()?;
+    operator.bench.tell("abort")?;
+    operator.begin("calibrate the skin's thermistor in a bath");
     for bath_c in SKIN_C {
-        bench.move_to(plants.skin_in_bath(bath_c)?);
-        bench.wait(BATH_MS)?;
+        operator.bench.move_to(plants.skin_in_bath(bath_c)?);
+        operator.bench.wait(BATH_MS)?;
         // Only what lies at a step of the converter is refused here, and may be.
-        point(&mut bench, "skin", |_| bath_c)?;
+        operator.point("skin", |_| bath_c)?;
     }
+    operator.begin("calibrate the room's thermistor in a bath");
     for bath_c in ROOM_C {
-        bench.move_to(plants.room_in_bath(bath_c)?);
-        bench.wait(BATH_MS)?;
-        point(&mut bench, "room", |_| bath_c)?;
+        operator.bench.move_to(plants.room_in_bath(bath_c)?);
+        operator.bench.wait(BATH_MS)?;
+        operator.point("room", |_| bath_c)?;
     }
+    operator.begin("calibrate the sink's thermistor on coolants");
     for coolant_c in SINK_C {
-        bench.move_to(plants.sink_on_coolant(coolant_c)?);
-        bench.wait(BATH_MS)?;
-        point(&mut bench, "sink", |world| world.plant().sink_c())?;
+        operator.bench.move_to(plants.sink_on_coolant(coolant_c)?);
+        operator.bench.wait(BATH_MS)?;
+        operator.point("sink", |world| world.plant().sink_c())?;
     }
-    let lines = bench.tell("settings")?;
-    let lines: usize = lines.trim_start_matches("lines=").parse().unwrap_or(0);
-    (1..=lines)
-        .map(|line| bench.tell(&format!("settings {line}")))
-        .collect()
+    Ok(Commissioned {
+        settings: operator.bench.settings()?,
+        points: operator.points,
+        tile,
+    })
 }
 
-/// Lets the device find out about its tile.
-fn tune<E: Engine>(bench: &mut Bench<'_, E>) -> Result<(), CommissionError> {
-    bench.tell("tune")?;
-    for _ in 0..TUNE_S {
-        bench.wait(1000)?;
-        let line = "tune result";
-        let answer = bench.ask(line)?;
-        if answer.starts_with("ok") {
-            return Ok(());
-        }
-        if !answer.starts_with("err tuning goes on") {
-            let line = line.into();
-            return Err(CommissionError::Refused { line, answer });
-        }
+/// Sends settings to a device as somebody does who has kept the lines, and gives the tile that it then has.
+///
+/// # Errors
+/// The device refuses a line, or has other settings than those afterwards.
+pub fn restore<E: Engine>(
+    plants: &Plants,
+    engine: &mut E,
+    settings: &[String],
+) -> Result<Tile, CommissionError> {
+    let mut bench = Bench::new(engine, plants.params().host, plants.operator_seed());
+    bench.wait(10)?;
+    for line in settings {
+        bench.tell(line)?;
     }
-    Err(CommissionError::Silent("tune result".into()))
+    let has = bench.settings()?;
+    if let Some(lost) = settings.iter().find(|line| !has.contains(line)) {
+        return Err(CommissionError::NotRestored(lost.clone()));
+    }
+    let line = "margins";
+    Tile::parse(line, &bench.tell(line)?)
+}
+
+/// Who does it, step by step.
+struct Operator<'a, E> {
+    bench: Bench<'a, E>,
+    watch: &'a mut dyn FnMut(&Event),
+    points: Vec<Point>,
 }
 
 /// Display temperatures to hold, deg C, warmest first: near both ends of each of the converter's segments.
@@ -102,62 +130,97 @@ fn holds() -> Vec<f64> {
         .collect()
 }
 
-/// Both of the display's thermistors, from warm to cold.
-fn display<E: Engine>(bench: &mut Bench<'_, E>) -> Result<(), CommissionError> {
-    let (mut points, mut why) = (0, String::new());
-    // Two thermistors of different lags part when the display moves fast, so it goes to the warmest point by steps.
-    let from_c = bench.reference_c(|world| world.plant().display_c());
-    for approach_c in from_c as u32..=DISPLAY_C.1 as u32 {
-        bench.tell(&format!("hold {approach_c}"))?;
-        bench.wait(APPROACH_MS)?;
+impl<E: Engine> Operator<'_, E> {
+    fn begin(&mut self, what: &'static str) {
+        (self.watch)(&Event::Begins(what));
     }
-    for hold_c in holds() {
-        bench.tell(&format!("hold {hold_c:.2}"))?;
-        bench.wait(SETTLE_MS)?;
-        let mut before_c = f64::NAN;
-        for _ in 0..RETRIES {
-            let shown_c = bench.reference_c(|world| world.plant().display_c());
-            if (shown_c - before_c).abs() > REST_K || before_c.is_nan() {
-                before_c = shown_c;
-                why = format!("the reference thermometer shows {shown_c:.3} C, and moves");
-                bench.wait(RETRY_MS)?;
-                continue;
-            }
-            match point(bench, "display", |world| world.plant().display_c())? {
-                None => {
-                    points += 1;
-                    point(bench, "check", |world| world.plant().display_c())?;
-                    break;
-                }
-                Some(refused) => why = refused,
-            }
-            bench.wait(RETRY_MS)?;
-        }
-    }
-    if points < NEEDED {
-        return Err(CommissionError::FewPoints {
-            points,
-            needed: NEEDED,
-            why,
-        });
-    }
-    Ok(())
-}
 
-/// Tells the device a point; why it was not taken, if the reading moves or lies at a step of the converter.
-fn point<E: Engine>(
-    bench: &mut Bench<'_, E>,
-    sensor: &str,
-    truth: impl Fn(&World) -> f64,
-) -> Result<Option<String>, CommissionError> {
-    let line = format!("calibrate {sensor} {:.3}", bench.reference_c(truth));
-    let answer = bench.ask(&line)?;
-    if answer.starts_with("ok") {
-        return Ok(None);
+    /// Lets the device find out about its tile.
+    fn tune(&mut self) -> Result<Tile, CommissionError> {
+        self.bench.tell("tune")?;
+        let line = "tune result";
+        for _ in 0..TUNE_S {
+            self.bench.wait(1000)?;
+            let answer = self.bench.ask(line)?;
+            if answer.starts_with("ok") {
+                let tile = Tile::parse(line, &answer)?;
+                (self.watch)(&Event::Found(tile));
+                return Ok(tile);
+            }
+            if !answer.starts_with("err tuning goes on") {
+                let line = line.into();
+                return Err(CommissionError::Refused { line, answer });
+            }
+        }
+        Err(CommissionError::Silent(line.into()))
     }
-    let may_be = ["err the reading moves", "err at a step"];
-    if may_be.iter().any(|beginning| answer.starts_with(beginning)) {
-        return Ok(Some(answer));
+
+    /// Both of the display's thermistors, from warm to cold.
+    fn display(&mut self) -> Result<(), CommissionError> {
+        let display_c = |world: &World| world.plant().display_c();
+        let (mut points, mut why) = (0, String::new());
+        // Two thermistors of different lags part when the display moves fast, so it goes to the warmest point by steps.
+        let from_c = self.bench.reference_c(display_c);
+        for approach_c in from_c as u32..=DISPLAY_C.1 as u32 {
+            self.bench.tell(&format!("hold {approach_c}"))?;
+            self.bench.wait(APPROACH_MS)?;
+        }
+        for hold_c in holds() {
+            self.bench.tell(&format!("hold {hold_c:.2}"))?;
+            self.bench.wait(SETTLE_MS)?;
+            let mut before_c = f64::NAN;
+            for _ in 0..RETRIES {
+                let shown_c = self.bench.reference_c(display_c);
+                if (shown_c - before_c).abs() > REST_K || before_c.is_nan() {
+                    before_c = shown_c;
+                    why = format!("the reference thermometer shows {shown_c:.3} C, and moves");
+                    self.bench.wait(RETRY_MS)?;
+                    continue;
+                }
+                match self.point("display", display_c)? {
+                    None => {
+                        points += 1;
+                        self.point("check", display_c)?;
+                        break;
+                    }
+                    Some(refused) => why = refused,
+                }
+                self.bench.wait(RETRY_MS)?;
+            }
+        }
+        if points < NEEDED {
+            return Err(CommissionError::FewPoints {
+                points,
+                needed: NEEDED,
+                why,
+            });
+        }
+        Ok(())
     }
-    Err(CommissionError::Refused { line, answer })
+
+    /// Tells the device a point; why it was not taken, if the reading moves or lies at a step of the converter.
+    fn point(
+        &mut self,
+        sensor: &'static str,
+        truth: impl Fn(&World) -> f64,
+    ) -> Result<Option<String>, CommissionError> {
+        let reference_c = self.bench.reference_c(truth);
+        let line = format!("calibrate {sensor} {reference_c:.3}");
+        let answer = self.bench.ask(&line)?;
+        if answer.starts_with("ok") {
+            let point = Point::parse(sensor, reference_c, &line, &answer)?;
+            (self.watch)(&Event::Taken(point.clone()));
+            self.points.push(point);
+            return Ok(None);
+        }
+        let may_be = ["err the reading moves", "err at a step"];
+        if may_be.iter().any(|beginning| answer.starts_with(beginning)) {
+            (self.watch)(&Event::Refused {
+                sensor,
+                answer: answer.clone(),
+            });
+            return Ok(Some(answer));
+        }
+        Err(CommissionError::Refused { line, answer })
+    }
 }

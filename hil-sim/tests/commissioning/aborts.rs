@@ -93,7 +93,13 @@ fn hot_sink_ends_tuning_before_it_trips() {
 
 #[test]
 fn other_commands_end_tuning() {
-    for (line, state) in [("abort", STATE_OFF), ("hold 30", "state=armed")] {
+    for (line, state) in [
+        ("abort", STATE_OFF),
+        ("hold 30", "state=armed"),
+        // A reading that jumps would be taken for the tile's.
+        ("set correction display 0.1 0 0", "state=armed"),
+        ("set tile 2.9 0.06 0.1 0.1 0.01", "state=armed"),
+    ] {
         tuning(at_work(), |bench| {
             bench.wait(3000).expect("it runs");
             bench.tell(line).expect("obeyed");
@@ -107,6 +113,31 @@ fn other_commands_end_tuning() {
             assert_eq!(bench.world().plant().current_a() == 0.0, state == STATE_OFF);
         });
     }
+}
+
+/// An answer that was lost can be asked for again, and the display is let go with the first.
+#[test]
+fn what_tuning_has_found_can_be_asked_for_again() {
+    tuning(at_work(), |bench| {
+        let mut first = String::new();
+        for _ in 0..70 {
+            bench.wait(1000).expect("it runs");
+            first = ask(bench, "tune result");
+            if first.starts_with("ok") {
+                break;
+            }
+        }
+        assert!(first.starts_with("ok gain="), "{first}");
+        let display_c = bench.world().plant().display_c();
+        assert!(display_c < 28.0, "held at the sink's temperature: {display_c}");
+        bench.wait(3000).expect("it runs");
+        assert_eq!(ask(bench, "tune result"), first);
+        assert_eq!(ask(bench, "margins"), first);
+        let display_c = bench.world().plant().display_c();
+        assert!((display_c - 33.0).abs() < 0.5, "{display_c}");
+        bench.tell("arm").expect("armed");
+        assert!(ask(bench, "tune result").starts_with("err nothing was tuned"));
+    });
 }
 
 #[test]

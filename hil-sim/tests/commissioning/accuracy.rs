@@ -44,7 +44,7 @@ fn sweep(plants: &Plants, seed: u64, settings: &[String]) -> [Vec<f64>; 4] {
     let mut engine = Native::new(plants.at_work().expect("a plant"));
     let mut bench = bench(&mut engine, settings);
     let mut all: [Vec<f64>; 4] = Default::default();
-    for t_c in range(17.0, 41.0) {
+    for t_c in range(15.0, 42.0) {
         // The display rests at the temperature of the sink, in the room that it was calibrated in.
         bench.move_to(plants.sink_on_coolant(t_c).expect("a plant"));
         bench.wait(REST_MS).expect("it runs");

@@ -2,6 +2,8 @@
 
 mod aborts;
 mod accuracy;
+mod margins;
+mod restore;
 mod tile;
 
 use hil_sim::World;

@@ -1,0 +1,6 @@
+//! What commissioning finds, against equations and numbers from elsewhere.
+
+mod desk;
+mod margins;
+mod solve;
+mod tune;
