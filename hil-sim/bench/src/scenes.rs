@@ -6,7 +6,7 @@ mod floating;
 
 use contact_model::fixed_point::{Celsius, Course, Force, Pairing, PairingError, log2_relative_pressure};
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
-use thermal_display::render::{self, Bodies, Mode, Render, TOLERANCE};
+use thermal_display::render::{self, Mode, Render, TOLERANCE};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
 use floating::Finger as FloatingFinger;
@@ -102,7 +102,6 @@ impl Station {
             render,
             scene: render::Scene {
                 pairing: fixed[0].pairing,
-                bodies: Bodies::new(&fixed[0].pairing),
                 object: Some(object_c),
                 mode: Mode::ContactResistance,
             },
