@@ -21,7 +21,7 @@ use crate::control::{Control, Inputs, Law, Voltage, Watt};
 use crate::drive::{Current, Drive};
 use crate::guard::{self, Fault, Setpoint, Sound, Watch};
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
-use crate::render::{Bodies, Mode, Render, Scene, Wanted};
+use crate::render::{Mode, Render, Scene, Wanted};
 use crate::sense::{Averages, Readings, Samples, Sensors, Touch};
 use crate::settings::Settings;
 
@@ -239,7 +239,6 @@ impl Station {
         let (_, pairing) = self.material?;
         Some(Scene {
             pairing,
-            bodies: Bodies::new(&pairing),
             object: self.object,
             mode: self.mode,
         })

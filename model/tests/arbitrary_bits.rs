@@ -1,8 +1,8 @@
 //! Nothing panics or overflows for any bits whatever: run with overflow checks, `cargo test -p contact-model`.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, Course, Depth, ErfArgument, Flux, Force, Fraction, Log2, Pairing, Rate, Ratio,
-    SemiInfinite, Ticks, erf, erfcx, exp2, fourier_number, log2, log2_relative_pressure,
+    Celsius, Contact, Course, Depth, ErfArgument, Flux, Force, Fraction, HalfOrder, Log2, Pairing, Rate,
+    Ratio, SemiInfinite, Ticks, erf, erfcx, exp2, fourier_number, log2, log2_relative_pressure,
 };
 use contact_model::material::{Material, Surface};
 use proptest::num::f64::ANY;
@@ -114,6 +114,46 @@ proptest! {
             let setpoint = course.advance();
             prop_assert_eq!(setpoint, course.setpoint());
             prop_assert!(setpoint.abs() <= 255, "{}", setpoint);
+        }
+    }
+
+    /// Whatever the contact and whatever flows, no half-space panics; what flows on through a resistance heats or
+    /// cools no body beyond what is in front of it and what it was.
+    #[test]
+    fn half_space_is_total(
+        (weight, ratio) in (word(), word()),
+        (per_tick, per_root_tick, conductance_w_m2k) in (rate(), rate(), rate()),
+        drives in prop::collection::vec((celsius(), 1u32..300), 1..8), front in celsius(),
+    ) {
+        let contact = Contact {
+            weight: Fraction::from_bits(weight),
+            ratio: Ratio::from_bits(ratio),
+            per_tick,
+            per_root_tick,
+            conductance_w_m2k,
+        };
+        let (mut body, mut other) = (HalfOrder::at_rest(), HalfOrder::at_rest());
+        for (drive, ticks) in drives {
+            for _ in 0..ticks {
+                body.step(drive);
+                other.step(body.drive_to(&other));
+            }
+            for link in [contact.on_object(), contact.on_display()] {
+                let flow = link.drive(drive, &body);
+                prop_assert!(flow.abs() <= drive.saturating_sub(body.left()).saturating_abs());
+                let _ = (link.across(flow), body.after(flow), other.after(drive));
+            }
+            other = body.out_of_step();
+        }
+        let mut body = HalfOrder::at_rest();
+        let (low, high) = (front.min(Celsius::ZERO), front.max(Celsius::ZERO));
+        let rounding = Celsius::DELTA * 64;
+        for link in [contact.on_object(), contact.on_display()] {
+            for _ in 0..100 {
+                body.step(link.drive(front, &body));
+                let at = body.left();
+                prop_assert!(low.saturating_sub(rounding) <= at && at <= high.saturating_add(rounding), "{at} of {front}");
+            }
         }
     }
 

@@ -91,9 +91,16 @@ impl Voltage {
     pub fn duty(&self, current: Current, legs: &Legs) -> Duty {
         let across = legs.hot.saturating_sub(legs.cold).to_bits();
         let warmer = legs.mean.saturating_sub(SHEET).to_bits();
-        let rise = times(self.per_a, times(warmer, self.rise_per_k, 32), Celsius::FRAC_NBITS);
-        let needed = times(current.to_bits(), self.per_a.saturating_add(rise), 28)
-            .saturating_add(times(across, self.per_k, 32 + Celsius::FRAC_NBITS - BITS));
+        let rise = times(
+            self.per_a,
+            times(warmer, self.rise_per_k, 32),
+            Celsius::FRAC_NBITS,
+        );
+        let needed = times(current.to_bits(), self.per_a.saturating_add(rise), 28).saturating_add(times(
+            across,
+            self.per_k,
+            32 + Celsius::FRAC_NBITS - BITS,
+        ));
         let voltage = if needed < 0 {
             needed.saturating_sub(self.lost(needed.saturating_neg(), current.to_bits().saturating_neg()))
         } else {

@@ -45,7 +45,6 @@ pub(super) struct ForceMean {
     /// Of the last ticks.
     recent: Force,
     mean: Force,
-    /// The mean that was last taken.
     in_use: Force,
     /// Ticks since the force was new; stops where the mean reaches back no further.
     ticks: u32,
@@ -76,10 +75,14 @@ impl ForceMean {
         self.mean
     }
 
-    /// The mean, which is in use from now on.
-    pub(super) fn take(&mut self) -> Force {
+    /// The mean that was last taken.
+    pub(super) const fn in_use(&self) -> Force {
+        self.in_use
+    }
+
+    /// Takes the mean into use.
+    pub(super) const fn take(&mut self) {
         self.in_use = self.mean;
-        self.mean
     }
 
     /// Whether the mean is worth a look: each time it has seen twice as much, and always once it has seen all that it
@@ -127,10 +130,13 @@ fn towards(mean: Force, force: Force, ticks: u32) -> Force {
 /// R moves by 0.95 of the force's relative change (Eq. 6-8), `E` by at most 0.277 of R's, and the set-point by
 /// `gain` times as much: 0.264 in all, rounded up to 17/64.
 pub(super) fn all_the_same(force: Force, gain: Celsius) -> RangeInclusive<Force> {
-    let change = u64::from(force.to_bits()) * u64::from(MATTERS.to_bits().unsigned_abs()) * 64;
-    let allowed = change
-        .checked_div(u64::from(gain.to_bits().unsigned_abs()) * 17)
-        .and_then(|bits| u32::try_from(bits).ok())
+    // Of a gain in 2^-14 K, rounded up, so that one short division holds the part of the force, in 2^-29.
+    const PART: u32 = (((MATTERS.to_bits() as u64 * 64) << (29 - GAIN_SHIFT)) / 17) as u32;
+    const GAIN_SHIFT: u32 = 8;
+    let gain = gain.to_bits().unsigned_abs().div_ceil(1 << GAIN_SHIFT);
+    let allowed = PART
+        .checked_div(gain)
+        .and_then(|part| u32::try_from((u64::from(force.to_bits()) * u64::from(part)) >> 29).ok())
         .map_or(Force::MAX, Force::from_bits);
     force.saturating_sub(allowed)..=force.saturating_add(allowed)
 }

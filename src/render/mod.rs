@@ -9,11 +9,10 @@ mod skin;
 
 use core::ops::RangeInclusive;
 
-use contact_model::fixed_point::{Celsius, Course, Force, Pairing, contact_area, log2_relative_pressure};
+use contact_model::fixed_point::{Celsius, Contact, Course, Force, Pairing, contact_area};
 
 use force_mean::{Change, ForceMean, all_the_same};
-pub use skin::Bodies;
-use skin::{Links, Skin};
+use skin::{Bodies, Links, Skin};
 
 use crate::control::Watt;
 
@@ -26,8 +25,6 @@ const FILTER_SHIFT: u32 = 8;
 
 /// A skin that was touched is believed again after this many ticks: until then its sensor sees what the contact left.
 const RESTED_TICKS: u32 = 2000;
-/// Part of a force, as a power of two, by which it changes nothing that the skin could tell.
-const SAME_SHIFT: u32 = 10;
 /// A force may still rise for this many ticks after landing and count as constant.
 const SETTLED_TICKS: u64 = 16;
 /// The mean of a constant force has forgotten its rise after this many ticks, and then stays within this part of itself,
@@ -54,8 +51,6 @@ pub enum Mode {
 pub struct Scene {
     /// The material.
     pub pairing: Pairing,
-    /// The same for a skin that is followed.
-    pub bodies: Bodies,
     /// Its temperature; that of the room if none was given.
     pub object: Option<Celsius>,
     /// Model.
@@ -86,8 +81,22 @@ struct Grip {
     risen: Force,
     /// Ticks since landing.
     elapsed: u64,
-    /// For a force.
-    links: Option<(Force, Links)>,
+    links: Option<Links>,
+}
+
+impl Grip {
+    /// What is in use from now on is the mean force.
+    fn use_mean(&mut self, pairing: &Pairing) {
+        self.force.take();
+        if self.contact_in_use().is_none() {
+            self.links = Some(Links::new(pairing, self.force.in_use()));
+        }
+    }
+
+    /// The contact under the force in use, if that is known.
+    fn contact_in_use(&self) -> Option<&Contact> {
+        self.links.as_ref()?.contact_under(self.force.in_use())
+    }
 }
 
 /// A contact with an object that lasts.
@@ -99,6 +108,8 @@ struct Touching {
     same: RangeInclusive<Force>,
     /// Eq. 6-12 in closed form, if that holds.
     course: Option<Course>,
+    /// It is to be laid, for the force in use. What that needs of the force is computed a tick before.
+    due: bool,
 }
 
 /// What the display should do.
@@ -119,6 +130,8 @@ pub struct Render {
     lifted_ticks: u32,
     grip: Option<Grip>,
     skin: Skin,
+    /// Of the scene that was last presented.
+    bodies: Bodies,
     touching: Option<Touching>,
     evaluations: u32,
 }
@@ -145,17 +158,19 @@ impl Render {
                 room: filter(before.room, room),
             },
         });
-        self.grip = match (touch, self.grip) {
-            (None, _) => None,
-            (Some(force), None) => Some(Grip {
-                force: ForceMean::new(force),
-                change: Change::New,
-                steady: self.lifted_ticks >= RESTED_TICKS,
-                risen: force,
-                elapsed: landed_ticks.into(),
-                links: None,
-            }),
-            (Some(force), Some(mut grip)) => {
+        match (touch, &mut self.grip) {
+            (None, grip) => *grip = None,
+            (Some(force), grip @ None) => {
+                *grip = Some(Grip {
+                    force: ForceMean::new(force),
+                    change: Change::New,
+                    steady: self.lifted_ticks >= RESTED_TICKS,
+                    risen: force,
+                    elapsed: landed_ticks.into(),
+                    links: None,
+                });
+            }
+            (Some(force), Some(grip)) => {
                 grip.change = grip.force.update(force);
                 grip.elapsed += 1;
                 if grip.elapsed < MEAN_TICKS {
@@ -164,9 +179,8 @@ impl Render {
                 let drifted = grip.force.mean().abs_diff(grip.risen) > grip.risen >> CONSTANT_SHIFT;
                 let changed = grip.change == Change::New && grip.elapsed >= SETTLED_TICKS;
                 grip.steady &= !drifted && !changed;
-                Some(grip)
             }
-        };
+        }
         self.lifted_ticks = match touch {
             Some(_) => 0,
             None => self.lifted_ticks.saturating_add(1),
@@ -186,7 +200,7 @@ impl Render {
         self.before.map(|before| before.skin)
     }
 
-    /// A contact that begins with the next [`Self::present`] is a new one.
+    /// A contact that begins with the next [`Self::present`] is a new one, with whatever pairing.
     pub fn forget_contact(&mut self) {
         self.touching = None;
         self.skin.forget_object();
@@ -195,7 +209,8 @@ impl Render {
         }
     }
 
-    /// Heat into a display, W, whose surface is `display`; `pairing` is any with that display.
+    /// Heat into a display, W, whose surface is `display`; `pairing` is that of the scene, or any with that display if
+    /// nothing is presented.
     pub fn load(&mut self, pairing: &Pairing, display: Celsius) -> Watt {
         let Some(before) = self.before else {
             return Watt::ZERO;
@@ -205,12 +220,10 @@ impl Render {
             return Watt::ZERO;
         };
         let force = grip.force.mean();
-        let (at, links) = match grip.links {
-            Some((at, links)) if force.abs_diff(at) <= at >> SAME_SHIFT => (at, links),
-            _ => (force, Links::new(&pairing.under(log2_relative_pressure(force)))),
-        };
-        grip.links = Some((at, links));
-        let drive = self.skin.touch_display(Some(&links), before.skin, display);
+        if !grip.links.as_ref().is_some_and(|links| links.do_for(force)) {
+            grip.links = Some(Links::new(pairing, force));
+        }
+        let drive = self.skin.touch_display(grip.links.as_ref(), before.skin, display);
         // mm2 in 2^-16 and K in 2^-22 to W in 2^-24.
         let area = i64::from(contact_area(force).to_bits());
         let per_mm2 = (i64::from(drive.to_bits()) * i64::from(FLUX_W_MM2K)) >> 30;
@@ -235,13 +248,17 @@ impl Render {
             return only(scene.pairing.interface_temperature(skin, object));
         }
         let apart = skin.saturating_sub(object);
+        if !self.bodies.are_of(&scene.pairing) {
+            self.bodies = Bodies::new(&scene.pairing);
+        }
+        let bodies = &self.bodies;
         let Some(grip) = &mut self.grip else {
             self.touching = None;
             if !live {
                 return only(scene.pairing.preset(skin, object));
             }
-            self.skin.touch_object(None, &scene.bodies, apart);
-            let setpoint = self.skin.display(&scene.bodies, skin, apart, false);
+            self.skin.touch_object(None, bodies, apart);
+            let setpoint = self.skin.display(bodies, skin, apart, false);
             return Some(Wanted {
                 setpoint,
                 target: setpoint.saturating_sub(landing(skin, setpoint)),
@@ -259,6 +276,7 @@ impl Render {
                 elapsed,
                 same: Force::ZERO..=Force::ZERO,
                 course: None,
+                due: false,
             }
         });
         if fresh {
@@ -271,33 +289,38 @@ impl Render {
             touching.elapsed += 1;
         }
         if live {
-            let links = grip.links.as_ref().map(|(_, links)| links);
-            self.skin.touch_object(links, &scene.bodies, apart);
+            self.skin.touch_object(grip.links.as_ref(), bodies, apart);
         }
         let closed = grip.steady || !live;
+        let new = grip.change == Change::New;
         let same = !grip.force.is_better() || touching.same.contains(&grip.force.mean());
-        let setpoint = match &mut touching.course {
-            Some(course) if closed && grip.change == Change::Noise && same => {
+        if !closed || (new && live) {
+            touching.course = None;
+        }
+        let due = touching.due && closed && !new;
+        touching.due = closed && (grip.change != Change::Noise || !same || due || touching.course.is_none());
+        let known = due && grip.contact_in_use().is_some();
+        if touching.due && !known {
+            grip.use_mean(&scene.pairing);
+        }
+        // While the skin is followed, not both in one tick.
+        let setpoint = match (grip.contact_in_use(), &mut touching.course) {
+            (Some(contact), course) if touching.due && (known || !live) => {
+                let (laid, evaluations) = Course::new(contact, skin, object, touching.elapsed, TOLERANCE);
+                self.evaluations = self.evaluations.wrapping_add(evaluations);
+                touching.same = all_the_same(grip.force.in_use(), laid.gain());
+                touching.due = false;
+                course.insert(laid).setpoint()
+            }
+            (_, Some(course)) => {
                 let setpoint = course.advance();
                 self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
                 setpoint
             }
-            course if closed => {
-                let force = grip.force.take();
-                let contact = scene.pairing.under(log2_relative_pressure(force));
-                let (laid, evaluations) = Course::new(&contact, skin, object, touching.elapsed, TOLERANCE);
-                self.evaluations = self.evaluations.wrapping_add(evaluations);
-                touching.same = all_the_same(force, laid.gain());
-                *course = Some(laid);
-                laid.setpoint()
-            }
-            course => {
-                *course = None;
-                self.skin.display(&scene.bodies, skin, apart, true)
-            }
+            (_, None) => self.skin.display(bodies, skin, apart, true),
         };
         let correction = match (&grip.links, live) {
-            (Some((_, links)), true) => self.skin.correction(links),
+            (Some(links), true) => self.skin.correction(links),
             _ => Celsius::ZERO,
         };
         let target = setpoint.saturating_add(correction);

@@ -4,7 +4,12 @@
 //! them follow Eq. 6-12 where its closed form does not hold (a changing force, a second contact), the finger's load on
 //! the display, and what is missing when the skin is not where it should be.
 
-use contact_model::fixed_point::{Celsius, Contact, Fraction, HalfOrder, Link, Pairing, Ratio};
+use contact_model::fixed_point::{
+    Celsius, Contact, Force, Fraction, HalfOrder, Link, Pairing, Ratio, log2_relative_pressure,
+};
+
+/// Part of a force, as a power of two, by which it changes nothing that the skin could tell.
+const SAME_SHIFT: u32 = 10;
 
 /// The two skins, and the object under one of them.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -16,26 +21,43 @@ pub struct Skin {
     drive: Celsius,
 }
 
-/// How the skin touches.
+/// How the skin touches under a force.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Links {
+    force: Force,
+    contact: Contact,
     display: Link,
     object: Link,
 }
 
 impl Links {
-    /// Under a force.
+    /// Of a pairing.
     #[must_use]
-    pub fn new(contact: &Contact) -> Self {
+    pub fn new(pairing: &Pairing, force: Force) -> Self {
+        let contact = pairing.under(log2_relative_pressure(force));
         Self {
+            force,
+            contact,
             display: contact.on_display(),
             object: contact.on_object(),
         }
     }
+
+    /// Whether they do for a force: the skin could not tell it from theirs.
+    #[must_use]
+    pub fn do_for(&self, force: Force) -> bool {
+        force.abs_diff(self.force) <= self.force >> SAME_SHIFT
+    }
+
+    /// Their contact, if it is that under exactly this force.
+    #[must_use]
+    pub fn contact_under(&self, force: Force) -> Option<&Contact> {
+        (force == self.force).then_some(&self.contact)
+    }
 }
 
-/// The materials between which heat flows, and where they were before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// The materials between which heat flows; none between those of the default, whatever the inverse says.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Bodies {
     /// `e_object / (e_object + e_skin)`.
     weight: Fraction,
@@ -56,6 +78,12 @@ impl Bodies {
             ratio: pairing.ratio(),
         }
     }
+
+    /// Whether they are those of a pairing.
+    #[must_use]
+    pub fn are_of(&self, pairing: &Pairing) -> bool {
+        self.weight == pairing.weight() && self.ratio == pairing.ratio()
+    }
 }
 
 fn limited(bits: i64) -> Celsius {
@@ -65,7 +93,7 @@ fn limited(bits: i64) -> Celsius {
 impl Skin {
     /// A new object, at rest; the skin stays as it is.
     pub fn forget_object(&mut self) {
-        self.on_object = self.on_display;
+        self.on_object = self.on_display.out_of_step();
         self.drive = Celsius::ZERO;
     }
 

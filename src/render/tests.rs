@@ -32,7 +32,6 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
     let object_c = Celsius::from_num(OBJECT_C);
     let scene = Scene {
         pairing,
-        bodies: Bodies::new(&pairing),
         object: Some(object_c),
         mode: Mode::ContactResistance,
     };

@@ -10,6 +10,8 @@ pub use correction::{Calibrated, Polynomial, Steps};
 pub use force::{ForceScale, Touch};
 pub use thermistor::{SensorFault, Thermistor};
 
+use core::array;
+
 use contact_model::fixed_point::{Celsius, Force};
 
 use crate::drive::Current;
@@ -127,7 +129,15 @@ pub struct Sensors {
     force: ForceScale,
     /// Current of one unit of the sum, in 2^-24 A.
     current_per_unit: i32,
+    /// What the slow thermistors said when it was last their turn.
+    slow: Option<[Celsius; SLOW]>,
+    /// Whose turn it is.
+    turn: usize,
 }
+
+/// Skin and room move by less than a millikelvin in two ticks, and no limit depends on them, so they are converted in
+/// turn. Whether their wires are whole is looked at on every tick.
+const SLOW: usize = 2;
 
 impl Sensors {
     /// `f64`, once.
@@ -139,6 +149,8 @@ impl Sensors {
             calibrated: Calibrated::new(settings),
             force: ForceScale::new(&settings.force),
             current_per_unit: Current::saturating_from_num(per_unit).to_bits(),
+            slow: None,
+            turn: 0,
         }
     }
 
@@ -156,19 +168,37 @@ impl Sensors {
 
     /// Converts the samples of one tick.
     #[must_use]
-    pub fn read(&self, samples: &Samples) -> Readings {
+    pub fn read(&mut self, samples: &Samples) -> Readings {
         let Calibrated { steps, polynomials } = &self.calibrated;
-        let [display, display_check, sink, skin, room] = polynomials;
+        let [display, display_check, sink, slow_corrections @ ..] = polynomials;
+        let thermistor = &self.thermistor;
         let temperature = |sum, correction: &Polynomial| {
-            let reached = self.thermistor.temperature(sum, steps.without(sum))?;
+            let reached = thermistor.temperature(sum, steps.without(sum))?;
             Ok(correction.apply(reached))
         };
+        let sums = [samples.skin, samples.room];
+        let slow = if let Some(before) = &mut self.slow {
+            let turn = self.turn % SLOW;
+            self.turn = turn + 1;
+            if let Ok(now) = temperature(sums[turn], &slow_corrections[turn]) {
+                before[turn] = now;
+            }
+            let before = *before;
+            array::from_fn(|i| thermistor::connected(sums[i]).map(|()| before[i]))
+        } else {
+            let all = array::from_fn(|i| temperature(sums[i], &slow_corrections[i]));
+            if let [Ok(skin), Ok(room)] = all {
+                self.slow = Some([skin, room]);
+            }
+            all
+        };
+        let [skin, room] = slow;
         Readings {
             display: temperature(samples.display, display),
             display_check: temperature(samples.display_check, display_check),
             sink: temperature(samples.sink, sink),
-            skin: temperature(samples.skin, skin),
-            room: temperature(samples.room, room),
+            skin,
+            room,
             force: self.force.force(samples.force),
             current: Current::from_bits(self.current_per_unit.saturating_mul(i32::from(samples.current))),
             bridge_fault: samples.bridge_fault,

@@ -15,6 +15,18 @@ pub(super) const fn is_at_an_end(code: u16) -> bool {
     code < SHORT_BELOW / 16 || code > OPEN_ABOVE / 16
 }
 
+/// Whether a sum is that of a thermistor.
+///
+/// # Errors
+/// Open or shorted.
+pub(super) const fn connected(sum: u16) -> Result<(), SensorFault> {
+    match sum {
+        ..SHORT_BELOW => Err(SensorFault::Short),
+        SHORT_BELOW..=OPEN_ABOVE => Ok(()),
+        _ => Err(SensorFault::Open),
+    }
+}
+
 /// Equal parts of the range of sums, as a power of two.
 const PARTS_SHIFT: u32 = 6;
 const PARTS: usize = 1 << PARTS_SHIFT;
@@ -57,21 +69,15 @@ impl Thermistor {
     /// # Errors
     /// Open or shorted, by the sum itself.
     pub fn temperature(&self, sum: u16, fine: u32) -> Result<Celsius, SensorFault> {
-        if sum < SHORT_BELOW {
-            return Err(SensorFault::Short);
-        }
-        if sum > OPEN_ABOVE {
-            return Err(SensorFault::Open);
-        }
+        connected(sum)?;
         let position_bits = u16::BITS + FINE_BITS - PARTS_SHIFT;
         // From 0 to 1/2, in 2^-32.
         let position = i64::from(fine & ((1 << position_bits) - 1)) << (u32::BITS - 1 - position_bits);
         // Steps are small beside what lies between the ends of the range and those of its last parts.
         let [constant, rest @ ..] = self.parts[(fine >> position_bits) as usize % PARTS];
-        let change = rest
-            .iter()
-            .rev()
-            .fold(0i32, |sum, &c| ((i64::from(sum.saturating_add(c)) * position) >> 32) as i32);
+        let change = rest.iter().rev().fold(0i32, |sum, &c| {
+            ((i64::from(sum.saturating_add(c)) * position) >> 32) as i32
+        });
         Ok(Celsius::from_bits(constant.saturating_add(change)))
     }
 }

@@ -9,52 +9,85 @@
 //!
 //! with an integrator for what is slower than all of them and a direct part for what is faster than a tick.
 //!
+//! The fast relaxations are stepped in every tick. The slow ones are stepped once in a *window* of [`WINDOW`] ticks,
+//! with the sum of its drives; within it their sum follows a straight line, and is then summed afresh.
+//!
 //! Two half-spaces that touch share their flux, and so one sum serves both: their surfaces move in the ratio of
 //! their effusivities, in opposite directions.
 
-use super::{Celsius, Contact, Rate};
+mod link;
 
-/// Relaxations, with rates of `2^-(2 k + 1)` a tick, and the integrator.
-const PARTS: usize = 11;
+pub use link::Link;
 
-/// One relaxation over one tick.
-struct Part {
-    /// Part of a drive that it takes up, in 2^-32.
+use super::Celsius;
+
+/// Relaxations `k`, with rates `r` of `2^-(2 k + 1)` a tick, that are fast: `k` from 0.
+const FAST: usize = 5;
+/// Slow ones after them, and the integrator.
+const SLOW: usize = 6;
+/// Ticks in which a slow relaxation is stepped once.
+const WINDOW: u32 = 8;
+
+/// A fast relaxation, in one tick.
+struct Fast {
+    /// Part of a drive that it takes up, `g = (ln 4 / pi) (1 - e^-r) / sqrt(r)`, in 2^-32.
     given: i32,
-    /// Part of itself that it loses, in 2^-32.
+    /// Part of itself that it loses, `1 - e^-r`, in 2^-32.
     lost: i32,
-    /// Part of itself that it loses in [`AHEAD_TICKS`], in 2^-30.
-    lost_ahead: i32,
+    /// Part of itself that it still has when [`HalfOrder::drive_to`] looks, `e^(-19 r)`, in 2^-31.
+    kept_ahead: i32,
 }
 
-const fn part(given: i32, lost: i32, lost_ahead: i32) -> Part {
-    Part {
+/// A slow relaxation, in one window.
+struct Slow {
+    /// Part of each of its drives that it takes up, in 2^-32: `g` times the mean of `e^(r j)`, `j` from 0 to 7,
+    /// because a drive loses only for what is left of the window.
+    given: i32,
+    /// Part of itself that it loses, `1 - e^(-8 r)`, in 2^-32.
+    lost: i32,
+}
+
+const fn fast(given: i32, lost: i32, kept_ahead: i32) -> Fast {
+    Fast {
         given,
         lost,
-        lost_ahead,
+        kept_ahead,
     }
 }
 
-const PART: [Part; PARTS] = [
-    part(1_054_608_677, 1_689_937_949, 1_073_693_077),
-    part(629_882_806, 504_671_961, 985_603_728),
-    part(329_854_396, 132_142_252, 499_009_242),
-    part(166_864_942, 33_423_701, 155_321_772),
-    part(83_677_061, 8_380_421, 41_134_391),
-    part(41_869_179, 2_096_640, 10_434_726),
-    part(20_938_423, 524_256, 2_618_243),
-    part(10_469_691, 131_070, 655_160),
-    part(5_234_905, 32_768, 163_828),
-    part(2_617_460, 8_192, 40_959),
-    part(2_670_177, 0, 0),
+const FAST_PARTS: [Fast; FAST] = [
+    fast(1_054_608_677, 1_689_937_949, 160_743),
+    fast(629_882_806, 504_671_961, 199_747_095),
+    fast(329_854_396, 132_142_252, 1_185_953_106),
+    fast(166_864_942, 33_423_701, 1_851_246_619),
+    fast(83_677_061, 8_380_421, 2_069_252_406),
 ];
 
-/// How far ahead [`HalfOrder::ahead`] looks.
+const fn slow(given: i32, lost: i32) -> Slow {
+    Slow { given, lost }
+}
+
+const SLOW_PARTS: [Slow; SLOW] = [
+    slow(41_940_820, 16_744_491),
+    slow(20_947_371, 4_192_257),
+    slow(10_470_809, 1_048_448),
+    slow(5_235_045, 262_136),
+    slow(2_617_478, 65_536),
+    // The integrator: the integral of the sum above over all that is slower, `(2 / pi) sqrt(2^-20)`.
+    slow(2_670_177, 0),
+];
+/// What all slow parts have of a tick's drive when the next begins, the sum of `g e^-r`, in 2^-32.
+const SLOW_GIVEN: i32 = 83_776_476;
+
+/// How far ahead [`HalfOrder::drive_to`] looks.
 pub const AHEAD_TICKS: u32 = 20;
-/// What a drive of one kelvin moves the surface by in one tick, 1.183, in 2^-20.
-const GAIN: u64 = 1_240_955;
-/// The inverse of what a lasting drive of one kelvin moves it by in [`AHEAD_TICKS`], 1 / 5.060, in 2^-32.
-const PER_GAIN_AHEAD: i64 = 848_763_970;
+/// The inverse of what a lasting drive of one kelvin moves the surface by in [`AHEAD_TICKS`], 1 / 5.060, in 2^-32.
+const PER_GAIN_AHEAD: i32 = 848_763_970;
+/// What a drive of one kelvin moves the surface by in one tick, in 2^-20: the sum of all `g`, and `2 / pi` for what is
+/// faster than a tick.
+const GAIN: u32 = 1_240_954;
+/// Its binary places.
+const GAIN_BITS: u32 = 20;
 /// Binary places of a part below those of [`Celsius`].
 const BELOW: u32 = 32;
 
@@ -62,13 +95,26 @@ const BELOW: u32 = 32;
 ///
 /// Its input is the *drive* `q sqrt(dt) / e`, in K. Under a constant drive the surface moves within 5 % of the
 /// half-space in the first tick, 1.2 % in the second, 0.4 % from 10 to 6e4 ticks; what it leaves after 6e4 ticks is
-/// within 0.6 % of what was (`cargo test -p contact-model half_order`). No input makes it overflow: it saturates.
+/// within 0.6 % of what was (`cargo test -p contact-model half_order`). No input makes it overflow: a drive beyond
+/// ±32 K, more than any contact gives, counts as that, and the surface saturates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HalfOrder {
-    /// K, 54 binary places.
-    parts: [i64; PARTS],
+    /// What each has at the end of the coming tick if nothing flows, K, 54 binary places. As the drive is bounded,
+    /// none leaves ±320 K.
+    fast: [i64; FAST],
+    /// What each had when the window began, likewise. They saturate at ±256 K.
+    slow: [i64; SLOW],
+    /// Their sum.
+    slow_sum: Celsius,
+    /// What it has changed by since, and what it loses in a tick, K, 54 binary places.
+    since: i64,
+    loss: i64,
+    /// Sum of the window's drives, in those of [`Celsius`].
+    drives: i32,
+    /// Ticks of the window, and those of them that are to come.
+    window: u32,
+    to_come: u32,
     left: Celsius,
-    ahead: Celsius,
 }
 
 impl Default for HalfOrder {
@@ -77,15 +123,53 @@ impl Default for HalfOrder {
     }
 }
 
+/// `a b`: one instruction with the sum that it goes into.
+const fn product(a: i32, b: i32) -> i64 {
+    a as i64 * b as i64
+}
+
+/// A part, in the binary places of [`Celsius`].
+const fn high(part: i64) -> i32 {
+    (part >> BELOW) as i32
+}
+
+/// A part within ±256 K, to which a window's drives can be added.
+fn limited(part: i64) -> i64 {
+    const LIMIT: i32 = Celsius::const_from_int(256).to_bits();
+    let size = high(part).clamp(-LIMIT, LIMIT - 1);
+    i64::from(size) << BELOW | (part & ((1 << BELOW) - 1))
+}
+
+/// A drive within ±32 K.
+fn bounded(drive: Celsius) -> i32 {
+    const BOUND: i32 = Celsius::const_from_int(32).to_bits();
+    drive.to_bits().clamp(-BOUND, BOUND - 1)
+}
+
 impl HalfOrder {
     /// No flux for ever.
     #[must_use]
     pub const fn at_rest() -> Self {
         Self {
-            parts: [0; PARTS],
+            fast: [0; FAST],
+            slow: [0; SLOW],
+            slow_sum: Celsius::ZERO,
+            since: 0,
+            loss: 0,
+            drives: 0,
+            window: WINDOW,
+            to_come: WINDOW,
             left: Celsius::ZERO,
-            ahead: Celsius::ZERO,
         }
+    }
+
+    /// The same surface, whose windows end half a window apart from this one's: two that are stepped together then
+    /// never have a long tick together.
+    #[must_use]
+    pub fn out_of_step(&self) -> Self {
+        let mut other = *self;
+        other.end_window((self.to_come + WINDOW / 2 - 1) % WINDOW + 1);
+        other
     }
 
     /// Where the surface is at the end of the coming tick if nothing flows in it.
@@ -94,114 +178,67 @@ impl HalfOrder {
         self.left
     }
 
-    /// Where it is [`AHEAD_TICKS`] later if nothing flows.
-    #[must_use]
-    pub const fn ahead(&self) -> Celsius {
-        self.ahead
-    }
-
     /// Where the surface is at the end of a tick in which `drive` flows.
     #[must_use]
     pub fn after(&self, drive: Celsius) -> Celsius {
-        let moved = (i64::from(drive.to_bits()) * GAIN as i64) >> 20;
+        let moved = product(bounded(drive), GAIN as i32) >> GAIN_BITS;
         self.left.saturating_add(Celsius::from_bits(moved as i32))
     }
 
     /// Lets a drive flow for one tick.
     pub fn step(&mut self, drive: Celsius) {
-        let drive = i64::from(drive.to_bits());
-        let (mut sum, mut lost, mut lost_ahead) = (0i64, 0i64, 0i64);
-        for (state, part) in self.parts.iter_mut().zip(&PART) {
-            let change = drive * i64::from(part.given) - (*state >> BELOW) * i64::from(part.lost);
-            *state = state.saturating_add(change);
-            let high = *state >> BELOW;
-            sum = sum.saturating_add(high);
-            lost += high * i64::from(part.lost);
-            lost_ahead += high * i64::from(part.lost_ahead);
+        let drive = bounded(drive);
+        let mut left = Celsius::ZERO;
+        for (state, part) in self.fast.iter_mut().zip(&FAST_PARTS) {
+            *state += product(drive, part.given);
+            *state += product(high(*state), -part.lost);
+            left = left.saturating_add(Celsius::from_bits(high(*state)));
         }
-        let limit = |sum: i64| Celsius::from_bits(sum.clamp(i32::MIN.into(), i32::MAX.into()) as i32);
-        self.left = limit(sum - (lost >> BELOW));
-        self.ahead = limit(sum - (lost_ahead >> (BELOW - 2)));
+        self.drives += drive;
+        self.since += product(drive, SLOW_GIVEN) - self.loss;
+        self.to_come -= 1;
+        if self.to_come == 0 {
+            self.end_window(WINDOW);
+        }
+        self.left = left.saturating_add(self.slow_left());
+    }
+
+    /// What is left of the slow parts.
+    const fn slow_left(&self) -> Celsius {
+        self.slow_sum.saturating_add(Celsius::from_bits(high(self.since)))
+    }
+
+    /// Steps the slow parts by those ticks of the window that have been. The next one has `ticks`.
+    fn end_window(&mut self, ticks: u32) {
+        let been = (self.window - self.to_come) as i32;
+        let (mut sum, mut loss) = (Celsius::ZERO, 0i64);
+        for (state, part) in self.slow.iter_mut().zip(&SLOW_PARTS) {
+            *state += product(self.drives, part.given);
+            *state = limited(*state - product(high(*state), part.lost / WINDOW as i32 * been));
+            sum = sum.saturating_add(Celsius::from_bits(high(*state)));
+            loss += product(high(*state), part.lost);
+        }
+        (self.slow_sum, self.since, self.loss) = (sum, 0, loss / i64::from(WINDOW));
+        (self.drives, self.window, self.to_come) = (0, ticks, ticks);
     }
 
     /// The lasting drive that brings this surface in [`AHEAD_TICKS`] to where another one, which has the same drive
     /// besides, will be.
     #[must_use]
     pub fn drive_to(&self, other: &Self) -> Celsius {
-        let apart = i64::from(other.ahead.to_bits()) - i64::from(self.ahead.to_bits());
-        Celsius::from_bits(((apart * PER_GAIN_AHEAD) >> 32) as i32)
-    }
-}
-
-/// A contact resistance in front of a half-space: what flows through it in a tick, for a difference of temperatures.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Link {
-    /// Drive per kelvin between what is in front of the resistance and the surface without this tick's drive, 2^-32.
-    per_k: u32,
-    /// Temperature across the resistance per kelvin of drive, 2^-16.
-    resistance: u32,
-}
-
-/// Binary places of a conductance here.
-const CONDUCTANCE_BITS: u32 = 32;
-/// No contact is as good as this: it would be perfect within 0.2 %.
-const BEST: u64 = 1 << (CONDUCTANCE_BITS + 8);
-
-impl Link {
-    /// Of a conductance (drive per kelvin across it, 32 binary places) that is divided by `by` (likewise).
-    fn new(conductance: u64, by: u64) -> Self {
-        let conductance = conductance.min(BEST);
-        let resistance_and_gain = by.saturating_add((GAIN * conductance) >> 20);
-        let per_k = (conductance << 24) / (resistance_and_gain >> 8).max(1);
-        let resistance = (by << 16).checked_div(conductance).unwrap_or(u64::MAX);
-        Self {
-            per_k: per_k.min(u64::from(u32::MAX)) as u32,
-            resistance: resistance.min(u64::from(u32::MAX)) as u32,
+        let mut fast = 0;
+        for ((from, to), part) in self.fast.iter().zip(&other.fast).zip(&FAST_PARTS) {
+            fast += product(high(*to).saturating_sub(high(*from)), part.kept_ahead);
         }
-    }
-
-    /// Drive of the coming tick, if `in_front` is what the surface would reach without a resistance.
-    #[must_use]
-    pub fn drive(&self, in_front: Celsius, body: &HalfOrder) -> Celsius {
-        let across = i64::from(in_front.to_bits()) - i64::from(body.left().to_bits());
-        let drive = (across * i64::from(self.per_k)) >> 32;
-        Celsius::from_bits(drive.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
-    }
-
-    /// Temperature across the resistance under a drive.
-    #[must_use]
-    pub fn across(&self, drive: Celsius) -> Celsius {
-        let across = (i64::from(drive.to_bits()) * i64::from(self.resistance)) >> 16;
-        Celsius::from_bits(across.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
-    }
-}
-
-/// `32` binary places; saturates at [`BEST`].
-fn scaled(rate: Rate) -> u64 {
-    let bits = 1 << 32 | u64::from(rate.fraction());
-    match rate.exponent() {
-        e @ 0..8 => bits << e,
-        8.. => BEST,
-        e => bits.checked_shr(e.unsigned_abs()).unwrap_or(0),
-    }
-}
-
-impl Contact {
-    /// The skin on the object, with both bodies as one: `in_front` is `w (T_skin,i - T_object,i)`, and what moves is
-    /// the skin, downwards.
-    #[must_use]
-    pub fn on_object(&self) -> Link {
-        Link::new(scaled(self.per_root_tick), 1 << CONDUCTANCE_BITS)
-    }
-
-    /// The skin on the display: `in_front` is `T_skin,i - T_display`.
-    #[must_use]
-    pub fn on_display(&self) -> Link {
-        let weight = u64::from(self.weight.to_bits() >> 8);
-        Link::new(
-            (weight * scaled(self.per_root_tick)) >> 24,
-            u64::from(self.ratio.to_bits()) << 4,
-        )
+        // The slow parts go on along their straight line.
+        let lost = (other.loss - self.loss) * i64::from(AHEAD_TICKS - 1);
+        let slow = other.slow_left().saturating_sub(self.slow_left());
+        let half = high(fast);
+        let apart = half
+            .saturating_add(half)
+            .saturating_add(slow.to_bits())
+            .saturating_sub(high(lost));
+        Celsius::from_bits(high(product(apart, PER_GAIN_AHEAD)))
     }
 }
 
