@@ -52,7 +52,7 @@ mod app {
     #[init(local = [memory: Memory = Memory::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let settings = Settings::default();
-        // Takes milliseconds, so it comes before the board starts to sample.
+        // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
         let hand = Hand::new(&settings);
         let board = Board::new(cx.device, cx.local.memory, settings);
         let shared = Shared {

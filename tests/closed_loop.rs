@@ -1,47 +1,117 @@
-//! The release image makes a finger feel copper, ABS and foam, as far as a PI law behind a lagging sensor and sensors
-//! that nobody calibrated let it.
+//! The release image makes a finger feel a material when it lands on the preset display: calibrated and tuned, with the
+//! sensors, converter and noise that it has.
 
 use hil_sim::engine::Image;
 use hil_sim::metrics::figures;
-use system_tests::{between, forces, on_image, scene};
+use hil_sim::run::Outcome;
+use hil_sim::scene::Scene;
+use system_tests::{between, forces, on_image, scene, worst_k};
 
-/// 2 N for 10 s: the display stays within 0.15 °C RMS of the exact set-point.
-#[test]
-fn display_follows_the_set_point_of_each_material() {
-    for material in ["copper", "abs", "foam"] {
-        let scene = scene(material, 12.0, "", &forces(&[(1.0, 2.0), (11.0, 0.0)]));
-        let outcome = on_image(&scene);
-        let figures = figures::<Image>(&scene, &outcome);
-        let (skin, display) = (figures.skin_error_mk.unwrap(), figures.display_error_mk.unwrap());
-        println!(
-            "{material}: skin {:.1} mK after 50 ms, display {:.1} mK RMS",
-            skin.max_after_50ms.unwrap(),
-            display.rms
-        );
-        assert!(display.rms < 150.0, "{material}: display {display:?}");
-        assert!(figures.faults.is_empty(), "{material}: {:?}", figures.faults);
-    }
+const LANDED_S: f64 = 1.0;
+/// People tell cooling pulses apart from 20 mK on.
+const FELT_K: f64 = 0.02;
+/// How far the device's set-point may be from Eq. 6-12 of the true skin and object, from a time after landing on, s: while
+/// the force comes up through its sensor, and what calibration leaves of the others.
+const SETPOINT_K: [(f64, f64); 2] = [(0.01, 0.01), (0.025, 0.002)];
+
+/// 2 N for 10 s.
+fn landing(material: &str) -> (Scene, Outcome) {
+    let scene = scene(material, 11.0, "", &forces(&[(LANDED_S, 2.0)]));
+    let outcome = on_image(&scene);
+    (scene, outcome)
 }
 
-/// Copper cools the finger by 8 K in 10 s, foam hardly; a display that stood still could not do both. What is left is
-/// the finger's load on the patch, which the loop makes up for within seconds.
-#[test]
-fn skin_is_cooled_as_the_material_would() {
-    for material in ["copper", "foam"] {
-        let scene = scene(material, 6.0, "", &forces(&[(0.5, 2.0)]));
-        let outcome = on_image(&scene);
-        for row in between(&outcome, 1.0, 6.0) {
-            let error_k = row.skin_c - row.skin_real_c;
-            assert!(error_k.abs() < 0.3, "{material} at {} s: {error_k} K", row.t_s);
+/// The skin as on the material; the display by as much off Eq. 6-12 as brings the skin there.
+fn feels(material: &str, display_rms_mk: f64) {
+    let (scene, outcome) = landing(material);
+    let figures = figures::<Image>(&scene, &outcome);
+    let (skin_k, display) = (
+        worst_k(&scene, &outcome, 0.05),
+        figures.display_error_mk.expect("contact"),
+    );
+    println!(
+        "{material}: skin {:.1} mK after 50 ms, display {:.1} mK RMS",
+        1e3 * skin_k,
+        display.rms
+    );
+    assert!(skin_k <= FELT_K, "{material}: skin {skin_k} K");
+    assert!(display.rms < display_rms_mk, "{material}: display {display:?}");
+    assert!(figures.faults.is_empty(), "{material}: {:?}", figures.faults);
+    follows_equation_6_12(&scene, &outcome);
+    follows_golden_values(material, &outcome);
+}
+
+/// The set-point of every tick, against the equation in `f64`.
+fn follows_equation_6_12(scene: &Scene, outcome: &Outcome) {
+    for (from_s, allowed_k) in SETPOINT_K {
+        let mut worst_k = 0.0f64;
+        for row in between(outcome, LANDED_S + from_s, 11.0) {
+            let device = row.device.as_ref().expect("telemetry of every tick");
+            let exact_c = scene.exact_setpoint_c(row.t_s - LANDED_S, row.force_n);
+            let error_k = device.setpoint_c.expect("a set-point in contact") - exact_c;
+            assert_eq!(
+                (device.state.as_str(), device.remark.as_deref()),
+                ("contact", None)
+            );
+            worst_k = worst_k.max(error_k.abs());
         }
+        println!(
+            "set-point off Eq. 6-12 by {:.2} mK from {from_s} s on",
+            1e3 * worst_k
+        );
+        assert!(worst_k < allowed_k, "set-point {worst_k} K from {from_s} s on");
     }
 }
 
-/// The device knows skin and force from its sensors only: up to 1.5 counts of non-linearity, 0.04 K, and leads that
-/// cool the skin's thermistor by 0.1 K.
+/// And against its values to 30 digits.
+fn follows_golden_values(material: &str, outcome: &Outcome) {
+    let mut seen = 0;
+    for line in include_str!("../model/tests/data/contact.csv").lines() {
+        let fields: Vec<&str> = line.split(',').collect();
+        if (fields[0], fields[1], fields[5]) != (material, "val_2N", "24") {
+            continue;
+        }
+        let [since_s, exact_c]: [f64; 2] = [8, 14].map(|i| fields[i].parse().expect("a number"));
+        if !(0.1..10.0).contains(&since_s) {
+            continue;
+        }
+        let row = between(outcome, LANDED_S + since_s - 1e-6, 11.0)
+            .next()
+            .expect("a row");
+        let setpoint_c = row.device.as_ref().and_then(|device| device.setpoint_c);
+        let error_k = setpoint_c.expect("a set-point in contact") - exact_c;
+        assert!(error_k.abs() < 0.002, "{material} after {since_s} s: {error_k} K");
+        seen += 1;
+    }
+    assert!(seen >= 4, "{material}: {seen} golden values");
+}
+
 #[test]
-fn set_point_is_equation_6_12_of_what_the_device_measures() {
-    let scene = scene("granite", 6.0, "", &forces(&[(0.5, 1.0)]));
+fn copper_is_felt() {
+    feels("copper", 15.0);
+}
+
+#[test]
+fn granite_is_felt() {
+    feels("granite", 8.0);
+}
+
+#[test]
+fn abs_is_felt() {
+    feels("abs", 4.0);
+}
+
+#[test]
+fn foam_is_felt() {
+    feels("foam", 8.0);
+}
+
+/// A device that nobody calibrated or tuned knows skin and force to its parts' tolerances only: up to 1.5 counts of
+/// non-linearity, 0.04 K, and leads that cool the skin's thermistor by 0.1 K.
+#[test]
+fn uncommissioned_set_point_is_equation_6_12_of_what_the_device_measures() {
+    let tables = "[device]\ncommissioned = false\n".to_owned() + &forces(&[(0.5, 1.0)]);
+    let scene = scene("granite", 6.0, "", &tables);
     let outcome = on_image(&scene);
     for row in between(&outcome, 0.52, 6.0) {
         let device = row.device.as_ref().expect("telemetry of every tick");
@@ -49,29 +119,5 @@ fn set_point_is_equation_6_12_of_what_the_device_measures() {
         let error_k = device.setpoint_c.expect("a set-point in contact") - exact_c;
         assert_eq!(device.state, "contact");
         assert!(error_k.abs() < 0.06, "at {} s: {error_k} K", row.t_s);
-    }
-}
-
-/// An object that appears under a resting finger: neutral before, then Eq. 6-12 from that moment on.
-#[test]
-fn object_appears_under_a_resting_finger() {
-    let text = "appears_t_s = 2.0\n".to_owned() + &forces(&[(0.5, 2.0)]);
-    let scene = scene("abs", 5.0, "", &text);
-    let outcome = on_image(&scene);
-    for row in between(&outcome, 0.6, 2.0) {
-        assert!(
-            (row.skin_c - 34.0).abs() < 0.1,
-            "neutral at {} s: {}",
-            row.t_s,
-            row.skin_c
-        );
-        assert_eq!(
-            row.device.as_ref().map(|device| device.state.as_str()),
-            Some("armed")
-        );
-    }
-    for row in between(&outcome, 4.0, 5.0) {
-        let error_k = row.skin_c - row.skin_real_c;
-        assert!(error_k.abs() < 0.2, "at {} s: {error_k} K", row.t_s);
     }
 }

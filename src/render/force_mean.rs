@@ -55,6 +55,8 @@ pub(super) struct ForceMean {
 pub(super) enum Change {
     /// The same as before, and noise.
     Noise,
+    /// The mean is not what it was in use for any more: it is better known, or drifts.
+    Moved,
     /// A new force; the mean has started anew.
     New,
 }
@@ -105,7 +107,7 @@ impl ForceMean {
         if self.ticks >= LAST && MOVED.tells(self.recent, self.in_use) {
             self.mean = self.recent;
             self.ticks = LAST;
-            return Change::New;
+            return Change::Moved;
         }
         Change::Noise
     }

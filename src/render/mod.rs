@@ -27,6 +27,10 @@ const FILTER_SHIFT: u32 = 8;
 const RESTED_TICKS: u32 = 2000;
 /// A force may still rise for this many ticks after landing and count as constant.
 const SETTLED_TICKS: u64 = 16;
+/// The mean of a constant force has forgotten its rise after this many ticks, and then stays within this part of itself,
+/// as a power of two.
+const MEAN_TICKS: u64 = 64;
+const CONSTANT_SHIFT: u32 = 6;
 /// A display this far from its preset at landing was not in time.
 const LATE: Celsius = Celsius::lit("0.1");
 /// `e_skin / sqrt(dt)` per mm², W/K in 2^-30: what a drive of one kelvin carries.
@@ -73,6 +77,8 @@ struct Grip {
     change: Change,
     /// The first touch of a rested skin, and its force has not changed since.
     steady: bool,
+    /// Its mean once it had risen.
+    risen: Force,
     /// Ticks since landing.
     elapsed: u64,
     links: Option<Links>,
@@ -159,6 +165,7 @@ impl Render {
                     force: ForceMean::new(force),
                     change: Change::New,
                     steady: self.lifted_ticks >= RESTED_TICKS,
+                    risen: force,
                     elapsed: landed_ticks.into(),
                     links: None,
                 });
@@ -166,7 +173,12 @@ impl Render {
             (Some(force), Some(grip)) => {
                 grip.change = grip.force.update(force);
                 grip.elapsed += 1;
-                grip.steady &= grip.change == Change::Noise || grip.elapsed < SETTLED_TICKS;
+                if grip.elapsed < MEAN_TICKS {
+                    grip.risen = grip.force.mean();
+                }
+                let drifted = grip.force.mean().abs_diff(grip.risen) > grip.risen >> CONSTANT_SHIFT;
+                let changed = grip.change == Change::New && grip.elapsed >= SETTLED_TICKS;
+                grip.steady &= !drifted && !changed;
             }
         }
         self.lifted_ticks = match touch {
@@ -286,7 +298,7 @@ impl Render {
             touching.course = None;
         }
         let due = touching.due && closed && !new;
-        touching.due = closed && (new || !same || due || touching.course.is_none());
+        touching.due = closed && (grip.change != Change::Noise || !same || due || touching.course.is_none());
         let known = due && grip.contact_in_use().is_some();
         if touching.due && !known {
             grip.use_mean(&scene.pairing);

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use hil_sim::World;
 use hil_sim::engine::{Image, Native};
 use hil_sim::machine::Firmware;
+use hil_sim::metrics::skin_errors;
 use hil_sim::run::{Outcome, run};
 use hil_sim::scene::Scene;
 use hil_sim::trace::Row;
@@ -84,6 +85,18 @@ pub fn between(outcome: &Outcome, from_s: f64, to_s: f64) -> impl Iterator<Item 
         .rows()
         .iter()
         .filter(move |row| row.t_s >= from_s && row.t_s < to_s)
+}
+
+/// Largest error of the skin from a time after each landing or appearance on, K.
+///
+/// # Panics
+/// No contact lasts that long.
+#[must_use]
+pub fn worst_k(scene: &Scene, outcome: &Outcome, from_s: f64) -> f64 {
+    // Half a row of slack: times are differences of sums.
+    let late = skin_errors(scene, outcome).filter(|(since_s, _)| *since_s > from_s - 0.5e-3);
+    let errors_k = late.map(|(_, error_k)| error_k.abs());
+    errors_k.reduce(f64::max).expect("contact")
 }
 
 /// Mean of a value over rows.

@@ -2,6 +2,7 @@
 
 mod any_input;
 mod faults;
+mod model_law;
 mod rendering;
 mod states;
 
@@ -29,6 +30,8 @@ struct Bench {
     force_n: f64,
     current_a: f64,
     bridge_fault: bool,
+    /// The display is where the set-point was in the tick before.
+    answers: bool,
     /// The converter's noise: one unit of one sum, every other tick.
     noise: u16,
 }
@@ -47,6 +50,7 @@ impl Bench {
             force_n: 0.0,
             current_a: 0.0,
             bridge_fault: false,
+            answers: false,
             noise: 1,
         };
         assert_eq!(bench.host("stream 1"), "ok");
@@ -106,7 +110,12 @@ impl Bench {
             samples.current += self.noise;
         }
         let drive = self.station.step(&samples);
-        (drive, self.station.telemetry().expect("streamed on every tick"))
+        let telemetry = self.station.telemetry().expect("streamed on every tick");
+        if let (true, Some(setpoint)) = (self.answers, telemetry.setpoint) {
+            self.display_c = setpoint.to_num();
+            self.check_c = self.display_c;
+        }
+        (drive, telemetry)
     }
 
     fn steps(&mut self, ticks: u32) -> (Drive, Telemetry) {

@@ -11,7 +11,7 @@ const DETECTION_S: f64 = 2e-3;
 
 /// Touches with `force_n` for `ticks` from the detected landing on, and compares with Eq. 6-12 on each.
 #[track_caller]
-fn follows_a_contact(bench: &mut Bench, material: &str, object_c: f64, force_n: f64, ticks: u32) {
+pub(super) fn follows_a_contact(bench: &mut Bench, material: &str, object_c: f64, force_n: f64, ticks: u32) {
     bench.force_n = 0.0;
     let preset = bench.contact(material, object_c);
     let preset_c = preset.skin_c - preset.ratio * (preset.skin_c - object_c);

@@ -1,0 +1,124 @@
+//! Gains, and laws, that change while a finger is on the display.
+
+use thermal_display::control::{Law, Tuned};
+use thermal_display::settings::Tile;
+
+use crate::bench::{Bench, FOUND, settings_of};
+
+const TARGET_C: f64 = 26.0;
+
+/// At rest under a load of 1 W, of which the law knows one half.
+fn loaded() -> Bench {
+    let mut bench = Bench::at_rest(0.1, TARGET_C);
+    (bench.load_w, bench.told_w) = (1.0, 0.5);
+    bench.run(TARGET_C, 60.0);
+    bench
+}
+
+/// Current's step in the next tick, A, and largest error of the display in the three seconds after it, K.
+fn disturbed(bench: &mut Bench) -> (f64, f64) {
+    let before_a = bench.current_a;
+    let after = bench.run(TARGET_C, 3.0);
+    let error_k = after.iter().map(|tick| (tick.display_c - TARGET_C).abs());
+    ((after[0].current_a - before_a).abs(), error_k.fold(0.0, f64::max))
+}
+
+fn retune(bench: &mut Bench, tile: Tile) {
+    bench.control.retune(&Tuned::new(&settings_of(tile)));
+}
+
+/// A tile that answers otherwise, as another tuning may find it: nobody feels the change.
+#[test]
+fn other_gains_are_taken_without_a_bump() {
+    for factor in [0.8, 0.9, 1.1, 1.25] {
+        let mut bench = loaded();
+        let tile = Tile {
+            gain_k_s_a: factor * FOUND.gain_k_s_a,
+            ..FOUND
+        };
+        retune(&mut bench, tile);
+        let (step_a, error_k) = disturbed(&mut bench);
+        println!("gain x {factor}: {:.3} mA, {:.3} mK", 1e3 * step_a, 1e3 * error_k);
+        assert!(error_k < 0.02, "{factor}: {error_k} K");
+    }
+}
+
+/// The plain loop's integral stays, and so does its current.
+#[test]
+fn the_plain_loop_takes_other_gains_without_a_bump() {
+    for law in [Law::Pi, Law::Pi10Hz] {
+        for factor in [0.5, 2.0] {
+            let mut bench = loaded();
+            bench.control.select(law);
+            bench.run(TARGET_C, 60.0);
+            let tile = Tile {
+                gain_k_s_a: factor * FOUND.gain_k_s_a,
+                ..FOUND
+            };
+            retune(&mut bench, tile);
+            let (step_a, error_k) = disturbed(&mut bench);
+            println!(
+                "{}, gain x {factor}: {:.3} mA, {:.3} mK",
+                law.name(),
+                1e3 * step_a,
+                1e3 * error_k
+            );
+            assert!(step_a < 5e-3, "{} x {factor}: {step_a} A", law.name());
+            assert!(error_k < 1e-3, "{} x {factor}: {error_k} K", law.name());
+        }
+    }
+}
+
+/// The prediction goes on from where it is, whatever lag it has from now on.
+#[test]
+fn another_lag_is_taken_without_a_bump() {
+    for sensor_lag_s in [0.02, 0.05, 0.2, 0.5] {
+        let mut bench = loaded();
+        retune(
+            &mut bench,
+            Tile {
+                sensor_lag_s,
+                ..FOUND
+            },
+        );
+        let (step_a, error_k) = disturbed(&mut bench);
+        println!(
+            "lag {sensor_lag_s} s: {:.3} mA, {:.3} mK",
+            1e3 * step_a,
+            1e3 * error_k
+        );
+        assert!(step_a < 5e-3, "{sensor_lag_s} s: {step_a} A");
+        assert!(error_k < 1e-3, "{sensor_lag_s} s: {error_k} K");
+    }
+}
+
+/// Another law starts from rest, within the limit, and brings the display back.
+#[test]
+fn another_law_starts_anew_and_comes_back() {
+    for (from, to, most_k) in [
+        (Law::Model, Law::Pi, 0.15),
+        (Law::Model, Law::Pi10Hz, 0.2),
+        (Law::Pi, Law::Model, 0.3),
+        (Law::Pi10Hz, Law::Model, 0.3),
+    ] {
+        let mut bench = Bench::at_rest(0.1, TARGET_C);
+        (bench.load_w, bench.told_w) = (1.0, 1.0);
+        bench.control.select(from);
+        bench.run(TARGET_C, 60.0);
+        let before_a = bench.current_a;
+        bench.control.select(to);
+        let (step_a, error_k) = disturbed(&mut bench);
+        bench.run(TARGET_C, 20.0);
+        let left_k = (bench.display_c() - TARGET_C).abs();
+        println!(
+            "{} to {}: from {before_a:.3} A by {step_a:.3} A, {:.1} mK, {:.3} mK in the end",
+            from.name(),
+            to.name(),
+            1e3 * error_k,
+            1e3 * left_k
+        );
+        assert!(step_a <= 6.0 + before_a.abs(), "{step_a} A from {before_a} A");
+        assert!(error_k < most_k, "{} to {}: {error_k} K", from.name(), to.name());
+        assert!(left_k < 2e-3, "{left_k} K");
+    }
+}

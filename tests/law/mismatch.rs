@@ -1,0 +1,46 @@
+//! Tiles that are not what the law believes.
+
+use hil_sim::plant::tile::TileParams;
+
+use crate::bench::{Bench, settings, swing};
+
+/// The class tile with something larger by a factor.
+type Change = (&'static str, fn(&mut TileParams, f64));
+
+const CHANGES: [Change; 5] = [
+    ("Seebeck coefficient", |tile, factor| tile.vmax_v *= factor),
+    ("resistance", |tile, factor| tile.imax_a /= factor),
+    ("conductance", |tile, factor| tile.dtmax_k /= factor),
+    ("plates", |tile, factor| tile.ceramic_j_m3k *= factor),
+    ("spreading", |tile, factor| tile.ceramic_w_mk *= factor),
+];
+
+/// A load of 1 W of which the law does not know, on a tile that is 10 % another: the loop still ends on its target.
+#[test]
+fn ten_percent_leave_no_steady_error() {
+    for (name, change) in CHANGES {
+        for factor in [0.9, 1.1] {
+            let mut params = TileParams::CLASS;
+            change(&mut params, factor);
+            let mut bench = Bench::new(&settings(0.1), params);
+            bench.run(28.0, 30.0);
+            bench.load_w = 1.0;
+            let first = bench.run(28.0, 60.0);
+            let rest = bench.run(28.0, 10.0);
+            let largest = |ticks: &[crate::bench::Tick]| {
+                let errors = ticks.iter().map(|tick| (tick.display_c - 28.0).abs());
+                errors.fold(0.0, f64::max)
+            };
+            let (disturbed_k, left_k) = (largest(&first), largest(&rest));
+            let current_a = swing(rest.iter().map(|tick| tick.current_a));
+            println!(
+                "{name} x {factor}: {:.1} mK at first, {:.3} mK in the end",
+                1e3 * disturbed_k,
+                1e3 * left_k
+            );
+            assert!(disturbed_k > 0.02, "{name}: the load disturbs by {disturbed_k} K");
+            assert!(left_k < 2e-3, "{name} x {factor}: {left_k} K");
+            assert!(current_a < 0.02, "{name} x {factor}: {current_a} A");
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! The law's plate, step by step beside the simulator's tile.
+//!
+//! A law that wants what it cannot have gives its limit, whatever that is; and a sensor that reads what the law
+//! predicts leaves its model alone. So the model runs open, under a current and a load of the test's choice.
+
+use hil_sim::plant::tile::{Tile, TileParams, ZERO_C_K};
+use thermal_display::control::{Control, Inputs, Watt};
+
+use crate::bench::{ROOM_C, Sensor, celsius, push, setpoint, settings, ticks};
+
+/// Times at which both are compared, s.
+const TIMES_S: [f64; 9] = [0.02, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0, 40.0, 100.0];
+
+/// Both from rest for some seconds, under a current that does not change, A, and a load on the patch, W: time, s, and
+/// what each has moved, K.
+fn moved(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> {
+    const LAG_S: f64 = 0.1;
+    let mut settings = settings(LAG_S);
+    settings.module.current_limit_a = current_a.abs();
+    let mut control = Control::new(&settings);
+    let mut tile = Tile::new(
+        TileParams {
+            // A sink that holds, as the model has it, and no air.
+            sink_j_k: 1e9,
+            film_w_m2k: 0.0,
+            ..TileParams::CLASS
+        },
+        ROOM_C,
+    );
+    let mut predicted = Sensor::new(LAG_S, ROOM_C);
+    let target = setpoint(if current_a > 0.0 { 15.0 } else { 42.0 });
+    let mut answer = Vec::new();
+    for tick in 1..=ticks(seconds) {
+        let inputs = Inputs {
+            setpoint: target,
+            target,
+            display: celsius(predicted.reading_c),
+            sink: celsius(tile.sink_c()),
+            finger: Watt::from_num(load_w),
+        };
+        let given_a: f64 = control.update(&inputs).to_num();
+        push(&mut tile, given_a, load_w);
+        let model_c: f64 = control.legs(inputs.display, inputs.sink).cold.to_num();
+        predicted.follow(model_c);
+        let tile_c = tile.patch_c() + load_w * tile.patch_half_k_w();
+        let t_s = 1e-3 * tick as f64;
+        if TIMES_S.iter().any(|at_s| (at_s - t_s).abs() < 1e-6) {
+            assert!((given_a - current_a).abs() < 2e-3, "{given_a} A at {t_s} s");
+            answer.push((t_s, model_c - ROOM_C, tile_c - ROOM_C));
+        }
+    }
+    answer
+}
+
+/// Whether both are within a part of where the tile is, and some kelvins; says where they are.
+#[must_use]
+fn agree(what: &str, answer: &[(f64, f64, f64)], part: f64, more_k: f64) -> bool {
+    answer.iter().fold(true, |agree, &(t_s, model_k, tile_k)| {
+        let error_k = (model_k - tile_k).abs();
+        println!("{what}, {t_s} s: model {model_k:.4} K, tile {tile_k:.4} K, off by {error_k:.4} K");
+        agree && error_k < more_k + part * tile_k.abs()
+    })
+}
+
+/// Within 3 %, and 3 mK per ampere: what a current does within 20 ms.
+#[test]
+fn a_current_moves_the_model_as_the_tile() {
+    for (current_a, seconds) in [
+        (0.3, 40.0),
+        (3.0, 0.3),
+        (6.0, 0.3),
+        (-0.3, 40.0),
+        (-3.0, 0.3),
+        (-6.0, 0.3),
+    ] {
+        let answer = moved(current_a, 0.0, seconds);
+        assert!(agree(
+            &format!("{current_a} A"),
+            &answer,
+            0.03,
+            3e-3 * current_a.abs()
+        ));
+    }
+}
+
+/// Within 2 % as long as the loop is slower, 11 % while heat spreads over the plate.
+#[test]
+fn a_finger_moves_the_model_as_the_tile() {
+    for load_w in [0.5, 2.0, -1.0] {
+        let answer = moved(1e-3, load_w, 40.0);
+        let (soon, late) = answer.split_at(3);
+        assert!(agree(&format!("{load_w} W"), soon, 0.02, 1e-3));
+        assert!(agree(&format!("{load_w} W"), late, 0.11, 1e-3));
+    }
+}
+
+/// By the equations of a module at rest without load: `a I Tc = I^2 R/2 + K (Th - Tc)`, and the hot side at the sink.
+#[test]
+fn the_model_at_rest_obeys_the_module_equations() {
+    let class = TileParams::CLASS;
+    for current_a in [0.1, -0.1] {
+        let (_, model_k, _) = *moved(current_a, 0.0, 100.0).last().expect("the last time");
+        let cold_k = ZERO_C_K + ROOM_C + model_k;
+        let joule_w = class.resistance_ohm() * current_a * current_a;
+        let pumped_w = class.seebeck_v_k() * current_a * cold_k - 0.5 * joule_w;
+        let expected_k = -pumped_w / class.conductance_w_k();
+        println!("{current_a} A: model {model_k:.4} K, module {expected_k:.4} K");
+        assert!(
+            (model_k / expected_k - 1.0).abs() < 0.02,
+            "{model_k} K, {expected_k} K"
+        );
+    }
+}

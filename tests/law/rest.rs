@@ -1,0 +1,30 @@
+//! At rest nothing swings.
+
+use crate::bench::{Bench, swing};
+
+/// Ten seconds of rest, sensors of any lag, with heat from a finger or without.
+#[test]
+fn no_limit_cycle_at_rest() {
+    for lag_s in [0.02, 0.1, 0.5] {
+        for (target_c, load_w) in [(24.0, 0.0), (34.0, 0.0), (20.0, 1.0), (41.0, -0.5)] {
+            let mut bench = Bench::at_rest(lag_s, target_c);
+            (bench.load_w, bench.told_w) = (load_w, load_w);
+            bench.run(target_c, 120.0);
+            let rest = bench.run(target_c, 10.0);
+            let display_k = swing(rest.iter().map(|tick| tick.display_c));
+            let current_a = swing(rest.iter().map(|tick| tick.current_a));
+            let (first, last) = (rest[0].display_c, bench.display_c());
+            println!(
+                "lag {lag_s} s at {target_c} C, {load_w} W: display {:.4} mK, current {:.3} mA, off by {:.4} mK",
+                1e3 * display_k,
+                1e3 * current_a,
+                1e3 * (last - target_c)
+            );
+            assert!(display_k < 1e-3, "{lag_s} s, {target_c} C: {display_k} K");
+            assert!(current_a < 5e-3, "{lag_s} s, {target_c} C: {current_a} A");
+            for (when, t_c) in [("before", first), ("after", last)] {
+                assert!((t_c - target_c).abs() < 1e-3, "{when}, {target_c} C: {t_c}");
+            }
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! The release image at the ends of its range: warm objects, cool and warm skin, and what is too warm to be shown.
+
+use hil_sim::fidelity::Scenario;
+use hil_sim::run::Outcome;
+use hil_sim::scene::Scene;
+use system_tests::{between, forces, host, on_image, scene, worst_k};
+use thermal_display::control::Law;
+
+/// A case of the scenario of things unseen.
+fn unseen(name: &str) -> (Scene, Outcome) {
+    let mut cases = Scenario::Unseen.cases().into_iter();
+    let case = cases.find(|case| case.name == name).expect(name);
+    let scene = case.scene(Law::default(), 1, &[]).expect("a good scene");
+    let outcome = on_image(&scene);
+    (scene, outcome)
+}
+
+fn feels(name: &str) {
+    let (scene, outcome) = unseen(name);
+    let skin_k = worst_k(&scene, &outcome, 0.05);
+    println!("{name}: skin {:.1} mK after 50 ms", 1e3 * skin_k);
+    assert!(skin_k <= 0.02, "{name}: {skin_k} K");
+    for row in between(&outcome, 1.01, 11.0) {
+        let device = row.device.as_ref().expect("telemetry of every tick");
+        let said = (device.state.as_str(), device.remark.as_deref());
+        assert_eq!(said, ("contact", None), "{name} at {} s", row.t_s);
+    }
+}
+
+#[test]
+fn copper_of_41_c_is_felt() {
+    feels("copper of 41 C");
+}
+
+#[test]
+fn a_skin_of_28_c_feels_copper() {
+    feels("copper, skin 28 C");
+}
+
+#[test]
+fn a_skin_of_36_c_feels_granite() {
+    feels("granite, skin 36 C");
+}
+
+/// A bar that would burn: the display stops at 42 °C, says so, and the contact goes on.
+#[test]
+fn a_bar_of_44_c_is_limited_and_says_so() {
+    const LIMIT_C: f64 = 42.0;
+    let tables = forces(&[(1.0, 2.0)]) + &host(&[(5.0, "state")]);
+    let mut scene = scene("copper", 11.0, "", &tables);
+    // The device is told the truth.
+    scene.object.start_c = Some(44.0);
+    let outcome = on_image(&scene);
+    let mut warmest_c = f64::NEG_INFINITY;
+    for row in outcome.trace.rows() {
+        let device = row.device.as_ref().expect("telemetry of every tick");
+        let state = if row.t_s < 1.0 { "preset" } else { "contact" };
+        if !(1.0..1.01).contains(&row.t_s) {
+            let said = (device.state.as_str(), device.remark.as_deref());
+            assert_eq!(said, (state, Some("limited")), "at {} s", row.t_s);
+            assert_eq!(device.setpoint_c, Some(LIMIT_C), "at {} s", row.t_s);
+        }
+        assert!(row.skin_c < LIMIT_C, "skin {} C at {} s", row.skin_c, row.t_s);
+        warmest_c = warmest_c.max(row.display_c);
+    }
+    println!("display {warmest_c:.3} C at most");
+    assert!(warmest_c < LIMIT_C + 0.03, "display {warmest_c} C");
+    let said = outcome.answers.last().map(|(_, line)| line.as_str());
+    let state =
+        "ok state=contact fault=- material=copper object_c=44.00 mode=contact setpoint_c=42.00 limited";
+    assert_eq!(said, Some(state));
+}
