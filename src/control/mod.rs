@@ -57,6 +57,8 @@ pub struct Control {
     pi_10hz: Pi,
     pi: Pi,
     two_degrees: TwoDegrees,
+    /// Current of the last tick.
+    last: Current,
 }
 
 /// What a law goes by in one tick.
@@ -85,6 +87,7 @@ impl Control {
             pi_10hz: Pi::new(tuned.pi_10hz, limit),
             pi: Pi::new(tuned.pi, limit),
             two_degrees: TwoDegrees::new(tuned, limit),
+            last: Current::ZERO,
         }
     }
 
@@ -101,11 +104,11 @@ impl Control {
         self.law
     }
 
-    /// Uses another law, from rest.
+    /// Uses another law, which goes on with the current that flows.
     pub fn select(&mut self, law: Law) {
         if law != self.law {
             self.law = law;
-            self.reset();
+            self.restart(self.last);
         }
     }
 
@@ -117,9 +120,14 @@ impl Control {
 
     /// Forgets the past.
     pub fn reset(&mut self) {
-        self.pi_10hz.reset();
-        self.pi.reset();
-        self.two_degrees.reset();
+        self.restart(Current::ZERO);
+    }
+
+    fn restart(&mut self, current: Current) {
+        self.last = current;
+        self.pi_10hz.restart(current);
+        self.pi.restart(current);
+        self.two_degrees.restart(current);
     }
 
     /// The display's surface, as well as the law in use knows it from its reading.
@@ -144,7 +152,7 @@ impl Control {
 
     /// Current for one tick; positive cools.
     pub fn update(&mut self, inputs: &Inputs) -> Current {
-        match self.law {
+        self.last = match self.law {
             Law::Pi10Hz => self.pi_10hz.update(inputs.setpoint, inputs.display),
             Law::Pi => self.pi.update(inputs.setpoint, inputs.display),
             Law::Model => {
@@ -152,6 +160,7 @@ impl Control {
                 self.two_degrees
                     .update(&mut self.pi, target, display, inputs.sink, inputs.finger)
             }
-        }
+        };
+        self.last
     }
 }

@@ -90,9 +90,10 @@ impl Pi {
         self.response = response;
     }
 
-    /// Forgets the past.
-    pub fn reset(&mut self) {
-        (self.state, self.wait, self.output) = (0, 0, Current::ZERO);
+    /// Starts anew, from this current.
+    pub fn restart(&mut self, current: Current) {
+        (self.wait, self.output) = (0, current);
+        self.state = i64::from(current.to_bits()) << (STATE_BITS - CURRENT_BITS);
     }
 
     /// The largest current that [`Self::update`] returns.

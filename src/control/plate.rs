@@ -156,8 +156,9 @@ impl Scale {
 struct Part {
     /// K, [`STATE_BITS`] binary places.
     state: i64,
-    /// What the inputs add to it in a tick.
+    /// What the inputs add to it in a tick, and where they bring it in the end.
     given: Weights,
+    rest: Weights,
     /// What it loses in a tick, 2^-32 of itself.
     lost: i32,
     /// Part of the way to rest that is gone in [`HORIZON_TICKS`].
@@ -225,6 +226,7 @@ impl Plate {
                 Part {
                     state: 0,
                     given: Weights::new(r.weights.map(|weight| share * weight), 0),
+                    rest: Weights::new(r.weights, 0),
                     lost: scaled(share, 32),
                     ahead: scaled(gone(HORIZON_TICKS, r.lag_s), AHEAD_BITS),
                 }
@@ -240,15 +242,19 @@ impl Plate {
         }
     }
 
-    /// Starts from a surface temperature, with everything else at rest without current.
-    pub fn start(&mut self, surface: Celsius, sink: Celsius) {
-        for part in &mut self.parts {
-            part.state = 0;
-        }
-        let [slowest, ..] = &mut self.parts;
-        slowest.state = i64::from(surface.to_bits()) << (STATE_BITS - Celsius::FRAC_NBITS);
+    /// Starts from a surface temperature, as if this current, finger and sink had been so for long; gives what they do.
+    pub fn start(&mut self, surface: Celsius, current: Current, finger: Watt, sink: Celsius) -> Heat {
         self.legs.set(Celsius::ZERO);
         (self.hot, self.surface) = (sink, surface);
+        let heat = self.heat(current, finger, sink);
+        let mut rest = kelvin(surface).saturating_sub(self.at_once(&heat));
+        let [slowest, others @ ..] = &mut self.parts;
+        for part in others {
+            part.state = part.rest.sum(&heat);
+            rest -= part.kelvin();
+        }
+        slowest.state = i64::from(rest) << 32;
+        heat
     }
 
     /// Goes on as another one, from where it is.
@@ -319,9 +325,14 @@ impl Plate {
         Current::from_bits(current.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
     }
 
+    /// What the finger's heat does at once, K in 2^-20.
+    fn at_once(&self, heat: &Heat) -> i32 {
+        (times(heat.finger.to_bits(), self.finger_at_once) >> 32) as i32
+    }
+
     /// One tick.
     pub fn step(&mut self, heat: &Heat) {
-        let mut surface = (times(heat.finger.to_bits(), self.finger_at_once) >> 32) as i32;
+        let mut surface = self.at_once(heat);
         let [slowest, ..] = &mut self.parts;
         slowest.state += times(kelvin(heat.sink), slowest.lost);
         for part in &mut self.parts {

@@ -62,9 +62,10 @@ impl TwoDegrees {
         self.sensor.retune(tuned.sensor);
     }
 
-    /// Starts anew with the next [`Self::update`].
-    pub fn reset(&mut self) {
+    /// Starts anew with the next [`Self::update`], from a tile through which this current flows.
+    pub const fn restart(&mut self, current: Current) {
         self.running = false;
+        self.feed = current;
     }
 
     /// The plate, of the model.
@@ -90,12 +91,10 @@ impl TwoDegrees {
         finger: Watt,
     ) -> Current {
         if !self.running {
-            self.plate.start(reading, sink);
+            self.heat = self.plate.start(reading, self.feed, finger, sink);
             self.sensor.set(reading);
             self.apart.set(Celsius::ZERO);
-            self.feed = Current::ZERO;
-            self.heat = Heat::default();
-            pi.reset();
+            pi.restart(Current::ZERO);
             self.running = true;
         }
         let apart = reading.saturating_sub(self.sensor.value());

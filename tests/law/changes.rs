@@ -92,14 +92,14 @@ fn another_lag_is_taken_without_a_bump() {
     }
 }
 
-/// Another law starts from rest, within the limit, and brings the display back.
+/// Another law goes on with the current that flows: below what people tell apart.
 #[test]
-fn another_law_starts_anew_and_comes_back() {
-    for (from, to, most_k) in [
-        (Law::Model, Law::Pi, 0.15),
-        (Law::Model, Law::Pi10Hz, 0.2),
-        (Law::Pi, Law::Model, 0.3),
-        (Law::Pi10Hz, Law::Model, 0.3),
+fn another_law_goes_on_without_a_bump() {
+    for (from, to) in [
+        (Law::Model, Law::Pi),
+        (Law::Model, Law::Pi10Hz),
+        (Law::Pi, Law::Model),
+        (Law::Pi10Hz, Law::Model),
     ] {
         let mut bench = Bench::at_rest(0.1, TARGET_C);
         (bench.load_w, bench.told_w) = (1.0, 1.0);
@@ -117,8 +117,8 @@ fn another_law_starts_anew_and_comes_back() {
             1e3 * error_k,
             1e3 * left_k
         );
-        assert!(step_a <= 6.0 + before_a.abs(), "{step_a} A from {before_a} A");
-        assert!(error_k < most_k, "{} to {}: {error_k} K", from.name(), to.name());
+        assert!(step_a < 0.1, "{step_a} A from {before_a} A");
+        assert!(error_k < 0.015, "{} to {}: {error_k} K", from.name(), to.name());
         assert!(left_k < 2e-3, "{left_k} K");
     }
 }

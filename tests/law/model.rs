@@ -30,6 +30,15 @@ fn moved(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> {
     let mut predicted = Sensor::new(LAG_S, ROOM_C);
     let target = setpoint(if current_a > 0.0 { 15.0 } else { 42.0 });
     let mut answer = Vec::new();
+    // The law takes whatever it starts with for old.
+    let rest = Inputs {
+        setpoint: setpoint(ROOM_C),
+        target: setpoint(ROOM_C),
+        display: celsius(ROOM_C),
+        sink: celsius(ROOM_C),
+        finger: Watt::ZERO,
+    };
+    let _none = control.update(&rest);
     for tick in 1..=ticks(seconds) {
         let inputs = Inputs {
             setpoint: target,
