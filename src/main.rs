@@ -81,7 +81,15 @@ mod app {
         }
     }
 
-    #[task(binds = DMA2_STREAM0, priority = 3, shared = [hand, stages, sampler, &vigil], local = [telemetry])]
+    /// Ticks between two calls of `host` that nothing else asks for: within what the watchdog waits for it.
+    const ROLL_CALL_TICKS: u8 = 16;
+
+    #[task(
+        binds = DMA2_STREAM0,
+        priority = 3,
+        shared = [hand, stages, sampler, &vigil],
+        local = [telemetry, until_host: u8 = 0],
+    )]
     fn tick(mut cx: tick::Context) {
         let (hand, stages) = (&mut cx.shared.hand, cx.shared.stages);
         let (finger, scans) = match cx.shared.sampler.take() {
@@ -102,10 +110,14 @@ mod app {
         if let Some(telemetry) = hand.lock(|hand| hand.telemetry(finger)) {
             // A full queue means that the host link cannot keep up: this line is left out.
             let _ = cx.local.telemetry.enqueue(telemetry);
+            *cx.local.until_host = 0;
         }
         cx.shared.vigil.check_in(Task::Tick);
         // Refused while `host` is at work: it then finds what waits by itself, or with the next tick.
-        let _ = host::spawn();
+        *cx.local.until_host = match *cx.local.until_host {
+            0 if host::spawn().is_ok() => ROLL_CALL_TICKS,
+            waiting => waiting.saturating_sub(1),
+        };
     }
 
     #[task(binds = ADC, priority = 3, shared = [stages, sampler])]
