@@ -136,7 +136,10 @@ impl Station {
     /// One control tick: sense, render, control, guard.
     pub fn step(&mut self, samples: &Samples) -> Drive {
         self.tick = self.tick.wrapping_add(1);
-        self.averages.take(&samples.thermistors());
+        // Nobody calibrates under a finger that feels an object.
+        if !matches!(self.state, State::Preset | State::Contact) {
+            self.averages.take(&samples.thermistors());
+        }
         let readings = self.sensors.read(samples);
         // Both look at every tick; what a tick shows at once is named first.
         let lasting = self.watch.check(samples, &readings);
@@ -323,6 +326,7 @@ impl Station {
                 (State::Armed, Some(_)) => {
                     self.render.forget_contact();
                     self.held = None;
+                    self.averages = Averages::default();
                     self.state = State::Preset;
                 }
                 (State::Preset | State::Contact, Some(_)) => return Err(Error::AlreadyStarted),

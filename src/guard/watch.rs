@@ -27,10 +27,12 @@ impl Watch {
     /// A fault that has lasted.
     pub fn check(&mut self, samples: &Samples, readings: &Readings) -> Result<(), Fault> {
         let same = *samples == self.last;
-        self.last = *samples;
+        if !same {
+            self.last = *samples;
+        }
         self.same_ticks = lasting(same, self.same_ticks);
         let apart = match (readings.display, readings.display_check) {
-            (Ok(a), Ok(b)) => a.max(b).saturating_sub(a.min(b)) > APART,
+            (Ok(a), Ok(b)) => a.saturating_sub(b).saturating_abs() > APART,
             _ => false,
         };
         self.apart_ticks = lasting(apart, self.apart_ticks);
