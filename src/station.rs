@@ -188,9 +188,9 @@ impl Station {
         self.render.observe(sound.skin, sound.room, touch, landed);
         let live = self.control.law() == Law::Model;
         let display = self.control.surface(sound.display);
-        let pairing = self.material.map(|(_, pairing)| pairing).or(self.any);
-        let finger = match pairing {
-            Some(pairing) if live => self.render.load(&pairing, display),
+        let pairing = self.material.as_ref().map(|(_, pairing)| pairing);
+        let finger = match pairing.or(self.any.as_ref()) {
+            Some(pairing) if live => self.render.load(pairing, display),
             _ => Watt::ZERO,
         };
         let only = |setpoint| Wanted {
@@ -206,7 +206,13 @@ impl Station {
             }),
             State::Preset | State::Contact => {
                 self.state = if touching { State::Contact } else { State::Preset };
-                self.render.present(&self.scene()?, display, live)?
+                let (_, pairing) = self.material.as_ref()?;
+                let scene = Scene {
+                    pairing,
+                    object: self.object,
+                    mode: self.mode,
+                };
+                self.render.present(&scene, display, live)?
             }
         };
         let (setpoint, limited) = Setpoint::limited(wanted.setpoint);
@@ -236,15 +242,6 @@ impl Station {
         if let Some(experiment) = &mut self.experiment {
             experiment.abort(Aborted::Ended);
         }
-    }
-
-    fn scene(&self) -> Option<Scene> {
-        let (_, pairing) = self.material?;
-        Some(Scene {
-            pairing,
-            object: self.object,
-            mode: self.mode,
-        })
     }
 
     fn report(&mut self, readings: &Readings, setpoint: Option<(Setpoint, bool)>, current: Current) {

@@ -190,9 +190,9 @@ pub struct Plate {
     legs: Lag,
     hot: Celsius,
     surface: Celsius,
-    /// V/K at 27 °C in 2^-31, ohm in 2^-24.
-    seebeck: i32,
-    ohm: i32,
+    /// V/K at 27 °C and by how much that rises per K, 2^-31; ohm likewise, 2^-24.
+    seebeck: [i32; 2],
+    ohm: [i32; 2],
     /// A per K that is missing at the horizon, at 300 K, in 2^-12.
     per_k: i32,
 }
@@ -236,8 +236,8 @@ impl Plate {
             legs: Lag::new(Share::of(LEGS_LAG_S)),
             hot: SHEET,
             surface: SHEET,
-            seebeck: scaled(module.seebeck_v_k, 31),
-            ohm: scaled(module.legs_ohm, 24),
+            seebeck: [1.0, SEEBECK_PER_K].map(|part| scaled(part * module.seebeck_v_k, 31)),
+            ohm: [1.0, RESISTIVITY_PER_K].map(|part| scaled(part * module.legs_ohm, 24)),
             per_k: scaled(1.0 / (gain * module.seebeck_v_k * 300.0), 12),
         }
     }
@@ -291,19 +291,18 @@ impl Plate {
     #[must_use]
     pub fn heat(&self, current: Current, finger: Watt, sink: Celsius) -> Heat {
         let warmer = self.legs().saturating_sub(SHEET).clamp(-WARMER, WARMER);
-        let grown = |value: i32, per_k: f64| {
-            let part = times(warmer.to_bits(), (per_k * (1u64 << 32) as f64) as i32) >> Celsius::FRAC_NBITS;
-            value.saturating_add((times(value, part as i32) >> 32) as i32)
+        let grown = |[value, per_k]: [i32; 2]| {
+            value.saturating_add((times(warmer.to_bits(), per_k) >> Celsius::FRAC_NBITS) as i32)
         };
         // V/K in 2^-31 times K in 2^-22, and then A in 2^-24; 64 W at most, and no more than a tile can do.
         let kelvin = self.surface.saturating_add(ZERO_C_K).to_bits();
-        let volt = (times(grown(self.seebeck, SEEBECK_PER_K), kelvin) >> (31 + 22 - 24)) as i32;
+        let volt = (times(grown(self.seebeck), kelvin) >> (31 + 22 - 24)) as i32;
         let amp = current.to_bits();
         let square = (times(amp, amp) >> 24).min(i32::MAX.into()) as i32;
         let watt = |bits: i64| Watt::from_bits((bits >> 24).clamp(-MOST_WATT, MOST_WATT) as i32);
         Heat {
             pumped: watt(times(volt, amp)),
-            joule: watt(times(grown(self.ohm, RESISTIVITY_PER_K), square)),
+            joule: watt(times(grown(self.ohm), square)),
             finger: finger.clamp(-MOST_FINGER, MOST_FINGER),
             sink: sink.clamp(-MOST_SINK, MOST_SINK),
         }

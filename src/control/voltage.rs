@@ -20,7 +20,7 @@ use crate::settings::Module;
 /// for pulses of a part `w` of the period, and a current `I` that counts along them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Voltage {
-    /// Part of the supply per A with the legs at 27 °C, 2^-28, and the part of it that it rises by per K above, 2^-32.
+    /// Part of the supply per A with the legs at 27 °C, and by how much that rises per K above, 2^-28.
     per_a: i32,
     rise_per_k: i32,
     /// Part of the supply per K, 2^-32.
@@ -77,7 +77,7 @@ impl Voltage {
         let dead = module.dead_time_v / module.supply_v;
         Self {
             per_a: fixed(ohm / module.supply_v, 28),
-            rise_per_k: fixed(module.legs_ohm * RESISTIVITY_PER_K / ohm, 32),
+            rise_per_k: fixed(module.legs_ohm * RESISTIVITY_PER_K / module.supply_v, 28),
             per_k: fixed(module.seebeck_v_k / module.supply_v, 32),
             dead: fixed(dead, BITS),
             ripple_a: fixed(module.ripple_a, BITS),
@@ -91,11 +91,7 @@ impl Voltage {
     pub fn duty(&self, current: Current, legs: &Legs) -> Duty {
         let across = legs.hot.saturating_sub(legs.cold).to_bits();
         let warmer = legs.mean.saturating_sub(SHEET).to_bits();
-        let rise = times(
-            self.per_a,
-            times(warmer, self.rise_per_k, 32),
-            Celsius::FRAC_NBITS,
-        );
+        let rise = times(warmer, self.rise_per_k, Celsius::FRAC_NBITS);
         let needed = times(current.to_bits(), self.per_a.saturating_add(rise), 28).saturating_add(times(
             across,
             self.per_k,

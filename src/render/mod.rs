@@ -48,9 +48,9 @@ pub enum Mode {
 
 /// What the host asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Scene {
+pub struct Scene<'a> {
     /// The material.
-    pub pairing: Pairing,
+    pub pairing: &'a Pairing,
     /// Its temperature; that of the room if none was given.
     pub object: Option<Celsius>,
     /// Model.
@@ -234,7 +234,7 @@ impl Render {
     ///
     /// `live`: the skin is followed as it is on the display, whose surface is at `display`; otherwise Eq. 6-12 holds
     /// in closed form, as if every contact were the first and its force had always been what it is.
-    pub fn present(&mut self, scene: &Scene, display: Celsius, live: bool) -> Option<Wanted> {
+    pub fn present(&mut self, scene: &Scene<'_>, display: Celsius, live: bool) -> Option<Wanted> {
         let Before { skin, room } = self.before?;
         let object = scene.object.unwrap_or(room);
         let only = |setpoint| {
@@ -248,8 +248,8 @@ impl Render {
             return only(scene.pairing.interface_temperature(skin, object));
         }
         let apart = skin.saturating_sub(object);
-        if !self.bodies.are_of(&scene.pairing) {
-            self.bodies = Bodies::new(&scene.pairing);
+        if !self.bodies.are_of(scene.pairing) {
+            self.bodies = Bodies::new(scene.pairing);
         }
         let bodies = &self.bodies;
         let Some(grip) = &mut self.grip else {
@@ -301,7 +301,7 @@ impl Render {
         touching.due = closed && (grip.change != Change::Noise || !same || due || touching.course.is_none());
         let known = due && grip.contact_in_use().is_some();
         if touching.due && !known {
-            grip.use_mean(&scene.pairing);
+            grip.use_mean(scene.pairing);
         }
         // While the skin is followed, not both in one tick.
         let setpoint = match (grip.contact_in_use(), &mut touching.course) {

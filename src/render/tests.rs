@@ -31,7 +31,7 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
     let pairing = Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S).expect("pairing");
     let object_c = Celsius::from_num(OBJECT_C);
     let scene = Scene {
-        pairing,
+        pairing: &pairing,
         object: Some(object_c),
         mode: Mode::ContactResistance,
     };

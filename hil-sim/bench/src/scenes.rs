@@ -71,7 +71,6 @@ pub struct Station {
     single: [FloatingFinger<f32>; 5],
     double: [FloatingFinger<f64>; 5],
     render: Render,
-    scene: render::Scene,
 }
 
 impl Station {
@@ -100,11 +99,6 @@ impl Station {
             skin,
             object: object_c,
             render,
-            scene: render::Scene {
-                pairing: fixed[0].pairing,
-                object: Some(object_c),
-                mode: Mode::ContactResistance,
-            },
             fixed,
             single: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
             double: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
@@ -178,7 +172,12 @@ fn render_step(station: &mut Station, force: Force) -> u32 {
     station
         .render
         .observe(station.skin, station.object, Some(force), 1);
-    let wanted = station.render.present(&station.scene, Celsius::ZERO, false);
+    let scene = render::Scene {
+        pairing: &station.fixed[0].pairing,
+        object: Some(station.object),
+        mode: Mode::ContactResistance,
+    };
+    let wanted = station.render.present(&scene, Celsius::ZERO, false);
     wanted.map_or(0, |wanted| bits(wanted.setpoint))
 }
 
