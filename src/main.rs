@@ -82,7 +82,7 @@ mod app {
     }
 
     /// Ticks between two calls of `host` that nothing else asks for: within what the watchdog waits for it.
-    const ROLL_CALL_TICKS: u8 = 16;
+    const ROLL_CALL_TICKS: u8 = 8;
 
     #[task(
         binds = DMA2_STREAM0,
@@ -113,7 +113,8 @@ mod app {
             *cx.local.until_host = 0;
         }
         cx.shared.vigil.check_in(Task::Tick);
-        // Refused while `host` is at work: it then finds what waits by itself, or with the next tick.
+        // Refused while `host` is at work: it then finds what waits by itself, or is called by the next tick. What the
+        // other tasks bring while it ends waits for the roll-call.
         *cx.local.until_host = match *cx.local.until_host {
             0 if host::spawn().is_ok() => ROLL_CALL_TICKS,
             waiting => waiting.saturating_sub(1),

@@ -129,9 +129,9 @@ pub struct Gains {
 
 impl Default for Settings {
     /// The class values that the wiring table names: 10 k thermistors of beta 3950 K under 10 k, a 30 mm,
-    /// 6 A module on 12 V. Gains by the SIMC rule for 2.7 K/s per ampere behind 0.1 s of sensor lag;
-    /// at 10 Hz half a period more.
+    /// 6 A module on 12 V, and the tile of that class.
     fn default() -> Self {
+        let [gains, gains_10hz] = Gains::of_tile(&Tile::CLASS);
         Self {
             thermistor: Thermistor {
                 pull_up_ohm: 10e3,
@@ -157,14 +157,8 @@ impl Default for Settings {
                 supply_v: 12.0,
                 current_limit_a: 6.0,
             },
-            gains: Gains {
-                proportional_a_k: 1.85,
-                integral_s: 0.8,
-            },
-            gains_10hz: Gains {
-                proportional_a_k: 1.23,
-                integral_s: 1.2,
-            },
+            gains,
+            gains_10hz,
             display: REFERENCE_DISPLAY,
             calibration: Calibration::default(),
             tile: Tile::CLASS,

@@ -169,6 +169,10 @@ impl Station {
             None => {
                 self.end_experiment();
                 self.control.reset();
+                if checked.is_err() {
+                    // What the finger does meanwhile is not known.
+                    self.render.lose_sight();
+                }
                 (Drive::Off, Current::ZERO)
             }
         };
@@ -189,9 +193,10 @@ impl Station {
         let live = self.control.law() == Law::Model;
         let display = self.control.surface(sound.display);
         let pairing = self.material.as_ref().map(|(_, pairing)| pairing);
+        // The skin is followed whatever the law, which may change under a finger.
         let finger = match pairing.or(self.any.as_ref()) {
-            Some(pairing) if live => self.render.load(pairing, display),
-            _ => Watt::ZERO,
+            Some(pairing) => self.render.load(pairing, display),
+            None => Watt::ZERO,
         };
         let only = |setpoint| Wanted {
             setpoint,
@@ -227,14 +232,16 @@ impl Station {
     /// Current of the experiment, if one goes on.
     fn tuning(&mut self, sound: &Sound, measured: Current) -> Option<Current> {
         let experiment = self.experiment.as_mut()?;
+        // Whatever its outcome, it has no say once an object is presented.
         if self.state != State::Armed {
             experiment.abort(Aborted::Ended);
+            return None;
         }
         if !experiment.drives() {
             return None;
         }
         let current = experiment.update(sound, measured, self.touch.touching());
-        self.control.reset();
+        self.control.go_on_from(current.unwrap_or(Current::ZERO));
         current
     }
 
@@ -285,6 +292,12 @@ impl Station {
     /// The command does not fit the state; nothing has changed.
     pub fn execute(&mut self, command: Command) -> Result<Reply, Error> {
         match command {
+            // Nothing that a finger feels is moved by a line.
+            Command::Calibrate(_) | Command::Average(_)
+                if matches!(self.state, State::Preset | State::Contact) =>
+            {
+                return Err(Error::Presenting);
+            }
             Command::Identify => return Ok(Reply::Identity { fingers: 1 }),
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Stream { interval_ms } => self.stream_ticks = interval_ms * (TICK_HZ / 1000),
@@ -297,7 +310,12 @@ impl Station {
                 self.object = object;
                 self.render.forget_contact();
             }
-            Command::Mode(mode) => self.mode = mode,
+            Command::Mode(mode) => {
+                if mode != self.mode {
+                    self.render.forget_contact();
+                }
+                self.mode = mode;
+            }
             Command::Law(None) => return Ok(Reply::Law(self.control.law())),
             Command::Law(Some(law)) => self.control.select(law),
             Command::Arm => match self.state {

@@ -43,6 +43,14 @@ impl<const FINGERS: usize> Desk<FINGERS> {
             return execute(Request { finger, said });
         };
         let request = request.map_err(of)?;
+        let finger = match request {
+            Commissioning::Settings(_) | Commissioning::Margins => finger.or(first_of(FINGERS)),
+            // Milliseconds of `f64` each, which the watchdog waits for once.
+            Commissioning::Point { .. } | Commissioning::Tuned if finger.is_none() && FINGERS > 1 => {
+                return Err(of(Error::Missing("finger (as @0)")));
+            }
+            _ => finger,
+        };
         let mut told = Ok(Addressed::device(Reply::Done));
         for (index, service) in self.fingers.iter_mut().enumerate() {
             if finger.is_some_and(|one| usize::from(one) != index) {
@@ -78,4 +86,8 @@ impl<const FINGERS: usize> Desk<FINGERS> {
             said: reply.said,
         })
     }
+}
+/// Who answers a question to all; nobody is named if there is one finger only.
+fn first_of(fingers: usize) -> Option<u8> {
+    (fingers > 1).then_some(0)
 }

@@ -69,27 +69,29 @@ static BORDER: Number = Number {
 static STEP: Number = Number {
     name: "step",
     unit: "counts",
-    min: -8.0,
-    max: 8.0,
+    min: -4.0,
+    max: 4.0,
 };
+/// Together at most 2.5 K within the calibrated range: parts of this class need a tenth of it, and no line can hide a
+/// display from the guard that is hotter than that beyond its limit.
 static CORRECTION: [Number; 3] = [
     Number {
         name: "offset",
         unit: "K",
-        min: -5.0,
-        max: 5.0,
+        min: -1.2,
+        max: 1.2,
     },
     Number {
         name: "slope",
         unit: "K/K",
-        min: -0.2,
-        max: 0.2,
+        min: -0.05,
+        max: 0.05,
     },
     Number {
         name: "curvature",
         unit: "1/K",
-        min: -0.01,
-        max: 0.01,
+        min: -0.002,
+        max: 0.002,
     },
 ];
 /// In the order of [`Tile::to_array`].
@@ -97,8 +99,8 @@ pub static TILE: [Number; 5] = [
     Number {
         name: "gain",
         unit: "K/s/A",
-        min: 0.1,
-        max: 50.0,
+        min: 0.5,
+        max: 15.0,
     },
     Number {
         name: "Joule term",
@@ -115,7 +117,7 @@ pub static TILE: [Number; 5] = [
     Number {
         name: "lag",
         unit: "s",
-        min: 0.001,
+        min: 0.005,
         max: 5.0,
     },
     Number {

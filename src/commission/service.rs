@@ -54,6 +54,7 @@ impl Service {
         match request {
             Request::Point { sensor, reference_c } => self.point(sensor, reference_c, &mut execute),
             Request::Clear { sensor } => {
+                self.may_calibrate(&mut execute)?;
                 self.correct(sensor, Correction::default());
                 self.clear_steps();
                 execute(self.calibrated())
@@ -61,6 +62,7 @@ impl Service {
             Request::Settings(None) => Ok(Reply::SettingsLines(SETTINGS_LINES)),
             Request::Settings(Some(line)) => Ok(Reply::Setting(self.line(line - 1))),
             Request::SetSteps { first, counts } => {
+                self.may_calibrate(&mut execute)?;
                 let steps = &mut self.settings.calibration.steps_counts;
                 for (step, count) in steps.iter_mut().skip(first - FIRST_BORDER).zip(&counts) {
                     *step = *count;
@@ -70,6 +72,7 @@ impl Service {
                 execute(self.calibrated())
             }
             Request::SetCorrection { sensor, correction } => {
+                self.may_calibrate(&mut execute)?;
                 self.correct(sensor, correction);
                 execute(self.calibrated())
             }
@@ -122,6 +125,14 @@ impl Service {
             self.settings.calibration.steps_counts = [0.0; BORDERS];
             self.before.steps_counts = [0.0; BORDERS];
         }
+    }
+
+    /// Refused while an object is presented, before anything changes.
+    fn may_calibrate(
+        &self,
+        execute: &mut impl FnMut(Command) -> Result<Reply, Error>,
+    ) -> Result<Reply, Error> {
+        execute(self.calibrated())
     }
 
     fn calibrated(&self) -> Command {

@@ -108,7 +108,7 @@ impl Control {
     pub fn select(&mut self, law: Law) {
         if law != self.law {
             self.law = law;
-            self.restart(self.last);
+            self.go_on_from(self.last);
         }
     }
 
@@ -120,10 +120,11 @@ impl Control {
 
     /// Forgets the past.
     pub fn reset(&mut self) {
-        self.restart(Current::ZERO);
+        self.go_on_from(Current::ZERO);
     }
 
-    fn restart(&mut self, current: Current) {
+    /// Starts anew, from a current that flows.
+    pub fn go_on_from(&mut self, current: Current) {
         self.last = current;
         self.pi_10hz.restart(current);
         self.pi.restart(current);

@@ -55,14 +55,6 @@ const RESISTIVITY_PER_K: f64 = 0.0049;
 const SHEET: Celsius = Celsius::lit("27");
 const ZERO_C_K: Celsius = Celsius::lit("273.15");
 
-/// What tuning finds of a tile as [`CLASS`] is (`cargo hil-sim commission`, nominal plant).
-const FOUND: Tile = Tile {
-    gain_k_s_a: 2.91,
-    joule_per_a: 0.0585,
-    leak_1_s: 0.103,
-    sensor_lag_s: 0.1,
-    dead_time_s: 0.016,
-};
 /// A gain that differs comes from the module's pumping and from the plate's heat capacity; only the latter changes what
 /// a finger does. Part of the gain's logarithm that is the capacity's.
 const CAPACITY_SHARE: f64 = 0.4;
@@ -127,12 +119,12 @@ struct Scale {
 impl Scale {
     fn of(tile: &Tile) -> Self {
         let times = |found: f64, class: f64| (found / class).clamp(1.0 / MOST_TIMES, MOST_TIMES);
-        let gain = times(tile.gain_k_s_a, FOUND.gain_k_s_a);
+        let gain = times(tile.gain_k_s_a, Tile::CLASS.gain_k_s_a);
         Self {
             pumped: gain,
-            joule: times(gain * tile.joule_per_a, FOUND.joule_per_a),
+            joule: times(gain * tile.joule_per_a, Tile::CLASS.joule_per_a),
             finger: libm::pow(gain, CAPACITY_SHARE),
-            leak: times(tile.leak_1_s, FOUND.leak_1_s),
+            leak: times(tile.leak_1_s, Tile::CLASS.leak_1_s),
         }
     }
 

@@ -76,6 +76,8 @@ pub enum Error {
     AlreadyStarted,
     /// `hold` or `tune` before `arm`.
     NeedsArmed(&'static str),
+    /// Not while an object is presented.
+    Presenting,
     /// `tune` with a finger on the display.
     Touched,
     /// `tune result` before `tune`.
@@ -161,6 +163,7 @@ impl fmt::Display for Error {
             Self::NoMaterial => f.write_str("start needs a material first"),
             Self::AlreadyStarted => f.write_str("already started; arm takes the object away"),
             Self::NeedsArmed(command) => write!(f, "{command} needs the state armed"),
+            Self::Presenting => f.write_str("not while an object is presented: abort or arm first"),
             Self::Touched => f.write_str("tune needs a display without a finger on it"),
             Self::NotTuned => f.write_str("nothing was tuned since arm; tune first"),
             Self::Tuning => f.write_str("tuning goes on; ask again in a second"),

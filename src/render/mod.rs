@@ -187,6 +187,14 @@ impl Render {
         };
     }
 
+    /// Forgets skin and contact: they were not watched.
+    pub fn lose_sight(&mut self) {
+        *self = Self {
+            evaluations: self.evaluations,
+            ..Self::default()
+        };
+    }
+
     /// Evaluations of `erfcx` since reset.
     #[must_use]
     pub const fn evaluations(&self) -> u32 {
@@ -254,10 +262,10 @@ impl Render {
         let bodies = &self.bodies;
         let Some(grip) = &mut self.grip else {
             self.touching = None;
+            self.skin.touch_object(None, bodies, apart);
             if !live {
                 return only(scene.pairing.preset(skin, object));
             }
-            self.skin.touch_object(None, bodies, apart);
             let setpoint = self.skin.display(bodies, skin, apart, false);
             return Some(Wanted {
                 setpoint,
@@ -288,9 +296,7 @@ impl Render {
         } else {
             touching.elapsed += 1;
         }
-        if live {
-            self.skin.touch_object(grip.links.as_ref(), bodies, apart);
-        }
+        self.skin.touch_object(grip.links.as_ref(), bodies, apart);
         let closed = grip.steady || !live;
         let new = grip.change == Change::New;
         let same = !grip.force.is_better() || touching.same.contains(&grip.force.mean());

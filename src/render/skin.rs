@@ -124,8 +124,9 @@ impl Skin {
     pub fn display(&self, bodies: &Bodies, before: Celsius, apart: Celsius, touching: bool) -> Celsius {
         let moved = self.on_object.after(self.drive);
         let closed = (i64::from(moved.to_bits()) * i64::from(bodies.inverse_weight)) >> 16;
-        let step = i64::from(apart.to_bits()) - closed;
-        let over_display = (step * i64::from(bodies.ratio.to_bits())) >> Ratio::FRAC_NBITS;
+        // Within 512 K, so that the product has 63 bits.
+        let step = limited(i64::from(apart.to_bits()) - closed).to_bits();
+        let over_display = (i64::from(step) * i64::from(bodies.ratio.to_bits())) >> Ratio::FRAC_NBITS;
         // Between contacts it is this finger that will land.
         let skin = if touching { moved } else { self.on_display.left() };
         limited(i64::from(before.to_bits()) - i64::from(skin.to_bits()) - over_display)

@@ -24,13 +24,14 @@ pub struct Tile {
 }
 
 impl Tile {
-    /// A 30 mm, 6 A module with a thermistor in its display plate.
+    /// A 30 mm, 6 A module with a thermistor in its display plate, as tuning finds it (`cargo hil-sim commission
+    /// scenes/copper.toml`).
     pub const CLASS: Self = Self {
-        gain_k_s_a: 2.7,
-        joule_per_a: 0.066,
-        leak_1_s: 0.06,
+        gain_k_s_a: 2.91,
+        joule_per_a: 0.0585,
+        leak_1_s: 0.103,
         sensor_lag_s: 0.1,
-        dead_time_s: 0.008,
+        dead_time_s: 0.016,
     };
 
     /// Decimals that are kept, so that a line of text holds all of it.

@@ -24,7 +24,7 @@ use super::Celsius;
 /// Relaxations `k`, with rates `r` of `2^-(2 k + 1)` a tick, that are fast: `k` from 0.
 const FAST: usize = 5;
 /// Slow ones after them, and the integrator.
-const SLOW: usize = 6;
+const SLOW: usize = 9;
 /// Ticks in which a slow relaxation is stepped once.
 const WINDOW: u32 = 8;
 
@@ -73,19 +73,22 @@ const SLOW_PARTS: [Slow; SLOW] = [
     slow(10_470_809, 1_048_448),
     slow(5_235_045, 262_136),
     slow(2_617_478, 65_536),
-    // The integrator: the integral of the sum above over all that is slower, `(2 / pi) sqrt(2^-20)`.
-    slow(2_670_177, 0),
+    slow(1_308_733, 16_384),
+    slow(654_366, 4_096),
+    slow(327_183, 1_024),
+    // The integrator: the integral of the sum above over all that is slower, `(2 / pi) sqrt(2^-26)`.
+    slow(333_772, 0),
 ];
 /// What all slow parts have of a tick's drive when the next begins, the sum of `g e^-r`, in 2^-32.
-const SLOW_GIVEN: i32 = 83_776_476;
+const SLOW_GIVEN: i32 = 83_730_349;
 
 /// How far ahead [`HalfOrder::drive_to`] looks.
 pub const AHEAD_TICKS: u32 = 20;
 /// The inverse of what a lasting drive of one kelvin moves the surface by in [`AHEAD_TICKS`], 1 / 5.060, in 2^-32.
-const PER_GAIN_AHEAD: i32 = 848_763_970;
+const PER_GAIN_AHEAD: i32 = 848_800_003;
 /// What a drive of one kelvin moves the surface by in one tick, in 2^-20: the sum of all `g`, and `2 / pi` for what is
 /// faster than a tick.
-const GAIN: u32 = 1_240_954;
+const GAIN: u32 = 1_240_943;
 /// Its binary places.
 const GAIN_BITS: u32 = 20;
 /// Binary places of a part below those of [`Celsius`].
