@@ -36,7 +36,7 @@ pub enum Command {
     Object(Option<Celsius>),
     /// `mode contact` or `mode semi-infinite`.
     Mode(Mode),
-    /// `law pi-10hz` or `law pi`: what finds the current; `law`: what does now.
+    /// `law model`, `law pi` or `law pi-10hz`: what finds the current; `law`: what does now.
     Law(Option<Law>),
     /// `arm`: drive the display to skin temperature.
     Arm,

@@ -170,3 +170,41 @@ fn what_does_not_fit_the_state_is_refused() {
         "ok set correction skin 0.000000 0.0000000 0.00000000"
     );
 }
+
+/// A result that nobody has asked for does not hold the display when an object is presented.
+#[test]
+fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
+    tuning(at_work(), |bench| {
+        bench.wait(40_000).expect("it runs");
+        for line in ["material copper", "object 24", "start"] {
+            bench.tell(line).expect("obeyed");
+        }
+        bench.wait(3000).expect("it runs");
+        let told = ask(bench, "state");
+        let setpoint = told.split("setpoint_c=").nth(1).expect("a set-point");
+        let setpoint_c: f64 = setpoint.trim().parse().expect("degrees");
+        let display_c = bench.world().plant().display_c();
+        assert!(
+            setpoint_c < 26.0 && (display_c - setpoint_c).abs() < 0.3,
+            "{told}: {display_c}"
+        );
+    });
+}
+
+/// No line makes the device read a display so cold that the guard lets it burn.
+#[test]
+fn corrections_cannot_hide_a_hot_display() {
+    let mut engine = Native::new(at_work());
+    let mut bench = bench(&mut engine, &[]);
+    bench.wait(5).expect("it runs");
+    for sensor in ["display", "check"] {
+        let worst = format!("set correction {sensor} -1.2 -0.05 -0.002");
+        bench.tell(&worst).expect("within limits");
+        assert!(ask(&mut bench, &format!("set correction {sensor} -1.3 0 0")).starts_with("err offset"));
+    }
+    bench.tell("arm").expect("armed");
+    bench.tell("hold 42").expect("held");
+    bench.wait(20_000).expect("it runs");
+    let display_c = bench.world().plant().display_c();
+    assert!(display_c < 45.0, "{display_c}");
+}

@@ -98,3 +98,54 @@ fn semi_infinite_mode_is_constant() {
         }
     }
 }
+
+/// Whatever a finger touched meanwhile, contact mode begins with a contact of the two skins as they are.
+#[test]
+fn another_mode_under_a_finger_starts_a_new_contact() {
+    let mut bench = Bench::settled_on("copper");
+    bench.obey(&["mode semi-infinite"]);
+    bench.force_n = 2.0;
+    bench.steps(5000);
+    bench.obey(&["mode contact"]);
+    for _ in 0..3000 {
+        let setpoint_c = bench.setpoint_c();
+        assert!((15.0..34.1).contains(&setpoint_c), "{setpoint_c} C");
+    }
+}
+
+/// The skin is followed whatever the law: a contact under another one is remembered.
+#[test]
+fn the_skin_is_remembered_whatever_the_law() {
+    let preset_c = |law: &str| {
+        let mut bench = Bench::settled_on("granite");
+        bench.obey(&[law]);
+        bench.force_n = 2.0;
+        bench.steps(5000);
+        bench.force_n = 0.0;
+        bench.steps(3);
+        bench.obey(&["law model"]);
+        bench.setpoint_c()
+    };
+    let (followed_c, other_c) = (preset_c("law model"), preset_c("law pi"));
+    assert!(
+        (followed_c - other_c).abs() < 0.02,
+        "{other_c} C, not {followed_c} C"
+    );
+}
+
+/// After a fault, during which nobody watched the finger, the skin counts as rested.
+#[test]
+fn a_fault_forgets_the_skin() {
+    let mut bench = Bench::settled_on("granite");
+    let rested_c = bench.setpoint_c();
+    bench.force_n = 2.0;
+    bench.steps(5000);
+    bench.bridge_fault = true;
+    bench.force_n = 0.0;
+    bench.steps(100);
+    bench.bridge_fault = false;
+    bench.steps(3000);
+    bench.obey(&["clear", "arm", "start"]);
+    bench.step();
+    assert_close(bench.setpoint_c(), rested_c);
+}

@@ -304,3 +304,20 @@ proptest! {
         }
     }
 }
+
+/// Five minutes of a constant drive move the surface by `2 sqrt(n / pi)`, and an hour later what is left of that is
+/// `sqrt(n + m) - sqrt(m)` over `sqrt(n)`.
+#[test]
+fn a_long_contact_is_forgotten_as_a_half_space_does() {
+    let (contact, rest) = (300_000u32, 3_600_000u32);
+    let mut body = HalfOrder::at_rest();
+    (0..contact).for_each(|_| body.step(Celsius::lit("0.01")));
+    let root = |ticks: u32| f64::from(ticks).sqrt();
+    let moved: f64 = body.left().to_num();
+    let expected = 0.01 * 2.0 / PI.sqrt() * root(contact);
+    assert!((moved / expected - 1.0).abs() < 0.005, "{moved}, not {expected}");
+    (0..rest).for_each(|_| body.step(Celsius::ZERO));
+    let left = body.left().to_num::<f64>() / expected;
+    let expected = (root(contact + rest) - root(rest)) / root(contact);
+    assert!((left / expected - 1.0).abs() < 0.02, "{left}, not {expected}");
+}
