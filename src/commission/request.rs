@@ -99,7 +99,7 @@ pub static TILE: [Number; 5] = [
     Number {
         name: "gain",
         unit: "K/s/A",
-        min: 0.5,
+        min: 0.1,
         max: 15.0,
     },
     Number {

@@ -41,7 +41,7 @@ fn lines_that_the_device_does_not_take_or_keep_are_named() {
     let refused = with("set correction display 9 0 0");
     assert_eq!(
         refused.to_string(),
-        "commissioning: the device answers 'set correction display 9 0 0' with 'err offset '9' out of range; -5 to 5 K'"
+        "commissioning: the device answers 'set correction display 9 0 0' with 'err offset '9' out of range; -1.2 to 1.2 K'"
     );
     // Taken, but not as a line of settings has it.
     assert_eq!(

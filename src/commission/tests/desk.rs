@@ -213,7 +213,7 @@ fn nonsense_is_refused_and_changes_nothing() {
         ),
         (
             "set tile 1e30 0.06 0.1 0.1 0.01",
-            "err gain '1e30' out of range; 0.5 to 15 K/s/A",
+            "err gain '1e30' out of range; 0.1 to 15 K/s/A",
         ),
         ("calibrate", "err sensor missing"),
         ("calibrate display", "err reference temperature missing"),
