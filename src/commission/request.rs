@@ -117,7 +117,7 @@ pub static TILE: [Number; 5] = [
     Number {
         name: "lag",
         unit: "s",
-        min: 0.005,
+        min: 0.001,
         max: 5.0,
     },
     Number {

@@ -209,7 +209,7 @@ fn nonsense_is_refused_and_changes_nothing() {
         ),
         (
             "set tile 2.7 0.06 0.1 0 0.01",
-            "err lag '0' out of range; 0.005 to 5 s",
+            "err lag '0' out of range; 0.001 to 5 s",
         ),
         (
             "set tile 1e30 0.06 0.1 0.1 0.01",
