@@ -90,3 +90,19 @@ fn wfe_falls_through_once_after_sev() {
     assert_eq!(log, [0, 1, DONE]);
     assert!(machine.now() >= 100_000);
 }
+
+#[test]
+fn a_condition_ends_with_its_block() {
+    let (_, log) = probe::run(17, 100_000);
+    assert_eq!(log, [1, 1, DONE]);
+}
+
+#[test]
+fn a_condition_survives_interrupts() {
+    let (_, log) = probe::run(18, 10_000_000);
+    assert_eq!(
+        log,
+        [0, 1, DONE],
+        "instructions that should have been skipped, more than 100 ticks"
+    );
+}

@@ -237,3 +237,53 @@ pub fn sleep_by_events() {
     log(TICKS.load(Relaxed));
     write(SYST_CSR, 0);
 }
+
+/// A conditional load that is the first access to its page of memory; the two instructions of the block after it
+/// have no condition. Logs 1 for the load and 1 for those.
+pub fn condition_ends_with_its_block() {
+    let (loaded, after): (u32, u32);
+    // SAFETY: reads a word of RAM below the stack, which holds whatever it holds; changes only its registers.
+    unsafe {
+        asm!(
+            "cmp r0, #1",
+            "itt ne",
+            "ldrne r2, [r1]",
+            "movne r2, #1",
+            "b 2f",
+            "2: cmp r0, #0",
+            "adds r3, #1",
+            in("r0") 0,
+            in("r1") 0x2001_0000,
+            inout("r2") 0 => loaded,
+            inout("r3") 0 => after,
+        );
+    }
+    log(loaded);
+    log(after);
+}
+
+/// Ticks while an IT block that straddles two pages skips its instructions; logs how often one was not skipped.
+pub fn condition_survives_interrupts() {
+    write(SYST_CSR + 4, 9_999);
+    write(SYST_CSR, 7);
+    let mut run: u32 = 0;
+    for _ in 0..200_000 {
+        // SAFETY: changes only its registers.
+        unsafe {
+            asm!(
+                "b.w 2f",
+                ".balign 1024",
+                ".space 1018",
+                "2: cmp r0, #0",
+                "itt ne",
+                "addne r1, #1",
+                "addne r1, #1",
+                in("r0") 0,
+                inout("r1") run,
+            );
+        }
+    }
+    write(SYST_CSR, 0);
+    log(run);
+    log(u32::from(TICKS.load(Relaxed) > 100));
+}

@@ -68,6 +68,8 @@ fn main() -> ! {
         14 => device_cases::baud_mismatch(),
         15 => device_cases::external_memory(),
         16 => device_cases::encoder_mode_then_sleep(),
+        17 => core_cases::condition_ends_with_its_block(),
+        18 => core_cases::condition_survives_interrupts(),
         _ => {}
     }
     done()

@@ -4,7 +4,7 @@ use super::elf::{FLASH_BASE, FLASH_SIZE, RAM_BASE, RAM_SIZE};
 use super::mcu::PAINT;
 use super::state::{self, Cpu, Event, State};
 use unicorn_engine::{
-    Arch, ArmCpuModel, HookType, MemType, Mode, Prot, TlbEntry, TlbType, Unicorn, uc_error,
+    Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error,
 };
 
 /// Ranges whose accesses go to the register models, reserved gaps included: signature and option bytes, bit-band
@@ -18,6 +18,9 @@ const DEVICES: [(u64, u64); 7] = [
     (0xa000_0000, 0x2000),
     (0xe000_0000, 0x10_0000),
 ];
+
+/// EPSR outside of an IT block.
+const THUMB_UNCONDITIONAL: u64 = 1 << 24;
 
 /// Maps the memories and installs the hooks.
 pub(super) fn set_up<W: Wiring + 'static>(
@@ -61,10 +64,15 @@ pub(super) fn set_up<W: Wiring + 'static>(
     // A page that may be executed, or that a hook watches, takes the slow path at every store. So data accesses
     // get pages without execution (a fetch maps the page anew, with it), and the hooks leave the RAM out.
     cpu.ctl_set_tlb_type(TlbType::VIRTUAL)?;
-    cpu.add_tlb_hook(0, u64::from(u32::MAX), |_, page, kind| {
+    cpu.add_tlb_hook(0, u64::from(u32::MAX), |cpu, page, kind| {
         let perms = if kind == MemType::FETCH {
             Prot::ALL
         } else {
+            // A page that is missing puts the condition of the instruction into the CPU's state, which nothing takes
+            // out again: the next block would run under it.
+            if let Err(error) = cpu.reg_write(RegisterARM::EPSR, THUMB_UNCONDITIONAL) {
+                debug_assert!(false, "{error:?}");
+            }
             Prot::READ | Prot::WRITE
         };
         Some(TlbEntry { paddr: page, perms })
