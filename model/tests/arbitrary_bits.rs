@@ -30,6 +30,18 @@ fn rate() -> impl Strategy<Value = Rate> {
     })
 }
 
+fn contact() -> impl Strategy<Value = Contact> {
+    (word(), word(), rate(), rate(), rate()).prop_map(
+        |(weight, ratio, per_tick, per_root_tick, conductance_w_m2k)| Contact {
+            weight: Fraction::from_bits(weight),
+            ratio: Ratio::from_bits(ratio),
+            per_tick,
+            per_root_tick,
+            conductance_w_m2k,
+        },
+    )
+}
+
 fn ticks() -> impl Strategy<Value = Ticks> {
     word().prop_map(|bits| Ticks::new(bits).unwrap_or(Ticks::MAX))
 }
@@ -71,17 +83,9 @@ proptest! {
 
     #[test]
     fn response_is_total_and_saturates(
-        weight in word(), ratio in word(),
-        (per_tick, per_root_tick, conductance_w_m2k) in (rate(), rate(), rate()),
+        contact in contact(),
         elapsed in word(), skin in celsius(), object in celsius(),
     ) {
-        let contact = Contact {
-            weight: Fraction::from_bits(weight),
-            ratio: Ratio::from_bits(ratio),
-            per_tick,
-            per_root_tick,
-            conductance_w_m2k,
-        };
         let at = contact.at(elapsed, skin, object);
         // Between the temperatures before, the display on the side that its ratio says, the flux downhill.
         let (low, high) = (skin.min(object), skin.max(object));
@@ -96,18 +100,10 @@ proptest! {
     /// Whatever the contact, a course neither panics nor leaves ±255 °C.
     #[test]
     fn course_is_total(
-        (weight, ratio) in (word(), word()),
-        (per_tick, per_root_tick, conductance_w_m2k) in (rate(), rate(), rate()),
+        contact in contact(),
         (skin, object, tolerance) in (celsius(), celsius(), celsius()),
         elapsed: u64,
     ) {
-        let contact = Contact {
-            weight: Fraction::from_bits(weight),
-            ratio: Ratio::from_bits(ratio),
-            per_tick,
-            per_root_tick,
-            conductance_w_m2k,
-        };
         let (mut course, evaluations) = Course::new(&contact, skin, object, elapsed, tolerance);
         prop_assert!(evaluations <= 2);
         for _ in 0..100 {
@@ -121,17 +117,9 @@ proptest! {
     /// cools no body beyond what is in front of it and what it was.
     #[test]
     fn half_space_is_total(
-        (weight, ratio) in (word(), word()),
-        (per_tick, per_root_tick, conductance_w_m2k) in (rate(), rate(), rate()),
+        contact in contact(),
         drives in prop::collection::vec((celsius(), 1u32..300), 1..8), front in celsius(),
     ) {
-        let contact = Contact {
-            weight: Fraction::from_bits(weight),
-            ratio: Ratio::from_bits(ratio),
-            per_tick,
-            per_root_tick,
-            conductance_w_m2k,
-        };
         let (mut body, mut other) = (HalfOrder::at_rest(), HalfOrder::at_rest());
         for (drive, ticks) in drives {
             for _ in 0..ticks {

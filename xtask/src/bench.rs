@@ -1,13 +1,12 @@
 //! Run time against error of the contact model and its peers, and of the simulated plant.
-use std::ffi::OsString;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::ValueEnum;
 
-use crate::probe;
 use crate::process::{Invocation, workspace};
 use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
+use crate::{probe, report};
 
 /// The profile of the flashed image, so that the model is compiled as it is there.
 const PROFILE: &str = "firmware";
@@ -23,30 +22,11 @@ pub enum Job {
 
 /// `cargo xtask bench`; a relative `out` is one of the caller's folder.
 pub fn run(permission: Permission, job: Job, json: bool, out: Option<PathBuf>) -> Result<()> {
-    let out = out.map(|folder| {
-        // Commands run in the workspace's root.
-        std::path::absolute(&folder).with_context(|| format!("--out {}", folder.display()))
-    });
-    let out = out.transpose()?;
-    let needs = Needs {
-        emulator: true,
-        lints: false,
+    let job = match job {
+        Job::Model => "model",
+        Job::Plant => "plant",
     };
-    setup::prepare(needs, permission)?;
-    let mut line: Vec<OsString> = ["run", "--release", "--package", "model-bench", "--"]
-        .map(OsString::from)
-        .into();
-    line.push(match job {
-        Job::Model => "model".into(),
-        Job::Plant => "plant".into(),
-    });
-    if json {
-        line.push("--json".into());
-    }
-    if let Some(folder) = out {
-        line.extend(["--out".into(), folder.into()]);
-    }
-    permission.choice.handed_to(Invocation::cargo(line)).run()
+    report::run(permission, ("model-bench", job), json, out, Vec::new())
 }
 
 /// `cargo xtask bench-image`: builds the image that the benchmark runs and prints its path.

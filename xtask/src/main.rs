@@ -4,11 +4,11 @@
 //! something failed or is missing, 2 that the command line is wrong.
 mod bench;
 mod demo;
-mod fidelity;
 mod firmware;
 mod image;
 mod probe;
 mod process;
+mod report;
 mod setup;
 mod step;
 mod suite;
@@ -118,7 +118,7 @@ fn main() -> ExitCode {
             json,
             out,
             rest,
-        } => fidelity::run(set_up.permission(), json, out, rest),
+        } => report::run(set_up.permission(), ("hil-sim", "fidelity"), json, out, rest),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

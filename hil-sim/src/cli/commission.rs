@@ -1,20 +1,19 @@
 //! `hil-sim commission`: what the operator does with a device, and the settings it then has.
 
-use std::io::{Write, stderr, stdout};
+use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow, ensure};
-use clap::{Args, ValueEnum};
+use anyhow::{Context, ensure};
+use clap::Args;
 use hil_sim::commission::{Commissioned, Event, Plants, Tile, commission, restore, survey, table};
 use hil_sim::engine::{Engine, Image, Native};
 use hil_sim::fidelity::map;
-use hil_sim::firmware;
-use hil_sim::machine::Firmware;
 use hil_sim::plant::{Params, parameters};
 use hil_sim::scene::Scene;
 use serde_json::json;
 
-use super::Failure;
+use super::device::{self, Kind};
+use super::{Failure, output};
 
 /// What follows the options in the help.
 const USAGE: &str = "\
@@ -55,14 +54,6 @@ pub struct Arguments {
     json: bool,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Kind {
-    /// The release image in the emulated microcontroller
-    Image,
-    /// The same logic, called directly
-    Native,
-}
-
 /// Commissions or restores, and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(devices) = arguments.survey {
@@ -80,17 +71,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     };
     let world = plants.at_work().map_err(Failure::input)?;
+    let elf = arguments.elf.as_deref();
     match arguments.engine {
-        Kind::Native if arguments.elf.is_some() => Err(Failure::input(anyhow!(
-            "--elf is for --engine image; the native engine runs no image"
-        ))),
-        Kind::Native => with(arguments, &plants, &mut Native::new(world)),
+        Kind::Native => {
+            device::no_image(elf)?;
+            with(arguments, &plants, &mut Native::new(world))
+        }
         Kind::Image => {
-            let path = match &arguments.elf {
-                Some(path) => path.clone(),
-                None => firmware::build(1).map_err(Failure::run)?,
-            };
-            let firmware = Firmware::from_file(&path).map_err(Failure::input)?;
+            let (firmware, _) = device::image(elf, 1)?;
             let mut engine = Image::new(&firmware, world).map_err(Failure::run)?;
             with(arguments, &plants, &mut engine)
         }
@@ -185,6 +173,5 @@ fn surveyed(devices: u64, json: bool) -> Result<(), Failure> {
 }
 
 fn print(text: &str) -> Result<(), Failure> {
-    let written = writeln!(stdout(), "{text}").context("standard output");
-    written.map_err(Failure::run)
+    output::print(&format!("{text}\n"))
 }

@@ -1,20 +1,18 @@
 //! `hil-sim fidelity`: how close the skin comes to that on the real material.
 
-use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use hil_sim::fidelity::{self, Boxed, Case, Device, Draw, Drawn, Row, Scenario, Without};
-use hil_sim::firmware;
 use hil_sim::machine::Firmware;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use thermal_display::control::Law;
 
-use super::Failure;
-use super::run::Kind;
+use super::device::{self, Kind};
+use super::{Failure, output};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -114,12 +112,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         chosen => chosen.to_vec(),
     };
     let cases = cases(arguments)?;
-    if let Some(folder) = &arguments.out {
-        let created = std::fs::create_dir_all(folder);
-        created
-            .with_context(|| format!("--out {}", folder.display()))
-            .map_err(Failure::input)?;
-    }
+    output::create(arguments.out.as_deref())?;
     let firmware = firmware(arguments, !cases.is_empty())?;
     let campaign = Campaign {
         arguments,
@@ -153,10 +146,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let (Some(folder), false) = (&arguments.out, arguments.json) {
         text += &format!("report: {}\n", folder.join(fidelity::HTML).display());
     }
-    stdout()
-        .write_all(text.as_bytes())
-        .context("standard output")
-        .map_err(Failure::run)
+    output::print(&text)
 }
 
 /// The cases that are asked for.
@@ -195,22 +185,11 @@ fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
 /// The image, if one is needed.
 fn firmware(arguments: &Arguments, scenarios: bool) -> Result<Option<Firmware>, Failure> {
     let image = arguments.engine == Some(Kind::Image) || (arguments.engine.is_none() && scenarios);
+    let elf = arguments.elf.as_deref();
     if !image {
-        return match &arguments.elf {
-            Some(_) => Err(Failure::input(anyhow!(
-                "--elf is for --engine image; the native engine runs no image"
-            ))),
-            None => Ok(None),
-        };
+        return device::no_image(elf).map(|()| None);
     }
-    let path = match &arguments.elf {
-        Some(path) => path.clone(),
-        None => firmware::build(1).map_err(Failure::run)?,
-    };
-    let firmware = Firmware::from_file(&path)
-        .with_context(|| path.display().to_string())
-        .map_err(Failure::input)?;
-    Ok(Some(firmware))
+    device::image(elf, 1).map(|(firmware, _)| Some(firmware))
 }
 
 struct Campaign<'a> {

@@ -1,21 +1,18 @@
 //! `hil-sim hand`: five scenes on the five fingers of one device.
 
-use std::io::{Write, stdout};
 use std::path::PathBuf;
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use clap::Args;
+use hil_sim::World;
 use hil_sim::engine::{Cost, Engine, Image, Native};
 use hil_sim::hand::{FINGERS, Hand, ImageHand, NativeHand, run as run_hand};
-use hil_sim::machine::Firmware;
 use hil_sim::metrics::{Figures, figures as figures_of};
 use hil_sim::scene::Scene;
-use hil_sim::{World, firmware};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
-use super::Failure;
-use super::run::Kind;
+use super::device::{self, Kind};
+use super::{Failure, output};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -47,31 +44,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut scenes = Vec::new();
     let mut worlds = Vec::new();
     for path in &arguments.scenes {
-        let scene = Scene::read(path).map_err(Failure::input)?;
-        let world = World::new(&scene)
-            .with_context(|| path.display().to_string())
-            .map_err(Failure::input)?;
+        let (scene, world) = device::scene(path)?;
         scenes.push(scene);
         worlds.push(world);
     }
     let five = || Failure::input(anyhow!("a hand has {FINGERS} scenes"));
     let scenes: [Scene; FINGERS] = scenes.try_into().map_err(|_| five())?;
     let worlds: [World; FINGERS] = worlds.try_into().map_err(|_| five())?;
+    let elf = arguments.elf.as_deref();
     let (figures, cost) = match arguments.engine {
-        Kind::Native if arguments.elf.is_some() => {
-            return Err(Failure::input(anyhow!(
-                "--elf is for --engine image; the native engine runs no image"
-            )));
+        Kind::Native => {
+            device::no_image(elf)?;
+            measure::<Native, _>(&scenes, &mut NativeHand::new(worlds))
         }
-        Kind::Native => measure::<Native, _>(&scenes, &mut NativeHand::new(worlds)),
         Kind::Image => {
-            let path = match &arguments.elf {
-                Some(path) => path.clone(),
-                None => firmware::build(FINGERS).map_err(Failure::run)?,
-            };
-            let firmware = Firmware::from_file(&path)
-                .with_context(|| path.display().to_string())
-                .map_err(Failure::input)?;
+            let (firmware, _) = device::image(elf, FINGERS)?;
             let mut hand = ImageHand::new(&firmware, worlds).map_err(Failure::run)?;
             measure::<Image, _>(&scenes, &mut hand)
         }
@@ -85,10 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     } else {
         table(&figures, cost)
     };
-    stdout()
-        .write_all(text.as_bytes())
-        .context("standard output")
-        .map_err(Failure::run)
+    output::print(&text)
 }
 
 /// `E` names the engine that each finger would have alone.
@@ -96,11 +80,8 @@ fn measure<E: Engine, H: Hand>(
     scenes: &[Scene; FINGERS],
     hand: &mut H,
 ) -> Result<(Vec<Figures>, Option<Cost>), Failure> {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed}");
-    let bar = ProgressBar::new(1000).with_style(style.map_err(Failure::run)?);
-    bar.set_message(format!("five fingers on engine {}", E::NAME));
-    let outcomes = run_hand(scenes, hand, |part| bar.set_position((part * 1000.0) as u64));
-    bar.finish_and_clear();
+    let name = format!("five fingers on engine {}", E::NAME);
+    let outcomes = output::with_progress(name, |progress| run_hand(scenes, hand, progress))?;
     let outcomes = outcomes.map_err(Failure::run)?;
     let figures = scenes.iter().zip(&outcomes);
     let figures = figures.map(|(scene, outcome)| figures_of::<E>(scene, outcome));

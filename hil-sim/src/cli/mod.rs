@@ -1,11 +1,13 @@
 //! The subcommands.
 
 pub mod commission;
+mod device;
 pub mod erfcx;
 pub mod fidelity;
 pub mod hand;
 pub mod infrared;
 pub mod model;
+mod output;
 pub mod parameters;
 pub mod profile;
 pub mod roughness;

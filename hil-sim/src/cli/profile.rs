@@ -1,19 +1,16 @@
 //! `hil-sim profile`: which functions a control tick spends its instructions and cycles in.
 
 use std::collections::{BTreeMap, HashMap};
-use std::io::{Write, stdout};
 use std::path::PathBuf;
 
 use addr2line::Loader;
 use anyhow::{Context, anyhow};
 use clap::Args;
 use hil_sim::engine::Image;
-use hil_sim::machine::{Firmware, Ran, cold_fetch_stalls};
+use hil_sim::machine::{Ran, cold_fetch_stalls};
 use hil_sim::run::run as run_scene;
-use hil_sim::scene::Scene;
-use hil_sim::{World, firmware};
 
-use super::Failure;
+use super::{Failure, device, output};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -36,17 +33,8 @@ struct Share {
 
 /// Runs the scene and prints a line for each function.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let scene = Scene::read(&arguments.scene).map_err(Failure::input)?;
-    let world = World::new(&scene)
-        .with_context(|| arguments.scene.display().to_string())
-        .map_err(Failure::input)?;
-    let path = match &arguments.elf {
-        Some(path) => path.clone(),
-        None => firmware::build(1).map_err(Failure::run)?,
-    };
-    let firmware = Firmware::from_file(&path)
-        .with_context(|| path.display().to_string())
-        .map_err(Failure::input)?;
+    let (scene, world) = device::scene(&arguments.scene)?;
+    let (firmware, path) = device::image(arguments.elf.as_deref(), 1)?;
     let symbols =
         Loader::new(&path).map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))?;
     let mut image = Image::new(&firmware, world).map_err(Failure::run)?;
@@ -82,10 +70,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         + &format!(
             "\nfetching the longest tick's code into an empty instruction cache: up to {stalls} cycles more, not in the estimate\n"
         );
-    stdout()
-        .write_all(text.as_bytes())
-        .context("standard output")
-        .map_err(Failure::run)
+    output::print(&text)
 }
 
 /// The function of the firmware or its model that an instruction belongs to, with what the compiler has put into it of

@@ -1,19 +1,17 @@
 //! `hil-sim run`: a scene on an engine.
 
-use std::io::{Write, stdout};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, anyhow};
-use clap::{Args, ValueEnum};
+use anyhow::Context;
+use clap::Args;
 use hil_sim::engine::{Engine, Image, Native};
-use hil_sim::machine::Firmware;
 use hil_sim::metrics::{Figures, figures};
+use hil_sim::report;
 use hil_sim::run::{Outcome, run as run_scene};
 use hil_sim::scene::Scene;
-use hil_sim::{World, firmware, report};
-use indicatif::{ProgressBar, ProgressStyle};
 
-use super::Failure;
+use super::device::{self, Kind};
+use super::{Failure, output};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -33,43 +31,18 @@ pub struct Arguments {
     json: bool,
 }
 
-/// What runs the device's logic.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Kind {
-    /// The release image in the emulated microcontroller
-    Image,
-    /// The same logic, called directly: faster, without cost figures
-    Native,
-}
-
 /// Runs the scene; prints its figures and writes its report.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let scene = Scene::read(&arguments.scene).map_err(Failure::input)?;
-    let world = World::new(&scene)
-        .with_context(|| arguments.scene.display().to_string())
-        .map_err(Failure::input)?;
-    if let Some(folder) = &arguments.out {
-        // Before the run, which may be long.
-        let created = std::fs::create_dir_all(folder);
-        created
-            .with_context(|| format!("--out {}", folder.display()))
-            .map_err(Failure::input)?;
-    }
+    let (scene, world) = device::scene(&arguments.scene)?;
+    output::create(arguments.out.as_deref())?;
+    let elf = arguments.elf.as_deref();
     let (outcome, figures) = match arguments.engine {
-        Kind::Native if arguments.elf.is_some() => {
-            return Err(Failure::input(anyhow!(
-                "--elf is for --engine image; the native engine runs no image"
-            )));
+        Kind::Native => {
+            device::no_image(elf)?;
+            measure(&scene, &mut Native::new(world))
         }
-        Kind::Native => measure(&scene, &mut Native::new(world)),
         Kind::Image => {
-            let path = match &arguments.elf {
-                Some(path) => path.clone(),
-                None => firmware::build(1).map_err(Failure::run)?,
-            };
-            let firmware = Firmware::from_file(&path)
-                .with_context(|| path.display().to_string())
-                .map_err(Failure::input)?;
+            let (firmware, _) = device::image(elf, 1)?;
             measure(&scene, &mut Image::new(&firmware, world).map_err(Failure::run)?)
         }
     }?;
@@ -84,18 +57,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let (Some(folder), false) = (&arguments.out, arguments.json) {
         text += &format!("report: {}\n", folder.join(report::HTML).display());
     }
-    stdout()
-        .write_all(text.as_bytes())
-        .context("standard output")
-        .map_err(Failure::run)
+    output::print(&text)
 }
 
 fn measure<E: Engine>(scene: &Scene, engine: &mut E) -> Result<(Outcome, Figures), Failure> {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed}");
-    let bar = ProgressBar::new(1000).with_style(style.map_err(Failure::run)?);
-    bar.set_message(format!("{} on engine {}", scene.object.name, E::NAME));
-    let outcome = run_scene(scene, engine, |part| bar.set_position((part * 1000.0) as u64));
-    bar.finish_and_clear();
+    let name = format!("{} on engine {}", scene.object.name, E::NAME);
+    let outcome = output::with_progress(name, |progress| run_scene(scene, engine, progress))?;
     let outcome = outcome.map_err(Failure::run)?;
     let figures = figures::<E>(scene, &outcome);
     Ok((outcome, figures))

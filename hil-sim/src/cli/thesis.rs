@@ -1,14 +1,12 @@
 //! `hil-sim thesis`: the thesis's numbers beside the computed ones.
 
-use std::io::{Write, stdout};
 use std::path::PathBuf;
 
-use anyhow::Context;
 use clap::Args;
 use hil_sim::thesis::figure::{apart, figures};
 use hil_sim::thesis::{self, ClosedForm, FiniteVolumes};
 
-use super::Failure;
+use super::{Failure, output};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -23,12 +21,7 @@ pub struct Arguments {
 /// Recomputes, prints, writes.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let chapters = thesis::chapters();
-    if let Some(folder) = &arguments.out {
-        let created = std::fs::create_dir_all(folder);
-        created
-            .with_context(|| format!("--out {}", folder.display()))
-            .map_err(Failure::input)?;
-    }
+    output::create(arguments.out.as_deref())?;
     let closed = figures(&ClosedForm).map_err(Failure::run)?;
     let apart = apart(&closed, &figures(&FiniteVolumes).map_err(Failure::run)?);
     if let Some(folder) = &arguments.out {
@@ -42,8 +35,5 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let (Some(folder), false) = (&arguments.out, arguments.json) {
         text += &format!("report: {}\n", folder.join(thesis::HTML).display());
     }
-    stdout()
-        .write_all(text.as_bytes())
-        .context("standard output")
-        .map_err(Failure::run)
+    output::print(&text)
 }

@@ -93,22 +93,16 @@ fn release_outputs() {
     // SAFETY: the handles went into `pwm_hz`. The channels write the compare and enable registers only; break and
     // dead-time registers are written here, and once more when the program ends.
     let (tim1, tim8) = unsafe { (TIM1::steal(), TIM8::steal()) };
-    tim1.bdtr().write(|w| {
-        w.bke().enabled();
-        w.bkp().active_high();
-        w.ossi().idle_level();
-        w.aoe().manual();
-        w.moe().enabled();
-        w.lock().level3()
-    });
-    tim8.bdtr().write(|w| {
-        w.bke().enabled();
-        w.bkp().active_high();
-        w.ossi().idle_level();
-        w.aoe().manual();
-        w.moe().enabled();
-        w.lock().level3()
-    });
+    for timer in [&*tim1, &*tim8] {
+        timer.bdtr().write(|w| {
+            w.bke().enabled();
+            w.bkp().active_high();
+            w.ossi().idle_level();
+            w.aoe().manual();
+            w.moe().enabled();
+            w.lock().level3()
+        });
+    }
 }
 
 impl PowerStage {

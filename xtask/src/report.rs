@@ -1,4 +1,4 @@
-//! How close the skin on the display comes to the skin on the real material.
+//! Commands of other packages that measure, and print or write a report.
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -7,8 +7,14 @@ use anyhow::{Context, Result};
 use crate::process::Invocation;
 use crate::setup::{self, Needs, Permission};
 
-/// `cargo xtask fidelity`: what follows is `hil-sim fidelity`'s; a relative `out` is one of the caller's folder.
-pub fn run(permission: Permission, json: bool, out: Option<PathBuf>, rest: Vec<OsString>) -> Result<()> {
+/// Runs a command of a package; a relative `out` is one of the caller's folder.
+pub fn run(
+    permission: Permission,
+    (package, command): (&str, &str),
+    json: bool,
+    out: Option<PathBuf>,
+    rest: Vec<OsString>,
+) -> Result<()> {
     let out = out.map(|folder| {
         // Commands run in the workspace's root.
         std::path::absolute(&folder).with_context(|| format!("--out {}", folder.display()))
@@ -19,7 +25,7 @@ pub fn run(permission: Permission, json: bool, out: Option<PathBuf>, rest: Vec<O
         lints: false,
     };
     setup::prepare(needs, permission)?;
-    let mut line: Vec<OsString> = ["run", "--release", "--package", "hil-sim", "--", "fidelity"]
+    let mut line: Vec<OsString> = ["run", "--release", "--package", package, "--", command]
         .map(OsString::from)
         .into();
     if json {
