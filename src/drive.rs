@@ -5,6 +5,29 @@ use fixed::types::{I1F15, I8F24};
 /// Current through the module in A, ±128; positive cools the display.
 pub type Current = I8F24;
 
+/// A current that a module may be driven with; positive cools the display.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SafeCurrent(Current);
+
+impl SafeCurrent {
+    /// Largest magnitude, A: that of the smallest module of the class.
+    pub const LIMIT: Current = Current::lit("6");
+    /// None.
+    pub const ZERO: Self = Self(Current::ZERO);
+
+    /// Clamps to plus or minus [`Self::LIMIT`].
+    #[must_use]
+    pub fn saturating(current: Current) -> Self {
+        Self(current.clamp(-Self::LIMIT, Self::LIMIT))
+    }
+
+    /// The current, within plus or minus [`Self::LIMIT`].
+    #[must_use]
+    pub const fn ampere(self) -> Current {
+        self.0
+    }
+}
+
 /// Signed fraction of the bridge supply; positive cools the display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Duty(I1F15);
@@ -49,4 +72,13 @@ pub enum Drive {
     Off,
     /// Drive with this mean voltage.
     On(Duty),
+}
+
+/// What one tick tells the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Outputs {
+    /// The bridge.
+    pub drive: Drive,
+    /// Level of the line that lets the comparator cut the supply, and with its falling edge give it back.
+    pub comparator_test: bool,
 }

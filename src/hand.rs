@@ -3,7 +3,8 @@
 use core::array;
 
 use crate::Station;
-use crate::drive::Drive;
+use crate::drive::Outputs;
+use crate::guard::{Cause, Fault};
 use crate::protocol::{Addressed, Command, Error, Reply, Request, Telemetry};
 use crate::sense::Samples;
 use crate::settings::Settings;
@@ -25,8 +26,30 @@ impl<const FINGERS: usize> Hand<FINGERS> {
     }
 
     /// One control tick of a finger, `finger` counted modulo `FINGERS`.
-    pub fn step(&mut self, finger: usize, samples: &Samples) -> Drive {
+    pub fn step(&mut self, finger: usize, samples: &Samples) -> Outputs {
         self.stations[finger % FINGERS].step(samples)
+    }
+
+    /// Trips all fingers for a reason that samples do not show.
+    pub fn trip(&mut self, fault: Fault) {
+        self.stations.iter_mut().for_each(|station| station.trip(fault));
+    }
+
+    /// Goes on from what tripped before a reset, tripped.
+    pub fn latch(&mut self, cause: Cause) {
+        self.stations.iter_mut().for_each(|station| station.latch(cause));
+    }
+
+    /// Why a finger is tripped.
+    #[must_use]
+    pub fn tripped(&self, finger: usize) -> Option<&Cause> {
+        let station = &self.stations[finger % FINGERS];
+        station.cause().filter(|_| station.is_tripped())
+    }
+
+    /// The host is there.
+    pub fn hear(&mut self) {
+        self.stations.iter_mut().for_each(Station::hear);
     }
 
     /// Telemetry of a finger's last tick, if it is due.
@@ -80,4 +103,4 @@ impl<const FINGERS: usize> Hand<FINGERS> {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -22,7 +22,8 @@ pub mod settings;
 mod station;
 
 pub use hand::Hand;
-pub use station::{State, Station};
+pub use guard::State;
+pub use station::Station;
 
 /// Control ticks per second.
 pub const TICK_HZ: u32 = 1000;

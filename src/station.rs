@@ -1,67 +1,19 @@
-//! One finger's device, without its hardware.
+//! One finger's device, without its hardware: the states and arrows of [the guard](crate::guard), and what happens in them.
 //!
-//! ```text
-//!            arm                 start
-//!     off ---------> armed ---------------> preset <--> contact
-//!      ^               ^                      |  lands / lifts |
-//!      |               +------- arm ----------+----------------+
-//!      |  abort, from anywhere but tripped
-//!      +--- clear --- tripped <--- any fault, from anywhere
-//! ```
-//!
-//! Armed, the display is neutral: at skin temperature, touched or not, or where it is held for calibration. The bridge is driven in `armed`,
-//! `preset` and `contact` only.
+//! Armed, the display is neutral: at skin temperature, touched or not, or where it is held for calibration.
 
 use contact_model::fixed_point::{Celsius, Force, Pairing};
 use contact_model::material::{MATERIALS, SKIN};
 
 use crate::TICK_HZ;
 use crate::commission::{Aborted, Experiment, PointError};
-use crate::control::{Control, Inputs, Law, Voltage, Watt};
-use crate::drive::{Current, Drive};
-use crate::guard::{self, Fault, Setpoint, Sound, Watch};
+use crate::control::{Control, Inputs, Law, Legs, Voltage, Watt};
+use crate::drive::{Current, Drive, Outputs, SafeCurrent};
+use crate::guard::{self, Before, Cause, Fault, Progress, SelfTest, Setpoint, Sound, State, Watch};
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
 use crate::render::{Mode, Render, Scene, Wanted};
 use crate::sense::{Averages, Readings, Samples, Sensors, Touch};
 use crate::settings::Settings;
-
-/// What the device is doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
-    /// Bridge off.
-    Off,
-    /// Display at skin temperature.
-    Armed,
-    /// An object is presented, no finger on it.
-    Preset,
-    /// An object is presented to the finger on it.
-    Contact,
-    /// Bridge off, until the host clears the fault.
-    Tripped(Fault),
-}
-
-impl State {
-    /// The word for it in the protocol.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Off => "off",
-            Self::Armed => "armed",
-            Self::Preset => "preset",
-            Self::Contact => "contact",
-            Self::Tripped(_) => "tripped",
-        }
-    }
-
-    /// Why it is off, if tripped.
-    #[must_use]
-    pub const fn fault(self) -> Option<Fault> {
-        match self {
-            Self::Tripped(fault) => Some(fault),
-            _ => None,
-        }
-    }
-}
 
 /// One finger's display: samples in, bridge command out, once per tick.
 #[derive(Clone, Debug)]
@@ -74,6 +26,10 @@ pub struct Station {
     /// Fault present in the last tick.
     fault: Option<Fault>,
     watch: Watch,
+    self_test: SelfTest,
+    /// What the bridge was told last.
+    before: Before,
+    cause: Option<Cause>,
     touch: Touch,
     render: Render,
     material: Option<(&'static str, Pairing)>,
@@ -101,6 +57,12 @@ struct Followed {
     finger: Watt,
 }
 
+/// Neither driven nor tested.
+const OFF: Outputs = Outputs {
+    drive: Drive::Off,
+    comparator_test: false,
+};
+
 impl Station {
     /// A station that is off.
     #[must_use]
@@ -112,6 +74,9 @@ impl Station {
             state: State::Off,
             fault: None,
             watch: Watch::default(),
+            self_test: SelfTest::default(),
+            before: Before::default(),
+            cause: None,
             touch: Touch::default(),
             render: Render::default(),
             material: None,
@@ -134,51 +99,151 @@ impl Station {
     }
 
     /// One control tick: sense, render, control, guard.
-    pub fn step(&mut self, samples: &Samples) -> Drive {
+    pub fn step(&mut self, samples: &Samples) -> Outputs {
         self.tick = self.tick.wrapping_add(1);
         // Nobody calibrates under a finger that feels an object.
-        if !matches!(self.state, State::Preset | State::Contact) {
+        if !self.state.presents() {
             self.averages.take(&samples.thermistors());
         }
         let readings = self.sensors.read(samples);
-        // Both look at every tick; what a tick shows at once is named first.
-        let lasting = self.watch.check(samples, &readings);
-        let checked = guard::check(&readings, self.control.limit()).and_then(|sound| lasting.map(|()| sound));
-        self.fault = checked.err();
-        if let (Err(fault), false) = (checked, matches!(self.state, State::Tripped(_))) {
-            self.state = State::Tripped(fault);
-        }
-        let followed = checked
-            .ok()
-            .and_then(|sound| Some((sound, self.follow(samples, &sound)?)));
-        let (drive, current) = match &followed {
-            Some((sound, followed)) => {
-                let tuning = self.tuning(sound, readings.current);
-                let legs = self.control.legs(sound.display, sound.sink);
-                let current = tuning.unwrap_or_else(|| {
-                    self.control.update(&Inputs {
-                        setpoint: followed.setpoint,
-                        target: followed.target,
-                        display: sound.display,
-                        sink: sound.sink,
-                        finger: followed.finger,
-                    })
-                });
-                (Drive::On(self.voltage.duty(current, &legs)), current)
+        let checked = self.check(samples, &readings);
+        let (followed, mut told) = match checked {
+            Ok(sound) => {
+                let followed = self.follow(samples, &sound);
+                (followed, self.act(&sound, &readings, followed.as_ref()))
             }
-            None => {
-                self.end_experiment();
-                self.control.reset();
-                if checked.is_err() {
-                    // What the finger does meanwhile is not known.
-                    self.render.lose_sight();
-                }
-                (Drive::Off, Current::ZERO)
+            Err(fault) => {
+                // What the finger does meanwhile is not known.
+                self.render.lose_sight();
+                (None, Err(fault))
             }
         };
-        let setpoint = followed.map(|(_, followed)| (followed.setpoint, followed.limited));
+        self.fault = told.err();
+        if let Err(fault) = told {
+            self.latch(Cause::new(fault, self.tick, &readings, self.before.asked));
+            told = Ok(self.rest(false));
+        }
+        let (outputs, current) = told.unwrap_or((OFF, Current::ZERO));
+        self.before = Before {
+            asked: current,
+            setpoint: followed.map(|followed| followed.setpoint),
+        };
+        let setpoint = followed.map(|followed| (followed.setpoint, followed.limited));
         self.report(&readings, setpoint, current);
-        drive
+        outputs
+    }
+
+    /// Every detector looks at every tick; what a tick shows at once is named first.
+    fn check(&mut self, samples: &Samples, readings: &Readings) -> Result<Sound, Fault> {
+        let still = self.watch.samples(samples);
+        let level = guard::check(readings, self.control.limit());
+        let streams = self.stream_ticks != 0;
+        let watched = match &level {
+            Ok(sound) => self.watch.check(sound, readings.current, &self.before, streams),
+            Err(fault) => {
+                self.watch.forget_motion();
+                Err(*fault)
+            }
+        };
+        // The comparator keeps its line until the next self-test, and is expected to pull it at its beginning.
+        let pulled = match self.state {
+            State::Off => false,
+            State::SelfTest => readings.bridge_fault && !self.self_test.expects_cut(),
+            _ => readings.bridge_fault,
+        };
+        let bridge = if pulled { Err(Fault::Bridge) } else { Ok(()) };
+        let sound = level?;
+        bridge.and(watched).and(still)?;
+        Ok(sound)
+    }
+
+    /// Trips for a reason that samples do not show.
+    pub fn trip(&mut self, fault: Fault) {
+        let cause = Cause {
+            tick: self.tick,
+            ..Cause::alone(fault)
+        };
+        self.latch(cause);
+    }
+
+    /// The first cause stays.
+    pub fn latch(&mut self, cause: Cause) {
+        if !self.is_tripped() {
+            self.state = State::Tripped(cause.fault);
+            self.cause = Some(cause);
+        }
+    }
+
+    /// A fault is latched.
+    #[must_use]
+    pub const fn is_tripped(&self) -> bool {
+        matches!(self.state, State::Tripped(_))
+    }
+
+    /// Why it tripped, now or the last time.
+    #[must_use]
+    pub const fn cause(&self) -> Option<&Cause> {
+        self.cause.as_ref()
+    }
+
+    /// The host is there.
+    pub const fn hear(&mut self) {
+        self.watch.hear();
+    }
+
+    /// What the bridge is told in a tick without a fault, and the current that is asked for.
+    ///
+    /// # Errors
+    /// The self-test's.
+    fn act(
+        &mut self,
+        sound: &Sound,
+        readings: &Readings,
+        followed: Option<&Followed>,
+    ) -> Result<(Outputs, Current), Fault> {
+        if self.state == State::SelfTest {
+            let legs = Legs::between(sound.display, sound.sink);
+            return Ok(match self.self_test.step(sound, readings.current, readings.bridge_fault)? {
+                Progress::Off { comparator_test } => self.rest(comparator_test),
+                Progress::Drive(current) => self.drive(current, &legs),
+                Progress::Passed => {
+                    self.state = State::Armed;
+                    self.rest(false)
+                }
+            });
+        }
+        let Some(followed) = followed else {
+            return Ok(self.rest(false));
+        };
+        let tuning = self.tuning(sound, readings.current);
+        let legs = self.control.legs(sound.display, sound.sink);
+        let current = tuning.unwrap_or_else(|| {
+            self.control.update(&Inputs {
+                setpoint: followed.setpoint,
+                target: followed.target,
+                display: sound.display,
+                sink: sound.sink,
+                finger: followed.finger,
+            })
+        });
+        Ok(self.drive(current, &legs))
+    }
+
+    fn drive(&self, current: Current, legs: &Legs) -> (Outputs, Current) {
+        let current = SafeCurrent::saturating(current);
+        let outputs = Outputs {
+            drive: Drive::On(self.voltage.duty(current, legs)),
+            comparator_test: false,
+        };
+        (outputs, current.ampere())
+    }
+
+    /// The bridge off.
+    fn rest(&mut self, comparator_test: bool) -> (Outputs, Current) {
+        self.end_experiment();
+        self.control.reset();
+        let outputs = Outputs { comparator_test, ..OFF };
+        (outputs, Current::ZERO)
     }
 
     /// Follows finger and scene.
@@ -203,7 +268,7 @@ impl Station {
             target: setpoint,
         };
         let wanted = match self.state {
-            State::Off | State::Tripped(_) => return None,
+            State::Off | State::SelfTest | State::Ready | State::Tripped(_) => return None,
             State::Armed => only(match (&self.experiment, self.held) {
                 (Some(experiment), _) if experiment.drives() => experiment.rest().celsius(),
                 (_, Some(held)) => held.celsius(),
@@ -293,9 +358,7 @@ impl Station {
     pub fn execute(&mut self, command: Command) -> Result<Reply, Error> {
         match command {
             // Nothing that a finger feels is moved by a line.
-            Command::Calibrate(_) | Command::Average(_)
-                if matches!(self.state, State::Preset | State::Contact) =>
-            {
+            Command::Calibrate(_) | Command::Average(_) if self.state.presents() => {
                 return Err(Error::Presenting);
             }
             Command::Identify => return Ok(Reply::Identity { fingers: 1 }),
@@ -320,6 +383,11 @@ impl Station {
             Command::Law(Some(law)) => self.control.select(law),
             Command::Arm => match self.state {
                 State::Tripped(fault) => return Err(Error::Tripped(fault)),
+                State::SelfTest => {}
+                State::Off => {
+                    self.self_test = SelfTest::default();
+                    self.state = State::SelfTest;
+                }
                 _ => {
                     self.experiment = None;
                     self.held = None;
@@ -336,7 +404,8 @@ impl Station {
             },
             Command::Start => match (self.state, self.material) {
                 (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),
-                (State::Off, _) => return Err(Error::NotArmed),
+                (State::Off | State::Ready, _) => return Err(Error::NotArmed),
+                (State::SelfTest, _) => return Err(Error::Testing),
                 (_, None) => return Err(Error::NoMaterial),
                 (State::Armed, Some(_)) => {
                     self.render.forget_contact();
@@ -347,11 +416,12 @@ impl Station {
                 (State::Preset | State::Contact, Some(_)) => return Err(Error::AlreadyStarted),
             },
             // Never refused: off is what it asks for, and tripped is off.
-            Command::Abort => {
-                if !matches!(self.state, State::Tripped(_)) {
-                    self.state = State::Off;
-                }
-            }
+            Command::Abort => match self.state {
+                State::Tripped(_) | State::Ready => {}
+                State::Off | State::SelfTest => self.state = State::Off,
+                State::Armed | State::Preset | State::Contact => self.state = State::Ready,
+            },
+            Command::Cause => return Ok(Reply::Cause(self.cause)),
             Command::Clear => match (self.state, self.fault) {
                 (State::Tripped(_), None) => self.state = State::Off,
                 (State::Tripped(_), Some(fault)) => return Err(Error::StillFaulty(fault)),

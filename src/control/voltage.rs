@@ -3,7 +3,7 @@
 use contact_model::fixed_point::Celsius;
 use fixed::types::I1F15;
 
-use crate::drive::{Current, Duty};
+use crate::drive::{Current, Duty, SafeCurrent};
 use crate::settings::Module;
 
 /// The module's electrical side: `V = R I + a (T_hot - T_cold) + V_dead`, where `V_dead` is what the bridge loses
@@ -88,7 +88,8 @@ impl Voltage {
 
     /// Mean voltage for a current, as a part of the supply.
     #[must_use]
-    pub fn duty(&self, current: Current, legs: &Legs) -> Duty {
+    pub fn duty(&self, current: SafeCurrent, legs: &Legs) -> Duty {
+        let current = current.ampere();
         let across = legs.hot.saturating_sub(legs.cold).to_bits();
         let warmer = legs.mean.saturating_sub(SHEET).to_bits();
         let rise = times(warmer, self.rise_per_k, Celsius::FRAC_NBITS);
@@ -162,7 +163,7 @@ mod tests {
             let seebeck_v = 12.0 * width - lost_v - 1.251 * current_a;
             for sign in [1.0, -1.0] {
                 let current = Current::saturating_from_num(sign * current_a);
-                let duty = voltage.duty(current, &legs(sign * seebeck_v));
+                let duty = voltage.duty(SafeCurrent::saturating(current), &legs(sign * seebeck_v));
                 let error_v = 12.0 * (duty.fraction().to_num::<f64>() - sign * width);
                 assert!(error_v.abs() < 0.08, "{width}, {current_a} A: {error_v} V");
             }
@@ -177,7 +178,7 @@ mod tests {
             mean: SHEET + Celsius::lit("10"),
             ..legs(0.0)
         };
-        let part = |legs| voltage.duty(Current::lit("4"), legs).fraction().to_num::<f64>();
+        let part = |legs| voltage.duty(SafeCurrent::saturating(Current::lit("4")), legs).fraction().to_num::<f64>();
         let more_v = 12.0 * (part(&warm) - part(&legs(0.0)));
         assert!((more_v - 4.0 * 1.061 * 0.049).abs() < 2e-3, "{more_v}");
     }

@@ -25,3 +25,21 @@ impl Setpoint {
         self.0
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn setpoint_cannot_leave_its_range() {
+        for (wanted, allowed, limited) in [(14.9, 15.0, true), (15.0, 15.0, false), (42.5, 42.0, true)] {
+            let (setpoint, was_limited) = Setpoint::limited(Celsius::from_num(wanted));
+            assert_eq!(
+                (setpoint.celsius().to_num::<f64>(), was_limited),
+                (allowed, limited)
+            );
+        }
+        assert_eq!(Setpoint::limited(Celsius::MAX).0, Setpoint::MAX);
+        assert_eq!(Setpoint::limited(Celsius::MIN).0, Setpoint::MIN);
+    }
+}

@@ -2,51 +2,102 @@
 
 use contact_model::fixed_point::Celsius;
 
-use super::Fault;
-use crate::sense::{Readings, Samples};
+use super::dose::Dose;
+use super::electrical::Electrical;
+use super::frozen::Frozen;
+use super::jump::Jump;
+use super::lasting::Lasting;
+use super::limits::Sound;
+use super::response::Response;
+use super::{Fault, Setpoint};
+use crate::drive::Current;
+use crate::sense::Samples;
 
-/// Ticks of identical samples that count as a converter that stands still: seven sums of 16 conversions do not
-/// repeat once by chance, let alone 50 times.
-const FROZEN_TICKS: u32 = 50;
-/// Difference of the display's thermistors that counts, and for how many ticks.
+/// Difference of the display's thermistors that counts, and for how many ticks. Ones whose lags differ by 0.1 s are 1.6 K
+/// apart while the bridge at its limit moves a bare display.
 const APART: Celsius = Celsius::lit("3");
-const APART_TICKS: u32 = 100;
+const APART_TICKS: u8 = 40;
+/// Room above skin that counts, and for how many ticks: who wears it is warmer than the room, or there is nobody and both
+/// are the same.
+const ROOM_ABOVE: Celsius = Celsius::lit("6");
+const ROOM_TICKS: u8 = 40;
+/// A host that streams is silent for no longer, ticks.
+const SILENT_TICKS: u16 = 2000;
+
+/// What the bridge did in the tick before.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Before {
+    /// Current asked for.
+    pub asked: Current,
+    /// Where the display was to be; none while the bridge was off.
+    pub setpoint: Option<Setpoint>,
+}
 
 /// What the guard remembers from tick to tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Watch {
-    last: Samples,
-    same_ticks: u32,
-    apart_ticks: u32,
+    frozen: Frozen,
+    jump: Jump,
+    apart: Lasting,
+    room: Lasting,
+    electrical: Electrical,
+    response: Response,
+    dose: Dose,
+    silent_ticks: u16,
 }
 
 impl Watch {
-    /// Takes one tick.
+    /// Something has come from the host.
+    pub const fn hear(&mut self) {
+        self.silent_ticks = 0;
+    }
+
+    /// Takes the samples of one tick.
     ///
     /// # Errors
-    /// A fault that has lasted.
-    pub fn check(&mut self, samples: &Samples, readings: &Readings) -> Result<(), Fault> {
-        let same = *samples == self.last;
-        if !same {
-            self.last = *samples;
-        }
-        self.same_ticks = lasting(same, self.same_ticks);
-        let apart = match (readings.display, readings.display_check) {
-            (Ok(a), Ok(b)) => a.saturating_sub(b).saturating_abs() > APART,
-            _ => false,
-        };
-        self.apart_ticks = lasting(apart, self.apart_ticks);
-        if self.same_ticks >= FROZEN_TICKS {
-            return Err(Fault::SamplesFrozen);
-        }
-        if self.apart_ticks >= APART_TICKS {
-            return Err(Fault::DisplaysDisagree);
-        }
-        Ok(())
+    /// A signal that stands still.
+    pub fn samples(&mut self, samples: &Samples) -> Result<(), Fault> {
+        self.frozen.check(samples)
+    }
+
+    /// Takes one tick in which no level was wrong; `measured` is the current, `streams` whether a host listens.
+    ///
+    /// # Errors
+    /// A fault that has lasted. All are looked at, and the first of this order is named.
+    pub fn check(
+        &mut self,
+        sound: &Sound,
+        measured: Current,
+        before: &Before,
+        streams: bool,
+    ) -> Result<(), Fault> {
+        let above = before
+            .setpoint
+            .map_or(Celsius::ZERO, |setpoint| sound.display.saturating_sub(setpoint.celsius()));
+        let apart = sound.display.saturating_sub(sound.check).saturating_abs() > APART;
+        let room = sound.room.saturating_sub(sound.skin) > ROOM_ABOVE;
+        let apart = named(self.apart.has(apart, APART_TICKS), Fault::DisplaysApart);
+        let room = named(self.room.has(room, ROOM_TICKS), Fault::RoomAboveSkin);
+        let listens = streams && before.setpoint.is_some();
+        self.silent_ticks = if listens { self.silent_ticks.saturating_add(1) } else { 0 };
+        self.jump
+            .check(sound)
+            .and(apart)
+            .and(self.electrical.check(before.asked, measured))
+            .and(self.response.check(before.asked, sound.display, above))
+            .and(room)
+            .and(self.dose.check(sound.display.max(sound.check)))
+            .and(named(self.silent_ticks >= SILENT_TICKS, Fault::HostSilent))
+    }
+
+    /// What moved while something was wrong counts as no jump.
+    pub fn forget_motion(&mut self) {
+        self.jump = Jump::default();
+        self.response = Response::default();
     }
 }
 
-/// Ticks for which something has been so.
-fn lasting(so: bool, ticks: u32) -> u32 {
-    if so { ticks.saturating_add(1) } else { 0 }
+/// A fault that is there or not.
+const fn named(there: bool, fault: Fault) -> Result<(), Fault> {
+    if there { Err(fault) } else { Ok(()) }
 }

@@ -5,6 +5,7 @@ use std::string::{String, ToString};
 
 use super::*;
 use crate::commission::Desk;
+use crate::drive::Drive;
 use crate::sense::SCANS_PER_TICK;
 
 const FIVE: usize = 5;
@@ -15,18 +16,48 @@ fn host<const FINGERS: usize>(hand: &mut Hand<FINGERS>, line: &str) -> String {
     done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
 }
 
-/// Samples without a fault: 10 kohm, 25 °C, but for the skin at 34 °C; no force. `noise` keeps them from repeating.
-fn samples(noise: u16) -> Samples {
+/// Samples without a fault: 26 °C, but for the skin at 34 °C; no force. `noise` keeps them from repeating.
+pub fn samples(noise: u16) -> Samples {
     let count = |counts: u16| counts * SCANS_PER_TICK as u16;
     Samples {
-        display: count(2048) + noise,
-        display_check: count(2048),
-        sink: count(2048),
-        skin: count(1650),
-        room: count(2048),
-        force: count(410),
+        display: count(2000) + noise,
+        display_check: count(2000) + noise,
+        sink: count(2000) + noise,
+        skin: count(1650) + noise,
+        room: count(2000) + noise,
+        force: count(410) + noise,
         current: 0,
         bridge_fault: false,
+    }
+}
+
+/// Arms a finger, whose display answers to current, and whose comparator works.
+pub fn arm<const FINGERS: usize>(hand: &mut Hand<FINGERS>, finger: usize) {
+    host(hand, &format!("@{finger} arm"));
+    // 46 counts to the kelvin, 2.7 K/s per ampere.
+    let (mut tick, mut cooler, mut current, mut bridge_fault) = (0, 0.0, 0, false);
+    while host(hand, &format!("@{finger} state")).contains("state=self-test") {
+        tick += 1;
+        let sound = samples(tick % 2);
+        let moved = (cooler * 46.0 * 16.0) as i16;
+        let outputs = hand.step(
+            finger,
+            &Samples {
+                display: sound.display.wrapping_add_signed(moved),
+                display_check: sound.display_check.wrapping_add_signed(moved),
+                current,
+                bridge_fault,
+                ..sound
+            },
+        );
+        let asked = match outputs.drive {
+            Drive::On(duty) if duty.fraction() > 0.05 => 1,
+            Drive::On(duty) if duty.fraction() < -0.05 => -1,
+            _ => 0,
+        };
+        cooler += 2.7e-3 * f64::from(asked);
+        current = 6400 * u16::from(asked != 0);
+        bridge_fault = outputs.comparator_test;
     }
 }
 
@@ -42,7 +73,7 @@ fn state_of(hand: &mut Hand<FIVE>, finger: usize) -> String {
 fn a_line_is_for_one_finger_or_for_all() {
     let mut hand = Hand::<FIVE>::new(&Settings::default());
     assert_eq!(host(&mut hand, "@3 material abs"), "@3 ok");
-    assert_eq!(host(&mut hand, "@3 arm"), "@3 ok");
+    arm(&mut hand, 3);
     assert_eq!(host(&mut hand, "@3 start"), "@3 ok");
     for finger in 0..FIVE {
         let expected = if finger == 3 { "preset" } else { "off" };
@@ -50,12 +81,13 @@ fn a_line_is_for_one_finger_or_for_all() {
     }
     // Four have no material yet, and the one that has started already is not the first to refuse.
     assert_eq!(host(&mut hand, "start"), "@0 err start needs arm first");
-    assert_eq!(host(&mut hand, "arm"), "ok");
+    arm(&mut hand, 0);
     assert_eq!(host(&mut hand, "start"), "@0 err start needs a material first");
     assert_eq!(state_of(&mut hand, 3), "preset", "the others have obeyed");
     assert_eq!(host(&mut hand, "abort"), "ok");
     for finger in 0..FIVE {
-        assert_eq!(state_of(&mut hand, finger), "off", "{finger}");
+        let expected = if [0, 3].contains(&finger) { "ready" } else { "off" };
+        assert_eq!(state_of(&mut hand, finger), expected, "{finger}");
     }
 }
 
@@ -63,7 +95,7 @@ fn a_line_is_for_one_finger_or_for_all() {
 #[test]
 fn fingers_share_no_fault() {
     let mut hand = Hand::<FIVE>::new(&Settings::default());
-    assert_eq!(host(&mut hand, "arm"), "ok");
+    (0..FIVE).for_each(|finger| arm(&mut hand, finger));
     for finger in 0..FIVE {
         let bridge_fault = finger == 1;
         let drive = hand.step(
@@ -73,13 +105,13 @@ fn fingers_share_no_fault() {
                 ..samples(0)
             },
         );
-        assert_eq!(drive == Drive::Off, finger == 1, "{finger}");
+        assert_eq!(drive.drive == Drive::Off, finger == 1, "{finger}");
     }
     assert_eq!(state_of(&mut hand, 1), "tripped");
     assert_eq!(host(&mut hand, "arm"), "@1 err tripped by bridge; clear it first");
     assert_eq!(host(&mut hand, "abort"), "ok");
     for finger in [0, 2, 3, 4] {
-        assert_eq!(hand.step(finger, &samples(1)), Drive::Off, "{finger}");
+        assert_eq!(hand.step(finger, &samples(1)).drive, Drive::Off, "{finger}");
     }
 }
 
@@ -121,11 +153,12 @@ fn one_finger_has_no_name() {
     assert!(host(&mut hand, "id").contains(" fingers=1 "));
     assert!(host(&mut hand, "state").starts_with("ok state=off"));
     assert_eq!(host(&mut hand, "@0 arm"), "@0 ok");
+    arm(&mut hand, 0);
     assert_eq!(
         host(&mut hand, "@1 arm"),
         "err unknown finger '1' after @; known: 0 to 0"
     );
     hand.step(0, &samples(0));
     let line = hand.telemetry(0).expect("telemetry").to_string();
-    assert!(line.starts_with("T 1 armed "), "{line}");
+    assert!(line.contains(" armed "), "{line}");
 }

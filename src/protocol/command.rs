@@ -48,6 +48,8 @@ pub enum Command {
     Abort,
     /// `clear`: take back a fault that is no longer present.
     Clear,
+    /// `cause`: why it tripped, now or the last time.
+    Cause,
     /// What a thermistor's sums are on average, for [`Desk`](crate::commission::Desk).
     Average(usize),
     /// `tune`: find out what the tile is like.
@@ -62,7 +64,7 @@ pub enum Command {
 
 impl Command {
     /// Words that begin a command.
-    pub const WORDS: [&'static str; 17] = [
+    pub const WORDS: [&'static str; 18] = [
         "id",
         "state",
         "stream",
@@ -75,6 +77,7 @@ impl Command {
         "start",
         "abort",
         "clear",
+        "cause",
         "calibrate",
         "tune",
         "margins",
@@ -97,6 +100,7 @@ impl Command {
             "start" => Self::Start,
             "abort" => Self::Abort,
             "clear" => Self::Clear,
+            "cause" => Self::Cause,
             "tune" => Self::Tune,
             "hold" => Self::Hold(hold(number(&mut words, &HOLD)?)),
             "stream" => {

@@ -70,6 +70,8 @@ pub enum Error {
     Pairing(PairingError),
     /// `start` before `arm`.
     NotArmed,
+    /// `start` while the self-test goes on.
+    Testing,
     /// `start` before `material`.
     NoMaterial,
     /// `start` twice.
@@ -160,6 +162,7 @@ impl fmt::Display for Error {
             }
             Self::Pairing(error) => write!(f, "{error}"),
             Self::NotArmed => f.write_str("start needs arm first"),
+            Self::Testing => f.write_str("the self-test goes on; ask again in a second"),
             Self::NoMaterial => f.write_str("start needs a material first"),
             Self::AlreadyStarted => f.write_str("already started; arm takes the object away"),
             Self::NeedsArmed(command) => write!(f, "{command} needs the state armed"),

@@ -7,10 +7,11 @@ use contact_model::fixed_point::Celsius;
 use super::text::Text;
 use crate::commission::{Margins, Row, STEPS_A_LINE};
 use crate::control::Law;
+use crate::guard::{Cause, State};
 use crate::render::Mode;
 use crate::sense::Average;
 use crate::settings::{Calibration, Correction, Tile};
-use crate::station::State;
+
 use crate::{SCANS_PER_SECOND, TICK_HZ};
 
 /// An answer; `Display` writes the line without its end, at most 160 bytes but for a row, which stays in the device.
@@ -27,6 +28,8 @@ pub enum Reply {
     Status(Status),
     /// Answer to `law`.
     Law(Law),
+    /// Answer to `cause`.
+    Cause(Option<Cause>),
     /// A thermistor's mean.
     Average(Average),
     /// A row of the normal equations of an experiment.
@@ -75,6 +78,7 @@ impl fmt::Display for Reply {
             ),
             Self::Status(status) => write!(f, "ok {status}"),
             Self::Law(law) => write!(f, "ok law={}", law.name()),
+            Self::Cause(cause) => write!(f, "ok {}", Told(cause.as_ref())),
             Self::Average(average) => write!(f, "ok sum={:.3} rise={}", average.sum(), average.rise),
             Self::Row(row) => {
                 f.write_str("ok")?;
@@ -120,6 +124,36 @@ impl fmt::Display for Status {
         line.word(" setpoint_c=");
         line.celsius::<2>(self.setpoint);
         line.word(if self.limited { " limited" } else { "" });
+        line.fmt(f)
+    }
+}
+
+/// A cause as it is told.
+struct Told<'a>(Option<&'a Cause>);
+
+impl fmt::Display for Told<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut line = Text::new();
+        line.word("cause=");
+        let Some(cause) = self.0 else {
+            line.word("-");
+            return line.fmt(f);
+        };
+        line.word(cause.fault.name());
+        line.word(" tick=");
+        line.count(cause.tick);
+        for (name, temperature) in [
+            (" display_c=", cause.display),
+            (" check_c=", cause.check),
+            (" sink_c=", cause.sink),
+        ] {
+            line.word(name);
+            line.celsius::<2>(temperature);
+        }
+        line.word(" current_a=");
+        line.current(cause.current);
+        line.word(" asked_a=");
+        line.current(cause.asked);
         line.fmt(f)
     }
 }

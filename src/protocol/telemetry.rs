@@ -6,7 +6,7 @@ use contact_model::fixed_point::{Celsius, Force};
 
 use super::text::Text;
 use crate::drive::Current;
-use crate::station::State;
+use crate::guard::State;
 
 /// One tick; `Display` writes the telemetry line without its end, at most 128 bytes.
 ///

@@ -9,11 +9,10 @@ use contact_model::fixed_point::{Celsius, Force};
 use super::{Command, Error, LINE_MAX, LineError, LineReader, Reply, Status, Telemetry};
 use crate::control::Law;
 use crate::drive::Current;
-use crate::guard::{Fault, Thermistor};
+use crate::guard::{Fault, State};
 use crate::render::Mode;
 use crate::sense::SensorFault;
 use crate::settings::Settings;
-use crate::station::State;
 
 fn parse(line: &str) -> Result<Command, Error> {
     Command::parse(line, &Settings::default())
@@ -75,7 +74,7 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id state stream material object mode law arm hold start abort clear \
+            "err unknown command 'fly'; known: id state stream material object mode law arm hold start abort clear cause \
              calibrate tune margins settings set",
         ),
         (
@@ -165,7 +164,7 @@ proptest! {
 
 #[test]
 fn the_longest_lines_fit() {
-    let tripped = State::Tripped(Fault::Sensor(Thermistor::Display, SensorFault::Short));
+    let tripped = State::Tripped(Fault::DisplayShort);
     let status = Status {
         state: tripped,
         material: Some("stainless-steel"),

@@ -6,7 +6,7 @@ use std::fmt::Display;
 
 use thermal_display::Hand;
 use thermal_display::commission::Desk;
-use thermal_display::drive::Drive;
+use thermal_display::drive::{Drive, Outputs};
 use thermal_display::protocol::{Addressed, Error, LineReader};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::Settings;
@@ -45,7 +45,7 @@ pub struct Native {
     settling_scans: usize,
     /// The bridge has pulled its fault pin since the last tick: the board's break flag keeps that.
     fault: bool,
-    drive: Drive,
+    outputs: Outputs,
     /// Half milliseconds since the first boundary.
     halves: u64,
 }
@@ -78,7 +78,10 @@ impl Native {
             filled: 0,
             settling_scans,
             fault: false,
-            drive: Drive::Off,
+            outputs: Outputs {
+                drive: Drive::Off,
+                comparator_test: false,
+            },
             halves: 0,
         };
         native.settle(more_at_first);
@@ -138,7 +141,7 @@ impl Engine for Native {
     }
 
     fn legs(&mut self) -> Legs {
-        match self.drive {
+        match self.outputs.drive {
             Drive::Off => Legs::default(),
             Drive::On(duty) => {
                 let (a, b) = duty.legs(PWM_STEPS);
@@ -162,7 +165,7 @@ impl Engine for Native {
             self.serve(tick_ns);
             let samples = Samples::from_scans(&self.scans, self.fault);
             self.fault = self.world.bridge_fault();
-            self.drive = self.hand.step(0, &samples);
+            self.outputs = self.hand.step(0, &samples);
             if let Some(telemetry) = self.hand.telemetry(0) {
                 self.answer(&telemetry);
             }

@@ -65,6 +65,7 @@ impl Plant {
         let c = |t_c: f64| Celsius::saturating_from_num(t_c);
         Sound {
             display: c(self.reading_c + (self.disturbance)(tick)),
+            check: c(self.reading_c),
             sink: c(self.sink_c),
             skin: c(33.0),
             room: c(24.0),

@@ -5,9 +5,9 @@ use std::vec::Vec;
 
 use super::Bench;
 use crate::drive::{Drive, Duty};
-use crate::guard::Setpoint;
+use crate::guard::{Setpoint, State};
 use crate::sense::Samples;
-use crate::station::State;
+
 
 /// A sum of counts: mostly a plausible one, sometimes any.
 fn sum(plausible: core::ops::Range<u16>) -> impl Strategy<Value = u16> {
@@ -105,7 +105,7 @@ fn long_story() -> impl Strategy<Value = Vec<Phase>> {
 /// One tick, and what must hold in it.
 fn step(bench: &mut Bench, samples: &Samples) -> Result<(), TestCaseError> {
     let tripped = matches!(bench.state(), State::Tripped(_));
-    let drive = bench.station.step(samples);
+    let drive = bench.station.step(samples).drive;
     let telemetry = bench.station.telemetry().expect("streamed on every tick");
     let driven = matches!(telemetry.state, State::Armed | State::Preset | State::Contact);
     prop_assert_eq!(driven, drive != Drive::Off);

@@ -22,13 +22,13 @@ const TROUBLES: [Trouble; 16] = [
     ("force-sensor", |bench| bench.force_n = -1.3),
     ("display-hot", |bench| bench.check_c = 43.1),
     ("display-cold", |bench| bench.display_c = 13.4),
-    ("sink-hot", |bench| bench.sink_c = 44.1),
-    ("over-current", |bench| bench.current_a = 7.6),
+    ("sink-hot", |bench| bench.sink_c = 42.1),
+    ("over-current", |bench| bench.current_a = Some(7.6)),
     ("bridge", |bench| bench.bridge_fault = true),
 ];
 
-/// A bench in each of the states but tripped.
-fn everywhere() -> [Bench; 4] {
+/// A bench in each of the states but tripped and self-test.
+fn everywhere() -> [Bench; 5] {
     let armed = {
         let mut bench = Bench::new();
         bench.obey(&["material copper", "arm"]);
@@ -41,13 +41,19 @@ fn everywhere() -> [Bench; 4] {
     contact.steps(10);
     let mut off = Bench::new();
     off.obey(&["material copper"]);
-    [off, armed, preset, contact]
+    let mut ready = armed.clone();
+    ready.obey(&["abort"]);
+    [off, ready, armed, preset, contact]
 }
 
 #[test]
 fn every_fault_trips_in_its_tick_from_every_state_and_stays() {
     for sound in everywhere() {
         for (word, happen) in TROUBLES {
+            // The comparator may have kept the line since the last self-test.
+            if word == "bridge" && sound.state() == State::Off {
+                continue;
+            }
             let mut bench = sound.clone();
             happen(&mut bench);
             let (drive, telemetry) = bench.step();
@@ -88,7 +94,7 @@ fn every_fault_trips_in_its_tick_from_every_state_and_stays() {
 
 #[test]
 fn the_first_fault_is_kept_and_a_later_one_keeps_clear_from_passing() {
-    let mut bench = Bench::new();
+    let mut bench = Bench::presenting("copper");
     bench.bridge_fault = true;
     bench.step();
     bench.bridge_fault = false;
@@ -119,8 +125,9 @@ fn a_fault_ends_the_contact() {
 fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
     let mut bench = Bench::new();
     bench.obey(&["arm"]);
-    for (display_c, demand_a, duty) in [(14.0, -6, -0.5), (42.0, 6, 0.5)] {
-        (bench.display_c, bench.check_c) = (display_c, display_c);
+    let display_c = bench.display_c;
+    for (line, demand_a, duty) in [("hold 42", -6, -0.5), ("hold 15", 6, 0.5)] {
+        bench.obey(&[line]);
         for _ in 0..3000 {
             let (drive, telemetry) = bench.step();
             assert_eq!(telemetry.demand, demand_a);
@@ -142,12 +149,14 @@ fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
 #[test]
 fn a_converter_that_stands_still_trips_within_50_ms_and_a_bit() {
     let mut bench = Bench::presenting("copper");
-    bench.steps(200);
-    assert_eq!(bench.state(), State::Preset);
+    // To the tick in which the last noise has gone again.
+    while bench.station.tick % 40 != 22 {
+        bench.step();
+    }
     bench.noise = 0;
     bench.steps(49);
     assert_eq!(bench.state(), State::Preset);
-    let (drive, _) = bench.steps(3);
+    let (drive, _) = bench.steps(1);
     assert_eq!(
         (bench.state().fault().map(Fault::name), drive),
         (Some("samples-frozen"), Drive::Off)
@@ -157,13 +166,20 @@ fn a_converter_that_stands_still_trips_within_50_ms_and_a_bit() {
 #[test]
 fn display_thermistors_that_stay_apart_trip() {
     let mut bench = Bench::presenting("copper");
-    bench.check_c = bench.display_c + 2.9;
+    let drift = |bench: &mut Bench, to_k: f64| {
+        while (bench.check_c - bench.display_c - to_k).abs() > 0.05 {
+            bench.check_c += 0.1f64.copysign(bench.display_c + to_k - bench.check_c);
+            bench.step();
+        }
+    };
+    drift(&mut bench, 2.9);
     bench.steps(200);
     assert_eq!(bench.state(), State::Preset);
+    drift(&mut bench, -2.9);
     bench.check_c = bench.display_c - 3.1;
-    bench.steps(99);
+    bench.steps(39);
     assert_eq!(bench.state(), State::Preset);
-    let (drive, _) = bench.steps(2);
+    let (drive, _) = bench.steps(1);
     assert_eq!(
         (bench.state().fault().map(Fault::name), drive),
         (Some("displays-apart"), Drive::Off)

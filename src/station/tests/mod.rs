@@ -11,11 +11,15 @@ use contact_model::{pressure, reference};
 use std::string::{String, ToString};
 
 use super::{State, Station};
+use crate::drive::Outputs;
 use crate::commission::Desk;
 use crate::drive::Drive;
 use crate::protocol::{Addressed, Telemetry};
 use crate::sense::Samples;
 use crate::settings::Settings;
+
+/// What a display that answers moves by in a tick: no jump yet.
+const MOST_K: f64 = 0.12;
 
 /// A station and the world that its sensors see.
 #[derive(Clone, Debug)]
@@ -28,11 +32,14 @@ struct Bench {
     skin_c: f64,
     room_c: f64,
     force_n: f64,
-    current_a: f64,
+    /// Measured; what was asked for if nothing else.
+    current_a: Option<f64>,
     bridge_fault: bool,
+    /// The host gives a sign of life on every tick.
+    host_there: bool,
     /// The display is where the set-point was in the tick before.
     answers: bool,
-    /// The converter's noise: one unit of one sum, every other tick.
+    /// The converter's noise: one unit of each sum once in 40 ticks.
     noise: u16,
 }
 
@@ -48,8 +55,9 @@ impl Bench {
             skin_c: 34.0,
             room_c: 24.0,
             force_n: 0.0,
-            current_a: 0.0,
+            current_a: None,
             bridge_fault: false,
+            host_there: true,
             answers: false,
             noise: 1,
         };
@@ -68,10 +76,11 @@ impl Bench {
         done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
 
-    /// Sends lines that must be obeyed.
+    /// Sends lines that must be obeyed; `arm` until the device is armed.
     fn obey(&mut self, lines: &[&str]) {
         for line in lines {
             assert_eq!(self.host(line), "ok", "{line}");
+            self.pass_self_test();
         }
     }
 
@@ -84,6 +93,19 @@ impl Bench {
         bench
     }
 
+    /// Lets the device test itself on a display that answers with 2.7 K/s per ampere, and a comparator that works.
+    fn pass_self_test(&mut self) {
+        let (display_c, check_c, current_a) = (self.display_c, self.check_c, self.current_a);
+        self.current_a = None;
+        while self.state() == State::SelfTest {
+            let (outputs, telemetry) = self.step_all();
+            let moved_k = 2.7e-3 * telemetry.demand.to_num::<f64>();
+            (self.display_c, self.check_c) = (self.display_c - moved_k, self.check_c - moved_k);
+            self.bridge_fault = outputs.comparator_test;
+        }
+        (self.display_c, self.check_c, self.current_a) = (display_c, check_c, current_a);
+    }
+
     /// What the converter makes of the world: 10 k thermistors of beta 3950 K under 10 k that warm themselves, 410
     /// counts and 300 counts/N, 400 counts/A, sixteen conversions.
     fn samples(&self) -> Samples {
@@ -91,6 +113,8 @@ impl Bench {
             let ohm = 10e3 * (3950.0 * (1.0 / (t_c + warmer_k + 273.15) - 1.0 / 298.15)).exp();
             (65536.0 * ohm / (ohm + 10e3)).round() as u16
         };
+        let asked_a = || self.station.before.asked.to_num::<f64>().abs();
+        let current_a = self.current_a.unwrap_or_else(asked_a);
         Samples {
             display: thermistor(self.display_c, 0.034),
             display_check: thermistor(self.check_c, 0.034),
@@ -98,24 +122,41 @@ impl Bench {
             skin: thermistor(self.skin_c, 0.09),
             room: thermistor(self.room_c, 0.27),
             force: (16.0 * (410.0 + 300.0 * self.force_n)).round() as u16,
-            current: (16.0 * 400.0 * self.current_a).round() as u16,
+            current: (16.0 * 400.0 * current_a).round() as u16,
             bridge_fault: self.bridge_fault,
         }
     }
 
     /// One tick.
     fn step(&mut self) -> (Drive, Telemetry) {
+        let (outputs, telemetry) = self.step_all();
+        (outputs.drive, telemetry)
+    }
+
+    fn step_all(&mut self) -> (Outputs, Telemetry) {
         let mut samples = self.samples();
-        if self.station.tick.is_multiple_of(2) {
-            samples.current += self.noise;
+        let noisy = [
+            &mut samples.display,
+            &mut samples.display_check,
+            &mut samples.sink,
+            &mut samples.skin,
+            &mut samples.room,
+            &mut samples.force,
+        ];
+        if self.station.tick % 40 == 20 {
+            noisy.map(|sum| *sum = sum.saturating_add(self.noise));
         }
-        let drive = self.station.step(&samples);
+        if self.host_there {
+            self.station.hear();
+        }
+        let outputs = self.station.step(&samples);
         let telemetry = self.station.telemetry().expect("streamed on every tick");
         if let (true, Some(setpoint)) = (self.answers, telemetry.setpoint) {
-            self.display_c = setpoint.to_num();
+            let off_k = setpoint.to_num::<f64>() - self.display_c;
+            self.display_c += off_k.clamp(-MOST_K, MOST_K);
             self.check_c = self.display_c;
         }
-        (drive, telemetry)
+        (outputs, telemetry)
     }
 
     fn steps(&mut self, ticks: u32) -> (Drive, Telemetry) {
@@ -132,6 +173,7 @@ impl Bench {
     /// Set-point of one tick, °C.
     fn setpoint_c(&mut self) -> f64 {
         let (_, telemetry) = self.step();
+        assert_eq!(telemetry.state.fault(), None);
         telemetry.setpoint.expect("the bridge is driven").to_num()
     }
 

@@ -2,7 +2,7 @@
 
 use super::Bench;
 use crate::drive::Drive;
-use crate::station::State;
+use crate::guard::State;
 
 #[test]
 fn a_station_is_off_until_it_is_armed() {
@@ -43,7 +43,7 @@ fn every_arrow_of_the_state_diagram() {
     bench.obey(&["arm"]);
     assert_eq!(bench.state(), State::Armed);
     bench.obey(&["arm", "abort"]);
-    assert_eq!(bench.state(), State::Off);
+    assert_eq!(bench.state(), State::Ready);
 
     started(&mut bench);
     landed(&mut bench);
@@ -64,7 +64,7 @@ fn every_arrow_of_the_state_diagram() {
             landed(&mut bench);
         }
         bench.obey(&["abort"]);
-        assert_eq!((bench.step().0, bench.state()), (Drive::Off, State::Off));
+        assert_eq!((bench.step().0, bench.state()), (Drive::Off, State::Ready));
     }
 }
 
