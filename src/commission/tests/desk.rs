@@ -127,8 +127,8 @@ fn all_obey_an_order_and_the_first_answers_a_question() {
 #[test]
 fn refusals_name_the_first_finger_that_refuses_and_the_others_obey() {
     let mut five = Device::<5>::new();
-    arm(&mut five.hand, 2);
     five.watch();
+    arm(&mut five.hand, 2);
     assert_eq!(five.host("@2 material copper"), "@2 ok");
     assert_eq!(five.host("@2 start"), "@2 ok");
     let refused = "@2 err not while an object is presented: abort or arm first";
