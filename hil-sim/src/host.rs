@@ -1,5 +1,7 @@
 //! The computer at the other end of the serial line.
 
+use std::ops::Range;
+
 use thermal_display::protocol::LINE_MAX;
 use thermal_display::render::Mode;
 
@@ -12,6 +14,11 @@ const SPACING_MS: u64 = 3;
 const WATCH_MS: u64 = 2600;
 /// Milliseconds before time zero from which telemetry is streamed.
 const STREAM_MS: u64 = 20;
+/// Interval of the blank lines that say that the host is alive, from the stream's begin on, ms.
+const ALIVE_MS: usize = 500;
+const BLANK: &[u8] = b"\n";
+/// What a host sends each half millisecond that wants to know everything: as much as the line carries.
+const FLOOD: &[u8] = b"state\nstate\nstate\nstate\nstate\nstate\nstate\nstate\n";
 /// What a host that has lost its mind sends.
 const GARBAGE: &[u8] = b"\x00\xff\xfe\x80arm\x01\n\xc3\x28 start\n";
 
@@ -21,11 +28,14 @@ pub struct Host {
     /// Millisecond since the device's start, and the bytes.
     queue: Vec<(u64, Vec<u8>)>,
     next: usize,
+    /// Milliseconds since the device's start in which it floods the device, and in which it sends nothing.
+    floods: Vec<Range<u64>>,
+    silences: Vec<Range<u64>>,
 }
 
 impl Host {
     /// The lines that restore a device's settings, those that set a scene up, telemetry every `stream_ms` included,
-    /// and those of the scene itself.
+    /// those of the scene itself, and blank ones that say that it is alive.
     #[must_use]
     pub fn new(scene: &Scene, settings: &[String], stream_ms: u32) -> Self {
         let zero_ms = scene.settle_ms();
@@ -60,24 +70,47 @@ impl Host {
         let lines = queue
             .into_iter()
             .map(|(ms, line)| (ms, [line.as_bytes(), b"\n"].concat()));
-        let garbage = (scene.faults.iter())
-            .filter(|fault| fault.kind == FaultKind::HostGarbage)
-            .map(|fault| (at(fault.t_s), GARBAGE.to_vec()));
-        let mut queue: Vec<_> = lines.chain(garbage).collect();
+        let times = |kind| -> Vec<Range<u64>> {
+            let faults = scene.faults.iter().filter(|fault| fault.broken.kind == kind);
+            // An endless fault ends with the numbers.
+            faults.map(|fault| at(fault.t_s)..at(fault.until_s)).collect()
+        };
+        let garbage = times(FaultKind::HostGarbage).into_iter();
+        let garbage = garbage.map(|times| (times.start, GARBAGE.to_vec()));
+        // Lines first: they shall not wait.
+        let alive = (zero_ms - STREAM_MS..at(scene.duration_s))
+            .step_by(ALIVE_MS)
+            .skip(1);
+        let alive = alive.map(|ms| (ms, BLANK.to_vec()));
+        let (floods, silences) = (times(FaultKind::HostFlood), times(FaultKind::HostSilent));
+        let mut queue: Vec<_> = (lines.chain(garbage).chain(alive))
+            .filter(|(ms, _)| !within(&silences, *ms))
+            .collect();
         queue.sort_by_key(|(ms, _)| *ms);
         space_out(&mut queue);
-        Self { queue, next: 0 }
+        Self {
+            queue,
+            next: 0,
+            floods,
+            silences,
+        }
     }
 
     /// The bytes that leave at a half millisecond since the device's start, if any.
     pub fn send(&mut self, half_ms: u64) -> Option<&[u8]> {
-        let (ms, bytes) = self.queue.get(self.next)?;
-        if half_ms < 2 * ms + leaves_at_half(bytes) {
-            return None;
-        }
+        let next = self.queue.get(self.next);
+        let Some((_, bytes)) = next.filter(|(ms, bytes)| half_ms >= 2 * ms + leaves_at_half(bytes)) else {
+            let now_ms = half_ms / 2;
+            let floods = within(&self.floods, now_ms) && !within(&self.silences, now_ms);
+            return floods.then_some(FLOOD);
+        };
         self.next += 1;
-        self.queue.get(self.next - 1).map(|(_, bytes)| bytes.as_slice())
+        Some(bytes)
     }
+}
+
+fn within(times: &[Range<u64>], ms: u64) -> bool {
+    times.iter().any(|times| times.contains(&ms))
 }
 
 /// The half of a millisecond at whose boundary bytes leave: the one after which their last byte is far from a tick, so
@@ -92,6 +125,8 @@ fn space_out(queue: &mut [(u64, Vec<u8>)]) {
     for (ms, bytes) in queue {
         *ms = (*ms).max(free_ms);
         let line_ms = (bytes.len() / LINE_MAX) as u64;
-        free_ms = *ms + line_ms + SPACING_MS;
+        // A blank line has no answer.
+        let answered_ms = if bytes == BLANK { 1 } else { SPACING_MS };
+        free_ms = *ms + line_ms + answered_ms;
     }
 }

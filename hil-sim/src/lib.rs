@@ -5,6 +5,7 @@
 //! Links Unicorn (GPL-2.0); firmware and contact model do not.
 
 pub mod commission;
+pub mod dose;
 pub mod engine;
 pub mod fidelity;
 pub mod firmware;

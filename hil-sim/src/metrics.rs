@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
+use crate::dose::cem43_min;
 use crate::engine::Engine;
+use crate::plant::STEP_S;
 use crate::run::Outcome;
 use crate::scene::Scene;
 
@@ -69,6 +71,10 @@ pub struct Figures {
     pub display_error_mk: Option<Errors>,
     /// Skin on the display, °C.
     pub skin_c: Range,
+    /// Thermal dose of the skin on the display, equivalent minutes at 43 °C ([`crate::dose`]).
+    pub cem43_min: f64,
+    /// Display's surface under the finger, °C.
+    pub display_c: Range,
     /// Current through the module, over the whole scene.
     pub current_a: Current,
     /// Electrical work that the module has taken up in the scene, J.
@@ -133,10 +139,10 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
         ticks: rows.len().saturating_sub(1),
         skin_error_mk: errors(skin_errors(scene, outcome)),
         display_error_mk: errors(display),
-        skin_c: Range {
-            min: skins().fold(f64::INFINITY, f64::min),
-            max: skins().fold(f64::NEG_INFINITY, f64::max),
-        },
+        skin_c: range(skins()),
+        // The last row begins no step.
+        cem43_min: cem43_min(skins().take(rows.len().saturating_sub(1)), STEP_S),
+        display_c: range(rows.iter().map(|row| row.display_c)),
         current_a: current(outcome),
         energy_j: outcome.electrical_j,
         kernel_evaluations: evaluations()
@@ -162,6 +168,17 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
 pub fn skin_errors(scene: &Scene, outcome: &Outcome) -> impl Iterator<Item = (f64, f64)> {
     let rows = outcome.trace.rows().iter().zip(contact_times(scene, outcome));
     rows.filter_map(|(row, since_s)| Some((since_s?, row.skin_c - row.skin_real_c)))
+}
+
+fn range(values: impl Iterator<Item = f64>) -> Range {
+    let none = Range {
+        min: f64::INFINITY,
+        max: f64::NEG_INFINITY,
+    };
+    values.fold(none, |range, value| Range {
+        min: range.min.min(value),
+        max: range.max.max(value),
+    })
 }
 
 fn current(outcome: &Outcome) -> Current {

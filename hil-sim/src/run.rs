@@ -5,7 +5,7 @@ use std::time::Instant;
 use crate::commission::{self, CommissionError};
 use crate::engine::{Cost, Engine, Lines};
 use crate::host::Host;
-use crate::scene::{FaultKind, Scene};
+use crate::scene::{Broken, Scene};
 use crate::telemetry::Telemetry;
 use crate::trace::{Row, Trace};
 
@@ -103,11 +103,8 @@ pub fn run<E: Engine>(
 }
 
 /// What is broken at a time.
-pub(crate) fn broken(scene: &Scene, t_s: f64) -> impl Iterator<Item = FaultKind> {
-    let begun = scene.faults.iter().filter(move |fault| fault.t_s <= t_s);
-    begun
-        .map(|fault| fault.kind)
-        .filter(|kind| *kind != FaultKind::HostGarbage)
+pub(crate) fn broken(scene: &Scene, t_s: f64) -> impl Iterator<Item = Broken> {
+    scene.faults.iter().filter_map(move |fault| fault.at(t_s))
 }
 
 struct Session<'a, E> {

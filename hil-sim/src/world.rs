@@ -1,19 +1,19 @@
 //! What surrounds the device: the plant, what breaks in it, and who watches.
 
+mod defects;
+
 use crate::infrared::{Camera, ParameterError, Reading};
-use crate::plant::bridge::{Leg, Legs};
+use crate::plant::bridge::Legs;
 use crate::plant::sensors::Channel;
 use crate::plant::{ConfigError, Plant, PlantConfig};
-use crate::scene::{FaultKind, Infrared, Scene};
-
-/// Highest code of the converter.
-const FULL_SCALE: u16 = 4095;
+use crate::scene::{Broken, Infrared, Scene};
+use defects::Damage;
 
 /// The plant behind the device's pins.
 #[derive(Clone, Debug)]
 pub struct World {
     plant: Plant,
-    broken: Vec<FaultKind>,
+    damage: Damage,
     camera: Option<(Infrared, Camera)>,
     /// Last code of every channel.
     codes: [u16; Channel::ALL.len()],
@@ -42,7 +42,7 @@ impl World {
         };
         Ok(Self {
             plant: Plant::new(&scene.plant_config())?,
-            broken: Vec::new(),
+            damage: Damage::default(),
             camera,
             codes: [0; Channel::ALL.len()],
         })
@@ -57,7 +57,7 @@ impl World {
         plant.reseed_noise(noise_seed);
         Ok(Self {
             plant,
-            broken: Vec::new(),
+            damage: Damage::default(),
             camera: None,
             codes: [0; Channel::ALL.len()],
         })
@@ -78,28 +78,27 @@ impl World {
     }
 
     /// What the finger does, and what is broken, from now on.
-    pub fn set(&mut self, force_n: f64, broken: impl Iterator<Item = FaultKind>) {
+    pub fn set(&mut self, force_n: f64, broken: impl Iterator<Item = Broken>) {
         self.plant.set_force(force_n);
-        self.broken.clear();
-        self.broken.extend(broken);
+        self.damage = Damage::default();
+        for broken in broken {
+            self.damage.add(&broken);
+        }
+        self.plant.set_defects(&self.damage.plant);
+    }
+
+    /// Sets the level of the line by which the device tests the comparator. Whoever runs the device says so after each
+    /// of its ticks; a line that nobody drives is pulled low.
+    pub fn comparator_test(&mut self, level: bool) {
+        self.plant.comparator_test(level);
     }
 
     /// Advances the plant by one step under the bridge's legs.
-    pub fn step(&mut self, mut legs: Legs) {
-        if self.broken.contains(&FaultKind::BridgeStuckHigh) {
-            legs.a = Leg::Duty(1.0);
-        }
-        if self.broken.contains(&FaultKind::BridgeShorted) && matches!(legs.a, Leg::Duty(duty) if duty > 0.0)
-        {
-            legs.a = Leg::Shorted;
-        }
-        if self.broken.contains(&FaultKind::PolaritySwapped) {
-            (legs.a, legs.b) = (legs.b, legs.a);
-        }
+    pub fn step(&mut self, legs: Legs) {
         self.plant.step(&legs);
     }
 
-    /// The bridge's driver pulls its fault pin.
+    /// nFAULT is low: the bridge's driver or the comparator pulls it.
     #[must_use]
     pub fn bridge_fault(&self) -> bool {
         self.plant.bridge_fault()
@@ -108,15 +107,10 @@ impl World {
     /// Code of a channel now.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         let code = self.plant.convert(channel);
-        let last = &mut self.codes[channel as usize];
-        if self.broken.contains(&FaultKind::AdcStuck) {
-            return *last;
+        let index = channel as usize;
+        if !self.damage.frozen[index] {
+            self.codes[index] = code;
         }
-        *last = match channel {
-            Channel::Display if self.broken.contains(&FaultKind::ThermistorOpen) => FULL_SCALE,
-            Channel::Display if self.broken.contains(&FaultKind::ThermistorShort) => 0,
-            _ => code,
-        };
-        *last
+        self.codes[index]
     }
 }

@@ -13,6 +13,8 @@ pub const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12];
 const FAULT_PIN: (u8, u8) = (0, 6);
 /// Enable input of the bridge: PB10.
 const ENABLE_PIN: (u8, u8) = (1, 10);
+/// Line that tests the comparator, pulled low: PC3.
+const TEST_PIN: (u8, u8) = (2, 3);
 
 /// From the first conversion to the first boundary, and between boundaries, microseconds.
 const FIRST_BOUNDARY_US: u64 = 230;
@@ -126,7 +128,10 @@ impl Engine for Image {
     fn run_half_ms(&mut self) -> Result<(), Stop> {
         self.halves += 1;
         self.machine
-            .run_until(self.first_boundary + self.halves * HALF_MS_US * self.cycles_per_us)
+            .run_until(self.first_boundary + self.halves * HALF_MS_US * self.cycles_per_us)?;
+        let test = self.machine.gpio_output(TEST_PIN.0, TEST_PIN.1) == Some(true);
+        self.world().comparator_test(test);
+        Ok(())
     }
 
     fn send(&mut self, bytes: &[u8]) {

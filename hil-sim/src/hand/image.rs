@@ -107,8 +107,13 @@ impl Hand for ImageHand {
     }
 
     fn send(&mut self, finger: usize, line: &[u8]) {
-        let addressed = [format!("@{finger} ").as_bytes(), line].concat();
-        self.machine.uart_send(&addressed);
+        // A blank line is nobody's.
+        let address = if line == b"\n" {
+            String::new()
+        } else {
+            format!("@{finger} ")
+        };
+        self.machine.uart_send(&[address.as_bytes(), line].concat());
     }
 
     fn receive(&mut self) -> Vec<(usize, String)> {

@@ -3,6 +3,7 @@
 use contact_model::material::{Material, REFERENCE_DISPLAY, Surface};
 
 use super::bridge::BridgeParams;
+use super::comparator::ComparatorParams;
 use super::finger::{FingerParams, Vessels};
 use super::object::ObjectConfig;
 use super::parameters::{self, ParameterError};
@@ -44,6 +45,8 @@ pub struct Params {
     pub sensors: SensorParams,
     /// Power stage.
     pub bridge: BridgeParams,
+    /// Comparator that cuts its supply.
+    pub comparator: ComparatorParams,
     /// What the host commissions the device with.
     pub host: HostParams,
 }
@@ -75,6 +78,7 @@ impl Params {
             tile: TileParams::CLASS,
             sensors: SensorParams::NOMINAL,
             bridge: BridgeParams::NOMINAL,
+            comparator: ComparatorParams::NOMINAL,
             host: HostParams::NOMINAL,
         }
     }

@@ -13,7 +13,7 @@ use super::bridge::{Bridge, Legs};
 use super::ledger::{Energy, Ledger};
 use super::schedule;
 use super::slab::{Lanes, Probe, Row, Slab};
-use super::tile::Tile;
+use super::tile::{CoolingDefects, Tile};
 use super::touch::Touch;
 
 /// A finger: on the display, or the same one on the real object.
@@ -99,6 +99,11 @@ impl Heat {
     pub fn set_flow(&mut self, share: f64) {
         self.slabs.set_flow(Finger::OnDisplay as usize, share);
         self.slabs.set_flow(Finger::OnObject as usize, share);
+    }
+
+    /// Cools the tile's sink as well as its defects allow.
+    pub fn cool(&mut self, defects: &CoolingDefects) {
+        self.tile.cool(defects);
     }
 
     /// Closes, changes or opens the contacts. Air cools the object only while it is there.

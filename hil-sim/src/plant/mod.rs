@@ -12,13 +12,15 @@
 //! | object | one material, endless or with a back | [`object`], [`slab`] |
 //! | contact | resistance of Eq. 6-8 to 6-11 and area, both of the force | [`touch`] |
 //! | tile | legs, plates in three zones, sink | [`tile`] |
-//! | electronics | bridge, thermistors, converter | [`bridge`], [`sensors`] |
+//! | electronics | bridge, comparator that cuts its supply, thermistors, converter | [`bridge`], [`comparator`], [`sensors`] |
 //! | step | TR-BDF2 of all bodies at once, sub-steps after contacts | [`heat`] |
 //!
 //! Parameters are class values; nothing here was measured on hardware.
 
 pub mod bridge;
+pub mod comparator;
 mod config;
+mod defects;
 pub mod finger;
 pub mod heat;
 pub mod ledger;
@@ -33,13 +35,15 @@ pub mod touch;
 pub mod truth;
 
 use bridge::{Bridge, Legs};
+use comparator::Comparator;
 pub use config::{ConfigError, HostParams, Params, PlantConfig};
 use contact_model::material::Surface;
+pub use defects::Defects;
 use finger::Vessels;
 pub use heat::Finger;
 use heat::Heat;
 use ledger::Energy;
-use sensors::{Channel, Sensed, Sensors};
+use sensors::{BONDED, Channel, Sensed, Sensors};
 use slab::{Grading, Probe, Slab, equilibrium};
 use tile::Tile;
 use touch::Touch;
@@ -61,6 +65,10 @@ pub struct Plant {
     surfaces: Surfaces,
     vessels: Option<Vessels>,
     bridge: Bridge,
+    /// Supply that the bridge should have, V.
+    supply_v: f64,
+    comparator: Comparator,
+    defects: Defects,
     heat: Heat,
     receptors: [Option<Probe>; RECEPTORS_M.len()],
     sensors: Sensors,
@@ -120,6 +128,7 @@ impl Plant {
             force_n: 0.0,
             mirror_a: 0.0,
         };
+        let sensors = Sensors::new(params.sensors, &at_rest, config.seed);
         Ok(Self {
             start_s: config.start_s,
             appears_s: config.appears_s,
@@ -133,9 +142,16 @@ impl Plant {
             },
             vessels: params.finger.vessels,
             bridge: Bridge::new(params.bridge, params.tile.resistance_ohm()),
+            supply_v: params.bridge.supply_v,
+            comparator: Comparator::new(
+                &params.comparator,
+                &BONDED,
+                sensors.pin_ratio(Channel::DisplayCheck as usize),
+            ),
+            defects: Defects::default(),
             heat,
             receptors: RECEPTORS_M.map(|depth_m| Probe::at(&finger, depth_m)),
-            sensors: Sensors::new(params.sensors, &at_rest, config.seed),
+            sensors,
             steps: 0,
             force_n: 0.0,
             settled: None,
@@ -150,6 +166,24 @@ impl Plant {
         self.force_n = force_n.max(0.0);
     }
 
+    /// Breaks and mends parts, from the next step on.
+    pub fn set_defects(&mut self, defects: &Defects) {
+        if self.defects == *defects {
+            return;
+        }
+        self.defects = *defects;
+        self.sensors.set_defects(&defects.sensors);
+        self.bridge
+            .set_supply(defects.bridge.supply_v.unwrap_or(self.supply_v));
+        self.comparator.set_defect(defects.comparator);
+        self.heat.cool(&defects.cooling);
+    }
+
+    /// Sets the level of the comparator's test line.
+    pub fn comparator_test(&mut self, level: bool) {
+        self.comparator.test(level);
+    }
+
     /// Draws the converter's noise of another seed from now on; its profile stays, as it is the device's own.
     pub fn reseed_noise(&mut self, seed: u64) {
         self.sensors.reseed_noise(seed);
@@ -158,8 +192,14 @@ impl Plant {
     /// Advances by [`STEP_S`] with the bridge's legs held.
     pub fn step(&mut self, legs: &Legs) {
         self.settle_contacts();
+        // Without supply nothing drives the tile, and its own voltage stays below that of two diodes.
+        let legs = if self.comparator.tripped() {
+            Legs::default()
+        } else {
+            self.defects.bridge.legs(legs)
+        };
         for index in schedule::sub_steps(self.age) {
-            self.heat.step(index, &mut self.bridge, legs);
+            self.heat.step(index, &mut self.bridge, &legs);
         }
         self.steps += 1;
         self.age = self.age.saturating_add(1);
@@ -173,6 +213,8 @@ impl Plant {
             mirror_a: self.heat.tile().current().mirror_a,
         };
         self.sensors.step(STEP_S, &state);
+        self.comparator
+            .watch(self.sensors.pin_ratio(Channel::DisplayCheck as usize));
     }
 
     /// Contacts as force and time have them in the coming step.
@@ -211,10 +253,16 @@ impl Plant {
         self.sensors.convert(channel)
     }
 
-    /// The bridge's driver pulls its fault pin.
+    /// nFAULT is low: the bridge's driver or the comparator pulls it.
     #[must_use]
     pub fn bridge_fault(&self) -> bool {
-        self.bridge.fault()
+        (self.bridge.fault() || self.comparator.tripped()) && !self.defects.bridge.fault_pin_dead
+    }
+
+    /// The comparator has cut the bridge supply.
+    #[must_use]
+    pub const fn supply_cut(&self) -> bool {
+        self.comparator.tripped()
     }
 
     /// Time, s.

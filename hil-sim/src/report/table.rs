@@ -36,6 +36,11 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
             "skin on the display",
             format!("{:.2} to {:.2} C", figures.skin_c.min, figures.skin_c.max),
         ),
+        ("thermal dose", format!("{:.3} min CEM43", figures.cem43_min)),
+        (
+            "display",
+            format!("{:.2} to {:.2} C", figures.display_c.min, figures.display_c.max),
+        ),
         (
             "kernel evaluations",
             figures

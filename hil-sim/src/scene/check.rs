@@ -8,12 +8,13 @@ use thermal_display::guard::Setpoint;
 use thermal_display::render::Mode;
 use toml::Spanned;
 
+use super::fault::faults;
 use super::file::{self, File};
 use super::infrared::infrared;
 use super::object::object;
 use super::plant::params;
 use super::source::{SceneError, Source};
-use super::{Fault, Force, HostLine, Scene};
+use super::{Force, HostLine, Scene};
 use crate::plant::ConfigError;
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
@@ -51,15 +52,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             None => None,
         },
         forces: forces(&source, &file.force, duration_s)?,
-        faults: (file.fault.iter())
-            .map(|fault| {
-                let t_s = source.time("fault.t_s", &fault.t_s, duration_s)?;
-                Ok(Fault {
-                    kind: fault.kind,
-                    t_s,
-                })
-            })
-            .collect::<Result<_, _>>()?,
+        faults: faults(&source, &file.fault, duration_s)?,
         host: (file.host.iter())
             .map(|host| {
                 let t_s = source.time("host.t_s", &host.t_s, duration_s)?;

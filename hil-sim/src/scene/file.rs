@@ -3,7 +3,7 @@
 use serde::Deserialize;
 use toml::Spanned;
 
-use super::FaultKind;
+use super::Sensor;
 pub(super) use super::node::Node;
 
 /// A number with its place in the file; whole numbers are accepted.
@@ -30,7 +30,7 @@ pub(super) struct File {
     #[serde(default)]
     pub force: Vec<Force>,
     #[serde(default)]
-    pub fault: Vec<Fault>,
+    pub fault: Vec<Spanned<Fault>>,
     #[serde(default)]
     pub host: Vec<Host>,
 }
@@ -142,11 +142,12 @@ pub(super) struct Force {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Fault {
-    pub kind: FaultKind,
+    pub kind: Spanned<String>,
     pub t_s: Number,
-    /// Of kinds that take one; none of the present kinds does.
-    #[serde(default, rename = "value")]
-    pub _value: Option<f64>,
+    pub until_s: Option<Number>,
+    pub value: Option<Number>,
+    pub sensor: Option<Spanned<Sensor>>,
+    pub with: Option<Spanned<Sensor>>,
 }
 
 #[derive(Deserialize)]

@@ -1,6 +1,7 @@
 //! Scenes: what happens to the finger, the object and the device.
 
 mod check;
+mod fault;
 mod file;
 mod infrared;
 mod node;
@@ -20,6 +21,7 @@ use crate::plant::object::ObjectConfig;
 use crate::plant::slab::Back;
 use crate::plant::{Params, PlantConfig};
 
+pub use fault::{Broken, DRIFT_K_S, Fault, FaultKind, Sensor, Value};
 pub use infrared::Infrared;
 pub(crate) use object::custom_line;
 pub use source::SceneError;
@@ -89,35 +91,6 @@ pub struct Force {
     pub force_n: f64,
     /// How long it takes to get there from the force before, linearly, s.
     pub ramp_s: f64,
-}
-
-/// Something that breaks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fault {
-    /// What.
-    pub kind: FaultKind,
-    /// When, s.
-    pub t_s: f64,
-}
-
-/// What can break.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum FaultKind {
-    /// The display thermistor reads full scale.
-    ThermistorOpen,
-    /// The display thermistor reads zero.
-    ThermistorShort,
-    /// Leg A of the bridge stays at the supply.
-    BridgeStuckHigh,
-    /// Output A of the bridge is shorted to ground: the driver trips when it is driven high.
-    BridgeShorted,
-    /// The module's wires are swapped.
-    PolaritySwapped,
-    /// Every channel repeats its last code.
-    AdcStuck,
-    /// The host sends bytes that are no line.
-    HostGarbage,
 }
 
 /// A line that the host sends.

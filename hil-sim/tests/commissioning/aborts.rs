@@ -61,7 +61,9 @@ fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
 fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
     tuning(at_work(), |bench| {
         bench.wait(4000).expect("it runs");
-        bench.world().set(0.0, std::iter::once(FaultKind::ThermistorOpen));
+        bench
+            .world()
+            .set(0.0, std::iter::once(FaultKind::ThermistorOpen.into()));
         bench.wait(5).expect("it runs");
         assert_eq!(bench.world().plant().current_a(), 0.0);
         assert_eq!(

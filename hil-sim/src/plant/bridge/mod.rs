@@ -13,9 +13,11 @@
 //! of the switches.
 
 mod dead_time;
+mod defects;
 mod params;
 mod ripple;
 
+pub use defects::{BridgeDefects, LegDefect};
 pub use params::BridgeParams;
 
 use dead_time::{DeadTime, Pulses};
@@ -74,6 +76,8 @@ pub struct Bridge {
     params: BridgeParams,
     dead_time: DeadTime,
     ripple: Ripple,
+    /// About what the tile has, ohm.
+    load_ohm: f64,
     /// Time until an overloaded driver tries again, s.
     retry_in_s: f64,
 }
@@ -89,7 +93,17 @@ impl Bridge {
             params,
             dead_time: DeadTime::new(&params),
             ripple: Ripple::new(&params, load_ohm),
+            load_ohm,
             retry_in_s: 0.0,
+        }
+    }
+
+    /// Feeds it from another supply, V, above 0.
+    pub fn set_supply(&mut self, supply_v: f64) {
+        if supply_v != self.params.supply_v {
+            self.params.supply_v = supply_v;
+            self.dead_time = DeadTime::new(&self.params);
+            self.ripple = Ripple::new(&self.params, self.load_ohm);
         }
     }
 

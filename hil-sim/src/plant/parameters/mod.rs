@@ -6,6 +6,7 @@
 //! conductivity of the skin in the contact and below it) is drawn apart, so the box is somewhat too wide.
 
 mod bridge;
+mod comparator;
 mod finger;
 mod host;
 mod sensors;
@@ -160,12 +161,14 @@ fn slots(params: &mut Params) -> Vec<Slot<'_>> {
         tile,
         sensors,
         bridge,
+        comparator,
         host,
     } = params;
     let mut all = finger::slots(finger);
     all.extend(surface::slots("display", display, surface::DISPLAY));
     all.extend(tile::slots(tile));
     all.extend(bridge::slots(bridge));
+    all.extend(comparator::slots(comparator));
     all.extend(sensors::slots(sensors));
     all.extend(host::slots(host));
     all

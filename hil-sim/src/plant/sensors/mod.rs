@@ -3,6 +3,7 @@
 //! The constants are the simulated parts' own. What the device believes of its sensors is in its settings.
 
 mod converter;
+mod defects;
 mod follow;
 mod params;
 mod thermistor;
@@ -12,6 +13,8 @@ use rand::rngs::Xoshiro256PlusPlus;
 use thermal_display::sense::{CHANNELS, SCANS_PER_TICK};
 
 pub use converter::ConverterParams;
+pub use defects::{Circuit, ForceDefect, SensorDefects, ThermistorDefect};
+pub(in crate::plant) use params::BONDED;
 pub use params::{ForceParams, MirrorParams, ReferenceParams, SensorParams};
 pub use thermistor::ThermistorParams;
 
@@ -83,6 +86,9 @@ pub struct Sensors {
     force_lag: Lag,
     /// What the force sensor has reached, N.
     force_n: f64,
+    /// What the current mirror last saw, A.
+    mirror_a: f64,
+    defects: SensorDefects,
     /// Noiseless level of each channel at the end of the last step, counts.
     counts: [f64; CHANNELS],
     /// What its last conversion saw, and how far it moves from one conversion to the next.
@@ -107,13 +113,15 @@ impl Sensors {
             force_delay: Delay::new(params.force.delay_s, state.force_n),
             force_lag: Lag::new(params.force.lag_s),
             force_n: state.force_n,
+            mirror_a: state.mirror_a,
+            defects: SensorDefects::NONE,
             counts: [0.0; CHANNELS],
             seen: [0.0; CHANNELS],
             rise: [0.0; CHANNELS],
             left: [0; CHANNELS],
             converter: Converter::new(params.converter, Xoshiro256PlusPlus::seed_from_u64(seed)),
         };
-        sensors.read(state);
+        sensors.read();
         sensors.seen = sensors.counts;
         sensors
     }
@@ -132,12 +140,36 @@ impl Sensors {
             thermistor.step(step_s, site);
         }
         let arrived_n = self.force_delay.push(state.force_n);
-        self.force_n = self.force_lag.towards(step_s, self.force_n, arrived_n);
+        if !self.defects.force.stuck {
+            self.force_n = self.force_lag.towards(step_s, self.force_n, arrived_n);
+        }
+        self.mirror_a = state.mirror_a;
         self.seen = self.counts;
-        self.read(state);
+        self.read();
         // The 16 scans of a tick, spread over the step.
         self.left = [SCANS_PER_TICK; CHANNELS];
         self.rise = std::array::from_fn(|i| (self.counts[i] - self.seen[i]) / SCANS_PER_TICK as f64);
+    }
+
+    /// Breaks or mends the sensors. Levels jump: the conversions of the coming step begin where they are then.
+    pub fn set_defects(&mut self, defects: &SensorDefects) {
+        if self.defects == *defects {
+            return;
+        }
+        self.defects = *defects;
+        for (thermistor, defect) in self.thermistors.iter_mut().zip(defects.thermistors) {
+            thermistor.set_defect(defect);
+        }
+        self.read();
+    }
+
+    /// Voltage at a thermistor's pin in fractions of the reference: between none, shorted, and all of it, open.
+    ///
+    /// # Panics
+    /// `index` is not below [`THERMISTORS`].
+    #[must_use]
+    pub fn pin_ratio(&self, index: usize) -> f64 {
+        self.thermistors[self.defects.plugged[index]].ratio()
     }
 
     /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is
@@ -151,16 +183,19 @@ impl Sensors {
         self.converter.convert(self.seen[i])
     }
 
-    fn read(&mut self, state: &Sensed) {
-        let p = &self.params;
+    fn read(&mut self) {
+        let (p, force) = (&self.params, &self.defects.force);
         let mut ideal = [0.0; CHANNELS];
-        for (counts, thermistor) in ideal.iter_mut().zip(&self.thermistors) {
-            *counts = thermistor.ratio() * CODES;
+        for (index, counts) in ideal.iter_mut().enumerate().take(THERMISTORS) {
+            *counts = self.pin_ratio(index) * CODES;
         }
         // The reference carries the dividers with it, but not what has a scale of its own.
         let per_volt = 1.0 / (1.0 + p.reference.error);
-        ideal[Channel::Force as usize] = p.force.counts(self.force_n) * per_volt;
-        ideal[Channel::Current as usize] = p.mirror.counts(state.mirror_a) * per_volt;
+        if !force.open {
+            ideal[Channel::Force as usize] = p.force.counts(self.force_n + force.offset_n) * per_volt;
+        }
+        let mirror_a = self.defects.mirror_stuck_a.unwrap_or(self.mirror_a);
+        ideal[Channel::Current as usize] = p.mirror.counts(mirror_a) * per_volt;
         self.counts = ideal.map(|counts| self.converter.seen(counts));
     }
 }

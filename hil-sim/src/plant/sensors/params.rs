@@ -76,7 +76,7 @@ pub struct SensorParams {
 }
 
 /// A thermistor bonded to the display.
-const BONDED: ThermistorParams = ThermistorParams {
+pub(in crate::plant) const BONDED: ThermistorParams = ThermistorParams {
     at_25c_ohm: 10e3,
     beta_k: 3950.0,
     pull_up_ohm: 10e3,

@@ -1,5 +1,6 @@
 //! A thermistor under a pull-up: what it follows, how it warms itself, and what the divider makes of it.
 
+use super::defects::{Circuit, ThermistorDefect};
 use super::follow::Lag;
 
 const ZERO_C_K: f64 = 273.15;
@@ -63,6 +64,7 @@ pub struct Thermistor {
     target_c: f64,
     reached_c: f64,
     ratio: f64,
+    defect: ThermistorDefect,
 }
 
 /// Rounds in which a thermistor at rest finds its own temperature: each round leaves less than a hundredth.
@@ -78,6 +80,7 @@ impl Thermistor {
             target_c: site.surface_c,
             reached_c: site.surface_c,
             ratio: params.ratio(site.surface_c),
+            defect: ThermistorDefect::NONE,
         };
         for _ in 0..ROUNDS {
             thermistor.target_c = thermistor.target_c(site);
@@ -94,7 +97,24 @@ impl Thermistor {
             .lag
             .along_ramp(step_s, self.reached_c, self.target_c, target_c);
         self.target_c = target_c;
-        self.ratio = self.params.ratio(self.reached_c);
+        self.read();
+    }
+
+    /// Breaks or mends it; the pin moves at once.
+    pub fn set_defect(&mut self, defect: ThermistorDefect) {
+        if defect.loose != self.defect.loose {
+            self.lag = Lag::new(self.params.lag_s * defect.loose);
+        }
+        self.defect = defect;
+        self.read();
+    }
+
+    fn read(&mut self) {
+        self.ratio = match self.defect.circuit {
+            Circuit::Closed => self.params.ratio(self.reached_c + self.defect.offset_k),
+            Circuit::Open => 1.0,
+            Circuit::Short => 0.0,
+        };
     }
 
     /// Voltage at the pin in fractions of the reference.
@@ -104,8 +124,10 @@ impl Thermistor {
 
     /// Where it would come to rest; it heats itself as it did at the end of the step before.
     fn target_c(&self, site: &Site) -> f64 {
-        let heat_k = self.heat_k * self.ratio * (1.0 - self.ratio);
-        site.surface_c + self.params.lead_share * (site.room_c - site.surface_c) + heat_k
+        let loose = self.defect.loose;
+        let heat_k = self.heat_k * loose * self.ratio * (1.0 - self.ratio);
+        let lead_share = (self.params.lead_share * loose).min(1.0);
+        site.surface_c + lead_share * (site.room_c - site.surface_c) + heat_k
     }
 }
 

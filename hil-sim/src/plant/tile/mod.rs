@@ -10,16 +10,19 @@
 //! the legs. The sum of all is the electrical power. With constant properties and at rest this is
 //! `Qc = a I Tc - I^2 R/2 - K (Th - Tc)` at the tabs.
 
+mod cooling;
 mod legs;
 mod params;
 mod stack;
 mod zones;
 
+pub use cooling::CoolingDefects;
 pub use params::{TileParams, ZERO_C_K};
 
 use super::bridge::{Current, Load};
 use super::ledger::Energy;
 use super::slab::Cell;
+use cooling::HEATER_W_K;
 use legs::Legs;
 use stack::Stack;
 use zones::{ZONES, Zones};
@@ -96,8 +99,6 @@ impl Tile {
             stack.axial[HOT_PLATE][z] = 1.0 / (half_k_w + 1.0 / (params.paste_w_k * share[z]));
         }
         stack.sink.capacity = params.sink_j_k;
-        stack.sink.source = (room_c + params.coolant_k) / params.sink_k_w;
-        stack.sink.feedback = -1.0 / params.sink_k_w;
         let mut tile = Self {
             params,
             zones,
@@ -113,7 +114,19 @@ impl Tile {
             joule_w_a2: [[0.0; ZONES]; LEG_CELLS],
         };
         tile.cover(0.0);
+        tile.cool(&CoolingDefects::NONE);
         tile
+    }
+
+    /// Cools the sink as well as its defects allow.
+    pub fn cool(&mut self, defects: &CoolingDefects) {
+        let coolant_c = defects.coolant_c.unwrap_or(self.room_c + self.params.coolant_k);
+        let (to_c, k_w) = match defects.held_c {
+            Some(held_c) => (held_c, HEATER_W_K.recip()),
+            None => (coolant_c, self.params.sink_k_w * defects.resistance),
+        };
+        self.stack.sink.source = to_c / k_w;
+        self.stack.sink.feedback = -1.0 / k_w;
     }
 
     /// Lets a finger cover a part of the patch, m2; air films the rest of the plate.

@@ -1,0 +1,52 @@
+//! Thermal dose of the skin.
+
+/// Temperature at which a minute of dose is a minute, deg C.
+const EVEN_C: f64 = 43.0;
+/// Temperature below which there is no dose, deg C.
+const NONE_BELOW_C: f64 = 39.0;
+
+/// Minutes at 43 deg C that hurt as much as a minute at a temperature, deg C, does: `R^(43 - T)` with `R` = 0.5 above
+/// 43 deg C, 0.25 below, and nothing below 39 deg C (Sapareto and Dewey, 1984: CEM43).
+#[must_use]
+pub fn rate(temperature_c: f64) -> f64 {
+    let colder_k = EVEN_C - temperature_c;
+    if temperature_c > EVEN_C {
+        0.5f64.powf(colder_k)
+    } else if temperature_c >= NONE_BELOW_C {
+        0.25f64.powf(colder_k)
+    } else {
+        0.0
+    }
+}
+
+/// Dose in minutes of temperatures, deg C, that each last `step_s`.
+pub fn cem43_min(temperatures_c: impl Iterator<Item = f64>, step_s: f64) -> f64 {
+    temperatures_c.map(rate).sum::<f64>() * step_s / 60.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The definition's own marks, and a burn threshold of the skin: 43 deg C for 10 min is half of 44 deg C for it.
+    #[test]
+    fn doses_are_those_of_the_definition() {
+        for (temperature_c, minutes, expected_min) in [
+            (43.0, 10.0, 10.0),
+            (44.0, 10.0, 20.0),
+            (45.0, 10.0, 40.0),
+            (51.0, 1.0, 256.0),
+            (42.0, 10.0, 2.5),
+            (39.0, 256.0, 1.0),
+            (38.99, 1e4, 0.0),
+            (10.0, 1e4, 0.0),
+        ] {
+            let steps = (minutes * 60.0) as usize;
+            let dose_min = cem43_min(std::iter::repeat_n(temperature_c, steps), 1.0);
+            assert!(
+                (dose_min - expected_min).abs() < 1e-9 * (1.0 + expected_min),
+                "{minutes} min at {temperature_c} C: {dose_min}"
+            );
+        }
+    }
+}

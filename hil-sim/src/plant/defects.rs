@@ -1,0 +1,19 @@
+//! What is broken in a plant.
+
+use super::bridge::BridgeDefects;
+use super::comparator::ComparatorDefect;
+use super::sensors::SensorDefects;
+use super::tile::CoolingDefects;
+
+/// What is broken in the plant of a finger; by default nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Defects {
+    /// Sensors, in front of the converter.
+    pub sensors: SensorDefects,
+    /// Power stage.
+    pub bridge: BridgeDefects,
+    /// Comparator.
+    pub comparator: ComparatorDefect,
+    /// Cooling of the sink.
+    pub cooling: CoolingDefects,
+}
