@@ -80,7 +80,7 @@ const COLDEST: Celsius = Celsius::lit("22");
 const HOTTEST: Celsius = Celsius::lit("35");
 /// What ends the experiment: a display this far from rest, or a sink this hot.
 const FARTHEST: Celsius = Celsius::lit("7");
-const SINK_HOTTEST: Celsius = Celsius::lit("42.5");
+const SINK_HOTTEST: Celsius = Celsius::lit("41.5");
 
 /// Why an experiment ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -105,7 +105,7 @@ impl Aborted {
             Self::Finger => "a finger touches the display",
             Self::Restless => "the display did not come to rest within 60 s",
             Self::Display => "the display went more than 7 C from rest",
-            Self::Sink => "the sink is above 42.5 C",
+            Self::Sink => "the sink is above 41.5 C",
             Self::Ended => "another command or a fault ended it",
         }
     }

@@ -22,10 +22,10 @@ use crate::drive::Current;
 
 /// Time constant of the difference between plate and model that counts as the plate's, s.
 const APART_LAG_S: f64 = 0.02;
-/// Cooling is taken back from this sink temperature on, to none 4 K above it: more current would warm the sink more
+/// Cooling is taken back from this sink temperature on, to none 2 K above it, before the guard trips: more current would warm the sink more
 /// than cool the display.
 const SINK_WARM: Celsius = Celsius::lit("39.5");
-const SINK_SHIFT: u32 = 2;
+const SINK_SHIFT: u32 = 1;
 
 /// The law's memory.
 #[derive(Clone, Debug)]

@@ -43,10 +43,16 @@ impl LineReader {
         self.error.get_or_insert(error);
     }
 
+    /// Whether a byte ends a line, empty or not.
+    #[must_use]
+    pub const fn is_end(byte: u8) -> bool {
+        matches!(byte, b'\r' | b'\n')
+    }
+
     /// Takes one byte; carriage return or line feed ends a line, empty lines are skipped.
     pub fn push(&mut self, byte: u8) -> Option<Result<Line, LineError>> {
         match byte {
-            b'\r' | b'\n' => {
+            _ if Self::is_end(byte) => {
                 let line = core::mem::take(&mut self.line);
                 match self.error.take() {
                     Some(error) => Some(Err(error)),

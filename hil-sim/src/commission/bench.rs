@@ -12,6 +12,9 @@ use crate::world::World;
 
 /// Longest wait for an answer, ms.
 const PATIENCE_MS: u64 = 500;
+/// Longest wait for a self-test, and how often its end is looked for, ms.
+const SELF_TEST_MS: u64 = 1000;
+const POLL_MS: u64 = 50;
 /// Resolution of the reference thermometer, K.
 const RESOLUTION_K: f64 = 1e-3;
 
@@ -93,6 +96,27 @@ impl<'a, E: Engine> Bench<'a, E> {
                 answer,
             }),
         }
+    }
+
+    /// Arms the device, which tests itself first if it has not yet.
+    ///
+    /// # Errors
+    /// The engine stopped, or the device is not armed within a second.
+    pub fn arm(&mut self) -> Result<(), CommissionError> {
+        self.tell("arm")?;
+        let line = "state";
+        for _ in 0..SELF_TEST_MS / POLL_MS {
+            let answer = self.tell(line)?;
+            if answer.starts_with("state=armed ") {
+                return Ok(());
+            }
+            if !answer.starts_with("state=self-test ") {
+                let line = line.into();
+                return Err(CommissionError::Refused { line, answer });
+            }
+            self.wait(POLL_MS)?;
+        }
+        Err(CommissionError::Silent("arm".into()))
     }
 
     /// The device's settings, line by line.

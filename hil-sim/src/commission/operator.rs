@@ -49,12 +49,12 @@ pub fn commission<E: Engine>(
         points: Vec::new(),
     };
     operator.bench.wait(START_MS)?;
-    operator.bench.tell("arm")?;
+    operator.bench.arm()?;
     operator.begin("tune, as far as sensors from the shelf allow");
     operator.tune()?;
     operator.begin("calibrate the display's thermistors, held at temperature after temperature");
     operator.display()?;
-    operator.bench.tell("arm")?;
+    operator.bench.arm()?;
     operator.begin("tune again, with calibrated sensors");
     let tile = operator.tune()?;
     operator.bench.tell("abort")?;

@@ -122,7 +122,8 @@ fn tune(plants: &Plants, settings: &[String]) -> Result<(Tile, f64), CommissionE
     for line in settings {
         bench.tell(line)?;
     }
-    for line in ["arm", "tune", "stream 1"] {
+    bench.arm()?;
+    for line in ["tune", "stream 1"] {
         bench.tell(line)?;
     }
     let line = "tune result";

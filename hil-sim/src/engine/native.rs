@@ -117,6 +117,9 @@ impl Native {
     /// Lines whose last byte has arrived before the tick.
     fn serve(&mut self, now_ns: u64) {
         while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
+            if LineReader::is_end(byte) {
+                self.hand.hear();
+            }
             let Some(line) = self.reader.push(byte) else {
                 continue;
             };
@@ -166,6 +169,7 @@ impl Engine for Native {
             let samples = Samples::from_scans(&self.scans, self.fault);
             self.fault = self.world.bridge_fault();
             self.outputs = self.hand.step(0, &samples);
+            self.world.comparator_test(self.outputs.comparator_test);
             if let Some(telemetry) = self.hand.telemetry(0) {
                 self.answer(&telemetry);
             }
