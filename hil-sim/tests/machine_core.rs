@@ -60,14 +60,29 @@ fn an_undefined_instruction_becomes_a_hard_fault() {
 }
 
 #[test]
-fn a_fault_in_the_fault_handler_is_lockup() {
-    match probe::stop(4) {
+fn a_fault_in_the_fault_handler_is_lockup_for_good_without_a_watchdog() {
+    match probe::machine(4).run_until(1_000_000).expect_err("stops") {
         Stop::Lockup { priority, place, .. } => {
             assert_eq!(priority, -1);
             assert!(place.function.contains("hard_fault"), "{place}");
         }
         other => panic!("{other}"),
     }
+}
+
+#[test]
+fn a_watchdog_ends_lockup() {
+    let (machine, log) = probe::run(21, 1_000_000);
+    assert_eq!(log[..2], [0x2e, 0x0010_cced], "flags, and RAM from before");
+    let [_, reset] = machine.resets() else {
+        panic!("{:?}", machine.resets())
+    };
+    assert_eq!(reset.cause, ResetCause::IndependentWatchdog);
+    let ten_milliseconds = 160_000;
+    assert!(
+        (ten_milliseconds..ten_milliseconds + 5_000).contains(&reset.at),
+        "10 ms after its start, soon after power-up: {reset:?}"
+    );
 }
 
 #[test]

@@ -4,6 +4,13 @@ use hil_sim::machine::{Access, LegState, ResetCause, Stop};
 
 const SECOND: u64 = 180_000_000;
 
+/// Runs a case that must stop.
+fn stop(case: u8) -> Stop {
+    probe::machine(case)
+        .run_until(10_000_000)
+        .expect_err("the case stops")
+}
+
 #[test]
 fn an_unmodelled_register_stops_the_run_by_name() {
     let Stop::NotModelled {
@@ -12,7 +19,7 @@ fn an_unmodelled_register_stops_the_run_by_name() {
         access,
         place,
         ..
-    } = probe::stop(8)
+    } = stop(8)
     else {
         panic!()
     };
@@ -31,7 +38,7 @@ fn a_peripheral_without_clock_stops_the_run() {
         enable,
         access,
         ..
-    } = probe::stop(9)
+    } = stop(9)
     else {
         panic!()
     };
@@ -45,7 +52,7 @@ fn a_peripheral_without_clock_stops_the_run() {
 fn reading_without_clock_stops_too() {
     let Stop::ClockOff {
         peripheral, access, ..
-    } = probe::stop(7)
+    } = stop(7)
     else {
         panic!()
     };
@@ -84,7 +91,7 @@ fn too_few_wait_states_stop_the_run() {
         latency,
         needed,
         ..
-    } = probe::stop(10)
+    } = stop(10)
     else {
         panic!()
     };
@@ -94,7 +101,7 @@ fn too_few_wait_states_stop_the_run() {
 #[test]
 fn an_unmodelled_mode_stops_the_run() {
     for case in [11, 16] {
-        let Stop::NotModelled { register, value, .. } = probe::stop(case) else {
+        let Stop::NotModelled { register, value, .. } = stop(case) else {
             panic!()
         };
         assert_eq!(
@@ -133,6 +140,42 @@ fn the_watchdog_resets_ten_milliseconds_after_the_last_feed() {
         (ten_milliseconds..ten_milliseconds + 100).contains(&(reset.at - third)),
         "{reset:?}, fed at {third}"
     );
+}
+
+#[test]
+fn the_window_watchdog_resets_when_it_is_no_longer_refreshed() {
+    let (machine, log) = probe::run(19, 1_600_000);
+    assert_eq!(
+        log,
+        [0x4e, 0x00fe_ed00, 1, 0xd0e],
+        "flags; RAM that start-up leaves alone has survived; one early interrupt"
+    );
+    let [_, reset] = machine.resets() else {
+        panic!("{:?}", machine.resets())
+    };
+    assert_eq!(reset.cause, ResetCause::WindowWatchdog);
+    let refreshes: Vec<u64> = machine
+        .wiring()
+        .outputs
+        .iter()
+        .filter(|output| output.2 == Some(true))
+        .map(|output| output.3)
+        .collect();
+    let [_first, third] = refreshes[..] else {
+        panic!("{refreshes:?}")
+    };
+    let periods = (reset.at - third) as f64 / 4096.0;
+    assert!(
+        (63.0..=64.0).contains(&periods),
+        "{periods} periods of 4096 cycles after the refresh; the prescaler runs freely"
+    );
+}
+
+#[test]
+fn a_refresh_outside_the_window_resets_at_once() {
+    let (machine, log) = probe::run(20, 20_000);
+    assert_eq!(log, [0x4e, 0x00fe_ed00, 0, 0xd0e]);
+    assert_eq!(machine.resets()[1].cause, ResetCause::WindowWatchdog);
 }
 
 #[test]

@@ -287,3 +287,32 @@ pub fn condition_survives_interrupts() {
     log(run);
     log(u32::from(TICKS.load(Relaxed) > 100));
 }
+
+/// Waits in turn until a bit of r4 and one of s20 have changed, logs both; then until one of the flags (Z) has, logs 3;
+/// then until bit 4 of the PC has, logs 4.
+pub fn waits_for_flips() {
+    log(1);
+    let (general, float): (u32, u32);
+    // SAFETY: changes only its registers.
+    unsafe {
+        asm!(
+            "2: cmp r4, #0",
+            "beq 2b",
+            "vmov s20, {float}",
+            "2: vmov {float}, s20",
+            "cmp {float}, #0",
+            "beq 2b",
+            inout("r4") 0 => general,
+            float = inout(reg) 0 => float,
+            out("s20") _,
+        );
+    }
+    log(general);
+    log(float);
+    // SAFETY: changes only the flags.
+    unsafe { asm!("cmp {r}, {r}", "2: beq 2b", r = in(reg) 0) };
+    log(3);
+    // SAFETY: only branches; the place with the flipped address is in the block.
+    unsafe { asm!(".balign 32", "2: b 2b", ".balign 16", "nop") };
+    log(4);
+}

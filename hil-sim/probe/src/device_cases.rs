@@ -2,10 +2,10 @@
 use crate::{log, read, set, write};
 use core::sync::atomic::{AtomicU8, AtomicU16};
 
-const RCC: usize = 0x4002_3800;
+pub const RCC: usize = 0x4002_3800;
 const FLASH_ACR: usize = 0x4002_3c00;
 const PWR: usize = 0x4000_7000;
-const GPIOA: usize = 0x4002_0000;
+pub const GPIOA: usize = 0x4002_0000;
 const TIM1: usize = 0x4001_0000;
 const TIM2: usize = 0x4000_0000;
 const TIM3: usize = 0x4000_0400;
@@ -52,7 +52,7 @@ pub fn encoder_mode() {
     write(TIM3 + 0x08, 3);
 }
 
-fn clock_180_mhz(wait_states: u32) {
+pub fn clock_180_mhz(wait_states: u32) {
     write(FLASH_ACR, 0x700 | wait_states);
     set(RCC, 1 << 18 | 1 << 16);
     while read(RCC) >> 17 & 1 == 0 {}
@@ -73,6 +73,14 @@ pub fn too_few_wait_states() {
     clock_180_mhz(4);
 }
 
+/// Starts the independent watchdog: 80 * 4 / 32 kHz = 10 ms.
+pub fn start_watchdog() {
+    write(IWDG, 0x5555);
+    write(IWDG + 4, 0);
+    write(IWDG + 8, 79);
+    write(IWDG, 0xcccc);
+}
+
 /// Feeds the watchdog three times, then no more. PA5 changes with each feed.
 pub fn watchdog() {
     let flags = read(RCC + 0x74) >> 24;
@@ -82,10 +90,7 @@ pub fn watchdog() {
         log(read(RCC + 0x74) >> 24);
         return;
     }
-    write(IWDG, 0x5555);
-    write(IWDG + 4, 0);
-    write(IWDG + 8, 79); // 80 * 4 / 32 kHz = 10 ms
-    write(IWDG, 0xcccc);
+    start_watchdog();
     set(RCC + 0x30, 1);
     write(GPIOA, read(GPIOA) | 1 << 10);
     for feed in 0..3 {
@@ -136,7 +141,7 @@ pub fn product_load() {
     log(1);
 }
 
-fn pwm() {
+pub fn pwm() {
     write(GPIOA, read(GPIOA) & !0xf_3000 | 0xa_2000); // PA8 and PA9, and PA6 as the break input
     set(GPIOA + 0x24, 0x11);
     set(GPIOA + 0x20, 1 << 24);

@@ -5,6 +5,7 @@
 
 mod core_cases;
 mod device_cases;
+mod watchdog_cases;
 
 use core::sync::atomic::{AtomicU32, Ordering::Relaxed};
 use cortex_m_rt::{entry, exception};
@@ -70,6 +71,14 @@ fn main() -> ! {
         16 => device_cases::encoder_mode_then_sleep(),
         17 => core_cases::condition_ends_with_its_block(),
         18 => core_cases::condition_survives_interrupts(),
+        19 => watchdog_cases::window_watchdog(),
+        20 => watchdog_cases::refresh_outside_the_window(),
+        21 => watchdog_cases::lockup_under_watchdog(),
+        22 => watchdog_cases::guarded_load(),
+        23 => watchdog_cases::clock_security(),
+        24 => watchdog_cases::load_without_clock_security(),
+        25 => watchdog_cases::lockup_with_clock_security(),
+        26 => core_cases::waits_for_flips(),
         _ => {}
     }
     done()
@@ -94,6 +103,7 @@ fn panic(_: &core::panic::PanicInfo) -> ! {
 #[exception]
 unsafe fn DefaultHandler(interrupt: i16) {
     match interrupt {
+        0 => watchdog_cases::early_wakeup(),
         6..=8 => core_cases::software_interrupt(interrupt),
         38 => device_cases::usart2(),
         _ => log(0x0bad_0000 | interrupt as u32),
@@ -101,7 +111,13 @@ unsafe fn DefaultHandler(interrupt: i16) {
 }
 
 #[exception]
+unsafe fn NonMaskableInt() {
+    watchdog_cases::clock_failed();
+}
+
+#[exception]
 fn SysTick() {
+    watchdog_cases::feed();
     core_cases::tick();
 }
 

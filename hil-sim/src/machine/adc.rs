@@ -40,6 +40,8 @@ pub(crate) struct Adc {
     position: u32,
     dma_ended: bool,
     dma_waiting: bool,
+    /// Conversions begin and never end.
+    stuck: bool,
     /// End of the running conversion.
     pub due: u64,
 }
@@ -60,6 +62,7 @@ impl Adc {
             position: 0,
             dma_ended: false,
             dma_waiting: false,
+            stuck: false,
             due: u64::MAX,
         }
     }
@@ -121,8 +124,17 @@ impl Adc {
         if self.cr2 & ADON != 0 && self.due == u64::MAX && !overrun {
             self.position = 0;
             self.sr |= STRT;
+            if self.stuck {
+                return;
+            }
             self.due = now + self.conversion_cycles(self.channel());
         }
+    }
+
+    /// The running conversion and all later ones never end; only a reset helps.
+    pub fn stop_converting(&mut self) {
+        self.stuck = true;
+        self.due = u64::MAX;
     }
 
     /// An item waits for its DMA transfer.

@@ -10,10 +10,13 @@ use super::ppb::Ppb;
 use super::ram::Memory;
 use super::rcc::{Clocks, HSI_HZ, Rcc, ResetCause};
 use super::tim::{self, Output, Tim};
+use super::timebase::Timebase;
 use super::usart::Usart;
+use super::wwdg::Wwdg;
 use super::{LegState, Wiring};
 
 mod bus;
+mod failures;
 
 /// The timers' places: TIM1 to TIM7 first.
 const TIMERS: usize = 10;
@@ -36,6 +39,7 @@ const TIMER_PINS: [(u8, u8, u8, usize, usize); 10] = [
 ];
 /// Break inputs (same table): timer, port, bit, alternate function.
 const BREAK_PINS: [(usize, u8, u8, u8); 3] = [(TIM1, 0, 6, 1), (TIM1, 1, 12, 1), (TIM8, 0, 6, 3)];
+const WWDG_IRQ: usize = 0;
 const ADC_IRQ: usize = 18;
 const USART2_IRQ: usize = 38;
 /// Bit rate of the host until told otherwise.
@@ -57,6 +61,10 @@ pub(crate) struct Chip<W> {
     tims: [Tim; TIMERS],
     usart: Usart,
     iwdg: Iwdg,
+    wwdg: Wwdg,
+    pub time: Timebase,
+    /// When the last clock of the chip stopped, if it did: timers and pins are as they were then.
+    stopped_at: Option<u64>,
     legs: [LegState; 2],
     outputs: [(u32, u32); PORTS],
     /// A store made a DMA request possible; served before the next block.
@@ -94,6 +102,9 @@ impl<W: Wiring> Chip<W> {
             tims: kinds.map(|kind| Tim::new(kind, 1)),
             usart: Usart::new(1, HSI_HZ, HOST_BAUD),
             iwdg: Iwdg::new(),
+            wwdg: Wwdg::new(),
+            time: Timebase::new(HSI_HZ),
+            stopped_at: None,
             legs: [LegState::Off; 2],
             outputs: [(0, 0); PORTS],
             kick: false,
@@ -109,8 +120,10 @@ impl<W: Wiring> Chip<W> {
 
     /// How a pin is driven by a timer, or as an output.
     pub fn pwm(&mut self, port: u8, bit: u8, now: u64) -> LegState {
-        for timer in [TIM1, TIM8, TIM10, TIM11] {
-            self.tims[timer].sync(now);
+        if self.stopped_at.is_none() {
+            for timer in [TIM1, TIM8, TIM10, TIM11] {
+                self.tims[timer].sync(now);
+            }
         }
         self.driven(port, bit)
     }
@@ -139,6 +152,10 @@ impl<W: Wiring> Chip<W> {
     }
 
     pub fn refresh_next(&mut self, now: u64) {
+        if self.stopped_at.is_some() {
+            self.next = self.iwdg.due;
+            return;
+        }
         let timers = self.tims.iter().fold(u64::MAX, |least, t| least.min(t.due));
         self.next = timers
             .min(self.ppb.systick_due)
@@ -146,12 +163,17 @@ impl<W: Wiring> Chip<W> {
             .min(self.usart.tx_due)
             .min(self.usart.rx_due)
             .min(self.iwdg.due)
+            .min(self.wwdg.due)
             .min(if self.kick { now } else { u64::MAX });
     }
 
     /// Handles every device event up to `now`, in order of time.
     pub fn service(&mut self, now: u64, memory: &mut impl Memory) {
         while self.next <= now {
+            if self.stopped_at.is_some() {
+                self.service_without_clock(now);
+                break;
+            }
             let at = self.next;
             if self.ppb.systick_due <= at && self.ppb.systick_expire() {
                 self.nvic.pend(exception::SYSTICK, at);
@@ -184,6 +206,12 @@ impl<W: Wiring> Chip<W> {
             if self.iwdg.due <= at {
                 self.iwdg.due = u64::MAX;
                 self.reset = Some(ResetCause::IndependentWatchdog);
+            }
+            if self.wwdg.due <= at {
+                if self.wwdg.sync(at) {
+                    self.reset = Some(ResetCause::WindowWatchdog);
+                }
+                self.nvic.set_line(WWDG_IRQ, self.wwdg.request(), at);
             }
             self.sample_inputs(at);
             self.refresh_next(at);
@@ -285,7 +313,13 @@ impl<W: Wiring> Chip<W> {
                 let here = |pin: &&(u8, u8, u8, usize, usize)| (pin.0, pin.1, pin.2) == (port, bit, function);
                 match TIMER_PINS.iter().find(here) {
                     Some(&(.., timer, channel)) => match self.tims[timer].output(channel) {
-                        Output::High { high, period } => LegState::Duty { high, period },
+                        Output::High { high, period } => match self.stopped_at {
+                            None => LegState::Duty { high, period },
+                            Some(at) => LegState::Duty {
+                                high: self.tims[timer].is_high(channel, at).into(),
+                                period: 1,
+                            },
+                        },
                         Output::Released => LegState::Off,
                     },
                     None => LegState::Off,

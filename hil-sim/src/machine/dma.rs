@@ -113,8 +113,7 @@ impl Dma {
             memory.load(address, bytes)
         };
         let Ok(value) = moved else {
-            s.flags |= TEIF;
-            s.cr &= !EN;
+            s.fail();
             return Served::No;
         };
         s.left -= 1;
@@ -134,6 +133,15 @@ impl Dma {
             }
         }
         Served::Item { value, last }
+    }
+
+    /// A bus error ends a stream. `false`: it was not enabled, so nothing happens.
+    pub fn fail(&mut self, stream: usize) -> bool {
+        let was_enabled = self.streams[stream].cr & EN != 0;
+        if was_enabled {
+            self.streams[stream].fail();
+        }
+        was_enabled
     }
 
     pub fn read(&self, offset: u32) -> Answer<u32> {
@@ -211,6 +219,12 @@ impl Dma {
 }
 
 impl Stream {
+    /// Disabled by the hardware, with the transfer-error flag.
+    fn fail(&mut self) {
+        self.flags |= TEIF;
+        self.cr &= !EN;
+    }
+
     fn write_cr(&mut self, value: u32, number: usize, stream: usize) -> Answer<()> {
         only(value, 0x0fef_ffff, "DMA SxCR reserved bits")?;
         only(value & 1 << 5, 0, "DMA SxCR.PFCTRL (peripheral flow controller)")?;

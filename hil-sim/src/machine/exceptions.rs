@@ -40,7 +40,7 @@ fn set<W: Wiring>(cpu: &mut Cpu<'_, W>, register: Reg, value: u32) -> Result<(),
 }
 
 /// Writes IPSR and the flags. The second write makes the emulation take over the new mode.
-fn set_xpsr<W: Wiring>(cpu: &mut Cpu<'_, W>, xpsr: u32) -> Result<(), FrameError> {
+pub(super) fn set_xpsr<W: Wiring>(cpu: &mut Cpu<'_, W>, xpsr: u32) -> Result<(), FrameError> {
     set(cpu, Reg::XPSR_NZCVQG, xpsr)?;
     set(cpu, Reg::APSR_NZCV, xpsr & 0xf000_0000)
 }

@@ -2,7 +2,7 @@
 use super::Wiring;
 use super::exceptions::{self, FrameError};
 use super::mcu::Machine;
-use super::nvic::exception;
+use super::nvic::{NMI_PRIORITY, exception};
 use super::state::masks;
 use super::stop::{Access, Stop};
 use unicorn_engine::uc_error;
@@ -26,6 +26,12 @@ const fn usage(status: u32, cause: &'static str) -> Fault {
     }
 }
 
+pub(super) const NO_MEMORY: Fault = Fault {
+    exception: exception::BUS_FAULT,
+    status: 1 << 8,
+    address: None,
+    cause: "instruction fetch where no memory is",
+};
 pub(super) const UNDEFINED: Fault = usage(1 << 16, "undefined instruction");
 pub(super) const INVALID_STATE: Fault = usage(1 << 17, "branch to an ARM address");
 pub(super) const INVALID_RETURN: Fault = usage(1 << 18, "invalid exception return");
@@ -102,20 +108,16 @@ impl<W: Wiring + 'static> Machine<W> {
                 place: self.place(pc),
             });
         }
-        let fetch = matches!(error, uc_error::FETCH_UNMAPPED | uc_error::FETCH_PROT);
-        let (status, cause) = match error {
-            uc_error::FETCH_UNMAPPED | uc_error::FETCH_PROT => {
-                (1 << 8, "instruction fetch where no memory is")
-            }
-            uc_error::READ_UNMAPPED | uc_error::READ_PROT => (1 << 9 | 1 << 15, "load where no memory is"),
-            _ => (1 << 9 | 1 << 15, "store where no memory is"),
+        let cause = match error {
+            uc_error::FETCH_UNMAPPED | uc_error::FETCH_PROT => return self.fault(NO_MEMORY, pc),
+            uc_error::READ_UNMAPPED | uc_error::READ_PROT => "load where no memory is",
+            _ => "store where no memory is",
         };
-        let address = (!fetch).then_some(address);
         self.fault(
             Fault {
                 exception: exception::BUS_FAULT,
-                status,
-                address,
+                status: 1 << 9 | 1 << 15,
+                address: Some(address),
                 cause,
             },
             pc,
@@ -143,11 +145,12 @@ impl<W: Wiring + 'static> Machine<W> {
             chip.ppb.hfsr |= 1 << 30;
         }
         if chip.nvic.priority_of(taken) >= level {
-            return Err(Stop::Lockup {
+            let stop = Stop::Lockup {
                 cause: fault.cause.into(),
                 priority: level,
                 place: self.place(pc),
-            });
+            };
+            return self.lock_up(level, stop);
         }
         chip.nvic.pend(taken, now);
         self.enter(taken, pc)
@@ -158,15 +161,19 @@ impl<W: Wiring + 'static> Machine<W> {
         self.framed(result, "stacking")
     }
 
-    /// A frame that does not fit into memory: silicon derives a fault whose handler has no stack either.
+    /// A frame that does not fit into memory: silicon derives a fault whose handler has no stack either, nor has an NMI's.
     fn framed(&mut self, result: Result<(), FrameError>, what: &str) -> Result<(), Stop> {
         match result {
             Ok(()) => Ok(()),
-            Err(FrameError::Stack(address)) => Err(Stop::Lockup {
-                cause: format!("exception {what} at {address:#010x}, where no memory is"),
-                priority: self.cpu.get_data().chip_ref().nvic.active_priority(),
-                place: self.place(self.cpu.get_data().block_pc),
-            }),
+            Err(FrameError::Stack(address)) => {
+                let priority = self.cpu.get_data().chip_ref().nvic.active_priority();
+                let stop = Stop::Lockup {
+                    cause: format!("exception {what} at {address:#010x}, where no memory is"),
+                    priority,
+                    place: self.place(self.cpu.get_data().block_pc),
+                };
+                self.lock_up(NMI_PRIORITY, stop)
+            }
             Err(error) => Err(Stop::Emulator(format!("{error:?} while {what}"))),
         }
     }

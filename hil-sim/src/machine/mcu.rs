@@ -1,11 +1,12 @@
 //! The machine as its user sees it.
 use super::chip::Chip;
-use super::elf::Firmware;
+use super::elf::{Firmware, RAM_BASE, RAM_SIZE};
 use super::exceptions;
 use super::profile::Stats;
 use super::rcc::{Clocks, ResetCause};
-use super::run::Sleep;
+use super::run::Until;
 use super::setup::set_up;
+use super::standstill::Standstill;
 use super::state::{Cpu, State};
 use super::stop::Stop;
 use super::{LegState, Wiring};
@@ -13,12 +14,15 @@ use std::sync::Arc;
 use unicorn_engine::uc_error;
 
 /// Byte that fills the RAM at power-up.
-pub(super) const PAINT: u8 = 0xc5;
+const PAINT: u8 = 0xc5;
+
 /// A reset that happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Reset {
     /// Cycles since power-up.
     pub at: u64,
+    /// Picoseconds since power-up.
+    pub at_ps: u64,
     /// What caused it.
     pub cause: ResetCause,
 }
@@ -27,7 +31,9 @@ pub struct Reset {
 pub struct Machine<W: Wiring + 'static> {
     pub(super) cpu: Cpu<'static, W>,
     pub(super) firmware: Firmware,
-    pub(super) sleep: Option<Sleep>,
+    pub(super) standstill: Option<Standstill>,
+    /// What the RAM held at power-up.
+    pub(super) fresh_ram: Vec<u8>,
     pub(super) resets: Vec<Reset>,
     stopped: Option<Stop>,
 }
@@ -40,17 +46,21 @@ impl<W: Wiring + 'static> Machine<W> {
     pub fn new(firmware: &Firmware, wiring: W) -> Result<Self, Stop> {
         let flash: Arc<[u8]> = firmware.flash().into();
         let state = State::new(Chip::new(wiring), Arc::clone(&flash));
-        let cpu = set_up(state, &flash).map_err(emulator)?;
+        let mut cpu = set_up(state, &flash).map_err(emulator)?;
+        let fresh_ram = vec![PAINT; RAM_SIZE as usize];
+        cpu.mem_write(RAM_BASE.into(), &fresh_ram).map_err(emulator)?;
         let mut machine = Self {
             cpu,
             firmware: firmware.clone(),
-            sleep: None,
+            standstill: None,
+            fresh_ram,
             resets: Vec::new(),
             stopped: None,
         };
         exceptions::reset(&mut machine.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))?;
         machine.resets.push(Reset {
             at: 0,
+            at_ps: 0,
             cause: ResetCause::PowerOn,
         });
         Ok(machine)
@@ -61,10 +71,22 @@ impl<W: Wiring + 'static> Machine<W> {
     /// # Errors
     /// The reason why the run cannot go on; the same again on every later call.
     pub fn run_until(&mut self, cycle: u64) -> Result<(), Stop> {
+        self.run_on(Until::Cycle(cycle))
+    }
+
+    /// The same, to a time in picoseconds since power-up, whatever the image or a reset does to the clock on the way.
+    ///
+    /// # Errors
+    /// As [`run_until`](Self::run_until).
+    pub fn run_until_ps(&mut self, ps: u64) -> Result<(), Stop> {
+        self.run_on(Until::Ps(ps))
+    }
+
+    fn run_on(&mut self, until: Until) -> Result<(), Stop> {
         if let Some(stop) = &self.stopped {
             return Err(stop.clone());
         }
-        let result = self.run(cycle);
+        let result = self.run(until);
         if let Err(stop) = &result {
             self.stopped = Some(stop.clone());
         }
@@ -74,6 +96,11 @@ impl<W: Wiring + 'static> Machine<W> {
     /// CPU cycles since power-up.
     pub fn now(&self) -> u64 {
         self.cpu.get_data().cycles
+    }
+
+    /// Picoseconds since power-up.
+    pub fn elapsed_ps(&self) -> u64 {
+        self.cpu.get_data().chip_ref().time.ps_at(self.now())
     }
 
     /// The clock tree as the image has set it.
@@ -159,12 +186,12 @@ impl<W: Wiring + 'static> Machine<W> {
         }
     }
 
-    /// Resets since power-up, the power-up itself first.
+    /// All resets, the first power-up included.
     pub fn resets(&self) -> &[Reset] {
         &self.resets
     }
 
-    /// Deepest use of the main stack since power-up, bytes; the RAM was painted then. `None` when the image has no
+    /// Deepest use of the main stack since power-up, bytes, by what has changed in RAM since then. `None` when the image has no
     /// symbol that tells where its static data end (`__sheap`, `__euninit` or `__ebss`).
     pub fn stack_high_water(&self) -> Option<u32> {
         let bottom = ["__sheap", "__euninit", "__ebss"]
@@ -173,7 +200,12 @@ impl<W: Wiring + 'static> Machine<W> {
         let top = self.firmware.initial_sp();
         let size = top.checked_sub(bottom)? as usize;
         let stack = self.cpu.mem_read_as_vec(u64::from(bottom), size).ok()?;
-        let untouched = stack.iter().take_while(|b| **b == PAINT).count();
+        let fresh = self.fresh_ram.get(bottom.checked_sub(RAM_BASE)? as usize..)?;
+        let untouched = stack
+            .iter()
+            .zip(fresh)
+            .take_while(|(now, then)| now == then)
+            .count();
         Some((size - untouched) as u32)
     }
 

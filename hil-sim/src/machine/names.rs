@@ -128,6 +128,7 @@ const SYSCFG: Registers = &[
     (0x2c, "CFGR"),
 ];
 const IWDG: Registers = &[(0x00, "KR"), (0x04, "PR"), (0x08, "RLR"), (0x0c, "SR")];
+const WWDG: Registers = &[(0x00, "CR"), (0x04, "CFR"), (0x08, "SR")];
 const NONE: Registers = &[];
 
 /// First address, name and registers of every peripheral of the STM32F446, ascending. The next entry's address
@@ -152,7 +153,7 @@ const MAP: &[Entry] = &[
     (0x4000_2000, "TIM14", TIM),
     (0x4000_2400, "", NONE),
     (0x4000_2800, "RTC", NONE),
-    (0x4000_2c00, "WWDG", NONE),
+    (0x4000_2c00, "WWDG", WWDG),
     (0x4000_3000, "IWDG", IWDG),
     (0x4000_3400, "", NONE),
     (0x4000_3800, "SPI2", NONE),

@@ -7,6 +7,9 @@ pub(crate) const EXCEPTIONS: usize = 16 + 97;
 /// Priority below every exception: nothing is active and nothing is masked.
 pub(crate) const THREAD_PRIORITY: i32 = 256;
 
+/// Priority of the non-maskable interrupt.
+pub(crate) const NMI_PRIORITY: i32 = -2;
+
 /// Exception numbers of the core.
 pub(crate) mod exception {
     pub const NMI: usize = 2;
@@ -171,7 +174,7 @@ impl Nvic {
     pub fn priority_of(&self, exception: usize) -> i32 {
         match exception {
             1 => -3,
-            exception::NMI => -2,
+            exception::NMI => NMI_PRIORITY,
             exception::HARD_FAULT => -1,
             n => self.priority.get(n).map_or(THREAD_PRIORITY, |p| i32::from(*p)),
         }
@@ -259,11 +262,17 @@ impl Nvic {
     /// Level of a peripheral's interrupt request; a rising level pends.
     #[inline]
     pub fn set_line(&mut self, irq: usize, level: bool, now: u64) {
-        let bit = 1 << (16 + irq);
+        self.set_exception_line(16 + irq, level, now);
+    }
+
+    /// Level of a request for an exception, as the NMI has one.
+    #[inline]
+    pub fn set_exception_line(&mut self, exception: usize, level: bool, now: u64) {
+        let bit = 1 << exception;
         if level != (self.lines & bit != 0) {
             self.lines ^= bit;
             if level {
-                self.pend(16 + irq, now);
+                self.pend(exception, now);
             }
         }
     }

@@ -1,9 +1,13 @@
 //! Reset and clock control (RM0390 chapter 6):
 //! oscillators, PLL, bus prescalers, peripheral clock enables and resets, reset flags.
 use super::stop::{Answer, Refusal, only};
+use std::fmt;
 
 mod clock_tree;
 mod power;
+mod security;
+
+pub(crate) use security::AfterHse;
 
 /// High-speed internal oscillator.
 pub const HSI_HZ: u32 = 16_000_000;
@@ -41,6 +45,25 @@ pub enum ResetCause {
     Software,
     /// The independent watchdog ran out.
     IndependentWatchdog,
+    /// The window watchdog ran out, or was refreshed outside of its window.
+    WindowWatchdog,
+    /// The supply fell below the brown-out threshold, but not so far that the RAM forgot.
+    BrownOut,
+    /// The reset pin was pulled low.
+    Pin,
+}
+
+impl fmt::Display for ResetCause {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            ResetCause::PowerOn => "power-on",
+            ResetCause::Software => "software",
+            ResetCause::IndependentWatchdog => "independent-watchdog",
+            ResetCause::WindowWatchdog => "window-watchdog",
+            ResetCause::BrownOut => "brown-out",
+            ResetCause::Pin => "reset-pin",
+        })
+    }
 }
 
 impl ResetCause {
@@ -50,6 +73,9 @@ impl ResetCause {
             ResetCause::PowerOn => 0x0e00_0000,
             ResetCause::Software => 0x1400_0000,
             ResetCause::IndependentWatchdog => 0x2400_0000,
+            ResetCause::WindowWatchdog => 0x4400_0000,
+            ResetCause::BrownOut => 0x0600_0000,
+            ResetCause::Pin => 0x0400_0000,
         }
     }
 }
@@ -79,6 +105,9 @@ pub(crate) struct Rcc {
     lpenr: [u32; 5],
     csr: u32,
     dckcfgr: u32,
+    /// The external oscillator has failed, and the clock security system has seen that (RCC_CIR.CSSF).
+    hse_failed: bool,
+    security: bool,
     /// Cycle from which HSI, HSE, PLL, LSI are ready.
     ready_at: [u64; 4],
     /// PWR
@@ -106,6 +135,8 @@ impl Rcc {
             lpenr: [0x7e67_91ff, 0xf1, 0x01, 0x36fe_c9ff, 0x0007_5f33],
             csr: cause.flags() | old_flags & 0xfe00_0000,
             dckcfgr: 0,
+            hse_failed: false,
+            security: false,
             ready_at: [0; 4],
             pwr_cr: 0xc000,
             over_drive_at: [u64::MAX; 2],
@@ -152,7 +183,7 @@ impl Rcc {
     fn is_ready(&self, source: usize, now: u64) -> bool {
         let on = match source {
             HSI => self.cr & 1,
-            HSE => self.cr >> 16 & 1,
+            HSE => self.cr >> 16 & 1 & u32::from(!self.hse_failed),
             PLL => self.cr >> 24 & 1,
             _ => self.csr & 1,
         };
@@ -165,7 +196,8 @@ impl Rcc {
             0x00 => self.cr | ready(HSI) << 1 | ready(HSE) << 17 | ready(PLL) << 25,
             0x04 => self.pllcfgr,
             0x08 => self.cfgr | (self.cfgr & 3) << 2,
-            0x0c => 0, // no clock interrupt is modelled, so none is enabled or pending
+            // of the clock interrupts only that of the clock security system is modelled
+            0x0c => u32::from(self.security) << 7,
             0x10 | 0x14 | 0x18 => self.rstr[(offset / 4 - 4) as usize],
             0x20 | 0x24 => self.rstr[(offset / 4 - 5) as usize],
             0x30 | 0x34 | 0x38 => self.enr[(offset / 4 - 12) as usize],
@@ -182,7 +214,6 @@ impl Rcc {
     pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<bool> {
         match offset {
             0x00 => {
-                // the clock security system may be on: the external clock of the bench never fails
                 only(value, 0x030f_ffff, "RCC_CR.PLLI2SON or PLLSAION")?;
                 self.write_cr(value, now)?;
             }
@@ -193,7 +224,10 @@ impl Rcc {
                 self.pllcfgr = value;
             }
             0x08 => return self.write_cfgr(value, now).map(|()| true),
-            0x0c => only(value, 0x00ff_0000, "RCC_CIR interrupt enables")?,
+            0x0c => {
+                only(value, 0x00ff_0000, "RCC_CIR interrupt enables")?;
+                self.security &= value >> 23 & 1 == 0;
+            }
             0x10 | 0x14 | 0x18 => self.rstr[(offset / 4 - 4) as usize] = value,
             0x20 | 0x24 => self.rstr[(offset / 4 - 5) as usize] = value,
             0x30 | 0x34 | 0x38 => self.enr[(offset / 4 - 12) as usize] = value,

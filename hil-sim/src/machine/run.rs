@@ -2,11 +2,11 @@
 use super::cost::Last;
 use super::elf::{FLASH_BASE, RAM_BASE};
 use super::exceptions;
-use super::faults::{Fault, INVALID_STATE, NO_COPROCESSOR, UNDEFINED};
+use super::faults::{Fault, INVALID_STATE, NO_COPROCESSOR, NO_MEMORY, UNDEFINED};
 use super::mcu::{Machine, Reset, emulator};
 use super::nvic::exception;
 use super::rcc::{HSI_HZ, ResetCause};
-use super::state::{self, Event, Refused, get, masks, service, takeable, with_chip};
+use super::state::{self, Event, Refused, get, service, takeable};
 use super::stop::{Place, Refusal, Stop};
 use super::{Wiring, names};
 use unicorn_engine::{RegisterARM as Reg, uc_error};
@@ -14,21 +14,27 @@ use unicorn_engine::{RegisterARM as Reg, uc_error};
 /// A system reset holds the chip for about 20 us (DS10693: NRST pulse).
 const RESET_US: u64 = 20;
 
-/// How the CPU sleeps.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Sleep {
-    /// Priority that a pending exception must beat to wake the CPU (PRIMASK does not count).
-    threshold: i32,
+/// How far a run goes.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Until {
+    /// To a cycle since power-up.
+    Cycle(u64),
+    /// To a time since power-up, ps, whatever the clock does on the way.
+    Ps(u64),
 }
 
 impl<W: Wiring + 'static> Machine<W> {
-    pub(super) fn run(&mut self, cycle: u64) -> Result<(), Stop> {
-        let state = self.cpu.get_data_mut();
-        state.limit = cycle;
-        let now = state.cycles;
-        state.chip().sample_inputs(now);
+    pub(super) fn run(&mut self, until: Until) -> Result<(), Stop> {
+        let now = self.now();
+        self.cpu.get_data_mut().chip().sample_inputs(now);
         loop {
             let now = self.now();
+            let state = self.cpu.get_data_mut();
+            let cycle = match until {
+                Until::Cycle(cycle) => cycle,
+                Until::Ps(ps) => state.chip_ref().time.cycle_at(ps),
+            };
+            state.limit = cycle;
             service(&mut self.cpu, now);
             if let Some(cause) = self.cpu.get_data_mut().chip().reset {
                 self.system_reset(cause)?;
@@ -38,13 +44,18 @@ impl<W: Wiring + 'static> Machine<W> {
             if now >= cycle {
                 return Ok(());
             }
-            if let Some(sleep) = self.sleep {
-                self.sleep_until(cycle, sleep);
+            if let Some(standstill) = self.standstill {
+                self.stand_until(cycle, standstill);
                 continue;
             }
             if let Some(exception) = takeable(&self.cpu) {
                 let pc = get(&self.cpu, Reg::PC);
                 self.enter(exception, pc)?;
+            }
+            if self.is_back_in_lockup() {
+                let pc = get(&self.cpu, Reg::PC);
+                self.fault(NO_MEMORY, pc)?;
+                continue;
             }
             self.execute()?;
         }
@@ -68,7 +79,7 @@ impl<W: Wiring + 'static> Machine<W> {
                 address: None,
                 cause: "access to a reserved peripheral address",
             };
-            self.sleep = None;
+            self.standstill = None;
             return self.fault(fault, pc);
         }
         Ok(())
@@ -124,55 +135,13 @@ impl<W: Wiring + 'static> Machine<W> {
         Ok(())
     }
 
-    fn fall_asleep(&mut self) {
-        let (_, basepri, faultmask) = masks(&self.cpu);
-        let threshold = self
-            .cpu
-            .get_data()
-            .chip_ref()
-            .nvic
-            .execution_priority(0, basepri, faultmask);
-        self.sleep = Some(Sleep { threshold });
-    }
-
-    fn wait_for_event(&mut self) {
-        if !std::mem::take(&mut self.cpu.get_data_mut().event_register) {
-            self.fall_asleep();
-        }
-    }
-
-    /// Passes time asleep until an exception wakes the CPU, a reset, or `limit`.
-    fn sleep_until(&mut self, limit: u64, sleep: Sleep) {
-        let start = self.now();
-        let end = with_chip(&mut self.cpu, |chip, service| {
-            let mut now = start;
-            loop {
-                let woken = chip
-                    .nvic
-                    .best()
-                    .is_some_and(|(_, priority)| priority < sleep.threshold);
-                if woken || chip.reset.is_some() || now >= limit {
-                    chip.count_sleep(now - start);
-                    return (now, woken);
-                }
-                now = chip.next.clamp(now, limit);
-                service(chip, now);
-            }
-        });
-        if let Some((now, woken)) = end {
-            self.cpu.get_data_mut().cycles = now;
-            if woken {
-                self.sleep = None;
-            }
-        }
-    }
-
-    fn system_reset(&mut self, cause: ResetCause) -> Result<(), Stop> {
+    pub(super) fn system_reset(&mut self, cause: ResetCause) -> Result<(), Stop> {
         let state = self.cpu.get_data_mut();
         state.profile.abandon();
         let at = state.cycles;
         let held = RESET_US * u64::from(HSI_HZ) / 1_000_000;
         state.chip().system_reset(cause, at);
+        let at_ps = state.chip().time.ps_at(at);
         state.cycles += held;
         (
             state.attention,
@@ -180,8 +149,8 @@ impl<W: Wiring + 'static> Machine<W> {
             state.bus_error,
             state.event_register,
         ) = (false, None, None, false);
-        self.sleep = None;
-        self.resets.push(Reset { at, cause });
+        self.standstill = None;
+        self.resets.push(Reset { at, at_ps, cause });
         exceptions::reset(&mut self.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))
     }
 
@@ -193,7 +162,7 @@ impl<W: Wiring + 'static> Machine<W> {
         }
     }
 
-    fn refusal(&self, refused: Refused) -> Stop {
+    pub(super) fn refusal(&self, refused: Refused) -> Stop {
         let Refused {
             refusal,
             address,

@@ -1,7 +1,6 @@
 //! Memories and hooks of the CPU emulation.
 use super::Wiring;
 use super::elf::{FLASH_BASE, FLASH_SIZE, RAM_BASE, RAM_SIZE};
-use super::mcu::PAINT;
 use super::state::{self, Cpu, Event, State};
 use unicorn_engine::{
     Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error,
@@ -35,7 +34,6 @@ pub(super) fn set_up<W: Wiring + 'static>(
         cpu.mem_write(u64::from(base), flash)?;
     }
     cpu.mem_map(u64::from(RAM_BASE), u64::from(RAM_SIZE), Prot::ALL)?;
-    cpu.mem_write(u64::from(RAM_BASE), &[PAINT; RAM_SIZE as usize])?;
     for (base, size) in DEVICES {
         cpu.mmio_map(
             base,

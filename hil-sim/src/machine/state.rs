@@ -310,6 +310,8 @@ pub(crate) fn on_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8,
     if let Err(refusal) = result {
         state.refuse(refusal, register, Access::Write(bytes), value);
     }
+    // a new clock moves the cycle at which the run shall pause
+    state.attention |= register & 0xffff_fc00 == 0x4002_3800;
 }
 
 /// Register and bit behind an address of the peripheral bit-band alias.

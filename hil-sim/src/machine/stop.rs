@@ -95,7 +95,7 @@ pub enum Stop {
         /// Where in the image.
         place: Place,
     },
-    /// A fault in the fault handler: silicon would sit in lockup until the watchdog bites.
+    /// A fault in the fault handler while no watchdog runs: silicon would sit in lockup for good.
     #[error("lockup: {cause} at priority {priority} in {place}")]
     Lockup {
         /// The last fault.

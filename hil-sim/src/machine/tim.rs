@@ -294,6 +294,16 @@ impl Tim {
         changes
     }
 
+    /// The clock security system reports a failure: a break, if breaks are enabled (16.3.12). `true`: it is one.
+    pub fn clock_failed(&mut self) -> bool {
+        let breaks = self.watches_break();
+        if breaks {
+            self.bdtr &= !MOE;
+            self.sr |= BIF;
+        }
+        breaks
+    }
+
     /// The break input is enabled.
     pub fn watches_break(&self) -> bool {
         self.bdtr & BKE != 0
@@ -346,6 +356,24 @@ impl Tim {
         Output::High {
             high: if inverted { period - high } else { high },
             period,
+        }
+    }
+
+    /// Level of a driven channel at the count of `now`; PWM mode 2 is high from the match on (16.3.10).
+    pub fn is_high(&self, channel: usize, now: u64) -> bool {
+        let Output::High { high, period } = self.output(channel) else {
+            return false;
+        };
+        if period == 1 {
+            return high == 1;
+        }
+        let inverted = self.ccer >> (4 * channel + 1) & 1 != 0;
+        let mode_2 = self.ccmr[channel / 2] >> (8 * (channel % 2) + 4) & 7 == 7;
+        let count = self.count(now);
+        if inverted != mode_2 {
+            count >= period - high
+        } else {
+            count < high
         }
     }
 }

@@ -1,5 +1,5 @@
 //! Builds the test image once and runs its cases.
-use hil_sim::machine::{Firmware, LegState, Machine, Stop, Wiring};
+use hil_sim::machine::{Firmware, LegState, Machine, Wiring};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
@@ -110,9 +110,4 @@ pub fn run(case: u8, cycles: u64) -> (Machine<Bench>, Vec<u32>) {
         .unwrap_or_else(|stop| panic!("case {case}: {stop}"));
     let log = log(&machine);
     (machine, log)
-}
-
-/// Runs a case that must stop.
-pub fn stop(case: u8) -> Stop {
-    machine(case).run_until(10_000_000).expect_err("the case stops")
 }

@@ -1,13 +1,14 @@
 //! The address map: which device answers at an address, whether its clock runs, and what a store sets in motion.
-use super::{ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ};
+use super::{ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ, WWDG_IRQ};
 use crate::machine::adc::Trigger;
 use crate::machine::dma::Dma;
 use crate::machine::gpio::Port;
 use crate::machine::iwdg::Iwdg;
-use crate::machine::rcc::{Clocks, Enr, HSI_HZ, Rcc, ResetCause};
+use crate::machine::nvic::exception;
+use crate::machine::rcc::{Clocks, Enr, HSI_HZ, ResetCause};
 use crate::machine::stop::{Answer, Refusal};
 use crate::machine::{Wiring, names};
-use crate::machine::{exti::Exti, nvic::Nvic, ppb::Ppb};
+use crate::machine::{exti::Exti, nvic::Nvic, ppb::Ppb, wwdg::Wwdg};
 
 /// Peripheral behind an address, with its clock enable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,6 +22,7 @@ enum Device {
     Adc,
     Usart2,
     Iwdg,
+    Wwdg,
     Syscfg,
     Exti,
 }
@@ -43,6 +45,7 @@ fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
         0x4000_4400 => (Device::Usart2, Some((Enr::Apb1, 17))),
         0x4000_7000 => (Device::Pwr, Some((Enr::Apb1, 28))),
         0x4000_3000 => (Device::Iwdg, None),
+        0x4000_2c00 => (Device::Wwdg, Some((Enr::Apb1, 11))),
         0x4001_3800 => (Device::Syscfg, Some((Enr::Apb2, 14))),
         0x4001_3c00 => (Device::Exti, None),
         _ => return None,
@@ -68,17 +71,19 @@ impl<W: Wiring> Chip<W> {
         self.nvic = Nvic::new();
         self.ppb = Ppb::new();
         self.ppb.slept = slept;
-        self.rcc = Rcc::new(cause, self.rcc.flags());
+        self.rcc = self.rcc.after_reset(cause);
         self.ports = std::array::from_fn(Port::new);
         self.exti = Exti::default();
         self.dma = [Dma::new(1), Dma::new(2)];
         for timer in 0..TIMERS {
-            self.reset_device(Device::Tim(timer));
+            self.reset_device(Device::Tim(timer), now);
         }
-        self.reset_device(Device::Adc);
+        self.reset_device(Device::Adc, now);
         self.usart.set_clock(1, HSI_HZ);
         self.usart.reset();
         self.iwdg = Iwdg::new();
+        self.wwdg = Wwdg::new();
+        self.stopped_at = None;
         self.reset = None;
         self.clocks_changed(self.rcc.clocks(), now);
         self.after_change(now);
@@ -123,6 +128,7 @@ impl<W: Wiring> Chip<W> {
                 Ok(value)
             }
             Device::Iwdg => self.iwdg.read(offset, now),
+            Device::Wwdg => self.wwdg.read(offset, now),
             Device::Syscfg => self.exti.read_syscfg(offset),
             Device::Exti => self.exti.read(offset),
         }
@@ -186,7 +192,10 @@ impl<W: Wiring> Chip<W> {
                 if self.rcc.write(offset, value, now)? {
                     self.clocks_changed(old, now);
                 }
+                self.clock_wwdg(now);
                 self.apply_resets(now);
+                let security = self.rcc.security_interrupt();
+                self.nvic.set_exception_line(exception::NMI, security, now);
             }
             Device::Flash => self.rcc.write_flash(offset, value)?,
             Device::Pwr => self.rcc.write_pwr(offset, value, now)?,
@@ -220,6 +229,12 @@ impl<W: Wiring> Chip<W> {
                 self.kick = true;
             }
             Device::Iwdg => self.iwdg.write(offset, value, now, self.rcc.clocks().hclk_hz)?,
+            Device::Wwdg => {
+                if self.wwdg.write(offset, value, now)? {
+                    self.reset = Some(ResetCause::WindowWatchdog);
+                }
+                self.nvic.set_line(WWDG_IRQ, self.wwdg.request(), now);
+            }
             Device::Syscfg => self.exti.write_syscfg(offset, value)?,
             Device::Exti => {
                 self.exti.write(offset, value)?;
@@ -230,8 +245,20 @@ impl<W: Wiring> Chip<W> {
         Ok(())
     }
 
-    fn clocks_changed(&mut self, old: Clocks, now: u64) {
+    /// The window watchdog counts PCLK1 while its own clock is enabled.
+    fn clock_wwdg(&mut self, now: u64) {
+        let Clocks {
+            hclk_hz, pclk1_hz, ..
+        } = self.rcc.clocks();
+        let on = self.rcc.check_clock(Enr::Apb1, 11).is_ok();
+        self.wwdg
+            .set_clock(on.then(|| u64::from(hclk_hz / pclk1_hz)), now);
+    }
+
+    pub(super) fn clocks_changed(&mut self, old: Clocks, now: u64) {
         let clocks = self.rcc.clocks();
+        self.time.set_clock(clocks.hclk_hz, now);
+        self.clock_wwdg(now);
         let ratio = |hz: u32| u64::from(clocks.hclk_hz / hz.max(1)).max(1);
         for (i, timer) in self.tims.iter_mut().enumerate() {
             timer.set_divider(
@@ -250,7 +277,7 @@ impl<W: Wiring> Chip<W> {
 
     /// Peripherals whose reset bit is set go back to their reset values.
     fn apply_resets(&mut self, now: u64) {
-        const RESETS: [(Enr, u8, Device); 21] = [
+        const RESETS: [(Enr, u8, Device); 22] = [
             (Enr::Apb2, 0, Device::Tim(TIM1)),
             (Enr::Apb2, 1, Device::Tim(TIM8)),
             (Enr::Apb2, 17, Device::Tim(TIM10)),
@@ -262,6 +289,7 @@ impl<W: Wiring> Chip<W> {
             (Enr::Apb1, 4, Device::Tim(5)),
             (Enr::Apb1, 5, Device::Tim(6)),
             (Enr::Apb2, 8, Device::Adc),
+            (Enr::Apb1, 11, Device::Wwdg),
             (Enr::Apb1, 17, Device::Usart2),
             (Enr::Apb2, 14, Device::Syscfg),
             (Enr::Ahb1, 21, Device::Dma(0)),
@@ -275,19 +303,20 @@ impl<W: Wiring> Chip<W> {
         ];
         for (enr, bit, device) in RESETS {
             if self.rcc.in_reset(enr, bit) {
-                self.reset_device(device);
+                self.reset_device(device, now);
                 self.after_change(now);
             }
         }
     }
 
-    fn reset_device(&mut self, device: Device) {
+    fn reset_device(&mut self, device: Device, now: u64) {
         match device {
             Device::Gpio(port) => self.ports[port] = Port::new(port),
             Device::Dma(i) => self.dma[i] = Dma::new(i + 1),
             Device::Tim(i) => self.tims[i].reset(),
             Device::Adc => self.adc.reset(),
             Device::Usart2 => self.usart.reset(),
+            Device::Wwdg => self.wwdg.reset(now),
             Device::Syscfg => self.exti.reset_syscfg(),
             Device::Rcc | Device::Flash | Device::Pwr | Device::Iwdg | Device::Exti => {}
         }
