@@ -40,11 +40,11 @@ impl<const FINGERS: usize> Hand<FINGERS> {
         self.stations.iter_mut().for_each(|station| station.latch(cause));
     }
 
-    /// Why a finger is tripped.
+    /// Why the first of the fingers that are tripped is.
     #[must_use]
-    pub fn tripped(&self, finger: usize) -> Option<&Cause> {
-        let station = &self.stations[finger % FINGERS];
-        station.cause().filter(|_| station.is_tripped())
+    pub fn tripped(&self) -> Option<&Cause> {
+        let tripped = self.stations.iter().find(|station| station.is_tripped())?;
+        tripped.cause()
     }
 
     /// The host is there.

@@ -21,8 +21,8 @@ pub mod sense;
 pub mod settings;
 mod station;
 
-pub use hand::Hand;
 pub use guard::State;
+pub use hand::Hand;
 pub use station::Station;
 
 /// Control ticks per second.

@@ -20,20 +20,28 @@ mod board;
 
 #[rtic::app(device = crate::board::pac, peripherals = true, dispatchers = [EXTI0])]
 mod app {
+    use core::sync::atomic::{AtomicBool, Ordering};
     use heapless::spsc::Producer;
+
     use thermal_display::Hand;
+    use thermal_display::guard::Fault;
     use thermal_display::protocol::{Addressed, Telemetry};
     use thermal_display::sense::Samples;
     use thermal_display::settings::Settings;
 
     use crate::board::{
-        Board, Console, FINGERS, Memory, PowerStage, Receiver, Sampler, Task, Transmitter, Vigil, Watchdog,
+        Board, Console, End, FINGERS, Memory, PowerStage, Receiver, Record, Sampler, Task, Transmitter,
+        Vigil, Watchdog, WindowWatchdog, stack_is_overrun,
     };
 
     #[shared]
     struct Shared {
         hand: Hand<FINGERS>,
         vigil: Vigil,
+        /// A line has come since the last tick.
+        heard: AtomicBool,
+        #[lock_free]
+        record: Record,
         #[lock_free]
         stages: [PowerStage; FINGERS],
         #[lock_free]
@@ -47,17 +55,23 @@ mod app {
         transmitter: Transmitter,
         console: Console,
         watchdog: Watchdog,
+        window_watchdog: WindowWatchdog,
     }
 
     #[init(local = [memory: Memory = Memory::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let settings = Settings::default();
         // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
-        let hand = Hand::new(&settings);
+        let mut hand = Hand::new(&settings);
         let board = Board::new(cx.device, cx.local.memory, settings);
+        if let Some(cause) = board.cause {
+            hand.latch(cause);
+        }
         let shared = Shared {
             hand,
             vigil: Vigil::new(),
+            heard: AtomicBool::new(false),
+            record: Record::new(board.cause.is_some()),
             stages: board.stages,
             sampler: board.sampler,
         };
@@ -67,6 +81,7 @@ mod app {
             transmitter: board.transmitter,
             console: board.console,
             watchdog: board.watchdog,
+            window_watchdog: board.window_watchdog,
         };
         (shared, local)
     }
@@ -87,8 +102,8 @@ mod app {
     #[task(
         binds = DMA2_STREAM0,
         priority = 3,
-        shared = [hand, stages, sampler, &vigil],
-        local = [telemetry, until_host: u8 = 0],
+        shared = [hand, record, stages, sampler, &vigil, &heard],
+        local = [telemetry, window_watchdog, until_host: u8 = 0],
     )]
     fn tick(mut cx: tick::Context) {
         let (hand, stages) = (&mut cx.shared.hand, cx.shared.stages);
@@ -97,16 +112,32 @@ mod app {
             Err(error) => {
                 stages.iter_mut().for_each(PowerStage::off);
                 cx.shared.sampler.stop();
+                hand.lock(|hand| {
+                    hand.trip(Fault::Sampling);
+                    cx.shared.record.follow(hand.tripped());
+                });
                 return defmt::error!("sampling stopped: {}", error);
             }
         };
+        cx.local.window_watchdog.feed();
         // There is one for each finger.
         let Some(stage) = stages.get_mut(finger) else {
             return;
         };
         let samples = Samples::from_scans(scans, stage.fault());
-        let drive = hand.lock(|hand| hand.step(finger, &samples));
-        stage.apply(drive);
+        let heard = cx.shared.heard.swap(false, Ordering::Relaxed);
+        let outputs = hand.lock(|hand| {
+            if heard {
+                hand.hear();
+            }
+            if stack_is_overrun() {
+                hand.trip(Fault::Stack);
+            }
+            let outputs = hand.step(finger, &samples);
+            cx.shared.record.follow(hand.tripped());
+            outputs
+        });
+        stage.apply(&outputs);
         if let Some(telemetry) = hand.lock(|hand| hand.telemetry(finger)) {
             // A full queue means that the host link cannot keep up: this line is left out.
             let _ = cx.local.telemetry.enqueue(telemetry);
@@ -121,16 +152,24 @@ mod app {
         };
     }
 
-    #[task(binds = ADC, priority = 3, shared = [stages, sampler])]
-    fn overrun(cx: overrun::Context) {
+    #[task(binds = ADC, priority = 3, shared = [hand, record, stages, sampler])]
+    fn overrun(mut cx: overrun::Context) {
         cx.shared.stages.iter_mut().for_each(PowerStage::off);
         cx.shared.sampler.stop();
+        cx.shared.hand.lock(|hand| {
+            hand.trip(Fault::Sampling);
+            cx.shared.record.follow(hand.tripped());
+        });
         defmt::error!("sampling stopped: converter overrun");
     }
 
-    #[task(binds = USART2, priority = 4, local = [receiver])]
+    #[task(binds = USART2, priority = 4, shared = [&heard], local = [receiver])]
     fn receive(cx: receive::Context) {
-        if cx.local.receiver.take() {
+        let Some(end) = cx.local.receiver.take() else {
+            return;
+        };
+        cx.shared.heard.store(true, Ordering::Relaxed);
+        if end == End::Line {
             let _ = host::spawn();
         }
     }

@@ -203,14 +203,19 @@ impl Station {
     ) -> Result<(Outputs, Current), Fault> {
         if self.state == State::SelfTest {
             let legs = Legs::between(sound.display, sound.sink);
-            return Ok(match self.self_test.step(sound, readings.current, readings.bridge_fault)? {
-                Progress::Off { comparator_test } => self.rest(comparator_test),
-                Progress::Drive(current) => self.drive(current, &legs),
-                Progress::Passed => {
-                    self.state = State::Armed;
-                    self.rest(false)
-                }
-            });
+            return Ok(
+                match self
+                    .self_test
+                    .step(sound, readings.current, readings.bridge_fault)?
+                {
+                    Progress::Off { comparator_test } => self.rest(comparator_test),
+                    Progress::Drive(current) => self.drive(current, &legs),
+                    Progress::Passed => {
+                        self.state = State::Armed;
+                        self.rest(false)
+                    }
+                },
+            );
         }
         let Some(followed) = followed else {
             return Ok(self.rest(false));
@@ -242,7 +247,10 @@ impl Station {
     fn rest(&mut self, comparator_test: bool) -> (Outputs, Current) {
         self.end_experiment();
         self.control.reset();
-        let outputs = Outputs { comparator_test, ..OFF };
+        let outputs = Outputs {
+            comparator_test,
+            ..OFF
+        };
         (outputs, Current::ZERO)
     }
 

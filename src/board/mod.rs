@@ -15,6 +15,7 @@ mod nucleo_f446re;
 pub use console::Console;
 #[cfg(feature = "nucleo-f446re")]
 pub use nucleo_f446re::{
-    Board, FINGERS, Memory, Outbox, PowerStage, Receiver, Sampler, Transmitter, Watchdog, pac,
+    Board, End, FINGERS, Memory, Outbox, PowerStage, Receiver, Record, Sampler, Transmitter, Watchdog,
+    WindowWatchdog, pac, stack_is_overrun,
 };
 pub use vigil::{Task, Vigil};

@@ -178,7 +178,12 @@ mod tests {
             mean: SHEET + Celsius::lit("10"),
             ..legs(0.0)
         };
-        let part = |legs| voltage.duty(SafeCurrent::saturating(Current::lit("4")), legs).fraction().to_num::<f64>();
+        let part = |legs| {
+            voltage
+                .duty(SafeCurrent::saturating(Current::lit("4")), legs)
+                .fraction()
+                .to_num::<f64>()
+        };
         let more_v = 12.0 * (part(&warm) - part(&legs(0.0)));
         assert!((more_v - 4.0 * 1.061 * 0.049).abs() < 2e-3, "{more_v}");
     }

@@ -75,7 +75,9 @@ impl Cause {
 
     /// From what was kept; none if there is no such fault.
     #[must_use]
-    pub fn from_words([fault, tick, display, check, sink, measured, asked]: [u32; Self::WORDS]) -> Option<Self> {
+    pub fn from_words(
+        [fault, tick, display, check, sink, measured, asked]: [u32; Self::WORDS],
+    ) -> Option<Self> {
         let celsius = |word: u32| {
             let t = Celsius::from_bits(word.cast_signed());
             (t != Celsius::MIN).then_some(t)

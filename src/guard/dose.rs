@@ -38,7 +38,8 @@ impl Dose {
             self.sum = if warmest < COUNTS_FROM {
                 self.sum.saturating_sub(u32::from(TICKS) << 8 >> FORGOTTEN_SHIFT)
             } else {
-                self.sum.saturating_add(rate(warmest).saturating_mul(TICKS.into()))
+                self.sum
+                    .saturating_add(rate(warmest).saturating_mul(TICKS.into()))
             };
         }
         if self.sum >> 8 >= MOST_TICKS {

@@ -39,7 +39,11 @@ impl Response {
             .mean
             .saturating_add(asked.saturating_sub(self.mean) >> MEAN_SHIFT);
         // Mirrored, so that lower is better.
-        let (display, above) = if self.mean < 0 { (display.saturating_neg(), above.saturating_neg()) } else { (display, above) };
+        let (display, above) = if self.mean < 0 {
+            (display.saturating_neg(), above.saturating_neg())
+        } else {
+            (display, above)
+        };
         if self.mean.saturating_abs() < DIRECTED || above <= 0 {
             self.best = None;
             return Ok(());

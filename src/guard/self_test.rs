@@ -99,7 +99,11 @@ impl SelfTest {
             });
         }
         if tick < RESTED {
-            add(if tick < GIVEN_BACK + HALF { &mut self.first } else { &mut self.second });
+            add(if tick < GIVEN_BACK + HALF {
+                &mut self.first
+            } else {
+                &mut self.second
+            });
             return Ok(Progress::Off {
                 comparator_test: false,
             });

@@ -71,15 +71,19 @@ impl Watch {
         before: &Before,
         streams: bool,
     ) -> Result<(), Fault> {
-        let above = before
-            .setpoint
-            .map_or(Celsius::ZERO, |setpoint| sound.display.saturating_sub(setpoint.celsius()));
+        let above = before.setpoint.map_or(Celsius::ZERO, |setpoint| {
+            sound.display.saturating_sub(setpoint.celsius())
+        });
         let apart = sound.display.saturating_sub(sound.check).saturating_abs() > APART;
         let room = sound.room.saturating_sub(sound.skin) > ROOM_ABOVE;
         let apart = named(self.apart.has(apart, APART_TICKS), Fault::DisplaysApart);
         let room = named(self.room.has(room, ROOM_TICKS), Fault::RoomAboveSkin);
         let listens = streams && before.setpoint.is_some();
-        self.silent_ticks = if listens { self.silent_ticks.saturating_add(1) } else { 0 };
+        self.silent_ticks = if listens {
+            self.silent_ticks.saturating_add(1)
+        } else {
+            0
+        };
         self.jump
             .check(sound)
             .and(apart)

@@ -194,7 +194,7 @@ impl<W: Wiring + 'static> Machine<W> {
     /// Deepest use of the main stack since power-up, bytes, by what has changed in RAM since then. `None` when the image has no
     /// symbol that tells where its static data end (`__sheap`, `__euninit` or `__ebss`).
     pub fn stack_high_water(&self) -> Option<u32> {
-        let bottom = ["__sheap", "__euninit", "__ebss"]
+        let bottom = ["_stack_end", "__sheap", "__euninit", "__ebss"]
             .iter()
             .find_map(|name| self.firmware.symbol(name))?;
         let top = self.firmware.initial_sp();

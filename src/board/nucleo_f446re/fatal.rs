@@ -8,12 +8,15 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m_rt::{ExceptionFrame, exception};
 
-use super::wiring;
+use thermal_display::guard::{Cause, Fault};
 
-/// Every bridge high-impedance, for good.
-fn cut_bridges() {
+use super::{record, wiring};
+
+/// Every bridge high-impedance, for good; why is kept.
+fn end(fault: Fault) {
     cortex_m::interrupt::disable();
     wiring::cut();
+    record::keep(&Cause::alone(fault));
 }
 
 /// Whether this is the first time that the end is reported: logging may be what failed.
@@ -22,7 +25,7 @@ fn first_report() -> bool {
     !REPORTED.swap(true, Ordering::Relaxed)
 }
 
-/// At most 188 ms; awake, so that the probe can read the log.
+/// 47 ms, or at most 188 when its clock is what failed; awake, so that the probe can read the log.
 fn wait_for_watchdog() -> ! {
     loop {
         cortex_m::asm::nop();
@@ -31,7 +34,7 @@ fn wait_for_watchdog() -> ! {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    cut_bridges();
+    end(Fault::Panic);
     if first_report() {
         defmt::error!("{}", defmt::Display2Format(info));
     }
@@ -41,7 +44,7 @@ fn panic(info: &PanicInfo<'_>) -> ! {
 // SAFETY: `unsafe` because memory may be corrupt. It reads the frame that the processor has just stacked.
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    cut_bridges();
+    end(Fault::HardFault);
     if first_report() {
         defmt::error!("hard fault at pc {=u32:#x}, lr {=u32:#x}", frame.pc(), frame.lr());
     }
@@ -51,7 +54,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 // SAFETY: `unsafe` because it interrupts critical sections. It touches nothing that one protects.
 #[exception]
 unsafe fn NonMaskableInt() -> ! {
-    cut_bridges();
+    end(Fault::Clock);
     if first_report() {
         defmt::error!("the 8 MHz clock has failed");
     }
@@ -61,7 +64,7 @@ unsafe fn NonMaskableInt() -> ! {
 // SAFETY: `unsafe` because it may interrupt anything. It touches nothing that others use.
 #[exception]
 unsafe fn DefaultHandler(irqn: i16) -> ! {
-    cut_bridges();
+    end(Fault::HardFault);
     if first_report() {
         defmt::error!("interrupt {=i16} has no task", irqn);
     }

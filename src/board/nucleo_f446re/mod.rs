@@ -25,14 +25,18 @@ mod five;
 mod log;
 #[cfg(not(feature = "five-fingers"))]
 mod one;
+mod record;
 mod sampler;
 mod serial;
+mod stack;
 mod watchdog;
+mod window;
 
 use heapless::spsc::{Producer, Queue};
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
+use thermal_display::guard::{Cause, Fault};
 use thermal_display::protocol::{Addressed, Telemetry};
 use thermal_display::settings::Settings;
 
@@ -40,10 +44,13 @@ use thermal_display::settings::Settings;
 use five as wiring;
 #[cfg(not(feature = "five-fingers"))]
 use one as wiring;
+pub use record::Record;
 pub use sampler::Sampler;
-pub use serial::{Outbox, Receiver, Transmitter};
+pub use serial::{End, Outbox, Receiver, Transmitter};
+pub use stack::is_overrun as stack_is_overrun;
 pub use stm32f4xx_hal::pac;
 pub use watchdog::Watchdog;
+pub use window::WindowWatchdog;
 pub use wiring::{FINGERS, PowerStage};
 
 use super::console::Console;
@@ -90,6 +97,10 @@ pub struct Board {
     pub telemetry: Producer<'static, Addressed<Telemetry>>,
     /// The independent watchdog, already running.
     pub watchdog: Watchdog,
+    /// The window watchdog, already running.
+    pub window_watchdog: WindowWatchdog,
+    /// Why the device has tripped before it started.
+    pub cause: Option<Cause>,
 }
 
 impl Board {
@@ -98,6 +109,13 @@ impl Board {
         // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
         // again, and the log tells.
         let watchdog = Watchdog::start(device.IWDG);
+        let overrun = stack::is_overrun();
+        let mut cause = record::of_reset(&device.RCC);
+        if overrun && cause.is_some_and(|cause| cause.tick == 0) {
+            // A reset is what comes of it.
+            cause = Some(Cause::alone(Fault::Stack));
+        }
+        stack::arm();
         log::reset_cause(&device.RCC);
         let mut rcc = device.RCC.freeze(clocks());
         watch_clock(&mut rcc);
@@ -114,6 +132,7 @@ impl Board {
                 gpioa.pa9,
                 gpiob.pb10.into_push_pull_output(),
                 gpioa.pa6,
+                gpioc.pc3.into_push_pull_output(),
                 gpioa.pa5.into_push_pull_output(),
                 &mut rcc,
             );
@@ -123,11 +142,11 @@ impl Board {
         let (stages, multiplexer) = {
             let wires = wiring::Wires {
                 timers: (device.TIM1, device.TIM8, device.TIM10, device.TIM11),
-                first: (gpioa.pa8, gpioa.pa9, gpiob.pb10, gpioa.pa6),
-                second: (gpioa.pa10, gpioa.pa11, gpiob.pb13, gpioa.pa7),
-                third: (gpioc.pc6, gpioc.pc7, gpiob.pb14, gpioa.pa12),
-                fourth: (gpioc.pc8, gpioc.pc9, gpiob.pb15, gpiob.pb5),
-                fifth: (gpiob.pb8, gpiob.pb9, gpiob.pb1, gpiob.pb12),
+                first: (gpioa.pa8, gpioa.pa9, gpiob.pb10, gpioa.pa6, gpioc.pc3),
+                second: (gpioa.pa10, gpioa.pa11, gpiob.pb13, gpioa.pa7, gpioc.pc4),
+                third: (gpioc.pc6, gpioc.pc7, gpiob.pb14, gpioa.pa12, gpioc.pc5),
+                fourth: (gpioc.pc8, gpioc.pc9, gpiob.pb15, gpiob.pb5, gpiob.pb6),
+                fifth: (gpiob.pb8, gpiob.pb9, gpiob.pb1, gpiob.pb12, gpiob.pb7),
             };
             let multiplexer = wiring::Multiplexer::new(gpioc.pc10, gpioc.pc11, gpioc.pc12);
             (wires.into_stages(&mut rcc), multiplexer)
@@ -175,6 +194,8 @@ impl Board {
             console,
             telemetry,
             watchdog,
+            window_watchdog: WindowWatchdog::start(device.WWDG, &mut rcc),
+            cause,
         }
     }
 }

@@ -127,6 +127,15 @@ impl Transmitter {
     }
 }
 
+/// What a byte has ended.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// A line that waits for its answer.
+    Line,
+    /// A blank line: the host is there.
+    Blank,
+}
+
 /// Lines of the host.
 pub struct Receiver {
     rx: Rx<USART2>,
@@ -135,17 +144,22 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Takes the byte that has come; true if it ended a line.
-    pub fn take(&mut self) -> bool {
-        let line = match self.rx.read() {
-            Ok(byte) => self.reader.push(byte),
+    /// Takes the byte that has come; what it ended, if anything.
+    pub fn take(&mut self) -> Option<End> {
+        match self.rx.read() {
+            Ok(byte) => match self.reader.push(byte) {
+                Some(line) => {
+                    self.inlet.put(line);
+                    Some(End::Line)
+                }
+                None => LineReader::is_end(byte).then_some(End::Blank),
+            },
             Err(nb::Error::WouldBlock) => None,
             Err(nb::Error::Other(_)) => {
                 self.reader.fail(LineError::Reception);
                 None
             }
-        };
-        line.map(|line| self.inlet.put(line)).is_some()
+        }
     }
 }
 

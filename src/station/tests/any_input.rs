@@ -8,7 +8,6 @@ use crate::drive::{Drive, Duty};
 use crate::guard::{Setpoint, State};
 use crate::sense::Samples;
 
-
 /// A sum of counts: mostly a plausible one, sometimes any.
 fn sum(plausible: core::ops::Range<u16>) -> impl Strategy<Value = u16> {
     prop_oneof![30 => plausible, 1 => any::<u16>(), 1 => Just(0), 1 => Just(u16::MAX)]

@@ -11,9 +11,9 @@ use contact_model::{pressure, reference};
 use std::string::{String, ToString};
 
 use super::{State, Station};
-use crate::drive::Outputs;
 use crate::commission::Desk;
 use crate::drive::Drive;
+use crate::drive::Outputs;
 use crate::protocol::{Addressed, Telemetry};
 use crate::sense::Samples;
 use crate::settings::Settings;

@@ -3,20 +3,20 @@
 //! Each of the seven inputs of the one-finger wiring has an 8:1 analog multiplexer (74HC4051 and its kin) and a
 //! voltage follower in front of it. Three lines choose the finger for all seven.
 //!
-//! | finger | bridge IN1, IN2               | bridge enable | nFAULT |
-//! |--------|-------------------------------|---------------|--------|
-//! | 0      | PA8, PA9, TIM1 channel 1, 2   | PB10          | PA6    |
-//! | 1      | PA10, PA11, TIM1 channel 3, 4 | PB13          | PA7    |
-//! | 2      | PC6, PC7, TIM8 channel 1, 2   | PB14          | PA12   |
-//! | 3      | PC8, PC9, TIM8 channel 3, 4   | PB15          | PB5    |
-//! | 4      | PB8, PB9, TIM10, TIM11        | PB1           | PB12   |
+//! | finger | bridge IN1, IN2               | bridge enable | nFAULT | comparator test |
+//! |--------|-------------------------------|---------------|--------|-----------------|
+//! | 0      | PA8, PA9, TIM1 channel 1, 2   | PB10          | PA6    | PC3             |
+//! | 1      | PA10, PA11, TIM1 channel 3, 4 | PB13          | PA7    | PC4             |
+//! | 2      | PC6, PC7, TIM8 channel 1, 2   | PB14          | PA12   | PC5             |
+//! | 3      | PC8, PC9, TIM8 channel 3, 4   | PB15          | PB5    | PB6             |
+//! | 4      | PB8, PB9, TIM10, TIM11        | PB1           | PB12   | PB7             |
 //!
 //! | pin              | signal                                                                    |
 //! |------------------|---------------------------------------------------------------------------|
 //! | PC10, PC11, PC12 | finger that the multiplexers show, bits 0 to 2; external pull-downs       |
 //! | PA5              | not used; the LED of a finger hangs on its bridge's enable line           |
 //!
-//! IN1, IN2 and enable have external pull-downs, so all bridges are high-impedance from reset on; nFAULT has a
+//! IN1, IN2, enable and test have external pull-downs, so all bridges are high-impedance from reset on; nFAULT has a
 //! pull-up of 4.7k, and the comparator of the finger's second display thermistor pulls it low too. All four timers
 //! run at 180 MHz, so all bridges have the same period; only one leg of a bridge switches at a time, so that TIM10
 //! and TIM11 need not run in step.

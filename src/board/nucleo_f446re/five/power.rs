@@ -4,14 +4,14 @@ use core::convert::Infallible;
 
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use stm32f4xx_hal::gpio::{
-    ErasedPin, Input, Output, PA6, PA7, PA8, PA9, PA10, PA11, PA12, PB1, PB5, PB8, PB9, PB10, PB12, PB13,
-    PB14, PB15, PC6, PC7, PC8, PC9,
+    ErasedPin, Input, Output, PA6, PA7, PA8, PA9, PA10, PA11, PA12, PB1, PB5, PB6, PB7, PB8, PB9, PB10, PB12,
+    PB13, PB14, PB15, PC3, PC4, PC5, PC6, PC7, PC8, PC9,
 };
 use stm32f4xx_hal::pac::{TIM1, TIM8, TIM10, TIM11};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::timer::ErasedChannel;
-use thermal_display::drive::Drive;
+use thermal_display::drive::{Drive, Outputs};
 
 use super::FINGERS;
 use crate::board::bridge::Bridge;
@@ -26,17 +26,18 @@ const PWM_KHZ: u32 = 96;
 pub struct PowerStage {
     bridge: Bridge<Leg, Leg, ErasedPin<Output>>,
     fault: ErasedPin<Input>,
+    test: ErasedPin<Output>,
     on: bool,
 }
 
 /// Everything that the bridges hang on, in the order of the fingers.
 pub struct Wires {
     pub timers: (TIM1, TIM8, TIM10, TIM11),
-    pub first: (PA8<Input>, PA9<Input>, PB10<Input>, PA6<Input>),
-    pub second: (PA10<Input>, PA11<Input>, PB13<Input>, PA7<Input>),
-    pub third: (PC6<Input>, PC7<Input>, PB14<Input>, PA12<Input>),
-    pub fourth: (PC8<Input>, PC9<Input>, PB15<Input>, PB5<Input>),
-    pub fifth: (PB8<Input>, PB9<Input>, PB1<Input>, PB12<Input>),
+    pub first: (PA8<Input>, PA9<Input>, PB10<Input>, PA6<Input>, PC3<Input>),
+    pub second: (PA10<Input>, PA11<Input>, PB13<Input>, PA7<Input>, PC4<Input>),
+    pub third: (PC6<Input>, PC7<Input>, PB14<Input>, PA12<Input>, PC5<Input>),
+    pub fourth: (PC8<Input>, PC9<Input>, PB15<Input>, PB5<Input>, PB6<Input>),
+    pub fifth: (PB8<Input>, PB9<Input>, PB1<Input>, PB12<Input>, PB7<Input>),
 }
 
 impl Wires {
@@ -55,30 +56,35 @@ impl Wires {
                 Leg::Tim1(b0.with(first.1).erase()),
                 first.2.into_push_pull_output().erase(),
                 first.3.into_pull_down_input().erase(),
+                first.4.into_push_pull_output().erase(),
             ),
             PowerStage::new(
                 Leg::Tim1(a1.with(second.0).erase()),
                 Leg::Tim1(b1.with(second.1).erase()),
                 second.2.into_push_pull_output().erase(),
                 second.3.into_pull_down_input().erase(),
+                second.4.into_push_pull_output().erase(),
             ),
             PowerStage::new(
                 Leg::Tim8(a2.with(third.0).erase()),
                 Leg::Tim8(b2.with(third.1).erase()),
                 third.2.into_push_pull_output().erase(),
                 third.3.into_pull_down_input().erase(),
+                third.4.into_push_pull_output().erase(),
             ),
             PowerStage::new(
                 Leg::Tim8(a3.with(fourth.0).erase()),
                 Leg::Tim8(b3.with(fourth.1).erase()),
                 fourth.2.into_push_pull_output().erase(),
                 fourth.3.into_pull_down_input().erase(),
+                fourth.4.into_push_pull_output().erase(),
             ),
             PowerStage::new(
                 Leg::Tim10(a4.with(fifth.0).erase()),
                 Leg::Tim11(b4.with(fifth.1).erase()),
                 fifth.2.into_push_pull_output().erase(),
                 fifth.3.into_pull_down_input().erase(),
+                fifth.4.into_push_pull_output().erase(),
             ),
         ];
         release_outputs();
@@ -106,12 +112,19 @@ fn release_outputs() {
 }
 
 impl PowerStage {
-    fn new(mut in1: Leg, mut in2: Leg, enable: ErasedPin<Output>, fault: ErasedPin<Input>) -> Self {
+    fn new(
+        mut in1: Leg,
+        mut in2: Leg,
+        enable: ErasedPin<Output>,
+        fault: ErasedPin<Input>,
+        test: ErasedPin<Output>,
+    ) -> Self {
         in1.enable();
         in2.enable();
         Self {
             bridge: Bridge::new(in1, in2, enable),
             fault,
+            test,
             on: false,
         }
     }
@@ -122,9 +135,10 @@ impl PowerStage {
         self.fault.is_low()
     }
 
-    /// Tells the bridge what to do from now on.
-    pub fn apply(&mut self, drive: Drive) {
-        match drive {
+    /// Tells bridge and comparator what to do from now on.
+    pub fn apply(&mut self, outputs: &Outputs) {
+        self.test.set_state(outputs.comparator_test.into());
+        match outputs.drive {
             Drive::Off => self.off(),
             Drive::On(duty) => {
                 self.bridge.drive(duty);

@@ -6,6 +6,7 @@
 //! | PA9  | D8     | bridge IN2    | TIM1 channel 2; external pull-down                      |
 //! | PB10 | D6     | bridge enable | high enables; external pull-down                        |
 //! | PA6  | D12    | bridge nFAULT | TIM1 break input, low is a fault; external 4.7k pull-up |
+//! | PC3  | CN7-37 | comparator test | high: the comparator cuts; external pull-down        |
 //! | PA5  | D13    | LED LD2       | lit while the bridge may drive                          |
 //!
 //! The comparator that watches the second display thermistor pulls nFAULT low too. Its cut of the bridge

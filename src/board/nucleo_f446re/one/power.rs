@@ -1,11 +1,11 @@
 //! The power stage: TIM1 in front of the bridge, the fault line and the lamp.
 
-use stm32f4xx_hal::gpio::{Alternate, Input, Output, PA5, PA6, PA8, PA9, PB10, Pin};
+use stm32f4xx_hal::gpio::{Alternate, Input, Output, PA5, PA6, PA8, PA9, PB10, PC3, Pin};
 use stm32f4xx_hal::pac::TIM1;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::timer::{C1, C2, PwmChannel};
-use thermal_display::drive::Drive;
+use thermal_display::drive::{Drive, Outputs};
 
 use crate::board::bridge::Bridge;
 
@@ -24,6 +24,7 @@ pub struct PowerStage {
     bridge: Bridge<PwmChannel<TIM1, C1>, PwmChannel<TIM1, C2>, PB10<Output>>,
     timer: TIM1,
     fault: Fault,
+    test: PC3<Output>,
     lamp: PA5<Output>,
     on: bool,
 }
@@ -36,6 +37,7 @@ impl PowerStage {
         in2: PA9<Input>,
         enable: PB10<Output>,
         fault: PA6<Input>,
+        test: PC3<Output>,
         lamp: PA5<Output>,
         rcc: &mut Rcc,
     ) -> Self {
@@ -67,6 +69,7 @@ impl PowerStage {
             bridge: Bridge::new(in1, in2, enable),
             timer,
             fault,
+            test,
             lamp,
             on: false,
         }
@@ -82,12 +85,13 @@ impl PowerStage {
         pulsed || self.fault.is_low()
     }
 
-    /// Tells the bridge what to do from now on.
+    /// Tells bridge and comparator what to do from now on.
     ///
     /// The outputs are enabled on the way from off to on only. After a break they therefore stay off until
     /// the station has seen the fault and has itself gone through off.
-    pub fn apply(&mut self, drive: Drive) {
-        match drive {
+    pub fn apply(&mut self, outputs: &Outputs) {
+        self.test.set_state(outputs.comparator_test.into());
+        match outputs.drive {
             Drive::Off => self.off(),
             Drive::On(duty) => {
                 self.bridge.drive(duty);

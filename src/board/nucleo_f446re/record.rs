@@ -1,0 +1,94 @@
+//! The first cause, where resets do not reach it.
+
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use stm32f4xx_hal::pac::RCC;
+use thermal_display::guard::{Cause, Fault};
+
+/// What makes noise unlikely to be taken for a record.
+const SALT: u32 = 0x5afe_d15b;
+const LENGTH: usize = Cause::WORDS + 1;
+
+/// Words of the cause and their check. Neither the loader nor the start-up code writes to `.uninit`; only a loss of
+/// power does.
+#[unsafe(link_section = ".uninit.cause")]
+static KEPT: [AtomicU32; LENGTH] = [const { AtomicU32::new(0) }; LENGTH];
+
+fn check(words: &[u32]) -> u32 {
+    words.iter().fold(SALT, |sum, word| {
+        sum.rotate_left(5).wrapping_add(*word).wrapping_mul(0x9e37_79b1)
+    })
+}
+
+/// What is kept, if anything.
+pub fn kept() -> Option<Cause> {
+    let words: [u32; LENGTH] = core::array::from_fn(|i| KEPT[i].load(Ordering::Relaxed));
+    let [cause @ .., sum] = words;
+    if check(&cause) == sum {
+        Cause::from_words(cause)
+    } else {
+        None
+    }
+}
+
+/// Keeps a cause, unless there is one: the first one counts.
+pub fn keep(cause: &Cause) {
+    if kept().is_some() {
+        return;
+    }
+    let words = cause.to_words();
+    for (place, word) in KEPT.iter().zip(words.into_iter().chain([check(&words)])) {
+        place.store(word, Ordering::Relaxed);
+    }
+}
+
+/// Keeps nothing.
+pub fn forget() {
+    let [.., sum] = &KEPT;
+    sum.fetch_xor(SALT, Ordering::Relaxed);
+    // By chance that may be the check of something else.
+    if kept().is_some() {
+        sum.fetch_add(1, Ordering::Relaxed);
+    }
+}
+
+/// Why the processor started: what was kept, or what the flags of a reset tell that nobody asked for.
+pub fn of_reset(rcc: &RCC) -> Option<Cause> {
+    let flags = rcc.csr().read();
+    if flags.porrstf().bit_is_set() {
+        // RAM is noise.
+        forget();
+        return None;
+    }
+    let fault = if flags.wwdgrstf().bit_is_set() {
+        Fault::TickLost
+    } else if flags.wdgrstf().bit_is_set() {
+        Fault::Watchdog
+    } else {
+        return kept();
+    };
+    keep(&Cause::alone(fault));
+    kept()
+}
+
+/// Keeps what trips while the program runs, and forgets it when the host has cleared it.
+pub struct Record {
+    kept: bool,
+}
+
+impl Record {
+    /// After a start with or without a cause.
+    pub const fn new(kept: bool) -> Self {
+        Self { kept }
+    }
+
+    /// Follows the stations of one tick.
+    pub fn follow(&mut self, tripped: Option<&Cause>) {
+        match tripped {
+            Some(cause) if !self.kept => keep(cause),
+            None if self.kept => forget(),
+            _ => return,
+        }
+        self.kept = tripped.is_some();
+    }
+}
