@@ -7,15 +7,15 @@ const GUARD: usize = 4;
 const UNTOUCHED: u32 = 0x57ac_0bad;
 
 unsafe extern "C" {
-    /// Lowest address of the stack, by the linker.
-    static _stack_end: [AtomicU32; GUARD];
+    /// Below the stack, by `memory.x`.
+    static _stack_guard: [AtomicU32; GUARD];
 }
 
 /// The guard's words.
 fn guard() -> &'static [AtomicU32; GUARD] {
-    // SAFETY: the linker puts the end of the stack at the beginning of the RAM, where nothing is but the stack; atomics
-    // may be written by whoever overruns it.
-    unsafe { &_stack_end }
+    // SAFETY: `memory.x` keeps these words, the first of the RAM, for nothing else; atomics may be written by whoever
+    // overruns the stack.
+    unsafe { &_stack_guard }
 }
 
 /// Whether the stack has grown into its guard since [`arm`].
