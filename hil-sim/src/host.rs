@@ -39,7 +39,8 @@ impl Host {
     #[must_use]
     pub fn new(scene: &Scene, settings: &[String], stream_ms: u32) -> Self {
         let zero_ms = scene.settle_ms();
-        let at = |t_s: f64| zero_ms + (t_s * 1e3).round() as u64;
+        // What never comes is at the end of numbers.
+        let at = |t_s: f64| zero_ms.saturating_add((t_s * 1e3).round() as u64);
         let material = match scene.object.name.as_str() {
             "custom" => custom_line(&scene.object.material),
             name => format!("material {name}"),
@@ -72,7 +73,6 @@ impl Host {
             .map(|(ms, line)| (ms, [line.as_bytes(), b"\n"].concat()));
         let times = |kind| -> Vec<Range<u64>> {
             let faults = scene.faults.iter().filter(|fault| fault.broken.kind == kind);
-            // An endless fault ends with the numbers.
             faults.map(|fault| at(fault.t_s)..at(fault.until_s)).collect()
         };
         let garbage = times(FaultKind::HostGarbage).into_iter();

@@ -162,6 +162,76 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
             9,
             "infrared.camera_share = 2; allowed is 0 to 1",
         ),
+        (
+            "[[fault]]\nkind = \"thermistor-opened\"\nt_s = 0.5",
+            7,
+            "fault.kind = \"thermistor-opened\"; known are thermistor-open, thermistor-short,",
+        ),
+        (
+            "[[fault]]\nkind = \"supply-low\"\nt_s = 0.5\nvalue = 13",
+            9,
+            "fault.value = 13 V of supply-low; allowed is 4.5 to 12",
+        ),
+        (
+            "[[fault]]\nkind = \"force-offset\"\nt_s = 0.5\nvalue = nan",
+            9,
+            "fault.value = NaN N of force-offset; allowed is -10 to 10",
+        ),
+        (
+            "[[fault]]\nkind = \"supply-low\"\nt_s = 0.5",
+            6,
+            "fault.value is missing; supply-low needs one in V, 4.5 to 12",
+        ),
+        (
+            "[[fault]]\nkind = \"thermistor-open\"\nt_s = 0.5\nvalue = 1",
+            9,
+            "fault.value = 1 of thermistor-open, which takes none; allowed is none, or 0",
+        ),
+        (
+            "[[fault]]\nkind = \"thermistor-open\"\nt_s = 2",
+            8,
+            "fault.t_s = 2; allowed is 0 to 1",
+        ),
+        (
+            "[[fault]]\nkind = \"thermistor-open\"\nt_s = 0.5\nuntil_s = 0.5",
+            9,
+            "fault.until_s = 0.5; allowed is 0.501 to 1",
+        ),
+        (
+            "[[fault]]\nkind = \"host-garbage\"\nt_s = 0.5\nuntil_s = 0.6",
+            9,
+            "fault.until_s has no meaning for host-garbage; it has for thermistor-open, ",
+        ),
+        (
+            "[[fault]]\nkind = \"thermistor-open\"\nt_s = 0.5\nsensor = \"nose\"",
+            9,
+            "unknown variant `nose`, expected one of `display`, `check`, `sink`, `skin`, `room`",
+        ),
+        (
+            "[[fault]]\nkind = \"supply-low\"\nt_s = 0.5\nvalue = 6\nsensor = \"sink\"",
+            10,
+            "fault.sensor has no meaning for supply-low; it has for thermistor-open, thermistor-short, ",
+        ),
+        (
+            "[[fault]]\nkind = \"thermistor-open\"\nt_s = 0.5\nwith = \"sink\"",
+            9,
+            "fault.with has no meaning for thermistor-open; it has for sensors-swapped",
+        ),
+        (
+            "[[fault]]\nkind = \"sensors-swapped\"\nt_s = 0.5",
+            6,
+            "fault.with is missing; sensors-swapped needs one of display, check, sink, skin, room",
+        ),
+        (
+            "[[fault]]\nkind = \"sensors-swapped\"\nt_s = 0.5\nsensor = \"sink\"\nwith = \"sink\"",
+            10,
+            "fault.with names the same thermistor as fault.sensor",
+        ),
+        (
+            "[[fault]]\nkind = \"sink-hot\"\nt_s = 0.5\nvalue = 60\nuntill_s = 0.6",
+            10,
+            "unknown field `untill_s`, expected one of",
+        ),
     ] {
         let text = format!("{HEAD}{tables}\n");
         let Err(error) = Scene::parse(&text, Path::new("bad.toml")) else {

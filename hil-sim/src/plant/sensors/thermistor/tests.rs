@@ -117,3 +117,58 @@ fn thermistor_trails_by_its_lag() {
     let left_c = 44.0 - thermistor.reached_c;
     assert!((left_c - 10.0 * 0.1 * (-1.0f64).exp()).abs() < 1e-6, "{left_c}");
 }
+
+/// A twentieth of 8 mW/K is left, of which its leads take what they took before, 16 uW/K: 4 %.
+#[test]
+fn loose_thermistor_lags_sees_the_room_and_warms_itself() {
+    let here = Site {
+        surface_c: 34.0,
+        room_c: 24.0,
+    };
+    let mut loose = Thermistor::new(DISPLAY, &here, 0.0);
+    loose.set_defect(ThermistorDefect {
+        loose: 20.0,
+        ..ThermistorDefect::NONE
+    });
+    // From 33.98 to 33.6 deg C with 2 s.
+    for _ in 0..2000 {
+        loose.step(1e-3, &here);
+    }
+    let left = (loose.reached_c - 33.6) / 0.38;
+    assert!((left - (-1f64).exp()).abs() < 1e-3, "{left}");
+    let mut heated = Thermistor::new(DISPLAY, &here, 3.3);
+    heated.set_defect(loose.defect);
+    for _ in 0..100 {
+        heated.step(1.0, &here);
+    }
+    // 0.26 mW over 0.4 mW/K.
+    let above_k = heated.reached_c - 33.6;
+    assert!((above_k - 0.65).abs() < 0.02, "{above_k} K");
+}
+
+#[test]
+fn broken_wires_do_not_heat_and_mended_ones_read_as_before() {
+    let here = site(34.0);
+    let mut thermistor = Thermistor::new(DISPLAY, &here, 3.3);
+    let sound = thermistor.ratio();
+    for (circuit, ratio) in [(Circuit::Open, 1.0), (Circuit::Short, 0.0)] {
+        thermistor.set_defect(ThermistorDefect {
+            circuit,
+            ..ThermistorDefect::NONE
+        });
+        assert_eq!(thermistor.ratio(), ratio);
+        for _ in 0..20 {
+            thermistor.step(1.0, &here);
+        }
+        assert!(
+            (thermistor.reached_c - 34.0).abs() < 1e-9,
+            "{}",
+            thermistor.reached_c
+        );
+    }
+    thermistor.set_defect(ThermistorDefect::NONE);
+    for _ in 0..20 {
+        thermistor.step(1.0, &here);
+    }
+    assert!((thermistor.ratio() - sound).abs() < 1e-9);
+}
