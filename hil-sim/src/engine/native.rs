@@ -11,7 +11,8 @@ use thermal_display::protocol::{Addressed, Error, LineReader};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::Settings;
 
-use super::{BAUD, Cost, Engine};
+use super::{BAUD, Cost, DeviceReset, Engine, MachineFault, NotInjected};
+use crate::machine::ResetCause;
 use crate::plant::bridge::{Leg, Legs};
 use crate::plant::sensors::Channel;
 use crate::world::World;
@@ -46,6 +47,9 @@ pub struct Native {
     /// The bridge has pulled its fault pin since the last tick: the board's break flag keeps that.
     fault: bool,
     drive: Drive,
+    /// No tick runs: the drive stays as it is.
+    hung: bool,
+    resets: Vec<DeviceReset>,
     /// Half milliseconds since the first boundary.
     halves: u64,
 }
@@ -79,6 +83,8 @@ impl Native {
             settling_scans,
             fault: false,
             drive: Drive::Off,
+            hung: false,
+            resets: Vec::new(),
             halves: 0,
         };
         native.settle(more_at_first);
@@ -105,6 +111,29 @@ impl Native {
             *scan = Channel::ALL.map(|channel| self.world.convert(channel));
         }
         self.filled += count;
+    }
+
+    fn tick(&mut self) {
+        self.serve((self.halves - 1) * HALF_NS + TICK_NS);
+        let samples = Samples::from_scans(&self.scans, self.fault);
+        self.fault = self.world.bridge_fault();
+        self.drive = self.hand.step(0, &samples);
+        if let Some(telemetry) = self.hand.telemetry(0) {
+            self.answer(&telemetry);
+        }
+    }
+
+    /// The logic as after power-up, with the bridge off. It starts at once: what the board needs for that is not here.
+    fn restart(&mut self, cause: ResetCause) {
+        let settings = Settings::default();
+        self.desk = Desk::new(settings);
+        self.hand = Hand::new(&settings);
+        self.reader = LineReader::new();
+        (self.fault, self.drive, self.hung) = (false, Drive::Off, false);
+        self.resets.push(DeviceReset {
+            t_s: (self.halves * HALF_NS) as f64 * 1e-9,
+            cause,
+        });
     }
 
     fn answer(&mut self, line: &dyn Display) {
@@ -158,13 +187,8 @@ impl Engine for Native {
             self.scan(SCANS_IN_FIRST_HALF);
         } else {
             self.scan(SCANS_PER_TICK - self.filled);
-            let tick_ns = (self.halves - 1) * HALF_NS + TICK_NS;
-            self.serve(tick_ns);
-            let samples = Samples::from_scans(&self.scans, self.fault);
-            self.fault = self.world.bridge_fault();
-            self.drive = self.hand.step(0, &samples);
-            if let Some(telemetry) = self.hand.telemetry(0) {
-                self.answer(&telemetry);
+            if !self.hung {
+                self.tick();
             }
             self.begin();
         }
@@ -185,6 +209,28 @@ impl Engine for Native {
 
     fn receive(&mut self, into: &mut Vec<u8>) {
         into.append(&mut self.outgoing);
+    }
+
+    /// Without a processor a hung core means that no tick runs, and no watchdog ends it; a reset starts the logic anew.
+    /// All else has no meaning here.
+    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected> {
+        match fault {
+            MachineFault::HungCore => self.hung = true,
+            MachineFault::BrownOut => self.restart(ResetCause::BrownOut),
+            MachineFault::PowerCycle { .. } => self.restart(ResetCause::PowerOn),
+            MachineFault::ResetPin => self.restart(ResetCause::Pin),
+            _ => {
+                return Err(NotInjected::NotApplicable {
+                    fault: *fault,
+                    engine: Self::NAME,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn resets(&self) -> Vec<DeviceReset> {
+        self.resets.clone()
     }
 
     fn reset_cost(&mut self) {}
