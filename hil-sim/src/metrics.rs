@@ -56,6 +56,15 @@ pub struct Tripped {
     pub fault: String,
 }
 
+/// A reset of the device after its power-up.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Restarted {
+    /// When, s; negative while the scene settles.
+    pub t_s: f64,
+    /// Why: software, independent-watchdog, window-watchdog, brown-out, reset-pin or power-on.
+    pub cause: String,
+}
+
 /// The figures of a run, as `--json` prints them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
@@ -93,6 +102,8 @@ pub struct Figures {
     pub real_time_factor: f64,
     /// Faults that the device reported.
     pub faults: Vec<Tripped>,
+    /// Resets of the device after its power-up.
+    pub resets: Vec<Restarted>,
 }
 
 /// Time since the last landing on an object that is there, for each row; `None` without contact.
@@ -161,6 +172,7 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
         stack_bytes: outcome.cost.and_then(|cost| cost.stack_bytes),
         real_time_factor: outcome.real_time_factor,
         faults: faults(outcome),
+        resets: resets(outcome),
     }
 }
 
@@ -205,6 +217,16 @@ fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<Errors> {
         max_after_50ms: max_k.map(|error_k| error_k * 1e3),
         rms,
     })
+}
+
+fn resets(outcome: &Outcome) -> Vec<Restarted> {
+    let resets = outcome.resets.iter();
+    resets
+        .map(|reset| Restarted {
+            t_s: reset.t_s,
+            cause: reset.cause.to_string(),
+        })
+        .collect()
 }
 
 /// Every change into a tripped state.

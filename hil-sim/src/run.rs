@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use crate::commission::{self, CommissionError};
-use crate::engine::{Cost, Engine, Lines};
+use crate::engine::{Cost, DeviceReset, Engine, Lines, MachineFault, NotInjected};
 use crate::host::Host;
 use crate::scene::{Broken, Scene};
 use crate::telemetry::Telemetry;
@@ -19,6 +19,8 @@ pub struct Outcome {
     pub trace: Trace,
     /// Every line of the device that is not telemetry, with the time at which it was complete, s.
     pub answers: Vec<(f64, String)>,
+    /// Resets of the device after its power-up, at times of the scene: negative while it settles.
+    pub resets: Vec<DeviceReset>,
     /// Electrical work that the module has taken up in the scene, J.
     pub electrical_j: f64,
     /// Cost of the scene, without set-up and settling.
@@ -36,9 +38,33 @@ pub enum RunError<S: std::error::Error + 'static> {
     /// The device cannot be commissioned, so it never comes to the scene.
     #[error(transparent)]
     Commission(CommissionError),
+    /// A fault of the processor could not be injected.
+    #[error(transparent)]
+    NotInjected(#[from] NotInjected),
+    /// An injection outside of the run.
+    #[error("{fault} at {t_s} s is outside of the run, which goes from {from_s} s to {to_s} s")]
+    InjectionTime {
+        /// What should have happened.
+        fault: MachineFault,
+        /// When, s.
+        t_s: f64,
+        /// Begin of the run: it settles first.
+        from_s: f64,
+        /// End of the scene.
+        to_s: f64,
+    },
     /// The device refused a line that sets the scene up.
     #[error("the device refused to be set up for the scene: {0}")]
     Refused(String),
+}
+
+/// A fault of the processor at a time of the scene: at the whole millisecond at or after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Injection {
+    /// Time, s; negative while the scene settles.
+    pub t_s: f64,
+    /// What happens.
+    pub fault: MachineFault,
 }
 
 /// Runs a scene; `progress` is told the part that is done.
@@ -48,12 +74,37 @@ pub enum RunError<S: std::error::Error + 'static> {
 pub fn run<E: Engine>(
     scene: &Scene,
     engine: &mut E,
+    progress: impl FnMut(f64),
+) -> Result<Outcome, RunError<E::Stop>> {
+    run_with(scene, &[], engine, progress)
+}
+
+/// Runs a scene in which the processor fails.
+///
+/// # Errors
+/// As [`run`]; or an injection that the engine refuses.
+pub fn run_with<E: Engine>(
+    scene: &Scene,
+    injections: &[Injection],
+    engine: &mut E,
     mut progress: impl FnMut(f64),
 ) -> Result<Outcome, RunError<E::Stop>> {
     let settings = commission::of_scene(scene).map_err(RunError::Commission)?;
     let began = Instant::now();
     let zero_ms = scene.settle_ms();
     let end_ms = zero_ms + (scene.duration_s * 1e3).round() as u64;
+    let time_s = |ms: f64| (ms - zero_ms as f64) / 1e3;
+    let (from_s, to_s) = (time_s(0.0), time_s(end_ms as f64));
+    for &Injection { t_s, fault } in injections {
+        if !(from_s..=to_s).contains(&t_s) {
+            return Err(RunError::InjectionTime {
+                fault,
+                t_s,
+                from_s,
+                to_s,
+            });
+        }
+    }
     let mut session = Session {
         scene,
         engine,
@@ -69,6 +120,10 @@ pub fn run<E: Engine>(
             before_j = session.engine.world().plant().energy().electrical_j;
         }
         session.boundary(ms);
+        let due = |one: &&Injection| time_s(ms as f64 - 1.0) < one.t_s && one.t_s <= time_s(ms as f64);
+        for Injection { fault, .. } in injections.iter().filter(due) {
+            session.engine.inject(fault)?;
+        }
         if (zero_ms..=end_ms).contains(&ms) {
             let t_s = session.t_s(ms);
             let world = session.engine.world();
@@ -96,10 +151,20 @@ pub fn run<E: Engine>(
     Ok(Outcome {
         trace,
         answers,
+        resets: in_scene(&session.engine.resets(), zero_ms),
         electrical_j: after_j - before_j,
         cost: session.engine.cost(),
         real_time_factor,
     })
+}
+
+/// Resets at times of the scene, which begins so many milliseconds after the first boundary.
+pub(crate) fn in_scene(resets: &[DeviceReset], zero_ms: u64) -> Vec<DeviceReset> {
+    let shift = |reset: &DeviceReset| DeviceReset {
+        t_s: reset.t_s - zero_ms as f64 / 1e3,
+        ..*reset
+    };
+    resets.iter().map(shift).collect()
 }
 
 /// What is broken at a time.

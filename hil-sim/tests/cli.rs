@@ -329,6 +329,37 @@ fn parameters_are_printed_with_limits_and_drawn_alike_by_one_seed() {
     refused(&["parameters", "--draw", "x"]);
 }
 
+/// The native engine knows of a reset what the logic knows: that it starts anew.
+#[test]
+fn run_reports_resets_and_refuses_other_faults_of_the_processor() {
+    let scene = File::new(
+        "resets.toml",
+        "duration_s = 0.02\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"abs\"\n",
+    );
+    let line = |more: &[&'static str]| [&["run", scene.path(), "--engine", "native"], more].concat();
+    let run = |more: &[&'static str]| good(&line(more), "");
+    assert!(run(&[]).contains("resets               none\n"));
+    let table = run(&["--inject", "0.005:brown-out", "--inject", "0.01:reset-pin"]);
+    let row = "resets               brown-out at 0.005 s, reset-pin at 0.010 s\n";
+    assert!(table.contains(row), "{table}");
+    let figures: serde_json::Value =
+        serde_json::from_str(&run(&["--inject", "0.01:reset-pin", "--json"])).expect("JSON");
+    assert_eq!(figures["resets"][0]["cause"], "reset-pin");
+    let t_s = figures["resets"][0]["t_s"].as_f64().expect("a time");
+    assert!((t_s - 0.01).abs() < 1e-9, "{t_s}");
+    for (fault, expected) in [
+        (
+            "0.01:bit-rot",
+            "`bit-rot` is no fault of the machine; allowed are ram-bit=",
+        ),
+        ("hung-core", "a time in seconds, a colon and a fault"),
+        ("soon:hung-core", "`soon` is no time in seconds"),
+    ] {
+        let message = refused(&line(&["--inject", fault]));
+        assert!(message.contains(expected), "{fault}: {message}");
+    }
+}
+
 /// The thesis's rate leaves more than a thousand updates a second do; every row has its figures.
 #[test]
 fn fidelity_compares_laws_and_is_reproducible_by_seed() {

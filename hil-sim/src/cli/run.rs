@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::Args;
-use hil_sim::engine::{Engine, Image, Native};
+use hil_sim::engine::{Engine, Image, Native, NoMachineFault};
 use hil_sim::metrics::{Figures, figures};
 use hil_sim::report;
-use hil_sim::run::{Outcome, run as run_scene};
+use hil_sim::run::{Injection, Outcome, run_with};
 use hil_sim::scene::Scene;
 
 use super::device::{self, Kind};
@@ -20,6 +20,9 @@ pub struct Arguments {
     /// What runs the device's logic
     #[arg(long, value_enum, default_value_t = Kind::Image)]
     engine: Kind,
+    /// A fault of the processor at a time of the scene, such as 2.5:hung-core or 1:core-bit=r4.7; may be repeated
+    #[arg(long, value_name = "T_S:FAULT", value_parser = injection)]
+    inject: Vec<Injection>,
     /// Image to run instead of the one of the current sources
     #[arg(long)]
     elf: Option<PathBuf>,
@@ -39,11 +42,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (outcome, figures) = match arguments.engine {
         Kind::Native => {
             device::no_image(elf)?;
-            measure(&scene, &mut Native::new(world))
+            measure(&scene, &arguments.inject, &mut Native::new(world))
         }
         Kind::Image => {
             let (firmware, _) = device::image(elf, 1)?;
-            measure(&scene, &mut Image::new(&firmware, world).map_err(Failure::run)?)
+            let mut engine = Image::new(&firmware, world).map_err(Failure::run)?;
+            measure(&scene, &arguments.inject, &mut engine)
         }
     }?;
     if let Some(folder) = &arguments.out {
@@ -60,9 +64,24 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::print(&text)
 }
 
-fn measure<E: Engine>(scene: &Scene, engine: &mut E) -> Result<(Outcome, Figures), Failure> {
+/// Time and fault of `T_S:FAULT`.
+fn injection(text: &str) -> Result<Injection, String> {
+    let (time, fault) = text
+        .split_once(':')
+        .ok_or("a time in seconds, a colon and a fault, such as 2.5:hung-core, is allowed")?;
+    let t_s = (time.parse().ok().filter(|t_s: &f64| t_s.is_finite()))
+        .ok_or_else(|| format!("`{time}` is no time in seconds"))?;
+    let fault = fault.parse().map_err(|error: NoMachineFault| error.to_string())?;
+    Ok(Injection { t_s, fault })
+}
+
+fn measure<E: Engine>(
+    scene: &Scene,
+    injections: &[Injection],
+    engine: &mut E,
+) -> Result<(Outcome, Figures), Failure> {
     let name = format!("{} on engine {}", scene.object.name, E::NAME);
-    let outcome = output::with_progress(name, |progress| run_scene(scene, engine, progress))?;
+    let outcome = output::with_progress(name, |progress| run_with(scene, injections, engine, progress))?;
     let outcome = outcome.map_err(Failure::run)?;
     let figures = figures::<E>(scene, &outcome);
     Ok((outcome, figures))

@@ -1,8 +1,8 @@
 //! The release image in the emulated microcontroller, wired as the NUCLEO-F446RE board is.
 
 use super::meter::TICK;
-use super::{BAUD, Cost, Engine, Meter};
-use crate::machine::{Firmware, LegState, Machine, Stop, Wiring};
+use super::{BAUD, Cost, DeviceReset, Engine, MachineFault, Meter, NotInjected};
+use crate::machine::{Firmware, InjectError, LegState, Machine, Stop, Wiring};
 use crate::plant::bridge::{Leg, Legs};
 use crate::plant::sensors::Channel;
 use crate::world::World;
@@ -16,9 +16,9 @@ const ENABLE_PIN: (u8, u8) = (1, 10);
 /// Line that tests the comparator, pulled low: PC3.
 const TEST_PIN: (u8, u8) = (2, 3);
 
-/// From the first conversion to the first boundary, and between boundaries, microseconds.
-const FIRST_BOUNDARY_US: u64 = 230;
-const HALF_MS_US: u64 = 500;
+/// From the first conversion to the first boundary, and between boundaries, picoseconds.
+const FIRST_BOUNDARY_PS: u64 = 230_000_000;
+const HALF_MS_PS: u64 = 500_000_000;
 /// Longest time from power-up to the first conversion.
 const BOOT_S: u64 = 1;
 /// Cycles of one search step for the first conversion.
@@ -38,10 +38,9 @@ pub enum ImageError {
 /// The emulated microcontroller on the plant.
 pub struct Image {
     machine: Machine<Pins>,
-    /// CPU cycle of the first boundary.
-    first_boundary: u64,
+    /// Time of the first boundary, ps since power-up.
+    first_boundary_ps: u64,
     halves: u64,
-    cycles_per_us: u64,
     meter: Meter,
 }
 
@@ -65,6 +64,17 @@ pub fn power_up<W: Wiring>(
     }
 }
 
+/// Resets after power-up, their times counted from the first boundary.
+pub fn resets<W: Wiring>(machine: &Machine<W>, first_boundary_ps: u64) -> Vec<DeviceReset> {
+    let after_power_up = machine.resets().iter().skip(1);
+    after_power_up
+        .map(|reset| DeviceReset {
+            t_s: (reset.at_ps as f64 - first_boundary_ps as f64) * 1e-12,
+            cause: reset.cause,
+        })
+        .collect()
+}
+
 impl From<LegState> for Leg {
     fn from(state: LegState) -> Self {
         state.duty().map_or(Self::Off, Self::Duty)
@@ -80,15 +90,13 @@ impl Image {
         let mut machine = Machine::new(firmware, Pins::new(world))?;
         machine.set_host_baud(BAUD as u32);
         let started = power_up(&mut machine, |pins| pins.first_conversion)?;
-        let cycles_per_us = u64::from(machine.clocks().hclk_hz) / 1_000_000;
-        let first_boundary = started + FIRST_BOUNDARY_US * cycles_per_us;
-        machine.run_until(first_boundary)?;
+        let first_boundary_ps = machine.ps_at(started) + FIRST_BOUNDARY_PS;
+        machine.run_until_ps(first_boundary_ps)?;
         let meter = Meter::new(&mut machine);
         Ok(Self {
             machine,
-            first_boundary,
+            first_boundary_ps,
             halves: 0,
-            cycles_per_us,
             meter,
         })
     }
@@ -128,7 +136,7 @@ impl Engine for Image {
     fn run_half_ms(&mut self) -> Result<(), Stop> {
         self.halves += 1;
         self.machine
-            .run_until(self.first_boundary + self.halves * HALF_MS_US * self.cycles_per_us)?;
+            .run_until_ps(self.first_boundary_ps + self.halves * HALF_MS_PS)?;
         let test = self.machine.gpio_output(TEST_PIN.0, TEST_PIN.1) == Some(true);
         self.world().comparator_test(test);
         Ok(())
@@ -140,6 +148,36 @@ impl Engine for Image {
 
     fn receive(&mut self, into: &mut Vec<u8>) {
         into.append(&mut self.machine.wiring_mut().received);
+    }
+
+    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected> {
+        let machine = &mut self.machine;
+        let injected = match *fault {
+            MachineFault::RamBit { address, bit } => machine.flip_ram_bit(address, bit),
+            MachineFault::CoreBit { register, bit } => machine.flip_core_bit(register, bit),
+            MachineFault::RegisterBit { address, bit } => machine.flip_register_bit(address, bit),
+            MachineFault::HungCore => {
+                machine.hang_core();
+                Ok(())
+            }
+            MachineFault::HseStopped => machine.stop_hse(),
+            MachineFault::AdcStopped => {
+                machine.stop_adc();
+                Ok(())
+            }
+            MachineFault::DmaStopped { controller, stream } => machine.stop_dma(controller, stream),
+            MachineFault::BrownOut => machine.brown_out().map_err(InjectError::from),
+            MachineFault::PowerCycle { seed } => machine.power_cycle(seed).map_err(InjectError::from),
+            MachineFault::ResetPin => machine.pull_reset_pin().map_err(InjectError::from),
+        };
+        injected.map_err(|reason| NotInjected::Refused {
+            fault: *fault,
+            reason,
+        })
+    }
+
+    fn resets(&self) -> Vec<DeviceReset> {
+        resets(&self.machine, self.first_boundary_ps)
     }
 
     fn reset_cost(&mut self) {

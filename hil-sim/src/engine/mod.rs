@@ -16,15 +16,18 @@
 
 mod image;
 mod lines;
+mod machine_fault;
 mod meter;
 mod native;
 
-pub(crate) use image::{ADC_INPUTS, power_up};
+pub(crate) use image::{ADC_INPUTS, power_up, resets};
 pub use image::{Image, ImageError};
 pub use lines::Lines;
+pub use machine_fault::{MachineFault, NoMachineFault, NotInjected};
 pub(crate) use meter::Meter;
 pub use native::Native;
 
+use crate::machine::ResetCause;
 use crate::plant::bridge::Legs;
 use crate::world::World;
 
@@ -57,11 +60,29 @@ pub trait Engine {
     /// Appends what the host has received since it last asked.
     fn receive(&mut self, into: &mut Vec<u8>);
 
+    /// A fault of the processor happens now.
+    ///
+    /// # Errors
+    /// The engine has no such part, or refuses the fault; the device is as before.
+    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected>;
+
+    /// Resets of the device after its power-up, the oldest first.
+    fn resets(&self) -> Vec<DeviceReset>;
+
     /// Starts the measurement of [`Self::cost`] anew.
     fn reset_cost(&mut self);
 
     /// What the device's program costs, if the engine knows.
     fn cost(&self) -> Option<Cost>;
+}
+
+/// A reset of the device.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DeviceReset {
+    /// Time since the first boundary, s.
+    pub t_s: f64,
+    /// What caused it.
+    pub cause: ResetCause,
 }
 
 /// What the program costs, emulated; cycles are estimates.

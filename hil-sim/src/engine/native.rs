@@ -7,11 +7,13 @@ use std::fmt::Display;
 use thermal_display::Hand;
 use thermal_display::commission::Desk;
 use thermal_display::drive::{Drive, Outputs};
+use thermal_display::guard::{Cause, Fault};
 use thermal_display::protocol::{Addressed, Error, LineReader};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::Settings;
 
-use super::{BAUD, Cost, Engine};
+use super::{BAUD, Cost, DeviceReset, Engine, MachineFault, NotInjected};
+use crate::machine::ResetCause;
 use crate::plant::bridge::{Leg, Legs};
 use crate::plant::sensors::Channel;
 use crate::world::World;
@@ -24,6 +26,15 @@ const TICK_NS: u64 = 730_000;
 
 /// Steps of the board's PWM period: 180 MHz / 96 kHz.
 const PWM_STEPS: u16 = 1875;
+
+/// What the window watchdog waits for a tick.
+const WINDOW_MS: u64 = 46;
+
+/// As after a reset.
+const OFF: Outputs = Outputs {
+    drive: Drive::Off,
+    comparator_test: false,
+};
 
 /// Scans between the boundaries: four end the first step's tick, eight and four follow.
 const SCANS_BEFORE_START: usize = 4;
@@ -46,6 +57,9 @@ pub struct Native {
     /// The bridge has pulled its fault pin since the last tick: the board's break flag keeps that.
     fault: bool,
     outputs: Outputs,
+    /// For how long no tick has run: the drive stays as it is.
+    hung_ms: Option<u64>,
+    resets: Vec<DeviceReset>,
     /// Half milliseconds since the first boundary.
     halves: u64,
 }
@@ -78,10 +92,9 @@ impl Native {
             filled: 0,
             settling_scans,
             fault: false,
-            outputs: Outputs {
-                drive: Drive::Off,
-                comparator_test: false,
-            },
+            outputs: OFF,
+            hung_ms: None,
+            resets: Vec::new(),
             halves: 0,
         };
         native.settle(more_at_first);
@@ -108,6 +121,40 @@ impl Native {
             *scan = Channel::ALL.map(|channel| self.world.convert(channel));
         }
         self.filled += count;
+    }
+
+    fn tick(&mut self) {
+        self.serve((self.halves - 1) * HALF_NS + TICK_NS);
+        let samples = Samples::from_scans(&self.scans, self.fault);
+        self.fault = self.world.bridge_fault();
+        self.outputs = self.hand.step(0, &samples);
+        self.world.comparator_test(self.outputs.comparator_test);
+        if let Some(telemetry) = self.hand.telemetry(0) {
+            self.answer(&telemetry);
+        }
+    }
+
+    /// The logic as after power-up, with the bridge off, and with what the board has kept of a fault. It starts at once:
+    /// what the board needs for that is not here.
+    fn restart(&mut self, cause: ResetCause) {
+        let tripped = self.hand.tripped().copied();
+        let kept = match cause {
+            ResetCause::PowerOn => None,
+            ResetCause::WindowWatchdog => tripped.or(Some(Cause::alone(Fault::TickLost))),
+            _ => tripped,
+        };
+        let settings = Settings::default();
+        self.desk = Desk::new(settings);
+        self.hand = Hand::new(&settings);
+        if let Some(cause) = kept {
+            self.hand.latch(cause);
+        }
+        self.reader = LineReader::new();
+        (self.fault, self.outputs, self.hung_ms) = (false, OFF, None);
+        self.resets.push(DeviceReset {
+            t_s: (self.halves * HALF_NS) as f64 * 1e-9,
+            cause,
+        });
     }
 
     fn answer(&mut self, line: &dyn Display) {
@@ -164,14 +211,10 @@ impl Engine for Native {
             self.scan(SCANS_IN_FIRST_HALF);
         } else {
             self.scan(SCANS_PER_TICK - self.filled);
-            let tick_ns = (self.halves - 1) * HALF_NS + TICK_NS;
-            self.serve(tick_ns);
-            let samples = Samples::from_scans(&self.scans, self.fault);
-            self.fault = self.world.bridge_fault();
-            self.outputs = self.hand.step(0, &samples);
-            self.world.comparator_test(self.outputs.comparator_test);
-            if let Some(telemetry) = self.hand.telemetry(0) {
-                self.answer(&telemetry);
+            match &mut self.hung_ms {
+                None => self.tick(),
+                Some(WINDOW_MS) => self.restart(ResetCause::WindowWatchdog),
+                Some(ms) => *ms += 1,
             }
             self.begin();
         }
@@ -192,6 +235,29 @@ impl Engine for Native {
 
     fn receive(&mut self, into: &mut Vec<u8>) {
         into.append(&mut self.outgoing);
+    }
+
+    /// Without a processor a hung core, and samples that do not come, mean that no tick runs until the window watchdog
+    /// resets the device; a reset starts the logic anew. All else has no meaning here.
+    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected> {
+        match fault {
+            MachineFault::HungCore | MachineFault::AdcStopped => self.hung_ms = Some(0),
+            MachineFault::DmaStopped { controller: 2, .. } => self.hung_ms = Some(0),
+            MachineFault::BrownOut => self.restart(ResetCause::BrownOut),
+            MachineFault::PowerCycle { .. } => self.restart(ResetCause::PowerOn),
+            MachineFault::ResetPin => self.restart(ResetCause::Pin),
+            _ => {
+                return Err(NotInjected::NotApplicable {
+                    fault: *fault,
+                    engine: Self::NAME,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn resets(&self) -> Vec<DeviceReset> {
+        self.resets.clone()
     }
 
     fn reset_cost(&mut self) {}

@@ -1,7 +1,7 @@
 //! The release image for five fingers in the emulated microcontroller, wired as its board module says.
 
 use super::{FINGERS, Hand};
-use crate::engine::{ADC_INPUTS, BAUD, Cost, ImageError, Lines, Meter, power_up};
+use crate::engine::{ADC_INPUTS, BAUD, Cost, DeviceReset, ImageError, Lines, Meter, power_up, resets};
 use crate::machine::{Firmware, Machine, Stop, Wiring};
 use crate::plant::bridge::Legs;
 use crate::plant::sensors::Channel;
@@ -44,19 +44,18 @@ const SELECT: [Pin; 3] = [(C, 10), (C, 11), (C, 12)];
 const SETTLING_US: u64 = 11;
 
 /// From the end of the first conversion to the first finger's first boundary, and from finger to finger,
-/// microseconds: the sixth of the 18 scans of a finger's turn ends 63 us after the first conversion, the seventh's first
+/// picoseconds: the sixth of the 18 scans of a finger's turn ends 63 us after the first conversion, the seventh's first
 /// conversion 67 us after it.
-const FIRST_BOUNDARY_US: u64 = 65;
-const TURN_US: u64 = 200;
+const FIRST_BOUNDARY_PS: u64 = 65_000_000;
+const TURN_PS: u64 = 200_000_000;
 
 /// The emulated microcontroller on five plants.
 pub struct ImageHand {
     machine: Machine<Pins>,
-    /// CPU cycle of the first boundary.
-    first_boundary: u64,
+    /// Time of the first boundary, ps since power-up.
+    first_boundary_ps: u64,
     /// Boundaries that have been reached.
     boundaries: u64,
-    cycles_per_us: u64,
     lines: Lines,
     meter: Meter,
 }
@@ -72,12 +71,12 @@ impl ImageHand {
         let started = power_up(&mut machine, |pins| pins.first_conversion)?;
         let cycles_per_us = u64::from(machine.clocks().hclk_hz) / 1_000_000;
         machine.wiring_mut().settling = SETTLING_US * cycles_per_us;
+        let first_boundary_ps = machine.ps_at(started) + FIRST_BOUNDARY_PS;
         let meter = Meter::new(&mut machine);
         Ok(Self {
             machine,
-            first_boundary: started + FIRST_BOUNDARY_US * cycles_per_us,
+            first_boundary_ps,
             boundaries: 0,
-            cycles_per_us,
             lines: Lines::default(),
             meter,
         })
@@ -88,9 +87,9 @@ impl Hand for ImageHand {
     type Stop = Stop;
 
     fn run_to(&mut self, _finger: usize) -> Result<(), Stop> {
-        let at = self.first_boundary + self.boundaries * TURN_US * self.cycles_per_us;
+        let at_ps = self.first_boundary_ps + self.boundaries * TURN_PS;
         self.boundaries += 1;
-        self.machine.run_until(at)
+        self.machine.run_until_ps(at_ps)
     }
 
     fn world(&mut self, finger: usize) -> &mut World {
@@ -131,6 +130,10 @@ impl Hand for ImageHand {
                 None => (0, line),
             })
             .collect()
+    }
+
+    fn resets(&self) -> Vec<DeviceReset> {
+        resets(&self.machine, self.first_boundary_ps)
     }
 
     fn reset_cost(&mut self) {

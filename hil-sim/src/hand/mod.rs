@@ -18,10 +18,10 @@ pub use image::ImageHand;
 pub use native::NativeHand;
 
 use crate::commission;
-use crate::engine::Cost;
+use crate::engine::{Cost, DeviceReset};
 use crate::host::Host;
 use crate::plant::bridge::Legs;
-use crate::run::{Outcome, RunError, broken};
+use crate::run::{Outcome, RunError, broken, in_scene};
 use crate::scene::Scene;
 use crate::telemetry::Telemetry;
 use crate::trace::{Row, Trace};
@@ -57,6 +57,9 @@ pub trait Hand {
 
     /// The complete lines that have come since the last call, and whose they are.
     fn receive(&mut self) -> Vec<(usize, String)>;
+
+    /// Resets of the device after its power-up; time counts from the first finger's first boundary.
+    fn resets(&self) -> Vec<DeviceReset>;
 
     /// Starts the measurement of [`Self::cost`] anew.
     fn reset_cost(&mut self);
@@ -104,7 +107,9 @@ pub fn run<H: Hand>(
     let simulated_s = (end_ms + DRAIN_MS) as f64 * 1e-3;
     let real_time_factor = simulated_s / began.elapsed().as_secs_f64();
     let cost = hand.cost();
+    let resets = hand.resets();
     Ok(fingers.map(|finger| Outcome {
+        resets: in_scene(&resets, finger.zero_ms),
         trace: finger.trace,
         answers: finger.answers,
         electrical_j: finger.spent_j.1 - finger.spent_j.0,

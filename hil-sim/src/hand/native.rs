@@ -3,7 +3,7 @@
 use std::convert::Infallible;
 
 use super::{FINGERS, Hand};
-use crate::engine::{Cost, Engine, Lines, Native};
+use crate::engine::{Cost, DeviceReset, Engine, Lines, Native};
 use crate::plant::bridge::Legs;
 use crate::world::World;
 
@@ -67,6 +67,10 @@ impl Hand for NativeHand {
             all.extend(lines.complete().into_iter().map(|line| (finger, line)));
         }
         all
+    }
+
+    fn resets(&self) -> Vec<DeviceReset> {
+        self.fingers.iter().flat_map(Engine::resets).collect()
     }
 
     fn reset_cost(&mut self) {}

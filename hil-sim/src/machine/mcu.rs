@@ -100,7 +100,12 @@ impl<W: Wiring + 'static> Machine<W> {
 
     /// Picoseconds since power-up.
     pub fn elapsed_ps(&self) -> u64 {
-        self.cpu.get_data().chip_ref().time.ps_at(self.now())
+        self.ps_at(self.now())
+    }
+
+    /// Time of a cycle since the clock last changed, ps since power-up.
+    pub fn ps_at(&self, cycle: u64) -> u64 {
+        self.cpu.get_data().chip_ref().time.ps_at(cycle)
     }
 
     /// The clock tree as the image has set it.

@@ -33,7 +33,7 @@ impl Timebase {
 
     /// Time of a cycle, not before the present clock began, ps.
     pub fn ps_at(&self, cycle: u64) -> u64 {
-        let cycles = u128::from(cycle - self.cycle);
+        let cycles = u128::from(cycle.saturating_sub(self.cycle));
         self.ps + (cycles * PS_PER_S / u128::from(self.hclk_hz)) as u64
     }
 

@@ -21,11 +21,13 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
         } => format!("{mean:.0} mean, {max} max"),
         _ => "unknown to this engine".into(),
     };
-    let faults: Vec<_> = figures
-        .faults
-        .iter()
-        .map(|fault| format!("{} at {:.3} s", fault.fault, fault.t_s))
-        .collect();
+    let list = |events: Vec<String>| match events.as_slice() {
+        [] => "none".into(),
+        events => events.join(", "),
+    };
+    let at = |what: &str, t_s: f64| format!("{what} at {t_s:.3} s");
+    let faults = figures.faults.iter().map(|fault| at(&fault.fault, fault.t_s));
+    let resets = figures.resets.iter().map(|reset| at(&reset.cause, reset.t_s));
     let mut rows = vec![
         ("material", figures.material.clone()),
         ("engine", figures.engine.into()),
@@ -58,14 +60,8 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
         rows.push(("stack used", format!("{stack} bytes")));
     }
     rows.push(("real-time factor", format!("{:.0}", figures.real_time_factor)));
-    rows.push((
-        "faults",
-        if faults.is_empty() {
-            "none".into()
-        } else {
-            faults.join(", ")
-        },
-    ));
+    rows.push(("faults", list(faults.collect())));
+    rows.push(("resets", list(resets.collect())));
     rows
 }
 

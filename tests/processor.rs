@@ -1,0 +1,95 @@
+//! What becomes of the bridge when the processor itself fails.
+
+use hil_sim::World;
+use hil_sim::engine::{Image, MachineFault, Native, NotInjected};
+use hil_sim::machine::{Firmware, ResetCause};
+use hil_sim::run::{Injection, Outcome, RunError, run, run_with};
+use hil_sim::scene::Scene;
+use system_tests::{between, forces, image, on_image, scene};
+
+/// Copper under 2 N from 0.5 s on.
+fn copper() -> Scene {
+    scene("copper", 2.0, "", &forces(&[(0.5, 2.0)]))
+}
+
+fn failing(t_s: f64, fault: &str) -> Outcome {
+    let (scene, firmware) = (copper(), Firmware::from_file(image()).expect("an image"));
+    let world = World::new(&scene).expect("a plant for the scene");
+    let mut engine = Image::new(&firmware, world).expect("the image samples");
+    let fault = fault.parse().expect("a fault");
+    run_with(&scene, &[Injection { t_s, fault }], &mut engine, |_| ()).expect("the image runs to the end")
+}
+
+/// The timer goes on with the last duty until then: 100 ms at most with the nominal oscillator of the slower watchdog.
+#[test]
+fn a_hung_core_ends_in_a_watchdog_reset_that_takes_the_bridge_off() {
+    let outcome = failing(1.0, "hung-core");
+    let [reset] = outcome.resets[..] else {
+        panic!("{:?}", outcome.resets)
+    };
+    assert!(
+        matches!(
+            reset.cause,
+            ResetCause::WindowWatchdog | ResetCause::IndependentWatchdog
+        ),
+        "{reset:?}"
+    );
+    assert!((1.0..1.102).contains(&reset.t_s), "{reset:?}");
+    for row in between(&outcome, 1.0, reset.t_s) {
+        assert!(row.current_a.abs() > 0.3, "{} A at {} s", row.current_a, row.t_s);
+    }
+    // The plant sees the legs at its next boundary.
+    for row in between(&outcome, reset.t_s + 2e-3, 2.0) {
+        assert_eq!(row.current_a, 0.0, "at {} s", row.t_s);
+    }
+}
+
+#[test]
+fn resets_from_outside_take_the_bridge_off_and_are_reported() {
+    for (fault, cause) in [
+        ("reset-pin", ResetCause::Pin),
+        ("brown-out", ResetCause::BrownOut),
+        ("power-cycle=3", ResetCause::PowerOn),
+    ] {
+        let outcome = failing(1.0, fault);
+        let [reset] = outcome.resets[..] else {
+            panic!("{:?}", outcome.resets)
+        };
+        assert_eq!(reset.cause, cause);
+        assert!((reset.t_s - 1.0).abs() < 1e-6, "{reset:?}");
+        for row in between(&outcome, 1.0015, 2.0) {
+            assert_eq!(row.current_a, 0.0, "{fault}, at {} s", row.t_s);
+        }
+    }
+}
+
+#[test]
+fn a_flip_of_memory_that_nothing_uses_changes_nothing() {
+    let (whole, flipped) = (on_image(&copper()), failing(1.0, "ram-bit=0x20010000.0"));
+    assert!(whole.resets.is_empty() && flipped.resets.is_empty());
+    assert_eq!(whole.trace.rows(), flipped.trace.rows());
+}
+
+#[test]
+fn the_native_engine_says_what_it_has_no_part_for() {
+    let scene = copper();
+    let native = || Native::new(World::new(&scene).expect("a plant for the scene"));
+    let with = |fault, t_s| run_with(&scene, &[Injection { t_s, fault }], &mut native(), |_| ());
+    assert!(matches!(
+        with(MachineFault::AdcStopped, 1.0),
+        Err(RunError::NotInjected(NotInjected::NotApplicable {
+            fault: MachineFault::AdcStopped,
+            engine: "native"
+        }))
+    ));
+    assert!(matches!(
+        with(MachineFault::ResetPin, 2.5),
+        Err(RunError::InjectionTime { .. })
+    ));
+    // No tick, and no watchdog: the last duty for good.
+    let hung = with(MachineFault::HungCore, 1.0).expect("runs");
+    let last = hung.trace.rows().last().expect("rows");
+    assert!(last.current_a.abs() > 0.3, "{} A", last.current_a);
+    let whole = run(&scene, &mut native(), |_| ()).expect("runs");
+    assert!(whole.resets.is_empty());
+}
