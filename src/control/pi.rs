@@ -125,10 +125,11 @@ impl Pi {
             .saturating_add(error * i64::from(self.response.integral));
         let limit = i64::from(self.limit.to_bits());
         let wanted = proportional + (state >> (STATE_BITS - CURRENT_BITS));
-        let output = wanted.clamp(-limit, limit);
+        // Not `clamp`, which panics when its limits are the wrong way round.
+        let output = wanted.min(limit).max(-limit);
         if output == wanted || (wanted > output) != (error > 0) {
             let limit = limit << (STATE_BITS - CURRENT_BITS);
-            self.state = state.clamp(-limit, limit);
+            self.state = state.min(limit).max(-limit);
         }
         Current::from_bits(output as i32)
     }

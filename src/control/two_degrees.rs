@@ -108,8 +108,9 @@ impl TwoDegrees {
         let wish = self.feed.saturating_add(self.plate.missing(target, &held));
         let current = wish
             .saturating_add(feedback)
-            .clamp(-self.limit, self.cooling_limit(sink));
-        self.feed = current.saturating_sub(feedback).clamp(-self.limit, self.limit);
+            .min(self.cooling_limit(sink))
+            .max(-self.limit);
+        self.feed = current.saturating_sub(feedback).min(self.limit).max(-self.limit);
         self.heat = self.plate.heat(self.feed, finger, sink);
         let before = self.plate.surface();
         self.plate.step(&self.heat);

@@ -118,7 +118,9 @@ impl Voltage {
         let back = times(ripple_per_width, self.dead_per_a, BITS).max(0);
         let off_middle = line.saturating_sub(half).clamp(-FARTHEST, FARTHEST);
         let steepness = ONE.saturating_add(back) >> (BITS - DIVISOR_BITS);
-        (half + (off_middle << DIVISOR_BITS) / steepness).clamp(0, self.dead)
+        (half + (off_middle << DIVISOR_BITS) / steepness)
+            .min(self.dead)
+            .max(0)
     }
 }
 

@@ -82,7 +82,7 @@ impl ForceScale {
         let off = at.saturating_sub(self.zero);
         self.zero += if self.ticks < FOUND_AFTER {
             self.ticks += 1;
-            off / self.ticks
+            off.checked_div(self.ticks).unwrap_or(off)
         } else {
             off >> if left { LEFT_SHIFT } else { AT_REST_SHIFT }
         };

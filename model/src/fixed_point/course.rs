@@ -216,8 +216,9 @@ const fn octaves(elapsed: u64, lengths: u64) -> u32 {
     if elapsed < lengths {
         return 0;
     }
-    let least = elapsed.ilog2() - lengths.ilog2();
-    least - (lengths << least > elapsed) as u32
+    // Both are above 0.
+    let least = lengths.leading_zeros().saturating_sub(elapsed.leading_zeros());
+    least - (lengths << (least & 63) > elapsed) as u32
 }
 
 /// `fall` over `ticks`, for a length of `2^length` ticks: rounded towards 0, in a short division where that holds it.
