@@ -19,7 +19,16 @@ impl<const FINGERS: usize> Hand<FINGERS> {
     /// Stations that are off. `f64` in software, once for all fingers.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
-        let one = Station::new(settings);
+        Self::after(None, settings)
+    }
+
+    /// The same after a reset, tripped by what was the cause of it.
+    #[must_use]
+    pub fn after(cause: Option<Cause>, settings: &Settings) -> Self {
+        let mut one = Station::new(settings);
+        if let Some(cause) = cause {
+            one.latch(cause);
+        }
         Self {
             stations: array::from_fn(|_| one.clone()),
         }
@@ -33,11 +42,6 @@ impl<const FINGERS: usize> Hand<FINGERS> {
     /// Trips all fingers for a reason that samples do not show.
     pub fn trip(&mut self, fault: Fault) {
         self.stations.iter_mut().for_each(|station| station.trip(fault));
-    }
-
-    /// Goes on from what tripped before a reset, tripped.
-    pub fn latch(&mut self, cause: Cause) {
-        self.stations.iter_mut().for_each(|station| station.latch(cause));
     }
 
     /// Why the first of the fingers that are tripped is.

@@ -31,7 +31,7 @@ mod app {
 
     use crate::board::{
         Board, Console, End, FINGERS, Memory, PowerStage, Receiver, Record, Sampler, Task, Transmitter,
-        Vigil, Watchdog, WindowWatchdog, stack_is_overrun,
+        Vigil, Watchdog, WindowWatchdog, first_cause, stack_is_overrun,
     };
 
     #[shared]
@@ -62,16 +62,14 @@ mod app {
     fn init(cx: init::Context) -> (Shared, Local) {
         let settings = Settings::default();
         // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
-        let mut hand = Hand::new(&settings);
+        let cause = first_cause(&cx.device);
+        let hand = Hand::after(cause, &settings);
         let board = Board::new(cx.device, cx.local.memory, settings);
-        if let Some(cause) = board.cause {
-            hand.latch(cause);
-        }
         let shared = Shared {
             hand,
             vigil: Vigil::new(),
             heard: AtomicBool::new(false),
-            record: Record::new(board.cause.is_some()),
+            record: Record::new(cause.is_some()),
             stages: board.stages,
             sampler: board.sampler,
         };

@@ -145,10 +145,7 @@ impl Native {
         };
         let settings = Settings::default();
         self.desk = Desk::new(settings);
-        self.hand = Hand::new(&settings);
-        if let Some(cause) = kept {
-            self.hand.latch(cause);
-        }
+        self.hand = Hand::after(kept, &settings);
         self.reader = LineReader::new();
         (self.fault, self.outputs, self.hung_ms) = (false, OFF, None);
         self.resets.push(DeviceReset {

@@ -16,14 +16,17 @@ struct Bridge {
     in2: Pin,
     enable: Pin,
     fault: Pin,
+    /// Lets the comparator cut the supply.
+    test: Pin,
 }
 
-const fn bridge(in1: Pin, in2: Pin, enable: Pin, fault: Pin) -> Bridge {
+const fn bridge(in1: Pin, in2: Pin, enable: Pin, fault: Pin, test: Pin) -> Bridge {
     Bridge {
         in1,
         in2,
         enable,
         fault,
+        test,
     }
 }
 
@@ -31,11 +34,11 @@ const A: u8 = 0;
 const B: u8 = 1;
 const C: u8 = 2;
 const BRIDGES: [Bridge; FINGERS] = [
-    bridge((A, 8), (A, 9), (B, 10), (A, 6)),
-    bridge((A, 10), (A, 11), (B, 13), (A, 7)),
-    bridge((C, 6), (C, 7), (B, 14), (A, 12)),
-    bridge((C, 8), (C, 9), (B, 15), (B, 5)),
-    bridge((B, 8), (B, 9), (B, 1), (B, 12)),
+    bridge((A, 8), (A, 9), (B, 10), (A, 6), (C, 3)),
+    bridge((A, 10), (A, 11), (B, 13), (A, 7), (C, 4)),
+    bridge((C, 6), (C, 7), (B, 14), (A, 12), (C, 5)),
+    bridge((C, 8), (C, 9), (B, 15), (B, 5), (B, 6)),
+    bridge((B, 8), (B, 9), (B, 1), (B, 12), (B, 7)),
 ];
 /// The lines that choose what the multiplexers show, lowest bit first; pulled down.
 const SELECT: [Pin; 3] = [(C, 10), (C, 11), (C, 12)];
@@ -89,7 +92,14 @@ impl Hand for ImageHand {
     fn run_to(&mut self, _finger: usize) -> Result<(), Stop> {
         let at_ps = self.first_boundary_ps + self.boundaries * TURN_PS;
         self.boundaries += 1;
-        self.machine.run_until_ps(at_ps)
+        self.machine.run_until_ps(at_ps)?;
+        let tests = BRIDGES
+            .each_ref()
+            .map(|Bridge { test, .. }| self.machine.gpio_output(test.0, test.1) == Some(true));
+        for (world, test) in self.machine.wiring_mut().worlds.iter_mut().zip(tests) {
+            world.comparator_test(test);
+        }
+        Ok(())
     }
 
     fn world(&mut self, finger: usize) -> &mut World {

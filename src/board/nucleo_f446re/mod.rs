@@ -81,6 +81,16 @@ impl Memory {
     }
 }
 
+/// Why the device has tripped before it started; once, before anything else.
+pub fn first_cause(device: &pac::Peripherals) -> Option<Cause> {
+    let overrun = stack::is_overrun();
+    stack::arm();
+    let cause = record::of_reset(&device.RCC)?;
+    // A reset, without a tick that has seen why, is what comes of an overrun.
+    let unseen = overrun && cause.tick == 0;
+    Some(if unseen { Cause::alone(Fault::Stack) } else { cause })
+}
+
 /// The board, set up and taking samples; the parts go to the tasks that own them.
 pub struct Board {
     /// Scans of the sensors.
@@ -99,8 +109,6 @@ pub struct Board {
     pub watchdog: Watchdog,
     /// The window watchdog, already running.
     pub window_watchdog: WindowWatchdog,
-    /// Why the device has tripped before it started.
-    pub cause: Option<Cause>,
 }
 
 impl Board {
@@ -109,13 +117,6 @@ impl Board {
         // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
         // again, and the log tells.
         let watchdog = Watchdog::start(device.IWDG);
-        let overrun = stack::is_overrun();
-        let mut cause = record::of_reset(&device.RCC);
-        if overrun && cause.is_some_and(|cause| cause.tick == 0) {
-            // A reset is what comes of it.
-            cause = Some(Cause::alone(Fault::Stack));
-        }
-        stack::arm();
         log::reset_cause(&device.RCC);
         let mut rcc = device.RCC.freeze(clocks());
         watch_clock(&mut rcc);
@@ -195,7 +196,6 @@ impl Board {
             telemetry,
             watchdog,
             window_watchdog: WindowWatchdog::start(device.WWDG, &mut rcc),
-            cause,
         }
     }
 }
