@@ -20,6 +20,7 @@ pub use identify::NoTile;
 pub use margins::Margins;
 pub use points::{FARTHEST_K, POINTS, Point, PointError, Points};
 pub use request::{SENSORS, STEPS_A_LINE};
+pub(crate) use request::{calibration_beyond, tile_beyond};
 
 #[cfg(test)]
 mod tests;

@@ -16,6 +16,7 @@ mod elf;
 mod exceptions;
 mod exti;
 mod faults;
+mod flash;
 mod gpio;
 mod iwdg;
 mod mcu;
@@ -35,6 +36,7 @@ mod tim;
 mod usart;
 
 pub use elf::{FLASH_BASE, FLASH_SIZE, Firmware, ImageError, RAM_BASE, RAM_SIZE};
+pub use flash::Cells;
 pub use mcu::{Machine, Reset};
 pub use path::{Path, Ran};
 pub use profile::{InterruptStats, Stats};

@@ -174,6 +174,10 @@ impl<W: Wiring + 'static> Machine<W> {
         let held = RESET_US * u64::from(HSI_HZ) / 1_000_000;
         state.chip().system_reset(cause, at);
         state.cycles += held;
+        if cause == ResetCause::PowerOn {
+            self.lose_memory()?;
+        }
+        let state = self.cpu.get_data_mut();
         (
             state.attention,
             state.refused,
