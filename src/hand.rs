@@ -4,9 +4,10 @@ use core::array;
 
 use crate::Station;
 use crate::drive::Drive;
+use crate::guard::Fault;
 use crate::protocol::{Addressed, Command, Error, Reply, Request, Telemetry};
 use crate::sense::Samples;
-use crate::settings::Settings;
+use crate::settings::{Kept, Settings};
 
 /// As many stations as the device has fingers, ten at most. They share nothing.
 #[derive(Clone, Debug)]
@@ -21,6 +22,21 @@ impl<const FINGERS: usize> Hand<FINGERS> {
         let one = Station::new(settings);
         Self {
             stations: array::from_fn(|_| one.clone()),
+        }
+    }
+
+    /// Reads and controls by what was kept. `f64` in software, once for each finger.
+    #[inline(never)]
+    pub fn restore(&mut self, kept: &[Kept; FINGERS]) {
+        for (station, kept) in self.stations.iter_mut().zip(kept) {
+            station.restore(&kept.settings());
+        }
+    }
+
+    /// Starts with a fault that no tick shows, of all fingers; it can be cleared.
+    pub fn trip(&mut self, fault: Fault) {
+        for station in &mut self.stations {
+            station.trip(fault);
         }
     }
 

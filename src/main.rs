@@ -22,12 +22,14 @@ mod board;
 mod app {
     use heapless::spsc::Producer;
     use thermal_display::Hand;
+    use thermal_display::guard::Fault;
     use thermal_display::protocol::{Addressed, Telemetry};
     use thermal_display::sense::Samples;
     use thermal_display::settings::Settings;
 
     use crate::board::{
         Board, Console, FINGERS, Memory, PowerStage, Receiver, Sampler, Task, Transmitter, Vigil, Watchdog,
+        at_start,
     };
 
     #[shared]
@@ -51,10 +53,16 @@ mod app {
 
     #[init(local = [memory: Memory = Memory::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let settings = Settings::default();
+        // Before anything that the flash could delay.
+        let found = at_start(&cx.device.FLASH);
         // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
-        let hand = Hand::new(&settings);
-        let board = Board::new(cx.device, cx.local.memory, settings);
+        let mut hand = Hand::new(&Settings::default());
+        match &found.kept {
+            Ok(Some(kept)) => hand.restore(kept),
+            Ok(None) => {}
+            Err(_) => hand.trip(Fault::SettingsCorrupt),
+        }
+        let board = Board::new(cx.device, cx.local.memory, &found);
         let shared = Shared {
             hand,
             vigil: Vigil::new(),

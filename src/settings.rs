@@ -42,6 +42,7 @@ pub struct Settings {
 
 impl Settings {
     /// Controls another tile.
+    #[inline(never)]
     pub fn retune(&mut self, tile: Tile) {
         self.tile = tile;
         [self.gains, self.gains_10hz] = Gains::of_tile(&tile);

@@ -17,12 +17,12 @@ use contact_model::material::{MATERIALS, SKIN};
 
 use crate::TICK_HZ;
 use crate::commission::{Aborted, Experiment, PointError};
-use crate::control::{Control, Inputs, Law, Voltage, Watt};
+use crate::control::{Control, Inputs, Law, Tuned, Voltage, Watt};
 use crate::drive::{Current, Drive};
 use crate::guard::{self, Fault, Setpoint, Sound, Watch};
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
 use crate::render::{Mode, Render, Scene, Wanted};
-use crate::sense::{Averages, Readings, Samples, Sensors, Touch};
+use crate::sense::{Averages, Calibrated, Readings, Samples, Sensors, Touch};
 use crate::settings::Settings;
 
 /// What the device is doing.
@@ -131,6 +131,17 @@ impl Station {
             stream_ticks: 0,
             telemetry: Telemetry::before_first_tick(),
         }
+    }
+
+    /// Reads and controls by other settings of the same class.
+    pub(crate) fn restore(&mut self, settings: &Settings) {
+        self.sensors.recalibrate(&Calibrated::new(settings));
+        self.control.retune(&Tuned::new(settings));
+    }
+
+    /// Latches a fault.
+    pub(crate) fn trip(&mut self, fault: Fault) {
+        self.state = State::Tripped(fault);
     }
 
     /// One control tick: sense, render, control, guard.

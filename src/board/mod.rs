@@ -15,6 +15,7 @@ mod nucleo_f446re;
 pub use console::Console;
 #[cfg(feature = "nucleo-f446re")]
 pub use nucleo_f446re::{
-    Board, FINGERS, Memory, Outbox, PowerStage, Receiver, Sampler, Transmitter, Watchdog, pac,
+    Board, FINGERS, Memory, Outbox, PowerStage, Receiver, Sampler, Transmitter, Watchdog, at_start, pac,
+    restart,
 };
 pub use vigil::{Task, Vigil};

@@ -1,5 +1,6 @@
 //! Lines that commission the device.
 
+use super::Order;
 use crate::protocol::{Error, Number, number};
 use crate::sense::THERMISTORS;
 use crate::settings::{BORDERS, Calibration, Correction, FIRST_BORDER, Tile, rounded};
@@ -46,6 +47,8 @@ pub enum Request {
     Tuned,
     /// `margins`.
     Margins,
+    /// `save` or `forget`, for [`super::Desk`].
+    Keep(Order),
 }
 
 static REFERENCE: Number = Number {
@@ -140,6 +143,8 @@ impl Request {
             "settings" => settings(&mut words),
             "set" => set(&mut words),
             "margins" => Ok(Self::Margins),
+            "save" => Ok(Self::Keep(Order::Save)),
+            "forget" => Ok(Self::Keep(Order::Forget)),
             "tune" => match words.next()? {
                 "result" => Ok(Self::Tuned),
                 other => Err(Error::Extra(other.into())),

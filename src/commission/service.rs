@@ -82,6 +82,8 @@ impl Service {
             }
             Request::Tuned => self.tuned(&mut execute),
             Request::Margins => Ok(self.tile()),
+            // Of all fingers at once.
+            Request::Keep(order) => Err(Error::WholeDevice(order.name())),
         }
     }
 

@@ -43,6 +43,8 @@ pub enum Fault {
     SamplesFrozen,
     /// The display's thermistors have been more than 3 K apart for 100 ms.
     DisplaysDisagree,
+    /// What was stored is no settings: the device has those of its class.
+    SettingsCorrupt,
 }
 
 /// One of the five thermistors.
@@ -84,6 +86,7 @@ impl Fault {
             Self::Bridge => "bridge",
             Self::SamplesFrozen => "samples-frozen",
             Self::DisplaysDisagree => "displays-apart",
+            Self::SettingsCorrupt => "settings-corrupt",
         }
     }
 }

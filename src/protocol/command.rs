@@ -62,7 +62,7 @@ pub enum Command {
 
 impl Command {
     /// Words that begin a command.
-    pub const WORDS: [&'static str; 17] = [
+    pub const WORDS: [&'static str; 19] = [
         "id",
         "state",
         "stream",
@@ -80,6 +80,8 @@ impl Command {
         "margins",
         "settings",
         "set",
+        "save",
+        "forget",
     ];
 
     /// Reads one line. Does the costly part of a command (soft-float set-up of a material), so that

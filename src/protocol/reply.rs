@@ -5,7 +5,7 @@ use core::fmt;
 use contact_model::fixed_point::Celsius;
 
 use super::text::Text;
-use crate::commission::{Margins, Row, STEPS_A_LINE};
+use crate::commission::{Margins, Order, Row, STEPS_A_LINE};
 use crate::control::Law;
 use crate::render::Mode;
 use crate::sense::Average;
@@ -18,6 +18,8 @@ use crate::{SCANS_PER_SECOND, TICK_HZ};
 pub enum Reply {
     /// It is done.
     Done,
+    /// It will be done by a device that starts anew, which then answers so.
+    Restart(Order),
     /// Answer to `id`.
     Identity {
         /// Fingers of the device.
@@ -66,7 +68,7 @@ pub struct Status {
 impl fmt::Display for Reply {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Done => f.write_str("ok"),
+            Self::Done | Self::Restart(_) => f.write_str("ok"),
             Self::Identity { fingers } => write!(
                 f,
                 "ok {} {} fingers={fingers} tick_hz={TICK_HZ} scan_hz={SCANS_PER_SECOND}",

@@ -76,7 +76,7 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
         (
             "fly",
             "err unknown command 'fly'; known: id state stream material object mode law arm hold start abort clear \
-             calibrate tune margins settings set",
+             calibrate tune margins settings set save forget",
         ),
         (
             "material unobtainium-of-the-first-kind",

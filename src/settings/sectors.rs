@@ -82,6 +82,7 @@ impl<F: Blocking> Sectors<F> {
         Ok((start, start + SEAL_BYTES as u32 + within))
     }
 
+    #[inline(never)]
     fn is_sealed(&mut self, start: u32) -> Result<bool, SectorError<F::Error>> {
         let mut seal = [0; SEAL_BYTES];
         self.0.read(start, &mut seal).map_err(SectorError::Flash)?;
@@ -89,6 +90,7 @@ impl<F: Blocking> Sectors<F> {
     }
 
     /// Erases and seals. Always erases: bits that an erasure left half-way may read as erased today.
+    #[inline(never)]
     fn prepare(&mut self, start: u32) -> Result<(), SectorError<F::Error>> {
         let end = start + F::ERASE_SIZE as u32;
         self.0.erase(start, end).map_err(SectorError::Flash)?;

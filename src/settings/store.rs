@@ -71,6 +71,7 @@ impl<F: NorFlash, const FINGERS: usize> Store<F, FINGERS> {
     ///
     /// # Errors
     /// The flash cannot be read, or what is stored is no settings of this device.
+    #[inline(never)]
     pub fn load(&mut self) -> Result<Option<[Kept; FINGERS]>, StoreError<F::Error>> {
         let stored = block_on(self.map.fetch_item::<&[u8]>(&mut self.buffer, &()))?;
         stored.map_or(Ok(None), |bytes| decode(bytes).map_err(StoreError::Stored))
@@ -80,6 +81,7 @@ impl<F: NorFlash, const FINGERS: usize> Store<F, FINGERS> {
     ///
     /// # Errors
     /// They are not stored; what was before still is, unless nothing could be read of it.
+    #[inline(never)]
     pub fn save(&mut self, kept: Option<&[Kept; FINGERS]>) -> Result<(), StoreError<F::Error>> {
         let bytes = encode(kept);
         if let Err(error) = self.append(&bytes) {
@@ -99,6 +101,7 @@ impl<F: NorFlash, const FINGERS: usize> Store<F, FINGERS> {
         }
     }
 
+    #[inline(never)]
     fn append(&mut self, bytes: &[u8]) -> Result<(), StoreError<F::Error>> {
         Ok(block_on(self.map.store_item(&mut self.buffer, &(), &bytes))?)
     }

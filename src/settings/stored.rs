@@ -58,6 +58,7 @@ impl Kept {
 
     /// The settings of a device of this class that was commissioned so.
     #[must_use]
+    #[inline(never)]
     pub fn settings(&self) -> Settings {
         let mut settings = Settings::default();
         settings.calibration = self.calibration;
@@ -165,6 +166,7 @@ impl fmt::Display for StoredError {
 
 /// The bytes that keep the settings of all fingers, ten at most, or factory defaults.
 #[must_use]
+#[inline(never)]
 pub fn encode<const FINGERS: usize>(kept: Option<&[Kept; FINGERS]>) -> StoredBytes {
     const { assert!(FINGERS <= FINGERS_MAX) };
     let mut bytes = StoredBytes::new();
@@ -189,6 +191,7 @@ pub fn encode<const FINGERS: usize>(kept: Option<&[Kept; FINGERS]>) -> StoredByt
 ///
 /// # Errors
 /// Why the bytes are no settings of this device.
+#[inline(never)]
 pub fn decode<const FINGERS: usize>(bytes: &[u8]) -> Result<Option<[Kept; FINGERS]>, StoredError> {
     let wrong_length = StoredError::Length(bytes.len());
     let (content, checksum) = bytes.split_last_chunk::<TAIL>().ok_or(wrong_length)?;

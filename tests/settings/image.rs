@@ -1,1 +1,194 @@
-//! The same on the image.
+//! The same on the image: lines to the emulated microcontroller, power that is cut while it stores, lines back.
+
+use hil_sim::machine::{Cells, Firmware, Machine, ResetCause, Wiring};
+use system_tests::image;
+use thermal_display::commission::Desk;
+use thermal_display::settings::{Kept, LONGEST, encode};
+
+use super::{numbered, saved};
+use crate::flash::{BYTES, SECTOR};
+
+/// Where the settings' sectors lie in the flash.
+const BEGIN: usize = SECTOR;
+/// Cycles of 16 MHz within which a device starts, and those of 180 MHz for a line and its answer.
+const START: u64 = 16_000_000;
+const LINE: u64 = 180_000 * 12;
+
+/// A device without sensors, which can do no more than keep settings.
+#[derive(Default)]
+struct Pins {
+    received: Vec<u8>,
+}
+
+impl Wiring for Pins {
+    fn adc(&mut self, _channel: u8, _now: u64) -> u16 {
+        0
+    }
+
+    fn pin(&self, _port: u8, _bit: u8) -> Option<bool> {
+        None
+    }
+
+    fn uart_tx(&mut self, byte: u8, _at: u64, _baud: u32) {
+        self.received.push(byte);
+    }
+}
+
+struct Device(Machine<Pins>);
+
+impl Device {
+    /// With these cells in the settings' sectors.
+    fn new(firmware: &Firmware, settings: &Cells) -> Self {
+        let mut machine = Machine::new(firmware, Pins::default()).expect("a machine");
+        assert!(machine.flash_mut().load(BEGIN, settings.bytes()));
+        machine.set_host_baud(1_000_000);
+        let mut device = Self(machine);
+        device.run(START);
+        device
+    }
+
+    fn run(&mut self, cycles: u64) {
+        let end = self.0.now() + cycles;
+        self.0.run_until(end).expect("the image runs");
+    }
+
+    /// Sends a line, and lets cycles pass; what the device has said.
+    fn ask(&mut self, line: &str, cycles: u64) -> Vec<String> {
+        self.0.uart_send(format!("{line}\n").as_bytes());
+        self.run(cycles);
+        let said = std::mem::take(&mut self.0.wiring_mut().received);
+        String::from_utf8_lossy(&said)
+            .lines()
+            .map(str::to_owned)
+            .collect()
+    }
+
+    fn tell(&mut self, line: &str) -> String {
+        let said = self.ask(line, LINE);
+        let [answer] = said.as_slice() else {
+            panic!("{line}: {said:?}");
+        };
+        answer.clone()
+    }
+
+    fn settings(&mut self) -> Vec<String> {
+        (1..=8)
+            .map(|line| self.tell(&format!("settings {line}")))
+            .collect()
+    }
+
+    /// The settings' sectors.
+    fn cells(&self) -> Cells {
+        Cells::new(self.0.flash().bytes()[BEGIN..BEGIN + BYTES].to_vec())
+    }
+}
+
+/// The lines that settings are given in.
+fn lines(kept: Option<&[Kept; 1]>) -> Vec<String> {
+    let mut desk: Desk<1> = kept.map_or_else(|| Desk::new(Default::default()), Desk::restored);
+    (1..=8)
+        .map(|line| {
+            let answer = desk.answer(&format!("settings {line}"), |_| {
+                unreachable!("nothing to execute")
+            });
+            answer.expect("a line of settings").to_string()
+        })
+        .collect()
+}
+
+fn firmware() -> Firmware {
+    Firmware::from_file(image()).expect("an image for this chip")
+}
+
+/// Cells after so many saves.
+fn after(saves: u32) -> Cells {
+    (0..saves).fold(Cells::new(vec![0xff; BYTES]), |cells, number| {
+        saved::<1>(&cells, numbered(number).as_ref(), None)
+    })
+}
+
+#[test]
+fn what_is_saved_outlives_the_power_and_can_be_forgotten() {
+    let firmware = firmware();
+    let mut device = Device::new(&firmware, &after(0));
+    assert_eq!(device.settings(), lines(None));
+    let kept = numbered::<1>(3);
+    for line in lines(kept.as_ref()) {
+        assert_eq!(device.tell(line.trim_start_matches("ok ")), "ok");
+    }
+    assert_eq!(device.ask("save", START), ["ok"], "after it is stored");
+    let stored = device.cells();
+    assert_eq!(
+        stored.bytes(),
+        saved::<1>(&after(0), kept.as_ref(), None).bytes(),
+        "as the host does it"
+    );
+    assert_eq!(device.settings(), lines(kept.as_ref()));
+
+    let mut device = Device::new(&firmware, &stored);
+    assert_eq!(device.settings(), lines(kept.as_ref()), "switched on anew");
+    assert_eq!(device.ask("forget", START), ["ok"]);
+    assert_eq!(device.settings(), lines(None));
+    let mut device = Device::new(&firmware, &device.cells());
+    assert_eq!(device.settings(), lines(None));
+}
+
+#[test]
+fn corrupt_settings_trip_the_device_until_it_is_told_others() {
+    let mut cells = after(1);
+    // A record of a firmware to come: its version, with both checksums.
+    let record = encode(Some(&[Kept::of(&Default::default())]));
+    assert!(record.len() < LONGEST);
+    let mut content = record[..record.len() - 4].to_vec();
+    content[0] = 2;
+    let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&content);
+    content.extend(crc.to_le_bytes());
+    assert!(super::append(&mut cells, &content));
+
+    let mut device = Device::new(&firmware(), &cells);
+    let state = device.tell("state");
+    assert!(
+        state.starts_with("ok state=tripped fault=settings-corrupt "),
+        "{state}"
+    );
+    assert_eq!(device.settings(), lines(None));
+    assert_eq!(device.ask("save", START), ["ok"]);
+    let state = device.tell("state");
+    assert!(!state.contains("settings-corrupt"), "{state}");
+}
+
+#[test]
+fn the_image_loses_nothing_in_any_operation() {
+    let firmware = firmware();
+    // The 108th record begins the second sector, the 322nd the first one again: nothing is erased between them.
+    for (saves, every) in [(3, 4), (107, 3), (321, 3)] {
+        let (cells, new) = (after(saves), numbered::<1>(saves));
+        let (old, new) = (lines(numbered::<1>(saves - 1).as_ref()), lines(new.as_ref()));
+        let whole = saved::<1>(&cells, numbered::<1>(saves).as_ref(), None);
+        let operations = whole.operations() - cells.operations();
+        let (mut found_old, mut found_new) = (0, 0);
+        for nth in (1..=operations).step_by(every) {
+            let mut device = Device::new(&firmware, &cells);
+            for line in &new {
+                assert_eq!(device.tell(line.trim_start_matches("ok ")), "ok");
+            }
+            device.0.flash_mut().cut_power_at(nth, nth);
+            device.ask("save", START + START);
+            let causes: Vec<_> = device.0.resets().iter().map(|reset| reset.cause).collect();
+            assert_eq!(
+                causes[..3],
+                [ResetCause::PowerOn, ResetCause::Software, ResetCause::PowerOn],
+                "{nth} of {operations}"
+            );
+            let found = device.settings();
+            assert!(
+                found == old || found == new,
+                "{nth} of {operations} after {saves}: {found:?}"
+            );
+            found_old += u32::from(found == old);
+            found_new += u32::from(found == new);
+        }
+        println!("after {saves} saves: {found_old} old, {found_new} new, of {operations} operations");
+        assert!(found_old > 0, "all the same");
+    }
+}

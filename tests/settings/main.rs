@@ -3,9 +3,12 @@
 mod flash;
 mod image;
 
+use embassy_futures::block_on;
 use flash::{BYTES, Flash};
 use hil_sim::machine::Cells;
-use thermal_display::settings::{Calibration, Correction, Kept, Store, Tile};
+use sequential_storage::cache::Cache;
+use sequential_storage::map::{MapConfig, MapStorage};
+use thermal_display::settings::{Calibration, Correction, Kept, Sectors, Store, Tile};
 
 /// Settings that differ from each other in every value.
 fn numbered<const FINGERS: usize>(number: u32) -> Option<[Kept; FINGERS]> {
@@ -56,6 +59,17 @@ fn saved<const FINGERS: usize>(
     assert_eq!(done.is_ok(), cells.is_powered(), "{done:?}");
     cells.power_up();
     cells
+}
+
+/// Appends any bytes as the newest record; whether the flash has taken them.
+fn append(cells: &mut Cells, record: &[u8]) -> bool {
+    let flash = Flash::new(cells.clone());
+    let end = (3 * Sectors::<Flash>::BYTES) as u32;
+    let config = MapConfig::new(0..end);
+    let mut map = MapStorage::<(), _, _>::new(Sectors::new(flash.clone()), config, Cache::new_uncached());
+    let done = block_on(map.store_item(&mut [0; 512], &(), &record));
+    *cells = flash.cells();
+    done.is_ok()
 }
 
 /// What a campaign has tried.

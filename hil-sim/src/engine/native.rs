@@ -5,11 +5,11 @@ use std::convert::Infallible;
 use std::fmt::Display;
 
 use thermal_display::Hand;
-use thermal_display::commission::Desk;
+use thermal_display::commission::{Desk, Order};
 use thermal_display::drive::Drive;
-use thermal_display::protocol::{Addressed, Error, LineReader};
+use thermal_display::protocol::{Addressed, Error, LineReader, Reply};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
-use thermal_display::settings::Settings;
+use thermal_display::settings::{Settings, decode};
 
 use super::{BAUD, Cost, Engine};
 use crate::plant::bridge::{Leg, Legs};
@@ -111,6 +111,20 @@ impl Native {
         self.outgoing.extend(format!("{line}\n").into_bytes());
     }
 
+    /// Starts anew, with what is stored by then; how long that takes is left out.
+    fn restart(&mut self, order: Order) {
+        let kept = decode(&self.desk.record(order)).ok().flatten();
+        self.hand = Hand::new(&Settings::default());
+        self.desk = match &kept {
+            Some(kept) => {
+                self.hand.restore(kept);
+                Desk::restored(kept)
+            }
+            None => Desk::new(Settings::default()),
+        };
+        self.drive = Drive::Off;
+    }
+
     /// Lines whose last byte has arrived before the tick.
     fn serve(&mut self, now_ns: u64) {
         while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
@@ -120,6 +134,13 @@ impl Native {
             let executed = line
                 .map_err(|error| Addressed::device(Error::from(error)))
                 .and_then(|line| self.desk.answer(&line, |request| self.hand.execute(request)));
+            if let Ok(Addressed {
+                said: Reply::Restart(order),
+                ..
+            }) = &executed
+            {
+                self.restart(*order);
+            }
             match executed {
                 Ok(reply) => self.answer(&reply),
                 Err(error) => self.answer(&error),

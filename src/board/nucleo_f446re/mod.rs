@@ -22,18 +22,21 @@
 mod fatal;
 #[cfg(feature = "five-fingers")]
 mod five;
+mod flash;
 mod log;
 #[cfg(not(feature = "five-fingers"))]
 mod one;
 mod sampler;
 mod serial;
+mod store;
 mod watchdog;
 
 use heapless::spsc::{Producer, Queue};
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use thermal_display::protocol::{Addressed, Telemetry};
+use thermal_display::commission::Desk;
+use thermal_display::protocol::{Addressed, Error, Reason, Reply, Telemetry};
 use thermal_display::settings::Settings;
 
 #[cfg(feature = "five-fingers")]
@@ -43,6 +46,7 @@ use one as wiring;
 pub use sampler::Sampler;
 pub use serial::{Outbox, Receiver, Transmitter};
 pub use stm32f4xx_hal::pac;
+pub use store::{Found, at_start, restart};
 pub use watchdog::Watchdog;
 pub use wiring::{FINGERS, PowerStage};
 
@@ -93,8 +97,9 @@ pub struct Board {
 }
 
 impl Board {
-    /// Sets everything up; the bridge is off before anything else happens and stays off.
-    pub fn new(device: pac::Peripherals, memory: &'static mut Memory, settings: Settings) -> Self {
+    /// Sets everything up, with what the start has [found](at_start); the bridge is off before anything else happens and
+    /// stays off.
+    pub fn new(device: pac::Peripherals, memory: &'static mut Memory, found: &Found) -> Self {
         // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
         // again, and the log tells.
         let watchdog = Watchdog::start(device.IWDG);
@@ -145,7 +150,16 @@ impl Board {
             inlet,
             &mut rcc,
         );
-        let console = Console::new(outlet, telemetry_out, outbox, settings);
+        let desk = match &found.kept {
+            Ok(Some(kept)) => Desk::restored(kept),
+            Ok(None) | Err(_) => Desk::new(Settings::default()),
+        };
+        // The answer to the line that the device was started anew by.
+        let first = found.stored.as_ref().map(|stored| match stored {
+            Ok(()) => Ok(Reply::Done),
+            Err(error) => Err(Error::NotStored(Reason::of(error))),
+        });
+        let console = Console::new(outlet, telemetry_out, outbox, desk, first);
 
         let inputs = sampler::Inputs {
             display: gpioa.pa0.into_analog(),

@@ -85,6 +85,11 @@ impl Outbox {
         self.empty.ready()
     }
 
+    /// Whether nothing waits; the last frame may still be on the line.
+    pub fn is_empty(&self) -> bool {
+        self.empty.len() == FRAMES - 1
+    }
+
     /// Sends one line, or nothing if there is no room.
     pub fn send(&mut self, line: &impl fmt::Display) {
         let Some(mut frame) = self.empty.dequeue() else {

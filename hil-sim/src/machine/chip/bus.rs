@@ -68,13 +68,14 @@ impl<W: Wiring> Chip<W> {
         self.nvic = Nvic::new();
         self.ppb = Ppb::new();
         self.ppb.slept = slept;
-        let flags = match cause {
-            ResetCause::PowerOn => 0,
-            _ => self.rcc.flags(),
+        self.rcc = match cause {
+            ResetCause::PowerOn => {
+                self.flash.cells.power_up();
+                Rcc::new(cause, 0)
+            }
+            _ => Rcc::new(cause, self.rcc.flags()),
         };
-        self.rcc = Rcc::new(cause, flags);
         self.flash.reset();
-        self.flash.cells.power_up();
         self.ports = std::array::from_fn(Port::new);
         self.exti = Exti::default();
         self.dma = [Dma::new(1), Dma::new(2)];
