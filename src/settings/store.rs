@@ -5,7 +5,10 @@ use core::fmt;
 use embassy_futures::block_on;
 use embedded_storage::nor_flash::NorFlash;
 use sequential_storage::Error;
-use sequential_storage::cache::{Cache, Uncached};
+use sequential_storage::cache::Cache;
+use sequential_storage::cache::key_pointers::ArrayKeyPointers;
+use sequential_storage::cache::page_pointers::ArrayPagePointers;
+use sequential_storage::cache::page_states::ArrayPageStates;
 use sequential_storage::map::{MapConfig, MapStorage};
 
 use super::{Kept, LONGEST, SectorError, Sectors, StoredError, decode, encode};
@@ -13,14 +16,15 @@ use super::{Kept, LONGEST, SectorError, Sectors, StoredError, decode, encode};
 /// Sectors that the records take turns in.
 const SECTORS: usize = 3;
 
-type Uncaching = Cache<Uncached, Uncached, Uncached>;
+/// Where the newest record is. Without, the whole flash is searched for each record of a page that is given up: seconds.
+type Remembered = Cache<ArrayPageStates<SECTORS>, ArrayPagePointers<SECTORS>, ArrayKeyPointers<(), 1>, ()>;
 
 /// The settings of a device with that many fingers, in three sectors of a flash.
 ///
 /// Everything waits until the flash is done. Power may fail at any time: what is stored then is what was stored before,
 /// or what was to be.
 pub struct Store<F: NorFlash, const FINGERS: usize> {
-    map: MapStorage<(), Sectors<F>, Uncaching>,
+    map: MapStorage<(), Sectors<F>, Remembered>,
     buffer: [u8; LONGEST],
 }
 
@@ -59,10 +63,18 @@ impl<E: fmt::Debug> From<Error<SectorError<E>>> for StoreError<E> {
 
 impl<F: NorFlash, const FINGERS: usize> Store<F, FINGERS> {
     /// In the first three sectors of `flash`.
-    pub const fn new(flash: F) -> Self {
+    pub fn new(flash: F) -> Self {
         let end = (SECTORS * Sectors::<F>::BYTES) as u32;
         Self {
-            map: MapStorage::new(Sectors::new(flash), MapConfig::new(0..end), Cache::new_uncached()),
+            map: MapStorage::new(
+                Sectors::new(flash),
+                MapConfig::new(0..end),
+                Cache::new(
+                    ArrayPageStates::new(),
+                    ArrayPagePointers::new(),
+                    ArrayKeyPointers::new(),
+                ),
+            ),
             buffer: [0; LONGEST],
         }
     }
@@ -84,6 +96,8 @@ impl<F: NorFlash, const FINGERS: usize> Store<F, FINGERS> {
     #[inline(never)]
     pub fn save(&mut self, kept: Option<&[Kept; FINGERS]>) -> Result<(), StoreError<F::Error>> {
         let bytes = encode(kept);
+        // Learns where the newest record is; what is wrong with it does not matter any more.
+        let _before = self.load();
         if let Err(error) = self.append(&bytes) {
             // Disorder in which nothing is found is not worth keeping.
             let is_disorder = matches!(error, StoreError::Corrupt);

@@ -5,7 +5,7 @@ use system_tests::image;
 use thermal_display::commission::Desk;
 use thermal_display::settings::{Kept, LONGEST, encode};
 
-use super::{numbered, saved};
+use super::{numbered, saved, turns};
 use crate::flash::{BYTES, SECTOR};
 
 /// Where the settings' sectors lie in the flash.
@@ -157,38 +157,55 @@ fn corrupt_settings_trip_the_device_until_it_is_told_others() {
     assert!(!state.contains("settings-corrupt"), "{state}");
 }
 
+/// Saves on the image with power that is cut in some of the operations, and what is found then: the number of times it was
+/// the old settings, and the new ones.
+fn cut(firmware: &Firmware, cells: &Cells, number: u32, operations: &[u64]) -> (u32, u32) {
+    let [old, new] = [number - 1, number].map(|number| lines(numbered(number).as_ref()));
+    let (mut found_old, mut found_new) = (0, 0);
+    for nth in operations {
+        let mut device = Device::new(firmware, cells);
+        for line in &new {
+            assert_eq!(device.tell(line.trim_start_matches("ok ")), "ok");
+        }
+        device.0.flash_mut().cut_power_at(*nth, nth ^ u64::from(number));
+        device.ask("save", START + START);
+        let causes: Vec<_> = device.0.resets().iter().map(|reset| reset.cause).collect();
+        let expected = [ResetCause::PowerOn, ResetCause::Software, ResetCause::PowerOn];
+        assert_eq!(causes, expected, "save {number}, cut in operation {nth}");
+        let found = device.settings();
+        assert!(
+            found == old || found == new,
+            "save {number}, cut in operation {nth}: {found:?}"
+        );
+        found_old += u32::from(found == old);
+        found_new += u32::from(found == new);
+    }
+    (found_old, found_new)
+}
+
 #[test]
 fn the_image_loses_nothing_in_any_operation() {
     let firmware = firmware();
-    // The 108th record begins the second sector, the 322nd the first one again: nothing is erased between them.
-    for (saves, every) in [(3, 4), (107, 3), (321, 3)] {
-        let (cells, new) = (after(saves), numbered::<1>(saves));
-        let (old, new) = (lines(numbered::<1>(saves - 1).as_ref()), lines(new.as_ref()));
-        let whole = saved::<1>(&cells, numbered::<1>(saves).as_ref(), None);
-        let operations = whole.operations() - cells.operations();
-        let (mut found_old, mut found_new) = (0, 0);
-        for nth in (1..=operations).step_by(every) {
-            let mut device = Device::new(&firmware, &cells);
-            for line in &new {
-                assert_eq!(device.tell(line.trim_start_matches("ok ")), "ok");
-            }
-            device.0.flash_mut().cut_power_at(nth, nth);
-            device.ask("save", START + START);
-            let causes: Vec<_> = device.0.resets().iter().map(|reset| reset.cause).collect();
-            assert_eq!(
-                causes[..3],
-                [ResetCause::PowerOn, ResetCause::Software, ResetCause::PowerOn],
-                "{nth} of {operations}"
+    let mut cells = after(1);
+    let (mut cuts, mut turned) = (0, 0);
+    for number in 1..350 {
+        let next = saved(&cells, numbered::<1>(number).as_ref(), None);
+        let operations = next.operations() - cells.operations();
+        let is_turn = turns(&cells, &next);
+        if is_turn || number == 3 {
+            // What turns to another page comes first.
+            let chosen: Vec<_> = (1..=operations)
+                .filter(|nth| nth % 4 == 0 || is_turn && *nth < 8)
+                .collect();
+            let (old, new) = cut(&firmware, &cells, number, &chosen);
+            println!(
+                "save {number} of {operations} operations: {old} times the old, {new} times the new settings"
             );
-            let found = device.settings();
-            assert!(
-                found == old || found == new,
-                "{nth} of {operations} after {saves}: {found:?}"
-            );
-            found_old += u32::from(found == old);
-            found_new += u32::from(found == new);
+            assert!(old > 0, "save {number}");
+            cuts += chosen.len();
+            turned += u32::from(is_turn);
         }
-        println!("after {saves} saves: {found_old} old, {found_new} new, of {operations} operations");
-        assert!(found_old > 0, "all the same");
+        cells = next;
     }
+    assert!(cuts >= 40 && turned >= 3, "{cuts} cuts, {turned} turns");
 }

@@ -72,6 +72,12 @@ fn append(cells: &mut Cells, record: &[u8]) -> bool {
     done.is_ok()
 }
 
+/// Whether a save has turned to another page: the sector that it begins gets its seal, the one after that loses it.
+fn turns(before: &Cells, after: &Cells) -> bool {
+    let seals = |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * flash::SECTOR..][..8].to_vec());
+    seals(before) != seals(after)
+}
+
 /// What a campaign has tried.
 #[derive(Debug, Default)]
 struct Tried {
@@ -94,10 +100,7 @@ fn campaign<const FINGERS: usize>(saves: u32, stride: u32) -> Tried {
         let after = saved(&cells, settings, None);
         assert_eq!(loaded(&after).as_ref(), settings, "save {number}");
         let operations = after.operations() - cells.operations();
-        // To another page: the sector that is begun gets its seal, the one after it loses it.
-        let seals =
-            |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * flash::SECTOR..][..8].to_vec());
-        let turns = seals(&after) != seals(&cells);
+        let turns = turns(&cells, &after);
         tried.saves += 1;
         tried.turns += u32::from(turns);
         if turns || number % stride == 0 {
