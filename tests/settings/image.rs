@@ -18,10 +18,14 @@ const LINE: u64 = 180_000 * 12;
 #[derive(Default)]
 struct Pins {
     received: Vec<u8>,
+    /// When the last conversion and the last byte ended, cycles.
+    converted_at: u64,
+    sent_at: u64,
 }
 
 impl Wiring for Pins {
-    fn adc(&mut self, _channel: u8, _now: u64) -> u16 {
+    fn adc(&mut self, _channel: u8, now: u64) -> u16 {
+        self.converted_at = now;
         0
     }
 
@@ -29,7 +33,8 @@ impl Wiring for Pins {
         None
     }
 
-    fn uart_tx(&mut self, byte: u8, _at: u64, _baud: u32) {
+    fn uart_tx(&mut self, byte: u8, at: u64, _baud: u32) {
+        self.sent_at = at;
         self.received.push(byte);
     }
 }
@@ -155,6 +160,50 @@ fn corrupt_settings_trip_the_device_until_it_is_told_others() {
     assert_eq!(device.ask("save", START), ["ok"]);
     let state = device.tell("state");
     assert!(!state.contains("settings-corrupt"), "{state}");
+}
+
+/// Milliseconds that 16 MHz take for these cycles.
+fn start_ms(cycles: u64) -> f64 {
+    cycles as f64 / 16e3
+}
+
+/// From power-up to the first conversion; nothing but the start is slower than 180 MHz.
+fn first_conversion_ms(firmware: &Firmware, cells: &Cells) -> f64 {
+    let mut machine = Machine::new(firmware, Pins::default()).expect("a machine");
+    assert!(machine.flash_mut().load(BEGIN, cells.bytes()));
+    while machine.wiring().converted_at == 0 {
+        let soon = machine.now() + 1000;
+        machine.run_until(soon).expect("the image runs");
+    }
+    start_ms(machine.wiring().converted_at)
+}
+
+/// From the reset that a save makes to its answer.
+fn save_ms(firmware: &Firmware, cells: &Cells, number: u32) -> f64 {
+    let mut device = Device::new(firmware, cells);
+    for line in lines(numbered(number).as_ref()) {
+        assert_eq!(device.tell(line.trim_start_matches("ok ")), "ok");
+    }
+    assert_eq!(device.ask("save", START), ["ok"]);
+    let reset = device.0.resets().last().expect("resets").at;
+    start_ms(device.0.wiring().sent_at - reset)
+}
+
+#[test]
+fn the_flash_delays_a_start_by_little() {
+    let firmware = firmware();
+    let never = first_conversion_ms(&firmware, &after(0));
+    let (one, full) = (after(1), after(112));
+    let [with_one, with_most] = [&one, &full].map(|cells| first_conversion_ms(&firmware, cells));
+    println!("start: {never:.1} ms, {with_one:.1} with one record, {with_most:.1} with a page of them");
+    assert!(with_most - never < 100.0);
+    let [first, second, turning] =
+        [(&after(0), 0), (&one, 1), (&full, 112)].map(|(cells, number)| save_ms(&firmware, cells, number));
+    println!(
+        "save: {first:.1} ms the first time, {second:.1} then, {turning:.1} when it turns to another page"
+    );
+    // 250 ms of that are the sector's erasure (DS10693, typical).
+    assert!(second < 350.0 && turning - second > 250.0 && turning < 1000.0);
 }
 
 /// Saves on the image with power that is cut in some of the operations, and what is found then: the number of times it was
