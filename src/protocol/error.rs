@@ -12,7 +12,7 @@ use crate::guard::Fault;
 
 /// The beginning of a word from the host.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Word(heapless::String<14>);
+pub struct Word(heapless::String<20>);
 
 impl From<&str> for Word {
     fn from(word: &str) -> Self {
@@ -28,7 +28,7 @@ impl From<&str> for Word {
 
 /// Why the hardware refused, in its own words.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Reason(heapless::String<120>);
+pub struct Reason(heapless::String<56>);
 
 impl Reason {
     /// As it is displayed, cut to what a line holds.
@@ -54,7 +54,7 @@ pub struct Number {
     pub max: f64,
 }
 
-/// Why a line was refused; `Display` writes the answer without its end, at most 160 bytes.
+/// Why a line was refused; `Display` writes the answer without its end, at most 168 bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
     /// The bytes made no line.

@@ -60,8 +60,10 @@ impl Kept {
     #[must_use]
     #[inline(never)]
     pub fn settings(&self) -> Settings {
-        let mut settings = Settings::default();
-        settings.calibration = self.calibration;
+        let mut settings = Settings {
+            calibration: self.calibration,
+            ..Settings::default()
+        };
         settings.retune(self.tile);
         settings
     }

@@ -37,9 +37,12 @@ pub(super) fn set_up<W: Wiring + 'static>(
     );
     // BOOT0 is low: the flash also appears at 0 (RM0390 2.4)
     for base in [0, FLASH_BASE] {
-        let whole = [0..flash.len()];
-        let around = [0..from, to..flash.len()];
-        let parts = if changes { around.as_slice() } else { &whole };
+        // Whole pages either way, and never empty.
+        let parts = if changes {
+            [0..from, to..flash.len()]
+        } else {
+            [0..to, to..flash.len()]
+        };
         for part in parts {
             let (base, part) = (u64::from(base) + part.start as u64, &flash[part.clone()]);
             cpu.mem_map(base, part.len() as u64, Prot::READ | Prot::EXEC)?;

@@ -29,7 +29,7 @@ const BAUD: u32 = 1_000_000;
 pub const FRAMES: usize = 4;
 
 /// Longest line to the host, in bytes, with its end.
-const FRAME_MAX: usize = 164;
+const FRAME_MAX: usize = 172;
 
 /// The store of a frame.
 pub type Bytes = Vec<u8, FRAME_MAX>;

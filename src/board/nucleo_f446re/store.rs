@@ -15,7 +15,7 @@ use super::flash::{FlashError, SettingsFlash};
 
 /// Says that something waits. What power-up leaves in the RAM is not that, and not followed by its checksum.
 const WAITING: u32 = 0x7361_7665;
-/// Longer than a frame and what the USART holds take at 1 Mbaud, at 180 MHz: 1.7 ms.
+/// Longer than a frame and what the USART holds take at 1 Mbaud, at 180 MHz: 1.74 ms.
 const LAST_FRAME_CYCLES: u32 = 180_000_000 / 1000 * 2;
 
 /// What waits for the next start.
