@@ -12,7 +12,7 @@ pub struct Console {
     lines: Outlet<'static>,
     telemetry: Consumer<'static, Addressed<Telemetry>>,
     outbox: Outbox,
-    desk: Desk<FINGERS>,
+    desk: &'static mut Desk<FINGERS>,
     /// What the device says first.
     first: Option<Result<Reply, Error>>,
     /// What is to be stored by starting anew.
@@ -25,7 +25,7 @@ impl Console {
         lines: Outlet<'static>,
         telemetry: Consumer<'static, Addressed<Telemetry>>,
         outbox: Outbox,
-        desk: Desk<FINGERS>,
+        desk: &'static mut Desk<FINGERS>,
         first: Option<Result<Reply, Error>>,
     ) -> Self {
         Self {

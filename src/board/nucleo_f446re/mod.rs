@@ -63,6 +63,8 @@ pub struct Memory {
     links: serial::Links,
     mailbox: Mailbox,
     telemetry: Queue<Addressed<Telemetry>, { TELEMETRY_DEPTH + 1 }>,
+    // Here, as moving it once samples are taken makes the first tick late.
+    desk: Option<Desk<FINGERS>>,
 }
 
 impl Memory {
@@ -74,6 +76,7 @@ impl Memory {
             links: serial::Links::new(),
             mailbox: Mailbox::new(),
             telemetry: Queue::new(),
+            desk: None,
         }
     }
 }
@@ -150,10 +153,10 @@ impl Board {
             inlet,
             &mut rcc,
         );
-        let desk = match &found.kept {
+        let desk = memory.desk.insert(match &found.kept {
             Ok(Some(kept)) => Desk::restored(kept),
             Ok(None) | Err(_) => Desk::new(Settings::default()),
-        };
+        });
         // The answer to the line that the device was started anew by.
         let first = found.stored.as_ref().map(|stored| match stored {
             Ok(()) => Ok(Reply::Done),
