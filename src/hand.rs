@@ -7,7 +7,7 @@ use crate::drive::Outputs;
 use crate::guard::{Cause, Fault};
 use crate::protocol::{Addressed, Command, Error, Reply, Request, Telemetry};
 use crate::sense::Samples;
-use crate::settings::Settings;
+use crate::settings::{Kept, Settings};
 
 /// As many stations as the device has fingers, ten at most. They share nothing.
 #[derive(Clone, Debug)]
@@ -31,6 +31,14 @@ impl<const FINGERS: usize> Hand<FINGERS> {
         }
         Self {
             stations: array::from_fn(|_| one.clone()),
+        }
+    }
+
+    /// Reads and controls by what was kept. `f64` in software, once for each finger.
+    #[inline(never)]
+    pub fn restore(&mut self, kept: &[Kept; FINGERS]) {
+        for (station, kept) in self.stations.iter_mut().zip(kept) {
+            station.restore(&kept.settings());
         }
     }
 

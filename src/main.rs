@@ -31,7 +31,7 @@ mod app {
 
     use crate::board::{
         Board, Console, End, FINGERS, Memory, PowerStage, Receiver, Record, Sampler, Task, Transmitter,
-        Vigil, Watchdog, WindowWatchdog, first_cause, stack_is_overrun,
+        Vigil, Watchdog, WindowWatchdog, at_start, first_cause, stack_is_overrun,
     };
 
     #[shared]
@@ -60,11 +60,15 @@ mod app {
 
     #[init(local = [memory: Memory = Memory::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let settings = Settings::default();
+        // Before anything that the flash could delay.
+        let found = at_start(&cx.device.FLASH);
         // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
-        let cause = first_cause(&cx.device);
-        let hand = Hand::after(cause, &settings);
-        let board = Board::new(cx.device, cx.local.memory, settings);
+        let cause = first_cause(&cx.device, &found);
+        let mut hand = Hand::after(cause, &Settings::default());
+        if let Ok(Some(kept)) = &found.kept {
+            hand.restore(kept);
+        }
+        let board = Board::new(cx.device, cx.local.memory, &found);
         let shared = Shared {
             hand,
             vigil: Vigil::new(),

@@ -1,10 +1,16 @@
 //! What differs between two built devices, in physical units.
 
 mod calibration;
+mod sectors;
+mod store;
+mod stored;
 mod tile;
 
 pub(crate) use calibration::rounded;
 pub use calibration::{BORDERS, Calibration, Correction, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES};
+pub use sectors::{SectorError, Sectors};
+pub use store::{Store, StoreError};
+pub use stored::{Kept, LONGEST, StoredBytes, StoredError, decode, encode};
 pub use tile::Tile;
 
 use contact_model::material::{REFERENCE_DISPLAY, Surface};
@@ -32,6 +38,15 @@ pub struct Settings {
     pub calibration: Calibration,
     /// What tuning has found; the gains follow from it.
     pub tile: Tile,
+}
+
+impl Settings {
+    /// Controls another tile.
+    #[inline(never)]
+    pub fn retune(&mut self, tile: Tile) {
+        self.tile = tile;
+        [self.gains, self.gains_10hz] = Gains::of_tile(&tile);
+    }
 }
 
 /// A thermistor to ground under a pull-up resistor, read ratiometrically.

@@ -7,12 +7,12 @@ use contact_model::material::{MATERIALS, SKIN};
 
 use crate::TICK_HZ;
 use crate::commission::{Aborted, Experiment, PointError};
-use crate::control::{Control, Inputs, Law, Legs, Voltage, Watt};
+use crate::control::{Control, Inputs, Law, Legs, Tuned, Voltage, Watt};
 use crate::drive::{Current, Drive, Outputs, SafeCurrent};
 use crate::guard::{self, Before, Cause, Fault, Progress, SelfTest, Setpoint, Sound, State, Watch};
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
 use crate::render::{Mode, Render, Scene, Wanted};
-use crate::sense::{Averages, Readings, Samples, Sensors, Touch};
+use crate::sense::{Averages, Calibrated, Readings, Samples, Sensors, Touch};
 use crate::settings::Settings;
 
 /// One finger's display: samples in, bridge command out, once per tick.
@@ -96,6 +96,12 @@ impl Station {
             stream_ticks: 0,
             telemetry: Telemetry::before_first_tick(),
         }
+    }
+
+    /// Reads and controls by other settings of the same class.
+    pub(crate) fn restore(&mut self, settings: &Settings) {
+        self.sensors.recalibrate(&Calibrated::new(settings));
+        self.control.retune(&Tuned::new(settings));
     }
 
     /// One control tick: sense, render, control, guard.

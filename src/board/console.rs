@@ -1,34 +1,40 @@
 //! The device's side of the conversation with the host.
 
 use heapless::spsc::Consumer;
-use thermal_display::commission::Desk;
+use thermal_display::commission::{Desk, Order};
 use thermal_display::protocol::{Addressed, Error, Reply, Request, Telemetry};
-use thermal_display::settings::Settings;
 
 use super::mailbox::Outlet;
-use super::{FINGERS, Outbox};
+use super::{FINGERS, Outbox, restart};
 
 /// Answers lines and sends telemetry, as far as there is room to send.
 pub struct Console {
     lines: Outlet<'static>,
     telemetry: Consumer<'static, Addressed<Telemetry>>,
     outbox: Outbox,
-    desk: Desk<FINGERS>,
+    desk: &'static mut Desk<FINGERS>,
+    /// What the device says first.
+    first: Option<Result<Reply, Error>>,
+    /// What is to be stored by starting anew.
+    order: Option<Order>,
 }
 
 impl Console {
-    /// A console that answers `lines` and sends `telemetry` through `outbox`, on a device with `settings`.
+    /// A console that answers `lines` by its `desk` and sends `telemetry` through `outbox`, after what is to be said `first`.
     pub fn new(
         lines: Outlet<'static>,
         telemetry: Consumer<'static, Addressed<Telemetry>>,
         outbox: Outbox,
-        settings: Settings,
+        desk: &'static mut Desk<FINGERS>,
+        first: Option<Result<Reply, Error>>,
     ) -> Self {
         Self {
             lines,
             telemetry,
             outbox,
-            desk: Desk::new(settings),
+            desk,
+            first,
+            order: None,
         }
     }
 
@@ -39,11 +45,27 @@ impl Console {
     /// that takes longer than executing and needs no lock.
     pub fn serve(&mut self, mut execute: impl FnMut(Request) -> Result<Addressed<Reply>, Addressed<Error>>) {
         while self.outbox.has_room() {
-            if let Some(line) = self.lines.take() {
+            if let Some(order) = self.order {
+                if self.outbox.is_empty() {
+                    restart(&self.desk.record(order));
+                }
+                // The end of each line leads here again.
+                return;
+            }
+            if let Some(first) = self.first.take() {
+                match first {
+                    Ok(reply) => self.outbox.send(&reply),
+                    Err(error) => self.outbox.send(&error),
+                }
+            } else if let Some(line) = self.lines.take() {
                 let answer = line
                     .map_err(|error| Addressed::device(Error::from(error)))
                     .and_then(|line| self.desk.answer(&line, &mut execute));
                 match answer {
+                    Ok(Addressed {
+                        said: Reply::Restart(order),
+                        ..
+                    }) => self.order = Some(order),
                     Ok(reply) => self.outbox.send(&reply),
                     Err(error) => {
                         defmt::warn!("line refused: {}", defmt::Display2Format(&error));

@@ -16,6 +16,6 @@ pub use console::Console;
 #[cfg(feature = "nucleo-f446re")]
 pub use nucleo_f446re::{
     Board, End, FINGERS, Memory, Outbox, PowerStage, Receiver, Record, Sampler, Transmitter, Watchdog,
-    WindowWatchdog, first_cause, pac, stack_is_overrun,
+    WindowWatchdog, at_start, first_cause, pac, restart, stack_is_overrun,
 };
 pub use vigil::{Task, Vigil};

@@ -10,7 +10,7 @@ use crate::settings::Settings;
 /// The settings of as many fingers as the device has, ten at most, and what answers their lines.
 #[derive(Clone, Debug)]
 pub struct Desk<const FINGERS: usize> {
-    fingers: [Service; FINGERS],
+    pub(super) fingers: [Service; FINGERS],
 }
 
 impl<const FINGERS: usize> Desk<FINGERS> {
@@ -43,6 +43,9 @@ impl<const FINGERS: usize> Desk<FINGERS> {
             return execute(Request { finger, said });
         };
         let request = request.map_err(of)?;
+        if let Commissioning::Keep(order) = request {
+            return self.accept(order, finger, execute);
+        }
         let finger = match request {
             Commissioning::Settings(_) | Commissioning::Margins => finger.or(first_of(FINGERS)),
             // Milliseconds of `f64` each, which the watchdog waits for once.

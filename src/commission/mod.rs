@@ -7,6 +7,7 @@ mod desk;
 mod experiment;
 mod fit;
 mod identify;
+mod keep;
 mod margins;
 mod points;
 mod request;
@@ -17,9 +18,11 @@ mod sums;
 pub use desk::Desk;
 pub use experiment::{Aborted, Experiment, Row};
 pub use identify::NoTile;
+pub use keep::Order;
 pub use margins::Margins;
 pub use points::{FARTHEST_K, POINTS, Point, PointError, Points};
 pub use request::{SENSORS, STEPS_A_LINE};
+pub(crate) use request::{calibration_beyond, tile_beyond};
 
 #[cfg(test)]
 mod tests;

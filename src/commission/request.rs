@@ -1,5 +1,6 @@
 //! Lines that commission the device.
 
+use super::Order;
 use crate::protocol::{Error, Number, number};
 use crate::sense::THERMISTORS;
 use crate::settings::{BORDERS, Calibration, Correction, FIRST_BORDER, Tile, rounded};
@@ -46,6 +47,8 @@ pub enum Request {
     Tuned,
     /// `margins`.
     Margins,
+    /// `save` or `forget`, for [`super::Desk`].
+    Keep(Order),
 }
 
 static REFERENCE: Number = Number {
@@ -140,6 +143,8 @@ impl Request {
             "settings" => settings(&mut words),
             "set" => set(&mut words),
             "margins" => Ok(Self::Margins),
+            "save" => Ok(Self::Keep(Order::Save)),
+            "forget" => Ok(Self::Keep(Order::Forget)),
             "tune" => match words.next()? {
                 "result" => Ok(Self::Tuned),
                 other => Err(Error::Extra(other.into())),
@@ -172,23 +177,30 @@ fn whole<'a>(
 
 /// Whether the lines of a calibration are within what they may say.
 pub fn is_settable(calibration: &Calibration) -> bool {
-    let within = |value: f64, allowed: &Number| (allowed.min..=allowed.max).contains(&value);
-    let steps = calibration.steps_counts.iter().all(|step| within(*step, &STEP));
-    let mut corrections = calibration.corrections.iter().map(|correction| {
+    calibration_beyond(calibration).is_none()
+}
+
+/// The first value of a calibration that no line could set, and what is allowed.
+pub fn calibration_beyond(calibration: &Calibration) -> Option<(&'static Number, f64)> {
+    let steps = calibration.steps_counts.iter().map(|step| (&STEP, *step));
+    let corrections = calibration.corrections.iter().flat_map(|correction| {
         let Correction {
             offset_k,
             slope,
             curvature_1_k,
         } = *correction;
-        [offset_k, slope, curvature_1_k]
+        CORRECTION.iter().zip([offset_k, slope, curvature_1_k])
     });
-    steps
-        && corrections.all(|values| {
-            values
-                .into_iter()
-                .zip(&CORRECTION)
-                .all(|(v, allowed)| within(v, allowed))
-        })
+    steps.chain(corrections).find(is_beyond)
+}
+
+/// The first value of a tile that no line could set, and what is allowed.
+pub fn tile_beyond(tile: &Tile) -> Option<(&'static Number, f64)> {
+    TILE.iter().zip(tile.to_array()).find(is_beyond)
+}
+
+fn is_beyond((allowed, value): &(&'static Number, f64)) -> bool {
+    !(allowed.min..=allowed.max).contains(value)
 }
 
 fn sensor<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<usize, Error> {

@@ -10,7 +10,7 @@ use super::sums::ROWS;
 use crate::control::Tuned;
 use crate::protocol::{Command, Error, Reply, Setting};
 use crate::sense::Calibrated;
-use crate::settings::{BORDERS, Calibration, Correction, FIRST_BORDER, Gains, Settings, Tile};
+use crate::settings::{BORDERS, Calibration, Correction, FIRST_BORDER, Settings};
 
 /// Lines that hold all commissioned settings: the steps, a correction each, the tile.
 pub const SETTINGS_LINES: usize = BORDERS.div_ceil(STEPS_A_LINE) + SENSORS.len() + 1;
@@ -77,11 +77,13 @@ impl Service {
                 execute(self.calibrated())
             }
             Request::SetTile(tile) => {
-                self.retune(tile);
+                self.settings.retune(tile);
                 execute(Command::Retune(Tuned::new(&self.settings)))
             }
             Request::Tuned => self.tuned(&mut execute),
             Request::Margins => Ok(self.tile()),
+            // Of all fingers at once.
+            Request::Keep(order) => Err(Error::WholeDevice(order.name())),
         }
     }
 
@@ -93,14 +95,9 @@ impl Service {
             };
             *row = sums;
         }
-        self.retune(identify(&rows).map_err(Error::NoTile)?);
+        self.settings.retune(identify(&rows).map_err(Error::NoTile)?);
         execute(Command::Retune(Tuned::new(&self.settings)))?;
         Ok(self.tile())
-    }
-
-    fn retune(&mut self, tile: Tile) {
-        self.settings.tile = tile;
-        [self.settings.gains, self.settings.gains_10hz] = Gains::of_tile(&tile);
     }
 
     fn tile(&self) -> Reply {

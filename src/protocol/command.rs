@@ -64,7 +64,7 @@ pub enum Command {
 
 impl Command {
     /// Words that begin a command.
-    pub const WORDS: [&'static str; 18] = [
+    pub const WORDS: [&'static str; 20] = [
         "id",
         "state",
         "stream",
@@ -83,6 +83,8 @@ impl Command {
         "margins",
         "settings",
         "set",
+        "save",
+        "forget",
     ];
 
     /// Reads one line. Does the costly part of a command (soft-float set-up of a material), so that

@@ -26,6 +26,21 @@ impl From<&str> for Word {
     }
 }
 
+/// Why the hardware refused, in its own words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Reason(heapless::String<56>);
+
+impl Reason {
+    /// As it is displayed, cut to what a line holds.
+    #[must_use]
+    pub fn of(why: &impl fmt::Display) -> Self {
+        let mut text = heapless::String::new();
+        // The beginning of what does not fit says enough.
+        let _ = fmt::Write::write_fmt(&mut text, format_args!("{why}"));
+        Self(text)
+    }
+}
+
 /// A number that a command takes.
 #[derive(Debug, PartialEq)]
 pub struct Number {
@@ -39,7 +54,7 @@ pub struct Number {
     pub max: f64,
 }
 
-/// Why a line was refused; `Display` writes the answer without its end, at most 160 bytes.
+/// Why a line was refused; `Display` writes the answer without its end, at most 168 bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
     /// The bytes made no line.
@@ -78,6 +93,12 @@ pub enum Error {
     AlreadyStarted,
     /// `hold` or `tune` before `arm`.
     NeedsArmed(&'static str),
+    /// Settings are stored while the bridge is off only.
+    NeedsOff(&'static str),
+    /// A command that no single finger can be given.
+    WholeDevice(&'static str),
+    /// Settings could not be stored.
+    NotStored(Reason),
     /// Not while an object is presented.
     Presenting,
     /// `tune` with a finger on the display.
@@ -166,6 +187,9 @@ impl fmt::Display for Error {
             Self::NoMaterial => f.write_str("start needs a material first"),
             Self::AlreadyStarted => f.write_str("already started; arm takes the object away"),
             Self::NeedsArmed(command) => write!(f, "{command} needs the state armed"),
+            Self::NeedsOff(command) => write!(f, "{command} needs the bridge off: abort first"),
+            Self::WholeDevice(command) => write!(f, "{command} is for all fingers at once"),
+            Self::NotStored(Reason(why)) => write!(f, "not stored: {why}"),
             Self::Presenting => f.write_str("not while an object is presented: abort or arm first"),
             Self::Touched => f.write_str("tune needs a display without a finger on it"),
             Self::NotTuned => f.write_str("nothing was tuned since arm; tune first"),

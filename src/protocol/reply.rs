@@ -5,7 +5,7 @@ use core::fmt;
 use contact_model::fixed_point::Celsius;
 
 use super::text::Text;
-use crate::commission::{Margins, Row, STEPS_A_LINE};
+use crate::commission::{Margins, Order, Row, STEPS_A_LINE};
 use crate::control::Law;
 use crate::guard::{Cause, State};
 use crate::render::Mode;
@@ -14,11 +14,13 @@ use crate::settings::{Calibration, Correction, Tile};
 
 use crate::{SCANS_PER_SECOND, TICK_HZ};
 
-/// An answer; `Display` writes the line without its end, at most 160 bytes but for a row, which stays in the device.
+/// An answer; `Display` writes the line without its end, at most 168 bytes but for a row, which stays in the device.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
     /// It is done.
     Done,
+    /// It will be done by a device that starts anew, which then answers so.
+    Restart(Order),
     /// Answer to `id`.
     Identity {
         /// Fingers of the device.
@@ -69,7 +71,7 @@ pub struct Status {
 impl fmt::Display for Reply {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Done => f.write_str("ok"),
+            Self::Done | Self::Restart(_) => f.write_str("ok"),
             Self::Identity { fingers } => write!(
                 f,
                 "ok {} {} fingers={fingers} tick_hz={TICK_HZ} scan_hz={SCANS_PER_SECOND}",

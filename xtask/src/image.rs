@@ -15,13 +15,18 @@ impl Region {
     fn holds(self, address: u64) -> bool {
         (self.origin..self.origin + self.length).contains(&address)
     }
+
+    fn meets(self, address: u64, bytes: u64) -> bool {
+        address < self.origin + self.length && self.origin < address + bytes
+    }
 }
 
-/// The regions `FLASH` and `RAM` of `memory.x`.
+/// The regions `FLASH`, `RAM` and `SETTINGS`, a part of the flash, of `memory.x`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Memory {
     flash: Region,
     ram: Region,
+    settings: Region,
 }
 
 impl Memory {
@@ -52,6 +57,7 @@ impl Memory {
         Ok(Self {
             flash: region("FLASH")?,
             ram: region("RAM")?,
+            settings: region("SETTINGS")?,
         })
     }
 }
@@ -125,6 +131,9 @@ impl Usage {
             if !in_ram && !memory.flash.holds(*address) {
                 bail!("section {name} at {address:#010x} lies neither in FLASH nor in RAM");
             }
+            if memory.settings.meets(*address, *size) {
+                bail!("section {name} at {address:#010x} lies where the settings are");
+            }
             usage.flash += if *stored { *size } else { 0 };
             usage.ram += if in_ram { *size } else { 0 };
         }
@@ -133,18 +142,17 @@ impl Usage {
 
     /// Two lines: what is used of what there is.
     pub fn against(&self, memory: &Memory) -> String {
-        let line = |used: u64, region: Region| {
-            let percent = 100.0 * used as f64 / region.length as f64;
+        let line = |used: u64, length: u64| {
+            let percent = 100.0 * used as f64 / length as f64;
             format!(
-                "{used:>7} of {} bytes ({percent:.1} % of {} KiB)",
-                region.length,
-                region.length >> 10
+                "{used:>7} of {length} bytes ({percent:.1} % of {} KiB)",
+                length >> 10
             )
         };
         format!(
-            "flash  {}\nRAM    {}, the rest is the stack's",
-            line(self.flash, memory.flash),
-            line(self.ram, memory.ram)
+            "flash  {}, without the settings'\nRAM    {}, the rest is the stack's",
+            line(self.flash, memory.flash.length - memory.settings.length),
+            line(self.ram, memory.ram.length)
         )
     }
 }
@@ -153,7 +161,7 @@ impl Usage {
 mod tests {
     use super::*;
 
-    /// RM0390 table 1 and section 2: 512 KiB from 0x0800_0000, 112 + 16 KiB from 0x2000_0000.
+    /// RM0390 table 1 and section 2: 512 KiB from 0x0800_0000, of them sectors 1 to 3 of 16 KiB (table 4), 112 + 16 KiB from 0x2000_0000.
     const F446RE: Memory = Memory {
         flash: Region {
             origin: 0x0800_0000,
@@ -162,6 +170,10 @@ mod tests {
         ram: Region {
             origin: 0x2000_0000,
             length: 131_072,
+        },
+        settings: Region {
+            origin: 0x0800_4000,
+            length: 49_152,
         },
     };
 
@@ -206,8 +218,8 @@ mod tests {
     fn initialised_data_counts_twice_and_zeroed_data_only_in_ram() {
         let sections = [
             section(".vector_table", 0x0800_0000, 0x1c4, true),
-            section(".text", 0x0800_01c4, 1000, true),
-            section(".rodata", 0x0800_0600, 200, true),
+            section(".text", 0x0801_0000, 1000, true),
+            section(".rodata", 0x0801_0400, 200, true),
             section(".data", 0x2000_0000, 30, true),
             section(".bss", 0x2000_0020, 4, false),
             section(".uninit", 0x2000_0024, 1024, false),
@@ -221,7 +233,17 @@ mod tests {
             }
         );
         let text = usage.against(&F446RE);
-        assert!(text.contains("1682 of 524288 bytes (0.3 % of 512 KiB)"), "{text}");
+        assert!(text.contains("1682 of 475136 bytes (0.4 % of 464 KiB)"), "{text}");
+    }
+
+    #[test]
+    fn nothing_may_lie_where_the_settings_are() {
+        for (address, size) in [(0x0800_3ffc, 8), (0x0800_fffc, 4), (0x0800_0000, 0x1_0000)] {
+            let error = Usage::of_sections(&[section(".text", address, size, true)], &F446RE).unwrap_err();
+            assert!(error.to_string().contains("where the settings are"), "{error}");
+        }
+        let beside = [section(".vector_table", 0x0800_0000, 0x4000, true)];
+        assert!(Usage::of_sections(&beside, &F446RE).is_ok());
     }
 
     #[test]

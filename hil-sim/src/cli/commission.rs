@@ -18,8 +18,8 @@ use super::{Failure, output};
 /// What follows the options in the help.
 const USAGE: &str = "\
 The operator holds a reference thermometer to each sensor, types what it shows, and lets the device find out what its
-tile is like. What happens is told on standard error. Standard output has the lines that restore the device: keep
-them, and send them to it whenever it was switched on.
+tile is like. It then has the device save that, which outlives switching off. What happens is told on standard error.
+Standard output has the same as lines, for another device with these sensors, or for this one after `forget`.
 
   hil-sim commission scenes/copper.toml > settings.txt
   hil-sim commission scenes/copper.toml --restore settings.txt

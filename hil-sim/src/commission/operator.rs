@@ -34,7 +34,7 @@ const ROOM_C: [f64; 5] = [17.7, 20.5, 23.5, 26.7, 30.5];
 const SINK_C: [f64; 5] = [17.7, 23.5, 29.3, 35.0, 40.7];
 
 /// Calibrates all sensors of the device on an engine, which is where it is [used](Plants::at_work), and has it tune
-/// itself; `watch` hears of each step.
+/// itself and keep what was found; `watch` hears of each step.
 ///
 /// # Errors
 /// The device cannot be commissioned.
@@ -77,8 +77,15 @@ pub fn commission<E: Engine>(
         operator.bench.wait(BATH_MS)?;
         operator.point("sink", |world| world.plant().sink_c())?;
     }
+    operator.begin("save what was found");
+    let settings = operator.bench.settings()?;
+    operator.bench.tell("save")?;
+    let has = operator.bench.settings()?;
+    if let Some(lost) = settings.iter().find(|line| !has.contains(line)) {
+        return Err(CommissionError::NotRestored(lost.clone()));
+    }
     Ok(Commissioned {
-        settings: operator.bench.settings()?,
+        settings,
         points: operator.points,
         tile,
     })

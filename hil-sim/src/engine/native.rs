@@ -5,12 +5,12 @@ use std::convert::Infallible;
 use std::fmt::Display;
 
 use thermal_display::Hand;
-use thermal_display::commission::Desk;
+use thermal_display::commission::{Desk, Order};
 use thermal_display::drive::{Drive, Outputs};
 use thermal_display::guard::{Cause, Fault};
-use thermal_display::protocol::{Addressed, Error, LineReader};
+use thermal_display::protocol::{Addressed, Error, LineReader, Reply};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
-use thermal_display::settings::Settings;
+use thermal_display::settings::{Kept, Settings, decode};
 
 use super::{BAUD, Cost, DeviceReset, Engine, MachineFault, NotInjected};
 use crate::machine::ResetCause;
@@ -60,6 +60,8 @@ pub struct Native {
     /// For how long no tick has run: the drive stays as it is.
     hung_ms: Option<u64>,
     resets: Vec<DeviceReset>,
+    /// Settings in what stands for the flash.
+    stored: Option<[Kept; 1]>,
     /// Half milliseconds since the first boundary.
     halves: u64,
 }
@@ -95,6 +97,7 @@ impl Native {
             outputs: OFF,
             hung_ms: None,
             resets: Vec::new(),
+            stored: None,
             halves: 0,
         };
         native.settle(more_at_first);
@@ -144,8 +147,14 @@ impl Native {
             _ => tripped,
         };
         let settings = Settings::default();
-        self.desk = Desk::new(settings);
         self.hand = Hand::after(kept, &settings);
+        self.desk = match &self.stored {
+            Some(stored) => {
+                self.hand.restore(stored);
+                Desk::restored(stored)
+            }
+            None => Desk::new(settings),
+        };
         self.reader = LineReader::new();
         (self.fault, self.outputs, self.hung_ms) = (false, OFF, None);
         self.resets.push(DeviceReset {
@@ -156,6 +165,12 @@ impl Native {
 
     fn answer(&mut self, line: &dyn Display) {
         self.outgoing.extend(format!("{line}\n").into_bytes());
+    }
+
+    /// Starts anew, with what is stored by then; how long that takes is left out.
+    fn obey(&mut self, order: Order) {
+        self.stored = decode(&self.desk.record(order)).ok().flatten();
+        self.restart(ResetCause::Software);
     }
 
     /// Lines whose last byte has arrived before the tick.
@@ -170,6 +185,13 @@ impl Native {
             let executed = line
                 .map_err(|error| Addressed::device(Error::from(error)))
                 .and_then(|line| self.desk.answer(&line, |request| self.hand.execute(request)));
+            if let Ok(Addressed {
+                said: Reply::Restart(order),
+                ..
+            }) = &executed
+            {
+                self.obey(*order);
+            }
             match executed {
                 Ok(reply) => self.answer(&reply),
                 Err(error) => self.answer(&error),

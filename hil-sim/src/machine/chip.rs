@@ -3,6 +3,7 @@
 use super::adc::{Adc, Trigger};
 use super::dma::{self, Dma, Route, Served};
 use super::exti::Exti;
+use super::flash::Flash;
 use super::gpio::{Mode, PORTS, Port};
 use super::iwdg::Iwdg;
 use super::nvic::{Nvic, exception};
@@ -54,6 +55,7 @@ pub(crate) struct Chip<W> {
     pub nvic: Nvic,
     pub ppb: Ppb,
     rcc: Rcc,
+    pub flash: Flash,
     ports: [Port; PORTS],
     exti: Exti,
     dma: [Dma; 2],
@@ -77,7 +79,7 @@ pub(crate) struct Chip<W> {
 }
 
 impl<W: Wiring> Chip<W> {
-    pub fn new(wiring: W) -> Self {
+    pub fn new(wiring: W, flash: Vec<u8>) -> Self {
         let kinds = [
             tim::ADVANCED,
             tim::WIDE,
@@ -95,6 +97,7 @@ impl<W: Wiring> Chip<W> {
             nvic: Nvic::new(),
             ppb: Ppb::new(),
             rcc: Rcc::new(ResetCause::PowerOn, 0),
+            flash: Flash::new(flash),
             ports: std::array::from_fn(Port::new),
             exti: Exti::default(),
             dma: [Dma::new(1), Dma::new(2)],

@@ -332,9 +332,6 @@ impl<W: Wiring + 'static> Machine<W> {
     /// The image cannot be started.
     pub fn power_cycle(&mut self, seed: u64) -> Result<(), Stop> {
         Xoshiro256PlusPlus::seed_from_u64(seed).fill_bytes(&mut self.fresh_ram);
-        self.cpu
-            .mem_write(RAM_BASE.into(), &self.fresh_ram)
-            .map_err(emulator)?;
         self.system_reset(ResetCause::PowerOn)
     }
 }

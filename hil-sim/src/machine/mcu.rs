@@ -2,6 +2,7 @@
 use super::chip::Chip;
 use super::elf::{Firmware, RAM_BASE, RAM_SIZE};
 use super::exceptions;
+use super::flash::Cells;
 use super::profile::Stats;
 use super::rcc::{Clocks, ResetCause};
 use super::run::Until;
@@ -45,7 +46,7 @@ impl<W: Wiring + 'static> Machine<W> {
     /// [`Stop::Emulator`] when the CPU emulation cannot be set up.
     pub fn new(firmware: &Firmware, wiring: W) -> Result<Self, Stop> {
         let flash: Arc<[u8]> = firmware.flash().into();
-        let state = State::new(Chip::new(wiring), Arc::clone(&flash));
+        let state = State::new(Chip::new(wiring, flash.to_vec()), Arc::clone(&flash));
         let mut cpu = set_up(state, &flash).map_err(emulator)?;
         let fresh_ram = vec![PAINT; RAM_SIZE as usize];
         cpu.mem_write(RAM_BASE.into(), &fresh_ram).map_err(emulator)?;
@@ -91,6 +92,17 @@ impl<W: Wiring + 'static> Machine<W> {
             self.stopped = Some(stop.clone());
         }
         result
+    }
+
+    /// The cells of the flash. An image sees what changes of sectors 1 to 3, if it leaves them blank: the settings are
+    /// there. When power fails in an operation, the machine powers up anew by itself, with other contents of the RAM.
+    pub fn flash(&self) -> &Cells {
+        &self.cpu.get_data().chip_ref().flash.cells
+    }
+
+    /// The same, to be changed between two calls of [`run_until`](Self::run_until).
+    pub fn flash_mut(&mut self) -> &mut Cells {
+        &mut self.cpu.get_data_mut().chip().flash.cells
     }
 
     /// CPU cycles since power-up.
@@ -212,6 +224,12 @@ impl<W: Wiring + 'static> Machine<W> {
             .take_while(|(now, then)| now == then)
             .count();
         Some((size - untouched) as u32)
+    }
+
+    /// The RAM as power-up finds it.
+    pub(super) fn lose_memory(&mut self) -> Result<(), Stop> {
+        let lost = self.cpu.mem_write(u64::from(RAM_BASE), &self.fresh_ram);
+        lost.map_err(emulator)
     }
 
     /// Contents of RAM or flash, for tests and probes.

@@ -16,6 +16,7 @@ mod elf;
 mod exceptions;
 mod exti;
 mod faults;
+mod flash;
 mod gpio;
 mod inject;
 mod iwdg;
@@ -39,6 +40,7 @@ mod usart;
 mod wwdg;
 
 pub use elf::{FLASH_BASE, FLASH_SIZE, Firmware, ImageError, RAM_BASE, RAM_SIZE};
+pub use flash::Cells;
 pub use inject::{CoreRegister, InjectError};
 pub use mcu::{Machine, Reset};
 pub use path::{Path, Ran};

@@ -259,7 +259,7 @@ mod tests {
 
     fn ready_at_180_mhz() -> Rcc {
         let mut rcc = Rcc::new(ResetCause::PowerOn, 0);
-        rcc.write_flash(0, 0x705).unwrap();
+        rcc.write_acr(0x705).unwrap();
         rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18, 0).unwrap();
         rcc.write(0x04, 0x2040_0000 | 8 | 360 << 6, 200).unwrap();
         rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18 | 1 << 24, 200).unwrap();
@@ -299,7 +299,7 @@ mod tests {
     #[test]
     fn too_few_wait_states_are_refused() {
         let mut rcc = ready_at_180_mhz();
-        rcc.write_flash(0, 4).unwrap();
+        rcc.write_acr(4).unwrap();
         let refusal = Refusal::FlashLatency {
             hclk_hz: 180_000_000,
             latency: 4,

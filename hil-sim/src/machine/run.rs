@@ -143,6 +143,10 @@ impl<W: Wiring + 'static> Machine<W> {
         state.chip().system_reset(cause, at);
         let at_ps = state.chip().time.ps_at(at);
         state.cycles += held;
+        if cause == ResetCause::PowerOn {
+            self.lose_memory()?;
+        }
+        let state = self.cpu.get_data_mut();
         (
             state.attention,
             state.refused,

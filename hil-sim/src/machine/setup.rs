@@ -1,6 +1,7 @@
 //! Memories and hooks of the CPU emulation.
 use super::Wiring;
 use super::elf::{FLASH_BASE, FLASH_SIZE, RAM_BASE, RAM_SIZE};
+use super::flash::{Flash, SETTINGS};
 use super::state::{self, Cpu, Event, State};
 use unicorn_engine::{
     Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error,
@@ -28,10 +29,42 @@ pub(super) fn set_up<W: Wiring + 'static>(
 ) -> Result<Cpu<'static, W>, uc_error> {
     let mut cpu = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::MCLASS, state)?;
     cpu.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32)?;
+    let changes = Flash::has_settings(flash);
+    let (from, to) = (
+        (SETTINGS.start - FLASH_BASE) as usize,
+        (SETTINGS.end - FLASH_BASE) as usize,
+    );
     // BOOT0 is low: the flash also appears at 0 (RM0390 2.4)
     for base in [0, FLASH_BASE] {
-        cpu.mem_map(u64::from(base), flash.len() as u64, Prot::READ | Prot::EXEC)?;
-        cpu.mem_write(u64::from(base), flash)?;
+        // Whole pages either way, and never empty.
+        let parts = if changes {
+            [0..from, to..flash.len()]
+        } else {
+            [0..to, to..flash.len()]
+        };
+        for part in parts {
+            let (base, part) = (u64::from(base) + part.start as u64, &flash[part.clone()]);
+            cpu.mem_map(base, part.len() as u64, Prot::READ | Prot::EXEC)?;
+            cpu.mem_write(base, part)?;
+        }
+        if changes {
+            cpu.mmio_map(
+                u64::from(base) + from as u64,
+                (to - from) as u64,
+                Some(|cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize| {
+                    u64::from(state::on_flash_read(
+                        cpu,
+                        SETTINGS.start + offset as u32,
+                        bytes as u8,
+                    ))
+                }),
+                Some(
+                    |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize, value: u64| {
+                        state::on_flash_write(cpu, SETTINGS.start + offset as u32, bytes as u8, value as u32);
+                    },
+                ),
+            )?;
+        }
     }
     cpu.mem_map(u64::from(RAM_BASE), u64::from(RAM_SIZE), Prot::ALL)?;
     for (base, size) in DEVICES {

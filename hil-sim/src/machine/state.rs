@@ -126,6 +126,11 @@ impl<W: Wiring> State<W> {
         true
     }
 
+    /// Code stands still while the flash that it is in is busy; the registers still show that in the same block.
+    fn wait_for_flash(&mut self) {
+        self.cycles = self.cycles.max(self.chip_ref().flash.busy_until());
+    }
+
     fn refuse(&mut self, refusal: Refusal, address: u32, access: Access, value: u32) {
         self.attention = true;
         if refusal == Refusal::BusError {
@@ -312,6 +317,22 @@ pub(crate) fn on_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8,
     }
     // a new clock moves the cycle at which the run shall pause
     state.attention |= register & 0xffff_fc00 == 0x4002_3800;
+    state.wait_for_flash();
+}
+
+/// Load from the flash of the settings.
+pub(crate) fn on_flash_read<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8) -> u32 {
+    cpu.get_data_mut().chip().flash.load(address, bytes)
+}
+
+/// Store to the flash of the settings.
+pub(crate) fn on_flash_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8, value: u32) {
+    let state = cpu.get_data_mut();
+    let now = state.block_at;
+    if let Err(refusal) = state.chip().store_flash(address, bytes, value, now) {
+        state.refuse(refusal, address, Access::Write(bytes), value);
+    }
+    state.wait_for_flash();
 }
 
 /// Register and bit behind an address of the peripheral bit-band alias.

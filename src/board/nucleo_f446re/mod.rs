@@ -22,6 +22,7 @@
 mod fatal;
 #[cfg(feature = "five-fingers")]
 mod five;
+mod flash;
 mod log;
 #[cfg(not(feature = "five-fingers"))]
 mod one;
@@ -29,6 +30,7 @@ mod record;
 mod sampler;
 mod serial;
 mod stack;
+mod store;
 mod watchdog;
 mod window;
 
@@ -36,8 +38,9 @@ use heapless::spsc::{Producer, Queue};
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
+use thermal_display::commission::Desk;
 use thermal_display::guard::{Cause, Fault};
-use thermal_display::protocol::{Addressed, Telemetry};
+use thermal_display::protocol::{Addressed, Error, Reason, Reply, Telemetry};
 use thermal_display::settings::Settings;
 
 #[cfg(feature = "five-fingers")]
@@ -49,6 +52,7 @@ pub use sampler::Sampler;
 pub use serial::{End, Outbox, Receiver, Transmitter};
 pub use stack::is_overrun as stack_is_overrun;
 pub use stm32f4xx_hal::pac;
+pub use store::{Found, at_start, restart};
 pub use watchdog::Watchdog;
 pub use window::WindowWatchdog;
 pub use wiring::{FINGERS, PowerStage};
@@ -66,6 +70,8 @@ pub struct Memory {
     links: serial::Links,
     mailbox: Mailbox,
     telemetry: Queue<Addressed<Telemetry>, { TELEMETRY_DEPTH + 1 }>,
+    // Here, as moving it once samples are taken makes the first tick late.
+    desk: Option<Desk<FINGERS>>,
 }
 
 impl Memory {
@@ -77,15 +83,21 @@ impl Memory {
             links: serial::Links::new(),
             mailbox: Mailbox::new(),
             telemetry: Queue::new(),
+            desk: None,
         }
     }
 }
 
-/// Why the device has tripped before it started; once, before anything else.
-pub fn first_cause(device: &pac::Peripherals) -> Option<Cause> {
+/// Why the device has tripped before it started; once.
+pub fn first_cause(device: &pac::Peripherals, found: &Found) -> Option<Cause> {
     let overrun = stack::is_overrun();
     stack::arm();
-    let cause = record::of_reset(&device.RCC)?;
+    let Some(cause) = record::of_reset(&device.RCC) else {
+        return found
+            .kept
+            .is_err()
+            .then_some(Cause::alone(Fault::SettingsCorrupt));
+    };
     // A reset, without a tick that has seen why, is what comes of an overrun.
     let unseen = overrun && cause.tick == 0;
     Some(if unseen { Cause::alone(Fault::Stack) } else { cause })
@@ -112,8 +124,9 @@ pub struct Board {
 }
 
 impl Board {
-    /// Sets everything up; the bridge is off before anything else happens and stays off.
-    pub fn new(device: pac::Peripherals, memory: &'static mut Memory, settings: Settings) -> Self {
+    /// Sets everything up, with what the start has [found](at_start); the bridge is off before anything else happens and
+    /// stays off.
+    pub fn new(device: pac::Peripherals, memory: &'static mut Memory, found: &Found) -> Self {
         // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
         // again, and the log tells.
         let watchdog = Watchdog::start(device.IWDG);
@@ -165,7 +178,16 @@ impl Board {
             inlet,
             &mut rcc,
         );
-        let console = Console::new(outlet, telemetry_out, outbox, settings);
+        let desk = memory.desk.insert(match &found.kept {
+            Ok(Some(kept)) => Desk::restored(kept),
+            Ok(None) | Err(_) => Desk::new(Settings::default()),
+        });
+        // The answer to the line that the device was started anew by.
+        let first = found.stored.as_ref().map(|stored| match stored {
+            Ok(()) => Ok(Reply::Done),
+            Err(error) => Err(Error::NotStored(Reason::of(error))),
+        });
+        let console = Console::new(outlet, telemetry_out, outbox, desk, first);
 
         let inputs = sampler::Inputs {
             display: gpioa.pa0.into_analog(),

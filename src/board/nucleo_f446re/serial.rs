@@ -29,7 +29,7 @@ const BAUD: u32 = 1_000_000;
 pub const FRAMES: usize = 4;
 
 /// Longest line to the host, in bytes, with its end.
-const FRAME_MAX: usize = 164;
+const FRAME_MAX: usize = 172;
 
 /// The store of a frame.
 pub type Bytes = Vec<u8, FRAME_MAX>;
@@ -83,6 +83,11 @@ impl Outbox {
     /// Whether a line can be sent without waiting.
     pub fn has_room(&self) -> bool {
         self.empty.ready()
+    }
+
+    /// Whether nothing waits; the last frame may still be on the line.
+    pub fn is_empty(&self) -> bool {
+        self.empty.len() == FRAMES - 1
     }
 
     /// Sends one line, or nothing if there is no room.

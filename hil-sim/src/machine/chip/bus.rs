@@ -71,7 +71,11 @@ impl<W: Wiring> Chip<W> {
         self.nvic = Nvic::new();
         self.ppb = Ppb::new();
         self.ppb.slept = slept;
+        if cause == ResetCause::PowerOn {
+            self.flash.cells.power_up();
+        }
         self.rcc = self.rcc.after_reset(cause);
+        self.flash.reset();
         self.ports = std::array::from_fn(Port::new);
         self.exti = Exti::default();
         self.dma = [Dma::new(1), Dma::new(2)];
@@ -108,7 +112,8 @@ impl<W: Wiring> Chip<W> {
                 self.ports[port].read(offset, |bit| wiring.pin(port as u8, bit))
             }
             Device::Rcc => self.rcc.read(offset, now),
-            Device::Flash => self.rcc.read_flash(offset),
+            Device::Flash if offset == 0 => Ok(self.rcc.acr()),
+            Device::Flash => self.flash.read(offset, now),
             Device::Pwr => self.rcc.read_pwr(offset, now),
             Device::Dma(i) => self.dma[i].read(offset),
             Device::Tim(i) => {
@@ -197,7 +202,11 @@ impl<W: Wiring> Chip<W> {
                 let security = self.rcc.security_interrupt();
                 self.nvic.set_exception_line(exception::NMI, security, now);
             }
-            Device::Flash => self.rcc.write_flash(offset, value)?,
+            Device::Flash if offset == 0 => self.rcc.write_acr(value)?,
+            Device::Flash => {
+                self.flash.write(offset, value, now, self.rcc.clocks().hclk_hz)?;
+                self.power_may_fail();
+            }
             Device::Pwr => self.rcc.write_pwr(offset, value, now)?,
             Device::Dma(i) => {
                 self.dma[i].write(offset, value)?;
@@ -253,6 +262,20 @@ impl<W: Wiring> Chip<W> {
         let on = self.rcc.check_clock(Enr::Apb1, 11).is_ok();
         self.wwdg
             .set_clock(on.then(|| u64::from(hclk_hz / pclk1_hz)), now);
+    }
+
+    /// Stores to the flash of the settings.
+    pub fn store_flash(&mut self, address: u32, bytes: u8, value: u32, now: u64) -> Answer<()> {
+        let hclk_hz = self.rcc.clocks().hclk_hz;
+        self.flash.store(address, bytes, value, now, hclk_hz)?;
+        self.power_may_fail();
+        Ok(())
+    }
+
+    fn power_may_fail(&mut self) {
+        if !self.flash.cells.is_powered() {
+            self.reset = Some(ResetCause::PowerOn);
+        }
     }
 
     pub(super) fn clocks_changed(&mut self, old: Clocks, now: u64) {

@@ -39,20 +39,12 @@ impl Rcc {
         Ok(())
     }
 
-    /// FLASH registers (3.8); programming and erasing are not modelled.
-    pub fn read_flash(&self, offset: u32) -> Answer<u32> {
-        match offset {
-            0x00 => Ok(self.acr),
-            0x0c => Ok(0),
-            0x10 => Ok(0x8000_0000),
-            _ => Err(Refusal::Offset),
-        }
+    /// FLASH_ACR (3.8.1).
+    pub fn acr(&self) -> u32 {
+        self.acr
     }
 
-    pub fn write_flash(&mut self, offset: u32, value: u32) -> Answer<()> {
-        if offset != 0 {
-            return Err(Refusal::Offset);
-        }
+    pub fn write_acr(&mut self, value: u32) -> Answer<()> {
         only(value, 0x1f0f, "FLASH_ACR")?;
         self.acr = value & 0x070f;
         self.check_latency()

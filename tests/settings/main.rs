@@ -1,0 +1,150 @@
+//! Power that fails in any operation of the flash loses nothing of what was stored.
+
+mod flash;
+mod image;
+
+use embassy_futures::block_on;
+use flash::{BYTES, Flash};
+use hil_sim::machine::Cells;
+use sequential_storage::cache::Cache;
+use sequential_storage::map::{MapConfig, MapStorage};
+use thermal_display::settings::{Calibration, Correction, Kept, Sectors, Store, Tile};
+
+/// Settings that differ from each other in every value.
+fn numbered<const FINGERS: usize>(number: u32) -> Option<[Kept; FINGERS]> {
+    // Factory defaults are as good as any.
+    if number % 50 == 17 {
+        return None;
+    }
+    let of = |i: u32, per: f64| f64::from((number * 7919 + i * 104_729) % 2000) / per;
+    Some(std::array::from_fn(|finger| {
+        let finger = 40 * finger as u32;
+        Kept {
+            calibration: Calibration {
+                steps_counts: std::array::from_fn(|i| of(finger + i as u32, 1e3)),
+                corrections: std::array::from_fn(|i| Correction {
+                    offset_k: of(finger + 13 + i as u32, 1e6),
+                    slope: of(finger + 18 + i as u32, 1e7),
+                    curvature_1_k: of(finger + 23 + i as u32, 1e8),
+                }),
+            },
+            tile: Tile::from_array([1.0, 0.0, 0.0, 0.1, 0.0].map(|base| base + of(finger + 28, 1e6))),
+        }
+    }))
+}
+
+fn store<const FINGERS: usize>(cells: Cells) -> (Store<Flash, FINGERS>, Flash) {
+    let flash = Flash::new(cells);
+    (Store::new(flash.clone()), flash)
+}
+
+/// What a device finds that is switched on with these cells.
+fn loaded<const FINGERS: usize>(cells: &Cells) -> Option<[Kept; FINGERS]> {
+    store(cells.clone()).0.load().expect("valid settings")
+}
+
+/// Saves, and the cells afterwards: with a cut, of a device that is switched on anew.
+fn saved<const FINGERS: usize>(
+    cells: &Cells,
+    settings: Option<&[Kept; FINGERS]>,
+    cut: Option<(u64, u64)>,
+) -> Cells {
+    let mut cells = cells.clone();
+    if let Some((nth, seed)) = cut {
+        cells.cut_power_at(nth, seed);
+    }
+    let (mut store, flash) = store(cells);
+    let done = store.save(settings);
+    let mut cells = flash.cells();
+    assert_eq!(done.is_ok(), cells.is_powered(), "{done:?}");
+    cells.power_up();
+    cells
+}
+
+/// Appends any bytes as the newest record; whether the flash has taken them.
+fn append(cells: &mut Cells, record: &[u8]) -> bool {
+    let flash = Flash::new(cells.clone());
+    let end = (3 * Sectors::<Flash>::BYTES) as u32;
+    let config = MapConfig::new(0..end);
+    let mut map = MapStorage::<(), _, _>::new(Sectors::new(flash.clone()), config, Cache::new_uncached());
+    let done = block_on(map.store_item(&mut [0; 512], &(), &record));
+    *cells = flash.cells();
+    done.is_ok()
+}
+
+/// Whether a save has turned to another page: the sector that it begins gets its seal, the one after that loses it.
+fn turns(before: &Cells, after: &Cells) -> bool {
+    let seals = |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * flash::SECTOR..][..8].to_vec());
+    seals(before) != seals(after)
+}
+
+/// What a campaign has tried.
+#[derive(Debug, Default)]
+struct Tried {
+    saves: u32,
+    turns: u32,
+    cuts: u64,
+    cuts_of_turns: u64,
+}
+
+/// Saves one setting after the other. Power is cut in all operations of the saves that turn to another page, and of every
+/// `stride`th: what was stored before is still there, or what was to be; and the next save works, though power is cut
+/// in that, too.
+fn campaign<const FINGERS: usize>(saves: u32, stride: u32) -> Tried {
+    let mut cells = Cells::new(vec![0xff; BYTES]);
+    let mut tried = Tried::default();
+    let mut before = None;
+    for number in 0..saves {
+        let settings = numbered::<FINGERS>(number);
+        let settings = settings.as_ref();
+        let after = saved(&cells, settings, None);
+        assert_eq!(loaded(&after).as_ref(), settings, "save {number}");
+        let operations = after.operations() - cells.operations();
+        let turns = turns(&cells, &after);
+        tried.saves += 1;
+        tried.turns += u32::from(turns);
+        if turns || number % stride == 0 {
+            for nth in 1..=operations {
+                let seed = u64::from(number) << 32 | nth;
+                let cut = saved(&cells, settings, Some((nth, seed)));
+                let found = loaded::<FINGERS>(&cut);
+                assert!(
+                    found == before || found.as_ref() == settings,
+                    "save {number}, cut in operation {nth} of {operations}: neither old nor new"
+                );
+                let next = numbered::<FINGERS>(number + 1000);
+                let again = saved(&cut, next.as_ref(), Some((1 + seed % operations, !seed)));
+                let later = loaded::<FINGERS>(&again);
+                assert!(
+                    later == found || later == next,
+                    "save {number}, cut in {nth}, then again"
+                );
+                let healed = saved(&again, next.as_ref(), None);
+                assert_eq!(
+                    loaded::<FINGERS>(&healed),
+                    next,
+                    "save {number}, cut in {nth}, then again"
+                );
+                tried.cuts += 1;
+                tried.cuts_of_turns += u64::from(turns);
+            }
+        }
+        cells = after;
+        before = settings.copied();
+    }
+    tried
+}
+
+#[test]
+fn one_fingers_settings_survive_a_cut_in_any_operation() {
+    let tried = campaign::<1>(450, 6);
+    println!("{tried:?}");
+    assert!(tried.cuts > 1000 && tried.turns >= 5, "{tried:?}");
+}
+
+#[test]
+fn five_fingers_settings_survive_a_cut_in_any_operation() {
+    let tried = campaign::<5>(110, 12);
+    println!("{tried:?}");
+    assert!(tried.cuts > 1000 && tried.turns >= 5, "{tried:?}");
+}
