@@ -31,7 +31,7 @@ mod app {
 
     use crate::board::{
         Board, Console, End, FINGERS, Memory, PowerStage, Receiver, Record, Sampler, Task, Transmitter,
-        Vigil, Watchdog, WindowWatchdog, at_start, first_cause, stack_is_overrun,
+        Trigger, Vigil, Watchdog, WindowWatchdog, at_start, first_cause, stack_is_overrun,
     };
 
     #[shared]
@@ -56,6 +56,7 @@ mod app {
         console: Console,
         watchdog: Watchdog,
         window_watchdog: WindowWatchdog,
+        trigger: Trigger,
     }
 
     #[init(local = [memory: Memory = Memory::new()])]
@@ -84,12 +85,15 @@ mod app {
             console: board.console,
             watchdog: board.watchdog,
             window_watchdog: board.window_watchdog,
+            trigger: board.trigger,
         };
         (shared, local)
     }
 
-    #[idle(shared = [&vigil], local = [watchdog])]
+    #[idle(shared = [&vigil], local = [watchdog, trigger])]
     fn idle(cx: idle::Context) -> ! {
+        // Now that everything is in its place and interrupts are taken.
+        cx.local.trigger.start();
         loop {
             if cx.shared.vigil.all_checked_in() {
                 cx.local.watchdog.feed();

@@ -48,13 +48,14 @@ fn overload_of_the_bridge_is_seen_alike_and_stops_both() {
         let said = (device.state.as_str(), device.remark.as_deref());
         assert_eq!(said, ("tripped", Some("bridge")), "at {} s", row.t_s);
     }
-    // Armed again, it drives, and trips again.
+    // Armed again, it tests itself, drives, and trips again.
     let state_at = |from_s: f64| {
         let row = between(&image, from_s, 2.0).next().expect("a row");
         row.device.as_ref().map(|device| device.state.clone())
     };
     assert_eq!(state_at(1.55).as_deref(), Some("off"));
-    assert_eq!(state_at(1.7).as_deref(), Some("tripped"));
+    assert_eq!(state_at(1.65).as_deref(), Some("self-test"));
+    assert_eq!(state_at(1.75).as_deref(), Some("tripped"));
 }
 
 /// Another finger, another object, another plant, and a camera that draws of the seed too.

@@ -76,9 +76,9 @@ fn the_native_engine_says_what_it_has_no_part_for() {
     let native = || Native::new(World::new(&scene).expect("a plant for the scene"));
     let with = |fault, t_s| run_with(&scene, &[Injection { t_s, fault }], &mut native(), |_| ());
     assert!(matches!(
-        with(MachineFault::AdcStopped, 1.0),
+        with(MachineFault::HseStopped, 1.0),
         Err(RunError::NotInjected(NotInjected::NotApplicable {
-            fault: MachineFault::AdcStopped,
+            fault: MachineFault::HseStopped,
             engine: "native"
         }))
     ));
@@ -86,10 +86,15 @@ fn the_native_engine_says_what_it_has_no_part_for() {
         with(MachineFault::ResetPin, 2.5),
         Err(RunError::InjectionTime { .. })
     ));
-    // No tick, and no watchdog: the last duty for good.
-    let hung = with(MachineFault::HungCore, 1.0).expect("runs");
-    let last = hung.trace.rows().last().expect("rows");
-    assert!(last.current_a.abs() > 0.3, "{} A", last.current_a);
+    // No tick: the last duty, until the window watchdog's time is over.
+    for fault in [MachineFault::HungCore, MachineFault::AdcStopped] {
+        let hung = with(fault, 1.0).expect("runs");
+        let causes: Vec<_> = hung.resets.iter().map(|reset| reset.cause).collect();
+        assert_eq!(causes, [ResetCause::WindowWatchdog]);
+        let at = |t_s: f64| between(&hung, t_s, 2.0).next().map(|row| row.current_a);
+        assert!(at(1.04).is_some_and(|a| a.abs() > 0.3));
+        assert_eq!(at(1.05), Some(0.0));
+    }
     let whole = run(&scene, &mut native(), |_| ()).expect("runs");
     assert!(whole.resets.is_empty());
 }

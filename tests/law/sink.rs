@@ -19,12 +19,12 @@ fn wanting(target_c: f64, display_c: f64, sink_c: f64) -> f64 {
     control.update(&inputs).to_num()
 }
 
-/// All of 6 A up to 39.5 °C, none from 43.5 °C on, a straight line between: before the sink trips at 44 °C.
+/// All of 6 A up to 39.5 °C, none from 41.5 °C on, a straight line between: before the sink trips at 42 °C.
 #[test]
 fn cooling_tapers_with_a_hot_sink() {
     for tenths in 150..=440 {
         let sink_c = 0.1 * f64::from(tenths);
-        let allowed_a = 6.0 * ((43.5 - sink_c) / 4.0).clamp(0.0, 1.0);
+        let allowed_a = 6.0 * ((41.5 - sink_c) / 2.0).clamp(0.0, 1.0);
         let current_a = wanting(20.0, 40.0, sink_c);
         assert!(
             (current_a - allowed_a).abs() < 1e-5,

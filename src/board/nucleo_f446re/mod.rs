@@ -48,7 +48,7 @@ use five as wiring;
 #[cfg(not(feature = "five-fingers"))]
 use one as wiring;
 pub use record::Record;
-pub use sampler::Sampler;
+pub use sampler::{Sampler, Trigger};
 pub use serial::{End, Outbox, Receiver, Transmitter};
 pub use stack::is_overrun as stack_is_overrun;
 pub use stm32f4xx_hal::pac;
@@ -103,10 +103,12 @@ pub fn first_cause(device: &pac::Peripherals, found: &Found) -> Option<Cause> {
     Some(if unseen { Cause::alone(Fault::Stack) } else { cause })
 }
 
-/// The board, set up and taking samples; the parts go to the tasks that own them.
+/// The board, set up and ready to take samples; the parts go to the tasks that own them.
 pub struct Board {
     /// Scans of the sensors.
     pub sampler: Sampler,
+    /// What starts them.
+    pub trigger: Trigger,
     /// Each finger's bridge and its fault line.
     pub stages: [PowerStage; FINGERS],
     /// Bytes of the host.
@@ -199,7 +201,7 @@ impl Board {
             current: gpioc.pc2.into_analog(),
         };
         let dma2 = StreamsTuple::new(device.DMA2, &mut rcc);
-        let sampler = Sampler::start(
+        let (sampler, trigger) = Sampler::new(
             device.ADC1,
             device.TIM2,
             dma2.0,
@@ -211,6 +213,7 @@ impl Board {
 
         Self {
             sampler,
+            trigger,
             stages,
             receiver,
             transmitter,

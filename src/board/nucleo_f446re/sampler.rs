@@ -63,15 +63,25 @@ pub struct Sampler {
     spare: Option<&'static mut Block>,
     /// Which of the stream's two blocks was taken last.
     last: CurrentBuffer,
-    trigger: CounterHz<TIM2>,
     multiplexer: Multiplexer,
     /// The finger whose block is being filled.
     finger: usize,
 }
 
+/// What starts the scans, once somebody waits for them: the multiplexers must be switched 11 us after a finger's last.
+pub struct Trigger(CounterHz<TIM2>);
+
+impl Trigger {
+    /// Begins.
+    pub fn start(&mut self) {
+        // Cannot fail: 90 MHz over 16 or 90 kHz fits the counter. Both divide it exactly.
+        let _ = self.0.start(((SCANS_PER_BLOCK * FINGERS) as u32 * TICK_HZ).Hz());
+    }
+}
+
 impl Sampler {
-    /// Starts to sample, finger 0 first: a block of each finger a tick.
-    pub fn start(
+    /// Gets ready to sample, finger 0 first: a block of each finger a tick.
+    pub fn new(
         adc: ADC1,
         timer: TIM2,
         stream: Stream0<DMA2>,
@@ -79,7 +89,7 @@ impl Sampler {
         multiplexer: Multiplexer,
         blocks: &'static mut [Block; BLOCKS],
         rcc: &mut Rcc,
-    ) -> Self {
+    ) -> (Self, Trigger) {
         let [first, second, spare] = blocks;
         let config = DmaConfig::default()
             .priority(Priority::VeryHigh)
@@ -94,18 +104,14 @@ impl Sampler {
 
         let mut timer = Timer::new(timer, rcc);
         timer.set_master_mode(tim2::cr2::MMS::Update);
-        let mut trigger = timer.counter_hz();
-        // Cannot fail: 90 MHz over 16 or 90 kHz fits the counter. Both divide it exactly.
-        let _ = trigger.start(((SCANS_PER_BLOCK * FINGERS) as u32 * TICK_HZ).Hz());
-
-        Self {
+        let sampler = Self {
             transfer,
             spare: Some(spare),
             last: CurrentBuffer::SecondBuffer,
-            trigger,
             multiplexer,
             finger: 0,
-        }
+        };
+        (sampler, Trigger(timer.counter_hz()))
     }
 
     /// The finger whose block has just been filled, and its scans; the next finger's turn has begun.
@@ -145,8 +151,6 @@ impl Sampler {
 
     /// Stops for good. No tick follows, so the watchdog resets the device.
     pub fn stop(&mut self) {
-        // Fails only if it is stopped already.
-        let _ = self.trigger.cancel();
         self.transfer.pause(Converter::stop);
     }
 }
