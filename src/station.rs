@@ -468,6 +468,7 @@ impl Station {
                 // A reading that jumps would be taken for the tile's.
                 self.end_experiment();
                 self.sensors.recalibrate(&calibrated);
+                self.watch.forget_motion();
             }
             Command::Retune(tuned) => {
                 self.control.retune(&tuned);

@@ -7,14 +7,14 @@ use hil_sim::scene::FaultKind;
 
 use super::{bench, device};
 
-const STATE_OFF: &str = "state=off";
+const STATE_OFF: &str = "state=ready";
 
 /// A device that has just begun to tune in a world.
 fn tuning(world: World, then: impl FnOnce(&mut Bench<'_, Native>)) {
     let mut engine = Native::new(world);
     let mut bench = bench(&mut engine, &[]);
     bench.wait(5).expect("it runs");
-    bench.tell("arm").expect("armed");
+    bench.arm().expect("armed");
     bench.tell("tune").expect("tuning");
     then(&mut bench);
 }
@@ -83,12 +83,12 @@ fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
 
 #[test]
 fn hot_sink_ends_tuning_before_it_trips() {
-    let hot = device(None, 1).sink_on_coolant(42.8).expect("a plant");
+    let hot = device(None, 1).sink_on_coolant(41.7).expect("a plant");
     tuning(hot, |bench| {
         bench.wait(50).expect("it runs");
         assert_eq!(
             ask(bench, "tune result"),
-            "err tune was ended: the sink is above 42.5 C"
+            "err tune was ended: the sink is above 41.5 C"
         );
     });
 }
@@ -137,7 +137,7 @@ fn what_tuning_has_found_can_be_asked_for_again() {
         assert_eq!(ask(bench, "margins"), first);
         let display_c = bench.world().plant().display_c();
         assert!((display_c - 33.0).abs() < 0.5, "{display_c}");
-        bench.tell("arm").expect("armed");
+        bench.arm().expect("armed");
         assert!(ask(bench, "tune result").starts_with("err nothing was tuned"));
     });
 }
@@ -159,7 +159,7 @@ fn what_does_not_fit_the_state_is_refused() {
         assert_eq!(ask(&mut bench, line), answer, "{line}");
     }
     bench.wait(600).expect("it runs");
-    bench.tell("arm").expect("armed");
+    bench.arm().expect("armed");
     bench.wait(600).expect("it runs");
     assert_eq!(
         ask(&mut bench, "calibrate display 33"),
@@ -204,7 +204,7 @@ fn corrections_cannot_hide_a_hot_display() {
         bench.tell(&worst).expect("within limits");
         assert!(ask(&mut bench, &format!("set correction {sensor} -1.3 0 0")).starts_with("err offset"));
     }
-    bench.tell("arm").expect("armed");
+    bench.arm().expect("armed");
     bench.tell("hold 42").expect("held");
     bench.wait(20_000).expect("it runs");
     let display_c = bench.world().plant().display_c();

@@ -25,9 +25,8 @@ fn moves(plants: &hil_sim::commission::Plants, settings: &[String], times: f64) 
     let gain: f64 = gain.parse().expect("a gain");
     // The law's gain is the reciprocal of the tile's.
     let line = format!("{set} {tile} {:.6} {}", gain / times, rest.join(" "));
-    for line in ["law pi", "arm"] {
-        bench.tell(line).expect("obeyed");
-    }
+    bench.tell("law pi").expect("obeyed");
+    bench.arm().expect("armed");
     // By steps, lest thermistors of different lags part on the way.
     for hold_c in (26..=33).rev() {
         bench.tell(&format!("hold {hold_c}")).expect("obeyed");
