@@ -40,7 +40,7 @@ pub enum Sign {
     /// Half a minute of CEM43 by the display's thermistor.
     Dose,
     /// A self-test that begins with the fault there is so old, s: the comparator's part is through at 0.02, the current's at
-    /// 0.304, the display's answer at 0.504.
+    /// 0.304, the display's answer at 0.504, all at 0.704.
     SelfTest(f64),
 }
 

@@ -13,7 +13,7 @@ const LEG: &[Sign] = &[
     Sign::WrongWay,
     Sign::DisplayLimit,
     Sign::FaultLine,
-    Sign::SelfTest(0.504),
+    Sign::SelfTest(0.704),
 ];
 const LEG_REASONS: &[Fault] = &[
     Fault::CurrentHigh,
