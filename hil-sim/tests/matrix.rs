@@ -9,7 +9,9 @@ use thermal_display::guard::Fault;
 const FOAM: Place = Place::Foam;
 
 fn entry(name: &str) -> Entry {
-    let found = entries().into_iter().find(|entry| entry.fault.to_string() == name);
+    let found = entries()
+        .into_iter()
+        .find(|entry| entry.fault.to_string() == name);
     found.unwrap_or_else(|| panic!("no entry {name}"))
 }
 

@@ -6,6 +6,7 @@ mod bench;
 mod demo;
 mod firmware;
 mod image;
+mod mutations;
 mod probe;
 mod process;
 mod report;
@@ -83,6 +84,9 @@ enum Task {
         /// Folder for the page
         #[arg(long)]
         out: Option<PathBuf>,
+        /// Remove each detector in turn, in a copy of the sources, and see that the matrix notices, natively; an hour
+        #[arg(long, exclusive = true)]
+        mutations: bool,
         /// Of `hil-sim faults`, after the above: --only, --scene, --moments and others, see its --help
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
@@ -133,8 +137,10 @@ fn main() -> ExitCode {
             out,
             rest,
         } => report::run(set_up.permission(), ("hil-sim", "fidelity"), json, out, rest),
+        Task::Faults { mutations: true, .. } => mutations::run(),
         Task::Faults {
             set_up,
+            mutations: false,
             json,
             out,
             rest,

@@ -22,7 +22,7 @@ pub struct Arguments {
     #[arg(long, num_args = 1.., value_parser = places())]
     scene: Vec<Place>,
     /// Moments of each fault, spread over the scenes
-    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..))]
     moments: u16,
     /// Of moments, of the order of scenes, and of the device's converter
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
@@ -104,7 +104,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::print(&text)?;
     match rows.iter().filter(|row| !row.holds).count() {
         0 => Ok(()),
-        failing => Err(Failure::run(anyhow!("{failing} of {} faults do not hold", rows.len()))),
+        failing => Err(Failure::run(anyhow!(
+            "{failing} of {} faults do not hold",
+            rows.len()
+        ))),
     }
 }
 

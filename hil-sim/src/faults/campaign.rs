@@ -30,7 +30,10 @@ impl Plan {
             places.retain(|place| !entry.never_at.contains(place));
             places.sort_by_key(|place| {
                 let first = entry.places.iter().position(|worst| worst == place);
-                (first.unwrap_or(usize::MAX), stream(self.seed, &format!("{name} {}", place.name())))
+                (
+                    first.unwrap_or(usize::MAX),
+                    stream(self.seed, &format!("{name} {}", place.name())),
+                )
             });
             for (k, place) in places.iter().cycle().take(self.moments).enumerate() {
                 let seed = stream(self.seed, &format!("{name} {k}"));

@@ -133,10 +133,7 @@ impl Entry {
 
     /// It shows at the next self-test only.
     pub(super) const fn latent(self) -> Self {
-        Self {
-            latent: true,
-            ..self
-        }
+        Self { latent: true, ..self }
     }
 
     /// Where it is worst.

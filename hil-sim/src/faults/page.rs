@@ -45,7 +45,11 @@ pub fn page(rows: &[Outline], engine: &str) -> String {
     let failing = rows.iter().filter(|row| !row.holds);
     let mut list = String::new();
     for row in failing {
-        for trial in row.trials.iter().filter(|trial| !trial.verdict.breaches.is_empty()) {
+        for trial in row
+            .trials
+            .iter()
+            .filter(|trial| !trial.verdict.breaches.is_empty())
+        {
             let _ = write!(
                 list,
                 "<li>{}: {}</li>",

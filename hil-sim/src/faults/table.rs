@@ -33,7 +33,11 @@ pub fn table(rows: &[Outline]) -> String {
         }
     );
     for row in rows {
-        for trial in row.trials.iter().filter(|trial| !trial.verdict.breaches.is_empty()) {
+        for trial in row
+            .trials
+            .iter()
+            .filter(|trial| !trial.verdict.breaches.is_empty())
+        {
             let _ = writeln!(text, "{}: {}", row.fault, broken(trial));
         }
     }

@@ -114,7 +114,9 @@ impl Verdict {
             detectable_ms: detectable_s.map(ms),
             detected_ms: detected_s.map(ms),
             safe_ms: safe_s.map(ms),
-            took_ms: detectable_s.zip(safe_s).map(|(sign_s, safe_s)| (safe_s - sign_s).max(0.0) * 1e3),
+            took_ms: detectable_s
+                .zip(safe_s)
+                .map(|(sign_s, safe_s)| (safe_s - sign_s).max(0.0) * 1e3),
             reason: end.reason(before),
             skin_c: figures.skin_c,
             cem43_min: figures.cem43_min,
@@ -144,7 +146,10 @@ impl Verdict {
         };
         for (breach, is_so) in [
             (Breach::Early, early),
-            (Breach::Skin, !SKIN_C.contains(&self.skin_c.min) || !SKIN_C.contains(&self.skin_c.max)),
+            (
+                Breach::Skin,
+                !SKIN_C.contains(&self.skin_c.min) || !SKIN_C.contains(&self.skin_c.max),
+            ),
             (Breach::Dose, self.cem43_min >= DOSE_MIN),
             (Breach::Late, late),
             (Breach::Reason, !right),

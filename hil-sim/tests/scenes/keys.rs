@@ -117,7 +117,13 @@ fn faults_of_the_processor_are_injected_at_their_times() {
         ),
     ] {
         let scene = scene(&format!("seed = 7\n{HEAD}{tables}"));
-        assert_eq!(scene.injections, [Injection { t_s: 0.5, fault: expected }]);
+        assert_eq!(
+            scene.injections,
+            [Injection {
+                t_s: 0.5,
+                fault: expected
+            }]
+        );
         assert!(scene.faults.is_empty());
     }
 }

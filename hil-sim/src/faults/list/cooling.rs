@@ -20,6 +20,9 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(valued(Kind::ChillerOff, 40.0), HOT, HOT_REASONS)
         .at(&[Place::Cold])
         .watched(90.0),
+    Entry::trips(valued(Kind::ChillerOff, 45.0), HOT, HOT_REASONS)
+        .at(&[Place::Cold])
+        .watched(80.0),
     Entry::trips(
         valued(Kind::SinkHot, 45.0),
         &[Sign::Jump, Sign::SinkLimit],
@@ -27,4 +30,3 @@ pub const ENTRIES: &[Entry] = &[
     )
     .at(&[Place::Warm]),
 ];
-

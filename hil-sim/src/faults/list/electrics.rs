@@ -27,7 +27,6 @@ const CURRENT: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::SelfTest(0
 /// A supply that drives the self-test's ampere well enough.
 const SUPPLY: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::FaultLine];
 const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
-const CURRENT_HIGH: &[Fault] = &[Fault::CurrentHigh, Fault::OverCurrent];
 const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
 
 /// What drives the tile, and what watches that.
@@ -36,12 +35,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
     Entry::trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
     Entry::trips(broken(Kind::LegOpen), CURRENT, CURRENT_LOW).at(WORST),
-    Entry::trips(
-        broken(Kind::BridgeShorted),
-        &[Sign::FaultLine],
-        &[Fault::Bridge],
-    )
-    .at(WORST),
+    Entry::trips(broken(Kind::BridgeShorted), &[Sign::FaultLine], &[Fault::Bridge]).at(WORST),
     Entry::trips(
         broken(Kind::PolaritySwapped),
         &[Sign::WrongWay, Sign::DisplayLimit, Sign::SelfTest(0.504)],
@@ -70,8 +64,16 @@ pub const ENTRIES: &[Entry] = &[
     )
     .at(WORST),
     Entry::trips(valued(Kind::MirrorStuck, 0.0), CURRENT, CURRENT_LOW).at(WORST),
-    Entry::trips(valued(Kind::MirrorStuck, 3.0), CURRENT, &[Fault::CurrentHigh, Fault::CurrentLow]),
-    Entry::trips(valued(Kind::MirrorStuck, 10.0), CURRENT, CURRENT_HIGH),
+    Entry::trips(
+        valued(Kind::MirrorStuck, 3.0),
+        CURRENT,
+        &[Fault::CurrentHigh, Fault::CurrentLow],
+    ),
+    Entry::trips(
+        valued(Kind::MirrorStuck, 10.0),
+        &[Sign::OverCurrent],
+        &[Fault::OverCurrent],
+    ),
     Entry::trips(valued(Kind::SupplyLow, 9.0), SUPPLY, CURRENT_LOW).at(WORST),
     Entry::trips(valued(Kind::SupplyLow, 4.5), CURRENT, CURRENT_LOW).at(WORST),
     Entry::trips(

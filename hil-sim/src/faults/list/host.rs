@@ -23,5 +23,9 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(Injected::Line("object 60"), &[Sign::Dose], &[Fault::Dose])
         .at(&[Place::Slew])
         .watched(180.0),
-    Entry::trips(Injected::Line("set tile 0.5 0.02 0.3 0.5 0.02"), &[Sign::WrongWay], &[Fault::Polarity]),
+    Entry::trips(
+        Injected::Line("set tile 0.5 0.02 0.3 0.5 0.02"),
+        &[Sign::WrongWay],
+        &[Fault::Polarity],
+    ),
 ];

@@ -57,7 +57,12 @@ const STACK_GUARD: u32 = 0x2000_0000;
 pub const ENTRIES: &[Entry] = &[
     Entry::trips(processor(Fails::HungCore), NOW, &[Fault::TickLost]).at(&[Place::Slew]),
     Entry::trips(processor(Fails::HseStopped), NOW, &[Fault::Clock]).at(&[Place::Slew]),
-    Entry::trips(processor(Fails::AdcStopped), NOW, &[Fault::TickLost, Fault::Sampling]).at(&[Place::Slew]),
+    Entry::trips(
+        processor(Fails::AdcStopped),
+        NOW,
+        &[Fault::TickLost, Fault::Sampling],
+    )
+    .at(&[Place::Slew]),
     Entry::trips(
         processor(Fails::DmaStopped {
             controller: 2,

@@ -84,7 +84,12 @@ pub const READINGS: &[Entry] = &[
         .at(&[Place::Touched])
         .watched(180.0),
     Entry::trips(offset(Skin, -20.0), ROOM, ROOM_ABOVE),
-    Entry::trips(loose(Display), &[Sign::Apart, Sign::DisplayLimit, Sign::WrongWay], DRIFTED).at(&[Place::Slew, Place::Replace]),
+    Entry::trips(
+        loose(Display),
+        &[Sign::Apart, Sign::DisplayLimit, Sign::WrongWay],
+        DRIFTED,
+    )
+    .at(&[Place::Slew, Place::Replace]),
     Entry::trips(loose(Check), APART, DRIFTED).at(&[Place::Slew, Place::Replace]),
     Entry::harmless(loose(Sink)).at(&[Place::Cold]),
     Entry::harmless(loose(Skin)),
@@ -123,12 +128,12 @@ pub const SWAPPED: &[Entry] = &[
         NO_STEP,
         &[Fault::SinkJump, Fault::RoomAboveSkin],
     ),
-    Entry::trips(swapped(Sink, Room), NO_STEP, &[Fault::SinkJump, Fault::RoomAboveSkin]),
     Entry::trips(
-        swapped(Skin, Room),
+        swapped(Sink, Room),
         NO_STEP,
-        &[Fault::RoomAboveSkin],
+        &[Fault::SinkJump, Fault::RoomAboveSkin],
     ),
+    Entry::trips(swapped(Skin, Room), NO_STEP, &[Fault::RoomAboveSkin]),
 ];
 
 /// The rest of what is converted.

@@ -130,7 +130,9 @@ pub(super) fn injection(
         ("sensor", sensor.as_ref().map(Spanned::span)),
         ("with", with.as_ref().map(Spanned::span)),
     ];
-    let known = ProcessorKey::ALL.into_iter().filter(|key| !kind.keys.contains(key));
+    let known = ProcessorKey::ALL
+        .into_iter()
+        .filter(|key| !kind.keys.contains(key));
     let others = known.map(|key| (key.name(), key.said(row.get_ref()).map(|(span, _)| span)));
     for (key, span) in spans.into_iter().chain(others) {
         if let Some(span) = span {
@@ -153,8 +155,8 @@ pub(super) fn injection(
     } else {
         format!("{}={}", kind.name, at.join("."))
     };
-    let fault = (text.parse())
-        .map_err(|error: NoMachineFault| source.error(Some(row.span()), error.to_string()))?;
+    let fault =
+        (text.parse()).map_err(|error: NoMachineFault| source.error(Some(row.span()), error.to_string()))?;
     let t_s = source.time("fault.t_s", t_s, duration_s)?;
     Ok(Injection { t_s, fault })
 }
@@ -180,12 +182,20 @@ fn foreign(
     let allowed: Vec<_> = std::iter::once("t_s")
         .chain(keys.iter().map(|key| key.name()))
         .collect();
-    let has = ProcessorKind::ALL.iter().filter(|kind| kind.keys.iter().any(|own| own.name() == key));
+    let has = ProcessorKind::ALL
+        .iter()
+        .filter(|kind| kind.keys.iter().any(|own| own.name() == key));
     let has: Vec<_> = has.map(|kind| kind.name).collect();
     let problem = if has.is_empty() {
-        format!("fault.{key} has no meaning for {kind}; allowed is {}", allowed.join(", "))
+        format!(
+            "fault.{key} has no meaning for {kind}; allowed is {}",
+            allowed.join(", ")
+        )
     } else {
-        format!("fault.{key} has no meaning for {kind}; it has for {}", has.join(", "))
+        format!(
+            "fault.{key} has no meaning for {kind}; it has for {}",
+            has.join(", ")
+        )
     };
     source.error(Some(span), problem)
 }

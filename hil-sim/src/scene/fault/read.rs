@@ -94,7 +94,11 @@ fn kind(source: &Source<'_>, word: &Spanned<String>) -> Result<FaultKind, SceneE
         let names: Vec<_> = names
             .chain(ProcessorKind::ALL.iter().map(|kind| kind.name))
             .collect();
-        let problem = format!("fault.kind = {:?}; known are {}", word.get_ref(), names.join(", "));
+        let problem = format!(
+            "fault.kind = {:?}; known are {}",
+            word.get_ref(),
+            names.join(", ")
+        );
         source.error(Some(word.span()), problem)
     })
 }
