@@ -7,6 +7,7 @@
 pub mod commission;
 pub mod dose;
 pub mod engine;
+pub mod faults;
 pub mod fidelity;
 pub mod firmware;
 pub mod hand;

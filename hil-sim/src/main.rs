@@ -8,7 +8,8 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use cli::{
-    Failure, commission, erfcx, fidelity, hand, infrared, model, parameters, profile, roughness, run, thesis,
+    Failure, commission, erfcx, faults, fidelity, hand, infrared, model, parameters, profile, roughness, run,
+    thesis,
 };
 
 /// Simulated plant and emulated microcontroller of the thermal display.
@@ -35,6 +36,8 @@ enum Cli {
     Parameters(parameters::Arguments),
     /// How close the skin on the display comes to the skin on the real material, law by law
     Fidelity(fidelity::Arguments),
+    /// The fault-injection matrix: every single fault, at moments of many scenes
+    Faults(faults::Arguments),
     /// Recompute the thesis's tables and model figures and lay them beside what it states
     Thesis(thesis::Arguments),
 }
@@ -51,6 +54,7 @@ fn main() -> ExitCode {
         Cli::Roughness(arguments) => roughness::run(&arguments),
         Cli::Parameters(arguments) => parameters::run(&arguments),
         Cli::Fidelity(arguments) => fidelity::run(&arguments),
+        Cli::Faults(arguments) => faults::run(&arguments),
         Cli::Thesis(arguments) => thesis::run(&arguments),
     };
     match done {

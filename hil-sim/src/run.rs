@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use crate::commission::{self, CommissionError};
+pub use crate::engine::Injection;
 use crate::engine::{Cost, DeviceReset, Engine, Lines, MachineFault, NotInjected};
 use crate::host::Host;
 use crate::scene::{Broken, Scene};
@@ -53,18 +54,12 @@ pub enum RunError<S: std::error::Error + 'static> {
         /// End of the scene.
         to_s: f64,
     },
+    /// One finger's scene breaks what all share.
+    #[error("{0} is a fault of the processor that five fingers share; such a scene is for one finger")]
+    Shared(MachineFault),
     /// The device refused a line that sets the scene up.
     #[error("the device refused to be set up for the scene: {0}")]
     Refused(String),
-}
-
-/// A fault of the processor at a time of the scene: at the whole millisecond at or after it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Injection {
-    /// Time, s; negative while the scene settles.
-    pub t_s: f64,
-    /// What happens.
-    pub fault: MachineFault,
 }
 
 /// Runs a scene; `progress` is told the part that is done.
@@ -79,7 +74,7 @@ pub fn run<E: Engine>(
     run_with(scene, &[], engine, progress)
 }
 
-/// Runs a scene in which the processor fails.
+/// Runs a scene in which the processor fails, beside what the scene itself has of that.
 ///
 /// # Errors
 /// As [`run`]; or an injection that the engine refuses.
@@ -95,7 +90,8 @@ pub fn run_with<E: Engine>(
     let end_ms = zero_ms + (scene.duration_s * 1e3).round() as u64;
     let time_s = |ms: f64| (ms - zero_ms as f64) / 1e3;
     let (from_s, to_s) = (time_s(0.0), time_s(end_ms as f64));
-    for &Injection { t_s, fault } in injections {
+    let injections: Vec<_> = scene.injections.iter().chain(injections).collect();
+    for &&Injection { t_s, fault } in &injections {
         if !(from_s..=to_s).contains(&t_s) {
             return Err(RunError::InjectionTime {
                 fault,
@@ -120,7 +116,7 @@ pub fn run_with<E: Engine>(
             before_j = session.engine.world().plant().energy().electrical_j;
         }
         session.boundary(ms);
-        let due = |one: &&Injection| time_s(ms as f64 - 1.0) < one.t_s && one.t_s <= time_s(ms as f64);
+        let due = |one: &&&Injection| time_s(ms as f64 - 1.0) < one.t_s && one.t_s <= time_s(ms as f64);
         for Injection { fault, .. } in injections.iter().filter(due) {
             session.engine.inject(fault)?;
         }

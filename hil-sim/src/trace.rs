@@ -5,6 +5,7 @@ use std::io;
 use std::path::Path;
 
 use crate::infrared::Reading;
+use crate::plant::sensors::Taken;
 use crate::plant::{Finger, Plant, RECEPTORS_M};
 use crate::telemetry::Telemetry;
 
@@ -34,6 +35,10 @@ pub struct Row {
     pub sink_c: f64,
     /// Current through the module, A.
     pub current_a: f64,
+    /// What the device's sensors show, before its converter.
+    pub taken: Taken,
+    /// The fault line is low.
+    pub fault_line: bool,
     /// What the camera says of the skin on the real object, in its frames.
     pub camera: Option<Reading>,
     /// What the device said.
@@ -55,6 +60,8 @@ impl Row {
             receptors_real_c: plant.receptors_c(Finger::OnObject),
             sink_c: plant.sink_c(),
             current_a: plant.current_a(),
+            taken: plant.taken(),
+            fault_line: plant.bridge_fault(),
             camera,
             device: None,
         }

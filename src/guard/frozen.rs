@@ -4,8 +4,9 @@ use super::Fault;
 use crate::sense::Samples;
 
 /// Ticks of identical samples of a channel that count as one that stands still: noise moves the sum of 16
-/// conversions by 3, so it repeats once in ten ticks by chance, and 50 times in a row never.
-pub const FROZEN_TICKS: u8 = 50;
+/// conversions by 3, so it repeats once in ten ticks by chance, and 46 times in a row never. The tick in which it begins
+/// to stand still still has sound samples, and the bridge is off a tick after the last: 50 ms in all.
+pub const FROZEN_TICKS: u8 = 46;
 /// When one channel is through, others that have repeated themselves for this long are so too.
 const NEARLY_TICKS: u8 = 30;
 /// Thermistors and force. The current may well be none.

@@ -36,7 +36,7 @@
 //! |                | sink hot                                 | 42 °C                                                |
 //! |                | over-current                             | 1.5 A above what is ever asked for                   |
 //! | bridge         | its fault line, the comparator           | in that tick; a pulse between ticks counts           |
-//! | `frozen`       | a channel, or all                        | 50 identical sums                                    |
+//! | `frozen`       | a channel, or all                        | 46 identical sums                                    |
 //! | `jump`         | display, its second thermistor, sink     | 0.5 K in 4 ms                                        |
 //! | `apart`        | the display's thermistors                | 3 K for 40 ms                                        |
 //! | `room`         | room above skin                          | 6 K for 40 ms                                        |

@@ -6,6 +6,7 @@ mod bench;
 mod demo;
 mod firmware;
 mod image;
+mod mutations;
 mod probe;
 mod process;
 mod report;
@@ -73,6 +74,23 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
     },
+    /// Inject every single fault into the emulated machine and the plant; print what each comes to
+    Faults {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// Print one JSON object in place of the table
+        #[arg(long)]
+        json: bool,
+        /// Folder for the page
+        #[arg(long)]
+        out: Option<PathBuf>,
+        /// Remove each detector in turn, in a copy of the sources, and see that the matrix notices, natively; an hour
+        #[arg(long, exclusive = true)]
+        mutations: bool,
+        /// Of `hil-sim faults`, after the above: --only, --scene, --moments and others, see its --help
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<OsString>,
+    },
     /// Build the image that the benchmark runs in the emulator, print its path; the benchmark calls this
     BenchImage(SetUp),
     /// Build the test image of the emulated machine, print its path; its tests call this
@@ -119,6 +137,14 @@ fn main() -> ExitCode {
             out,
             rest,
         } => report::run(set_up.permission(), ("hil-sim", "fidelity"), json, out, rest),
+        Task::Faults { mutations: true, .. } => mutations::run(),
+        Task::Faults {
+            set_up,
+            mutations: false,
+            json,
+            out,
+            rest,
+        } => report::run(set_up.permission(), ("hil-sim", "faults"), json, out, rest),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

@@ -3,6 +3,7 @@
 pub mod commission;
 mod device;
 pub mod erfcx;
+pub mod faults;
 pub mod fidelity;
 pub mod hand;
 pub mod infrared;

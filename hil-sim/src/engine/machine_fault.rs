@@ -9,7 +9,7 @@ use crate::machine::{CoreRegister, InjectError};
 ///
 /// Its text, both ways: `ram-bit=0x20000010.3`, `core-bit=r4.7` (r0 to r12, sp, lr, pc, psr, s0 to s31, fpscr),
 /// `register-bit=0x40010044.15`, `hung-core`, `hse-stopped`, `adc-stopped`, `dma-stopped=2.0` (controller, stream),
-/// `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`.
+/// `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`, `stack-overflow`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MachineFault {
     /// A bit (0 to 7) of a byte of the RAM flips.
@@ -55,6 +55,17 @@ pub enum MachineFault {
     },
     /// The reset pin is pulled.
     ResetPin,
+    /// The stack is at its end: what is pushed next leaves it.
+    StackOverflow,
+}
+
+/// A fault of the processor at a time of a scene: at the whole millisecond at or after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Injection {
+    /// Time, s; negative while the scene settles.
+    pub t_s: f64,
+    /// What happens.
+    pub fault: MachineFault,
 }
 
 /// Why a fault was not injected.
@@ -91,6 +102,7 @@ impl fmt::Display for MachineFault {
             Self::BrownOut => f.write_str("brown-out"),
             Self::PowerCycle { seed } => write!(f, "power-cycle={seed}"),
             Self::ResetPin => f.write_str("reset-pin"),
+            Self::StackOverflow => f.write_str("stack-overflow"),
         }
     }
 }
@@ -100,7 +112,7 @@ impl fmt::Display for MachineFault {
 #[error(
     "`{0}` is no fault of the machine; allowed are ram-bit=ADDRESS.BIT, core-bit=REGISTER.BIT, \
      register-bit=ADDRESS.BIT, hung-core, hse-stopped, adc-stopped, dma-stopped=CONTROLLER.STREAM, brown-out, \
-     power-cycle=SEED, reset-pin"
+     power-cycle=SEED, reset-pin, stack-overflow"
 )]
 pub struct NoMachineFault(String);
 
@@ -143,6 +155,7 @@ fn parse(text: &str) -> Option<MachineFault> {
         "adc-stopped" => MachineFault::AdcStopped,
         "brown-out" => MachineFault::BrownOut,
         "reset-pin" => MachineFault::ResetPin,
+        "stack-overflow" => MachineFault::StackOverflow,
         _ => return None,
     })
 }
@@ -189,6 +202,7 @@ mod tests {
             "brown-out",
             "power-cycle=18446744073709551615",
             "reset-pin",
+            "stack-overflow",
         ] {
             let fault: MachineFault = text.parse().expect("a fault");
             assert_eq!(fault.to_string(), text);

@@ -23,7 +23,7 @@ mod native;
 pub(crate) use image::{ADC_INPUTS, power_up, resets};
 pub use image::{Image, ImageError};
 pub use lines::Lines;
-pub use machine_fault::{MachineFault, NoMachineFault, NotInjected};
+pub use machine_fault::{Injection, MachineFault, NoMachineFault, NotInjected};
 pub(crate) use meter::Meter;
 pub use native::Native;
 

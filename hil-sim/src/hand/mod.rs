@@ -79,6 +79,9 @@ pub fn run<H: Hand>(
 ) -> Result<[Outcome; FINGERS], RunError<H::Stop>> {
     let settings: Vec<_> =
         (scenes.iter().map(commission::of_scene).collect::<Result<_, _>>()).map_err(RunError::Commission)?;
+    if let Some(injection) = scenes.iter().find_map(|scene| scene.injections.first()) {
+        return Err(RunError::Shared(injection.fault));
+    }
     let began = Instant::now();
     let mut fingers = [0, 1, 2, 3, 4].map(|finger| Finger::new(finger, &scenes[finger], &settings[finger]));
     let last = |of: fn(&Finger<'_>) -> u64| fingers.iter().map(of).max().unwrap_or(0);

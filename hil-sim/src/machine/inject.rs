@@ -96,6 +96,9 @@ pub enum InjectError {
         /// Stream.
         stream: u8,
     },
+    /// Nobody knows where the stack ends.
+    #[error("the image has no symbol that tells where its stack ends")]
+    NoStackEnd,
     /// The CPU emulation failed.
     #[error(transparent)]
     Stopped(#[from] Stop),
@@ -209,6 +212,19 @@ impl<W: Wiring + 'static> Machine<W> {
         };
         let flipped = get(cpu, emulated) ^ mask;
         cpu.reg_write(emulated, flipped.into()).map_err(emulator)?;
+        Ok(())
+    }
+
+    /// As after calls without end: the stack pointer in use stands at the stack's end, so that the next push leaves it.
+    /// What is below it stays; whoever runs now finds other things where it pops.
+    ///
+    /// # Errors
+    /// The image does not say where its stack ends.
+    pub fn exhaust_stack(&mut self) -> Result<(), InjectError> {
+        let end = self.stack_end().ok_or(InjectError::NoStackEnd)?;
+        let cpu = &mut self.cpu;
+        cpu.reg_write(Reg::SP, u64::from(end.next_multiple_of(8)))
+            .map_err(emulator)?;
         Ok(())
     }
 

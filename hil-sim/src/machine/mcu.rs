@@ -211,9 +211,7 @@ impl<W: Wiring + 'static> Machine<W> {
     /// Deepest use of the main stack since power-up, bytes, by what has changed in RAM since then. `None` when the image has no
     /// symbol that tells where its static data end (`__sheap`, `__euninit` or `__ebss`).
     pub fn stack_high_water(&self) -> Option<u32> {
-        let bottom = ["_stack_end", "__sheap", "__euninit", "__ebss"]
-            .iter()
-            .find_map(|name| self.firmware.symbol(name))?;
+        let bottom = self.stack_end()?;
         let top = self.firmware.initial_sp();
         let size = top.checked_sub(bottom)? as usize;
         let stack = self.cpu.mem_read_as_vec(u64::from(bottom), size).ok()?;
@@ -230,6 +228,12 @@ impl<W: Wiring + 'static> Machine<W> {
     pub(super) fn lose_memory(&mut self) -> Result<(), Stop> {
         let lost = self.cpu.mem_write(u64::from(RAM_BASE), &self.fresh_ram);
         lost.map_err(emulator)
+    }
+
+    /// Lowest address that is the stack's; see [`Self::stack_high_water`].
+    pub(super) fn stack_end(&self) -> Option<u32> {
+        let symbols = ["_stack_end", "__sheap", "__euninit", "__ebss"];
+        symbols.iter().find_map(|name| self.firmware.symbol(name))
     }
 
     /// Contents of RAM or flash, for tests and probes.

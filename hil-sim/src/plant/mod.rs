@@ -43,7 +43,7 @@ use finger::Vessels;
 pub use heat::Finger;
 use heat::Heat;
 use ledger::Energy;
-use sensors::{BONDED, Channel, Sensed, Sensors};
+use sensors::{BONDED, Channel, Sensed, Sensors, Taken};
 use slab::{Grading, Probe, Slab, equilibrium};
 use tile::Tile;
 use touch::Touch;
@@ -313,6 +313,12 @@ impl Plant {
     #[must_use]
     pub fn sink_c(&self) -> f64 {
         self.heat.tile().sink_c()
+    }
+
+    /// What the sensors take in, before the converter.
+    #[must_use]
+    pub fn taken(&self) -> Taken {
+        self.sensors.taken()
     }
 
     /// Current through the tile, A; positive cools the display.

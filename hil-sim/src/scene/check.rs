@@ -36,6 +36,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         file::Mode::Contact => Mode::ContactResistance,
         file::Mode::SemiInfinite => Mode::SemiInfinite,
     };
+    let (faults, injections) = faults(&source, &file.fault, duration_s, file.seed)?;
     let scene = Scene {
         duration_s,
         settle_s,
@@ -52,7 +53,8 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             None => None,
         },
         forces: forces(&source, &file.force, duration_s)?,
-        faults: faults(&source, &file.fault, duration_s)?,
+        faults,
+        injections,
         host: (file.host.iter())
             .map(|host| {
                 let t_s = source.time("host.t_s", &host.t_s, duration_s)?;

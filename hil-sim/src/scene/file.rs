@@ -148,6 +148,11 @@ pub(super) struct Fault {
     pub value: Option<Number>,
     pub sensor: Option<Spanned<Sensor>>,
     pub with: Option<Spanned<Sensor>>,
+    pub address: Option<Spanned<i64>>,
+    pub register: Option<Spanned<String>>,
+    pub bit: Option<Spanned<i64>>,
+    pub controller: Option<Spanned<i64>>,
+    pub stream: Option<Spanned<i64>>,
 }
 
 #[derive(Deserialize)]

@@ -17,11 +17,12 @@ use contact_model::reference::{Contact, interface_temperature};
 use thermal_display::control::Law;
 use thermal_display::render::Mode;
 
+use crate::engine::Injection;
 use crate::plant::object::ObjectConfig;
 use crate::plant::slab::Back;
 use crate::plant::{Params, PlantConfig};
 
-pub use fault::{Broken, DRIFT_K_S, Fault, FaultKind, Sensor, Value};
+pub use fault::{Broken, DRIFT_K_S, Fault, FaultKind, ProcessorKey, ProcessorKind, Sensor, Value};
 pub use infrared::Infrared;
 pub(crate) use object::custom_line;
 pub use source::SceneError;
@@ -61,6 +62,8 @@ pub struct Scene {
     pub forces: Vec<Force>,
     /// What breaks.
     pub faults: Vec<Fault>,
+    /// What happens to the processor.
+    pub injections: Vec<Injection>,
     /// Lines that the host sends.
     pub host: Vec<HostLine>,
 }

@@ -3,6 +3,9 @@
 use hil_sim::plant::finger::{FingerParams, Vessels};
 use hil_sim::plant::{Params, parameters};
 
+use hil_sim::engine::{Injection, MachineFault};
+use hil_sim::machine::CoreRegister;
+
 use super::scene;
 
 const HEAD: &str = "duration_s = 1\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\n";
@@ -75,4 +78,52 @@ fn layers_of_a_scene_are_those_of_the_nominal_fingers() {
     let drawn = params(&format!("{layered}[plant]\ndraw = 1\n")).finger;
     assert_eq!(drawn.layers, FingerParams::layered().layers);
     assert_ne!(drawn.vessels, Some(Vessels::THESIS));
+}
+
+/// By their kinds: the sampler's stream unless another is named, and noise of the scene's seed.
+#[test]
+fn faults_of_the_processor_are_injected_at_their_times() {
+    let fault = |kind: &str, keys: &str| format!("[[fault]]\nkind = \"{kind}\"\nt_s = 0.5\n{keys}\n");
+    for (tables, expected) in [
+        (fault("hung-core", ""), MachineFault::HungCore),
+        (fault("power-cycle", ""), MachineFault::PowerCycle { seed: 7 }),
+        (
+            fault("dma-stopped", ""),
+            MachineFault::DmaStopped {
+                controller: 2,
+                stream: 0,
+            },
+        ),
+        (
+            fault("dma-stopped", "controller = 1\nstream = 6"),
+            MachineFault::DmaStopped {
+                controller: 1,
+                stream: 6,
+            },
+        ),
+        (
+            fault("ram-bit", "address = 0x2000_0010\nbit = 3"),
+            MachineFault::RamBit {
+                address: 0x2000_0010,
+                bit: 3,
+            },
+        ),
+        (
+            fault("core-bit", "register = \"s31\"\nbit = 4"),
+            MachineFault::CoreBit {
+                register: CoreRegister::S(31),
+                bit: 4,
+            },
+        ),
+    ] {
+        let scene = scene(&format!("seed = 7\n{HEAD}{tables}"));
+        assert_eq!(
+            scene.injections,
+            [Injection {
+                t_s: 0.5,
+                fault: expected
+            }]
+        );
+        assert!(scene.faults.is_empty());
+    }
 }

@@ -188,6 +188,36 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
             "fault.value = 1 of thermistor-open, which takes none; allowed is none, or 0",
         ),
         (
+            "[[fault]]\nkind = \"ram-bit\"\nt_s = 0.5\nbit = 1",
+            6,
+            "fault.address is missing; ram-bit needs it",
+        ),
+        (
+            "[[fault]]\nkind = \"core-bit\"\nt_s = 0.5\nregister = \"r\"\nbit = 1",
+            6,
+            "`core-bit=r.1` is no fault of the machine; allowed are",
+        ),
+        (
+            "[[fault]]\nkind = \"core-bit\"\nt_s = 0.5\naddress = 0x20000000",
+            9,
+            "fault.address has no meaning for core-bit; it has for ram-bit, register-bit",
+        ),
+        (
+            "[[fault]]\nkind = \"hung-core\"\nt_s = 0.5\nuntil_s = 0.6",
+            9,
+            "fault.until_s has no meaning for hung-core; allowed is t_s",
+        ),
+        (
+            "[[fault]]\nkind = \"adc-stuck\"\nt_s = 0.5\nbit = 1",
+            9,
+            "fault.bit has no meaning for adc-stuck; it has for ram-bit, core-bit, register-bit",
+        ),
+        (
+            "[[fault]]\nkind = \"reset-pin\"\nt_s = 2",
+            8,
+            "fault.t_s = 2; allowed is 0 to 1",
+        ),
+        (
             "[[fault]]\nkind = \"thermistor-open\"\nt_s = 2",
             8,
             "fault.t_s = 2; allowed is 0 to 1",

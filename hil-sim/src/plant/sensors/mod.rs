@@ -77,6 +77,15 @@ pub struct Sensed {
     pub mirror_a: f64,
 }
 
+/// What the sensors show, before divider and converter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Taken {
+    /// The thermistors at the five pins, in the order of [`Channel::ALL`], deg C; none where a wire is broken.
+    pub thermistors_c: [Option<f64>; THERMISTORS],
+    /// Current mirror, A.
+    pub mirror_a: f64,
+}
+
 /// The sensors of one finger and the converter that reads them.
 #[derive(Clone, Debug)]
 pub struct Sensors {
@@ -172,6 +181,16 @@ impl Sensors {
         self.thermistors[self.defects.plugged[index]].ratio()
     }
 
+    /// What they show.
+    #[must_use]
+    pub fn taken(&self) -> Taken {
+        let plugged = self.defects.plugged;
+        Taken {
+            thermistors_c: plugged.map(|plugged| self.thermistors[plugged].reads_c()),
+            mirror_a: self.defects.mirror_stuck_a.unwrap_or(self.mirror_a),
+        }
+    }
+
     /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is
     /// part of the experiment.
     pub fn convert(&mut self, channel: Channel) -> u16 {
@@ -194,8 +213,7 @@ impl Sensors {
         if !force.open {
             ideal[Channel::Force as usize] = p.force.counts(self.force_n + force.offset_n) * per_volt;
         }
-        let mirror_a = self.defects.mirror_stuck_a.unwrap_or(self.mirror_a);
-        ideal[Channel::Current as usize] = p.mirror.counts(mirror_a) * per_volt;
+        ideal[Channel::Current as usize] = p.mirror.counts(self.taken().mirror_a) * per_volt;
         self.counts = ideal.map(|counts| self.converter.seen(counts));
     }
 }

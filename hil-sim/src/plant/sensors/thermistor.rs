@@ -122,6 +122,11 @@ impl Thermistor {
         self.ratio
     }
 
+    /// What it reads, deg C; none if its wires are broken.
+    pub fn reads_c(&self) -> Option<f64> {
+        (self.defect.circuit == Circuit::Closed).then_some(self.reached_c + self.defect.offset_k)
+    }
+
     /// Where it would come to rest; it heats itself as it did at the end of the step before.
     fn target_c(&self, site: &Site) -> f64 {
         let loose = self.defect.loose;

@@ -1,11 +1,13 @@
 //! What breaks in a scene, when, and for how long.
 
 mod kinds;
+mod processor;
 mod read;
 
 use serde::Deserialize;
 
 pub use kinds::{FaultKind, Value};
+pub use processor::{ProcessorKey, ProcessorKind};
 pub(super) use read::faults;
 
 /// Rate at which a thermistor drifts, K/s.

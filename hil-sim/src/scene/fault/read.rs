@@ -2,20 +2,33 @@
 
 use toml::Spanned;
 
+use super::processor::{self, ProcessorKind};
 use super::{Broken, Fault, FaultKind, Sensor};
+use crate::engine::Injection;
 use crate::scene::file;
 use crate::scene::source::{SceneError, Source};
 
 /// Shortest time for which something is broken, s: a step of the plant.
 const SHORTEST_S: f64 = 1e-3;
 
-/// The faults of a scene.
+/// The faults of a scene, and those of its processor; `seed` is the scene's.
 pub(in crate::scene) fn faults(
     source: &Source<'_>,
     rows: &[Spanned<file::Fault>],
     duration_s: f64,
-) -> Result<Vec<Fault>, SceneError> {
-    rows.iter().map(|row| fault(source, row, duration_s)).collect()
+    seed: u64,
+) -> Result<(Vec<Fault>, Vec<Injection>), SceneError> {
+    let (mut faults, mut injections) = (Vec::new(), Vec::new());
+    for row in rows {
+        match ProcessorKind::of(row.get_ref().kind.get_ref()) {
+            Some(kind) => injections.push(processor::injection(source, row, kind, duration_s, seed)?),
+            None => {
+                faults.push(fault(source, row, duration_s)?);
+                processor::no_keys(source, row)?;
+            }
+        }
+    }
+    Ok((faults, injections))
 }
 
 fn fault(source: &Source<'_>, row: &Spanned<file::Fault>, duration_s: f64) -> Result<Fault, SceneError> {
@@ -26,6 +39,7 @@ fn fault(source: &Source<'_>, row: &Spanned<file::Fault>, duration_s: f64) -> Re
         value,
         sensor,
         with,
+        ..
     } = row.get_ref();
     let kind = kind(source, word)?;
     let t_s = source.time("fault.t_s", t_s, duration_s)?;
@@ -76,8 +90,15 @@ fn kind(source: &Source<'_>, word: &Spanned<String>) -> Result<FaultKind, SceneE
         .into_iter()
         .find(|kind| kind.name() == word.get_ref());
     known.ok_or_else(|| {
-        let names = FaultKind::ALL.map(FaultKind::name).join(", ");
-        let problem = format!("fault.kind = {:?}; known are {names}", word.get_ref());
+        let names = FaultKind::ALL.iter().map(|kind| kind.name());
+        let names: Vec<_> = names
+            .chain(ProcessorKind::ALL.iter().map(|kind| kind.name))
+            .collect();
+        let problem = format!(
+            "fault.kind = {:?}; known are {}",
+            word.get_ref(),
+            names.join(", ")
+        );
         source.error(Some(word.span()), problem)
     })
 }

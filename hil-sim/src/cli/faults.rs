@@ -1,0 +1,152 @@
+//! `hil-sim faults`: the fault-injection matrix.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, anyhow};
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use hil_sim::faults::{self, Device, Entry, Outline, Place, Plan, Trial};
+use hil_sim::fidelity;
+use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
+
+use super::device::{self, Kind};
+use super::{Failure, output};
+
+#[derive(Args)]
+pub struct Arguments {
+    /// Faults of these kinds only, such as thermistor-open
+    #[arg(long, num_args = 1.., value_name = "KIND")]
+    only: Vec<String>,
+    /// In these scenes only
+    #[arg(long, num_args = 1.., value_parser = places())]
+    scene: Vec<Place>,
+    /// Moments of each fault, spread over the scenes
+    #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..))]
+    moments: u16,
+    /// Of moments, of the order of scenes, and of the device's converter
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    seed: u64,
+    /// What runs the device's logic
+    #[arg(long, value_enum, default_value_t = Kind::Image)]
+    engine: Kind,
+    /// Image to run instead of the one of the current sources
+    #[arg(long)]
+    elf: Option<PathBuf>,
+    /// Threads [default: one a core]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Folder for faults.html
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+fn places() -> impl TypedValueParser<Value = Place> {
+    PossibleValuesParser::new(Place::ALL.map(Place::name)).map(|word| {
+        let known = Place::ALL.into_iter().find(|place| place.name() == word);
+        known.unwrap_or(Place::Copper)
+    })
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report<'a> {
+    engine: &'static str,
+    seed: u64,
+    moments: u16,
+    holds: bool,
+    faults: &'a [Outline],
+}
+
+/// Runs the matrix, prints it, writes its page; a fault that does not hold is a failure.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let plan = Plan {
+        entries: entries(&arguments.only)?,
+        places: match arguments.scene.as_slice() {
+            [] => Place::ALL.to_vec(),
+            chosen => chosen.to_vec(),
+        },
+        moments: arguments.moments.into(),
+        seed: arguments.seed,
+    };
+    output::create(arguments.out.as_deref())?;
+    let elf = arguments.elf.as_deref();
+    let firmware = match arguments.engine {
+        Kind::Native => device::no_image(elf).map(|()| None)?,
+        Kind::Image => Some(device::image(elf, 1)?.0),
+    };
+    let device = firmware.as_ref().map_or(Device::Native, Device::Image);
+    let rows = outlines(arguments, &plan, device).map_err(Failure::run)?;
+    let mut text = if arguments.json {
+        let report = Report {
+            engine: device.name(),
+            seed: arguments.seed,
+            moments: arguments.moments,
+            holds: rows.iter().all(|row| row.holds),
+            faults: &rows,
+        };
+        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
+    } else {
+        faults::table(&rows)
+    };
+    if let Some(folder) = &arguments.out {
+        let path = folder.join(faults::HTML);
+        std::fs::write(&path, faults::page(&rows, device.name()))
+            .with_context(|| path.display().to_string())
+            .map_err(Failure::run)?;
+        if !arguments.json {
+            text += &format!("report: {}\n", path.display());
+        }
+    }
+    output::print(&text)?;
+    match rows.iter().filter(|row| !row.holds).count() {
+        0 => Ok(()),
+        failing => Err(Failure::run(anyhow!(
+            "{failing} of {} faults do not hold",
+            rows.len()
+        ))),
+    }
+}
+
+/// The rows of the chosen kinds.
+fn entries(only: &[String]) -> Result<Vec<Entry>, Failure> {
+    let all = faults::entries();
+    for kind in only {
+        if !all.iter().any(|entry| entry.fault.kind() == *kind) {
+            let mut known: Vec<_> = all.iter().map(|entry| entry.fault.kind()).collect();
+            known.dedup();
+            let problem = anyhow!("--only {kind}; known are {}", known.join(", "));
+            return Err(Failure::input(problem));
+        }
+    }
+    let chosen = |entry: &Entry| only.is_empty() || only.contains(&entry.fault.kind());
+    Ok(all.into_iter().filter(chosen).collect())
+}
+
+fn outlines(arguments: &Arguments, plan: &Plan, device: Device<'_>) -> anyhow::Result<Vec<Outline>> {
+    let runs = plan.runs();
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
+    let bar = ProgressBar::new(runs.len() as u64).with_style(style);
+    bar.set_message(format!("faults on engine {}", device.name()));
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = arguments.threads.map_or_else(cores, usize::from);
+    let trials = fidelity::map(
+        &runs,
+        threads,
+        |(row, moment)| {
+            let entry = &plan.entries[*row];
+            Ok((*row, Trial::run(device, entry, *moment, plan.seed)?))
+        },
+        || bar.inc(1),
+    );
+    bar.finish_and_clear();
+    let mut by_row: Vec<Vec<Trial>> = plan.entries.iter().map(|_| Vec::new()).collect();
+    for (row, trial) in trials? {
+        by_row[row].extend(trial);
+    }
+    let rows = plan.entries.iter().zip(by_row);
+    Ok(rows.map(|(entry, trials)| Outline::new(entry, trials)).collect())
+}

@@ -1,0 +1,91 @@
+//! Bridge, supply, mirror, comparator.
+
+use thermal_display::guard::Fault;
+
+use crate::faults::entry::{broken, valued};
+use crate::faults::{Entry, Place, Sign};
+use crate::scene::FaultKind as Kind;
+
+/// A leg that does not do what it is told shows in the current, the display's way, or the self-test.
+const LEG: &[Sign] = &[
+    Sign::CurrentOff,
+    Sign::OverCurrent,
+    Sign::WrongWay,
+    Sign::DisplayLimit,
+    Sign::FaultLine,
+    Sign::SelfTest(0.704),
+];
+const LEG_REASONS: &[Fault] = &[
+    Fault::CurrentHigh,
+    Fault::CurrentLow,
+    Fault::OverCurrent,
+    Fault::Polarity,
+    Fault::NoResponse,
+    Fault::Bridge,
+];
+const CURRENT: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::SelfTest(0.304)];
+/// A supply that drives the self-test's ampere well enough.
+const SUPPLY: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::FaultLine];
+const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
+const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
+
+/// What drives the tile, and what watches that.
+pub const ENTRIES: &[Entry] = &[
+    Entry::trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
+    Entry::trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
+    Entry::trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
+    Entry::trips(broken(Kind::LegOpen), CURRENT, CURRENT_LOW).at(WORST),
+    Entry::trips(broken(Kind::BridgeShorted), &[Sign::FaultLine], &[Fault::Bridge]).at(WORST),
+    Entry::trips(
+        broken(Kind::PolaritySwapped),
+        &[Sign::WrongWay, Sign::DisplayLimit, Sign::SelfTest(0.504)],
+        &[Fault::Polarity],
+    )
+    .at(WORST),
+    Entry::harmless(broken(Kind::BridgeEnableStuck)).latent(),
+    Entry::trips(
+        broken(Kind::FaultPinDead),
+        &[Sign::SelfTest(0.02)],
+        &[Fault::Comparator],
+    )
+    .latent()
+    .at(&[Place::Off]),
+    Entry::trips(
+        broken(Kind::ComparatorDead),
+        &[Sign::SelfTest(0.02)],
+        &[Fault::Comparator],
+    )
+    .latent()
+    .at(&[Place::Off]),
+    Entry::trips(
+        broken(Kind::ComparatorStuck),
+        &[Sign::FaultLine, Sign::SelfTest(0.04)],
+        &[Fault::Bridge, Fault::Comparator],
+    )
+    .at(WORST),
+    Entry::trips(valued(Kind::MirrorStuck, 0.0), CURRENT, CURRENT_LOW).at(WORST),
+    Entry::trips(
+        valued(Kind::MirrorStuck, 3.0),
+        CURRENT,
+        &[Fault::CurrentHigh, Fault::CurrentLow],
+    ),
+    Entry::trips(
+        valued(Kind::MirrorStuck, 10.0),
+        &[Sign::OverCurrent],
+        &[Fault::OverCurrent],
+    ),
+    Entry::trips(valued(Kind::SupplyLow, 9.0), SUPPLY, CURRENT_LOW).at(WORST),
+    Entry::trips(valued(Kind::SupplyLow, 4.5), CURRENT, CURRENT_LOW).at(WORST),
+    Entry::trips(
+        valued(Kind::SupplyHigh, 16.0),
+        SUPPLY,
+        &[Fault::CurrentHigh, Fault::OverCurrent, Fault::Bridge],
+    )
+    .at(WORST),
+    Entry::trips(
+        valued(Kind::SupplyHigh, 24.0),
+        SUPPLY,
+        &[Fault::CurrentHigh, Fault::OverCurrent, Fault::Bridge],
+    )
+    .at(WORST),
+];

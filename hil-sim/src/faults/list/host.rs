@@ -1,0 +1,31 @@
+//! The host, and what it says.
+
+use thermal_display::guard::Fault;
+
+use crate::faults::entry::broken;
+use crate::faults::{Entry, Injected, Place, Sign};
+use crate::scene::FaultKind as Kind;
+
+/// Silence, noise, and wrong or unwise lines.
+pub const ENTRIES: &[Entry] = &[
+    Entry::trips(
+        broken(Kind::HostSilent),
+        &[Sign::After(2.0)],
+        &[Fault::HostSilent],
+    )
+    .never_at(&[Place::SelfTest, Place::Off]),
+    Entry::harmless(broken(Kind::HostGarbage)),
+    Entry::harmless(broken(Kind::HostFlood)),
+    Entry::harmless(Injected::Line("hold 60")).at(&[Place::Touched]),
+    Entry::harmless(Injected::Line("object 900")),
+    Entry::harmless(Injected::Line("stream 0")),
+    Entry::harmless(Injected::Line("object -20")).at(&[Place::Slew, Place::Touched]),
+    Entry::trips(Injected::Line("object 60"), &[Sign::Dose], &[Fault::Dose])
+        .at(&[Place::Slew])
+        .watched(180.0),
+    Entry::trips(
+        Injected::Line("set tile 0.5 0.02 0.3 0.5 0.02"),
+        &[Sign::WrongWay],
+        &[Fault::Polarity],
+    ),
+];

@@ -1,0 +1,102 @@
+//! The microcontroller: core, clock, memory, peripherals, supply.
+
+use thermal_display::guard::Fault;
+
+use crate::engine::MachineFault as Fails;
+use crate::faults::{Entry, Injected, Place, Sign};
+use crate::machine::CoreRegister;
+
+const fn processor(fault: Fails) -> Injected {
+    Injected::Processor(fault)
+}
+
+const fn flipped(address: u32, bit: u8) -> Injected {
+    processor(Fails::RegisterBit { address, bit })
+}
+
+const fn core(register: CoreRegister, bit: u8) -> Injected {
+    processor(Fails::CoreBit { register, bit })
+}
+
+const NOW: &[Sign] = &[Sign::Injection];
+/// A bridge that gets another duty than it is told.
+const DUTY: &[Sign] = &[
+    Sign::CurrentOff,
+    Sign::OverCurrent,
+    Sign::WrongWay,
+    Sign::SelfTest(0.504),
+];
+const DUTY_REASONS: &[Fault] = &[
+    Fault::CurrentHigh,
+    Fault::CurrentLow,
+    Fault::OverCurrent,
+    Fault::Polarity,
+    Fault::NoResponse,
+    Fault::Bridge,
+];
+/// The program is lost; who notices first depends on where.
+const LOST: &[Fault] = &[
+    Fault::HardFault,
+    Fault::Panic,
+    Fault::TickLost,
+    Fault::Watchdog,
+    Fault::Stack,
+    Fault::Sampling,
+];
+
+const TIM1: u32 = 0x4001_0000;
+const ADC1: u32 = 0x4001_2000;
+const TIM2: u32 = 0x4000_0000;
+const GPIOB_ODR: u32 = 0x4002_0414;
+const DMA2_S0CR: u32 = 0x4002_6410;
+const NVIC_ISER1: u32 = 0xe000_e104;
+/// First word of the stack's guard.
+const STACK_GUARD: u32 = 0x2000_0000;
+
+/// What the processor can do to a bridge.
+pub const ENTRIES: &[Entry] = &[
+    Entry::trips(processor(Fails::HungCore), NOW, &[Fault::TickLost]).at(&[Place::Slew]),
+    Entry::trips(processor(Fails::HseStopped), NOW, &[Fault::Clock]).at(&[Place::Slew]),
+    Entry::trips(
+        processor(Fails::AdcStopped),
+        NOW,
+        &[Fault::TickLost, Fault::Sampling],
+    )
+    .at(&[Place::Slew]),
+    Entry::trips(
+        processor(Fails::DmaStopped {
+            controller: 2,
+            stream: 0,
+        }),
+        NOW,
+        &[Fault::Sampling, Fault::TickLost],
+    )
+    .at(&[Place::Slew]),
+    Entry::restarts(processor(Fails::BrownOut)).at(&[Place::Slew]),
+    Entry::restarts(processor(Fails::PowerCycle { seed: 1 })).at(&[Place::Slew]),
+    Entry::restarts(processor(Fails::ResetPin)).at(&[Place::Slew]),
+    Entry::trips(processor(Fails::StackOverflow), NOW, LOST).at(&[Place::Slew]),
+    Entry::trips(
+        processor(Fails::RamBit {
+            address: STACK_GUARD,
+            bit: 0,
+        }),
+        NOW,
+        &[Fault::Stack],
+    ),
+    Entry::trips(core(CoreRegister::Pc, 20), NOW, LOST).at(&[Place::Slew]),
+    Entry::trips(core(CoreRegister::Sp, 28), NOW, LOST),
+    Entry::harmless(core(CoreRegister::S(0), 30)),
+    // Main output off; output of leg A off; period; prescaler; enable line; comparison of leg A.
+    Entry::trips(flipped(TIM1 + 0x44, 15), DUTY, DUTY_REASONS).at(&[Place::Slew]),
+    Entry::trips(flipped(TIM1 + 0x20, 0), DUTY, DUTY_REASONS).at(&[Place::Slew]),
+    Entry::trips(flipped(TIM1 + 0x2c, 10), DUTY, DUTY_REASONS).at(&[Place::Slew]),
+    Entry::harmless(flipped(TIM1 + 0x28, 0)),
+    Entry::trips(flipped(GPIOB_ODR, 10), DUTY, DUTY_REASONS).at(&[Place::Slew]),
+    Entry::harmless(flipped(TIM1 + 0x34, 10)),
+    // Scans that are no longer started, converted, stored or taken.
+    Entry::trips(flipped(TIM2, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
+    Entry::trips(flipped(ADC1 + 0x08, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
+    Entry::trips(flipped(DMA2_S0CR, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
+    Entry::trips(flipped(NVIC_ISER1, 24), NOW, &[Fault::TickLost, Fault::Sampling]),
+];

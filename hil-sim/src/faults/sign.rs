@@ -1,0 +1,183 @@
+//! Deviations of the plant from which on a fault can be noticed.
+//!
+//! All are told from the plant's truth: what the thermistors read and the mirror shows before the converter, the level of
+//! the fault line, and the current that the device says it asks for.
+//!
+//! What a device compares has been calibrated and has noise. So a difference counts here from the device's limit on, and
+//! what two sensors are apart when they are sound: 0.1 K of the display's, 0.5 K of skin and room, 0.2 K of two that are
+//! exchanged. A deviation that takes its time counts from its begin, if it lasts for as long as a device must wait to tell
+//! it from what a sound one does.
+
+use crate::dose::rate;
+use crate::plant::STEP_S;
+use crate::trace::Row;
+
+/// A deviation that counts as detectable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Sign {
+    /// From the injection on.
+    Injection,
+    /// So long after it, s.
+    After(f64),
+    /// The display's thermistors read 3.1 K apart.
+    Apart,
+    /// Display, its second thermistor or the sink reads 0.7 K more or less than 4 ms before.
+    Jump,
+    /// The room reads 6.5 K more than the skin.
+    RoomAboveSkin,
+    /// The mirror shows a current that is off by more than 1 A and a quarter of what is asked for, and stays so for 30 ms.
+    CurrentOff,
+    /// The mirror shows more than 7.5 A.
+    OverCurrent,
+    /// The display's thermistor has gone back by 1 K while a mean of 1 A drove it the other way.
+    WrongWay,
+    /// A thermistor of the display reads less than 13.5 or more than 43 °C.
+    DisplayLimit,
+    /// That of the sink reads more than 42 °C.
+    SinkLimit,
+    /// The fault line is low while the bridge is driven, the self-test aside, which pulls it.
+    FaultLine,
+    /// Half a minute of CEM43 by the display's thermistor.
+    Dose,
+    /// A self-test that begins with the fault there is so old, s: the comparator's part is through at 0.02, the current's at
+    /// 0.304, the display's answer at 0.504, all at 0.704.
+    SelfTest(f64),
+}
+
+const APART_K: f64 = 3.1;
+const JUMP_K: f64 = 0.7;
+const JUMP_ROWS: usize = 4;
+const ROOM_ABOVE_K: f64 = 6.5;
+const OFF_A: f64 = 1.0;
+const OFF_PART: f64 = 0.25;
+const OFF_ROWS: usize = 30;
+const OVER_A: f64 = 7.5;
+const DIRECTED_A: f64 = 1.0;
+const MEAN_S: f64 = 0.25;
+const BACK_K: f64 = 1.0;
+const DISPLAY_C: std::ops::RangeInclusive<f64> = 13.5..=43.0;
+const SINK_C: f64 = 42.0;
+const DOSE_MIN: f64 = 0.5;
+
+/// States in which the bridge is driven, the self-test aside.
+const DRIVEN: [&str; 3] = ["armed", "preset", "contact"];
+
+/// Places among the thermistors.
+const DISPLAY: usize = 0;
+const CHECK: usize = 1;
+const SINK: usize = 2;
+const SKIN: usize = 3;
+const ROOM: usize = 4;
+
+fn read(row: &Row, which: usize) -> Option<f64> {
+    row.taken.thermistors_c[which]
+}
+
+fn state(row: &Row) -> &str {
+    row.device.as_ref().map_or("", |device| &device.state)
+}
+
+impl Sign {
+    /// When it is reached first, s; `from` is the row at which the fault begins.
+    #[must_use]
+    pub fn reached_s(self, rows: &[Row], from: usize) -> Option<f64> {
+        let after = rows.get(from..)?;
+        let first = |level: &dyn Fn(&Row) -> bool| after.iter().find(|row| level(row)).map(|row| row.t_s);
+        let begin_s = after.first()?.t_s;
+        let end_s = after.last()?.t_s;
+        match self {
+            Self::Injection => Some(begin_s),
+            Self::After(s) => Some(begin_s + s).filter(|t_s| *t_s <= end_s),
+            Self::Apart => first(&|row| match (read(row, DISPLAY), read(row, CHECK)) {
+                (Some(display_c), Some(check_c)) => (display_c - check_c).abs() > APART_K,
+                _ => false,
+            }),
+            Self::Jump => jump(rows, from),
+            Self::RoomAboveSkin => first(&|row| match (read(row, ROOM), read(row, SKIN)) {
+                (Some(room_c), Some(skin_c)) => room_c - skin_c > ROOM_ABOVE_K,
+                _ => false,
+            }),
+            Self::CurrentOff => current_off(after),
+            Self::OverCurrent => first(&|row| row.taken.mirror_a > OVER_A),
+            Self::WrongWay => wrong_way(after),
+            Self::DisplayLimit => first(&|row| {
+                let beyond = |c: f64| !DISPLAY_C.contains(&c);
+                [DISPLAY, CHECK]
+                    .into_iter()
+                    .filter_map(|which| read(row, which))
+                    .any(beyond)
+            }),
+            Self::SinkLimit => first(&|row| read(row, SINK).is_some_and(|sink_c| sink_c > SINK_C)),
+            Self::FaultLine => first(&|row| row.fault_line && DRIVEN.contains(&state(row))),
+            Self::Dose => dose(rows, from),
+            Self::SelfTest(age_s) => {
+                let begin = (from.max(1)..rows.len())
+                    .find(|&i| state(&rows[i]) == "self-test" && state(&rows[i - 1]) != "self-test")?;
+                Some(rows[begin].t_s + age_s).filter(|t_s| *t_s <= end_s)
+            }
+        }
+    }
+}
+
+/// Begin of the fault included: what it does to a reading at once is a jump.
+fn jump(rows: &[Row], from: usize) -> Option<f64> {
+    (from..rows.len()).find_map(|i| {
+        let before = rows.get(i.checked_sub(JUMP_ROWS)?)?;
+        let jumped = [DISPLAY, CHECK, SINK].into_iter().any(|which| {
+            match (read(before, which), read(&rows[i], which)) {
+                (Some(before_c), Some(now_c)) => (now_c - before_c).abs() > JUMP_K,
+                _ => false,
+            }
+        });
+        jumped.then(|| rows[i].t_s)
+    })
+}
+
+/// The device's own words tell what it asks for; while it says nothing nothing is told.
+fn current_off(rows: &[Row]) -> Option<f64> {
+    let mut since = 0;
+    for (i, row) in rows.iter().enumerate() {
+        let asked_a = row.device.as_ref().and_then(|device| device.demand_a);
+        let off = asked_a.is_some_and(|asked_a| {
+            let asked_a = asked_a.abs();
+            (row.taken.mirror_a - asked_a).abs() > OFF_A + OFF_PART * asked_a
+        });
+        if !off {
+            since = i + 1;
+        } else if i + 1 - since >= OFF_ROWS {
+            return Some(rows[since].t_s);
+        }
+    }
+    None
+}
+
+fn wrong_way(rows: &[Row]) -> Option<f64> {
+    let (mut mean_a, mut best_c) = (0.0, None::<f64>);
+    for row in rows {
+        let asked_a = row.device.as_ref().and_then(|device| device.demand_a);
+        mean_a += (asked_a.unwrap_or(0.0) - mean_a) * STEP_S / MEAN_S;
+        let Some(display_c) = read(row, DISPLAY).filter(|_| f64::abs(mean_a) >= DIRECTED_A) else {
+            best_c = None;
+            continue;
+        };
+        // Mirrored, so that lower is better.
+        let display_c = display_c * mean_a.signum();
+        let best = best_c.map_or(display_c, |best_c| best_c.min(display_c));
+        if display_c - best > BACK_K {
+            return Some(row.t_s);
+        }
+        best_c = Some(best);
+    }
+    None
+}
+
+fn dose(rows: &[Row], from: usize) -> Option<f64> {
+    let mut minutes = 0.0;
+    let mut doses = rows.iter().enumerate().map(|(i, row)| {
+        minutes += read(row, DISPLAY).map_or(0.0, rate) * STEP_S / 60.0;
+        (i, row.t_s, minutes)
+    });
+    doses
+        .find(|(i, _, minutes)| *i >= from && *minutes >= DOSE_MIN)
+        .map(|(_, t_s, _)| t_s)
+}

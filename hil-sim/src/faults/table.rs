@@ -1,0 +1,146 @@
+//! The matrix as text.
+
+use std::fmt::Write;
+
+use super::{Breach, Outline, Trial};
+
+/// One line for each row, with its worst cases; then every run that has a breach.
+#[must_use]
+pub fn table(rows: &[Outline]) -> String {
+    let width = rows.iter().map(|row| row.fault.len()).max().unwrap_or(0);
+    let mut text = format!(
+        "{:width$}  runs  detectable   to safe ms  skin C         CEM43  display C      reasons\n",
+        "fault"
+    );
+    for row in rows {
+        text += &line(row, width);
+    }
+    let runs: usize = rows.iter().map(|row| row.trials.len()).sum();
+    let held = rows
+        .iter()
+        .filter(|row| row.holds && !row.trials.is_empty())
+        .count();
+    let skipped = rows.iter().filter(|row| row.trials.is_empty()).count();
+    // Writing to a String cannot fail.
+    let _ = writeln!(
+        text,
+        "{runs} runs; {held} of {} faults held{}",
+        rows.len() - skipped,
+        if skipped > 0 {
+            format!(", {skipped} mean nothing to this engine")
+        } else {
+            String::new()
+        }
+    );
+    for row in rows {
+        for trial in row
+            .trials
+            .iter()
+            .filter(|trial| !trial.verdict.breaches.is_empty())
+        {
+            let _ = writeln!(text, "{}: {}", row.fault, broken(trial));
+        }
+    }
+    text
+}
+
+/// What a row is called: it holds, or what it breaks.
+#[must_use]
+pub(super) fn outcome(row: &Outline) -> String {
+    if row.trials.is_empty() {
+        return "-".into();
+    }
+    let mut breaches: Vec<Breach> = row
+        .trials
+        .iter()
+        .flat_map(|trial| trial.verdict.breaches.iter().copied())
+        .collect();
+    breaches.sort();
+    breaches.dedup();
+    if breaches.is_empty() {
+        "ok".into()
+    } else {
+        let names: Vec<_> = breaches.iter().map(|breach| breach.name()).collect();
+        names.join(",").to_uppercase()
+    }
+}
+
+/// The figures of a row as words, in the order of the columns: runs, how many were detectable, longest time from the
+/// first sign to safe, skin, dose, display, reasons.
+#[must_use]
+pub(super) fn cells(row: &Outline) -> [String; 7] {
+    let detectable = row
+        .trials
+        .iter()
+        .filter(|trial| trial.verdict.detectable_ms.is_some())
+        .count();
+    let took = row.most(|trial| trial.verdict.took_ms);
+    let reasons: Vec<_> = (row.reasons().iter())
+        .map(|(reason, count)| format!("{reason} {count}"))
+        .collect();
+    let range = |least: Option<f64>, most: Option<f64>| match (least, most) {
+        (Some(least), Some(most)) => format!("{:.2}..{most:.2}", -least),
+        _ => "-".into(),
+    };
+    let cem43 = row.most(|trial| finite(trial.verdict.cem43_min));
+    [
+        row.trials.len().to_string(),
+        detectable.to_string(),
+        took.map_or("-".into(), |ms| format!("{ms:.0}")),
+        range(
+            row.most(|trial| finite(-trial.verdict.skin_c.min)),
+            row.most(|trial| finite(trial.verdict.skin_c.max)),
+        ),
+        cem43.map_or("-".into(), |minutes| format!("{minutes:.3}")),
+        range(
+            row.most(|trial| finite(-trial.verdict.display_c.min)),
+            row.most(|trial| finite(trial.verdict.display_c.max)),
+        ),
+        reasons.join(", "),
+    ]
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}
+
+fn line(row: &Outline, width: usize) -> String {
+    let [runs, detectable, took, skin, cem43, display, reasons] = cells(row);
+    format!(
+        "{:width$}  {runs:>4}  {detectable:>10}  {took:>11}  {skin:<13}  {cem43:>5}  {display:<13}  {:<7} {reasons}{}\n",
+        row.fault,
+        outcome(row),
+        if row.latent { " (latent)" } else { "" },
+    )
+}
+
+/// A run that breaks something, so that it can be run again.
+pub(super) fn broken(trial: &Trial) -> String {
+    let verdict = &trial.verdict;
+    let names: Vec<_> = verdict.breaches.iter().map(|breach| breach.name()).collect();
+    let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.0} ms"));
+    let mut text = format!(
+        "{} in {} at {:.3} s: detectable {}, detected {}, safe {}, reason {}, skin {:.2} to {:.2} C, CEM43 {:.3} min, display {:.2} to {:.2} C",
+        names.join(", "),
+        trial.place,
+        trial.t_s,
+        ms(verdict.detectable_ms),
+        ms(verdict.detected_ms),
+        ms(verdict.safe_ms),
+        verdict.reason,
+        verdict.skin_c.min,
+        verdict.skin_c.max,
+        verdict.cem43_min,
+        verdict.display_c.min,
+        verdict.display_c.max,
+    );
+    if let Some(ended) = &verdict.ended {
+        text = format!(
+            "{} in {} at {:.3} s: {ended}",
+            names.join(", "),
+            trial.place,
+            trial.t_s
+        );
+    }
+    text
+}
