@@ -20,6 +20,7 @@ pub mod measure;
 pub mod names;
 pub mod panics;
 mod proof;
+mod scenes;
 pub mod stack;
 pub mod thumb;
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use clap::Parser;
+use clap::{Parser, ValueEnum};
 use image_proof::{Proof, measure};
 
 /// Checks the release image's machine code: panics, stack, loops, floating point; and measures its ticks and its stack
@@ -13,14 +13,23 @@ use image_proof::{Proof, measure};
 #[command(name = "image-proof", max_term_width = 100)]
 struct Cli {
     /// How many fingers the image is for
-    #[arg(long, default_value_t = 1, value_parser = clap::builder::PossibleValuesParser::new(["1", "5"]).map(|n| usize::from(n == "5") * 4 + 1))]
-    fingers: usize,
+    #[arg(long, value_enum, default_value = "1")]
+    fingers: Fingers,
     /// Image to look at in place of that of the current sources; it must have its symbols
     #[arg(long)]
     elf: Option<PathBuf>,
     /// Leave out what takes a run in the emulated machine
     #[arg(long)]
     code_only: bool,
+}
+
+/// For how many fingers there is an image.
+#[derive(Clone, Copy, ValueEnum)]
+enum Fingers {
+    #[value(name = "1")]
+    One = 1,
+    #[value(name = "5")]
+    Five = 5,
 }
 
 fn main() -> ExitCode {
@@ -34,14 +43,15 @@ fn main() -> ExitCode {
 }
 
 fn run(cli: &Cli) -> Result<()> {
+    let fingers = cli.fingers as usize;
     let elf = match &cli.elf {
         Some(elf) => elf.clone(),
-        None => hil_sim::firmware::build(cli.fingers)?,
+        None => hil_sim::firmware::build(fingers)?,
     };
     let proof = Proof::read(&elf)?;
     let mut sections = proof.check()?;
     if !cli.code_only {
-        sections.push(measure::check(&proof, &elf, cli.fingers)?);
+        sections.push(measure::check(&proof, &elf, fingers)?);
     }
     for section in &sections {
         println!("{section}");
