@@ -28,7 +28,7 @@ pub fn check(proof: &Proof) -> Result<Section> {
     };
     for tree in CONTROL {
         let (mut instructions, mut functions) = (0, 0);
-        for function in proof.graph.reached(proof.root(tree)?).keys() {
+        for function in &proof.graph.reached(proof.root(tree)?) {
             let name = proof.image.name(*function);
             if is_software(name) {
                 functions += 1;

@@ -1,22 +1,25 @@
 //! Which function calls which, in the whole image.
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::flow::{Flow, Target, follow};
+use crate::flow::{Call, Flow, Target, follow};
 use crate::image::Image;
 
 /// The functions of an image and their calls.
 pub struct Graph {
     flows: BTreeMap<u32, Flow>,
     returns: BTreeSet<u32>,
+    /// What a call through a register can reach: every function whose address is taken, but for exceptions' handlers.
+    targets: BTreeSet<u32>,
 }
 
 impl Graph {
     /// Follows every function, and again until it is settled which of them return: at first none is taken to, so that
     /// those remain that cannot.
-    pub fn new(image: &Image) -> Self {
+    pub fn new(image: &Image, handlers: &BTreeSet<u32>) -> Self {
         let mut graph = Self {
             flows: BTreeMap::new(),
             returns: BTreeSet::new(),
+            targets: image.taken().difference(handlers).copied().collect(),
         };
         loop {
             let known = graph.returns.len();
@@ -43,9 +46,18 @@ impl Graph {
         self.returns.contains(&start)
     }
 
-    /// All functions that run on behalf of one while none is entered that never returns; each with its caller.
-    pub fn reached(&self, root: u32) -> BTreeMap<u32, u32> {
-        let mut callers = BTreeMap::from([(root, root)]);
+    /// What a call can reach.
+    pub fn targets(&self, call: &Call) -> impl Iterator<Item = u32> {
+        let (one, any) = match call.target {
+            Target::Function(start) => (Some(start), None),
+            Target::Register => (None, Some(&self.targets)),
+        };
+        one.into_iter().chain(any.into_iter().flatten().copied())
+    }
+
+    /// All functions that run on behalf of one while none is entered that never returns.
+    pub fn reached(&self, root: u32) -> BTreeSet<u32> {
+        let mut reached = BTreeSet::from([root]);
         let mut waiting = vec![root];
         while let Some(at) = waiting.pop() {
             for call in self
@@ -54,15 +66,13 @@ impl Graph {
                 .into_iter()
                 .flat_map(|flow| flow.calls.values())
             {
-                if let Target::Function(to) = call.target
-                    && self.returns(to)
-                    && !callers.contains_key(&to)
-                {
-                    callers.insert(to, at);
-                    waiting.push(to);
+                for to in self.targets(call) {
+                    if self.returns(to) && reached.insert(to) {
+                        waiting.push(to);
+                    }
                 }
             }
         }
-        callers
+        reached
     }
 }

@@ -35,8 +35,7 @@ struct Levels {
 
 impl Levels {
     fn new(proof: &Proof) -> Result<Self> {
-        let handlers: BTreeSet<u32> = proof.vectors.iter().map(|(_, function)| *function).collect();
-        let mut stacks = Stacks::new(proof, &handlers);
+        let mut stacks = Stacks::new(proof);
         let mut each = Vec::new();
         for (level, handlers) in LEVELS {
             let mut deepest = [Deepest::default(), Deepest::default()];

@@ -31,7 +31,7 @@ pub fn check(proof: &Proof) -> Result<Section> {
     let mut allowed = Allowed::new(&LOOPS);
     for tree in CONTROL {
         let (mut exclusive, mut owners) = (0, BTreeMap::<String, usize>::new());
-        for function in proof.graph.reached(proof.root(tree)?).keys() {
+        for function in &proof.graph.reached(proof.root(tree)?) {
             let Some(flow) = proof.graph.flow(*function) else {
                 continue;
             };

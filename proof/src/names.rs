@@ -99,7 +99,8 @@ impl Names {
     }
 }
 
-/// A function's path without parameters of types: `<a::B<C> as d::E<F>>::g::<H>` is `a::B::g`.
+/// A function's path without parameters of types: `<a::B<C> as d::E<F>>::g::<H>` is `a::B::g`, `<[B] as d::E>::g` is
+/// `d::E::g`.
 pub fn plain(name: &str) -> String {
     let (mut text, rest) = match name
         .strip_prefix('<')
@@ -140,14 +141,20 @@ fn closing(text: &str) -> Option<usize> {
     None
 }
 
-/// The type of `Type as Trait`.
+/// Of `Type as Trait` the one that tells whose function it is: the type, unless it is the language's own.
 fn implementor(inside: &str) -> &str {
     let mut depth = 0;
     for (place, letter) in inside.char_indices() {
         match letter {
             '<' | '(' | '[' => depth += 1,
             '>' | ')' | ']' => depth -= 1,
-            ' ' if depth == 0 && inside[place..].starts_with(" as ") => return &inside[..place],
+            ' ' if depth == 0 => {
+                if let Some(of) = inside[place..].strip_prefix(" as ") {
+                    let kind = &inside[..place];
+                    let built_in = kind.starts_with(['[', '&', '(', '*']) || !kind.contains("::");
+                    return if built_in { of } else { kind };
+                }
+            }
             _ => {}
         }
     }
@@ -169,6 +176,11 @@ mod tests {
             ("<a::B>::g::{{closure}}", "a::B::g::{{closure}}"),
             ("core::slice::<impl [T]>::split_at", "core::slice::[T]::split_at"),
             ("core::ops::f<fn() -> u8>::call", "core::ops::f::call"),
+            (
+                "<[a::B] as core::ops::Index<C>>::index",
+                "core::ops::Index::index",
+            ),
+            ("<u32 as a::Wide>::wide", "a::Wide::wide"),
         ] {
             assert_eq!(plain(name), expected, "{name}");
         }

@@ -16,8 +16,8 @@ use crate::{Proof, Section};
 pub struct Site {
     /// Address of the call.
     pub at: u32,
-    /// Whose it is: the innermost function outside the language's library; where the compiler has merged several, the
-    /// file that they name.
+    /// Whose it is: the innermost function outside the language's library, or the outermost of that; where the compiler
+    /// has merged several, the file that they name.
     pub owner: String,
     /// It belongs to this project.
     pub ours: bool,
@@ -30,10 +30,10 @@ pub struct Site {
 impl Site {
     fn new(image: &Image, graph: &Graph, names: &Names, at: u32, called: u32) -> Self {
         let frames = names.frames(at);
-        let owner = frames.iter().find(|frame| !frame.is_core()).or(frames.first());
+        let owner = frames.iter().find(|frame| !frame.is_core()).or(frames.last());
         let owner = owner.cloned().unwrap_or_else(|| Frame::unknown(at));
-        // Line 0: several panics in one, whose place only their argument tells.
-        let merged = Location::of_call(image, graph, at).filter(|_| !owner.has_line());
+        // Without a line: several panics in one, whose place only their argument tells.
+        let merged = Location::of_call(image, graph, at).filter(|_| !owner.has_line() && !owner.is_core());
         Self {
             at,
             ours: merged.as_ref().map_or(owner.is_ours(), Location::is_ours),
@@ -57,7 +57,7 @@ impl Site {
 /// All such calls on behalf of a function, by address.
 pub fn sites(image: &Image, graph: &Graph, names: &Names, root: u32) -> Vec<Site> {
     let mut sites = Vec::new();
-    for function in graph.reached(root).keys() {
+    for function in &graph.reached(root) {
         for (at, call) in graph.flow(*function).into_iter().flat_map(|flow| &flow.calls) {
             if let Target::Function(called) = call.target
                 && !graph.returns(called)
@@ -103,7 +103,7 @@ pub fn check(proof: &Proof) -> Result<Section> {
                 .iter()
                 .map(|(owner, count)| format!("  {count} in {owner}")),
         );
-        for function in reached.keys() {
+        for function in &reached {
             let undefined = proof
                 .graph
                 .flow(*function)

@@ -40,10 +40,12 @@ impl Proof {
     pub fn read(elf: &Path) -> Result<Self> {
         let bytes = std::fs::read(elf).with_context(|| format!("cannot read {}", elf.display()))?;
         let image = Image::parse(&bytes).with_context(|| elf.display().to_string())?;
+        let vectors = image.vectors()?;
+        let handlers = vectors.iter().map(|(_, function)| *function).collect();
         Ok(Self {
-            graph: Graph::new(&image),
+            graph: Graph::new(&image, &handlers),
             names: Names::read(elf)?,
-            vectors: image.vectors()?,
+            vectors,
             image,
         })
     }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use image_proof::allowed::{CONTROL, HOST, TICK};
-use image_proof::{Proof, Section, levels, measure, panics};
+use image_proof::{Proof, Section, measure, panics};
 
 /// The image of the current sources for one finger, built once.
 fn one() -> &'static Path {
@@ -56,16 +56,20 @@ fn ticks_and_stack_of_five_fingers_stay_within_their_bounds() {
 #[test]
 fn the_checks_see_what_is_there() {
     let proof = proof(one());
-    // The start-up's frames have no call through a register, so that the bound of its part is exact.
-    assert!(levels::bound(&proof).expect("a bound") > 10_000);
     let reached = |tree: &str| proof.graph.reached(proof.root(tree).expect("a handler"));
     let calls = |tree: &str, part: &str| {
         reached(tree)
             .keys()
             .any(|start| proof.image.name(*start).contains(part))
     };
-    // The host's task calculates in `f64`, formats and fits; the tick has the experiment out of line.
-    for part in ["__aeabi_dmul", "libm::", "core::fmt::", "commission::fit::fit"] {
+    // The host's task calculates in `f64`, formats through registers, and fits; the tick has the experiment out of line.
+    for part in [
+        "__aeabi_dmul",
+        "libm::",
+        "core::fmt::",
+        "heapless::",
+        "commission::fit::fit",
+    ] {
         assert!(calls(HOST, part), "{part}");
     }
     assert!(calls(TICK, "Experiment::update"));
