@@ -20,7 +20,7 @@ impl Location {
         let passed = image.loaded_before(at, ARGUMENTS).into_iter();
         passed
             .filter_map(|address| Self::read(image, address))
-            .last()
+            .next_back()
             .or_else(|| {
                 let function = image.functions().find(|f| (f.start..f.end).contains(&at))?;
                 let call = graph.flow(function.start)?.calls.get(&at)?;

@@ -59,7 +59,7 @@ fn the_checks_see_what_is_there() {
     let reached = |tree: &str| proof.graph.reached(proof.root(tree).expect("a handler"));
     let calls = |tree: &str, part: &str| {
         reached(tree)
-            .keys()
+            .iter()
             .any(|start| proof.image.name(*start).contains(part))
     };
     // The host's task calculates in `f64`, formats through registers, and fits; the tick has the experiment out of line.
