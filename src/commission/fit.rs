@@ -95,7 +95,8 @@ pub fn fit(settings: &Settings, before: &Calibration, points: &Points) -> Option
     Some(calibration.rounded())
 }
 
-/// Adds an equation with few coefficients other than zero to the normal equations.
+/// Adds an equation with few coefficients other than zero to the normal equations; places that they do not have are
+/// left out.
 fn add<const N: usize>(
     normal: &mut [[f64; N]; N],
     right: &mut [f64; N],
@@ -105,10 +106,13 @@ fn add<const N: usize>(
 ) {
     let weight = 1.0 / (deviation * deviation);
     for &(i, a) in equation {
-        right[i] += weight * a * wanted;
+        let (Some(row), Some(sum)) = (normal.get_mut(i), right.get_mut(i)) else {
+            continue;
+        };
+        *sum += weight * a * wanted;
         for &(j, b) in equation {
-            if j <= i {
-                normal[i][j] += weight * a * b;
+            if let Some(product) = row.get_mut(j).filter(|_| j <= i) {
+                *product += weight * a * b;
             }
         }
     }

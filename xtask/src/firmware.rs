@@ -23,6 +23,14 @@ pub enum Fingers {
 }
 
 impl Fingers {
+    /// The number, as the command line has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::One => "1",
+            Self::Five => "5",
+        }
+    }
+
     fn feature(self) -> &'static str {
         match self {
             Self::One => "nucleo-f446re",

@@ -9,6 +9,7 @@ mod image;
 mod mutations;
 mod probe;
 mod process;
+mod proof;
 mod report;
 mod setup;
 mod step;
@@ -90,6 +91,16 @@ enum Task {
         /// Of `hil-sim faults`, after the above: --only, --scene, --moments and others, see its --help
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
+    /// Check the image's machine code: where it can panic, how deep its stack grows, what it loops on; measure its ticks
+    Proof {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// How many fingers the image is for
+        #[arg(long, value_enum, default_value_t)]
+        fingers: firmware::Fingers,
+        /// Leave out what takes a run in the emulator
+        #[arg(long)]
+        code_only: bool,
     },
     /// Build the image that the benchmark runs in the emulator, print its path; the benchmark calls this
     BenchImage(SetUp),
@@ -145,6 +156,11 @@ fn main() -> ExitCode {
             out,
             rest,
         } => report::run(set_up.permission(), ("hil-sim", "faults"), json, out, rest),
+        Task::Proof {
+            set_up,
+            fingers,
+            code_only,
+        } => proof::run(set_up.permission(), fingers, code_only),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

@@ -1,0 +1,193 @@
+//! What is allowed although it looks wrong, each with its reason. An entry that nothing uses is an error.
+
+use std::collections::BTreeSet;
+
+/// The control tick.
+pub const TICK: &str = "DMA2_STREAM0";
+/// The end of sampling.
+pub const CONVERTER: &str = "ADC";
+/// Bytes from the host.
+pub const RECEIVER: &str = "USART2";
+/// The next line to the host.
+pub const REFILL: &str = "DMA1_STREAM6";
+/// The dispatcher of the task that answers the host.
+pub const HOST: &str = "EXTI0";
+
+/// The handlers that the control path consists of.
+pub const CONTROL: [&str; 4] = [TICK, CONVERTER, RECEIVER, REFILL];
+
+/// Something allowed.
+#[derive(Debug)]
+pub struct Entry {
+    /// On behalf of which handlers.
+    pub trees: &'static [&'static str],
+    /// In which functions, without parameters of types; or in which files, where the compiler has merged places.
+    pub names: &'static [&'static str],
+    /// Why it does no harm.
+    pub why: &'static str,
+}
+
+/// A list of entries, and which of them have been used for which handler.
+pub struct Allowed {
+    entries: &'static [Entry],
+    used: BTreeSet<(usize, &'static str)>,
+}
+
+impl Allowed {
+    /// None is used yet.
+    pub fn new(entries: &'static [Entry]) -> Self {
+        Self {
+            entries,
+            used: BTreeSet::new(),
+        }
+    }
+
+    /// Why something is allowed on behalf of a handler, if it is.
+    pub fn why(&mut self, tree: &str, name: &str) -> Option<&'static str> {
+        for (index, entry) in self
+            .entries
+            .iter()
+            .enumerate()
+            .filter(|(_, entry)| entry.names.contains(&name))
+        {
+            if let Some(tree) = entry.trees.iter().find(|known| **known == tree) {
+                self.used.insert((index, tree));
+                return Some(entry.why);
+            }
+        }
+        None
+    }
+
+    /// Complaints about what is allowed, but is not there.
+    pub fn unused(&self) -> Vec<String> {
+        let all = self.entries.iter().enumerate();
+        let each = all.flat_map(|(index, entry)| entry.trees.iter().map(move |tree| (index, *tree)));
+        each.filter(|one| !self.used.contains(one))
+            .map(|(index, tree)| {
+                let names = self.entries[index].names.join(" or ");
+                format!("{tree}: {names} is allowed, but is not there")
+            })
+            .collect()
+    }
+}
+
+/// Panics, all but one in libraries. Each ends as any other: bridges off first of all, then a reset by the watchdog.
+pub static PANICS: [Entry; 9] = [
+    Entry {
+        trees: &[TICK, REFILL],
+        names: &["stm32f4xx_hal::dma::Transfer::next_transfer_common"],
+        why: "takes the buffer out of an Option that is Some between any two calls",
+    },
+    Entry {
+        trees: &[TICK, CONVERTER, HOST],
+        names: &["defmt_rtt::AtomicRttEncoder::acquire"],
+        why: "a log within a log: nothing that is logged logs while it is formatted",
+    },
+    Entry {
+        trees: &[RECEIVER],
+        names: &["heapless::spsc::QueueInner::increment"],
+        why: "remainder by the length of a queue, a constant above zero",
+    },
+    Entry {
+        trees: &[HOST],
+        names: &["heapless::spsc::QueueInner::increment", "heapless/src/spsc.rs"],
+        why: "the same",
+    },
+    Entry {
+        trees: &[HOST],
+        names: &[
+            "thermal_display::app::host::{{closure}}",
+            "thermal_display::app::host::{closure#0}",
+        ],
+        why: "the executor polls no future that has ended",
+    },
+    Entry {
+        trees: &[HOST],
+        names: &[
+            "fixed::FixedI32::saturating_from_float_helper",
+            "fixed::FixedU32::saturating_from_float_helper",
+            "fixed::FixedU32::overflowing_from_float_helper",
+            "fixed::FixedI64::overflowing_from_float_helper",
+            "fixed/src/helpers.rs",
+        ],
+        why: "NaN: all numbers come from decimal text of a bounded range or are constants",
+    },
+    Entry {
+        trees: &[HOST],
+        names: &[
+            "fixed::bytes::DigitsUnds::new",
+            "fixed::bytes::DigitsUnds::split_at",
+            "fixed::from_str::parse_bounds",
+            "fixed/src/bytes.rs",
+        ],
+        why: "splits a number's text at a place that it has found in it",
+    },
+    Entry {
+        trees: &[HOST],
+        names: &[
+            "fixed::display::Buffer::frac",
+            "fixed::display::Buffer::finish",
+            "fixed::display::Buffer::pad_and_print",
+            "fixed::display::Buffer::round_and_trim",
+            "fixed/src/display.rs",
+        ],
+        why: "prints a number into a buffer that holds the digits of the widest type",
+    },
+    Entry {
+        trees: &[HOST],
+        names: &[
+            "core::fmt::float::float_to_decimal_common_exact",
+            "core::fmt::float::float_to_decimal_common_shortest",
+            "core::num::flt2dec::strategy::dragon::mul_pow10",
+        ],
+        why: "the language's own printing of an `f64`, checks of its own sums",
+    },
+];
+
+/// Loops of the control path, but for those that repeat an exclusive access: once for each exception that has come
+/// between its load and its store.
+pub static LOOPS: [Entry; 7] = [
+    Entry {
+        trees: &[TICK, CONVERTER, REFILL],
+        names: &["stm32f4xx_hal::dma::stream_disable"],
+        why: "waits until a stream has ended its transfer, a few cycles of the bus; if it does not, the watchdog resets",
+    },
+    Entry {
+        trees: &[TICK, CONVERTER],
+        names: &["defmt::encoding::inner::Encoder::write"],
+        why: "bytes of one value of a log line, at most some tens",
+    },
+    Entry {
+        trees: &[TICK],
+        names: &["contact_model::fixed_point::course::lengths_per_octave"],
+        why: "a constant range",
+    },
+    Entry {
+        trees: &[TICK],
+        names: &["thermal_display::commission::sums::Sums::equation"],
+        why: "arrays of constant length",
+    },
+    Entry {
+        trees: &[TICK, CONVERTER, RECEIVER],
+        names: &[
+            "compiler_builtins::mem::impls::copy_forward::copy_forward_aligned_words",
+            "compiler_builtins::mem::impls::copy_forward::copy_forward_bytes",
+            "compiler_builtins::mem::impls::copy_forward::copy_forward_misaligned_words",
+            "compiler_builtins::arm::__aeabi_memcpy4",
+        ],
+        why: "moves values, whose sizes are those of their types",
+    },
+    Entry {
+        trees: &[TICK],
+        names: &[
+            "compiler_builtins::arm::__aeabi_memset4",
+            "compiler_builtins::mem::impls::set_bytes::set_bytes_bytes",
+        ],
+        why: "clears values, whose sizes are those of their types",
+    },
+    Entry {
+        trees: &[TICK],
+        names: &["compiler_builtins::int::specialized_div_rem::u64_div_rem"],
+        why: "at most one turn for each of 64 bits",
+    },
+];

@@ -1,0 +1,252 @@
+//! The ways through one function: its calls with the stack in use at each, its loops, what it calculates with.
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::image::{Function, Image, goes_on};
+use crate::thumb::Effect;
+
+/// What a call reaches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Target {
+    /// The function that begins here.
+    Function(u32),
+    /// Whatever a register holds.
+    Register,
+}
+
+/// A call, or a jump to another function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Call {
+    /// What it reaches.
+    pub target: Target,
+    /// Stack in use by the caller at the call, in bytes.
+    pub stack: u32,
+}
+
+impl Call {
+    /// It goes through a register.
+    pub fn is_indirect(&self) -> bool {
+        self.target == Target::Register
+    }
+}
+
+/// What is known of a function.
+#[derive(Clone, Debug, Default)]
+pub struct Flow {
+    /// Most stack in use by the function itself, in bytes.
+    pub stack: u32,
+    /// Its calls, by the address of the instruction.
+    pub calls: BTreeMap<u32, Call>,
+    /// The last instruction of each loop, and the first.
+    pub loops: BTreeSet<(u32, u32)>,
+    /// Exclusive stores: each ends a loop that repeats what an exception has interrupted.
+    pub exclusive: BTreeSet<u32>,
+    /// Instructions that calculate with floating-point numbers.
+    pub float: BTreeSet<u32>,
+    /// Undefined instructions that control reaches.
+    pub undefined: BTreeSet<u32>,
+    /// It can return.
+    pub returns: bool,
+    /// What could not be followed, in words.
+    pub troubles: BTreeSet<String>,
+}
+
+/// Follows all ways through a function. `returns` tells which functions can return: behind a call of another nothing runs.
+pub fn follow(image: &Image, function: &Function, returns: &BTreeSet<u32>) -> Flow {
+    let mut walk = Walk {
+        image,
+        function,
+        returns,
+        flow: Flow::default(),
+        depths: BTreeMap::new(),
+        edges: BTreeMap::new(),
+        waiting: Vec::new(),
+    };
+    walk.reach(None, function.start, 0);
+    while let Some(at) = walk.waiting.pop() {
+        walk.step(at);
+    }
+    walk.flow.loops = loops(function.start, &walk.edges);
+    walk.flow
+}
+
+struct Walk<'a> {
+    image: &'a Image,
+    function: &'a Function,
+    returns: &'a BTreeSet<u32>,
+    flow: Flow,
+    /// Stack in use before each instruction.
+    depths: BTreeMap<u32, i32>,
+    edges: BTreeMap<u32, Vec<u32>>,
+    waiting: Vec<u32>,
+}
+
+impl Walk<'_> {
+    fn trouble(&mut self, at: u32, what: &str) {
+        self.flow
+            .troubles
+            .insert(format!("{} at {at:#010x}: {what}", self.function.name));
+    }
+
+    /// Control comes from one instruction to another of this function.
+    fn reach(&mut self, from: Option<u32>, to: u32, depth: i32) {
+        if let Some(from) = from {
+            self.edges.entry(from).or_default().push(to);
+        }
+        match self.depths.get(&to) {
+            None => {
+                self.depths.insert(to, depth);
+                self.waiting.push(to);
+            }
+            Some(known) if *known != depth => self.trouble(to, "reached with two depths of the stack"),
+            Some(_) => {}
+        }
+    }
+
+    fn step(&mut self, at: u32) {
+        let depth = self.depths[&at];
+        let Some(instruction) = self.image.instruction(at).filter(|_| at < self.function.end) else {
+            return self.trouble(at, "control runs out of the code");
+        };
+        let next = at + instruction.length;
+        if let Effect::IfThen { same, count } = instruction.effect {
+            for first_runs in [true, false] {
+                self.block(at, next, depth, same, count, first_runs);
+            }
+        } else if let Some(depth) = self.run(at, depth) {
+            self.reach(Some(at), next, depth);
+        }
+    }
+
+    /// Runs a block of conditional instructions one way.
+    fn block(&mut self, start: u32, mut at: u32, mut depth: i32, same: u8, count: u8, first_runs: bool) {
+        for place in 0..count {
+            let Some(instruction) = self.image.instruction(at) else {
+                return self.trouble(at, "control runs out of the code");
+            };
+            if (same >> place & 1 == 1) == first_runs {
+                match self.run(at, depth) {
+                    Some(after) => depth = after,
+                    None => return,
+                }
+            }
+            at += instruction.length;
+        }
+        self.reach(Some(start), at, depth);
+    }
+
+    /// Runs one instruction; the depth behind it, if control goes on there.
+    fn run(&mut self, at: u32, depth: i32) -> Option<i32> {
+        let instruction = self.image.instruction(at)?;
+        if instruction.exclusive {
+            self.flow.exclusive.insert(at);
+        }
+        if instruction.float {
+            self.flow.float.insert(at);
+        }
+        match instruction.effect {
+            Effect::Next | Effect::IfThen { .. } => {}
+            Effect::Stack(grown) => {
+                let depth = depth + grown;
+                match u32::try_from(depth) {
+                    Ok(used) => self.flow.stack = self.flow.stack.max(used),
+                    Err(_) => self.trouble(at, "takes more off the stack than it has put there"),
+                }
+                return Some(depth);
+            }
+            Effect::StackUnknown => self.trouble(at, "the stack grows by an unknown amount"),
+            Effect::Jump(to) | Effect::Branch(to) => self.jump(at, to, depth),
+            Effect::Call(to) => {
+                self.call(at, Target::Function(to), depth);
+                if !self.returns.contains(&to) {
+                    return None;
+                }
+            }
+            Effect::CallRegister => self.call(at, Target::Register, depth),
+            Effect::JumpRegister => {
+                self.call(at, Target::Register, depth);
+                self.flow.returns = true;
+            }
+            Effect::Table { entry } => self.table(at, entry, depth),
+            Effect::Return(taken) => {
+                if depth != taken {
+                    self.trouble(at, "returns with something left on the stack");
+                }
+                self.flow.returns = true;
+            }
+            Effect::Undefined => {
+                self.flow.undefined.insert(at);
+            }
+        }
+        goes_on(instruction.effect).then_some(depth)
+    }
+
+    fn call(&mut self, at: u32, target: Target, depth: i32) {
+        if let Target::Function(start) = target
+            && self.image.function(start).is_none()
+        {
+            self.trouble(at, "calls what is no function");
+        }
+        let stack = depth.unsigned_abs();
+        self.flow.calls.insert(at, Call { target, stack });
+    }
+
+    /// A jump within the function, or to another as its last act.
+    fn jump(&mut self, at: u32, to: u32, depth: i32) {
+        if (self.function.start..self.function.end).contains(&to) {
+            return self.reach(Some(at), to, depth);
+        }
+        self.call(at, Target::Function(to), depth);
+        self.flow.returns |= self.returns.contains(&to);
+    }
+
+    /// Jumps by a table: the constants that follow, up to what fills the place before the next instruction (a zero or a
+    /// NOP, which as offsets would lead into the table).
+    fn table(&mut self, at: u32, entry: u32, depth: i32) {
+        const NOP: u32 = 0xbf00;
+        let start = at + 4;
+        let mut place = start;
+        while self.image.is_constant(place) {
+            let offset = match entry {
+                1 => self.image.byte(place).map(u32::from),
+                _ => self.image.half(place).map(u32::from),
+            };
+            let to = match offset {
+                Some(offset) if offset != 0 && (entry, offset) != (2, NOP) => start + 2 * offset,
+                _ => break,
+            };
+            if self.image.is_constant(to) {
+                self.trouble(at, "the table leads into constants");
+            } else {
+                self.reach(Some(at), to, depth);
+            }
+            place += entry;
+        }
+        if place == start {
+            self.trouble(at, "no table behind the jump");
+        }
+    }
+}
+
+/// The edges that lead back to where a walk in depth has come through.
+fn loops(start: u32, edges: &BTreeMap<u32, Vec<u32>>) -> BTreeSet<(u32, u32)> {
+    let mut back = BTreeSet::new();
+    let mut seen = BTreeSet::from([start]);
+    let mut way = vec![(start, 0)];
+    let mut open = BTreeSet::from([start]);
+    while let Some((at, place)) = way.last_mut() {
+        let at = *at;
+        let Some(&to) = edges.get(&at).and_then(|to| to.get(*place)) else {
+            open.remove(&at);
+            way.pop();
+            continue;
+        };
+        *place += 1;
+        if open.contains(&to) {
+            back.insert((at, to));
+        } else if seen.insert(to) {
+            open.insert(to);
+            way.push((to, 0));
+        }
+    }
+    back
+}

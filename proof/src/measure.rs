@@ -1,0 +1,136 @@
+//! What the emulated machine says: the longest tick, and the deepest stack, over scenes that have something of everything.
+use std::path::Path;
+
+use anyhow::{Context, Result, bail, ensure};
+use hil_sim::World;
+use hil_sim::commission::{Plants, commission};
+use hil_sim::engine::{Cost, Engine, Image};
+use hil_sim::fidelity::map;
+use hil_sim::hand::{self, FINGERS, Hand as _, ImageHand};
+use hil_sim::machine::Firmware;
+use hil_sim::run::{Outcome, run};
+use hil_sim::scene::Scene;
+
+use crate::scenes::{faulty, touched};
+use crate::{Proof, Section, levels};
+
+/// Most instructions of a tick that are allowed: 3419 are the most that was seen, and a third more is for paths that the
+/// scenes do not take. Counts repeat exactly, so that what exceeds it is a change of the program.
+pub const INSTRUCTIONS: u64 = 4500;
+/// Most cycles of a tick that are allowed, estimated: the same, from 4566. A thirtieth of what one finger's tick has, a
+/// sixth of what each of five has.
+pub const CYCLES: u64 = 6000;
+/// Cycles of a millisecond at 180 MHz.
+const MILLISECOND: u64 = 180_000;
+
+/// Figures of one run.
+struct Measured {
+    what: String,
+    cost: Cost,
+}
+
+/// Every tick of the scenes is within the limits, and their stack within the bound.
+///
+/// # Errors
+/// A scene does not run to its end.
+pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
+    let firmware = Firmware::from_file(elf).with_context(|| elf.display().to_string())?;
+    let all = match fingers {
+        1 => alone(&firmware)?,
+        FINGERS => vec![together(&firmware)?],
+        other => bail!("an image for {other} fingers; known are 1 and {FINGERS}"),
+    };
+    let (bound, available) = (levels::bound(proof)?, MILLISECOND / fingers as u64);
+    let mut section = Section {
+        title: "emulated".into(),
+        ..Section::default()
+    };
+    let of = |what: fn(&Cost) -> u64| {
+        let largest = all.iter().max_by_key(|measured| what(&measured.cost));
+        largest
+            .map(|measured| (what(&measured.cost), measured.what.as_str()))
+            .context("no scene")
+    };
+    let instructions = of(|cost| cost.instructions_max)?;
+    let cycles = of(|cost| cost.cycles_max)?;
+    let stack = of(|cost| cost.stack_bytes.unwrap_or(0).into())?;
+    ensure!(stack.0 > 0, "the image does not say where its stack ends");
+    let figures = [
+        ("instructions of the longest tick", instructions, INSTRUCTIONS),
+        ("cycles of it, estimated", cycles, CYCLES),
+        ("bytes of stack", stack, bound.into()),
+    ];
+    section.lines.push(format!(
+        "{} scenes; {available} cycles are there for a tick",
+        all.len()
+    ));
+    for (what, (value, scene), limit) in figures {
+        section.lines.push(format!("{value} of {limit} {what} ({scene})"));
+        if value > limit {
+            section
+                .violations
+                .push(format!("{value} {what} in {scene}, allowed are {limit}"));
+        }
+    }
+    Ok(section)
+}
+
+/// What a scene on one finger costs, without the eight seconds before it.
+fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
+    let scenes: Vec<(String, Scene)> = touched()?.into_iter().chain(faulty()?).collect();
+    let jobs: Vec<Option<&(String, Scene)>> = [None].into_iter().chain(scenes.iter().map(Some)).collect();
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let measured = |job: &Option<&(String, Scene)>| {
+        let Some((what, scene)) = job else {
+            return commissioned(firmware);
+        };
+        let mut image = Image::new(firmware, World::new(scene)?)?;
+        let outcome = run(scene, &mut image, |_| ()).with_context(|| what.clone())?;
+        of_outcome(what, &outcome)
+    };
+    map(&jobs, threads, measured, || ())
+}
+
+fn of_outcome(what: &str, outcome: &Outcome) -> Result<Measured> {
+    let cost = outcome.cost.with_context(|| format!("{what}: no tick"))?;
+    Ok(Measured {
+        what: what.into(),
+        cost,
+    })
+}
+
+/// The device calibrates its sensors and tunes itself.
+fn commissioned(firmware: &Firmware) -> Result<Measured> {
+    let what = "commissioning";
+    let (_, scene) = touched()?.into_iter().next().context("no scene")?;
+    let plants = Plants::new(&scene.params, scene.room_c, scene.seed);
+    let mut image = Image::new(firmware, plants.at_work()?)?;
+    commission(&plants, &mut image, &mut |_| ())?;
+    Ok(Measured {
+        what: what.into(),
+        cost: image.cost().context("commissioning: no tick")?,
+    })
+}
+
+/// Five fingers at once, some of them with faults.
+fn together(firmware: &Firmware) -> Result<Measured> {
+    let touched = touched()?.into_iter().take(3);
+    let faulty = faulty()?
+        .into_iter()
+        .filter(|(what, _)| ["bridge-shorted", "host-flood"].contains(&what.as_str()));
+    let (names, scenes): (Vec<String>, Vec<Scene>) = touched.chain(faulty).unzip();
+    let scenes: [Scene; FINGERS] = scenes
+        .try_into()
+        .map_err(|other: Vec<_>| anyhow::anyhow!("{} scenes", other.len()))?;
+    let mut worlds = Vec::new();
+    for scene in &scenes {
+        worlds.push(World::new(scene)?);
+    }
+    let worlds = worlds.try_into().map_err(|_| anyhow::anyhow!("worlds"))?;
+    let mut hand = ImageHand::new(firmware, worlds)?;
+    hand::run(&scenes, &mut hand, |_| ())?;
+    Ok(Measured {
+        what: names.join(", "),
+        cost: hand.cost().context("no tick")?,
+    })
+}

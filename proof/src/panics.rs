@@ -1,0 +1,123 @@
+//! Panics: which call of a function that never returns can be reached from where.
+use std::collections::BTreeMap;
+
+use anyhow::Result;
+
+use crate::allowed::{Allowed, CONTROL, HOST, PANICS};
+use crate::flow::Target;
+use crate::graph::Graph;
+use crate::image::Image;
+use crate::location::Location;
+use crate::names::{Frame, Names};
+use crate::{Proof, Section};
+
+/// A call of a function that never returns.
+#[derive(Clone, Debug)]
+pub struct Site {
+    /// Address of the call.
+    pub at: u32,
+    /// Whose it is: the innermost function outside the language's library, or the outermost of that; where the compiler
+    /// has merged several, the file that they name.
+    pub owner: String,
+    /// It belongs to this project.
+    pub ours: bool,
+    /// The functions there, innermost first.
+    pub chain: String,
+    /// What is called.
+    pub called: String,
+}
+
+impl Site {
+    fn new(image: &Image, graph: &Graph, names: &Names, at: u32, called: u32) -> Self {
+        let frames = names.frames(at);
+        let owner = frames.iter().find(|frame| !frame.is_core()).or(frames.last());
+        let owner = owner.cloned().unwrap_or_else(|| Frame::unknown(at));
+        // Without a line: several panics in one, whose place only their argument tells.
+        let merged = Location::of_call(image, graph, at).filter(|_| !owner.has_line() && !owner.is_core());
+        Self {
+            at,
+            ours: merged.as_ref().map_or(owner.is_ours(), Location::is_ours),
+            owner: merged.map_or(owner.function, |location| location.file()),
+            chain: names.chain(at),
+            called: image.name(called).into(),
+        }
+    }
+}
+
+impl Site {
+    fn complaint(&self, tree: &str) -> String {
+        let Self {
+            at, called, chain, ..
+        } = self;
+        let whose = if self.ours { "our own code" } else { "a library" };
+        format!("{tree} can panic in {whose} at {at:#010x}, {called}: {chain}")
+    }
+}
+
+/// All such calls on behalf of a function, by address.
+pub fn sites(image: &Image, graph: &Graph, names: &Names, root: u32) -> Vec<Site> {
+    let mut sites = Vec::new();
+    for function in &graph.reached(root) {
+        for (at, call) in graph.flow(*function).into_iter().flat_map(|flow| &flow.calls) {
+            if let Target::Function(called) = call.target
+                && !graph.returns(called)
+            {
+                sites.push(Site::new(image, graph, names, *at, called));
+            }
+        }
+    }
+    sites.sort_by_key(|site| site.at);
+    sites
+}
+
+/// No panic of this project's own code in the control path, and in libraries none but those that are allowed; the same of
+/// the task that answers the host.
+///
+/// # Errors
+/// A handler is missing.
+pub fn check(proof: &Proof) -> Result<Section> {
+    let mut section = Section {
+        title: "panics".into(),
+        ..Section::default()
+    };
+    let mut allowed = Allowed::new(&PANICS);
+    for tree in CONTROL.into_iter().chain([HOST]) {
+        let root = proof.root(tree)?;
+        let reached = proof.graph.reached(root);
+        let sites = sites(&proof.image, &proof.graph, &proof.names, root);
+        let ours = sites.iter().filter(|site| site.ours).count();
+        section.lines.push(format!(
+            "{tree}: {} functions, {} calls of what never returns, {ours} of them in our own code",
+            reached.len(),
+            sites.len()
+        ));
+        let mut owners = BTreeMap::<&str, usize>::new();
+        for site in &sites {
+            *owners.entry(&site.owner).or_default() += 1;
+            if allowed.why(tree, &site.owner).is_none() {
+                section.violations.push(site.complaint(tree));
+            }
+        }
+        section.lines.extend(
+            owners
+                .iter()
+                .map(|(owner, count)| format!("  {count} in {owner}")),
+        );
+        for function in &reached {
+            let undefined = proof
+                .graph
+                .flow(*function)
+                .into_iter()
+                .flat_map(|flow| &flow.undefined);
+            let complain = |at: &u32| {
+                format!(
+                    "{tree} can run into an undefined instruction: {}",
+                    proof.names.chain(*at)
+                )
+            };
+            section.violations.extend(undefined.map(complain));
+        }
+    }
+    section.violations.extend(allowed.unused());
+    Ok(section)
+}

@@ -1,0 +1,99 @@
+//! What is claimed of the release images, and that the checks look at what they seem to.
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use image_proof::allowed::{CONTROL, HOST, TICK};
+use image_proof::{Proof, Section, measure, panics};
+
+/// The image of the current sources for one finger, built once.
+fn one() -> &'static Path {
+    static IMAGE: OnceLock<PathBuf> = OnceLock::new();
+    IMAGE.get_or_init(|| hil_sim::firmware::build(1).expect("the image builds"))
+}
+
+/// The same for five.
+fn five() -> &'static Path {
+    static IMAGE: OnceLock<PathBuf> = OnceLock::new();
+    IMAGE.get_or_init(|| hil_sim::firmware::build(5).expect("the image builds"))
+}
+
+fn proof(elf: &Path) -> Proof {
+    Proof::read(elf).expect("an image with symbols")
+}
+
+fn assert_clean(sections: &[Section]) {
+    for section in sections {
+        println!("{section}");
+    }
+    let violations: Vec<&String> = sections.iter().flat_map(|section| &section.violations).collect();
+    assert!(violations.is_empty(), "{violations:#?}");
+}
+
+#[test]
+fn the_code_for_one_finger_has_no_violation() {
+    assert_clean(&proof(one()).check().expect("all handlers are there"));
+}
+
+#[test]
+fn the_code_for_five_fingers_has_no_violation() {
+    assert_clean(&proof(five()).check().expect("all handlers are there"));
+}
+
+#[test]
+fn ticks_and_stack_of_one_finger_stay_within_their_bounds() {
+    let proof = proof(one());
+    assert_clean(&[measure::check(&proof, one(), 1).expect("the scenes run")]);
+}
+
+#[test]
+fn ticks_and_stack_of_five_fingers_stay_within_their_bounds() {
+    let proof = proof(five());
+    assert_clean(&[measure::check(&proof, five(), 5).expect("the scenes run")]);
+}
+
+/// What the image is known to have is found: else the silence of the checks would mean nothing.
+#[test]
+fn the_checks_see_what_is_there() {
+    let proof = proof(one());
+    let reached = |tree: &str| proof.graph.reached(proof.root(tree).expect("a handler"));
+    let calls = |tree: &str, part: &str| {
+        reached(tree)
+            .iter()
+            .any(|start| proof.image.name(*start).contains(part))
+    };
+    // The host's task calculates in `f64`, formats through registers, and fits; the tick has the experiment out of line.
+    for part in [
+        "__aeabi_dmul",
+        "libm::",
+        "core::fmt::",
+        "heapless::",
+        "commission::fit::fit",
+    ] {
+        assert!(calls(HOST, part), "{part}");
+    }
+    assert!(calls(TICK, "Experiment::update"));
+    // Panics are known by not returning, not by their names: those with the names are among them.
+    let panicking = |name: &str| name.starts_with("core::panicking::") || name.ends_with("unwrap_failed");
+    for function in proof
+        .image
+        .functions()
+        .filter(|function| panicking(&function.name))
+    {
+        assert!(!proof.graph.returns(function.start), "{}", function.name);
+    }
+    // Each handler can be entered, returns, and has a stack of its own.
+    for tree in CONTROL {
+        let root = proof.root(tree).expect("a handler");
+        assert!(proof.graph.returns(root), "{tree}");
+        assert!(proof.graph.flow(root).expect("followed").stack >= 8, "{tree}");
+    }
+    // The start-up unwraps: it is no part of the control path.
+    let main = proof
+        .image
+        .functions()
+        .find(|function| function.name == "main")
+        .expect("main");
+    let sites = panics::sites(&proof.image, &proof.graph, &proof.names, main.start);
+    assert!(sites.iter().any(|site| site.ours), "{sites:#?}");
+}

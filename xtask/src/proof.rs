@@ -1,0 +1,28 @@
+//! What can be shown of the image from its machine code.
+use anyhow::Result;
+
+use crate::firmware::Fingers;
+use crate::process::Invocation;
+use crate::setup::{self, Needs, Permission};
+
+/// `cargo xtask proof`
+pub fn run(permission: Permission, fingers: Fingers, code_only: bool) -> Result<()> {
+    let needs = Needs {
+        emulator: true,
+        lints: false,
+    };
+    setup::prepare(needs, permission)?;
+    let mut line = vec![
+        "run",
+        "--release",
+        "--package",
+        "image-proof",
+        "--",
+        "--fingers",
+        fingers.name(),
+    ];
+    if code_only {
+        line.push("--code-only");
+    }
+    permission.choice.handed_to(Invocation::cargo(line)).run()
+}
