@@ -5,6 +5,7 @@
 mod bench;
 mod demo;
 mod firmware;
+mod fuzz;
 mod image;
 mod probe;
 mod process;
@@ -73,6 +74,13 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
     },
+    /// Fuzz all that takes bytes, text or samples from outside, guided by coverage
+    Fuzz {
+        #[command(flatten)]
+        set_up: SetUp,
+        #[command(flatten)]
+        options: fuzz::Options,
+    },
     /// Build the image that the benchmark runs in the emulator, print its path; the benchmark calls this
     BenchImage(SetUp),
     /// Build the test image of the emulated machine, print its path; its tests call this
@@ -99,6 +107,9 @@ impl SetUp {
 }
 
 fn main() -> ExitCode {
+    if let Some(status) = fuzz::compile_if_called_as_compiler() {
+        return status;
+    }
     let result = match Cli::parse().command {
         Task::Demo(set_up) => demo::run(set_up.permission()),
         Task::Test(set_up) => suite::run(set_up.permission()),
@@ -119,6 +130,7 @@ fn main() -> ExitCode {
             out,
             rest,
         } => report::run(set_up.permission(), ("hil-sim", "fidelity"), json, out, rest),
+        Task::Fuzz { set_up, options } => fuzz::run(set_up.permission(), &options),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

@@ -110,6 +110,7 @@ pub fn run(permission: Permission) -> Result<()> {
 fn run_steps(steps: &mut Steps, permission: Permission) -> Result<()> {
     let needs = Needs {
         emulator: true,
+        fuzzer: true,
         lints: true,
     };
     let (toolchain, lints) = steps.run("set-up", "", || {
