@@ -16,10 +16,12 @@ use crate::tile::{FULL, Tile, sum_at};
 /// Longest answer and telemetry line, bytes: what is said, and `@n ` before it.
 const ANSWER_MAX: usize = 160 + 3;
 const TELEMETRY_MAX: usize = 128 + 3;
-/// A display is off beyond these by either thermistor, whatever was calibrated: limits of 13.5 and 43 °C, 2.6 K that
-/// corrections can be wrong by, 1.2 K that the converter's steps can.
-const SURELY_COLD_C: f64 = 13.5 - 2.6 - 1.2;
-const SURELY_HOT_C: f64 = 43.0 + 2.6 + 1.2;
+/// What a display's reading may be off by, whatever lines have set, K: 2.52 of its correction, 0.18 of the converter's
+/// steps, 0.04 of its own warmth.
+pub const READING_K: f64 = 2.8;
+/// A display is off beyond these by either thermistor: its limits, and what its reading may be off by.
+const SURELY_COLD_C: f64 = 13.5 - READING_K;
+const SURELY_HOT_C: f64 = 43.0 + READING_K;
 
 /// Hand, desk and tiles, and the sums beyond which a display is too cold or too hot.
 #[derive(Clone, Debug)]
@@ -62,6 +64,12 @@ impl<const FINGERS: usize> Device<FINGERS> {
             }) => status,
             other => panic!("state is answered by {other:?}"),
         }
+    }
+
+    /// What the first finger's display reads, °C, if it streams and there is anything to read.
+    pub fn display_c(&self) -> Option<f64> {
+        let telemetry = self.hand.telemetry(0)?.said;
+        telemetry.display.map(|celsius| celsius.to_num())
     }
 
     /// A tick of every finger on its tile.

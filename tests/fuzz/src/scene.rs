@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use hil_sim::plant::Plant;
+use hil_sim::plant::bridge::Legs;
 use hil_sim::scene::Scene;
 
 const FILE: &str = "scene.toml";
@@ -53,7 +55,28 @@ fn look_at(scene: &Scene) {
     }
     let within = |t_s: f64| (0.0..=scene.duration_s).contains(&t_s);
     assert!(scene.host.iter().all(|line| within(line.t_s)));
-    if let Err(error) = scene.plant_config().check() {
-        panic!("accepted, but {error}");
+    if let Some(Err(error)) = scene.infrared.map(|infrared| infrared.camera(scene.seed)) {
+        panic!("accepted, but no camera: {error}");
+    }
+    match Plant::new(&scene.plant_config()) {
+        Ok(plant) => look_at_plant(plant),
+        Err(error) => panic!("accepted, but no plant: {error}"),
+    }
+}
+
+/// Its first moments under a finger.
+fn look_at_plant(mut plant: Plant) {
+    plant.set_force(2.0);
+    for _ in 0..3 {
+        plant.step(&Legs::default());
+    }
+    for celsius in [
+        plant.display_c(),
+        plant.skin_c(),
+        plant.skin_real_c(),
+        plant.object_c(),
+        plant.sink_c(),
+    ] {
+        assert!((-60.0..=150.0).contains(&celsius), "{celsius} C");
     }
 }

@@ -3,8 +3,9 @@
 use arbitrary::{Arbitrary, Unstructured};
 use thermal_display::commission::SENSORS;
 
-use crate::device::Device;
+use crate::device::{Device, READING_K};
 use crate::start::Starts;
+use crate::tile::celsius_at;
 
 static STARTS: Starts<1> = Starts::new();
 
@@ -20,7 +21,8 @@ struct Stored {
 impl Stored {
     /// The lines that set them.
     fn lines(&self) -> Vec<String> {
-        let part = |value: i16, most: f64| most * f64::from(value) / 32768.0;
+        // Half of all values are at an end, where the others are worst.
+        let part = |value: i16, most: f64| most * (f64::from(value) / 16384.0).clamp(-1.0, 1.0);
         let mut lines = Vec::new();
         for (block, steps) in self.steps.chunks(7).enumerate() {
             let steps = steps.iter().map(|step| format!(" {:.3}", part(*step, 4.0)));
@@ -76,14 +78,36 @@ pub fn run(input: &[u8]) -> bool {
     }
     assert_eq!(kept, told(&mut again));
     let _ = device.line("margins");
+    let _ = device.line("stream 1");
     for &sum in stored.sums.iter().take(256) {
         device.tick_with(0, |samples| {
             (samples.display, samples.display_check) = (sum, sum);
         });
+        look_at_reading(sum, device.display_c());
         let _ = device.line("clear");
         let _ = device.line("arm");
     }
     true
+}
+
+/// Nothing that is set can hide from the guard what a display is like.
+fn look_at_reading(sum: u16, reads_c: Option<f64>) {
+    // Codes beyond 40 and 4060 are no thermistor's.
+    if !(640..=64_960).contains(&sum) {
+        assert_eq!(reads_c, None, "a display at sum {sum}");
+        return;
+    }
+    let Some(reads_c) = reads_c else {
+        panic!("no reading of sum {sum}");
+    };
+    let is_c = celsius_at(sum);
+    if (13.0..=45.0).contains(&is_c) {
+        let off_k = reads_c - is_c;
+        assert!(
+            off_k.abs() <= READING_K,
+            "{reads_c} C read of {is_c} C (sum {sum})"
+        );
+    }
 }
 
 /// The lines.

@@ -26,6 +26,12 @@ pub fn sum_at(celsius: f64) -> u16 {
     (65536.0 * ratio / (1.0 + ratio)) as u16
 }
 
+/// The temperature of a sum, its inverse, °C.
+pub fn celsius_at(sum: u16) -> f64 {
+    let sum = f64::from(sum);
+    1.0 / (1.0 / 298.15 + (sum / (65536.0 - sum)).ln() / 3950.0) - 273.15
+}
+
 impl Default for Tile {
     fn default() -> Self {
         Self {

@@ -120,6 +120,8 @@ impl Engine {
         for _ in 0..jobs {
             let mut command = self.command(target);
             command.args(["-print_final_stats=1", "-reload=5"]);
+            // A replay has it.
+            command.env("RUST_BACKTRACE", "0");
             command.arg(match effort {
                 Effort::Time(time) => format!("-max_total_time={}", time.as_secs()),
                 Effort::Runs(runs) => format!("-runs={}", runs.div_ceil(jobs)),
