@@ -55,6 +55,10 @@ fn look_at(scene: &Scene) {
     }
     let within = |t_s: f64| (0.0..=scene.duration_s).contains(&t_s);
     assert!(scene.host.iter().all(|line| within(line.t_s)));
+    for fault in &scene.faults {
+        let at = [-1.0, 0.0, 0.5 * scene.duration_s, scene.duration_s].map(|t_s| fault.at(t_s));
+        assert_eq!(at[0], None, "{fault:?} before it begins");
+    }
     if let Some(Err(error)) = scene.infrared.map(|infrared| infrared.camera(scene.seed)) {
         panic!("accepted, but no camera: {error}");
     }

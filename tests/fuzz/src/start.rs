@@ -6,6 +6,9 @@ use thermal_display::guard::{Fault, State};
 
 use crate::device::Device;
 
+/// An experiment has ended by now; at a quarter of it, it drives.
+const TUNED_MS: u32 = 40_000;
+
 /// Where a run of inputs begins.
 #[derive(Debug)]
 pub struct Starts<const FINGERS: usize>(OnceLock<Vec<Device<FINGERS>>>);
@@ -16,8 +19,8 @@ impl<const FINGERS: usize> Starts<FINGERS> {
         Self(OnceLock::new())
     }
 
-    /// One of them, counted modulo their number: off, in self-test, armed, at a preset, in contact, ready, tripped, tuning,
-    /// streaming in contact by the plain law.
+    /// One of them, counted modulo their number: off, in self-test, armed, at a preset, in contact, ready, tripped, tuning
+    /// (just begun, on its way, done), streaming in contact by the plain law.
     pub fn get(&self, which: u8) -> Device<FINGERS> {
         let all = self.0.get_or_init(|| {
             let lead = |lines: &[&str], newton: f64, ticks: usize| {
@@ -44,13 +47,24 @@ impl<const FINGERS: usize> Starts<FINGERS> {
             let mut tripped = lead(&["material abs", "arm"], 0.0, 0);
             tripped.trip(Fault::Bridge);
             let tuning = lead(&["arm", "stream 20", "tune"], 0.0, 300);
+            let mut on_the_way = tuning.clone();
+            let mut tuned = tuning.clone();
+            for ms in 0..TUNED_MS {
+                if ms == TUNED_MS / 4 {
+                    on_the_way = tuned.clone();
+                }
+                tuned.hear();
+                tuned.tick();
+            }
+            let answer = tuned.clone().line("@0 tune result");
+            assert!(answer.is_ok(), "{answer:?}");
             let streaming = lead(
                 &["law pi", "object 20", "material foam", "arm", "start", "stream 1"],
                 0.5,
                 50,
             );
             let mut all = vec![
-                off, testing, armed, preset, contact, ready, tripped, tuning, streaming,
+                off, testing, armed, preset, contact, ready, tripped, tuning, on_the_way, tuned, streaming,
             ];
             let states: Vec<_> = all.iter_mut().map(|device| device.status(0).state).collect();
             let expected = [
@@ -61,6 +75,8 @@ impl<const FINGERS: usize> Starts<FINGERS> {
                 State::Contact,
                 State::Ready,
                 State::Tripped(Fault::Bridge),
+                State::Armed,
+                State::Armed,
                 State::Armed,
                 State::Contact,
             ];

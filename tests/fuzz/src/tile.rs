@@ -6,6 +6,8 @@ use thermal_display::sense::Samples;
 /// What the sensors of one finger see. Not the plant: a first-order tile, to keep a tick short.
 #[derive(Clone, Copy, Debug)]
 pub struct Tile {
+    plate_c: f64,
+    /// The plate, as its thermistors have it, 0.1 s late.
     display_c: f64,
     /// Sums of sink, skin and room.
     others: [u16; 3],
@@ -35,6 +37,7 @@ pub fn celsius_at(sum: u16) -> f64 {
 impl Default for Tile {
     fn default() -> Self {
         Self {
+            plate_c: 26.0,
             display_c: 26.0,
             others: [25.0, 34.0, 24.0].map(sum_at),
             sink_c: 25.0,
@@ -89,14 +92,14 @@ impl Tile {
             Drive::Off => 0.0,
             Drive::On(duty) => {
                 let duty: f64 = duty.fraction().to_num();
-                (12.0 * duty - 0.0273 * (self.sink_c - self.display_c)) / 1.251
+                (12.0 * duty - 0.0273 * (self.sink_c - self.plate_c)) / 1.251
             }
         };
         // Beyond 0.5 A the dead times take 0.4 V.
         let current_a = current_a.signum() * (current_a.abs() - 0.32 * (current_a.abs() / 0.5).min(1.0));
-        let slope_k_s =
-            -2.91 * current_a * (1.0 - 0.0585 * current_a) - 0.103 * (self.display_c - self.sink_c);
-        self.display_c = (self.display_c + 1e-3 * slope_k_s).clamp(-20.0, 80.0);
+        let slope_k_s = -2.91 * current_a * (1.0 - 0.0585 * current_a) - 0.103 * (self.plate_c - self.sink_c);
+        self.plate_c = (self.plate_c + 1e-3 * slope_k_s).clamp(-20.0, 80.0);
+        self.display_c += 1e-3 / 0.1 * (self.plate_c - self.display_c);
         self.current = (6400.0 * current_a.abs()).min(f64::from(FULL)) as u16 & !3;
         self.cut = outputs.comparator_test;
     }
