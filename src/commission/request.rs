@@ -76,7 +76,7 @@ static STEP: Number = Number {
     max: 4.0,
 };
 /// Together at most 2.5 K within the calibrated range: parts of this class need a tenth of it, and no line can hide a
-/// display from the guard that is hotter than that beyond its limit.
+/// display from the guard that is hotter than that, and 0.2 K of [steps](crate::sense::Steps), beyond its limit.
 static CORRECTION: [Number; 3] = [
     Number {
         name: "offset",

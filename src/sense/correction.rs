@@ -14,6 +14,10 @@ const SEGMENTS: usize = 1 << (u16::BITS - SEGMENT_BITS);
 const BLUR_BITS: u32 = 6;
 const HALF_BLUR: u32 = 1 << (BLUR_BITS - 1);
 
+/// What a converter of this class is off by at most, counts. Single steps are within what lines may set and may all
+/// have one sign; together they would hide more than a kelvin from the guard.
+const OFF_COUNTS: f64 = 8.0;
+
 /// A calibration, ready for the tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Calibrated {
@@ -57,7 +61,7 @@ impl Steps {
                 {
                     sum += step;
                 }
-                libm::round(sum * per_count) as i16
+                libm::round(sum.clamp(-OFF_COUNTS, OFF_COUNTS) * per_count) as i16
             }),
         }
     }
@@ -118,5 +122,22 @@ impl Polynomial {
         reached
             .saturating_add(self.offset)
             .saturating_add(Celsius::from_bits(change as i32))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps that lines may set one by one, all of one sign: 13 times 4 counts would be 1.2 K at 43 °C.
+    #[test]
+    fn steps_together_move_a_reading_by_what_a_converter_can_be_off() {
+        for step in [-4.0, 4.0] {
+            let steps = Steps::new(&[step; BORDERS]);
+            for sum in (0..=65_520).step_by(7) {
+                let off = i64::from(steps.without(sum)) - (i64::from(sum) << FINE_BITS);
+                assert!(off.abs() <= 8 * 16 << FINE_BITS, "{off} sixteenths at {sum}");
+            }
+        }
     }
 }

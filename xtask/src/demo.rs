@@ -14,6 +14,7 @@ pub fn run(permission: Permission) -> Result<()> {
     let mut steps = Steps::new(4);
     let needs = Needs {
         emulator: true,
+        fuzzer: false,
         lints: false,
     };
     let toolchain = steps.run("set-up", "", || setup::prepare(needs, permission))?;

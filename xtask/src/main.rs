@@ -5,6 +5,7 @@
 mod bench;
 mod demo;
 mod firmware;
+mod fuzz;
 mod image;
 mod mutations;
 mod probe;
@@ -91,6 +92,7 @@ enum Task {
         /// Of `hil-sim faults`, after the above: --only, --scene, --moments and others, see its --help
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
+    },
     /// Check the image's machine code: where it can panic, how deep its stack grows, what it loops on; measure its ticks
     Proof {
         #[command(flatten)]
@@ -101,6 +103,13 @@ enum Task {
         /// Leave out what takes a run in the emulator
         #[arg(long)]
         code_only: bool,
+    },
+    /// Fuzz all that takes bytes, text or samples from outside, guided by coverage
+    Fuzz {
+        #[command(flatten)]
+        set_up: SetUp,
+        #[command(flatten)]
+        options: fuzz::Options,
     },
     /// Build the image that the benchmark runs in the emulator, print its path; the benchmark calls this
     BenchImage(SetUp),
@@ -128,6 +137,9 @@ impl SetUp {
 }
 
 fn main() -> ExitCode {
+    if let Some(status) = fuzz::compile_if_called_as_compiler() {
+        return status;
+    }
     let result = match Cli::parse().command {
         Task::Demo(set_up) => demo::run(set_up.permission()),
         Task::Test(set_up) => suite::run(set_up.permission()),
@@ -161,6 +173,7 @@ fn main() -> ExitCode {
             fingers,
             code_only,
         } => proof::run(set_up.permission(), fingers, code_only),
+        Task::Fuzz { set_up, options } => fuzz::run(set_up.permission(), &options),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

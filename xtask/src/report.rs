@@ -22,6 +22,7 @@ pub fn run(
     let out = out.transpose()?;
     let needs = Needs {
         emulator: true,
+        fuzzer: false,
         lints: false,
     };
     setup::prepare(needs, permission)?;

@@ -83,6 +83,11 @@ fn checks(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Check> {
             command: Ok(cargo("doc --release --workspace --no-deps").env("RUSTDOCFLAGS", "-Dwarnings")),
         },
         Check {
+            title: "fuzzing, all inputs of the repository and 15 s a target",
+            hint: "instruments the product's crates: 3 min",
+            command: Ok(cargo("xtask fuzz --seconds 15")),
+        },
+        Check {
             title: "whole system, the image on the plant",
             hint: "several minutes",
             command: Ok(choice.handed_to(cargo("test --release --workspace"))),
@@ -110,6 +115,7 @@ pub fn run(permission: Permission) -> Result<()> {
 fn run_steps(steps: &mut Steps, permission: Permission) -> Result<()> {
     let needs = Needs {
         emulator: true,
+        fuzzer: true,
         lints: true,
     };
     let (toolchain, lints) = steps.run("set-up", "", || {

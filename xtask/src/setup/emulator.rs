@@ -1,4 +1,4 @@
-//! What compiling the emulator's CPU takes: cmake with make or ninja, a C compiler, libclang.
+//! What compiling the emulator's CPU takes: cmake with make or ninja, a C compiler, libclang; the fuzzers' engine a C++ one.
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -83,6 +83,21 @@ pub fn probe() -> Found {
         compiler: runs(&env::var("CC").unwrap_or_else(|_| "cc".into())),
         libclang: has_libclang(),
     }
+}
+
+/// What the fuzzers' engine lacks.
+pub fn missing_for_fuzzer() -> Option<Missing> {
+    let program = env::var("CXX").unwrap_or_else(|_| "c++".into());
+    let there = Invocation::new(&program, ["--version"]).answer().is_some();
+    (!there).then_some(Missing {
+        what: "a C++ compiler",
+        apt: &["g++"],
+        elsewhere: &[
+            ("dnf install", "gcc-c++"),
+            ("pacman -S", "gcc"),
+            ("xcode-select", "--install"),
+        ],
+    })
 }
 
 /// Whether the generator of bindings will find libclang and the compiler's own headers beside it.

@@ -28,6 +28,8 @@ pub struct Permission {
 pub struct Needs {
     /// cmake, a C compiler and libclang, to compile the emulator.
     pub emulator: bool,
+    /// A C++ compiler, for the fuzzers' engine.
+    pub fuzzer: bool,
     /// clippy for the cross target, too.
     pub lints: bool,
 }
@@ -68,6 +70,9 @@ pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
         } else {
             Vec::new()
         };
+        if needs.fuzzer {
+            missing.extend(emulator::missing_for_fuzzer());
+        }
         let ready = match decision {
             target::Decision::Use(toolchain) => Some(toolchain),
             target::Decision::Lacks(lacks) => {

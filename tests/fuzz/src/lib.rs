@@ -1,0 +1,54 @@
+//! What is fuzzed: everything that takes bytes, text or samples from outside.
+//!
+//! | target     | input                                                | what must hold                                        |
+//! |------------|------------------------------------------------------|-------------------------------------------------------|
+//! | `wire`     | bytes to the line reader, with ticks and touches between | answers, and all of [`device`]                    |
+//! | `station`  | samples, lines, resets' causes                       | all of [`device`], on every tick                      |
+//! | `settings` | values of `set` lines, then samples                  | lines read back; no reading is farther off than settable |
+//! | `scene`    | a scene's text                                       | an error names file and line, a scene is within bounds    |
+//!
+//! And in all: no panic, no overflow of an integer, no hang. `cargo xtask fuzz` runs them; replaying one input is a call of
+//! [`Target::run`], a pure function.
+
+mod device;
+mod scene;
+mod settings;
+mod start;
+mod station;
+mod tile;
+mod wire;
+
+/// One thing that is fuzzed.
+#[derive(Clone, Copy, Debug)]
+pub struct Target {
+    /// Its name on the command line, and that of its corpus.
+    pub name: &'static str,
+    /// Runs one input; panics if what must hold does not. Returns whether the input is worth keeping.
+    pub run: fn(&[u8]) -> bool,
+    /// Writes what the input means.
+    pub show: fn(&[u8]) -> String,
+}
+
+/// All of them.
+pub const TARGETS: [Target; 4] = [
+    Target {
+        name: "wire",
+        run: wire::run,
+        show: wire::show,
+    },
+    Target {
+        name: "station",
+        run: station::run,
+        show: station::show,
+    },
+    Target {
+        name: "settings",
+        run: settings::run,
+        show: settings::show,
+    },
+    Target {
+        name: "scene",
+        run: scene::run,
+        show: scene::show,
+    },
+];

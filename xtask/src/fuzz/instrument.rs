@@ -1,0 +1,134 @@
+//! The fuzzers with the product's own crates instrumented, and nothing else.
+//!
+//! Cargo's `RUSTC_WORKSPACE_WRAPPER` is a program that is called in place of the compiler for members of the workspace, whose
+//! results are kept apart from all others by the path of that program. Here it is this program under another name, which
+//! calls the compiler with more flags. So one folder holds both kinds, nothing else is compiled a second time (least of all
+//! the emulator, which takes minutes), and a stable compiler does.
+use std::hash::{DefaultHasher, Hash, Hasher};
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use anyhow::{Context, Result};
+
+use super::{create, folder};
+use crate::process::{Invocation, workspace};
+
+/// What the compiler is told beside what cargo tells it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Instrumented {
+    /// Counters on the edges of the control flow, for libFuzzer, and every check that a debug build has.
+    Fuzzing,
+    /// LLVM's source-based coverage.
+    Coverage,
+}
+
+/// The crates that are instrumented, and whether their comparisons are, too: those help with the words of a scene, and
+/// would take half of the time of a tick.
+const CRATES: [(&str, bool); 3] = [
+    ("contact_model", false),
+    ("thermal_display", false),
+    ("hil_sim", true),
+];
+
+/// The crate of the fuzzers themselves.
+const FUZZERS: &str = "fuzz";
+
+const EDGES: [&str; 4] = [
+    "-Cpasses=sancov-module",
+    "-Cllvm-args=-sanitizer-coverage-level=4",
+    "-Cllvm-args=-sanitizer-coverage-inline-8bit-counters",
+    "-Cllvm-args=-sanitizer-coverage-pc-table",
+];
+const COMPARISONS: &str = "-Cllvm-args=-sanitizer-coverage-trace-compares";
+const CHECKS: [&str; 2] = ["-Coverflow-checks=on", "-Cdebug-assertions=on"];
+const COVERAGE: &str = "-Cinstrument-coverage";
+
+impl Instrumented {
+    const ALL: [Self; 2] = [Self::Fuzzing, Self::Coverage];
+
+    /// More flags for a crate; none if it is not one of ours.
+    fn flags(self, name: &str) -> Vec<&'static str> {
+        let ours = CRATES.iter().find(|(known, _)| *known == name);
+        match (self, ours) {
+            (Self::Coverage, Some(_)) => vec![COVERAGE],
+            // What is linked in the end brings what writes the counts.
+            (Self::Coverage, None) if name == FUZZERS => vec![COVERAGE],
+            (Self::Fuzzing, Some((_, compares))) => {
+                let mut flags = [EDGES.as_slice(), &CHECKS].concat();
+                if *compares {
+                    flags.push(COMPARISONS);
+                }
+                flags
+            }
+            (_, None) => Vec::new(),
+        }
+    }
+
+    /// The name under which this program is such a compiler. It changes with the flags, or cargo would not notice.
+    fn program(self) -> String {
+        let mut hasher = DefaultHasher::new();
+        for name in CRATES.map(|(name, _)| name).into_iter().chain([FUZZERS]) {
+            (name, self.flags(name)).hash(&mut hasher);
+        }
+        let word = match self {
+            Self::Fuzzing => "fuzzing",
+            Self::Coverage => "coverage",
+        };
+        format!("rustc-for-{word}-{:08x}", hasher.finish() as u32)
+    }
+
+    /// Builds the fuzzers so; returns the program.
+    pub fn build(self) -> Result<PathBuf> {
+        let wrapper = folder().join(self.program());
+        create(&folder())?;
+        // This program may have been rebuilt since.
+        let _ = std::fs::remove_file(&wrapper);
+        let this = std::env::current_exe().context("this program's own path")?;
+        std::fs::hard_link(&this, &wrapper)
+            .or_else(|_| std::fs::copy(&this, &wrapper).map(|_| ()))
+            .with_context(|| format!("{}: cannot be made", wrapper.display()))?;
+        Invocation::cargo("build --release --package fuzz --features libfuzzer".split(' '))
+            .env("RUSTC_WORKSPACE_WRAPPER", wrapper.to_string_lossy())
+            .run_to_stderr()?;
+        Ok(workspace().join("target/release/fuzz"))
+    }
+}
+
+/// If this program was called as the compiler, is it, and returns its status.
+pub fn compile_if_called_as_compiler() -> Option<ExitCode> {
+    let mut args = std::env::args_os();
+    let name = PathBuf::from(args.next()?);
+    let name = Path::new(name.file_name()?).to_string_lossy().into_owned();
+    let kind = Instrumented::ALL
+        .into_iter()
+        .find(|kind| kind.program() == name)?;
+    let compiler = args.next()?;
+    let args: Vec<_> = args.collect();
+    let place = args.iter().position(|arg| arg == "--crate-name");
+    let crate_name = place.and_then(|place| args.get(place + 1)).cloned();
+    let flags = kind.flags(&crate_name.unwrap_or_default().to_string_lossy());
+    let status = Command::new(&compiler).args(&args).args(flags).status();
+    Some(match status {
+        Ok(status) if status.success() => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("{}: {error}", compiler.display());
+            ExitCode::FAILURE
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_products_crates_are_instrumented() {
+        assert!(Instrumented::Fuzzing.flags(FUZZERS).is_empty());
+        for kind in Instrumented::ALL {
+            assert!(kind.flags("build_script_build").is_empty());
+            assert!(!kind.flags("thermal_display").is_empty());
+        }
+        assert_ne!(Instrumented::Fuzzing.program(), Instrumented::Coverage.program());
+    }
+}

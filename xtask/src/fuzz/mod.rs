@@ -1,0 +1,149 @@
+//! `cargo xtask fuzz`: libFuzzer on everything that takes input from outside.
+mod coverage;
+mod engine;
+mod instrument;
+mod progress;
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+
+pub use instrument::compile_if_called_as_compiler;
+
+use crate::process::workspace;
+use crate::setup::{self, Needs, Permission};
+use engine::{Effort, Engine};
+use instrument::Instrumented;
+
+/// What is fuzzed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Target {
+    /// Bytes from the host, with ticks between
+    Wire,
+    /// Samples of any kind, with lines between
+    Station,
+    /// Any settings that lines can set, and what is read by them
+    Settings,
+    /// The text of a scene
+    Scene,
+}
+
+impl Target {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Wire => "wire",
+            Self::Station => "station",
+            Self::Settings => "settings",
+            Self::Scene => "scene",
+        }
+    }
+
+    /// The inputs that the repository has for it.
+    fn corpus(self) -> PathBuf {
+        workspace().join("tests/fuzz/corpus").join(self.name())
+    }
+
+    /// Folders of inputs to begin with.
+    fn seeds(self) -> Vec<PathBuf> {
+        let mut seeds = vec![self.corpus()];
+        if self == Self::Scene {
+            seeds.push(workspace().join("scenes"));
+        }
+        seeds
+    }
+
+    /// Words that inputs are made of.
+    fn dictionary(self) -> Option<PathBuf> {
+        let path = workspace().join(format!("tests/fuzz/{}.dict", self.name()));
+        path.is_file().then_some(path)
+    }
+}
+
+/// Options of `cargo xtask fuzz`.
+#[derive(Args)]
+pub struct Options {
+    /// What to fuzz, may be repeated [default: all, one after another]
+    #[arg(long, value_enum)]
+    target: Vec<Target>,
+    /// Time for each target, s, after the inputs that are known
+    #[arg(long, default_value_t = 60, conflicts_with = "runs")]
+    seconds: u64,
+    /// Executions for each target, in place of a time
+    #[arg(long)]
+    runs: Option<u64>,
+    /// Processes at a time, which share what they find
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
+    jobs: u64,
+    /// Run this one input of the one target, and print what it means
+    #[arg(long, value_name = "FILE", requires = "target", group = "other")]
+    replay: Option<PathBuf>,
+    /// Put what was found in earlier runs into the repository's corpus, no more than what covers all of it
+    #[arg(long, group = "other")]
+    keep: bool,
+    /// Print which part of each source file the inputs reach, in lines and regions (needs llvm-tools)
+    #[arg(long, group = "other")]
+    coverage: bool,
+}
+
+/// Where builds and runs leave their files.
+fn folder() -> PathBuf {
+    workspace().join("target/fuzz")
+}
+
+/// What was found for a target in runs on this machine.
+fn found(target: Target) -> Result<PathBuf> {
+    let path = folder().join("corpus").join(target.name());
+    create(&path)?;
+    Ok(path)
+}
+
+fn create(path: &Path) -> Result<()> {
+    std::fs::create_dir_all(path).with_context(|| format!("{}: cannot be made", path.display()))
+}
+
+/// `cargo xtask fuzz`
+pub fn run(permission: Permission, options: &Options) -> Result<()> {
+    let needs = Needs {
+        emulator: true,
+        fuzzer: true,
+        lints: false,
+    };
+    setup::prepare(needs, permission)?;
+    let targets = match options.target.as_slice() {
+        [] => Target::value_variants(),
+        some => some,
+    };
+    if options.coverage {
+        return coverage::report(targets);
+    }
+    let engine = Engine::new(&Instrumented::Fuzzing.build()?)?;
+    if let Some(input) = &options.replay {
+        let [target] = targets else {
+            bail!("--replay needs one --target");
+        };
+        return engine.replay(*target, input);
+    }
+    if options.keep {
+        return targets.iter().try_for_each(|target| engine.keep(*target));
+    }
+    let effort = match options.runs {
+        Some(runs) => Effort::Runs(runs),
+        None => Effort::Time(Duration::from_secs(options.seconds)),
+    };
+    let mut lines = Vec::new();
+    let mut total = 0;
+    for target in targets {
+        let reached = engine.fuzz(*target, effort, options.jobs)?;
+        total += reached.executions;
+        lines.push(format!("{:<10}{reached}", target.name()));
+    }
+    println!(
+        "{:<10}{:>14}{:>10}{:>8}{:>10}{:>8}",
+        "target", "executions", "per s", "edges", "features", "inputs"
+    );
+    lines.iter().for_each(|line| println!("{line}"));
+    println!("{:<10}{total:>14}   without a crash or a hang", "total");
+    Ok(())
+}
