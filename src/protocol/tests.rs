@@ -11,7 +11,6 @@ use crate::control::Law;
 use crate::drive::Current;
 use crate::guard::{Fault, State};
 use crate::render::Mode;
-use crate::sense::SensorFault;
 use crate::settings::Settings;
 
 fn parse(line: &str) -> Result<Command, Error> {

@@ -144,7 +144,9 @@ impl Bench {
             &mut samples.force,
         ];
         if self.station.tick % 40 == 20 {
-            noisy.map(|sum| *sum = sum.saturating_add(self.noise));
+            for sum in noisy {
+                *sum = sum.saturating_add(self.noise);
+            }
         }
         if self.host_there {
             self.station.hear();
