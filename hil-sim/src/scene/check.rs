@@ -15,7 +15,7 @@ use super::object::object;
 use super::plant::params;
 use super::source::{SceneError, Source};
 use super::{Force, HostLine, Scene};
-use crate::plant::ConfigError;
+use crate::plant::{ConfigError, Plant};
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
@@ -70,15 +70,16 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         None => file.object.span(),
     };
     setpoint(&source, &scene, object_at)?;
-    // What is left: parameters that do not suit each other.
-    scene.plant_config().check().map_err(|error| {
+    // What is left: parameters that do not suit each other, which building the plant shows.
+    Plant::new(&scene.plant_config()).map_err(|error| {
         let finger = file.finger.as_ref().map(|finger| finger.span());
         let plant = file.plant.as_ref().map(|plant| plant.span());
         let span = match error {
             ConfigError::ColdFinger { .. } => finger.or(plant),
             _ => plant.or(finger),
         };
-        source.error(span, error.to_string())
+        // The class's own plant is at odds with the temperatures only.
+        source.error(span.or(Some(file.skin_c.span())), error.to_string())
     })?;
     Ok(scene)
 }

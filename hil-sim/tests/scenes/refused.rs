@@ -97,6 +97,12 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
             6,
             "behind an endless layer is 10; allowed is none",
         ),
+        // As 2.9 m of skin lose 10 W/(m2 K) x 10 K, its core is 100 W/m2 x 2.9 m / 0.37 W/(m K) = 784 K above 34 C.
+        (
+            "[finger]\ncore_w_m2k = inf\nair_w_m2k = 10\n[[finger.layer]]\nthickness_m = 2.9\nk_w_mk = 0.37\nrho_kg_m3 = 1000\nc_j_kgk = 3700",
+            6,
+            "the finger's core must have for its skin and the room is 817.",
+        ),
         (
             "[finger]\ntissue = \"thick\"",
             7,

@@ -209,11 +209,19 @@ impl Engine {
         let fewest = folder().join("fewest").join(target.name());
         let _ = std::fs::remove_dir_all(&fewest);
         create(&fewest)?;
+        // Of those that are there now: a run that goes on replaces some by shorter ones.
+        let now = folder().join("now").join(target.name());
+        let _ = std::fs::remove_dir_all(&now);
+        create(&now)?;
+        for entry in std::fs::read_dir(found(target)?)? {
+            let entry = entry?;
+            let _ = std::fs::copy(entry.path(), now.join(entry.file_name()));
+        }
         let status = self
             .command(target)
             .args(["-set_cover_merge=1", "-use_counters=0"])
             .arg(&fewest)
-            .arg(found(target)?)
+            .arg(&now)
             .args(target.seeds())
             .status()
             .context("the fuzzer did not start")?;
