@@ -26,6 +26,7 @@ impl Region {
 pub struct Memory {
     flash: Region,
     ram: Region,
+    stack: Region,
     settings: Region,
 }
 
@@ -57,6 +58,7 @@ impl Memory {
         Ok(Self {
             flash: region("FLASH")?,
             ram: region("RAM")?,
+            stack: region("STACK")?,
             settings: region("SETTINGS")?,
         })
     }
@@ -150,9 +152,10 @@ impl Usage {
             )
         };
         format!(
-            "flash  {}, without the settings'\nRAM    {}, the rest is the stack's",
+            "flash  {}, without the settings'\nRAM    {}, beside the stack's {} KiB",
             line(self.flash, memory.flash.length - memory.settings.length),
-            line(self.ram, memory.ram.length)
+            line(self.ram, memory.ram.length),
+            memory.stack.length >> 10
         )
     }
 }
@@ -161,15 +164,19 @@ impl Usage {
 mod tests {
     use super::*;
 
-    /// RM0390 table 1 and section 2: 512 KiB from 0x0800_0000, of them sectors 1 to 3 of 16 KiB (table 4), 112 + 16 KiB from 0x2000_0000.
+    /// RM0390 table 1 and section 2: 512 KiB from 0x0800_0000, of them sectors 1 to 3 of 16 KiB (table 4), 112 + 16 KiB from 0x2000_0000, of them one half each for the stack and the rest.
     const F446RE: Memory = Memory {
         flash: Region {
             origin: 0x0800_0000,
             length: 524_288,
         },
         ram: Region {
+            origin: 0x2001_0000,
+            length: 65_536,
+        },
+        stack: Region {
             origin: 0x2000_0000,
-            length: 131_072,
+            length: 65_536,
         },
         settings: Region {
             origin: 0x0800_4000,

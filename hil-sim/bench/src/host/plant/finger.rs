@@ -30,6 +30,8 @@ pub const LINES: [(u64, &str); 5] = [
 pub const LANDING_MS: u64 = 8000;
 /// From when on it is measured, ms.
 pub const READY_MS: u64 = 9000;
+/// How often the host gives a sign of life.
+const ALIVE_MS: u64 = 500;
 /// By then a line is answered and what it asks for has arrived, ms.
 const ANSWER_MS: u64 = 5;
 
@@ -37,6 +39,8 @@ const ANSWER_MS: u64 = 5;
 pub struct Finger {
     engine: Native,
     received: Vec<u8>,
+    /// Milliseconds since switch-on.
+    ms: u64,
 }
 
 impl Finger {
@@ -68,6 +72,7 @@ impl Finger {
         Ok(Self {
             engine: Native::new(World::new(&scene)?),
             received: Vec::new(),
+            ms: 0,
         })
     }
 
@@ -85,6 +90,10 @@ impl Finger {
 
     /// One millisecond in the order of a run: the plant, then the device.
     pub fn step(&mut self, force_n: f64) {
+        if self.ms.is_multiple_of(ALIVE_MS) {
+            self.engine.send(b"\n");
+        }
+        self.ms += 1;
         self.engine.world().set(force_n, std::iter::empty());
         let legs = self.engine.legs();
         self.engine.world().step(legs);
@@ -95,6 +104,11 @@ impl Finger {
     /// The plant as it is now.
     pub fn plant(&mut self) -> Plant {
         self.engine.world().plant().clone()
+    }
+
+    /// The bridge's fault pin is pulled.
+    pub fn fault(&mut self) -> bool {
+        self.engine.world().bridge_fault()
     }
 
     /// The bridge's legs as they are now.

@@ -30,7 +30,7 @@ impl Replay {
         let mut look = |ms: u64| {
             finger.send_lines_of(ms);
             finger.step(force_n(ms));
-            Samples::from_scans(&scans(&mut finger.plant()), false)
+            Samples::from_scans(&scans(&mut finger.plant()), finger.fault())
         };
         for ms in 0..READY_MS {
             for (_, line) in LINES.iter().filter(|(at, _)| *at == ms) {
@@ -57,7 +57,7 @@ impl Replay {
         let mut station = self.start.clone();
         let mut drive = Drive::Off;
         for samples in &self.samples {
-            drive = black_box(station.step(black_box(samples)));
+            drive = black_box(station.step(black_box(samples))).drive;
         }
         drive
     }
