@@ -9,7 +9,7 @@ use crate::setup::{self, Needs, Permission};
 pub fn run(permission: Permission, fingers: Fingers, code_only: bool) -> Result<()> {
     let needs = Needs {
         emulator: true,
-        lints: false,
+        ..Needs::default()
     };
     setup::prepare(needs, permission)?;
     let mut line = vec![
