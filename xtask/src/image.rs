@@ -227,9 +227,9 @@ mod tests {
             section(".vector_table", 0x0800_0000, 0x1c4, true),
             section(".text", 0x0801_0000, 1000, true),
             section(".rodata", 0x0801_0400, 200, true),
-            section(".data", 0x2000_0000, 30, true),
-            section(".bss", 0x2000_0020, 4, false),
-            section(".uninit", 0x2000_0024, 1024, false),
+            section(".data", 0x2001_0000, 30, true),
+            section(".bss", 0x2001_0020, 4, false),
+            section(".uninit", 0x2001_0024, 1024, false),
         ];
         let usage = Usage::of_sections(&sections, &F446RE).unwrap();
         assert_eq!(
