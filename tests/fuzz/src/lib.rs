@@ -1,11 +1,11 @@
 //! What is fuzzed: everything that takes bytes, text or samples from outside.
 //!
-//! | target     | input                                                | what must hold                                        |
-//! |------------|------------------------------------------------------|-------------------------------------------------------|
-//! | `wire`     | bytes to the line reader, with ticks and touches between | answers, and all of [`device`]                    |
-//! | `station`  | samples, lines, resets' causes                       | all of [`device`], on every tick                      |
-//! | `settings` | values of `set` lines, then samples                  | lines read back; no reading is farther off than settable |
-//! | `scene`    | a scene's text                                       | an error names file and line, a scene is within bounds    |
+//! | target     | input                                                    | what must hold                                        |
+//! |------------|----------------------------------------------------------|-------------------------------------------------------|
+//! | `wire`     | bytes to the line reader, with ticks and touches between | what `device.rs` says of answers, outputs and states  |
+//! | `station`  | samples, lines, reasons to trip                          | the same, on every tick                               |
+//! | `settings` | values of `set` lines, then samples                      | they read back; no reading is off by more than 2.8 K  |
+//! | `scene`    | a scene's text                                           | an error names file and line, a scene has a plant     |
 //!
 //! And in all: no panic, no overflow of an integer, no hang. `cargo xtask fuzz` runs them; replaying one input is a call of
 //! [`Target::run`], a pure function.
