@@ -52,11 +52,11 @@ impl<const FINGERS: usize> Hand<FINGERS> {
         self.stations.iter_mut().for_each(|station| station.trip(fault));
     }
 
-    /// Why the first of the fingers that are tripped is.
+    /// Why the finger that has been tripped for longest is.
     #[must_use]
     pub fn tripped(&self) -> Option<&Cause> {
-        let tripped = self.stations.iter().find(|station| station.is_tripped())?;
-        tripped.cause()
+        let tripped = self.stations.iter().filter(|station| station.is_tripped());
+        tripped.filter_map(Station::cause).min_by_key(|cause| cause.tick)
     }
 
     /// The host is there.

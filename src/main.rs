@@ -74,7 +74,7 @@ mod app {
             hand,
             vigil: Vigil::new(),
             heard: AtomicBool::new(false),
-            record: Record::new(cause.is_some()),
+            record: Record::new(cause),
             stages: board.stages,
             sampler: board.sampler,
         };

@@ -153,7 +153,7 @@ impl Station {
         };
         // The comparator keeps its line until the next self-test, and is expected to pull it at its beginning.
         let pulled = match self.state {
-            State::Off => false,
+            State::Off | State::Tripped(_) => false,
             State::SelfTest => readings.bridge_fault && !self.self_test.expects_cut(),
             _ => readings.bridge_fault,
         };
@@ -209,10 +209,11 @@ impl Station {
     ) -> Result<(Outputs, Current), Fault> {
         if self.state == State::SelfTest {
             let legs = Legs::between(sound.display, sound.sink);
+            let touched = self.touch.left_zero() || self.touch.touching();
             return Ok(
                 match self
                     .self_test
-                    .step(sound, readings.current, readings.bridge_fault)?
+                    .step(sound, readings.current, readings.bridge_fault, touched)?
                 {
                     Progress::Off { comparator_test } => self.rest(comparator_test),
                     Progress::Drive(current) => self.drive(current, &legs),
@@ -375,6 +376,8 @@ impl Station {
             Command::Calibrate(_) | Command::Average(_) if self.state.presents() => {
                 return Err(Error::Presenting);
             }
+            // A reading that steps would be taken for the display's answer.
+            Command::Calibrate(_) if self.state == State::SelfTest => return Err(Error::Testing),
             Command::Identify => return Ok(Reply::Identity { fingers: 1 }),
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Stream { interval_ms } => self.stream_ticks = interval_ms * (TICK_HZ / 1000),
@@ -399,6 +402,8 @@ impl Station {
                 State::Tripped(fault) => return Err(Error::Tripped(fault)),
                 State::SelfTest => {}
                 State::Off => {
+                    self.experiment = None;
+                    self.held = None;
                     self.self_test = SelfTest::default();
                     self.state = State::SelfTest;
                 }

@@ -8,7 +8,7 @@
 //!                   |            |       ready -----------+   v                | arm: armed    |
 //!                   |            |         ^------------------+----------------+-- abort ------+
 //!                   |            v
-//!                   +- clear - tripped <--- any fault, from any state; a reset that nobody asked for
+//!                   +- clear - tripped <--- any fault, from any state; a reset by a watchdog
 //! ```
 //!
 //! The bridge is driven in self-test, armed, preset and contact. Everywhere else, and in the very tick that sees a
@@ -19,7 +19,7 @@
 //! from being obeyed, and what is wrong after a trip keeps `clear` from it. Nothing is filtered away: where one tick
 //! is not enough to know, the detector says for how long a thing must last, and none takes longer than 50 ms from
 //! where its [`Fault`] is defined to begin. Only the fault line of the bridge is not looked at while the bridge is off and
-//! untested: the comparator pulls it too, and keeps pulling until the next self-test.
+//! untested, or tripped: the comparator pulls it too, and keeps pulling until the next self-test.
 //!
 //! **What latches.** The first fault does, with the readings of its tick, as [`Cause`]; later ones do not replace it.
 //! It survives every reset but the loss of power. The comparator latches on its own, in hardware.

@@ -9,7 +9,7 @@
 //!
 //! The bridge is off for the first 40 ms, so the comparator cuts and gives back a supply that nobody uses. Then the
 //! display is told to do a little, 0.2 to 0.5 K, and both of its thermistors must show it, against the slope that they
-//! had before; a display that answers the wrong way round, or not at all, is never driven again. Nothing else than a
+//! had before; a display that answers the wrong way round, or not at all, trips. A finger that lands or lifts lets the rest begin anew a second later. Nothing else than a
 //! display answers in 0.2 s: a thermistor on the sink moves by a hundredth of it, the other way.
 
 use contact_model::fixed_point::Celsius;
@@ -40,6 +40,11 @@ const MOST_A: Current = Current::lit("2");
 const LEAST: Celsius = Celsius::lit("0.05");
 const MOST: Celsius = Celsius::lit("1.5");
 
+/// For how long nothing must have landed or lifted before the rest, ticks: what a finger does to the display is no line.
+const UNTOUCHED: u16 = 1000;
+/// How often the rest begins anew for that.
+const PATIENCE: u8 = 20;
+
 /// Sums of both readings over half of the rest.
 type Sums = [i64; 2];
 
@@ -65,6 +70,10 @@ pub struct SelfTest {
     second: Sums,
     /// Sum of the measured current over the second half of the pulse.
     current: i64,
+    touched: bool,
+    /// Ticks to wait before the rest.
+    wait: u16,
+    begun_anew: u8,
 }
 
 impl SelfTest {
@@ -74,11 +83,26 @@ impl SelfTest {
         self.tick < GIVEN_BACK
     }
 
-    /// Takes one tick; `cut` is whether the fault line is pulled.
+    /// Takes one tick; `cut` is whether the fault line is pulled, `touched` whether anything is on the display.
     ///
     /// # Errors
     /// What does not work.
-    pub fn step(&mut self, sound: &Sound, measured: Current, cut: bool) -> Result<Progress, Fault> {
+    pub fn step(
+        &mut self,
+        sound: &Sound,
+        measured: Current,
+        cut: bool,
+        touched: bool,
+    ) -> Result<Progress, Fault> {
+        if touched != self.touched {
+            self.begin_anew(touched)?;
+        }
+        if self.tick == GIVEN_BACK && self.wait > 0 {
+            self.wait -= 1;
+            return Ok(Progress::Off {
+                comparator_test: false,
+            });
+        }
         let tick = self.tick;
         self.tick += 1;
         let readings = [sound.display, sound.check].map(|reading| i64::from(reading.to_bits()));
@@ -128,6 +152,22 @@ impl SelfTest {
         } else {
             Progress::Passed
         })
+    }
+
+    /// A finger has landed or lifted: what was seen since the comparator's test does not count.
+    fn begin_anew(&mut self, touched: bool) -> Result<(), Fault> {
+        self.begun_anew += 1;
+        if self.begun_anew > PATIENCE {
+            return Err(Fault::NoResponse);
+        }
+        *self = Self {
+            tick: self.tick.min(GIVEN_BACK),
+            touched,
+            wait: UNTOUCHED,
+            begun_anew: self.begun_anew,
+            ..Self::default()
+        };
+        Ok(())
     }
 
     fn judge_current(&self) -> Result<(), Fault> {

@@ -19,7 +19,9 @@ pub fn count_tick() {
 pub fn reset_cause(rcc: &RCC) {
     let flags = rcc.csr().read();
     // The reset pin is pulled by every other cause, power-on sets the brown-out flag too: most special first.
-    let cause = if flags.wdgrstf().bit_is_set() {
+    let cause = if flags.wwdgrstf().bit_is_set() {
+        "window watchdog"
+    } else if flags.wdgrstf().bit_is_set() {
         "watchdog"
     } else if flags.sftrstf().bit_is_set() {
         "software"

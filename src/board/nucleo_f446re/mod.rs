@@ -100,7 +100,12 @@ pub fn first_cause(device: &pac::Peripherals, found: &Found) -> Option<Cause> {
     };
     // A reset, without a tick that has seen why, is what comes of an overrun.
     let unseen = overrun && cause.tick == 0;
-    Some(if unseen { Cause::alone(Fault::Stack) } else { cause })
+    if !unseen {
+        return Some(cause);
+    }
+    record::forget();
+    record::keep(&Cause::alone(Fault::Stack));
+    record::kept()
 }
 
 /// The board, set up and ready to take samples; the parts go to the tasks that own them.

@@ -73,22 +73,25 @@ pub fn of_reset(rcc: &RCC) -> Option<Cause> {
 
 /// Keeps what trips while the program runs, and forgets it when the host has cleared it.
 pub struct Record {
-    kept: bool,
+    kept: Option<Cause>,
 }
 
 impl Record {
     /// After a start with or without a cause.
-    pub const fn new(kept: bool) -> Self {
+    pub const fn new(kept: Option<Cause>) -> Self {
         Self { kept }
     }
 
     /// Follows the stations of one tick.
     pub fn follow(&mut self, tripped: Option<&Cause>) {
-        match tripped {
-            Some(cause) if !self.kept => keep(cause),
-            None if self.kept => forget(),
-            _ => return,
+        if tripped == self.kept.as_ref() {
+            return;
         }
-        self.kept = tripped.is_some();
+        // It was cleared, whether or not something has tripped since.
+        forget();
+        if let Some(cause) = tripped {
+            keep(cause);
+        }
+        self.kept = tripped.copied();
     }
 }

@@ -68,6 +68,10 @@ fn every_fault_trips_in_its_tick_from_every_state_and_stays() {
 
             let tripped = ["err tripped by ", word, "; clear it first"].concat();
             let present = ["err fault ", word, " is still present"].concat();
+            // The line may be the comparator's, which only the next self-test lets go.
+            if word == "bridge" {
+                continue;
+            }
             assert_eq!(bench.host("clear"), present);
 
             // Gone again, but nobody has said so.
@@ -184,4 +188,52 @@ fn display_thermistors_that_stay_apart_trip() {
         (bench.state().fault().map(Fault::name), drive),
         (Some("displays-apart"), Drive::Off)
     );
+}
+
+/// The comparator keeps the supply cut after the wire is mended; the self-test gives it back.
+#[test]
+fn a_comparator_that_has_cut_can_be_cleared() {
+    let mut bench = Bench::presenting("copper");
+    let check_c = bench.check_c;
+    (bench.check_c, bench.bridge_fault) = (-200.0, true);
+    bench.step();
+    assert_eq!(bench.state().fault().map(Fault::name), Some("check-open"));
+    bench.check_c = check_c;
+    bench.step();
+    bench.obey(&["clear"]);
+    assert_eq!(bench.state(), State::Off);
+    bench.obey(&["arm"]);
+    assert_eq!(bench.state(), State::Armed);
+}
+
+#[test]
+fn armed_after_a_fault_the_display_is_neutral_again() {
+    let mut bench = Bench::new();
+    bench.obey(&["arm", "hold 41.5"]);
+    bench.step();
+    bench.force_n = -1.3;
+    bench.step();
+    bench.force_n = 0.0;
+    bench.step();
+    bench.obey(&["clear", "arm"]);
+    assert!((bench.setpoint_c() - bench.skin_c).abs() < 0.1);
+}
+
+/// A finger that lands in the self-test warms the display as it cools.
+#[test]
+fn a_finger_that_lands_in_the_self_test_is_waited_for() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.host("arm"), "ok");
+    for tick in 0..3000 {
+        if bench.state() != State::SelfTest {
+            break;
+        }
+        bench.force_n = if tick < 150 { 0.0 } else { 1.0 };
+        let (outputs, telemetry) = bench.step_all();
+        let landed_k = if (150..450).contains(&tick) { 2e-3 } else { 0.0 };
+        bench.display_c += landed_k - 2.7e-3 * telemetry.demand.to_num::<f64>();
+        bench.check_c = bench.display_c;
+        bench.bridge_fault = outputs.comparator_test;
+    }
+    assert_eq!(bench.state(), State::Armed);
 }
