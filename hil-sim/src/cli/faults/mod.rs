@@ -1,6 +1,8 @@
 //! `hil-sim faults`: the fault-injection matrix, and what is built on it.
 
 mod campaign;
+mod normal;
+mod pairs;
 
 use std::path::PathBuf;
 
@@ -41,7 +43,7 @@ pub struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Folder for faults.html, or for the scene of --replay
+    /// Folder for faults.html, or for scenes of the other modes
     #[arg(long)]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -58,6 +60,12 @@ struct Modes {
     /// Again the campaign of a number; its scene goes to --out
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(..10_000_000))]
     replay: Option<u64>,
+    /// Every fault that may go unnoticed before every other one; scenes of those that break the claim go to --out
+    #[arg(long)]
+    pairs: bool,
+    /// Simulated hours of normal use over the parameter box, in which nothing may trip; scenes that do go to --out
+    #[arg(long, value_name = "HOURS", value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    normal: Option<u64>,
 }
 
 fn places() -> impl TypedValueParser<Value = Place> {
@@ -94,6 +102,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Modes {
             replay: Some(number), ..
         } => campaign::run(arguments, device, number..number + 1),
+        Modes { pairs: true, .. } => pairs::run(arguments, device),
+        Modes {
+            normal: Some(hours), ..
+        } => normal::run(arguments, device, hours),
         Modes { .. } => matrix(arguments, device),
     }
 }
