@@ -34,7 +34,8 @@ impl Injected {
     }
 }
 
-const fn sensor(sensor: Sensor) -> &'static str {
+/// Its name in a scene.
+pub(super) const fn sensor(sensor: Sensor) -> &'static str {
     match sensor {
         Sensor::Display => "display",
         Sensor::Check => "check",

@@ -1,13 +1,9 @@
 //! Where and when a fault happens: scenes, and moments in them.
 
-use std::path::Path;
-
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
 use thermal_display::guard::Fault;
-
-use crate::scene::Scene;
 
 /// A scene, and what goes on in it when the fault comes. In every one the finger rests on the display in the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -167,9 +163,9 @@ impl Place {
         }
     }
 
-    /// The scene as a file has it, in which a fault at a time is watched for so long, s.
+    /// The scene as a file has it, in which a fault at a time is watched for so long, s; and its end, s.
     #[must_use]
-    pub fn text(self, seed: u64, t_s: f64, after_s: f64) -> String {
+    pub fn text(self, seed: u64, t_s: f64, after_s: f64) -> (String, f64) {
         let duration_s = (t_s + after_s).max(SHORTEST_S);
         let (material, object_c) = self.object();
         let appears_s = match self {
@@ -190,17 +186,6 @@ impl Place {
                 text += &format!("[[host]]\nt_s = {t_s:?}\nline = \"{line}\"\n");
             }
         }
-        text
-    }
-
-    /// The same, read.
-    ///
-    /// # Errors
-    /// None that a place has by itself; a seed beyond what a file can say.
-    pub fn scene(self, seed: u64, t_s: f64, after_s: f64) -> anyhow::Result<Scene> {
-        Ok(Scene::parse(
-            &self.text(seed, t_s, after_s),
-            Path::new(self.name()),
-        )?)
+        (text, duration_s)
     }
 }

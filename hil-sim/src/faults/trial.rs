@@ -1,21 +1,21 @@
 //! One run of one fault.
 
+use std::path::Path;
+
 use anyhow::Context;
 use serde::Serialize;
 
 use super::verdict::Verdict;
-use super::{Entry, Injected, Moment};
-use crate::engine::{Engine, Image, Injection, Native, NotInjected};
+use super::{Entry, Injected, Moment, script};
+use crate::engine::{Engine, Image, Native, NotInjected};
 use crate::machine::Firmware;
 use crate::metrics::{Figures, figures};
 use crate::run::{Outcome, RunError, run};
-use crate::scene::{Fault, FaultKind, HostLine, Scene};
+use crate::scene::Scene;
 use crate::world::World;
 
 /// What is asked at the end, and how long before it, s.
 const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "cause")];
-/// A host that fell silent comes back after so long, s, to ask.
-const SILENT_S: f64 = 6.0;
 
 /// What runs a trial.
 #[derive(Clone, Copy)]
@@ -37,7 +37,7 @@ impl Device<'_> {
     }
 
     /// Runs a scene; none if the engine has no part that could fail so.
-    fn run(self, scene: &Scene) -> anyhow::Result<Option<(Outcome, Figures)>> {
+    pub(super) fn run(self, scene: &Scene) -> anyhow::Result<Option<(Outcome, Figures)>> {
         fn on<E: Engine>(scene: &Scene, engine: &mut E) -> anyhow::Result<Option<(Outcome, Figures)>> {
             let outcome = match run(scene, engine, |_| ()) {
                 Err(RunError::NotInjected(NotInjected::NotApplicable { .. })) => return Ok(None),
@@ -70,9 +70,20 @@ impl Trial {
     /// Runs an entry at a moment; none if the engine has no part that could fail so.
     ///
     /// # Errors
-    /// The scene cannot be, or the run ended with something that is not modelled.
+    /// The scene cannot be.
     pub fn run(device: Device<'_>, entry: &Entry, moment: Moment, seed: u64) -> anyhow::Result<Option<Self>> {
-        let scene = scene(entry, moment, seed)?;
+        let text = text(&[(entry.fault, moment.t_s)], moment, entry.after_s, seed, &[]);
+        Self::of_text(device, entry, moment, &text)
+    }
+
+    /// The same in a scene that is given as a file has it.
+    pub(super) fn of_text(
+        device: Device<'_>,
+        entry: &Entry,
+        moment: Moment,
+        text: &str,
+    ) -> anyhow::Result<Option<Self>> {
+        let scene = Scene::parse(text, Path::new(moment.place.name()))?;
         let verdict = match device.run(&scene) {
             Ok(None) => return Ok(None),
             Ok(Some((outcome, figures))) => Verdict::of(entry, moment, &outcome, &figures),
@@ -87,28 +98,27 @@ impl Trial {
     }
 }
 
-/// The place's scene with the fault in it, and with what the host asks in the end.
-fn scene(entry: &Entry, moment: Moment, seed: u64) -> anyhow::Result<Scene> {
-    let t_s = moment.t_s;
-    let mut scene = moment.place.scene(seed, t_s, entry.after_s)?;
-    match entry.fault {
-        Injected::Broken(broken) => {
-            let until_s = match broken.kind {
-                FaultKind::HostSilent => t_s + SILENT_S,
-                _ => f64::INFINITY,
-            };
-            scene.faults.push(Fault { broken, t_s, until_s });
-        }
-        Injected::Processor(fault) => scene.injections.push(Injection { t_s, fault }),
-        Injected::Line(line) => scene.host.push(HostLine {
-            t_s,
-            line: line.into(),
-        }),
+/// The place's scene as a file has it, with faults at their times, s, and with what the host asks in the end; `plant` are
+/// keys of the parameter box. The seed is that of the converter.
+pub(super) fn text(
+    faults: &[(Injected, f64)],
+    moment: Moment,
+    after_s: f64,
+    seed: u64,
+    plant: &[(String, f64)],
+) -> String {
+    let (mut text, end_s) = moment.place.text(seed, moment.t_s, after_s);
+    for (fault, t_s) in faults {
+        text += &script::table(fault, *t_s);
     }
-    let end_s = scene.duration_s;
-    scene.host.extend(QUESTIONS.map(|(before_s, line)| HostLine {
-        t_s: end_s - before_s,
-        line: line.into(),
-    }));
-    Ok(scene)
+    for (before_s, line) in QUESTIONS {
+        text += &script::line_at(line, end_s - before_s);
+    }
+    if !plant.is_empty() {
+        text += "[plant]\n";
+    }
+    for (key, value) in plant {
+        text += &format!("{key} = {value:?}\n");
+    }
+    text
 }

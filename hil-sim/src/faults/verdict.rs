@@ -35,6 +35,16 @@ pub enum Breach {
 }
 
 impl Breach {
+    /// All of them.
+    pub const ALL: [Self; 6] = [
+        Self::Ended,
+        Self::Early,
+        Self::Skin,
+        Self::Dose,
+        Self::Late,
+        Self::Reason,
+    ];
+
     /// A word for it.
     #[must_use]
     pub const fn name(self) -> &'static str {

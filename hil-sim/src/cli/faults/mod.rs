@@ -1,4 +1,8 @@
-//! `hil-sim faults`: the fault-injection matrix.
+//! `hil-sim faults`: the fault-injection matrix, and what is built on it.
+
+mod campaign;
+mod normal;
+mod pairs;
 
 use std::path::PathBuf;
 
@@ -39,9 +43,29 @@ pub struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Folder for faults.html
+    /// Folder for faults.html, or for scenes of the other modes
     #[arg(long)]
     out: Option<PathBuf>,
+    #[command(flatten)]
+    modes: Modes,
+}
+
+/// What is run instead of the matrix; one of them.
+#[derive(Args)]
+#[group(multiple = false, conflicts_with_all = ["only", "scene", "moments"])]
+struct Modes {
+    /// Instead of the matrix: N random campaigns (fault, moment, scene, plant) of the seed
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    campaign: Option<u64>,
+    /// Again the campaign of a number; its scene goes to --out
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(..10_000_000))]
+    replay: Option<u64>,
+    /// Every fault that may go unnoticed before every other one; scenes of those that break the claim go to --out
+    #[arg(long)]
+    pairs: bool,
+    /// Simulated hours of normal use over the parameter box, in which nothing may trip; scenes that do go to --out
+    #[arg(long, value_name = "HOURS", value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    normal: Option<u64>,
 }
 
 fn places() -> impl TypedValueParser<Value = Place> {
@@ -61,8 +85,33 @@ struct Report<'a> {
     faults: &'a [Outline],
 }
 
-/// Runs the matrix, prints it, writes its page; a fault that does not hold is a failure.
+/// Runs what is asked for.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    output::create(arguments.out.as_deref())?;
+    let elf = arguments.elf.as_deref();
+    let firmware = match arguments.engine {
+        Kind::Native => device::no_image(elf).map(|()| None)?,
+        Kind::Image => Some(device::image(elf, 1)?.0),
+    };
+    let device = firmware.as_ref().map_or(Device::Native, Device::Image);
+    match arguments.modes {
+        Modes {
+            campaign: Some(count),
+            ..
+        } => campaign::run(arguments, device, 0..count),
+        Modes {
+            replay: Some(number), ..
+        } => campaign::run(arguments, device, number..number + 1),
+        Modes { pairs: true, .. } => pairs::run(arguments, device),
+        Modes {
+            normal: Some(hours), ..
+        } => normal::run(arguments, device, hours),
+        Modes { .. } => matrix(arguments, device),
+    }
+}
+
+/// Runs the matrix, prints it, writes its page; a fault that does not hold is a failure.
+fn matrix(arguments: &Arguments, device: Device<'_>) -> Result<(), Failure> {
     let plan = Plan {
         entries: entries(&arguments.only)?,
         places: match arguments.scene.as_slice() {
@@ -72,13 +121,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         moments: arguments.moments.into(),
         seed: arguments.seed,
     };
-    output::create(arguments.out.as_deref())?;
-    let elf = arguments.elf.as_deref();
-    let firmware = match arguments.engine {
-        Kind::Native => device::no_image(elf).map(|()| None)?,
-        Kind::Image => Some(device::image(elf, 1)?.0),
-    };
-    let device = firmware.as_ref().map_or(Device::Native, Device::Image);
     let rows = outlines(arguments, &plan, device).map_err(Failure::run)?;
     let mut text = if arguments.json {
         let report = Report {
@@ -127,26 +169,32 @@ fn entries(only: &[String]) -> Result<Vec<Entry>, Failure> {
 }
 
 fn outlines(arguments: &Arguments, plan: &Plan, device: Device<'_>) -> anyhow::Result<Vec<Outline>> {
-    let runs = plan.runs();
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
-    let bar = ProgressBar::new(runs.len() as u64).with_style(style);
-    bar.set_message(format!("faults on engine {}", device.name()));
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = arguments.threads.map_or_else(cores, usize::from);
-    let trials = fidelity::map(
-        &runs,
-        threads,
-        |(row, moment)| {
-            let entry = &plan.entries[*row];
-            Ok((*row, Trial::run(device, entry, *moment, plan.seed)?))
-        },
-        || bar.inc(1),
-    );
-    bar.finish_and_clear();
+    let trials = each(arguments, "faults", device, &plan.runs(), |(row, moment)| {
+        let entry = &plan.entries[*row];
+        Ok((*row, Trial::run(device, entry, *moment, plan.seed)?))
+    });
     let mut by_row: Vec<Vec<Trial>> = plan.entries.iter().map(|_| Vec::new()).collect();
     for (row, trial) in trials? {
         by_row[row].extend(trial);
     }
     let rows = plan.entries.iter().zip(by_row);
     Ok(rows.map(|(entry, trials)| Outline::new(entry, trials)).collect())
+}
+
+/// Does the work of every item on the threads that are asked for, and shows how far it is.
+fn each<T: Sync, R: Send>(
+    arguments: &Arguments,
+    what: &str,
+    device: Device<'_>,
+    items: &[T],
+    work: impl Fn(&T) -> anyhow::Result<R> + Sync,
+) -> anyhow::Result<Vec<R>> {
+    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
+    let bar = ProgressBar::new(items.len() as u64).with_style(style);
+    bar.set_message(format!("{what} on engine {}", device.name()));
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = arguments.threads.map_or_else(cores, usize::from);
+    let results = fidelity::map(items, threads, work, || bar.inc(1));
+    bar.finish_and_clear();
+    results
 }

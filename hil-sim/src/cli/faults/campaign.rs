@@ -1,0 +1,65 @@
+//! `--campaign` and `--replay`: random campaigns.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use hil_sim::faults::{Campaign, Device, Ran, summary};
+use serde::Serialize;
+
+use super::{Arguments, Failure, each, output};
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report<'a> {
+    engine: &'static str,
+    seed: u64,
+    holds: bool,
+    campaigns: &'a [Ran],
+}
+
+/// Runs the campaigns of these numbers; a violation is a failure.
+pub fn run(arguments: &Arguments, device: Device<'_>, numbers: std::ops::Range<u64>) -> Result<(), Failure> {
+    let has_processor = matches!(device, Device::Image(_));
+    let campaigns: Vec<_> = numbers
+        .map(|number| Campaign::new(arguments.seed, number, has_processor))
+        .collect();
+    if let (Some(folder), Some(_), [campaign]) =
+        (&arguments.out, arguments.modes.replay, campaigns.as_slice())
+    {
+        write(folder, campaign).map_err(Failure::run)?;
+    }
+    let work = |campaign: &Campaign| {
+        let ran = campaign.run(device);
+        ran.with_context(|| format!("number {} of seed {}", campaign.number, arguments.seed))
+    };
+    let ran = each(arguments, "campaigns", device, &campaigns, work).map_err(Failure::run)?;
+    let ran: Vec<Ran> = ran.into_iter().flatten().collect();
+    let failing = ran.iter().filter(|ran| !ran.holds()).count();
+    let text = if arguments.json {
+        let report = Report {
+            engine: device.name(),
+            seed: arguments.seed,
+            holds: failing == 0,
+            campaigns: &ran,
+        };
+        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
+    } else {
+        summary(&ran)
+    };
+    output::print(&text)?;
+    if failing == 0 {
+        return Ok(());
+    }
+    Err(Failure::run(anyhow!(
+        "{failing} of {} campaigns do not hold; --replay NUMBER --seed {} --engine {} repeats one",
+        ran.len(),
+        arguments.seed,
+        device.name()
+    )))
+}
+
+/// Writes the scene of a campaign.
+fn write(folder: &Path, campaign: &Campaign) -> anyhow::Result<()> {
+    let path = folder.join(format!("campaign-{}.toml", campaign.number));
+    std::fs::write(&path, campaign.text()).with_context(|| path.display().to_string())
+}

@@ -1,0 +1,53 @@
+//! `--pairs`: an unnoticed fault, then another one.
+
+use anyhow::{Context, anyhow};
+use hil_sim::faults::{Device, Pair, RanPair, pair_table, pairs};
+use serde::Serialize;
+
+use super::{Arguments, Failure, each, output};
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report<'a> {
+    engine: &'static str,
+    seed: u64,
+    holds: bool,
+    pairs: &'a [RanPair],
+}
+
+/// Runs all pairs; one that breaks the claim is a failure, and its scene goes to `--out`.
+pub fn run(arguments: &Arguments, device: Device<'_>) -> Result<(), Failure> {
+    let seed = arguments.seed;
+    let work = |pair: &Pair| {
+        let ran = pair.run(device, seed)?;
+        if let (Some(folder), Some(false)) = (&arguments.out, ran.as_ref().map(RanPair::holds)) {
+            let words = format!("{} then {}", pair.latent.fault, pair.active.fault);
+            let name = words.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+            let path = folder.join(name + ".toml");
+            std::fs::write(&path, pair.text(seed)).with_context(|| path.display().to_string())?;
+        }
+        Ok(ran)
+    };
+    let ran = each(arguments, "pairs", device, &pairs(seed), work).map_err(Failure::run)?;
+    let ran: Vec<_> = ran.into_iter().flatten().collect();
+    let failing = ran.iter().filter(|pair| !pair.holds()).count();
+    let text = if arguments.json {
+        let report = Report {
+            engine: device.name(),
+            seed,
+            holds: failing == 0,
+            pairs: &ran,
+        };
+        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
+    } else {
+        pair_table(&ran)
+    };
+    output::print(&text)?;
+    if failing == 0 {
+        return Ok(());
+    }
+    Err(Failure::run(anyhow!(
+        "{failing} of {} pairs break the claim",
+        ran.len()
+    )))
+}
