@@ -12,8 +12,9 @@ use crate::run::{Outcome, RunError, run};
 use crate::scene::{Fault, FaultKind, HostLine, Scene};
 use crate::world::World;
 
-/// What is asked at the end, and how long before it, s.
-const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "cause")];
+/// What is asked at the end, and how long before it, s. Twice: a reset tears a line of telemetry, which the first answer
+/// then ends.
+const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "state")];
 /// A host that fell silent comes back after so long, s, to ask.
 const SILENT_S: f64 = 6.0;
 
