@@ -108,7 +108,10 @@ impl Sign {
                     .any(beyond)
             }),
             Self::SinkLimit => first(&|row| read(row, SINK).is_some_and(|sink_c| sink_c > SINK_C)),
-            Self::FaultLine => first(&|row| row.fault_line && DRIVEN.contains(&state(row))),
+            // By the row's own tick the device may have seen it.
+            Self::FaultLine => (from.max(1)..rows.len())
+                .find(|&i| rows[i].fault_line && DRIVEN.contains(&state(&rows[i - 1])))
+                .map(|i| rows[i].t_s),
             Self::Dose => dose(rows, from),
             Self::SelfTest(age_s) => {
                 let begin = (from.max(1)..rows.len())

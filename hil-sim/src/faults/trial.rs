@@ -14,8 +14,9 @@ use crate::run::{Outcome, RunError, run};
 use crate::scene::Scene;
 use crate::world::World;
 
-/// What is asked at the end, and how long before it, s.
-const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "cause")];
+/// What is asked at the end, and how long before it, s. Twice: a reset tears a line of telemetry, which the first answer
+/// then ends.
+const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "state")];
 
 /// What runs a trial.
 #[derive(Clone, Copy)]

@@ -191,7 +191,7 @@ fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> O
         let device = row.device.as_ref();
         device.is_some_and(|device| device.state == "tripped" && device.remark.as_deref() != before)
     });
-    let reset = outcome.resets.iter().find(|reset| reset.t_s >= t_s);
+    let reset = outcome.resets.iter().find(|reset| reset.t_s >= t_s - 1e-6);
     let times = [tripped.map(|row| row.t_s), reset.map(|reset| reset.t_s)];
     times.into_iter().flatten().min_by(f64::total_cmp)
 }
