@@ -149,8 +149,7 @@ impl Board {
         let (stages, multiplexer) = {
             let stage = PowerStage::new(
                 device.TIM1,
-                gpioa.pa8,
-                gpioa.pa9,
+                (gpioa.pa8, gpioa.pa9),
                 gpiob.pb10.into_push_pull_output(),
                 gpioa.pa6,
                 gpioc.pc3.into_push_pull_output(),

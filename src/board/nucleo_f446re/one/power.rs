@@ -33,8 +33,7 @@ impl PowerStage {
     /// Takes the pins of the bridge, which is off.
     pub fn new(
         timer: TIM1,
-        in1: PA8<Input>,
-        in2: PA9<Input>,
+        (in1, in2): (PA8<Input>, PA9<Input>),
         enable: PB10<Output>,
         fault: PA6<Input>,
         test: PC3<Output>,
