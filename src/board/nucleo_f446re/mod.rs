@@ -162,11 +162,38 @@ impl Board {
         let (stages, multiplexer) = {
             let wires = wiring::Wires {
                 timers: (device.TIM1, device.TIM8, device.TIM10, device.TIM11),
-                first: (gpioa.pa8, gpioa.pa9, gpiob.pb10, gpioa.pa6, gpioc.pc3),
-                second: (gpioa.pa10, gpioa.pa11, gpiob.pb13, gpioa.pa7, gpioc.pc4),
-                third: (gpioc.pc6, gpioc.pc7, gpiob.pb14, gpioa.pa12, gpioc.pc5),
-                fourth: (gpioc.pc8, gpioc.pc9, gpiob.pb15, gpiob.pb5, gpiob.pb6),
-                fifth: (gpiob.pb8, gpiob.pb9, gpiob.pb1, gpiob.pb12, gpiob.pb7),
+                first: (gpioa.pa8, gpioa.pa9),
+                second: (gpioa.pa10, gpioa.pa11),
+                third: (gpioc.pc6, gpioc.pc7),
+                fourth: (gpioc.pc8, gpioc.pc9),
+                fifth: (gpiob.pb8, gpiob.pb9),
+                lines: [
+                    wiring::Lines {
+                        enable: gpiob.pb10.into_push_pull_output().erase(),
+                        fault: gpioa.pa6.into_pull_down_input().erase(),
+                        test: gpioc.pc3.into_push_pull_output().erase(),
+                    },
+                    wiring::Lines {
+                        enable: gpiob.pb13.into_push_pull_output().erase(),
+                        fault: gpioa.pa7.into_pull_down_input().erase(),
+                        test: gpioc.pc4.into_push_pull_output().erase(),
+                    },
+                    wiring::Lines {
+                        enable: gpiob.pb14.into_push_pull_output().erase(),
+                        fault: gpioa.pa12.into_pull_down_input().erase(),
+                        test: gpioc.pc5.into_push_pull_output().erase(),
+                    },
+                    wiring::Lines {
+                        enable: gpiob.pb15.into_push_pull_output().erase(),
+                        fault: gpiob.pb5.into_pull_down_input().erase(),
+                        test: gpiob.pb6.into_push_pull_output().erase(),
+                    },
+                    wiring::Lines {
+                        enable: gpiob.pb1.into_push_pull_output().erase(),
+                        fault: gpiob.pb12.into_pull_down_input().erase(),
+                        test: gpiob.pb7.into_push_pull_output().erase(),
+                    },
+                ],
             };
             let multiplexer = wiring::Multiplexer::new(gpioc.pc10, gpioc.pc11, gpioc.pc12);
             (wires.into_stages(&mut rcc), multiplexer)

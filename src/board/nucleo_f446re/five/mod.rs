@@ -50,7 +50,7 @@ mod power;
 use stm32f4xx_hal::pac::{GPIOB, TIM1, TIM8};
 
 pub use multiplexer::Multiplexer;
-pub use power::{PowerStage, Wires};
+pub use power::{Lines, PowerStage, Wires};
 
 /// Fingers of this wiring.
 pub const FINGERS: usize = 5;

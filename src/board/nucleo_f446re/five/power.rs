@@ -3,10 +3,7 @@
 use core::convert::Infallible;
 
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
-use stm32f4xx_hal::gpio::{
-    ErasedPin, Input, Output, PA6, PA7, PA8, PA9, PA10, PA11, PA12, PB1, PB5, PB6, PB7, PB8, PB9, PB10, PB12,
-    PB13, PB14, PB15, PC3, PC4, PC5, PC6, PC7, PC8, PC9,
-};
+use stm32f4xx_hal::gpio::{ErasedPin, Input, Output, PA8, PA9, PA10, PA11, PB8, PB9, PC6, PC7, PC8, PC9};
 use stm32f4xx_hal::pac::{TIM1, TIM8, TIM10, TIM11};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
@@ -33,11 +30,22 @@ pub struct PowerStage {
 /// Everything that the bridges hang on, in the order of the fingers.
 pub struct Wires {
     pub timers: (TIM1, TIM8, TIM10, TIM11),
-    pub first: (PA8<Input>, PA9<Input>, PB10<Input>, PA6<Input>, PC3<Input>),
-    pub second: (PA10<Input>, PA11<Input>, PB13<Input>, PA7<Input>, PC4<Input>),
-    pub third: (PC6<Input>, PC7<Input>, PB14<Input>, PA12<Input>, PC5<Input>),
-    pub fourth: (PC8<Input>, PC9<Input>, PB15<Input>, PB5<Input>, PB6<Input>),
-    pub fifth: (PB8<Input>, PB9<Input>, PB1<Input>, PB12<Input>, PB7<Input>),
+    pub first: (PA8<Input>, PA9<Input>),
+    pub second: (PA10<Input>, PA11<Input>),
+    pub third: (PC6<Input>, PC7<Input>),
+    pub fourth: (PC8<Input>, PC9<Input>),
+    pub fifth: (PB8<Input>, PB9<Input>),
+    pub lines: [Lines; FINGERS],
+}
+
+/// What goes between processor and one bridge beside its legs.
+pub struct Lines {
+    /// Low: both legs are high-impedance.
+    pub enable: ErasedPin<Output>,
+    /// Pulled down weakly against the external pull-up: a wire that is off reads as a fault.
+    pub fault: ErasedPin<Input>,
+    /// Test of the comparator.
+    pub test: ErasedPin<Output>,
 }
 
 impl Wires {
@@ -50,41 +58,32 @@ impl Wires {
         let (_, (b4, ..)) = tim11.pwm_hz(PWM_KHZ.kHz(), rcc);
         let (first, second, third, fourth, fifth) =
             (self.first, self.second, self.third, self.fourth, self.fifth);
+        let [first_lines, second_lines, third_lines, fourth_lines, fifth_lines] = self.lines;
         let stages = [
             PowerStage::new(
                 Leg::Tim1(a0.with(first.0).erase()),
                 Leg::Tim1(b0.with(first.1).erase()),
-                first.2.into_push_pull_output().erase(),
-                first.3.into_pull_down_input().erase(),
-                first.4.into_push_pull_output().erase(),
+                first_lines,
             ),
             PowerStage::new(
                 Leg::Tim1(a1.with(second.0).erase()),
                 Leg::Tim1(b1.with(second.1).erase()),
-                second.2.into_push_pull_output().erase(),
-                second.3.into_pull_down_input().erase(),
-                second.4.into_push_pull_output().erase(),
+                second_lines,
             ),
             PowerStage::new(
                 Leg::Tim8(a2.with(third.0).erase()),
                 Leg::Tim8(b2.with(third.1).erase()),
-                third.2.into_push_pull_output().erase(),
-                third.3.into_pull_down_input().erase(),
-                third.4.into_push_pull_output().erase(),
+                third_lines,
             ),
             PowerStage::new(
                 Leg::Tim8(a3.with(fourth.0).erase()),
                 Leg::Tim8(b3.with(fourth.1).erase()),
-                fourth.2.into_push_pull_output().erase(),
-                fourth.3.into_pull_down_input().erase(),
-                fourth.4.into_push_pull_output().erase(),
+                fourth_lines,
             ),
             PowerStage::new(
                 Leg::Tim10(a4.with(fifth.0).erase()),
                 Leg::Tim11(b4.with(fifth.1).erase()),
-                fifth.2.into_push_pull_output().erase(),
-                fifth.3.into_pull_down_input().erase(),
-                fifth.4.into_push_pull_output().erase(),
+                fifth_lines,
             ),
         ];
         release_outputs();
@@ -112,13 +111,7 @@ fn release_outputs() {
 }
 
 impl PowerStage {
-    fn new(
-        mut in1: Leg,
-        mut in2: Leg,
-        enable: ErasedPin<Output>,
-        fault: ErasedPin<Input>,
-        test: ErasedPin<Output>,
-    ) -> Self {
+    fn new(mut in1: Leg, mut in2: Leg, Lines { enable, fault, test }: Lines) -> Self {
         in1.enable();
         in2.enable();
         Self {
