@@ -81,7 +81,7 @@ impl<const FINGERS: usize> Hand<FINGERS> {
     }
 
     /// Executes a line, in bounded and short time: for one finger, or for all. A question to all is answered by
-    /// the first.
+    /// the first. Who has nothing to clear obeys `clear` with the others.
     ///
     /// # Errors
     /// The command does not fit the state of a finger; of those, the first. The others have obeyed.
@@ -101,15 +101,17 @@ impl<const FINGERS: usize> Hand<FINGERS> {
                 Err(said) => Err(Addressed { finger, said }),
             };
         }
-        let mut refused = None;
+        let (mut refused, mut healthy, mut obeyed) = (None, None, false);
         for (finger, station) in self.stations.iter_mut().enumerate() {
             let finger = Self::name(finger);
             match station.execute(command) {
-                Ok(Reply::Done) => {}
+                Ok(Reply::Done) => obeyed = true,
                 Ok(said) => return Ok(Addressed { finger, said }),
+                Err(said @ Error::NothingToClear) => healthy = healthy.or(Some(Addressed { finger, said })),
                 Err(said) => refused = refused.or(Some(Addressed { finger, said })),
             }
         }
+        let refused = refused.or(healthy.filter(|_| !obeyed));
         refused.map_or(Ok(Addressed::device(Reply::Done)), Err)
     }
 }

@@ -30,6 +30,8 @@ pub struct Station {
     /// What the bridge was told last.
     before: Before,
     cause: Option<Cause>,
+    /// What tripped while it was tripped, and no sample shows.
+    also: Option<Fault>,
     touch: Touch,
     render: Render,
     material: Option<(&'static str, Pairing)>,
@@ -77,6 +79,7 @@ impl Station {
             self_test: SelfTest::default(),
             before: Before::default(),
             cause: None,
+            also: None,
             touch: Touch::default(),
             render: Render::default(),
             material: None,
@@ -142,6 +145,7 @@ impl Station {
     /// Every detector looks at every tick; what a tick shows at once is named first.
     fn check(&mut self, samples: &Samples, readings: &Readings) -> Result<Sound, Fault> {
         let still = self.watch.samples(samples);
+        let heat = self.watch.heat(readings);
         let level = guard::check(readings, self.control.limit());
         let streams = self.stream_ticks != 0;
         let watched = match &level {
@@ -159,12 +163,20 @@ impl Station {
         };
         let bridge = if pulled { Err(Fault::Bridge) } else { Ok(()) };
         let sound = level?;
-        bridge.and(watched).and(still)?;
+        bridge.and(watched).and(heat).and(still)?;
         Ok(sound)
     }
 
-    /// Trips for a reason that samples do not show.
+    /// Trips for a reason that samples do not show. If it is tripped, that comes to light when it is cleared.
     pub fn trip(&mut self, fault: Fault) {
+        match self.state {
+            State::Tripped(first) if first != fault => self.also = self.also.or(Some(fault)),
+            State::Tripped(_) => {}
+            _ => self.latch_alone(fault),
+        }
+    }
+
+    fn latch_alone(&mut self, fault: Fault) {
         let cause = Cause {
             tick: self.tick,
             ..Cause::alone(fault)
@@ -442,7 +454,13 @@ impl Station {
             },
             Command::Cause => return Ok(Reply::Cause(self.cause)),
             Command::Clear => match (self.state, self.fault) {
-                (State::Tripped(_), None) => self.state = State::Off,
+                (State::Tripped(_), None) => {
+                    self.state = State::Off;
+                    if let Some(fault) = self.also.take() {
+                        self.latch_alone(fault);
+                        return Err(Error::StillFaulty(fault));
+                    }
+                }
                 (State::Tripped(_), Some(fault)) => return Err(Error::StillFaulty(fault)),
                 _ => return Err(Error::NothingToClear),
             },

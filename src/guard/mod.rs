@@ -21,8 +21,8 @@
 //! where its [`Fault`] is defined to begin. Only the fault line of the bridge is not looked at while the bridge is off and
 //! untested, or tripped: the comparator pulls it too, and keeps pulling until the next self-test.
 //!
-//! **What latches.** The first fault does, with the readings of its tick, as [`Cause`]; later ones do not replace it.
-//! It survives every reset but the loss of power. The comparator latches on its own, in hardware.
+//! **What latches.** The first fault does, with the readings of its tick, as [`Cause`]; later ones do not replace it. A
+//! later one that no sample shows comes to light when the first is cleared. The cause survives every reset but the loss of power. The comparator latches on its own, in hardware.
 //!
 //! **What clears it.** `clear`, once no level is there any more, leads to off, not to ready: what comes next is the
 //! self-test. Faults of the program and resets clear the same way.
@@ -39,7 +39,7 @@
 //! | `frozen`       | a channel, or all                        | 46 identical sums                                    |
 //! | `jump`         | display, its second thermistor, sink     | 0.5 K in 4 ms                                        |
 //! | `apart`        | the display's thermistors                | 3 K for 40 ms                                        |
-//! | `room`         | room above skin                          | 6 K for 40 ms                                        |
+//! | `room`         | room above skin                          | 8 K for 40 ms                                        |
 //! | `electrical`   | current high, low                        | 1 A and a quarter for 30 ms                          |
 //! | `response`     | polarity, runaway                        | 1 K the wrong way at a mean of 1 A                   |
 //! | `dose`         | dose                                     | half a minute of CEM43 by the display                |

@@ -3,14 +3,17 @@
 //! ```text
 //! ms    0         20      40                 104          304        504       704
 //!       | test on  | off   | display at rest   | 1 A cools  | none      | 1 A warms |
-//!       comparator   gives   its slope           mirror       answer      takes it back
+//!       comparator   gives   its slope           mirror       answer      mirror
 //!       cuts         back
 //! ```
 //!
 //! The bridge is off for the first 40 ms, so the comparator cuts and gives back a supply that nobody uses. Then the
 //! display is told to do a little, 0.2 to 0.5 K, and both of its thermistors must show it, against the slope that they
-//! had before; a display that answers the wrong way round, or not at all, trips. A finger that lands or lifts lets the rest begin anew a second later. Nothing else than a
-//! display answers in 0.2 s: a thermistor on the sink moves by a hundredth of it, the other way.
+//! had before; a display that answers the wrong way round, or not at all, trips. Nothing else than a display answers in
+//! 0.2 s: a thermistor on the sink moves by a hundredth of it, the other way. What flows is looked at both ways round. A
+//! finger that lands or lifts lets the rest begin anew a second later.
+
+use core::mem;
 
 use contact_model::fixed_point::Celsius;
 
@@ -68,7 +71,7 @@ pub struct SelfTest {
     tick: u16,
     first: Sums,
     second: Sums,
-    /// Sum of the measured current over the second half of the pulse.
+    /// Sum of the measured current over the second half of a pulse.
     current: i64,
     touched: bool,
     /// Ticks to wait before the rest.
@@ -133,9 +136,7 @@ impl SelfTest {
             });
         }
         if tick < COOLED {
-            if tick >= RESTED + PULSE / 2 {
-                self.current += i64::from(measured.to_bits());
-            }
+            self.add_current(tick, RESTED, measured);
             return Ok(Progress::Drive(AMPLITUDE));
         }
         if tick == COOLED {
@@ -147,11 +148,12 @@ impl SelfTest {
         if tick == ANSWERED {
             self.judge_answer(readings)?;
         }
-        Ok(if tick < DONE {
-            Progress::Drive(AMPLITUDE.saturating_neg())
-        } else {
-            Progress::Passed
-        })
+        if tick < DONE {
+            self.add_current(tick, ANSWERED, measured);
+            return Ok(Progress::Drive(AMPLITUDE.saturating_neg()));
+        }
+        self.judge_current()?;
+        Ok(Progress::Passed)
     }
 
     /// A finger has landed or lifted: what was seen since the comparator's test does not count.
@@ -170,8 +172,16 @@ impl SelfTest {
         Ok(())
     }
 
-    fn judge_current(&self) -> Result<(), Fault> {
-        let mean = self.current / i64::from(PULSE / 2);
+    /// In a pulse that began in a tick.
+    fn add_current(&mut self, tick: u16, begun: u16, measured: Current) {
+        if tick >= begun + PULSE / 2 {
+            self.current += i64::from(measured.to_bits());
+        }
+    }
+
+    /// Of the pulse that is over; the next one begins with none.
+    fn judge_current(&mut self) -> Result<(), Fault> {
+        let mean = mem::take(&mut self.current) / i64::from(PULSE / 2);
         if mean < i64::from(LEAST_A.to_bits()) {
             Err(Fault::CurrentLow)
         } else if mean > i64::from(MOST_A.to_bits()) {

@@ -11,15 +11,15 @@ use super::limits::Sound;
 use super::response::Response;
 use super::{Fault, Setpoint};
 use crate::drive::Current;
-use crate::sense::Samples;
+use crate::sense::{Readings, Samples};
 
 /// Difference of the display's thermistors that counts, and for how many ticks. Ones whose lags differ by 0.1 s are 1.6 K
 /// apart while the bridge at its limit moves a bare display.
 const APART: Celsius = Celsius::lit("3");
 const APART_TICKS: u8 = 40;
-/// Room above skin that counts, and for how many ticks: who wears it is warmer than the room, or there is nobody and both
-/// are the same.
-const ROOM_ABOVE: Celsius = Celsius::lit("6");
+/// Room above skin that counts, and for how many ticks: who wears it is warmer than the room, cold hands of 17 °C in a warm
+/// one aside, or there is nobody and both are the same.
+const ROOM_ABOVE: Celsius = Celsius::lit("8");
 const ROOM_TICKS: u8 = 40;
 /// A host that streams is silent for no longer, ticks.
 const SILENT_TICKS: u16 = 2000;
@@ -60,6 +60,16 @@ impl Watch {
         self.frozen.check(samples)
     }
 
+    /// Takes what the display's thermistors read, if anything, whatever else is wrong: the dose goes on.
+    ///
+    /// # Errors
+    /// The skin may have had too much heat.
+    pub fn heat(&mut self, readings: &Readings) -> Result<(), Fault> {
+        let both = [readings.display, readings.display_check];
+        let warmest = both.into_iter().flatten().max();
+        warmest.map_or(Ok(()), |warmest| self.dose.check(warmest))
+    }
+
     /// Takes one tick in which no level was wrong; `measured` is the current, `streams` whether a host listens.
     ///
     /// # Errors
@@ -90,7 +100,6 @@ impl Watch {
             .and(self.electrical.check(before.asked, measured))
             .and(self.response.check(before.asked, sound.display, above))
             .and(room)
-            .and(self.dose.check(sound.display.max(sound.check)))
             .and(named(self.silent_ticks >= SILENT_TICKS, Fault::HostSilent))
     }
 

@@ -113,6 +113,10 @@ fn fingers_share_no_fault() {
     for finger in [0, 2, 3, 4] {
         assert_eq!(hand.step(finger, &samples(1)).drive, Drive::Off, "{finger}");
     }
+    hand.step(1, &samples(1));
+    assert_eq!(host(&mut hand, "clear"), "ok");
+    assert_eq!(state_of(&mut hand, 1), "off");
+    assert_eq!(host(&mut hand, "clear"), "@0 err no fault to clear");
 }
 
 #[test]

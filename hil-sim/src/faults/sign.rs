@@ -23,7 +23,7 @@ pub enum Sign {
     Apart,
     /// Display, its second thermistor or the sink reads 0.7 K more or less than 4 ms before.
     Jump,
-    /// The room reads 6.5 K more than the skin.
+    /// The room reads 8.5 K more than the skin.
     RoomAboveSkin,
     /// The mirror shows a current that is off by more than 1 A and a quarter of what is asked for, and stays so for 30 ms.
     CurrentOff,
@@ -47,7 +47,7 @@ pub enum Sign {
 const APART_K: f64 = 3.1;
 const JUMP_K: f64 = 0.7;
 const JUMP_ROWS: usize = 4;
-const ROOM_ABOVE_K: f64 = 6.5;
+const ROOM_ABOVE_K: f64 = 8.5;
 const OFF_A: f64 = 1.0;
 const OFF_PART: f64 = 0.25;
 const OFF_ROWS: usize = 30;

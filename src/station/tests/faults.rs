@@ -111,6 +111,54 @@ fn the_first_fault_is_kept_and_a_later_one_keeps_clear_from_passing() {
     bench.obey(&["clear"]);
 }
 
+/// What no sample shows is not lost because something else came first.
+#[test]
+fn what_tripped_while_it_was_tripped_comes_to_light_with_clear() {
+    let mut bench = Bench::presenting("copper");
+    for fault in [Fault::SinkHot, Fault::SettingsCorrupt] {
+        bench.station.trip(fault);
+    }
+    bench.step();
+    assert_eq!(bench.state().fault(), Some(Fault::SinkHot));
+    assert_eq!(bench.host("clear"), "err fault settings-corrupt is still present");
+    assert_eq!(bench.state().fault(), Some(Fault::SettingsCorrupt));
+    assert!(bench.host("cause").contains("settings-corrupt"));
+    bench.obey(&["clear"]);
+    assert_eq!(bench.state(), State::Off);
+}
+
+/// 42.8 °C are three quarters of a minute's worth a minute; the force sensor fails meanwhile.
+#[test]
+fn the_dose_goes_on_while_something_else_is_wrong() {
+    let mut bench = Bench::presenting("copper");
+    bench.force_n = -1.3;
+    bench.step();
+    (bench.display_c, bench.check_c) = (42.8, 42.8);
+    bench.steps(32_000);
+    assert_eq!(bench.host("clear"), "err fault force-sensor is still present");
+    bench.force_n = 0.0;
+    bench.steps(10_000);
+    (bench.display_c, bench.check_c) = (39.5, 39.5);
+    bench.step();
+    assert_eq!(bench.host("clear"), "err fault dose is still present");
+}
+
+/// A leg that cannot warm.
+#[test]
+fn a_self_test_without_current_one_way_round_trips() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.host("arm"), "ok");
+    while bench.state() == State::SelfTest {
+        let (outputs, telemetry) = bench.step_all();
+        let flows_a = telemetry.demand.to_num::<f64>().max(0.0);
+        bench.current_a = Some(flows_a);
+        bench.display_c -= 2.7e-3 * flows_a;
+        bench.check_c = bench.display_c;
+        bench.bridge_fault = outputs.comparator_test;
+    }
+    assert_eq!(bench.state().fault(), Some(Fault::CurrentLow));
+}
+
 #[test]
 fn a_fault_ends_the_contact() {
     let mut bench = Bench::presenting("copper");
