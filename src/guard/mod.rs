@@ -22,7 +22,8 @@
 //! untested, or tripped: the comparator pulls it too, and keeps pulling until the next self-test.
 //!
 //! **What latches.** The first fault does, with the readings of its tick, as [`Cause`]; later ones do not replace it. A
-//! later one that no sample shows comes to light when the first is cleared. The cause survives every reset but the loss of power. The comparator latches on its own, in hardware.
+//! later one that no sample shows comes to light when the first is cleared. The cause survives every reset but the loss
+//! of power. The comparator latches on its own, in hardware.
 //!
 //! **What clears it.** `clear`, once no level is there any more, leads to off, not to ready: what comes next is the
 //! self-test. Faults of the program and resets clear the same way.
