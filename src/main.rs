@@ -69,7 +69,7 @@ mod app {
         if let Ok(Some(kept)) = &found.kept {
             hand.restore(kept);
         }
-        let board = Board::new(cx.device, cx.local.memory, &found);
+        let board = Board::new(cx.core.SYST, cx.device, cx.local.memory, &found);
         let shared = Shared {
             hand,
             vigil: Vigil::new(),
@@ -119,7 +119,7 @@ mod app {
                 stages.iter_mut().for_each(PowerStage::off);
                 cx.shared.sampler.stop();
                 hand.lock(|hand| {
-                    hand.trip(Fault::Sampling);
+                    hand.trip(error.fault());
                     cx.shared.record.follow(hand.tripped());
                 });
                 return defmt::error!("sampling stopped: {}", error);

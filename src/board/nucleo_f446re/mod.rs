@@ -31,9 +31,11 @@ mod sampler;
 mod serial;
 mod stack;
 mod store;
+mod timekeeper;
 mod watchdog;
 mod window;
 
+use cortex_m::peripheral::SYST;
 use heapless::spsc::{Producer, Queue};
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
@@ -59,6 +61,7 @@ pub use wiring::{FINGERS, PowerStage};
 
 use super::console::Console;
 use super::mailbox::Mailbox;
+use timekeeper::Timekeeper;
 
 /// Telemetry that may wait for the host task: what it can be late, in ticks, before a line is left out.
 const TELEMETRY_DEPTH: usize = 8 * FINGERS;
@@ -133,7 +136,7 @@ pub struct Board {
 impl Board {
     /// Sets everything up, with what the start has [found](at_start); the bridge is off before anything else happens and
     /// stays off.
-    pub fn new(device: pac::Peripherals, memory: &'static mut Memory, found: &Found) -> Self {
+    pub fn new(counter: SYST, device: pac::Peripherals, memory: &'static mut Memory, found: &Found) -> Self {
         // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
         // again, and the log tells.
         let watchdog = Watchdog::start(device.IWDG);
@@ -209,6 +212,7 @@ impl Board {
         let (sampler, trigger) = Sampler::new(
             device.ADC1,
             device.TIM2,
+            Timekeeper::new(counter, rcc.clocks.hclk().raw()),
             dma2.0,
             inputs,
             multiplexer,
