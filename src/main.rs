@@ -61,10 +61,11 @@ mod app {
 
     #[init(local = [memory: Memory = Memory::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
+        let cause = first_cause(&cx.device.RCC);
         // Before anything that the flash could delay.
         let found = at_start(&cx.device.FLASH);
+        let cause = cause.or(found.cause());
         // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
-        let cause = first_cause(&cx.device, &found);
         let mut hand = Hand::after(cause, &Settings::default());
         if let Ok(Some(kept)) = &found.kept {
             hand.restore(kept);

@@ -59,7 +59,10 @@ mod tests {
         assert_eq!(until_off(3_600_000, |n| n * period), None);
         assert_eq!(until_off(3_600_000, |n| n * period + n * 7919 % 44_000), None);
         // A first tick that is late makes the others early.
-        assert_eq!(until_off(1000, |n| n * period + if n == 0 { 44_000 } else { 0 }), None);
+        assert_eq!(
+            until_off(1000, |n| n * period + if n == 0 { 44_000 } else { 0 }),
+            None
+        );
     }
 
     #[test]
@@ -67,7 +70,9 @@ mod tests {
         let period = u64::from(PERIOD);
         for n in [1, 93, 94, 1000] {
             let with = |off: i64| {
-                until_off(2000, |tick| (tick * period + period).saturating_add_signed(if tick == n { off } else { 0 }))
+                until_off(2000, |tick| {
+                    (tick * period + period).saturating_add_signed(if tick == n { off } else { 0 })
+                })
             };
             assert_eq!((with(45_000), with(-45_000)), (None, None));
             assert_eq!((with(45_001), with(-45_001)), (Some(n), Some(n)));

@@ -27,6 +27,7 @@ mod log;
 #[cfg(not(feature = "five-fingers"))]
 mod one;
 mod record;
+mod reset;
 mod sampler;
 mod serial;
 mod stack;
@@ -61,6 +62,7 @@ pub use wiring::{FINGERS, PowerStage};
 
 use super::console::Console;
 use super::mailbox::Mailbox;
+use reset::Reset;
 use timekeeper::Timekeeper;
 
 /// Telemetry that may wait for the host task: what it can be late, in ticks, before a line is left out.
@@ -91,24 +93,22 @@ impl Memory {
     }
 }
 
-/// Why the device has tripped before it started; once.
-pub fn first_cause(device: &pac::Peripherals, found: &Found) -> Option<Cause> {
+/// Why the device has tripped before it started; once, and first of all: what follows takes long, and may end in a reset.
+pub fn first_cause(rcc: &pac::RCC) -> Option<Cause> {
     let overrun = stack::is_overrun();
     stack::arm();
-    let Some(cause) = record::of_reset(&device.RCC) else {
-        return found
-            .kept
-            .is_err()
-            .then_some(Cause::alone(Fault::SettingsCorrupt));
-    };
+    let reset = Reset::of(rcc);
+    let mut cause = record::of_reset(reset, store::is_planned());
     // A reset, without a tick that has seen why, is what comes of an overrun.
-    let unseen = overrun && cause.tick == 0;
-    if !unseen {
-        return Some(cause);
+    if overrun && cause.is_some_and(|cause| cause.tick == 0) {
+        record::forget();
+        record::keep(&Cause::alone(Fault::Stack));
+        cause = record::kept();
     }
-    record::forget();
-    record::keep(&Cause::alone(Fault::Stack));
-    record::kept()
+    // Only now that the cause is kept.
+    Reset::clear(rcc);
+    defmt::info!("start after reset: {}", reset);
+    cause
 }
 
 /// The board, set up and ready to take samples; the parts go to the tasks that own them.
@@ -140,7 +140,6 @@ impl Board {
         // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
         // again, and the log tells.
         let watchdog = Watchdog::start(device.IWDG);
-        log::reset_cause(&device.RCC);
         let mut rcc = device.RCC.freeze(clocks());
         watch_clock(&mut rcc);
 
