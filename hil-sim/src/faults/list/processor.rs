@@ -87,6 +87,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::restarts(processor(Fails::BrownOut)).at(&[Place::Slew]),
     Entry::restarts(processor(Fails::PowerCycle { seed: 1 })).at(&[Place::Slew]),
     Entry::restarts(processor(Fails::ResetPin)).at(&[Place::Slew]),
+    Entry::trips(processor(Fails::SoftwareReset), NOW, &[Fault::UnaskedReset]).at(&[Place::Slew]),
     Entry::trips(processor(Fails::StackOverflow), NOW, LOST).at(&[Place::Slew]),
     Entry::trips(
         processor(Fails::RamBit {
