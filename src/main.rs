@@ -61,15 +61,16 @@ mod app {
 
     #[init(local = [memory: Memory = Memory::new()])]
     fn init(cx: init::Context) -> (Shared, Local) {
+        let cause = first_cause(&cx.device.RCC);
         // Before anything that the flash could delay.
         let found = at_start(&cx.device.FLASH);
+        let cause = cause.or(found.cause());
         // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
-        let cause = first_cause(&cx.device, &found);
         let mut hand = Hand::after(cause, &Settings::default());
         if let Ok(Some(kept)) = &found.kept {
             hand.restore(kept);
         }
-        let board = Board::new(cx.device, cx.local.memory, &found);
+        let board = Board::new(cx.core.SYST, cx.device, cx.local.memory, &found);
         let shared = Shared {
             hand,
             vigil: Vigil::new(),
@@ -119,7 +120,7 @@ mod app {
                 stages.iter_mut().for_each(PowerStage::off);
                 cx.shared.sampler.stop();
                 hand.lock(|hand| {
-                    hand.trip(Fault::Sampling);
+                    hand.trip(error.fault());
                     cx.shared.record.follow(hand.tripped());
                 });
                 return defmt::error!("sampling stopped: {}", error);

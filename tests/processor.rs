@@ -5,7 +5,7 @@ use hil_sim::engine::{Image, MachineFault, Native, NotInjected};
 use hil_sim::machine::{Firmware, ResetCause};
 use hil_sim::run::{Injection, Outcome, RunError, run, run_with};
 use hil_sim::scene::Scene;
-use system_tests::{between, forces, image, on_image, scene};
+use system_tests::{between, forces, host, image, on_image, scene};
 
 /// Copper under 2 N from 0.5 s on.
 fn copper() -> Scene {
@@ -50,6 +50,7 @@ fn resets_from_outside_take_the_bridge_off_and_are_reported() {
         ("reset-pin", ResetCause::Pin),
         ("brown-out", ResetCause::BrownOut),
         ("power-cycle=3", ResetCause::PowerOn),
+        ("software-reset", ResetCause::Software),
     ] {
         let outcome = failing(1.0, fault);
         let [reset] = outcome.resets[..] else {
@@ -61,6 +62,34 @@ fn resets_from_outside_take_the_bridge_off_and_are_reported() {
             assert_eq!(row.current_a, 0.0, "{fault}, at {} s", row.t_s);
         }
     }
+}
+
+/// The last `state` that the device has told.
+fn told_state(outcome: &Outcome) -> &str {
+    let mut states = outcome.answers.iter().rev().map(|(_, line)| line.as_str());
+    let state = states.find(|line| line.starts_with("ok state="));
+    state.expect("an answer to `state`")
+}
+
+#[test]
+fn a_reset_that_was_asked_for_is_no_fault_and_another_one_is() {
+    let lines = host(&[(0.2, "abort"), (0.4, "save"), (1.8, "state")]);
+    let planned = on_image(&scene("copper", 2.0, "", &(lines + &forces(&[(0.5, 2.0)]))));
+    assert_eq!(planned.resets[0].cause, ResetCause::Software);
+    assert!(
+        told_state(&planned).starts_with("ok state=off fault=- "),
+        "{}",
+        told_state(&planned)
+    );
+
+    let lines = "[[fault]]\nkind = \"software-reset\"\nt_s = 0.5\n".to_owned();
+    let lines = lines + &host(&[(1.7, "state"), (1.8, "state")]);
+    let unasked = on_image(&scene("copper", 2.0, "", &(lines + &forces(&[(0.5, 2.0)]))));
+    let state = told_state(&unasked);
+    assert!(
+        state.starts_with("ok state=tripped fault=unasked-reset "),
+        "{state}"
+    );
 }
 
 #[test]

@@ -112,6 +112,8 @@ faults! {
     TickLost = "tick-lost",
     /// A task did not check in; the independent watchdog has reset the device.
     Watchdog = "watchdog",
+    /// The program was started anew by itself, and nobody had asked for that.
+    UnaskedReset = "unasked-reset",
     /// The stored settings cannot be read; the device has those of its class.
     SettingsCorrupt = "settings-corrupt",
 }

@@ -45,6 +45,7 @@
 //! | `response`     | polarity, runaway                        | 1 K the wrong way at a mean of 1 A                   |
 //! | `dose`         | dose                                     | half a minute of CEM43 by the display                |
 //! | `watch`        | host silent                              | 2 s without a line while telemetry streams           |
+//! | [`Pace`]       | sampling                                 | a tick is off by a quarter of its period             |
 //! | [`SelfTest`]   | comparator, polarity, no response, …     | before the first current for a finger                |
 //!
 //! Beside these, without this program: the window watchdog resets a device whose tick does not come for 47 ms, the
@@ -59,6 +60,7 @@ mod frozen;
 mod jump;
 mod lasting;
 mod limits;
+mod pace;
 mod response;
 mod self_test;
 mod setpoint;
@@ -68,6 +70,7 @@ mod watch;
 pub use cause::Cause;
 pub use fault::{Fault, Thermistor};
 pub use limits::{Sound, check};
+pub use pace::Pace;
 pub use self_test::{Progress, SelfTest};
 pub use setpoint::Setpoint;
 pub use state::State;

@@ -1,95 +1,15 @@
 //! The same on the image: lines to the emulated microcontroller, power that is cut while it stores, lines back.
 
-use hil_sim::machine::{Cells, Firmware, Machine, ResetCause, Wiring};
-use system_tests::image;
+use hil_sim::machine::{Cells, Firmware, ResetCause};
+use system_tests::{Bare, START, image};
 use thermal_display::commission::Desk;
 use thermal_display::settings::{Kept, LONGEST, encode};
 
 use super::{numbered, saved, turns};
-use crate::flash::{BYTES, SECTOR};
-
-/// Where the settings' sectors lie in the flash.
-const BEGIN: usize = SECTOR;
-/// Cycles of 16 MHz within which a device starts, and those of 180 MHz for a line and its answer.
-const START: u64 = 16_000_000;
-const LINE: u64 = 180_000 * 12;
-
-/// A device without sensors, which can do no more than keep settings.
-#[derive(Default)]
-struct Pins {
-    received: Vec<u8>,
-    /// When the last conversion and the last byte ended, cycles.
-    converted_at: u64,
-    sent_at: u64,
-}
-
-impl Wiring for Pins {
-    fn adc(&mut self, _channel: u8, now: u64) -> u16 {
-        self.converted_at = now;
-        0
-    }
-
-    fn pin(&self, _port: u8, _bit: u8) -> Option<bool> {
-        None
-    }
-
-    fn uart_tx(&mut self, byte: u8, at: u64, _baud: u32) {
-        self.sent_at = at;
-        self.received.push(byte);
-    }
-}
-
-struct Device(Machine<Pins>);
-
-impl Device {
-    /// With these cells in the settings' sectors.
-    fn new(firmware: &Firmware, settings: &Cells) -> Self {
-        let mut machine = Machine::new(firmware, Pins::default()).expect("a machine");
-        assert!(machine.flash_mut().load(BEGIN, settings.bytes()));
-        machine.set_host_baud(1_000_000);
-        let mut device = Self(machine);
-        device.run(START);
-        device
-    }
-
-    fn run(&mut self, cycles: u64) {
-        let end = self.0.now() + cycles;
-        self.0.run_until(end).expect("the image runs");
-    }
-
-    /// Sends a line, and lets cycles pass; what the device has said.
-    fn ask(&mut self, line: &str, cycles: u64) -> Vec<String> {
-        self.0.uart_send(format!("{line}\n").as_bytes());
-        self.run(cycles);
-        let said = std::mem::take(&mut self.0.wiring_mut().received);
-        String::from_utf8_lossy(&said)
-            .lines()
-            .map(str::to_owned)
-            .collect()
-    }
-
-    fn tell(&mut self, line: &str) -> String {
-        let said = self.ask(line, LINE);
-        let [answer] = said.as_slice() else {
-            panic!("{line}: {said:?}");
-        };
-        answer.clone()
-    }
-
-    fn settings(&mut self) -> Vec<String> {
-        (1..=8)
-            .map(|line| self.tell(&format!("settings {line}")))
-            .collect()
-    }
-
-    /// The settings' sectors.
-    fn cells(&self) -> Cells {
-        Cells::new(self.0.flash().bytes()[BEGIN..BEGIN + BYTES].to_vec())
-    }
-}
+use crate::flash::BYTES;
 
 /// The lines that settings are given in.
-fn lines(kept: Option<&[Kept; 1]>) -> Vec<String> {
+pub fn lines(kept: Option<&[Kept; 1]>) -> Vec<String> {
     let mut desk: Desk<1> = kept.map_or_else(|| Desk::new(Default::default()), Desk::restored);
     (1..=8)
         .map(|line| {
@@ -101,12 +21,12 @@ fn lines(kept: Option<&[Kept; 1]>) -> Vec<String> {
         .collect()
 }
 
-fn firmware() -> Firmware {
+pub fn firmware() -> Firmware {
     Firmware::from_file(image()).expect("an image for this chip")
 }
 
 /// Cells after so many saves.
-fn after(saves: u32) -> Cells {
+pub fn after(saves: u32) -> Cells {
     (0..saves).fold(Cells::new(vec![0xff; BYTES]), |cells, number| {
         saved::<1>(&cells, numbered(number).as_ref(), None)
     })
@@ -115,7 +35,7 @@ fn after(saves: u32) -> Cells {
 #[test]
 fn what_is_saved_outlives_the_power_and_can_be_forgotten() {
     let firmware = firmware();
-    let mut device = Device::new(&firmware, &after(0));
+    let mut device = Bare::new(&firmware, &after(0));
     assert_eq!(device.settings(), lines(None));
     let kept = numbered::<1>(3);
     for line in lines(kept.as_ref()) {
@@ -130,11 +50,11 @@ fn what_is_saved_outlives_the_power_and_can_be_forgotten() {
     );
     assert_eq!(device.settings(), lines(kept.as_ref()));
 
-    let mut device = Device::new(&firmware, &stored);
+    let mut device = Bare::new(&firmware, &stored);
     assert_eq!(device.settings(), lines(kept.as_ref()), "switched on anew");
     assert_eq!(device.ask("forget", START), ["ok"]);
     assert_eq!(device.settings(), lines(None));
-    let mut device = Device::new(&firmware, &device.cells());
+    let mut device = Bare::new(&firmware, &device.cells());
     assert_eq!(device.settings(), lines(None));
 }
 
@@ -150,7 +70,7 @@ fn corrupt_settings_trip_the_device_until_it_is_told_others() {
     content.extend(crc.to_le_bytes());
     assert!(super::append(&mut cells, &content));
 
-    let mut device = Device::new(&firmware(), &cells);
+    let mut device = Bare::new(&firmware(), &cells);
     let state = device.tell("state");
     assert!(
         state.starts_with("ok state=tripped fault=settings-corrupt "),
@@ -169,18 +89,14 @@ fn start_ms(cycles: u64) -> f64 {
 
 /// From power-up to the first conversion; nothing but the start is slower than 180 MHz.
 fn first_conversion_ms(firmware: &Firmware, cells: &Cells) -> f64 {
-    let mut machine = Machine::new(firmware, Pins::default()).expect("a machine");
-    assert!(machine.flash_mut().load(BEGIN, cells.bytes()));
-    while machine.wiring().converted_at == 0 {
-        let soon = machine.now() + 1000;
-        machine.run_until(soon).expect("the image runs");
-    }
-    start_ms(machine.wiring().converted_at)
+    let mut device = Bare::switched_on(firmware, cells);
+    device.run_until(1000, |machine| machine.wiring().converted_at > 0);
+    start_ms(device.0.wiring().converted_at)
 }
 
 /// From the reset that a save makes to its answer.
 fn save_ms(firmware: &Firmware, cells: &Cells, number: u32) -> f64 {
-    let mut device = Device::new(firmware, cells);
+    let mut device = Bare::new(firmware, cells);
     for line in lines(numbered(number).as_ref()) {
         assert_eq!(device.tell(line.trim_start_matches("ok ")), "ok");
     }
@@ -212,7 +128,7 @@ fn cut(firmware: &Firmware, cells: &Cells, number: u32, operations: &[u64]) -> (
     let [old, new] = [number - 1, number].map(|number| lines(numbered(number).as_ref()));
     let (mut found_old, mut found_new) = (0, 0);
     for nth in operations {
-        let mut device = Device::new(firmware, cells);
+        let mut device = Bare::new(firmware, cells);
         for line in &new {
             assert_eq!(device.tell(line.trim_start_matches("ok ")), "ok");
         }

@@ -2,6 +2,7 @@
 
 mod flash;
 mod image;
+mod interrupted;
 
 use embassy_futures::block_on;
 use flash::{BYTES, Flash};

@@ -1,5 +1,7 @@
 //! What the whole-system tests share: scenes, and runs of them on either engine.
 
+mod bare;
+
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
@@ -10,6 +12,8 @@ use hil_sim::metrics::skin_errors;
 use hil_sim::run::{Outcome, run};
 use hil_sim::scene::Scene;
 use hil_sim::trace::Row;
+
+pub use bare::{Bare, START};
 
 /// The image of the current sources, built once.
 ///

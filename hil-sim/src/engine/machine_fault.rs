@@ -9,7 +9,7 @@ use crate::machine::{CoreRegister, InjectError};
 ///
 /// Its text, both ways: `ram-bit=0x20000010.3`, `core-bit=r4.7` (r0 to r12, sp, lr, pc, psr, s0 to s31, fpscr),
 /// `register-bit=0x40010044.15`, `hung-core`, `hse-stopped`, `adc-stopped`, `dma-stopped=2.0` (controller, stream),
-/// `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`, `stack-overflow`.
+/// `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`, `software-reset`, `stack-overflow`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MachineFault {
     /// A bit (0 to 7) of a byte of the RAM flips.
@@ -55,6 +55,8 @@ pub enum MachineFault {
     },
     /// The reset pin is pulled.
     ResetPin,
+    /// The program asks for a reset.
+    SoftwareReset,
     /// The stack is at its end: what is pushed next leaves it.
     StackOverflow,
 }
@@ -102,6 +104,7 @@ impl fmt::Display for MachineFault {
             Self::BrownOut => f.write_str("brown-out"),
             Self::PowerCycle { seed } => write!(f, "power-cycle={seed}"),
             Self::ResetPin => f.write_str("reset-pin"),
+            Self::SoftwareReset => f.write_str("software-reset"),
             Self::StackOverflow => f.write_str("stack-overflow"),
         }
     }
@@ -112,7 +115,7 @@ impl fmt::Display for MachineFault {
 #[error(
     "`{0}` is no fault of the machine; allowed are ram-bit=ADDRESS.BIT, core-bit=REGISTER.BIT, \
      register-bit=ADDRESS.BIT, hung-core, hse-stopped, adc-stopped, dma-stopped=CONTROLLER.STREAM, brown-out, \
-     power-cycle=SEED, reset-pin, stack-overflow"
+     power-cycle=SEED, reset-pin, software-reset, stack-overflow"
 )]
 pub struct NoMachineFault(String);
 
@@ -155,6 +158,7 @@ fn parse(text: &str) -> Option<MachineFault> {
         "adc-stopped" => MachineFault::AdcStopped,
         "brown-out" => MachineFault::BrownOut,
         "reset-pin" => MachineFault::ResetPin,
+        "software-reset" => MachineFault::SoftwareReset,
         "stack-overflow" => MachineFault::StackOverflow,
         _ => return None,
     })
@@ -202,6 +206,7 @@ mod tests {
             "brown-out",
             "power-cycle=18446744073709551615",
             "reset-pin",
+            "software-reset",
             "stack-overflow",
         ] {
             let fault: MachineFault = text.parse().expect("a fault");

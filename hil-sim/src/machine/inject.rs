@@ -341,6 +341,24 @@ impl<W: Wiring + 'static> Machine<W> {
         self.system_reset(ResetCause::Pin)
     }
 
+    /// The program asks for a reset (SFTRSTF), as a lost one may.
+    ///
+    /// # Errors
+    /// The image cannot be started.
+    pub fn ask_for_reset(&mut self) -> Result<(), Stop> {
+        self.system_reset(ResetCause::Software)
+    }
+
+    /// A word is stored to the flash of the settings, as a lost program may do: what the flash makes of that happens.
+    ///
+    /// # Errors
+    /// [`InjectError::Refused`]: not modelled in the state that the flash is in.
+    pub fn stray_store(&mut self, address: u32, value: u32) -> Result<(), InjectError> {
+        let now = self.now();
+        let answer = self.cpu.get_data_mut().chip().store_flash(address, 4, value, now);
+        self.accepted(answer, address, Access::Write(4), value)
+    }
+
     /// The supply goes, so long that the RAM forgets, and comes back: noise of `seed` in RAM, flash kept. No time passes
     /// without supply.
     ///

@@ -10,6 +10,8 @@ pub(crate) struct SystemReset;
 pub(crate) struct Ppb {
     systick_csr: u32,
     systick_load: u32,
+    /// What it counts down from in the running round.
+    systick_from: u32,
     /// Cycle at which SysTick next reaches zero.
     pub systick_due: u64,
     pub vtor: u32,
@@ -33,6 +35,7 @@ impl Ppb {
         Self {
             systick_csr: 0,
             systick_load: 0,
+            systick_from: 0,
             systick_due: u64::MAX,
             vtor: 0,
             shcsr: 0,
@@ -76,6 +79,7 @@ impl Ppb {
     /// SysTick reached zero. `true`: its exception is enabled.
     pub fn systick_expire(&mut self) -> bool {
         self.systick_csr |= 1 << 16;
+        self.systick_from = self.systick_load;
         self.systick_due = if self.systick_load == 0 {
             u64::MAX
         } else {
@@ -86,6 +90,7 @@ impl Ppb {
 
     fn systick_restart(&mut self, now: u64) {
         let runs = self.systick_csr & 1 != 0 && self.systick_load != 0;
+        self.systick_from = self.systick_load;
         self.systick_due = if runs {
             now + self.systick_period()
         } else {
@@ -130,7 +135,7 @@ impl Ppb {
             0xe000_e018 => match self.systick_due {
                 u64::MAX => 0,
                 due => {
-                    ((due.saturating_sub(now) / self.systick_step()) % (u64::from(self.systick_load) + 1))
+                    ((due.saturating_sub(now) / self.systick_step()) % (u64::from(self.systick_from) + 1))
                         as u32
                 }
             },
@@ -284,6 +289,20 @@ mod tests {
             "COUNTFLAG, cleared by reading"
         );
         assert_eq!(ppb.read(&nvic, 0xe000_e010, 181_002, 0).unwrap(), 7);
+    }
+
+    /// ARMv7-M B3.3: the counter takes the reload value when it has reached zero.
+    #[test]
+    fn systick_takes_another_reload_value_at_its_next_round() {
+        let (mut ppb, mut nvic) = (Ppb::new(), Nvic::new());
+        ppb.write(&mut nvic, 0xe000_e014, 4, 999, 0).unwrap();
+        ppb.write(&mut nvic, 0xe000_e010, 4, 5, 0).unwrap();
+        ppb.write(&mut nvic, 0xe000_e014, 4, 99, 300).unwrap();
+        assert_eq!(ppb.read(&nvic, 0xe000_e018, 400, 0).unwrap(), 600);
+        assert_eq!(ppb.systick_due, 1000);
+        ppb.systick_expire();
+        assert_eq!(ppb.systick_due, 1100);
+        assert_eq!(ppb.read(&nvic, 0xe000_e018, 1001, 0).unwrap(), 99);
     }
 
     #[test]

@@ -81,6 +81,8 @@ pub(crate) struct Tim {
     /// Active (shadow) registers.
     psc_now: u32,
     arr_now: u32,
+    /// Last count of the running period: that of the counter, where it was beyond the auto-reload value when that came.
+    last: u32,
     ccr_now: [u32; 4],
     repeats_left: u32,
     /// Cycle at which the counter was 0; meaningful while counting.
@@ -116,6 +118,7 @@ impl Tim {
             lock: 0,
             psc_now: 0,
             arr_now: kind.counter_max,
+            last: kind.counter_max,
             ccr_now: [0; 4],
             repeats_left: 0,
             zero_at: 0,
@@ -155,8 +158,14 @@ impl Tim {
     }
 
     /// CPU cycles from one overflow to the next.
-    pub fn period(&self) -> u64 {
+    fn period(&self) -> u64 {
         self.tick() * (u64::from(self.arr_now) + 1)
+    }
+
+    /// Cycle at which the running period ends.
+    fn overflow(&self) -> u64 {
+        let counts = u64::from(self.last) + 1;
+        self.zero_at.wrapping_add(self.tick() * counts)
     }
 
     /// The timer clock changes at `now`; the count goes on from its value.
@@ -181,18 +190,24 @@ impl Tim {
     fn set_count(&mut self, count: u32, now: u64) {
         self.stopped_at = count;
         self.zero_at = now.wrapping_sub(u64::from(count) * self.tick());
+        self.last = if count > self.arr_now {
+            self.kind.counter_max
+        } else {
+            self.arr_now
+        };
         self.seen = now;
     }
 
     /// Brings counter, flags and shadow registers up to `now`.
     pub fn sync(&mut self, now: u64) {
         while self.is_counting() {
-            let overflow = self.zero_at.wrapping_add(self.period());
+            let overflow = self.overflow();
             self.compare_flags(now.min(overflow - 1));
             if now < overflow {
                 break;
             }
             self.zero_at = overflow;
+            self.last = self.arr_now;
             self.seen = overflow - 1;
             if self.repeats_left > 0 {
                 self.repeats_left -= 1;
@@ -225,7 +240,7 @@ impl Tim {
     fn compare_flags(&mut self, to: u64) {
         for channel in 0..self.kind.channels {
             let compare = self.ccr_now[channel];
-            if compare <= self.arr_now {
+            if compare <= self.last {
                 let matches = self.zero_at.wrapping_add(u64::from(compare) * self.tick());
                 if matches > self.seen && matches <= to {
                     self.sr |= 2 << channel;
@@ -246,6 +261,7 @@ impl Tim {
         }
         self.psc_now = self.psc;
         self.arr_now = self.arr;
+        self.last = self.arr_now;
         self.ccr_now = self.ccr;
         self.repeats_left = self.rcr;
         if overflow || self.cr1 & 4 == 0 {
@@ -269,8 +285,8 @@ impl Tim {
             || self.is_preloading();
         if wants_update {
             self.due = self
-                .zero_at
-                .wrapping_add(self.period() * (u64::from(self.repeats_left) + 1));
+                .overflow()
+                .wrapping_add(self.period() * u64::from(self.repeats_left));
         }
         for channel in 0..self.kind.channels {
             let flag = 2 << channel;
@@ -278,7 +294,8 @@ impl Tim {
                 let at = self
                     .zero_at
                     .wrapping_add(u64::from(self.ccr_now[channel]) * self.tick());
-                self.due = self.due.min(if at > self.seen { at } else { at + self.period() });
+                let next = self.overflow() + (at - self.zero_at);
+                self.due = self.due.min(if at > self.seen { at } else { next });
             }
         }
     }

@@ -86,6 +86,7 @@ fn faults_of_the_processor_are_injected_at_their_times() {
     let fault = |kind: &str, keys: &str| format!("[[fault]]\nkind = \"{kind}\"\nt_s = 0.5\n{keys}\n");
     for (tables, expected) in [
         (fault("hung-core", ""), MachineFault::HungCore),
+        (fault("software-reset", ""), MachineFault::SoftwareReset),
         (fault("power-cycle", ""), MachineFault::PowerCycle { seed: 7 }),
         (
             fault("dma-stopped", ""),

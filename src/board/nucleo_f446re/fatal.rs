@@ -10,7 +10,7 @@ use cortex_m_rt::{ExceptionFrame, exception};
 
 use thermal_display::guard::{Cause, Fault};
 
-use super::{record, wiring};
+use super::{record, watchdog, wiring};
 
 /// Every bridge high-impedance, for good; why is kept.
 fn end(fault: Fault) {
@@ -25,8 +25,10 @@ fn first_report() -> bool {
     !REPORTED.swap(true, Ordering::Relaxed)
 }
 
-/// 47 ms, or at most 188 when its clock is what failed; awake, so that the probe can read the log.
+/// 47 ms, or at most 188 when its clock is what failed; a second at most where the start has not come so far. Awake, so that
+/// the probe can read the log.
 fn wait_for_watchdog() -> ! {
+    watchdog::start();
     loop {
         cortex_m::asm::nop();
     }

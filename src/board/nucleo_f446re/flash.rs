@@ -19,6 +19,7 @@ const WORD: usize = 4;
 const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
 /// Error flags of FLASH_SR, cleared by writing 1: operation, protection, alignment, parallelism, sequence, read-out.
 const ERRORS: u32 = 0x1f2;
+const PROTECTION: u32 = 1 << 4;
 /// Looks at the busy flag that last longer than any operation: 500 ms (datasheet, sector of 16 KiB, 32 bits at a time), a
 /// look takes more than four cycles of 16 MHz.
 const PATIENCE: u32 = 2_000_000;
@@ -70,7 +71,7 @@ impl<'a> SettingsFlash<'a> {
 
     /// Opens the control register for some work, and locks it afterwards.
     fn unlocked(&mut self, work: impl FnOnce(&mut Self) -> Result<(), FlashError>) -> Result<(), FlashError> {
-        self.wait()?;
+        self.wait_until_idle()?;
         if self.0.cr().read().lock().bit_is_set() {
             for key in KEYS {
                 // SAFETY: the sequence of RM0390, 3.5.1.
@@ -80,26 +81,32 @@ impl<'a> SettingsFlash<'a> {
         if self.0.cr().read().lock().bit_is_set() {
             return Err(FlashError::Locked);
         }
-        // SAFETY: flags of an operation before are cleared by writing 1.
+        // What was before, a stray store for one, is no error of this work, and would keep it from being done (RM0390, 3.8.4).
+        // SAFETY: flags are cleared by writing 1.
         self.0.sr().write(|w| unsafe { w.bits(ERRORS) });
         let done = work(self);
         self.0.cr().write(|w| w.lock().set_bit());
         done
     }
 
-    /// Until the operation is done.
-    fn wait(&self) -> Result<(), FlashError> {
+    /// Until no operation is under way; what the flags say then.
+    fn wait_until_idle(&self) -> Result<u32, FlashError> {
         for _ in 0..PATIENCE {
             let status = self.0.sr().read();
             if status.bsy().bit_is_clear() {
-                return match status.bits() & ERRORS {
-                    0 => Ok(()),
-                    _ if status.wrperr().bit_is_set() => Err(FlashError::Protected),
-                    flags => Err(FlashError::Flags(flags)),
-                };
+                return Ok(status.bits() & ERRORS);
             }
         }
         Err(FlashError::Busy)
+    }
+
+    /// Until the operation is done, well.
+    fn wait(&self) -> Result<(), FlashError> {
+        match self.wait_until_idle()? {
+            0 => Ok(()),
+            flags if flags & PROTECTION != 0 => Err(FlashError::Protected),
+            flags => Err(FlashError::Flags(flags)),
+        }
     }
 }
 

@@ -27,13 +27,16 @@ mod log;
 #[cfg(not(feature = "five-fingers"))]
 mod one;
 mod record;
+mod reset;
 mod sampler;
 mod serial;
 mod stack;
 mod store;
+mod timekeeper;
 mod watchdog;
 mod window;
 
+use cortex_m::peripheral::SYST;
 use heapless::spsc::{Producer, Queue};
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
@@ -59,6 +62,8 @@ pub use wiring::{FINGERS, PowerStage};
 
 use super::console::Console;
 use super::mailbox::Mailbox;
+use reset::Reset;
+use timekeeper::Timekeeper;
 
 /// Telemetry that may wait for the host task: what it can be late, in ticks, before a line is left out.
 const TELEMETRY_DEPTH: usize = 8 * FINGERS;
@@ -88,24 +93,22 @@ impl Memory {
     }
 }
 
-/// Why the device has tripped before it started; once.
-pub fn first_cause(device: &pac::Peripherals, found: &Found) -> Option<Cause> {
+/// Why the device has tripped before it started; once, and first of all: what follows takes long, and may end in a reset.
+pub fn first_cause(rcc: &pac::RCC) -> Option<Cause> {
     let overrun = stack::is_overrun();
     stack::arm();
-    let Some(cause) = record::of_reset(&device.RCC) else {
-        return found
-            .kept
-            .is_err()
-            .then_some(Cause::alone(Fault::SettingsCorrupt));
-    };
+    let reset = Reset::of(rcc);
+    let mut cause = record::of_reset(reset, store::is_planned());
     // A reset, without a tick that has seen why, is what comes of an overrun.
-    let unseen = overrun && cause.tick == 0;
-    if !unseen {
-        return Some(cause);
+    if overrun && cause.is_some_and(|cause| cause.tick == 0) {
+        record::forget();
+        record::keep(&Cause::alone(Fault::Stack));
+        cause = record::kept();
     }
-    record::forget();
-    record::keep(&Cause::alone(Fault::Stack));
-    record::kept()
+    // Only now that the cause is kept.
+    Reset::clear(rcc);
+    defmt::info!("start after reset: {}", reset);
+    cause
 }
 
 /// The board, set up and ready to take samples; the parts go to the tasks that own them.
@@ -133,11 +136,10 @@ pub struct Board {
 impl Board {
     /// Sets everything up, with what the start has [found](at_start); the bridge is off before anything else happens and
     /// stays off.
-    pub fn new(device: pac::Peripherals, memory: &'static mut Memory, found: &Found) -> Self {
+    pub fn new(counter: SYST, device: pac::Peripherals, memory: &'static mut Memory, found: &Found) -> Self {
         // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
         // again, and the log tells.
         let watchdog = Watchdog::start(device.IWDG);
-        log::reset_cause(&device.RCC);
         let mut rcc = device.RCC.freeze(clocks());
         watch_clock(&mut rcc);
 
@@ -235,6 +237,7 @@ impl Board {
         let (sampler, trigger) = Sampler::new(
             device.ADC1,
             device.TIM2,
+            Timekeeper::new(counter, rcc.clocks.hclk().raw()),
             dma2.0,
             inputs,
             multiplexer,

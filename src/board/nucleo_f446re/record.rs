@@ -2,11 +2,12 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use stm32f4xx_hal::pac::RCC;
-use thermal_display::guard::{Cause, Fault};
+use thermal_display::guard::Cause;
 
-/// What makes noise unlikely to be taken for a record.
-const SALT: u32 = 0x5afe_d15b;
+use super::reset::Reset;
+
+/// What makes it unlikely that noise is taken for a record, or that of a firmware whose records mean something else.
+const SALT: u32 = 0x5afe_d15b ^ Cause::LAYOUT;
 const LENGTH: usize = Cause::WORDS + 1;
 
 /// Words of the cause and their check. Neither the loader nor the start-up code writes to `.uninit`; only a loss of
@@ -52,22 +53,15 @@ pub fn forget() {
     }
 }
 
-/// Why the processor started: what was kept, or what the flags of a reset tell that nobody asked for.
-pub fn of_reset(rcc: &RCC) -> Option<Cause> {
-    let flags = rcc.csr().read();
-    if flags.porrstf().bit_is_set() {
+/// Why the device has tripped before it started: what was kept, or the reset itself if that is a fault.
+pub fn of_reset(reset: Reset, is_planned: bool) -> Option<Cause> {
+    if reset == Reset::PowerOn {
         // RAM is noise.
         forget();
-        return None;
     }
-    let fault = if flags.wwdgrstf().bit_is_set() {
-        Fault::TickLost
-    } else if flags.wdgrstf().bit_is_set() {
-        Fault::Watchdog
-    } else {
-        return kept();
-    };
-    keep(&Cause::alone(fault));
+    if let Some(fault) = reset.fault(is_planned) {
+        keep(&Cause::alone(fault));
+    }
     kept()
 }
 

@@ -17,9 +17,11 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::timer::{CounterHz, Timer};
 use thermal_display::TICK_HZ;
+use thermal_display::guard::Fault;
 use thermal_display::sense::{CHANNELS, SCANS_PER_TICK, Scan};
 
 use super::log;
+use super::timekeeper::Timekeeper;
 use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME};
 
 /// Scans of one block: those of a finger's tick, after those that may show the finger before.
@@ -54,6 +56,20 @@ pub enum SampleError {
     Late,
     /// The multiplexers were switched too late for the next block.
     LateSwitch,
+    /// A block has not come when it was due: the timer, or what is measured against it, has another rate.
+    Pace,
+    /// The clocks are not those that were set.
+    Clocks,
+}
+
+impl SampleError {
+    /// What it is to the guard.
+    pub const fn fault(self) -> Fault {
+        match self {
+            Self::Bus | Self::Late | Self::LateSwitch | Self::Pace => Fault::Sampling,
+            Self::Clocks => Fault::Clock,
+        }
+    }
 }
 
 /// The samples of the sensors, tick by tick.
@@ -66,6 +82,7 @@ pub struct Sampler {
     multiplexer: Multiplexer,
     /// The finger whose block is being filled.
     finger: usize,
+    timekeeper: Timekeeper,
 }
 
 /// What starts the scans, once somebody waits for them: the multiplexers must be switched 11 us after a finger's last.
@@ -84,6 +101,7 @@ impl Sampler {
     pub fn new(
         adc: ADC1,
         timer: TIM2,
+        timekeeper: Timekeeper,
         stream: Stream0<DMA2>,
         inputs: Inputs,
         multiplexer: Multiplexer,
@@ -110,6 +128,7 @@ impl Sampler {
             last: CurrentBuffer::SecondBuffer,
             multiplexer,
             finger: 0,
+            timekeeper,
         };
         (sampler, Trigger(timer.counter_hz()))
     }
@@ -137,6 +156,7 @@ impl Sampler {
             return Err(SampleError::Late);
         }
         self.last = which;
+        self.timekeeper.take()?;
         if finger == 0 {
             log::count_tick();
         }

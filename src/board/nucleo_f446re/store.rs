@@ -1,20 +1,26 @@
 //! Settings from one start to the next.
 //!
 //! What is to be stored waits in RAM that a reset does not clear; the start that follows stores it while the bridges are off by
-//! their hardware, and before anything runs that the flash could delay: the watchdogs, the sampling, the host.
+//! their hardware, and before anything runs that the flash could delay: the watchdogs, the sampling, the host. A reset meanwhile
+//! leads to a second attempt, which stores the same, and no third: it may be storing that brings the reset about.
 
+use core::fmt;
 use core::sync::atomic::Ordering::Relaxed;
 use core::sync::atomic::{AtomicU8, AtomicU32};
 
 use cortex_m::peripheral::SCB;
 use stm32f4xx_hal::pac::FLASH;
+use thermal_display::guard::{Cause, Fault};
 use thermal_display::settings::{Kept, LONGEST, Store, StoreError, StoredBytes, decode};
 
 use super::FINGERS;
 use super::flash::{FlashError, SettingsFlash};
 
-/// Says that something waits. What power-up leaves in the RAM is not that, and not followed by its checksum.
+/// Says that something waits; and one more for each attempt that has begun. What power-up leaves in the RAM is not that, and
+/// not followed by its checksum.
 const WAITING: u32 = 0x7361_7665;
+/// Attempts at storing it.
+const ATTEMPTS: u32 = 2;
 /// Longer than a frame and what the USART holds take at 1 Mbaud, at 180 MHz: 1.74 ms.
 const LAST_FRAME_CYCLES: u32 = 180_000_000 / 1000 * 2;
 
@@ -34,13 +40,22 @@ static HANDOVER: Handover = Handover {
 };
 
 impl Handover {
-    /// What waits.
-    fn record(&self) -> Option<StoredBytes> {
-        if self.waiting.load(Relaxed) != WAITING {
-            return None;
+    /// Attempts that have begun, if something waits.
+    fn attempts(&self) -> Option<u32> {
+        let begun = self.waiting.load(Relaxed).wrapping_sub(WAITING);
+        (begun <= ATTEMPTS).then_some(begun)
+    }
+
+    /// What waits, for one more attempt.
+    fn begin(&self) -> Option<Result<StoredBytes, NotStored>> {
+        let begun = self.attempts()?;
+        if begun == ATTEMPTS {
+            return Some(Err(NotStored::Interrupted));
         }
-        let record = self.record.get(..self.length.load(Relaxed) as usize)?;
-        Some(record.iter().map(|byte| byte.load(Relaxed)).collect())
+        self.waiting.store(WAITING + begun + 1, Relaxed);
+        let record = self.record.get(..self.length.load(Relaxed) as usize);
+        let bytes = record.map(|record| record.iter().map(|byte| byte.load(Relaxed)).collect());
+        Some(bytes.ok_or(NotStored::Damaged))
     }
 
     fn put(&self, record: &StoredBytes) {
@@ -59,22 +74,54 @@ impl Handover {
 /// Why settings could not be read or stored.
 type Failure = StoreError<FlashError>;
 
+/// Why what waited was not stored.
+pub enum NotStored {
+    /// By the store.
+    Failed(Failure),
+    /// Each attempt has ended in a reset; the flash has the old settings or these.
+    Interrupted,
+    /// It is no record any more.
+    Damaged,
+}
+
+impl fmt::Display for NotStored {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Failed(error) => error.fmt(f),
+            Self::Interrupted => f.write_str("interrupted by a reset, twice"),
+            Self::Damaged => f.write_str("damaged in the RAM"),
+        }
+    }
+}
+
 /// What a start has found.
 pub struct Found {
     /// The settings of all fingers; none are factory defaults.
     pub kept: Result<Option<[Kept; FINGERS]>, Failure>,
     /// How storing went, if something waited to be stored.
-    pub stored: Option<Result<(), Failure>>,
+    pub stored: Option<Result<(), NotStored>>,
 }
 
-/// Stores what waits, and reads what is stored. To be called first of all.
+impl Found {
+    /// The fault that it is, if any.
+    pub fn cause(&self) -> Option<Cause> {
+        (self.kept.is_err()).then_some(Cause::alone(Fault::SettingsCorrupt))
+    }
+}
+
+/// Whether the device was started anew to store something.
+pub fn is_planned() -> bool {
+    HANDOVER.attempts().is_some()
+}
+
+/// Stores what waits, and reads what is stored. To be called before anything is set up.
 #[inline(never)]
 pub fn at_start(registers: &FLASH) -> Found {
     let mut store = Store::<_, FINGERS>::new(SettingsFlash::new(registers));
-    let waiting = HANDOVER
-        .record()
-        .and_then(|record| decode::<FINGERS>(&record).ok());
-    let stored = waiting.map(|kept| store.save(kept.as_ref()));
+    let stored = HANDOVER.begin().map(|record| {
+        let kept = decode::<FINGERS>(&record?).map_err(|_| NotStored::Damaged)?;
+        store.save(kept.as_ref()).map_err(NotStored::Failed)
+    });
     HANDOVER.clear();
     let kept = store.load();
     if let Err(error) = &kept {

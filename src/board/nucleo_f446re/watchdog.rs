@@ -9,6 +9,12 @@ use stm32f4xx_hal::pac::IWDG;
 /// degrees, which its independent comparator watches.
 const PERIOD: u16 = 100;
 
+/// Lets it run, with the period that it has: 0.28 to 0.96 s as after a reset (4096 times 4 of its oscillator).
+pub fn start() {
+    // SAFETY: a key that only starts it, in one store, whoever else is at it.
+    unsafe { &*IWDG::ptr() }.kr().write(|w| w.key().start());
+}
+
 /// The running watchdog; it cannot be stopped, and goes on while a debugger halts the core: halted,
 /// nobody controls the bridge.
 pub struct Watchdog(IWDG);
@@ -19,7 +25,7 @@ impl Watchdog {
     /// The library's driver starts the counter last and does not wait for its settings to arrive; until the
     /// first feeding the period would be 33 s. This is the order of RM0390, 20.3.
     pub fn start(iwdg: IWDG) -> Self {
-        iwdg.kr().write(|w| w.key().start());
+        start();
         iwdg.kr().write(|w| w.key().unlock());
         iwdg.pr().write(|w| w.pr().divide_by32());
         iwdg.rlr().write(|w| w.rl().set(PERIOD - 1));

@@ -44,9 +44,21 @@ const LOST: &[Fault] = &[
     Fault::Sampling,
 ];
 
+/// A tick that does not come when it is due; the window watchdog is first if it comes after 47 ms.
+const RATE: &[Fault] = &[Fault::Sampling, Fault::TickLost];
+const CLOCK: &[Fault] = &[Fault::Clock, Fault::TickLost];
+/// By 4 of 5625 counts: a quarter of a tick is lost after 352 ticks.
+const SLOW_RATE: &[Sign] = &[Sign::After(0.352)];
+/// SysTick's rounds are of 2^24 periods of 180 MHz: 93.2 ms.
+const NEXT_ROUND: &[Sign] = &[Sign::After(0.0933)];
+
 const TIM1: u32 = 0x4001_0000;
 const ADC1: u32 = 0x4001_2000;
 const TIM2: u32 = 0x4000_0000;
+const TIM2_ARR: u32 = TIM2 + 0x2c;
+const SYST_CSR: u32 = 0xe000_e010;
+const RCC_CFGR: u32 = 0x4002_3808;
+const RCC_DCKCFGR: u32 = 0x4002_388c;
 const GPIOB_ODR: u32 = 0x4002_0414;
 const DMA2_S0CR: u32 = 0x4002_6410;
 const NVIC_ISER1: u32 = 0xe000_e104;
@@ -75,6 +87,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::restarts(processor(Fails::BrownOut)).at(&[Place::Slew]),
     Entry::restarts(processor(Fails::PowerCycle { seed: 1 })).at(&[Place::Slew]),
     Entry::restarts(processor(Fails::ResetPin)).at(&[Place::Slew]),
+    Entry::trips(processor(Fails::SoftwareReset), NOW, &[Fault::UnaskedReset]).at(&[Place::Slew]),
     Entry::trips(processor(Fails::StackOverflow), NOW, LOST).at(&[Place::Slew]),
     Entry::trips(
         processor(Fails::RamBit {
@@ -99,4 +112,24 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(flipped(ADC1 + 0x08, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
     Entry::trips(flipped(DMA2_S0CR, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
     Entry::trips(flipped(NVIC_ISER1, 24), NOW, &[Fault::TickLost, Fault::Sampling]),
+    // Scans at another rate: 0.6 % slower and faster, 9 %, 3.7 times faster, 6.8, 24 and 48 times slower; half of it and less.
+    Entry::trips(flipped(TIM2_ARR, 5), NOW, RATE),
+    Entry::trips(flipped(TIM2_ARR, 2), SLOW_RATE, RATE),
+    Entry::trips(flipped(TIM2_ARR, 9), NOW, RATE).at(&[Place::Warm]),
+    Entry::trips(flipped(TIM2_ARR, 12), NOW, RATE),
+    Entry::trips(flipped(TIM2_ARR, 15), NOW, RATE).at(&[Place::Warm]),
+    Entry::trips(flipped(TIM2_ARR, 17), NOW, RATE),
+    Entry::trips(flipped(TIM2_ARR, 18), NOW, RATE),
+    Entry::trips(flipped(TIM2 + 0x28, 0), NOW, RATE).at(&[Place::Warm]),
+    Entry::trips(flipped(TIM2 + 0x28, 4), NOW, RATE),
+    Entry::trips(flipped(TIM2 + 0x28, 15), NOW, RATE),
+    // What it is measured against: stopped, at an eighth, in shorter rounds.
+    Entry::trips(flipped(SYST_CSR, 0), NOW, RATE),
+    Entry::trips(flipped(SYST_CSR, 2), NOW, RATE),
+    Entry::trips(flipped(SYST_CSR + 4, 20), NEXT_ROUND, RATE),
+    // Clocks of both, and of all else: half, the internal oscillator, timers at a quarter and at twice their rate.
+    Entry::trips(flipped(RCC_CFGR, 7), NOW, CLOCK).at(&[Place::Warm]),
+    Entry::trips(flipped(RCC_CFGR, 1), NOW, CLOCK),
+    Entry::trips(flipped(RCC_CFGR, 11), NOW, CLOCK).at(&[Place::Warm]),
+    Entry::trips(flipped(RCC_DCKCFGR, 24), NOW, RATE).at(&[Place::Warm]),
 ];

@@ -207,3 +207,24 @@ fn a_single_channel_drives_at_once() {
     };
     assert_eq!(tim.output(0), third);
 }
+
+/// 17.3.2: the counter counts to the auto-reload value; a lower one that comes without preload, when the count is beyond it,
+/// is met only after the counter's end.
+#[test]
+fn a_count_beyond_a_new_reload_value_goes_on_to_the_end() {
+    let mut tim = Tim::new(GENERAL, 1);
+    tim.write(0x2c, 5624, 0).unwrap();
+    tim.write(0x14, 1, 0).unwrap();
+    tim.write(0x10, 0, 0).unwrap();
+    tim.write(0x0c, 1, 0).unwrap();
+    tim.write(0x00, 1, 0).unwrap();
+    tim.write(0x2c, 1528, 1528).unwrap();
+    assert_eq!(tim.due, 1529, "not beyond yet");
+    tim.write(0x2c, 5624, 1528).unwrap();
+    tim.write(0x2c, 1528, 2000).unwrap();
+    assert_eq!(tim.due, 0x1_0000);
+    assert_eq!(tim.read(0x24, 60_000).unwrap(), 60_000);
+    assert_eq!(tim.read(0x24, 0x1_0000 + 7).unwrap(), 7);
+    assert_eq!(tim.requests(), [false, true, false, false]);
+    assert_eq!(tim.read(0x24, 0x1_0000 + 1529).unwrap(), 0);
+}

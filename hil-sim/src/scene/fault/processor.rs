@@ -84,7 +84,7 @@ pub struct ProcessorKind {
 
 impl ProcessorKind {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::new("hung-core", &[]),
         Self::new("hse-stopped", &[]),
         Self::new("adc-stopped", &[]),
@@ -92,6 +92,7 @@ impl ProcessorKind {
         Self::new("brown-out", &[]),
         Self::new("power-cycle", &[]),
         Self::new("reset-pin", &[]),
+        Self::new("software-reset", &[]),
         Self::new("stack-overflow", &[]),
         Self::new("ram-bit", &[ProcessorKey::Address, ProcessorKey::Bit]),
         Self::new("core-bit", &[ProcessorKey::Register, ProcessorKey::Bit]),

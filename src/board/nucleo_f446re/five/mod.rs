@@ -47,7 +47,7 @@
 mod multiplexer;
 mod power;
 
-use stm32f4xx_hal::pac::{GPIOB, TIM1, TIM8};
+use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1, TIM8};
 
 pub use multiplexer::Multiplexer;
 pub use power::{Lines, PowerStage, Wires};
@@ -63,9 +63,12 @@ pub const SAMPLE_TIME: u8 = 1;
 /// All bridges high-impedance, whatever the program was doing; for the end of it.
 pub fn cut() {
     // SAFETY: their owners do not run again: interrupts are off and no caller of this returns. The writes are to
-    // registers that may be written at any time; before the peripherals have a clock they do nothing, and the
-    // bridges are off then.
-    let (left, right, pins) = unsafe { (TIM1::steal(), TIM8::steal(), GPIOB::steal()) };
+    // registers that may be written at any time.
+    let (clocks, left, right, pins) = unsafe { (RCC::steal(), TIM1::steal(), TIM8::steal(), GPIOB::steal()) };
+    // As for one finger: without a clock they would take nothing.
+    (clocks.apb2enr()).modify(|_, w| w.tim1en().enabled().tim8en().enabled());
+    clocks.ahb1enr().modify(|_, w| w.gpioben().enabled());
+    cortex_m::asm::dsb();
     pins.bsrr().write(|w| {
         w.br1().set_bit();
         w.br10().set_bit();

@@ -14,7 +14,7 @@
 
 mod power;
 
-use stm32f4xx_hal::pac::{GPIOB, TIM1};
+use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1};
 
 pub use power::PowerStage;
 
@@ -39,10 +39,14 @@ impl Multiplexer {
 
 /// The bridge high-impedance, whatever the program was doing; for the end of it.
 pub fn cut() {
-    // SAFETY: their owner does not run again: interrupts are off and no caller of this returns. Both
-    // writes are to registers that may be written at any time; before the peripherals have a clock they
-    // do nothing, and the bridge is off then.
-    let (timer, pins) = unsafe { (TIM1::steal(), GPIOB::steal()) };
+    // SAFETY: their owners do not run again: interrupts are off and no caller of this returns. All
+    // writes are to registers that may be written at any time.
+    let (clocks, timer, pins) = unsafe { (RCC::steal(), TIM1::steal(), GPIOB::steal()) };
+    // Without a clock they would take nothing. The start may have ended before they had one; the dsb is the delay that
+    // the errata sheet wants after it.
+    clocks.apb2enr().modify(|_, w| w.tim1en().enabled());
+    clocks.ahb1enr().modify(|_, w| w.gpioben().enabled());
+    cortex_m::asm::dsb();
     timer.bdtr().modify(|_, w| w.moe().disabled_idle());
     pins.bsrr().write(|w| w.br10().set_bit());
 }
