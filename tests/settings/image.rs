@@ -1,12 +1,12 @@
 //! The same on the image: lines to the emulated microcontroller, power that is cut while it stores, lines back.
 
 use hil_sim::machine::{Cells, Firmware, Machine, ResetCause, Wiring};
+use system_tests::flash::{BYTES, SECTOR, append, numbered};
 use system_tests::image;
 use thermal_display::commission::Desk;
 use thermal_display::settings::{Kept, LONGEST, encode};
 
-use super::{numbered, saved, turns};
-use crate::flash::{BYTES, SECTOR};
+use super::{saved, turns};
 
 /// Where the settings' sectors lie in the flash.
 const BEGIN: usize = SECTOR;
@@ -148,7 +148,7 @@ fn corrupt_settings_trip_the_device_until_it_is_told_others() {
     content[0] = 2;
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&content);
     content.extend(crc.to_le_bytes());
-    assert!(super::append(&mut cells, &content));
+    assert!(append(&mut cells, &content));
 
     let mut device = Device::new(&firmware(), &cells);
     let state = device.tell("state");
