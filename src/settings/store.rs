@@ -16,7 +16,8 @@ use super::{Kept, LONGEST, SectorError, Sectors, StoredError, decode, encode};
 /// Sectors that the records take turns in.
 const SECTORS: usize = 3;
 
-/// Where the newest record is. Without, the whole flash is searched for each record of a page that is given up: seconds.
+/// Where the newest record is, for as long as one operation takes. Without, the whole flash is searched for each record of
+/// a page that is given up: seconds.
 type Remembered = Cache<ArrayPageStates<SECTORS>, ArrayPagePointers<SECTORS>, ArrayKeyPointers<(), 1>, ()>;
 
 /// The settings of a device with that many fingers, in three sectors of a flash.
@@ -24,7 +25,7 @@ type Remembered = Cache<ArrayPageStates<SECTORS>, ArrayPagePointers<SECTORS>, Ar
 /// Everything waits until the flash is done. Power may fail at any time: what is stored then is what was stored before,
 /// or what was to be.
 pub struct Store<F: NorFlash, const FINGERS: usize> {
-    map: MapStorage<(), Sectors<F>, Remembered>,
+    flash: Sectors<F>,
     buffer: [u8; LONGEST],
 }
 
@@ -63,20 +64,23 @@ impl<E: fmt::Debug> From<Error<SectorError<E>>> for StoreError<E> {
 
 impl<F: NorFlash, const FINGERS: usize> Store<F, FINGERS> {
     /// In the first three sectors of `flash`.
-    pub fn new(flash: F) -> Self {
-        let end = (SECTORS * Sectors::<F>::BYTES) as u32;
+    pub const fn new(flash: F) -> Self {
         Self {
-            map: MapStorage::new(
-                Sectors::new(flash),
-                MapConfig::new(0..end),
-                Cache::new(
-                    ArrayPageStates::new(),
-                    ArrayPagePointers::new(),
-                    ArrayKeyPointers::new(),
-                ),
-            ),
+            flash: Sectors::new(flash),
             buffer: [0; LONGEST],
         }
+    }
+
+    /// The records, and room for one: nothing is known but what the flash says.
+    fn records(&mut self) -> (MapStorage<(), &mut Sectors<F>, Remembered>, &mut [u8]) {
+        let end = (SECTORS * Sectors::<F>::BYTES) as u32;
+        let nothing = Cache::new(
+            ArrayPageStates::new(),
+            ArrayPagePointers::new(),
+            ArrayKeyPointers::new(),
+        );
+        let records = MapStorage::new(&mut self.flash, MapConfig::new(0..end), nothing);
+        (records, &mut self.buffer)
     }
 
     /// What was stored last; none are factory defaults, which are also what an empty flash has.
@@ -85,38 +89,45 @@ impl<F: NorFlash, const FINGERS: usize> Store<F, FINGERS> {
     /// The flash cannot be read, or what is stored is no settings of this device.
     #[inline(never)]
     pub fn load(&mut self) -> Result<Option<[Kept; FINGERS]>, StoreError<F::Error>> {
-        let stored = block_on(self.map.fetch_item::<&[u8]>(&mut self.buffer, &()))?;
+        let (mut records, buffer) = self.records();
+        let stored = block_on(records.fetch_item::<&[u8]>(buffer, &()))?;
         stored.map_or(Ok(None), |bytes| decode(bytes).map_err(StoreError::Stored))
     }
 
-    /// Stores settings, or factory defaults, and reads them back.
+    /// Stores settings, or factory defaults, and reads them back, whatever the flash holds before.
+    ///
+    /// Only damage that leaves no other way has all of it erased, and what was there is then lost if power fails meanwhile;
+    /// a power cut does no such damage.
     ///
     /// # Errors
-    /// They are not stored; what was before still is, unless nothing could be read of it.
+    /// They are not stored; what was before still is, unless nothing could be read of it or all was erased.
     #[inline(never)]
     pub fn save(&mut self, kept: Option<&[Kept; FINGERS]>) -> Result<(), StoreError<F::Error>> {
         let bytes = encode(kept);
-        // Learns where the newest record is; what is wrong with it does not matter any more.
-        let _before = self.load();
-        if let Err(error) = self.append(&bytes) {
-            // Disorder in which nothing is found is not worth keeping.
-            let is_disorder = matches!(error, StoreError::Corrupt);
-            if !is_disorder || !matches!(self.load(), Err(StoreError::Corrupt)) {
-                return Err(error);
-            }
-            block_on(self.map.erase_all())?;
-            self.append(&bytes)?;
+        let mut done = self.append(&bytes);
+        if matches!(done, Err(StoreError::NotKept)) {
+            // Bits of that place were not erased any more. The next one may be better.
+            done = self.append(&bytes);
         }
-        let kept = block_on(self.map.fetch_item::<&[u8]>(&mut self.buffer, &()))?;
-        if kept == Some(bytes.as_slice()) {
-            Ok(())
-        } else {
-            Err(StoreError::NotKept)
+        if matches!(done, Err(StoreError::Corrupt | StoreError::NotKept)) {
+            // It can last, though a record is found: two sectors that both seem to be the newest.
+            block_on(self.records().0.erase_all())?;
+            done = self.append(&bytes);
         }
+        done
     }
 
+    /// Appends a record, and reads it back as a device does that is switched on.
     #[inline(never)]
     fn append(&mut self, bytes: &[u8]) -> Result<(), StoreError<F::Error>> {
-        Ok(block_on(self.map.store_item(&mut self.buffer, &(), &bytes))?)
+        let (mut records, buffer) = self.records();
+        // Learns where the newest record is; what is wrong with it does not matter any more.
+        let _before = block_on(records.fetch_item::<&[u8]>(buffer, &()));
+        block_on(records.store_item(buffer, &(), &bytes))?;
+        let (mut records, buffer) = self.records();
+        match block_on(records.fetch_item::<&[u8]>(buffer, &()))? {
+            Some(kept) if kept == bytes => Ok(()),
+            _ => Err(StoreError::NotKept),
+        }
     }
 }

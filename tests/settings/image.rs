@@ -1,12 +1,12 @@
 //! The same on the image: lines to the emulated microcontroller, power that is cut while it stores, lines back.
 
 use hil_sim::machine::{Cells, Firmware, ResetCause};
+use system_tests::flash::{BYTES, append, numbered};
 use system_tests::{Bare, START, image};
 use thermal_display::commission::Desk;
 use thermal_display::settings::{Kept, LONGEST, encode};
 
-use super::{numbered, saved, turns};
-use crate::flash::BYTES;
+use super::{saved, turns};
 
 /// The lines that settings are given in.
 pub fn lines(kept: Option<&[Kept; 1]>) -> Vec<String> {
@@ -68,7 +68,7 @@ fn corrupt_settings_trip_the_device_until_it_is_told_others() {
     content[0] = 2;
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&content);
     content.extend(crc.to_le_bytes());
-    assert!(super::append(&mut cells, &content));
+    assert!(append(&mut cells, &content));
 
     let mut device = Bare::new(&firmware(), &cells);
     let state = device.tell("state");

@@ -1,38 +1,11 @@
 //! Power that fails in any operation of the flash loses nothing of what was stored.
 
-mod flash;
 mod image;
 mod interrupted;
 
-use embassy_futures::block_on;
-use flash::{BYTES, Flash};
 use hil_sim::machine::Cells;
-use sequential_storage::cache::Cache;
-use sequential_storage::map::{MapConfig, MapStorage};
-use thermal_display::settings::{Calibration, Correction, Kept, Sectors, Store, Tile};
-
-/// Settings that differ from each other in every value.
-fn numbered<const FINGERS: usize>(number: u32) -> Option<[Kept; FINGERS]> {
-    // Factory defaults are as good as any.
-    if number % 50 == 17 {
-        return None;
-    }
-    let of = |i: u32, per: f64| f64::from((number * 7919 + i * 104_729) % 2000) / per;
-    Some(std::array::from_fn(|finger| {
-        let finger = 40 * finger as u32;
-        Kept {
-            calibration: Calibration {
-                steps_counts: std::array::from_fn(|i| of(finger + i as u32, 1e3)),
-                corrections: std::array::from_fn(|i| Correction {
-                    offset_k: of(finger + 13 + i as u32, 1e6),
-                    slope: of(finger + 18 + i as u32, 1e7),
-                    curvature_1_k: of(finger + 23 + i as u32, 1e8),
-                }),
-            },
-            tile: Tile::from_array([1.0, 0.0, 0.0, 0.1, 0.0].map(|base| base + of(finger + 28, 1e6))),
-        }
-    }))
-}
+use system_tests::flash::{BYTES, Flash, SECTOR, numbered};
+use thermal_display::settings::{Kept, Store};
 
 fn store<const FINGERS: usize>(cells: Cells) -> (Store<Flash, FINGERS>, Flash) {
     let flash = Flash::new(cells);
@@ -62,20 +35,9 @@ fn saved<const FINGERS: usize>(
     cells
 }
 
-/// Appends any bytes as the newest record; whether the flash has taken them.
-fn append(cells: &mut Cells, record: &[u8]) -> bool {
-    let flash = Flash::new(cells.clone());
-    let end = (3 * Sectors::<Flash>::BYTES) as u32;
-    let config = MapConfig::new(0..end);
-    let mut map = MapStorage::<(), _, _>::new(Sectors::new(flash.clone()), config, Cache::new_uncached());
-    let done = block_on(map.store_item(&mut [0; 512], &(), &record));
-    *cells = flash.cells();
-    done.is_ok()
-}
-
 /// Whether a save has turned to another page: the sector that it begins gets its seal, the one after that loses it.
 fn turns(before: &Cells, after: &Cells) -> bool {
-    let seals = |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * flash::SECTOR..][..8].to_vec());
+    let seals = |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * SECTOR..][..8].to_vec());
     seals(before) != seals(after)
 }
 
@@ -148,4 +110,27 @@ fn five_fingers_settings_survive_a_cut_in_any_operation() {
     let tried = campaign::<5>(110, 12);
     println!("{tried:?}");
     assert!(tried.cuts > 1000 && tried.turns >= 5, "{tried:?}");
+}
+
+#[test]
+fn settings_can_be_stored_whatever_byte_of_the_flash_is_damaged() {
+    // After 113 saves a sector is full and closed, the next is in use, and the third is empty.
+    let cells = (0..113).fold(Cells::new(vec![0xff; BYTES]), |cells, number| {
+        saved::<1>(&cells, numbered(number).as_ref(), None)
+    });
+    let next = numbered(200);
+    // Marks of all sectors, and every so often what is between them.
+    let places = (0..BYTES).filter(|place| {
+        let within = place % SECTOR;
+        !(16..SECTOR - 16).contains(&within) || within.is_multiple_of(61)
+    });
+    for place in places {
+        for flips in [0x01, 0x80, 0xff] {
+            let mut cells = cells.clone();
+            let byte = cells.bytes()[place] ^ flips;
+            assert!(cells.load(place, &[byte]));
+            let cells = saved::<1>(&cells, next.as_ref(), None);
+            assert_eq!(loaded::<1>(&cells), next, "byte {place} ^ {flips:#x}");
+        }
+    }
 }

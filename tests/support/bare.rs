@@ -2,9 +2,10 @@
 
 use hil_sim::machine::{Cells, Firmware, Machine, Wiring};
 
-/// Where the settings' sectors lie in the flash, and their bytes.
-const BEGIN: usize = 16 * 1024;
-const BYTES: usize = 3 * 16 * 1024;
+use crate::flash::{BYTES, SECTOR};
+
+/// Where the settings' sectors lie in the flash.
+const BEGIN: usize = SECTOR;
 /// Cycles of 16 MHz within which a device starts, and those of 180 MHz for a line and its answer.
 pub const START: u64 = 16_000_000;
 const LINE: u64 = 180_000 * 12;

@@ -1,4 +1,6 @@
-//! What the whole-system tests share: scenes, and runs of them on either engine.
+//! What the whole-system tests share: scenes, and runs of them on either engine; the flash of settings.
+
+pub mod flash;
 
 mod bare;
 

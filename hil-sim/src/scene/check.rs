@@ -8,6 +8,7 @@ use thermal_display::guard::Setpoint;
 use thermal_display::render::Mode;
 use toml::Spanned;
 
+use super::depth;
 use super::fault::faults;
 use super::file::{self, File};
 use super::infrared::infrared;
@@ -22,6 +23,7 @@ const SETTLE_S: f64 = 8.0;
 
 pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let source = Source { file: path, text };
+    depth::check(&source)?;
     let file: File = toml::from_str(text).map_err(|error| source.error(error.span(), error.message()))?;
     let duration_s = source.within("duration_s", &file.duration_s, 0.001, 86_400.0)?;
     let settle_s = match &file.settle_s {

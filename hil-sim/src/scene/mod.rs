@@ -1,6 +1,7 @@
 //! Scenes: what happens to the finger, the object and the device.
 
 mod check;
+mod depth;
 mod fault;
 mod file;
 mod infrared;

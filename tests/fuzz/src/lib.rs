@@ -5,12 +5,14 @@
 //! | `wire`     | bytes to the line reader, with ticks and touches between | what `device.rs` says of answers, outputs and states  |
 //! | `station`  | samples, lines, reasons to trip                          | the same, on every tick                               |
 //! | `settings` | values of `set` lines, then samples                      | they read back; no reading is off by more than 2.8 K  |
+//! | `flash`    | damage, records and cut saves in the settings' sectors    | nothing is read but what was written; a save mends it |
 //! | `scene`    | a scene's text                                           | an error names file and line, a scene has a plant     |
 //!
 //! And in all: no panic, no overflow of an integer, no hang. `cargo xtask fuzz` runs them; replaying one input is a call of
 //! [`Target::run`], a pure function.
 
 mod device;
+mod flash;
 mod scene;
 mod settings;
 mod start;
@@ -30,7 +32,7 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 4] = [
+pub const TARGETS: [Target; 5] = [
     Target {
         name: "wire",
         run: wire::run,
@@ -45,6 +47,11 @@ pub const TARGETS: [Target; 4] = [
         name: "settings",
         run: settings::run,
         show: settings::show,
+    },
+    Target {
+        name: "flash",
+        run: flash::run,
+        show: flash::show,
     },
     Target {
         name: "scene",

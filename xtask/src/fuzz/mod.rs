@@ -26,6 +26,8 @@ pub enum Target {
     Station,
     /// Any settings that lines can set, and what is read by them
     Settings,
+    /// Damage, records and saves in the flash that settings are in
+    Flash,
     /// The text of a scene
     Scene,
 }
@@ -36,6 +38,7 @@ impl Target {
             Self::Wire => "wire",
             Self::Station => "station",
             Self::Settings => "settings",
+            Self::Flash => "flash",
             Self::Scene => "scene",
         }
     }

@@ -1,12 +1,18 @@
-//! Three sectors of the emulated flash without a microcontroller.
+//! Three sectors of the emulated flash without a microcontroller, and what is kept in them.
 
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use embassy_futures::block_on;
 use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
 use hil_sim::machine::Cells;
+use sequential_storage::cache::Cache;
+use sequential_storage::map::{MapConfig, MapStorage};
+use thermal_display::settings::{Calibration, Correction, Kept, LONGEST, Sectors, Tile};
 
+/// Bytes of a sector.
 pub const SECTOR: usize = 16 * 1024;
+/// Bytes of all three.
 pub const BYTES: usize = 3 * SECTOR;
 
 /// Shared, so that cells outlive the store.
@@ -24,11 +30,14 @@ impl NorFlashError for Dead {
 }
 
 impl Flash {
+    /// Of these cells.
+    #[must_use]
     pub fn new(cells: Cells) -> Self {
         Self(Rc::new(RefCell::new(cells)))
     }
 
     /// As they are now.
+    #[must_use]
     pub fn cells(&self) -> Cells {
         self.0.borrow().clone()
     }
@@ -80,4 +89,39 @@ impl NorFlash for Flash {
         }
         Ok(())
     }
+}
+
+/// Settings that differ from each other in every value, or factory defaults.
+#[must_use]
+pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[Kept; FINGERS]> {
+    // Factory defaults are as good as any.
+    if number % 50 == 17 {
+        return None;
+    }
+    let of = |i: u32, per: f64| f64::from((number * 7919 + i * 104_729) % 2000) / per;
+    Some(std::array::from_fn(|finger| {
+        let finger = 40 * finger as u32;
+        Kept {
+            calibration: Calibration {
+                steps_counts: std::array::from_fn(|i| of(finger + i as u32, 1e3)),
+                corrections: std::array::from_fn(|i| Correction {
+                    offset_k: of(finger + 13 + i as u32, 1e6),
+                    slope: of(finger + 18 + i as u32, 1e7),
+                    curvature_1_k: of(finger + 23 + i as u32, 1e8),
+                }),
+            },
+            tile: Tile::from_array([1.0, 0.0, 0.0, 0.1, 0.0].map(|base| base + of(finger + 28, 1e6))),
+        }
+    }))
+}
+
+/// Appends any bytes as the newest record; whether the flash has taken them.
+pub fn append(cells: &mut Cells, record: &[u8]) -> bool {
+    let flash = Flash::new(cells.clone());
+    let end = (3 * Sectors::<Flash>::BYTES) as u32;
+    let config = MapConfig::new(0..end);
+    let mut map = MapStorage::<(), _, _>::new(Sectors::new(flash.clone()), config, Cache::new_uncached());
+    let done = block_on(map.store_item(&mut [0; LONGEST], &(), &record));
+    *cells = flash.cells();
+    done.is_ok()
 }
