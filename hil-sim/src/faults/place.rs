@@ -135,6 +135,11 @@ impl Place {
         }
     }
 
+    /// From when to when faults come, s.
+    pub(super) const fn span(self) -> (f64, f64) {
+        self.moments().0
+    }
+
     /// The host falls silent for two seconds at the beginning, and the device trips; the host clears that, arms and
     /// starts anew.
     #[must_use]
