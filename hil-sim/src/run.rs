@@ -12,6 +12,8 @@ use crate::trace::{Row, Trace};
 
 /// Time after the last row in which its telemetry arrives, ms.
 const DRAIN_MS: u64 = 5;
+/// Half a millisecond, µs.
+const HALF_MS_US: u64 = 500;
 
 /// What a run has given.
 #[derive(Clone, Debug)]
@@ -103,6 +105,7 @@ pub fn run_with<E: Engine>(
     }
     let mut session = Session {
         scene,
+        injections,
         engine,
         host: Host::new(scene, &settings, 1),
         zero_ms,
@@ -116,10 +119,7 @@ pub fn run_with<E: Engine>(
             before_j = session.engine.world().plant().energy().electrical_j;
         }
         session.boundary(ms);
-        let due = |one: &&&Injection| time_s(ms as f64 - 1.0) < one.t_s && one.t_s <= time_s(ms as f64);
-        for Injection { fault, .. } in injections.iter().filter(due) {
-            session.engine.inject(fault)?;
-        }
+        session.inject(2 * ms, |after_us| after_us == 0)?;
         if (zero_ms..=end_ms).contains(&ms) {
             let t_s = session.t_s(ms);
             let world = session.engine.world();
@@ -129,8 +129,10 @@ pub fn run_with<E: Engine>(
             trace.push(ms, row);
         }
         session.step_plant();
+        session.inject(2 * ms, |after_us| after_us > 0)?;
         session.engine.run_half_ms().map_err(RunError::Stop)?;
         session.send(2 * ms + 1);
+        session.inject(2 * ms + 1, |_| true)?;
         session.engine.run_half_ms().map_err(RunError::Stop)?;
         for line in session.lines() {
             match Telemetry::parse(&line) {
@@ -170,6 +172,7 @@ pub(crate) fn broken(scene: &Scene, t_s: f64) -> impl Iterator<Item = Broken> {
 
 struct Session<'a, E> {
     scene: &'a Scene,
+    injections: Vec<&'a Injection>,
     engine: &'a mut E,
     host: Host,
     zero_ms: u64,
@@ -189,6 +192,19 @@ impl<E: Engine> Session<'_, E> {
             .world()
             .set(self.scene.force_n(t_s), broken(self.scene, t_s));
         self.send(2 * ms);
+    }
+
+    /// What fails of the processor in a half millisecond since the start, at those of its microseconds.
+    fn inject(&mut self, half_ms: u64, at: impl Fn(u32) -> bool) -> Result<(), NotInjected> {
+        for injection in &self.injections {
+            // Not negative: the time has been checked to be in the run.
+            let us = (injection.t_s * 1e6 + self.zero_ms as f64 * 1e3).round() as u64;
+            let after_us = (us % HALF_MS_US) as u32;
+            if us / HALF_MS_US == half_ms && at(after_us) {
+                self.engine.inject(&injection.fault, after_us)?;
+            }
+        }
+        Ok(())
     }
 
     /// What the host sends at a half millisecond since the start.

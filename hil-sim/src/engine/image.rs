@@ -19,6 +19,7 @@ const TEST_PIN: (u8, u8) = (2, 3);
 /// From the first conversion to the first boundary, and between boundaries, picoseconds.
 const FIRST_BOUNDARY_PS: u64 = 230_000_000;
 const HALF_MS_PS: u64 = 500_000_000;
+const MICROSECOND_PS: u64 = 1_000_000;
 /// Longest time from power-up to the first conversion.
 const BOOT_S: u64 = 1;
 /// Cycles of one search step for the first conversion.
@@ -150,8 +151,17 @@ impl Engine for Image {
         into.append(&mut self.machine.wiring_mut().received);
     }
 
-    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected> {
+    fn inject(&mut self, fault: &MachineFault, after_us: u32) -> Result<(), NotInjected> {
+        let refused = |reason| NotInjected::Refused {
+            fault: *fault,
+            reason,
+        };
+        let begin_ps = self.first_boundary_ps + self.halves * HALF_MS_PS;
         let machine = &mut self.machine;
+        if after_us > 0 {
+            let reached = machine.run_until_ps(begin_ps + u64::from(after_us) * MICROSECOND_PS);
+            reached.map_err(|stop| refused(stop.into()))?;
+        }
         let injected = match *fault {
             MachineFault::RamBit { address, bit } => machine.flip_ram_bit(address, bit),
             MachineFault::CoreBit { register, bit } => machine.flip_core_bit(register, bit),
@@ -172,10 +182,7 @@ impl Engine for Image {
             MachineFault::SoftwareReset => machine.ask_for_reset().map_err(InjectError::from),
             MachineFault::StackOverflow => machine.exhaust_stack(),
         };
-        injected.map_err(|reason| NotInjected::Refused {
-            fault: *fault,
-            reason,
-        })
+        injected.map_err(refused)
     }
 
     fn resets(&self) -> Vec<DeviceReset> {

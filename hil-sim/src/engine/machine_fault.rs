@@ -61,7 +61,7 @@ pub enum MachineFault {
     StackOverflow,
 }
 
-/// A fault of the processor at a time of a scene: at the whole millisecond at or after it.
+/// A fault of the processor at a time of a scene, to the microsecond; at a whole millisecond before the plant's step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Injection {
     /// Time, s; negative while the scene settles.

@@ -60,11 +60,12 @@ pub trait Engine {
     /// Appends what the host has received since it last asked.
     fn receive(&mut self, into: &mut Vec<u8>);
 
-    /// A fault of the processor happens now.
+    /// A fault of the processor happens so long, µs (less than 500), after the present half millisecond's begin. An engine
+    /// without a processor has nothing in between: it happens at once.
     ///
     /// # Errors
-    /// The engine has no such part, or refuses the fault; the device is as before.
-    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected>;
+    /// The engine has no such part, or refuses the fault.
+    fn inject(&mut self, fault: &MachineFault, after_us: u32) -> Result<(), NotInjected>;
 
     /// Resets of the device after its power-up, the oldest first.
     fn resets(&self) -> Vec<DeviceReset>;

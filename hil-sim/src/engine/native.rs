@@ -258,7 +258,7 @@ impl Engine for Native {
 
     /// Without a processor a hung core, and samples that do not come, mean that no tick runs until the window watchdog
     /// resets the device; a reset starts the logic anew. All else has no meaning here.
-    fn inject(&mut self, fault: &MachineFault) -> Result<(), NotInjected> {
+    fn inject(&mut self, fault: &MachineFault, _after_us: u32) -> Result<(), NotInjected> {
         match fault {
             MachineFault::HungCore | MachineFault::AdcStopped => self.hung_ms = Some(0),
             MachineFault::DmaStopped { controller: 2, .. } => self.hung_ms = Some(0),

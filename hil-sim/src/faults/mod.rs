@@ -13,6 +13,7 @@
 
 mod campaign;
 mod entry;
+mod flips;
 mod list;
 mod normal;
 mod page;
@@ -27,6 +28,7 @@ mod verdict;
 
 pub use campaign::{Outline, Plan};
 pub use entry::{Entry, Injected, Right};
+pub use flips::{Class, Flip, Flipped, Memory, Reference, Region, flip_table};
 pub use list::entries;
 pub use normal::{Session, Used, use_table};
 pub use page::{HTML, page};

@@ -29,7 +29,7 @@ pub enum Place {
     Preset,
     /// Lifted and replaced, a second each.
     Replace,
-    /// The self-test, under a finger.
+    /// The self-test, under a finger: for its sake it waits for a second after the comparator's part.
     SelfTest,
     /// Off, after a fault that was cleared; the self-test follows.
     Off,
@@ -130,9 +130,14 @@ impl Place {
             Self::Touched => ((0.1, 4.0), &[0.2]),
             Self::Neutral | Self::Preset => ((0.1, 6.5), &[6.0]),
             Self::Replace => ((0.3, 7.0), &[1.5, 2.5, 3.5, 4.5]),
-            Self::SelfTest => ((4.0, 4.75), &[4.0, 4.02, 4.104, 4.304, 4.504]),
+            Self::SelfTest => ((4.0, 5.75), &[4.0, 4.02, 5.04, 5.104, 5.304, 5.504]),
             Self::Off => ((2.9, 3.99), &[]),
         }
+    }
+
+    /// From when to when faults come, s.
+    pub(super) const fn span(self) -> (f64, f64) {
+        self.moments().0
     }
 
     /// The host falls silent for two seconds at the beginning, and the device trips; the host clears that, arms and
@@ -182,7 +187,7 @@ impl Place {
         }
         if self.has_tripped_before().is_some() {
             text += "[[fault]]\nkind = \"host-silent\"\nt_s = 0.1\nuntil_s = 2.4\n";
-            for (t_s, line) in [(2.8, "clear"), (4.0, "arm"), (5.5, "start")] {
+            for (t_s, line) in [(2.8, "clear"), (4.0, "arm"), (6.0, "start")] {
                 text += &format!("[[host]]\nt_s = {t_s:?}\nline = \"{line}\"\n");
             }
         }

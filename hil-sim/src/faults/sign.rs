@@ -3,10 +3,12 @@
 //! All are told from the plant's truth: what the thermistors read and the mirror shows before the converter, the level of
 //! the fault line, and the current that the device says it asks for.
 //!
-//! What a device compares has been calibrated and has noise. So a difference counts here from the device's limit on, and
-//! what two sensors are apart when they are sound: 0.1 K of the display's, 0.5 K of skin and room, 0.2 K of two that are
-//! exchanged. A deviation that takes its time counts from its begin, if it lasts for as long as a device must wait to tell
-//! it from what a sound one does.
+//! What a device compares has been calibrated and has noise. So a temperature counts here from 0.1 K beyond the device's
+//! limit on, which is more than a calibrated thermistor is off: its thermometer is off by 0.02 K at most, the rest is
+//! converter and curve. A difference counts from what two sensors are apart when they are sound: 0.1 K of the display's,
+//! 0.5 K of skin and room, 0.2 K of two that are exchanged. A dose is one that the device has counted even if it reads 0.1 K
+//! too little: at 42 °C that is an eighth of it. A deviation that takes its time counts from its begin, if it lasts for as
+//! long as a device must wait to tell it from what a sound one does.
 
 use crate::dose::rate;
 use crate::plant::STEP_S;
@@ -29,18 +31,20 @@ pub enum Sign {
     CurrentOff,
     /// The mirror shows more than 7.5 A.
     OverCurrent,
-    /// The display's thermistor has gone back by 1 K while a mean of 1 A drove it the other way.
+    /// The display's thermistor has gone back by 1 K while a mean of 1 A drove it the other way, and the current that is
+    /// asked for still does: what follows a current that has turned is no deviation.
     WrongWay,
-    /// A thermistor of the display reads less than 13.5 or more than 43 °C.
+    /// A thermistor of the display reads less than 13.4 or more than 43.1 °C.
     DisplayLimit,
-    /// That of the sink reads more than 42 °C.
+    /// That of the sink reads more than 42.1 °C.
     SinkLimit,
     /// The fault line is low while the bridge is driven, the self-test aside, which pulls it.
     FaultLine,
-    /// Half a minute of CEM43 by the display's thermistor.
+    /// Half a minute of CEM43 by what the display's thermistor reads, less 0.1 K.
     Dose,
     /// A self-test that begins with the fault there is so old, s: the comparator's part is through at 0.02, the current's at
-    /// 0.304, the display's answer at 0.504, all at 0.704.
+    /// 0.304, the display's answer at 0.504, all at 0.704. What follows the comparator's part begins anew a second after a
+    /// finger lands or lifts, and a second later with one that rests.
     SelfTest(f64),
 }
 
@@ -55,9 +59,13 @@ const OVER_A: f64 = 7.5;
 const DIRECTED_A: f64 = 1.0;
 const MEAN_S: f64 = 0.25;
 const BACK_K: f64 = 1.0;
-const DISPLAY_C: std::ops::RangeInclusive<f64> = 13.5..=43.0;
-const SINK_C: f64 = 42.0;
+const DISPLAY_C: std::ops::RangeInclusive<f64> = 13.4..=43.1;
+const SINK_C: f64 = 42.1;
 const DOSE_MIN: f64 = 0.5;
+const DOSE_BELOW_K: f64 = 0.1;
+/// End of the comparator's part of a self-test, and what it waits for after a finger, ms.
+const COMPARATOR_MS: u32 = 40;
+const UNTOUCHED_MS: u32 = 1000;
 
 /// States in which the bridge is driven, the self-test aside.
 const DRIVEN: [&str; 3] = ["armed", "preset", "contact"];
@@ -113,11 +121,7 @@ impl Sign {
                 .find(|&i| rows[i].fault_line && DRIVEN.contains(&state(&rows[i - 1])))
                 .map(|i| rows[i].t_s),
             Self::Dose => dose(rows, from),
-            Self::SelfTest(age_s) => {
-                let begin = (from.max(1)..rows.len())
-                    .find(|&i| state(&rows[i]) == "self-test" && state(&rows[i - 1]) != "self-test")?;
-                Some(rows[begin].t_s + age_s).filter(|t_s| *t_s <= end_s)
-            }
+            Self::SelfTest(age_s) => self_test(rows, from, age_s),
         }
     }
 }
@@ -159,7 +163,8 @@ fn wrong_way(rows: &[Row]) -> Option<f64> {
     for row in rows {
         let asked_a = row.device.as_ref().and_then(|device| device.demand_a);
         mean_a += (asked_a.unwrap_or(0.0) - mean_a) * STEP_S / MEAN_S;
-        let Some(display_c) = read(row, DISPLAY).filter(|_| f64::abs(mean_a) >= DIRECTED_A) else {
+        let drives = f64::abs(mean_a) >= DIRECTED_A && asked_a.unwrap_or(0.0) * mean_a > 0.0;
+        let Some(display_c) = read(row, DISPLAY).filter(|_| drives) else {
             best_c = None;
             continue;
         };
@@ -177,10 +182,32 @@ fn wrong_way(rows: &[Row]) -> Option<f64> {
 fn dose(rows: &[Row], from: usize) -> Option<f64> {
     let mut minutes = 0.0;
     let mut doses = rows.iter().enumerate().map(|(i, row)| {
-        minutes += read(row, DISPLAY).map_or(0.0, rate) * STEP_S / 60.0;
+        minutes += read(row, DISPLAY).map_or(0.0, |display_c| rate(display_c - DOSE_BELOW_K)) * STEP_S / 60.0;
         (i, row.t_s, minutes)
     });
     doses
         .find(|(i, _, minutes)| *i >= from && *minutes >= DOSE_MIN)
         .map(|(_, t_s, _)| t_s)
+}
+
+/// When the first self-test that begins with the fault there is so old, s, landings and what they add left out.
+fn self_test(rows: &[Row], from: usize, age_s: f64) -> Option<f64> {
+    let begin = (from.max(1)..rows.len())
+        .find(|&i| state(&rows[i]) == "self-test" && state(&rows[i - 1]) != "self-test")?;
+    let (mut age_ms, mut wait_ms, mut touched) = (0, 0, false);
+    for row in &rows[begin..] {
+        if f64::from(age_ms) * 1e-3 >= age_s - 1e-9 {
+            return Some(row.t_s);
+        }
+        if (row.force_n > 0.0) != touched {
+            touched = !touched;
+            (age_ms, wait_ms) = (age_ms.min(COMPARATOR_MS), UNTOUCHED_MS);
+        }
+        if age_ms == COMPARATOR_MS && wait_ms > 0 {
+            wait_ms -= 1;
+        } else {
+            age_ms += 1;
+        }
+    }
+    None
 }

@@ -49,7 +49,8 @@ impl fmt::Display for CoreRegister {
 impl CoreRegister {
     /// Bits that exist and can flip: the two lowest of SP and the lowest of PC are always 0; a flip of the execution
     /// state (T, IT) is not modelled.
-    const fn bits(self) -> u32 {
+    #[must_use]
+    pub const fn bits(self) -> u32 {
         match self {
             Self::Sp => !3,
             Self::Pc => !1,

@@ -23,9 +23,7 @@ pub fn run(arguments: &Arguments, device: Device<'_>, numbers: std::ops::Range<u
     let campaigns: Vec<_> = numbers
         .map(|number| Campaign::new(arguments.seed, number, has_processor))
         .collect();
-    if let (Some(folder), Some(_), [campaign]) =
-        (&arguments.out, arguments.modes.replay, campaigns.as_slice())
-    {
+    if let (Some(folder), Some(_), [campaign]) = (&arguments.out, arguments.replay, campaigns.as_slice()) {
         write(folder, campaign).map_err(Failure::run)?;
     }
     let work = |campaign: &Campaign| {

@@ -1,6 +1,7 @@
 //! `hil-sim faults`: the fault-injection matrix, and what is built on it.
 
 mod campaign;
+mod flips;
 mod normal;
 mod pairs;
 
@@ -48,6 +49,10 @@ pub struct Arguments {
     out: Option<PathBuf>,
     #[command(flatten)]
     modes: Modes,
+    /// Again the campaign of a number, or with --flips the flip; its scene goes to --out
+    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(..10_000_000),
+        conflicts_with_all = ["only", "scene", "moments", "campaign", "pairs", "normal"])]
+    replay: Option<u64>,
 }
 
 /// What is run instead of the matrix; one of them.
@@ -57,9 +62,10 @@ struct Modes {
     /// Instead of the matrix: N random campaigns (fault, moment, scene, plant) of the seed
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
     campaign: Option<u64>,
-    /// Again the campaign of a number; its scene goes to --out
-    #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u64).range(..10_000_000))]
-    replay: Option<u64>,
+    /// Instead of the matrix: N single bit flips of the running image (place, bit, moment, scene) of the seed; scenes of
+    /// those that break a limit go to --out
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=10_000_000))]
+    flips: Option<u64>,
     /// Every fault that may go unnoticed before every other one; scenes of those that break the claim go to --out
     #[arg(long)]
     pairs: bool,
@@ -100,13 +106,29 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             ..
         } => campaign::run(arguments, device, 0..count),
         Modes {
-            replay: Some(number), ..
-        } => campaign::run(arguments, device, number..number + 1),
+            flips: Some(count), ..
+        } => {
+            let numbers = match arguments.replay {
+                None => 0..count,
+                Some(number) if number < count => number..number + 1,
+                Some(number) => {
+                    let problem = anyhow!(
+                        "--replay {number}; --flips {count} has numbers 0 to {}",
+                        count - 1
+                    );
+                    return Err(Failure::input(problem));
+                }
+            };
+            flips::run(arguments, device, numbers)
+        }
         Modes { pairs: true, .. } => pairs::run(arguments, device),
         Modes {
             normal: Some(hours), ..
         } => normal::run(arguments, device, hours),
-        Modes { .. } => matrix(arguments, device),
+        Modes { .. } => match arguments.replay {
+            Some(number) => campaign::run(arguments, device, number..number + 1),
+            None => matrix(arguments, device),
+        },
     }
 }
 

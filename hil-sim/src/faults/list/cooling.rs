@@ -7,7 +7,7 @@ use crate::faults::{Entry, Place, Sign};
 use crate::scene::FaultKind as Kind;
 
 const HOT: &[Sign] = &[Sign::SinkLimit, Sign::WrongWay, Sign::DisplayLimit];
-const HOT_REASONS: &[Fault] = &[Fault::SinkHot, Fault::Runaway];
+const HOT_REASONS: &[Fault] = &[Fault::SinkHot, Fault::Runaway, Fault::DisplayHot];
 
 /// The fan stops; what the sink is cooled by stops and takes the temperature of a hot room; something warm touches it.
 pub const ENTRIES: &[Entry] = &[

@@ -40,6 +40,20 @@ const STEP: &[Sign] = &[Sign::Jump];
 const DISPLAY_STEP: &[Fault] = &[Fault::DisplayJump, Fault::DisplayHot, Fault::DisplayCold];
 const CHECK_STEP: &[Fault] = &[Fault::CheckJump, Fault::DisplayHot, Fault::DisplayCold];
 const DRIFTED: &[Fault] = &[Fault::DisplaysApart, Fault::DisplayHot, Fault::DisplayCold];
+/// A slow thermistor may show too little of the self-test's pulse, or enough: how slow it was before is the device's.
+const LOOSE: &[Fault] = &[
+    Fault::DisplaysApart,
+    Fault::DisplayHot,
+    Fault::DisplayCold,
+    Fault::NoResponse,
+];
+const LOOSE_DISPLAY: &[Fault] = &[
+    Fault::DisplaysApart,
+    Fault::DisplayHot,
+    Fault::DisplayCold,
+    Fault::NoResponse,
+    Fault::Polarity,
+];
 const BEYOND: &[Fault] = &[Fault::DisplayHot, Fault::DisplayCold];
 const ROOM: &[Sign] = &[Sign::RoomAboveSkin];
 const ROOM_ABOVE: &[Fault] = &[Fault::RoomAboveSkin];
@@ -65,7 +79,7 @@ pub const READINGS: &[Entry] = &[
     Entry::trips(drift(Check, -5.0), APART, DRIFTED),
     Entry::trips(drift(Display, 2.9), LIMIT, BEYOND).at(&[Place::Cold]),
     Entry::trips(drift(Display, -2.9), LIMIT, BEYOND).at(&[Place::Warm]),
-    Entry::harmless(drift(Sink, 5.0)),
+    Entry::trips(drift(Sink, 5.0), &[Sign::SinkLimit], &[Fault::SinkHot]),
     Entry::harmless(drift(Sink, -5.0)),
     Entry::harmless(drift(Skin, 5.0)),
     Entry::harmless(drift(Skin, -3.0)),
@@ -87,10 +101,10 @@ pub const READINGS: &[Entry] = &[
     Entry::trips(
         loose(Display),
         &[Sign::Apart, Sign::DisplayLimit, Sign::WrongWay],
-        DRIFTED,
+        LOOSE_DISPLAY,
     )
     .at(&[Place::Slew, Place::Replace]),
-    Entry::trips(loose(Check), APART, DRIFTED).at(&[Place::Slew, Place::Replace]),
+    Entry::trips(loose(Check), APART, LOOSE).at(&[Place::Slew, Place::Replace]),
     Entry::harmless(loose(Sink)).at(&[Place::Cold]),
     Entry::harmless(loose(Skin)),
     Entry::harmless(loose(Room)),

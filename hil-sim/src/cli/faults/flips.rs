@@ -1,0 +1,61 @@
+//! `--flips`: single bit flips of the running image.
+
+use std::ops::Range;
+
+use anyhow::{Context, anyhow};
+use hil_sim::faults::{Class, Device, Flip, Flipped, Memory, Reference, flip_table};
+use serde::Serialize;
+
+use super::{Arguments, Failure, each, output};
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Report<'a> {
+    seed: u64,
+    holds: bool,
+    flips: &'a [Flipped],
+}
+
+/// Runs the flips of these numbers; a limit that is broken is a failure, and its scene goes to `--out`.
+pub fn run(arguments: &Arguments, device: Device<'_>, numbers: Range<u64>) -> Result<(), Failure> {
+    let Device::Image(firmware) = device else {
+        let problem = anyhow!("--flips with --engine native, which has no bits to flip; image is allowed");
+        return Err(Failure::input(problem));
+    };
+    let of_place = |place: &_| Reference::new(firmware, *place);
+    let references =
+        each(arguments, "references", device, &Reference::PLACES, of_place).map_err(Failure::run)?;
+    let stack_bytes = references.iter().filter_map(Reference::stack_bytes).max();
+    let memory = Memory::of(firmware, stack_bytes.unwrap_or(0)).map_err(Failure::run)?;
+    let seed = arguments.seed;
+    let flips: Vec<_> = numbers.map(|number| Flip::new(seed, number, &memory)).collect();
+    let work = |flip: &Flip| {
+        let flipped = flip.run(firmware, &references);
+        let flipped = flipped.with_context(|| format!("number {} of seed {seed}", flip.number))?;
+        if let (Some(folder), true) = (&arguments.out, flips.len() == 1 || flipped.class == Class::Broken) {
+            let path = folder.join(format!("flip-{}.toml", flip.number));
+            std::fs::write(&path, flip.text()).with_context(|| path.display().to_string())?;
+        }
+        Ok(flipped)
+    };
+    let ran = each(arguments, "flips", device, &flips, work).map_err(Failure::run)?;
+    let failing = ran.iter().filter(|run| run.class == Class::Broken).count();
+    let text = if arguments.json {
+        let report = Report {
+            seed,
+            holds: failing == 0,
+            flips: &ran,
+        };
+        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
+    } else {
+        flip_table(&ran)
+    };
+    output::print(&text)?;
+    if failing == 0 {
+        return Ok(());
+    }
+    Err(Failure::run(anyhow!(
+        "{failing} of {} flips break a limit; --replay NUMBER with the same --flips and --seed repeats one",
+        ran.len()
+    )))
+}
