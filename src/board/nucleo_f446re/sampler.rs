@@ -138,6 +138,8 @@ impl Sampler {
     /// # Errors
     /// [`SampleError`]; samples are then missing and control cannot go on.
     pub fn take(&mut self) -> Result<(usize, &[Scan; SCANS_PER_TICK]), SampleError> {
+        // First, as it is the tick's begin that counts; what else is wrong says more.
+        let in_time = self.timekeeper.take();
         let finger = self.finger;
         self.finger = if finger + 1 < FINGERS { finger + 1 } else { 0 };
         self.multiplexer.select(self.finger);
@@ -156,7 +158,7 @@ impl Sampler {
             return Err(SampleError::Late);
         }
         self.last = which;
-        self.timekeeper.take()?;
+        in_time?;
         if finger == 0 {
             log::count_tick();
         }
