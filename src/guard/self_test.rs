@@ -11,7 +11,7 @@
 //! display is told to do a little, 0.2 to 0.5 K, and both of its thermistors must show it, against the slope that they
 //! had before; a display that answers the wrong way round, or not at all, trips. Nothing else than a display answers in
 //! 0.2 s: a thermistor on the sink moves by a hundredth of it, the other way. What flows is looked at both ways round. A
-//! finger that lands or lifts lets the rest begin anew a second later.
+//! finger that rests there, lands or lifts lets the rest begin a second later.
 
 use core::mem;
 
