@@ -54,7 +54,8 @@ pub struct Number {
     pub max: f64,
 }
 
-/// Why a line was refused; `Display` writes the answer without its end, at most 168 bytes.
+/// Why a line was refused; `Display` writes the answer without its end, at most
+/// [`ANSWER_MAX`](super::ANSWER_MAX) bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
     /// The bytes made no line.

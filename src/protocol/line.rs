@@ -5,6 +5,9 @@ use heapless::String;
 /// Longest line from the host, in bytes, without its end.
 pub const LINE_MAX: usize = 96;
 
+/// Longest line to the host, in bytes, without a finger before it and without its end.
+pub const ANSWER_MAX: usize = 172;
+
 /// One complete line.
 pub type Line = String<LINE_MAX>;
 

@@ -15,7 +15,7 @@ pub use address::{Addressed, Request};
 pub use command::Command;
 pub(crate) use command::number;
 pub use error::{Error, Number, Reason, Word};
-pub use line::{LINE_MAX, Line, LineError, LineReader};
+pub use line::{ANSWER_MAX, LINE_MAX, Line, LineError, LineReader};
 pub use reply::{Reply, Setting, Status};
 pub use telemetry::Telemetry;
 

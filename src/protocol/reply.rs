@@ -14,7 +14,8 @@ use crate::settings::{Calibration, Correction, Tile};
 
 use crate::{SCANS_PER_SECOND, TICK_HZ};
 
-/// An answer; `Display` writes the line without its end, at most 168 bytes but for a row, which stays in the device.
+/// An answer; `Display` writes the line without its end, at most
+/// [`ANSWER_MAX`](super::ANSWER_MAX) bytes but for a row, which stays in the device.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
     /// It is done.

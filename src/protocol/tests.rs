@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use contact_model::fixed_point::{Celsius, Force};
 
-use super::{Command, Error, LINE_MAX, LineError, LineReader, Reply, Status, Telemetry};
+use super::{ANSWER_MAX, Command, Error, LINE_MAX, LineError, LineReader, Reply, Status, Telemetry};
 use crate::control::Law;
 use crate::drive::Current;
 use crate::guard::{Fault, State};
@@ -19,7 +19,7 @@ fn parse(line: &str) -> Result<Command, Error> {
 
 fn refusal(line: &str) -> String {
     let answer = parse(line).expect_err(line).to_string();
-    assert!(answer.len() <= 168, "{answer}");
+    assert!(answer.len() <= ANSWER_MAX, "{answer}");
     answer
 }
 
@@ -155,7 +155,7 @@ proptest! {
         prop_assert_eq!(lines.last(), Some(&Ok("object 25".to_string())));
         for line in lines.into_iter().flatten() {
             if let Err(error) = parse(&line) {
-                prop_assert!(error.to_string().len() <= 168);
+                prop_assert!(error.to_string().len() <= ANSWER_MAX);
             }
         }
     }
@@ -173,7 +173,15 @@ fn the_longest_lines_fit() {
         limited: true,
     };
     let answer = Reply::Status(status).to_string();
-    assert!(answer.len() <= 168 && answer.ends_with(" limited"), "{answer}");
+    assert!(
+        answer.len() <= ANSWER_MAX && answer.ends_with(" limited"),
+        "{answer}"
+    );
+    let unknown = refusal(&"x".repeat(LINE_MAX));
+    assert!(
+        unknown.len() == ANSWER_MAX && unknown.ends_with(" forget"),
+        "{unknown}"
+    );
 
     let longest = Telemetry {
         tick: u32::MAX,
@@ -190,5 +198,8 @@ fn the_longest_lines_fit() {
         evaluations: u32::MAX,
     };
     let line = longest.to_string();
-    assert!(line.len() <= 168 && line.ends_with(" display-short"), "{line}");
+    assert!(
+        line.len() <= ANSWER_MAX && line.ends_with(" display-short"),
+        "{line}"
+    );
 }

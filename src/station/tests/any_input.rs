@@ -6,6 +6,7 @@ use std::vec::Vec;
 use super::Bench;
 use crate::drive::{Drive, Duty};
 use crate::guard::{Setpoint, State};
+use crate::protocol::ANSWER_MAX;
 use crate::sense::Samples;
 
 /// A sum of counts: mostly a plausible one, sometimes any.
@@ -127,7 +128,7 @@ fn step(bench: &mut Bench, samples: &Samples) -> Result<(), TestCaseError> {
 fn tell(bench: &mut Bench, line: &str) -> Result<(), TestCaseError> {
     let before = bench.state();
     let answer = bench.host(line);
-    prop_assert!(answer.len() <= 160);
+    prop_assert!(answer.len() <= ANSWER_MAX);
     prop_assert!(line != "abort" || answer == "ok");
     if matches!(before, State::Tripped(_)) && line != "clear" {
         prop_assert_eq!(before, bench.state());

@@ -14,7 +14,7 @@ use thermal_display::settings::Settings;
 use crate::tile::{FULL, Tile, sum_at};
 
 /// Longest answer and telemetry line, bytes: what is said, and `@n ` before it.
-const ANSWER_MAX: usize = 160 + 3;
+const ANSWER_MAX: usize = 172 + 3;
 const TELEMETRY_MAX: usize = 128 + 3;
 /// What a display's reading may be off by, whatever lines have set, K: 2.52 of its correction, 0.18 of the converter's
 /// steps, 0.04 of its own warmth.
