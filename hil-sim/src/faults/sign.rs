@@ -31,8 +31,9 @@ pub enum Sign {
     CurrentOff,
     /// The mirror shows more than 7.5 A.
     OverCurrent,
-    /// The display's thermistor has gone back by 1 K while a mean of 1 A drove it the other way, and the current that is
-    /// asked for still does: what follows a current that has turned is no deviation.
+    /// The display's thermistor has gone back by 1 K, farther from the set-point, while a mean of 1 A drove it there, and the
+    /// current that is asked for still does. What follows a current that has turned, or goes to the set-point from the other
+    /// side as the current eases off, is no deviation.
     WrongWay,
     /// A thermistor of the display reads less than 13.4 or more than 43.1 °C.
     DisplayLimit,
@@ -159,12 +160,18 @@ fn current_off(rows: &[Row]) -> Option<f64> {
 }
 
 fn wrong_way(rows: &[Row]) -> Option<f64> {
-    let (mut mean_a, mut best_c) = (0.0, None::<f64>);
+    let (mut mean_a, mut best_c) = (0.0f64, None::<f64>);
     for row in rows {
         let asked_a = row.device.as_ref().and_then(|device| device.demand_a);
         mean_a += (asked_a.unwrap_or(0.0) - mean_a) * STEP_S / MEAN_S;
-        let drives = f64::abs(mean_a) >= DIRECTED_A && asked_a.unwrap_or(0.0) * mean_a > 0.0;
-        let Some(display_c) = read(row, DISPLAY).filter(|_| drives) else {
+        let setpoint_c = row.device.as_ref().and_then(|device| device.setpoint_c);
+        let driven = |display_c: &f64| {
+            let from_setpoint_k = setpoint_c.map_or(0.0, |setpoint_c| display_c - setpoint_c);
+            mean_a.abs() >= DIRECTED_A
+                && asked_a.unwrap_or(0.0) * mean_a > 0.0
+                && from_setpoint_k * mean_a > 0.0
+        };
+        let Some(display_c) = read(row, DISPLAY).filter(driven) else {
             best_c = None;
             continue;
         };
