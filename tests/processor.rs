@@ -93,6 +93,17 @@ fn a_reset_that_was_asked_for_is_no_fault_and_another_one_is() {
 }
 
 #[test]
+fn what_fails_does_so_at_its_microsecond() {
+    for t_s in [1.0, 1.000_25, 1.000_5, 1.000_731] {
+        let resets = failing(t_s, "reset-pin").resets;
+        assert!(
+            matches!(resets[..], [reset] if (reset.t_s - t_s).abs() < 1e-6),
+            "{t_s} s: {resets:?}"
+        );
+    }
+}
+
+#[test]
 fn a_flip_of_memory_that_nothing_uses_changes_nothing() {
     let (whole, flipped) = (on_image(&copper()), failing(1.0, "ram-bit=0x20010000.0"));
     assert!(whole.resets.is_empty() && flipped.resets.is_empty());

@@ -31,8 +31,9 @@ pub enum Sign {
     CurrentOff,
     /// The mirror shows more than 7.5 A.
     OverCurrent,
-    /// The display's thermistor has gone back by 1 K while a mean of 1 A drove it the other way, and the current that is
-    /// asked for still does: what follows a current that has turned is no deviation.
+    /// The display's thermistor has gone back by 1 K, farther from the set-point, while a mean of 1 A drove it there, and the
+    /// current that is asked for still does. What follows a current that has turned, or goes to the set-point from the other
+    /// side as the current eases off, is no deviation.
     WrongWay,
     /// A thermistor of the display reads less than 13.4 or more than 43.1 °C.
     DisplayLimit,
@@ -159,12 +160,18 @@ fn current_off(rows: &[Row]) -> Option<f64> {
 }
 
 fn wrong_way(rows: &[Row]) -> Option<f64> {
-    let (mut mean_a, mut best_c) = (0.0, None::<f64>);
+    let (mut mean_a, mut best_c) = (0.0f64, None::<f64>);
     for row in rows {
         let asked_a = row.device.as_ref().and_then(|device| device.demand_a);
         mean_a += (asked_a.unwrap_or(0.0) - mean_a) * STEP_S / MEAN_S;
-        let drives = f64::abs(mean_a) >= DIRECTED_A && asked_a.unwrap_or(0.0) * mean_a > 0.0;
-        let Some(display_c) = read(row, DISPLAY).filter(|_| drives) else {
+        let setpoint_c = row.device.as_ref().and_then(|device| device.setpoint_c);
+        let driven = |display_c: &f64| {
+            let from_setpoint_k = setpoint_c.map_or(0.0, |setpoint_c| display_c - setpoint_c);
+            mean_a.abs() >= DIRECTED_A
+                && asked_a.unwrap_or(0.0) * mean_a > 0.0
+                && from_setpoint_k * mean_a > 0.0
+        };
+        let Some(display_c) = read(row, DISPLAY).filter(driven) else {
             best_c = None;
             continue;
         };
@@ -210,4 +217,89 @@ fn self_test(rows: &[Row], from: usize, age_s: f64) -> Option<f64> {
         }
     }
     None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::World;
+    use crate::scene::Scene;
+    use crate::telemetry::Telemetry;
+
+    /// A row each millisecond for 4 s; `at` makes of it what it shall be.
+    fn rows(at: impl Fn(f64, &mut Row, &mut Telemetry)) -> Vec<Row> {
+        let text = "duration_s = 1\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\n";
+        let scene = Scene::parse(text, "rows".as_ref()).expect("a scene");
+        let world = World::new(&scene).expect("a plant");
+        let row = |ms: u32| {
+            let mut row = Row::now(f64::from(ms) / 1e3, world.plant(), None);
+            let mut device = Telemetry::parse("T 1 armed - - - - - - - - 0 -").expect("telemetry");
+            at(row.t_s, &mut row, &mut device);
+            row.device = Some(device);
+            row
+        };
+        (0..4000).map(row).collect()
+    }
+
+    fn about(reached_s: Option<f64>, expected_s: f64) {
+        let off_s = reached_s.map(|reached_s| (reached_s - expected_s).abs());
+        assert!(
+            off_s.is_some_and(|off_s| off_s < 2e-3),
+            "{reached_s:?}, not {expected_s} s"
+        );
+    }
+
+    /// Parts at 20, 304, 504 and 704 ms; a finger adds a second to what follows the first 40 ms.
+    #[test]
+    fn a_self_test_is_as_old_as_a_finger_lets_it_be() {
+        let with_finger_from = |from_s: f64| {
+            rows(move |t_s, row, device| {
+                row.force_n = if t_s >= from_s { 2.0 } else { 0.0 };
+                device.state = if t_s >= 1.0 { "self-test" } else { "off" }.into();
+            })
+        };
+        for (from_s, age_s, expected_s) in [
+            (9.0, 0.02, 1.02),
+            (9.0, 0.304, 1.304),
+            (0.0, 0.02, 1.02),
+            (0.0, 0.304, 2.304),
+            (1.2, 0.304, 1.2 + 1.0 + 0.264),
+        ] {
+            about(
+                Sign::SelfTest(age_s).reached_s(&with_finger_from(from_s), 500),
+                expected_s,
+            );
+        }
+        let rows = with_finger_from(0.0);
+        assert_eq!(
+            Sign::SelfTest(0.02).reached_s(&rows, 1100),
+            None,
+            "the fault came later"
+        );
+    }
+
+    /// A reading that rises by 2 K/s from 2 s on, while 6 A cool until `turns_s`.
+    fn rising(setpoint_c: f64, turns_s: f64) -> Vec<Row> {
+        rows(move |t_s, row, device| {
+            row.taken.thermistors_c[DISPLAY] = Some(24.0 + 2.0 * (t_s - 2.0).max(0.0));
+            device.setpoint_c = Some(setpoint_c);
+            device.demand_a = Some(if t_s < turns_s { 6.0 } else { -6.0 });
+        })
+    }
+
+    #[test]
+    fn a_display_goes_the_wrong_way_only_from_its_set_point_and_against_the_current() {
+        about(Sign::WrongWay.reached_s(&rising(20.0, 9.0), 500), 2.5);
+        assert_eq!(Sign::WrongWay.reached_s(&rising(30.0, 9.0), 500), None);
+        assert_eq!(Sign::WrongWay.reached_s(&rising(20.0, 2.1), 500), None);
+    }
+
+    /// A second at 47 °C is worth 16 at 43 °C: half a minute takes 1.875 s.
+    #[test]
+    fn a_dose_is_counted_from_a_tenth_of_a_kelvin_less() {
+        let warm = rows(|t_s, row, _| {
+            row.taken.thermistors_c[DISPLAY] = Some(if t_s < 1.0 { 30.0 } else { 47.1 });
+        });
+        about(Sign::Dose.reached_s(&warm, 500), 1.0 + 1.875);
+    }
 }

@@ -6,6 +6,7 @@ mod normal;
 mod pairs;
 
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
@@ -203,7 +204,8 @@ fn outlines(arguments: &Arguments, plan: &Plan, device: Device<'_>) -> anyhow::R
     Ok(rows.map(|(entry, trials)| Outline::new(entry, trials)).collect())
 }
 
-/// Does the work of every item on the threads that are asked for, and shows how far it is.
+/// Does the work of every item on the threads that are asked for, and shows how far it is; where no terminal is, a line
+/// for every twentieth.
 fn each<T: Sync, R: Send>(
     arguments: &Arguments,
     what: &str,
@@ -216,7 +218,20 @@ fn each<T: Sync, R: Send>(
     bar.set_message(format!("{what} on engine {}", device.name()));
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
     let threads = arguments.threads.map_or_else(cores, usize::from);
-    let results = fidelity::map(items, threads, work, || bar.inc(1));
+    let twentieth = |count: usize| count * 20 / items.len().max(1);
+    let done = AtomicUsize::new(0);
+    let results = fidelity::map(items, threads, work, || {
+        bar.inc(1);
+        let before = done.fetch_add(1, Ordering::Relaxed);
+        if bar.is_hidden() && twentieth(before) != twentieth(before + 1) {
+            eprintln!(
+                "{what}: {} of {} in {:.0} s",
+                before + 1,
+                items.len(),
+                bar.elapsed().as_secs_f64()
+            );
+        }
+    });
     bar.finish_and_clear();
     results
 }
