@@ -5,17 +5,17 @@ use contact_model::fixed_point::Celsius;
 use super::Fault;
 use super::limits::Sound;
 
-/// Ticks between two looks.
-const TICKS: u8 = 4;
+/// Ticks between the readings that are compared.
+const TICKS: usize = 4;
 /// Most that a reading moves meanwhile. The bridge at its limit moves a bare display by 16 K/s, 0.06 K, and full supply
 /// by 25 K/s; noise is 4 mK.
 const MOST: Celsius = Celsius::lit("0.5");
 
-/// The readings at the last look.
+/// The readings of the last ticks, in turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Jump {
-    last: Option<[Celsius; 3]>,
-    ticks: u8,
+    last: [Option<[Celsius; 3]>; TICKS],
+    oldest: u8,
 }
 
 impl Jump {
@@ -24,13 +24,10 @@ impl Jump {
     /// # Errors
     /// Display, its second thermistor or sink has jumped.
     pub fn check(&mut self, sound: &Sound) -> Result<(), Fault> {
-        self.ticks += 1;
-        if self.ticks < TICKS {
-            return Ok(());
-        }
-        self.ticks = 0;
         let now = [sound.display, sound.check, sound.sink];
-        let Some([display, check, sink]) = self.last.replace(now) else {
+        let before = self.last[usize::from(self.oldest) % TICKS].replace(now);
+        self.oldest = self.oldest.wrapping_add(1);
+        let Some([display, check, sink]) = before else {
             return Ok(());
         };
         let jumped = |now: Celsius, before: Celsius| now.saturating_sub(before).saturating_abs() > MOST;

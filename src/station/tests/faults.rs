@@ -139,7 +139,7 @@ fn the_dose_goes_on_while_something_else_is_wrong() {
     bench.force_n = 0.0;
     bench.steps(10_000);
     (bench.display_c, bench.check_c) = (39.5, 39.5);
-    bench.step();
+    bench.steps(5);
     assert_eq!(bench.host("clear"), "err fault dose is still present");
 }
 
@@ -228,6 +228,7 @@ fn display_thermistors_that_stay_apart_trip() {
     bench.steps(200);
     assert_eq!(bench.state(), State::Preset);
     drift(&mut bench, -2.9);
+    bench.steps(4);
     bench.check_c = bench.display_c - 3.1;
     bench.steps(39);
     assert_eq!(bench.state(), State::Preset);
@@ -236,6 +237,20 @@ fn display_thermistors_that_stay_apart_trip() {
         (bench.state().fault().map(Fault::name), drive),
         (Some("displays-apart"), Drive::Off)
     );
+}
+
+/// Against the current, by more than a display that goes the wrong way: in every phase of the detectors.
+#[test]
+fn a_reading_that_steps_is_a_jump_whatever_the_current_does() {
+    for phase in 0..8 {
+        let mut bench = Bench::presenting("copper");
+        bench.current_a = None;
+        bench.steps(300 + phase);
+        let cooled = bench.display_c > bench.setpoint_c();
+        bench.display_c += if cooled { 2.0 } else { -2.0 };
+        bench.step();
+        assert_eq!(bench.state().fault(), Some(Fault::DisplayJump), "{phase}");
+    }
 }
 
 /// The comparator keeps the supply cut after the wire is mended; the self-test gives it back.
