@@ -235,11 +235,10 @@ impl Board {
         };
         let dma2 = StreamsTuple::new(device.DMA2, &mut rcc);
         let (sampler, trigger) = Sampler::new(
-            device.ADC1,
+            sampler::Converter::new(device.ADC1, inputs, &mut rcc),
             device.TIM2,
             Timekeeper::new(counter, rcc.clocks.hclk().raw()),
             dma2.0,
-            inputs,
             multiplexer,
             &mut memory.scans,
             &mut rcc,

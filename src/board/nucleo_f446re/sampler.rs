@@ -99,11 +99,10 @@ impl Trigger {
 impl Sampler {
     /// Gets ready to sample, finger 0 first: a block of each finger a tick.
     pub fn new(
-        adc: ADC1,
+        converter: Converter,
         timer: TIM2,
         timekeeper: Timekeeper,
         stream: Stream0<DMA2>,
-        inputs: Inputs,
         multiplexer: Multiplexer,
         blocks: &'static mut [Block; BLOCKS],
         rcc: &mut Rcc,
@@ -115,7 +114,6 @@ impl Sampler {
             .double_buffer(true)
             .transfer_complete_interrupt(true)
             .transfer_error_interrupt(true);
-        let converter = Converter::new(adc, inputs, rcc);
         let mut transfer =
             Transfer::init_peripheral_to_memory(stream, converter, first, Some(second), config);
         transfer.start(|_| {});
@@ -182,14 +180,14 @@ impl Sampler {
 /// The library's driver measures the supply by the internal reference when it is set up; here every sensor
 /// is ratiometric to the supply, so that would be a second, slower path through the same registers for
 /// nothing. It also knows nothing of the overrun interrupt.
-struct Converter {
+pub struct Converter {
     adc: ADC1,
     _inputs: Inputs,
 }
 
 impl Converter {
     /// 90 MHz / 4: 22.5 MHz (36 at most), sampling for [`SAMPLE_TIME`].
-    fn new(adc: ADC1, inputs: Inputs, rcc: &mut Rcc) -> Self {
+    pub fn new(adc: ADC1, inputs: Inputs, rcc: &mut Rcc) -> Self {
         ADC1::enable(rcc);
         ADC1::reset(rcc);
         // SAFETY: the common registers belong to the three converters, of which only ADC1 is used.
