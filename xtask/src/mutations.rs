@@ -1,7 +1,7 @@
 //! Each detector of the guard removed in turn: the fault-injection matrix must notice.
 //!
-//! A copy of the sources, in which one line is changed, is built and runs the rows that the detector is for, natively. A
-//! mutation that no row notices is a hole in the matrix.
+//! A copy of the sources, in which one line is changed, is built and runs the rows that the detector is for, natively or, if
+//! it is the board's, as an image. A mutation that no row notices is a hole in the matrix.
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
@@ -22,6 +22,8 @@ struct Mutation {
     to: &'static str,
     /// Kinds of the faults that it is for.
     only: &'static [&'static str],
+    /// What runs them: the board's detectors are in the image only.
+    engine: &'static str,
 }
 
 const fn mutation(
@@ -37,6 +39,20 @@ const fn mutation(
         from,
         to,
         only,
+        engine: "native",
+    }
+}
+
+const fn on_board(
+    detector: &'static str,
+    file: &'static str,
+    from: &'static str,
+    to: &'static str,
+    only: &'static [&'static str],
+) -> Mutation {
+    Mutation {
+        engine: "image",
+        ..mutation(detector, file, from, to, only)
     }
 }
 
@@ -44,14 +60,36 @@ const LIMITS: &str = "src/guard/limits.rs";
 const JUMP: &str = "src/guard/jump.rs";
 const WATCH: &str = "src/guard/watch.rs";
 const SELF_TEST: &str = "src/guard/self_test.rs";
+const THERMISTOR: &str = "src/sense/thermistor.rs";
 
-const MUTATIONS: [Mutation; 17] = [
+const MUTATIONS: [Mutation; 30] = [
     mutation(
         "excitation",
         LIMITS,
         "Err(SensorFault::Short); 5]",
         "Err(SensorFault::Open); 5]",
         &["reference-off"],
+    ),
+    mutation(
+        "open thermistor",
+        THERMISTOR,
+        "SHORT_BELOW..=OPEN_ABOVE => Ok(()),",
+        "SHORT_BELOW..=u16::MAX => Ok(()),",
+        &["thermistor-open"],
+    ),
+    mutation(
+        "shorted thermistor",
+        THERMISTOR,
+        "..SHORT_BELOW => Err(SensorFault::Short),",
+        "..SHORT_BELOW => Ok(()),",
+        &["thermistor-short"],
+    ),
+    mutation(
+        "force sensor",
+        "src/sense/force.rs",
+        "if sum < self.broken_below || sum > TOP {",
+        "if sum < self.broken_below && sum > TOP {",
+        &["force-open"],
     ),
     mutation(
         "display hot",
@@ -126,8 +164,8 @@ const MUTATIONS: [Mutation; 17] = [
     mutation(
         "dose",
         WATCH,
-        ".and(self.dose.check(sound.display.max(sound.check)))",
-        ".and(self.dose.check(Celsius::ZERO))",
+        "|warmest| self.dose.check(warmest)",
+        "|_| self.dose.check(Celsius::ZERO)",
         &["host-line"],
     ),
     mutation(
@@ -159,11 +197,81 @@ const MUTATIONS: [Mutation; 17] = [
         &["polarity-swapped"],
     ),
     mutation(
+        "runaway",
+        "src/guard/response.rs",
+        "const SLOW_TICKS: u16 = 2000;",
+        "const SLOW_TICKS: u16 = u16::MAX;",
+        &["fan-off"],
+    ),
+    mutation(
+        "fault line",
+        "src/station.rs",
+        "let bridge = if pulled {",
+        "let bridge = if pulled && self.tick == 0 {",
+        &["bridge-shorted"],
+    ),
+    mutation(
         "comparator test",
         SELF_TEST,
         "&& cut != testing {",
         "&& cut && !testing {",
         &["comparator-dead"],
+    ),
+    mutation(
+        "polarity test",
+        SELF_TEST,
+        "if fell < -i64::from(LEAST.to_bits()) {",
+        "if fell < -i64::from(Celsius::MAX.to_bits()) {",
+        &["polarity-swapped"],
+    ),
+    mutation(
+        "response test",
+        SELF_TEST,
+        "if !(i64::from(LEAST.to_bits())..=",
+        "if !(i64::MIN..=",
+        &["thermistor-stuck"],
+    ),
+    mutation(
+        "current test",
+        SELF_TEST,
+        "if mean < i64::from(LEAST_A.to_bits()) {",
+        "if mean < 0 {",
+        &["leg-open"],
+    ),
+    on_board(
+        "pace",
+        "src/board/nucleo_f446re/timekeeper.rs",
+        "if !self.pace.keeps(SYST::get_current()) {",
+        "if !self.pace.keeps(SYST::get_current()) && FINGERS > 9 {",
+        &["register-bit"],
+    ),
+    on_board(
+        "clocks",
+        "src/board/nucleo_f446re/timekeeper.rs",
+        "if clocks() != self.clocks {",
+        "if clocks() != self.clocks && FINGERS > 9 {",
+        &["register-bit"],
+    ),
+    on_board(
+        "stack guard",
+        "src/board/nucleo_f446re/stack.rs",
+        ".any(|word| word.load(Ordering::Relaxed) != UNTOUCHED)",
+        ".all(|word| word.load(Ordering::Relaxed) != UNTOUCHED)",
+        &["ram-bit"],
+    ),
+    on_board(
+        "window watchdog",
+        "src/board/nucleo_f446re/window.rs",
+        "w.wdga().enabled()\n        });\n        Self(wwdg)",
+        "w.wdga().disabled()\n        });\n        Self(wwdg)",
+        &["hung-core"],
+    ),
+    on_board(
+        "clock security",
+        "src/board/nucleo_f446re/mod.rs",
+        "w.csson().on()",
+        "w.csson().off()",
+        &["hse-stopped"],
     ),
 ];
 
@@ -207,22 +315,21 @@ pub fn run() -> Result<()> {
         line.push(workspace().join(FOLDER).join("target").into());
         line
     };
-    let matrix = |only: &[&str]| {
+    let matrix = |engine: &str, only: &[&str]| {
         let mut line = hil_sim("run");
-        line.extend(["--", "faults", "--engine", "native", "--moments", "4", "--only"].map(OsString::from));
+        line.extend(["--", "faults", "--engine", engine, "--moments", "4", "--only"].map(OsString::from));
         line.extend(only.iter().map(OsString::from));
         Invocation::cargo(line)
     };
-    let mut kinds: Vec<_> = MUTATIONS
-        .iter()
-        .flat_map(|mutation| mutation.only)
-        .copied()
-        .collect();
-    kinds.sort_unstable();
-    kinds.dedup();
-    matrix(&kinds)
-        .run_to_stderr()
-        .context("the sources as they are must pass")?;
+    for engine in ["native", "image"] {
+        let of_engine = MUTATIONS.iter().filter(|mutation| mutation.engine == engine);
+        let mut kinds: Vec<_> = of_engine.flat_map(|mutation| mutation.only).copied().collect();
+        kinds.sort_unstable();
+        kinds.dedup();
+        matrix(engine, &kinds)
+            .run_to_stderr()
+            .context("the sources as they are must pass")?;
+    }
     let mut unnoticed = Vec::new();
     for mutation in &MUTATIONS {
         let path = copy.join(mutation.file);
@@ -230,7 +337,7 @@ pub fn run() -> Result<()> {
         fs::write(&path, mutated(mutation, &text)?)?;
         // What does not build is no mutation.
         Invocation::cargo(hil_sim("build")).run_to_stderr()?;
-        let noticed = matrix(mutation.only).run_to_stderr().is_err();
+        let noticed = matrix(mutation.engine, mutation.only).run_to_stderr().is_err();
         fs::write(&path, text)?;
         println!(
             "{:16} {}",
