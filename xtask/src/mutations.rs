@@ -277,6 +277,12 @@ const MUTATIONS: [Mutation; 30] = [
 
 /// Folder of the copy and of what is built from it.
 const FOLDER: &str = "target/mutations";
+/// What is built for each mutation runs a few rows only.
+const QUICKLY_BUILT: [&str; 3] = [
+    "profile.release.lto = \"off\"",
+    "profile.release.codegen-units = 16",
+    "profile.release.incremental = true",
+];
 /// What of the workspace is copied.
 const COPIED: [&str; 13] = [
     "Cargo.toml",
@@ -313,6 +319,9 @@ pub fn run() -> Result<()> {
         line.push(copy.join("Cargo.toml").into());
         line.push("--target-dir".into());
         line.push(workspace().join(FOLDER).join("target").into());
+        for setting in QUICKLY_BUILT {
+            line.extend(["--config", setting].map(OsString::from));
+        }
         line
     };
     let matrix = |engine: &str, only: &[&str]| {
