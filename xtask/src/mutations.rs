@@ -306,6 +306,7 @@ pub fn run() -> Result<()> {
     if copy.exists() {
         fs::remove_dir_all(&copy).with_context(|| copy.display().to_string())?;
     }
+    fs::create_dir_all(&copy).with_context(|| copy.display().to_string())?;
     for name in COPIED {
         let from = workspace().join(name);
         if from.exists() {
