@@ -56,7 +56,7 @@ impl<const FINGERS: usize> Hand<FINGERS> {
     #[must_use]
     pub fn tripped(&self) -> Option<&Cause> {
         let tripped = self.stations.iter().filter(|station| station.is_tripped());
-        tripped.filter_map(Station::cause).min_by_key(|cause| cause.tick)
+        tripped.min_by_key(|station| station.tripped_at())?.cause()
     }
 
     /// The host is there.

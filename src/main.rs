@@ -57,6 +57,7 @@ mod app {
         watchdog: Watchdog,
         window_watchdog: WindowWatchdog,
         trigger: Trigger,
+        has_clock: bool,
     }
 
     #[init(local = [memory: Memory = Memory::new()])]
@@ -87,6 +88,7 @@ mod app {
             watchdog: board.watchdog,
             window_watchdog: board.window_watchdog,
             trigger: board.trigger,
+            has_clock: board.has_clock,
         };
         (shared, local)
     }
@@ -110,7 +112,7 @@ mod app {
         binds = DMA2_STREAM0,
         priority = 3,
         shared = [hand, record, stages, sampler, &vigil, &heard],
-        local = [telemetry, window_watchdog, until_host: u8 = 0],
+        local = [telemetry, window_watchdog, has_clock, until_host: u8 = 0],
     )]
     fn tick(mut cx: tick::Context) {
         let (hand, stages) = (&mut cx.shared.hand, cx.shared.stages);
@@ -139,6 +141,9 @@ mod app {
             }
             if stack_is_overrun() {
                 hand.trip(Fault::Stack);
+            }
+            if !*cx.local.has_clock {
+                hand.trip(Fault::Clock);
             }
             let outputs = hand.step(finger, &samples);
             cx.shared.record.follow(hand.tripped());

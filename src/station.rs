@@ -30,6 +30,8 @@ pub struct Station {
     /// What the bridge was told last.
     before: Before,
     cause: Option<Cause>,
+    /// When it tripped for that; 0 if it was before the start.
+    tripped_at: u32,
     /// What tripped while it was tripped, and no sample shows.
     also: Option<Fault>,
     touch: Touch,
@@ -79,6 +81,7 @@ impl Station {
             self_test: SelfTest::default(),
             before: Before::default(),
             cause: None,
+            tripped_at: 0,
             also: None,
             touch: Touch::default(),
             render: Render::default(),
@@ -189,6 +192,7 @@ impl Station {
         if !self.is_tripped() {
             self.state = State::Tripped(cause.fault);
             self.cause = Some(cause);
+            self.tripped_at = self.tick;
         }
     }
 
@@ -196,6 +200,12 @@ impl Station {
     #[must_use]
     pub const fn is_tripped(&self) -> bool {
         matches!(self.state, State::Tripped(_))
+    }
+
+    /// Tick of this start in which it tripped, 0 if that was before it.
+    #[must_use]
+    pub const fn tripped_at(&self) -> u32 {
+        self.tripped_at
     }
 
     /// Why it tripped, now or the last time.
@@ -221,7 +231,7 @@ impl Station {
     ) -> Result<(Outputs, Current), Fault> {
         if self.state == State::SelfTest {
             let legs = Legs::between(sound.display, sound.sink);
-            let touched = self.touch.left_zero() || self.touch.touching();
+            let touched = self.touch.lands() || self.touch.touching();
             return Ok(
                 match self
                     .self_test

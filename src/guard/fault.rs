@@ -106,7 +106,7 @@ faults! {
     Panic = "panic",
     /// The processor met something that it cannot execute, or an interrupt without a task.
     HardFault = "hard-fault",
-    /// The board's clock has failed.
+    /// The board's clock has failed, or is missing since the start.
     Clock = "clock",
     /// The control tick did not come; the window watchdog has reset the device.
     TickLost = "tick-lost",

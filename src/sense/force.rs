@@ -135,6 +135,12 @@ impl Touch {
         self.off_zero > 0
     }
 
+    /// The force has been off its zero for as long as a landing takes, which noise seldom is.
+    #[must_use]
+    pub const fn lands(&self) -> bool {
+        self.off_zero >= DEBOUNCE_TICKS
+    }
+
     /// How long ago the finger had landed when it was noticed, ticks, 2 to 32: since the force left its zero.
     #[must_use]
     pub const fn landed_ticks(&self) -> u32 {

@@ -62,7 +62,7 @@ const WATCH: &str = "src/guard/watch.rs";
 const SELF_TEST: &str = "src/guard/self_test.rs";
 const THERMISTOR: &str = "src/sense/thermistor.rs";
 
-const MUTATIONS: [Mutation; 30] = [
+const MUTATIONS: [Mutation; 31] = [
     mutation(
         "excitation",
         LIMITS,
@@ -197,13 +197,6 @@ const MUTATIONS: [Mutation; 30] = [
         &["polarity-swapped"],
     ),
     mutation(
-        "runaway",
-        "src/guard/response.rs",
-        "const SLOW_TICKS: u16 = 2000;",
-        "const SLOW_TICKS: u16 = u16::MAX;",
-        &["fan-off"],
-    ),
-    mutation(
         "fault line",
         "src/station.rs",
         "let bridge = if pulled {",
@@ -229,14 +222,14 @@ const MUTATIONS: [Mutation; 30] = [
         SELF_TEST,
         "if !(i64::from(LEAST.to_bits())..=",
         "if !(i64::MIN..=",
-        &["thermistor-stuck"],
+        &["sensors-swapped"],
     ),
     mutation(
         "current test",
         SELF_TEST,
         "if mean < i64::from(LEAST_A.to_bits()) {",
         "if mean < 0 {",
-        &["leg-open"],
+        &["mirror-stuck"],
     ),
     on_board(
         "pace",
@@ -253,6 +246,20 @@ const MUTATIONS: [Mutation; 30] = [
         &["register-bit"],
     ),
     on_board(
+        "unasked reset",
+        "src/board/nucleo_f446re/reset.rs",
+        "Self::Software | Self::Other => Some(Fault::UnaskedReset),",
+        "Self::Software | Self::Other => None,",
+        &["software-reset"],
+    ),
+    on_board(
+        "roll-call",
+        "src/board/vigil.rs",
+        "const ALL: u8 = Task::Tick as u8 | Task::Host as u8;",
+        "const ALL: u8 = Task::Tick as u8;",
+        &["register-bit"],
+    ),
+    on_board(
         "stack guard",
         "src/board/nucleo_f446re/stack.rs",
         ".any(|word| word.load(Ordering::Relaxed) != UNTOUCHED)",
@@ -262,8 +269,8 @@ const MUTATIONS: [Mutation; 30] = [
     on_board(
         "window watchdog",
         "src/board/nucleo_f446re/window.rs",
-        "w.wdga().enabled()\n        });\n        Self(wwdg)",
-        "w.wdga().disabled()\n        });\n        Self(wwdg)",
+        "w.wdga().enabled()",
+        "w.wdga().disabled()",
         &["hung-core"],
     ),
     on_board(
@@ -347,6 +354,12 @@ pub fn run() -> Result<()> {
         fs::write(&path, mutated(mutation, &text)?)?;
         // What does not build is no mutation.
         Invocation::cargo(hil_sim("build")).run_to_stderr()?;
+        if mutation.engine == "image" {
+            let manifest = copy.join("Cargo.toml").into();
+            let line = ["run", "--package", "xtask", "--manifest-path"].map(OsString::from);
+            let firmware = [manifest, "--".into(), "firmware".into()];
+            Invocation::cargo(line.into_iter().chain(firmware)).run_to_stderr()?;
+        }
         let noticed = matrix(mutation.engine, mutation.only).run_to_stderr().is_err();
         fs::write(&path, text)?;
         println!(

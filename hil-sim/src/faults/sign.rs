@@ -27,7 +27,8 @@ pub enum Sign {
     Jump,
     /// The room reads 8.5 K more than the skin.
     RoomAboveSkin,
-    /// The mirror shows a current that is off by more than 1 A and a quarter of what is asked for, and stays so for 30 ms.
+    /// The mirror shows a current that is off by more than 1 A and a quarter of what is asked for, for 30 ms
+    /// more than not; from 30 ms before that.
     CurrentOff,
     /// The mirror shows more than 7.5 A.
     OverCurrent,
@@ -143,17 +144,20 @@ fn jump(rows: &[Row], from: usize) -> Option<f64> {
 
 /// The device's own words tell what it asks for; while it says nothing nothing is told.
 fn current_off(rows: &[Row]) -> Option<f64> {
-    let mut since = 0;
+    let mut wrong = 0;
     for (i, row) in rows.iter().enumerate() {
         let asked_a = row.device.as_ref().and_then(|device| device.demand_a);
         let off = asked_a.is_some_and(|asked_a| {
             let asked_a = asked_a.abs();
             (row.taken.mirror_a - asked_a).abs() > OFF_A + OFF_PART * asked_a
         });
-        if !off {
-            since = i + 1;
-        } else if i + 1 - since >= OFF_ROWS {
-            return Some(rows[since].t_s);
+        wrong = if off {
+            wrong + 1
+        } else {
+            usize::saturating_sub(wrong, 1)
+        };
+        if wrong >= OFF_ROWS {
+            return Some(rows[i + 1 - OFF_ROWS].t_s);
         }
     }
     None

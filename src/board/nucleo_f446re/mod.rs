@@ -99,8 +99,10 @@ pub fn first_cause(rcc: &pac::RCC) -> Option<Cause> {
     stack::arm();
     let reset = Reset::of(rcc);
     let mut cause = record::of_reset(reset, store::is_planned());
-    // A reset, without a tick that has seen why, is what comes of an overrun.
-    if overrun && cause.is_some_and(|cause| cause.tick == 0) {
+    // The end of a program, without a tick that has seen why, is what comes of an overrun. Not so of the first start of
+    // another program, whose stack may lie here.
+    let unseen = |cause: Cause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
+    if overrun && cause.is_some_and(unseen) {
         record::forget();
         record::keep(&Cause::alone(Fault::Stack));
         cause = record::kept();
@@ -127,6 +129,8 @@ pub struct Board {
     pub console: Console,
     /// Telemetry on its way to the console.
     pub telemetry: Producer<'static, Addressed<Telemetry>>,
+    /// The probe's clock runs; without it nothing may be rendered.
+    pub has_clock: bool,
     /// The independent watchdog, already running.
     pub watchdog: Watchdog,
     /// The window watchdog, already running.
@@ -137,11 +141,13 @@ impl Board {
     /// Sets everything up, with what the start has [found](at_start); the bridge is off before anything else happens and
     /// stays off.
     pub fn new(counter: SYST, device: pac::Peripherals, memory: &'static mut Memory, found: &Found) -> Self {
-        // First, on its own oscillator: should the 8 MHz be missing, it ends the wait for them, again and
-        // again, and the log tells.
+        // First, on its own oscillator.
         let watchdog = Watchdog::start(device.IWDG);
-        let mut rcc = device.RCC.freeze(clocks());
-        watch_clock(&mut rcc);
+        let has_clock = probe_clock_runs(&device.RCC);
+        let mut rcc = device.RCC.freeze(clocks(has_clock));
+        if has_clock {
+            watch_clock(&mut rcc);
+        }
 
         let gpioa = device.GPIOA.split(&mut rcc);
         let gpiob = device.GPIOB.split(&mut rcc);
@@ -245,6 +251,7 @@ impl Board {
         );
 
         Self {
+            has_clock,
             sampler,
             trigger,
             stages,
@@ -258,12 +265,23 @@ impl Board {
     }
 }
 
+/// Starts the probe's 8 MHz; whether they come within at least 20 ms of 16 MHz.
+fn probe_clock_runs(rcc: &pac::RCC) -> bool {
+    rcc.cr().modify(|_, w| w.hsebyp().bypassed().hseon().on());
+    (0..1 << 16).any(|_| rcc.cr().read().hserdy().is_ready())
+}
+
 /// 180 MHz, the most this part can do, from the crystal of the on-board probe: the internal oscillator's
-/// 1 % would be an error of time in every rendered contact. 45 MHz is 45 times the baud rate and 90 MHz
-/// (both timer clocks are multiples of it) a multiple of the scan and PWM rates: all are exact.
-fn clocks() -> Config {
-    Config::hse(8.MHz())
-        .bypass_hse_oscillator()
+/// 1 % would be an error of time in every rendered contact. Without it the internal one is good enough to tell the host why
+/// nothing is rendered. 45 MHz is 45 times the baud rate and 90 MHz (both timer clocks are multiples of it) a multiple of
+/// the scan and PWM rates: all are exact.
+fn clocks(has_clock: bool) -> Config {
+    let source = if has_clock {
+        Config::hse(8.MHz()).bypass_hse_oscillator()
+    } else {
+        Config::hsi()
+    };
+    source
         .sysclk(180.MHz())
         .hclk(180.MHz())
         .pclk1(45.MHz())

@@ -9,7 +9,7 @@ use stm32f4xx_hal::pac::IWDG;
 /// degrees, which its independent comparator watches.
 const PERIOD: u16 = 100;
 
-/// Lets it run, with the period that it has: 0.28 to 0.96 s as after a reset (4096 times 4 of its oscillator).
+/// Lets it run, with the period that it has: 0.35 to 0.96 s as after a reset (4096 times 4 of its oscillator).
 pub fn start() {
     // SAFETY: a key that only starts it, in one store, whoever else is at it.
     unsafe { &*IWDG::ptr() }.kr().write(|w| w.key().start());

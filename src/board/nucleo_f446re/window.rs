@@ -18,14 +18,12 @@ impl WindowWatchdog {
             w.wdgtb().div8();
             w.w().set(FULL)
         });
-        wwdg.cr().write(|w| {
-            w.t().set(FULL);
-            w.wdga().enabled()
-        });
-        Self(wwdg)
+        let mut started = Self(wwdg);
+        started.feed();
+        started
     }
 
-    /// Begins anew.
+    /// Begins, or begins anew.
     pub fn feed(&mut self) {
         self.0.cr().write(|w| {
             w.t().set(FULL);

@@ -143,6 +143,21 @@ fn the_dose_goes_on_while_something_else_is_wrong() {
     assert_eq!(bench.host("clear"), "err fault dose is still present");
 }
 
+/// 1.2 counts of noise are 1.1 mN, of which 3 mN come once in 800 ticks.
+#[test]
+fn a_force_sensor_that_is_noisy_delays_no_self_test() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.host("arm"), "ok");
+    for tick in 0..800 {
+        bench.force_n = if tick % 100 == 50 { 0.004 } else { 0.0 };
+        let (outputs, telemetry) = bench.step_all();
+        bench.display_c -= 2.7e-3 * telemetry.demand.to_num::<f64>();
+        bench.check_c = bench.display_c;
+        bench.bridge_fault = outputs.comparator_test;
+    }
+    assert_eq!(bench.state(), State::Armed);
+}
+
 /// A leg that cannot warm.
 #[test]
 fn a_self_test_without_current_one_way_round_trips() {

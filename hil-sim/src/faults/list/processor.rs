@@ -49,6 +49,8 @@ const RATE: &[Fault] = &[Fault::Sampling, Fault::TickLost];
 const CLOCK: &[Fault] = &[Fault::Clock, Fault::TickLost];
 /// By 4 of 5625 counts: a quarter of a tick is lost after 352 ticks.
 const SLOW_RATE: &[Sign] = &[Sign::After(0.352)];
+/// The independent watchdog at its slowest.
+const ROLL_CALL: &[Sign] = &[Sign::After(0.188)];
 /// SysTick's rounds are of 2^24 periods of 180 MHz: 93.2 ms.
 const NEXT_ROUND: &[Sign] = &[Sign::After(0.0933)];
 
@@ -61,6 +63,7 @@ const RCC_CFGR: u32 = 0x4002_3808;
 const RCC_DCKCFGR: u32 = 0x4002_388c;
 const GPIOB_ODR: u32 = 0x4002_0414;
 const DMA2_S0CR: u32 = 0x4002_6410;
+const NVIC_ISER0: u32 = 0xe000_e100;
 const NVIC_ISER1: u32 = 0xe000_e104;
 /// First word of the stack's guard.
 const STACK_GUARD: u32 = 0x2000_0000;
@@ -112,6 +115,8 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(flipped(ADC1 + 0x08, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
     Entry::trips(flipped(DMA2_S0CR, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
     Entry::trips(flipped(NVIC_ISER1, 24), NOW, &[Fault::TickLost, Fault::Sampling]),
+    // The host's task is no longer called.
+    Entry::trips(flipped(NVIC_ISER0, 6), ROLL_CALL, &[Fault::Watchdog]),
     // Scans at another rate: 0.6 % slower and faster, 9 %, 3.7 times faster, 6.8, 24 and 48 times slower; half of it and less.
     Entry::trips(flipped(TIM2_ARR, 5), NOW, RATE),
     Entry::trips(flipped(TIM2_ARR, 2), SLOW_RATE, RATE),

@@ -126,15 +126,25 @@ const ELSEWHERE: &[Fault] = &[
     Fault::RoomAboveSkin,
     Fault::NoResponse,
 ];
+/// The sink's own reading steps too, and may be the only one that steps by enough.
+const ON_SINK: &[Fault] = &[
+    Fault::DisplayJump,
+    Fault::CheckJump,
+    Fault::SinkJump,
+    Fault::DisplaysApart,
+    Fault::Polarity,
+    Fault::RoomAboveSkin,
+    Fault::NoResponse,
+];
 const NO_STEP: &[Sign] = &[Sign::Jump, Sign::RoomAboveSkin];
 
 /// Two thermistors in each other's place.
 pub const SWAPPED: &[Entry] = &[
     Entry::harmless(swapped(Display, Check)),
-    Entry::trips(swapped(Display, Sink), SWAP, ELSEWHERE).at(&[Place::Off, Place::Slew]),
+    Entry::trips(swapped(Display, Sink), SWAP, ON_SINK).at(&[Place::Off, Place::Slew]),
     Entry::trips(swapped(Display, Skin), SWAP, ELSEWHERE).at(&[Place::Off, Place::Touched]),
     Entry::trips(swapped(Display, Room), SWAP, ELSEWHERE).at(&[Place::Off, Place::Slew]),
-    Entry::trips(swapped(Check, Sink), SWAP, ELSEWHERE).at(&[Place::Off]),
+    Entry::trips(swapped(Check, Sink), SWAP, ON_SINK).at(&[Place::Off]),
     Entry::trips(swapped(Check, Skin), SWAP, ELSEWHERE).at(&[Place::Off]),
     Entry::trips(swapped(Check, Room), SWAP, ELSEWHERE).at(&[Place::Off]),
     Entry::trips(
