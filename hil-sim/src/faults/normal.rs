@@ -9,7 +9,7 @@ use rand::{RngExt, SeedableRng};
 use serde::Serialize;
 use thermal_display::control::Law;
 
-use super::Device;
+use super::{Device, script};
 use crate::fidelity::Draw;
 use crate::metrics::Range;
 use crate::plant::parameters::stream;
@@ -21,6 +21,10 @@ const SESSION_S: f64 = 120.0;
 const WHOLE_S: f64 = 128.0;
 /// Sessions in a row on the same device, which is commissioned before the first.
 const ON_ONE_DEVICE: u64 = 8;
+/// Share of sessions in which the display is held at a temperature, as for calibration.
+const HELD: f64 = 0.125;
+/// Noise of a conversion, which is no part of the box: all that the parameter allows.
+const NOISE_COUNTS: std::ops::RangeInclusive<f64> = 0.4..=1.2;
 /// Forces, N; drawn so that every ratio is alike.
 const FORCE_N: (f64, f64) = (0.1, 5.0);
 
@@ -49,10 +53,11 @@ impl Session {
         let (law, _) = Law::WORDS[draw.random_range(0..Law::WORDS.len())];
         let skin_c = draw.random_range(30.0..=36.0);
         let object_c = draw.random_range(17.0..=41.0);
-        let appears_s = if draw.random_bool(0.25) {
-            draw.random_range(0.0..=20.0)
-        } else {
-            0.0
+        let held_c = draw.random_bool(HELD).then(|| draw.random_range(15.0..=42.0));
+        let appears_s = match held_c {
+            Some(_) => SESSION_S,
+            None if draw.random_bool(0.25) => draw.random_range(0.0..=20.0),
+            None => 0.0,
         };
         let mut text = format!(
             "duration_s = {SESSION_S:?}\nskin_c = {skin_c:?}\nroom_c = 24\nseed = {}\nlaw = \"{law}\"\n[object]\n\
@@ -71,7 +76,12 @@ impl Session {
                 t_s += 0.02 + draw.random_range(0.3..=5.0);
             }
         }
-        text += "[plant]\n";
+        if let Some(held_c) = held_c {
+            text += &script::line_at(&format!("hold {held_c:.3}"), 0.1);
+        }
+        let mut device_draw = Xoshiro256PlusPlus::seed_from_u64(stream(device.seed, "noise"));
+        let noise_counts = device_draw.random_range(NOISE_COUNTS);
+        text += &format!("[plant]\nsensors.converter.noise_counts = {noise_counts:?}\n");
         for (key, value) in &device.plant {
             text += &format!("{key} = {value:?}\n");
         }
