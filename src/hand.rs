@@ -24,6 +24,7 @@ impl<const FINGERS: usize> Hand<FINGERS> {
 
     /// The same after a reset, tripped by what was the cause of it.
     #[must_use]
+    #[inline(never)]
     pub fn after(cause: Option<Cause>, settings: &Settings) -> Self {
         let mut one = Station::new(settings);
         if let Some(cause) = cause {

@@ -36,7 +36,7 @@ mod app {
 
     #[shared]
     struct Shared {
-        hand: Hand<FINGERS>,
+        hand: &'static mut Hand<FINGERS>,
         vigil: Vigil,
         /// A line has come since the last tick.
         heard: AtomicBool,
@@ -60,16 +60,17 @@ mod app {
         has_clock: bool,
     }
 
-    #[init(local = [memory: Memory = Memory::new()])]
+    #[init(local = [memory: Memory = Memory::new(), hand: Option<Hand<FINGERS>> = None])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let cause = first_cause(&cx.device.RCC);
         // Before anything that the flash could delay.
         let found = at_start(&cx.device.FLASH);
-        let cause = cause.or(found.cause());
         // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
-        let mut hand = Hand::after(cause, &Settings::default());
-        if let Ok(Some(kept)) = &found.kept {
-            hand.restore(kept);
+        let hand = cx.local.hand.insert(Hand::after(cause, &Settings::default()));
+        match &found.kept {
+            Ok(Some(kept)) => hand.restore(kept),
+            Ok(None) => {}
+            Err(_) => hand.trip(Fault::SettingsCorrupt),
         }
         let board = Board::new(cx.core.SYST, cx.device, cx.local.memory, &found);
         let shared = Shared {

@@ -1,4 +1,7 @@
 //! The most stack that the whole can need: the background, and on it one handler of each priority, on one another.
+//!
+//! Interrupts are masked while the start goes on, so that it shares the stack with failures only; RTIC lets them in as the last
+//! thing that [`START`] does, when all that it has called has returned.
 use std::collections::BTreeSet;
 
 use anyhow::{Context, Result};
@@ -7,6 +10,10 @@ use crate::allowed::{CONVERTER, HOST, RECEIVER, REFILL, TICK};
 use crate::stack::{Budget, Deepest, EXCEPTION, Stacks};
 use crate::{Proof, Section};
 
+/// What sets everything up.
+const START: &str = "::__rtic_init_resources";
+/// Priorities from this one on cannot be masked.
+const FAILURES: usize = 6;
 /// Handlers of one priority, which never interrupt each other. The lowest priority first; as in the firmware's `main.rs`.
 static LEVELS: [(&str, &[&str]); 8] = [
     ("background", &["Reset"]),
@@ -28,44 +35,59 @@ pub fn bound(proof: &Proof) -> Result<u32> {
 
 /// What each priority needs.
 struct Levels {
-    /// Its name, without a report of a panic, and with.
-    each: Vec<(&'static str, Deepest, Deepest)>,
+    /// Name, without a report of a panic, and with.
+    each: Vec<Level>,
+    /// The background while the start goes on.
+    start: Level,
     recursive: BTreeSet<u32>,
 }
+
+type Level = (&'static str, Deepest, Deepest);
 
 impl Levels {
     fn new(proof: &Proof) -> Result<Self> {
         let mut stacks = Stacks::new(proof);
-        let mut each = Vec::new();
-        for (level, handlers) in LEVELS {
-            let mut deepest = [Deepest::default(), Deepest::default()];
-            for (deepest, budget) in deepest.iter_mut().zip([Budget::SILENT, Budget::REPORT]) {
-                for handler in handlers {
-                    let way = stacks.deepest(proof.root(handler)?, budget);
-                    if way.bytes > deepest.bytes {
-                        *deepest = way;
-                    }
-                }
-            }
-            let [silent, report] = deepest;
-            each.push((level, silent, report));
-        }
+        let start = Self::level(proof, &mut stacks, "start", &["Reset"])?;
+        let mut recursive = std::mem::take(&mut stacks.recursive);
+        let mut stacks = Stacks::without_calls_of(proof, START);
+        let each = LEVELS
+            .iter()
+            .map(|(level, handlers)| Self::level(proof, &mut stacks, level, handlers))
+            .collect::<Result<_>>()?;
+        recursive.append(&mut stacks.recursive);
         Ok(Self {
             each,
-            recursive: stacks.recursive,
+            start,
+            recursive,
         })
     }
 
-    fn bound(&self) -> u32 {
-        // Nothing is stacked below the background.
-        let frames = EXCEPTION * (self.each.len() as u32 - 1);
-        let silent: u32 = self.each.iter().map(|(_, silent, _)| silent.bytes).sum();
-        let reports = self
-            .each
-            .iter()
-            .map(|(_, silent, report)| report.bytes - silent.bytes);
-        frames + silent + reports.max().unwrap_or(0)
+    fn level(proof: &Proof, stacks: &mut Stacks, name: &'static str, handlers: &[&str]) -> Result<Level> {
+        let mut deepest = [Deepest::default(), Deepest::default()];
+        for (deepest, budget) in deepest.iter_mut().zip([Budget::SILENT, Budget::REPORT]) {
+            for handler in handlers {
+                let way = stacks.deepest(proof.root(handler)?, budget);
+                if way.bytes > deepest.bytes {
+                    *deepest = way;
+                }
+            }
+        }
+        let [silent, report] = deepest;
+        Ok((name, silent, report))
     }
+
+    fn bound(&self) -> u32 {
+        let start = std::iter::once(&self.start).chain(&self.each[FAILURES..]);
+        sum(self.each.iter()).max(sum(start))
+    }
+}
+
+/// Levels on one another; nothing is stacked below the first.
+fn sum<'a>(levels: impl Iterator<Item = &'a Level> + Clone) -> u32 {
+    let frames = EXCEPTION * (levels.clone().count() as u32 - 1);
+    let silent: u32 = levels.clone().map(|(_, silent, _)| silent.bytes).sum();
+    let reports = levels.map(|(_, silent, report)| report.bytes - silent.bytes);
+    frames + silent + reports.max().unwrap_or(0)
 }
 
 /// Size of the stack, bytes.
@@ -109,7 +131,7 @@ pub fn check(proof: &Proof) -> Result<Section> {
             .push(format!("{name} has no place among the priorities"));
     }
     let levels = Levels::new(proof)?;
-    for (level, silent, report) in &levels.each {
+    for (level, silent, report) in std::iter::once(&levels.start).chain(&levels.each) {
         section.lines.push(format!(
             "{level}: {}; {} if it reports a panic",
             shown(proof, silent),

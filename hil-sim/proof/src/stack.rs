@@ -62,6 +62,8 @@ pub struct Stacks<'a> {
     open: BTreeSet<(u32, Budget)>,
     /// Functions that call themselves within one level of formatting and panic.
     pub recursive: BTreeSet<u32>,
+    /// What the functions of this name call is left out.
+    shallow: Option<&'static str>,
 }
 
 impl<'a> Stacks<'a> {
@@ -83,6 +85,15 @@ impl<'a> Stacks<'a> {
             known: BTreeMap::new(),
             open: BTreeSet::new(),
             recursive: BTreeSet::new(),
+            shallow: None,
+        }
+    }
+
+    /// The same without what the functions of a name call.
+    pub fn without_calls_of(proof: &'a Proof, name: &'static str) -> Self {
+        Self {
+            shallow: Some(name),
+            ..Self::new(proof)
         }
     }
 
@@ -100,6 +111,12 @@ impl<'a> Stacks<'a> {
                 Some(rest) => budget.panics = rest,
                 None => return deepest,
             }
+        }
+        if self
+            .shallow
+            .is_some_and(|name| proof.image.name(function).ends_with(name))
+        {
+            return deepest;
         }
         let key = (function, budget);
         if let Some(known) = self.known.get(&key) {

@@ -10,7 +10,6 @@ use core::sync::atomic::{AtomicU8, AtomicU32};
 
 use cortex_m::peripheral::SCB;
 use stm32f4xx_hal::pac::FLASH;
-use thermal_display::guard::{Cause, Fault};
 use thermal_display::settings::{Kept, LONGEST, Store, StoreError, StoredBytes, decode};
 
 use super::FINGERS;
@@ -100,13 +99,6 @@ pub struct Found {
     pub kept: Result<Option<[Kept; FINGERS]>, Failure>,
     /// How storing went, if something waited to be stored.
     pub stored: Option<Result<(), NotStored>>,
-}
-
-impl Found {
-    /// The fault that it is, if any.
-    pub fn cause(&self) -> Option<Cause> {
-        (self.kept.is_err()).then_some(Cause::alone(Fault::SettingsCorrupt))
-    }
 }
 
 /// Whether the device was started anew to store something.
