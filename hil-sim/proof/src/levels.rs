@@ -1,7 +1,7 @@
 //! The most stack that the whole can need: the background, and on it one handler of each priority, on one another.
 //!
 //! Interrupts are masked while the start goes on, so that it shares the stack with failures only; RTIC lets them in as the last
-//! thing that [`START`] does, when all that it has called has returned.
+//! thing that `__rtic_init_resources` does, when all that it has called has returned.
 use std::collections::BTreeSet;
 
 use anyhow::{Context, Result};
