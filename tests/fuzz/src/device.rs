@@ -205,7 +205,8 @@ fn may_lead(line: &str, from: State, to: State) -> bool {
         .split_ascii_whitespace()
         .skip_while(|word| word.starts_with('@'));
     match (words.next().unwrap_or_default(), from) {
-        ("clear", State::Tripped(_)) => to == State::Off,
+        // What tripped second comes to light.
+        ("clear", State::Tripped(_)) => matches!(to, State::Off | State::Tripped(_)),
         (_, State::Tripped(_)) => false,
         ("arm", State::Off) => to == State::SelfTest,
         ("arm", State::Ready | State::Preset | State::Contact) => to == State::Armed,
