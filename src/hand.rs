@@ -53,6 +53,12 @@ impl<const FINGERS: usize> Hand<FINGERS> {
         self.stations.iter_mut().for_each(|station| station.trip(fault));
     }
 
+    /// A fault is latched at a finger, counted modulo `FINGERS`.
+    #[must_use]
+    pub const fn is_tripped(&self, finger: usize) -> bool {
+        self.stations[finger % FINGERS].is_tripped()
+    }
+
     /// Why the finger that has been tripped for longest is.
     #[must_use]
     pub fn tripped(&self) -> Option<&Cause> {

@@ -27,19 +27,22 @@ pub struct Dose {
 }
 
 impl Dose {
-    /// Takes one tick of the warmer of the display's thermistors.
+    /// Takes one tick; `warmest` is what the warmer of the display's thermistors reads, if any does.
     ///
     /// # Errors
     /// The skin may have had half a minute's worth.
-    pub fn check(&mut self, warmest: Celsius) -> Result<(), Fault> {
+    pub fn check(&mut self, warmest: impl FnOnce() -> Option<Celsius>) -> Result<(), Fault> {
         self.ticks += 1;
         if self.ticks >= TICKS {
             self.ticks = 0;
-            self.sum = if warmest < COUNTS_FROM {
-                self.sum.saturating_sub(u32::from(TICKS) << 8 >> FORGOTTEN_SHIFT)
-            } else {
-                self.sum
-                    .saturating_add(rate(warmest).saturating_mul(TICKS.into()))
+            self.sum = match warmest() {
+                None => self.sum,
+                Some(warmest) if warmest < COUNTS_FROM => {
+                    self.sum.saturating_sub(u32::from(TICKS) << 8 >> FORGOTTEN_SHIFT)
+                }
+                Some(warmest) => self
+                    .sum
+                    .saturating_add(rate(warmest).saturating_mul(TICKS.into())),
             };
         }
         if self.sum >> 8 >= MOST_TICKS {
@@ -85,11 +88,13 @@ mod tests {
         for (t_c, seconds) in [(43.0, 30.0), (42.0, 120.0), (41.0, 480.0)] {
             let mut dose = Dose::default();
             let display = Celsius::from_num(t_c);
-            let ticks = (1..).find(|_| dose.check(display).is_err()).expect("a tick");
+            let ticks = (1..)
+                .find(|_| dose.check(|| Some(display)).is_err())
+                .expect("a tick");
             assert!((f64::from(ticks) - 1e3 * seconds).abs() < 300.0, "{t_c}: {ticks}");
         }
         let mut dose = Dose::default();
         let cool = Celsius::lit("38.9");
-        assert!((0..1_000_000).all(|_| dose.check(cool).is_ok()));
+        assert!((0..1_000_000).all(|_| dose.check(|| Some(cool)).is_ok()));
     }
 }

@@ -1,5 +1,7 @@
 //! Readings that move faster than what they are bonded to.
 
+use core::mem;
+
 use contact_model::fixed_point::Celsius;
 
 use super::Fault;
@@ -14,8 +16,10 @@ const MOST: Celsius = Celsius::lit("0.5");
 /// The readings of the last ticks, in turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Jump {
-    last: [Option<[Celsius; 3]>; TICKS],
-    oldest: u8,
+    last: [[Celsius; 3]; TICKS],
+    /// Ticks that are in there, and which turn it is.
+    ticks: u8,
+    turn: u8,
 }
 
 impl Jump {
@@ -24,12 +28,13 @@ impl Jump {
     /// # Errors
     /// Display, its second thermistor or sink has jumped.
     pub fn check(&mut self, sound: &Sound) -> Result<(), Fault> {
-        let now = [sound.display, sound.check, sound.sink];
-        let before = self.last[usize::from(self.oldest) % TICKS].replace(now);
-        self.oldest = self.oldest.wrapping_add(1);
-        let Some([display, check, sink]) = before else {
+        let oldest = &mut self.last[usize::from(self.turn) % TICKS];
+        let [display, check, sink] = mem::replace(oldest, [sound.display, sound.check, sound.sink]);
+        self.turn = self.turn.wrapping_add(1);
+        if usize::from(self.ticks) < TICKS {
+            self.ticks += 1;
             return Ok(());
-        };
+        }
         let jumped = |now: Celsius, before: Celsius| now.saturating_sub(before).saturating_abs() > MOST;
         if jumped(sound.display, display) {
             Err(Fault::DisplayJump)

@@ -66,8 +66,7 @@ impl Watch {
     /// The skin may have had too much heat.
     pub fn heat(&mut self, readings: &Readings) -> Result<(), Fault> {
         let both = [readings.display, readings.display_check];
-        let warmest = both.into_iter().flatten().max();
-        warmest.map_or(Ok(()), |warmest| self.dose.check(warmest))
+        self.dose.check(|| both.into_iter().flatten().max())
     }
 
     /// Takes one tick in which no level was wrong; `measured` is the current, `streams` whether a host listens.

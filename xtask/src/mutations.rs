@@ -164,8 +164,8 @@ const MUTATIONS: [Mutation; 31] = [
     mutation(
         "dose",
         WATCH,
-        "|warmest| self.dose.check(warmest)",
-        "|_| self.dose.check(Celsius::ZERO)",
+        "self.dose.check(|| both.into_iter().flatten().max())",
+        "self.dose.check(|| None)",
         &["host-line"],
     ),
     mutation(

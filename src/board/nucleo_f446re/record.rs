@@ -76,6 +76,11 @@ impl Record {
         Self { kept }
     }
 
+    /// Something has tripped, and was not cleared when this was last followed.
+    pub const fn keeps(&self) -> bool {
+        self.kept.is_some()
+    }
+
     /// Follows the stations of one tick.
     pub fn follow(&mut self, tripped: Option<&Cause>) {
         if tripped == self.kept.as_ref() {
