@@ -72,12 +72,14 @@ mod app {
             Ok(None) => {}
             Err(_) => hand.trip(Fault::SettingsCorrupt),
         }
+        // What the flash says it says again after a reset, unless other settings are stored.
+        let record = Record::new(hand.tripped().copied());
         let board = Board::new(cx.core.SYST, cx.device, cx.local.memory, &found);
         let shared = Shared {
             hand,
             vigil: Vigil::new(),
             heard: AtomicBool::new(false),
-            record: Record::new(cause),
+            record,
             stages: board.stages,
             sampler: board.sampler,
         };
