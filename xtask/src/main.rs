@@ -86,7 +86,7 @@ enum Task {
         /// Folder for the page
         #[arg(long)]
         out: Option<PathBuf>,
-        /// Remove each detector in turn, in a copy of the sources, and see that the matrix notices, natively; an hour
+        /// Remove each detector in turn, in a copy of the sources, and see that the matrix notices, natively or, of the board's, with an image; an hour
         #[arg(long, exclusive = true)]
         mutations: bool,
         /// Of `hil-sim faults`, after the above: --only, --scene, --moments and others, see its --help

@@ -43,16 +43,13 @@ const fn mutation(
     }
 }
 
-const fn on_board(
-    detector: &'static str,
-    file: &'static str,
-    from: &'static str,
-    to: &'static str,
-    only: &'static [&'static str],
-) -> Mutation {
-    Mutation {
-        engine: "image",
-        ..mutation(detector, file, from, to, only)
+impl Mutation {
+    /// Of a detector that only the image has.
+    const fn of_image(self) -> Self {
+        Self {
+            engine: "image",
+            ..self
+        }
     }
 }
 
@@ -231,55 +228,62 @@ const MUTATIONS: [Mutation; 31] = [
         "if mean < 0 {",
         &["mirror-stuck"],
     ),
-    on_board(
+    mutation(
         "pace",
         "src/board/nucleo_f446re/timekeeper.rs",
         "if !self.pace.keeps(SYST::get_current()) {",
         "if !self.pace.keeps(SYST::get_current()) && FINGERS > 9 {",
         &["register-bit"],
-    ),
-    on_board(
+    )
+    .of_image(),
+    mutation(
         "clocks",
         "src/board/nucleo_f446re/timekeeper.rs",
         "if clocks() != self.clocks {",
         "if clocks() != self.clocks && FINGERS > 9 {",
         &["register-bit"],
-    ),
-    on_board(
+    )
+    .of_image(),
+    mutation(
         "unasked reset",
         "src/board/nucleo_f446re/reset.rs",
         "Self::Software | Self::Other => Some(Fault::UnaskedReset),",
         "Self::Software | Self::Other => None,",
         &["software-reset"],
-    ),
-    on_board(
+    )
+    .of_image(),
+    mutation(
         "roll-call",
         "src/board/vigil.rs",
         "const ALL: u8 = Task::Tick as u8 | Task::Host as u8;",
         "const ALL: u8 = Task::Tick as u8;",
         &["register-bit"],
-    ),
-    on_board(
+    )
+    .of_image(),
+    mutation(
         "stack guard",
         "src/board/nucleo_f446re/stack.rs",
         ".any(|word| word.load(Ordering::Relaxed) != UNTOUCHED)",
         ".all(|word| word.load(Ordering::Relaxed) != UNTOUCHED)",
         &["ram-bit"],
-    ),
-    on_board(
+    )
+    .of_image(),
+    mutation(
         "window watchdog",
         "src/board/nucleo_f446re/window.rs",
         "w.wdga().enabled()",
         "w.wdga().disabled()",
         &["hung-core"],
-    ),
-    on_board(
+    )
+    .of_image(),
+    mutation(
         "clock security",
         "src/board/nucleo_f446re/mod.rs",
         "w.csson().on()",
         "w.csson().off()",
         &["hse-stopped"],
-    ),
+    )
+    .of_image(),
 ];
 
 /// Folder of the copy and of what is built from it.

@@ -37,5 +37,7 @@ pub use place::{Moment, Place};
 pub use random::{Campaign, Ran, summary};
 pub use sign::Sign;
 pub use table::table;
-pub use trial::{Device, Trial};
+pub use trial::Trial;
 pub use verdict::{Breach, Verdict};
+
+pub use crate::fidelity::Device;

@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use anyhow::Context;
 use contact_model::material::MATERIALS;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
@@ -93,7 +92,7 @@ impl Session {
     pub fn run(&self, device: Device<'_>) -> Used {
         let run = || -> anyhow::Result<_> {
             let scene = Scene::parse(&self.text, "session".as_ref())?;
-            let (_, figures) = device.run(&scene)?.context("a session breaks nothing")?;
+            let (_, figures) = device.run(&scene)?;
             Ok(figures)
         };
         match run() {

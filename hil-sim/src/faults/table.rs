@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::verdict::MILLISECONDS;
 use super::{Breach, Outline, Trial};
 
 /// One line for each row, with its worst cases; then every run that has a breach.
@@ -117,30 +118,11 @@ fn line(row: &Outline, width: usize) -> String {
 /// A run that breaks something, so that it can be run again.
 pub(super) fn broken(trial: &Trial) -> String {
     let verdict = &trial.verdict;
-    let names: Vec<_> = verdict.breaches.iter().map(|breach| breach.name()).collect();
-    let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.0} ms"));
-    let mut text = format!(
-        "{} in {} at {:.3} s: detectable {}, detected {}, safe {}, reason {}, skin {:.2} to {:.2} C, CEM43 {:.3} min, display {:.2} to {:.2} C",
-        names.join(", "),
-        trial.place,
-        trial.t_s,
-        ms(verdict.detectable_ms),
-        ms(verdict.detected_ms),
-        ms(verdict.safe_ms),
-        verdict.reason,
-        verdict.skin_c.min,
-        verdict.skin_c.max,
-        verdict.cem43_min,
-        verdict.display_c.min,
-        verdict.display_c.max,
-    );
-    if let Some(ended) = &verdict.ended {
-        text = format!(
-            "{} in {} at {:.3} s: {ended}",
-            names.join(", "),
-            trial.place,
-            trial.t_s
-        );
+    match &verdict.ended {
+        Some(ended) => {
+            let names = verdict.names();
+            format!("{names} in {} at {:.3} s: {ended}", trial.place, trial.t_s)
+        }
+        None => verdict.line(trial.place, trial.t_s, MILLISECONDS),
     }
-    text
 }

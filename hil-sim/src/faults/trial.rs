@@ -1,57 +1,30 @@
 //! One run of one fault.
 
+use std::convert::Infallible;
 use std::path::Path;
 
-use anyhow::Context;
 use serde::Serialize;
 
 use super::verdict::Verdict;
-use super::{Entry, Injected, Moment, script};
-use crate::engine::{Engine, Image, Native, NotInjected};
-use crate::machine::Firmware;
-use crate::metrics::{Figures, figures};
-use crate::run::{Outcome, RunError, run};
+use super::{Device, Entry, Injected, Moment, script};
+use crate::engine::NotInjected;
+use crate::metrics::Figures;
+use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
-use crate::world::World;
 
 /// What is asked at the end, and how long before it, s. Twice: a reset tears a line of telemetry, which the first answer
 /// then ends.
 const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "state")];
 
-/// What runs a trial.
-#[derive(Clone, Copy)]
-pub enum Device<'a> {
-    /// An image in the emulated microcontroller.
-    Image(&'a Firmware),
-    /// Its logic, called directly.
-    Native,
-}
-
-impl Device<'_> {
-    /// The engine's name.
-    #[must_use]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Image(_) => Image::NAME,
-            Self::Native => Native::NAME,
-        }
-    }
-
-    /// Runs a scene; none if the engine has no part that could fail so.
-    pub(super) fn run(self, scene: &Scene) -> anyhow::Result<Option<(Outcome, Figures)>> {
-        fn on<E: Engine>(scene: &Scene, engine: &mut E) -> anyhow::Result<Option<(Outcome, Figures)>> {
-            let outcome = match run(scene, engine, |_| ()) {
-                Err(RunError::NotInjected(NotInjected::NotApplicable { .. })) => return Ok(None),
-                outcome => outcome?,
-            };
-            let figures = figures::<E>(scene, &outcome);
-            Ok(Some((outcome, figures)))
-        }
-        let world = World::new(scene).context("plant")?;
-        match self {
-            Self::Image(firmware) => on(scene, &mut Image::new(firmware, world)?),
-            Self::Native => on(scene, &mut Native::new(world)),
-        }
+/// Runs a scene; none if the engine has no part that could fail so.
+fn ran(device: Device<'_>, scene: &Scene) -> anyhow::Result<Option<(Outcome, Figures)>> {
+    match device.run(scene) {
+        // Only the native engine has no processor.
+        Err(error) => match error.downcast_ref::<RunError<Infallible>>() {
+            Some(RunError::NotInjected(NotInjected::NotApplicable { .. })) => Ok(None),
+            _ => Err(error),
+        },
+        Ok(ran) => Ok(Some(ran)),
     }
 }
 
@@ -85,7 +58,7 @@ impl Trial {
         text: &str,
     ) -> anyhow::Result<Option<Self>> {
         let scene = Scene::parse(text, Path::new(moment.place.name()))?;
-        let verdict = match device.run(&scene) {
+        let verdict = match ran(device, &scene) {
             Ok(None) => return Ok(None),
             Ok(Some((outcome, figures))) => Verdict::of(entry, moment, &outcome, &figures),
             // Nobody knows what silicon would do then: that proves nothing, so it counts as a breach.

@@ -13,6 +13,9 @@ const SKIN_C: std::ops::RangeInclusive<f64> = 13.0..=45.0;
 const DOSE_MIN: f64 = 1.0;
 /// Longest time from detectable to safe, ms.
 const SAFE_MS: f64 = 50.0;
+/// Decimals of a moment in s, and of times from it on in ms: of faults, which come at a tick, and of those that do not.
+pub(super) const MILLISECONDS: (usize, usize) = (3, 0);
+pub(super) const MICROSECONDS: (usize, usize) = (6, 1);
 /// Current that is none, A.
 const NONE_A: f64 = 1e-6;
 
@@ -103,6 +106,31 @@ impl Verdict {
             breaches: vec![Breach::Ended],
             ended: Some(format!("{error:#}")),
         }
+    }
+
+    /// What it did that it must not, in words.
+    pub(super) fn names(&self) -> String {
+        let names: Vec<_> = self.breaches.iter().map(|breach| breach.name()).collect();
+        names.join(", ")
+    }
+
+    /// The figures of a run to its end, of a fault at a place and a time, s.
+    pub(super) fn line(&self, place: &str, t_s: f64, (of_s, of_ms): (usize, usize)) -> String {
+        let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.of_ms$} ms"));
+        format!(
+            "{} in {place} at {t_s:.of_s$} s: detectable {}, detected {}, safe {}, reason {}, skin {:.2} to {:.2} C, CEM43 \
+             {:.3} min, display {:.2} to {:.2} C",
+            self.names(),
+            ms(self.detectable_ms),
+            ms(self.detected_ms),
+            ms(self.safe_ms),
+            self.reason,
+            self.skin_c.min,
+            self.skin_c.max,
+            self.cem43_min,
+            self.display_c.min,
+            self.display_c.max,
+        )
     }
 
     /// Judges a run.

@@ -1,12 +1,10 @@
 //! `--campaign` and `--replay`: random campaigns.
 
-use std::path::Path;
-
 use anyhow::{Context, anyhow};
 use hil_sim::faults::{Campaign, Device, Ran, summary};
 use serde::Serialize;
 
-use super::{Arguments, Failure, each, output};
+use super::{Arguments, Failure, each, tell, write};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -24,7 +22,8 @@ pub fn run(arguments: &Arguments, device: Device<'_>, numbers: std::ops::Range<u
         .map(|number| Campaign::new(arguments.seed, number, has_processor))
         .collect();
     if let (Some(folder), Some(_), [campaign]) = (&arguments.out, arguments.replay, campaigns.as_slice()) {
-        write(folder, campaign).map_err(Failure::run)?;
+        let name = format!("campaign-{}.toml", campaign.number);
+        write(folder, &name, &campaign.text()).map_err(Failure::run)?;
     }
     let work = |campaign: &Campaign| {
         let ran = campaign.run(device);
@@ -33,18 +32,13 @@ pub fn run(arguments: &Arguments, device: Device<'_>, numbers: std::ops::Range<u
     let ran = each(arguments, "campaigns", device, &campaigns, work).map_err(Failure::run)?;
     let ran: Vec<Ran> = ran.into_iter().flatten().collect();
     let failing = ran.iter().filter(|ran| !ran.holds()).count();
-    let text = if arguments.json {
-        let report = Report {
-            engine: device.name(),
-            seed: arguments.seed,
-            holds: failing == 0,
-            campaigns: &ran,
-        };
-        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
-    } else {
-        summary(&ran)
+    let report = Report {
+        engine: device.name(),
+        seed: arguments.seed,
+        holds: failing == 0,
+        campaigns: &ran,
     };
-    output::print(&text)?;
+    tell(arguments, &report, || summary(&ran))?;
     if failing == 0 {
         return Ok(());
     }
@@ -54,10 +48,4 @@ pub fn run(arguments: &Arguments, device: Device<'_>, numbers: std::ops::Range<u
         arguments.seed,
         device.name()
     )))
-}
-
-/// Writes the scene of a campaign.
-fn write(folder: &Path, campaign: &Campaign) -> anyhow::Result<()> {
-    let path = folder.join(format!("campaign-{}.toml", campaign.number));
-    std::fs::write(&path, campaign.text()).with_context(|| path.display().to_string())
 }

@@ -6,7 +6,7 @@ use anyhow::{Context, anyhow};
 use hil_sim::faults::{Class, Device, Flip, Flipped, Memory, Reference, flip_table};
 use serde::Serialize;
 
-use super::{Arguments, Failure, each, output};
+use super::{Arguments, Failure, each, tell, write};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -33,24 +33,18 @@ pub fn run(arguments: &Arguments, device: Device<'_>, numbers: Range<u64>) -> Re
         let flipped = flip.run(firmware, &references);
         let flipped = flipped.with_context(|| format!("number {} of seed {seed}", flip.number))?;
         if let (Some(folder), true) = (&arguments.out, flips.len() == 1 || flipped.class == Class::Broken) {
-            let path = folder.join(format!("flip-{}.toml", flip.number));
-            std::fs::write(&path, flip.text()).with_context(|| path.display().to_string())?;
+            write(folder, &format!("flip-{}.toml", flip.number), &flip.text())?;
         }
         Ok(flipped)
     };
     let ran = each(arguments, "flips", device, &flips, work).map_err(Failure::run)?;
     let failing = ran.iter().filter(|run| run.class == Class::Broken).count();
-    let text = if arguments.json {
-        let report = Report {
-            seed,
-            holds: failing == 0,
-            flips: &ran,
-        };
-        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
-    } else {
-        flip_table(&ran)
+    let report = Report {
+        seed,
+        holds: failing == 0,
+        flips: &ran,
     };
-    output::print(&text)?;
+    tell(arguments, &report, || flip_table(&ran))?;
     if failing == 0 {
         return Ok(());
     }

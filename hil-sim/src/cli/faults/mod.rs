@@ -5,7 +5,7 @@ mod flips;
 mod normal;
 mod pairs;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use anyhow::{Context, anyhow};
@@ -202,6 +202,26 @@ fn outlines(arguments: &Arguments, plan: &Plan, device: Device<'_>) -> anyhow::R
     }
     let rows = plan.entries.iter().zip(by_row);
     Ok(rows.map(|(entry, trials)| Outline::new(entry, trials)).collect())
+}
+
+/// Prints a report as one object if that is asked for, else as its table.
+fn tell(
+    arguments: &Arguments,
+    report: &impl Serialize,
+    table: impl FnOnce() -> String,
+) -> Result<(), Failure> {
+    let text = if arguments.json {
+        serde_json::to_string(report).map_err(Failure::run)? + "\n"
+    } else {
+        table()
+    };
+    output::print(&text)
+}
+
+/// Writes a scene into the folder of `--out`.
+fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
+    let path = folder.join(name);
+    std::fs::write(&path, text).with_context(|| path.display().to_string())
 }
 
 /// Does the work of every item on the threads that are asked for, and shows how far it is; where no terminal is, a line

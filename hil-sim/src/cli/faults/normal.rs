@@ -1,10 +1,10 @@
 //! `--normal`: use without a fault.
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use hil_sim::faults::{Device, Session, Used, use_table};
 use serde::Serialize;
 
-use super::{Arguments, Failure, each, output};
+use super::{Arguments, Failure, each, tell, write};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -23,25 +23,19 @@ pub fn run(arguments: &Arguments, device: Device<'_>, hours: u64) -> Result<(), 
         let session = Session::new(seed, *number);
         let used = session.run(device);
         if let (Some(folder), Some(_)) = (&arguments.out, &used.failure) {
-            let path = folder.join(format!("session-{number}.toml"));
-            std::fs::write(&path, &session.text).with_context(|| path.display().to_string())?;
+            write(folder, &format!("session-{number}.toml"), &session.text)?;
         }
         Ok(used)
     };
     let used = each(arguments, "sessions", device, &numbers, work).map_err(Failure::run)?;
     let failed = used.iter().filter(|used| used.failure.is_some()).count();
-    let text = if arguments.json {
-        let report = Report {
-            engine: device.name(),
-            seed,
-            holds: failed == 0,
-            sessions: &used,
-        };
-        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
-    } else {
-        use_table(&used)
+    let report = Report {
+        engine: device.name(),
+        seed,
+        holds: failed == 0,
+        sessions: &used,
     };
-    output::print(&text)?;
+    tell(arguments, &report, || use_table(&used))?;
     if failed == 0 {
         return Ok(());
     }

@@ -1,10 +1,10 @@
 //! `--pairs`: an unnoticed fault, then another one.
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use hil_sim::faults::{Device, Pair, RanPair, pair_table, pairs};
 use serde::Serialize;
 
-use super::{Arguments, Failure, each, output};
+use super::{Arguments, Failure, each, tell, write};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -23,26 +23,20 @@ pub fn run(arguments: &Arguments, device: Device<'_>) -> Result<(), Failure> {
         if let (Some(folder), Some(false)) = (&arguments.out, ran.as_ref().map(RanPair::holds)) {
             let words = format!("{} then {}", pair.latent.fault, pair.active.fault);
             let name = words.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
-            let path = folder.join(name + ".toml");
-            std::fs::write(&path, pair.text(seed)).with_context(|| path.display().to_string())?;
+            write(folder, &(name + ".toml"), &pair.text(seed))?;
         }
         Ok(ran)
     };
     let ran = each(arguments, "pairs", device, &pairs(seed), work).map_err(Failure::run)?;
     let ran: Vec<_> = ran.into_iter().flatten().collect();
     let failing = ran.iter().filter(|pair| !pair.holds()).count();
-    let text = if arguments.json {
-        let report = Report {
-            engine: device.name(),
-            seed,
-            holds: failing == 0,
-            pairs: &ran,
-        };
-        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
-    } else {
-        pair_table(&ran)
+    let report = Report {
+        engine: device.name(),
+        seed,
+        holds: failing == 0,
+        pairs: &ran,
     };
-    output::print(&text)?;
+    tell(arguments, &report, || pair_table(&ran))?;
     if failing == 0 {
         return Ok(());
     }

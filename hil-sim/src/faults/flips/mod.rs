@@ -80,8 +80,7 @@ impl Reference {
     /// The image does not run.
     pub fn new(firmware: &Firmware, place: Place) -> anyhow::Result<Self> {
         let scene = Scene::parse(&text(place, &[]), place.name().as_ref())?;
-        let ran = Device::Image(firmware).run(&scene)?;
-        let (outcome, _) = ran.context("nothing is injected")?;
+        let (outcome, _) = Device::Image(firmware).run(&scene)?;
         Ok(Self { place, outcome })
     }
 
@@ -110,8 +109,7 @@ impl Flip {
         let scene = Scene::parse(&self.text(), place.name().as_ref())?;
         let entry = Entry::trips(self.injected(), SIGNS, &[]);
         let (class, verdict, deviation_k) = match Device::Image(firmware).run(&scene) {
-            Ok(ran) => {
-                let (outcome, figures) = ran.context("an image has a processor")?;
+            Ok((outcome, figures)) => {
                 let mut verdict = Verdict::of(&entry, self.moment, &outcome, &figures);
                 // Any word is right.
                 verdict.breaches.retain(|breach| *breach != Breach::Reason);

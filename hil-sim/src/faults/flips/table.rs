@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::{Class, Flipped, Region};
 use crate::faults::Breach;
+use crate::faults::verdict::MICROSECONDS;
 
 /// Classes by region, reasons of trips below theirs; then every flip that broke a limit or ended its run.
 #[must_use]
@@ -51,7 +52,11 @@ pub fn flip_table(runs: &[Flipped]) -> String {
     for run in runs {
         let what = format!("number {}: {} ({})", run.number, run.flip, run.region.name());
         let _ = match (run.class, &run.verdict.ended) {
-            (Class::Broken, _) => writeln!(text, "{what}: {}", broken(run)),
+            (Class::Broken, _) => writeln!(
+                text,
+                "{what}: {}",
+                run.verdict.line(run.place, run.t_s, MICROSECONDS)
+            ),
             (Class::Ended, Some(ended)) => writeln!(
                 text,
                 "{what}: ended in {} at {:.6} s: {ended}",
@@ -73,25 +78,4 @@ fn line(text: &mut String, name: &str, runs: &[Flipped], is_so: impl Fn(&Flipped
         *text += &format!("{count:>9}");
     }
     *text += &format!("{:>9}\n", runs.iter().filter(|run| is_so(run)).count());
-}
-
-fn broken(run: &Flipped) -> String {
-    let verdict = &run.verdict;
-    let names: Vec<_> = verdict.breaches.iter().map(|breach| breach.name()).collect();
-    let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.1} ms"));
-    format!(
-        "{} in {} at {:.6} s: detectable {}, detected {}, safe {}, reason {}, skin {:.2} to {:.2} C, CEM43 {:.3} min, display {:.2} to {:.2} C",
-        names.join(", "),
-        run.place,
-        run.t_s,
-        ms(verdict.detectable_ms),
-        ms(verdict.detected_ms),
-        ms(verdict.safe_ms),
-        verdict.reason,
-        verdict.skin_c.min,
-        verdict.skin_c.max,
-        verdict.cem43_min,
-        verdict.display_c.min,
-        verdict.display_c.max,
-    )
 }

@@ -15,7 +15,7 @@ const LEG: &[Sign] = &[
     Sign::FaultLine,
     Sign::SelfTest(0.704),
 ];
-const LEG_REASONS: &[Fault] = &[
+pub(super) const LEG_REASONS: &[Fault] = &[
     Fault::CurrentHigh,
     Fault::CurrentLow,
     Fault::OverCurrent,

@@ -2,6 +2,7 @@
 
 use thermal_display::guard::Fault;
 
+use super::electrics::LEG_REASONS;
 use crate::engine::MachineFault as Fails;
 use crate::faults::{Entry, Injected, Place, Sign};
 use crate::machine::CoreRegister;
@@ -25,14 +26,6 @@ const DUTY: &[Sign] = &[
     Sign::OverCurrent,
     Sign::WrongWay,
     Sign::SelfTest(0.504),
-];
-const DUTY_REASONS: &[Fault] = &[
-    Fault::CurrentHigh,
-    Fault::CurrentLow,
-    Fault::OverCurrent,
-    Fault::Polarity,
-    Fault::NoResponse,
-    Fault::Bridge,
 ];
 /// The program is lost; who notices first depends on where.
 const LOST: &[Fault] = &[
@@ -104,11 +97,11 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(core(CoreRegister::Sp, 28), NOW, LOST),
     Entry::harmless(core(CoreRegister::S(0), 30)),
     // Main output off; output of leg A off; period; prescaler; enable line; comparison of leg A.
-    Entry::trips(flipped(TIM1 + 0x44, 15), DUTY, DUTY_REASONS).at(&[Place::Slew]),
-    Entry::trips(flipped(TIM1 + 0x20, 0), DUTY, DUTY_REASONS).at(&[Place::Slew]),
-    Entry::trips(flipped(TIM1 + 0x2c, 10), DUTY, DUTY_REASONS).at(&[Place::Slew]),
+    Entry::trips(flipped(TIM1 + 0x44, 15), DUTY, LEG_REASONS).at(&[Place::Slew]),
+    Entry::trips(flipped(TIM1 + 0x20, 0), DUTY, LEG_REASONS).at(&[Place::Slew]),
+    Entry::trips(flipped(TIM1 + 0x2c, 10), DUTY, LEG_REASONS).at(&[Place::Slew]),
     Entry::harmless(flipped(TIM1 + 0x28, 0)),
-    Entry::trips(flipped(GPIOB_ODR, 10), DUTY, DUTY_REASONS).at(&[Place::Slew]),
+    Entry::trips(flipped(GPIOB_ODR, 10), DUTY, LEG_REASONS).at(&[Place::Slew]),
     Entry::harmless(flipped(TIM1 + 0x34, 10)),
     // Scans that are no longer started, converted, stored or taken.
     Entry::trips(flipped(TIM2, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
