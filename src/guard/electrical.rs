@@ -11,30 +11,27 @@ const APART_SHIFT: u32 = 2;
 /// For how many ticks: a driver that is overloaded tries again every 4 ms and tells so by its fault pin first.
 const TICKS: u8 = 30;
 
-/// How long it has been wrong.
+/// How long it has been wrong, either way: what a leg that is stuck does turns with the current that is asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Electrical {
-    high: Lasting,
-    low: Lasting,
-}
+pub struct Electrical(Lasting);
 
 impl Electrical {
     /// Takes one tick: the current asked for in the one before, none while the bridge was off, and the magnitude
     /// measured since.
     ///
     /// # Errors
-    /// Too much or too little has flowed for 30 ms.
+    /// Too much or too little has flowed for 30 ms; named after what flows at their end.
     pub fn check(&mut self, asked: Current, measured: Current) -> Result<(), Fault> {
         let asked = asked.saturating_abs();
         let apart = APART.saturating_add(asked >> APART_SHIFT);
-        let high = self.high.has(measured > asked.saturating_add(apart), TICKS);
-        let low = self.low.has(measured < asked.saturating_sub(apart), TICKS);
-        if high {
-            Err(Fault::CurrentHigh)
-        } else if low {
-            Err(Fault::CurrentLow)
-        } else {
+        let high = measured > asked.saturating_add(apart);
+        let low = measured < asked.saturating_sub(apart);
+        if !self.0.has(high || low, TICKS) {
             Ok(())
+        } else if high {
+            Err(Fault::CurrentHigh)
+        } else {
+            Err(Fault::CurrentLow)
         }
     }
 }

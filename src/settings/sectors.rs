@@ -1,4 +1,8 @@
-//! Flash sectors whose erasure is all or nothing.
+//! Flash sectors whose erasure is all or nothing, and in which any one bit of a word may turn.
+//!
+//! A word is stored three times in a row, and each of its bits reads as most of its copies do: a bit that turns over the
+//! years would else end the records before its own, and an older one would count. So a word is also there as a whole or
+//! not at all, whenever power fails.
 //!
 //! Power that fails while a sector is being erased leaves bits that are anything: old records can still be there and be
 //! taken for the newest. So a sector counts only as long as it begins with a seal. The seal is broken, which is the
@@ -6,7 +10,7 @@
 //! next written to.
 //!
 //! ```text
-//! sealed:   [seal, 8 bytes][data]        unsealed: reads as erased
+//! sealed:   [seal, 2 x 3 words][data, 3 words each]        unsealed: reads as erased
 //! erase     -> break the seal
 //! write     -> if unsealed: erase, look whether it is, seal; then write
 //! ```
@@ -18,16 +22,21 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
+/// Bytes that are programmed at a time.
+const WORD: usize = 4;
+/// How often each is stored.
+const COPIES: usize = 3;
+/// Bytes that a word takes.
+const CELL: usize = COPIES * WORD;
 /// Begins a sector that counts. Neither nothing, nor zeros, nor few bits away from them.
-const SEAL: [u8; 8] = *b"settings";
-const SEAL_BYTES: usize = SEAL.len();
+const SEAL: [u8; 2 * WORD] = *b"settings";
 /// Makes any seal another one: programming can only clear bits.
-const BROKEN: [u8; 4] = [0; 4];
+const BROKEN: [u8; WORD] = [0; WORD];
 const ERASED: u8 = 0xff;
 /// Bytes that are compared at a time.
 const LOOK: usize = 32;
 
-/// Equal sectors of a flash, each shorter by its seal.
+/// Equal sectors of a flash, each a third as long, less its seal.
 #[derive(Debug)]
 pub struct Sectors<F>(F);
 
@@ -38,7 +47,7 @@ pub enum SectorError<E> {
     Flash(E),
     /// The sector was erased, and is not.
     NotErased,
-    /// An address outside of the sectors, or from one into the next.
+    /// An address outside of the sectors, or from one into the next, or no whole words.
     OutOfBounds,
 }
 
@@ -62,30 +71,63 @@ impl<E: fmt::Debug> NorFlashError for SectorError<E> {
 }
 
 impl<F: Blocking> Sectors<F> {
-    /// Bytes of a sector without its seal.
-    pub const BYTES: usize = F::ERASE_SIZE - SEAL_BYTES;
+    /// Bytes that a sector holds.
+    pub const BYTES: usize = F::ERASE_SIZE / CELL * WORD - SEAL.len();
 
     /// The sectors of this flash.
     pub const fn new(flash: F) -> Self {
-        const { assert!(F::READ_SIZE <= 4 && F::WRITE_SIZE <= 4) };
+        const { assert!(F::READ_SIZE <= WORD && F::WRITE_SIZE <= WORD) };
         Self(flash)
     }
 
     /// Address of a sector, and of what lies there in the flash.
     fn place(&self, offset: u32, bytes: usize) -> Result<(u32, u32), SectorError<F::Error>> {
-        let size = Self::BYTES as u32;
-        let (sector, within) = (offset / size, offset % size);
-        let start = sector * F::ERASE_SIZE as u32;
-        if within as usize + bytes > Self::BYTES || start as usize + F::ERASE_SIZE > self.0.capacity() {
-            return Err(SectorError::OutOfBounds);
+        let (sector, within) = (offset as usize / Self::BYTES, offset as usize % Self::BYTES);
+        let start = sector * F::ERASE_SIZE;
+        let fits = within.is_multiple_of(WORD)
+            && within + bytes <= Self::BYTES
+            && start + F::ERASE_SIZE <= self.0.capacity();
+        if fits {
+            let before = (SEAL.len() + within) / WORD * CELL;
+            Ok((start as u32, (start + before) as u32))
+        } else {
+            Err(SectorError::OutOfBounds)
         }
-        Ok((start, start + SEAL_BYTES as u32 + within))
+    }
+
+    /// What most copies say.
+    fn vote(&mut self, address: u32, bytes: &mut [u8]) -> Result<(), SectorError<F::Error>> {
+        for (word, at) in bytes.chunks_mut(WORD).zip((address..).step_by(CELL)) {
+            let mut copies = [[0; WORD]; COPIES];
+            self.0
+                .read(at, copies.as_flattened_mut())
+                .map_err(SectorError::Flash)?;
+            let [first, second, third] = copies.map(u32::from_ne_bytes);
+            let most = first & second | second & third | third & first;
+            word.iter_mut()
+                .zip(most.to_ne_bytes())
+                .for_each(|(byte, voted)| *byte = voted);
+        }
+        Ok(())
+    }
+
+    fn program(&mut self, address: u32, bytes: &[u8]) -> Result<(), SectorError<F::Error>> {
+        let (words, []) = bytes.as_chunks() else {
+            return Err(SectorError::OutOfBounds);
+        };
+        for (word, at) in words.iter().zip((address..).step_by(CELL)) {
+            let copies: [[u8; WORD]; COPIES] = [*word; COPIES];
+            self.0
+                .write(at, copies.as_flattened())
+                .map_err(SectorError::Flash)?;
+        }
+        Ok(())
     }
 
     #[inline(never)]
     fn is_sealed(&mut self, start: u32) -> Result<bool, SectorError<F::Error>> {
-        let mut seal = [0; SEAL_BYTES];
-        self.0.read(start, &mut seal).map_err(SectorError::Flash)?;
+        let mut seal = [0; SEAL.len()];
+        self.vote(start, &mut seal)?;
         Ok(seal == SEAL)
     }
 
@@ -101,7 +143,7 @@ impl<F: Blocking> Sectors<F> {
                 return Err(SectorError::NotErased);
             }
         }
-        self.0.write(start, &SEAL).map_err(SectorError::Flash)
+        self.program(start, &SEAL)
     }
 }
 
@@ -110,12 +152,12 @@ impl<F: Blocking> ErrorType for Sectors<F> {
 }
 
 impl<F: Blocking> ReadNorFlash for Sectors<F> {
-    const READ_SIZE: usize = F::READ_SIZE;
+    const READ_SIZE: usize = WORD;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
         let (start, address) = self.place(offset, bytes.len())?;
         if self.is_sealed(start)? {
-            return self.0.read(address, bytes).map_err(SectorError::Flash);
+            return self.vote(address, bytes);
         }
         bytes.fill(ERASED);
         Ok(())
@@ -127,14 +169,14 @@ impl<F: Blocking> ReadNorFlash for Sectors<F> {
 }
 
 impl<F: Blocking> NorFlash for Sectors<F> {
-    const WRITE_SIZE: usize = F::WRITE_SIZE;
+    const WRITE_SIZE: usize = WORD;
     const ERASE_SIZE: usize = Self::BYTES;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
         for offset in (from..to).step_by(Self::BYTES) {
             let (start, _) = self.place(offset, 0)?;
             if self.is_sealed(start)? {
-                self.0.write(start, &BROKEN).map_err(SectorError::Flash)?;
+                self.program(start, &BROKEN)?;
             }
         }
         Ok(())
@@ -145,6 +187,6 @@ impl<F: Blocking> NorFlash for Sectors<F> {
         if !self.is_sealed(start)? {
             self.prepare(start)?;
         }
-        self.0.write(address, bytes).map_err(SectorError::Flash)
+        self.program(address, bytes)
     }
 }

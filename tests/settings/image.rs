@@ -109,12 +109,12 @@ fn save_ms(firmware: &Firmware, cells: &Cells, number: u32) -> f64 {
 fn the_flash_delays_a_start_by_little() {
     let firmware = firmware();
     let never = first_conversion_ms(&firmware, &after(0));
-    let (one, full) = (after(1), after(112));
+    let (one, full) = (after(1), after(37));
     let [with_one, with_most] = [&one, &full].map(|cells| first_conversion_ms(&firmware, cells));
     println!("start: {never:.1} ms, {with_one:.1} with one record, {with_most:.1} with a page of them");
     assert!(with_most - never < 100.0);
     let [first, second, turning] =
-        [(&after(0), 0), (&one, 1), (&full, 112)].map(|(cells, number)| save_ms(&firmware, cells, number));
+        [(&after(0), 0), (&one, 1), (&full, 37)].map(|(cells, number)| save_ms(&firmware, cells, number));
     println!(
         "save: {first:.1} ms the first time, {second:.1} then, {turning:.1} when it turns to another page"
     );
@@ -153,7 +153,7 @@ fn the_image_loses_nothing_in_any_operation() {
     let firmware = firmware();
     let mut cells = after(1);
     let (mut cuts, mut turned) = (0, 0);
-    for number in 1..350 {
+    for number in 1..150 {
         let next = saved(&cells, numbered::<1>(number).as_ref(), None);
         let operations = next.operations() - cells.operations();
         let is_turn = turns(&cells, &next);

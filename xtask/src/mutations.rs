@@ -168,15 +168,15 @@ const MUTATIONS: [Mutation; 31] = [
     mutation(
         "current high",
         "src/guard/electrical.rs",
-        "if high {",
-        "if high && low {",
+        "has(high || low, TICKS)",
+        "has(low, TICKS)",
         &["mirror-stuck"],
     ),
     mutation(
         "current low",
         "src/guard/electrical.rs",
-        "} else if low {",
-        "} else if low && high {",
+        "has(high || low, TICKS)",
+        "has(high, TICKS)",
         &["leg-open"],
     ),
     mutation(

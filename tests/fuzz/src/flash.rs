@@ -8,7 +8,7 @@ use system_tests::flash::{BYTES, Flash, append, numbered};
 use thermal_display::settings::{Calibration, Correction, Kept, Store, StoreError, Tile};
 
 /// Saves that an input begins after: none, few, all that fit into a sector, and turns to another.
-const SAVES: [u32; 8] = [0, 1, 2, 3, 40, 112, 113, 230];
+const SAVES: [u32; 8] = [0, 1, 2, 3, 20, 37, 38, 80];
 /// Events of one input, at most.
 const EVENTS: usize = 24;
 
