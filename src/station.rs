@@ -139,6 +139,7 @@ impl Station {
         self.before = Before {
             asked: current,
             setpoint: followed.map(|followed| followed.setpoint),
+            unlike_model: self.control.strays(),
         };
         let setpoint = followed.map(|followed| (followed.setpoint, followed.limited));
         self.report(&readings, setpoint, current);

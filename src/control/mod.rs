@@ -137,6 +137,12 @@ impl Control {
         self.two_degrees.surface().unwrap_or(reading)
     }
 
+    /// Whether the display's reading has strayed from what the law's model of it says; a law without one knows nothing.
+    #[must_use]
+    pub fn strays(&self) -> bool {
+        self.law == Law::Model && self.two_degrees.strays()
+    }
+
     /// Ends and mean of the legs.
     #[must_use]
     pub fn legs(&self, display: Celsius, sink: Celsius) -> Legs {

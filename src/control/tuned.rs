@@ -1,9 +1,15 @@
 //! What the laws know of a tile, ready for the tick.
 
+use contact_model::fixed_point::Celsius;
+
 use super::lag::Share;
 use super::pi::{Period, Response};
 use super::plate::Plate;
-use crate::settings::Settings;
+use crate::settings::{Settings, Tile};
+
+/// Measured minus predicted that a sound tile never has: one that was tuned, and one of which only the class is known.
+const RESIDUAL: Celsius = Celsius::lit("2");
+const CLASS_RESIDUAL: Celsius = Celsius::lit("4");
 
 /// The laws' constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,6 +19,8 @@ pub struct Tuned {
     pub(super) plate: Plate,
     /// Of the display's thermistor.
     pub(super) sensor: Share,
+    /// Most that measured and predicted differ by.
+    pub(super) residual: Celsius,
 }
 
 impl Tuned {
@@ -24,6 +32,11 @@ impl Tuned {
             pi_10hz: Response::new(&settings.gains_10hz, Period::TenthOfASecond),
             plate: Plate::new(&settings.module, &settings.tile),
             sensor: Share::of(settings.tile.sensor_lag_s),
+            residual: if settings.tile == Tile::CLASS {
+                CLASS_RESIDUAL
+            } else {
+                RESIDUAL
+            },
         }
     }
 }

@@ -34,6 +34,8 @@ pub struct TwoDegrees {
     sensor: Lag,
     /// Plate without model.
     apart: Lag,
+    /// The most of that, of a sound tile.
+    residual: Celsius,
     feed: Current,
     /// What it did to the plate.
     heat: Heat,
@@ -49,6 +51,7 @@ impl TwoDegrees {
             plate: tuned.plate,
             sensor: Lag::new(tuned.sensor),
             apart: Lag::new(Share::of(APART_LAG_S)),
+            residual: tuned.residual,
             feed: Current::ZERO,
             heat: Heat::default(),
             limit,
@@ -60,6 +63,7 @@ impl TwoDegrees {
     pub fn retune(&mut self, tuned: &Tuned) {
         self.plate.become_like(&tuned.plate);
         self.sensor.retune(tuned.sensor);
+        self.residual = tuned.residual;
     }
 
     /// Starts anew with the next [`Self::update`], from a tile through which this current flows.
@@ -79,6 +83,12 @@ impl TwoDegrees {
     pub fn surface(&self) -> Option<Celsius> {
         self.running
             .then(|| self.plate.surface().saturating_add(self.apart.value()))
+    }
+
+    /// Whether measured minus predicted is more than a sound tile's; not before the first update.
+    #[must_use]
+    pub fn strays(&self) -> bool {
+        self.running && self.apart.value().saturating_abs() > self.residual
     }
 
     /// Current for one tick; positive cools.

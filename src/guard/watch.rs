@@ -21,6 +21,8 @@ const APART_TICKS: u8 = 40;
 /// one aside, or there is nobody and both are the same.
 const ROOM_ABOVE: Celsius = Celsius::lit("8");
 const ROOM_TICKS: u8 = 40;
+/// For how many ticks a display that is unlike its model counts.
+const UNLIKE_TICKS: u8 = 40;
 /// A host that streams is silent for no longer, ticks.
 const SILENT_TICKS: u16 = 2000;
 
@@ -31,6 +33,8 @@ pub struct Before {
     pub asked: Current,
     /// Where the display was to be; none while the bridge was off.
     pub setpoint: Option<Setpoint>,
+    /// The display has strayed from what the law's model of it says.
+    pub unlike_model: bool,
 }
 
 /// What the guard remembers from tick to tick.
@@ -42,6 +46,7 @@ pub struct Watch {
     room: Lasting,
     electrical: Electrical,
     response: Response,
+    unlike: Lasting,
     dose: Dose,
     silent_ticks: u16,
 }
@@ -87,6 +92,8 @@ impl Watch {
         let room = sound.room.saturating_sub(sound.skin) > ROOM_ABOVE;
         let apart = named(self.apart.has(apart, APART_TICKS), Fault::DisplaysApart);
         let room = named(self.room.has(room, ROOM_TICKS), Fault::RoomAboveSkin);
+        let unlike = self.unlike.has(before.unlike_model, UNLIKE_TICKS);
+        let unlike = named(unlike, Fault::UnlikeModel);
         let listens = streams && before.setpoint.is_some();
         self.silent_ticks = if listens {
             self.silent_ticks.saturating_add(1)
@@ -98,6 +105,7 @@ impl Watch {
             .and(apart)
             .and(self.electrical.check(before.asked, measured))
             .and(self.response.check(before.asked, sound.display, above))
+            .and(unlike)
             .and(room)
             .and(named(self.silent_ticks >= SILENT_TICKS, Fault::HostSilent))
     }

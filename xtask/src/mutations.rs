@@ -59,7 +59,7 @@ const WATCH: &str = "src/guard/watch.rs";
 const SELF_TEST: &str = "src/guard/self_test.rs";
 const THERMISTOR: &str = "src/sense/thermistor.rs";
 
-const MUTATIONS: [Mutation; 31] = [
+const MUTATIONS: [Mutation; 32] = [
     mutation(
         "excitation",
         LIMITS,
@@ -143,6 +143,13 @@ const MUTATIONS: [Mutation; 31] = [
         "named(self.apart.has(apart, APART_TICKS)",
         "named(self.apart.has(false, APART_TICKS)",
         &["thermistor-drift"],
+    ),
+    mutation(
+        "unlike model",
+        WATCH,
+        "self.unlike.has(before.unlike_model, UNLIKE_TICKS)",
+        "self.unlike.has(false, UNLIKE_TICKS)",
+        &["module-weak"],
     ),
     mutation(
         "room",

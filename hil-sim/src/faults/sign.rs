@@ -23,6 +23,8 @@ pub enum Sign {
     After(f64),
     /// The display's thermistors read 3.1 K apart.
     Apart,
+    /// The display's thermistor reads 2.5 K more or less than in the same scene without the fault, for 40 ms.
+    Astray,
     /// Display, its second thermistor or the sink reads 0.7 K more or less than 4 ms before.
     Jump,
     /// The room reads 8.5 K more than the skin.
@@ -51,6 +53,8 @@ pub enum Sign {
 }
 
 const APART_K: f64 = 3.1;
+const ASTRAY_K: f64 = 2.5;
+const ASTRAY_ROWS: usize = 40;
 const JUMP_K: f64 = 0.7;
 const JUMP_ROWS: usize = 4;
 const ROOM_ABOVE_K: f64 = 8.5;
@@ -88,9 +92,16 @@ fn state(row: &Row) -> &str {
 }
 
 impl Sign {
-    /// When it is reached first, s; `from` is the row at which the fault begins.
+    /// It is told from the same scene without the fault.
     #[must_use]
-    pub fn reached_s(self, rows: &[Row], from: usize) -> Option<f64> {
+    pub const fn needs_sound(self) -> bool {
+        matches!(self, Self::Astray)
+    }
+
+    /// When it is reached first, s; `from` is the row at which the fault begins, `sound` the rows without it if
+    /// [`Self::needs_sound`].
+    #[must_use]
+    pub fn reached_s(self, rows: &[Row], sound: &[Row], from: usize) -> Option<f64> {
         let after = rows.get(from..)?;
         let first = |level: &dyn Fn(&Row) -> bool| after.iter().find(|row| level(row)).map(|row| row.t_s);
         let begin_s = after.first()?.t_s;
@@ -102,6 +113,7 @@ impl Sign {
                 (Some(display_c), Some(check_c)) => (display_c - check_c).abs() > APART_K,
                 _ => false,
             }),
+            Self::Astray => astray(after, sound.get(from..)?),
             Self::Jump => jump(rows, from),
             Self::RoomAboveSkin => first(&|row| match (read(row, ROOM), read(row, SKIN)) {
                 (Some(room_c), Some(skin_c)) => room_c - skin_c > ROOM_ABOVE_K,
@@ -126,6 +138,18 @@ impl Sign {
             Self::SelfTest(age_s) => self_test(rows, from, age_s),
         }
     }
+}
+
+fn astray(rows: &[Row], sound: &[Row]) -> Option<f64> {
+    let so_far = |(row, sound): (&Row, &Row)| match (read(row, DISPLAY), read(sound, DISPLAY)) {
+        (Some(display_c), Some(sound_c)) if (display_c - sound_c).abs() > ASTRAY_K => Some(row.t_s),
+        _ => None,
+    };
+    let far: Vec<_> = rows.iter().zip(sound).map(so_far).collect();
+    let lasts = far
+        .windows(ASTRAY_ROWS)
+        .find(|rows| rows.iter().all(Option::is_some))?;
+    lasts[0]
 }
 
 /// Begin of the fault included: what it does to a reading at once is a jump.
@@ -270,13 +294,13 @@ mod tests {
             (1.2, 0.304, 1.2 + 1.0 + 0.264),
         ] {
             about(
-                Sign::SelfTest(age_s).reached_s(&with_finger_from(from_s), 500),
+                Sign::SelfTest(age_s).reached_s(&with_finger_from(from_s), &[], 500),
                 expected_s,
             );
         }
         let rows = with_finger_from(0.0);
         assert_eq!(
-            Sign::SelfTest(0.02).reached_s(&rows, 1100),
+            Sign::SelfTest(0.02).reached_s(&rows, &[], 1100),
             None,
             "the fault came later"
         );
@@ -293,9 +317,9 @@ mod tests {
 
     #[test]
     fn a_display_goes_the_wrong_way_only_from_its_set_point_and_against_the_current() {
-        about(Sign::WrongWay.reached_s(&rising(20.0, 9.0), 500), 2.5);
-        assert_eq!(Sign::WrongWay.reached_s(&rising(30.0, 9.0), 500), None);
-        assert_eq!(Sign::WrongWay.reached_s(&rising(20.0, 2.1), 500), None);
+        about(Sign::WrongWay.reached_s(&rising(20.0, 9.0), &[], 500), 2.5);
+        assert_eq!(Sign::WrongWay.reached_s(&rising(30.0, 9.0), &[], 500), None);
+        assert_eq!(Sign::WrongWay.reached_s(&rising(20.0, 2.1), &[], 500), None);
     }
 
     /// A second at 47 °C is worth 16 at 43 °C: half a minute takes 1.875 s.
@@ -304,6 +328,6 @@ mod tests {
         let warm = rows(|t_s, row, _| {
             row.taken.thermistors_c[DISPLAY] = Some(if t_s < 1.0 { 30.0 } else { 47.1 });
         });
-        about(Sign::Dose.reached_s(&warm, 500), 1.0 + 1.875);
+        about(Sign::Dose.reached_s(&warm, &[], 500), 1.0 + 1.875);
     }
 }

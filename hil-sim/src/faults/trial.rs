@@ -11,6 +11,7 @@ use crate::engine::NotInjected;
 use crate::metrics::Figures;
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
+use crate::trace::Row;
 
 /// What is asked at the end, and how long before it, s. Twice: a reset tears a line of telemetry, which the first answer
 /// then ends.
@@ -26,6 +27,19 @@ fn ran(device: Device<'_>, scene: &Scene) -> anyhow::Result<Option<(Outcome, Fig
         },
         Ok(ran) => Ok(Some(ran)),
     }
+}
+
+/// The rows of a scene without the fault, if a sign of it needs them.
+fn sound(device: Device<'_>, entry: &Entry, scene: &Scene) -> anyhow::Result<Vec<Row>> {
+    let mut sound = scene.clone();
+    match entry.fault {
+        Injected::Broken(broken) if entry.signs.iter().any(|sign| sign.needs_sound()) => {
+            sound.faults.retain(|fault| fault.broken.kind != broken.kind);
+        }
+        _ => return Ok(Vec::new()),
+    }
+    let (outcome, _) = device.run(&sound)?;
+    Ok(outcome.trace.rows().to_vec())
 }
 
 /// One run of one fault.
@@ -60,7 +74,10 @@ impl Trial {
         let scene = Scene::parse(text, Path::new(moment.place.name()))?;
         let verdict = match ran(device, &scene) {
             Ok(None) => return Ok(None),
-            Ok(Some((outcome, figures))) => Verdict::of(entry, moment, &outcome, &figures),
+            Ok(Some((outcome, figures))) => {
+                let sound = sound(device, entry, &scene)?;
+                Verdict::of(entry, moment, &outcome, &figures, &sound)
+            }
             // Nobody knows what silicon would do then: that proves nothing, so it counts as a breach.
             Err(error) => Verdict::ended(&error),
         };

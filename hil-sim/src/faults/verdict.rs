@@ -133,15 +133,21 @@ impl Verdict {
         )
     }
 
-    /// Judges a run.
-    pub(super) fn of(entry: &Entry, moment: Moment, outcome: &Outcome, figures: &Figures) -> Self {
+    /// Judges a run; `sound` are the rows of the same without the fault, if a sign needs them.
+    pub(super) fn of(
+        entry: &Entry,
+        moment: Moment,
+        outcome: &Outcome,
+        figures: &Figures,
+        sound: &[Row],
+    ) -> Self {
         let rows = outcome.trace.rows();
         let t_s = moment.t_s;
         // The fault is there from the first boundary at or after its time on.
         let from = rows.partition_point(|row| row.t_s < t_s - 1e-9);
         let signs = entry.signs.iter();
         let detectable_s = signs
-            .filter_map(|sign| sign.reached_s(rows, from))
+            .filter_map(|sign| sign.reached_s(rows, sound, from))
             .min_by(f64::total_cmp);
         let before = moment.place.has_tripped_before().map(|fault| fault.name());
         let detected_s = detected(outcome, from, t_s, before);

@@ -3,7 +3,7 @@
 use super::bridge::BridgeDefects;
 use super::comparator::ComparatorDefect;
 use super::sensors::SensorDefects;
-use super::tile::CoolingDefects;
+use super::tile::{CoolingDefects, ModuleDefect};
 
 /// What is broken in the plant of a finger; by default nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -16,4 +16,6 @@ pub struct Defects {
     pub comparator: ComparatorDefect,
     /// Cooling of the sink.
     pub cooling: CoolingDefects,
+    /// Thermoelectric module.
+    pub module: ModuleDefect,
 }

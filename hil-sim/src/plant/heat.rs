@@ -13,7 +13,7 @@ use super::bridge::{Bridge, Legs};
 use super::ledger::{Energy, Ledger};
 use super::schedule;
 use super::slab::{Lanes, Probe, Row, Slab};
-use super::tile::{CoolingDefects, Tile};
+use super::tile::{CoolingDefects, ModuleDefect, Tile};
 use super::touch::Touch;
 
 /// A finger: on the display, or the same one on the real object.
@@ -104,6 +104,11 @@ impl Heat {
     /// Cools the tile's sink as well as its defects allow.
     pub fn cool(&mut self, defects: &CoolingDefects) {
         self.tile.cool(defects);
+    }
+
+    /// Breaks the tile's module, or mends it.
+    pub const fn set_module(&mut self, defect: ModuleDefect) {
+        self.tile.set_defect(defect);
     }
 
     /// Closes, changes or opens the contacts. Air cools the object only while it is there.

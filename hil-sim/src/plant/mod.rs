@@ -177,6 +177,7 @@ impl Plant {
             .set_supply(defects.bridge.supply_v.unwrap_or(self.supply_v));
         self.comparator.set_defect(defects.comparator);
         self.heat.cool(&defects.cooling);
+        self.heat.set_module(defects.module);
     }
 
     /// Sets the level of the comparator's test line.

@@ -23,6 +23,7 @@ impl Damage {
             bridge,
             comparator,
             cooling,
+            module,
         } = &mut self.plant;
         let (index, value) = (broken.sensor as usize, broken.value);
         let thermistor = &mut sensors.thermistors[index];
@@ -54,6 +55,7 @@ impl Damage {
             FaultKind::ComparatorDead => *comparator = ComparatorDefect::Dead,
             FaultKind::ComparatorStuck => *comparator = ComparatorDefect::Stuck,
             FaultKind::SupplyLow | FaultKind::SupplyHigh => bridge.supply_v = Some(value),
+            FaultKind::ModuleWeak => module.seebeck = value,
             FaultKind::FanOff => cooling.resistance *= value,
             FaultKind::ChillerOff => cooling.coolant_c = Some(value),
             FaultKind::SinkHot => cooling.held_c = Some(value),

@@ -125,6 +125,7 @@ impl Count {
     /// What must hold in one tick, of these samples or of the bench's.
     fn tick(&self, bench: &mut Bench, samples: Option<&Samples>) -> Result<(), TestCaseError> {
         let tripped = bench.station.is_tripped();
+        let tested = bench.state() == State::SelfTest;
         let (outputs, telemetry) = match samples {
             Some(samples) => (
                 bench.station.step(samples),
@@ -133,7 +134,9 @@ impl Count {
             None => bench.step_all(),
         };
         let on = outputs.drive != Drive::Off;
-        let follows = matches!(telemetry.state, State::Armed | State::Preset | State::Contact);
+        let driven = matches!(telemetry.state, State::Armed | State::Preset | State::Contact);
+        // In the tick in which the self-test passes, the bridge rests.
+        let follows = driven && !tested;
         prop_assert!(follows == on || telemetry.state == State::SelfTest);
         prop_assert_eq!(follows, telemetry.setpoint.is_some());
         prop_assert!(!tripped || !on);
@@ -198,12 +201,12 @@ fn tell(bench: &mut Bench, line: &str) -> Result<(), TestCaseError> {
 
 /// Runs stories; what was driven must be a part that is worth it.
 #[track_caller]
-fn check(cases: u32, stories: &impl Strategy<Value = Vec<Phase>>) {
+fn check(cases: u32, law: &str, stories: &impl Strategy<Value = Vec<Phase>>) {
     let count = Count::default();
     let mut runner = TestRunner::new(ProptestConfig::with_cases(cases));
     let outcome = runner.run(stories, |story| {
         let mut bench = Bench::new();
-        bench.obey(&["law model", "material granite", "arm", "start"]);
+        bench.obey(&[law, "material granite", "arm", "start"]);
         story.iter().try_for_each(|phase| count.phase(&mut bench, phase))
     });
     if let Err(error) = outcome {
@@ -215,10 +218,11 @@ fn check(cases: u32, stories: &impl Strategy<Value = Vec<Phase>>) {
 
 #[test]
 fn limits_hold_whatever_comes() {
-    check(64, &story(12, 60, 0.3));
+    check(64, "law model", &story(12, 60, 0.3));
 }
 
 #[test]
 fn limits_hold_for_long() {
-    check(12, &story(8, 3000, 0.05));
+    // A display that goes where it likes is none that a model fits for long.
+    check(12, "law pi", &story(8, 3000, 0.05));
 }

@@ -6,12 +6,14 @@ mod model_law;
 mod rendering;
 mod states;
 
+use contact_model::fixed_point::Celsius;
 use contact_model::material::{self, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::{pressure, reference};
 use std::string::{String, ToString};
 
 use super::{State, Station};
 use crate::commission::Desk;
+use crate::control::Law;
 use crate::drive::Drive;
 use crate::drive::Outputs;
 use crate::protocol::{Addressed, Telemetry};
@@ -37,7 +39,7 @@ struct Bench {
     bridge_fault: bool,
     /// The host gives a sign of life on every tick.
     host_there: bool,
-    /// The display is where the set-point was in the tick before.
+    /// The display is where the law's model of the plate has it, or the set-point if it has none.
     answers: bool,
     /// The converter's noise: one unit of each sum once in 40 ticks.
     noise: u16,
@@ -154,7 +156,13 @@ impl Bench {
         let outputs = self.station.step(&samples);
         let telemetry = self.station.telemetry().expect("streamed on every tick");
         if let (true, Some(setpoint)) = (self.answers, telemetry.setpoint) {
-            let off_k = setpoint.to_num::<f64>() - self.display_c;
+            let control = &self.station.control;
+            let sink = Celsius::saturating_from_num(self.sink_c);
+            let to = match control.law() {
+                Law::Model => control.legs(setpoint, sink).cold,
+                _ => setpoint,
+            };
+            let off_k = to.to_num::<f64>() - self.display_c;
             self.display_c += off_k.clamp(-MOST_K, MOST_K);
             self.check_c = self.display_c;
         }

@@ -110,7 +110,7 @@ impl Flip {
         let entry = Entry::trips(self.injected(), SIGNS, &[]);
         let (class, verdict, deviation_k) = match Device::Image(firmware).run(&scene) {
             Ok((outcome, figures)) => {
-                let mut verdict = Verdict::of(&entry, self.moment, &outcome, &figures);
+                let mut verdict = Verdict::of(&entry, self.moment, &outcome, &figures, &[]);
                 // Any word is right.
                 verdict.breaches.retain(|breach| *breach != Breach::Reason);
                 let class = Class::of(&verdict, &outcome, &reference.outcome);

@@ -39,9 +39,22 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(
         broken(Kind::PolaritySwapped),
         &[Sign::WrongWay, Sign::DisplayLimit, Sign::SelfTest(0.504)],
-        &[Fault::Polarity],
+        &[Fault::Polarity, Fault::UnlikeModel],
     )
     .at(WORST),
+    // For one that is weak before it has to do much the loop makes up; it shows later, when that is no longer enough.
+    Entry::trips(
+        valued(Kind::ModuleWeak, 0.3),
+        &[Sign::Astray, Sign::WrongWay],
+        &[
+            Fault::UnlikeModel,
+            Fault::NoResponse,
+            Fault::Polarity,
+            Fault::Runaway,
+        ],
+    )
+    .at(&[Place::Slew, Place::Cold, Place::Replace])
+    .never_at(&[Place::SelfTest, Place::Off]),
     Entry::harmless(broken(Kind::BridgeEnableStuck)).latent(),
     Entry::trips(
         broken(Kind::FaultPinDead),

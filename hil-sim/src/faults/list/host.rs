@@ -26,6 +26,6 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(
         Injected::Line("set tile 0.5 0.02 0.3 0.5 0.02"),
         &[Sign::WrongWay],
-        &[Fault::Polarity],
+        &[Fault::Polarity, Fault::UnlikeModel],
     ),
 ];

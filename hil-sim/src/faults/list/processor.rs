@@ -80,9 +80,16 @@ pub const ENTRIES: &[Entry] = &[
         &[Fault::Sampling, Fault::TickLost],
     )
     .at(&[Place::Slew]),
-    Entry::restarts(processor(Fails::BrownOut)).at(&[Place::Slew]),
-    Entry::restarts(processor(Fails::PowerCycle { seed: 1 })).at(&[Place::Slew]),
-    Entry::restarts(processor(Fails::ResetPin)).at(&[Place::Slew]),
+    // Off, the host arms soon after, which a device that has started anew obeys.
+    Entry::restarts(processor(Fails::BrownOut))
+        .at(&[Place::Slew])
+        .never_at(&[Place::Off]),
+    Entry::restarts(processor(Fails::PowerCycle { seed: 1 }))
+        .at(&[Place::Slew])
+        .never_at(&[Place::Off]),
+    Entry::restarts(processor(Fails::ResetPin))
+        .at(&[Place::Slew])
+        .never_at(&[Place::Off]),
     Entry::trips(processor(Fails::SoftwareReset), NOW, &[Fault::UnaskedReset]).at(&[Place::Slew]),
     Entry::trips(processor(Fails::StackOverflow), NOW, LOST).at(&[Place::Slew]),
     Entry::trips(

@@ -53,6 +53,7 @@ const LOOSE_DISPLAY: &[Fault] = &[
     Fault::DisplayCold,
     Fault::NoResponse,
     Fault::Polarity,
+    Fault::UnlikeModel,
 ];
 const BEYOND: &[Fault] = &[Fault::DisplayHot, Fault::DisplayCold];
 const ROOM: &[Sign] = &[Sign::RoomAboveSkin];
@@ -123,6 +124,7 @@ const ELSEWHERE: &[Fault] = &[
     Fault::CheckJump,
     Fault::DisplaysApart,
     Fault::Polarity,
+    Fault::UnlikeModel,
     Fault::RoomAboveSkin,
     Fault::NoResponse,
 ];
@@ -163,7 +165,13 @@ pub const SWAPPED: &[Entry] = &[
 /// The rest of what is converted.
 pub const OTHERS: &[Entry] = &[
     Entry::trips(broken(Kind::ReferenceOff), NOW, &[Fault::Excitation]),
-    Entry::trips(broken(Kind::AdcStuck), NOW, &[Fault::SamplesFrozen]).at(&[Place::Slew]),
+    // The current's reading stands still, too.
+    Entry::trips(
+        broken(Kind::AdcStuck),
+        NOW,
+        &[Fault::SamplesFrozen, Fault::CurrentHigh, Fault::CurrentLow],
+    )
+    .at(&[Place::Slew]),
     Entry::trips(broken(Kind::ForceOpen), NOW, &[Fault::ForceSensor]),
     Entry::harmless(valued(Kind::ForceOffset, 10.0)).at(&[Place::Preset, Place::Warm]),
     Entry::trips(valued(Kind::ForceOffset, -10.0), NOW, &[Fault::ForceSensor]),

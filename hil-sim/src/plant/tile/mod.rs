@@ -11,12 +11,14 @@
 //! `Qc = a I Tc - I^2 R/2 - K (Th - Tc)` at the tabs.
 
 mod cooling;
+mod defect;
 mod legs;
 mod params;
 mod stack;
 mod zones;
 
 pub use cooling::CoolingDefects;
+pub use defect::ModuleDefect;
 pub use params::{TileParams, ZERO_C_K};
 
 use super::bridge::{Current, Load};
@@ -56,6 +58,7 @@ pub struct Tile {
     legs: Legs,
     stack: Stack<LEVELS, ZONES>,
     room_c: f64,
+    defect: ModuleDefect,
     current: Current,
     /// From the display's surface to the first node, m.
     surface_m: f64,
@@ -105,6 +108,7 @@ impl Tile {
             legs: Legs::new(params.sheet_hot_c, params.variation),
             stack,
             room_c,
+            defect: ModuleDefect::NONE,
             current: Current::default(),
             surface_m: plate[0].node_m,
             share,
@@ -129,6 +133,11 @@ impl Tile {
         self.stack.sink.feedback = -1.0 / k_w;
     }
 
+    /// Breaks the module, or mends it.
+    pub const fn set_defect(&mut self, defect: ModuleDefect) {
+        self.defect = defect;
+    }
+
     /// Lets a finger cover a part of the patch, m2; air films the rest of the plate.
     pub fn cover(&mut self, area_m2: f64) {
         for (z, m2) in self.zones.area_m2.into_iter().enumerate() {
@@ -144,7 +153,7 @@ impl Tile {
         let (all_ohm, all_w_k, all_v_k) = (
             self.params.resistance_ohm() / LEG_CELLS as f64,
             self.params.conductance_w_k() * LEG_CELLS as f64,
-            self.params.seebeck_v_k(),
+            self.params.seebeck_v_k() * self.defect.seebeck,
         );
         (self.resistance_ohm, self.seebeck_v) = (0.0, 0.0);
         for z in 0..ZONES {

@@ -42,6 +42,8 @@ pub enum FaultKind {
     BridgeEnableStuck,
     /// The module's wires are swapped.
     PolaritySwapped,
+    /// The module keeps the value's share of its Seebeck effect: legs that have aged, or that solder bridges.
+    ModuleWeak,
     /// nFAULT never goes low. Latent; the comparator's test shows it.
     FaultPinDead,
     /// The current mirror always reads the value.
@@ -103,7 +105,7 @@ const fn factor(unless_given: f64) -> Option<Value> {
 
 impl FaultKind {
     /// All of them.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 32] = [
         Self::ThermistorOpen,
         Self::ThermistorShort,
         Self::ThermistorDrift,
@@ -123,6 +125,7 @@ impl FaultKind {
         Self::BridgeShorted,
         Self::BridgeEnableStuck,
         Self::PolaritySwapped,
+        Self::ModuleWeak,
         Self::FaultPinDead,
         Self::MirrorStuck,
         Self::ComparatorDead,
@@ -160,6 +163,7 @@ impl FaultKind {
             Self::BridgeShorted => "bridge-shorted",
             Self::BridgeEnableStuck => "bridge-enable-stuck",
             Self::PolaritySwapped => "polarity-swapped",
+            Self::ModuleWeak => "module-weak",
             Self::FaultPinDead => "fault-pin-dead",
             Self::MirrorStuck => "mirror-stuck",
             Self::ComparatorDead => "comparator-dead",
@@ -181,6 +185,7 @@ impl FaultKind {
         match self {
             Self::ThermistorDrift | Self::ThermistorOffset => given("K", -60.0, 60.0),
             Self::ThermistorDetached => factor(20.0),
+            Self::ModuleWeak => given("1", 0.0, 1.0),
             Self::ForceOffset => given("N", -10.0, 10.0),
             Self::MirrorStuck => given("A", 0.0, 10.0),
             Self::SupplyLow => given("V", 4.5, 12.0),
