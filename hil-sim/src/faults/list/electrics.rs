@@ -27,6 +27,8 @@ const CURRENT: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::SelfTest(0
 /// A supply that drives the self-test's ampere well enough.
 const SUPPLY: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::FaultLine];
 const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
+/// Current that is less by too little to be told from a sound one still moves the display less.
+const NO_CURRENT: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse, Fault::UnlikeModel];
 const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
 
 /// What drives the tile, and what watches that.
@@ -34,7 +36,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
     Entry::trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
     Entry::trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
-    Entry::trips(broken(Kind::LegOpen), CURRENT, CURRENT_LOW).at(WORST),
+    Entry::trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(WORST),
     Entry::trips(broken(Kind::BridgeShorted), &[Sign::FaultLine], &[Fault::Bridge]).at(WORST),
     Entry::trips(
         broken(Kind::PolaritySwapped),
@@ -87,8 +89,8 @@ pub const ENTRIES: &[Entry] = &[
         &[Sign::OverCurrent],
         &[Fault::OverCurrent],
     ),
-    Entry::trips(valued(Kind::SupplyLow, 9.0), SUPPLY, CURRENT_LOW).at(WORST),
-    Entry::trips(valued(Kind::SupplyLow, 4.5), CURRENT, CURRENT_LOW).at(WORST),
+    Entry::trips(valued(Kind::SupplyLow, 9.0), SUPPLY, NO_CURRENT).at(WORST),
+    Entry::trips(valued(Kind::SupplyLow, 4.5), CURRENT, NO_CURRENT).at(WORST),
     Entry::trips(
         valued(Kind::SupplyHigh, 16.0),
         SUPPLY,

@@ -39,7 +39,16 @@ const LIMIT: &[Sign] = &[Sign::DisplayLimit];
 const STEP: &[Sign] = &[Sign::Jump];
 const DISPLAY_STEP: &[Fault] = &[Fault::DisplayJump, Fault::DisplayHot, Fault::DisplayCold];
 const CHECK_STEP: &[Fault] = &[Fault::CheckJump, Fault::DisplayHot, Fault::DisplayCold];
-const DRIFTED: &[Fault] = &[Fault::DisplaysApart, Fault::DisplayHot, Fault::DisplayCold];
+/// A drift that begins amid the self-test's pulse looks like too little of an answer, or the other way round; one that the
+/// tile just about follows, like another tile.
+const DRIFTED: &[Fault] = &[
+    Fault::DisplaysApart,
+    Fault::DisplayHot,
+    Fault::DisplayCold,
+    Fault::NoResponse,
+    Fault::Polarity,
+    Fault::UnlikeModel,
+];
 /// A slow thermistor may show too little of the self-test's pulse, or enough: how slow it was before is the device's.
 const LOOSE: &[Fault] = &[
     Fault::DisplaysApart,
@@ -55,7 +64,13 @@ const LOOSE_DISPLAY: &[Fault] = &[
     Fault::Polarity,
     Fault::UnlikeModel,
 ];
-const BEYOND: &[Fault] = &[Fault::DisplayHot, Fault::DisplayCold];
+const BEYOND: &[Fault] = &[
+    Fault::DisplayHot,
+    Fault::DisplayCold,
+    Fault::NoResponse,
+    Fault::Polarity,
+    Fault::UnlikeModel,
+];
 const ROOM: &[Sign] = &[Sign::RoomAboveSkin];
 const ROOM_ABOVE: &[Fault] = &[Fault::RoomAboveSkin];
 
@@ -93,11 +108,16 @@ pub const READINGS: &[Entry] = &[
     Entry::trips(offset(Display, 1.0), STEP, DISPLAY_STEP),
     Entry::trips(offset(Check, 5.0), STEP, CHECK_STEP),
     Entry::trips(offset(Check, -5.0), STEP, CHECK_STEP),
-    Entry::trips(offset(Sink, 5.0), STEP, &[Fault::SinkJump]),
+    Entry::trips(offset(Sink, 5.0), STEP, &[Fault::SinkJump, Fault::SinkHot]),
     Entry::trips(offset(Sink, -5.0), STEP, &[Fault::SinkJump]),
-    Entry::trips(offset(Skin, 20.0), &[Sign::Dose], &[Fault::Dose])
-        .at(&[Place::Touched])
-        .watched(180.0),
+    // The heat of a finger of 54 °C is none that the display sees.
+    Entry::trips(
+        offset(Skin, 20.0),
+        &[Sign::Dose],
+        &[Fault::Dose, Fault::UnlikeModel],
+    )
+    .at(&[Place::Touched])
+    .watched(180.0),
     Entry::trips(offset(Skin, -20.0), ROOM, ROOM_ABOVE),
     Entry::trips(
         loose(Display),
