@@ -20,6 +20,7 @@ pub(super) const LEG_REASONS: &[Fault] = &[
     Fault::CurrentLow,
     Fault::OverCurrent,
     Fault::Polarity,
+    Fault::UnlikeModel,
     Fault::NoResponse,
     Fault::Bridge,
 ];

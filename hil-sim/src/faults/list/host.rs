@@ -15,7 +15,8 @@ pub const ENTRIES: &[Entry] = &[
     )
     .never_at(&[Place::SelfTest, Place::Off]),
     Entry::harmless(broken(Kind::HostGarbage)),
-    Entry::harmless(broken(Kind::HostFlood)),
+    // Off, a flood drowns the line that arms.
+    Entry::harmless(broken(Kind::HostFlood)).never_at(&[Place::Off]),
     Entry::harmless(Injected::Line("hold 60")).at(&[Place::Touched]),
     Entry::harmless(Injected::Line("object 900")),
     Entry::harmless(Injected::Line("stream 0")),

@@ -27,6 +27,8 @@ const DUTY: &[Sign] = &[
     Sign::WrongWay,
     Sign::SelfTest(0.504),
 ];
+/// One that gets another share of it, which the self-test's ampere does not show.
+const SHARE: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::WrongWay];
 /// The program is lost; who notices first depends on where.
 const LOST: &[Fault] = &[
     Fault::HardFault,
@@ -104,11 +106,16 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(core(CoreRegister::Sp, 28), NOW, LOST),
     Entry::harmless(core(CoreRegister::S(0), 30)),
     // Main output off; output of leg A off; period; prescaler; enable line; comparison of leg A.
-    Entry::trips(flipped(TIM1 + 0x44, 15), DUTY, LEG_REASONS).at(&[Place::Slew]),
+    // Main output and enable line are switched on anew, whatever they were, with the first current.
+    Entry::trips(flipped(TIM1 + 0x44, 15), DUTY, LEG_REASONS)
+        .at(&[Place::Slew])
+        .never_at(&[Place::Off]),
     Entry::trips(flipped(TIM1 + 0x20, 0), DUTY, LEG_REASONS).at(&[Place::Slew]),
-    Entry::trips(flipped(TIM1 + 0x2c, 10), DUTY, LEG_REASONS).at(&[Place::Slew]),
+    Entry::trips(flipped(TIM1 + 0x2c, 10), SHARE, LEG_REASONS).at(&[Place::Slew]),
     Entry::harmless(flipped(TIM1 + 0x28, 0)),
-    Entry::trips(flipped(GPIOB_ODR, 10), DUTY, LEG_REASONS).at(&[Place::Slew]),
+    Entry::trips(flipped(GPIOB_ODR, 10), DUTY, LEG_REASONS)
+        .at(&[Place::Slew])
+        .never_at(&[Place::Off]),
     Entry::harmless(flipped(TIM1 + 0x34, 10)),
     // Scans that are no longer started, converted, stored or taken.
     Entry::trips(flipped(TIM2, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
