@@ -56,14 +56,6 @@ const LOOSE: &[Fault] = &[
     Fault::DisplayCold,
     Fault::NoResponse,
 ];
-const LOOSE_DISPLAY: &[Fault] = &[
-    Fault::DisplaysApart,
-    Fault::DisplayHot,
-    Fault::DisplayCold,
-    Fault::NoResponse,
-    Fault::Polarity,
-    Fault::UnlikeModel,
-];
 const BEYOND: &[Fault] = &[
     Fault::DisplayHot,
     Fault::DisplayCold,
@@ -122,7 +114,7 @@ pub const READINGS: &[Entry] = &[
     Entry::trips(
         loose(Display),
         &[Sign::Apart, Sign::DisplayLimit, Sign::WrongWay],
-        LOOSE_DISPLAY,
+        DRIFTED,
     )
     .at(&[Place::Slew, Place::Replace]),
     Entry::trips(loose(Check), APART, LOOSE).at(&[Place::Slew, Place::Replace]),
