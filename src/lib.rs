@@ -15,6 +15,7 @@ pub mod control;
 pub mod drive;
 pub mod guard;
 mod hand;
+mod hold;
 pub mod protocol;
 pub mod render;
 pub mod sense;

@@ -10,6 +10,7 @@ use crate::commission::{Aborted, Experiment, PointError};
 use crate::control::{Control, Inputs, Law, Legs, Tuned, Voltage, Watt};
 use crate::drive::{Current, Drive, Outputs, SafeCurrent};
 use crate::guard::{self, Before, Cause, Fault, Progress, SelfTest, Setpoint, Sound, State, Watch};
+use crate::hold::Hold;
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
 use crate::render::{Mode, Render, Scene, Wanted};
 use crate::sense::{Averages, Calibrated, Readings, Samples, Sensors, Touch};
@@ -42,7 +43,7 @@ pub struct Station {
     object: Option<Celsius>,
     mode: Mode,
     /// Where the display is held while armed, instead of neutral.
-    held: Option<Setpoint>,
+    held: Option<Hold>,
     averages: Averages,
     /// Running while armed, or the last one's outcome.
     experiment: Option<Experiment>,
@@ -139,7 +140,6 @@ impl Station {
         self.before = Before {
             asked: current,
             setpoint: followed.map(|followed| followed.setpoint),
-            unlike_model: self.control.strays(),
         };
         let setpoint = followed.map(|followed| (followed.setpoint, followed.limited));
         self.report(&readings, setpoint, current);
@@ -153,7 +153,11 @@ impl Station {
         let level = guard::check(readings, self.control.limit());
         let streams = self.stream_ticks != 0;
         let watched = match &level {
-            Ok(sound) => self.watch.check(sound, readings.current, &self.before, streams),
+            Ok(sound) => {
+                let unlike_model = self.control.strays();
+                self.watch
+                    .check(sound, readings.current, &self.before, unlike_model, streams)
+            }
             Err(fault) => {
                 self.watch.forget_motion();
                 Err(*fault)
@@ -307,9 +311,9 @@ impl Station {
         };
         let wanted = match self.state {
             State::Off | State::SelfTest | State::Ready | State::Tripped(_) => return None,
-            State::Armed => only(match (&self.experiment, self.held) {
+            State::Armed => only(match (&self.experiment, &mut self.held) {
                 (Some(experiment), _) if experiment.drives() => experiment.rest().celsius(),
-                (_, Some(held)) => held.celsius(),
+                (_, Some(held)) => held.step(),
                 (_, None) => self.render.neutral()?,
             }),
             State::Preset | State::Contact => {
@@ -440,7 +444,7 @@ impl Station {
                 State::Tripped(fault) => return Err(Error::Tripped(fault)),
                 State::Armed => {
                     self.experiment = None;
-                    self.held = Some(setpoint);
+                    self.held = self.telemetry.display.map(|from| Hold::new(setpoint, from));
                 }
                 _ => return Err(Error::NeedsArmed("hold")),
             },

@@ -3,7 +3,8 @@
 use hil_sim::fidelity::Scenario;
 use hil_sim::run::Outcome;
 use hil_sim::scene::Scene;
-use system_tests::{between, forces, host, on_image, scene, worst_k};
+use hil_sim::trace::Row;
+use system_tests::{between, forces, host, natively, on_image, scene, worst_k};
 use thermal_display::control::Law;
 
 /// A case of the scenario of things unseen.
@@ -69,4 +70,24 @@ fn a_bar_of_44_c_is_limited_and_says_so() {
     let state =
         "ok state=contact fault=- material=copper object_c=44.00 mode=contact setpoint_c=42.00 limited";
     assert_eq!(said, Some(state));
+}
+
+/// Plain loops on the slowest sensors of the class, from skin temperature to the ends of what may be asked for.
+#[test]
+fn a_display_that_is_held_at_an_end_does_not_go_beyond_and_trip() {
+    let slow = "[plant]\nsensors.display.lag_s = 0.5\nsensors.check.lag_s = 0.5\n";
+    for law in ["pi", "pi-10hz"] {
+        for (held_c, beyond_k) in [(42.0, 1.0), (15.0, -1.0)] {
+            let tables = host(&[(0.1, &format!("hold {held_c}"))]) + slow;
+            let mut scene = scene("copper", 50.0, &format!("law = \"{law}\""), &tables);
+            scene.object.appears_t_s = scene.duration_s;
+            let outcome = natively(&scene);
+            let beyond = |row: &Row| (row.display_c - held_c) * beyond_k;
+            let farthest_k = (outcome.trace.rows().iter().map(beyond)).fold(f64::NEG_INFINITY, f64::max);
+            println!("{law}, {held_c} C: {farthest_k:.2} K beyond");
+            assert!(farthest_k < 0.8, "{law}, {held_c} C: {farthest_k} K beyond");
+            let last = outcome.trace.rows().last().expect("a row");
+            assert!(beyond(last).abs() < 0.05, "{law}: {} C, {held_c}", last.display_c);
+        }
+    }
 }

@@ -140,7 +140,7 @@ impl Control {
     /// Whether the display's reading has strayed from what the law's model of it says; a law without one knows nothing.
     #[must_use]
     pub fn strays(&self) -> bool {
-        self.law == Law::Model && self.two_degrees.strays()
+        self.two_degrees.strays()
     }
 
     /// Ends and mean of the legs.

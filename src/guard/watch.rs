@@ -33,8 +33,6 @@ pub struct Before {
     pub asked: Current,
     /// Where the display was to be; none while the bridge was off.
     pub setpoint: Option<Setpoint>,
-    /// The display has strayed from what the law's model of it says.
-    pub unlike_model: bool,
 }
 
 /// What the guard remembers from tick to tick.
@@ -74,7 +72,8 @@ impl Watch {
         self.dose.check(|| both.into_iter().flatten().max())
     }
 
-    /// Takes one tick in which no level was wrong; `measured` is the current, `streams` whether a host listens.
+    /// Takes one tick in which no level was wrong; `measured` is the current, `unlike_model`
+    /// whether the display has strayed from what the law's model of it says, `streams` whether a host listens.
     ///
     /// # Errors
     /// A fault that has lasted. All are looked at, and the first of this order is named.
@@ -83,6 +82,7 @@ impl Watch {
         sound: &Sound,
         measured: Current,
         before: &Before,
+        unlike_model: bool,
         streams: bool,
     ) -> Result<(), Fault> {
         let above = before.setpoint.map_or(Celsius::ZERO, |setpoint| {
@@ -92,7 +92,7 @@ impl Watch {
         let room = sound.room.saturating_sub(sound.skin) > ROOM_ABOVE;
         let apart = named(self.apart.has(apart, APART_TICKS), Fault::DisplaysApart);
         let room = named(self.room.has(room, ROOM_TICKS), Fault::RoomAboveSkin);
-        let unlike = self.unlike.has(before.unlike_model, UNLIKE_TICKS);
+        let unlike = self.unlike.has(unlike_model, UNLIKE_TICKS);
         let unlike = named(unlike, Fault::UnlikeModel);
         let listens = streams && before.setpoint.is_some();
         self.silent_ticks = if listens {

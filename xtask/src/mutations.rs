@@ -147,7 +147,7 @@ const MUTATIONS: [Mutation; 32] = [
     mutation(
         "unlike model",
         WATCH,
-        "self.unlike.has(before.unlike_model, UNLIKE_TICKS)",
+        "self.unlike.has(unlike_model, UNLIKE_TICKS)",
         "self.unlike.has(false, UNLIKE_TICKS)",
         &["module-weak"],
     ),

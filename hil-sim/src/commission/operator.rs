@@ -14,8 +14,8 @@ const DISPLAY_C: (f64, f64) = (15.3, 41.7);
 const START_MS: u64 = 500;
 /// Codes from a border of the converter's segments to the points beside it.
 const FROM_BORDER_CODES: u32 = 22;
-/// Time for each degree on the way to the warmest point, ms.
-const APPROACH_MS: u64 = 400;
+/// Time that a held display takes for each degree, ms.
+const DEGREE_MS: f64 = 1000.0;
 /// Fewest points of the display.
 const NEEDED: usize = 9;
 /// Time that the display is given to come to rest at a point, and how much longer at most, ms.
@@ -166,15 +166,10 @@ impl<E: Engine> Operator<'_, E> {
     fn display(&mut self) -> Result<(), CommissionError> {
         let display_c = |world: &World| world.plant().display_c();
         let (mut points, mut why) = (0, String::new());
-        // Two thermistors of different lags part when the display moves fast, so it goes to the warmest point by steps.
-        let from_c = self.bench.reference_c(display_c);
-        for approach_c in from_c as u32..=DISPLAY_C.1 as u32 {
-            self.bench.tell(&format!("hold {approach_c}"))?;
-            self.bench.wait(APPROACH_MS)?;
-        }
         for hold_c in holds() {
+            let away_k = (hold_c - self.bench.reference_c(display_c)).abs();
             self.bench.tell(&format!("hold {hold_c:.2}"))?;
-            self.bench.wait(SETTLE_MS)?;
+            self.bench.wait((away_k * DEGREE_MS) as u64 + SETTLE_MS)?;
             let mut before_c = f64::NAN;
             for _ in 0..RETRIES {
                 let shown_c = self.bench.reference_c(display_c);

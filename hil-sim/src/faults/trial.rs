@@ -11,7 +11,6 @@ use crate::engine::NotInjected;
 use crate::metrics::Figures;
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
-use crate::trace::Row;
 
 /// What is asked at the end, and how long before it, s. Twice: a reset tears a line of telemetry, which the first answer
 /// then ends.
@@ -29,17 +28,17 @@ fn ran(device: Device<'_>, scene: &Scene) -> anyhow::Result<Option<(Outcome, Fig
     }
 }
 
-/// The rows of a scene without the fault, if a sign of it needs them.
-fn sound(device: Device<'_>, entry: &Entry, scene: &Scene) -> anyhow::Result<Vec<Row>> {
+/// A scene without the fault, if a sign of it needs that.
+fn sound(device: Device<'_>, entry: &Entry, scene: &Scene) -> anyhow::Result<Option<Outcome>> {
     let mut sound = scene.clone();
     match entry.fault {
         Injected::Broken(broken) if entry.signs.iter().any(|sign| sign.needs_sound()) => {
             sound.faults.retain(|fault| fault.broken.kind != broken.kind);
         }
-        _ => return Ok(Vec::new()),
+        _ => return Ok(None),
     }
     let (outcome, _) = device.run(&sound)?;
-    Ok(outcome.trace.rows().to_vec())
+    Ok(Some(outcome))
 }
 
 /// One run of one fault.
@@ -76,7 +75,8 @@ impl Trial {
             Ok(None) => return Ok(None),
             Ok(Some((outcome, figures))) => {
                 let sound = sound(device, entry, &scene)?;
-                Verdict::of(entry, moment, &outcome, &figures, &sound)
+                let sound: &[_] = sound.as_ref().map_or(&[], |sound| sound.trace.rows());
+                Verdict::of(entry, moment, &outcome, &figures, sound)
             }
             // Nobody knows what silicon would do then: that proves nothing, so it counts as a breach.
             Err(error) => Verdict::ended(&error),

@@ -190,10 +190,9 @@ fn a_fault_ends_the_contact() {
 
 #[test]
 fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
-    let mut bench = Bench::new();
-    bench.obey(&["arm"]);
+    let mut bench = Bench::presenting("copper");
     let display_c = bench.display_c;
-    for (line, demand_a, duty) in [("hold 42", -6, -0.5), ("hold 15", 6, 0.5)] {
+    for (line, demand_a, duty) in [("object 60", -6, -0.5), ("object -20", 6, 0.5)] {
         bench.obey(&[line]);
         for _ in 0..3000 {
             let (drive, telemetry) = bench.step();

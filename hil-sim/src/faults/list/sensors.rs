@@ -49,6 +49,14 @@ const DRIFTED: &[Fault] = &[
     Fault::Polarity,
     Fault::UnlikeModel,
 ];
+/// The model of the tile does not go by the second thermistor.
+const CHECK_DRIFTED: &[Fault] = &[
+    Fault::DisplaysApart,
+    Fault::DisplayHot,
+    Fault::DisplayCold,
+    Fault::NoResponse,
+    Fault::Polarity,
+];
 /// A slow thermistor may show too little of the self-test's pulse, or enough: how slow it was before is the device's.
 const LOOSE: &[Fault] = &[
     Fault::DisplaysApart,
@@ -83,8 +91,8 @@ const fn loose(of: crate::scene::Sensor) -> Injected {
 pub const READINGS: &[Entry] = &[
     Entry::trips(drift(Display, 5.0), APART, DRIFTED),
     Entry::trips(drift(Display, -5.0), APART, DRIFTED).at(&[Place::Warm]),
-    Entry::trips(drift(Check, 5.0), APART, DRIFTED),
-    Entry::trips(drift(Check, -5.0), APART, DRIFTED),
+    Entry::trips(drift(Check, 5.0), APART, CHECK_DRIFTED),
+    Entry::trips(drift(Check, -5.0), APART, CHECK_DRIFTED),
     Entry::trips(drift(Display, 2.9), LIMIT, BEYOND).at(&[Place::Cold]),
     Entry::trips(drift(Display, -2.9), LIMIT, BEYOND).at(&[Place::Warm]),
     Entry::trips(drift(Sink, 5.0), &[Sign::SinkLimit], &[Fault::SinkHot]),

@@ -1,0 +1,59 @@
+//! A display that is held at a temperature, as for calibration.
+
+use contact_model::fixed_point::Celsius;
+
+use crate::TICK_HZ;
+use crate::guard::Setpoint;
+
+/// How fast the set-point goes there, K/s. A plain loop overshoots by what it lags behind: on the slowest sensors by 0.7 K then, to
+/// 42.7 °C, where a step from skin temperature takes it to 44 °C, which trips. Nor do thermistors of different lags part.
+const RATE_K_S: u32 = 1;
+/// The same, a tick.
+const STEP: Celsius = Celsius::from_bits(((RATE_K_S << Celsius::FRAC_NBITS) / TICK_HZ) as i32);
+
+/// Where a display is held, and how far its set-point has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Hold {
+    goal: Setpoint,
+    setpoint: Celsius,
+}
+
+impl Hold {
+    /// Sets out for a temperature.
+    #[must_use]
+    pub fn new(goal: Setpoint, from: Celsius) -> Self {
+        Self { goal, setpoint: from }
+    }
+
+    /// The set-point of the next tick.
+    pub fn step(&mut self) -> Celsius {
+        let missing = self.goal.celsius().saturating_sub(self.setpoint);
+        self.setpoint = self.setpoint.saturating_add(missing.clamp(-STEP, STEP));
+        self.setpoint
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_setpoint_goes_by_a_kelvin_a_second_to_its_goal_and_stays() {
+        for (from_c, goal_c) in [(30.0, 42.0), (42.0, 15.0), (-20.0, 15.0), (20.0, 20.0)] {
+            let (goal, _) = Setpoint::limited(Celsius::from_num(goal_c));
+            let mut hold = Hold::new(goal, Celsius::from_num(from_c));
+            let way_k: f64 = goal_c - from_c;
+            for tick in 1..60_000 {
+                let gone_k = (f64::from(tick) * 1e-3).min(way_k.abs()) * way_k.signum();
+                let setpoint_c = hold.step().to_num::<f64>();
+                // The step is cut to 2^-22 K.
+                let cut_k = f64::from(tick) * 2.4e-7;
+                assert!(
+                    (setpoint_c - (from_c + gone_k)).abs() <= cut_k,
+                    "{setpoint_c} {tick}"
+                );
+            }
+            assert_eq!(hold.step(), goal.celsius());
+        }
+    }
+}
