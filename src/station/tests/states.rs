@@ -127,3 +127,16 @@ fn telemetry_comes_at_its_interval() {
         assert_eq!(bench.station.telemetry(), None);
     }
 }
+
+#[test]
+fn a_display_that_is_held_sets_out_from_where_it_is() {
+    let mut bench = Bench::new();
+    bench.obey(&["arm", "hold 42"]);
+    for gone_k in [1.0, 2.0] {
+        bench.steps(999);
+        super::assert_close(bench.setpoint_c(), bench.display_c + gone_k);
+    }
+    bench.obey(&["hold 20"]);
+    bench.steps(999);
+    super::assert_close(bench.setpoint_c(), bench.display_c - 1.0);
+}
