@@ -168,10 +168,11 @@ fn jump(rows: &[Row], from: usize) -> Option<f64> {
 }
 
 /// The device's own words tell what it asks for; while it says nothing nothing is told.
+/// What flows in a row was asked for in the one before.
 fn current_off(rows: &[Row]) -> Option<f64> {
     let mut wrong = 0;
-    for (i, row) in rows.iter().enumerate() {
-        let asked_a = row.device.as_ref().and_then(|device| device.demand_a);
+    for (i, (asking, row)) in rows.iter().zip(rows.iter().skip(1)).enumerate() {
+        let asked_a = asking.device.as_ref().and_then(|device| device.demand_a);
         let off = asked_a.is_some_and(|asked_a| {
             let asked_a = asked_a.abs();
             (row.taken.mirror_a - asked_a).abs() > OFF_A + OFF_PART * asked_a
@@ -182,7 +183,7 @@ fn current_off(rows: &[Row]) -> Option<f64> {
             usize::saturating_sub(wrong, 1)
         };
         if wrong >= OFF_ROWS {
-            return Some(rows[i + 1 - OFF_ROWS].t_s);
+            return Some(rows[i + 2 - OFF_ROWS].t_s);
         }
     }
     None
@@ -321,6 +322,27 @@ mod tests {
         about(Sign::WrongWay.reached_s(&rising(20.0, 9.0), &[], 500), 2.5);
         assert_eq!(Sign::WrongWay.reached_s(&rising(30.0, 9.0), &[], 500), None);
         assert_eq!(Sign::WrongWay.reached_s(&rising(20.0, 2.1), &[], 500), None);
+    }
+
+    /// A current that swings from tick to tick flows a tick after it was asked for.
+    #[test]
+    fn a_current_is_off_from_what_was_asked_for_in_the_tick_before() {
+        let swings = |t_s: f64| {
+            if (t_s * 1e3).round() % 2.0 < 1.0 {
+                6.0
+            } else {
+                -2.0
+            }
+        };
+        let until = |end_s: f64| {
+            rows(move |t_s, row, device| {
+                let asked_a: f64 = swings(t_s - 1e-3);
+                row.taken.mirror_a = if t_s < end_s { asked_a.abs() } else { 0.0 };
+                device.demand_a = Some(swings(t_s));
+            })
+        };
+        assert_eq!(Sign::CurrentOff.reached_s(&until(9.0), &[], 500), None);
+        about(Sign::CurrentOff.reached_s(&until(2.0), &[], 500), 2.0);
     }
 
     /// A second at 47 °C is worth 16 at 43 °C: half a minute takes 1.875 s.
