@@ -44,7 +44,7 @@ fn every_reason_of_the_guard_is_right_for_an_entry() {
         .iter()
         .filter_map(|entry| match entry.right {
             Right::Trip(faults) => Some(faults),
-            Right::Restart | Right::GoesOn => None,
+            Right::Restart => None,
         })
         .flatten()
         .copied()
@@ -63,7 +63,8 @@ fn open_thermistor_holds_and_is_told_from_another() {
     };
     assert_eq!(breaches(&other, 2.0), [Breach::Reason]);
     let silent = Entry {
-        right: Right::GoesOn,
+        signs: &[],
+        right: Right::Trip(&[]),
         ..open
     };
     assert_eq!(breaches(&silent, 2.0), [Breach::Reason]);

@@ -301,8 +301,8 @@ const QUICKLY_BUILT: [&str; 3] = [
     "profile.release.codegen-units = 16",
     "profile.release.incremental = true",
 ];
-/// What of the workspace is copied.
-const COPIED: [&str; 13] = [
+/// What of the workspace is copied. Cargo's own configuration is read from the folders above as well.
+const COPIED: [&str; 12] = [
     "Cargo.toml",
     "Cargo.lock",
     "rust-toolchain.toml",
@@ -315,7 +315,6 @@ const COPIED: [&str; 13] = [
     "xtask",
     "tests",
     "scenes",
-    ".cargo",
 ];
 
 /// Runs every mutation; an error names those that no row notices.

@@ -72,12 +72,10 @@ impl fmt::Display for Injected {
 /// What the device may say in the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Right {
-    /// Once a sign is reached it is tripped by one of these, and never by another.
+    /// Once a sign is reached it is tripped by one of these, and never by another. Before, and without signs, it may go on.
     Trip(&'static [Fault]),
     /// It is off, as after power-up, and has no fault to report.
     Restart,
-    /// It goes on, whatever happens: harmless alone, or latent.
-    GoesOn,
 }
 
 /// One row of the matrix.
@@ -116,11 +114,16 @@ impl Entry {
         }
     }
 
-    /// A fault that changes nothing that a finger feels.
+    /// A fault that hurts nobody, so that the device may go on.
     pub(super) const fn harmless(fault: Injected) -> Self {
+        Self::trips(fault, &[], &[])
+    }
+
+    /// It may trip for one of these, too.
+    pub(super) const fn or_trips(self, reasons: &'static [Fault]) -> Self {
         Self {
-            right: Right::GoesOn,
-            ..Self::trips(fault, &[], &[])
+            right: Right::Trip(reasons),
+            ..self
         }
     }
 

@@ -31,7 +31,7 @@ fn is_latent(entry: &Entry) -> bool {
     match broken.kind {
         FaultKind::HostFlood => false,
         FaultKind::MirrorStuck => broken.value == 0.0,
-        kind => entry.latent || entry.right == Right::GoesOn && kind.lasts(),
+        kind => entry.latent || entry.signs.is_empty() && kind.lasts(),
     }
 }
 
@@ -84,7 +84,7 @@ impl Pair {
             let verdict = &mut trial.verdict;
             let named = match self.latent.right {
                 Right::Trip(faults) => faults.iter().any(|fault| fault.name() == verdict.reason),
-                Right::Restart | Right::GoesOn => false,
+                Right::Restart => false,
             };
             (verdict.breaches).retain(|breach| !named || !matches!(breach, Breach::Reason | Breach::Early));
             RanPair {

@@ -186,7 +186,6 @@ impl Verdict {
                 named || !reached && State::is_one(said)
             }
             Right::Restart => said == OFF,
-            Right::GoesOn => State::is_one(said),
         };
         for (breach, is_so) in [
             (Breach::Early, early),

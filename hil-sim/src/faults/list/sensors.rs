@@ -193,7 +193,10 @@ pub const OTHERS: &[Entry] = &[
     )
     .at(&[Place::Slew]),
     Entry::trips(broken(Kind::ForceOpen), NOW, &[Fault::ForceSensor]),
-    Entry::harmless(valued(Kind::ForceOffset, 10.0)).at(&[Place::Preset, Place::Warm]),
+    // A finger that is not there gives no heat.
+    Entry::harmless(valued(Kind::ForceOffset, 10.0))
+        .or_trips(&[Fault::UnlikeModel])
+        .at(&[Place::Cold, Place::Preset, Place::Warm]),
     Entry::trips(valued(Kind::ForceOffset, -10.0), NOW, &[Fault::ForceSensor]),
     Entry::harmless(valued(Kind::ForceOffset, 1.0)).at(&[Place::Preset]),
     Entry::harmless(valued(Kind::ForceOffset, -0.05)),
