@@ -313,7 +313,7 @@ impl Station {
             State::Off | State::SelfTest | State::Ready | State::Tripped(_) => return None,
             State::Armed => only(match (&self.experiment, &mut self.held) {
                 (Some(experiment), _) if experiment.drives() => experiment.rest().celsius(),
-                (_, Some(held)) => held.step(),
+                (_, Some(held)) => held.step().celsius(),
                 (_, None) => self.render.neutral()?,
             }),
             State::Preset | State::Contact => {
@@ -489,6 +489,7 @@ impl Station {
                 (State::Tripped(fault), _) => return Err(Error::Tripped(fault)),
                 (State::Armed, _) if self.touch.touching() => return Err(Error::Touched),
                 (State::Armed, Some(sink)) => {
+                    self.held = None;
                     self.experiment = Some(Experiment::new(sink));
                 }
                 _ => return Err(Error::NeedsArmed("tune")),

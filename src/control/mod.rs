@@ -137,7 +137,8 @@ impl Control {
         self.two_degrees.surface().unwrap_or(reading)
     }
 
-    /// Whether the display's reading has strayed from what the law's model of it says; a law without one knows nothing.
+    /// Whether the display's reading has strayed from what the law's model of it says; a law without one, for which the model
+    /// stands still, knows nothing.
     #[must_use]
     pub fn strays(&self) -> bool {
         self.two_degrees.strays()

@@ -22,7 +22,7 @@ const APART_TICKS: u8 = 40;
 const ROOM_ABOVE: Celsius = Celsius::lit("8");
 const ROOM_TICKS: u8 = 40;
 /// For how many ticks a display that is unlike its model counts.
-const UNLIKE_TICKS: u8 = 40;
+const UNLIKE_TICKS: u8 = 30;
 /// A host that streams is silent for no longer, ticks.
 const SILENT_TICKS: u16 = 2000;
 
@@ -31,7 +31,7 @@ const SILENT_TICKS: u16 = 2000;
 pub struct Before {
     /// Current asked for.
     pub asked: Current,
-    /// Where the display was to be; none while the bridge was off.
+    /// Where the display was to be; none while the bridge was off, or the device tested itself.
     pub setpoint: Option<Setpoint>,
 }
 

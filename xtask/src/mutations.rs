@@ -226,7 +226,7 @@ const MUTATIONS: [Mutation; 32] = [
         SELF_TEST,
         "if !(i64::from(LEAST.to_bits())..=",
         "if !(i64::MIN..=",
-        &["sensors-swapped"],
+        &["module-weak"],
     ),
     mutation(
         "current test",
@@ -301,7 +301,8 @@ const QUICKLY_BUILT: [&str; 3] = [
     "profile.release.codegen-units = 16",
     "profile.release.incremental = true",
 ];
-/// What of the workspace is copied. Cargo's own configuration is read from the folders above as well.
+/// What of the workspace is copied; not Cargo's configuration, which is read from the folders above, too, and would add its flags
+/// twice.
 const COPIED: [&str; 12] = [
     "Cargo.toml",
     "Cargo.lock",

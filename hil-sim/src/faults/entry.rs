@@ -114,7 +114,7 @@ impl Entry {
         }
     }
 
-    /// A fault that hurts nobody, so that the device may go on.
+    /// A fault that hurts nobody, so that the device must go on, unless there are [reasons](Self::or_trips).
     pub(super) const fn harmless(fault: Injected) -> Self {
         Self::trips(fault, &[], &[])
     }

@@ -29,8 +29,8 @@ pub enum Sign {
     Jump,
     /// The room reads 8.5 K more than the skin.
     RoomAboveSkin,
-    /// The mirror shows a current that is off by more than 1 A and a quarter of what is asked for, for 30 ms
-    /// more than not; from 30 ms before that.
+    /// The mirror shows a current that is off by more than 1 A and a quarter of what was asked for a tick before, for 32 ms
+    /// more than not; from 32 ms before that.
     CurrentOff,
     /// The mirror shows more than 7.5 A.
     OverCurrent,
@@ -61,7 +61,8 @@ const JUMP_ROWS: usize = 4;
 const ROOM_ABOVE_K: f64 = 8.5;
 const OFF_A: f64 = 1.0;
 const OFF_PART: f64 = 0.25;
-const OFF_ROWS: usize = 30;
+/// Two more than the device waits for, which samples all through a tick: what is just as long may be one less to it.
+const OFF_ROWS: usize = 32;
 const OVER_A: f64 = 7.5;
 const DIRECTED_A: f64 = 1.0;
 const MEAN_S: f64 = 0.25;
@@ -120,7 +121,7 @@ impl Sign {
                 (Some(room_c), Some(skin_c)) => room_c - skin_c > ROOM_ABOVE_K,
                 _ => false,
             }),
-            Self::CurrentOff => current_off(after),
+            Self::CurrentOff => current_off(&rows[from.saturating_sub(1)..]),
             Self::OverCurrent => first(&|row| row.taken.mirror_a > OVER_A),
             Self::WrongWay => wrong_way(after),
             Self::DisplayLimit => first(&|row| {
@@ -342,7 +343,9 @@ mod tests {
             })
         };
         assert_eq!(Sign::CurrentOff.reached_s(&until(9.0), &[], 500), None);
-        about(Sign::CurrentOff.reached_s(&until(2.0), &[], 500), 2.0);
+        for from in [500, 2000] {
+            assert_eq!(Sign::CurrentOff.reached_s(&until(2.0), &[], from), Some(2.0));
+        }
     }
 
     /// A second at 47 °C is worth 16 at 43 °C: half a minute takes 1.875 s.

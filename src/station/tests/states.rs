@@ -140,3 +140,14 @@ fn a_display_that_is_held_sets_out_from_where_it_is() {
     bench.steps(999);
     super::assert_close(bench.setpoint_c(), bench.display_c - 1.0);
 }
+
+#[test]
+fn a_display_that_was_tuned_is_held_no_longer() {
+    let mut bench = Bench::new();
+    bench.obey(&["arm", "hold 42", "tune"]);
+    bench.step();
+    // Ends the experiment.
+    bench.force_n = 1.0;
+    bench.steps(100);
+    super::assert_close(bench.setpoint_c(), bench.skin_c);
+}

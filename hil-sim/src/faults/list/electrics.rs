@@ -31,6 +31,19 @@ const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
 /// Current that is less by too little to be told from a sound one still moves the display less.
 const NO_CURRENT: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse, Fault::UnlikeModel];
 const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
+/// Where no self-test follows.
+const DRIVEN: &[Place] = &[
+    Place::Slew,
+    Place::Copper,
+    Place::Granite,
+    Place::Foam,
+    Place::Warm,
+    Place::Cold,
+    Place::Touched,
+    Place::Neutral,
+    Place::Preset,
+    Place::Replace,
+];
 
 /// What drives the tile, and what watches that.
 pub const ENTRIES: &[Entry] = &[
@@ -58,6 +71,19 @@ pub const ENTRIES: &[Entry] = &[
     )
     .at(&[Place::Slew, Place::Cold, Place::Replace])
     .never_at(&[Place::SelfTest, Place::Off]),
+    // One that does next to nothing, from before a self-test on or from amid it.
+    Entry::trips(
+        valued(Kind::ModuleWeak, 0.1),
+        &[Sign::SelfTest(0.504), Sign::Astray, Sign::WrongWay],
+        &[
+            Fault::NoResponse,
+            Fault::Polarity,
+            Fault::UnlikeModel,
+            Fault::Runaway,
+        ],
+    )
+    .at(&[Place::Off, Place::SelfTest])
+    .never_at(DRIVEN),
     Entry::harmless(broken(Kind::BridgeEnableStuck)).latent(),
     Entry::trips(
         broken(Kind::FaultPinDead),
