@@ -72,6 +72,11 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
             "no parameter is called finger.layer.1.thickness_m",
         ),
         (
+            "[[finger.layer]]\nthickness_m = 20\nk_w_mk = 0.4\nrho_kg_m3 = 1100\nc_j_kgk = 3000",
+            7,
+            "finger.layer.0.thickness_m = 20 m; allowed is 0.00001 to 10",
+        ),
+        (
             "[plant]\ndraw = -1",
             7,
             "plant.draw is the seed of a draw; allowed is a whole number",

@@ -80,9 +80,10 @@ fn layer(layer: &mut Layer) -> [Slot<'_>; 5] {
             "m",
             "thickness; inf: endless, for the last layer",
             relative(0.23),
-            (1e-5, f64::INFINITY),
+            (1e-5, 10.0),
             ClassValue,
-        ),
+        )
+        .or_endless(),
         slot(
             conductivity_w_mk,
             "conductivity_w_mk",

@@ -12,6 +12,8 @@ pub struct Slot<'a> {
     tolerance: Tolerance,
     /// Least and largest value that is possible.
     possible: (f64, f64),
+    /// Infinite is possible, too.
+    endless: bool,
     source: Source,
 }
 
@@ -32,6 +34,7 @@ pub fn slot<'a>(
         meaning,
         tolerance,
         possible,
+        endless: false,
         source,
     }
 }
@@ -45,6 +48,18 @@ pub fn under<'a>(part: &str, slots: impl IntoIterator<Item = Slot<'a>>) -> impl 
 }
 
 impl Slot<'_> {
+    /// May be infinite, too.
+    pub fn or_endless(self) -> Self {
+        Self {
+            endless: true,
+            ..self
+        }
+    }
+
+    fn is_endless(&self) -> bool {
+        self.endless && *self.value == f64::INFINITY
+    }
+
     pub fn parameter(&self) -> Parameter {
         let (low, high) = self.limits();
         let (least, most) = self.possible;
@@ -56,7 +71,7 @@ impl Slot<'_> {
             high,
             distribution: self.tolerance.distribution(),
             least,
-            most,
+            most: if self.is_endless() { f64::INFINITY } else { most },
             source: self.source,
             meaning: self.meaning,
         }
@@ -64,6 +79,9 @@ impl Slot<'_> {
 
     /// Limits of the tolerance, as far as they are possible.
     fn limits(&self) -> (f64, f64) {
+        if self.is_endless() {
+            return (f64::INFINITY, f64::INFINITY);
+        }
         let (low, high) = self.tolerance.limits(*self.value);
         let (least, most) = self.possible;
         (low.max(least), high.min(most))
@@ -76,7 +94,7 @@ impl Slot<'_> {
 
     pub fn check(&self) -> Result<(), ParameterError> {
         let (least, most) = self.possible;
-        if (least..=most).contains(self.value) {
+        if (least..=most).contains(self.value) || self.is_endless() {
             return Ok(());
         }
         Err(ParameterError::OutOfRange {
