@@ -58,6 +58,7 @@ mod tests {
             assert_eq!(hold.step(), goal);
         }
     }
+
     #[test]
     fn a_reading_beyond_the_range_is_no_setpoint() {
         let mut hold = Hold::new(Setpoint::MAX, Celsius::lit("42.6"));

@@ -1,7 +1,7 @@
 //! The release image takes the bridge off when a sensor fails.
 
 use hil_sim::trace::Row;
-use system_tests::{between, forces, on_image, scene};
+use system_tests::{between, forces, natively, on_image, scene};
 
 #[test]
 fn broken_display_thermistor_ends_the_current_and_is_named() {
@@ -87,5 +87,32 @@ fn frozen_converter_trips_before_the_display_drifts() {
             "display {} C",
             row.display_c
         );
+    }
+}
+
+/// At the limit of the current the law's model is held back with the loop, and all the more if the sensor hides nothing.
+#[test]
+fn module_without_effect_trips_while_its_display_is_near_a_sound_one() {
+    const WEAK_S: f64 = 1.002;
+    let quick = "[plant]\nsensors.display.lag_s = 0.024\nsensors.check.lag_s = 0.024\n";
+    let weak = format!("[[fault]]\nkind = \"module-weak\"\nvalue = 0.1\nt_s = {WEAK_S}\n");
+    let [sound, weak] = ["", &weak].map(|fault| {
+        let mut scene = scene("copper", 3.0, "", &(forces(&[(0.2, 2.0)]) + fault + quick));
+        scene.object.appears_t_s = 1.0;
+        natively(&scene)
+    });
+    let rows = || weak.trace.rows().iter().zip(sound.trace.rows());
+    let tripped = |row: &Row| {
+        row.device
+            .as_ref()
+            .is_some_and(|device| device.remark.as_deref() == Some("unlike-model"))
+    };
+    let (last, _) = rows()
+        .find(|(weak, _)| tripped(weak))
+        .expect("a display that does not move is noticed");
+    println!("{:.0} ms", 1e3 * (last.t_s - WEAK_S));
+    for (weak, sound) in rows().take_while(|(weak, _)| weak.t_s <= last.t_s) {
+        let apart_k = (weak.display_c - sound.display_c).abs();
+        assert!(apart_k < 4.0, "{apart_k} K at {} s, not tripped", weak.t_s);
     }
 }

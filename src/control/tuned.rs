@@ -7,9 +7,9 @@ use super::pi::{Period, Response};
 use super::plate::Plate;
 use crate::settings::{Settings, Tile};
 
-/// Measured minus predicted that a sound tile never has: one that was tuned, and one of which only the class is known.
+/// Residual that a sound tile never has: one that was tuned, and one of which only the class is known.
 const RESIDUAL: Celsius = Celsius::lit("2");
-const CLASS_RESIDUAL: Celsius = Celsius::lit("4");
+const CLASS_RESIDUAL: Celsius = Celsius::lit("5.5");
 
 /// The laws' constants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub struct Tuned {
     pub(super) plate: Plate,
     /// Of the display's thermistor.
     pub(super) sensor: Share,
-    /// Most that measured and predicted differ by.
+    /// The most of a sound tile.
     pub(super) residual: Celsius,
 }
 

@@ -11,6 +11,10 @@
 //!
 //! The model gets what the limit leaves of its own wish, so it never promises more than the bridge gives: there is
 //! nothing to wind up. The reading is compared with what the sensor, lag and all, should show.
+//!
+//! A tile that is not what the model says shows in the residual: measured minus predicted, and what the loop adds to hold
+//! that down. Without the second part a module that has lost its effect would hide at the limit of the current, where
+//! feed and model are held back with the loop.
 
 use contact_model::fixed_point::Celsius;
 
@@ -22,6 +26,10 @@ use crate::drive::Current;
 
 /// Time constant of the difference between plate and model that counts as the plate's, s.
 const APART_LAG_S: f64 = 0.02;
+/// What an ampere of feedback counts for in the residual, a quarter of a kelvin.
+const FEEDBACK_SHIFT: u32 = 2;
+/// Binary places of a current more than those of a temperature.
+const CURRENT_SHIFT: u32 = Current::FRAC_NBITS - Celsius::FRAC_NBITS;
 /// Cooling is taken back from this sink temperature on, to none 2 K above it, before the guard trips: more current would warm the sink more
 /// than cool the display.
 const SINK_WARM: Celsius = Celsius::lit("39.5");
@@ -34,8 +42,10 @@ pub struct TwoDegrees {
     sensor: Lag,
     /// Plate without model.
     apart: Lag,
-    /// The most of that, of a sound tile.
-    residual: Celsius,
+    /// What the loop makes of it.
+    feedback: Current,
+    /// The most that a sound tile's residual is.
+    most: Celsius,
     feed: Current,
     /// What it did to the plate.
     heat: Heat,
@@ -51,7 +61,8 @@ impl TwoDegrees {
             plate: tuned.plate,
             sensor: Lag::new(tuned.sensor),
             apart: Lag::new(Share::of(APART_LAG_S)),
-            residual: tuned.residual,
+            feedback: Current::ZERO,
+            most: tuned.residual,
             feed: Current::ZERO,
             heat: Heat::default(),
             limit,
@@ -63,7 +74,7 @@ impl TwoDegrees {
     pub fn retune(&mut self, tuned: &Tuned) {
         self.plate.become_like(&tuned.plate);
         self.sensor.retune(tuned.sensor);
-        self.residual = tuned.residual;
+        self.most = tuned.residual;
     }
 
     /// Starts anew with the next [`Self::update`], from a tile through which this current flows.
@@ -85,10 +96,11 @@ impl TwoDegrees {
             .then(|| self.plate.surface().saturating_add(self.apart.value()))
     }
 
-    /// Whether measured minus predicted is more than a sound tile's; not before the first update.
+    /// Whether the residual is more than a sound tile's; not before the first update.
     #[must_use]
     pub fn strays(&self) -> bool {
-        self.running && self.apart.value().saturating_abs() > self.residual
+        let added = Celsius::from_bits(self.feedback.to_bits() >> (CURRENT_SHIFT + FEEDBACK_SHIFT));
+        self.running && self.apart.value().saturating_add(added).saturating_abs() > self.most
     }
 
     /// Current for one tick; positive cools.
@@ -110,6 +122,7 @@ impl TwoDegrees {
         let apart = reading.saturating_sub(self.sensor.value());
         self.apart.follow(apart);
         let feedback = pi.respond(apart);
+        self.feedback = feedback;
         let held = Heat {
             finger,
             sink,

@@ -84,6 +84,9 @@ impl Place {
         Self::Off,
     ];
 
+    /// Where a self-test is, or follows.
+    pub(super) const TESTED: &'static [Self] = &[Self::SelfTest, Self::Off];
+
     /// Its name.
     #[must_use]
     pub const fn name(self) -> &'static str {

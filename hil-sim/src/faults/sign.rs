@@ -23,7 +23,7 @@ pub enum Sign {
     After(f64),
     /// The display's thermistors read 3.1 K apart.
     Apart,
-    /// The display's thermistor reads 3 K more or less than in the same scene without the fault, for 40 ms.
+    /// The display's thermistor reads 2.5 K more or less than in the same scene without the fault, for 40 ms.
     Astray,
     /// Display, its second thermistor or the sink reads 0.7 K more or less than 4 ms before.
     Jump,
@@ -54,7 +54,7 @@ pub enum Sign {
 
 const APART_K: f64 = 3.1;
 /// The device compares with a model, which is up to half a kelvin off, after a lag of 20 ms, in which a display moves by as much.
-const ASTRAY_K: f64 = 3.0;
+const ASTRAY_K: f64 = 2.5;
 const ASTRAY_ROWS: usize = 40;
 const JUMP_K: f64 = 0.7;
 const JUMP_ROWS: usize = 4;

@@ -31,18 +31,13 @@ const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
 /// Current that is less by too little to be told from a sound one still moves the display less.
 const NO_CURRENT: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse, Fault::UnlikeModel];
 const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
-/// Where no self-test follows.
-const DRIVEN: &[Place] = &[
-    Place::Slew,
-    Place::Copper,
-    Place::Granite,
-    Place::Foam,
-    Place::Warm,
-    Place::Cold,
-    Place::Touched,
-    Place::Neutral,
-    Place::Preset,
-    Place::Replace,
+/// The module does less than it should.
+const WEAK: &[Sign] = &[Sign::Astray, Sign::WrongWay];
+const WEAK_REASONS: &[Fault] = &[
+    Fault::NoResponse,
+    Fault::Polarity,
+    Fault::UnlikeModel,
+    Fault::Runaway,
 ];
 
 /// What drives the tile, and what watches that.
@@ -59,32 +54,16 @@ pub const ENTRIES: &[Entry] = &[
     )
     .at(WORST),
     // For one that is weak before it has to do much the loop makes up; it shows later, when that is no longer enough.
+    Entry::trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS)
+        .at(&[Place::Slew, Place::Cold, Place::Replace])
+        .never_at(Place::TESTED),
+    Entry::trips(valued(Kind::ModuleWeak, 0.1), WEAK, WEAK_REASONS).at(&[Place::Slew, Place::Off]),
     Entry::trips(
-        valued(Kind::ModuleWeak, 0.3),
-        &[Sign::Astray, Sign::WrongWay],
-        &[
-            Fault::UnlikeModel,
-            Fault::NoResponse,
-            Fault::Polarity,
-            Fault::Runaway,
-        ],
+        valued(Kind::ModuleWeak, 0.0),
+        &[Sign::Astray, Sign::WrongWay, Sign::SelfTest(0.504)],
+        WEAK_REASONS,
     )
-    .at(&[Place::Slew, Place::Cold, Place::Replace])
-    .never_at(&[Place::SelfTest, Place::Off]),
-    // One that does next to nothing, from before a self-test on or from amid it. On the way to skin temperature that follows, at the
-    // limit of the current, the model is held back with the loop: how far astray the display is then is no measure.
-    Entry::trips(
-        valued(Kind::ModuleWeak, 0.1),
-        &[Sign::SelfTest(0.504), Sign::WrongWay],
-        &[
-            Fault::NoResponse,
-            Fault::Polarity,
-            Fault::UnlikeModel,
-            Fault::Runaway,
-        ],
-    )
-    .at(&[Place::Off, Place::SelfTest])
-    .never_at(DRIVEN),
+    .at(Place::TESTED),
     Entry::harmless(broken(Kind::BridgeEnableStuck)).latent(),
     Entry::trips(
         broken(Kind::FaultPinDead),

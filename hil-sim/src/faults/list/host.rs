@@ -13,7 +13,7 @@ pub const ENTRIES: &[Entry] = &[
         &[Sign::After(2.0)],
         &[Fault::HostSilent],
     )
-    .never_at(&[Place::SelfTest, Place::Off]),
+    .never_at(Place::TESTED),
     Entry::harmless(broken(Kind::HostGarbage)),
     // Off, a flood drowns the line that arms.
     Entry::harmless(broken(Kind::HostFlood)).never_at(&[Place::Off]),
