@@ -507,6 +507,7 @@ impl Station {
                 // A reading that jumps would be taken for the tile's.
                 self.end_experiment();
                 self.sensors.recalibrate(&calibrated);
+                self.control.begin_anew();
                 self.watch.forget_motion();
             }
             Command::Retune(tuned) => {

@@ -91,3 +91,23 @@ fn a_display_that_is_held_at_an_end_does_not_go_beyond_and_trip() {
         }
     }
 }
+
+/// The most that a line may make of a reading, on quick sensors, whose loop is strong.
+#[test]
+fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {
+    let quick = "[plant]\nsensors.display.lag_s = 0.024\nsensors.check.lag_s = 0.024\n";
+    for line in [
+        "set correction display 1.2 0.03 0",
+        "set correction display -1.2 0.03 0",
+    ] {
+        let tables = host(&[(0.1, "hold 20"), (0.3, line), (1.5, "state")]) + quick;
+        let mut scene = scene("copper", 2.0, "", &tables);
+        scene.object.appears_t_s = scene.duration_s;
+        let outcome = natively(&scene);
+        let said = outcome.answers.iter().map(|(_, said)| said.as_str());
+        let [state] = said.filter(|said| *said != "ok").collect::<Vec<_>>()[..] else {
+            panic!("{line}: {:?}", outcome.answers);
+        };
+        assert!(state.starts_with("ok state=armed fault=-"), "{line}: {state}");
+    }
+}

@@ -1,4 +1,4 @@
-//! The release image takes the bridge off when a sensor fails.
+//! The device takes the bridge off when a sensor, the bridge or the module fails.
 
 use hil_sim::trace::Row;
 use system_tests::{between, forces, natively, on_image, scene};
@@ -90,29 +90,28 @@ fn frozen_converter_trips_before_the_display_drifts() {
     }
 }
 
-/// At the limit of the current the law's model is held back with the loop, and all the more if the sensor hides nothing.
+/// At the limit of the current the loop takes back feed and model, all the more the stronger it is, as with a quick
+/// sensor: measured minus predicted alone stays small.
 #[test]
-fn module_without_effect_trips_while_its_display_is_near_a_sound_one() {
-    const WEAK_S: f64 = 1.002;
+fn weak_module_trips_while_its_display_is_near_a_sound_one() {
+    /// Astray as of the faults' list, and 50 ms at the 16 K/s that 6 A make of it.
+    const NEAR_K: f64 = 2.5 + 0.05 * 16.0;
     let quick = "[plant]\nsensors.display.lag_s = 0.024\nsensors.check.lag_s = 0.024\n";
-    let weak = format!("[[fault]]\nkind = \"module-weak\"\nvalue = 0.1\nt_s = {WEAK_S}\n");
-    let [sound, weak] = ["", &weak].map(|fault| {
+    let weak = "[[fault]]\nkind = \"module-weak\"\nvalue = 0.1\nt_s = 1.002\n";
+    let [sound, weak] = ["", weak].map(|fault| {
         let mut scene = scene("copper", 3.0, "", &(forces(&[(0.2, 2.0)]) + fault + quick));
         scene.object.appears_t_s = 1.0;
         natively(&scene)
     });
     let rows = || weak.trace.rows().iter().zip(sound.trace.rows());
-    let tripped = |row: &Row| {
-        row.device
-            .as_ref()
-            .is_some_and(|device| device.remark.as_deref() == Some("unlike-model"))
-    };
-    let (last, _) = rows()
-        .find(|(weak, _)| tripped(weak))
-        .expect("a display that does not move is noticed");
-    println!("{:.0} ms", 1e3 * (last.t_s - WEAK_S));
-    for (weak, sound) in rows().take_while(|(weak, _)| weak.t_s <= last.t_s) {
+    let driven = rows()
+        .rposition(|(weak, _)| weak.current_a != 0.0)
+        .expect("the bridge drives before the fault");
+    for (weak, sound) in rows().take(driven + 1) {
         let apart_k = (weak.display_c - sound.display_c).abs();
-        assert!(apart_k < 4.0, "{apart_k} K at {} s, not tripped", weak.t_s);
+        assert!(apart_k < NEAR_K, "{apart_k} K at {} s, driven", weak.t_s);
     }
+    let last = weak.trace.rows().last().and_then(|row| row.device.as_ref());
+    let remark = last.and_then(|device| device.remark.as_deref());
+    assert_eq!(remark, Some("unlike-model"));
 }

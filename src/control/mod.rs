@@ -123,6 +123,13 @@ impl Control {
         self.go_on_from(Current::ZERO);
     }
 
+    /// Begins its model anew, if it has one, from the current that flows: the readings are others than they were.
+    pub fn begin_anew(&mut self) {
+        if self.law == Law::Model {
+            self.go_on_from(self.last);
+        }
+    }
+
     /// Starts anew, from a current that flows.
     pub fn go_on_from(&mut self, current: Current) {
         self.last = current;
@@ -137,8 +144,7 @@ impl Control {
         self.two_degrees.surface().unwrap_or(reading)
     }
 
-    /// Whether the display's reading has strayed from what the law's model of it says; a law without one, for which the model
-    /// stands still, knows nothing.
+    /// Whether the law's residual is beyond that of a sound tile; a law without a model, for which it stands still, knows nothing.
     #[must_use]
     pub fn strays(&self) -> bool {
         self.two_degrees.strays()

@@ -7,7 +7,8 @@ use super::pi::{Period, Response};
 use super::plate::Plate;
 use crate::settings::{Settings, Tile};
 
-/// Residual that a sound tile never has: one that was tuned, and one of which only the class is known.
+/// Residual that a sound tile never has: one that was tuned, and one of which only the class is known, 4 K and what 6 A of
+/// feedback count for. In normal use of the box they are half of that, and five sixths.
 const RESIDUAL: Celsius = Celsius::lit("2");
 const CLASS_RESIDUAL: Celsius = Celsius::lit("5.5");
 

@@ -26,7 +26,8 @@ use crate::drive::Current;
 
 /// Time constant of the difference between plate and model that counts as the plate's, s.
 const APART_LAG_S: f64 = 0.02;
-/// What an ampere of feedback counts for in the residual, a quarter of a kelvin.
+/// What an ampere of feedback counts for in the residual, a quarter of a kelvin: enough to tell a weak module at the limit, and
+/// little beside what the loop does about sound tiles.
 const FEEDBACK_SHIFT: u32 = 2;
 /// Binary places of a current more than those of a temperature.
 const CURRENT_SHIFT: u32 = Current::FRAC_NBITS - Celsius::FRAC_NBITS;

@@ -82,7 +82,8 @@ faults! {
     Polarity = "polarity",
     /// The display goes the wrong way, slowly: current warms the sink more than it cools the display.
     Runaway = "runaway",
-    /// The display does not do what the law's model of it says: the module or its contact with the plate is not what it was.
+    /// The display does not do what the law's model of it says: the module or its contact with the plate is not what it was, or
+    /// there is heat of which no sensor tells.
     UnlikeModel = "unlike-model",
     /// Measured current beyond what is ever asked for.
     OverCurrent = "over-current",

@@ -15,11 +15,12 @@
 //! fault, both of its legs are high-impedance; nothing else is ever called off. Off is safe as long as the sink is:
 //! heat flows back from it to the display, which is why the sink's limit is the lowest of all.
 //!
-//! **Faults are levels.** Each is looked at on every tick in every state, so that what was wrong before `arm` keeps it
-//! from being obeyed, and what is wrong after a trip keeps `clear` from it. Nothing is filtered away: where one tick
-//! is not enough to know, the detector says for how long a thing must last, and none takes longer than 50 ms from
-//! where its [`Fault`] is defined to begin. Only the fault line of the bridge is not looked at while the bridge is off and
-//! untested, or tripped: the comparator pulls it too, and keeps pulling until the next self-test.
+//! **Faults are levels.** What one tick shows is looked at on every tick in every state, so that what was wrong before
+//! `arm` keeps it from being obeyed, and what is wrong after a trip keeps `clear` from it. Where one tick is not enough to
+//! know, the detector says for how long a thing must last, and looks at every tick in which no reading is at an end of its
+//! range or beyond its limit; signals that stand still and the dose are followed even then. Only the fault line of the bridge
+//! is not looked at while the bridge is off and untested, or tripped: the comparator pulls it too, and keeps pulling until
+//! the next self-test.
 //!
 //! **What latches.** The first fault does, with the readings of its tick, as [`Cause`]; later ones do not replace it. A
 //! later one that no sample shows comes to light when the first is cleared. The cause survives every reset but the loss
@@ -37,7 +38,7 @@
 //! |                | sink hot                                 | 42 °C                                                |
 //! |                | over-current                             | 1.5 A above what is ever asked for                   |
 //! | bridge         | its fault line, the comparator           | in that tick; a pulse between ticks counts           |
-//! | `frozen`       | a channel, or all                        | 46 identical sums                                    |
+//! | `frozen`       | a channel, or all                        | a sum repeats itself 46 times                        |
 //! | `jump`         | display, its second thermistor, sink     | 0.5 K in 4 ms                                        |
 //! | `apart`        | the display's thermistors                | 3 K for 40 ms                                        |
 //! | `room`         | room above skin                          | 8 K for 40 ms                                        |

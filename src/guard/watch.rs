@@ -72,8 +72,8 @@ impl Watch {
         self.dose.check(|| both.into_iter().flatten().max())
     }
 
-    /// Takes one tick in which no level was wrong; `measured` is the current, `unlike_model`
-    /// whether the display has strayed from what the law's model of it says, `streams` whether a host listens.
+    /// Takes one tick in which no level was wrong; `measured` is the current, `unlike_model` whether the law's residual is
+    /// beyond that of a sound tile, `streams` whether a host listens.
     ///
     /// # Errors
     /// A fault that has lasted. All are looked at, and the first of this order is named.

@@ -86,7 +86,10 @@ impl Pair {
                 Right::Trip(faults) => faults.iter().any(|fault| fault.name() == verdict.reason),
                 Right::Restart => false,
             };
-            (verdict.breaches).retain(|breach| !named || !matches!(breach, Breach::Reason | Breach::Early));
+            // What has no sign, and has not been named before the second fault, is no excuse for its reason.
+            let first = !self.latent.signs.is_empty() || verdict.breaches.contains(&Breach::Early);
+            (verdict.breaches)
+                .retain(|breach| !(named && first && matches!(breach, Breach::Reason | Breach::Early)));
             RanPair {
                 latent: self.latent.fault.to_string(),
                 active: self.active.fault.to_string(),

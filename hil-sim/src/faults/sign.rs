@@ -53,7 +53,8 @@ pub enum Sign {
 }
 
 const APART_K: f64 = 3.1;
-/// The device compares with a model, which is up to half a kelvin off, after a lag of 20 ms, in which a display moves by as much.
+/// The device's limit is 2 K from a model that is up to half a kelvin off; for what its lag of 20 ms costs the feedback that it
+/// counts makes up.
 const ASTRAY_K: f64 = 2.5;
 const ASTRAY_ROWS: usize = 40;
 const JUMP_K: f64 = 0.7;

@@ -28,8 +28,14 @@ const CURRENT: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::SelfTest(0
 /// A supply that drives the self-test's ampere well enough.
 const SUPPLY: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::FaultLine];
 const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
-/// Current that is less by too little to be told from a sound one still moves the display less.
+/// Current that is less, or more, by too little to be told from a sound one still moves the display less, or more.
 const NO_CURRENT: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse, Fault::UnlikeModel];
+const MUCH_CURRENT: &[Fault] = &[
+    Fault::CurrentHigh,
+    Fault::OverCurrent,
+    Fault::Bridge,
+    Fault::UnlikeModel,
+];
 const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
 /// The module does less than it should.
 const WEAK: &[Sign] = &[Sign::Astray, Sign::WrongWay];
@@ -53,11 +59,15 @@ pub const ENTRIES: &[Entry] = &[
         &[Fault::Polarity, Fault::UnlikeModel],
     )
     .at(WORST),
-    // For one that is weak before it has to do much the loop makes up; it shows later, when that is no longer enough.
-    Entry::trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS)
-        .at(&[Place::Slew, Place::Cold, Place::Replace])
-        .never_at(Place::TESTED),
+    // What is left answers to the self-test's ampere by more than it asks for, or by about that. So what tells is what comes then:
+    // for a module that has little to do the loop makes up.
+    Entry::trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS).at(&[
+        Place::Slew,
+        Place::Cold,
+        Place::Replace,
+    ]),
     Entry::trips(valued(Kind::ModuleWeak, 0.1), WEAK, WEAK_REASONS).at(&[Place::Slew, Place::Off]),
+    // The self-test must tell.
     Entry::trips(
         valued(Kind::ModuleWeak, 0.0),
         &[Sign::Astray, Sign::WrongWay, Sign::SelfTest(0.504)],
@@ -98,16 +108,6 @@ pub const ENTRIES: &[Entry] = &[
     ),
     Entry::trips(valued(Kind::SupplyLow, 9.0), SUPPLY, NO_CURRENT).at(WORST),
     Entry::trips(valued(Kind::SupplyLow, 4.5), CURRENT, NO_CURRENT).at(WORST),
-    Entry::trips(
-        valued(Kind::SupplyHigh, 16.0),
-        SUPPLY,
-        &[Fault::CurrentHigh, Fault::OverCurrent, Fault::Bridge],
-    )
-    .at(WORST),
-    Entry::trips(
-        valued(Kind::SupplyHigh, 24.0),
-        SUPPLY,
-        &[Fault::CurrentHigh, Fault::OverCurrent, Fault::Bridge],
-    )
-    .at(WORST),
+    Entry::trips(valued(Kind::SupplyHigh, 16.0), SUPPLY, MUCH_CURRENT).at(WORST),
+    Entry::trips(valued(Kind::SupplyHigh, 24.0), SUPPLY, MUCH_CURRENT).at(WORST),
 ];

@@ -200,10 +200,6 @@ pub const OTHERS: &[Entry] = &[
     Entry::trips(valued(Kind::ForceOffset, -10.0), NOW, &[Fault::ForceSensor]),
     Entry::harmless(valued(Kind::ForceOffset, 1.0)).at(&[Place::Preset]),
     Entry::harmless(valued(Kind::ForceOffset, -0.05)),
-    // A finger that it hides moves a display that has nothing left against it.
-    Entry::harmless(broken(Kind::ForceStuck)).or_trips(&[
-        Fault::Polarity,
-        Fault::UnlikeModel,
-        Fault::Runaway,
-    ]),
+    // A finger that it hides warms a display whose current is at its limit.
+    Entry::harmless(broken(Kind::ForceStuck)).or_trips(&[Fault::Polarity]),
 ];
