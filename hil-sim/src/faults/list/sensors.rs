@@ -155,6 +155,7 @@ const ON_SINK: &[Fault] = &[
     Fault::SinkJump,
     Fault::DisplaysApart,
     Fault::Polarity,
+    Fault::UnlikeModel,
     Fault::RoomAboveSkin,
     Fault::NoResponse,
 ];
