@@ -3,6 +3,7 @@
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
+use thermal_display::control::Law;
 use thermal_display::guard::Fault;
 
 /// A scene, and what goes on in it when the fault comes. In every one the finger rests on the display in the end.
@@ -11,6 +12,12 @@ use thermal_display::guard::Fault;
 pub enum Place {
     /// The object appears under a resting finger: as much current as there is, copper.
     Slew,
+    /// The same, with the plain loop.
+    Pi,
+    /// With that of the thesis's display.
+    Pi10Hz,
+    /// With a model of the class, of a device that was never commissioned.
+    Untuned,
     /// A finger lands on copper.
     Copper,
     /// On granite.
@@ -69,8 +76,11 @@ pub struct Moment {
 
 impl Place {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 15] = [
         Self::Slew,
+        Self::Pi,
+        Self::Pi10Hz,
+        Self::Untuned,
         Self::Copper,
         Self::Granite,
         Self::Foam,
@@ -92,6 +102,9 @@ impl Place {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Slew => "slew",
+            Self::Pi => Law::Pi.name(),
+            Self::Pi10Hz => Law::Pi10Hz.name(),
+            Self::Untuned => "untuned",
             Self::Copper => "copper",
             Self::Granite => "granite",
             Self::Foam => "foam",
@@ -108,7 +121,13 @@ impl Place {
 
     const fn forces(self) -> Forces {
         match self {
-            Self::Slew | Self::Touched | Self::SelfTest | Self::Off => RESTING,
+            Self::Slew
+            | Self::Pi
+            | Self::Pi10Hz
+            | Self::Untuned
+            | Self::Touched
+            | Self::SelfTest
+            | Self::Off => RESTING,
             Self::Copper | Self::Granite | Self::Foam | Self::Warm | Self::Cold => LANDING,
             Self::Neutral | Self::Preset => LATE,
             Self::Replace => REPLACING,
@@ -128,7 +147,7 @@ impl Place {
     /// From when to when faults come, s, and edges around which they do.
     const fn moments(self) -> ((f64, f64), &'static [f64]) {
         match self {
-            Self::Slew => ((0.5, 4.0), &[1.0]),
+            Self::Slew | Self::Pi | Self::Pi10Hz | Self::Untuned => ((0.5, 4.0), &[1.0]),
             Self::Copper | Self::Granite | Self::Foam | Self::Warm | Self::Cold => ((0.3, 4.0), &[1.0]),
             Self::Touched => ((0.1, 4.0), &[0.2]),
             Self::Neutral | Self::Preset => ((0.1, 6.5), &[6.0]),
@@ -136,6 +155,11 @@ impl Place {
             Self::SelfTest => ((4.0, 5.75), &[4.0, 4.02, 5.04, 5.104, 5.304, 5.504]),
             Self::Off => ((2.9, 3.99), &[]),
         }
+    }
+
+    /// The law has a model of the tile, which was tuned: what a display should do is known.
+    pub(super) const fn has_tuned_model(self) -> bool {
+        !matches!(self, Self::Pi | Self::Pi10Hz | Self::Untuned)
     }
 
     /// From when to when faults come, s.
@@ -177,12 +201,20 @@ impl Place {
         let duration_s = (t_s + after_s).max(SHORTEST_S);
         let (material, object_c) = self.object();
         let appears_s = match self {
-            Self::Slew => 1.0,
+            Self::Slew | Self::Pi | Self::Pi10Hz | Self::Untuned => 1.0,
             Self::Touched | Self::Neutral => duration_s,
             _ => 0.0,
         };
+        let law = match self {
+            Self::Pi => Law::Pi,
+            Self::Pi10Hz => Law::Pi10Hz,
+            _ => Law::Model,
+        };
+        let law = law.name();
+        let commissioned = self != Self::Untuned;
         let mut text = format!(
-            "duration_s = {duration_s:?}\nskin_c = 34\nroom_c = 24\nseed = {seed}\n[object]\nmaterial = \
+            "duration_s = {duration_s:?}\nskin_c = 34\nroom_c = 24\nseed = {seed}\nlaw = \"{law}\"\n[device]\ncommissioned = \
+             {commissioned}\n[object]\nmaterial = \
              \"{material}\"\nstart_c = {object_c:?}\nappears_t_s = {appears_s:?}\n"
         );
         for (t_s, force_n) in self.forces() {

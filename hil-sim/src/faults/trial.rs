@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::verdict::Verdict;
-use super::{Device, Entry, Injected, Moment, script};
+use super::{Device, Entry, Injected, Moment, Place, script};
 use crate::engine::NotInjected;
 use crate::metrics::Figures;
 use crate::run::{Outcome, RunError};
@@ -28,11 +28,12 @@ fn ran(device: Device<'_>, scene: &Scene) -> anyhow::Result<Option<(Outcome, Fig
     }
 }
 
-/// A scene without the fault, if a sign of it needs that.
-fn sound(device: Device<'_>, entry: &Entry, scene: &Scene) -> anyhow::Result<Option<Outcome>> {
+/// A scene without the fault, if a sign of it needs that, and can be there.
+fn sound(device: Device<'_>, entry: &Entry, place: Place, scene: &Scene) -> anyhow::Result<Option<Outcome>> {
     let mut sound = scene.clone();
+    let needed = place.has_tuned_model() && entry.signs.iter().any(|sign| sign.needs_sound());
     match entry.fault {
-        Injected::Broken(broken) if entry.signs.iter().any(|sign| sign.needs_sound()) => {
+        Injected::Broken(broken) if needed => {
             sound.faults.retain(|fault| fault.broken.kind != broken.kind);
         }
         _ => return Ok(None),
@@ -74,7 +75,7 @@ impl Trial {
         let verdict = match ran(device, &scene) {
             Ok(None) => return Ok(None),
             Ok(Some((outcome, figures))) => {
-                let sound = sound(device, entry, &scene)?;
+                let sound = sound(device, entry, moment.place, &scene)?;
                 let sound: &[_] = sound.as_ref().map_or(&[], |sound| sound.trace.rows());
                 Verdict::of(entry, moment, &outcome, &figures, sound)
             }

@@ -37,6 +37,8 @@ const MUCH_CURRENT: &[Fault] = &[
     Fault::UnlikeModel,
 ];
 const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
+/// Where no model helps, too.
+const PLAIN: &[Place] = &[Place::Pi, Place::Slew, Place::Off];
 /// The module does less than it should.
 const WEAK: &[Sign] = &[Sign::Astray, Sign::WrongWay];
 const WEAK_REASONS: &[Fault] = &[
@@ -51,14 +53,14 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
     Entry::trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
     Entry::trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
-    Entry::trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(WORST),
+    Entry::trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(PLAIN),
     Entry::trips(broken(Kind::BridgeShorted), &[Sign::FaultLine], &[Fault::Bridge]).at(WORST),
     Entry::trips(
         broken(Kind::PolaritySwapped),
         &[Sign::WrongWay, Sign::DisplayLimit, Sign::SelfTest(0.504)],
         &[Fault::Polarity, Fault::UnlikeModel],
     )
-    .at(WORST),
+    .at(PLAIN),
     // What is left answers to the self-test's ampere by more than it asks for, or by about that. So what tells is what comes then:
     // for a module that has little to do the loop makes up.
     Entry::trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS).at(&[

@@ -20,10 +20,17 @@ pub const ENTRIES: &[Entry] = &[
     Entry::harmless(Injected::Line("hold 60")).at(&[Place::Touched]),
     Entry::harmless(Injected::Line("object 900")),
     Entry::harmless(Injected::Line("stream 0")),
-    Entry::harmless(Injected::Line("object -20")).at(&[Place::Slew, Place::Touched]),
-    Entry::trips(Injected::Line("object 60"), &[Sign::Dose], &[Fault::Dose])
-        .at(&[Place::Slew])
-        .watched(180.0),
+    // Without a tuned model the display overshoots the limit of its set-point.
+    Entry::harmless(Injected::Line("object -20"))
+        .or_trips(&[Fault::DisplayCold])
+        .at(&[Place::Slew, Place::Touched]),
+    Entry::trips(
+        Injected::Line("object 60"),
+        &[Sign::Dose],
+        &[Fault::Dose, Fault::DisplayHot],
+    )
+    .at(&[Place::Slew])
+    .watched(180.0),
     Entry::trips(
         Injected::Line("set tile 0.5 0.02 0.3 0.5 0.02"),
         &[Sign::WrongWay],
