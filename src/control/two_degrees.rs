@@ -17,6 +17,7 @@
 //! feed and model are held back with the loop.
 
 use contact_model::fixed_point::Celsius;
+use fixed::traits::LossyFrom;
 
 use super::lag::{Lag, Share};
 use super::pi::Pi;
@@ -29,8 +30,6 @@ const APART_LAG_S: f64 = 0.02;
 /// What an ampere of feedback counts for in the residual, a quarter of a kelvin: enough to tell a weak module at the limit, and
 /// little beside what the loop does about sound tiles.
 const FEEDBACK_SHIFT: u32 = 2;
-/// Binary places of a current more than those of a temperature.
-const CURRENT_SHIFT: u32 = Current::FRAC_NBITS - Celsius::FRAC_NBITS;
 /// Cooling is taken back from this sink temperature on, to none 2 K above it, before the guard trips: more current would warm the sink more
 /// than cool the display.
 const SINK_WARM: Celsius = Celsius::lit("39.5");
@@ -100,7 +99,7 @@ impl TwoDegrees {
     /// Whether the residual is more than a sound tile's; not before the first update.
     #[must_use]
     pub fn strays(&self) -> bool {
-        let added = Celsius::from_bits(self.feedback.to_bits() >> (CURRENT_SHIFT + FEEDBACK_SHIFT));
+        let added = Celsius::lossy_from(self.feedback >> FEEDBACK_SHIFT);
         self.running && self.apart.value().saturating_add(added).saturating_abs() > self.most
     }
 

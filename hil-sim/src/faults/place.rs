@@ -102,8 +102,7 @@ impl Place {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Slew => "slew",
-            Self::Pi => Law::Pi.name(),
-            Self::Pi10Hz => Law::Pi10Hz.name(),
+            Self::Pi | Self::Pi10Hz => self.law().name(),
             Self::Untuned => "untuned",
             Self::Copper => "copper",
             Self::Granite => "granite",
@@ -157,9 +156,21 @@ impl Place {
         }
     }
 
+    const fn law(self) -> Law {
+        match self {
+            Self::Pi => Law::Pi,
+            Self::Pi10Hz => Law::Pi10Hz,
+            _ => Law::Model,
+        }
+    }
+
+    const fn is_commissioned(self) -> bool {
+        !matches!(self, Self::Untuned)
+    }
+
     /// The law has a model of the tile, which was tuned: what a display should do is known.
     pub(super) const fn has_tuned_model(self) -> bool {
-        !matches!(self, Self::Pi | Self::Pi10Hz | Self::Untuned)
+        matches!(self.law(), Law::Model) && self.is_commissioned()
     }
 
     /// From when to when faults come, s.
@@ -205,17 +216,12 @@ impl Place {
             Self::Touched | Self::Neutral => duration_s,
             _ => 0.0,
         };
-        let law = match self {
-            Self::Pi => Law::Pi,
-            Self::Pi10Hz => Law::Pi10Hz,
-            _ => Law::Model,
-        };
-        let law = law.name();
-        let commissioned = self != Self::Untuned;
         let mut text = format!(
-            "duration_s = {duration_s:?}\nskin_c = 34\nroom_c = 24\nseed = {seed}\nlaw = \"{law}\"\n[device]\ncommissioned = \
-             {commissioned}\n[object]\nmaterial = \
-             \"{material}\"\nstart_c = {object_c:?}\nappears_t_s = {appears_s:?}\n"
+            "duration_s = {duration_s:?}\nskin_c = 34\nroom_c = 24\nseed = {seed}\nlaw = \"{}\"\n[device]\n\
+             commissioned = {}\n[object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\n\
+             appears_t_s = {appears_s:?}\n",
+            self.law().name(),
+            self.is_commissioned(),
         );
         for (t_s, force_n) in self.forces() {
             text += &format!("[[force]]\nt_s = {t_s:?}\nforce_n = {force_n:?}\n");
