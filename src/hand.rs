@@ -4,7 +4,7 @@ use core::array;
 
 use crate::Station;
 use crate::drive::Outputs;
-use crate::guard::{Cause, Fault};
+use crate::guard::{Cause, Dose, Fault};
 use crate::protocol::{Addressed, Command, Error, Reply, Request, Telemetry};
 use crate::sense::Samples;
 use crate::settings::{Kept, Settings};
@@ -41,6 +41,17 @@ impl<const FINGERS: usize> Hand<FINGERS> {
         for (station, kept) in self.stations.iter_mut().zip(kept) {
             station.restore(&kept.settings());
         }
+    }
+
+    /// The dose of a finger so far, counted modulo `FINGERS`.
+    #[must_use]
+    pub const fn dose(&self, finger: usize) -> &Dose {
+        self.stations[finger % FINGERS].dose()
+    }
+
+    /// Goes on from the dose that a finger had before the start, counted modulo `FINGERS`.
+    pub const fn resume(&mut self, finger: usize, dose: Dose) {
+        self.stations[finger % FINGERS].resume(dose);
     }
 
     /// One control tick of a finger, `finger` counted modulo `FINGERS`.

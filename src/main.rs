@@ -31,7 +31,8 @@ mod app {
 
     use crate::board::{
         Board, Console, End, FINGERS, Memory, PowerStage, Receiver, Record, Sampler, Task, Transmitter,
-        Trigger, Vigil, Watchdog, WindowWatchdog, at_start, first_cause, stack_is_overrun,
+        Trigger, Vigil, Watchdog, WindowWatchdog, at_start, first_cause, keep_dose, kept_dose,
+        stack_is_overrun,
     };
 
     #[shared]
@@ -71,6 +72,9 @@ mod app {
             Ok(Some(kept)) => hand.restore(kept),
             Ok(None) => {}
             Err(_) => hand.trip(Fault::SettingsCorrupt),
+        }
+        for finger in 0..FINGERS {
+            hand.resume(finger, kept_dose(finger));
         }
         // What the flash says it says again after a reset, unless other settings are stored.
         let record = Record::new(hand.tripped().copied());
@@ -153,6 +157,7 @@ mod app {
             if cx.shared.record.keeps() || hand.is_tripped(finger) {
                 cx.shared.record.follow(hand.tripped());
             }
+            keep_dose(finger, hand.dose(finger));
             outputs
         });
         stage.apply(&outputs);

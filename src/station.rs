@@ -7,9 +7,9 @@ use contact_model::material::{MATERIALS, SKIN};
 
 use crate::TICK_HZ;
 use crate::commission::{Aborted, Experiment, PointError};
-use crate::control::{Control, Inputs, Law, Legs, Tuned, Voltage, Watt};
+use crate::control::{Control, Law, Legs, Tuned, Voltage, Watt};
 use crate::drive::{Current, Drive, Outputs, SafeCurrent};
-use crate::guard::{self, Before, Cause, Fault, Progress, SelfTest, Setpoint, Sound, State, Watch};
+use crate::guard::{self, Before, Cause, Dose, Fault, Progress, SelfTest, Setpoint, Sound, State, Watch};
 use crate::hold::Hold;
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
 use crate::render::{Mode, Render, Scene, Wanted};
@@ -35,6 +35,8 @@ pub struct Station {
     tripped_at: u32,
     /// What tripped while it was tripped, and no sample shows.
     also: Option<Fault>,
+    /// What was told since the last tick, and no sample shows.
+    told: Option<Fault>,
     touch: Touch,
     render: Render,
     material: Option<(&'static str, Pairing)>,
@@ -59,7 +61,6 @@ struct Followed {
     setpoint: Setpoint,
     limited: bool,
     target: Setpoint,
-    finger: Watt,
 }
 
 /// Neither driven nor tested.
@@ -84,6 +85,7 @@ impl Station {
             cause: None,
             tripped_at: 0,
             also: None,
+            told: None,
             touch: Touch::default(),
             render: Render::default(),
             material: None,
@@ -122,16 +124,20 @@ impl Station {
         let checked = self.check(samples, &readings);
         let (followed, mut told) = match checked {
             Ok(sound) => {
-                let followed = self.follow(samples, &sound);
-                (followed, self.act(&sound, &readings, followed.as_ref()))
+                let finger = self.feel(samples, &sound);
+                let followed = self.follow(&sound);
+                let legs = self.control.legs(sound.display, sound.sink);
+                self.control.observe(sound.display, sound.sink, finger);
+                (followed, self.act(&sound, &readings, &legs, followed.as_ref()))
             }
             Err(fault) => {
-                // What the finger does meanwhile is not known.
+                // What finger and tile do meanwhile is not known.
                 self.render.lose_sight();
+                self.control.lose_sight();
                 (None, Err(fault))
             }
         };
-        self.fault = told.err();
+        self.fault = told.err().or(self.told.take());
         if let Err(fault) = told {
             self.latch(Cause::new(fault, self.tick, &readings, self.before.asked));
             told = Ok(self.rest(false));
@@ -154,7 +160,7 @@ impl Station {
         let streams = self.stream_ticks != 0;
         let watched = match &level {
             Ok(sound) => {
-                let unlike_model = self.control.strays();
+                let unlike_model = self.before.setpoint.is_some() && self.control.strays();
                 self.watch
                     .check(sound, readings.current, &self.before, unlike_model, streams)
             }
@@ -177,6 +183,7 @@ impl Station {
 
     /// Trips for a reason that samples do not show. If it is tripped, that comes to light when it is cleared.
     pub fn trip(&mut self, fault: Fault) {
+        self.told = Some(fault);
         match self.state {
             State::Tripped(first) if first != fault => self.also = self.also.or(Some(fault)),
             State::Tripped(_) => {}
@@ -219,6 +226,17 @@ impl Station {
         self.cause.as_ref()
     }
 
+    /// The dose so far.
+    #[must_use]
+    pub const fn dose(&self) -> &Dose {
+        self.watch.dose()
+    }
+
+    /// Goes on from the dose before the start.
+    pub const fn resume(&mut self, dose: Dose) {
+        self.watch.resume(dose);
+    }
+
     /// The host is there.
     pub const fn hear(&mut self) {
         self.watch.hear();
@@ -232,10 +250,10 @@ impl Station {
         &mut self,
         sound: &Sound,
         readings: &Readings,
+        legs: &Legs,
         followed: Option<&Followed>,
     ) -> Result<(Outputs, Current), Fault> {
         if self.state == State::SelfTest {
-            let legs = Legs::between(sound.display, sound.sink);
             let touched = self.touch.lands() || self.touch.touching();
             return Ok(
                 match self
@@ -243,7 +261,10 @@ impl Station {
                     .step(sound, readings.current, readings.bridge_fault, touched)?
                 {
                     Progress::Off { comparator_test } => self.rest(comparator_test),
-                    Progress::Drive(current) => self.drive(current, &legs),
+                    Progress::Drive(current) => {
+                        self.control.follow(current);
+                        self.drive(current, legs)
+                    }
                     Progress::Passed => {
                         self.state = State::Armed;
                         self.rest(false)
@@ -255,17 +276,8 @@ impl Station {
             return Ok(self.rest(false));
         };
         let tuning = self.tuning(sound, readings.current);
-        let legs = self.control.legs(sound.display, sound.sink);
-        let current = tuning.unwrap_or_else(|| {
-            self.control.update(&Inputs {
-                setpoint: followed.setpoint,
-                target: followed.target,
-                display: sound.display,
-                sink: sound.sink,
-                finger: followed.finger,
-            })
-        });
-        Ok(self.drive(current, &legs))
+        let current = tuning.unwrap_or_else(|| self.control.update(followed.setpoint, followed.target));
+        Ok(self.drive(current, legs))
     }
 
     fn drive(&self, current: Current, legs: &Legs) -> (Outputs, Current) {
@@ -280,7 +292,7 @@ impl Station {
     /// The bridge off.
     fn rest(&mut self, comparator_test: bool) -> (Outputs, Current) {
         self.end_experiment();
-        self.control.reset();
+        self.control.follow(Current::ZERO);
         let outputs = Outputs {
             comparator_test,
             ..OFF
@@ -288,8 +300,8 @@ impl Station {
         (outputs, Current::ZERO)
     }
 
-    /// Follows finger and scene.
-    fn follow(&mut self, samples: &Samples, sound: &Sound) -> Option<Followed> {
+    /// Follows the finger; the heat that it gives.
+    fn feel(&mut self, samples: &Samples, sound: &Sound) -> Watt {
         let before = self.touch.touching();
         self.touch.update(sound.force);
         self.sensors.follow_zero(samples, &self.touch);
@@ -297,14 +309,17 @@ impl Station {
         let landed = if before { 0 } else { self.touch.landed_ticks() };
         let touch: Option<Force> = touching.then_some(sound.force);
         self.render.observe(sound.skin, sound.room, touch, landed);
-        let live = self.control.law() == Law::Model;
         let display = self.control.surface(sound.display);
         let pairing = self.material.as_ref().map(|(_, pairing)| pairing);
         // The skin is followed whatever the law, which may change under a finger.
-        let finger = match pairing.or(self.any.as_ref()) {
+        match pairing.or(self.any.as_ref()) {
             Some(pairing) => self.render.load(pairing, display),
             None => Watt::ZERO,
-        };
+        }
+    }
+
+    /// Follows the scene: where the display is to be, if anywhere.
+    fn follow(&mut self, sound: &Sound) -> Option<Followed> {
         let only = |setpoint| Wanted {
             setpoint,
             target: setpoint,
@@ -317,13 +332,19 @@ impl Station {
                 (_, None) => self.render.neutral()?,
             }),
             State::Preset | State::Contact => {
-                self.state = if touching { State::Contact } else { State::Preset };
+                self.state = if self.touch.touching() {
+                    State::Contact
+                } else {
+                    State::Preset
+                };
                 let (_, pairing) = self.material.as_ref()?;
                 let scene = Scene {
                     pairing,
                     object: self.object,
                     mode: self.mode,
                 };
+                let display = self.control.surface(sound.display);
+                let live = self.control.law() == Law::Model;
                 self.render.present(&scene, display, live)?
             }
         };
@@ -332,7 +353,6 @@ impl Station {
             setpoint,
             limited,
             target: Setpoint::limited(wanted.target).0,
-            finger,
         })
     }
 
@@ -348,7 +368,9 @@ impl Station {
             return None;
         }
         let current = experiment.update(sound, measured, self.touch.touching());
-        self.control.go_on_from(current.unwrap_or(Current::ZERO));
+        if let Some(current) = current {
+            self.control.follow(current);
+        }
         current
     }
 
@@ -400,11 +422,13 @@ impl Station {
     pub fn execute(&mut self, command: Command) -> Result<Reply, Error> {
         match command {
             // Nothing that a finger feels is moved by a line.
-            Command::Calibrate(_) | Command::Average(_) if self.state.presents() => {
+            Command::Calibrate(_) | Command::Average(_) | Command::Retune(_) if self.state.presents() => {
                 return Err(Error::Presenting);
             }
             // A reading that steps would be taken for the display's answer.
-            Command::Calibrate(_) if self.state == State::SelfTest => return Err(Error::Testing),
+            Command::Calibrate(_) | Command::Average(_) if self.state == State::SelfTest => {
+                return Err(Error::Testing);
+            }
             Command::Identify => return Ok(Reply::Identity { fingers: 1 }),
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Stream { interval_ms } => self.stream_ticks = interval_ms * (TICK_HZ / 1000),
@@ -507,7 +531,7 @@ impl Station {
                 // A reading that jumps would be taken for the tile's.
                 self.end_experiment();
                 self.sensors.recalibrate(&calibrated);
-                self.control.begin_anew();
+                self.control.rescale();
                 self.watch.forget_motion();
             }
             Command::Retune(tuned) => {

@@ -92,6 +92,36 @@ fn a_display_that_is_held_at_an_end_does_not_go_beyond_and_trip() {
     }
 }
 
+/// At 16 K/s the plate is ahead of its thermistor by 1.6 to 6 K.
+#[test]
+fn a_line_that_comes_while_the_display_is_on_its_way_trips_nothing() {
+    for (lag_s, law, line) in [
+        (0.1, "model", "set correction display 0 0 0"),
+        (0.4, "model", "set correction display 0 0 0"),
+        (0.1, "pi", "law model"),
+        (0.4, "pi-10hz", "law model"),
+    ] {
+        let slow = format!("[plant]\nsensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n");
+        let tables = host(&[(3.0, "arm"), (3.5, line), (6.5, "state")]) + &slow;
+        let mut scene = scene("copper", 7.0, &format!("law = \"{law}\""), &tables);
+        scene.object.start_c = Some(15.0);
+        let outcome = natively(&scene);
+        let (_, state) = outcome.answers.last().expect("an answer");
+        assert!(
+            state.starts_with("ok state=armed fault=-"),
+            "{law}, {lag_s} s: {state}"
+        );
+        // It was on its way.
+        let at_c = |t_s: f64| {
+            between(&outcome, t_s, t_s + 0.002)
+                .next()
+                .expect("a row")
+                .display_c
+        };
+        assert!(at_c(3.6) - at_c(3.4) > 1.0, "{law}, {lag_s} s");
+    }
+}
+
 /// The most that a line may make of a reading, on quick sensors, whose loop is strong.
 #[test]
 fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {

@@ -1,7 +1,7 @@
 //! The device takes the bridge off when a sensor, the bridge or the module fails.
 
 use hil_sim::trace::Row;
-use system_tests::{between, forces, natively, on_image, scene};
+use system_tests::{between, forces, host, natively, on_image, scene};
 
 #[test]
 fn broken_display_thermistor_ends_the_current_and_is_named() {
@@ -114,4 +114,33 @@ fn weak_module_trips_while_its_display_is_near_a_sound_one() {
     let last = weak.trace.rows().last().and_then(|row| row.device.as_ref());
     let remark = last.and_then(|device| device.remark.as_deref());
     assert_eq!(remark, Some("unlike-model"));
+}
+
+/// 42 °C are a quarter of a minute's worth a minute: two minutes, whatever is stored meanwhile.
+#[test]
+fn a_restart_forgets_no_dose() {
+    let lines = [
+        (0.1, "hold 42"),
+        (100.0, "abort"),
+        (100.2, "save"),
+        (101.0, "stream 1"),
+        (101.2, "arm"),
+        (104.0, "hold 42"),
+        (159.0, "cause"),
+    ];
+    let tables = forces(&[(0.2, 2.0)]) + &host(&lines);
+    let mut scene = scene("copper", 160.0, "", &tables);
+    scene.object.appears_t_s = scene.duration_s;
+    let outcome = on_image(&scene);
+    let mut said = outcome.answers.iter().map(|(_, said)| said);
+    assert!(
+        said.any(|said| said.starts_with("ok cause=dose")),
+        "{:?}",
+        outcome.answers
+    );
+    let driven_s = (outcome.trace.rows().iter())
+        .rfind(|row| row.current_a != 0.0)
+        .expect("driven")
+        .t_s;
+    assert!((130.0..150.0).contains(&driven_s), "{driven_s}");
 }

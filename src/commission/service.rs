@@ -10,7 +10,7 @@ use super::sums::ROWS;
 use crate::control::Tuned;
 use crate::protocol::{Command, Error, Reply, Setting};
 use crate::sense::Calibrated;
-use crate::settings::{BORDERS, Calibration, Correction, FIRST_BORDER, Settings};
+use crate::settings::{BORDERS, Calibration, Correction, FIRST_BORDER, Settings, Tile};
 
 /// Lines that hold all commissioned settings: the steps, a correction each, the tile.
 pub const SETTINGS_LINES: usize = BORDERS.div_ceil(STEPS_A_LINE) + SENSORS.len() + 1;
@@ -76,10 +76,7 @@ impl Service {
                 self.correct(sensor, correction);
                 execute(self.calibrated())
             }
-            Request::SetTile(tile) => {
-                self.settings.retune(tile);
-                execute(Command::Retune(Tuned::new(&self.settings)))
-            }
+            Request::SetTile(tile) => self.retune(tile, &mut execute),
             Request::Tuned => self.tuned(&mut execute),
             Request::Margins => Ok(self.tile()),
             // Of all fingers at once.
@@ -95,9 +92,21 @@ impl Service {
             };
             *row = sums;
         }
-        self.settings.retune(identify(&rows).map_err(Error::NoTile)?);
-        execute(Command::Retune(Tuned::new(&self.settings)))?;
+        self.retune(identify(&rows).map_err(Error::NoTile)?, execute)?;
         Ok(self.tile())
+    }
+
+    /// Kept if the station goes by it.
+    fn retune(
+        &mut self,
+        tile: Tile,
+        execute: &mut impl FnMut(Command) -> Result<Reply, Error>,
+    ) -> Result<Reply, Error> {
+        let mut settings = self.settings;
+        settings.retune(tile);
+        let done = execute(Command::Retune(Tuned::new(&settings)))?;
+        self.settings = settings;
+        Ok(done)
     }
 
     fn tile(&self) -> Reply {

@@ -57,23 +57,10 @@ pub struct Control {
     pi_10hz: Pi,
     pi: Pi,
     two_degrees: TwoDegrees,
+    /// Reading of this tick.
+    display: Celsius,
     /// Current of the last tick.
     last: Current,
-}
-
-/// What a law goes by in one tick.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Inputs {
-    /// Eq. 6-12, or where the display is held.
-    pub setpoint: Setpoint,
-    /// The set-point, and what brings the skin back to where it should be.
-    pub target: Setpoint,
-    /// Display thermistor.
-    pub display: Celsius,
-    /// Sink thermistor.
-    pub sink: Celsius,
-    /// Heat from the finger into the display.
-    pub finger: Watt,
 }
 
 impl Control {
@@ -87,6 +74,7 @@ impl Control {
             pi_10hz: Pi::new(tuned.pi_10hz, limit),
             pi: Pi::new(tuned.pi, limit),
             two_degrees: TwoDegrees::new(tuned, limit),
+            display: Celsius::ZERO,
             last: Current::ZERO,
         }
     }
@@ -108,7 +96,7 @@ impl Control {
     pub fn select(&mut self, law: Law) {
         if law != self.law {
             self.law = law;
-            self.go_on_from(self.last);
+            self.restart_loops();
         }
     }
 
@@ -118,33 +106,41 @@ impl Control {
         self.pi.limit()
     }
 
-    /// Forgets the past.
-    pub fn reset(&mut self) {
-        self.go_on_from(Current::ZERO);
+    /// The reading is to be of another scale.
+    pub const fn rescale(&mut self) {
+        self.two_degrees.rescale();
     }
 
-    /// Begins its model anew, if it has one, from the current that flows: the readings are others than they were.
-    pub fn begin_anew(&mut self) {
-        if self.law == Law::Model {
-            self.go_on_from(self.last);
-        }
+    /// A tick from which nothing is known; the current is zero.
+    pub fn lose_sight(&mut self) {
+        self.two_degrees.lose_sight();
     }
 
-    /// Starts anew, from a current that flows.
-    pub fn go_on_from(&mut self, current: Current) {
+    /// Takes a tick's reading of the display, the sink, and the heat from the finger into the display.
+    pub fn observe(&mut self, display: Celsius, sink: Celsius, finger: Watt) {
+        self.display = display;
+        self.two_degrees.observe(display, sink, finger);
+    }
+
+    /// Takes the current of a tick in which something else has chosen it.
+    pub fn follow(&mut self, current: Current) {
         self.last = current;
-        self.pi_10hz.restart(current);
-        self.pi.restart(current);
-        self.two_degrees.restart(current);
+        self.restart_loops();
+        self.two_degrees.go_on(current);
     }
 
-    /// The display's surface, as well as the law in use knows it from its reading.
+    fn restart_loops(&mut self) {
+        self.pi_10hz.restart(self.last);
+        self.pi.restart(self.last);
+    }
+
+    /// The display's surface, as well as model and reading know it.
     #[must_use]
     pub fn surface(&self, reading: Celsius) -> Celsius {
         self.two_degrees.surface().unwrap_or(reading)
     }
 
-    /// Whether the law's residual is beyond that of a sound tile; a law without a model, for which it stands still, knows nothing.
+    /// Whether the model's residual is beyond that of a sound tile.
     #[must_use]
     pub fn strays(&self) -> bool {
         self.two_degrees.strays()
@@ -164,17 +160,15 @@ impl Control {
         }
     }
 
-    /// Current for one tick; positive cools.
-    pub fn update(&mut self, inputs: &Inputs) -> Current {
+    /// The law's current for a tick that was [observed](Self::observe); positive cools. `target` is the set-point, and what
+    /// brings the skin back to where it should be; the plain loops go by the set-point.
+    pub fn update(&mut self, setpoint: Setpoint, target: Setpoint) -> Current {
         self.last = match self.law {
-            Law::Pi10Hz => self.pi_10hz.update(inputs.setpoint, inputs.display),
-            Law::Pi => self.pi.update(inputs.setpoint, inputs.display),
-            Law::Model => {
-                let (target, display) = (inputs.target.celsius(), inputs.display);
-                self.two_degrees
-                    .update(&mut self.pi, target, display, inputs.sink, inputs.finger)
-            }
+            Law::Pi10Hz => self.pi_10hz.update(setpoint, self.display),
+            Law::Pi => self.pi.update(setpoint, self.display),
+            Law::Model => self.two_degrees.wish(target.celsius()),
         };
+        self.two_degrees.go_on(self.last);
         self.last
     }
 }

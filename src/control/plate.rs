@@ -259,6 +259,13 @@ impl Plate {
         (self.legs, self.hot, self.surface) = (before.legs, before.hot, before.surface);
     }
 
+    /// Moves all of it, as its temperature is told in another scale.
+    pub fn shift(&mut self, by: Celsius) {
+        let [slowest, ..] = &mut self.parts;
+        slowest.state += i64::from(kelvin(by)) << 32;
+        self.surface = self.surface.saturating_add(by);
+    }
+
     /// The patch's surface.
     #[must_use]
     pub const fn surface(&self) -> Celsius {

@@ -10,7 +10,9 @@
 //! ```
 //!
 //! The model gets what the limit leaves of its own wish, so it never promises more than the bridge gives: there is
-//! nothing to wind up. The reading is compared with what the sensor, lag and all, should show.
+//! nothing to wind up. The reading is compared with what the sensor, lag and all, should show. Where something else chooses
+//! the current (a plain loop, a test, or nothing while the bridge is off) the model goes on beside it, so that no law
+//! begins from a tile in motion that it takes for one at rest, and a tile that is not what the model says shows under each.
 //!
 //! A tile that is not what the model says shows in the residual: measured minus predicted, and what the loop adds to hold
 //! that down. Without the second part a module that has lost its effect would hide at the limit of the current, where
@@ -35,22 +37,28 @@ const FEEDBACK_SHIFT: u32 = 2;
 const SINK_WARM: Celsius = Celsius::lit("39.5");
 const SINK_SHIFT: u32 = 1;
 
-/// The law's memory.
+/// The law's memory. It follows the tile whoever chooses the current.
 #[derive(Clone, Debug)]
 pub struct TwoDegrees {
     plate: Plate,
     sensor: Lag,
     /// Plate without model.
     apart: Lag,
-    /// What the loop makes of it.
+    /// The loop that sees it, and what it makes of it.
+    pi: Pi,
     feedback: Current,
     /// The most that a sound tile's residual is.
     most: Celsius,
     feed: Current,
     /// What it did to the plate.
     heat: Heat,
+    /// Finger and sink of this tick.
+    finger: Watt,
+    sink: Celsius,
     limit: Current,
     running: bool,
+    /// The next reading is of another scale, and the display where it was.
+    rescaled: bool,
 }
 
 impl TwoDegrees {
@@ -61,12 +69,16 @@ impl TwoDegrees {
             plate: tuned.plate,
             sensor: Lag::new(tuned.sensor),
             apart: Lag::new(Share::of(APART_LAG_S)),
+            pi: Pi::new(tuned.pi, limit),
             feedback: Current::ZERO,
             most: tuned.residual,
             feed: Current::ZERO,
             heat: Heat::default(),
+            finger: Watt::ZERO,
+            sink: Celsius::ZERO,
             limit,
             running: false,
+            rescaled: false,
         }
     }
 
@@ -74,13 +86,18 @@ impl TwoDegrees {
     pub fn retune(&mut self, tuned: &Tuned) {
         self.plate.become_like(&tuned.plate);
         self.sensor.retune(tuned.sensor);
+        self.pi.retune(tuned.pi);
         self.most = tuned.residual;
     }
 
-    /// Starts anew with the next [`Self::update`], from a tile through which this current flows.
-    pub const fn restart(&mut self, current: Current) {
+    /// Begins anew with the next reading, as the tile was not seen.
+    pub const fn lose_sight(&mut self) {
         self.running = false;
-        self.feed = current;
+    }
+
+    /// The next reading is of another scale.
+    pub const fn rescale(&mut self) {
+        self.rescaled = true;
     }
 
     /// The plate, of the model.
@@ -89,58 +106,72 @@ impl TwoDegrees {
         &self.plate
     }
 
-    /// The display's surface as model and reading together have it; before the first update, none.
+    /// The display's surface as model and reading together have it; before the first reading, none.
     #[must_use]
     pub fn surface(&self) -> Option<Celsius> {
         self.running
             .then(|| self.plate.surface().saturating_add(self.apart.value()))
     }
 
-    /// Whether the residual is more than a sound tile's; not before the first update.
+    /// Whether the residual is more than a sound tile's; not before the first reading.
     #[must_use]
     pub fn strays(&self) -> bool {
         let added = Celsius::lossy_from(self.feedback >> FEEDBACK_SHIFT);
         self.running && self.apart.value().saturating_add(added).saturating_abs() > self.most
     }
 
-    /// Current for one tick; positive cools.
-    pub fn update(
-        &mut self,
-        pi: &mut Pi,
-        target: Celsius,
-        reading: Celsius,
-        sink: Celsius,
-        finger: Watt,
-    ) -> Current {
+    /// Takes a tick's reading, the sink, and heat from the finger.
+    pub fn observe(&mut self, reading: Celsius, sink: Celsius, finger: Watt) {
+        (self.sink, self.finger) = (sink, finger);
         if !self.running {
-            self.heat = self.plate.start(reading, self.feed, finger, sink);
+            self.heat = self.plate.start(reading, Current::ZERO, finger, sink);
+            self.feed = Current::ZERO;
             self.sensor.set(reading);
             self.apart.set(Celsius::ZERO);
-            pi.restart(Current::ZERO);
-            self.running = true;
+            self.pi.restart(Current::ZERO);
+            (self.running, self.rescaled) = (true, false);
         }
-        let apart = reading.saturating_sub(self.sensor.value());
+        let mut apart = reading.saturating_sub(self.sensor.value());
+        if self.rescaled {
+            let by = apart.saturating_sub(self.apart.value());
+            self.plate.shift(by);
+            self.sensor.set(self.sensor.value().saturating_add(by));
+            apart = self.apart.value();
+            self.rescaled = false;
+        }
         self.apart.follow(apart);
-        let feedback = pi.respond(apart);
-        self.feedback = feedback;
+        self.feedback = self.pi.respond(apart);
+    }
+
+    /// Current for this tick; positive cools.
+    #[must_use]
+    pub fn wish(&self, target: Celsius) -> Current {
         let held = Heat {
-            finger,
-            sink,
+            finger: self.finger,
+            sink: self.sink,
             ..self.heat
         };
         let wish = self.feed.saturating_add(self.plate.missing(target, &held));
-        let current = wish
-            .saturating_add(feedback)
-            .min(self.cooling_limit(sink))
+        wish.saturating_add(self.feedback)
+            .min(self.cooling_limit(self.sink))
+            .max(-self.limit)
+    }
+
+    /// Takes the current of this tick: the model gets what the loop has not added to it.
+    pub fn go_on(&mut self, current: Current) {
+        if !self.running {
+            return;
+        }
+        self.feed = current
+            .saturating_sub(self.feedback)
+            .min(self.limit)
             .max(-self.limit);
-        self.feed = current.saturating_sub(feedback).min(self.limit).max(-self.limit);
-        self.heat = self.plate.heat(self.feed, finger, sink);
+        self.heat = self.plate.heat(self.feed, self.finger, self.sink);
         let before = self.plate.surface();
         self.plate.step(&self.heat);
         // The sensor sees the plate on its way.
         self.sensor
             .follow((before >> 1u32).saturating_add(self.plate.surface() >> 1u32));
-        current
     }
 
     fn cooling_limit(&self, sink: Celsius) -> Current {

@@ -27,6 +27,18 @@ pub struct Dose {
 }
 
 impl Dose {
+    /// To be kept: the sum.
+    #[must_use]
+    pub const fn to_word(&self) -> u32 {
+        self.sum
+    }
+
+    /// From what was kept.
+    #[must_use]
+    pub const fn from_word(sum: u32) -> Self {
+        Self { sum, ticks: 0 }
+    }
+
     /// Takes one tick; `warmest` is what the warmer of the display's thermistors reads, if any does.
     ///
     /// # Errors

@@ -23,8 +23,8 @@
 //! the next self-test.
 //!
 //! **What latches.** The first fault does, with the readings of its tick, as [`Cause`]; later ones do not replace it. A
-//! later one that no sample shows comes to light when the first is cleared. The cause survives every reset but the loss
-//! of power. The comparator latches on its own, in hardware.
+//! later one that no sample shows comes to light when the first is cleared. Until it is cleared the cause
+//! survives every reset but the loss of power, and the dose does too. The comparator latches on its own, in hardware.
 //!
 //! **What clears it.** `clear`, once no level is there any more, leads to off, not to ready: what comes next is the
 //! self-test. Faults of the program and resets clear the same way.
@@ -37,7 +37,7 @@
 //! |                | display hot, cold                        | 43, 13.5 °C by either thermistor                     |
 //! |                | sink hot                                 | 42 °C                                                |
 //! |                | over-current                             | 1.5 A above what is ever asked for                   |
-//! | bridge         | its fault line, the comparator           | in that tick; a pulse between ticks counts           |
+//! | bridge         | its fault line, the comparator           | in that tick; of one finger, a pulse between, too    |
 //! | `frozen`       | a channel, or all                        | a sum repeats itself 46 times                        |
 //! | `jump`         | display, its second thermistor, sink     | 0.5 K in 4 ms                                        |
 //! | `apart`        | the display's thermistors                | 3 K for 40 ms                                        |
@@ -70,6 +70,7 @@ mod state;
 mod watch;
 
 pub use cause::Cause;
+pub use dose::Dose;
 pub use fault::{Fault, Thermistor};
 pub use limits::{Sound, check};
 pub use pace::Pace;

@@ -45,8 +45,10 @@ const MOST: Celsius = Celsius::lit("1.5");
 
 /// For how long nothing must have landed or lifted before the rest, ticks: what a finger does to the display is no line.
 const UNTOUCHED: u16 = 1000;
-/// How often the rest begins anew for that.
-const PATIENCE: u8 = 20;
+/// For how long in all.
+const PATIENCE: u16 = 20 * UNTOUCHED;
+/// Who has lifted has left the force at its zero for so many ticks: one that is hardly above it shows by the noise now and then.
+const LIFTED: u8 = 32;
 
 /// Sums of both readings over half of the rest.
 type Sums = [i64; 2];
@@ -74,9 +76,11 @@ pub struct SelfTest {
     /// Sum of the measured current over the second half of a pulse.
     current: i64,
     touched: bool,
-    /// Ticks to wait before the rest.
+    /// Ticks since nothing was felt.
+    untouched: u8,
+    /// Ticks to wait before the rest, and how many have been waited in all.
     wait: u16,
-    begun_anew: u8,
+    waited: u16,
 }
 
 impl SelfTest {
@@ -86,7 +90,7 @@ impl SelfTest {
         self.tick < GIVEN_BACK
     }
 
-    /// Takes one tick; `cut` is whether the fault line is pulled, `touched` whether anything is on the display.
+    /// Takes one tick; `cut` is whether the fault line is pulled, `felt` whether anything is felt on the display.
     ///
     /// # Errors
     /// What does not work.
@@ -95,13 +99,18 @@ impl SelfTest {
         sound: &Sound,
         measured: Current,
         cut: bool,
-        touched: bool,
+        felt: bool,
     ) -> Result<Progress, Fault> {
-        if touched != self.touched {
-            self.begin_anew(touched)?;
+        self.untouched = if felt { 0 } else { self.untouched.saturating_add(1) };
+        if felt != self.touched && (felt || self.untouched >= LIFTED) {
+            self.begin_anew(felt);
         }
         if self.tick == GIVEN_BACK && self.wait > 0 {
+            if self.waited >= PATIENCE {
+                return Err(Fault::NoResponse);
+            }
             self.wait -= 1;
+            self.waited += 1;
             return Ok(Progress::Off {
                 comparator_test: false,
             });
@@ -157,19 +166,15 @@ impl SelfTest {
     }
 
     /// A finger has landed or lifted: what was seen since the comparator's test does not count.
-    fn begin_anew(&mut self, touched: bool) -> Result<(), Fault> {
-        self.begun_anew += 1;
-        if self.begun_anew > PATIENCE {
-            return Err(Fault::NoResponse);
-        }
+    fn begin_anew(&mut self, touched: bool) {
         *self = Self {
             tick: self.tick.min(GIVEN_BACK),
             touched,
+            untouched: self.untouched,
             wait: UNTOUCHED,
-            begun_anew: self.begun_anew,
+            waited: self.waited,
             ..Self::default()
         };
-        Ok(())
     }
 
     /// In a pulse that began in a tick.

@@ -55,6 +55,17 @@ impl Watch {
         self.silent_ticks = 0;
     }
 
+    /// The dose so far.
+    #[must_use]
+    pub const fn dose(&self) -> &Dose {
+        &self.dose
+    }
+
+    /// Goes on from a dose.
+    pub const fn resume(&mut self, dose: Dose) {
+        self.dose = dose;
+    }
+
     /// Takes the samples of one tick.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use contact_model::fixed_point::Celsius;
 use hil_sim::plant::STEP_S;
 use hil_sim::plant::bridge::Current;
 use hil_sim::plant::tile::{Tile, TileParams};
-use thermal_display::control::{Control, Inputs, Watt};
+use thermal_display::control::{Control, Watt};
 use thermal_display::guard::Setpoint;
 use thermal_display::settings::{self, Settings};
 
@@ -127,14 +127,8 @@ impl Bench {
     pub fn tick(&mut self, target_c: f64) -> Tick {
         push(&mut self.tile, self.current_a, self.load_w);
         self.sensor.follow(self.display_c());
-        let inputs = Inputs {
-            setpoint: setpoint(target_c),
-            target: setpoint(target_c),
-            display: celsius(self.sensor.reading_c),
-            sink: celsius(self.tile.sink_c()),
-            finger: Watt::from_num(self.told_w),
-        };
-        self.current_a = self.control.update(&inputs).to_num();
+        let sensed_c = (self.sensor.reading_c, self.tile.sink_c());
+        self.current_a = step(&mut self.control, target_c, sensed_c, self.told_w);
         Tick {
             display_c: self.display_c(),
             current_a: self.current_a,
@@ -144,6 +138,12 @@ impl Bench {
     pub fn run(&mut self, target_c: f64, seconds: f64) -> Vec<Tick> {
         (0..ticks(seconds)).map(|_| self.tick(target_c)).collect()
     }
+}
+
+/// Current of a law that wants a display there, A, by what its and the sink's thermistor read and a load, W.
+pub fn step(control: &mut Control, target_c: f64, (reading_c, sink_c): (f64, f64), load_w: f64) -> f64 {
+    control.observe(celsius(reading_c), celsius(sink_c), Watt::from_num(load_w));
+    control.update(setpoint(target_c), setpoint(target_c)).to_num()
 }
 
 /// One step of a tile under a current, A, and a load on its patch, W.

@@ -3,10 +3,11 @@
 //! A law that wants what it cannot have gives its limit, whatever that is; and a sensor that reads what the law
 //! predicts leaves its model alone. So the model runs open, under a current and a load of the test's choice.
 
+use contact_model::fixed_point::Celsius;
 use hil_sim::plant::tile::{Tile, TileParams, ZERO_C_K};
-use thermal_display::control::{Control, Inputs, Watt};
+use thermal_display::control::Control;
 
-use crate::bench::{ROOM_C, Sensor, celsius, push, setpoint, settings, ticks};
+use crate::bench::{ROOM_C, Sensor, push, settings, step, ticks};
 
 /// Times at which both are compared, s.
 const TIMES_S: [f64; 9] = [0.02, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0, 40.0, 100.0];
@@ -28,28 +29,16 @@ fn moved(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> {
         ROOM_C,
     );
     let mut predicted = Sensor::new(LAG_S, ROOM_C);
-    let target = setpoint(if current_a > 0.0 { 15.0 } else { 42.0 });
+    let target_c = if current_a > 0.0 { 15.0 } else { 42.0 };
     let mut answer = Vec::new();
     // The law takes whatever it starts with for old.
-    let rest = Inputs {
-        setpoint: setpoint(ROOM_C),
-        target: setpoint(ROOM_C),
-        display: celsius(ROOM_C),
-        sink: celsius(ROOM_C),
-        finger: Watt::ZERO,
-    };
-    let _none = control.update(&rest);
+    let _none = step(&mut control, ROOM_C, (ROOM_C, ROOM_C), 0.0);
     for tick in 1..=ticks(seconds) {
-        let inputs = Inputs {
-            setpoint: target,
-            target,
-            display: celsius(predicted.reading_c),
-            sink: celsius(tile.sink_c()),
-            finger: Watt::from_num(load_w),
-        };
-        let given_a: f64 = control.update(&inputs).to_num();
+        let sensed_c = (predicted.reading_c, tile.sink_c());
+        let given_a = step(&mut control, target_c, sensed_c, load_w);
         push(&mut tile, given_a, load_w);
-        let model_c: f64 = control.legs(inputs.display, inputs.sink).cold.to_num();
+        let none = Celsius::ZERO;
+        let model_c: f64 = control.legs(none, none).cold.to_num();
         predicted.follow(model_c);
         let tile_c = tile.patch_c() + load_w * tile.patch_half_k_w();
         let t_s = 1e-3 * tick as f64;

@@ -1,22 +1,15 @@
 //! The limits follow the sink.
 
 use contact_model::fixed_point::Celsius;
-use thermal_display::control::{Control, Inputs, Watt};
+use thermal_display::control::Control;
 use thermal_display::settings::Settings;
 
-use crate::bench::{celsius, setpoint};
+use crate::bench::step;
 
 /// Current of a law that wants more than there is.
 fn wanting(target_c: f64, display_c: f64, sink_c: f64) -> f64 {
     let mut control = Control::new(&Settings::default());
-    let inputs = Inputs {
-        setpoint: setpoint(target_c),
-        target: setpoint(target_c),
-        display: celsius(display_c),
-        sink: celsius(sink_c),
-        finger: Watt::ZERO,
-    };
-    control.update(&inputs).to_num()
+    step(&mut control, target_c, (display_c, sink_c), 0.0)
 }
 
 /// All of 6 A up to 39.5 °C, none from 41.5 °C on, a straight line between: before the sink trips at 42 °C.

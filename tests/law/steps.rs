@@ -1,6 +1,7 @@
 //! Steps of the target, reachable or not.
 
 use hil_sim::plant::tile::TileParams;
+use thermal_display::drive::Current;
 
 use crate::bench::{Bench, settings, settled, ticks};
 
@@ -71,7 +72,8 @@ fn nothing_winds_up_at_the_limit() {
             assert!(at_limit > ticks(4.9), "{name}: {at_limit} ticks at the limit");
             // As a law that has no past would go on from here.
             let mut afresh = bench.clone();
-            afresh.control.reset();
+            afresh.control.lose_sight();
+            afresh.control.follow(Current::ZERO);
             let reachable_c = bench.display_c() + step_k;
             let [recovered, fresh] = [&mut bench, &mut afresh].map(|bench| {
                 let answer = bench.run(reachable_c, 10.0);

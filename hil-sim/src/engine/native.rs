@@ -7,7 +7,7 @@ use std::fmt::Display;
 use thermal_display::Hand;
 use thermal_display::commission::{Desk, Order};
 use thermal_display::drive::{Drive, Outputs};
-use thermal_display::guard::{Cause, Fault};
+use thermal_display::guard::{Cause, Dose, Fault};
 use thermal_display::protocol::{Addressed, Error, LineReader, Reply};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::{Kept, Settings, decode};
@@ -137,7 +137,7 @@ impl Native {
         }
     }
 
-    /// The logic as after power-up, with the bridge off, and with what the board has kept of a fault. It starts at once:
+    /// The logic as after power-up, with the bridge off, and with what the board has kept of a fault and the dose. It starts at once:
     /// what the board needs for that is not here.
     fn restart(&mut self, cause: ResetCause) {
         let tripped = self.hand.tripped().copied();
@@ -146,8 +146,13 @@ impl Native {
             ResetCause::WindowWatchdog => tripped.or(Some(Cause::alone(Fault::TickLost))),
             _ => tripped,
         };
+        let dose = match cause {
+            ResetCause::PowerOn => Dose::default(),
+            _ => Dose::from_word(self.hand.dose(0).to_word()),
+        };
         let settings = Settings::default();
         self.hand = Hand::after(kept, &settings);
+        self.hand.resume(0, dose);
         self.desk = match &self.stored {
             Some(stored) => {
                 self.hand.restore(stored);

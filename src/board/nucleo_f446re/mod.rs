@@ -19,6 +19,7 @@
 //! `bridge enable` acts on DISABLE of the DRV8873, through a transistor that inverts it (DISABLE is pulled up).
 //! nSLEEP stays high: a bridge that wakes up may report a fault until its charge pump runs.
 
+mod dose;
 mod fatal;
 #[cfg(feature = "five-fingers")]
 mod five;
@@ -46,6 +47,7 @@ use thermal_display::guard::{Cause, Fault};
 use thermal_display::protocol::{Addressed, Error, Reason, Reply, Telemetry};
 use thermal_display::settings::Settings;
 
+pub use dose::{keep as keep_dose, kept as kept_dose};
 #[cfg(feature = "five-fingers")]
 use five as wiring;
 #[cfg(not(feature = "five-fingers"))]
@@ -98,6 +100,9 @@ pub fn first_cause(rcc: &pac::RCC) -> Option<Cause> {
     let overrun = stack::is_overrun();
     stack::arm();
     let reset = Reset::of(rcc);
+    if reset == Reset::PowerOn {
+        dose::forget();
+    }
     let mut cause = record::of_reset(reset, store::is_planned());
     // The end of a program, without a tick that has seen why, is what comes of an overrun. Not so of the first start of
     // another program, whose stack may lie here.

@@ -15,7 +15,7 @@ const LENGTH: usize = Cause::WORDS + 1;
 #[unsafe(link_section = ".uninit.cause")]
 static KEPT: [AtomicU32; LENGTH] = [const { AtomicU32::new(0) }; LENGTH];
 
-fn check(words: &[u32]) -> u32 {
+pub fn check(words: &[u32]) -> u32 {
     words.iter().fold(SALT, |sum, word| {
         sum.rotate_left(5).wrapping_add(*word).wrapping_mul(0x9e37_79b1)
     })

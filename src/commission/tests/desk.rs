@@ -136,6 +136,7 @@ fn refusals_name_the_first_finger_that_refuses_and_the_others_obey() {
     assert_eq!(five.host("set steps 10 0.5"), refused);
     assert_eq!(five.host("calibrate check clear"), refused);
     assert_eq!(five.host("@2 calibrate display 26"), refused);
+    assert_eq!(five.host("@2 set tile 2.5 0.05 0.1 0.1 0.016"), refused);
     for finger in [0, 1, 3, 4] {
         let told = five.host(&format!("@{finger} settings 3"));
         let set = format!("@{finger} ok set correction display 0.200000 0.0000000 0.00000000");
@@ -162,6 +163,18 @@ fn refusals_name_the_first_finger_that_refuses_and_the_others_obey() {
         five.host("@0 tune result"),
         "@0 err nothing was tuned since arm; tune first"
     );
+}
+
+/// What is read then is moved by the test's own current.
+#[test]
+fn a_self_test_that_goes_on_keeps_calibration_from_changing_anything() {
+    let mut one = Device::<1>::new();
+    one.watch();
+    assert_eq!(one.host("arm"), "ok");
+    let before = one.lines("");
+    let refused = one.host("calibrate room 25.5");
+    assert!(refused.starts_with("err the self-test goes on"), "{refused}");
+    assert_eq!(one.lines(""), before);
 }
 
 #[test]

@@ -118,13 +118,25 @@ fn what_tripped_while_it_was_tripped_comes_to_light_with_clear() {
     for fault in [Fault::SinkHot, Fault::SettingsCorrupt] {
         bench.station.trip(fault);
     }
-    bench.step();
+    bench.steps(2);
     assert_eq!(bench.state().fault(), Some(Fault::SinkHot));
     assert_eq!(bench.host("clear"), "err fault settings-corrupt is still present");
     assert_eq!(bench.state().fault(), Some(Fault::SettingsCorrupt));
     assert!(bench.host("cause").contains("settings-corrupt"));
     bench.obey(&["clear"]);
     assert_eq!(bench.state(), State::Off);
+}
+
+#[test]
+fn what_stands_and_no_sample_shows_keeps_clear_from_being_obeyed() {
+    let mut bench = Bench::new();
+    for _ in 0..3 {
+        bench.station.trip(Fault::Clock);
+        bench.step();
+        assert_eq!(bench.host("clear"), "err fault clock is still present");
+    }
+    bench.step();
+    assert_eq!(bench.host("clear"), "ok");
 }
 
 /// 42.8 °C are three quarters of a minute's worth a minute; the force sensor fails meanwhile.
@@ -156,6 +168,41 @@ fn a_force_sensor_that_is_noisy_delays_no_self_test() {
         bench.bridge_fault = outputs.comparator_test;
     }
     assert_eq!(bench.state(), State::Armed);
+}
+
+/// A force that is hardly above its zero comes and goes with the noise; a slow landing passes there.
+#[test]
+fn a_force_that_comes_and_goes_delays_a_self_test_by_two_seconds_at_most() {
+    let hovers = |tick: u32| if tick % 7 < 4 { 0.004 } else { 0.002 };
+    let lands = |tick: u32| 1e-5 * f64::from(tick) + if tick % 7 < 4 { 1e-3 } else { 0.0 };
+    for force in [&hovers as &dyn Fn(u32) -> f64, &lands] {
+        let mut bench = Bench::new();
+        assert_eq!(bench.host("arm"), "ok");
+        for tick in 0..2750 {
+            bench.force_n = force(tick);
+            let (outputs, telemetry) = bench.step_all();
+            bench.display_c -= 2.7e-3 * telemetry.demand.to_num::<f64>();
+            bench.check_c = bench.display_c;
+            bench.bridge_fault = outputs.comparator_test;
+        }
+        assert_eq!(bench.state(), State::Armed);
+    }
+}
+
+/// Landings without end.
+#[test]
+fn a_self_test_that_is_never_left_alone_trips_after_20_s() {
+    let mut bench = Bench::new();
+    assert_eq!(bench.host("arm"), "ok");
+    let mut ticks = 0;
+    while bench.state() == State::SelfTest {
+        bench.force_n = if ticks / 500 % 2 == 0 { 1.0 } else { 0.0 };
+        let (outputs, _) = bench.step_all();
+        bench.bridge_fault = outputs.comparator_test;
+        ticks += 1;
+    }
+    assert_eq!(bench.state().fault(), Some(Fault::NoResponse));
+    assert!((20_000..20_100).contains(&ticks), "{ticks}");
 }
 
 /// A leg that cannot warm.
@@ -191,23 +238,37 @@ fn a_fault_ends_the_contact() {
 #[test]
 fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
     let mut bench = Bench::presenting("copper");
-    let display_c = bench.display_c;
-    for (line, demand_a, duty) in [("object 60", -6, -0.5), ("object -20", 6, 0.5)] {
+    for (line, demand_a) in [("object 60", -6), ("object -20", 6)] {
         bench.obey(&[line]);
-        for _ in 0..3000 {
-            let (drive, telemetry) = bench.step();
+        // No longer than a display that stands still is taken for one.
+        for _ in 0..200 {
+            let (_, telemetry) = bench.step();
             assert_eq!(telemetry.demand, demand_a);
-            let Drive::On(voltage) = drive else {
-                panic!("{drive:?}")
-            };
-            let voltage = voltage.fraction().to_num::<f64>();
-            // 6 A through leads and legs of 12 V, the dead time, and what the module gives or takes.
-            let seebeck = 0.0273 * (25.0 - display_c) / 12.0;
-            let legs_k = (25.0 + display_c) / 2.0 - 27.0;
-            let ohm = 0.19 + 1.061 * (1.0 + 0.0049 * legs_k);
-            let expected = duty * (ohm + 0.397 / 6.0) + seebeck;
-            assert!((voltage - expected).abs() < 1e-3, "{voltage}");
         }
+    }
+}
+
+/// Of a tile that has been at rest: 6 A through leads and legs of 12 V, the dead time, and what the module gives or takes.
+#[test]
+fn the_voltage_is_what_the_current_needs() {
+    for (line, duty) in [("object 60", -0.5), ("object -20", 0.5)] {
+        let mut bench = Bench::new();
+        let display_c = bench.skin_c;
+        (bench.display_c, bench.check_c) = (display_c, display_c);
+        bench.obey(&["material copper", line, "arm"]);
+        bench.steps(1000);
+        bench.obey(&["start"]);
+        let (drive, telemetry) = bench.step();
+        assert_eq!(telemetry.demand, 12.0 * duty);
+        let Drive::On(voltage) = drive else {
+            panic!("{drive:?}")
+        };
+        let voltage = voltage.fraction().to_num::<f64>();
+        let seebeck = 0.0273 * (25.0 - display_c) / 12.0;
+        let legs_k = (25.0 + display_c) / 2.0 - 27.0;
+        let ohm = 0.19 + 1.061 * (1.0 + 0.0049 * legs_k);
+        let expected = duty * (ohm + 0.397 / 6.0) + seebeck;
+        assert!((voltage - expected).abs() < 1e-3, "{line}: {voltage}, {expected}");
     }
 }
 

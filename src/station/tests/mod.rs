@@ -13,7 +13,6 @@ use std::string::{String, ToString};
 
 use super::{State, Station};
 use crate::commission::Desk;
-use crate::control::Law;
 use crate::drive::Drive;
 use crate::drive::Outputs;
 use crate::protocol::{Addressed, Telemetry};
@@ -39,7 +38,7 @@ struct Bench {
     bridge_fault: bool,
     /// The host gives a sign of life on every tick.
     host_there: bool,
-    /// The display is where the law's model of the plate has it, or the set-point if it has none.
+    /// The display is where the model of the plate has it.
     answers: bool,
     /// The converter's noise: one unit of each sum once in 40 ticks.
     noise: u16,
@@ -64,7 +63,6 @@ impl Bench {
             noise: 1,
         };
         assert_eq!(bench.host("stream 1"), "ok");
-        // A display that does not answer to its current has no use for a model.
         assert_eq!(bench.host("law pi"), "ok");
         bench
     }
@@ -92,6 +90,13 @@ impl Bench {
         let chosen = ["material ", material].concat();
         bench.obey(&[&chosen, "arm", "start"]);
         bench.step();
+        bench
+    }
+
+    /// The same with a display that answers.
+    fn answering(material: &str) -> Self {
+        let mut bench = Self::presenting(material);
+        bench.answers = true;
         bench
     }
 
@@ -156,12 +161,8 @@ impl Bench {
         let outputs = self.station.step(&samples);
         let telemetry = self.station.telemetry().expect("streamed on every tick");
         if let (true, Some(setpoint)) = (self.answers, telemetry.setpoint) {
-            let control = &self.station.control;
             let sink = Celsius::saturating_from_num(self.sink_c);
-            let to = match control.law() {
-                Law::Model => control.legs(setpoint, sink).cold,
-                _ => setpoint,
-            };
+            let to = self.station.control.legs(setpoint, sink).cold;
             let off_k = to.to_num::<f64>() - self.display_c;
             self.display_c += off_k.clamp(-MOST_K, MOST_K);
             self.check_c = self.display_c;

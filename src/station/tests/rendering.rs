@@ -41,6 +41,7 @@ impl Bench {
 #[test]
 fn armed_is_neutral_touched_or_not() {
     let mut bench = Bench::new();
+    bench.answers = true;
     bench.obey(&["material copper", "arm"]);
     for force_n in [0.0, 2.0, 0.0] {
         bench.force_n = force_n;
@@ -54,14 +55,14 @@ fn armed_is_neutral_touched_or_not() {
 #[test]
 fn preset_and_contact_follow_equation_6_12_for_every_material() {
     for (material, _) in contact_model::material::MATERIALS {
-        let mut bench = Bench::presenting(material);
+        let mut bench = Bench::answering(material);
         follows_a_contact(&mut bench, material, 24.0, 2.0, 3000);
     }
 }
 
 #[test]
 fn a_given_object_temperature_replaces_that_of_the_room() {
-    let mut bench = Bench::presenting("copper");
+    let mut bench = Bench::answering("copper");
     bench.obey(&["object 20.5"]);
     follows_a_contact(&mut bench, "copper", 20.5, 1.0, 500);
     bench.obey(&["object room"]);
@@ -70,7 +71,7 @@ fn a_given_object_temperature_replaces_that_of_the_room() {
 
 #[test]
 fn each_landing_is_a_new_contact() {
-    let mut bench = Bench::presenting("granite");
+    let mut bench = Bench::answering("granite");
     for (force_n, ticks) in [(2.0, 1500), (0.5, 300), (5.0, 10), (0.1, 700)] {
         follows_a_contact(&mut bench, "granite", 24.0, force_n, ticks);
     }
@@ -78,7 +79,7 @@ fn each_landing_is_a_new_contact() {
 
 #[test]
 fn a_new_force_counts_from_its_tick_on() {
-    let mut bench = Bench::presenting("granite");
+    let mut bench = Bench::answering("granite");
     follows_a_contact(&mut bench, "granite", 24.0, 2.0, 400);
     bench.force_n = 0.5;
     let contact = bench.contact("granite", 24.0);
@@ -88,6 +89,7 @@ fn a_new_force_counts_from_its_tick_on() {
 #[test]
 fn an_object_that_appears_under_a_resting_finger_is_new() {
     let mut bench = Bench::new();
+    bench.answers = true;
     bench.obey(&["material copper", "arm"]);
     bench.force_n = 2.0;
     bench.steps(1000);
@@ -106,7 +108,7 @@ fn an_object_that_appears_under_a_resting_finger_is_new() {
 
 #[test]
 fn another_material_replaces_the_one_that_is_touched() {
-    let mut bench = Bench::presenting("copper");
+    let mut bench = Bench::answering("copper");
     follows_a_contact(&mut bench, "copper", 24.0, 2.0, 300);
     bench.obey(&["material foam"]);
     let contact = bench.contact("foam", 24.0);
@@ -116,7 +118,7 @@ fn another_material_replaces_the_one_that_is_touched() {
 /// What the sensor beside the contact sees during contact is not the skin that it started from.
 #[test]
 fn skin_and_room_are_those_before_contact() {
-    let mut bench = Bench::presenting("abs");
+    let mut bench = Bench::answering("abs");
     follows_a_contact(&mut bench, "abs", 24.0, 2.0, 100);
     let contact = bench.contact("abs", 24.0);
     (bench.skin_c, bench.room_c) = (31.0, 28.0);
@@ -128,7 +130,7 @@ fn skin_and_room_are_those_before_contact() {
 
 #[test]
 fn semi_infinite_mode_holds_the_interface_temperature() {
-    let mut bench = Bench::presenting("granite");
+    let mut bench = Bench::answering("granite");
     bench.obey(&["mode semi-infinite"]);
     let granite = find("granite").expect("a material of the thesis");
     let expected_c = interface_temperature(&SKIN, 34.0, granite, 24.0);
@@ -144,7 +146,7 @@ fn semi_infinite_mode_holds_the_interface_temperature() {
 
 #[test]
 fn the_mode_can_change_under_a_finger() {
-    let mut bench = Bench::presenting("copper");
+    let mut bench = Bench::answering("copper");
     follows_a_contact(&mut bench, "copper", 24.0, 2.0, 300);
     bench.obey(&["mode semi-infinite"]);
     bench.steps(300);
@@ -156,7 +158,7 @@ fn the_mode_can_change_under_a_finger() {
 #[test]
 fn a_set_point_beyond_the_safe_range_is_limited_and_flagged() {
     for (object, limit_c) in [("object 60", 42), ("object -20", 15)] {
-        let mut bench = Bench::presenting("copper");
+        let mut bench = Bench::answering("copper");
         bench.obey(&[object]);
         for _ in 0..500 {
             let (_, telemetry) = bench.step();
@@ -171,6 +173,7 @@ fn a_set_point_beyond_the_safe_range_is_limited_and_flagged() {
 #[test]
 fn the_kernel_is_evaluated_in_contact_only() {
     let mut bench = Bench::new();
+    bench.answers = true;
     bench.obey(&["material copper"]);
     let evaluations = |bench: &mut Bench, ticks| bench.steps(ticks).1.evaluations;
     bench.force_n = 2.0;
@@ -195,7 +198,7 @@ fn the_kernel_is_evaluated_in_contact_only() {
 
 #[test]
 fn nothing_is_evaluated_for_an_object_at_skin_temperature() {
-    let mut bench = Bench::presenting("granite");
+    let mut bench = Bench::answering("granite");
     bench.room_c = 34.0;
     bench.steps(5000);
     bench.force_n = 2.0;
@@ -209,7 +212,7 @@ fn nothing_is_evaluated_for_an_object_at_skin_temperature() {
 #[test]
 fn a_noisy_force_costs_no_evaluation() {
     for (force_n, material) in [(2.0, "granite"), (0.1, "granite"), (2.0, "foam"), (0.1, "copper")] {
-        let mut bench = Bench::presenting(material);
+        let mut bench = Bench::answering(material);
         bench.force_n = force_n;
         bench.steps(2);
         let contact = bench.contact(material, 24.0);

@@ -93,7 +93,14 @@ fn the_host_is_told_what_the_device_does() {
         bench.host("state"),
         "ok state=off fault=- material=- object_c=room mode=contact setpoint_c=-"
     );
-    bench.obey(&["material abs", "object 60", "mode semi-infinite", "arm"]);
+    bench.obey(&[
+        "material abs",
+        "object 60",
+        "mode semi-infinite",
+        "law model",
+        "arm",
+    ]);
+    bench.answers = true;
     bench.skin_c = 45.0;
     bench.steps(3000);
     assert_eq!(
