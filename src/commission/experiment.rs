@@ -26,9 +26,9 @@ use crate::settings::Gains;
 
 /// Current below which its direction is not certain, and that asked for is taken.
 const DIRECTED: Current = Current::lit("0.25");
-/// Current above which what is measured is compared with what was asked for: dead times of the bridge take the same from any
-/// current, which is much of a small one, and the display goes anywhere by large ones.
-const COMPARED_FROM: Current = Current::lit("2");
+/// Current above which what is measured is compared with what was asked for: below, the dead times of the bridge take less the
+/// smaller it is.
+const COMPARED_FROM: Current = Current::lit("1");
 /// A row of the normal equations: sums of products with each unknown's part, and with what they make up.
 pub type Row = [i64; COLUMNS];
 

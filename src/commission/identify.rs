@@ -26,6 +26,10 @@ const GAIN_DEAD: usize = 2;
 const GAIN_JOULE: usize = 3;
 const LEAK: usize = 4;
 
+/// Current at which asked for and measured are compared, A in 2^-16: bridge and mirror take or add the same at any current, which
+/// is much of a small one, and the display goes far by large ones.
+const LARGE: f64 = 4.5 * 65_536.0;
+
 /// Parts of the current asked for that a sound bridge and mirror measure.
 const CURRENT: RangeInclusive<f64> = 0.5..=1.5;
 /// Dead times that a plate of this class can have. What disturbs the display ends up there first.
@@ -58,7 +62,7 @@ pub enum NoTile {
 pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
     let [.., totals] = rows;
     let total = |place: Totals| totals[place as usize] as f64;
-    let measured_per_asked = total(Totals::Measured) / total(Totals::Asked);
+    let measured_per_asked = part_measured(total);
     if !CURRENT.contains(&measured_per_asked) {
         return Err(NoTile::Current(measured_per_asked));
     }
@@ -89,6 +93,19 @@ pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
         Some((value, allowed)) => Err(NoTile::Beyond(allowed, value)),
         None => Ok(tile),
     }
+}
+
+/// What is measured of a large current that is asked for, by the line through what was compared.
+fn part_measured(total: impl Fn(Totals) -> f64) -> f64 {
+    let (ticks, asked, measured) = (
+        total(Totals::Ticks),
+        total(Totals::Asked),
+        total(Totals::Measured),
+    );
+    let slope = (ticks * total(Totals::AskedMeasured) - asked * measured)
+        / (ticks * total(Totals::AskedSquared) - asked * asked);
+    let at_none = (measured - slope * asked) / ticks;
+    slope + at_none / LARGE
 }
 
 /// Root of the mean square that a fit leaves, as a part of that of what it explains.

@@ -31,12 +31,16 @@ const LARGEST: i64 = (1 << (PART_BITS + 4)) - 1;
 
 /// Places in the last row.
 pub enum Totals {
-    /// Current asked for, squared.
-    Asked = 0,
-    /// The same times the measured one.
-    Measured = 1,
     /// What the unknowns make up, squared.
-    Made = 2,
+    Made = 0,
+    /// Ticks in which the current was compared.
+    Ticks = 1,
+    /// Magnitude asked for then, and measured, as measured along it.
+    Asked = 2,
+    Measured = 3,
+    /// The first squared, and times the second.
+    AskedSquared = 4,
+    AskedMeasured = 5,
 }
 
 /// The integrals, in ticks, and the normal equations.
@@ -61,10 +65,19 @@ const _: () = assert!(AFTER / EVERY <= 1 << 10, "sums of products overflow");
 impl Sums {
     /// Takes the current that was asked for, and what it came to.
     pub fn compare(&mut self, asked: Current, measured: Current) {
-        let asked = i64::from(asked.to_bits() >> 8);
+        let along =
+            |current: Current| i64::from(current.to_bits() >> 8) * i64::from(asked.signum().to_num::<i32>());
+        let (asked, measured) = (along(asked), along(measured));
         let [.., totals] = &mut self.rows;
-        totals[Totals::Asked as usize] += asked * asked;
-        totals[Totals::Measured as usize] += asked * i64::from(measured.to_bits() >> 8);
+        for (place, value) in [
+            (Totals::Ticks, 1),
+            (Totals::Asked, asked),
+            (Totals::Measured, measured),
+            (Totals::AskedSquared, asked * asked),
+            (Totals::AskedMeasured, asked * measured),
+        ] {
+            totals[place as usize] += value;
+        }
     }
 
     /// Takes the change of the reading, 2^-22 K, and the current that has flown meanwhile beside that at rest.

@@ -32,6 +32,9 @@ const APART_LAG_S: f64 = 0.02;
 /// What an ampere of feedback counts for in the residual, a quarter of a kelvin: enough to tell a weak module at the limit, and
 /// little beside what the loop does about sound tiles.
 const FEEDBACK_SHIFT: u32 = 2;
+/// The model may have a quarter more than the limit: a tile that answers more than it does, for which the loop takes back, is
+/// followed at the limit, too.
+const MORE_SHIFT: u32 = 2;
 /// Cooling is taken back from this sink temperature on, to none 2 K above it, before the guard trips: more current would warm the sink more
 /// than cool the display.
 const SINK_WARM: Celsius = Celsius::lit("39.5");
@@ -162,10 +165,8 @@ impl TwoDegrees {
         if !self.running {
             return;
         }
-        self.feed = current
-            .saturating_sub(self.feedback)
-            .min(self.limit)
-            .max(-self.limit);
+        let most = self.limit.saturating_add(self.limit >> MORE_SHIFT);
+        self.feed = current.saturating_sub(self.feedback).min(most).max(-most);
         self.heat = self.plate.heat(self.feed, self.finger, self.sink);
         let before = self.plate.surface();
         self.plate.step(&self.heat);

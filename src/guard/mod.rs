@@ -36,14 +36,14 @@
 //! | [`check`]      | open, short, excitation, force sensor    | in the tick whose last conversion is at an end       |
 //! |                | display hot, cold                        | 43, 13.5 °C by either thermistor                     |
 //! |                | sink hot                                 | 42 °C                                                |
-//! |                | over-current                             | 1.5 A above what is ever asked for                   |
+//! |                | over-current                             | 3 A above what is ever asked for                     |
 //! | bridge         | its fault line, the comparator           | in that tick; of one finger, a pulse between, too    |
 //! | `frozen`       | a channel, or all                        | a sum repeats itself 46 times                        |
 //! | `jump`         | display, its second thermistor, sink     | 0.5 K in 4 ms                                        |
 //! | `apart`        | the display's thermistors                | 3 K for 40 ms                                        |
 //! | `room`         | room above skin                          | 8 K for 40 ms                                        |
 //! | `electrical`   | current high, low                        | 1 A and a quarter for 30 ms                          |
-//! | law            | unlike model                             | residual of 2 K, 5.5 untuned, for 30 ms              |
+//! | law            | unlike model                             | residual of 3.5 K, 5.5 untuned, for 30 ms            |
 //! | `response`     | polarity, runaway                        | 1 K the wrong way at a mean of 1 A                   |
 //! | `dose`         | dose                                     | half a minute of CEM43 by the display                |
 //! | `watch`        | host silent                              | 2 s without a line while telemetry streams           |

@@ -59,7 +59,7 @@ const WATCH: &str = "src/guard/watch.rs";
 const SELF_TEST: &str = "src/guard/self_test.rs";
 const THERMISTOR: &str = "src/sense/thermistor.rs";
 
-const MUTATIONS: [Mutation; 32] = [
+const MUTATIONS: [Mutation; 33] = [
     mutation(
         "excitation",
         LIMITS,
@@ -206,6 +206,13 @@ const MUTATIONS: [Mutation; 32] = [
         "let bridge = if pulled {",
         "let bridge = if pulled && self.tick == 0 {",
         &["bridge-shorted"],
+    ),
+    mutation(
+        "self-test",
+        "src/station.rs",
+        "self.state = State::SelfTest;",
+        "self.state = State::Armed;",
+        &["comparator-dead"],
     ),
     mutation(
         "comparator test",

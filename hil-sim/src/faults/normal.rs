@@ -47,7 +47,7 @@ impl Session {
     #[must_use]
     pub fn new(seed: u64, number: u64) -> Self {
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(stream(seed, &format!("session {number}")));
-        let device = Draw::new(seed, number / ON_ONE_DEVICE);
+        let device = Draw::in_use(seed, number / ON_ONE_DEVICE);
         let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
         let (law, _) = Law::WORDS[draw.random_range(0..Law::WORDS.len())];
         let skin_c = draw.random_range(30.0..=36.0);

@@ -6,6 +6,8 @@ use serde::Serialize;
 use thermal_display::control::Law;
 use thermal_display::guard::Fault;
 
+use super::script;
+
 /// A scene, and what goes on in it when the fault comes. In every one the finger rests on the display in the end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -30,6 +32,14 @@ pub enum Place {
     Cold,
     /// Armed, the finger on the neutral display.
     Touched,
+    /// Held at 42 °C under a finger.
+    HeldWarm,
+    /// At 15 °C.
+    HeldCold,
+    /// Tuned; the finger comes later.
+    Tuning,
+    /// A finger lands on copper of a constant temperature, as on the thesis's first display.
+    SemiInfinite,
     /// Armed, the finger comes later.
     Neutral,
     /// The object is presented, the finger comes later.
@@ -48,6 +58,7 @@ type Forces = &'static [(f64, f64)];
 const LANDING: Forces = &[(1.0, 2.0)];
 const RESTING: Forces = &[(0.2, 2.0)];
 const LATE: Forces = &[(6.0, 2.0)];
+const LATER: Forces = &[(15.0, 2.0)];
 const REPLACING: Forces = &[
     (0.5, 2.0),
     (1.5, 0.0),
@@ -62,6 +73,10 @@ const REPLACING: Forces = &[
 const AROUND_MS: [i32; 12] = [-20, -3, -2, -1, 0, 1, 2, 3, 5, 10, 25, 60];
 /// Time of a scene after its last edge, s: the finger rests for some 20 s after a trip.
 const SHORTEST_S: f64 = 7.0;
+/// When the device is armed again where it has tripped before, s.
+const TESTED_FROM_S: f64 = 4.0;
+/// When the host gives an order, s.
+const ORDERED_S: f64 = 0.05;
 /// What tripped before.
 const BEFORE: Fault = Fault::HostSilent;
 
@@ -76,7 +91,7 @@ pub struct Moment {
 
 impl Place {
     /// All of them.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 19] = [
         Self::Slew,
         Self::Pi,
         Self::Pi10Hz,
@@ -87,6 +102,10 @@ impl Place {
         Self::Warm,
         Self::Cold,
         Self::Touched,
+        Self::HeldWarm,
+        Self::HeldCold,
+        Self::Tuning,
+        Self::SemiInfinite,
         Self::Neutral,
         Self::Preset,
         Self::Replace,
@@ -110,6 +129,10 @@ impl Place {
             Self::Warm => "warm",
             Self::Cold => "cold",
             Self::Touched => "touched",
+            Self::HeldWarm => "held-warm",
+            Self::HeldCold => "held-cold",
+            Self::Tuning => "tuning",
+            Self::SemiInfinite => "semi-infinite",
             Self::Neutral => "neutral",
             Self::Preset => "preset",
             Self::Replace => "replace",
@@ -125,10 +148,15 @@ impl Place {
             | Self::Pi10Hz
             | Self::Untuned
             | Self::Touched
+            | Self::HeldWarm
+            | Self::HeldCold
             | Self::SelfTest
             | Self::Off => RESTING,
-            Self::Copper | Self::Granite | Self::Foam | Self::Warm | Self::Cold => LANDING,
+            Self::Copper | Self::Granite | Self::Foam | Self::Warm | Self::Cold | Self::SemiInfinite => {
+                LANDING
+            }
             Self::Neutral | Self::Preset => LATE,
+            Self::Tuning => LATER,
             Self::Replace => REPLACING,
         }
     }
@@ -147,8 +175,14 @@ impl Place {
     const fn moments(self) -> ((f64, f64), &'static [f64]) {
         match self {
             Self::Slew | Self::Pi | Self::Pi10Hz | Self::Untuned => ((0.5, 4.0), &[1.0]),
-            Self::Copper | Self::Granite | Self::Foam | Self::Warm | Self::Cold => ((0.3, 4.0), &[1.0]),
+            Self::Copper | Self::Granite | Self::Foam | Self::Warm | Self::Cold | Self::SemiInfinite => {
+                ((0.3, 4.0), &[1.0])
+            }
             Self::Touched => ((0.1, 4.0), &[0.2]),
+            // A kelvin a second.
+            Self::HeldWarm => ((0.3, 12.0), &[8.1]),
+            Self::HeldCold => ((0.3, 22.0), &[19.1]),
+            Self::Tuning => ((0.3, 15.5), &[15.0]),
             Self::Neutral | Self::Preset => ((0.1, 6.5), &[6.0]),
             Self::Replace => ((0.3, 7.0), &[1.5, 2.5, 3.5, 4.5]),
             Self::SelfTest => ((4.0, 5.75), &[4.0, 4.02, 5.04, 5.104, 5.304, 5.504]),
@@ -164,13 +198,38 @@ impl Place {
         }
     }
 
+    const fn mode(self) -> &'static str {
+        match self {
+            Self::SemiInfinite => "semi-infinite",
+            _ => "contact",
+        }
+    }
+
     const fn is_commissioned(self) -> bool {
         !matches!(self, Self::Untuned)
     }
 
-    /// The law has a model of the tile, which was tuned: what a display should do is known.
+    /// What the host has the armed device do, from the beginning on.
+    const fn order(self) -> Option<&'static str> {
+        match self {
+            Self::HeldWarm => Some("hold 42"),
+            Self::HeldCold => Some("hold 15"),
+            Self::Tuning => Some("tune"),
+            _ => None,
+        }
+    }
+
+    /// The law goes by a model of the tile, which was tuned: what a display should do is known, and done as far as can be.
     pub(super) const fn has_tuned_model(self) -> bool {
-        matches!(self.law(), Law::Model) && self.is_commissioned()
+        matches!(self.law(), Law::Model) && !matches!(self, Self::Untuned | Self::Tuning)
+    }
+
+    /// When the device is told to test itself, s.
+    pub(super) const fn tested_from_s(self) -> Option<f64> {
+        match self {
+            Self::SelfTest | Self::Off => Some(TESTED_FROM_S),
+            _ => None,
+        }
     }
 
     /// From when to when faults come, s.
@@ -213,14 +272,15 @@ impl Place {
         let (material, object_c) = self.object();
         let appears_s = match self {
             Self::Slew | Self::Pi | Self::Pi10Hz | Self::Untuned => 1.0,
-            Self::Touched | Self::Neutral => duration_s,
+            Self::Touched | Self::Neutral | Self::HeldWarm | Self::HeldCold | Self::Tuning => duration_s,
             _ => 0.0,
         };
         let mut text = format!(
-            "duration_s = {duration_s:?}\nskin_c = 34\nroom_c = 24\nseed = {seed}\nlaw = \"{}\"\n[device]\n\
+            "duration_s = {duration_s:?}\nskin_c = 34\nroom_c = 24\nseed = {seed}\nlaw = \"{}\"\nmode = \"{}\"\n[device]\n\
              commissioned = {}\n[object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\n\
              appears_t_s = {appears_s:?}\n",
             self.law().name(),
+            self.mode(),
             self.is_commissioned(),
         );
         for (t_s, force_n) in self.forces() {
@@ -228,9 +288,12 @@ impl Place {
         }
         if self.has_tripped_before().is_some() {
             text += "[[fault]]\nkind = \"host-silent\"\nt_s = 0.1\nuntil_s = 2.4\n";
-            for (t_s, line) in [(2.8, "clear"), (4.0, "arm"), (6.0, "start")] {
+            for (t_s, line) in [(2.8, "clear"), (TESTED_FROM_S, "arm"), (6.0, "start")] {
                 text += &format!("[[host]]\nt_s = {t_s:?}\nline = \"{line}\"\n");
             }
+        }
+        if let Some(line) = self.order() {
+            text += &script::line_at(line, ORDERED_S);
         }
         (text, duration_s)
     }

@@ -147,7 +147,7 @@ impl Verdict {
         let from = rows.partition_point(|row| row.t_s < t_s - 1e-9);
         let signs = entry.signs.iter();
         let detectable_s = signs
-            .filter_map(|sign| sign.reached_s(rows, sound, from))
+            .filter_map(|sign| sign.reached_s(rows, sound, from, moment.place.tested_from_s()))
             .min_by(f64::total_cmp);
         let before = moment.place.has_tripped_before().map(|fault| fault.name());
         let detected_s = detected(outcome, from, t_s, before);

@@ -8,7 +8,7 @@ use thermal_display::control::Law;
 use super::case::ROOM_C;
 use super::{Case, Device, Scenario, percentile};
 use crate::plant::Params;
-use crate::plant::parameters::{Tolerance, absolute, all, between, relative, stream};
+use crate::plant::parameters::{self, Tolerance, absolute, all, between, relative, stream};
 
 /// What is drawn, and from what. Whatever is not here stays nominal.
 ///
@@ -33,6 +33,23 @@ const BOX: [(&str, Tolerance); 12] = [
 
 /// Both thermistors on the display are of one kind, and bonded alike.
 const TWIN: (&str, &str) = ("sensors.display.lag_s", "sensors.check.lag_s");
+
+/// Parts, or single parameters, that are drawn for a device in use too, by their own tolerances: beside the box what a builder
+/// does not choose. The rest of a sensor goes with its calibration, the finger with the scene; dead time and filter of the bridge are
+/// the design's, as the device is told.
+const IN_USE: [&str; 11] = [
+    "bridge.supply_v",
+    "bridge.diode_v",
+    "bridge.on_ohm",
+    "bridge.trip_a",
+    "comparator.",
+    "sensors.mirror.",
+    "sensors.reference.",
+    "sensors.force.zero_counts",
+    "sensors.force.counts_per_n",
+    "tile.film_w_m2k",
+    "tile.ceramic_w_mk",
+];
 
 /// One plant of the box, and the finger on it.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +91,19 @@ impl Draw {
             plant,
             case: cases.swap_remove((number % pairs) as usize),
         }
+    }
+
+    /// The same draw of the box as a device in use: its bridge and what measures are drawn as well.
+    #[must_use]
+    pub fn in_use(seed: u64, number: u64) -> Self {
+        let mut draw = Self::new(seed, number);
+        let mut params = Params::nominal();
+        parameters::draw(&mut params, draw.seed);
+        let drawn = all(&params).into_iter();
+        let beside = drawn.filter(|one| IN_USE.iter().any(|part| one.key.starts_with(part)));
+        draw.plant
+            .extend(beside.map(|parameter| (parameter.key, parameter.value)));
+        draw
     }
 
     /// Runs it.

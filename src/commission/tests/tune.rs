@@ -194,7 +194,7 @@ fn what_is_no_tile_is_named() {
         );
     };
     current(with(|plant| plant.mirror = |_| 0.0), 0.0, 1e-6);
-    current(with(|plant| plant.mirror = |_| 10.23), 3.3, 3.5);
+    current(with(|plant| plant.mirror = |_| 10.23), 2.27, 2.28);
     current(with(|plant| plant.mirror = |a| 2.0 * a.abs()), 1.99, 2.01);
     // Stuck, and in the middle of a rest that needs a current.
     let stuck = with(|plant| {

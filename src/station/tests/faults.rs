@@ -23,7 +23,7 @@ const TROUBLES: [Trouble; 16] = [
     ("display-hot", |bench| bench.check_c = 43.1),
     ("display-cold", |bench| bench.display_c = 13.4),
     ("sink-hot", |bench| bench.sink_c = 42.1),
-    ("over-current", |bench| bench.current_a = Some(7.6)),
+    ("over-current", |bench| bench.current_a = Some(9.1)),
     ("bridge", |bench| bench.bridge_fault = true),
 ];
 

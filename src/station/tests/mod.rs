@@ -21,6 +21,8 @@ use crate::settings::Settings;
 
 /// What a display that answers moves by in a tick: no jump yet.
 const MOST_K: f64 = 0.12;
+/// Part of the way that its thermistor goes in a tick: that of a lag of 0.1 s.
+const FOLLOWS: f64 = 0.01;
 
 /// A station and the world that its sensors see.
 #[derive(Clone, Debug)]
@@ -38,7 +40,7 @@ struct Bench {
     bridge_fault: bool,
     /// The host gives a sign of life on every tick.
     host_there: bool,
-    /// The display is where the model of the plate has it.
+    /// The display's thermistors follow the model of the plate.
     answers: bool,
     /// The converter's noise: one unit of each sum once in 40 ticks.
     noise: u16,
@@ -164,7 +166,7 @@ impl Bench {
             let sink = Celsius::saturating_from_num(self.sink_c);
             let to = self.station.control.legs(setpoint, sink).cold;
             let off_k = to.to_num::<f64>() - self.display_c;
-            self.display_c += off_k.clamp(-MOST_K, MOST_K);
+            self.display_c += (FOLLOWS * off_k).clamp(-MOST_K, MOST_K);
             self.check_c = self.display_c;
         }
         (outputs, telemetry)

@@ -28,8 +28,14 @@ const CURRENT: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::SelfTest(0
 /// A supply that drives the self-test's ampere well enough.
 const SUPPLY: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::FaultLine];
 const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
-/// Current that is less, or more, by too little to be told from a sound one still moves the display less, or more.
-const NO_CURRENT: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse, Fault::UnlikeModel];
+/// Current that is less, or more, by too little to be told from a sound one still moves the display less, or more; or leaves it to
+/// what finger and sink do.
+const NO_CURRENT: &[Fault] = &[
+    Fault::CurrentLow,
+    Fault::NoResponse,
+    Fault::UnlikeModel,
+    Fault::Polarity,
+];
 const MUCH_CURRENT: &[Fault] = &[
     Fault::CurrentHigh,
     Fault::OverCurrent,
@@ -37,8 +43,8 @@ const MUCH_CURRENT: &[Fault] = &[
     Fault::UnlikeModel,
 ];
 const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
-/// Where no model helps, too.
-const PLAIN: &[Place] = &[Place::Pi, Place::Slew, Place::Off];
+/// Where no tuned model helps, too.
+const PLAIN: &[Place] = &[Place::Untuned, Place::Slew, Place::Off];
 /// The module does less than it should.
 const WEAK: &[Sign] = &[Sign::Astray, Sign::WrongWay];
 const WEAK_REASONS: &[Fault] = &[
@@ -58,7 +64,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(
         broken(Kind::PolaritySwapped),
         &[Sign::WrongWay, Sign::DisplayLimit, Sign::SelfTest(0.504)],
-        &[Fault::Polarity, Fault::UnlikeModel],
+        &[Fault::Polarity, Fault::UnlikeModel, Fault::OverCurrent],
     )
     .at(PLAIN),
     // What is left answers to the self-test's ampere by more than it asks for, or by about that. So what tells is what comes then:

@@ -27,7 +27,7 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(
         Injected::Line("object 60"),
         &[Sign::Dose],
-        &[Fault::Dose, Fault::DisplayHot],
+        &[Fault::Dose, Fault::DisplayHot, Fault::UnlikeModel],
     )
     .at(&[Place::Slew])
     .watched(180.0),

@@ -194,9 +194,9 @@ pub const OTHERS: &[Entry] = &[
     )
     .at(&[Place::Slew]),
     Entry::trips(broken(Kind::ForceOpen), NOW, &[Fault::ForceSensor]),
-    // A finger that is not there gives no heat.
+    // A finger that is not there gives no heat; nearly all of the range, more with a sensor of much gain.
     Entry::harmless(valued(Kind::ForceOffset, 10.0))
-        .or_trips(&[Fault::UnlikeModel])
+        .or_trips(&[Fault::UnlikeModel, Fault::ForceSensor])
         .at(&[Place::Cold, Place::Preset, Place::Warm]),
     Entry::trips(valued(Kind::ForceOffset, -10.0), NOW, &[Fault::ForceSensor]),
     Entry::harmless(valued(Kind::ForceOffset, 1.0)).at(&[Place::Preset]),

@@ -82,7 +82,7 @@ pub struct Sensed {
 pub struct Taken {
     /// The thermistors at the five pins, in the order of [`Channel::ALL`], deg C; none where a wire is broken.
     pub thermistors_c: [Option<f64>; THERMISTORS],
-    /// Current mirror, A.
+    /// Current mirror, A by the nominal gain.
     pub mirror_a: f64,
 }
 
@@ -187,8 +187,19 @@ impl Sensors {
         let plugged = self.defects.plugged;
         Taken {
             thermistors_c: plugged.map(|plugged| self.thermistors[plugged].reads_c()),
-            mirror_a: self.defects.mirror_stuck_a.unwrap_or(self.mirror_a),
+            mirror_a: self.mirror_counts() / SensorParams::NOMINAL.mirror.counts_per_a,
         }
+    }
+
+    /// Level of the current mirror.
+    fn mirror_counts(&self) -> f64 {
+        let current_a = self.defects.mirror_stuck_a.unwrap_or(self.mirror_a);
+        self.params.mirror.counts(current_a) * self.per_volt()
+    }
+
+    /// The reference carries the dividers with it, but not what has a scale of its own.
+    fn per_volt(&self) -> f64 {
+        1.0 / (1.0 + self.params.reference.error)
     }
 
     /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is
@@ -208,12 +219,10 @@ impl Sensors {
         for (index, counts) in ideal.iter_mut().enumerate().take(THERMISTORS) {
             *counts = self.pin_ratio(index) * CODES;
         }
-        // The reference carries the dividers with it, but not what has a scale of its own.
-        let per_volt = 1.0 / (1.0 + p.reference.error);
         if !force.open {
-            ideal[Channel::Force as usize] = p.force.counts(self.force_n + force.offset_n) * per_volt;
+            ideal[Channel::Force as usize] = p.force.counts(self.force_n + force.offset_n) * self.per_volt();
         }
-        ideal[Channel::Current as usize] = p.mirror.counts(self.taken().mirror_a) * per_volt;
+        ideal[Channel::Current as usize] = self.mirror_counts();
         self.counts = ideal.map(|counts| self.converter.seen(counts));
     }
 }
