@@ -456,6 +456,8 @@ impl Station {
                     self.experiment = None;
                     self.held = None;
                     self.self_test = SelfTest::default();
+                    // What the display was long ago says nothing.
+                    self.control.lose_sight();
                     self.state = State::SelfTest;
                 }
                 _ => {

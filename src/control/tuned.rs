@@ -8,9 +8,9 @@ use super::plate::Plate;
 use crate::settings::{Settings, Tile};
 
 /// Residual that a sound tile never has: one that was tuned, and one of which only the class is known, 4 K and what 6 A of
-/// feedback count for. In normal use tuned ones come to 1.5 K; where bridge and mirror mislead tuning most, slews to more than 3 K.
-const RESIDUAL: Celsius = Celsius::lit("3.5");
-const CLASS_RESIDUAL: Celsius = Celsius::lit("5.5");
+/// feedback count for.
+const RESIDUAL: Celsius = Celsius::lit("3.75");
+const CLASS_RESIDUAL: Celsius = Celsius::lit("7");
 
 /// The laws' constants.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,6 +15,9 @@ use crate::plant::tile::ZERO_C_K;
 const ROOM_C: f64 = 24.0;
 /// The longest that tuning takes, ms.
 const TUNE_MS: u64 = 70_000;
+/// Current for which a tile's gain counts, A, and from which on what flows is a line of what is asked for.
+const LARGE_A: f64 = 4.5;
+const DIRECTED_A: f64 = 1.0;
 /// A current that is asked for flows a tick later.
 const FLOWS_S: f64 = 1e-3;
 /// Where what delays the plate is plain, rad/s.
@@ -114,7 +117,8 @@ fn true_constants(params: &Params, plants: &Plants) -> Result<Constants, Commiss
     })
 }
 
-/// Lets a device with settings tune itself, and watches which part of the current that it asks for flows.
+/// Lets a device with settings tune itself, and watches which part of a large current that it asks for flows: by the line through
+/// what it asks for from [`DIRECTED_A`] on.
 fn tune(plants: &Plants, settings: &[String]) -> Result<(Tile, f64), CommissionError> {
     let mut engine = Native::new(plants.at_work()?);
     let mut bench = Bench::new(&mut engine, plants.params().host, 0);
@@ -127,20 +131,21 @@ fn tune(plants: &Plants, settings: &[String]) -> Result<(Tile, f64), CommissionE
         bench.tell(line)?;
     }
     let line = "tune result";
-    let (mut asked_a, mut asked_asked, mut asked_flowing) = (0.0, 0.0, 0.0);
+    let (mut asked_a, mut pairs) = (0.0f64, Vec::new());
     for ms in 1..TUNE_MS {
         let question = (ms % 1000 == 0).then_some(&b"tune result\n"[..]);
         for answer in bench.millisecond(question)? {
             if answer.starts_with("ok") {
-                return Ok((Tile::parse(line, &answer)?, asked_flowing / asked_asked));
+                return Ok((Tile::parse(line, &answer)?, part_at_large(&pairs)));
             }
             let current_a = bench.world().plant().current_a();
             let demand = answer
                 .strip_prefix("T ")
                 .and_then(|rest| rest.split(' ').nth(DEMAND - 1));
             if let Some(demand) = demand.and_then(|word| word.parse::<f64>().ok()) {
-                asked_asked += asked_a * asked_a;
-                asked_flowing += asked_a * current_a;
+                if asked_a.abs() > DIRECTED_A {
+                    pairs.push((asked_a.abs(), current_a * asked_a.signum()));
+                }
                 asked_a = demand;
             } else if !answer.starts_with("err tuning goes on") {
                 let line = line.into();
@@ -149,6 +154,18 @@ fn tune(plants: &Plants, settings: &[String]) -> Result<(Tile, f64), CommissionE
         }
     }
     Err(CommissionError::Silent(line.into()))
+}
+
+/// Part of [`LARGE_A`] that flows, by the line of least squares through pairs of what is asked for and what flows, A.
+fn part_at_large(pairs: &[(f64, f64)]) -> f64 {
+    let count = pairs.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
+    let (asked_a, flows_a) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let off = pairs.iter().map(|pair| (pair.0 - asked_a, pair.1 - flows_a));
+    let (together, alone) = off.fold((0.0, 0.0), |(together, alone), (asked, flows)| {
+        (together + asked * flows, alone + asked * asked)
+    });
+    (flows_a + together / alone * (LARGE_A - asked_a)) / LARGE_A
 }
 
 /// Percentiles of each quantity.

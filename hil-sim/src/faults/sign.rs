@@ -54,7 +54,7 @@ pub enum Sign {
 }
 
 const APART_K: f64 = 3.1;
-/// The device's limit is 3.5 K from a model that is up to half a kelvin off; for what its lag of 20 ms costs the feedback that it
+/// The device's limit is 3.75 K from a model that is up to a quarter of a kelvin off; for what its lag of 20 ms costs the feedback that it
 /// counts makes up.
 const ASTRAY_K: f64 = 4.0;
 const ASTRAY_ROWS: usize = 40;
