@@ -221,15 +221,12 @@ impl Place {
 
     /// The law goes by a model of the tile, which was tuned: what a display should do is known, and done as far as can be.
     pub(super) const fn has_tuned_model(self) -> bool {
-        matches!(self.law(), Law::Model) && !matches!(self, Self::Untuned | Self::Tuning)
+        matches!(self.law(), Law::Model) && self.is_commissioned() && !matches!(self, Self::Tuning)
     }
 
     /// When the device is told to test itself, s.
-    pub(super) const fn tested_from_s(self) -> Option<f64> {
-        match self {
-            Self::SelfTest | Self::Off => Some(TESTED_FROM_S),
-            _ => None,
-        }
+    pub(super) fn tested_from_s(self) -> Option<f64> {
+        self.has_tripped_before().map(|_| TESTED_FROM_S)
     }
 
     /// From when to when faults come, s.

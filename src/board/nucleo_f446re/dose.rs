@@ -26,20 +26,23 @@ pub fn kept(finger: usize) -> Dose {
 
 /// Keeps a finger's.
 pub fn keep(finger: usize, dose: &Dose) {
-    if let Some([kept, sum]) = KEPT.get(finger) {
-        let word = dose.to_word();
-        // It changes four times a second.
-        if kept.load(Ordering::Relaxed) != word {
-            kept.store(word, Ordering::Relaxed);
-            sum.store(check(&[word]), Ordering::Relaxed);
-        }
+    let Some(place) = KEPT.get(finger) else {
+        return;
+    };
+    let [kept, _] = place;
+    // It changes four times a second.
+    if kept.load(Ordering::Relaxed) != dose.to_word() {
+        store(place, dose);
     }
+}
+
+fn store([kept, sum]: &[AtomicU32; 2], dose: &Dose) {
+    let word = dose.to_word();
+    kept.store(word, Ordering::Relaxed);
+    sum.store(check(&[word]), Ordering::Relaxed);
 }
 
 /// Forgets all: the power was lost, and the RAM is noise.
 pub fn forget() {
-    for [dose, sum] in &KEPT {
-        dose.store(0, Ordering::Relaxed);
-        sum.store(check(&[0]), Ordering::Relaxed);
-    }
+    KEPT.iter().for_each(|place| store(place, &Dose::default()));
 }
