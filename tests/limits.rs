@@ -141,3 +141,37 @@ fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {
         assert!(state.starts_with("ok state=armed fault=-"), "{line}: {state}");
     }
 }
+
+/// Modules at the ends of their tolerances on a warm sink, an object as cold as can be shown, and a warm finger that lands hard:
+/// the display goes back from where the current had brought it, and nothing is broken.
+#[test]
+fn a_finger_that_warms_a_display_at_its_limit_trips_nothing() {
+    let weak = "tile.imax_a = 5.4\ntile.vmax_v = 7.38\ntile.dtmax_k = 60.3\ntile.ceramic_j_m3k = 3355000.0\n";
+    let strong =
+        "tile.imax_a = 6.6\ntile.vmax_v = 9.02\ntile.dtmax_k = 73.7\ntile.ceramic_j_m3k = 2745000.0\n";
+    for (law, lag_s, module) in [
+        ("model", 0.1, weak),
+        ("pi", 0.5, strong),
+        ("pi-10hz", 0.5, strong),
+    ] {
+        let plant = format!(
+            "[device]\ncommissioned = true\n[plant]\n{module}tile.coolant_k = 16.0\n\
+             sensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n"
+        );
+        let tables = forces(&[(1.0, 5.0)]) + &host(&[(3.5, "state")]) + &plant;
+        let mut scene = scene("copper", 4.0, &format!("law = \"{law}\""), &tables);
+        (scene.skin_c, scene.object.start_c) = (36.0, Some(15.0));
+        let outcome = natively(&scene);
+        let (_, state) = outcome.answers.last().expect("an answer");
+        assert!(state.starts_with("ok state=contact fault=-"), "{law}: {state}");
+        let reading_c = |row: &Row| row.device.as_ref().and_then(|device| device.sensor_c);
+        let mut coldest_c = f64::INFINITY;
+        let mut back_k = 0.0f64;
+        for reading_c in between(&outcome, 1.0, 2.5).filter_map(reading_c) {
+            coldest_c = coldest_c.min(reading_c);
+            back_k = back_k.max(reading_c - coldest_c);
+        }
+        println!("{law}: {back_k:.2} K back");
+        assert!(back_k > 1.2, "{law}: {back_k} K");
+    }
+}

@@ -3,12 +3,13 @@
 //! The model of [`Tile`](crate::settings::Tile), integrated twice from rest on, is linear in what is to be found:
 //!
 //! ```text
-//! m Y1 = -lag y - gain U2 + gain dead U1 + gain joule V2 - leak Y2 + a t + b t^2/2,   m = 1 + leak lag
+//! m Y1 = -lag y - gain (U2 - zero D2) + gain dead U1 + gain joule V2 - leak Y2 + a t + b t^2/2,   m = 1 + leak lag
 //! ```
 //!
 //! with the reading's change `y`, its integrals `Y1` and `Y2`, those of the current's change `U1`, `U2`, and of its
 //! square `V2`. Integrals of noise are small, and nothing is ever differentiated. `a` and `b` take up what the reading
-//! at rest was not known to, and what drifts. The tick adds up the normal equations of least squares in integers.
+//! at rest was not known to, and what drifts; `zero`, with the integral `D2` of the direction's change, what the mirror
+//! shows when nothing flows, of which the 0.05 A of its class are much of a small pulse. The tick adds up the normal equations of least squares in integers.
 //!
 //! Two things would be taken for lag or leak if they were left out. The legs take up heat with the plate, later than
 //! it, so a part of the current acts late; and Joule's heat must come up the legs. Both are first-order filters with
@@ -241,7 +242,7 @@ impl Experiment {
             Phase::Base { ticks } if ticks < 2 * BASE_TICKS => {
                 self.base_reading += reading;
                 self.asked = self.current(0);
-                let measured = directed(self.asked, measured);
+                let measured = measured_along(self.asked, measured);
                 self.base_measured += i64::from(measured.to_bits());
                 self.phase = Phase::Base { ticks: ticks + 1 };
                 return Some(self.current(0));
@@ -258,12 +259,13 @@ impl Experiment {
                     return Some(self.current(0));
                 };
                 let current = self.current(*eighths);
-                let measured = directed(self.asked, measured);
+                let measured = measured_along(self.asked, measured);
                 if self.asked.abs() > COMPARED_FROM {
                     self.sums.compare(self.asked, measured);
                 }
-                self.sums
-                    .take(reading - self.base_reading, measured, self.base_measured);
+                let turned = direction(self.asked) - direction(self.current(0));
+                let y = reading - self.base_reading;
+                self.sums.take(y, measured, self.base_measured, turned);
                 self.asked = current;
                 self.phase = if ticks + 1 < *length {
                     Phase::Pulses {
@@ -289,13 +291,20 @@ impl Experiment {
     }
 }
 
-/// A measured magnitude in the direction of the current that was asked for.
-fn directed(asked: Current, measured: Current) -> Current {
+/// Which way a current that is asked for flows, 1 if it cools; 0 if that is not certain.
+fn direction(asked: Current) -> i64 {
     if asked.abs() < DIRECTED {
-        asked
-    } else if asked < 0 {
-        -measured
+        0
     } else {
-        measured
+        asked.signum().to_num()
+    }
+}
+
+/// A measured magnitude in the direction of the current that was asked for.
+fn measured_along(asked: Current, measured: Current) -> Current {
+    match direction(asked) {
+        0 => asked,
+        1.. => measured,
+        _ => -measured,
     }
 }

@@ -25,10 +25,13 @@ const GAIN: usize = 1;
 const GAIN_DEAD: usize = 2;
 const GAIN_JOULE: usize = 3;
 const LEAK: usize = 4;
+const ZERO: usize = 7;
 
-/// Current at which asked for and measured are compared, A in 2^-16: bridge and mirror take or add the same at any current, which
-/// is much of a small one, and the display goes far by large ones.
-const LARGE: f64 = 4.5 * 65_536.0;
+/// Current at which asked for and measured are compared, A in 2^-16: the bridge's dead times take the same of any current, which is
+/// much of a small one, and the display goes far by large ones.
+const LARGE: f64 = 4.5 * AMPERE;
+/// An ampere in what was compared.
+const AMPERE: f64 = 65_536.0;
 
 /// Parts of the current asked for that a sound bridge and mirror measure.
 const CURRENT: RangeInclusive<f64> = 0.5..=1.5;
@@ -62,7 +65,7 @@ pub enum NoTile {
 pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
     let [.., totals] = rows;
     let total = |place: Totals| totals[place as usize] as f64;
-    let measured_per_asked = part_measured(total);
+    let measured_per_asked = part_measured(total, 0.0);
     if !CURRENT.contains(&measured_per_asked) {
         return Err(NoTile::Current(measured_per_asked));
     }
@@ -73,6 +76,7 @@ pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
     if left.is_nan() || left > UNEXPLAINED {
         return Err(NoTile::Unlike(left));
     }
+    let flows_per_asked = part_measured(total, -likely[ZERO] / likely[GAIN]);
     let (lag, gain, leak) = (
         -likely[LAG] * UNIT_S,
         -likely[GAIN] / UNIT_S,
@@ -81,8 +85,8 @@ pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
     // All of them were divided by m = 1 + leak lag, so m is a root of m = 1 + (leak / m) (lag / m) m^2.
     let m = 2.0 / (1.0 + libm::sqrt((1.0 - 4.0 * leak * lag).max(0.0)));
     let tile = Tile::from_array([
-        gain * m * measured_per_asked,
-        likely[GAIN_JOULE] / UNIT_S / gain * measured_per_asked,
+        gain * m * flows_per_asked,
+        likely[GAIN_JOULE] / UNIT_S / gain * flows_per_asked,
         leak * m,
         lag * m,
         likely[GAIN_DEAD] / gain + ASKED_S,
@@ -95,8 +99,8 @@ pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
     }
 }
 
-/// What is measured of a large current that is asked for, by the line through what was compared.
-fn part_measured(total: impl Fn(Totals) -> f64) -> f64 {
+/// What is measured of a large current that is asked for, by the line through what was compared, less the mirror's zero, A.
+fn part_measured(total: impl Fn(Totals) -> f64, zero_a: f64) -> f64 {
     let (ticks, asked, measured) = (
         total(Totals::Ticks),
         total(Totals::Asked),
@@ -105,7 +109,7 @@ fn part_measured(total: impl Fn(Totals) -> f64) -> f64 {
     let slope = (ticks * total(Totals::AskedMeasured) - asked * measured)
         / (ticks * total(Totals::AskedSquared) - asked * asked);
     let at_none = (measured - slope * asked) / ticks;
-    slope + at_none / LARGE
+    slope + (at_none - zero_a * AMPERE) / LARGE
 }
 
 /// Root of the mean square that a fit leaves, as a part of that of what it explains.

@@ -4,7 +4,7 @@ use super::experiment::{AFTER, Row};
 use crate::drive::Current;
 
 /// Unknowns, and what the reading's integral is made of.
-pub const UNKNOWNS: usize = 7;
+pub const UNKNOWNS: usize = 8;
 /// A place for each unknown, and one for what they make up.
 pub const COLUMNS: usize = UNKNOWNS + 1;
 /// One for each unknown; then [totals](Totals).
@@ -49,10 +49,13 @@ pub struct Sums {
     ticks: u32,
     u1: i64,
     u2: i64,
+    d1: i64,
+    d2: i64,
     v1: i64,
     v2: i64,
-    /// What the filters have reached: current, and its square.
+    /// What the filters have reached: current, its direction, and its square.
     late: i64,
+    late_direction: i64,
     heat: i64,
     y1: i64,
     y2: i64,
@@ -80,15 +83,18 @@ impl Sums {
         }
     }
 
-    /// Takes the change of the reading, 2^-22 K, and the current that has flown meanwhile beside that at rest.
-    pub fn take(&mut self, y: i64, current: Current, rest: i64) {
+    /// Takes the change of the reading, 2^-22 K, the current that has flown meanwhile beside that at rest, and the change
+    /// of its direction.
+    pub fn take(&mut self, y: i64, current: Current, rest: i64, direction: i64) {
         let current = i64::from(current.to_bits());
         let (u, v) = (current - rest, (current * current - rest * rest) >> CURRENT_BITS);
-        self.late += ((u - self.late) * LEGS_RATE) >> RATE_BITS;
-        self.heat += ((v - self.heat) * JOULE_RATE) >> RATE_BITS;
+        let d = direction << CURRENT_BITS;
         self.ticks += 1;
-        self.u1 += u - ((self.late * LEGS_PART) >> RATE_BITS);
+        self.u1 += u - legs(&mut self.late, u);
         self.u2 += self.u1;
+        self.d1 += d - legs(&mut self.late_direction, d);
+        self.d2 += self.d1;
+        self.heat += ((v - self.heat) * JOULE_RATE) >> RATE_BITS;
         self.v1 += self.heat;
         self.v2 += self.v1;
         self.y1 += y;
@@ -109,6 +115,7 @@ impl Sums {
             self.y2 >> (2 * UNIT_BITS),
             t << (PART_BITS - UNIT_BITS),
             (t * t) >> (2 * UNIT_BITS - PART_BITS + 1),
+            self.d2 >> (CURRENT_BITS - PART_BITS + 2 * UNIT_BITS),
             self.y1 >> UNIT_BITS,
         ]
         .map(|part: i64| part.clamp(-LARGEST, LARGEST));
@@ -121,4 +128,10 @@ impl Sums {
         let [.., made] = parts;
         totals[Totals::Made as usize] += made * made;
     }
+}
+
+/// The part of a current that acts late.
+const fn legs(late: &mut i64, current: i64) -> i64 {
+    *late += ((current - *late) * LEGS_RATE) >> RATE_BITS;
+    (*late * LEGS_PART) >> RATE_BITS
 }

@@ -15,6 +15,8 @@ const COUNTS_FROM: Celsius = Celsius::lit("39");
 const REFERENCE: Celsius = Celsius::lit("43");
 /// Half a minute at 43 °C, in ticks there. Burns of skin take hundreds of minutes, pain some.
 const MOST_TICKS: u32 = 30_000;
+/// Twice that is the most that counts: whatever becomes of the sum, it is forgotten in an hour.
+const COUNTED: u32 = (2 * MOST_TICKS) << 8;
 /// What is forgotten below 39 °C: about a minute of dose in an hour.
 const FORGOTTEN_SHIFT: u32 = 6;
 
@@ -55,7 +57,8 @@ impl Dose {
                 Some(warmest) => self
                     .sum
                     .saturating_add(rate(warmest).saturating_mul(TICKS.into())),
-            };
+            }
+            .min(COUNTED);
         }
         if self.sum >> 8 >= MOST_TICKS {
             Err(Fault::Dose)
@@ -108,5 +111,18 @@ mod tests {
         let mut dose = Dose::default();
         let cool = Celsius::lit("38.9");
         assert!((0..1_000_000).all(|_| dose.check(|| Some(cool)).is_ok()));
+    }
+
+    /// As would a bit of the sum that flips.
+    #[test]
+    fn an_hour_forgets_ten_minutes_of_60_c() {
+        let mut dose = Dose::default();
+        let hot = Celsius::lit("60");
+        assert!((0..600_000).any(|_| dose.check(|| Some(hot)).is_err()));
+        for mut dose in [dose, Dose::from_word(u32::MAX)] {
+            let cool = Celsius::lit("38.9");
+            let forgotten = (0..3_600_000).position(|_| dose.check(|| Some(cool)).is_ok());
+            assert!(forgotten.is_some());
+        }
     }
 }

@@ -1,9 +1,10 @@
 //! A display that goes the wrong way.
 //!
 //! While current cools and the display is warmer than it should be, its reading may fall or stay; while it warms and
-//! the display is too cold, rise or stay. A reading that goes back from its best by 1 K is driven by something else:
+//! the display is too cold, rise or stay. A reading that goes back from its best by 2.5 K is driven by something else:
 //! at once, the polarity is wrong or the thermistor is elsewhere; slowly, the current heats the sink more than it
-//! cools the display. The test needs no model of the tile, so it holds for every law and every tile.
+//! cools the display. A finger of 36 °C that lands with 5 N while a hot sink limits the current does 2 K. The test needs no
+//! model of the tile, so it holds for every law and every tile.
 
 use contact_model::fixed_point::Celsius;
 
@@ -11,7 +12,7 @@ use super::Fault;
 use crate::drive::Current;
 
 /// Back from the best.
-const BACK: Celsius = Celsius::lit("1");
+const BACK: Celsius = Celsius::lit("2.5");
 /// Mean current from which on it has a direction.
 const DIRECTED: Current = Current::lit("1");
 /// Time constant of the mean, as a power of two of ticks: after the current turns, display and thermistor go on for the

@@ -35,7 +35,7 @@ pub enum Sign {
     CurrentOff,
     /// The mirror shows more than 9.2 A, for 2 ms: what is shorter may be half in one of the device's ticks and half in the next.
     OverCurrent,
-    /// The display's thermistor has gone back by 1.1 K, farther from the set-point, while a mean of 1 A drove it there, and the
+    /// The display's thermistor has gone back by 2.6 K, farther from the set-point, while a mean of 1 A drove it there, and the
     /// current that is asked for still does. What follows a current that has turned, or goes to the set-point from the other
     /// side as the current eases off, is no deviation.
     WrongWay,
@@ -69,7 +69,7 @@ const OVER_A: f64 = 9.2;
 const OVER_ROWS: usize = 2;
 const DIRECTED_A: f64 = 1.0;
 const MEAN_S: f64 = 0.25;
-const BACK_K: f64 = 1.1;
+const BACK_K: f64 = 2.6;
 const DISPLAY_C: std::ops::RangeInclusive<f64> = 13.4..=43.1;
 const SINK_C: f64 = 42.1;
 const DOSE_MIN: f64 = 0.5;

@@ -63,8 +63,20 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(broken(Kind::BridgeShorted), &[Sign::FaultLine], &[Fault::Bridge]).at(WORST),
     Entry::trips(
         broken(Kind::PolaritySwapped),
-        &[Sign::WrongWay, Sign::DisplayLimit, Sign::SelfTest(0.504)],
-        &[Fault::Polarity, Fault::UnlikeModel, Fault::OverCurrent],
+        &[
+            Sign::WrongWay,
+            Sign::DisplayLimit,
+            Sign::CurrentOff,
+            Sign::SelfTest(0.504),
+        ],
+        // A module that is warmer on one side drives a current of its own, now the other way.
+        &[
+            Fault::Polarity,
+            Fault::UnlikeModel,
+            Fault::OverCurrent,
+            Fault::CurrentHigh,
+            Fault::CurrentLow,
+        ],
     )
     .at(PLAIN),
     // What is left answers to the self-test's ampere by more than it asks for, or by about that. So what tells is what comes then:

@@ -31,9 +31,15 @@ pub const ENTRIES: &[Entry] = &[
     )
     .at(&[Place::Slew])
     .watched(180.0),
+    // By a tile that it is not, a display that is held goes beyond.
     Entry::trips(
         Injected::Line("set tile 0.5 0.02 0.3 0.5 0.02"),
-        &[Sign::WrongWay],
-        &[Fault::Polarity, Fault::UnlikeModel],
+        &[Sign::WrongWay, Sign::DisplayLimit],
+        &[
+            Fault::Polarity,
+            Fault::UnlikeModel,
+            Fault::DisplayHot,
+            Fault::DisplayCold,
+        ],
     ),
 ];
