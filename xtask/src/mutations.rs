@@ -196,7 +196,7 @@ const MUTATIONS: [Mutation; 33] = [
     mutation(
         "response",
         "src/guard/response.rs",
-        "const BACK: Celsius = Celsius::lit(\"1\");",
+        "const BACK: Celsius = Celsius::lit(\"2.5\");",
         "const BACK: Celsius = Celsius::lit(\"90\");",
         &["polarity-swapped"],
     ),
