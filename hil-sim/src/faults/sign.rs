@@ -332,7 +332,7 @@ mod tests {
     fn a_display_goes_the_wrong_way_only_from_its_set_point_and_against_the_current() {
         about(
             Sign::WrongWay.reached_s(&rising(20.0, 9.0), &[], 500, None),
-            2.0 + 1.1 / 2.0,
+            2.0 + 2.6 / 2.0,
         );
         assert_eq!(Sign::WrongWay.reached_s(&rising(30.0, 9.0), &[], 500, None), None);
         assert_eq!(Sign::WrongWay.reached_s(&rising(20.0, 2.1), &[], 500, None), None);
