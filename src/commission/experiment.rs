@@ -9,7 +9,8 @@
 //! with the reading's change `y`, its integrals `Y1` and `Y2`, those of the current's change `U1`, `U2`, and of its
 //! square `V2`. Integrals of noise are small, and nothing is ever differentiated. `a` and `b` take up what the reading
 //! at rest was not known to, and what drifts; `zero`, with the integral `D2` of the direction's change, what the mirror
-//! shows when nothing flows, of which the 0.05 A of its class are much of a small pulse. The tick adds up the normal equations of least squares in integers.
+//! shows when nothing flows, of which the 0.05 A of its class are much of a small pulse. The tick adds up the normal
+//! equations of least squares in integers.
 //!
 //! Two things would be taken for lag or leak if they were left out. The legs take up heat with the plate, later than
 //! it, so a part of the current acts late; and Joule's heat must come up the legs. Both are first-order filters with

@@ -43,7 +43,7 @@
 //! | `apart`        | the display's thermistors                | 3 K for 40 ms                                        |
 //! | `room`         | room above skin                          | 8 K for 40 ms                                        |
 //! | `electrical`   | current high, low                        | 1 A and a quarter for 30 ms                          |
-//! | law            | unlike model                             | residual of 3.75 K, 7 untuned, for 30 ms             |
+//! | law            | unlike model                             | residual of 3.75 K, 8 untuned, for 30 ms             |
 //! | `response`     | polarity, runaway                        | 2.5 K the wrong way at a mean of 1 A                 |
 //! | `dose`         | dose                                     | half a minute of CEM43 by the display                |
 //! | `watch`        | host silent                              | 2 s without a line while telemetry streams           |
