@@ -61,7 +61,11 @@ impl Duty {
         let taken = (u32::from(full) * u32::from(fraction.unsigned_abs()) + (1 << 14)) >> 15;
         // `taken` is at most `full`, because the fraction is below one.
         let rest = full.saturating_sub(taken as u16);
-        if fraction >= 0 { (full, rest) } else { (rest, full) }
+        if fraction >= 0 {
+            (full, rest)
+        } else {
+            (rest, full)
+        }
     }
 }
 

@@ -61,7 +61,9 @@ impl<const FINGERS: usize> Hand<FINGERS> {
 
     /// Trips all fingers for a reason that samples do not show.
     pub fn trip(&mut self, fault: Fault) {
-        self.stations.iter_mut().for_each(|station| station.trip(fault));
+        self.stations
+            .iter_mut()
+            .for_each(|station| station.trip(fault));
     }
 
     /// A fault is latched at a finger, counted modulo `FINGERS`.
@@ -125,7 +127,9 @@ impl<const FINGERS: usize> Hand<FINGERS> {
             match station.execute(command) {
                 Ok(Reply::Done) => obeyed = true,
                 Ok(said) => return Ok(Addressed { finger, said }),
-                Err(said @ Error::NothingToClear) => healthy = healthy.or(Some(Addressed { finger, said })),
+                Err(said @ Error::NothingToClear) => {
+                    healthy = healthy.or(Some(Addressed { finger, said }))
+                }
                 Err(said) => refused = refused.or(Some(Addressed { finger, said })),
             }
         }

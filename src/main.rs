@@ -30,9 +30,9 @@ mod app {
     use thermal_display::settings::Settings;
 
     use crate::board::{
-        Board, Console, End, FINGERS, Memory, PowerStage, Receiver, Record, Sampler, Task, Transmitter,
-        Trigger, Vigil, Watchdog, WindowWatchdog, at_start, first_cause, keep_dose, kept_dose,
-        stack_is_overrun,
+        Board, Console, End, FINGERS, Memory, PowerStage, Receiver, Record, Sampler, Task,
+        Transmitter, Trigger, Vigil, Watchdog, WindowWatchdog, at_start, first_cause, keep_dose,
+        kept_dose, stack_is_overrun,
     };
 
     #[shared]
@@ -67,7 +67,10 @@ mod app {
         // Before anything that the flash could delay.
         let found = at_start(&cx.device.FLASH);
         // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
-        let hand = cx.local.hand.insert(Hand::after(cause, &Settings::default()));
+        let hand = cx
+            .local
+            .hand
+            .insert(Hand::after(cause, &Settings::default()));
         match &found.kept {
             Ok(Some(kept)) => hand.restore(kept),
             Ok(None) => {}

@@ -7,7 +7,9 @@ mod stored;
 mod tile;
 
 pub(crate) use calibration::rounded;
-pub use calibration::{BORDERS, Calibration, Correction, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES};
+pub use calibration::{
+    BORDERS, Calibration, Correction, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES,
+};
 pub use sectors::{SectorError, Sectors};
 pub use store::{Store, StoreError};
 pub use stored::{Kept, LONGEST, StoredBytes, StoredError, decode, encode};
@@ -97,7 +99,11 @@ impl Curve {
     #[must_use]
     pub fn steinhart_hart(&self) -> (f64, f64, f64) {
         match *self {
-            Self::Beta { r25_ohm, beta_k } => (1.0 / 298.15 - libm::log(r25_ohm) / beta_k, 1.0 / beta_k, 0.0),
+            Self::Beta { r25_ohm, beta_k } => (
+                1.0 / 298.15 - libm::log(r25_ohm) / beta_k,
+                1.0 / beta_k,
+                0.0,
+            ),
             Self::SteinhartHart { a, b, c } => (a, b, c),
         }
     }

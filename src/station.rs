@@ -9,7 +9,9 @@ use crate::TICK_HZ;
 use crate::commission::{Aborted, Experiment, PointError};
 use crate::control::{Control, Law, Legs, Tuned, Voltage, Watt};
 use crate::drive::{Current, Drive, Outputs, SafeCurrent};
-use crate::guard::{self, Before, Cause, Dose, Fault, Progress, SelfTest, Setpoint, Sound, State, Watch};
+use crate::guard::{
+    self, Before, Cause, Dose, Fault, Progress, SelfTest, Setpoint, Sound, State, Watch,
+};
 use crate::hold::Hold;
 use crate::protocol::{Command, Error, Reply, Status, Telemetry};
 use crate::render::{Mode, Render, Scene, Wanted};
@@ -128,7 +130,10 @@ impl Station {
                 let followed = self.follow(&sound);
                 let legs = self.control.legs(sound.display, sound.sink);
                 self.control.observe(sound.display, sound.sink, finger);
-                (followed, self.act(&sound, &readings, &legs, followed.as_ref()))
+                (
+                    followed,
+                    self.act(&sound, &readings, &legs, followed.as_ref()),
+                )
             }
             Err(fault) => {
                 // What finger and tile do meanwhile is not known.
@@ -256,10 +261,12 @@ impl Station {
         if self.state == State::SelfTest {
             let touched = self.touch.lands() || self.touch.touching();
             return Ok(
-                match self
-                    .self_test
-                    .step(sound, readings.current, readings.bridge_fault, touched)?
-                {
+                match self.self_test.step(
+                    sound,
+                    readings.current,
+                    readings.bridge_fault,
+                    touched,
+                )? {
                     Progress::Off { comparator_test } => self.rest(comparator_test),
                     Progress::Drive(current) => {
                         self.control.follow(current);
@@ -276,7 +283,8 @@ impl Station {
             return Ok(self.rest(false));
         };
         let tuning = self.tuning(sound, readings.current);
-        let current = tuning.unwrap_or_else(|| self.control.update(followed.setpoint, followed.target));
+        let current =
+            tuning.unwrap_or_else(|| self.control.update(followed.setpoint, followed.target));
         Ok(self.drive(current, legs))
     }
 
@@ -380,7 +388,12 @@ impl Station {
         }
     }
 
-    fn report(&mut self, readings: &Readings, setpoint: Option<(Setpoint, bool)>, current: Current) {
+    fn report(
+        &mut self,
+        readings: &Readings,
+        setpoint: Option<(Setpoint, bool)>,
+        current: Current,
+    ) {
         self.telemetry = Telemetry {
             tick: self.tick,
             state: self.state,
@@ -422,7 +435,9 @@ impl Station {
     pub fn execute(&mut self, command: Command) -> Result<Reply, Error> {
         match command {
             // Nothing that a finger feels is moved by a line.
-            Command::Calibrate(_) | Command::Average(_) | Command::Retune(_) if self.state.presents() => {
+            Command::Calibrate(_) | Command::Average(_) | Command::Retune(_)
+                if self.state.presents() =>
+            {
                 return Err(Error::Presenting);
             }
             // A reading that steps would be taken for the display's answer.

@@ -33,7 +33,11 @@ impl Wires {
     fn mean_voltage(&self) -> Option<f64> {
         let mut sum = 0;
         for step in 0..STEPS {
-            sum += match (self.enable.get(), step < self.in1.get(), step < self.in2.get()) {
+            sum += match (
+                self.enable.get(),
+                step < self.in1.get(),
+                step < self.in2.get(),
+            ) {
                 (false, ..) | (true, false, false) => return None,
                 (true, true, false) => 1,
                 (true, false, true) => -1,

@@ -89,6 +89,9 @@ fn granite_is_lifted_off_and_replaced() {
 fn a_force_changes_on_granite() {
     let (scene, outcome) = felt(Scenario::D, "granite");
     let left_k = worst_k(&scene, &outcome, 0.1);
-    println!("granite, force of 0.1 to 2 N: at most {:.1} mK", 1e3 * left_k);
+    println!(
+        "granite, force of 0.1 to 2 N: at most {:.1} mK",
+        1e3 * left_k
+    );
     assert!(left_k < SETTLED_K, "{left_k} K");
 }

@@ -35,8 +35,15 @@ fn feels(material: &str, display_rms_mk: f64) {
         display.rms
     );
     assert!(skin_k <= FELT_K, "{material}: skin {skin_k} K");
-    assert!(display.rms < display_rms_mk, "{material}: display {display:?}");
-    assert!(figures.faults.is_empty(), "{material}: {:?}", figures.faults);
+    assert!(
+        display.rms < display_rms_mk,
+        "{material}: display {display:?}"
+    );
+    assert!(
+        figures.faults.is_empty(),
+        "{material}: {:?}",
+        figures.faults
+    );
     follows_equation_6_12(&scene, &outcome);
     follows_golden_values(material, &outcome);
 }
@@ -59,7 +66,10 @@ fn follows_equation_6_12(scene: &Scene, outcome: &Outcome) {
             "set-point off Eq. 6-12 by {:.2} mK from {from_s} s on",
             1e3 * worst_k
         );
-        assert!(worst_k < allowed_k, "set-point {worst_k} K from {from_s} s on");
+        assert!(
+            worst_k < allowed_k,
+            "set-point {worst_k} K from {from_s} s on"
+        );
     }
 }
 
@@ -80,7 +90,10 @@ fn follows_golden_values(material: &str, outcome: &Outcome) {
             .expect("a row");
         let setpoint_c = row.device.as_ref().and_then(|device| device.setpoint_c);
         let error_k = setpoint_c.expect("a set-point in contact") - exact_c;
-        assert!(error_k.abs() < 0.002, "{material} after {since_s} s: {error_k} K");
+        assert!(
+            error_k.abs() < 0.002,
+            "{material} after {since_s} s: {error_k} K"
+        );
         seen += 1;
     }
     assert!(seen >= 4, "{material}: {seen} golden values");

@@ -8,7 +8,8 @@ use hil_sim::scene::Scene;
 use system_tests::{between, forces, host, image, natively, on, on_image, scene};
 
 fn csv(outcome: &Outcome, name: &str) -> String {
-    let path = std::env::temp_dir().join(format!("thermal-display-{}-{name}.csv", std::process::id()));
+    let path =
+        std::env::temp_dir().join(format!("thermal-display-{}-{name}.csv", std::process::id()));
     outcome.trace.write(&path).expect("a trace");
     let text = std::fs::read_to_string(&path).expect("a trace");
     std::fs::remove_file(&path).expect("a trace");
@@ -19,7 +20,10 @@ fn csv(outcome: &Outcome, name: &str) -> String {
 fn native_and_image_write_the_same_trace_over_two_contacts() {
     let two = forces(&[(2.0, 2.0), (20.0, 0.0), (30.0, 0.5), (55.0, 0.0)]);
     let scene = scene("granite", 60.0, "", &two);
-    let (native, image) = (csv(&natively(&scene), "native"), csv(&on_image(&scene), "image"));
+    let (native, image) = (
+        csv(&natively(&scene), "native"),
+        csv(&on_image(&scene), "image"),
+    );
     assert_eq!(native.lines().count(), 60_002);
     let differ = native
         .lines()

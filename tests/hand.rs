@@ -46,7 +46,12 @@ fn five_contacts() -> [Scene; FINGERS] {
     .map(|(material, force_n)| {
         seed += 1;
         let landing_s = 0.5 + 0.1 * f64::from(seed as u32);
-        let mut scene = scene(material, 3.0, "", &forces(&[(landing_s, force_n), (2.7, 0.0)]));
+        let mut scene = scene(
+            material,
+            3.0,
+            "",
+            &forces(&[(landing_s, force_n), (2.7, 0.0)]),
+        );
         scene.seed = seed;
         scene
     })

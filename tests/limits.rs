@@ -61,14 +61,18 @@ fn a_bar_of_44_c_is_limited_and_says_so() {
             assert_eq!(said, (state, Some("limited")), "at {} s", row.t_s);
             assert_eq!(device.setpoint_c, Some(LIMIT_C), "at {} s", row.t_s);
         }
-        assert!(row.skin_c < LIMIT_C, "skin {} C at {} s", row.skin_c, row.t_s);
+        assert!(
+            row.skin_c < LIMIT_C,
+            "skin {} C at {} s",
+            row.skin_c,
+            row.t_s
+        );
         warmest_c = warmest_c.max(row.display_c);
     }
     println!("display {warmest_c:.3} C at most");
     assert!(warmest_c < LIMIT_C + 0.03, "display {warmest_c} C");
     let said = outcome.answers.last().map(|(_, line)| line.as_str());
-    let state =
-        "ok state=contact fault=- material=copper object_c=44.00 mode=contact setpoint_c=42.00 limited";
+    let state = "ok state=contact fault=- material=copper object_c=44.00 mode=contact setpoint_c=42.00 limited";
     assert_eq!(said, Some(state));
 }
 
@@ -83,11 +87,16 @@ fn a_display_that_is_held_at_an_end_does_not_go_beyond_and_trip() {
             scene.object.appears_t_s = scene.duration_s;
             let outcome = natively(&scene);
             let beyond = |row: &Row| (row.display_c - held_c) * beyond_k;
-            let farthest_k = (outcome.trace.rows().iter().map(beyond)).fold(f64::NEG_INFINITY, f64::max);
+            let farthest_k =
+                (outcome.trace.rows().iter().map(beyond)).fold(f64::NEG_INFINITY, f64::max);
             println!("{law}, {held_c} C: {farthest_k:.2} K beyond");
             assert!(farthest_k < 0.8, "{law}, {held_c} C: {farthest_k} K beyond");
             let last = outcome.trace.rows().last().expect("a row");
-            assert!(beyond(last).abs() < 0.05, "{law}: {} C, {held_c}", last.display_c);
+            assert!(
+                beyond(last).abs() < 0.05,
+                "{law}: {} C, {held_c}",
+                last.display_c
+            );
         }
     }
 }
@@ -101,7 +110,8 @@ fn a_line_that_comes_while_the_display_is_on_its_way_trips_nothing() {
         (0.1, "pi", "law model"),
         (0.4, "pi-10hz", "law model"),
     ] {
-        let slow = format!("[plant]\nsensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n");
+        let slow =
+            format!("[plant]\nsensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n");
         let tables = host(&[(3.0, "arm"), (3.5, line), (6.5, "state")]) + &slow;
         let mut scene = scene("copper", 7.0, &format!("law = \"{law}\""), &tables);
         scene.object.start_c = Some(15.0);
@@ -138,7 +148,10 @@ fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {
         let [state] = said.filter(|said| *said != "ok").collect::<Vec<_>>()[..] else {
             panic!("{line}: {:?}", outcome.answers);
         };
-        assert!(state.starts_with("ok state=armed fault=-"), "{line}: {state}");
+        assert!(
+            state.starts_with("ok state=armed fault=-"),
+            "{line}: {state}"
+        );
     }
 }
 
@@ -147,8 +160,7 @@ fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {
 #[test]
 fn a_finger_that_warms_a_display_at_its_limit_trips_nothing() {
     let weak = "tile.imax_a = 5.4\ntile.vmax_v = 7.38\ntile.dtmax_k = 60.3\ntile.ceramic_j_m3k = 3355000.0\n";
-    let strong =
-        "tile.imax_a = 6.6\ntile.vmax_v = 9.02\ntile.dtmax_k = 73.7\ntile.ceramic_j_m3k = 2745000.0\n";
+    let strong = "tile.imax_a = 6.6\ntile.vmax_v = 9.02\ntile.dtmax_k = 73.7\ntile.ceramic_j_m3k = 2745000.0\n";
     for (law, lag_s, module) in [
         ("model", 0.1, weak),
         ("pi", 0.5, strong),
@@ -163,7 +175,10 @@ fn a_finger_that_warms_a_display_at_its_limit_trips_nothing() {
         (scene.skin_c, scene.object.start_c) = (36.0, Some(15.0));
         let outcome = natively(&scene);
         let (_, state) = outcome.answers.last().expect("an answer");
-        assert!(state.starts_with("ok state=contact fault=-"), "{law}: {state}");
+        assert!(
+            state.starts_with("ok state=contact fault=-"),
+            "{law}: {state}"
+        );
         let reading_c = |row: &Row| row.device.as_ref().and_then(|device| device.sensor_c);
         let mut coldest_c = f64::INFINITY;
         let mut back_k = 0.0f64;

@@ -47,7 +47,10 @@ fn contact_resistance_brings_the_skin_closer_to_the_truth() {
             skin_error_k(&full)
         );
         // What is left is the loop's, and so small that people feel the difference of the modes only.
-        assert!(skin_error_k(&full) < part * skin_error_k(&plain), "{material}");
+        assert!(
+            skin_error_k(&full) < part * skin_error_k(&plain),
+            "{material}"
+        );
         assert!(skin_error_k(&full) < 5e-3, "{material}");
         let warmer = mean(between(&plain, LANDED_S + 0.05, LANDED_S + 1.0), |row| {
             row.skin_c - row.skin_real_c

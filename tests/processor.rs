@@ -17,7 +17,8 @@ fn failing(t_s: f64, fault: &str) -> Outcome {
     let world = World::new(&scene).expect("a plant for the scene");
     let mut engine = Image::new(&firmware, world).expect("the image samples");
     let fault = fault.parse().expect("a fault");
-    run_with(&scene, &[Injection { t_s, fault }], &mut engine, |_| ()).expect("the image runs to the end")
+    run_with(&scene, &[Injection { t_s, fault }], &mut engine, |_| ())
+        .expect("the image runs to the end")
 }
 
 /// The timer goes on with the last duty until then: 100 ms at most with the nominal oscillator of the slower watchdog.
@@ -36,7 +37,12 @@ fn a_hung_core_ends_in_a_watchdog_reset_that_takes_the_bridge_off() {
     );
     assert!((1.0..1.102).contains(&reset.t_s), "{reset:?}");
     for row in between(&outcome, 1.0, reset.t_s) {
-        assert!(row.current_a.abs() > 0.3, "{} A at {} s", row.current_a, row.t_s);
+        assert!(
+            row.current_a.abs() > 0.3,
+            "{} A at {} s",
+            row.current_a,
+            row.t_s
+        );
     }
     // The plant sees the legs at its next boundary.
     for row in between(&outcome, reset.t_s + 2e-3, 2.0) {

@@ -7,13 +7,15 @@ use system_tests::{between, natively, scene};
 fn the_display_holds_still() {
     for lag_s in [0.02, 0.1, 0.5] {
         for start_c in [22.0, 40.0] {
-            let plant = format!("[plant.sensors]\ndisplay.lag_s = {lag_s}\ncheck.lag_s = {lag_s}\n");
+            let plant =
+                format!("[plant.sensors]\ndisplay.lag_s = {lag_s}\ncheck.lag_s = {lag_s}\n");
             let mut scene = scene("granite", 10.0, "settle_s = 60", &plant);
             scene.object.start_c = Some(start_c);
             let outcome = natively(&scene);
             let rows = || between(&outcome, 0.0, 10.0);
             let preset_c = scene.exact_setpoint_c(0.0, 2.0);
-            let (mut low_c, mut high_c, mut low_a, mut high_a) = (f64::MAX, f64::MIN, f64::MAX, f64::MIN);
+            let (mut low_c, mut high_c, mut low_a, mut high_a) =
+                (f64::MAX, f64::MIN, f64::MAX, f64::MIN);
             for row in rows() {
                 (low_c, high_c) = (low_c.min(row.display_c), high_c.max(row.display_c));
                 (low_a, high_a) = (low_a.min(row.current_a), high_a.max(row.current_a));

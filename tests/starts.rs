@@ -82,6 +82,9 @@ fn the_first_cause_outlives_resets_but_not_the_power() {
 fn a_start_that_ends_before_the_watchdogs_run_is_tried_again() {
     let mut device = lost_at_the_start();
     let causes: Vec<_> = device.0.resets().iter().map(|reset| reset.cause).collect();
-    assert_eq!(causes, [ResetCause::PowerOn, ResetCause::IndependentWatchdog]);
+    assert_eq!(
+        causes,
+        [ResetCause::PowerOn, ResetCause::IndependentWatchdog]
+    );
     assert_eq!(cause(&mut device), "hard-fault");
 }

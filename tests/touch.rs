@@ -89,9 +89,9 @@ fn corners() -> impl Iterator<Item = SensorParams> {
     let both = [-0.02, 0.02];
     both.into_iter().flat_map(move |zero| {
         both.into_iter().flat_map(move |gain| {
-            [0.2e-3, 1e-3, 5e-3]
-                .into_iter()
-                .flat_map(move |lag_s| [0.7, 1.2].map(|noise_counts| sensor(zero, gain, lag_s, noise_counts)))
+            [0.2e-3, 1e-3, 5e-3].into_iter().flat_map(move |lag_s| {
+                [0.7, 1.2].map(|noise_counts| sensor(zero, gain, lag_s, noise_counts))
+            })
         })
     })
 }
@@ -123,7 +123,10 @@ fn a_tenth_of_a_newton_is_noticed_within_5_ms_and_its_landing_known_to_a_tick() 
         }
     }
     println!("noticed after {latest} ticks at most; {off} of {landings} landings a tick off");
-    assert!(off * 20 < landings, "{off} of {landings} landings a tick off");
+    assert!(
+        off * 20 < landings,
+        "{off} of {landings} landings a tick off"
+    );
 }
 
 /// Two hours, of which the zero drifts away by 0.07 N in one.

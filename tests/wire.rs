@@ -9,7 +9,12 @@ fn answers(lines: &[&str], more: &str) -> Vec<String> {
         .enumerate()
         .map(|(i, line)| (1.0 + 0.01 * i as f64, *line))
         .collect();
-    let scene = scene("abs", 3.0, "", &(forces(&[(0.5, 2.0)]) + &host(&timed) + more));
+    let scene = scene(
+        "abs",
+        3.0,
+        "",
+        &(forces(&[(0.5, 2.0)]) + &host(&timed) + more),
+    );
     let outcome = on_image(&scene);
     for row in between(&outcome, 2.5, 3.0) {
         assert_eq!(
@@ -36,7 +41,10 @@ fn good_lines_are_answered() {
 fn each_bad_line_is_answered_with_what_is_wrong_and_the_contact_goes_on() {
     let long = "x".repeat(300);
     let cases = [
-        ("frobnicate", "err unknown command 'frobnicate'; known: id state"),
+        (
+            "frobnicate",
+            "err unknown command 'frobnicate'; known: id state",
+        ),
         (
             "material gold",
             "err unknown material 'gold'; known: copper bronze",
@@ -69,7 +77,8 @@ fn each_bad_line_is_answered_with_what_is_wrong_and_the_contact_goes_on() {
 
 #[test]
 fn binary_garbage_is_refused_and_the_next_line_understood() {
-    let garbage = "[[fault]]\nkind = \"host-garbage\"\nt_s = 1.5\n[[host]]\nt_s = 1.6\nline = \"id\"\n";
+    let garbage =
+        "[[fault]]\nkind = \"host-garbage\"\nt_s = 1.5\n[[host]]\nt_s = 1.6\nline = \"id\"\n";
     let answers = answers(&[], garbage);
     assert!(answers.len() >= 2, "{answers:?}");
     assert!(

@@ -95,7 +95,9 @@ fn erfcx(z: f64) -> f64 {
 /// Coefficients, lowest power first, of the polynomial of `count` terms that meets `f` at the Chebyshev points of
 /// -1 to 1; within a few per cent of the best one for functions as smooth as these.
 fn fit(count: usize, f: impl Fn(f64) -> f64) -> Vec<f64> {
-    let angles: Vec<f64> = (0..count).map(|i| PI * (i as f64 + 0.5) / count as f64).collect();
+    let angles: Vec<f64> = (0..count)
+        .map(|i| PI * (i as f64 + 0.5) / count as f64)
+        .collect();
     let values: Vec<f64> = angles.iter().map(|angle| f(angle.cos())).collect();
     let mut powers = vec![0.0; count];
     // T_k in powers, from T_(k-1) and the one before it.

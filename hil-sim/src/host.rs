@@ -67,13 +67,23 @@ impl Host {
         };
         queue.push((start_ms, "start".into()));
         queue.push((zero_ms - STREAM_MS, format!("stream {stream_ms}")));
-        queue.extend(scene.host.iter().map(|host| (at(host.t_s), host.line.clone())));
+        queue.extend(
+            scene
+                .host
+                .iter()
+                .map(|host| (at(host.t_s), host.line.clone())),
+        );
         let lines = queue
             .into_iter()
             .map(|(ms, line)| (ms, [line.as_bytes(), b"\n"].concat()));
         let times = |kind| -> Vec<Range<u64>> {
-            let faults = scene.faults.iter().filter(|fault| fault.broken.kind == kind);
-            faults.map(|fault| at(fault.t_s)..at(fault.until_s)).collect()
+            let faults = scene
+                .faults
+                .iter()
+                .filter(|fault| fault.broken.kind == kind);
+            faults
+                .map(|fault| at(fault.t_s)..at(fault.until_s))
+                .collect()
         };
         let garbage = times(FaultKind::HostGarbage).into_iter();
         let garbage = garbage.map(|times| (times.start, GARBAGE.to_vec()));
@@ -99,7 +109,8 @@ impl Host {
     /// The bytes that leave at a half millisecond since the device's start, if any.
     pub fn send(&mut self, half_ms: u64) -> Option<&[u8]> {
         let next = self.queue.get(self.next);
-        let Some((_, bytes)) = next.filter(|(ms, bytes)| half_ms >= 2 * ms + leaves_at_half(bytes)) else {
+        let Some((_, bytes)) = next.filter(|(ms, bytes)| half_ms >= 2 * ms + leaves_at_half(bytes))
+        else {
             let now_ms = half_ms / 2;
             let floods = within(&self.floods, now_ms) && !within(&self.silences, now_ms);
             return floods.then_some(FLOOD);

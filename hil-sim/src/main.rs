@@ -8,8 +8,8 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use cli::{
-    Failure, commission, erfcx, faults, fidelity, hand, infrared, model, parameters, profile, roughness, run,
-    thesis,
+    Failure, commission, erfcx, faults, fidelity, hand, infrared, model, parameters, profile,
+    roughness, run, thesis,
 };
 
 /// Simulated plant and emulated microcontroller of the thermal display.

@@ -178,7 +178,11 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
 
 /// Time since the last landing, s, and error of the skin, K, at every row in contact.
 pub fn skin_errors(scene: &Scene, outcome: &Outcome) -> impl Iterator<Item = (f64, f64)> {
-    let rows = outcome.trace.rows().iter().zip(contact_times(scene, outcome));
+    let rows = outcome
+        .trace
+        .rows()
+        .iter()
+        .zip(contact_times(scene, outcome));
     rows.filter_map(|(row, since_s)| Some((since_s?, row.skin_c - row.skin_real_c)))
 }
 

@@ -57,7 +57,9 @@ pub enum RunError<S: std::error::Error + 'static> {
         to_s: f64,
     },
     /// One finger's scene breaks what all share.
-    #[error("{0} is a fault of the processor that five fingers share; such a scene is for one finger")]
+    #[error(
+        "{0} is a fault of the processor that five fingers share; such a scene is for one finger"
+    )]
     Shared(MachineFault),
     /// The device refused a line that sets the scene up.
     #[error("the device refused to be set up for the scene: {0}")]
@@ -138,7 +140,9 @@ pub fn run_with<E: Engine>(
             match Telemetry::parse(&line) {
                 Some(telemetry) => trace.join(telemetry),
                 // Before time zero only set-up is sent.
-                None if ms < zero_ms && line.starts_with("err") => return Err(RunError::Refused(line)),
+                None if ms < zero_ms && line.starts_with("err") => {
+                    return Err(RunError::Refused(line));
+                }
                 None => answers.push((session.t_s(ms + 1), line)),
             }
         }

@@ -80,7 +80,11 @@ pub struct Trace {
 impl Trace {
     /// Adds a row; `tick` is the number of the device's last tick before it.
     pub fn push(&mut self, tick: u64, mut row: Row) {
-        if let Some(index) = self.early.iter().position(|telemetry| telemetry.tick == tick) {
+        if let Some(index) = self
+            .early
+            .iter()
+            .position(|telemetry| telemetry.tick == tick)
+        {
             row.device = self.early.remove(index);
         } else {
             keep(&mut self.waiting, (tick, self.rows.len()));
@@ -90,7 +94,11 @@ impl Trace {
 
     /// Gives the telemetry to its row, which may be still to come.
     pub fn join(&mut self, telemetry: Telemetry) {
-        match self.waiting.iter().find(|(tick, _)| *tick == telemetry.tick) {
+        match self
+            .waiting
+            .iter()
+            .find(|(tick, _)| *tick == telemetry.tick)
+        {
             Some((_, index)) => self.rows[*index].device = Some(telemetry),
             None => keep(&mut self.early, telemetry),
         }
@@ -108,7 +116,11 @@ impl Trace {
     /// The file cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
         let watched = self.rows.iter().any(|row| row.camera.is_some());
-        let columns = || COLUMNS.iter().chain(CAMERA_COLUMNS.iter().filter(|_| watched));
+        let columns = || {
+            COLUMNS
+                .iter()
+                .chain(CAMERA_COLUMNS.iter().filter(|_| watched))
+        };
         let mut csv = csv::Writer::from_path(path)?;
         csv.write_record(columns().map(|(name, _)| name))?;
         for row in &self.rows {
@@ -139,7 +151,10 @@ const COLUMNS: [Column; 17] = [
     ("sink_c", |row| format!("{:.6}", row.sink_c)),
     ("current_a", |row| format!("{:.6}", row.current_a)),
     ("state", |row| {
-        row.device.as_ref().map_or("", |device| &device.state).into()
+        row.device
+            .as_ref()
+            .map_or("", |device| &device.state)
+            .into()
     }),
     ("demand_a", |row| said(row, |device| device.demand_a, 3)),
     ("object_real_c", |row| format!("{:.6}", row.object_real_c)),

@@ -16,7 +16,11 @@ fn hil_sim(arguments: &[&str], input: &str) -> Output {
         .spawn()
         .expect("hil-sim starts");
     // A command that reads nothing closes the pipe.
-    let _ = child.stdin.take().expect("a pipe").write_all(input.as_bytes());
+    let _ = child
+        .stdin
+        .take()
+        .expect("a pipe")
+        .write_all(input.as_bytes());
     child.wait_with_output().expect("hil-sim ends")
 }
 
@@ -42,7 +46,10 @@ type Row = HashMap<String, String>;
 
 /// The golden tables of the contact model's own tests.
 fn golden(name: &str) -> Vec<Row> {
-    let path = format!("{}/../model/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
+    let path = format!(
+        "{}/../model/tests/data/{name}.csv",
+        env!("CARGO_MANIFEST_DIR")
+    );
     let rows = csv::Reader::from_path(path)
         .expect("golden table")
         .into_deserialize();
@@ -88,7 +95,8 @@ fn model_meets_golden_values_in_f64_and_fixed_point() {
                 .split(',')
                 .map(|cell| cell.parse().expect("a number"))
                 .collect();
-            let kelvin = bound * step_k.max(1.0) + 1e-6 * f64::from(u8::from(arithmetic == "fixed")) + 1e-11;
+            let kelvin =
+                bound * step_k.max(1.0) + 1e-6 * f64::from(u8::from(arithmetic == "fixed")) + 1e-11;
             for (index, column, allowed) in [
                 (2, "erfcx_z", bound),
                 (3, "T_skin_s_C", kelvin),
@@ -142,7 +150,10 @@ fn skin_at_depth_meets_golden_values() {
             .unwrap()
             .parse()
             .unwrap();
-        assert!((skin_c - number(row, "T_skin_x_t_C")).abs() < 1e-9, "{row:?}");
+        assert!(
+            (skin_c - number(row, "T_skin_x_t_C")).abs() < 1e-9,
+            "{row:?}"
+        );
     }
 }
 
@@ -165,7 +176,10 @@ fn erfcx_meets_golden_values_in_decimal_and_hexadecimal() {
                 .expect("z,E_bits");
             assert_eq!(z, row[column]);
             let error = bits.parse::<f64>().expect("an integer") - exact;
-            assert!(error.abs() <= 0.51 + 0.07, "z = {z}: {error} units of 2^-32");
+            assert!(
+                error.abs() <= 0.51 + 0.07,
+                "z = {z}: {error} units of 2^-32"
+            );
         }
     }
 }
@@ -204,7 +218,12 @@ fn bad_scenes_are_refused_with_file_line_and_what_is_allowed() {
             5,
             "object.material = \"gold\"; known are copper, bronze",
         ),
-        ("skin_c", "skinn_c", 2, "unknown field `skinn_c`, expected one of"),
+        (
+            "skin_c",
+            "skinn_c",
+            2,
+            "unknown field `skinn_c`, expected one of",
+        ),
         (
             "force_n = 2",
             "force_n = -1",
@@ -236,7 +255,12 @@ fn bad_scenes_are_refused_with_file_line_and_what_is_allowed() {
             4,
             "object.rho_kg_m3 is missing",
         ),
-        ("t_s = 0.5", "t_s = 5", 7, "force.t_s = 5; allowed is 0 to 1"),
+        (
+            "t_s = 0.5",
+            "t_s = 5",
+            7,
+            "force.t_s = 5; allowed is 0 to 1",
+        ),
     ] {
         let file = File::new("scene.toml", &SCENE.replacen(from, to, 1));
         let message = refused(&["run", file.path(), "--engine", "native"]);
@@ -264,7 +288,10 @@ fn files_that_are_none_are_refused() {
 #[test]
 fn bad_arguments_of_the_model_are_refused_by_name() {
     for (arguments, expected) in [
-        (vec!["--material", "gold"], "--material gold; known are copper"),
+        (
+            vec!["--material", "gold"],
+            "--material gold; known are copper",
+        ),
         (
             vec!["--material", "abs", "--force-n", "-1"],
             "--force-n -1; allowed is a finite number above 0",
@@ -336,7 +363,8 @@ fn run_reports_resets_and_refuses_other_faults_of_the_processor() {
         "resets.toml",
         "duration_s = 0.02\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"abs\"\n",
     );
-    let line = |more: &[&'static str]| [&["run", scene.path(), "--engine", "native"], more].concat();
+    let line =
+        |more: &[&'static str]| [&["run", scene.path(), "--engine", "native"], more].concat();
     let run = |more: &[&'static str]| good(&line(more), "");
     assert!(run(&[]).contains("resets               none\n"));
     let table = run(&["--inject", "0.005:brown-out", "--inject", "0.01:reset-pin"]);
@@ -386,15 +414,23 @@ fn fidelity_compares_laws_and_is_reproducible_by_seed() {
     );
     assert!(value(0) > value(1) && value(1) > 0.0, "{text}");
     for row in rows {
-        assert_eq!(row["judged"]["value"], row["skin_error_mk"]["max_after_50ms"]);
+        assert_eq!(
+            row["judged"]["value"],
+            row["skin_error_mk"]["max_after_50ms"]
+        );
         let (max, rms) = (&row["current_a"]["max_abs"], &row["current_a"]["rms"]);
-        assert!(max.as_f64() > rms.as_f64() && rms.as_f64() > Some(0.0), "{row}");
+        assert!(
+            max.as_f64() > rms.as_f64() && rms.as_f64() > Some(0.0),
+            "{row}"
+        );
         assert!(row["energy_j"].as_f64() > Some(0.0), "{row}");
     }
     let drawn = || {
-        let mut report: serde_json::Value =
-            serde_json::from_str(&good(&["fidelity", "--box", "3", "--seed", "9", "--json"], ""))
-                .expect("JSON");
+        let mut report: serde_json::Value = serde_json::from_str(&good(
+            &["fidelity", "--box", "3", "--seed", "9", "--json"],
+            "",
+        ))
+        .expect("JSON");
         report["box"].take()
     };
     let first = drawn();
@@ -409,7 +445,10 @@ fn fidelity_refuses_what_it_does_not_know() {
             &["fidelity", "--scenario", "E"][..],
             "[possible values: A, B, C, D, unseen, all]",
         ),
-        (&["fidelity", "--law", "pid"], "[possible values: pi-10hz, pi"),
+        (
+            &["fidelity", "--law", "pid"],
+            "[possible values: pi-10hz, pi",
+        ),
         (
             &["fidelity", "--without", "gravity"],
             "sensor-noise, inl, sensor-lag",

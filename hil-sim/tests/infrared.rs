@@ -84,7 +84,11 @@ fn radiance_is_planck_s_law_over_the_band() {
         let weights = [7.0, 32.0, 12.0, 32.0, 7.0];
         let panel = |panel: i32| {
             let node = |(i, weight): (usize, f64)| {
-                weight * spectral(7.5e-6 + step_m * (f64::from(4 * panel) + i as f64), t_c + 273.15)
+                weight
+                    * spectral(
+                        7.5e-6 + step_m * (f64::from(4 * panel) + i as f64),
+                        t_c + 273.15,
+                    )
             };
             weights.into_iter().enumerate().map(node).sum::<f64>()
         };
@@ -162,7 +166,10 @@ fn camera_meets_golden_round_trips() {
         assert!((reading.u_tot / total - 1.0).abs() <= 1e-14, "{row:?}");
         assert!((reading.apparent_c - apparent_c).abs() <= 1e-11, "{row:?}");
         for recovered_c in [reading.recovered_c, camera.recovered_c(apparent_c)] {
-            assert!((recovered_c - number(&row, "T_obj_C")).abs() <= 1e-10, "{row:?}");
+            assert!(
+                (recovered_c - number(&row, "T_obj_C")).abs() <= 1e-10,
+                "{row:?}"
+            );
         }
     }
 }
@@ -190,7 +197,10 @@ fn way_back_recovers_any_target() {
                     assert!(reading.apparent_c > before_c, "{optic:?} {target_c}");
                     before_c = reading.apparent_c;
                     let error = (reading.recovered_c - target_c).abs();
-                    assert!(error <= 1e-9, "{optic:?} {surroundings:?} {target_c}: {error:e}");
+                    assert!(
+                        error <= 1e-9,
+                        "{optic:?} {surroundings:?} {target_c}: {error:e}"
+                    );
                 }
             }
         }
@@ -227,7 +237,9 @@ fn self_reflection_overestimates_and_zns_most() {
         .map(|row| (row["T_C"].clone(), number(row, "U_7.5_13um_W_m2_sr")))
         .collect();
     let excess = radiances["30"] - radiances["24"];
-    for (optic, transmissivity, reflectivity) in [(Optic::Baf2, 0.77, 0.04), (Optic::Zns, 0.65, 0.22)] {
+    for (optic, transmissivity, reflectivity) in
+        [(Optic::Baf2, 0.77, 0.04), (Optic::Zns, 0.65, 0.22)]
+    {
         for share in [0.0, 0.5, 1.0] {
             let reflection = SelfReflection {
                 camera_c: 30.0,
@@ -238,7 +250,8 @@ fn self_reflection_overestimates_and_zns_most() {
                 ..silent(optic)
             };
             let reading = camera(&params, &Surroundings::at(24.0), 1).read(27.0);
-            let expected = radiances["27"] + share * reflectivity * 0.54 * excess / (0.95 * transmissivity);
+            let expected =
+                radiances["27"] + share * reflectivity * 0.54 * excess / (0.95 * transmissivity);
             let relative = (radiance(reading.recovered_c) / expected - 1.0).abs();
             assert!(relative <= 1e-12, "{optic:?} {share}: {relative:e}");
         }
@@ -292,15 +305,23 @@ fn noise_is_the_netd_without_bias_and_optics_magnify_it() {
             apparent_bias_k.abs() < 4.0 * apparent_k / 200.0,
             "{optic:?} {apparent_bias_k}"
         );
-        assert!(bias_k.abs() < 4.0 * recovered_k / 200.0, "{optic:?} {bias_k}");
+        assert!(
+            bias_k.abs() < 4.0 * recovered_k / 200.0,
+            "{optic:?} {bias_k}"
+        );
         // Less of the target arrives, and at another steepness of Planck's law.
-        let window = optic.window().map_or(1.0, |window| window.transmissivity * 0.54);
+        let window = optic
+            .window()
+            .map_or(1.0, |window| window.transmissivity * 0.54);
         let magnified = radiance_per_k(30.0) / (0.95 * window * radiance_per_k(target_c));
         assert!(
             (recovered_k / (params.netd_k * magnified) - 1.0).abs() < 0.02,
             "{optic:?} {recovered_k}"
         );
-        let averaged = CameraParams { pixels: 100, ..black };
+        let averaged = CameraParams {
+            pixels: 100,
+            ..black
+        };
         let (_, [_, averaged_k]) = statistics(&averaged, 30.0, 7);
         let (_, [_, single_k]) = statistics(&black, 30.0, 8);
         assert!(
@@ -313,7 +334,11 @@ fn noise_is_the_netd_without_bias_and_optics_magnify_it() {
 #[test]
 fn readings_follow_from_the_seed() {
     let readings = |seed| {
-        let mut camera = camera(&CameraParams::thesis(Optic::Baf2), &Surroundings::at(24.0), seed);
+        let mut camera = camera(
+            &CameraParams::thesis(Optic::Baf2),
+            &Surroundings::at(24.0),
+            seed,
+        );
         [27.0, 27.0, 30.0].map(|target_c| camera.read(target_c).u_tot)
     };
     assert_eq!(readings(3), readings(3));
@@ -344,7 +369,10 @@ fn wrong_parameters_are_named() {
             "emissivity 1.1; allowed is above 0 to 1",
         ),
         (
-            CameraParams { netd_k: -0.1, ..fine },
+            CameraParams {
+                netd_k: -0.1,
+                ..fine
+            },
             room,
             "netd_k -0.1; allowed is a finite number from 0 on",
         ),
@@ -407,7 +435,11 @@ fn command(arguments: &[&str]) -> (Option<i32>, String, String) {
         .output()
         .expect("hil-sim ends");
     let text = |bytes| String::from_utf8(bytes).expect("text");
-    (output.status.code(), text(output.stdout), text(output.stderr))
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
 }
 
 /// The numbers of a good answer.
@@ -432,7 +464,12 @@ fn command_meets_golden_round_trips() {
         let mut arguments = vec!["--optic", &row["optic"], "--target-c", &row["T_obj_C"]];
         arguments.extend(["--ambient-c", &row["T_amb_C"]]);
         if row["optic"] != "none" {
-            arguments.extend(["--window-c", &row["T_opt1_C"], "--splitter-c", &row["T_opt2_C"]]);
+            arguments.extend([
+                "--window-c",
+                &row["T_opt1_C"],
+                "--splitter-c",
+                &row["T_opt2_C"],
+            ]);
         }
         let expected = ["U_tot", "T_apparent_C", "T_obj_C"].map(|column| number(&row, column));
         for (value, expected) in table(&arguments)[0].into_iter().zip(expected) {
@@ -446,8 +483,14 @@ fn command_takes_lists_and_the_optics_default_to_the_room() {
     let common = ["--optic", "zns", "--ambient-c", "24"];
     let both = table(&[&common[..], &["--target-c", "-5,27"]].concat());
     let given = ["--window-c", "24", "--splitter-c", "24", "--target-c"];
-    assert_eq!(both[0], table(&[&common[..], &given[..], &["-5"]].concat())[0]);
-    assert_eq!(both[1], table(&[&common[..], &given[..], &["27"]].concat())[0]);
+    assert_eq!(
+        both[0],
+        table(&[&common[..], &given[..], &["-5"]].concat())[0]
+    );
+    assert_eq!(
+        both[1],
+        table(&[&common[..], &given[..], &["27"]].concat())[0]
+    );
     assert_eq!(both.len(), 2);
     let warm = table(&[&common[..], &["--target-c", "27", "--camera-c", "30"]].concat());
     assert!(warm[0][2] > 27.5, "{warm:?}");
@@ -464,8 +507,16 @@ fn command_refuses_what_makes_no_sense() {
     let zns = ["--optic", "zns", "--target-c", "27", "--ambient-c", "24"];
     let none = ["--optic", "none", "--target-c", "27", "--ambient-c", "24"];
     for (common, more, expected) in [
-        (&none, &["--window-c", "25"][..], "--window-c needs an optic"),
-        (&none, &["--splitter-c", "25"], "--splitter-c needs an optic"),
+        (
+            &none,
+            &["--window-c", "25"][..],
+            "--window-c needs an optic",
+        ),
+        (
+            &none,
+            &["--splitter-c", "25"],
+            "--splitter-c needs an optic",
+        ),
         (&none, &["--camera-c", "30"], "--camera-c needs an optic"),
         (
             &zns,
@@ -494,7 +545,14 @@ fn command_refuses_what_makes_no_sense() {
             "none, baf2, zns",
         ),
         (
-            ["--optic", "zns", "--target-c", "27,500", "--ambient-c", "24"],
+            [
+                "--optic",
+                "zns",
+                "--target-c",
+                "27,500",
+                "--ambient-c",
+                "24",
+            ],
             "--target-c 500; allowed is -100 to 200",
         ),
         (

@@ -26,7 +26,13 @@ fn exceptions_nest_chain_and_obey_the_masks() {
     assert_eq!(log[..log.len() - 4], wanted[..wanted.len() - 4]);
     assert_eq!(log[log.len() - 4..], [8, 0, 2, DONE]);
     let stats = machine.stats();
-    let count = |name: &str| stats.interrupts.iter().find(|i| i.name == name).map(|i| i.count);
+    let count = |name: &str| {
+        stats
+            .interrupts
+            .iter()
+            .find(|i| i.name == name)
+            .map(|i| i.count)
+    };
     assert_eq!(
         (count("EXTI0"), count("EXTI1"), count("EXTI2")),
         (Some(3), Some(4), Some(4))
@@ -62,7 +68,9 @@ fn an_undefined_instruction_becomes_a_hard_fault() {
 #[test]
 fn a_fault_in_the_fault_handler_is_lockup_for_good_without_a_watchdog() {
     match probe::machine(4).run_until(1_000_000).expect_err("stops") {
-        Stop::Lockup { priority, place, .. } => {
+        Stop::Lockup {
+            priority, place, ..
+        } => {
             assert_eq!(priority, -1);
             assert!(place.function.contains("hard_fault"), "{place}");
         }

@@ -76,7 +76,9 @@ fn the_break_input_releases_both_legs() {
     let (mut machine, _) = probe::run(13, SECOND / 100);
     assert_ne!(machine.pwm(0, 8), LegState::Off);
     machine.wiring_mut().break_pin = Some(true);
-    machine.run_until(machine.now() + SECOND / 16_000).expect("runs");
+    machine
+        .run_until(machine.now() + SECOND / 16_000)
+        .expect("runs");
     assert_eq!([machine.pwm(0, 8), machine.pwm(0, 9)], [LegState::Off; 2]);
     assert_eq!(
         machine.wiring().bridge.last().map(|b| b.0),
@@ -101,7 +103,10 @@ fn too_few_wait_states_stop_the_run() {
 #[test]
 fn an_unmodelled_mode_stops_the_run() {
     for case in [11, 16] {
-        let Stop::NotModelled { register, value, .. } = stop(case) else {
+        let Stop::NotModelled {
+            register, value, ..
+        } = stop(case)
+        else {
             panic!()
         };
         assert_eq!(
@@ -197,7 +202,10 @@ fn the_products_load_keeps_its_rates() {
     assert_eq!(machine.pwm(0, 8).duty(), Some(0.25));
     assert_eq!(machine.pwm(0, 9).duty(), Some(0.0));
     let from = machine.now();
-    let (conversions, bytes) = (machine.wiring().conversions.len(), machine.wiring().sent.len());
+    let (conversions, bytes) = (
+        machine.wiring().conversions.len(),
+        machine.wiring().sent.len(),
+    );
     let ticks = |m: &hil_sim::machine::Machine<probe::Bench>| {
         m.stats()
             .interrupts
@@ -222,7 +230,9 @@ fn the_products_load_keeps_its_rates() {
         .map(|c| c.1)
         .collect();
     assert!(
-        starts.windows(2).all(|pair| pair[1] - pair[0] == SECOND / 16_000),
+        starts
+            .windows(2)
+            .all(|pair| pair[1] - pair[0] == SECOND / 16_000),
         "sampling has no jitter"
     );
     let scan: Vec<_> = bench.conversions[..7]
@@ -232,13 +242,23 @@ fn the_products_load_keeps_its_rates() {
     let conversion = (56 + 12) * 8;
     assert_eq!(
         scan,
-        (0..7).map(|i| (i, u64::from(i) * conversion)).collect::<Vec<_>>()
+        (0..7)
+            .map(|i| (i, u64::from(i) * conversion))
+            .collect::<Vec<_>>()
     );
-    assert!(bench.sent.windows(2).all(|pair| pair[1].1 - pair[0].1 == 1800));
+    assert!(
+        bench
+            .sent
+            .windows(2)
+            .all(|pair| pair[1].1 - pair[0].1 == 1800)
+    );
     let samples = probe::words(&machine, "SAMPLES", 7);
     let wanted = [(0, 1), (2, 3), (4, 5), (6, 0), (1, 2), (3, 4), (5, 6)];
     let code = |channel: u32| 100 * channel + 7;
-    assert_eq!(samples, wanted.map(|(low, high)| code(low) | code(high) << 16));
+    assert_eq!(
+        samples,
+        wanted.map(|(low, high)| code(low) | code(high) << 16)
+    );
 }
 
 #[test]
@@ -293,5 +313,8 @@ fn two_runs_are_the_same_to_the_bit() {
         bench.conversions, in_steps.conversions,
         "nor does it matter where the run is cut"
     );
-    assert!(stack.is_some_and(|bytes| bytes > 0 && bytes < 4096), "{stack:?}");
+    assert!(
+        stack.is_some_and(|bytes| bytes > 0 && bytes < 4096),
+        "{stack:?}"
+    );
 }

@@ -29,7 +29,11 @@ fn a_hung_core_is_reset_by_the_window_watchdog_and_the_legs_are_off_at_once() {
     machine.hang_core();
     let hung_at = machine.now();
     run(&mut machine, 44 * MS);
-    assert_ne!(legs(&mut machine), OFF, "the timer drives on without its core");
+    assert_ne!(
+        legs(&mut machine),
+        OFF,
+        "the timer drives on without its core"
+    );
     let more = machine.wiring().conversions.len() - conversions;
     assert!(more.abs_diff(44 * 16 * 7) <= 7, "and samples: {more}");
     run(&mut machine, 5 * MS);
@@ -92,7 +96,10 @@ fn time_goes_on_through_a_reset_at_the_clock_of_its_moment() {
     let conversions = machine.wiring().conversions.len();
     machine.run_until_ps(at_ps + 12_000_000_000).expect("runs");
     let more = machine.wiring().conversions.len() - conversions;
-    assert!(more.abs_diff(10 * 16 * 7) <= 7, "{more} conversions in 10 ms");
+    assert!(
+        more.abs_diff(10 * 16 * 7) <= 7,
+        "{more} conversions in 10 ms"
+    );
 }
 
 #[test]
@@ -213,7 +220,9 @@ fn what_cannot_flip_is_refused() {
     }
     // SPI1 has no model; TIM3's clock is off; GPIOA's clock would stop
     for (address, bit) in [(0x4001_3000, 0), (0x4000_0400, 0), (0x4002_3830, 0)] {
-        let error = machine.flip_register_bit(address, bit).expect_err("refused");
+        let error = machine
+            .flip_register_bit(address, bit)
+            .expect_err("refused");
         assert!(matches!(error, InjectError::Refused(_)), "{error}");
     }
     assert!(matches!(

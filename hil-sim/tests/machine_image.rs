@@ -41,8 +41,8 @@ fn refusal(file: &[u8]) -> ImageError {
 
 #[test]
 fn a_minimal_image_is_accepted() {
-    let firmware =
-        Firmware::from_elf(&elf(ARM, 0x0800_0000, &vectors(0x2002_0000, 0x0800_0009))).expect("accepted");
+    let firmware = Firmware::from_elf(&elf(ARM, 0x0800_0000, &vectors(0x2002_0000, 0x0800_0009)))
+        .expect("accepted");
     assert_eq!(firmware.initial_sp(), 0x2002_0000);
     assert_eq!((firmware.flash()[3], firmware.flash()[8]), (0x20, 0xff));
 }
@@ -75,7 +75,10 @@ fn contents_must_fit_the_flash() {
             "{error}"
         );
     }
-    assert!(matches!(refusal(&elf(ARM, 0x0800_0000, &[])), ImageError::Empty));
+    assert!(matches!(
+        refusal(&elf(ARM, 0x0800_0000, &[])),
+        ImageError::Empty
+    ));
 }
 
 #[test]
@@ -107,5 +110,8 @@ fn truncated_and_foreign_files_are_refused() {
     ));
     let missing = Firmware::from_file(std::path::Path::new("no/such.elf")).expect_err("refused");
     // The caller names the file.
-    assert!(missing.to_string().starts_with("cannot be read: "), "{missing}");
+    assert!(
+        missing.to_string().starts_with("cannot be read: "),
+        "{missing}"
+    );
 }

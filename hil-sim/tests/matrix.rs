@@ -31,7 +31,10 @@ fn every_kind_of_fault_has_an_entry_of_its_own() {
     for kind in ProcessorKind::ALL {
         assert!(kinds.contains(kind.name), "{}", kind.name);
     }
-    let names: HashSet<_> = entries.iter().map(|entry| entry.fault.to_string()).collect();
+    let names: HashSet<_> = entries
+        .iter()
+        .map(|entry| entry.fault.to_string())
+        .collect();
     assert_eq!(names.len(), entries.len());
 }
 
@@ -49,7 +52,10 @@ fn every_reason_of_the_guard_is_right_for_an_entry() {
         .flatten()
         .copied()
         .collect();
-    let left: Vec<_> = Fault::ALL.iter().filter(|fault| !right.contains(fault)).collect();
+    let left: Vec<_> = Fault::ALL
+        .iter()
+        .filter(|fault| !right.contains(fault))
+        .collect();
     assert_eq!(left, [&Fault::ForceFrozen, &Fault::SettingsCorrupt]);
 }
 

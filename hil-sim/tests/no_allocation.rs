@@ -140,7 +140,12 @@ fn native_engine_does_not_allocate_without_a_stream() {
         let Ok(()) = native.run_half_ms();
         legs.enabled
     };
-    for (ms, line) in (0..).zip(["material granite\n", "object room\n", "mode contact\n", "arm\n"]) {
+    for (ms, line) in (0..).zip([
+        "material granite\n",
+        "object room\n",
+        "mode contact\n",
+        "arm\n",
+    ]) {
         native.send(line.as_bytes());
         for _ in 0..if ms < 3 { 3 } else { 2600 } {
             step(&mut native, 0.0);

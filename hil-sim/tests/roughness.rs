@@ -86,8 +86,14 @@ fn sines_meet_golden_values() {
         let found = measure(sine.sampled(10.0, 4000));
         assert!(relative(found.rq_m, expected.rq_m) <= 1e-12, "{found:?}");
         assert!(relative(found.rdq, expected.rdq) <= 1e-7, "{found:?}");
-        assert!(relative(found.slope_rad, expected.slope_rad) <= 1e-5, "{found:?}");
-        assert!(relative(rsm_m(&found), rsm_m(&expected)) <= 1e-12, "{found:?}");
+        assert!(
+            relative(found.slope_rad, expected.slope_rad) <= 1e-5,
+            "{found:?}"
+        );
+        assert!(
+            relative(rsm_m(&found), rsm_m(&expected)) <= 1e-12,
+            "{found:?}"
+        );
     }
 }
 
@@ -118,11 +124,17 @@ fn cut_periods_cost_their_share_of_the_length() {
             let sine = Sine(amplitude_m, period_m, phase);
             let found = measure(sine.sampled(40.37, 16_148));
             let rq_m = amplitude_m / 2_f64.sqrt();
-            assert!(relative(found.rq_m, rq_m) < 0.25 / 40.0, "{phase} {found:?}");
+            assert!(
+                relative(found.rq_m, rq_m) < 0.25 / 40.0,
+                "{phase} {found:?}"
+            );
             let rdq = TAU * rq_m / period_m;
             assert!(relative(found.rdq, rdq) < 0.25 / 40.0, "{phase} {found:?}");
             // The mean line is not exactly level, and crossings are straight between points.
-            assert!(relative(rsm_m(&found), period_m) < 1e-4, "{phase} {found:?}");
+            assert!(
+                relative(rsm_m(&found), period_m) < 1e-4,
+                "{phase} {found:?}"
+            );
         }
     }
 }
@@ -164,8 +176,14 @@ fn uneven_points_give_the_same_surface() {
         let found = measure(places.map(|x_m| (x_m, sine.at(x_m))));
         assert!(relative(found.rq_m, expected.rq_m) < 1e-4, "{found:?}");
         assert!(relative(found.rdq, expected.rdq) < 1e-5, "{found:?}");
-        assert!(relative(found.slope_rad, expected.slope_rad) < 5e-4, "{found:?}");
-        assert!(relative(rsm_m(&found), rsm_m(&expected)) < 1e-5, "{found:?}");
+        assert!(
+            relative(found.slope_rad, expected.slope_rad) < 5e-4,
+            "{found:?}"
+        );
+        assert!(
+            relative(rsm_m(&found), rsm_m(&expected)) < 1e-5,
+            "{found:?}"
+        );
     }
 }
 
@@ -183,8 +201,12 @@ fn slopes_of_a_sextic_are_exact_in_the_middle() {
     let last = places.len() - 1;
     let weight = |i: usize| 0.5 * (places[(i + 1).min(last)] - places[i.saturating_sub(1)]);
     let total = places[last] - places[0];
-    let mean =
-        |value: &dyn Fn(f64) -> f64| (0..=last).map(|i| weight(i) * value(places[i])).sum::<f64>() / total;
+    let mean = |value: &dyn Fn(f64) -> f64| {
+        (0..=last)
+            .map(|i| weight(i) * value(places[i]))
+            .sum::<f64>()
+            / total
+    };
     let (middle, level) = (mean(&|x| x), mean(&bump));
     let tilt = mean(&|x| (x - middle) * (bump(x) - level)) / mean(&|x| (x - middle).powi(2));
     let expected = mean(&|x| (slope(x) - tilt).powi(2)).sqrt();
@@ -199,8 +221,14 @@ fn triangles_and_steps_have_known_slopes() {
         1e-4 * (4.0 * (phase - 0.5).abs() - 1.0) * 0.5
     };
     let found = measure(even(40e-3, 4000).map(|x_m| (x_m, triangle(x_m))));
-    assert!(relative(found.slope_rad, 0.1_f64.atan()) < 1e-4, "{found:?}");
-    assert!(relative(found.rq_m, 0.5e-4 / 3_f64.sqrt()) < 1e-3, "{found:?}");
+    assert!(
+        relative(found.slope_rad, 0.1_f64.atan()) < 1e-4,
+        "{found:?}"
+    );
+    assert!(
+        relative(found.rq_m, 0.5e-4 / 3_f64.sqrt()) < 1e-3,
+        "{found:?}"
+    );
     assert!(relative(rsm_m(&found), 2e-3) < 1e-5, "{found:?}");
 }
 
@@ -259,7 +287,8 @@ fn noise_adds_to_roughness_and_not_to_spacing() {
     );
     // The formula's weights: sum of squares 2 (45² + 9² + 1) / 60² over the step squared.
     let step_m = 50.0 * 0.65e-3 / 10_000.0;
-    let from_noise = noise_m * noise_m * 2.0 * (45.0_f64.powi(2) + 81.0 + 1.0) / 3600.0 / (step_m * step_m);
+    let from_noise =
+        noise_m * noise_m * 2.0 * (45.0_f64.powi(2) + 81.0 + 1.0) / 3600.0 / (step_m * step_m);
     let expected = (0.5 * (TAU * 10e-6 / 0.65e-3).powi(2) + from_noise).sqrt();
     assert!(relative(found.rdq, expected) < 0.02, "{found:?} {expected}");
 }
@@ -277,7 +306,8 @@ fn gaussian_profiles_follow_eq_6_13() {
             Sine(amplitude_m, length_m / f64::from(120 + i), TAU * phase)
         })
         .collect();
-    let profile = even(length_m, 12_000).map(|x_m| (x_m, waves.iter().map(|wave| wave.at(x_m)).sum()));
+    let profile =
+        even(length_m, 12_000).map(|x_m| (x_m, waves.iter().map(|wave| wave.at(x_m)).sum()));
     let found = measure(profile);
     let square_slope: f64 = waves
         .iter()
@@ -317,8 +347,14 @@ fn wrong_profiles_are_refused_with_their_line() {
     };
     let gap = [&fine[..11], &fine[21..]].concat().join("\n");
     for (text, expected) in [
-        (with(1, "x,z"), "line 1: columns x, z; needed are x_m and z_m"),
-        (with(1, "x_m"), "line 1: columns x_m; needed are x_m and z_m"),
+        (
+            with(1, "x,z"),
+            "line 1: columns x, z; needed are x_m and z_m",
+        ),
+        (
+            with(1, "x_m"),
+            "line 1: columns x_m; needed are x_m and z_m",
+        ),
         (String::new(), "line 1: columns ; needed are x_m and z_m"),
         (
             with(9, "7,high"),
@@ -332,7 +368,10 @@ fn wrong_profiles_are_refused_with_their_line() {
             with(9, "inf,0"),
             "line 9: x_m = \"inf\"; allowed is a finite number",
         ),
-        (with(9, "7"), "line 9: z_m = \"\"; allowed is a finite number"),
+        (
+            with(9, "7"),
+            "line 9: z_m = \"\"; allowed is a finite number",
+        ),
         (
             with(9, "6,0"),
             "line 9: x_m = 6 after 6; allowed is a greater x_m in every line",
@@ -350,7 +389,9 @@ fn wrong_profiles_are_refused_with_their_line() {
             "line 12: a step of 1.1e1 m; allowed is up to 10 times the shortest step, 1e0 m",
         ),
     ] {
-        let error = Profile::parse(text.as_bytes()).expect_err(expected).to_string();
+        let error = Profile::parse(text.as_bytes())
+            .expect_err(expected)
+            .to_string();
         assert!(error.starts_with(expected), "{error}\n{expected}");
     }
 }
@@ -362,7 +403,9 @@ fn files_may_have_comments_spaces_and_other_columns() {
     for (n, (x_m, z_m)) in points.iter().enumerate() {
         writeln!(text, "{n}, {z_m:e} ,\t{x_m}").expect("text grows");
     }
-    let found = Profile::parse(text.as_bytes()).expect("a profile").roughness();
+    let found = Profile::parse(text.as_bytes())
+        .expect("a profile")
+        .roughness();
     assert_eq!(found, measure(points));
 }
 
@@ -374,7 +417,11 @@ fn command(profile: &Path) -> (Option<i32>, String, String) {
         .output()
         .expect("hil-sim ends");
     let text = |bytes| String::from_utf8(bytes).expect("text");
-    (output.status.code(), text(output.stdout), text(output.stderr))
+    (
+        output.status.code(),
+        text(output.stdout),
+        text(output.stderr),
+    )
 }
 
 fn file(name: &str, text: &str) -> PathBuf {
@@ -395,8 +442,14 @@ fn command_prints_the_parameters() {
         .split(',')
         .map(|cell| cell.parse().expect("a number"))
         .collect();
-    assert_eq!(cells, [found.rq_m, found.rdq, found.slope_rad, rsm_m(&found)]);
-    let (status, out, _) = command(&file("flat.csv", &text(even(1e-3, 50).map(|x_m| (x_m, 0.0)))));
+    assert_eq!(
+        cells,
+        [found.rq_m, found.rdq, found.slope_rad, rsm_m(&found)]
+    );
+    let (status, out, _) = command(&file(
+        "flat.csv",
+        &text(even(1e-3, 50).map(|x_m| (x_m, 0.0))),
+    ));
     assert_eq!(
         (status, out.as_str()),
         (Some(0), "rq_m,rdq,slope_rad,rsm_m\n0,0,0,\n")
@@ -415,13 +468,18 @@ fn command_names_file_and_line() {
     assert_eq!(error, expected);
     let (status, out, error) = command(Path::new("no such profile.csv"));
     assert_eq!((status, out.as_str()), (Some(2), ""));
-    assert!(error.starts_with("hil-sim: no such profile.csv: "), "{error}");
+    assert!(
+        error.starts_with("hil-sim: no such profile.csv: "),
+        "{error}"
+    );
 }
 
 #[test]
 fn example_profile_is_what_its_first_line_says() {
     let path = format!("{}/../scenes/profile.csv", env!("CARGO_MANIFEST_DIR"));
-    let found = Profile::read(Path::new(&path)).expect("the example").roughness();
+    let found = Profile::read(Path::new(&path))
+        .expect("the example")
+        .roughness();
     // Gaussian heights of 3 µm with correlation exp(-x²/l²), l = 50 µm: Rdq = sqrt 2 Rq / l. 80 correlation
     // lengths are few: a tenth of scatter.
     assert!(relative(found.rq_m, 3e-6) < 0.1, "{found:?}");

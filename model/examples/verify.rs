@@ -43,13 +43,16 @@ fn main() -> io::Result<()> {
         let workers: Vec<_> = (0..std::thread::available_parallelism().map_or(1, usize::from))
             .map(|_| {
                 scope.spawn(|| -> io::Result<()> {
-                    while let Some(&&(octave, piece)) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    while let Some(&&(octave, piece)) =
+                        open.get(next.fetch_add(1, Ordering::Relaxed))
+                    {
                         let length = INPUTS / PIECES;
                         let tally = exhaustive(octave, piece * length..(piece + 1) * length);
                         let mut record = shared.lock().expect("no worker panics");
                         record.add((octave, piece), tally)?;
                         let new = record.done.len() + open.len() - pieces.len();
-                        let left_s = begun.elapsed().as_secs_f64() / new as f64 * (open.len() - new) as f64;
+                        let left_s =
+                            begun.elapsed().as_secs_f64() / new as f64 * (open.len() - new) as f64;
                         eprint!(
                             "\r{} of {} pieces, {left_s:.0} s left ",
                             record.done.len(),
@@ -86,9 +89,11 @@ impl Record {
             include_str!("../src/reference/erfcx.rs"),
             include_str!("../tests/verify/mod.rs"),
         );
-        let hash = sources.bytes().fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
-        });
+        let hash = sources
+            .bytes()
+            .fold(0xcbf2_9ce4_8422_2325u64, |hash, byte| {
+                (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)
+            });
         let path = folder.join(format!("kernel-{hash:016x}.txt"));
         let text = fs::read_to_string(&path).unwrap_or_default();
         // A line that a run could not finish is not parsed, and its piece is checked again.
@@ -110,8 +115,9 @@ impl Record {
         } = tally;
         let (octave, number) = piece;
         // In one piece, and on a line of its own whatever an ended run has left.
-        let line =
-            format!("\n{octave} {number} {inputs} {worst} {correctly_rounded} {rises} {largest_rise} end");
+        let line = format!(
+            "\n{octave} {number} {inputs} {worst} {correctly_rounded} {rises} {largest_rise} end"
+        );
         file.write_all(line.as_bytes())?;
         self.done.insert(piece, tally);
         Ok(())
@@ -166,7 +172,10 @@ fn report(record: &Record) -> io::Result<()> {
         all.merge(&tally);
     }
     line(&mut out, "all of them", &all)?;
-    writeln!(out, "\nunits of 2^-32; the truth is known to {TRUTH_ERROR} units")?;
+    writeln!(
+        out,
+        "\nunits of 2^-32; the truth is known to {TRUTH_ERROR} units"
+    )?;
     writeln!(
         out,
         "the other octaves, 2^{} to 2^{}: at most {proven:.4}, proven",

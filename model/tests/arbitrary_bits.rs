@@ -1,8 +1,9 @@
 //! Nothing panics or overflows for any bits whatever: run with overflow checks, `cargo test -p contact-model`.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, Course, Depth, ErfArgument, Flux, Force, Fraction, HalfOrder, Log2, Pairing, Rate,
-    Ratio, SemiInfinite, Ticks, erf, erfcx, exp2, fourier_number, log2, log2_relative_pressure,
+    Celsius, Contact, Course, Depth, ErfArgument, Flux, Force, Fraction, HalfOrder, Log2, Pairing,
+    Rate, Ratio, SemiInfinite, Ticks, erf, erfcx, exp2, fourier_number, log2,
+    log2_relative_pressure,
 };
 use contact_model::material::{Material, Surface};
 use proptest::num::f64::ANY;
@@ -52,18 +53,22 @@ fn property() -> impl Strategy<Value = f64> {
 }
 
 fn surface() -> impl Strategy<Value = Surface> {
-    (property(), property(), property()).prop_map(|(conductivity_w_mk, roughness_um, slope_rad)| Surface {
-        conductivity_w_mk,
-        roughness_um,
-        slope_rad,
+    (property(), property(), property()).prop_map(|(conductivity_w_mk, roughness_um, slope_rad)| {
+        Surface {
+            conductivity_w_mk,
+            roughness_um,
+            slope_rad,
+        }
     })
 }
 
 fn material() -> impl Strategy<Value = Material> {
-    (surface(), property(), property()).prop_map(|(surface, density_kg_m3, specific_heat_j_kgk)| Material {
-        surface,
-        density_kg_m3,
-        specific_heat_j_kgk,
+    (surface(), property(), property()).prop_map(|(surface, density_kg_m3, specific_heat_j_kgk)| {
+        Material {
+            surface,
+            density_kg_m3,
+            specific_heat_j_kgk,
+        }
     })
 }
 

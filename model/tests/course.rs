@@ -25,7 +25,10 @@ impl Watched {
             elapsed,
             Celsius::from_num(tolerance_k),
         );
-        Self { course, evaluations }
+        Self {
+            course,
+            evaluations,
+        }
     }
 
     fn setpoint_c(&self) -> f64 {
@@ -44,7 +47,9 @@ impl Watched {
 fn exact_c(contact: &Contact, object_c: f64, elapsed: f64) -> f64 {
     let e = reference::erfcx((elapsed * contact.per_tick.to_f64()).sqrt());
     let step = SKIN_C - object_c;
-    SKIN_C - step * contact.weight.to_num::<f64>() * (1.0 - e) - step * contact.ratio.to_num::<f64>() * e
+    SKIN_C
+        - step * contact.weight.to_num::<f64>() * (1.0 - e)
+        - step * contact.ratio.to_num::<f64>() * e
 }
 
 /// A contact with `b² dt` of two to the power of `log2_rate`.
@@ -84,7 +89,8 @@ fn every_contact_of_the_thesis_is_within_tolerance_in_at_most_100_evaluations() 
                 let rising = thesis.at(10.0).display_c > thesis.at(0.0).display_c;
                 for tick in 1..=10_000 {
                     let now = watched.next_c();
-                    worst_k = worst_k.max((now - thesis.at(f64::from(tick) * 1e-3).display_c).abs());
+                    worst_k =
+                        worst_k.max((now - thesis.at(f64::from(tick) * 1e-3).display_c).abs());
                     assert!((now >= before - 3e-7) == rising || (now - before).abs() < 3e-7);
                     before = now;
                 }
@@ -108,7 +114,8 @@ fn bend_of_e_is_bounded() {
             let s = (end * f64::from(i) / f64::from(steps)).powi(2);
             (-s).exp() * 2.0 * s * s / (u + s)
         };
-        u.sqrt() / core::f64::consts::PI * (1..steps).map(term).sum::<f64>() * end / f64::from(steps)
+        u.sqrt() / core::f64::consts::PI * (1..steps).map(term).sum::<f64>() * end
+            / f64::from(steps)
     };
     let mut highest = 0.0f64;
     for i in -40 * 256..40 * 256 {
@@ -165,8 +172,12 @@ fn years_of_contact_are_within_tolerance() {
         ] {
             let mut watched = Watched::new(&contact, 24.0, elapsed, TOLERANCE_K);
             for tick in 0..200 {
-                let error_k = watched.setpoint_c() - exact_c(&contact, 24.0, (elapsed + tick) as f64);
-                assert!(error_k.abs() <= TOLERANCE_K, "{elapsed} + {tick}: {error_k} K");
+                let error_k =
+                    watched.setpoint_c() - exact_c(&contact, 24.0, (elapsed + tick) as f64);
+                assert!(
+                    error_k.abs() <= TOLERANCE_K,
+                    "{elapsed} + {tick}: {error_k} K"
+                );
                 watched.next_c();
             }
         }
@@ -177,14 +188,21 @@ fn years_of_contact_are_within_tolerance() {
 #[test]
 fn the_longest_chords_follow_one_another() {
     let contact = contact_with(0.9, 0.1, -44.0);
-    for elapsed in (31..50).flat_map(|octave| [(1u64 << octave) - 5, (1 << octave) + (1 << 31) - 5]) {
+    for elapsed in (31..50).flat_map(|octave| [(1u64 << octave) - 5, (1 << octave) + (1 << 31) - 5])
+    {
         let mut watched = Watched::new(&contact, 24.0, elapsed, TOLERANCE_K);
         let mut before_c = watched.setpoint_c();
         for tick in 1..10 {
             let now_c = watched.next_c();
             let error_k = now_c - exact_c(&contact, 24.0, (elapsed + tick) as f64);
-            assert!(error_k.abs() <= TOLERANCE_K, "{elapsed} + {tick}: {error_k} K");
-            assert!((now_c - before_c).abs() < 1e-6, "{elapsed} + {tick}: a jump");
+            assert!(
+                error_k.abs() <= TOLERANCE_K,
+                "{elapsed} + {tick}: {error_k} K"
+            );
+            assert!(
+                (now_c - before_c).abs() < 1e-6,
+                "{elapsed} + {tick}: a jump"
+            );
             before_c = now_c;
         }
         assert!(watched.evaluations <= 4);

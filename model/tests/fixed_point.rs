@@ -1,6 +1,8 @@
 //! Invariants of the fixed-point path; `budgets` measures its errors.
 
-use contact_model::fixed_point::{Celsius, Contact, Force, Pairing, PairingError, log2_relative_pressure};
+use contact_model::fixed_point::{
+    Celsius, Contact, Force, Pairing, PairingError, log2_relative_pressure,
+};
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN, find};
 use proptest::prelude::*;
 
@@ -54,7 +56,10 @@ fn a_material_that_does_not_fit_is_refused_by_name() {
     assert!(with(|_| ()).is_ok());
     assert!(matches!(
         Pairing::new(&copper, &copper, &REFERENCE_DISPLAY, 0.0),
-        Err(PairingError::Property { name: "tick (s)", .. })
+        Err(PairingError::Property {
+            name: "tick (s)",
+            ..
+        })
     ));
     let with_skin = |change: fn(&mut Material)| {
         let mut skin = SKIN;

@@ -24,9 +24,13 @@ fn sampled_inputs_stay_within_the_stated_error_and_rise_by_one_unit_at_most() {
     for octave in LIVED_IN {
         const STRETCH: u64 = 1 << 14;
         let last = INPUTS / STRETCH - 1;
-        let inner = (1..6u64).map(|i| (i * 0x2_f1ab + octave.unsigned_abs() as u64 * 0x51d7) % last);
+        let inner =
+            (1..6u64).map(|i| (i * 0x2_f1ab + octave.unsigned_abs() as u64 * 0x51d7) % last);
         for stretch in inner.chain([0, last]) {
-            all.merge(&exhaustive(octave, stretch * STRETCH..(stretch + 1) * STRETCH));
+            all.merge(&exhaustive(
+                octave,
+                stretch * STRETCH..(stretch + 1) * STRETCH,
+            ));
         }
     }
     println!("{all:?}");
@@ -69,11 +73,17 @@ fn kernel_saturates_outside_of_its_octaves() {
     let (start, end) = (OCTAVES.start as i16, OCTAVES.end as i16);
     for fraction in [0, 1, u32::MAX / 3, u32::MAX] {
         for exponent in [i16::MIN, -1000, start - 1, start] {
-            assert_eq!(erfcx(Ticks::ONE, Rate::new(exponent, fraction)), Fraction::MAX);
+            assert_eq!(
+                erfcx(Ticks::ONE, Rate::new(exponent, fraction)),
+                Fraction::MAX
+            );
         }
         for exponent in [end - 1, end, 1000, i16::MAX] {
             for elapsed in [Ticks::ONE, Ticks::MAX] {
-                assert_eq!(erfcx(elapsed, Rate::new(exponent, fraction)), Fraction::ZERO);
+                assert_eq!(
+                    erfcx(elapsed, Rate::new(exponent, fraction)),
+                    Fraction::ZERO
+                );
             }
         }
     }

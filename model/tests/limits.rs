@@ -66,8 +66,9 @@ fn contact_without_resistance_gives_the_interface_temperature() {
 #[test]
 fn ticks_of_any_length_saturate() {
     for (_, object) in &MATERIALS {
-        let contact =
-            |tick_s| at_2_n(&Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("any tick"));
+        let contact = |tick_s| {
+            at_2_n(&Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("any tick"))
+        };
         let shortest = contact(f64::from_bits(1)).at(1, SKIN_C, OBJECT_C);
         assert_eq!((shortest.skin(), shortest.object()), (SKIN_C, OBJECT_C));
         let longest = contact(f64::MAX).at(1, SKIN_C, OBJECT_C);
@@ -100,7 +101,8 @@ fn perfect_contact_cools_from_the_surface_inwards() {
         let other = at(Depth::lit("400"), 400_000);
         assert!(interface < one && one < SKIN_C && near(one, other, 1));
         // Flux falls with the root of time.
-        let flux = |ticks| perfect.flux_w_m2(Ticks::new(ticks).expect("in range"), SKIN_C, OBJECT_C);
+        let flux =
+            |ticks| perfect.flux_w_m2(Ticks::new(ticks).expect("in range"), SKIN_C, OBJECT_C);
         let ratio = flux(7).to_num::<f64>() / flux(700).to_num::<f64>();
         assert!(flux(7) < 0 && (ratio - 10.0).abs() < 1e-7, "{ratio}");
     }

@@ -24,7 +24,10 @@ fn effusivity_and_average_slope_meet_golden_values() {
     }
     for row in rows("roughness_sinusoid") {
         let slope = average_slope_rad(number(&row, "Rdq"));
-        assert!(relative(slope, number(&row, "Rdq_over_1.25")) < 1e-14, "{row:?}");
+        assert!(
+            relative(slope, number(&row, "Rdq_over_1.25")) < 1e-14,
+            "{row:?}"
+        );
     }
 }
 
@@ -35,7 +38,10 @@ fn no_pressure_exchanges_nothing() {
     let contact = Contact::<f64>::new((&SKIN, skin_c), (copper, object_c), &REFERENCE_DISPLAY, 0.0);
     for t_s in [0.0, 1e-3, 1e9] {
         let at = contact.at(t_s);
-        assert_eq!((at.skin_c, at.object_c, at.flux_w_m2), (skin_c, object_c, 0.0));
+        assert_eq!(
+            (at.skin_c, at.object_c, at.flux_w_m2),
+            (skin_c, object_c, 0.0)
+        );
     }
 }
 

@@ -1,7 +1,9 @@
 //! The contact model at its limits and against laws that hold for any contact, in `f64`, `f32` and integers.
 
 use contact_model::fixed_point::{Celsius, Contact as Fixed, Flux, Log2, Pairing, Ticks};
-use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface};
+use contact_model::material::{
+    MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface,
+};
 use contact_model::reference::{Contact, Real, interface_temperature};
 use proptest::prelude::*;
 
@@ -48,14 +50,16 @@ fn any_material() -> impl Strategy<Value = Material> {
         0.01..0.4f64,
     )
         .prop_map(
-            |(conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad)| Material {
-                surface: Surface {
-                    conductivity_w_mk,
-                    roughness_um,
-                    slope_rad,
-                },
-                density_kg_m3,
-                specific_heat_j_kgk,
+            |(conductivity_w_mk, density_kg_m3, specific_heat_j_kgk, roughness_um, slope_rad)| {
+                Material {
+                    surface: Surface {
+                        conductivity_w_mk,
+                        roughness_um,
+                        slope_rad,
+                    },
+                    density_kg_m3,
+                    specific_heat_j_kgk,
+                }
             },
         )
 }
@@ -209,7 +213,8 @@ fn time_runs_to_equation_3_1() {
             let exact = contact::<f64>(skin_c, object, object_c, 10_980.0);
             // So long that 1 / (z sqrt(pi)) of the step is below a microkelvin.
             let t_s = 1e16 / exact.rate_per_s;
-            let ages = fixed(&SKIN, object, 10_980.0, t_s).at(1, celsius(skin_c), celsius(object_c));
+            let ages =
+                fixed(&SKIN, object, 10_980.0, t_s).at(1, celsius(skin_c), celsius(object_c));
             let meeting_c = interface_temperature(&SKIN, skin_c, object, object_c);
             for t in [ages.skin(), ages.object(), ages.display()] {
                 let error_k = t.to_num::<f64>() - meeting_c;
@@ -228,7 +233,10 @@ fn days_of_contact_do_not_drift() {
         for hour in 1..=Ticks::MAX.get() / 3_600_000 {
             let ticks = hour * 3_600_000;
             let wanted = exact.at(f64::from(ticks) * 1e-3).display_c;
-            let got: f64 = integer.at(ticks, celsius(34.0), celsius(24.0)).display().to_num();
+            let got: f64 = integer
+                .at(ticks, celsius(34.0), celsius(24.0))
+                .display()
+                .to_num();
             assert!(
                 (got - wanted).abs() < FIXED_K,
                 "{name}, hour {hour}: {got} {wanted}"

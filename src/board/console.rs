@@ -43,7 +43,10 @@ impl Console {
     /// What waits stays in its queue, so that answers are never lost and only telemetry that finds its
     /// queue full is. `execute` is called with requests that are parsed, checked and computed, since
     /// that takes longer than executing and needs no lock.
-    pub fn serve(&mut self, mut execute: impl FnMut(Request) -> Result<Addressed<Reply>, Addressed<Error>>) {
+    pub fn serve(
+        &mut self,
+        mut execute: impl FnMut(Request) -> Result<Addressed<Reply>, Addressed<Error>>,
+    ) {
         while self.outbox.has_room() {
             if let Some(order) = self.order {
                 if self.outbox.is_empty() {

@@ -15,7 +15,8 @@ mod nucleo_f446re;
 pub use console::Console;
 #[cfg(feature = "nucleo-f446re")]
 pub use nucleo_f446re::{
-    Board, End, FINGERS, Memory, Outbox, PowerStage, Receiver, Record, Sampler, Transmitter, Trigger,
-    Watchdog, WindowWatchdog, at_start, first_cause, keep_dose, kept_dose, pac, restart, stack_is_overrun,
+    Board, End, FINGERS, Memory, Outbox, PowerStage, Receiver, Record, Sampler, Transmitter,
+    Trigger, Watchdog, WindowWatchdog, at_start, first_cause, keep_dose, kept_dose, pac, restart,
+    stack_is_overrun,
 };
 pub use vigil::{Task, Vigil};

@@ -49,7 +49,9 @@ impl<const FINGERS: usize> Desk<FINGERS> {
         let finger = match request {
             Commissioning::Settings(_) | Commissioning::Margins => finger.or(first_of(FINGERS)),
             // Milliseconds of `f64` each, which the watchdog waits for once.
-            Commissioning::Point { .. } | Commissioning::Tuned if finger.is_none() && FINGERS > 1 => {
+            Commissioning::Point { .. } | Commissioning::Tuned
+                if finger.is_none() && FINGERS > 1 =>
+            {
                 return Err(of(Error::Missing("finger (as @0)")));
             }
             _ => finger,

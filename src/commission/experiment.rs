@@ -214,7 +214,9 @@ impl Experiment {
             self.abort(Aborted::Sink);
         }
         // Before that it may come from anywhere.
-        if matches!(self.phase, Phase::Base { .. } | Phase::Pulses { .. }) && from_rest.abs() > FARTHEST {
+        if matches!(self.phase, Phase::Base { .. } | Phase::Pulses { .. })
+            && from_rest.abs() > FARTHEST
+        {
             self.abort(Aborted::Display);
         }
         let reading = i64::from(sound.display.to_bits());

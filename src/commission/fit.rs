@@ -23,7 +23,11 @@ const ROUNDS: usize = 2;
 
 /// A reading's temperature by the class values, without calibration.
 fn class_c(settings: &Settings, thermistor: usize, sum: f64) -> f64 {
-    let warmer_k = settings.self_heating_k.get(thermistor).copied().unwrap_or(0.0);
+    let warmer_k = settings
+        .self_heating_k
+        .get(thermistor)
+        .copied()
+        .unwrap_or(0.0);
     settings.thermistor.temperature_c(sum) - warmer_k
 }
 
@@ -41,10 +45,23 @@ fn powers(reads_c: f64) -> [f64; COEFFICIENTS] {
 
 /// What the device reads for a mean sum with a calibration, °C; not at a border.
 #[must_use]
-pub fn reading_c(settings: &Settings, calibration: &Calibration, thermistor: usize, sum: f64) -> f64 {
-    let steps: f64 = calibration.steps_counts.iter().take(borders_below(sum)).sum();
+pub fn reading_c(
+    settings: &Settings,
+    calibration: &Calibration,
+    thermistor: usize,
+    sum: f64,
+) -> f64 {
+    let steps: f64 = calibration
+        .steps_counts
+        .iter()
+        .take(borders_below(sum))
+        .sum();
     let reached_c = class_c(settings, thermistor, sum - 16.0 * steps);
-    let warmer_k = settings.self_heating_k.get(thermistor).copied().unwrap_or(0.0);
+    let warmer_k = settings
+        .self_heating_k
+        .get(thermistor)
+        .copied()
+        .unwrap_or(0.0);
     let correction = calibration
         .corrections
         .get(thermistor)
@@ -67,7 +84,11 @@ fn row(settings: &Settings, steps: &[f64; BORDERS], thermistor: usize, point: &P
     let too_much: f64 = steps.iter().take(borders).sum();
     let without = point.sum - 16.0 * too_much;
     let reached_c = settings.thermistor.temperature_c(without);
-    let warmer_k = settings.self_heating_k.get(thermistor).copied().unwrap_or(0.0);
+    let warmer_k = settings
+        .self_heating_k
+        .get(thermistor)
+        .copied()
+        .unwrap_or(0.0);
     Row {
         wanted_k: point.reference_c - (reached_c - warmer_k),
         powers: powers(reached_c),
@@ -133,7 +154,13 @@ fn swept(
             .into_iter()
             .zip(LIKELY);
         for (i, (value, deviation)) in likely.enumerate() {
-            add(&mut normal, &mut right, &[(first + i, 1.0)], value, deviation);
+            add(
+                &mut normal,
+                &mut right,
+                &[(first + i, 1.0)],
+                value,
+                deviation,
+            );
         }
         for point in points.of(thermistor) {
             let row = row(settings, &steps, thermistor, point);

@@ -42,7 +42,9 @@ impl<const FINGERS: usize> Desk<FINGERS> {
     #[must_use]
     pub fn record(&self, order: Order) -> StoredBytes {
         match order {
-            Order::Save => encode(Some(&self.fingers.each_ref().map(|one| Kept::of(one.settings())))),
+            Order::Save => encode(Some(
+                &self.fingers.each_ref().map(|one| Kept::of(one.settings())),
+            )),
             Order::Forget => encode::<FINGERS>(None),
         }
     }

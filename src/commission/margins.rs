@@ -32,7 +32,8 @@ impl Margins {
         let magnitude = |w: f64| {
             let loop_gain = gains.proportional_a_k * tile.gain_k_s_a;
             let integral = libm::hypot(1.0, 1.0 / (gains.integral_s * w));
-            loop_gain * integral / (libm::hypot(w, tile.leak_1_s) * libm::hypot(1.0, tile.sensor_lag_s * w))
+            loop_gain * integral
+                / (libm::hypot(w, tile.leak_1_s) * libm::hypot(1.0, tile.sensor_lag_s * w))
         };
         // Above the -180 degrees at which it oscillates.
         let left = |w: f64| {

@@ -48,7 +48,9 @@ impl Points {
     /// Those of one thermistor.
     #[must_use]
     pub fn of(&self, thermistor: usize) -> &[Point] {
-        self.of.get(thermistor).map_or(&[], |points| points.as_slice())
+        self.of
+            .get(thermistor)
+            .map_or(&[], |points| points.as_slice())
     }
 
     /// Forgets those of one thermistor.
@@ -73,7 +75,8 @@ impl Points {
             return Err(PointError::Unsteady);
         }
         let segments = average.sum() / f64::from(16 * crate::settings::SEGMENT_CODES);
-        let from_border = (segments - libm::round(segments)) * f64::from(crate::settings::SEGMENT_CODES);
+        let from_border =
+            (segments - libm::round(segments)) * f64::from(crate::settings::SEGMENT_CODES);
         if libm::fabs(from_border) < BORDER_CODES {
             return Err(PointError::AtBorder);
         }

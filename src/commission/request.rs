@@ -158,7 +158,10 @@ impl Request {
     }
 }
 
-fn decimal<'a>(words: &mut impl Iterator<Item = &'a str>, expected: &'static Number) -> Result<f64, Error> {
+fn decimal<'a>(
+    words: &mut impl Iterator<Item = &'a str>,
+    expected: &'static Number,
+) -> Result<f64, Error> {
     number(words, expected).map(|value| value.to_num())
 }
 
@@ -216,7 +219,10 @@ fn calibrate<'a>(words: &mut (impl Iterator<Item = &'a str> + Clone)) -> Result<
         return Ok(Request::Clear { sensor });
     }
     let reference_c = decimal(words, &REFERENCE)?;
-    Ok(Request::Point { sensor, reference_c })
+    Ok(Request::Point {
+        sensor,
+        reference_c,
+    })
 }
 
 fn settings<'a>(words: &mut (impl Iterator<Item = &'a str> + Clone)) -> Result<Request, Error> {

@@ -52,7 +52,10 @@ impl Service {
         mut execute: impl FnMut(Command) -> Result<Reply, Error>,
     ) -> Result<Reply, Error> {
         match request {
-            Request::Point { sensor, reference_c } => self.point(sensor, reference_c, &mut execute),
+            Request::Point {
+                sensor,
+                reference_c,
+            } => self.point(sensor, reference_c, &mut execute),
             Request::Clear { sensor } => {
                 self.may_calibrate(&mut execute)?;
                 self.correct(sensor, Correction::default());
@@ -84,7 +87,10 @@ impl Service {
         }
     }
 
-    fn tuned(&mut self, execute: &mut impl FnMut(Command) -> Result<Reply, Error>) -> Result<Reply, Error> {
+    fn tuned(
+        &mut self,
+        execute: &mut impl FnMut(Command) -> Result<Reply, Error>,
+    ) -> Result<Reply, Error> {
         let mut rows = [Row::default(); ROWS];
         for (i, row) in rows.iter_mut().enumerate() {
             let Reply::Row(sums) = execute(Command::Experiment(i))? else {
@@ -154,7 +160,12 @@ impl Service {
         let Reply::Average(average) = execute(Command::Average(sensor))? else {
             return Err(Error::Point(PointError::TooEarly));
         };
-        let reads_c = reading_c(&self.settings, &self.settings.calibration, sensor, average.sum());
+        let reads_c = reading_c(
+            &self.settings,
+            &self.settings.calibration,
+            sensor,
+            average.sum(),
+        );
         (self.points.add(sensor, &average, reads_c, reference_c)).map_err(Error::Point)?;
         let fitted = fit(&self.settings, &self.before, &self.points).filter(is_settable);
         let Some(calibration) = fitted else {

@@ -68,8 +68,9 @@ const _: () = assert!(AFTER / EVERY <= 1 << 10, "sums of products overflow");
 impl Sums {
     /// Takes the current that was asked for, and what it came to.
     pub fn compare(&mut self, asked: Current, measured: Current) {
-        let along =
-            |current: Current| i64::from(current.to_bits() >> 8) * i64::from(asked.signum().to_num::<i32>());
+        let along = |current: Current| {
+            i64::from(current.to_bits() >> 8) * i64::from(asked.signum().to_num::<i32>())
+        };
         let (asked, measured) = (along(asked), along(measured));
         let [.., totals] = &mut self.rows;
         for (place, value) in [
@@ -87,7 +88,10 @@ impl Sums {
     /// of its direction.
     pub fn take(&mut self, y: i64, current: Current, rest: i64, direction: i64) {
         let current = i64::from(current.to_bits());
-        let (u, v) = (current - rest, (current * current - rest * rest) >> CURRENT_BITS);
+        let (u, v) = (
+            current - rest,
+            (current * current - rest * rest) >> CURRENT_BITS,
+        );
         let d = direction << CURRENT_BITS;
         self.ticks += 1;
         self.u1 += u - legs(&mut self.late, u);

@@ -47,8 +47,8 @@ impl Response {
     /// `f64`; gains saturate at 32768 A/K and 2 A/K an update.
     #[must_use]
     pub fn new(gains: &Gains, period: Period) -> Self {
-        let per_update =
-            gains.proportional_a_k * f64::from(period.ticks()) / (gains.integral_s * f64::from(TICK_HZ));
+        let per_update = gains.proportional_a_k * f64::from(period.ticks())
+            / (gains.integral_s * f64::from(TICK_HZ));
         Self {
             proportional: libm::ldexp(gains.proportional_a_k, GAIN_BITS as i32) as i32,
             integral: libm::ldexp(per_update, RATE_BITS as i32) as i32,
@@ -118,8 +118,8 @@ impl Pi {
     /// Answer to an error that is positive when the display is too warm, whatever the period.
     pub fn respond(&mut self, error: Celsius) -> Current {
         let error = i64::from(error.to_bits());
-        let proportional =
-            (error * i64::from(self.response.proportional)) >> (ERROR_BITS + GAIN_BITS - CURRENT_BITS);
+        let proportional = (error * i64::from(self.response.proportional))
+            >> (ERROR_BITS + GAIN_BITS - CURRENT_BITS);
         let state = self
             .state
             .saturating_add(error * i64::from(self.response.integral));
@@ -180,7 +180,10 @@ mod tests {
     fn pi_is_odd_in_its_error() {
         let (setpoint, mut up, mut down) = (Setpoint::limited(at(30.0)).0, pi(), pi());
         for _ in 0..100 {
-            let (a, b) = (up.update(setpoint, at(30.25)), down.update(setpoint, at(29.75)));
+            let (a, b) = (
+                up.update(setpoint, at(30.25)),
+                down.update(setpoint, at(29.75)),
+            );
             assert!((a + b).abs() <= Current::from_bits(4));
         }
     }

@@ -235,7 +235,13 @@ impl Plate {
     }
 
     /// Starts from a surface temperature, as if this current, finger and sink had been so for long; gives what they do.
-    pub fn start(&mut self, surface: Celsius, current: Current, finger: Watt, sink: Celsius) -> Heat {
+    pub fn start(
+        &mut self,
+        surface: Celsius,
+        current: Current,
+        finger: Watt,
+        sink: Celsius,
+    ) -> Heat {
         self.legs.set(Celsius::ZERO);
         (self.hot, self.surface) = (sink, surface);
         let heat = self.heat(current, finger, sink);

@@ -181,7 +181,12 @@ impl TwoDegrees {
 
     fn cooling_limit(&self, sink: Celsius) -> Current {
         let over = sink.saturating_sub(SINK_WARM).max(Celsius::ZERO) >> SINK_SHIFT;
-        let left = i64::from(Celsius::ONE.saturating_sub(over).max(Celsius::ZERO).to_bits());
+        let left = i64::from(
+            Celsius::ONE
+                .saturating_sub(over)
+                .max(Celsius::ZERO)
+                .to_bits(),
+        );
         Current::from_bits(((i64::from(self.limit.to_bits()) * left) >> 22) as i32)
     }
 }

@@ -93,13 +93,12 @@ impl Voltage {
         let across = legs.hot.saturating_sub(legs.cold).to_bits();
         let warmer = legs.mean.saturating_sub(SHEET).to_bits();
         let rise = times(warmer, self.rise_per_k, Celsius::FRAC_NBITS);
-        let needed = times(current.to_bits(), self.per_a.saturating_add(rise), 28).saturating_add(times(
-            across,
-            self.per_k,
-            32 + Celsius::FRAC_NBITS - BITS,
-        ));
+        let needed = times(current.to_bits(), self.per_a.saturating_add(rise), 28)
+            .saturating_add(times(across, self.per_k, 32 + Celsius::FRAC_NBITS - BITS));
         let voltage = if needed < 0 {
-            needed.saturating_sub(self.lost(needed.saturating_neg(), current.to_bits().saturating_neg()))
+            needed.saturating_sub(
+                self.lost(needed.saturating_neg(), current.to_bits().saturating_neg()),
+            )
         } else {
             needed.saturating_add(self.lost(needed, current.to_bits()))
         };

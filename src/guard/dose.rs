@@ -51,9 +51,9 @@ impl Dose {
             self.ticks = 0;
             self.sum = match warmest() {
                 None => self.sum,
-                Some(warmest) if warmest < COUNTS_FROM => {
-                    self.sum.saturating_sub(u32::from(TICKS) << 8 >> FORGOTTEN_SHIFT)
-                }
+                Some(warmest) if warmest < COUNTS_FROM => self
+                    .sum
+                    .saturating_sub(u32::from(TICKS) << 8 >> FORGOTTEN_SHIFT),
                 Some(warmest) => self
                     .sum
                     .saturating_add(rate(warmest).saturating_mul(TICKS.into())),
@@ -106,7 +106,10 @@ mod tests {
             let ticks = (1..)
                 .find(|_| dose.check(|| Some(display)).is_err())
                 .expect("a tick");
-            assert!((f64::from(ticks) - 1e3 * seconds).abs() < 300.0, "{t_c}: {ticks}");
+            assert!(
+                (f64::from(ticks) - 1e3 * seconds).abs() < 300.0,
+                "{t_c}: {ticks}"
+            );
         }
         let mut dose = Dose::default();
         let cool = Celsius::lit("38.9");
@@ -118,7 +121,12 @@ mod tests {
     fn an_hour_forgets_ten_minutes_of_60_c() {
         let mut dose = Dose::default();
         let hot = Celsius::lit("60");
-        assert!((0..600_000).filter(|_| dose.check(|| Some(hot)).is_err()).count() > 0);
+        assert!(
+            (0..600_000)
+                .filter(|_| dose.check(|| Some(hot)).is_err())
+                .count()
+                > 0
+        );
         for mut dose in [dose, Dose::from_word(u32::MAX)] {
             let cool = Celsius::lit("38.9");
             let forgotten = (0..3_600_000).position(|_| dose.check(|| Some(cool)).is_ok());

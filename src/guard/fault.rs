@@ -163,7 +163,9 @@ mod tests {
     fn a_number_belongs_to_one_fault_and_a_word_too() {
         for (number, fault) in Fault::ALL.iter().enumerate() {
             assert_eq!(*fault as usize, number);
-            let same = Fault::ALL.iter().filter(|other| other.name() == fault.name());
+            let same = Fault::ALL
+                .iter()
+                .filter(|other| other.name() == fault.name());
             assert_eq!(same.count(), 1, "{}", fault.name());
         }
     }

@@ -39,7 +39,11 @@ impl Frozen {
         for (i, now) in now.into_iter().enumerate() {
             let same = now == self.last[i];
             self.last[i] = now;
-            let ticks = if same { self.ticks[i].saturating_add(1) } else { 0 };
+            let ticks = if same {
+                self.ticks[i].saturating_add(1)
+            } else {
+                0
+            };
             self.ticks[i] = ticks;
             if ticks >= FROZEN_TICKS {
                 through = through.or(Some(NAMES[i]));
@@ -47,7 +51,9 @@ impl Frozen {
         }
         match through {
             None => Ok(()),
-            Some(_) if self.ticks.iter().all(|ticks| *ticks >= NEARLY_TICKS) => Err(Fault::SamplesFrozen),
+            Some(_) if self.ticks.iter().all(|ticks| *ticks >= NEARLY_TICKS) => {
+                Err(Fault::SamplesFrozen)
+            }
             Some(one) => Err(one),
         }
     }

@@ -35,7 +35,8 @@ impl Jump {
             self.ticks += 1;
             return Ok(());
         }
-        let jumped = |now: Celsius, before: Celsius| now.saturating_sub(before).saturating_abs() > MOST;
+        let jumped =
+            |now: Celsius, before: Celsius| now.saturating_sub(before).saturating_abs() > MOST;
         if jumped(sound.display, display) {
             Err(Fault::DisplayJump)
         } else if jumped(sound.check, check) {

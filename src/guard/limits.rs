@@ -107,18 +107,31 @@ mod tests {
             Some("display-open")
         );
         assert_eq!(fault_of(|r| r.display_check = short), Some("check-short"));
-        assert_eq!(fault_of(|r| r.sink = Err(SensorFault::Open)), Some("sink-open"));
+        assert_eq!(
+            fault_of(|r| r.sink = Err(SensorFault::Open)),
+            Some("sink-open")
+        );
         assert_eq!(fault_of(|r| r.skin = short), Some("skin-short"));
-        assert_eq!(fault_of(|r| r.room = Err(SensorFault::Open)), Some("room-open"));
+        assert_eq!(
+            fault_of(|r| r.room = Err(SensorFault::Open)),
+            Some("room-open")
+        );
         let all = |r: &mut Readings| {
-            (r.display, r.display_check, r.sink, r.skin, r.room) = (short, short, short, short, short);
+            (r.display, r.display_check, r.sink, r.skin, r.room) =
+                (short, short, short, short, short);
         };
         assert_eq!(fault_of(all), Some("excitation"));
         assert_eq!(fault_of(|r| r.force = None), Some("force-sensor"));
         assert_eq!(fault_of(|r| r.display = t(43.01)), Some("display-hot"));
-        assert_eq!(fault_of(|r| r.display_check = t(43.01)), Some("display-hot"));
+        assert_eq!(
+            fault_of(|r| r.display_check = t(43.01)),
+            Some("display-hot")
+        );
         assert_eq!(fault_of(|r| r.display = t(42.99)), None);
-        assert_eq!(fault_of(|r| r.display_check = t(13.49)), Some("display-cold"));
+        assert_eq!(
+            fault_of(|r| r.display_check = t(13.49)),
+            Some("display-cold")
+        );
         assert_eq!(fault_of(|r| r.sink = t(42.1)), Some("sink-hot"));
         assert_eq!(
             fault_of(|r| r.current = Current::lit("9.1")),

@@ -57,7 +57,10 @@ mod tests {
     fn ticks_that_come_in_time_pass_for_an_hour_though_each_is_late_by_something() {
         let period = u64::from(PERIOD);
         assert_eq!(until_off(3_600_000, |n| n * period), None);
-        assert_eq!(until_off(3_600_000, |n| n * period + n * 7919 % 44_000), None);
+        assert_eq!(
+            until_off(3_600_000, |n| n * period + n * 7919 % 44_000),
+            None
+        );
         // A first tick that is late makes the others early.
         assert_eq!(
             until_off(1000, |n| n * period + if n == 0 { 44_000 } else { 0 }),
@@ -97,7 +100,10 @@ mod tests {
         assert!(of(5624).is_some_and(|ms| ms < 1500.0));
         // Prescaler: half the rate and less, up to where the window watchdog is first.
         for divider in [2, 3, 5, 9, 17, 33] {
-            assert!(of(5625 * divider).is_some_and(|ms| ms <= 50.0), "1/{divider}");
+            assert!(
+                of(5625 * divider).is_some_and(|ms| ms <= 50.0),
+                "1/{divider}"
+            );
         }
         assert!(of(5625 * 102 / 100).is_some_and(|ms| ms < 14.0), "2 %");
     }

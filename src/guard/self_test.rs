@@ -101,7 +101,11 @@ impl SelfTest {
         cut: bool,
         felt: bool,
     ) -> Result<Progress, Fault> {
-        self.untouched = if felt { 0 } else { self.untouched.saturating_add(1) };
+        self.untouched = if felt {
+            0
+        } else {
+            self.untouched.saturating_add(1)
+        };
         if felt != self.touched && (felt || self.untouched >= LIFTED) {
             self.begin_anew(felt);
         }

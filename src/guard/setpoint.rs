@@ -32,7 +32,9 @@ mod tests {
 
     #[test]
     fn setpoint_cannot_leave_its_range() {
-        for (wanted, allowed, limited) in [(14.9, 15.0, true), (15.0, 15.0, false), (42.5, 42.0, true)] {
+        for (wanted, allowed, limited) in
+            [(14.9, 15.0, true), (15.0, 15.0, false), (42.5, 42.0, true)]
+        {
             let (setpoint, was_limited) = Setpoint::limited(Celsius::from_num(wanted));
             assert_eq!(
                 (setpoint.celsius().to_num::<f64>(), was_limited),

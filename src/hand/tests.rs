@@ -82,11 +82,18 @@ fn a_line_is_for_one_finger_or_for_all() {
     // Four have no material yet, and the one that has started already is not the first to refuse.
     assert_eq!(host(&mut hand, "start"), "@0 err start needs arm first");
     arm(&mut hand, 0);
-    assert_eq!(host(&mut hand, "start"), "@0 err start needs a material first");
+    assert_eq!(
+        host(&mut hand, "start"),
+        "@0 err start needs a material first"
+    );
     assert_eq!(state_of(&mut hand, 3), "preset", "the others have obeyed");
     assert_eq!(host(&mut hand, "abort"), "ok");
     for finger in 0..FIVE {
-        let expected = if [0, 3].contains(&finger) { "ready" } else { "off" };
+        let expected = if [0, 3].contains(&finger) {
+            "ready"
+        } else {
+            "off"
+        };
         assert_eq!(state_of(&mut hand, finger), expected, "{finger}");
     }
 }
@@ -108,7 +115,10 @@ fn fingers_share_no_fault() {
         assert_eq!(drive.drive == Drive::Off, finger == 1, "{finger}");
     }
     assert_eq!(state_of(&mut hand, 1), "tripped");
-    assert_eq!(host(&mut hand, "arm"), "@1 err tripped by bridge; clear it first");
+    assert_eq!(
+        host(&mut hand, "arm"),
+        "@1 err tripped by bridge; clear it first"
+    );
     assert_eq!(host(&mut hand, "abort"), "ok");
     for finger in [0, 2, 3, 4] {
         assert_eq!(hand.step(finger, &samples(1)).drive, Drive::Off, "{finger}");
@@ -143,7 +153,9 @@ fn answers_and_telemetry_say_whose_they_are() {
     assert_eq!(host(&mut hand, "@2 stream 1"), "@2 ok");
     for finger in 0..FIVE {
         hand.step(finger, &samples(0));
-        let line = hand.telemetry(finger).map(|telemetry| telemetry.to_string());
+        let line = hand
+            .telemetry(finger)
+            .map(|telemetry| telemetry.to_string());
         assert_eq!(line.is_some(), finger == 2, "{finger}");
         assert!(line.is_none_or(|line| line.starts_with("@2 T 1 off ")));
     }

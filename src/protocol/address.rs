@@ -52,6 +52,9 @@ pub(crate) fn address(line: &str, fingers: usize) -> Result<(Option<u8>, &str), 
     };
     match known {
         Some(finger) => Ok((Some(finger), rest)),
-        None => Err(Addressed::device(Error::UnknownFinger(number.into(), fingers))),
+        None => Err(Addressed::device(Error::UnknownFinger(
+            number.into(),
+            fingers,
+        ))),
     }
 }

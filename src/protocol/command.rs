@@ -209,7 +209,8 @@ pub(crate) fn number<'a>(
 ) -> Result<I32F32, Error> {
     let word = words.next().ok_or(Error::Missing(expected.name))?;
     // Saturates, so that too many digits are out of range.
-    let value = I32F32::saturating_from_str(word).map_err(|_| Error::NotANumber(expected, word.into()))?;
+    let value =
+        I32F32::saturating_from_str(word).map_err(|_| Error::NotANumber(expected, word.into()))?;
     let range = I32F32::from_num(expected.min)..=I32F32::from_num(expected.max);
     if range.contains(&value) {
         Ok(value)
@@ -224,7 +225,9 @@ fn hold(celsius: I32F32) -> Setpoint {
 
 fn law(name: &str) -> Result<Law, Error> {
     let known = Law::WORDS.iter().find(|(known, _)| *known == name);
-    known.map(|(_, law)| *law).ok_or(Error::UnknownLaw(name.into()))
+    known
+        .map(|(_, law)| *law)
+        .ok_or(Error::UnknownLaw(name.into()))
 }
 
 fn custom<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<Material, Error> {

@@ -139,14 +139,20 @@ impl fmt::Display for Error {
         f.write_str("err ")?;
         match self {
             Self::Line(LineError::TooLong) => write!(f, "line too long; at most {LINE_MAX} bytes"),
-            Self::Line(LineError::NotText(byte)) => write!(f, "byte 0x{byte:02x} is not printable ASCII"),
+            Self::Line(LineError::NotText(byte)) => {
+                write!(f, "byte 0x{byte:02x} is not printable ASCII")
+            }
             Self::Line(LineError::Reception) => {
                 f.write_str("a byte was damaged or lost; send the line again")
             }
-            Self::Line(LineError::Refused) => f.write_str("busy; wait for the answer before the next line"),
+            Self::Line(LineError::Refused) => {
+                f.write_str("busy; wait for the answer before the next line")
+            }
             Self::UnknownCommand(word) => {
                 write!(f, "unknown command {word}; known:")?;
-                Command::WORDS.iter().try_for_each(|known| write!(f, " {known}"))
+                Command::WORDS
+                    .iter()
+                    .try_for_each(|known| write!(f, " {known}"))
             }
             Self::UnknownFinger(word, fingers) => {
                 write!(
@@ -162,10 +168,14 @@ impl fmt::Display for Error {
                     .try_for_each(|(known, _)| write!(f, " {known}"))?;
                 f.write_str(" custom")
             }
-            Self::UnknownMode(word) => write!(f, "unknown mode {word}; known: contact semi-infinite"),
+            Self::UnknownMode(word) => {
+                write!(f, "unknown mode {word}; known: contact semi-infinite")
+            }
             Self::UnknownLaw(word) => {
                 write!(f, "unknown law {word}; known:")?;
-                Law::WORDS.iter().try_for_each(|(known, _)| write!(f, " {known}"))
+                Law::WORDS
+                    .iter()
+                    .try_for_each(|(known, _)| write!(f, " {known}"))
             }
             Self::UnknownSensor(word) => {
                 write!(f, "unknown sensor {word}; known:")?;
@@ -176,10 +186,29 @@ impl fmt::Display for Error {
             }
             Self::Missing(what) => write!(f, "{what} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
-            Self::NotANumber(Number { name, unit, min, max }, word) => {
-                write!(f, "{name} {word} is not a decimal number; {min} to {max} {unit}")
+            Self::NotANumber(
+                Number {
+                    name,
+                    unit,
+                    min,
+                    max,
+                },
+                word,
+            ) => {
+                write!(
+                    f,
+                    "{name} {word} is not a decimal number; {min} to {max} {unit}"
+                )
             }
-            Self::OutOfRange(Number { name, unit, min, max }, word) => {
+            Self::OutOfRange(
+                Number {
+                    name,
+                    unit,
+                    min,
+                    max,
+                },
+                word,
+            ) => {
                 write!(f, "{name} {word} out of range; {min} to {max} {unit}")
             }
             Self::Pairing(error) => write!(f, "{error}"),
@@ -200,24 +229,32 @@ impl fmt::Display for Error {
                 f,
                 "tune measured {part:.2} of the current asked for; look at bridge, module and current mirror"
             ),
-            Self::NoTile(NoTile::Nothing) => {
-                f.write_str("tune saw no answer of the display to the current; look at its thermistor")
-            }
+            Self::NoTile(NoTile::Nothing) => f.write_str(
+                "tune saw no answer of the display to the current; look at its thermistor",
+            ),
             Self::NoTile(NoTile::Unlike(part)) => write!(
                 f,
                 "tune saw {:.2} % of what the display did come from elsewhere; look for a loose sensor, a draught, a touch",
                 100.0 * part
             ),
-            Self::NoTile(NoTile::Beyond(Number { name, unit, min, max }, value)) => write!(
+            Self::NoTile(NoTile::Beyond(
+                Number {
+                    name,
+                    unit,
+                    min,
+                    max,
+                },
+                value,
+            )) => write!(
                 f,
                 "tune found a {name} of {value:.3} {unit}; {min} to {max} is a tile; look at sensor and polarity"
             ),
             Self::Point(PointError::TooEarly) => {
                 f.write_str("not watched for long enough; wait half a second")
             }
-            Self::Point(PointError::Unsteady) => {
-                f.write_str("the reading moves; wait until it is steady to 3 mK in a quarter of a second")
-            }
+            Self::Point(PointError::Unsteady) => f.write_str(
+                "the reading moves; wait until it is steady to 3 mK in a quarter of a second",
+            ),
             Self::Point(PointError::AtBorder) => {
                 f.write_str("at a step of the converter; take a temperature 0.3 C from here")
             }
@@ -227,10 +264,12 @@ impl fmt::Display for Error {
                     "the device reads {reads:.2} C; allowed is within {FARTHEST_K} C of that"
                 )
             }
-            Self::Point(PointError::Contradicts) => {
-                f.write_str("no correction fits this and the points before; clear them and begin again")
+            Self::Point(PointError::Contradicts) => f.write_str(
+                "no correction fits this and the points before; clear them and begin again",
+            ),
+            Self::Point(PointError::Full) => {
+                write!(f, "no room for more than {POINTS} points; clear them")
             }
-            Self::Point(PointError::Full) => write!(f, "no room for more than {POINTS} points; clear them"),
             Self::Tripped(fault) => write!(f, "tripped by {}; clear it first", fault.name()),
             Self::StillFaulty(fault) => write!(f, "fault {} is still present", fault.name()),
             Self::NothingToClear => f.write_str("no fault to clear"),

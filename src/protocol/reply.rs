@@ -82,7 +82,9 @@ impl fmt::Display for Reply {
             Self::Status(status) => write!(f, "ok {status}"),
             Self::Law(law) => write!(f, "ok law={}", law.name()),
             Self::Cause(cause) => write!(f, "ok {}", Told(cause.as_ref())),
-            Self::Average(average) => write!(f, "ok sum={:.3} rise={}", average.sum(), average.rise),
+            Self::Average(average) => {
+                write!(f, "ok sum={:.3} rise={}", average.sum(), average.rise)
+            }
             Self::Row(row) => {
                 f.write_str("ok")?;
                 row.iter().try_for_each(|sum| write!(f, " {sum}"))
@@ -99,7 +101,9 @@ impl fmt::Display for Reply {
                 )?;
                 write!(f, " phase_deg={phase_deg:.1} margin={times:.2}")
             }
-            Self::Calibrated { points, worst_mk } => write!(f, "ok points={points} worst_mk={worst_mk:.2}"),
+            Self::Calibrated { points, worst_mk } => {
+                write!(f, "ok points={points} worst_mk={worst_mk:.2}")
+            }
             Self::SettingsLines(lines) => write!(f, "ok lines={lines}"),
             Self::Setting(setting) => write!(f, "ok {setting}"),
         }

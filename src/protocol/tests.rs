@@ -6,7 +6,9 @@ use std::vec::Vec;
 
 use contact_model::fixed_point::{Celsius, Force};
 
-use super::{ANSWER_MAX, Command, Error, LINE_MAX, LineError, LineReader, Reply, Status, Telemetry};
+use super::{
+    ANSWER_MAX, Command, Error, LINE_MAX, LineError, LineReader, Reply, Status, Telemetry,
+};
 use crate::control::Law;
 use crate::drive::Current;
 use crate::guard::{Fault, State};
@@ -29,7 +31,12 @@ fn every_command_is_understood() {
         ("id", Command::Identify),
         ("state", Command::Status),
         ("stream 0", Command::Stream { interval_ms: 0 }),
-        (" stream  60000 ", Command::Stream { interval_ms: 60_000 }),
+        (
+            " stream  60000 ",
+            Command::Stream {
+                interval_ms: 60_000,
+            },
+        ),
         ("object room", Command::Object(None)),
         ("object -20", Command::Object(Some(Celsius::lit("-20")))),
         ("object 23.25", Command::Object(Some(Celsius::lit("23.25")))),
@@ -81,7 +88,10 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
             "err unknown material 'unobtainium-of-the-f'; known: copper bronze stainless-steel granite g10 abs foam \
              baf2 zns custom",
         ),
-        ("mode x", "err unknown mode 'x'; known: contact semi-infinite"),
+        (
+            "mode x",
+            "err unknown mode 'x'; known: contact semi-infinite",
+        ),
         ("law x", "err unknown law 'x'; known: pi-10hz pi model"),
         (" ", "err command missing"),
         ("stream", "err interval missing"),
@@ -125,7 +135,9 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
 fn read(bytes: impl IntoIterator<Item = u8>) -> Vec<Result<String, LineError>> {
     let mut reader = LineReader::new();
     let lines = bytes.into_iter().filter_map(|byte| reader.push(byte));
-    lines.map(|line| line.map(|line| line.to_string())).collect()
+    lines
+        .map(|line| line.map(|line| line.to_string()))
+        .collect()
 }
 
 #[test]

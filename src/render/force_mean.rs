@@ -174,7 +174,12 @@ mod tests {
             for force_n in [0.1, 0.5, 2.0] {
                 let contact = |force_n| {
                     let pressure_pa = pressure::pressure_pa(2.0) * force_n / 2.0;
-                    Contact::<f64>::new((&SKIN, 34.0), (&material, 24.0), &REFERENCE_DISPLAY, pressure_pa)
+                    Contact::<f64>::new(
+                        (&SKIN, 34.0),
+                        (&material, 24.0),
+                        &REFERENCE_DISPLAY,
+                        pressure_pa,
+                    )
                 };
                 let gain = Celsius::from_num(10.0 * (contact(1.0).weight - contact(1.0).ratio));
                 let before = Force::from_num(force_n);

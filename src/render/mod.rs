@@ -148,7 +148,13 @@ impl Render {
     /// Follows skin, room and force, of which a contact that begins began `landed_ticks` ago. Temperatures before
     /// contact only: the skin's sensor sees little of it during contact, and for some time after it what the contact
     /// left.
-    pub fn observe(&mut self, skin: Celsius, room: Celsius, touch: Option<Force>, landed_ticks: u32) {
+    pub fn observe(
+        &mut self,
+        skin: Celsius,
+        room: Celsius,
+        touch: Option<Force>,
+        landed_ticks: u32,
+    ) {
         let at_rest = touch.is_none() && self.lifted_ticks >= RESTED_TICKS;
         self.before = Some(match self.before {
             None => Before { skin, room },
@@ -231,7 +237,9 @@ impl Render {
         if !grip.links.as_ref().is_some_and(|links| links.do_for(force)) {
             grip.links = Some(Links::new(pairing, force));
         }
-        let drive = self.skin.touch_display(grip.links.as_ref(), before.skin, display);
+        let drive = self
+            .skin
+            .touch_display(grip.links.as_ref(), before.skin, display);
         // mm2 in 2^-16 and K in 2^-22 to W in 2^-24.
         let area = i64::from(contact_area(force).to_bits());
         let per_mm2 = (i64::from(drive.to_bits()) * i64::from(FLUX_W_MM2K)) >> 30;
@@ -304,7 +312,8 @@ impl Render {
             touching.course = None;
         }
         let due = touching.due && closed && !new;
-        touching.due = closed && (grip.change != Change::Noise || !same || due || touching.course.is_none());
+        touching.due =
+            closed && (grip.change != Change::Noise || !same || due || touching.course.is_none());
         let known = due && grip.contact_in_use().is_some();
         if touching.due && !known {
             grip.use_mean(scene.pairing);
@@ -312,7 +321,8 @@ impl Render {
         // While the skin is followed, not both in one tick.
         let setpoint = match (grip.contact_in_use(), &mut touching.course) {
             (Some(contact), course) if touching.due && (known || !live) => {
-                let (laid, evaluations) = Course::new(contact, skin, object, touching.elapsed, TOLERANCE);
+                let (laid, evaluations) =
+                    Course::new(contact, skin, object, touching.elapsed, TOLERANCE);
                 self.evaluations = self.evaluations.wrapping_add(evaluations);
                 touching.same = all_the_same(grip.force.in_use(), laid.gain());
                 touching.due = false;

@@ -99,7 +99,12 @@ impl Skin {
 
     /// One tick on the display, whose surface is `display`; gives the drive into it. `before` is the skin's
     /// temperature when no heat has flowed for long.
-    pub fn touch_display(&mut self, links: Option<&Links>, before: Celsius, display: Celsius) -> Celsius {
+    pub fn touch_display(
+        &mut self,
+        links: Option<&Links>,
+        before: Celsius,
+        display: Celsius,
+    ) -> Celsius {
         let drive = links.map_or(Celsius::ZERO, |links| {
             links
                 .display
@@ -121,14 +126,25 @@ impl Skin {
     /// Eq. 6-12 from the skin on the object as it is now: `before` and `apart` are the skin's temperature before all
     /// contact and how much warmer than the object it was.
     #[must_use]
-    pub fn display(&self, bodies: &Bodies, before: Celsius, apart: Celsius, touching: bool) -> Celsius {
+    pub fn display(
+        &self,
+        bodies: &Bodies,
+        before: Celsius,
+        apart: Celsius,
+        touching: bool,
+    ) -> Celsius {
         let moved = self.on_object.after(self.drive);
         let closed = (i64::from(moved.to_bits()) * i64::from(bodies.inverse_weight)) >> 16;
         // Within 512 K, so that the product has 63 bits.
         let step = limited(i64::from(apart.to_bits()) - closed).to_bits();
-        let over_display = (i64::from(step) * i64::from(bodies.ratio.to_bits())) >> Ratio::FRAC_NBITS;
+        let over_display =
+            (i64::from(step) * i64::from(bodies.ratio.to_bits())) >> Ratio::FRAC_NBITS;
         // Between contacts it is this finger that will land.
-        let skin = if touching { moved } else { self.on_display.left() };
+        let skin = if touching {
+            moved
+        } else {
+            self.on_display.left()
+        };
         limited(i64::from(before.to_bits()) - i64::from(skin.to_bits()) - over_display)
     }
 

@@ -40,10 +40,13 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
     let (mut worst_k, mut step_k, mut before) = (0.0f64, 0.0f64, None);
     for tick in 0..ticks {
         let t_s = f64::from(tick) * TICK_S;
-        let noise_n = NOISE_N * (f64::from(tick.wrapping_mul(2_654_435_761) >> 8) / 2f64.powi(23) - 1.0);
+        let noise_n =
+            NOISE_N * (f64::from(tick.wrapping_mul(2_654_435_761) >> 8) / 2f64.powi(23) - 1.0);
         let force = Force::from_num(force_n(t_s) + noise_n);
         render.observe(Celsius::from_num(SKIN_C), object_c, Some(force), 0);
-        let wanted = render.present(&scene, Celsius::ZERO, false).expect("observed");
+        let wanted = render
+            .present(&scene, Celsius::ZERO, false)
+            .expect("observed");
         let setpoint_c = wanted.setpoint.to_num::<f64>();
         let finger = (&SKIN, SKIN_C);
         let exact = Contact::new(
@@ -76,7 +79,11 @@ fn steady_force_is_within_half_a_millikelvin_in_at_most_100_evaluations() {
                 seen.worst_k * 1e3,
                 seen.evaluations
             );
-            assert!(seen.worst_k <= 0.5e-3, "{name}, {force_n} N: {} K", seen.worst_k);
+            assert!(
+                seen.worst_k <= 0.5e-3,
+                "{name}, {force_n} N: {} K",
+                seen.worst_k
+            );
             assert!(
                 seen.evaluations <= 100,
                 "{name}, {force_n} N: {}",
@@ -106,8 +113,16 @@ fn changing_force_is_followed_without_jumps() {
     let ramp = |length_s: f64| move |t_s: f64| 1.0 + ((t_s - 20.0) / length_s).clamp(0.0, 1.0);
     let wave = |t_s: f64| 1.5 * (1.0 + 0.05 * (TAU * 0.1 * t_s).sin());
     for (name, seen, allowed_k) in [
-        ("ramp of 20 s", contact(GRANITE, 40_000, 19.0, ramp(20.0)), 1.5e-3),
-        ("ramp of 5 s", contact(GRANITE, 27_000, 19.0, ramp(5.0)), 4e-3),
+        (
+            "ramp of 20 s",
+            contact(GRANITE, 40_000, 19.0, ramp(20.0)),
+            1.5e-3,
+        ),
+        (
+            "ramp of 5 s",
+            contact(GRANITE, 27_000, 19.0, ramp(5.0)),
+            4e-3,
+        ),
         ("wave of 0.1 Hz", contact(GRANITE, 30_000, 1.0, wave), 2e-3),
     ] {
         println!(

@@ -136,7 +136,10 @@ mod tests {
             let steps = Steps::new(&[step; BORDERS]);
             for sum in (0..=65_520).step_by(7) {
                 let off = i64::from(steps.without(sum)) - (i64::from(sum) << FINE_BITS);
-                assert!(off.abs() <= (8 * 16) << FINE_BITS, "{off} sixteenths at {sum}");
+                assert!(
+                    off.abs() <= (8 * 16) << FINE_BITS,
+                    "{off} sixteenths at {sum}"
+                );
             }
         }
     }

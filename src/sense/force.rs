@@ -111,7 +111,11 @@ impl Touch {
     /// A finger lands in the second tick off zero at the earliest, so one tick alone starts nothing.
     pub fn update(&mut self, force: Force) {
         if self.touching {
-            self.lifted = if force < LIFTED_BELOW { self.lifted + 1 } else { 0 };
+            self.lifted = if force < LIFTED_BELOW {
+                self.lifted + 1
+            } else {
+                0
+            };
             if self.lifted == DEBOUNCE_TICKS {
                 *self = Self::default();
             }
@@ -190,7 +194,10 @@ mod tests {
                 scale.follow_zero(sum(418.0 - 0.03 * f64::from(second)), false);
             }
         }
-        let force = scale.force(sum(400.0 + 30.0)).expect("in range").to_num::<f64>();
+        let force = scale
+            .force(sum(400.0 + 30.0))
+            .expect("in range")
+            .to_num::<f64>();
         assert!((force - 0.1).abs() < 5e-4, "{force}");
     }
 
@@ -206,7 +213,10 @@ mod tests {
         }
         let force = scale.force(sum(413.0)).expect("in range").to_num::<f64>();
         let expected = 0.01 * (-2000.0 / 16384.0f64).exp();
-        assert!((force - expected).abs() < 1e-4, "{force}, expected {expected}");
+        assert!(
+            (force - expected).abs() < 1e-4,
+            "{force}, expected {expected}"
+        );
     }
 
     #[test]

@@ -54,7 +54,13 @@ impl Samples {
     /// Those of the thermistors.
     #[must_use]
     pub const fn thermistors(&self) -> [u16; THERMISTORS] {
-        [self.display, self.display_check, self.sink, self.skin, self.room]
+        [
+            self.display,
+            self.display_check,
+            self.sink,
+            self.skin,
+            self.room,
+        ]
     }
 
     /// Sums the scans of one tick.
@@ -200,7 +206,10 @@ impl Sensors {
             skin,
             room,
             force: self.force.force(samples.force),
-            current: Current::from_bits(self.current_per_unit.saturating_mul(i32::from(samples.current))),
+            current: Current::from_bits(
+                self.current_per_unit
+                    .saturating_mul(i32::from(samples.current)),
+            ),
             bridge_fault: samples.bridge_fault,
         }
     }

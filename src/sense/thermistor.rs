@@ -72,7 +72,8 @@ impl Thermistor {
         connected(sum)?;
         let position_bits = u16::BITS + FINE_BITS - PARTS_SHIFT;
         // From 0 to 1/2, in 2^-32.
-        let position = i64::from(fine & ((1 << position_bits) - 1)) << (u32::BITS - 1 - position_bits);
+        let position =
+            i64::from(fine & ((1 << position_bits) - 1)) << (u32::BITS - 1 - position_bits);
         // Steps are small beside what lies between the ends of the range and those of its last parts.
         let [constant, rest @ ..] = self.parts[(fine >> position_bits) as usize % PARTS];
         let change = rest.iter().rev().fold(0i32, |sum, &c| {
@@ -139,7 +140,9 @@ mod tests {
         });
         for (t_c, ohm) in [(0.0, 32_650.0), (25.0, 10_000.0), (50.0, 3_603.0)] {
             let sum = (ohm / (ohm + 10e3) * 65536.0f64).round() as u16;
-            let t = temperature(&thermistor, sum).expect("in range").to_num::<f64>();
+            let t = temperature(&thermistor, sum)
+                .expect("in range")
+                .to_num::<f64>();
             assert!((t - t_c).abs() < 0.05, "{t_c}: {t}");
         }
     }

@@ -45,7 +45,9 @@ impl Calibration {
     #[must_use]
     pub fn rounded(&self) -> Self {
         Self {
-            steps_counts: self.steps_counts.map(|step| rounded(step, Self::STEP_DECIMALS)),
+            steps_counts: self
+                .steps_counts
+                .map(|step| rounded(step, Self::STEP_DECIMALS)),
             corrections: self.corrections.map(|correction| correction.rounded()),
         }
     }

@@ -18,7 +18,8 @@ const SECTORS: usize = 3;
 
 /// Where the newest record is, for as long as one operation takes. Without, the whole flash is searched for each record of
 /// a page that is given up: seconds.
-type Remembered = Cache<ArrayPageStates<SECTORS>, ArrayPagePointers<SECTORS>, ArrayKeyPointers<(), 1>, ()>;
+type Remembered =
+    Cache<ArrayPageStates<SECTORS>, ArrayPagePointers<SECTORS>, ArrayKeyPointers<(), 1>, ()>;
 
 /// The settings of a device with that many fingers, in three sectors of a flash.
 ///

@@ -71,16 +71,20 @@ impl Kept {
     /// Values as they are stored, each with its decimals.
     fn values(&self) -> impl Iterator<Item = (f64, i32)> {
         let steps = self.calibration.steps_counts.into_iter();
-        let corrections = self.calibration.corrections.into_iter().flat_map(|correction| {
-            let Correction {
-                offset_k,
-                slope,
-                curvature_1_k,
-            } = correction;
-            [offset_k, slope, curvature_1_k]
-                .into_iter()
-                .zip(Calibration::DECIMALS)
-        });
+        let corrections = self
+            .calibration
+            .corrections
+            .into_iter()
+            .flat_map(|correction| {
+                let Correction {
+                    offset_k,
+                    slope,
+                    curvature_1_k,
+                } = correction;
+                [offset_k, slope, curvature_1_k]
+                    .into_iter()
+                    .zip(Calibration::DECIMALS)
+            });
         let tile = self.tile.to_array().into_iter();
         steps
             .map(|step| (step, Calibration::STEP_DECIMALS))
@@ -142,7 +146,9 @@ pub enum StoredError {
 impl fmt::Display for StoredError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Length(bytes) => write!(f, "stored settings have a wrong length of {bytes} bytes"),
+            Self::Length(bytes) => {
+                write!(f, "stored settings have a wrong length of {bytes} bytes")
+            }
             Self::Checksum => f.write_str("stored settings do not fit their checksum"),
             Self::Version(version) => {
                 write!(
@@ -150,11 +156,20 @@ impl fmt::Display for StoredError {
                     "stored settings have the unknown version {version}; known: {VERSION}"
                 )
             }
-            Self::Kind(kind) => write!(f, "stored settings have the unknown kind {kind}; known: 0 1"),
+            Self::Kind(kind) => write!(
+                f,
+                "stored settings have the unknown kind {kind}; known: 0 1"
+            ),
             Self::Fingers(fingers) => write!(f, "stored settings are those of {fingers} fingers"),
             Self::OutOfRange {
                 finger,
-                allowed: Number { name, unit, min, max },
+                allowed:
+                    Number {
+                        name,
+                        unit,
+                        min,
+                        max,
+                    },
                 value,
             } => {
                 write!(

@@ -141,9 +141,16 @@ impl Bench {
 }
 
 /// Current of a law that wants a display there, A, by what its and the sink's thermistor read and a load, W.
-pub fn step(control: &mut Control, target_c: f64, (reading_c, sink_c): (f64, f64), load_w: f64) -> f64 {
+pub fn step(
+    control: &mut Control,
+    target_c: f64,
+    (reading_c, sink_c): (f64, f64),
+    load_w: f64,
+) -> f64 {
     control.observe(celsius(reading_c), celsius(sink_c), Watt::from_num(load_w));
-    control.update(setpoint(target_c), setpoint(target_c)).to_num()
+    control
+        .update(setpoint(target_c), setpoint(target_c))
+        .to_num()
 }
 
 /// One step of a tile under a current, A, and a load on its patch, W.

@@ -20,7 +20,10 @@ fn disturbed(bench: &mut Bench) -> (f64, f64) {
     let before_a = bench.current_a;
     let after = bench.run(TARGET_C, 3.0);
     let error_k = after.iter().map(|tick| (tick.display_c - TARGET_C).abs());
-    ((after[0].current_a - before_a).abs(), error_k.fold(0.0, f64::max))
+    (
+        (after[0].current_a - before_a).abs(),
+        error_k.fold(0.0, f64::max),
+    )
 }
 
 fn retune(bench: &mut Bench, tile: Tile) {
@@ -38,7 +41,11 @@ fn other_gains_are_taken_without_a_bump() {
         };
         retune(&mut bench, tile);
         let (step_a, error_k) = disturbed(&mut bench);
-        println!("gain x {factor}: {:.3} mA, {:.3} mK", 1e3 * step_a, 1e3 * error_k);
+        println!(
+            "gain x {factor}: {:.3} mA, {:.3} mK",
+            1e3 * step_a,
+            1e3 * error_k
+        );
         assert!(error_k < 0.02, "{factor}: {error_k} K");
     }
 }
@@ -118,7 +125,12 @@ fn another_law_goes_on_without_a_bump() {
             1e3 * left_k
         );
         assert!(step_a < 0.1, "{step_a} A from {before_a} A");
-        assert!(error_k < 0.015, "{} to {}: {error_k} K", from.name(), to.name());
+        assert!(
+            error_k < 0.015,
+            "{} to {}: {error_k} K",
+            from.name(),
+            to.name()
+        );
         assert!(left_k < 2e-3, "{left_k} K");
     }
 }

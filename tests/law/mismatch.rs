@@ -38,7 +38,10 @@ fn ten_percent_leave_no_steady_error() {
                 1e3 * disturbed_k,
                 1e3 * left_k
             );
-            assert!(disturbed_k > 0.02, "{name}: the load disturbs by {disturbed_k} K");
+            assert!(
+                disturbed_k > 0.02,
+                "{name}: the load disturbs by {disturbed_k} K"
+            );
             assert!(left_k < 2e-3, "{name} x {factor}: {left_k} K");
             assert!(current_a < 0.02, "{name} x {factor}: {current_a} A");
         }

@@ -55,7 +55,9 @@ fn moved(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> {
 fn agree(what: &str, answer: &[(f64, f64, f64)], part: f64, more_k: f64) -> bool {
     answer.iter().fold(true, |agree, &(t_s, model_k, tile_k)| {
         let error_k = (model_k - tile_k).abs();
-        println!("{what}, {t_s} s: model {model_k:.4} K, tile {tile_k:.4} K, off by {error_k:.4} K");
+        println!(
+            "{what}, {t_s} s: model {model_k:.4} K, tile {tile_k:.4} K, off by {error_k:.4} K"
+        );
         agree && error_k < more_k + part * tile_k.abs()
     })
 }

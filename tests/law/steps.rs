@@ -69,7 +69,10 @@ fn nothing_winds_up_at_the_limit() {
                 .iter()
                 .filter(|tick| tick.current_a.abs() > 0.2999)
                 .count();
-            assert!(at_limit > ticks(4.9), "{name}: {at_limit} ticks at the limit");
+            assert!(
+                at_limit > ticks(4.9),
+                "{name}: {at_limit} ticks at the limit"
+            );
             // As a law that has no past would go on from here.
             let mut afresh = bench.clone();
             afresh.control.lose_sight();
@@ -79,7 +82,9 @@ fn nothing_winds_up_at_the_limit() {
                 let answer = bench.run(reachable_c, 10.0);
                 settled(&answer, reachable_c, 0.02).map(|tick| 1e-3 * tick as f64)
             });
-            println!("{name}, towards {target_c} C: recovers in {recovered:?} s, afresh {fresh:?} s");
+            println!(
+                "{name}, towards {target_c} C: recovers in {recovered:?} s, afresh {fresh:?} s"
+            );
             let (recovered, fresh) = (recovered.expect("recovers"), fresh.expect("settles"));
             assert!(
                 recovered <= fresh + more_s,
@@ -97,7 +102,8 @@ fn a_load_that_is_known_is_made_up_for() {
         (bench.load_w, bench.told_w) = (1.0, told_w);
         let answer = bench.run(26.0, 3.0);
         let late = answer.iter().skip(50);
-        late.map(|tick| (tick.display_c - 26.0).abs()).fold(0.0, f64::max)
+        late.map(|tick| (tick.display_c - 26.0).abs())
+            .fold(0.0, f64::max)
     };
     let (known_k, unknown_k) = (largest_k(1.0), largest_k(0.0));
     println!(

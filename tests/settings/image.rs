@@ -111,10 +111,12 @@ fn the_flash_delays_a_start_by_little() {
     let never = first_conversion_ms(&firmware, &after(0));
     let (one, full) = (after(1), after(37));
     let [with_one, with_most] = [&one, &full].map(|cells| first_conversion_ms(&firmware, cells));
-    println!("start: {never:.1} ms, {with_one:.1} with one record, {with_most:.1} with a page of them");
+    println!(
+        "start: {never:.1} ms, {with_one:.1} with one record, {with_most:.1} with a page of them"
+    );
     assert!(with_most - never < 100.0);
-    let [first, second, turning] =
-        [(&after(0), 0), (&one, 1), (&full, 37)].map(|(cells, number)| save_ms(&firmware, cells, number));
+    let [first, second, turning] = [(&after(0), 0), (&one, 1), (&full, 37)]
+        .map(|(cells, number)| save_ms(&firmware, cells, number));
     println!(
         "save: {first:.1} ms the first time, {second:.1} then, {turning:.1} when it turns to another page"
     );
@@ -132,10 +134,17 @@ fn cut(firmware: &Firmware, cells: &Cells, number: u32, operations: &[u64]) -> (
         for line in &new {
             assert_eq!(device.tell(line.trim_start_matches("ok ")), "ok");
         }
-        device.0.flash_mut().cut_power_at(*nth, nth ^ u64::from(number));
+        device
+            .0
+            .flash_mut()
+            .cut_power_at(*nth, nth ^ u64::from(number));
         device.ask("save", START + START);
         let causes: Vec<_> = device.0.resets().iter().map(|reset| reset.cause).collect();
-        let expected = [ResetCause::PowerOn, ResetCause::Software, ResetCause::PowerOn];
+        let expected = [
+            ResetCause::PowerOn,
+            ResetCause::Software,
+            ResetCause::PowerOn,
+        ];
         assert_eq!(causes, expected, "save {number}, cut in operation {nth}");
         let found = device.settings();
         assert!(

@@ -46,10 +46,16 @@ fn storing_that_ends_in_a_reset_each_time_is_given_up() {
     }
     let operations = device.0.flash().operations();
     device.run(START);
-    assert_eq!(device.said(), ["err not stored: interrupted by a reset, twice"]);
+    assert_eq!(
+        device.said(),
+        ["err not stored: interrupted by a reset, twice"]
+    );
     assert_eq!(device.0.flash().operations(), operations);
     let found = device.settings();
-    assert!(found == lines(numbered(1).as_ref()) || found == new, "{found:?}");
+    assert!(
+        found == lines(numbered(1).as_ref()) || found == new,
+        "{found:?}"
+    );
     // Nothing waits any more.
     device.0.pull_reset_pin().expect("starts anew");
     device.run(START);

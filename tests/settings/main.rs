@@ -42,7 +42,8 @@ fn saved<const FINGERS: usize>(
 
 /// Whether a save has turned to another page: the sector that it begins gets its seal, the one after that loses it.
 fn turns(before: &Cells, after: &Cells) -> bool {
-    let seals = |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * SECTOR..][..24].to_vec());
+    let seals =
+        |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * SECTOR..][..24].to_vec());
     seals(before) != seals(after)
 }
 

@@ -25,7 +25,11 @@ fn turn_all<const FINGERS: usize>(saves: u32) {
         assert_eq!(found, Ok(newest), "{saves} saves, bit {bit}");
         if bit % (8 * SECTOR) < 192 || bit % STRIDE == 0 {
             let after = saved(&flash.cells(), next.as_ref(), None);
-            assert_eq!(loaded(&after), next, "{saves} saves, bit {bit}, one more save");
+            assert_eq!(
+                loaded(&after),
+                next,
+                "{saves} saves, bit {bit}, one more save"
+            );
             stored += 1;
         }
         flash.turn(bit);

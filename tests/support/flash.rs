@@ -4,7 +4,9 @@ use std::cell::RefCell;
 use std::rc::Rc;
 
 use embassy_futures::block_on;
-use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
+use embedded_storage::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
 use hil_sim::machine::Cells;
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
@@ -117,7 +119,9 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[Kept; FINGERS]> {
                     curvature_1_k: of(finger + 23 + i as u32, 1e8),
                 }),
             },
-            tile: Tile::from_array([1.0, 0.0, 0.0, 0.1, 0.0].map(|base| base + of(finger + 28, 1e6))),
+            tile: Tile::from_array(
+                [1.0, 0.0, 0.0, 0.1, 0.0].map(|base| base + of(finger + 28, 1e6)),
+            ),
         }
     }))
 }
@@ -127,7 +131,8 @@ pub fn append(cells: &mut Cells, record: &[u8]) -> bool {
     let flash = Flash::new(cells.clone());
     let end = (3 * Sectors::<Flash>::BYTES) as u32;
     let config = MapConfig::new(0..end);
-    let mut map = MapStorage::<(), _, _>::new(Sectors::new(flash.clone()), config, Cache::new_uncached());
+    let mut map =
+        MapStorage::<(), _, _>::new(Sectors::new(flash.clone()), config, Cache::new_uncached());
     let done = block_on(map.store_item(&mut [0; LONGEST], &(), &record));
     *cells = flash.cells();
     done.is_ok()

@@ -42,7 +42,8 @@ pub fn scene(material: &str, duration_s: f64, keys: &str, tables: &str) -> Scene
 /// Forces as a scene has them: pairs of time in s and force in N.
 #[must_use]
 pub fn forces(pairs: &[(f64, f64)]) -> String {
-    let table = |(t_s, force_n): &(f64, f64)| format!("[[force]]\nt_s = {t_s}\nforce_n = {force_n}\n");
+    let table =
+        |(t_s, force_n): &(f64, f64)| format!("[[force]]\nt_s = {t_s}\nforce_n = {force_n}\n");
     pairs.iter().map(table).collect()
 }
 

@@ -37,7 +37,11 @@ pub fn build_image(permission: Permission) -> Result<()> {
         Toolchain::Distribution(_) => "target/bench-image-distribution",
     };
     image(&toolchain, folder).run_to_stderr()?;
-    let elf = workspace().join(folder).join(TARGET).join(PROFILE).join("image");
+    let elf = workspace()
+        .join(folder)
+        .join(TARGET)
+        .join(PROFILE)
+        .join("image");
     println!("{}", elf.display());
     Ok(())
 }

@@ -18,26 +18,34 @@ pub fn run(permission: Permission) -> Result<()> {
         lints: false,
     };
     let toolchain = steps.run("set-up", "", || setup::prepare(needs, permission))?;
-    steps.run("building the firmware", "about 1 min the first time", || {
-        firmware::build(&toolchain, Fingers::One).run_to_stderr()
-    })?;
-    steps.run("building the emulator", "about 2 min the first time", || {
-        Invocation::cargo(["build", "--release", "-p", "hil-sim"]).run_to_stderr()
-    })?;
-    steps.run("running the image: a finger lands on \"copper\"", "", || {
-        let run = [
-            "run",
-            "--release",
-            "-p",
-            "hil-sim",
-            "--",
-            "run",
-            SCENE,
-            "--out",
-            OUT,
-        ];
-        permission.choice.handed_to(Invocation::cargo(run)).run()
-    })?;
+    steps.run(
+        "building the firmware",
+        "about 1 min the first time",
+        || firmware::build(&toolchain, Fingers::One).run_to_stderr(),
+    )?;
+    steps.run(
+        "building the emulator",
+        "about 2 min the first time",
+        || Invocation::cargo(["build", "--release", "-p", "hil-sim"]).run_to_stderr(),
+    )?;
+    steps.run(
+        "running the image: a finger lands on \"copper\"",
+        "",
+        || {
+            let run = [
+                "run",
+                "--release",
+                "-p",
+                "hil-sim",
+                "--",
+                "run",
+                SCENE,
+                "--out",
+                OUT,
+            ];
+            permission.choice.handed_to(Invocation::cargo(run)).run()
+        },
+    )?;
     println!("\n{}", firmware::describe(&toolchain, Fingers::One)?);
     println!("report and trace: {}", workspace().join(OUT).display());
     Ok(())

@@ -101,13 +101,19 @@ pub fn clippy(toolchain: &Toolchain, fingers: Fingers) -> Invocation {
 /// Path, flash and RAM use of the built image.
 pub fn describe(toolchain: &Toolchain, fingers: Fingers) -> Result<String> {
     let path = elf(toolchain, fingers);
-    let read =
-        |path: &PathBuf| std::fs::read(path).with_context(|| format!("cannot read {}", path.display()));
+    let read = |path: &PathBuf| {
+        std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))
+    };
     let script = workspace().join("memory.x");
     let memory = Memory::parse(&String::from_utf8_lossy(&read(&script)?))
         .with_context(|| format!("in {}", script.display()))?;
-    let usage = Usage::of_elf(&read(&path)?, &memory).with_context(|| format!("in {}", path.display()))?;
-    Ok(format!("image  {}\n{}", path.display(), usage.against(&memory)))
+    let usage =
+        Usage::of_elf(&read(&path)?, &memory).with_context(|| format!("in {}", path.display()))?;
+    Ok(format!(
+        "image  {}\n{}",
+        path.display(),
+        usage.against(&memory)
+    ))
 }
 
 /// `cargo xtask firmware`

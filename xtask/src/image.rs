@@ -240,14 +240,21 @@ mod tests {
             }
         );
         let text = usage.against(&F446RE);
-        assert!(text.contains("1682 of 475136 bytes (0.4 % of 464 KiB)"), "{text}");
+        assert!(
+            text.contains("1682 of 475136 bytes (0.4 % of 464 KiB)"),
+            "{text}"
+        );
     }
 
     #[test]
     fn nothing_may_lie_where_the_settings_are() {
         for (address, size) in [(0x0800_3ffc, 8), (0x0800_fffc, 4), (0x0800_0000, 0x1_0000)] {
-            let error = Usage::of_sections(&[section(".text", address, size, true)], &F446RE).unwrap_err();
-            assert!(error.to_string().contains("where the settings are"), "{error}");
+            let error =
+                Usage::of_sections(&[section(".text", address, size, true)], &F446RE).unwrap_err();
+            assert!(
+                error.to_string().contains("where the settings are"),
+                "{error}"
+            );
         }
         let beside = [section(".vector_table", 0x0800_0000, 0x4000, true)];
         assert!(Usage::of_sections(&beside, &F446RE).is_ok());

@@ -159,8 +159,16 @@ fn main() -> ExitCode {
             json,
             out,
             rest,
-        } => report::run(set_up.permission(), ("hil-sim", "fidelity"), json, out, rest),
-        Task::Faults { mutations: true, .. } => mutations::run(),
+        } => report::run(
+            set_up.permission(),
+            ("hil-sim", "fidelity"),
+            json,
+            out,
+            rest,
+        ),
+        Task::Faults {
+            mutations: true, ..
+        } => mutations::run(),
         Task::Faults {
             set_up,
             mutations: false,

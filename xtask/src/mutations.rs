@@ -339,9 +339,15 @@ pub fn run() -> Result<()> {
         }
     }
     let hil_sim = |command: &str| {
-        let mut line: Vec<OsString> = [command, "--release", "--package", "hil-sim", "--manifest-path"]
-            .map(OsString::from)
-            .into();
+        let mut line: Vec<OsString> = [
+            command,
+            "--release",
+            "--package",
+            "hil-sim",
+            "--manifest-path",
+        ]
+        .map(OsString::from)
+        .into();
         line.push(copy.join("Cargo.toml").into());
         line.push("--target-dir".into());
         line.push(workspace().join(FOLDER).join("target").into());
@@ -352,13 +358,29 @@ pub fn run() -> Result<()> {
     };
     let matrix = |engine: &str, only: &[&str]| {
         let mut line = hil_sim("run");
-        line.extend(["--", "faults", "--engine", engine, "--moments", "4", "--only"].map(OsString::from));
+        line.extend(
+            [
+                "--",
+                "faults",
+                "--engine",
+                engine,
+                "--moments",
+                "4",
+                "--only",
+            ]
+            .map(OsString::from),
+        );
         line.extend(only.iter().map(OsString::from));
         Invocation::cargo(line)
     };
     for engine in ["native", "image"] {
-        let of_engine = MUTATIONS.iter().filter(|mutation| mutation.engine == engine);
-        let mut kinds: Vec<_> = of_engine.flat_map(|mutation| mutation.only).copied().collect();
+        let of_engine = MUTATIONS
+            .iter()
+            .filter(|mutation| mutation.engine == engine);
+        let mut kinds: Vec<_> = of_engine
+            .flat_map(|mutation| mutation.only)
+            .copied()
+            .collect();
         kinds.sort_unstable();
         kinds.dedup();
         matrix(engine, &kinds)
@@ -378,7 +400,9 @@ pub fn run() -> Result<()> {
             let firmware = [manifest, "--".into(), "firmware".into()];
             Invocation::cargo(line.into_iter().chain(firmware)).run_to_stderr()?;
         }
-        let noticed = matrix(mutation.engine, mutation.only).run_to_stderr().is_err();
+        let noticed = matrix(mutation.engine, mutation.only)
+            .run_to_stderr()
+            .is_err();
         fs::write(&path, text)?;
         println!(
             "{:16} {}",
@@ -390,7 +414,10 @@ pub fn run() -> Result<()> {
         }
     }
     if !unnoticed.is_empty() {
-        bail!("no row notices that these are gone: {}", unnoticed.join(", "));
+        bail!(
+            "no row notices that these are gone: {}",
+            unnoticed.join(", ")
+        );
     }
     Ok(())
 }

@@ -224,7 +224,10 @@ mod tests {
                 .run()
                 .is_err()
         );
-        assert_eq!(Invocation::new("sh", ["-c", "echo lost; exit 3"]).answer(), None);
+        assert_eq!(
+            Invocation::new("sh", ["-c", "echo lost; exit 3"]).answer(),
+            None
+        );
     }
 
     #[test]
@@ -235,9 +238,14 @@ mod tests {
 
     #[test]
     fn hidden_variables_do_not_reach_the_command() {
-        let question = Invocation::new("sh", ["-c", "echo ${PATH-none} $ADDED"]).env("ADDED", "here");
+        let question =
+            Invocation::new("sh", ["-c", "echo ${PATH-none} $ADDED"]).env("ADDED", "here");
         assert_ne!(question.answer().as_deref(), Some("none here\n"));
-        let hidden = Invocation::new("/bin/sh", ["-c", "echo ${HOME-none} $ADDED"]).env("ADDED", "here");
-        assert_eq!(hidden.without(&["HOME"]).answer().as_deref(), Some("none here\n"));
+        let hidden =
+            Invocation::new("/bin/sh", ["-c", "echo ${HOME-none} $ADDED"]).env("ADDED", "here");
+        assert_eq!(
+            hidden.without(&["HOME"]).answer().as_deref(),
+            Some("none here\n")
+        );
     }
 }

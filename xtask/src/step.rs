@@ -28,7 +28,12 @@ impl Steps {
     }
 
     /// Runs the next step under the heading `[n/total] title (hint)`; passes its result on.
-    pub fn run<T>(&mut self, title: &str, hint: &str, step: impl FnOnce() -> Result<T>) -> Result<T> {
+    pub fn run<T>(
+        &mut self,
+        title: &str,
+        hint: &str,
+        step: impl FnOnce() -> Result<T>,
+    ) -> Result<T> {
         let hint = if hint.is_empty() {
             String::new()
         } else {
@@ -74,7 +79,11 @@ impl fmt::Display for Steps {
                 Outcome::Failed => "FAILED",
                 Outcome::Skipped(why) => &format!("SKIPPED, {why}"),
             };
-            writeln!(f, "{title:width$}  {:>7.1} s  {verdict}", took.as_secs_f64())?;
+            writeln!(
+                f,
+                "{title:width$}  {:>7.1} s  {verdict}",
+                took.as_secs_f64()
+            )?;
         }
         write!(
             f,

@@ -80,7 +80,9 @@ fn checks(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Check> {
         Check {
             title: "documentation",
             hint: "",
-            command: Ok(cargo("doc --release --workspace --no-deps").env("RUSTDOCFLAGS", "-Dwarnings")),
+            command: Ok(
+                cargo("doc --release --workspace --no-deps").env("RUSTDOCFLAGS", "-Dwarnings")
+            ),
         },
         Check {
             title: "fuzzing, all inputs of the repository and 15 s a target",
@@ -121,11 +123,16 @@ fn run_steps(steps: &mut Steps, permission: Permission) -> Result<()> {
     let (toolchain, lints) = steps.run("set-up", "", || {
         Ok((setup::prepare(needs, permission)?, setup::lints()?))
     })?;
-    for Check { title, hint, command } in checks(&toolchain, permission.choice, lints) {
+    for Check {
+        title,
+        hint,
+        command,
+    } in checks(&toolchain, permission.choice, lints)
+    {
         match command {
-            Ok(command) => steps
-                .run(title, hint, || command.run())
-                .map_err(|error| anyhow!("{title}: {error}; to repeat this step, run that command"))?,
+            Ok(command) => steps.run(title, hint, || command.run()).map_err(|error| {
+                anyhow!("{title}: {error}; to repeat this step, run that command")
+            })?,
             Err(why) => steps.skip(title, why),
         }
     }
@@ -177,6 +184,12 @@ mod tests {
             }),
             1
         );
-        assert_eq!(skipped(Lints { clippy: false, ..ALL }), 3);
+        assert_eq!(
+            skipped(Lints {
+                clippy: false,
+                ..ALL
+            }),
+            3
+        );
     }
 }

@@ -4,7 +4,9 @@
 
 mod floating;
 
-use contact_model::fixed_point::{Celsius, Course, Force, Pairing, PairingError, log2_relative_pressure};
+use contact_model::fixed_point::{
+    Celsius, Course, Force, Pairing, PairingError, log2_relative_pressure,
+};
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use thermal_display::render::{self, Mode, Render, TOLERANCE};
 
@@ -139,12 +141,20 @@ fn bits(set_point: Celsius) -> u32 {
 }
 
 fn idle(station: &mut Station, _: u32) -> u32 {
-    bits(station.fixed[0].pairing.preset(station.skin, station.object))
+    bits(
+        station.fixed[0]
+            .pairing
+            .preset(station.skin, station.object),
+    )
 }
 
 fn semi_infinite(station: &mut Station, _: u32) -> u32 {
     let [finger, ..] = &station.fixed;
-    bits(finger.pairing.interface_temperature(station.skin, station.object))
+    bits(
+        finger
+            .pairing
+            .interface_temperature(station.skin, station.object),
+    )
 }
 
 fn constant_force(station: &mut Station, _: u32) -> u32 {
@@ -213,7 +223,11 @@ pub mod kind {
     pub const RENDER_STREAMING: &str = "render step, streaming force";
 }
 
-const fn scene(kind: &'static str, arithmetic: Arithmetic, step: fn(&mut Station, u32) -> u32) -> Scene {
+const fn scene(
+    kind: &'static str,
+    arithmetic: Arithmetic,
+    step: fn(&mut Station, u32) -> u32,
+) -> Scene {
     Scene {
         kind,
         arithmetic,

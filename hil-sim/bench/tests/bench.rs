@@ -42,7 +42,9 @@ fn rows<'a>(run: &'a Value, table: &str) -> &'a Vec<Value> {
 }
 
 fn kernel(id: &str) -> &'static Value {
-    let mut found = rows(&RUNS[0], "kernels").iter().filter(|row| row["id"] == id);
+    let mut found = rows(&RUNS[0], "kernels")
+        .iter()
+        .filter(|row| row["id"] == id);
     let row = found.next().unwrap_or_else(|| panic!("no kernel {id}"));
     assert!(found.next().is_none(), "{id} is unique");
     row
@@ -147,7 +149,8 @@ fn set_points_are_right() {
     let lag_mk = 0.016 * 0.277 * 10e3 * (contact.weight - contact.ratio).abs();
     for row in rows(&RUNS[0], "scenes") {
         let chords = row["arithmetic"] == FIRMWARE
-            || row["arithmetic"] == INTEGERS && (row["kind"] == kind::CONSTANT || row["kind"] == kind::FIVE);
+            || row["arithmetic"] == INTEGERS
+                && (row["kind"] == kind::CONSTANT || row["kind"] == kind::FIVE);
         let bound_mk = match chords {
             _ if row["kind"] == kind::RENDER_STREAMING => lag_mk,
             true => 1e3 * TOLERANCE.to_num::<f64>(),

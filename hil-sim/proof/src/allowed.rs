@@ -61,7 +61,8 @@ impl Allowed {
     /// Complaints about what is allowed, but is not there.
     pub fn unused(&self) -> Vec<String> {
         let all = self.entries.iter().enumerate();
-        let each = all.flat_map(|(index, entry)| entry.trees.iter().map(move |tree| (index, *tree)));
+        let each =
+            all.flat_map(|(index, entry)| entry.trees.iter().map(move |tree| (index, *tree)));
         each.filter(|one| !self.used.contains(one))
             .map(|(index, tree)| {
                 let names = self.entries[index].names.join(" or ");

@@ -97,14 +97,20 @@ impl Walk<'_> {
                 self.depths.insert(to, depth);
                 self.waiting.push(to);
             }
-            Some(known) if *known != depth => self.trouble(to, "reached with two depths of the stack"),
+            Some(known) if *known != depth => {
+                self.trouble(to, "reached with two depths of the stack")
+            }
             Some(_) => {}
         }
     }
 
     fn step(&mut self, at: u32) {
         let depth = self.depths[&at];
-        let Some(instruction) = self.image.instruction(at).filter(|_| at < self.function.end) else {
+        let Some(instruction) = self
+            .image
+            .instruction(at)
+            .filter(|_| at < self.function.end)
+        else {
             return self.trouble(at, "control runs out of the code");
         };
         let next = at + instruction.length;
@@ -118,7 +124,15 @@ impl Walk<'_> {
     }
 
     /// Runs a block of conditional instructions one way.
-    fn block(&mut self, start: u32, mut at: u32, mut depth: i32, same: u8, count: u8, first_runs: bool) {
+    fn block(
+        &mut self,
+        start: u32,
+        mut at: u32,
+        mut depth: i32,
+        same: u8,
+        count: u8,
+        first_runs: bool,
+    ) {
         for place in 0..count {
             let Some(instruction) = self.image.instruction(at) else {
                 return self.trouble(at, "control runs out of the code");

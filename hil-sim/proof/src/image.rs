@@ -132,9 +132,15 @@ impl Image {
     /// Collects what could be an address of a function: each aligned word of the data and of the constants in the code,
     /// and each pair of instructions that builds one. The vector table is the caller of its own.
     fn read_addresses(&mut self) {
-        let table = self.symbol("__EXCEPTIONS").map_or(0, |address| address & !0x3ff);
+        let table = self
+            .symbol("__EXCEPTIONS")
+            .map_or(0, |address| address & !0x3ff);
         let mut words = Vec::new();
-        for contents in self.contents.iter().filter(|contents| contents.address != table) {
+        for contents in self
+            .contents
+            .iter()
+            .filter(|contents| contents.address != table)
+        {
             for (place, word) in contents.bytes.chunks_exact(4).enumerate() {
                 let address = contents.address + 4 * place as u32;
                 if !contents.code || self.is_constant(address) {
@@ -158,7 +164,8 @@ impl Image {
         let mut words = Vec::new();
         while let Some((instruction, first, second)) = self.raw(at).filter(|_| at < end) {
             let register = usize::from(second >> 8 & 0xf);
-            let value = (first & 0xf) << 12 | (first & 0x400) << 1 | (second >> 4 & 0x700) | second & 0xff;
+            let value =
+                (first & 0xf) << 12 | (first & 0x400) << 1 | (second >> 4 & 0x700) | second & 0xff;
             match first & 0xfbf0 {
                 0xf240 if second & 0x8000 == 0 => low[register] = value,
                 0xf2c0 if second & 0x8000 == 0 => {
@@ -186,7 +193,9 @@ impl Image {
                 .map_or(2, |instruction| instruction.length);
         }
         let first = starts.len().saturating_sub(instructions);
-        starts.get(first).map_or(Vec::new(), |from| self.built(*from, at))
+        starts
+            .get(first)
+            .map_or(Vec::new(), |from| self.built(*from, at))
     }
 
     /// Whether an address holds a constant between instructions.
@@ -265,12 +274,18 @@ impl Image {
     /// # Errors
     /// There is no vector table, or it has an entry that is no function.
     pub fn vectors(&self) -> Result<Vec<(String, u32)>> {
-        let start = self.symbol("__EXCEPTIONS").context("no symbol __EXCEPTIONS")? & !0x3ff;
+        let start = self
+            .symbol("__EXCEPTIONS")
+            .context("no symbol __EXCEPTIONS")?
+            & !0x3ff;
         let default = self
             .symbol("DefaultHandler")
             .context("no symbol DefaultHandler")?
             & !1;
-        let section = self.contents.iter().find(|contents| contents.address == start);
+        let section = self
+            .contents
+            .iter()
+            .find(|contents| contents.address == start);
         let words = section
             .with_context(|| format!("no vector table at {start:#010x}"))?
             .bytes
@@ -285,7 +300,9 @@ impl Image {
             let function = self
                 .function(target)
                 .with_context(|| format!("vector {number}: {word:#010x} is no function"))?;
-            let name = PROCESSOR.get(number).map_or(function.name.as_str(), |name| name);
+            let name = PROCESSOR
+                .get(number)
+                .map_or(function.name.as_str(), |name| name);
             vectors.push((name.to_owned(), target));
         }
         Ok(vectors)
@@ -296,6 +313,10 @@ impl Image {
 pub fn goes_on(effect: Effect) -> bool {
     !matches!(
         effect,
-        Effect::Jump(_) | Effect::JumpRegister | Effect::Table { .. } | Effect::Return(_) | Effect::Undefined
+        Effect::Jump(_)
+            | Effect::JumpRegister
+            | Effect::Table { .. }
+            | Effect::Return(_)
+            | Effect::Undefined
     )
 }

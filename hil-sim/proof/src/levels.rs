@@ -62,7 +62,12 @@ impl Levels {
         })
     }
 
-    fn level(proof: &Proof, stacks: &mut Stacks, name: &'static str, handlers: &[&str]) -> Result<Level> {
+    fn level(
+        proof: &Proof,
+        stacks: &mut Stacks,
+        name: &'static str,
+        handlers: &[&str],
+    ) -> Result<Level> {
         let mut deepest = [Deepest::default(), Deepest::default()];
         for (deepest, budget) in deepest.iter_mut().zip([Budget::SILENT, Budget::REPORT]) {
             for handler in handlers {
@@ -158,7 +163,11 @@ pub fn check(proof: &Proof) -> Result<Section> {
 
 /// Bytes, and the functions that take most of them.
 fn shown(proof: &Proof, deepest: &Deepest) -> String {
-    let mut large: Vec<_> = deepest.way.iter().filter(|(_, bytes)| *bytes >= 200).collect();
+    let mut large: Vec<_> = deepest
+        .way
+        .iter()
+        .filter(|(_, bytes)| *bytes >= 200)
+        .collect();
     large.sort_by_key(|(_, bytes)| std::cmp::Reverse(*bytes));
     let names: Vec<String> = large
         .iter()

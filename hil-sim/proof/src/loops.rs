@@ -9,13 +9,19 @@ use crate::{Proof, Section};
 
 /// Whether a loop repeats an exclusive access: once for each exception that comes between its load and its store.
 fn is_exclusive(flow: &Flow, (last, first): (u32, u32)) -> bool {
-    flow.exclusive.range(first.min(last)..=last).next().is_some()
+    flow.exclusive
+        .range(first.min(last)..=last)
+        .next()
+        .is_some()
 }
 
 /// The function that a loop is written in: the innermost at its last instruction outside the language's library.
 fn owner(proof: &Proof, last: u32) -> String {
     let frames = proof.names.frames(last);
-    let owner = frames.iter().find(|frame| !frame.is_core()).or(frames.first());
+    let owner = frames
+        .iter()
+        .find(|frame| !frame.is_core())
+        .or(frames.first());
     owner.map_or_else(String::new, |frame| frame.function.clone())
 }
 

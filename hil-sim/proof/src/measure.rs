@@ -56,7 +56,11 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
     let stack = of(|cost| cost.stack_bytes.unwrap_or(0).into())?;
     ensure!(stack.0 > 0, "the image does not say where its stack ends");
     let figures = [
-        ("instructions of the longest tick", instructions, INSTRUCTIONS),
+        (
+            "instructions of the longest tick",
+            instructions,
+            INSTRUCTIONS,
+        ),
         ("cycles of it, estimated", cycles, CYCLES),
         ("bytes of stack", stack, bound.into()),
     ];
@@ -65,7 +69,9 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
         all.len()
     ));
     for (what, (value, scene), limit) in figures {
-        section.lines.push(format!("{value} of {limit} {what} ({scene})"));
+        section
+            .lines
+            .push(format!("{value} of {limit} {what} ({scene})"));
         if value > limit {
             section
                 .violations
@@ -78,7 +84,8 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
 /// What a scene on one finger costs, without the eight seconds before it.
 fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
     let scenes: Vec<(String, Scene)> = touched()?.into_iter().chain(faulty()?).collect();
-    let jobs: Vec<Option<&(String, Scene)>> = [None].into_iter().chain(scenes.iter().map(Some)).collect();
+    let jobs: Vec<Option<&(String, Scene)>> =
+        [None].into_iter().chain(scenes.iter().map(Some)).collect();
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let measured = |job: &Option<&(String, Scene)>| {
         let Some((what, scene)) = job else {

@@ -63,7 +63,10 @@ impl Names {
         let mut frames = Vec::new();
         if let Ok(mut found) = self.0.find_frames(u64::from(address)) {
             while let Ok(Some(frame)) = found.next() {
-                let name = frame.function.as_ref().and_then(|name| name.raw_name().ok());
+                let name = frame
+                    .function
+                    .as_ref()
+                    .and_then(|name| name.raw_name().ok());
                 let Some(name) = name else { continue };
                 let place = frame.location.as_ref().and_then(|place| {
                     let file = Path::new(place.file?).file_name()?.to_str()?;
@@ -174,7 +177,10 @@ mod tests {
             ("a::B::<C>::f::<G>", "a::B::f"),
             ("<a::B<C> as d::E<F>>::g", "a::B::g"),
             ("<a::B>::g::{{closure}}", "a::B::g::{{closure}}"),
-            ("core::slice::<impl [T]>::split_at", "core::slice::[T]::split_at"),
+            (
+                "core::slice::<impl [T]>::split_at",
+                "core::slice::[T]::split_at",
+            ),
             ("core::ops::f<fn() -> u8>::call", "core::ops::f::call"),
             (
                 "<[a::B] as core::ops::Index<C>>::index",

@@ -30,10 +30,14 @@ pub struct Site {
 impl Site {
     fn new(image: &Image, graph: &Graph, names: &Names, at: u32, called: u32) -> Self {
         let frames = names.frames(at);
-        let owner = frames.iter().find(|frame| !frame.is_core()).or(frames.last());
+        let owner = frames
+            .iter()
+            .find(|frame| !frame.is_core())
+            .or(frames.last());
         let owner = owner.cloned().unwrap_or_else(|| Frame::unknown(at));
         // Without a line: several panics in one, whose place only their argument tells.
-        let merged = Location::of_call(image, graph, at).filter(|_| !owner.has_line() && !owner.is_core());
+        let merged =
+            Location::of_call(image, graph, at).filter(|_| !owner.has_line() && !owner.is_core());
         Self {
             at,
             ours: merged.as_ref().map_or(owner.is_ours(), Location::is_ours),
@@ -49,7 +53,11 @@ impl Site {
         let Self {
             at, called, chain, ..
         } = self;
-        let whose = if self.ours { "our own code" } else { "a library" };
+        let whose = if self.ours {
+            "our own code"
+        } else {
+            "a library"
+        };
         format!("{tree} can panic in {whose} at {at:#010x}, {called}: {chain}")
     }
 }
@@ -58,7 +66,11 @@ impl Site {
 pub fn sites(image: &Image, graph: &Graph, names: &Names, root: u32) -> Vec<Site> {
     let mut sites = Vec::new();
     for function in &graph.reached(root) {
-        for (at, call) in graph.flow(*function).into_iter().flat_map(|flow| &flow.calls) {
+        for (at, call) in graph
+            .flow(*function)
+            .into_iter()
+            .flat_map(|flow| &flow.calls)
+        {
             if let Target::Function(called) = call.target
                 && !graph.returns(called)
             {

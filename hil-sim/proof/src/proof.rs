@@ -56,7 +56,8 @@ impl Proof {
     /// It has none.
     pub fn root(&self, exception: &str) -> Result<u32> {
         let found = self.vectors.iter().find(|(name, _)| name == exception);
-        let (_, function) = found.with_context(|| format!("the vector table has no {exception}"))?;
+        let (_, function) =
+            found.with_context(|| format!("the vector table has no {exception}"))?;
         Ok(*function)
     }
 
@@ -99,7 +100,9 @@ impl Proof {
                     .filter(|call| call.is_indirect())
                     .count(),
             )],
-            violations: flows().flat_map(|flow| flow.troubles.iter().cloned()).collect(),
+            violations: flows()
+                .flat_map(|flow| flow.troubles.iter().cloned())
+                .collect(),
         }
     }
 }

@@ -58,7 +58,11 @@ pub fn faulty() -> Result<Vec<(String, Scene)>> {
     let scene = |kind: FaultKind| {
         let mut text = head("copper", 1.5);
         writeln!(text, "[[force]]\nt_s = 0.2\nforce_n = 2.0")?;
-        writeln!(text, "[[fault]]\nkind = \"{}\"\nt_s = {FAULT_S}", kind.name())?;
+        writeln!(
+            text,
+            "[[fault]]\nkind = \"{}\"\nt_s = {FAULT_S}",
+            kind.name()
+        )?;
         if let Some(value) = kind.value() {
             writeln!(
                 text,

@@ -143,8 +143,14 @@ impl<'a> Stacks<'a> {
     fn called(&mut self, at: u32, call: &Call, mut budget: Budget) -> Option<Deepest> {
         let Target::Function(target) = call.target else {
             budget.nested = budget.nested.checked_sub(1)?;
-            let targets = self.targets.get(&self.reach(at)).cloned().unwrap_or_default();
-            let ways = targets.into_iter().map(|target| self.deepest(target, budget));
+            let targets = self
+                .targets
+                .get(&self.reach(at))
+                .cloned()
+                .unwrap_or_default();
+            let ways = targets
+                .into_iter()
+                .map(|target| self.deepest(target, budget));
             return ways.max_by_key(|way| way.bytes);
         };
         Some(self.deepest(target, budget))

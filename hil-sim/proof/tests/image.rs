@@ -26,7 +26,10 @@ fn assert_clean(sections: &[Section]) {
     for section in sections {
         println!("{section}");
     }
-    let violations: Vec<&String> = sections.iter().flat_map(|section| &section.violations).collect();
+    let violations: Vec<&String> = sections
+        .iter()
+        .flat_map(|section| &section.violations)
+        .collect();
     assert!(violations.is_empty(), "{violations:#?}");
 }
 
@@ -74,7 +77,8 @@ fn the_checks_see_what_is_there() {
     }
     assert!(calls(TICK, "Experiment::update"));
     // Panics are known by not returning, not by their names: those with the names are among them.
-    let panicking = |name: &str| name.starts_with("core::panicking::") || name.ends_with("unwrap_failed");
+    let panicking =
+        |name: &str| name.starts_with("core::panicking::") || name.ends_with("unwrap_failed");
     for function in proof
         .image
         .functions()
@@ -86,7 +90,10 @@ fn the_checks_see_what_is_there() {
     for tree in CONTROL {
         let root = proof.root(tree).expect("a handler");
         assert!(proof.graph.returns(root), "{tree}");
-        assert!(proof.graph.flow(root).expect("followed").stack >= 8, "{tree}");
+        assert!(
+            proof.graph.flow(root).expect("followed").stack >= 8,
+            "{tree}"
+        );
     }
     // The start-up unwraps: it is no part of the control path.
     let main = proof

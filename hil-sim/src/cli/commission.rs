@@ -107,7 +107,8 @@ fn with<E: Engine>(arguments: &Arguments, plants: &Plants, engine: &mut E) -> Re
 
 /// Lines of a file, without empty ones.
 fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("--restore {}", path.display()))?;
+    let text =
+        std::fs::read_to_string(path).with_context(|| format!("--restore {}", path.display()))?;
     let lines: Vec<String> = (text.lines().map(|line| line.trim().to_owned()))
         .filter(|line| !line.is_empty())
         .collect();
@@ -118,7 +119,11 @@ fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
             path.display()
         );
     }
-    ensure!(!lines.is_empty(), "--restore {} has no lines", path.display());
+    ensure!(
+        !lines.is_empty(),
+        "--restore {} has no lines",
+        path.display()
+    );
     Ok(lines)
 }
 

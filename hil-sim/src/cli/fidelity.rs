@@ -69,7 +69,8 @@ fn choice<T: Copy + Send + Sync + 'static>(
     name: fn(T) -> &'static str,
 ) -> impl TypedValueParser<Value = Option<T>> {
     let names: Vec<_> = all.iter().map(|one| name(*one)).chain(["all"]).collect();
-    PossibleValuesParser::new(names).map(move |word| all.iter().copied().find(|one| name(*one) == word))
+    PossibleValuesParser::new(names)
+        .map(move |word| all.iter().copied().find(|one| name(*one) == word))
 }
 
 fn scenarios() -> impl TypedValueParser<Value = Chosen> {
@@ -141,7 +142,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         };
         serde_json::to_string(&report).map_err(Failure::run)? + "\n"
     } else {
-        fidelity::table(&rows, arguments.all) + &boxed.as_ref().map_or(String::new(), fidelity::box_table)
+        fidelity::table(&rows, arguments.all)
+            + &boxed.as_ref().map_or(String::new(), fidelity::box_table)
     };
     if let (Some(folder), false) = (&arguments.out, arguments.json) {
         text += &format!("report: {}\n", folder.join(fidelity::HTML).display());
@@ -157,7 +159,10 @@ fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
         [] => vec![Scenario::A],
         chosen => expand(chosen, &Scenario::ALL),
     };
-    let mut cases: Vec<_> = scenarios.iter().flat_map(|scenario| scenario.cases()).collect();
+    let mut cases: Vec<_> = scenarios
+        .iter()
+        .flat_map(|scenario| scenario.cases())
+        .collect();
     for name in &arguments.material {
         if !cases.is_empty() && !cases.iter().any(|case| case.name == *name) {
             let mut known: Vec<_> = cases.iter().map(|case| case.name.as_str()).collect();
@@ -226,8 +231,9 @@ impl Campaign<'_> {
         }
         let device = self.device(Kind::Image);
         self.map("scenarios", &jobs, |(case, law, without)| {
-            Row::run(device, case, *law, *without, self.arguments.seed)
-                .with_context(|| format!("{} {} {} N", case.scenario.name(), case.name, case.force_n))
+            Row::run(device, case, *law, *without, self.arguments.seed).with_context(|| {
+                format!("{} {} {} N", case.scenario.name(), case.name, case.force_n)
+            })
         })
     }
 
@@ -255,7 +261,8 @@ impl Campaign<'_> {
         jobs: &[T],
         work: impl Fn(&T) -> anyhow::Result<R> + Sync,
     ) -> anyhow::Result<Vec<R>> {
-        let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
+        let style =
+            ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
         let bar = ProgressBar::new(jobs.len() as u64).with_style(style);
         bar.set_message(name);
         let results = fidelity::map(jobs, self.threads(), work, || bar.inc(1));
@@ -290,7 +297,10 @@ impl Campaign<'_> {
             } = Draw::new(self.arguments.seed, number);
             for law in &self.laws {
                 let text = case.text(*law, seed, &plant);
-                write(&format!("draw-{number}-{}.toml", law.name()), text.as_bytes())?;
+                write(
+                    &format!("draw-{number}-{}.toml", law.name()),
+                    text.as_bytes(),
+                )?;
             }
         }
         Ok(())

@@ -17,7 +17,12 @@ pub struct Arguments {
     #[arg(long, value_enum)]
     optic: Glass,
     /// True temperatures of the target, °C; one row each
-    #[arg(long, value_delimiter = ',', required = true, allow_hyphen_values = true)]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        required = true,
+        allow_hyphen_values = true
+    )]
     target_c: Vec<f64>,
     /// Room, °C
     #[arg(long, allow_negative_numbers = true)]
@@ -113,9 +118,13 @@ fn camera(arguments: &Arguments) -> anyhow::Result<Camera> {
         window_c: arguments.window_c.unwrap_or(arguments.ambient_c),
         splitter_c: arguments.splitter_c.unwrap_or(arguments.ambient_c),
     };
-    Camera::new(&params, &surroundings, arguments.seed).map_err(|ParameterError { name, value, allowed }| {
-        anyhow!("--{} {value}; allowed is {allowed}", name.replace('_', "-"))
-    })
+    Camera::new(&params, &surroundings, arguments.seed).map_err(
+        |ParameterError {
+             name,
+             value,
+             allowed,
+         }| { anyhow!("--{} {value}; allowed is {allowed}", name.replace('_', "-")) },
+    )
 }
 
 fn print(camera: &mut Camera, targets_c: &[f64]) -> io::Result<()> {

@@ -5,7 +5,9 @@ use std::io::{self, Write};
 use anyhow::{Context, anyhow, ensure};
 use clap::{Args, ValueEnum};
 use contact_model::fixed_point::{Celsius, Log2, Pairing, TEMPERATURE_RANGE_C};
-use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface, find};
+use contact_model::material::{
+    Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface, find,
+};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, Real};
 use hil_sim::scene::known_materials;
@@ -126,9 +128,8 @@ fn print(times: &[f64], rows: &[Row]) -> io::Result<()> {
 /// The material and the pressure in Pa, if everything is in range.
 fn check(arguments: &Arguments) -> anyhow::Result<(Material, f64)> {
     let object = match &arguments.material {
-        Some(name) => {
-            *find(name).ok_or_else(|| anyhow!("--material {name}; known are {}", known_materials()))?
-        }
+        Some(name) => *find(name)
+            .ok_or_else(|| anyhow!("--material {name}; known are {}", known_materials()))?,
         None => {
             let given = |name, value: Option<f64>| {
                 let value = value.with_context(|| format!("{name} is missing"))?;
@@ -158,9 +159,15 @@ fn check(arguments: &Arguments) -> anyhow::Result<(Material, f64)> {
         "{name} {load}; allowed is a finite number above 0"
     );
     let (least, most) = TEMPERATURE_RANGE_C.into_inner();
-    for (name, t_c) in [("--skin-c", arguments.skin_c), ("--object-c", arguments.object_c)] {
+    for (name, t_c) in [
+        ("--skin-c", arguments.skin_c),
+        ("--object-c", arguments.object_c),
+    ] {
         let range = f64::from(least)..=f64::from(most);
-        ensure!(range.contains(&t_c), "{name} {t_c}; allowed is {least} to {most}");
+        ensure!(
+            range.contains(&t_c),
+            "{name} {t_c}; allowed is {least} to {most}"
+        );
     }
     for t_s in &arguments.times {
         ensure!(
@@ -173,7 +180,10 @@ fn check(arguments: &Arguments) -> anyhow::Result<(Material, f64)> {
             depth_m >= 0.0 && depth_m.is_finite(),
             "--depth-m {depth_m}; allowed is a finite number from 0 on"
         );
-        ensure!(arguments.arith == Arithmetic::F64, "--depth-m needs --arith f64");
+        ensure!(
+            arguments.arith == Arithmetic::F64,
+            "--depth-m needs --arith f64"
+        );
     }
     Ok((
         object,
@@ -184,11 +194,16 @@ fn check(arguments: &Arguments) -> anyhow::Result<(Material, f64)> {
 }
 
 /// The firmware's path: one tick of `b² t`.
-fn fixed(arguments: &Arguments, object: &Material, pressure_pa: f64, t_s: f64) -> anyhow::Result<Row> {
+fn fixed(
+    arguments: &Arguments,
+    object: &Material,
+    pressure_pa: f64,
+    t_s: f64,
+) -> anyhow::Result<Row> {
     let (elapsed, tick_s) = if t_s == 0.0 { (0, 1.0) } else { (1, t_s) };
     let relative = (pressure_pa / SKIN_MICROHARDNESS_PA).log2();
-    let contact =
-        Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)?.under(Log2::saturating_from_num(relative));
+    let contact = Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)?
+        .under(Log2::saturating_from_num(relative));
     let (skin, object) = (
         Celsius::from_num(arguments.skin_c),
         Celsius::from_num(arguments.object_c),
@@ -221,7 +236,9 @@ fn float<F: Real>(arguments: &Arguments, object: &Material, pressure_pa: f64, t_
     );
     let at = contact.at(f(t_s));
     let depth_m = arguments.depth_m.map(f);
-    let skin_c = depth_m.map_or(at.skin_c, |depth_m| contact.skin_at_depth(&SKIN, depth_m, f(t_s)));
+    let skin_c = depth_m.map_or(at.skin_c, |depth_m| {
+        contact.skin_at_depth(&SKIN, depth_m, f(t_s))
+    });
     Row {
         z: (contact.rate_per_s * f(t_s)).sqrt().to_f64(),
         erfcx: at.erfcx.to_f64(),

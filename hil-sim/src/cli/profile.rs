@@ -35,8 +35,8 @@ struct Share {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (scene, world) = device::scene(&arguments.scene)?;
     let (firmware, path) = device::image(arguments.elf.as_deref(), 1)?;
-    let symbols =
-        Loader::new(&path).map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))?;
+    let symbols = Loader::new(&path)
+        .map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))?;
     let mut image = Image::new(&firmware, world).map_err(Failure::run)?;
     image.watch_tick();
     run_scene(&scene, &mut image, |_| ()).map_err(Failure::run)?;
@@ -49,7 +49,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut names = HashMap::new();
     let mut charge = |block: Ran, add: &dyn Fn(&mut Share, u64)| {
         for (address, cycles) in machine.instructions(block) {
-            let name = names.entry(address).or_insert_with(|| owner(&symbols, address));
+            let name = names
+                .entry(address)
+                .or_insert_with(|| owner(&symbols, address));
             add(shares.entry(name.clone()).or_default(), u64::from(cycles));
         }
     };
@@ -93,15 +95,29 @@ fn owner(symbols: &Loader, address: u32) -> String {
             innermost.get_or_insert(name);
         }
     }
-    innermost.unwrap_or_else(|| symbols.find_symbol(u64::from(address)).unwrap_or("?").into())
+    innermost.unwrap_or_else(|| {
+        symbols
+            .find_symbol(u64::from(address))
+            .unwrap_or("?")
+            .into()
+    })
 }
 
 fn table(shares: BTreeMap<String, Share>, ticks: u64) -> String {
     let mut rows: Vec<_> = shares.into_iter().collect();
-    rows.sort_by_key(|(_, share)| std::cmp::Reverse(share.longest.1.max(share.all.1 / ticks.max(1))));
+    rows.sort_by_key(|(_, share)| {
+        std::cmp::Reverse(share.longest.1.max(share.all.1 / ticks.max(1)))
+    });
     let mut text = format!(
         "{:>12}{:>12}{:>14}{:>14}  function, with what is compiled into it\n{:>12}{:>12}{:>14}{:>14}  ({ticks} ticks; cycles are estimated)\n",
-        "instructions", "cycles", "instructions", "cycles", "mean", "mean", "longest tick", "longest tick"
+        "instructions",
+        "cycles",
+        "instructions",
+        "cycles",
+        "mean",
+        "mean",
+        "longest tick",
+        "longest tick"
     );
     let mut sum = Share::default();
     let mut line = |share: &Share, name: &str| {
@@ -118,12 +134,18 @@ fn table(shares: BTreeMap<String, Share>, ticks: u64) -> String {
     for (name, share) in &rows {
         if share.longest.1 < SMALL && share.all.1 < SMALL * ticks {
             rest.all = (rest.all.0 + share.all.0, rest.all.1 + share.all.1);
-            rest.longest = (rest.longest.0 + share.longest.0, rest.longest.1 + share.longest.1);
+            rest.longest = (
+                rest.longest.0 + share.longest.0,
+                rest.longest.1 + share.longest.1,
+            );
         } else {
             line(share, name);
         }
         sum.all = (sum.all.0 + share.all.0, sum.all.1 + share.all.1);
-        sum.longest = (sum.longest.0 + share.longest.0, sum.longest.1 + share.longest.1);
+        sum.longest = (
+            sum.longest.0 + share.longest.0,
+            sum.longest.1 + share.longest.1,
+        );
     }
     line(&rest, "others");
     line(&sum, "all, without the interrupt's entry and return");

@@ -71,7 +71,9 @@ fn injection(text: &str) -> Result<Injection, String> {
         .ok_or("a time in seconds, a colon and a fault, such as 2.5:hung-core, is allowed")?;
     let t_s = (time.parse().ok().filter(|t_s: &f64| t_s.is_finite()))
         .ok_or_else(|| format!("`{time}` is no time in seconds"))?;
-    let fault = fault.parse().map_err(|error: NoMachineFault| error.to_string())?;
+    let fault = fault
+        .parse()
+        .map_err(|error: NoMachineFault| error.to_string())?;
     Ok(Injection { t_s, fault })
 }
 
@@ -81,7 +83,9 @@ fn measure<E: Engine>(
     engine: &mut E,
 ) -> Result<(Outcome, Figures), Failure> {
     let name = format!("{} on engine {}", scene.object.name, E::NAME);
-    let outcome = output::with_progress(name, |progress| run_with(scene, injections, engine, progress))?;
+    let outcome = output::with_progress(name, |progress| {
+        run_with(scene, injections, engine, progress)
+    })?;
     let outcome = outcome.map_err(Failure::run)?;
     let figures = figures::<E>(scene, &outcome);
     Ok((outcome, figures))

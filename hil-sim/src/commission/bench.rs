@@ -126,7 +126,9 @@ impl<'a, E: Engine> Bench<'a, E> {
     pub fn settings(&mut self) -> Result<Vec<String>, CommissionError> {
         let line = "settings";
         let answer = self.tell(line)?;
-        let lines = answer.strip_prefix("lines=").and_then(|lines| lines.parse().ok());
+        let lines = answer
+            .strip_prefix("lines=")
+            .and_then(|lines| lines.parse().ok());
         let lines: usize = lines.ok_or_else(|| CommissionError::Refused {
             line: line.into(),
             answer,

@@ -93,7 +93,13 @@ impl Plants {
         self.world(params, SKIN_C, self.room_c, &format!("sink {coolant_c}"))
     }
 
-    fn world(&self, params: Params, skin_c: f64, room_c: f64, place: &str) -> Result<World, ConfigError> {
+    fn world(
+        &self,
+        params: Params,
+        skin_c: f64,
+        room_c: f64,
+        place: &str,
+    ) -> Result<World, ConfigError> {
         let (_, material) = MATERIALS[0];
         let config = PlantConfig {
             skin_c,

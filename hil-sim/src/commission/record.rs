@@ -66,7 +66,11 @@ pub enum Event {
 }
 
 /// Numbers behind the names of an answer, in the order of the names; what is there twice counts once.
-fn numbers<const N: usize>(line: &str, answer: &str, names: [&str; N]) -> Result<[f64; N], CommissionError> {
+fn numbers<const N: usize>(
+    line: &str,
+    answer: &str,
+    names: [&str; N],
+) -> Result<[f64; N], CommissionError> {
     let mut values = [0.0; N];
     for (value, name) in values.iter_mut().zip(names) {
         let found = answer
@@ -87,7 +91,15 @@ impl Tile {
     /// # Errors
     /// It is no such answer.
     pub fn parse(line: &str, answer: &str) -> Result<Self, CommissionError> {
-        let names = ["gain", "joule", "leak", "lag_s", "dead_s", "phase_deg", "margin"];
+        let names = [
+            "gain",
+            "joule",
+            "leak",
+            "lag_s",
+            "dead_s",
+            "phase_deg",
+            "margin",
+        ];
         let [
             gain_k_s_a,
             joule_per_a,

@@ -161,7 +161,9 @@ fn part_at_large(pairs: &[(f64, f64)]) -> f64 {
     let count = pairs.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
     let (asked_a, flows_a) = (mean(|pair| pair.0), mean(|pair| pair.1));
-    let off = pairs.iter().map(|pair| (pair.0 - asked_a, pair.1 - flows_a));
+    let off = pairs
+        .iter()
+        .map(|pair| (pair.0 - asked_a, pair.1 - flows_a));
     let (together, alone) = off.fold((0.0, 0.0), |(together, alone), (asked, flows)| {
         (together + asked * flows, alone + asked * asked)
     });
@@ -180,7 +182,8 @@ pub fn table(all: &[Surveyed]) -> String {
     );
     for (place, (name, unit)) in QUANTITIES.into_iter().enumerate() {
         let values: Vec<f64> = all.iter().map(|surveyed| surveyed.values[place]).collect();
-        let [low, middle, high] = [5.0, 50.0, 95.0].map(|at| percentile(&values, at).unwrap_or(f64::NAN));
+        let [low, middle, high] =
+            [5.0, 50.0, 95.0].map(|at| percentile(&values, at).unwrap_or(f64::NAN));
         let name = format!("{name}, {unit}");
         let _infallible = writeln!(text, "{name:50} {low:8.2} {middle:8.2} {high:8.2}");
     }

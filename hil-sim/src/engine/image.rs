@@ -177,7 +177,9 @@ impl Engine for Image {
             }
             MachineFault::DmaStopped { controller, stream } => machine.stop_dma(controller, stream),
             MachineFault::BrownOut => machine.brown_out().map_err(InjectError::from),
-            MachineFault::PowerCycle { seed } => machine.power_cycle(seed).map_err(InjectError::from),
+            MachineFault::PowerCycle { seed } => {
+                machine.power_cycle(seed).map_err(InjectError::from)
+            }
             MachineFault::ResetPin => machine.pull_reset_pin().map_err(InjectError::from),
             MachineFault::SoftwareReset => machine.ask_for_reset().map_err(InjectError::from),
             MachineFault::StackOverflow => machine.exhaust_stack(),

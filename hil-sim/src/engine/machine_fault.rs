@@ -74,7 +74,9 @@ pub struct Injection {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum NotInjected {
     /// The engine has no processor whose part this is.
-    #[error("{fault} means nothing to engine {engine}, which has no processor; engine image has one")]
+    #[error(
+        "{fault} means nothing to engine {engine}, which has no processor; engine image has one"
+    )]
     NotApplicable {
         /// Fault.
         fault: MachineFault,
@@ -100,7 +102,9 @@ impl fmt::Display for MachineFault {
             Self::HungCore => f.write_str("hung-core"),
             Self::HseStopped => f.write_str("hse-stopped"),
             Self::AdcStopped => f.write_str("adc-stopped"),
-            Self::DmaStopped { controller, stream } => write!(f, "dma-stopped={controller}.{stream}"),
+            Self::DmaStopped { controller, stream } => {
+                write!(f, "dma-stopped={controller}.{stream}")
+            }
             Self::BrownOut => f.write_str("brown-out"),
             Self::PowerCycle { seed } => write!(f, "power-cycle={seed}"),
             Self::ResetPin => f.write_str("reset-pin"),

@@ -27,7 +27,10 @@ impl Meter {
     /// The cost since then; none without a tick.
     pub fn cost<W: Wiring>(&self, machine: &Machine<W>) -> Option<Cost> {
         let stats = machine.stats();
-        let tick = stats.interrupts.iter().find(|interrupt| interrupt.name == TICK)?;
+        let tick = stats
+            .interrupts
+            .iter()
+            .find(|interrupt| interrupt.name == TICK)?;
         let awake = stats.cycles as f64 * (1.0 - stats.sleep_share) - self.awake;
         Some(Cost {
             instructions_mean: tick.instructions_mean,

@@ -189,7 +189,10 @@ impl Native {
             };
             let executed = line
                 .map_err(|error| Addressed::device(Error::from(error)))
-                .and_then(|line| self.desk.answer(&line, |request| self.hand.execute(request)));
+                .and_then(|line| {
+                    self.desk
+                        .answer(&line, |request| self.hand.execute(request))
+                });
             if let Ok(Addressed {
                 said: Reply::Restart(order),
                 ..

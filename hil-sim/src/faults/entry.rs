@@ -27,7 +27,8 @@ impl Injected {
             Self::Broken(broken) => broken.kind.name().into(),
             Self::Processor(fault) => {
                 let text = fault.to_string();
-                text.split_once('=').map_or(text.clone(), |(kind, _)| kind.into())
+                text.split_once('=')
+                    .map_or(text.clone(), |(kind, _)| kind.into())
             }
             Self::Line(_) => "host-line".into(),
         }
@@ -60,7 +61,9 @@ impl fmt::Display for Injected {
                 }
                 match broken.kind.value() {
                     Some(takes) if takes.unit == "1" => write!(f, " x{}", broken.value),
-                    Some(takes) if takes.least < 0.0 => write!(f, " {:+} {}", broken.value, takes.unit),
+                    Some(takes) if takes.least < 0.0 => {
+                        write!(f, " {:+} {}", broken.value, takes.unit)
+                    }
                     Some(takes) => write!(f, " {} {}", broken.value, takes.unit),
                     None => Ok(()),
                 }
@@ -102,7 +105,11 @@ const AFTER_S: f64 = 24.0;
 
 impl Entry {
     /// A fault that is detectable by these signs and must be named by one of these reasons.
-    pub(super) const fn trips(fault: Injected, signs: &'static [Sign], reasons: &'static [Fault]) -> Self {
+    pub(super) const fn trips(
+        fault: Injected,
+        signs: &'static [Sign],
+        reasons: &'static [Fault],
+    ) -> Self {
         Self {
             fault,
             signs,
@@ -137,7 +144,10 @@ impl Entry {
 
     /// It shows at the next self-test only.
     pub(super) const fn latent(self) -> Self {
-        Self { latent: true, ..self }
+        Self {
+            latent: true,
+            ..self
+        }
     }
 
     /// Where it is worst.

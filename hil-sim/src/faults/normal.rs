@@ -46,13 +46,16 @@ impl Session {
     /// The session of a number and a seed; no other one is needed for it.
     #[must_use]
     pub fn new(seed: u64, number: u64) -> Self {
-        let mut draw = Xoshiro256PlusPlus::seed_from_u64(stream(seed, &format!("session {number}")));
+        let mut draw =
+            Xoshiro256PlusPlus::seed_from_u64(stream(seed, &format!("session {number}")));
         let device = Draw::in_use(seed, number / ON_ONE_DEVICE);
         let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
         let (law, _) = Law::WORDS[draw.random_range(0..Law::WORDS.len())];
         let skin_c = draw.random_range(30.0..=36.0);
         let object_c = draw.random_range(17.0..=41.0);
-        let held_c = draw.random_bool(HELD).then(|| draw.random_range(15.0..=42.0));
+        let held_c = draw
+            .random_bool(HELD)
+            .then(|| draw.random_range(15.0..=42.0));
         let appears_s = match held_c {
             Some(_) => SESSION_S,
             None if draw.random_bool(0.25) => draw.random_range(0.0..=20.0),
@@ -147,8 +150,12 @@ pub fn use_table(used: &[Used]) -> String {
         used.len() as f64 * WHOLE_S / 3600.0,
         failed().count(),
         skins().map(|skin| skin.min).fold(f64::INFINITY, f64::min),
-        skins().map(|skin| skin.max).fold(f64::NEG_INFINITY, f64::max),
-        used.iter().filter_map(|one| one.cem43_min).fold(0.0, f64::max),
+        skins()
+            .map(|skin| skin.max)
+            .fold(f64::NEG_INFINITY, f64::max),
+        used.iter()
+            .filter_map(|one| one.cem43_min)
+            .fold(0.0, f64::max),
     );
     for one in failed() {
         // Writing to a String cannot fail.

@@ -71,7 +71,13 @@ impl Pair {
             moment,
         } = self;
         let faults = [(latent.fault, LATENT_S), (active.fault, moment.t_s)];
-        trial::text(&faults, *moment, latent.after_s.max(active.after_s), seed, &[])
+        trial::text(
+            &faults,
+            *moment,
+            latent.after_s.max(active.after_s),
+            seed,
+            &[],
+        )
     }
 
     /// Runs it; none if the engine has no part that could fail so. That the first fault is noticed, and named, is right.
@@ -88,8 +94,9 @@ impl Pair {
             };
             // What has no sign, and has not been named before the second fault, is no excuse for its reason.
             let first = !self.latent.signs.is_empty() || verdict.breaches.contains(&Breach::Early);
-            (verdict.breaches)
-                .retain(|breach| !(named && first && matches!(breach, Breach::Reason | Breach::Early)));
+            (verdict.breaches).retain(|breach| {
+                !(named && first && matches!(breach, Breach::Reason | Breach::Early))
+            });
             RanPair {
                 latent: self.latent.fault.to_string(),
                 active: self.active.fault.to_string(),
@@ -122,7 +129,12 @@ impl RanPair {
 /// A line for every latent fault; then every pair that breaks the claim.
 #[must_use]
 pub fn pair_table(runs: &[RanPair]) -> String {
-    let width = runs.iter().map(|run| run.latent.len()).max().unwrap_or(0).max(6);
+    let width = runs
+        .iter()
+        .map(|run| run.latent.len())
+        .max()
+        .unwrap_or(0)
+        .max(6);
     let mut text = format!(
         "{:width$}  pairs  break  coldest C  warmest C  to safe ms\n",
         "latent"
@@ -134,7 +146,8 @@ pub fn pair_table(runs: &[RanPair]) -> String {
         let coldest = verdicts()
             .map(|verdict| verdict.skin_c.min)
             .fold(f64::INFINITY, f64::min);
-        let warmest = (verdicts().map(|verdict| verdict.skin_c.max)).fold(f64::NEG_INFINITY, f64::max);
+        let warmest =
+            (verdicts().map(|verdict| verdict.skin_c.max)).fold(f64::NEG_INFINITY, f64::max);
         let slowest = verdicts()
             .filter_map(|verdict| verdict.took_ms)
             .fold(0.0, f64::max);
@@ -172,7 +185,9 @@ mod tests {
             "bridge-enable-stuck",
             "mirror-stuck 0 A",
         ] {
-            let of_one = pairs.iter().filter(|pair| pair.latent.fault.to_string() == name);
+            let of_one = pairs
+                .iter()
+                .filter(|pair| pair.latent.fault.to_string() == name);
             let active: Vec<_> = of_one.map(|pair| pair.active.fault.to_string()).collect();
             for other in [
                 "sensors-swapped display check",
@@ -180,7 +195,9 @@ mod tests {
                 "hung-core",
                 "host-silent",
             ] {
-                let is_latent = pairs.iter().any(|pair| pair.latent.fault.to_string() == other);
+                let is_latent = pairs
+                    .iter()
+                    .any(|pair| pair.latent.fault.to_string() == other);
                 assert!(
                     is_latent || active.iter().any(|known| known == other),
                     "{name}, {other}"

@@ -152,9 +152,12 @@ impl Place {
             | Self::HeldCold
             | Self::SelfTest
             | Self::Off => RESTING,
-            Self::Copper | Self::Granite | Self::Foam | Self::Warm | Self::Cold | Self::SemiInfinite => {
-                LANDING
-            }
+            Self::Copper
+            | Self::Granite
+            | Self::Foam
+            | Self::Warm
+            | Self::Cold
+            | Self::SemiInfinite => LANDING,
             Self::Neutral | Self::Preset => LATE,
             Self::Tuning => LATER,
             Self::Replace => REPLACING,
@@ -175,9 +178,12 @@ impl Place {
     const fn moments(self) -> ((f64, f64), &'static [f64]) {
         match self {
             Self::Slew | Self::Pi | Self::Pi10Hz | Self::Untuned => ((0.5, 4.0), &[1.0]),
-            Self::Copper | Self::Granite | Self::Foam | Self::Warm | Self::Cold | Self::SemiInfinite => {
-                ((0.3, 4.0), &[1.0])
-            }
+            Self::Copper
+            | Self::Granite
+            | Self::Foam
+            | Self::Warm
+            | Self::Cold
+            | Self::SemiInfinite => ((0.3, 4.0), &[1.0]),
             Self::Touched => ((0.1, 4.0), &[0.2]),
             // A kelvin a second.
             Self::HeldWarm => ((0.3, 12.0), &[8.1]),
@@ -269,7 +275,9 @@ impl Place {
         let (material, object_c) = self.object();
         let appears_s = match self {
             Self::Slew | Self::Pi | Self::Pi10Hz | Self::Untuned => 1.0,
-            Self::Touched | Self::Neutral | Self::HeldWarm | Self::HeldCold | Self::Tuning => duration_s,
+            Self::Touched | Self::Neutral | Self::HeldWarm | Self::HeldCold | Self::Tuning => {
+                duration_s
+            }
             _ => 0.0,
         };
         let mut text = format!(

@@ -122,9 +122,24 @@ pub fn summary(runs: &[Ran]) -> String {
             let _ = writeln!(text, "  {:<14}{count:>9}", breach.name());
         }
     }
-    text += &worst("coldest skin", "C", |trial| Some(trial.verdict.skin_c.min), -1.0);
-    text += &worst("warmest skin", "C", |trial| Some(trial.verdict.skin_c.max), 1.0);
-    text += &worst("largest CEM43", "min", |trial| Some(trial.verdict.cem43_min), 1.0);
+    text += &worst(
+        "coldest skin",
+        "C",
+        |trial| Some(trial.verdict.skin_c.min),
+        -1.0,
+    );
+    text += &worst(
+        "warmest skin",
+        "C",
+        |trial| Some(trial.verdict.skin_c.max),
+        1.0,
+    );
+    text += &worst(
+        "largest CEM43",
+        "min",
+        |trial| Some(trial.verdict.cem43_min),
+        1.0,
+    );
     text += &worst("slowest to safe", "ms", |trial| trial.verdict.took_ms, 1.0);
     for run in failing {
         let _ = writeln!(

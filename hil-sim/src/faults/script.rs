@@ -69,13 +69,18 @@ mod tests {
                 place: Place::Slew,
                 t_s: 1.25,
             };
-            let text = crate::faults::trial::text(&[(entry.fault, 1.25)], moment, entry.after_s, 7, &[]);
-            let scene =
-                Scene::parse(&text, "slew".as_ref()).unwrap_or_else(|error| panic!("{error}\n{text}"));
+            let text =
+                crate::faults::trial::text(&[(entry.fault, 1.25)], moment, entry.after_s, 7, &[]);
+            let scene = Scene::parse(&text, "slew".as_ref())
+                .unwrap_or_else(|error| panic!("{error}\n{text}"));
             match entry.fault {
                 Injected::Broken(broken) => {
                     let fault = scene.faults.last().expect("a fault");
-                    assert_eq!((fault.broken.kind, fault.t_s), (broken.kind, 1.25), "{text}");
+                    assert_eq!(
+                        (fault.broken.kind, fault.t_s),
+                        (broken.kind, 1.25),
+                        "{text}"
+                    );
                     assert_eq!(fault.broken.value, broken.value, "{text}");
                     if broken.kind.has_sensor() {
                         assert_eq!(fault.broken.sensor, broken.sensor, "{text}");

@@ -107,7 +107,8 @@ impl Sign {
         tested_from_s: Option<f64>,
     ) -> Option<f64> {
         let after = rows.get(from..)?;
-        let first = |level: &dyn Fn(&Row) -> bool| after.iter().find(|row| level(row)).map(|row| row.t_s);
+        let first =
+            |level: &dyn Fn(&Row) -> bool| after.iter().find(|row| level(row)).map(|row| row.t_s);
         let begin_s = after.first()?.t_s;
         let end_s = after.last()?.t_s;
         match self {
@@ -228,7 +229,9 @@ fn over_current(rows: &[Row]) -> Option<f64> {
 fn dose(rows: &[Row], from: usize) -> Option<f64> {
     let mut minutes = 0.0;
     let mut doses = rows.iter().enumerate().map(|(i, row)| {
-        minutes += read(row, DISPLAY).map_or(0.0, |display_c| rate(display_c - DOSE_BELOW_K)) * STEP_S / 60.0;
+        minutes += read(row, DISPLAY).map_or(0.0, |display_c| rate(display_c - DOSE_BELOW_K))
+            * STEP_S
+            / 60.0;
         (i, row.t_s, minutes)
     });
     doses
@@ -334,8 +337,14 @@ mod tests {
             Sign::WrongWay.reached_s(&rising(20.0, 9.0), &[], 500, None),
             2.0 + 2.6 / 2.0,
         );
-        assert_eq!(Sign::WrongWay.reached_s(&rising(30.0, 9.0), &[], 500, None), None);
-        assert_eq!(Sign::WrongWay.reached_s(&rising(20.0, 2.1), &[], 500, None), None);
+        assert_eq!(
+            Sign::WrongWay.reached_s(&rising(30.0, 9.0), &[], 500, None),
+            None
+        );
+        assert_eq!(
+            Sign::WrongWay.reached_s(&rising(20.0, 2.1), &[], 500, None),
+            None
+        );
     }
 
     /// A current that swings from tick to tick flows a tick after it was asked for.
@@ -355,7 +364,10 @@ mod tests {
                 device.demand_a = Some(swings(t_s));
             })
         };
-        assert_eq!(Sign::CurrentOff.reached_s(&until(9.0), &[], 500, None), None);
+        assert_eq!(
+            Sign::CurrentOff.reached_s(&until(9.0), &[], 500, None),
+            None
+        );
         for from in [500, 2000] {
             assert_eq!(
                 Sign::CurrentOff.reached_s(&until(2.0), &[], from, None),

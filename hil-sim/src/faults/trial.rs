@@ -29,12 +29,19 @@ fn ran(device: Device<'_>, scene: &Scene) -> anyhow::Result<Option<(Outcome, Fig
 }
 
 /// A scene without the fault, if a sign of it needs that, and can be there.
-fn sound(device: Device<'_>, entry: &Entry, place: Place, scene: &Scene) -> anyhow::Result<Option<Outcome>> {
+fn sound(
+    device: Device<'_>,
+    entry: &Entry,
+    place: Place,
+    scene: &Scene,
+) -> anyhow::Result<Option<Outcome>> {
     let mut sound = scene.clone();
     let needed = place.has_tuned_model() && entry.signs.iter().any(|sign| sign.needs_sound());
     match entry.fault {
         Injected::Broken(broken) if needed => {
-            sound.faults.retain(|fault| fault.broken.kind != broken.kind);
+            sound
+                .faults
+                .retain(|fault| fault.broken.kind != broken.kind);
         }
         _ => return Ok(None),
     }
@@ -59,8 +66,19 @@ impl Trial {
     ///
     /// # Errors
     /// The scene cannot be.
-    pub fn run(device: Device<'_>, entry: &Entry, moment: Moment, seed: u64) -> anyhow::Result<Option<Self>> {
-        let text = text(&[(entry.fault, moment.t_s)], moment, entry.after_s, seed, &[]);
+    pub fn run(
+        device: Device<'_>,
+        entry: &Entry,
+        moment: Moment,
+        seed: u64,
+    ) -> anyhow::Result<Option<Self>> {
+        let text = text(
+            &[(entry.fault, moment.t_s)],
+            moment,
+            entry.after_s,
+            seed,
+            &[],
+        );
         Self::of_text(device, entry, moment, &text)
     }
 

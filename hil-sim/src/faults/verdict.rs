@@ -175,10 +175,15 @@ impl Verdict {
     fn judge(&mut self, entry: &Entry, rows_before: &[Row], before: Option<&str>) {
         let early = rows_before.iter().any(|row| {
             let device = row.device.as_ref();
-            device.is_some_and(|device| device.state == "tripped" && device.remark.as_deref() != before)
+            device.is_some_and(|device| {
+                device.state == "tripped" && device.remark.as_deref() != before
+            })
         });
         let reached = self.detectable_ms.is_some();
-        let late = reached && !self.took_ms.is_some_and(|took_ms| took_ms <= SAFE_MS + 1e-6);
+        let late = reached
+            && !self
+                .took_ms
+                .is_some_and(|took_ms| took_ms <= SAFE_MS + 1e-6);
         let said = self.reason.as_str();
         let right = match entry.right {
             Right::Trip(faults) => {
@@ -246,7 +251,8 @@ struct End<'a> {
 impl<'a> End<'a> {
     fn of(outcome: &'a Outcome, t_s: f64) -> Self {
         let lines = || outcome.answers.iter().filter(|(at_s, _)| *at_s >= t_s);
-        let word = |line: &'a str, key: &str| line.split(' ').find_map(|word| word.strip_prefix(key));
+        let word =
+            |line: &'a str, key: &str| line.split(' ').find_map(|word| word.strip_prefix(key));
         let state = lines().rev().find_map(|(_, line)| {
             let line = line.strip_prefix("ok ")?;
             Some((word(line, "state=")?, word(line, "fault=")?))

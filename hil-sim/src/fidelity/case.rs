@@ -84,7 +84,12 @@ impl Case {
             "start_c = {start_c:?}\nappears_t_s = {:?}",
             self.appears_t_s
         );
-        for Press { t_s, force_n, ramp_s } in &self.presses {
+        for Press {
+            t_s,
+            force_n,
+            ramp_s,
+        } in &self.presses
+        {
             let _ = writeln!(
                 text,
                 "[[force]]\nt_s = {t_s:?}\nforce_n = {force_n:?}\nramp_s = {ramp_s:?}"

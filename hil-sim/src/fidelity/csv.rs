@@ -21,7 +21,11 @@ const ROWS: [Column<Row>; 24] = [
     ("bound", |row| some(row.judged.bound)),
     ("within", |row| some(row.judged.within)),
     ("skin_max_after_50ms_mk", |row| {
-        some(row.figures.skin_error_mk.and_then(|errors| errors.max_after_50ms))
+        some(
+            row.figures
+                .skin_error_mk
+                .and_then(|errors| errors.max_after_50ms),
+        )
     }),
     ("skin_rms_mk", |row| {
         some(row.figures.skin_error_mk.map(|errors| errors.rms))
@@ -36,10 +40,14 @@ const ROWS: [Column<Row>; 24] = [
     ("display_rms_mk", |row| {
         some(row.figures.display_error_mk.map(|errors| errors.rms))
     }),
-    ("current_max_a", |row| row.figures.current_a.max_abs.to_string()),
+    ("current_max_a", |row| {
+        row.figures.current_a.max_abs.to_string()
+    }),
     ("current_rms_a", |row| row.figures.current_a.rms.to_string()),
     ("energy_j", |row| row.figures.energy_j.to_string()),
-    ("kernel_evaluations", |row| some(row.figures.kernel_evaluations)),
+    ("kernel_evaluations", |row| {
+        some(row.figures.kernel_evaluations)
+    }),
     ("instructions_mean", |row| {
         some(row.figures.instructions_per_tick.mean)
     }),
@@ -55,7 +63,9 @@ const DRAWS: [Column<Drawn>; 7] = [
     ("material", |one| one.material.clone()),
     ("force_n", |one| one.force_n.to_string()),
     ("law", |one| one.law.into()),
-    ("skin_max_after_50ms_mk", |one| one.max_after_50ms_mk.to_string()),
+    ("skin_max_after_50ms_mk", |one| {
+        one.max_after_50ms_mk.to_string()
+    }),
     ("skin_rms_mk", |one| one.rms_mk.to_string()),
     ("faults", |one| one.faults.join(" ")),
 ];
@@ -80,7 +90,12 @@ pub fn box_csv(drawn: &[Drawn]) -> anyhow::Result<Vec<u8>> {
     let keys: Vec<_> = drawn.first().map_or(Vec::new(), |one| {
         one.plant.iter().map(|(key, _)| key.as_str()).collect()
     });
-    let values = |one: &Drawn| one.plant.iter().map(|(_, value)| value.to_string()).collect();
+    let values = |one: &Drawn| {
+        one.plant
+            .iter()
+            .map(|(_, value)| value.to_string())
+            .collect()
+    };
     write(&DRAWS, drawn, values, &keys)
 }
 
@@ -91,7 +106,12 @@ fn write<T>(
     names: &[&str],
 ) -> anyhow::Result<Vec<u8>> {
     let mut csv = ::csv::Writer::from_writer(Vec::new());
-    csv.write_record(columns.iter().map(|(name, _)| *name).chain(names.iter().copied()))?;
+    csv.write_record(
+        columns
+            .iter()
+            .map(|(name, _)| *name)
+            .chain(names.iter().copied()),
+    )?;
     for row in rows {
         csv.write_record(columns.iter().map(|(_, cell)| cell(row)).chain(more(row)))?;
     }

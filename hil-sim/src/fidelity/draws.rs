@@ -76,7 +76,9 @@ impl Draw {
                 continue;
             };
             let limits = tolerance.limits(parameter.value);
-            let value = tolerance.distribution().draw(parameter.value, limits, own, key);
+            let value = tolerance
+                .distribution()
+                .draw(parameter.value, limits, own, key);
             plant.push((key.to_owned(), value));
             if key == TWIN.0 {
                 plant.push((TWIN.1.to_owned(), value));
@@ -121,7 +123,11 @@ impl Draw {
             law: law.name(),
             max_after_50ms_mk: skin.max_after_50ms.unwrap_or(f64::INFINITY),
             rms_mk: skin.rms,
-            faults: figures.faults.into_iter().map(|tripped| tripped.fault).collect(),
+            faults: figures
+                .faults
+                .into_iter()
+                .map(|tripped| tripped.fault)
+                .collect(),
             plant: self.plant.clone(),
         })
     }
@@ -226,7 +232,9 @@ pub fn summarise(drawn: &[Drawn]) -> Vec<LawBox> {
             laws.push(one.law);
         }
     }
-    laws.into_iter().filter_map(|law| law_box(law, drawn)).collect()
+    laws.into_iter()
+        .filter_map(|law| law_box(law, drawn))
+        .collect()
 }
 
 fn law_box(law: &'static str, drawn: &[Drawn]) -> Option<LawBox> {
@@ -252,7 +260,11 @@ mod tests {
     use super::*;
 
     fn value(draw: &Draw, key: &str) -> f64 {
-        draw.plant.iter().find(|(drawn, _)| drawn == key).expect(key).1
+        draw.plant
+            .iter()
+            .find(|(drawn, _)| drawn == key)
+            .expect(key)
+            .1
     }
 
     /// The ranges as the box is stated, in a room of 24 °C.
@@ -316,7 +328,9 @@ mod tests {
         let mut pairs: HashMap<(String, u64), u32> = HashMap::new();
         for number in 0..1000 {
             let case = Draw::new(1, number).case;
-            *pairs.entry((case.name, case.force_n.to_bits())).or_default() += 1;
+            *pairs
+                .entry((case.name, case.force_n.to_bits()))
+                .or_default() += 1;
         }
         assert_eq!(pairs.len(), 45);
         assert!(pairs.values().all(|times| (22..=23).contains(times)));
@@ -326,7 +340,10 @@ mod tests {
     fn every_draw_is_a_scene() {
         for number in 0..90 {
             let draw = Draw::new(2, number);
-            let scene = draw.case.scene(Law::Pi, draw.seed, &draw.plant).expect("a scene");
+            let scene = draw
+                .case
+                .scene(Law::Pi, draw.seed, &draw.plant)
+                .expect("a scene");
             assert_eq!(scene.params.tile.imax_a, value(&draw, "tile.imax_a"));
             assert_eq!(scene.seed, draw.seed);
         }

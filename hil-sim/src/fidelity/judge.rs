@@ -62,7 +62,9 @@ impl Measure {
             Self::MaxAfter { from_s, bound_mk } => {
                 judged("max", max_after(errors, from_s), "mK", Some(bound_mk))
             }
-            Self::Settles { below_mk, bound_s } => judged("settles", settled(errors, below_mk), "s", bound_s),
+            Self::Settles { below_mk, bound_s } => {
+                judged("settles", settled(errors, below_mk), "s", bound_s)
+            }
             Self::Limited => {
                 let value = limited(outcome);
                 Judged {
@@ -77,7 +79,12 @@ impl Measure {
     }
 }
 
-fn judged(figure: &'static str, value: Option<f64>, unit: &'static str, bound: Option<f64>) -> Judged {
+fn judged(
+    figure: &'static str,
+    value: Option<f64>,
+    unit: &'static str,
+    bound: Option<f64>,
+) -> Judged {
     Judged {
         figure,
         value,
@@ -91,7 +98,8 @@ fn judged(figure: &'static str, value: Option<f64>, unit: &'static str, bound: O
 fn max_after(errors: impl Iterator<Item = (f64, f64)>, from_s: f64) -> Option<f64> {
     // Half a row of slack: times are differences of sums.
     let late = errors.filter(|(since_s, _)| *since_s > from_s - 0.5e-3);
-    late.map(|(_, error_k)| error_k.abs() * 1e3).reduce(f64::max)
+    late.map(|(_, error_k)| error_k.abs() * 1e3)
+        .reduce(f64::max)
 }
 
 /// The first time after which no error reaches the limit; none if the last one does.
@@ -110,7 +118,12 @@ fn settled(errors: impl Iterator<Item = (f64, f64)>, below_mk: f64) -> Option<f6
 /// Percent of the rows in contact in which the device says that it limits.
 fn limited(outcome: &Outcome) -> Option<f64> {
     let (mut contact, mut says) = (0u32, 0u32);
-    for device in outcome.trace.rows().iter().filter_map(|row| row.device.as_ref()) {
+    for device in outcome
+        .trace
+        .rows()
+        .iter()
+        .filter_map(|row| row.device.as_ref())
+    {
         if device.state == "contact" {
             contact += 1;
             says += u32::from(device.remark.as_deref() == Some("limited"));

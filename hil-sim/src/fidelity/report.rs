@@ -14,7 +14,8 @@ pub const SVG: &str = "fidelity.svg";
 #[must_use]
 pub fn page(rows: &[Row], boxed: Option<&Boxed>, svg: Option<&str>) -> String {
     let mut body =
-        "<p>Everything here is simulated; instructions are emulated, cycles estimated.</p>".to_owned();
+        "<p>Everything here is simulated; instructions are emulated, cycles estimated.</p>"
+            .to_owned();
     if let Some(svg) = svg {
         body += element(svg);
     }
@@ -29,5 +30,9 @@ pub fn page(rows: &[Row], boxed: Option<&Boxed>, svg: Option<&str>) -> String {
         let _ = write!(body, "<pre>{}</pre>", escape(&text));
     }
     let style = "pre{font-size:12px;line-height:1.35;overflow-x:auto}body{max-width:80rem}";
-    document("Skin on the display against skin on the material", style, &body)
+    document(
+        "Skin on the display against skin on the material",
+        style,
+        &body,
+    )
 }

@@ -73,7 +73,13 @@ impl Scenario {
         }
     }
 
-    fn case(self, thing: Thing, force_n: f64, duration_s: f64, presses: &[(f64, f64, f64)]) -> Case {
+    fn case(
+        self,
+        thing: Thing,
+        force_n: f64,
+        duration_s: f64,
+        presses: &[(f64, f64, f64)],
+    ) -> Case {
         Case {
             scenario: self,
             name: thing.name.into(),
@@ -83,7 +89,11 @@ impl Scenario {
             object_c: ROOM_C,
             appears_t_s: 0.0,
             presses: (presses.iter())
-                .map(|&(t_s, force_n, ramp_s)| Press { t_s, force_n, ramp_s })
+                .map(|&(t_s, force_n, ramp_s)| Press {
+                    t_s,
+                    force_n,
+                    ramp_s,
+                })
                 .collect(),
             duration_s,
             measure: Measure::LANDING,

@@ -43,8 +43,9 @@ pub fn table(rows: &[Row], every: bool) -> String {
 fn worst<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     let mut worst: Vec<&Row> = Vec::new();
     for row in rows {
-        let same =
-            |other: &&mut &Row| (&other.case, other.law, other.without) == (&row.case, row.law, row.without);
+        let same = |other: &&mut &Row| {
+            (&other.case, other.law, other.without) == (&row.case, row.law, row.without)
+        };
         match worst.iter_mut().find(same) {
             Some(other) if other.compare(row).is_lt() => *other = row,
             Some(_) => {}
@@ -99,7 +100,9 @@ fn line(row: &Row) -> String {
         figures.current_a.max_abs,
         figures.current_a.rms,
         figures.energy_j,
-        figures.kernel_evaluations.map_or("-".into(), |n| n.to_string()),
+        figures
+            .kernel_evaluations
+            .map_or("-".into(), |n| n.to_string()),
         cost(figures.instructions_per_tick),
         cost(figures.cycles_per_tick),
     );
@@ -111,10 +114,12 @@ fn line(row: &Row) -> String {
 
 fn judged_text(row: &Row) -> String {
     let judged = &row.judged;
-    let value = judged.value.map_or("never".into(), |value| match judged.unit {
-        "s" => format!("{value:.3} s"),
-        unit => format!("{value:.1} {unit}"),
-    });
+    let value = judged
+        .value
+        .map_or("never".into(), |value| match judged.unit {
+            "s" => format!("{value:.3} s"),
+            unit => format!("{value:.1} {unit}"),
+        });
     let verdict = match judged.within {
         _ if judged.bound.is_none() => "",
         Some(true) => "ok",

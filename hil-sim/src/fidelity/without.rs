@@ -53,11 +53,18 @@ impl Without {
     /// The plant keys that remove it, with their values.
     #[must_use]
     pub fn plant(self) -> Vec<(String, f64)> {
-        let keys = |keys: &[(&str, f64)]| keys.iter().map(|(key, value)| ((*key).into(), *value)).collect();
+        let keys = |keys: &[(&str, f64)]| {
+            keys.iter()
+                .map(|(key, value)| ((*key).into(), *value))
+                .collect()
+        };
         match self {
             Self::SensorNoise => keys(&[("sensors.converter.noise_counts", DITHER_COUNTS)]),
             Self::Inl => keys(&[("sensors.converter.inl_counts", 0.0)]),
-            Self::SensorLag => keys(&[("sensors.display.lag_s", 1e-3), ("sensors.check.lag_s", 1e-3)]),
+            Self::SensorLag => keys(&[
+                ("sensors.display.lag_s", 1e-3),
+                ("sensors.check.lag_s", 1e-3),
+            ]),
             Self::SensorSite => {
                 let leads = LEADS.map(|name| (format!("sensors.{name}.lead_share"), 0.0));
                 leads

@@ -14,7 +14,8 @@ pub fn map<T: Sync, R: Send>(
     done: impl Fn() + Sync,
 ) -> anyhow::Result<Vec<R>> {
     let next = AtomicUsize::new(0);
-    let results: Mutex<Vec<(usize, anyhow::Result<R>)>> = Mutex::new(Vec::with_capacity(items.len()));
+    let results: Mutex<Vec<(usize, anyhow::Result<R>)>> =
+        Mutex::new(Vec::with_capacity(items.len()));
     let thread = || {
         loop {
             let index = next.fetch_add(1, Ordering::Relaxed);
@@ -52,7 +53,10 @@ mod tests {
             Ok(item * item)
         };
         let squares = map(&items, 4, slow_first, || ()).expect("no error");
-        assert_eq!(squares, items.iter().map(|item| item * item).collect::<Vec<_>>());
+        assert_eq!(
+            squares,
+            items.iter().map(|item| item * item).collect::<Vec<_>>()
+        );
     }
 
     #[test]

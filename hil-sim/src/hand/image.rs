@@ -1,7 +1,9 @@
 //! The release image for five fingers in the emulated microcontroller, wired as its board module says.
 
 use super::{FINGERS, Hand};
-use crate::engine::{ADC_INPUTS, BAUD, Cost, DeviceReset, ImageError, Lines, Meter, power_up, resets};
+use crate::engine::{
+    ADC_INPUTS, BAUD, Cost, DeviceReset, ImageError, Lines, Meter, power_up, resets,
+};
 use crate::machine::{Firmware, Machine, Stop, Wiring};
 use crate::plant::bridge::Legs;
 use crate::plant::sensors::Channel;
@@ -107,7 +109,9 @@ impl Hand for ImageHand {
     }
 
     fn legs(&mut self, finger: usize) -> Legs {
-        let Bridge { in1, in2, enable, .. } = &BRIDGES[finger];
+        let Bridge {
+            in1, in2, enable, ..
+        } = &BRIDGES[finger];
         Legs {
             a: self.machine.pwm(in1.0, in1.1).into(),
             b: self.machine.pwm(in2.0, in2.1).into(),
@@ -134,7 +138,9 @@ impl Hand for ImageHand {
         lines
             .map(|line| match line.split_at_checked(3) {
                 Some((prefix, rest)) => match prefix.as_bytes() {
-                    [b'@', digit @ b'0'..=b'4', b' '] => (usize::from(digit - b'0'), rest.to_owned()),
+                    [b'@', digit @ b'0'..=b'4', b' '] => {
+                        (usize::from(digit - b'0'), rest.to_owned())
+                    }
                     _ => (0, line),
                 },
                 None => (0, line),
@@ -203,7 +209,9 @@ impl Wiring for Pins {
     }
 
     fn pin(&self, port: u8, bit: u8) -> Option<bool> {
-        let finger = BRIDGES.iter().position(|bridge| bridge.fault == (port, bit))?;
+        let finger = BRIDGES
+            .iter()
+            .position(|bridge| bridge.fault == (port, bit))?;
         Some(!self.worlds[finger].bridge_fault())
     }
 

@@ -77,13 +77,17 @@ pub fn run<H: Hand>(
     hand: &mut H,
     mut progress: impl FnMut(f64),
 ) -> Result<[Outcome; FINGERS], RunError<H::Stop>> {
-    let settings: Vec<_> =
-        (scenes.iter().map(commission::of_scene).collect::<Result<_, _>>()).map_err(RunError::Commission)?;
+    let settings: Vec<_> = (scenes
+        .iter()
+        .map(commission::of_scene)
+        .collect::<Result<_, _>>())
+    .map_err(RunError::Commission)?;
     if let Some(injection) = scenes.iter().find_map(|scene| scene.injections.first()) {
         return Err(RunError::Shared(injection.fault));
     }
     let began = Instant::now();
-    let mut fingers = [0, 1, 2, 3, 4].map(|finger| Finger::new(finger, &scenes[finger], &settings[finger]));
+    let mut fingers =
+        [0, 1, 2, 3, 4].map(|finger| Finger::new(finger, &scenes[finger], &settings[finger]));
     let last = |of: fn(&Finger<'_>) -> u64| fingers.iter().map(of).max().unwrap_or(0);
     let (zero_ms, end_ms) = (last(|finger| finger.zero_ms), last(|finger| finger.end_ms));
     for ms in 0..=end_ms + DRAIN_MS {

@@ -25,7 +25,8 @@ impl NativeHand {
         // Power-up finds the multiplexers settled on the first finger.
         let mut settled = true;
         Self {
-            fingers: worlds.map(|world| Native::in_turn(world, std::mem::replace(&mut settled, false))),
+            fingers: worlds
+                .map(|world| Native::in_turn(world, std::mem::replace(&mut settled, false))),
             lines: Default::default(),
             leaving: Default::default(),
             started: 0,

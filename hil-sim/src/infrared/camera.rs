@@ -6,8 +6,8 @@ use rand_distr::{Distribution, StandardNormal};
 use thiserror::Error;
 
 use super::{
-    LineOfSight, Optic, RANGE_C, SKIN_EMISSIVITY, SelfReflection, Surroundings, radiance, radiance_per_k,
-    temperature_c,
+    LineOfSight, Optic, RANGE_C, SKIN_EMISSIVITY, SelfReflection, Surroundings, radiance,
+    radiance_per_k, temperature_c,
 };
 
 /// Black body at which cameras' noise is stated, deg C.
@@ -128,10 +128,15 @@ fn check(params: &CameraParams, surroundings: &Surroundings) -> Result<(), Param
         if holds {
             Ok(())
         } else {
-            Err(ParameterError { name, value, allowed })
+            Err(ParameterError {
+                name,
+                value,
+                allowed,
+            })
         }
     };
-    let temperature = |name, value: f64| ensure(RANGE_C.contains(&value), name, value, "-100 to 200");
+    let temperature =
+        |name, value: f64| ensure(RANGE_C.contains(&value), name, value, "-100 to 200");
     let emissivity = params.emissivity;
     ensure(
         emissivity > 0.0 && emissivity <= 1.0,
@@ -145,13 +150,23 @@ fn check(params: &CameraParams, surroundings: &Surroundings) -> Result<(), Param
         params.netd_k,
         "a finite number from 0 on",
     )?;
-    ensure(params.pixels > 0, "pixels", f64::from(params.pixels), "1 or more")?;
+    ensure(
+        params.pixels > 0,
+        "pixels",
+        f64::from(params.pixels),
+        "1 or more",
+    )?;
     temperature("ambient_c", surroundings.ambient_c)?;
     temperature("window_c", surroundings.window_c)?;
     temperature("splitter_c", surroundings.splitter_c)?;
     if let Some(SelfReflection { camera_c, share }) = params.self_reflection {
         temperature("camera_c", camera_c)?;
-        ensure((0.0..=1.0).contains(&share), "camera_share", share, "0 to 1")?;
+        ensure(
+            (0.0..=1.0).contains(&share),
+            "camera_share",
+            share,
+            "0 to 1",
+        )?;
     }
     Ok(())
 }

@@ -58,7 +58,10 @@ pub fn temperature_c(radiance_w_m2_sr: f64) -> f64 {
     // Newton for ln U over 1/T. ln U is convex in 1/T (U is a sum of exponentials of it) and falls, so each step
     // lands on the hot side of the root, and from there the approach is monotone: no bracket is needed as long as
     // the first step does not leave the range.
-    let (hottest, coldest) = ((hottest_c + ZERO_C_K).recip(), (coldest_c + ZERO_C_K).recip());
+    let (hottest, coldest) = (
+        (hottest_c + ZERO_C_K).recip(),
+        (coldest_c + ZERO_C_K).recip(),
+    );
     let mut inverse = START_K.recip();
     for _ in 0..MOST_STEPS {
         let kelvin = inverse.recip();
@@ -99,7 +102,9 @@ fn beyond(x: f64) -> f64 {
     // The terms left out sum to less than 1e-17 of the first.
     while power > 1e-18 * factor {
         let inverse = 1.0 / n;
-        sum += power * inverse * (x * x * x + inverse * (3.0 * x * x + inverse * (6.0 * x + inverse * 6.0)));
+        sum += power
+            * inverse
+            * (x * x * x + inverse * (3.0 * x * x + inverse * (6.0 * x + inverse * 6.0)));
         power *= factor;
         n += 1.0;
     }

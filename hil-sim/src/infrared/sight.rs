@@ -75,7 +75,12 @@ impl LineOfSight {
 
     /// The same with the camera seeing itself in the window, if there is one.
     #[must_use]
-    pub fn with_self_reflection(self, optic: Optic, camera: &SelfReflection, ambient_c: f64) -> Self {
+    pub fn with_self_reflection(
+        self,
+        optic: Optic,
+        camera: &SelfReflection,
+        ambient_c: f64,
+    ) -> Self {
         let mirrored = optic.window().map_or(0.0, |window| {
             window.reflectivity * BEAMSPLITTER.transmissivity * BEAMSPLITTER.transmissivity
         });

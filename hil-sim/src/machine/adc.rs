@@ -195,7 +195,8 @@ impl Adc {
 
     /// Interrupt request.
     pub fn request(&self) -> bool {
-        self.sr & EOC != 0 && self.cr1 >> 5 & 1 != 0 || self.sr & OVR != 0 && self.cr1 >> 26 & 1 != 0
+        self.sr & EOC != 0 && self.cr1 >> 5 & 1 != 0
+            || self.sr & OVR != 0 && self.cr1 >> 26 & 1 != 0
     }
 
     /// Registers of ADC1 at 0x00.. and the common ones at 0x300..
@@ -222,7 +223,11 @@ impl Adc {
         match offset {
             0x00 => self.sr &= value,
             0x04 => {
-                only(value, 0x0700_0120, "ADC_CR1 beyond RES, SCAN, EOCIE and OVRIE")?;
+                only(
+                    value,
+                    0x0700_0120,
+                    "ADC_CR1 beyond RES, SCAN, EOCIE and OVRIE",
+                )?;
                 self.cr1 = value;
             }
             0x08 => self.write_cr2(value, now)?,
@@ -306,12 +311,18 @@ mod tests {
         adc.start(0);
         assert_eq!((adc.channel(), adc.due), (7, 120));
         adc.finish(1);
-        assert_eq!((adc.read(0).unwrap() & EOC, adc.channel(), adc.due), (0, 11, 240));
+        assert_eq!(
+            (adc.read(0).unwrap() & EOC, adc.channel(), adc.due),
+            (0, 11, 240)
+        );
         adc.start(200);
         assert_eq!(adc.due, 240, "a trigger during a sequence is lost");
         adc.finish(2);
         assert_eq!((adc.read(0).unwrap() & EOC, adc.due), (EOC, u64::MAX));
-        assert_eq!((adc.read(0x4c).unwrap(), adc.read(0).unwrap() & EOC), (2, 0));
+        assert_eq!(
+            (adc.read(0x4c).unwrap(), adc.read(0).unwrap() & EOC),
+            (2, 0)
+        );
     }
 
     #[test]

@@ -198,7 +198,8 @@ impl<W: Wiring> Chip<W> {
                 self.pump_usart(at, memory);
             }
             if self.usart.rx_due <= at {
-                self.usart.receive(self.ports[0].mode(3) == Mode::Alternate(7));
+                self.usart
+                    .receive(self.ports[0].mode(3) == Mode::Alternate(7));
                 self.pump_usart(at, memory);
             }
             if self.kick {
@@ -313,7 +314,9 @@ impl<W: Wiring> Chip<W> {
         };
         match pins.mode(bit) {
             Mode::Alternate(function) => {
-                let here = |pin: &&(u8, u8, u8, usize, usize)| (pin.0, pin.1, pin.2) == (port, bit, function);
+                let here = |pin: &&(u8, u8, u8, usize, usize)| {
+                    (pin.0, pin.1, pin.2) == (port, bit, function)
+                };
                 match TIMER_PINS.iter().find(here) {
                     Some(&(.., timer, channel)) => match self.tims[timer].output(channel) {
                         Output::High { high, period } => match self.stopped_at {

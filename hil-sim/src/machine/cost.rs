@@ -147,12 +147,12 @@ fn wide_cost(first: u32, second: u32) -> u16 {
         1 if first & 0x0640 == 0 && loads && second >> 15 == 1 => 3 + registers, // LDM with PC
         1 if first & 0x0640 == 0 => 1 + registers,                               // LDM, STM
         1 if first & 0xfff0 == 0xe8d0 && second & 0xe0 == 0 => 4,                // TBB, TBH
-        1 if first & 0x0600 == 0 => 3,                                           // LDRD, STRD, LDREX
-        1 => 1,                                                     // data processing, shifted register
-        2 if second & 0x8000 == 0 => 1,                             // data processing, immediate
+        1 if first & 0x0600 == 0 => 3,  // LDRD, STRD, LDREX
+        1 => 1,                         // data processing, shifted register
+        2 if second & 0x8000 == 0 => 1, // data processing, immediate
         2 if second & 0x5000 == 0 && first & 0x0380 == 0x0380 => 1, // MSR, MRS, hints
-        2 if second & 0x5000 == 0 => 2,                             // conditional branch
-        2 => 3,                                                     // B, BL
+        2 if second & 0x5000 == 0 => 2, // conditional branch
+        2 => 3,                         // B, BL
         _ if first & 0x0600 == 0 && loads => 2,
         _ if first & 0xffd0 == 0xfb90 => 7, // SDIV, UDIV: 2 to 12
         _ => 1,                             // stores are buffered; multiplication, also long
@@ -163,12 +163,12 @@ fn float_cost(first: u32, second: u32) -> u16 {
     let memory = first & 0x0e00 == 0x0c00;
     let pair_or_single = first & 0x0fe0 == 0x0c40 || first & 0x0120 == 0x0100;
     match first >> 4 & 0xb {
-        _ if memory && pair_or_single => 2,        // VMOV of a pair, VLDR, VSTR
+        _ if memory && pair_or_single => 2, // VMOV of a pair, VLDR, VSTR
         _ if memory => 1 + (second & 0xff) as u16, // VLDM, VSTM, VPUSH, VPOP
-        _ if second & 0x10 != 0 => 1,              // moves to and from core registers
-        0x8 => 14,                                 // VDIV
+        _ if second & 0x10 != 0 => 1,       // moves to and from core registers
+        0x8 => 14,                          // VDIV
         0xb if second & 0xc0 == 0xc0 && first & 0xf == 1 => 14, // VSQRT
-        0x0 | 0x1 | 0x9 | 0xa => 3,                // VMLA, VNMLA, VFMA, VFNMA
+        0x0 | 0x1 | 0x9 | 0xa => 3,         // VMLA, VNMLA, VFMA, VFNMA
         _ => 1,
     }
 }
@@ -178,7 +178,12 @@ mod tests {
     use super::*;
 
     fn block(halves: &[u16]) -> Block {
-        decode(&halves.iter().flat_map(|h| h.to_le_bytes()).collect::<Vec<_>>())
+        decode(
+            &halves
+                .iter()
+                .flat_map(|h| h.to_le_bytes())
+                .collect::<Vec<_>>(),
+        )
     }
 
     #[test]

@@ -17,7 +17,10 @@ const CT: u32 = 1 << 19;
 /// Position of each stream's flags in LISR and HISR (9.5.1).
 const FLAG_SHIFT: [u32; 4] = [0, 6, 16, 22];
 /// Interrupt number of each stream.
-const IRQ: [[usize; 8]; 2] = [[11, 12, 13, 14, 15, 16, 17, 47], [56, 57, 58, 59, 60, 68, 69, 70]];
+const IRQ: [[usize; 8]; 2] = [
+    [11, 12, 13, 14, 15, 16, 17, 47],
+    [56, 57, 58, 59, 60, 68, 69, 70],
+];
 
 /// A request line that a modelled peripheral has: controller, stream, channel (the request mapping of 9.3.4), and
 /// the data register that the stream's PAR must hold.
@@ -30,7 +33,13 @@ pub(crate) struct Route {
     pub to_memory: bool,
 }
 
-const fn route(controller: usize, stream: usize, channel: u32, register: u32, to_memory: bool) -> Route {
+const fn route(
+    controller: usize,
+    stream: usize,
+    channel: u32,
+    register: u32,
+    to_memory: bool,
+) -> Route {
     Route {
         controller,
         stream,
@@ -105,7 +114,11 @@ impl Dma {
         }
         let s = &mut self.streams[route.stream];
         let bytes = 1u8 << (s.cr >> 11 & 3);
-        let index = if s.cr & MINC != 0 { s.items - s.left } else { 0 };
+        let index = if s.cr & MINC != 0 {
+            s.items - s.left
+        } else {
+            0
+        };
         let address = s.m[(s.cr >> 19 & 1) as usize].wrapping_add(index * u32::from(bytes));
         let moved = if route.to_memory {
             memory.store(address, bytes, value).map(|()| value)
@@ -212,7 +225,11 @@ impl Dma {
                 only(value, 0xbf, "DMA SxFCR reserved bits")?;
                 s.fcr = value & 0x87 | 0x20;
             }
-            _ => return Err(Refusal::NotModelled("DMA SxNDTR or SxPAR of an enabled stream")),
+            _ => {
+                return Err(Refusal::NotModelled(
+                    "DMA SxNDTR or SxPAR of an enabled stream",
+                ));
+            }
         }
         Ok(())
     }
@@ -227,7 +244,11 @@ impl Stream {
 
     fn write_cr(&mut self, value: u32, number: usize, stream: usize) -> Answer<()> {
         only(value, 0x0fef_ffff, "DMA SxCR reserved bits")?;
-        only(value & 1 << 5, 0, "DMA SxCR.PFCTRL (peripheral flow controller)")?;
+        only(
+            value & 1 << 5,
+            0,
+            "DMA SxCR.PFCTRL (peripheral flow controller)",
+        )?;
         only(value & 1 << 9, 0, "DMA SxCR.PINC")?;
         only(value & 0x8000, 0, "DMA SxCR.PINCOS")?;
         if self.cr & EN != 0 {
@@ -350,8 +371,12 @@ mod tests {
         }
         assert_eq!(ram.0[..10], [1, 0, 2, 0, 0, 0, 0, 0, 3, 0]);
         assert_eq!(dma.read(0x10).unwrap() & CT, CT);
-        dma.write(0x1c, 0x2000_0004).expect("the idle buffer may move");
-        assert!(dma.write(0x20, 0x2000_0004).is_err(), "the one in use may not");
+        dma.write(0x1c, 0x2000_0004)
+            .expect("the idle buffer may move");
+        assert!(
+            dma.write(0x20, 0x2000_0004).is_err(),
+            "the one in use may not"
+        );
     }
 
     #[test]
@@ -359,7 +384,10 @@ mod tests {
         let (mut dma, mut ram) = (adc_stream(0, 1), Buffer([0; 16]));
         assert_eq!(
             dma.serve(&ADC1[0], 9, &mut ram),
-            Served::Item { value: 9, last: true }
+            Served::Item {
+                value: 9,
+                last: true
+            }
         );
         assert_eq!(dma.serve(&ADC1[0], 9, &mut ram), Served::No);
         let mut dma = adc_stream(0, 1);
@@ -368,7 +396,10 @@ mod tests {
         dma.write(0x1c, 0x1000_0000).unwrap();
         dma.write(0x10, 1 << 13 | 1 << 11 | 0x1c | EN).unwrap();
         assert_eq!(dma.serve(&ADC1[0], 9, &mut ram), Served::No);
-        assert_eq!((dma.read(0).unwrap(), dma.read(0x10).unwrap() & EN), (TEIF, 0));
+        assert_eq!(
+            (dma.read(0).unwrap(), dma.read(0x10).unwrap() & EN),
+            (TEIF, 0)
+        );
         assert_eq!(dma.request_line(0), (56, true));
     }
 

@@ -96,7 +96,9 @@ impl Firmware {
                 continue;
             }
             let contents = segment.data(endian, bytes).map_err(|()| {
-                ImageError::NotElf(format!("contents of the segment at {address:#010x} are missing"))
+                ImageError::NotElf(format!(
+                    "contents of the segment at {address:#010x} are missing"
+                ))
             })?;
             let start = address.wrapping_sub(FLASH_BASE) as usize;
             flash
@@ -111,9 +113,12 @@ impl Firmware {
         if !loaded {
             return Err(ImageError::Empty);
         }
-        let word = |o: usize| u32::from_le_bytes([flash[o], flash[o + 1], flash[o + 2], flash[o + 3]]);
+        let word =
+            |o: usize| u32::from_le_bytes([flash[o], flash[o + 1], flash[o + 2], flash[o + 3]]);
         let (initial_sp, reset) = (word(0), word(4));
-        if !(RAM_BASE + 8..=RAM_BASE + RAM_SIZE).contains(&initial_sp) || !initial_sp.is_multiple_of(8) {
+        if !(RAM_BASE + 8..=RAM_BASE + RAM_SIZE).contains(&initial_sp)
+            || !initial_sp.is_multiple_of(8)
+        {
             return Err(ImageError::StackPointer(initial_sp));
         }
         if reset & 1 == 0 || !(FLASH_BASE..FLASH_BASE + FLASH_SIZE).contains(&reset) {
@@ -204,7 +209,9 @@ fn check_header(bytes: &[u8]) -> Result<(), ImageError> {
     }
     let header: &elf::FileHeader32<Endianness> =
         elf::FileHeader32::parse(bytes).map_err(|e| ImageError::NotElf(e.to_string()))?;
-    header.endian().map_err(|e| ImageError::NotElf(e.to_string()))?;
+    header
+        .endian()
+        .map_err(|e| ImageError::NotElf(e.to_string()))?;
     if !little {
         Err(ImageError::NotElf("big-endian ARM".into()))
     } else {

@@ -59,7 +59,8 @@ pub(crate) fn enter<W: Wiring>(
     let size = if float { FLOAT_FRAME } else { FRAME };
     let frame = sp.wrapping_sub(size) & !4;
     let mut bytes = [0; FLOAT_FRAME as usize];
-    let mut put = |at: usize, word: u32| bytes[4 * at..4 * at + 4].copy_from_slice(&word.to_le_bytes());
+    let mut put =
+        |at: usize, word: u32| bytes[4 * at..4 * at + 4].copy_from_slice(&word.to_le_bytes());
     for (i, register) in CORE.into_iter().enumerate() {
         put(i, get(cpu, register));
     }
@@ -141,7 +142,10 @@ pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<
     let running = (xpsr & 0x1ff) as usize;
     let state = cpu.get_data_mut();
     let (now, instructions) = (state.cycles, state.instructions);
-    let valid = matches!(exc_return | NO_FLOAT, 0xffff_fff1 | 0xffff_fff9 | 0xffff_fffd);
+    let valid = matches!(
+        exc_return | NO_FLOAT,
+        0xffff_fff1 | 0xffff_fff9 | 0xffff_fffd
+    );
     if !valid || !state.chip().nvic.is_active(running) {
         return Err(FrameError::Return(exc_return));
     }
@@ -195,12 +199,17 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
     if float {
         for (i, register) in FLOAT.into_iter().enumerate() {
             let pair = u64::from(word(8 + 2 * i)) | u64::from(word(9 + 2 * i)) << 32;
-            cpu.reg_write(register, pair).map_err(|_| FrameError::Emulator)?;
+            cpu.reg_write(register, pair)
+                .map_err(|_| FrameError::Emulator)?;
         }
         set(cpu, Reg::FPSCR, word(24))?;
     }
     let stacked = word(7);
-    set(cpu, Reg::SP, sp.wrapping_add(size) | (stacked >> 9 & 1) << 2)?;
+    set(
+        cpu,
+        Reg::SP,
+        sp.wrapping_add(size) | (stacked >> 9 & 1) << 2,
+    )?;
     let control = get(cpu, Reg::CONTROL);
     set(cpu, Reg::CONTROL, control & !4 | u32::from(float) << 2)?;
     set_xpsr(cpu, stacked & !(1 << 9))?;

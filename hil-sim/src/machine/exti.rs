@@ -52,7 +52,9 @@ impl Exti {
     /// Interrupt requests as `(interrupt, level)`.
     pub fn requests(&self) -> impl Iterator<Item = (usize, bool)> {
         let raised = self.pr & self.imr;
-        GROUPS.iter().map(move |(irq, lines)| (*irq, raised & lines != 0))
+        GROUPS
+            .iter()
+            .map(move |(irq, lines)| (*irq, raised & lines != 0))
     }
 
     pub fn read(&self, offset: u32) -> Answer<u32> {
@@ -122,7 +124,10 @@ mod tests {
         );
         exti.set_level(5, false);
         assert_eq!(
-            exti.requests().filter(|r| r.1).map(|r| r.0).collect::<Vec<_>>(),
+            exti.requests()
+                .filter(|r| r.1)
+                .map(|r| r.0)
+                .collect::<Vec<_>>(),
             [23],
             "EXTI9_5"
         );

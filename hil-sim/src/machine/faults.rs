@@ -35,7 +35,8 @@ pub(super) const NO_MEMORY: Fault = Fault {
 pub(super) const UNDEFINED: Fault = usage(1 << 16, "undefined instruction");
 pub(super) const INVALID_STATE: Fault = usage(1 << 17, "branch to an ARM address");
 pub(super) const INVALID_RETURN: Fault = usage(1 << 18, "invalid exception return");
-pub(super) const NO_COPROCESSOR: Fault = usage(1 << 19, "floating-point instruction while CPACR denies it");
+pub(super) const NO_COPROCESSOR: Fault =
+    usage(1 << 19, "floating-point instruction while CPACR denies it");
 pub(super) const UNALIGNED: Fault = usage(1 << 24, "unaligned access");
 
 impl<W: Wiring + 'static> Machine<W> {
@@ -135,7 +136,8 @@ impl<W: Wiring + 'static> Machine<W> {
         if let Some(address) = fault.address {
             chip.ppb.fault_address = address;
         }
-        let own = chip.ppb.fault_enabled(fault.exception) && chip.nvic.priority_of(fault.exception) < level;
+        let own = chip.ppb.fault_enabled(fault.exception)
+            && chip.nvic.priority_of(fault.exception) < level;
         let taken = if own {
             fault.exception
         } else {

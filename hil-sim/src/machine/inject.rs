@@ -82,7 +82,9 @@ pub enum InjectError {
     #[error("the register does not take its flipped value: {0}")]
     Refused(Stop),
     /// No such DMA stream.
-    #[error("DMA{controller} stream {stream} does not exist: controllers are 1 and 2, streams 0 to 7")]
+    #[error(
+        "DMA{controller} stream {stream} does not exist: controllers are 1 and 2, streams 0 to 7"
+    )]
     NoStream {
         /// Controller.
         controller: u8,
@@ -138,7 +140,9 @@ impl<W: Wiring + 'static> Machine<W> {
             .ok_or(InjectError::NotRam(address))? as usize;
         let mask = one_bit(format_args!("the byte at {address:#010x}"), bit, 0xff)? as u8;
         let mut byte = [0];
-        self.cpu.mem_read(address.into(), &mut byte).map_err(emulator)?;
+        self.cpu
+            .mem_read(address.into(), &mut byte)
+            .map_err(emulator)?;
         if byte[0] == self.fresh_ram[index] {
             self.fresh_ram[index] ^= mask; // or the flip would count as use of the stack
         }
@@ -195,7 +199,8 @@ impl<W: Wiring + 'static> Machine<W> {
             CoreRegister::Fpscr => Reg::FPSCR,
             CoreRegister::Pc => {
                 let pc = get(cpu, Reg::PC) ^ mask;
-                cpu.reg_write(Reg::PC, u64::from(pc | 1)).map_err(emulator)?;
+                cpu.reg_write(Reg::PC, u64::from(pc | 1))
+                    .map_err(emulator)?;
                 return Ok(());
             }
             CoreRegister::Psr => {
@@ -237,7 +242,11 @@ impl<W: Wiring + 'static> Machine<W> {
     /// [`InjectError::Refused`]: no model of that register, or of it with that value, or its clock is off; or the flip
     /// would stop a device's clock (the window watchdog's is modelled, the others' not).
     pub fn flip_register_bit(&mut self, address: u32, bit: u8) -> Result<(), InjectError> {
-        let mask = one_bit(format_args!("the register at {address:#010x}"), bit, u32::MAX)?;
+        let mask = one_bit(
+            format_args!("the register at {address:#010x}"),
+            bit,
+            u32::MAX,
+        )?;
         let now = self.now();
         let chip = self.cpu.get_data_mut().chip();
         let (load_at, store_at, value) = match address {
@@ -245,7 +254,11 @@ impl<W: Wiring + 'static> Machine<W> {
             0xe000_e100..0xe000_e300 => {
                 let set = address & !0x80;
                 let is_set = chip.read(set, now, 0).map(|bits| bits & mask != 0);
-                (set, if is_set == Ok(true) { set | 0x80 } else { set }, Ok(mask))
+                (
+                    set,
+                    if is_set == Ok(true) { set | 0x80 } else { set },
+                    Ok(mask),
+                )
             }
             _ => {
                 let old = chip.read(address, now, 0);
@@ -356,7 +369,11 @@ impl<W: Wiring + 'static> Machine<W> {
     /// [`InjectError::Refused`]: not modelled in the state that the flash is in.
     pub fn stray_store(&mut self, address: u32, value: u32) -> Result<(), InjectError> {
         let now = self.now();
-        let answer = self.cpu.get_data_mut().chip().store_flash(address, 4, value, now);
+        let answer = self
+            .cpu
+            .get_data_mut()
+            .chip()
+            .store_flash(address, 4, value, now);
         self.accepted(answer, address, Access::Write(4), value)
     }
 

@@ -52,9 +52,8 @@ impl Iwdg {
             0x00 => Ok(0),
             0x04 => Ok(self.prescaler),
             0x08 => Ok(self.reload),
-            0x0c => {
-                Ok(u32::from(now < self.updating_until[0]) | u32::from(now < self.updating_until[1]) << 1)
-            }
+            0x0c => Ok(u32::from(now < self.updating_until[0])
+                | u32::from(now < self.updating_until[1]) << 1),
             _ => Err(Refusal::Offset),
         }
     }

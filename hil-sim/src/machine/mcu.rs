@@ -49,7 +49,8 @@ impl<W: Wiring + 'static> Machine<W> {
         let state = State::new(Chip::new(wiring, flash.to_vec()), Arc::clone(&flash));
         let mut cpu = set_up(state, &flash).map_err(emulator)?;
         let fresh_ram = vec![PAINT; RAM_SIZE as usize];
-        cpu.mem_write(RAM_BASE.into(), &fresh_ram).map_err(emulator)?;
+        cpu.mem_write(RAM_BASE.into(), &fresh_ram)
+            .map_err(emulator)?;
         let mut machine = Self {
             cpu,
             firmware: firmware.clone(),
@@ -150,7 +151,11 @@ impl<W: Wiring + 'static> Machine<W> {
 
     /// Bit rate of the host, both ways; 1 Mbit/s at the start.
     pub fn set_host_baud(&mut self, baud: u32) {
-        self.cpu.get_data_mut().chip().usart_mut().set_host_baud(baud);
+        self.cpu
+            .get_data_mut()
+            .chip()
+            .usart_mut()
+            .set_host_baud(baud);
     }
 
     /// How a timer drives a pin (port 0 is A), or its level as a general-purpose output.
@@ -167,7 +172,9 @@ impl<W: Wiring + 'static> Machine<W> {
     /// Notes which blocks an interrupt's handler runs, from its next activation on; `name` is that of
     /// [`InterruptStats`](super::InterruptStats).
     pub fn watch(&mut self, name: &str) {
-        if let Some(exception) = (0..super::nvic::EXCEPTIONS).find(|n| super::nvic::name(*n) == name) {
+        if let Some(exception) =
+            (0..super::nvic::EXCEPTIONS).find(|n| super::nvic::name(*n) == name)
+        {
             self.cpu.get_data_mut().profile.watch(exception);
         }
     }
@@ -215,7 +222,9 @@ impl<W: Wiring + 'static> Machine<W> {
         let top = self.firmware.initial_sp();
         let size = top.checked_sub(bottom)? as usize;
         let stack = self.cpu.mem_read_as_vec(u64::from(bottom), size).ok()?;
-        let fresh = self.fresh_ram.get(bottom.checked_sub(RAM_BASE)? as usize..)?;
+        let fresh = self
+            .fresh_ram
+            .get(bottom.checked_sub(RAM_BASE)? as usize..)?;
         let untouched = stack
             .iter()
             .zip(fresh)

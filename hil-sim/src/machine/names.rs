@@ -231,7 +231,12 @@ const MAP: &[Entry] = &[
     (
         0xe000_1000,
         "DWT",
-        &[(0x00, "CTRL"), (0x04, "CYCCNT"), (0x20, "COMP0"), (0xfb0, "LAR")],
+        &[
+            (0x00, "CTRL"),
+            (0x04, "CYCCNT"),
+            (0x20, "COMP0"),
+            (0xfb0, "LAR"),
+        ],
     ),
     (0xe000_2000, "FPB", NONE),
     (0xe000_3000, "", NONE),

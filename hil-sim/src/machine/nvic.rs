@@ -176,7 +176,10 @@ impl Nvic {
             1 => -3,
             exception::NMI => NMI_PRIORITY,
             exception::HARD_FAULT => -1,
-            n => self.priority.get(n).map_or(THREAD_PRIORITY, |p| i32::from(*p)),
+            n => self
+                .priority
+                .get(n)
+                .map_or(THREAD_PRIORITY, |p| i32::from(*p)),
         }
     }
 

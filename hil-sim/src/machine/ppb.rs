@@ -135,8 +135,8 @@ impl Ppb {
             0xe000_e018 => match self.systick_due {
                 u64::MAX => 0,
                 due => {
-                    ((due.saturating_sub(now) / self.systick_step()) % (u64::from(self.systick_from) + 1))
-                        as u32
+                    ((due.saturating_sub(now) / self.systick_step())
+                        % (u64::from(self.systick_from) + 1)) as u32
                 }
             },
             0xe000_e100..0xe000_e500 => return nvic.read(address - 0xe000_e000),
@@ -186,7 +186,10 @@ impl Ppb {
             }
             0xe000_ed18..0xe000_ed24 => {
                 for i in 0..u32::from(bytes) {
-                    nvic.set_priority((address - 0xe000_ed18 + 4 + i) as usize, (value >> (8 * i)) as u8);
+                    nvic.set_priority(
+                        (address - 0xe000_ed18 + 4 + i) as usize,
+                        (value >> (8 * i)) as u8,
+                    );
                 }
                 return Ok(None);
             }
@@ -253,7 +256,9 @@ impl Ppb {
             }
             0xe000_ef34 => {
                 if value & 0xc000_0000 == 0x4000_0000 || value & 0x8000_0000 == 0 {
-                    return Err(Refusal::NotModelled("FPCCR.ASPEN = 0 (no automatic FP state)"));
+                    return Err(Refusal::NotModelled(
+                        "FPCCR.ASPEN = 0 (no automatic FP state)",
+                    ));
                 }
                 self.fpccr = value & 0xc000_0000;
             }
@@ -320,8 +325,14 @@ mod tests {
     #[test]
     fn unmodelled_control_bits_are_refused() {
         let (mut ppb, mut nvic) = (Ppb::new(), Nvic::new());
-        assert!(ppb.write(&mut nvic, 0xe000_ed10, 4, 4, 0).is_err(), "SLEEPDEEP");
-        assert!(ppb.write(&mut nvic, 0xe000_ed94, 4, 1, 0).is_err(), "MPU_CTRL");
+        assert!(
+            ppb.write(&mut nvic, 0xe000_ed10, 4, 4, 0).is_err(),
+            "SLEEPDEEP"
+        );
+        assert!(
+            ppb.write(&mut nvic, 0xe000_ed94, 4, 1, 0).is_err(),
+            "MPU_CTRL"
+        );
         assert_eq!(
             ppb.write(&mut nvic, 0xe000_ed0c, 4, 0x05fa_0004, 0),
             Ok(Some(SystemReset))

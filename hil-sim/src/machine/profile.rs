@@ -127,7 +127,8 @@ impl Profile {
 
     fn look(&mut self) {
         let running = self.open.last().map(|open| open.exception);
-        self.watching = running.is_some() && running == self.watched.as_ref().map(|(watched, _)| *watched);
+        self.watching =
+            running.is_some() && running == self.watched.as_ref().map(|(watched, _)| *watched);
     }
 
     /// Notes the blocks of an exception from its next activation on.

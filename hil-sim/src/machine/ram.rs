@@ -50,7 +50,10 @@ impl<'a, 'u, D> Ram<'a, 'u, D> {
 
 impl<D> Memory for Ram<'_, '_, D> {
     fn load(&mut self, address: u32, bytes: u8) -> Result<u32, NoMemory> {
-        let memories = [RAM_BASE..RAM_BASE + RAM_SIZE, FLASH_BASE..FLASH_BASE + FLASH_SIZE];
+        let memories = [
+            RAM_BASE..RAM_BASE + RAM_SIZE,
+            FLASH_BASE..FLASH_BASE + FLASH_SIZE,
+        ];
         if !memories.iter().any(|m| m.contains(&address)) {
             return Err(NoMemory);
         }
@@ -63,7 +66,10 @@ impl<D> Memory for Ram<'_, '_, D> {
             self.line_at = Some(at);
         }
         let from = (address - at) as usize;
-        let item = self.line.get(from..from + usize::from(bytes)).ok_or(NoMemory)?;
+        let item = self
+            .line
+            .get(from..from + usize::from(bytes))
+            .ok_or(NoMemory)?;
         Ok(item
             .iter()
             .rev()
@@ -80,7 +86,8 @@ impl<D> Memory for Ram<'_, '_, D> {
             self.run_at = address;
         }
         let word = value.to_le_bytes();
-        self.run[self.run_bytes..self.run_bytes + n].copy_from_slice(word.get(..n).ok_or(NoMemory)?);
+        self.run[self.run_bytes..self.run_bytes + n]
+            .copy_from_slice(word.get(..n).ok_or(NoMemory)?);
         self.run_bytes += n;
         if self.line_at == Some(address & !(LINE as u32 - 1)) {
             self.line_at = None;

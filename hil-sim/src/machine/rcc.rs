@@ -238,7 +238,11 @@ impl Rcc {
                 if value & 1 != 0 && self.csr & 1 == 0 {
                     self.ready_at[LSI] = self.after(now, LSI_START_US);
                 }
-                let flags = if value >> 24 & 1 != 0 { 0 } else { self.flags() };
+                let flags = if value >> 24 & 1 != 0 {
+                    0
+                } else {
+                    self.flags()
+                };
                 self.csr = flags | value & 1;
             }
             0x8c => {
@@ -262,7 +266,8 @@ mod tests {
         rcc.write_acr(0x705).unwrap();
         rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18, 0).unwrap();
         rcc.write(0x04, 0x2040_0000 | 8 | 360 << 6, 200).unwrap();
-        rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18 | 1 << 24, 200).unwrap();
+        rcc.write(0x00, 0x83 | 1 << 16 | 1 << 18 | 1 << 24, 200)
+            .unwrap();
         rcc.write_pwr(0, 0x1_c000, 200).unwrap();
         rcc.write_pwr(0, 0x3_c000, 2000).unwrap();
         rcc
@@ -293,7 +298,11 @@ mod tests {
         assert_eq!((c.sysclk_hz, c.hclk_hz), (180_000_000, 180_000_000));
         assert_eq!((c.pclk1_hz, c.pclk2_hz), (45_000_000, 90_000_000));
         assert_eq!((c.timclk1_hz, c.timclk2_hz), (90_000_000, 180_000_000));
-        assert_eq!(rcc.read(0x08, 3000).unwrap() & 0xf, 0b1010, "SWS follows SW");
+        assert_eq!(
+            rcc.read(0x08, 3000).unwrap() & 0xf,
+            0b1010,
+            "SWS follows SW"
+        );
     }
 
     #[test]

@@ -4,7 +4,8 @@ use super::elf::{FLASH_BASE, FLASH_SIZE, RAM_BASE, RAM_SIZE};
 use super::flash::{Flash, SETTINGS};
 use super::state::{self, Cpu, Event, State};
 use unicorn_engine::{
-    Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, TlbEntry, TlbType, Unicorn, uc_error,
+    Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, TlbEntry, TlbType, Unicorn,
+    uc_error,
 };
 
 /// Ranges whose accesses go to the register models, reserved gaps included: signature and option bytes, bit-band
@@ -51,16 +52,23 @@ pub(super) fn set_up<W: Wiring + 'static>(
             cpu.mmio_map(
                 u64::from(base) + from as u64,
                 (to - from) as u64,
-                Some(|cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize| {
-                    u64::from(state::on_flash_read(
-                        cpu,
-                        SETTINGS.start + offset as u32,
-                        bytes as u8,
-                    ))
-                }),
+                Some(
+                    |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize| {
+                        u64::from(state::on_flash_read(
+                            cpu,
+                            SETTINGS.start + offset as u32,
+                            bytes as u8,
+                        ))
+                    },
+                ),
                 Some(
                     |cpu: &mut Unicorn<'_, State<W>>, offset: u64, bytes: usize, value: u64| {
-                        state::on_flash_write(cpu, SETTINGS.start + offset as u32, bytes as u8, value as u32);
+                        state::on_flash_write(
+                            cpu,
+                            SETTINGS.start + offset as u32,
+                            bytes as u8,
+                            value as u32,
+                        );
                     },
                 ),
             )?;

@@ -46,7 +46,9 @@ mod tests {
 
     /// Four-byte instructions of one cycle.
     fn straight((address, bytes): Ran) -> Vec<(u32, u16)> {
-        (0..u32::from(bytes) / 4).map(|i| (address + 4 * i, 1)).collect()
+        (0..u32::from(bytes) / 4)
+            .map(|i| (address + 4 * i, 1))
+            .collect()
     }
 
     #[test]

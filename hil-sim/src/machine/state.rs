@@ -261,7 +261,10 @@ pub(crate) fn refund<W: Wiring>(state: &mut State<W>, pc: u32) {
         return;
     }
     let start = (state.block_pc & 0x07ff_ffff) as usize;
-    let code = state.flash.get(start..start + ran as usize).unwrap_or_default();
+    let code = state
+        .flash
+        .get(start..start + ran as usize)
+        .unwrap_or_default();
     let part = cost::decode(code);
     state.cycles = state.block_at + u64::from(part.cycles);
     state.instructions -= u64::from(state.block.instructions - part.instructions);
@@ -337,6 +340,8 @@ pub(crate) fn on_flash_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, byte
 
 /// Register and bit behind an address of the peripheral bit-band alias.
 fn bit_band(address: u32) -> Option<(u32, u32)> {
-    let offset = address.checked_sub(0x4200_0000).filter(|o| *o < 0x0200_0000)?;
+    let offset = address
+        .checked_sub(0x4200_0000)
+        .filter(|o| *o < 0x0200_0000)?;
     Some((0x4000_0000 + (offset >> 5 & !3), offset >> 2 & 31))
 }

@@ -38,7 +38,9 @@ impl fmt::Display for Place {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Stop {
     /// The image used a register, a bit or an access width that the emulated machine does not have.
-    #[error("{register} at {address:#010x} is not modelled: {access}, value {value:#x}, in {place}")]
+    #[error(
+        "{register} at {address:#010x} is not modelled: {access}, value {value:#x}, in {place}"
+    )]
     NotModelled {
         /// Peripheral and register, with the bit where only the bit is missing.
         register: String,
@@ -124,7 +126,11 @@ pub(crate) enum Refusal {
     /// No device at this address: a bus error inside the emulated CPU.
     BusError,
     /// See [`Stop::FlashLatency`].
-    FlashLatency { hclk_hz: u32, latency: u32, needed: u32 },
+    FlashLatency {
+        hclk_hz: u32,
+        latency: u32,
+        needed: u32,
+    },
     /// See [`Stop::ClockRange`].
     ClockRange {
         clock: &'static str,

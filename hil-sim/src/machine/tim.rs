@@ -290,7 +290,8 @@ impl Tim {
         }
         for channel in 0..self.kind.channels {
             let flag = 2 << channel;
-            if self.dier & flag != 0 && self.sr & flag == 0 && self.ccr_now[channel] <= self.arr_now {
+            if self.dier & flag != 0 && self.sr & flag == 0 && self.ccr_now[channel] <= self.arr_now
+            {
                 let at = self
                     .zero_at
                     .wrapping_add(u64::from(self.ccr_now[channel]) * self.tick());

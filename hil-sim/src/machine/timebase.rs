@@ -62,7 +62,10 @@ mod tests {
         let time = Timebase::new(180_000_000);
         for cycle in [1, 2, 7, 1_234_567, 90_000 * 123_456 + 1] {
             assert_eq!(time.cycle_at(time.ps_at(cycle)), cycle);
-            assert_eq!(time.cycle_at(time.ps_at(cycle) + 500_000_000), cycle + 90_000);
+            assert_eq!(
+                time.cycle_at(time.ps_at(cycle) + 500_000_000),
+                cycle + 90_000
+            );
         }
     }
 }

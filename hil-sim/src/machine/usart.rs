@@ -273,7 +273,11 @@ impl Usart {
                 self.brr = value;
             }
             0x0c => {
-                only(value, 0xa1fc, "USART_CR1 beyond 8N1 (M, PCE, WAKE, RWU, SBK)")?;
+                only(
+                    value,
+                    0xa1fc,
+                    "USART_CR1 beyond 8N1 (M, PCE, WAKE, RWU, SBK)",
+                )?;
                 only(value & 0x0100, 0, "USART_CR1.PEIE")?;
                 let starts = value & (UE | TE) == UE | TE && self.cr1 & (UE | TE) != UE | TE;
                 self.cr1 = value;
@@ -358,7 +362,11 @@ mod tests {
         usart.receive(true);
         assert_eq!(usart.read(0).unwrap() & (RXNE | ORE), RXNE | ORE);
         assert_eq!(usart.read(4).unwrap(), u32::from(b'a'));
-        assert_eq!(usart.read(0).unwrap() & (RXNE | ORE), 0, "SR then DR clears both");
+        assert_eq!(
+            usart.read(0).unwrap() & (RXNE | ORE),
+            0,
+            "SR then DR clears both"
+        );
         assert!(!usart.request());
     }
 

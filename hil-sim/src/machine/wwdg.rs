@@ -215,7 +215,11 @@ mod tests {
             Ok(false),
             "the counter is at 0x60"
         );
-        assert_eq!(wwdg.write(CR, 0x7f, (0x1f + 0x1e) * 4096), Ok(true), "at 0x61");
+        assert_eq!(
+            wwdg.write(CR, 0x7f, (0x1f + 0x1e) * 4096),
+            Ok(true),
+            "at 0x61"
+        );
     }
 
     #[test]

@@ -176,7 +176,12 @@ fn object(object: &ObjectConfig) -> Result<(), ConfigError> {
     ] {
         positive(what, value)?;
     }
-    within("object temperature in deg C", object.start_c, coldest, warmest)?;
+    within(
+        "object temperature in deg C",
+        object.start_c,
+        coldest,
+        warmest,
+    )?;
     within(
         "object thickness in m",
         object.thickness_m,
@@ -207,7 +212,10 @@ fn object(object: &ObjectConfig) -> Result<(), ConfigError> {
 /// Parameters that are possible by themselves must suit each other.
 fn together(params: &Params) -> Result<(), ConfigError> {
     let Params {
-        finger, tile, bridge, ..
+        finger,
+        tile,
+        bridge,
+        ..
     } = params;
     if tile.patch_m2 >= tile.plate_m2() {
         let allowed = format!("below the plate's area, {}", tile.plate_m2());
@@ -277,7 +285,11 @@ fn within(what: &'static str, value: f64, least: f64, most: f64) -> Result<(), C
     if (least..=most).contains(&value) {
         return Ok(());
     }
-    Err(ConfigError::value(what, value, format!("{least} to {most}")))
+    Err(ConfigError::value(
+        what,
+        value,
+        format!("{least} to {most}"),
+    ))
 }
 
 fn positive(what: &'static str, value: f64) -> Result<(), ConfigError> {

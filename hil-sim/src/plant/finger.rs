@@ -65,15 +65,18 @@ impl FingerParams {
     /// capacities are literature values; thicknesses, perfusion and the film are class values.
     #[must_use]
     pub fn layered() -> Self {
-        let layer = |thickness_m, conductivity_w_mk, capacity_j_m3k, perfusion_1_s, metabolism_w_m3| Layer {
-            thickness_m,
-            medium: Medium {
-                conductivity_w_mk,
-                capacity_j_m3k,
-                perfusion_w_m3k: perfusion_1_s * BLOOD_J_M3K,
-                metabolism_w_m3,
-            },
-        };
+        let layer =
+            |thickness_m, conductivity_w_mk, capacity_j_m3k, perfusion_1_s, metabolism_w_m3| {
+                Layer {
+                    thickness_m,
+                    medium: Medium {
+                        conductivity_w_mk,
+                        capacity_j_m3k,
+                        perfusion_w_m3k: perfusion_1_s * BLOOD_J_M3K,
+                        metabolism_w_m3,
+                    },
+                }
+            };
         Self {
             surface: SKIN.surface,
             layers: vec![
@@ -90,9 +93,10 @@ impl FingerParams {
     /// What lies behind the tissue; its temperature follows from the skin's.
     #[must_use]
     pub fn back(&self) -> Back {
-        self.core_w_m2k.map_or(Back::Insulated, |film_w_m2k| Back::Film {
-            film_w_m2k,
-            temperature_c: 0.0,
-        })
+        self.core_w_m2k
+            .map_or(Back::Insulated, |film_w_m2k| Back::Film {
+                film_w_m2k,
+                temperature_c: 0.0,
+            })
     }
 }

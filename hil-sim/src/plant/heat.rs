@@ -61,7 +61,8 @@ impl Heat {
         step_s: f64,
     ) -> Self {
         let slabs = [finger, finger, object];
-        let lengths_s: [f64; schedule::LENGTHS] = std::array::from_fn(|k| schedule::length_s(step_s, k));
+        let lengths_s: [f64; schedule::LENGTHS] =
+            std::array::from_fn(|k| schedule::length_s(step_s, k));
         let lifted_w_m2k = slabs.map(|s| 1.0 / (s.surface_m2k_w + 1.0 / film_w_m2k));
         Self {
             slabs: Lanes::new(slabs, [skin_c, skin_c, object_c], &lengths_s),
@@ -112,13 +113,19 @@ impl Heat {
     }
 
     /// Closes, changes or opens the contacts. Air cools the object only while it is there.
-    pub fn touch(&mut self, on_display: Option<Touch>, on_object: Option<Touch>, object_is_there: bool) {
+    pub fn touch(
+        &mut self,
+        on_display: Option<Touch>,
+        on_object: Option<Touch>,
+        object_is_there: bool,
+    ) {
         let [finger, _, object] = self.surface_m2k_w;
         let plate_k_w = self.tile.patch_half_k_w();
         self.on_display_w_m2k = on_display.map_or(0.0, |t| {
             1.0 / (finger + t.resistance_m2k_w + plate_k_w * t.area_m2)
         });
-        self.on_object_w_m2k = on_object.map_or(0.0, |t| 1.0 / (finger + t.resistance_m2k_w + object));
+        self.on_object_w_m2k =
+            on_object.map_or(0.0, |t| 1.0 / (finger + t.resistance_m2k_w + object));
         let area_m2 = on_display.map_or(0.0, |t| t.area_m2);
         if area_m2 != self.area_m2 {
             self.area_m2 = area_m2;
@@ -129,14 +136,21 @@ impl Heat {
             on_object.is_some(),
             on_object.is_some() || !object_is_there,
         ];
-        self.air_w_m2k = std::array::from_fn(|l| if covered[l] { 0.0 } else { self.lifted_w_m2k[l] });
+        self.air_w_m2k = std::array::from_fn(|l| {
+            if covered[l] {
+                0.0
+            } else {
+                self.lifted_w_m2k[l]
+            }
+        });
     }
 
     /// Advances by the sub-step of the given index with the bridge's legs held.
     pub fn step(&mut self, index: usize, bridge: &mut Bridge, legs: &Legs) {
         let step_s = schedule::length_s(self.step_s, index);
         self.tile.prepare(step_s);
-        self.tile.drive(bridge.current(step_s, legs, &self.tile.load()));
+        self.tile
+            .drive(bridge.current(step_s, legs, &self.tile.load()));
 
         let out = self.out_w_m2();
         let inflow_w = self.area_m2 * self.flux_w_m2(Finger::OnDisplay);
@@ -163,7 +177,9 @@ impl Heat {
     fn out_w_m2(&self) -> [f64; LANES] {
         let on_object = self.flux_w_m2(Finger::OnObject);
         let contact = [self.flux_w_m2(Finger::OnDisplay), on_object, -on_object];
-        std::array::from_fn(|l| contact[l] + self.air_w_m2k[l] * (self.slabs.surface_c(l) - self.room_c))
+        std::array::from_fn(|l| {
+            contact[l] + self.air_w_m2k[l] * (self.slabs.surface_c(l) - self.room_c)
+        })
     }
 
     /// Rows with what the air adds to them.

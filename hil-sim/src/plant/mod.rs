@@ -239,7 +239,9 @@ impl Plant {
         } = &self.surfaces;
         let on_display = Touch::under(self.force_n, skin, display);
         let on_object = Touch::under(self.force_n, skin, object).filter(|_| appeared);
-        if touch::is_event(self.on_display, on_display) || touch::is_event(self.on_object, on_object) {
+        if touch::is_event(self.on_display, on_display)
+            || touch::is_event(self.on_object, on_object)
+        {
             self.age = 0;
         }
         self.heat.touch(on_display, on_object, appeared);

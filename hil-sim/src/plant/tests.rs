@@ -48,11 +48,18 @@ fn leg_a_above_leg_b_cools_and_the_other_way_heats() {
     for (a, b, sign) in [(1.0, 0.6, -1.0), (0.6, 1.0, 1.0)] {
         let mut plant = plant("copper");
         run(&mut plant, 1.0, &legs(a, b));
-        assert!(sign * (plant.display_c() - 24.0) > 3.0, "{}", plant.display_c());
+        assert!(
+            sign * (plant.display_c() - 24.0) > 3.0,
+            "{}",
+            plant.display_c()
+        );
         assert!(sign * plant.current_a() < -3.0, "{}", plant.current_a());
         let codes = Channel::ALL.map(|channel| f64::from(plant.convert(channel)));
         let mirror_a = codes[Channel::Current as usize] / 400.0;
-        assert!((mirror_a - plant.current_a().abs()).abs() < 0.02, "{mirror_a}");
+        assert!(
+            (mirror_a - plant.current_a().abs()).abs() < 0.02,
+            "{mirror_a}"
+        );
     }
 }
 
@@ -81,7 +88,11 @@ fn object_that_has_not_appeared_takes_no_heat() {
     plant.set_force(1.0);
     run(&mut plant, 0.2, &Legs::default());
     assert_eq!(plant.skin_real_c(), 34.0);
-    assert!(plant.skin_c() < 33.5, "the display is there: {}", plant.skin_c());
+    assert!(
+        plant.skin_c() < 33.5,
+        "the display is there: {}",
+        plant.skin_c()
+    );
     run(&mut plant, 0.1, &Legs::default());
     assert!(plant.skin_real_c() < 32.5, "{}", plant.skin_real_c());
 }
@@ -105,7 +116,10 @@ fn runs_repeat_bit_for_bit() {
         for k in 0..2000 {
             plant.set_force(if (500..1500).contains(&k) { 1.5 } else { 0.0 });
             plant.step(&legs(0.5, 0.2));
-            seen.push((Channel::ALL.map(|c| plant.convert(c)), plant.skin_c().to_bits()));
+            seen.push((
+                Channel::ALL.map(|c| plant.convert(c)),
+                plant.skin_c().to_bits(),
+            ));
         }
         seen
     };
@@ -150,7 +164,11 @@ fn object_is_what_it_starts_as_when_it_appears() {
         (config.start_s, config.duration_s) = (-settle_s, duration_s);
         let mut plant = Plant::new(&config).expect("good");
         run(&mut plant, settle_s, &Legs::default());
-        assert!((plant.object_c() - 24.0).abs() < 2.0, "{}", plant.object_c());
+        assert!(
+            (plant.object_c() - 24.0).abs() < 2.0,
+            "{}",
+            plant.object_c()
+        );
         plant.set_force(2.0);
         run(&mut plant, 12.0, &Legs::default());
         plant.skin_real_c()

@@ -90,7 +90,8 @@ impl Truth {
     /// The skin at the depth of its receptors of cold and of warmth ([`RECEPTORS_M`]), deg C.
     #[must_use]
     pub fn receptors_c(&self) -> [Option<f64>; RECEPTORS_M.len()] {
-        let read = |probe: Option<Probe>| probe.map(|probe| self.heat.depth_c(Finger::OnObject, &probe));
+        let read =
+            |probe: Option<Probe>| probe.map(|probe| self.heat.depth_c(Finger::OnObject, &probe));
         self.receptors.map(read)
     }
 

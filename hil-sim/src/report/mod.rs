@@ -24,7 +24,12 @@ pub const SVG: &str = "plots.svg";
 ///
 /// # Errors
 /// A file cannot be written.
-pub fn write(folder: &Path, scene: &Scene, outcome: &Outcome, figures: &Figures) -> anyhow::Result<()> {
+pub fn write(
+    folder: &Path,
+    scene: &Scene,
+    outcome: &Outcome,
+    figures: &Figures,
+) -> anyhow::Result<()> {
     let plots = plots::draw(scene, outcome)?;
     for (name, text) in [(HTML, page(scene, outcome, figures, &plots)), (SVG, plots)] {
         let path = folder.join(name);

@@ -71,9 +71,15 @@ impl Panel<'_> {
                             .0,
                     );
                 }
-                let (width, height) = (width as i32 + SAMPLE + 2 * SPACE, LINE * curves.len() as i32);
+                let (width, height) = (
+                    width as i32 + SAMPLE + 2 * SPACE,
+                    LINE * curves.len() as i32,
+                );
                 let left = all as i32 - MARGIN - SPACE - width;
-                let corners = [(left, MARGIN + SPACE), (left + width, MARGIN + SPACE + height)];
+                let corners = [
+                    (left, MARGIN + SPACE),
+                    (left + width, MARGIN + SPACE + height),
+                ];
                 area.draw(&Rectangle::new(corners, WHITE.mix(0.85).filled()))?;
                 area.draw(&Rectangle::new(corners, BLACK.mix(0.3)))?;
                 legend(area, (left + SPACE / 2, corners[0].1), curves)
@@ -108,7 +114,9 @@ impl Panel<'_> {
             .x_desc(self.x_name)
             .y_desc(self.y_name)
             // Adding zero turns a negative zero into zero.
-            .y_label_formatter(&|value| format!("{:.decimals$}", (value * 10.0).round() / 10.0 + 0.0))
+            .y_label_formatter(&|value| {
+                format!("{:.decimals$}", (value * 10.0).round() / 10.0 + 0.0)
+            })
             .light_line_style(TRANSPARENT)
             .label_style(FONT)
             .draw()?;
@@ -124,7 +132,8 @@ impl Panel<'_> {
                     chart.draw_series(DashedLineSeries::new(points, DASH.0, DASH.1, style))?;
                 }
                 Stroke::Dots => {
-                    chart.draw_series(points.map(|point| Circle::new(point, DOT, color.filled())))?;
+                    chart
+                        .draw_series(points.map(|point| Circle::new(point, DOT, color.filled())))?;
                 }
             }
         }
@@ -138,12 +147,16 @@ fn legend(area: &Area<'_>, (x, y): (i32, i32), curves: &[Curve]) -> anyhow::Resu
         let middle = y + i * LINE + LINE / 2;
         let (color, ends) = (curve.color, [(x, middle), (x + SAMPLE, middle)]);
         match curve.stroke {
-            Stroke::Solid(width) => area.draw(&PathElement::new(ends, color.stroke_width(width)))?,
+            Stroke::Solid(width) => {
+                area.draw(&PathElement::new(ends, color.stroke_width(width)))?
+            }
             Stroke::Dashed => {
                 let style = color.stroke_width(2);
                 area.draw(&DashedPathElement::new(ends, DASH.0, DASH.1, style))?;
             }
-            Stroke::Dots => area.draw(&Circle::new((x + SAMPLE / 2, middle), DOT, color.filled()))?,
+            Stroke::Dots => {
+                area.draw(&Circle::new((x + SAMPLE / 2, middle), DOT, color.filled()))?
+            }
         }
         let at = (x + SAMPLE + SPACE, middle - FONT.1 / 2);
         area.draw(&Text::new(curve.name.as_str(), at, FONT))?;

@@ -19,7 +19,12 @@ const SETPOINT: RGBColor = RGBColor(0x2c, 0xa0, 0x2c);
 const CAMERA: RGBColor = RGBColor(0xe3, 0x9c, 0x2a);
 const CURRENT: RGBColor = RGBColor(0x94, 0x67, 0xbd);
 
-fn curve(name: &str, color: RGBColor, rows: &[Row], value: impl Fn(usize, &Row) -> Option<f64>) -> Curve {
+fn curve(
+    name: &str,
+    color: RGBColor,
+    rows: &[Row],
+    value: impl Fn(usize, &Row) -> Option<f64>,
+) -> Curve {
     let every = rows.len().div_ceil(POINTS).max(1);
     let points = rows.iter().enumerate().step_by(every);
     Curve {
@@ -70,16 +75,23 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
         temperatures.insert(0, camera(rows));
     }
     let errors = [
-        curve("skin minus skin on the real object", SKIN, rows, |i, row| {
-            contacts[i].map(|_| (row.skin_c - row.skin_real_c) * 1e3)
-        }),
+        curve(
+            "skin minus skin on the real object",
+            SKIN,
+            rows,
+            |i, row| contacts[i].map(|_| (row.skin_c - row.skin_real_c) * 1e3),
+        ),
         curve("display minus exact set-point", DISPLAY, rows, |i, row| {
-            contacts[i].map(|since_s| (row.display_c - scene.exact_setpoint_c(since_s, row.force_n)) * 1e3)
+            contacts[i]
+                .map(|since_s| (row.display_c - scene.exact_setpoint_c(since_s, row.force_n)) * 1e3)
         }),
     ];
-    let current = [curve("current (positive cools)", CURRENT, rows, |_, row| {
-        Some(row.current_a)
-    })];
+    let current = [curve(
+        "current (positive cools)",
+        CURRENT,
+        rows,
+        |_, row| Some(row.current_a),
+    )];
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();

@@ -26,8 +26,14 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
         events => events.join(", "),
     };
     let at = |what: &str, t_s: f64| format!("{what} at {t_s:.3} s");
-    let faults = figures.faults.iter().map(|fault| at(&fault.fault, fault.t_s));
-    let resets = figures.resets.iter().map(|reset| at(&reset.cause, reset.t_s));
+    let faults = figures
+        .faults
+        .iter()
+        .map(|fault| at(&fault.fault, fault.t_s));
+    let resets = figures
+        .resets
+        .iter()
+        .map(|reset| at(&reset.cause, reset.t_s));
     let mut rows = vec![
         ("material", figures.material.clone()),
         ("engine", figures.engine.into()),
@@ -38,10 +44,16 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
             "skin on the display",
             format!("{:.2} to {:.2} C", figures.skin_c.min, figures.skin_c.max),
         ),
-        ("thermal dose", format!("{:.3} min CEM43", figures.cem43_min)),
+        (
+            "thermal dose",
+            format!("{:.3} min CEM43", figures.cem43_min),
+        ),
         (
             "display",
-            format!("{:.2} to {:.2} C", figures.display_c.min, figures.display_c.max),
+            format!(
+                "{:.2} to {:.2} C",
+                figures.display_c.min, figures.display_c.max
+            ),
         ),
         (
             "kernel evaluations",
@@ -59,7 +71,10 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
         rows.push(("CPU load", format!("{:.1} % (estimated)", load * 100.0)));
         rows.push(("stack used", format!("{stack} bytes")));
     }
-    rows.push(("real-time factor", format!("{:.0}", figures.real_time_factor)));
+    rows.push((
+        "real-time factor",
+        format!("{:.0}", figures.real_time_factor),
+    ));
     rows.push(("faults", list(faults.collect())));
     rows.push(("resets", list(resets.collect())));
     rows

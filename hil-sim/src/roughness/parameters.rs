@@ -12,7 +12,10 @@ pub(super) fn levelled(x_m: &[f64], z_m: &[f64]) -> Vec<f64> {
     let square = from_middle.iter().map(|x| x * x);
     let product = from_middle.iter().zip(&z_m).map(|(x, z)| x * (z - level));
     let tilt = mean(x_m, &product.collect::<Vec<_>>()) / mean(x_m, &square.collect::<Vec<_>>());
-    let above = from_middle.iter().zip(&z_m).map(|(x, z)| z - level - tilt * x);
+    let above = from_middle
+        .iter()
+        .zip(&z_m)
+        .map(|(x, z)| z - level - tilt * x);
     above.collect()
 }
 

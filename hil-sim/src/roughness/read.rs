@@ -145,7 +145,12 @@ fn check_steps(lines: &[u64], x_m: &[f64]) -> Result<(), ProfileError> {
     Ok(())
 }
 
-fn number(row: &StringRecord, line: u64, column: &'static str, index: usize) -> Result<f64, ProfileError> {
+fn number(
+    row: &StringRecord,
+    line: u64,
+    column: &'static str,
+    index: usize,
+) -> Result<f64, ProfileError> {
     let cell = row.get(index).unwrap_or("");
     let value = cell.parse().ok().filter(|value: &f64| value.is_finite());
     value.ok_or_else(|| ProfileError::Cell {

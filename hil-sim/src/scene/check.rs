@@ -24,7 +24,8 @@ const SETTLE_S: f64 = 8.0;
 pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let source = Source { file: path, text };
     depth::check(&source)?;
-    let file: File = toml::from_str(text).map_err(|error| source.error(error.span(), error.message()))?;
+    let file: File =
+        toml::from_str(text).map_err(|error| source.error(error.span(), error.message()))?;
     let duration_s = source.within("duration_s", &file.duration_s, 0.001, 86_400.0)?;
     let settle_s = match &file.settle_s {
         Some(number) => source.within("settle_s", number, SETTLE_S, 3600.0)?,
@@ -47,7 +48,11 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         seed: file.seed,
         commissioned: file.device.commissioned,
         mode,
-        law: file.law.as_ref().map(|name| law(&source, name)).transpose()?,
+        law: file
+            .law
+            .as_ref()
+            .map(|name| law(&source, name))
+            .transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,
         params: params(&source, file.finger.as_ref(), file.plant.as_ref())?,
         infrared: match &file.infrared {
@@ -96,7 +101,11 @@ fn law(source: &Source<'_>, name: &Spanned<String>) -> Result<Law, SceneError> {
     })
 }
 
-fn forces(source: &Source<'_>, rows: &[file::Force], duration_s: f64) -> Result<Vec<Force>, SceneError> {
+fn forces(
+    source: &Source<'_>,
+    rows: &[file::Force],
+    duration_s: f64,
+) -> Result<Vec<Force>, SceneError> {
     let mut forces: Vec<Force> = Vec::with_capacity(rows.len());
     for row in rows {
         let force = Force {

@@ -30,8 +30,9 @@ pub(super) fn check(source: &Source<'_>) -> Result<(), SceneError> {
                 words += 1;
                 if words > WORDS {
                     let begin = source.text.get(key).unwrap_or_default().trim_start();
-                    let problem =
-                        format!("{begin} begins a key of more than {WORDS} words; allowed is 1 to {WORDS}");
+                    let problem = format!(
+                        "{begin} begins a key of more than {WORDS} words; allowed is 1 to {WORDS}"
+                    );
                     return Err(source.error(Some(span), problem));
                 }
                 continue;
@@ -39,7 +40,8 @@ pub(super) fn check(source: &Source<'_>) -> Result<(), SceneError> {
             TokenKind::LeftSquareBracket | TokenKind::LeftCurlyBracket => {
                 brackets += 1;
                 if brackets > BRACKETS {
-                    let problem = format!("{brackets} brackets in each other; allowed is 0 to {BRACKETS}");
+                    let problem =
+                        format!("{brackets} brackets in each other; allowed is 0 to {BRACKETS}");
                     return Err(source.error(Some(span), problem));
                 }
             }

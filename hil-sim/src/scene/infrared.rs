@@ -36,7 +36,8 @@ impl Infrared {
     #[must_use]
     pub fn has_frame(&self, ms: u64) -> bool {
         let frame = |ms: u64| (ms as f64 * self.rate_hz / 1e3 + SLACK).floor();
-        ms.checked_sub(1).is_none_or(|before| frame(ms) > frame(before))
+        ms.checked_sub(1)
+            .is_none_or(|before| frame(ms) > frame(before))
     }
 }
 
@@ -61,7 +62,8 @@ pub(super) fn infrared(
         ("camera_c", &table.camera_c),
     ] {
         if let (Optic::None, Some(number)) = (optic, number) {
-            let problem = format!("infrared.{key} beside optic = \"none\"; allowed is {key} beside a window");
+            let problem =
+                format!("infrared.{key} beside optic = \"none\"; allowed is {key} beside a window");
             return Err(source.error(Some(number.span()), problem));
         }
     }
@@ -70,7 +72,8 @@ pub(super) fn infrared(
         return Err(source.error(Some(share.span()), problem));
     }
     let usual = CameraParams::thesis(optic);
-    let or = |number: &Option<file::Number>, usual: f64| number.as_ref().map_or(usual, |n| *n.get_ref());
+    let or =
+        |number: &Option<file::Number>, usual: f64| number.as_ref().map_or(usual, |n| *n.get_ref());
     let infrared = Infrared {
         params: CameraParams {
             optic,
@@ -94,9 +97,16 @@ pub(super) fn infrared(
     };
     match infrared.camera(0) {
         Ok(_) => Ok(infrared),
-        Err(ParameterError { name, value, allowed }) => {
+        Err(ParameterError {
+            name,
+            value,
+            allowed,
+        }) => {
             let problem = format!("infrared.{name} = {value}; allowed is {allowed}");
-            Err(source.error(Some(span(table, name).unwrap_or_else(|| file.span())), problem))
+            Err(source.error(
+                Some(span(table, name).unwrap_or_else(|| file.span())),
+                problem,
+            ))
         }
     }
 }

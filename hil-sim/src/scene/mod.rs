@@ -112,7 +112,8 @@ impl Scene {
     /// # Errors
     /// The first thing that is wrong, with file and line, and what is allowed.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let text = std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
+        let text =
+            std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
         Self::parse(&text, path)
     }
 
@@ -136,7 +137,9 @@ impl Scene {
     pub fn exact_setpoint_c(&self, since_s: f64, force_n: f64) -> f64 {
         let object = &self.object.material;
         match self.mode {
-            Mode::SemiInfinite => interface_temperature(&SKIN, self.skin_c, object, self.object_c()),
+            Mode::SemiInfinite => {
+                interface_temperature(&SKIN, self.skin_c, object, self.object_c())
+            }
             Mode::ContactResistance => {
                 let (finger, object) = ((&SKIN, self.skin_c), (object, self.object_c()));
                 Contact::new(finger, object, &REFERENCE_DISPLAY, pressure_pa(force_n))

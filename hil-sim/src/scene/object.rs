@@ -33,8 +33,9 @@ pub(super) fn object(
             .iter()
             .find_map(|(key, number)| Some((key, number.as_ref()?)))
         {
-            let problem =
-                format!("object.{key} beside object.material; allowed is either a name or properties");
+            let problem = format!(
+                "object.{key} beside object.material; allowed is either a name or properties"
+            );
             return Err(source.error(Some(number.span()), problem));
         }
         let Some(material) = find(name.get_ref()) else {
@@ -80,7 +81,9 @@ fn shape(
         Err(source.error(Some(span), problem))
     };
     let thickness_m = match &object.thickness_m {
-        Some(number) => source.within("object.thickness_m", number, ObjectConfig::THINNEST_M, 10.0)?,
+        Some(number) => {
+            source.within("object.thickness_m", number, ObjectConfig::THINNEST_M, 10.0)?
+        }
         None => f64::INFINITY,
     };
     if let (None, Some(back)) = (&object.thickness_m, &object.back) {
@@ -103,7 +106,8 @@ fn shape(
         }
         (file::Back::Film, None) => {
             let span = object.back.as_ref().map(Spanned::span);
-            let problem = "object.back = \"film\" without object.back_film_w_m2k; allowed is 0.1 to 1000000";
+            let problem =
+                "object.back = \"film\" without object.back_film_w_m2k; allowed is 0.1 to 1000000";
             return Err(source.error(span, problem));
         }
         (_, Some(number)) => return needless("back_film_w_m2k", number.span(), "back = \"film\""),
@@ -132,8 +136,9 @@ fn custom(
     let mut values = [0.0; 5];
     for (value, (key, number)) in values.iter_mut().zip(properties) {
         let Some(number) = number else {
-            let problem =
-                format!("object.{key} is missing; an object has a material or all of its properties");
+            let problem = format!(
+                "object.{key} is missing; an object has a material or all of its properties"
+            );
             return Err(source.error(Some(span.clone()), problem));
         };
         *value = *number.get_ref();
@@ -173,8 +178,8 @@ pub(crate) fn custom_line(material: &Material) -> String {
     } = material.surface;
     let (density, heat) = (material.density_kg_m3, material.specific_heat_j_kgk);
     // Nine decimals are more than the device keeps, and five such numbers fit its line.
-    let numbers =
-        [conductivity_w_mk, density, heat, roughness_um, slope_rad].map(|number| format!("{number:.9}"));
+    let numbers = [conductivity_w_mk, density, heat, roughness_um, slope_rad]
+        .map(|number| format!("{number:.9}"));
     let short = numbers
         .each_ref()
         .map(|number| number.trim_end_matches('0').trim_end_matches('.'));

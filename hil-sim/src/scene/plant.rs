@@ -31,7 +31,8 @@ pub(super) fn params(
             "plant is a number; allowed is a table of parameters",
         ));
     };
-    let (draws, values): (Vec<_>, Vec<_>) = entries.iter().partition(|(key, _)| key.get_ref() == "draw");
+    let (draws, values): (Vec<_>, Vec<_>) =
+        entries.iter().partition(|(key, _)| key.get_ref() == "draw");
     for (_, seed) in draws {
         parameters::draw(&mut params, seed_of(source, seed)?);
         if let Some(finger) = finger {
@@ -67,16 +68,21 @@ fn set(
     match node.get_ref() {
         Node::Number(value) => source.set(params, &key, *value, node.span()),
         Node::Whole(value) => source.set(params, &key, *value as f64, node.span()),
-        Node::Table(entries) => entries
-            .iter()
-            .try_for_each(|(name, node)| set(source, params, format!("{key}.{}", name.get_ref()), node)),
+        Node::Table(entries) => entries.iter().try_for_each(|(name, node)| {
+            set(source, params, format!("{key}.{}", name.get_ref()), node)
+        }),
     }
 }
 
 /// The parts that the finger has.
-fn tissue(source: &Source<'_>, finger: &file::Finger, params: &mut Params) -> Result<(), SceneError> {
+fn tissue(
+    source: &Source<'_>,
+    finger: &file::Finger,
+    params: &mut Params,
+) -> Result<(), SceneError> {
     if let (Some(tissue), false) = (&finger.tissue, finger.layer.is_empty()) {
-        let problem = "finger.tissue beside finger.layer; allowed is either nominal tissue or layers";
+        let problem =
+            "finger.tissue beside finger.layer; allowed is either nominal tissue or layers";
         return Err(source.error(Some(tissue.span()), problem));
     }
     params.finger = match finger.tissue.as_ref().map(Spanned::get_ref) {
@@ -145,7 +151,8 @@ fn one_layer(
         Some(thickness) => set("thickness_m", *thickness.get_ref(), thickness.span())?,
         None if last => {}
         None => {
-            let problem = format!("{key}.thickness_m is missing; only the last layer may be endless");
+            let problem =
+                format!("{key}.thickness_m is missing; only the last layer may be endless");
             return Err(source.error(Some(layer.span()), problem));
         }
     }

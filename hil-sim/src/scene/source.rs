@@ -58,7 +58,13 @@ impl Source<'_> {
     }
 
     /// The number, if it lies within the range.
-    pub fn within(&self, key: &str, number: &Number, least: f64, most: f64) -> Result<f64, SceneError> {
+    pub fn within(
+        &self,
+        key: &str,
+        number: &Number,
+        least: f64,
+        most: f64,
+    ) -> Result<f64, SceneError> {
         let value = *number.get_ref();
         if (least..=most).contains(&value) {
             return Ok(value);
@@ -79,6 +85,7 @@ impl Source<'_> {
         value: f64,
         span: Range<usize>,
     ) -> Result<(), SceneError> {
-        parameters::set(params, key, value).map_err(|error| self.error(Some(span), error.to_string()))
+        parameters::set(params, key, value)
+            .map_err(|error| self.error(Some(span), error.to_string()))
     }
 }

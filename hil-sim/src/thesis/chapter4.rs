@@ -34,7 +34,13 @@ fn table_4_1() -> Vec<Row> {
     let mut rows = Vec::new();
     for (i, Sample { name, material }) in five().into_iter().enumerate() {
         let row = |what: &str, unit, stated, computed| {
-            Row::new("Table 4-1", format!("{name}, {what}"), unit, stated, computed)
+            Row::new(
+                "Table 4-1",
+                format!("{name}, {what}"),
+                unit,
+                stated,
+                computed,
+            )
         };
         let shifted = |row: Row, holds: &str, value| {
             row.damaged(
@@ -83,7 +89,12 @@ fn table_4_1() -> Vec<Row> {
                 "contact coefficient, cut",
                 tabulated_effusivity(&material),
             ),
-            row("Rq", "µm", printed(finish[i].0, 2), material.surface.roughness_um),
+            row(
+                "Rq",
+                "µm",
+                printed(finish[i].0, 2),
+                material.surface.roughness_um,
+            ),
             row(
                 "asperity slope",
                 "rad",
@@ -105,15 +116,32 @@ fn interface_temperatures() -> Vec<Row> {
         interface("abs"),
         interface("foam"),
     );
-    let row = |what: &str, unit, stated, computed| Row::new("Section 4.2.3", what, unit, stated, computed);
+    let row = |what: &str, unit, stated, computed| {
+        Row::new("Section 4.2.3", what, unit, stated, computed)
+    };
     vec![
         row("copper, interface", "°C", printed(23.8, 1), copper),
         row("granite, interface", "°C", printed(27.0, 0), granite),
         row("ABS, interface", "°C", printed(30.8, 1), abs),
         row("foam, interface", "°C", printed(33.7, 1), foam),
-        row("range of the cold group", "K", printed(3.0, 0), granite - copper),
-        row("range of the neutral group", "K", printed(3.0, 0), foam - abs),
-        row("distance of the groups", "K", printed(4.0, 0), abs - granite),
+        row(
+            "range of the cold group",
+            "K",
+            printed(3.0, 0),
+            granite - copper,
+        ),
+        row(
+            "range of the neutral group",
+            "K",
+            printed(3.0, 0),
+            foam - abs,
+        ),
+        row(
+            "distance of the groups",
+            "K",
+            printed(4.0, 0),
+            abs - granite,
+        ),
         row(
             "contact coefficient that gives 30.8 °C",
             "J/(m² s^½ K)",

@@ -37,7 +37,12 @@ td.v{white-space:nowrap;font-weight:600}.agrees{color:#1a7f37}.cut{color:#7a5c00
 ///
 /// # Errors
 /// A file cannot be written, or a figure not be drawn.
-pub fn write(folder: &Path, chapters: &[Chapter], figures: &[Figure], apart: &[Apart]) -> anyhow::Result<()> {
+pub fn write(
+    folder: &Path,
+    chapters: &[Chapter],
+    figures: &[Figure],
+    apart: &[Apart],
+) -> anyhow::Result<()> {
     for (name, text) in [
         (HTML, page(chapters, figures, apart)?.into_bytes()),
         (CSV, csv(chapters)?),
@@ -68,11 +73,17 @@ fn page(chapters: &[Chapter], figures: &[Figure], apart: &[Apart]) -> anyhow::Re
         }
         body.push_str("</table>");
         let prefix = format!("{}-", chapter.number);
-        for figure in figures.iter().filter(|figure| figure.number.starts_with(&prefix)) {
+        for figure in figures
+            .iter()
+            .filter(|figure| figure.number.starts_with(&prefix))
+        {
             let svg = draw(figure)?;
             let compared = apart.iter().find(|apart| apart.number == figure.number);
             let compared = compared.map_or(String::new(), |apart| {
-                format!("<p>By the plant's finite volumes: {}.</p>", escape(&apart.text()))
+                format!(
+                    "<p>By the plant's finite volumes: {}.</p>",
+                    escape(&apart.text())
+                )
             });
             let _ = write!(
                 body,

@@ -90,10 +90,13 @@ impl Stated {
 
     /// Digits after the point with which a computed number can be laid beside it.
     pub(super) fn decimals_beside(&self) -> usize {
-        let digits = |value: f64| usize::from(value.abs() < 10.0) + 2 * usize::from(value.abs() < 0.1);
+        let digits =
+            |value: f64| usize::from(value.abs() < 10.0) + 2 * usize::from(value.abs() < 0.1);
         match *self {
             Self::Printed { decimals, .. } => usize::try_from(decimals + 2).unwrap_or(0).min(6),
-            Self::About { value, .. } | Self::Below(value) | Self::Above(value) => 2 + digits(value),
+            Self::About { value, .. } | Self::Below(value) | Self::Above(value) => {
+                2 + digits(value)
+            }
             Self::Between { high, .. } => 2 + digits(high),
             Self::Garbled(_) => 2,
         }

@@ -64,7 +64,12 @@ impl Counts {
 #[must_use]
 pub fn table(chapters: &[Chapter], figures: &[Apart]) -> String {
     let rows = || chapters.iter().flat_map(|chapter| &chapter.rows);
-    let width = |text: fn(&Row) -> String| rows().map(|row| text(row).chars().count()).max().unwrap_or(0);
+    let width = |text: fn(&Row) -> String| {
+        rows()
+            .map(|row| text(row).chars().count())
+            .max()
+            .unwrap_or(0)
+    };
     let quantity = |row: &Row| row.quantity.clone();
     let stated = |row: &Row| row.stated.to_string();
     let (quantities, stateds) = (width(quantity), width(stated));

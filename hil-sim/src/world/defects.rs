@@ -30,7 +30,9 @@ impl Damage {
         match broken.kind {
             FaultKind::ThermistorOpen => thermistor.circuit = Circuit::Open,
             FaultKind::ThermistorShort => thermistor.circuit = Circuit::Short,
-            FaultKind::ThermistorDrift | FaultKind::ThermistorOffset => thermistor.offset_k += value,
+            FaultKind::ThermistorDrift | FaultKind::ThermistorOffset => {
+                thermistor.offset_k += value
+            }
             FaultKind::ThermistorDetached => thermistor.loose *= value,
             FaultKind::ThermistorStuck => self.frozen[index] = true,
             FaultKind::SensorsSwapped => sensors.plugged.swap(index, broken.with as usize),

@@ -108,7 +108,8 @@ fn other_commands_end_tuning() {
             bench.wait(5).expect("it runs");
             let answer = ask(bench, "tune result");
             assert!(
-                answer.starts_with("err tune was ended") || answer.starts_with("err nothing was tuned"),
+                answer.starts_with("err tune was ended")
+                    || answer.starts_with("err nothing was tuned"),
                 "{answer}"
             );
             assert!(ask(bench, "state").contains(state));
@@ -131,7 +132,10 @@ fn what_tuning_has_found_can_be_asked_for_again() {
         }
         assert!(first.starts_with("ok gain="), "{first}");
         let display_c = bench.world().plant().display_c();
-        assert!(display_c < 28.0, "held at the sink's temperature: {display_c}");
+        assert!(
+            display_c < 28.0,
+            "held at the sink's temperature: {display_c}"
+        );
         bench.wait(3000).expect("it runs");
         assert_eq!(ask(bench, "tune result"), first);
         assert_eq!(ask(bench, "margins"), first);
@@ -202,7 +206,9 @@ fn corrections_cannot_hide_a_hot_display() {
     for sensor in ["display", "check"] {
         let worst = format!("set correction {sensor} -1.2 -0.05 -0.002");
         bench.tell(&worst).expect("within limits");
-        assert!(ask(&mut bench, &format!("set correction {sensor} -1.3 0 0")).starts_with("err offset"));
+        assert!(
+            ask(&mut bench, &format!("set correction {sensor} -1.3 0 0")).starts_with("err offset")
+        );
     }
     bench.arm().expect("armed");
     bench.tell("hold 42").expect("held");

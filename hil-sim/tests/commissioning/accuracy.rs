@@ -48,7 +48,9 @@ fn sweep(plants: &Plants, seed: u64, settings: &[String]) -> [Vec<f64>; 4] {
         // The display rests at the temperature of the sink, in the room that it was calibrated in.
         bench.move_to(plants.sink_on_coolant(t_c).expect("a plant"));
         bench.wait(REST_MS).expect("it runs");
-        let (read, truth) = mean(&mut bench, DISPLAY, MEAN_MS, |world| world.plant().display_c());
+        let (read, truth) = mean(&mut bench, DISPLAY, MEAN_MS, |world| {
+            world.plant().display_c()
+        });
         all[0].push(read - truth);
         let (read, truth) = mean(&mut bench, SINK, MEAN_MS, |world| world.plant().sink_c());
         all[3].push(read - truth);
@@ -70,7 +72,13 @@ fn sweep(plants: &Plants, seed: u64, settings: &[String]) -> [Vec<f64>; 4] {
 /// either side, the device does not know how far it is across: up to half of the step is left there.
 #[test]
 fn calibrated_readings_are_within_millikelvins() {
-    let devices = [(None, 1), (None, 2), (Some(4), 4), (Some(6), 6), (Some(8), 8)];
+    let devices = [
+        (None, 1),
+        (None, 2),
+        (Some(4), 4),
+        (Some(6), 6),
+        (Some(8), 8),
+    ];
     for (draw, seed) in devices {
         let plants = device(draw, seed);
         assert_eq!(plants.params().host, PERFECT);
@@ -89,10 +97,17 @@ fn calibrated_readings_are_within_millikelvins() {
             } else {
                 (3.0, 20.0)
             };
-            assert!(after.rms < rms && after.worst < worst, "{sensor}: {after:?}");
+            assert!(
+                after.rms < rms && after.worst < worst,
+                "{sensor}: {after:?}"
+            );
             let beyond = all.iter().filter(|error| error.abs() > 6e-3).count();
             if *sensor != "sink" {
-                assert!(beyond * 30 < all.len(), "{sensor}: {beyond} of {}", all.len());
+                assert!(
+                    beyond * 30 < all.len(),
+                    "{sensor}: {beyond} of {}",
+                    all.len()
+                );
             }
             // The box has sensors that happen to be good, but no device whose sensors are.
             assert!(

@@ -40,7 +40,12 @@ fn bench<'a>(engine: &'a mut Native, settings: &[String]) -> Bench<'a, Native> {
 }
 
 /// Mean of a field of telemetry over so many milliseconds, and of a truth.
-fn mean(bench: &mut Bench<'_, Native>, field: usize, ms: u64, truth: impl Fn(&World) -> f64) -> (f64, f64) {
+fn mean(
+    bench: &mut Bench<'_, Native>,
+    field: usize,
+    ms: u64,
+    truth: impl Fn(&World) -> f64,
+) -> (f64, f64) {
     bench.tell("stream 1").expect("telemetry");
     let (mut read, mut true_c) = (Vec::new(), 0.0);
     for _ in 0..ms {
@@ -53,5 +58,8 @@ fn mean(bench: &mut Bench<'_, Native>, field: usize, ms: u64, truth: impl Fn(&Wo
     }
     bench.tell("stream 0").expect("no telemetry");
     assert!(read.len() as u64 > ms / 2, "telemetry of every tick");
-    (read.iter().sum::<f64>() / read.len() as f64, true_c / ms as f64)
+    (
+        read.iter().sum::<f64>() / read.len() as f64,
+        true_c / ms as f64,
+    )
 }

@@ -59,7 +59,9 @@ fn the_loop_oscillates_beyond_its_gain_margin_and_not_within() {
         let Tile { gain_margin, .. } = Tile::parse(line, &answer).expect("margins");
         let within = moves(&plants, &settings, WITHIN * gain_margin);
         let beyond = moves(&plants, &settings, BEYOND * gain_margin);
-        println!("draw {draw}: margin {gain_margin:.2}; moves {within:.4} within, {beyond:.4} K beyond");
+        println!(
+            "draw {draw}: margin {gain_margin:.2}; moves {within:.4} within, {beyond:.4} K beyond"
+        );
         assert!(within < STILL_K, "draw {draw}: {within}");
         assert!(beyond > OSCILLATES_K, "draw {draw}: {beyond}");
     }

@@ -36,8 +36,9 @@ fn a_device_reads_and_controls_as_before_by_its_lines() {
 fn lines_that_the_device_does_not_take_or_keep_are_named() {
     let plants = device(None, 1);
     let mut engine = Native::new(plants.at_work().expect("a plant"));
-    let mut with =
-        |line: &str| restore(&plants, &mut engine, &[line.to_owned()]).expect_err("no device has it");
+    let mut with = |line: &str| {
+        restore(&plants, &mut engine, &[line.to_owned()]).expect_err("no device has it")
+    };
     let refused = with("set correction display 9 0 0");
     assert_eq!(
         refused.to_string(),

@@ -36,7 +36,10 @@ fn tile_is_identified_over_the_box() {
     }
     // They do differ: knowing the class alone would not do.
     let gains = || all.iter().map(|surveyed| surveyed.tile.gain_k_s_a);
-    let (low, high) = (gains().fold(f64::MAX, f64::min), gains().fold(0.0, f64::max));
+    let (low, high) = (
+        gains().fold(f64::MAX, f64::min),
+        gains().fold(0.0, f64::max),
+    );
     assert!(high > 1.3 * low, "{low} to {high}");
 }
 
@@ -47,7 +50,9 @@ fn the_mirrors_zero_is_not_taken_for_the_tiles_answer() {
         let mut params = Params::nominal();
         params.sensors.mirror.offset_a = zero_a;
         let settings = of_device(&params, ROOM_C, 1).expect("a commissioned device");
-        let tile = settings.iter().find_map(|line| line.strip_prefix("set tile "));
+        let tile = settings
+            .iter()
+            .find_map(|line| line.strip_prefix("set tile "));
         let gain = tile.and_then(|values| values.split(' ').next());
         gain.and_then(|gain| gain.parse().ok()).expect("a gain")
     };
@@ -70,7 +75,8 @@ fn plate_answers_sines_as_its_heat_capacity_says() {
     let leak_1_s = (tile.conductance_w_k() + tile.film_w_m2k * tile.plate_m2()) / plate_j_k;
     for w in [0.7, 1.5, 3.0] {
         let response = Response::of(&plants, w).expect("a plant");
-        let expected = tile.seebeck_v_k() * (24.0 + 273.15) / plate_j_k / response.w.hypot(leak_1_s);
+        let expected =
+            tile.seebeck_v_k() * (24.0 + 273.15) / plate_j_k / response.w.hypot(leak_1_s);
         println!("{response:?}, expected {expected:.4}");
         assert!(
             (response.k_a / expected - 1.0).abs() < 0.04,

@@ -98,15 +98,36 @@ fn it_sees_the_second_thermistors_pin_alone() {
         ..of(FaultKind::SensorsSwapped, Sensor::Room, 0.0)
     };
     for (all, cut) in [
-        (vec![of(FaultKind::ThermistorOpen, Sensor::Check, 0.0)], true),
-        (vec![of(FaultKind::ThermistorShort, Sensor::Check, 0.0)], true),
-        (vec![of(FaultKind::ThermistorOffset, Sensor::Check, 20.9)], false),
-        (vec![of(FaultKind::ThermistorOffset, Sensor::Check, 21.1)], true),
-        (vec![of(FaultKind::ThermistorDrift, Sensor::Check, -14.1)], true),
+        (
+            vec![of(FaultKind::ThermistorOpen, Sensor::Check, 0.0)],
+            true,
+        ),
+        (
+            vec![of(FaultKind::ThermistorShort, Sensor::Check, 0.0)],
+            true,
+        ),
+        (
+            vec![of(FaultKind::ThermistorOffset, Sensor::Check, 20.9)],
+            false,
+        ),
+        (
+            vec![of(FaultKind::ThermistorOffset, Sensor::Check, 21.1)],
+            true,
+        ),
+        (
+            vec![of(FaultKind::ThermistorDrift, Sensor::Check, -14.1)],
+            true,
+        ),
         (vec![FaultKind::ReferenceOff.into()], true),
         (vec![FaultKind::AdcStuck.into()], false),
-        (vec![of(FaultKind::ThermistorOpen, Sensor::Display, 0.0)], false),
-        (vec![of(FaultKind::ThermistorShort, Sensor::Room, 0.0)], false),
+        (
+            vec![of(FaultKind::ThermistorOpen, Sensor::Display, 0.0)],
+            false,
+        ),
+        (
+            vec![of(FaultKind::ThermistorShort, Sensor::Room, 0.0)],
+            false,
+        ),
         (vec![swapped], false),
         (
             vec![swapped, of(FaultKind::ThermistorShort, Sensor::Room, 0.0)],

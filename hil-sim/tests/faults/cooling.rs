@@ -40,7 +40,12 @@ fn sink_cools_as_capacity_and_fan_have_it() {
 #[test]
 fn sink_goes_where_its_coolant_is() {
     let mut world = ideal();
-    run(&mut world, 300_000, OFF, &[broken(FaultKind::ChillerOff, 40.0)]);
+    run(
+        &mut world,
+        300_000,
+        OFF,
+        &[broken(FaultKind::ChillerOff, 40.0)],
+    );
     // The plate gives some 0.15 W to the room.
     let sink_c = world.plant().sink_c();
     assert!((sink_c - 40.0).abs() < 0.05, "{sink_c}");

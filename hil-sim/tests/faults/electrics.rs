@@ -30,7 +30,10 @@ fn current_is_in_proportion_to_the_supply() {
         (FaultKind::SupplyHigh, 24.0),
     ] {
         let share = current_a(full, &[broken(kind, supply_v)]) / nominal_a;
-        assert!((share - supply_v / 12.0).abs() < 1e-6, "{supply_v} V: {share}");
+        assert!(
+            (share - supply_v / 12.0).abs() < 1e-6,
+            "{supply_v} V: {share}"
+        );
     }
 }
 
@@ -116,7 +119,12 @@ fn stuck_enable_drives_for_as_long_as_pwm_does() {
 #[test]
 fn short_of_output_a_trips_the_driver_and_a_dead_pin_hides_it() {
     let mut world = ideal();
-    run(&mut world, 1, legs(COOLING), &[FaultKind::BridgeShorted.into()]);
+    run(
+        &mut world,
+        1,
+        legs(COOLING),
+        &[FaultKind::BridgeShorted.into()],
+    );
     assert!(world.bridge_fault());
     let hidden = [FaultKind::BridgeShorted, FaultKind::FaultPinDead].map(Broken::from);
     run(&mut world, 1, legs(COOLING), &hidden);
@@ -132,7 +140,12 @@ fn short_of_output_a_trips_the_driver_and_a_dead_pin_hides_it() {
 fn mirror_shows_what_it_is_stuck_at() {
     let mut world = ideal();
     for (legs, amperes) in [(OFF, 3.0), (driven(1.0, 0.0), 0.0)] {
-        run(&mut world, 1, legs, &[broken(FaultKind::MirrorStuck, amperes)]);
+        run(
+            &mut world,
+            1,
+            legs,
+            &[broken(FaultKind::MirrorStuck, amperes)],
+        );
         // 400 counts/A.
         let code = f64::from(codes(&mut world)[Channel::Current as usize]);
         assert_eq!(code, 400.0 * amperes);

@@ -67,7 +67,10 @@ fn flood_is_what_the_line_carries_and_ends() {
     let sent = sent(&fault("host-flood", "t_s = 2\nuntil_s = 4"));
     let many = times(&sent, |bytes| bytes.len() > 10);
     let in_scene: Vec<_> = many.into_iter().filter(|ms| *ms >= 0).collect();
-    assert_eq!((in_scene.first(), in_scene.last()), (Some(&2000), Some(&3999)));
+    assert_eq!(
+        (in_scene.first(), in_scene.last()),
+        (Some(&2000), Some(&3999))
+    );
     assert_eq!(in_scene.len(), 2000);
     let second = &sent[ZERO_MS as usize + 2000..ZERO_MS as usize + 4000];
     let most = second.iter().map(Vec::len).max();

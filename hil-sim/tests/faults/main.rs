@@ -45,7 +45,10 @@ fn driven(a: f64, b: f64) -> Legs {
 }
 
 fn broken(kind: FaultKind, value: f64) -> Broken {
-    Broken { value, ..kind.into() }
+    Broken {
+        value,
+        ..kind.into()
+    }
 }
 
 fn of(kind: FaultKind, sensor: Sensor, value: f64) -> Broken {

@@ -111,7 +111,12 @@ fn stuck_converter_repeats_every_channel() {
     run(&mut world, 5, OFF, &[]);
     let stuck = codes(&mut world);
     for _ in 0..20 {
-        run(&mut world, 1, driven(1.0, 0.5), &[FaultKind::AdcStuck.into()]);
+        run(
+            &mut world,
+            1,
+            driven(1.0, 0.5),
+            &[FaultKind::AdcStuck.into()],
+        );
         assert_eq!(codes(&mut world), stuck);
     }
 }
@@ -149,7 +154,10 @@ fn swapped_thermistors_read_each_other() {
 
 #[test]
 fn dividers_without_reference_all_read_short() {
-    assert_eq!(after(&[FaultKind::ReferenceOff.into()]), [0, 0, 0, 0, 0, 410, 0]);
+    assert_eq!(
+        after(&[FaultKind::ReferenceOff.into()]),
+        [0, 0, 0, 0, 0, 410, 0]
+    );
 }
 
 #[test]
@@ -165,9 +173,16 @@ fn force_sensor_breaks_off_sticks_and_shifts() {
     // 300 counts/N over 410.
     assert_eq!(pressed(&mut world, &[FaultKind::ForceStuck.into()]), 410);
     assert_eq!(pressed(&mut world, &[]), 1010);
-    assert_eq!(pressed(&mut world, &[broken(FaultKind::ForceOffset, -0.5)]), 860);
+    assert_eq!(
+        pressed(&mut world, &[broken(FaultKind::ForceOffset, -0.5)]),
+        860
+    );
     assert_eq!(pressed(&mut world, &[FaultKind::ForceOpen.into()]), 0);
-    assert_eq!(world.plant().force_n(), 2.0, "the finger presses all the same");
+    assert_eq!(
+        world.plant().force_n(),
+        2.0,
+        "the finger presses all the same"
+    );
 }
 
 /// The loose one lags twenty times as long, 2 s: 63 % of a step are left when the sound one has arrived.

@@ -89,7 +89,9 @@ pub fn firmware() -> &'static Firmware {
 /// Words at the image's static `name`.
 pub fn words<W: Wiring + 'static>(machine: &Machine<W>, name: &str, count: usize) -> Vec<u32> {
     let address = FIRMWARE.symbol(name).expect("the image has the symbol");
-    let bytes = machine.memory(address, 4 * count).expect("it lies in memory");
+    let bytes = machine
+        .memory(address, 4 * count)
+        .expect("it lies in memory");
     bytes
         .chunks_exact(4)
         .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))

@@ -27,7 +27,11 @@ fn table_has_every_kind_with_unit_and_range() {
 fn table_has_every_fault_of_the_processor_with_its_keys() {
     let readme = include_str!("../../../README.md");
     for kind in ProcessorKind::ALL {
-        let keys: Vec<_> = kind.keys.iter().map(|key| format!("`{}`", key.name())).collect();
+        let keys: Vec<_> = kind
+            .keys
+            .iter()
+            .map(|key| format!("`{}`", key.name()))
+            .collect();
         let keys = keys.join(", ");
         let keys = if keys.is_empty() { keys } else { keys + " " };
         let expected = format!("| `{}` | | {keys}| ", kind.name);

@@ -14,11 +14,19 @@ fn layered_finger_rests_in_equilibrium_until_it_touches() {
             (row.receptors_c, row.skin_c),
             (row.receptors_real_c, row.skin_real_c),
         ] {
-            assert!((skin_c - 33.0).abs() < 1e-9, "skin {skin_c} at {} s", row.t_s);
+            assert!(
+                (skin_c - 33.0).abs() < 1e-9,
+                "skin {skin_c} at {} s",
+                row.t_s
+            );
             for (receptor_c, depth_m) in receptors_c.iter().zip([0.16e-3, 0.45e-3]) {
                 let exact_c = 33.0 + 100.0 * depth_m / 0.21;
                 let off_c = receptor_c.expect("thick enough") - exact_c;
-                assert!(off_c.abs() < 1e-6, "{depth_m} m off by {off_c} at {} s", row.t_s);
+                assert!(
+                    off_c.abs() < 1e-6,
+                    "{depth_m} m off by {off_c} at {} s",
+                    row.t_s
+                );
             }
         }
     }
@@ -27,8 +35,17 @@ fn layered_finger_rests_in_equilibrium_until_it_touches() {
 #[test]
 fn force_ramps_and_blood_that_it_presses_out_cools_the_skin() {
     let pressed = rows(&example("layered-finger", &[]));
-    for (t_s, force_n) in [(1.0, 0.1), (2.5, 1.05), (3.0, 2.0), (11.0, 1.15), (13.0, 0.0)] {
-        assert!((at(&pressed, t_s).force_n - force_n).abs() < 1e-9, "at {t_s} s");
+    for (t_s, force_n) in [
+        (1.0, 0.1),
+        (2.5, 1.05),
+        (3.0, 2.0),
+        (11.0, 1.15),
+        (13.0, 0.0),
+    ] {
+        assert!(
+            (at(&pressed, t_s).force_n - force_n).abs() < 1e-9,
+            "at {t_s} s"
+        );
     }
     let flowing = rows(&example(
         "layered-finger",
@@ -54,7 +71,11 @@ fn slabs_with_every_back_follow_their_exact_solution() {
         ("copper", "", 25.756_038),
         ("copper", "thickness_m = 0.01", 26.249_827),
         ("granite", "thickness_m = 0.004", 28.408_463),
-        ("granite", "thickness_m = 0.004\nback = \"held\"", 27.768_548),
+        (
+            "granite",
+            "thickness_m = 0.004\nback = \"held\"",
+            27.768_548,
+        ),
         (
             "granite",
             "thickness_m = 0.004\nback = \"film\"\nback_film_w_m2k = 200",
@@ -81,7 +102,10 @@ fn warm_slab_warms_the_finger_more_with_each_touch() {
             contact == 0 || landed.skin_real_c > before_c + 0.1,
             "contact {contact}"
         );
-        assert!(lifted.skin_real_c > landed.skin_real_c + 1.0, "contact {contact}");
+        assert!(
+            lifted.skin_real_c > landed.skin_real_c + 1.0,
+            "contact {contact}"
+        );
         assert!(lifted.skin_real_c < 41.0);
         // The insulated skin keeps a part of it; the slab comes back to its hotplate's temperature.
         let again = at(&rows, landed_s + 1.999);

@@ -58,7 +58,8 @@ fn own_values_override_a_draw_wherever_they_stand() {
     assert_eq!(before, after);
     assert_eq!(before.tile.imax_a, 5.0);
     assert_ne!(before.tile.vmax_v, Params::nominal().tile.vmax_v);
-    let finger = params("[finger]\ntissue = \"layered\"\nair_w_m2k = 7\n[plant]\ndraw = 3\n").finger;
+    let finger =
+        params("[finger]\ntissue = \"layered\"\nair_w_m2k = 7\n[plant]\ndraw = 3\n").finger;
     assert_eq!(finger.air_w_m2k, 7.0);
     assert_ne!(finger.layers, FingerParams::layered().layers);
 }
@@ -83,11 +84,15 @@ fn layers_of_a_scene_are_those_of_the_nominal_fingers() {
 /// By their kinds: the sampler's stream unless another is named, and noise of the scene's seed.
 #[test]
 fn faults_of_the_processor_are_injected_at_their_times() {
-    let fault = |kind: &str, keys: &str| format!("[[fault]]\nkind = \"{kind}\"\nt_s = 0.5\n{keys}\n");
+    let fault =
+        |kind: &str, keys: &str| format!("[[fault]]\nkind = \"{kind}\"\nt_s = 0.5\n{keys}\n");
     for (tables, expected) in [
         (fault("hung-core", ""), MachineFault::HungCore),
         (fault("software-reset", ""), MachineFault::SoftwareReset),
-        (fault("power-cycle", ""), MachineFault::PowerCycle { seed: 7 }),
+        (
+            fault("power-cycle", ""),
+            MachineFault::PowerCycle { seed: 7 },
+        ),
         (
             fault("dma-stopped", ""),
             MachineFault::DmaStopped {

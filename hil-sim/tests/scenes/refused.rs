@@ -65,7 +65,11 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
             7,
             "expected a number or a table of them",
         ),
-        ("[plant]\ntile.imax_a = nan", 7, "tile.imax_a = NaN A; allowed is"),
+        (
+            "[plant]\ntile.imax_a = nan",
+            7,
+            "tile.imax_a = NaN A; allowed is",
+        ),
         (
             "[plant]\nfinger.layer.1.thickness_m = 1e-3",
             7,
@@ -289,8 +293,8 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
 
 #[test]
 fn an_unknown_law_is_refused_with_line_and_the_known_ones() {
-    let error =
-        Scene::parse(&format!("law = \"pid\"\n{HEAD}"), Path::new("bad.toml")).expect_err("no such law");
+    let error = Scene::parse(&format!("law = \"pid\"\n{HEAD}"), Path::new("bad.toml"))
+        .expect_err("no such law");
     let message = error.to_string();
     assert!(
         message.starts_with("bad.toml:1: law = \"pid\"; known are pi-10hz, pi"),
@@ -312,13 +316,21 @@ fn what_nests_too_deeply_is_refused_with_its_line() {
     let key = |words: &str| format!("{words} begins a key of more than 8 words; allowed is 1 to 8");
     let brackets = "9 brackets in each other; allowed is 0 to 8".to_owned();
     for (rest, line, expected) in [
-        (format!("[plant]\n{} = 1", words(9)), 7, key("a.a.a.a.a.a.a.a.")),
+        (
+            format!("[plant]\n{} = 1", words(9)),
+            7,
+            key("a.a.a.a.a.a.a.a."),
+        ),
         (
             format!("[plant]\n'b' . {} = 1", words(82)),
             7,
             key("'b' . a.a.a.a.a.a.a."),
         ),
-        (format!("[{}]\nx = 1", words(100)), 6, key("a.a.a.a.a.a.a.a.")),
+        (
+            format!("[{}]\nx = 1", words(100)),
+            6,
+            key("a.a.a.a.a.a.a.a."),
+        ),
         (
             format!("[plant]\nx = [1,\n{}", nested(80, &words(79))),
             8,

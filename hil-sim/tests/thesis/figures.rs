@@ -54,8 +54,8 @@ fn curves_of_the_simulation_meet_golden_values() {
     let figures = closed_form();
     let mut checked = 0;
     for golden in contacts() {
-        let five =
-            ["copper", "stainless-steel", "granite", "abs", "foam"].contains(&golden.material.as_str());
+        let five = ["copper", "stainless-steel", "granite", "abs", "foam"]
+            .contains(&golden.material.as_str());
         if golden.condition != "sim_2N_135mm2"
             || !five
             || golden.object_before_c != 24.0
@@ -116,9 +116,17 @@ fn curves_and_rows_of_the_validation_meet_golden_values() {
                     "{material}, {label}: {value} for {exact}"
                 );
             };
-            close(point(&figures, &format!("6-20 {part}"), label, 10.0), end.skin_c);
             close(
-                point(&figures, &format!("6-19 {part}"), "at the five pressures", kpa),
+                point(&figures, &format!("6-20 {part}"), label, 10.0),
+                end.skin_c,
+            );
+            close(
+                point(
+                    &figures,
+                    &format!("6-19 {part}"),
+                    "at the five pressures",
+                    kpa,
+                ),
                 fall_k,
             );
             let share = (34.0 - golden(2.0).skin_c) / fall_k * 100.0;
@@ -163,7 +171,8 @@ fn every_curve_over_time_comes_from_the_source() {
     for (figure, other) in closed_form().iter().zip(&raised) {
         for (curve, other) in figure.curves.iter().zip(&other.curves) {
             // Perfect contact has no source, and a fall is a difference.
-            let perfect = figure.number.starts_with("3-2") || curve.label.ends_with("perfect contact");
+            let perfect =
+                figure.number.starts_with("3-2") || curve.label.ends_with("perfect contact");
             let expected = if perfect || figure.number.starts_with("6-19") {
                 0.0
             } else {
@@ -183,8 +192,8 @@ fn every_curve_over_time_comes_from_the_source() {
     assert_eq!(
         numbers,
         [
-            "3-2 A", "3-2 B", "6-6", "6-7", "6-8", "6-9", "6-10", "6-11", "6-12", "6-13 A", "6-13 B",
-            "6-19 A", "6-19 B", "6-20 A", "6-20 B"
+            "3-2 A", "3-2 B", "6-6", "6-7", "6-8", "6-9", "6-10", "6-11", "6-12", "6-13 A",
+            "6-13 B", "6-19 A", "6-19 B", "6-20 A", "6-20 B"
         ]
     );
 }
@@ -197,7 +206,10 @@ fn a_source_that_fails_fails_the_figures() {
             anyhow::bail!("no plant")
         }
     }
-    assert_eq!(figures(&Broken).expect_err("no figures").to_string(), "no plant");
+    assert_eq!(
+        figures(&Broken).expect_err("no figures").to_string(),
+        "no plant"
+    );
 }
 
 #[test]

@@ -32,7 +32,10 @@ fn what_does_not_agree_is_exactly_what_is_known() {
         .collect();
     let new: Vec<_> = found.difference(&known).collect();
     let gone: Vec<_> = known.difference(&found).collect();
-    assert!(new.is_empty() && gone.is_empty(), "new: {new:?}\ngone: {gone:?}");
+    assert!(
+        new.is_empty() && gone.is_empty(),
+        "new: {new:?}\ngone: {gone:?}"
+    );
 }
 
 #[test]

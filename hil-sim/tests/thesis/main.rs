@@ -16,7 +16,10 @@ fn table<T: DeserializeOwned>(text: &str) -> Vec<T> {
 }
 
 fn all_rows() -> Vec<Row> {
-    chapters().into_iter().flat_map(|chapter| chapter.rows).collect()
+    chapters()
+        .into_iter()
+        .flat_map(|chapter| chapter.rows)
+        .collect()
 }
 
 fn computed(place: &str, quantity: &str) -> f64 {
@@ -50,5 +53,7 @@ fn name(golden: &str) -> &'static str {
 }
 
 fn count_of(rows: &[Row], word: &str) -> usize {
-    rows.iter().filter(|row| row.verdict().word() == word).count()
+    rows.iter()
+        .filter(|row| row.verdict().word() == word)
+        .count()
 }

@@ -33,7 +33,9 @@ fn the_table_ends_with_the_counts_of_its_lines() {
     let lines = text.lines().filter(|line| line.starts_with("  ")).count();
     assert_eq!(lines, rows.len());
     assert_eq!(
-        text.lines().filter(|line| line.starts_with("Chapter ")).count(),
+        text.lines()
+            .filter(|line| line.starts_with("Chapter "))
+            .count(),
         5
     );
     let count = |word: &str| count_of(&rows, word);
@@ -48,16 +50,15 @@ fn the_table_ends_with_the_counts_of_its_lines() {
         count("differs"),
     );
     assert_eq!(last, expected);
-    assert!(
-        text.contains(
-            "damaged in the text: labels shifted by one row: holds the conductivity; that is 398.00"
-        )
-    );
+    assert!(text.contains(
+        "damaged in the text: labels shifted by one row: holds the conductivity; that is 398.00"
+    ));
 }
 
 #[test]
 fn json_is_one_object_with_all_rows() {
-    let object: serde_json::Value = serde_json::from_str(&good(&["thesis", "--json"])).expect("JSON");
+    let object: serde_json::Value =
+        serde_json::from_str(&good(&["thesis", "--json"])).expect("JSON");
     let rows = object["rows"].as_array().expect("rows");
     assert_eq!(rows.len(), all_rows().len());
     for word in ["agrees", "cut", "differs", "damaged", "wrong"] {
@@ -73,14 +74,20 @@ fn json_is_one_object_with_all_rows() {
     assert_eq!(g10["stated"], "29.0");
     assert_eq!(g10["verdict"], "wrong");
     let difference = g10["difference"].as_f64().expect("a number");
-    assert!((difference - 0.053_124_040_144_6).abs() < 1e-9, "{difference}");
+    assert!(
+        (difference - 0.053_124_040_144_6).abs() < 1e-9,
+        "{difference}"
+    );
 }
 
 #[test]
 fn out_writes_a_page_that_needs_no_other_file_and_all_rows_as_csv() {
     let folder = folder("thesis-out");
     let text = good(&["thesis", "--out", folder.to_str().expect("a path")]);
-    assert!(text.ends_with(&format!("report: {}\n", folder.join("thesis.html").display())));
+    assert!(text.ends_with(&format!(
+        "report: {}\n",
+        folder.join("thesis.html").display()
+    )));
     let rows = all_rows();
     let page = std::fs::read_to_string(folder.join("thesis.html")).expect("the page");
     assert_eq!(page.matches("<figure>").count(), 15);

@@ -24,7 +24,10 @@ fn sensitivities_meet_golden_values() {
     } in golden
     {
         let error = d_prime(n_afc, p_correct) - exact;
-        assert!(error.abs() < 1e-12, "{n_afc}AFC, {p_correct}: off by {error:e}");
+        assert!(
+            error.abs() < 1e-12,
+            "{n_afc}AFC, {p_correct}: off by {error:e}"
+        );
     }
 }
 
@@ -80,9 +83,9 @@ fn display_ratios_meet_golden_values() {
     }
     let golden = table::<Golden>(include_str!("../../../model/tests/data/resistance.csv"));
     let five = ["copper", "stainless-steel", "granite", "abs", "foam"];
-    let simulation = golden
-        .iter()
-        .filter(|golden| golden.condition == "sim_2N_135mm2" && five.contains(&golden.material.as_str()));
+    let simulation = golden.iter().filter(|golden| {
+        golden.condition == "sim_2N_135mm2" && five.contains(&golden.material.as_str())
+    });
     let mut checked = 0;
     for golden in simulation {
         let quantity = format!(
@@ -107,7 +110,9 @@ fn slope_factors_meet_golden_sines() {
     }
     let sine = computed("Eq. 6-13", "RMS over mean slope, sine profile");
     let model = computed("Eq. 6-13", "factor of the model");
-    for golden in table::<Golden>(include_str!("../../../model/tests/data/roughness_sinusoid.csv")) {
+    for golden in table::<Golden>(include_str!(
+        "../../../model/tests/data/roughness_sinusoid.csv"
+    )) {
         assert!((golden.rms_slope / golden.mean_abs_slope - sine).abs() < 1e-12);
         let estimate = average_slope_rad(golden.rms_slope);
         assert!((estimate / golden.mean_abs_slope - sine / model).abs() < 1e-12);
@@ -119,13 +124,16 @@ fn slope_factors_meet_golden_sines() {
 fn fourier_numbers_bound_the_characteristic_lengths() {
     let agree = |place: &str, t_s: f64, length_m: f64| {
         let rows = all_rows().into_iter().filter(|row| row.place == place);
-        let mut fourier = rows.filter(|row| row.quantity.contains("Fourier")).peekable();
+        let mut fourier = rows
+            .filter(|row| row.quantity.contains("Fourier"))
+            .peekable();
         assert!(fourier.peek().is_some(), "no Fourier numbers in {place}");
         fourier.all(|row| {
             let known = NAMES
                 .iter()
                 .find(|(_, name)| row.quantity.starts_with(&format!("{name},")));
-            let material = find(known.expect("a known material").0).expect("a material of the model");
+            let material =
+                find(known.expect("a known material").0).expect("a material of the model");
             row.stated.agrees(fourier_number(material, length_m, t_s))
         })
     };

@@ -48,9 +48,19 @@ fn other_statements_hold_within_their_limits() {
         value: 27.0,
         within: 0.5,
     };
-    assert!(about.agrees(26.5) && about.agrees(27.5) && !about.agrees(26.49) && !about.agrees(27.51));
-    let between = Stated::Between { low: 2.0, high: 6.0 };
-    assert!(between.agrees(2.0) && between.agrees(6.0) && !between.agrees(1.99) && !between.agrees(6.01));
+    assert!(
+        about.agrees(26.5) && about.agrees(27.5) && !about.agrees(26.49) && !about.agrees(27.51)
+    );
+    let between = Stated::Between {
+        low: 2.0,
+        high: 6.0,
+    };
+    assert!(
+        between.agrees(2.0)
+            && between.agrees(6.0)
+            && !between.agrees(1.99)
+            && !between.agrees(6.01)
+    );
     assert!(Stated::Below(0.05).agrees(0.0499) && !Stated::Below(0.05).agrees(0.05));
     assert!(Stated::Above(3.0).agrees(3.01) && !Stated::Above(3.0).agrees(3.0));
     assert!(!Stated::Garbled("47 53").agrees(53.0));
@@ -81,14 +91,22 @@ fn a_remark_counts_only_if_it_explains_the_difference() {
             damaged(Correction::Reads(printed(30.0, 0))),
             Verdict::Damaged,
         ),
-        (30.0, wrong(Correction::Reads(printed(30.0, 0))), Verdict::Wrong),
+        (
+            30.0,
+            wrong(Correction::Reads(printed(30.0, 0))),
+            Verdict::Wrong,
+        ),
         (
             30.0,
             wrong(Correction::Reads(printed(31.0, 0))),
             Verdict::Differs(Some(1.0)),
         ),
         (30.0, damaged(Correction::Is(29.2)), Verdict::Damaged),
-        (30.0, damaged(Correction::Is(29.6)), Verdict::Differs(Some(1.0))),
+        (
+            30.0,
+            damaged(Correction::Is(29.6)),
+            Verdict::Differs(Some(1.0)),
+        ),
     ] {
         let row = row(printed(29.0, 0), computed, remark);
         assert_eq!(row.verdict(), verdict, "{row:?}");

@@ -62,7 +62,8 @@ impl Response {
     #[must_use]
     pub fn object(&self) -> Celsius {
         let object_part = self.done().saturating_sub(self.skin_part());
-        self.object_before.saturating_add(part(self.step(), object_part))
+        self.object_before
+            .saturating_add(part(self.step(), object_part))
     }
 
     /// Display surface that puts the skin where the object would (Eq. 6-12); error below
@@ -72,7 +73,8 @@ impl Response {
         // `w (1 - E) + r E` lies between w and r, so that 60 fraction bits fit below 16.
         let (weight, done) = (self.contact.weight.to_bits(), self.done().to_bits());
         let (ratio, left) = (self.contact.ratio.to_bits(), self.erfcx.to_bits());
-        let gain = ((u64::from(weight) * u64::from(done)) >> 4) + u64::from(ratio) * u64::from(left);
+        let gain =
+            ((u64::from(weight) * u64::from(done)) >> 4) + u64::from(ratio) * u64::from(left);
         let gain = (gain + (1 << 32)) >> 33;
         let change = i64::from(self.step().to_bits()) * i64::from(gain as i32);
         less::<27>(self.skin_before, change)
@@ -132,7 +134,10 @@ pub(super) fn part(difference: Celsius, fraction: Fraction) -> Celsius {
 /// Eq. 6-12 at landing.
 pub(super) fn preset(ratio: Ratio, skin_c: Celsius, object_c: Celsius) -> Celsius {
     let step = skin_c.saturating_sub(object_c);
-    less::<{ Ratio::FRAC_NBITS }>(skin_c, i64::from(step.to_bits()) * i64::from(ratio.to_bits()))
+    less::<{ Ratio::FRAC_NBITS }>(
+        skin_c,
+        i64::from(step.to_bits()) * i64::from(ratio.to_bits()),
+    )
 }
 
 /// Eq. 3-1: where both surfaces go for a part `weight` of the way from skin to object.
@@ -148,7 +153,8 @@ pub(super) fn flux(difference: i64, conductance_w_m2k: Rate) -> Flux {
     let leading = (magnitude.checked_shl(zeros).unwrap_or(0) >> 32) as u32;
     let product = u64::from(leading) * u64::from(conductance_w_m2k.leading());
     // Fraction bits of the difference, without those cut off, and of the mantissa, to those of the flux.
-    let shift = 54 - (32 - zeros as i32) + 31 - Flux::FRAC_NBITS as i32 - conductance_w_m2k.exponent();
+    let shift =
+        54 - (32 - zeros as i32) + 31 - Flux::FRAC_NBITS as i32 - conductance_w_m2k.exponent();
     let bits = match shift {
         64.. => 0,
         1..64 => (product >> shift) as i64,

@@ -217,7 +217,9 @@ const fn octaves(elapsed: u64, lengths: u64) -> u32 {
         return 0;
     }
     // Both are above 0.
-    let least = lengths.leading_zeros().saturating_sub(elapsed.leading_zeros());
+    let least = lengths
+        .leading_zeros()
+        .saturating_sub(elapsed.leading_zeros());
     least - (lengths << (least & 63) > elapsed) as u32
 }
 
@@ -309,7 +311,11 @@ mod tests {
             if tolerance > 0 {
                 let part = (tolerance << 32) / gain;
                 let exact = i32::try_from((part * part).ilog2()).expect("below 64") - 60;
-                assert_eq!(first_octave(tolerance, gain), exact, "{tolerance} of {gain}");
+                assert_eq!(
+                    first_octave(tolerance, gain),
+                    exact,
+                    "{tolerance} of {gain}"
+                );
                 // The whole root below, or the next.
                 let needed = (gain * BEND).div_ceil(20_000 * tolerance);
                 let root = (needed / 8).isqrt().max(1);

@@ -208,7 +208,8 @@ impl HalfOrder {
 
     /// What is left of the slow parts.
     const fn slow_left(&self) -> Celsius {
-        self.slow_sum.saturating_add(Celsius::from_bits(high(self.since)))
+        self.slow_sum
+            .saturating_add(Celsius::from_bits(high(self.since)))
     }
 
     /// Steps the slow parts by those ticks of the window that have been. The next one has `ticks`.

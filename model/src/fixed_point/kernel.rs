@@ -53,7 +53,8 @@ pub fn erfcx(elapsed: Ticks, per_tick: Rate) -> Fraction {
     let octave = (per_tick.exponent() + places as i32).clamp(OCTAVES.start, OCTAVES.end - 1);
     let descriptor = TABLE.octaves[(octave - OCTAVES.start) as usize];
     let split = u64::from(bits) * u64::from(descriptor >> COUNT_SHIFT);
-    let row = &TABLE.rows[usize::from(((split >> 32) as u32).wrapping_add(u32::from(descriptor)) as u8)];
+    let row =
+        &TABLE.rows[usize::from(((split >> 32) as u32).wrapping_add(u32::from(descriptor)) as u8)];
     // Centred on the row: the low word counts from its start.
     let t = (split as u32 ^ 1 << 31) as i32;
 

@@ -1,6 +1,8 @@
 //! A finger, a material and a display surface, reduced to the numbers that a tick needs.
 
-use super::properties::{PairingError, check, moderate, of_display, of_object, of_skin, rate, weight};
+use super::properties::{
+    PairingError, check, moderate, of_display, of_object, of_skin, rate, weight,
+};
 use super::{Celsius, Contact, Fraction, Log2, Rate, Ratio, contact, logarithm};
 use crate::material::{Material, Surface};
 use crate::reference;
@@ -34,7 +36,10 @@ impl Pairing {
         check(of_display(display))?;
         check([("tick (s)", tick_s)])?;
         let (es, eo) = (skin.effusivity(), object.effusivity());
-        let conductance = moderate(reference::mean_conductance::<f64>(&skin.surface, &object.surface))?;
+        let conductance = moderate(reference::mean_conductance::<f64>(
+            &skin.surface,
+            &object.surface,
+        ))?;
         let ratio = conductance / reference::mean_conductance::<f64>(&skin.surface, display);
         let b = (1.0 / es + 1.0 / eo) * conductance;
         Ok(Self {

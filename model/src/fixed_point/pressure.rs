@@ -76,7 +76,9 @@ pub type Area = fixed::types::U16F16;
 #[must_use]
 pub fn contact_area(force: Force) -> Area {
     const MM2: u64 = 1_000_000;
-    Area::from_bits(((u64::from(area(force)) * MM2) >> (AREA_BITS - Area::FRAC_NBITS as i32)) as u32)
+    Area::from_bits(
+        ((u64::from(area(force)) * MM2) >> (AREA_BITS - Area::FRAC_NBITS as i32)) as u32,
+    )
 }
 
 /// Contact area in units of 2^-44 m².

@@ -73,7 +73,10 @@ impl Rate {
     /// The number, exactly, where `f64` can hold it.
     #[must_use]
     pub fn to_f64(self) -> f64 {
-        libm::ldexp(f64::from(self.fraction) + 4_294_967_296.0, self.exponent - 32)
+        libm::ldexp(
+            f64::from(self.fraction) + 4_294_967_296.0,
+            self.exponent - 32,
+        )
     }
 
     /// The 32 bits after the leading one.

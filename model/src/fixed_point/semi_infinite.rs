@@ -49,7 +49,13 @@ impl SemiInfinite {
     /// Skin temperature at a depth (Eq. 3-2); error below 0.2 µK + 4e-9 of the difference of the temperatures,
     /// for every depth and time and ticks from 10 µs to 100 ms.
     #[must_use]
-    pub fn skin_at_depth(&self, depth: Depth, elapsed: Ticks, skin_c: Celsius, object_c: Celsius) -> Celsius {
+    pub fn skin_at_depth(
+        &self,
+        depth: Depth,
+        elapsed: Ticks,
+        skin_c: Celsius,
+        object_c: Celsius,
+    ) -> Celsius {
         if depth == Depth::ZERO {
             return self.interface_temperature(skin_c, object_c);
         }

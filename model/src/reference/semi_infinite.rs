@@ -6,8 +6,16 @@ use crate::material::Material;
 /// Temperature in °C that both surfaces take at perfect contact, for ever (Eq. 3-1); error at most 1e-7 µK
 /// in `f64`.
 #[must_use]
-pub fn interface_temperature<F: Real>(skin: &Material, skin_c: F, object: &Material, object_c: F) -> F {
-    let (es, eo) = (F::from_f64(skin.effusivity()), F::from_f64(object.effusivity()));
+pub fn interface_temperature<F: Real>(
+    skin: &Material,
+    skin_c: F,
+    object: &Material,
+    object_c: F,
+) -> F {
+    let (es, eo) = (
+        F::from_f64(skin.effusivity()),
+        F::from_f64(object.effusivity()),
+    );
     (object_c * eo + skin_c * es) / (eo + es)
 }
 

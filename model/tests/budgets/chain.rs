@@ -5,7 +5,9 @@ use std::collections::HashMap;
 use contact_model::fixed_point::{
     Celsius, Flux, Force, Log2, Pairing, Ratio, Response, Ticks, log2_relative_pressure,
 };
-use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, find};
+use contact_model::material::{
+    MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, find,
+};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference;
 
@@ -52,7 +54,8 @@ fn golden_material(row: &HashMap<String, String>) -> &'static Material {
 
 pub fn resistance() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        let contact = pairing(golden_material(&row), 1e-3).under(log2_of_pressure(number(&row, "P_Pa")));
+        let contact =
+            pairing(golden_material(&row), 1e-3).under(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "R_m2K_W"))
     });
     let streaming = each_force().map(|(object, force)| {
@@ -70,7 +73,8 @@ pub fn resistance() -> f64 {
 
 pub fn per_tick() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        let contact = pairing(golden_material(&row), 1e-3).under(log2_of_pressure(number(&row, "P_Pa")));
+        let contact =
+            pairing(golden_material(&row), 1e-3).under(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "b_per_sqrt_s").powi(2) * 1e-3)
     });
     let streaming = [1e-5, 1e-3, 0.1].into_iter().flat_map(|tick_s| {
@@ -82,7 +86,9 @@ pub fn per_tick() -> f64 {
             )
         })
     });
-    worst((golden.chain(streaming)).map(|(contact, k)| 1e9 * relative(contact.per_tick.to_f64(), k)))
+    worst(
+        (golden.chain(streaming)).map(|(contact, k)| 1e9 * relative(contact.per_tick.to_f64(), k)),
+    )
 }
 
 /// Materials from insulators to better than diamond, from mirrors to finishes that make `r` nearly 16.
@@ -98,10 +104,11 @@ fn own_materials() -> impl Iterator<Item = Material> {
 }
 
 pub fn ratio() -> f64 {
-    let golden = rows("resistance")
-        .into_iter()
-        .map(|row| pairing(golden_material(&row), 1e-3).ratio().to_num::<f64>() - number(&row, "ratio"));
-    let own = own_materials().map(|own| pairing(&own, 1e-3).ratio().to_num::<f64>() - float(&own, 1e4).ratio);
+    let golden = rows("resistance").into_iter().map(|row| {
+        pairing(golden_material(&row), 1e-3).ratio().to_num::<f64>() - number(&row, "ratio")
+    });
+    let own = own_materials()
+        .map(|own| pairing(&own, 1e-3).ratio().to_num::<f64>() - float(&own, 1e4).ratio);
     worst(golden.chain(own)) * 1e9
 }
 
@@ -109,10 +116,13 @@ pub fn weight() -> f64 {
     let golden = rows("semi_infinite").into_iter().map(|row| {
         let (skin, object) = (number(&row, "T_skin_i_C"), number(&row, "T_material_i_C"));
         let truth = (skin - number(&row, "T_s_C")) / (skin - object);
-        pairing(golden_material(&row), 1e-3).weight().to_num::<f64>() - truth
+        pairing(golden_material(&row), 1e-3)
+            .weight()
+            .to_num::<f64>()
+            - truth
     });
-    let own =
-        own_materials().map(|own| pairing(&own, 1e-3).weight().to_num::<f64>() - float(&own, 1e4).weight);
+    let own = own_materials()
+        .map(|own| pairing(&own, 1e-3).weight().to_num::<f64>() - float(&own, 1e4).weight);
     worst(golden.chain(own)) * 1e9
 }
 
@@ -128,10 +138,15 @@ fn golden() -> impl Iterator<Item = Compared> {
     rows("contact").into_iter().map(|row| {
         let t_s = number(&row, "t_s");
         let (elapsed, tick_s) = if t_s == 0.0 { (0, 1.0) } else { (1, t_s) };
-        let contact = pairing(golden_material(&row), tick_s).under(log2_of_pressure(number(&row, "P_Pa")));
+        let contact =
+            pairing(golden_material(&row), tick_s).under(log2_of_pressure(number(&row, "P_Pa")));
         let (skin_c, object_c) = (number(&row, "T_skin_i_C"), number(&row, "T_object_i_C"));
         Compared {
-            fixed: contact.at(elapsed, Celsius::from_num(skin_c), Celsius::from_num(object_c)),
+            fixed: contact.at(
+                elapsed,
+                Celsius::from_num(skin_c),
+                Celsius::from_num(object_c),
+            ),
             truth: reference::Response {
                 erfcx: number(&row, "erfcx_z"),
                 skin_c: number(&row, "T_skin_s_C"),
@@ -195,7 +210,10 @@ pub fn object() -> f64 {
 }
 
 pub fn display() -> f64 {
-    worst((both().chain(swept(Some(2.0)))).map(|c| micro_kelvin(c.fixed.display(), c.truth.display_c)))
+    worst(
+        (both().chain(swept(Some(2.0))))
+            .map(|c| micro_kelvin(c.fixed.display(), c.truth.display_c)),
+    )
 }
 
 /// Where [`Celsius`] can hold it.
@@ -225,7 +243,8 @@ pub fn preset() -> f64 {
         .filter(|row| number(row, "t_s") == 0.0)
         .map(|row| {
             let before = |column| Celsius::from_num(number(&row, column));
-            let t = pairing(golden_material(&row), 1e-3).preset(before("T_skin_i_C"), before("T_object_i_C"));
+            let t = pairing(golden_material(&row), 1e-3)
+                .preset(before("T_skin_i_C"), before("T_object_i_C"));
             micro_kelvin(t, number(&row, "T_display_C"))
         });
     let swept = points::<3>(20_000).map(|[index, skin, step]| {

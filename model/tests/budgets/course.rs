@@ -17,7 +17,8 @@ pub fn setpoint() -> f64 {
             [24.0, 44.0].into_iter().flat_map(move |object_c| {
                 let celsius = Celsius::from_num::<f64>;
                 let tolerance = celsius(500e-6);
-                let (mut course, _) = Course::new(&contact, celsius(SKIN_C), celsius(object_c), 0, tolerance);
+                let (mut course, _) =
+                    Course::new(&contact, celsius(SKIN_C), celsius(object_c), 0, tolerance);
                 let exact = Contact::new(
                     (&SKIN, SKIN_C),
                     (object, object_c),

@@ -33,7 +33,10 @@ pub fn kernel_anywhere() -> f64 {
         let z = number(&row, "x");
         Rate::from_f64(z * z).map(|u| (z * z, kernel_units(1, u, number(&row, "erfcx"))))
     });
-    let all = outer.flat_map(mantissas).chain(times_and_rates()).chain(golden);
+    let all = outer
+        .flat_map(mantissas)
+        .chain(times_and_rates())
+        .chain(golden);
     worst(all.map(|(_, error)| error))
 }
 
@@ -53,13 +56,17 @@ fn times_and_rates() -> impl Iterator<Item = (f64, f64)> {
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
         let per_tick = Rate::from_f64(log_between(rate, 1e-25, 1e20)).expect("normal");
         let u = f64::from(elapsed) * per_tick.to_f64();
-        (u, kernel_units(elapsed, per_tick, reference::erfcx(u.sqrt())))
+        (
+            u,
+            kernel_units(elapsed, per_tick, reference::erfcx(u.sqrt())),
+        )
     })
 }
 
 /// All magnitudes, both ends of each.
 pub fn log2_error() -> f64 {
-    let integers = (0..1u32 << 18).map(|i| ((i.wrapping_mul(2_654_435_761) | 1) >> (i % 32)).max(1));
+    let integers =
+        (0..1u32 << 18).map(|i| ((i.wrapping_mul(2_654_435_761) | 1) >> (i % 32)).max(1));
     let ends = (0..32).flat_map(|bit| [1 << bit, u32::MAX >> bit]);
     worst((integers.chain(ends)).map(|x| (log2(x).to_num::<f64>() - f64::from(x).log2()) / UNIT))
 }
@@ -95,7 +102,8 @@ pub fn rate_from_log2() -> f64 {
 
 pub fn rate_times() -> f64 {
     worst(points::<2>(100_000).map(|[a, b]| {
-        let [a, b] = [a, b].map(|part| Rate::from_f64((1000.0 * part - 500.0).exp2()).expect("normal"));
+        let [a, b] =
+            [a, b].map(|part| Rate::from_f64((1000.0 * part - 500.0).exp2()).expect("normal"));
         relative(a.times(b).to_f64(), a.to_f64() * b.to_f64()) / UNIT
     }))
 }

@@ -21,8 +21,10 @@ pub fn erfcx_f32() -> f64 {
     let error = |z: f32, truth: f64| {
         (truth > f64::from(f32::MIN_POSITIVE)).then(|| relative(f64::from(erfcx(z)), truth))
     };
-    let golden = (rows("erfcx").into_iter().filter(|row| row["f32_exact"] == "1"))
-        .filter_map(|row| error(number(&row, "x") as f32, number(&row, "erfcx")));
+    let golden = (rows("erfcx")
+        .into_iter()
+        .filter(|row| row["f32_exact"] == "1"))
+    .filter_map(|row| error(number(&row, "x") as f32, number(&row, "erfcx")));
     let swept = points::<1>(100_000).filter_map(|[part]| {
         let z = log_between(part, 1e-8, 1e37) as f32;
         error(z, erfcx(f64::from(z)))

@@ -77,7 +77,12 @@ pub fn depth_fixed() -> f64 {
     let golden = rows("semi_infinite_profile").into_iter().map(|row| {
         let (skin, object) = celsius(&row);
         let depth = Depth::from_num(1e6 * number(&row, "x_m"));
-        let t = fixed(material(&row), number(&row, "t_s")).skin_at_depth(depth, Ticks::ONE, skin, object);
+        let t = fixed(material(&row), number(&row, "t_s")).skin_at_depth(
+            depth,
+            Ticks::ONE,
+            skin,
+            object,
+        );
         1e6 * (t.to_num::<f64>() - number(&row, "T_skin_x_t_C"))
     });
     let swept = points::<6>(40_000).map(|[index, skin, step, depth, tick, elapsed]| {
@@ -88,8 +93,9 @@ pub fn depth_fixed() -> f64 {
         let depth = Depth::from_num(log_between(depth, 1.6e-5, 65535.9));
         let ticks = Ticks::new(elapsed).expect("in range");
         let t = fixed(object_material, tick_s).skin_at_depth(depth, ticks, skin, object);
-        let truth = SemiInfinite::<f64>::new((&SKIN, skin.to_num()), (object_material, object.to_num()))
-            .skin_at_depth(1e-6 * depth.to_num::<f64>(), tick_s * f64::from(elapsed));
+        let truth =
+            SemiInfinite::<f64>::new((&SKIN, skin.to_num()), (object_material, object.to_num()))
+                .skin_at_depth(1e-6 * depth.to_num::<f64>(), tick_s * f64::from(elapsed));
         1e6 * (t.to_num::<f64>() - truth)
     });
     worst(golden.chain(swept))
@@ -98,7 +104,8 @@ pub fn depth_fixed() -> f64 {
 /// Relative error, less the resolution of the flux.
 pub fn flux_fixed() -> f64 {
     let error = |flux: fixed_point::Flux, truth: f64| {
-        let beyond = (flux.to_num::<f64>() - truth).abs() - fixed_point::Flux::DELTA.to_num::<f64>();
+        let beyond =
+            (flux.to_num::<f64>() - truth).abs() - fixed_point::Flux::DELTA.to_num::<f64>();
         1e9 * beyond.max(0.0) / truth.abs()
     };
     let golden = rows("semi_infinite_profile").into_iter().map(|row| {
@@ -111,11 +118,15 @@ pub fn flux_fixed() -> f64 {
         let (skin, object) = pair(skin, step);
         let tick_s = log_between(tick, 1e-5, 0.1);
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
-        let flux =
-            fixed(object_material, tick_s).flux_w_m2(Ticks::new(elapsed).expect("in range"), skin, object);
-        let truth = SemiInfinite::<f64>::new((&SKIN, skin.to_num()), (object_material, object.to_num()))
-            .flux_w_m2(tick_s * f64::from(elapsed))
-            .expect("after landing");
+        let flux = fixed(object_material, tick_s).flux_w_m2(
+            Ticks::new(elapsed).expect("in range"),
+            skin,
+            object,
+        );
+        let truth =
+            SemiInfinite::<f64>::new((&SKIN, skin.to_num()), (object_material, object.to_num()))
+                .flux_w_m2(tick_s * f64::from(elapsed))
+                .expect("after landing");
         // For a smaller step the rounding of the temperatures in `f64` shows.
         (skin.abs_diff(object) >= 1).then(|| error(flux, truth))
     });

@@ -36,7 +36,11 @@ pub fn worst(errors: impl Iterator<Item = f64>) -> f64 {
 
 /// Relative error.
 pub fn relative(value: f64, truth: f64) -> f64 {
-    if value == truth { 0.0 } else { value / truth - 1.0 }
+    if value == truth {
+        0.0
+    } else {
+        value / truth - 1.0
+    }
 }
 
 /// Skin and object within the range of temperatures, at most 60 K apart, either way.

@@ -38,7 +38,8 @@ struct Basis {
 
 impl Basis {
     fn new() -> Self {
-        let angles: [f64; POINTS] = std::array::from_fn(|i| PI * (2 * i + 1) as f64 / (2 * POINTS) as f64);
+        let angles: [f64; POINTS] =
+            std::array::from_fn(|i| PI * (2 * i + 1) as f64 / (2 * POINTS) as f64);
         Self {
             points: angles.map(f64::cos),
             polynomials: std::array::from_fn(|k| angles.map(|angle| (k as f64 * angle).cos())),
@@ -48,10 +49,18 @@ impl Basis {
     /// Coefficient of `t^k` (`t` from -1/2 to 1/2) in the best polynomial of degree `k` for `values`, in the
     /// sense of a Chebyshev series cut off.
     fn leading(&self, k: usize, values: &[f64; POINTS]) -> f64 {
-        let sum: f64 = values.iter().zip(&self.polynomials[k]).map(|(v, p)| v * p).sum();
+        let sum: f64 = values
+            .iter()
+            .zip(&self.polynomials[k])
+            .map(|(v, p)| v * p)
+            .sum();
         let mean = sum / POINTS as f64;
         // The leading coefficient of the k-th polynomial is 2^(k-1) in 2t.
-        if k == 0 { mean } else { mean * 4f64.powi(k as i32) }
+        if k == 0 {
+            mean
+        } else {
+            mean * 4f64.powi(k as i32)
+        }
     }
 
     fn subtract(&self, k: usize, coefficient: f64, values: &mut [f64; POINTS]) {
@@ -135,18 +144,30 @@ fn fit(basis: &Basis, octave: i32, index: u32, count: u32) -> Option<Fit> {
 
 /// An octave cut into equal rows.
 fn cut(basis: &Basis, octave: i32, count: u32) -> Option<Vec<Fit>> {
-    (0..count).map(|index| fit(basis, octave, index, count)).collect()
+    (0..count)
+        .map(|index| fit(basis, octave, index, count))
+        .collect()
 }
 
 /// How bad an octave is: its largest error, weighted.
 fn badness(octave: i32, rows: &[Fit]) -> f64 {
-    let weight = if FAVOURED.contains(&octave) { FAVOUR } else { 1.0 };
-    rows.iter().fold(0.0, |worst: f64, row| worst.max(row.error)) * weight
+    let weight = if FAVOURED.contains(&octave) {
+        FAVOUR
+    } else {
+        1.0
+    };
+    rows.iter()
+        .fold(0.0, |worst: f64, row| worst.max(row.error))
+        * weight
 }
 
 /// The rows of every fitted octave: one each, then more where the error is largest until all are used.
 fn octaves(basis: &Basis) -> Vec<Vec<Fit>> {
-    let smallest = |octave: i32, from: u32| (from..).find_map(|count| cut(basis, octave, count)).unwrap();
+    let smallest = |octave: i32, from: u32| {
+        (from..)
+            .find_map(|count| cut(basis, octave, count))
+            .unwrap()
+    };
     let mut octaves: Vec<_> = FITTED.map(|octave| smallest(octave, 1)).collect();
     loop {
         let used: usize = octaves.iter().map(Vec::len).sum();

@@ -31,7 +31,12 @@ fn fit<const N: usize>(f: impl Fn(f64) -> f64) -> [f64; N] {
 
 /// Rows of a table of `f` in pieces of the length `1 / per_unit`: the constants in 2^-32, the `N - 1` powers
 /// after them in `2^-slope_bits`.
-fn pieces<const N: usize>(rows: u32, per_unit: u32, slope_bits: i32, f: impl Fn(f64) -> f64) -> String {
+fn pieces<const N: usize>(
+    rows: u32,
+    per_unit: u32,
+    slope_bits: i32,
+    f: impl Fn(f64) -> f64,
+) -> String {
     let mut text = String::new();
     for part in 0..rows {
         let powers = fit::<N>(|t| f((f64::from(part) + t) / f64::from(per_unit)));

@@ -124,7 +124,9 @@ fn powers(row: &kernel::Row) -> [f64; 8] {
     let low_word = f64::from(row.seventh as u32) * UNIT;
     let constant = f64::from(row.constant) + low_word + seventh - 0.5;
     let slope = f64::from(row.slope) + sixth;
-    [constant, slope, second, third, fourth, fifth, sixth, seventh]
+    [
+        constant, slope, second, third, fourth, fifth, sixth, seventh,
+    ]
 }
 
 /// `E` in units of 2^-32, by enclosing series where they converge at once: for small `z = sqrt(u)` the powers

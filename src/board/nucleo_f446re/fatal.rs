@@ -48,7 +48,11 @@ fn panic(info: &PanicInfo<'_>) -> ! {
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     end(Fault::HardFault);
     if first_report() {
-        defmt::error!("hard fault at pc {=u32:#x}, lr {=u32:#x}", frame.pc(), frame.lr());
+        defmt::error!(
+            "hard fault at pc {=u32:#x}, lr {=u32:#x}",
+            frame.pc(),
+            frame.lr()
+        );
     }
     wait_for_watchdog()
 }

@@ -8,7 +8,9 @@
 use core::fmt;
 use core::ptr;
 
-use embedded_storage::nor_flash::{ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash};
+use embedded_storage::nor_flash::{
+    ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
+};
 use stm32f4xx_hal::pac::FLASH;
 
 /// First address of sector 1, and bytes of sectors 1 to 3.
@@ -70,7 +72,10 @@ impl<'a> SettingsFlash<'a> {
     }
 
     /// Opens the control register for some work, and locks it afterwards.
-    fn unlocked(&mut self, work: impl FnOnce(&mut Self) -> Result<(), FlashError>) -> Result<(), FlashError> {
+    fn unlocked(
+        &mut self,
+        work: impl FnOnce(&mut Self) -> Result<(), FlashError>,
+    ) -> Result<(), FlashError> {
         self.wait_until_idle()?;
         if self.0.cr().read().lock().bit_is_set() {
             for key in KEYS {

@@ -145,7 +145,12 @@ pub struct Board {
 impl Board {
     /// Sets everything up, with what the start has [found](at_start); the bridge is off before anything else happens and
     /// stays off.
-    pub fn new(counter: SYST, device: pac::Peripherals, memory: &'static mut Memory, found: &Found) -> Self {
+    pub fn new(
+        counter: SYST,
+        device: pac::Peripherals,
+        memory: &'static mut Memory,
+        found: &Found,
+    ) -> Self {
         // First, on its own oscillator.
         let watchdog = Watchdog::start(device.IWDG);
         let has_clock = probe_clock_runs(&device.RCC);

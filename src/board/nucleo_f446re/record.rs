@@ -17,7 +17,9 @@ static KEPT: [AtomicU32; LENGTH] = [const { AtomicU32::new(0) }; LENGTH];
 
 pub fn check(words: &[u32]) -> u32 {
     words.iter().fold(SALT, |sum, word| {
-        sum.rotate_left(5).wrapping_add(*word).wrapping_mul(0x9e37_79b1)
+        sum.rotate_left(5)
+            .wrapping_add(*word)
+            .wrapping_mul(0x9e37_79b1)
     })
 }
 

@@ -92,7 +92,9 @@ impl Trigger {
     /// Begins.
     pub fn start(&mut self) {
         // Cannot fail: 90 MHz over 16 or 90 kHz fits the counter. Both divide it exactly.
-        let _ = self.0.start(((SCANS_PER_BLOCK * FINGERS) as u32 * TICK_HZ).Hz());
+        let _ = self
+            .0
+            .start(((SCANS_PER_BLOCK * FINGERS) as u32 * TICK_HZ).Hz());
     }
 }
 
@@ -148,10 +150,13 @@ impl Sampler {
             return Err(SampleError::Bus);
         }
         let spare = self.spare.take().ok_or(SampleError::Bus)?;
-        let (block, which) = self.transfer.next_transfer(spare).map_err(|error| match error {
-            DMAError::Overrun(_) => SampleError::Late,
-            DMAError::NotReady(_) | DMAError::SmallBuffer(_) => SampleError::Bus,
-        })?;
+        let (block, which) = self
+            .transfer
+            .next_transfer(spare)
+            .map_err(|error| match error {
+                DMAError::Overrun(_) => SampleError::Late,
+                DMAError::NotReady(_) | DMAError::SmallBuffer(_) => SampleError::Bus,
+            })?;
         if which == self.last {
             return Err(SampleError::Late);
         }
@@ -160,7 +165,11 @@ impl Sampler {
         if finger == 0 {
             log::count_tick();
         }
-        let scans = self.spare.insert(block).last_chunk().ok_or(SampleError::Bus)?;
+        let scans = self
+            .spare
+            .insert(block)
+            .last_chunk()
+            .ok_or(SampleError::Bus)?;
         Ok((finger, scans))
     }
 
@@ -226,7 +235,10 @@ impl Converter {
         });
         // 3 us for the converter to wake up (datasheet, t_STAB), at 180 MHz.
         cortex_m::asm::delay(3 * 180);
-        Self { adc, _inputs: inputs }
+        Self {
+            adc,
+            _inputs: inputs,
+        }
     }
 
     /// Converts no more and asks for no interrupt.

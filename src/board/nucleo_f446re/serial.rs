@@ -123,7 +123,9 @@ impl Transmitter {
             self.transfer.clear_all_flags();
             self.sending = false;
         }
-        let Some(frame) = self.full.dequeue() else { return };
+        let Some(frame) = self.full.dequeue() else {
+            return;
+        };
         let (Ok((sent, _))
         | Err(DMAError::NotReady(sent) | DMAError::SmallBuffer(sent) | DMAError::Overrun(sent))) =
             self.transfer.next_transfer(frame);
@@ -178,7 +180,9 @@ pub fn start(
     inlet: Inlet<'static>,
     rcc: &mut Rcc,
 ) -> (Receiver, Transmitter, Outbox) {
-    let config = Config::default().baudrate(BAUD.bps()).dma(config::DmaConfig::Tx);
+    let config = Config::default()
+        .baudrate(BAUD.bps())
+        .dma(config::DmaConfig::Tx);
     let (tx, mut rx) = Serial::new(usart, (tx, rx), config, rcc)
         .expect("the clock of the USART is at least eight times the baud rate")
         .split();

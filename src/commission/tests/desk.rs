@@ -80,7 +80,10 @@ fn a_line_changes_the_finger_that_it_names() {
     assert_eq!(five.lines("@3 "), told);
     for finger in [0, 1, 2, 4] {
         let of = format!("@{finger} ");
-        let same: Vec<_> = untouched.iter().map(|line| line.replace("@0 ", &of)).collect();
+        let same: Vec<_> = untouched
+            .iter()
+            .map(|line| line.replace("@0 ", &of))
+            .collect();
         assert_eq!(five.lines(&of), same);
     }
 }
@@ -120,7 +123,10 @@ fn all_obey_an_order_and_the_first_answers_a_question() {
     let told = five.host("@1 calibrate display 26.5");
     assert!(told.starts_with("@1 ok points=1 worst_mk=0."), "{told}");
     // What takes long is for one at a time.
-    assert_eq!(five.host("calibrate display 26.5"), "err finger (as @0) missing");
+    assert_eq!(
+        five.host("calibrate display 26.5"),
+        "err finger (as @0) missing"
+    );
     assert_eq!(five.host("tune result"), "err finger (as @0) missing");
 }
 
@@ -173,7 +179,10 @@ fn a_self_test_that_goes_on_keeps_calibration_from_changing_anything() {
     assert_eq!(one.host("arm"), "ok");
     let before = one.lines("");
     let refused = one.host("calibrate room 25.5");
-    assert!(refused.starts_with("err the self-test goes on"), "{refused}");
+    assert!(
+        refused.starts_with("err the self-test goes on"),
+        "{refused}"
+    );
     assert_eq!(one.lines(""), before);
 }
 
@@ -201,7 +210,10 @@ fn nonsense_is_refused_and_changes_nothing() {
             "set steps 10.5 1",
             "err border '10.5' out of range; 10 to 22 (whole)",
         ),
-        ("set steps 23 1", "err border '23' out of range; 10 to 22 (whole)"),
+        (
+            "set steps 23 1",
+            "err border '23' out of range; 10 to 22 (whole)",
+        ),
         ("set steps 22 1 1", "err unexpected '1' after the command"),
         (
             "set steps 10 1 2 3 4 3 2 1 0",
@@ -231,7 +243,10 @@ fn nonsense_is_refused_and_changes_nothing() {
         ),
         ("calibrate", "err sensor missing"),
         ("calibrate display", "err reference temperature missing"),
-        ("calibrate display 26 C", "err unexpected 'C' after the command"),
+        (
+            "calibrate display 26 C",
+            "err unexpected 'C' after the command",
+        ),
         (
             "calibrate display clear now",
             "err unexpected 'now' after the command",

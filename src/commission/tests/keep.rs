@@ -9,7 +9,11 @@ use crate::guard::Fault;
 use crate::protocol::Reply;
 use crate::settings::{Settings, decode};
 
-fn answer<const FINGERS: usize>(desk: &mut Desk<FINGERS>, hand: &mut Hand<FINGERS>, line: &str) -> Reply {
+fn answer<const FINGERS: usize>(
+    desk: &mut Desk<FINGERS>,
+    hand: &mut Hand<FINGERS>,
+    line: &str,
+) -> Reply {
     desk.answer(line, |request| hand.execute(request))
         .expect(line)
         .said
@@ -46,7 +50,10 @@ fn settings_are_stored_while_all_bridges_are_off_only() {
         answer(&mut desk, &mut hand, "@3 abort");
     }
     hand.trip(Fault::SettingsCorrupt);
-    assert_eq!(answer(&mut desk, &mut hand, "save"), Reply::Restart(Order::Save));
+    assert_eq!(
+        answer(&mut desk, &mut hand, "save"),
+        Reply::Restart(Order::Save)
+    );
     assert_eq!(
         refusal(&mut desk, &mut hand, "@1 arm"),
         "@1 err tripped by settings-corrupt; clear it first"
@@ -75,7 +82,9 @@ fn what_a_record_holds_is_what_the_fingers_were_told() {
     assert_eq!(kept[1].calibration.steps_counts[..3], [0.5, -0.25, 0.0]);
 
     let mut restored = Desk::restored(&kept);
-    for line in (1..=8).flat_map(|line| [format!("@0 settings {line}"), format!("@1 settings {line}")]) {
+    for line in
+        (1..=8).flat_map(|line| [format!("@0 settings {line}"), format!("@1 settings {line}")])
+    {
         assert_eq!(
             answer(&mut restored, &mut hand, &line),
             answer(&mut desk, &mut hand, &line)

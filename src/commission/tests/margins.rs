@@ -58,7 +58,8 @@ fn swept(tile: &Tile, gains: &Gains) -> (f64, Option<f64>) {
         if before.0.hypot(before.1) > 1.0 && re.hypot(im) <= 1.0 {
             phase = (180.0 + im.atan2(re).to_degrees()).rem_euclid(360.0);
         }
-        if before.1 < 0.0 && im >= 0.0 && re < 0.0 && margin.is_none() && w > 1.0 / gains.integral_s {
+        if before.1 < 0.0 && im >= 0.0 && re < 0.0 && margin.is_none() && w > 1.0 / gains.integral_s
+        {
             margin = Some(-1.0 / re);
         }
         before = (re, im);

@@ -3,7 +3,10 @@
 use crate::commission::solve::solve;
 
 /// Normal equations of `c0 + c1 t + c2 t^2` for points on it.
-fn parabola(points: impl Iterator<Item = f64> + Clone, [c0, c1, c2]: [f64; 3]) -> ([[f64; 3]; 3], [f64; 3]) {
+fn parabola(
+    points: impl Iterator<Item = f64> + Clone,
+    [c0, c1, c2]: [f64; 3],
+) -> ([[f64; 3]; 3], [f64; 3]) {
     let powers = |t: f64| [1.0, t, t * t];
     let (mut a, mut b) = ([[0.0; 3]; 3], [0.0; 3]);
     for t in points {

@@ -138,9 +138,18 @@ fn tile_that_is_the_model_is_found() {
                 near(found.joule_per_a, joule * flows, 0.02, 1.5e-3),
                 "{found:?}, {tile:?}"
             );
-            assert!(near(found.leak_1_s, leak, 0.03, 0.01), "{found:?}, {tile:?}");
-            assert!(near(found.sensor_lag_s, lag, 0.015, 1e-3), "{found:?}, {tile:?}");
-            assert!(near(found.dead_time_s, 0.016, 0.0, 1.5e-3), "{found:?}, {tile:?}");
+            assert!(
+                near(found.leak_1_s, leak, 0.03, 0.01),
+                "{found:?}, {tile:?}"
+            );
+            assert!(
+                near(found.sensor_lag_s, lag, 0.015, 1e-3),
+                "{found:?}, {tile:?}"
+            );
+            assert!(
+                near(found.dead_time_s, 0.016, 0.0, 1.5e-3),
+                "{found:?}, {tile:?}"
+            );
         }
     }
 }
@@ -158,7 +167,10 @@ fn gain_is_that_of_large_currents_where_a_bridge_loses_some() {
 
 #[test]
 fn each_reason_to_end_is_told() {
-    assert_eq!(Plant::new(TILE).tune(0), Err(Error::TuneAborted(Aborted::Finger)));
+    assert_eq!(
+        Plant::new(TILE).tune(0),
+        Err(Error::TuneAborted(Aborted::Finger))
+    );
     assert_eq!(
         Plant::new(TILE).tune(9000),
         Err(Error::TuneAborted(Aborted::Finger))
@@ -168,7 +180,10 @@ fn each_reason_to_end_is_told() {
     assert_eq!(hot.tune(NEVER), Err(Error::TuneAborted(Aborted::Sink)));
     let mut restless = Plant::new(TILE);
     restless.disturbance = |tick| if tick / 700 % 2 == 0 { 0.1 } else { -0.1 };
-    assert_eq!(restless.tune(NEVER), Err(Error::TuneAborted(Aborted::Restless)));
+    assert_eq!(
+        restless.tune(NEVER),
+        Err(Error::TuneAborted(Aborted::Restless))
+    );
     // It is at rest, so it begins; what the pulses would move by 2.3 K moves by eight times that.
     let mut wild = Plant::new(Tile {
         gain_k_s_a: 24.0,

@@ -6,7 +6,11 @@ use super::*;
 
 /// Values of settings: multiples of their decimals, within what `set` takes.
 fn kept() -> impl Strategy<Value = Kept> {
-    let correction = (-1_200_000..=1_200_000, -500_000..=500_000, -200_000..=200_000);
+    let correction = (
+        -1_200_000..=1_200_000,
+        -500_000..=500_000,
+        -200_000..=200_000,
+    );
     let tile = (
         100_000..=15_000_000,
         0..=500_000,
@@ -26,7 +30,9 @@ fn kept() -> impl Strategy<Value = Kept> {
                     curvature_1_k: of(curvature, 1e8),
                 }),
             },
-            tile: Tile::from_array([tile.0, tile.1, tile.2, tile.3, tile.4].map(|value| of(value, 1e6))),
+            tile: Tile::from_array(
+                [tile.0, tile.1, tile.2, tile.3, tile.4].map(|value| of(value, 1e6)),
+            ),
         }
     })
 }
@@ -78,7 +84,10 @@ fn the_layout_is_the_one_described() {
     let tile = [2_910_000, 58_500, 103_000, 100_000, 16_000]
         .map(i32::to_le_bytes)
         .concat();
-    assert_eq!((&bytes[4..116], &bytes[116..136]), (&[0; 112][..], &tile[..]));
+    assert_eq!(
+        (&bytes[4..116], &bytes[116..136]),
+        (&[0; 112][..], &tile[..])
+    );
     assert_eq!(sealed(&bytes[..136]), bytes[..]);
     assert_eq!(encode::<1>(None)[..], sealed(&[1, 0, 0, 0])[..]);
     assert_eq!(decode::<1>(&sealed(&[1, 0, 0, 0])), Ok(None));
@@ -91,7 +100,9 @@ fn what_is_wrong_is_named() {
     let changed = |at: usize, value: &[u8]| {
         let mut content = content.to_vec();
         content[at..at + value.len()].copy_from_slice(value);
-        decode::<1>(&sealed(&content)).expect_err("changed").to_string()
+        decode::<1>(&sealed(&content))
+            .expect_err("changed")
+            .to_string()
     };
     assert_eq!(
         changed(0, &[2]),

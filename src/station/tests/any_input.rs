@@ -26,7 +26,11 @@ fn samples() -> impl Strategy<Value = Samples> {
         temperature(),
         temperature(),
     );
-    let rest = (sum(6_560..21_000), sum(0..38_400), prop::bool::weighted(0.02));
+    let rest = (
+        sum(6_560..21_000),
+        sum(0..38_400),
+        prop::bool::weighted(0.02),
+    );
     (temperatures, rest).prop_map(
         |((display, display_check, sink, skin, room), (force, current, bridge_fault))| Samples {
             display,
@@ -134,7 +138,10 @@ impl Count {
             None => bench.step_all(),
         };
         let on = outputs.drive != Drive::Off;
-        let driven = matches!(telemetry.state, State::Armed | State::Preset | State::Contact);
+        let driven = matches!(
+            telemetry.state,
+            State::Armed | State::Preset | State::Contact
+        );
         // In the tick in which the self-test passes, the bridge rests.
         let follows = driven && !tested;
         prop_assert!(follows == on || telemetry.state == State::SelfTest);
@@ -213,7 +220,9 @@ fn check(cases: u32, answers: bool, stories: &impl Strategy<Value = Vec<Phase>>)
         let mut bench = Bench::new();
         bench.answers = answers;
         bench.obey(&["law model", "material granite", "arm", "start"]);
-        story.iter().try_for_each(|phase| count.phase(&mut bench, phase))
+        story
+            .iter()
+            .try_for_each(|phase| count.phase(&mut bench, phase))
     });
     if let Err(error) = outcome {
         panic!("{error}");

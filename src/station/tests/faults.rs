@@ -83,7 +83,11 @@ fn every_fault_trips_in_its_tick_from_every_state_and_stays() {
             for _ in 0..100 {
                 assert_eq!(bench.step().0, Drive::Off, "{word}");
             }
-            for (line, answer) in [("arm", tripped.as_str()), ("start", &tripped), ("abort", "ok")] {
+            for (line, answer) in [
+                ("arm", tripped.as_str()),
+                ("start", &tripped),
+                ("abort", "ok"),
+            ] {
                 assert_eq!(bench.host(line), answer);
                 assert_eq!(bench.step().0, Drive::Off, "{word} after {line}");
                 assert_eq!(bench.state().name(), "tripped");
@@ -120,7 +124,10 @@ fn what_tripped_while_it_was_tripped_comes_to_light_with_clear() {
     }
     bench.steps(2);
     assert_eq!(bench.state().fault(), Some(Fault::SinkHot));
-    assert_eq!(bench.host("clear"), "err fault settings-corrupt is still present");
+    assert_eq!(
+        bench.host("clear"),
+        "err fault settings-corrupt is still present"
+    );
     assert_eq!(bench.state().fault(), Some(Fault::SettingsCorrupt));
     assert!(bench.host("cause").contains("settings-corrupt"));
     bench.obey(&["clear"]);
@@ -147,7 +154,10 @@ fn the_dose_goes_on_while_something_else_is_wrong() {
     bench.step();
     (bench.display_c, bench.check_c) = (42.8, 42.8);
     bench.steps(32_000);
-    assert_eq!(bench.host("clear"), "err fault force-sensor is still present");
+    assert_eq!(
+        bench.host("clear"),
+        "err fault force-sensor is still present"
+    );
     bench.force_n = 0.0;
     bench.steps(10_000);
     (bench.display_c, bench.check_c) = (39.5, 39.5);
@@ -261,7 +271,10 @@ fn the_voltage_is_what_the_current_needs() {
         let legs_k = (25.0 + display_c) / 2.0 - 27.0;
         let ohm = 0.19 + 1.061 * (1.0 + 0.0049 * legs_k);
         let expected = duty * (ohm + 0.397 / 6.0) + seebeck;
-        assert!((voltage - expected).abs() < 1e-3, "{line}: {voltage}, {expected}");
+        assert!(
+            (voltage - expected).abs() < 1e-3,
+            "{line}: {voltage}, {expected}"
+        );
     }
 }
 
@@ -361,7 +374,11 @@ fn a_finger_that_lands_in_the_self_test_is_waited_for() {
         }
         bench.force_n = if tick < 150 { 0.0 } else { 1.0 };
         bench.step_tested();
-        bench.display_c += if (150..450).contains(&tick) { 2e-3 } else { 0.0 };
+        bench.display_c += if (150..450).contains(&tick) {
+            2e-3
+        } else {
+            0.0
+        };
         bench.check_c = bench.display_c;
     }
     assert_eq!(bench.state(), State::Armed);

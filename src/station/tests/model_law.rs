@@ -58,7 +58,10 @@ fn a_skin_that_was_touched_is_not_taken_for_rested() {
     bench.steps(60_000);
     let kept = (bench.setpoint_c() - rested_c) / (touched_c - rested_c);
     let expected = (5.0f64 / 65.0).sqrt().asin() * core::f64::consts::FRAC_2_PI;
-    assert!((kept / expected - 1.0).abs() < 0.1, "{kept}, not {expected}");
+    assert!(
+        (kept / expected - 1.0).abs() < 0.1,
+        "{kept}, not {expected}"
+    );
 }
 
 /// A constant force that its sensor and noise let rise in a few ticks and swing by 0.6 mN is constant.

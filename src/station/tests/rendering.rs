@@ -11,7 +11,13 @@ const DETECTION_S: f64 = 2e-3;
 
 /// Touches with `force_n` for `ticks` from the detected landing on, and compares with Eq. 6-12 on each.
 #[track_caller]
-pub(super) fn follows_a_contact(bench: &mut Bench, material: &str, object_c: f64, force_n: f64, ticks: u32) {
+pub(super) fn follows_a_contact(
+    bench: &mut Bench,
+    material: &str,
+    object_c: f64,
+    force_n: f64,
+    ticks: u32,
+) {
     bench.force_n = 0.0;
     let preset = bench.contact(material, object_c);
     let preset_c = preset.skin_c - preset.ratio * (preset.skin_c - object_c);
@@ -134,7 +140,11 @@ fn semi_infinite_mode_holds_the_interface_temperature() {
     bench.obey(&["mode semi-infinite"]);
     let granite = find("granite").expect("a material of the thesis");
     let expected_c = interface_temperature(&SKIN, 34.0, granite, 24.0);
-    for (force_n, state) in [(0.0, State::Preset), (2.0, State::Contact), (0.0, State::Preset)] {
+    for (force_n, state) in [
+        (0.0, State::Preset),
+        (2.0, State::Contact),
+        (0.0, State::Preset),
+    ] {
         bench.force_n = force_n;
         for _ in 0..500 {
             assert_close(bench.setpoint_c(), expected_c);
@@ -211,7 +221,12 @@ fn nothing_is_evaluated_for_an_object_at_skin_temperature() {
 /// A sensor's noise of 0.6 mN, its largest swings in a row.
 #[test]
 fn a_noisy_force_costs_no_evaluation() {
-    for (force_n, material) in [(2.0, "granite"), (0.1, "granite"), (2.0, "foam"), (0.1, "copper")] {
+    for (force_n, material) in [
+        (2.0, "granite"),
+        (0.1, "granite"),
+        (2.0, "foam"),
+        (0.1, "copper"),
+    ] {
         let mut bench = Bench::answering(material);
         bench.force_n = force_n;
         bench.steps(2);

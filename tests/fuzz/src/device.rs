@@ -106,7 +106,9 @@ impl<const FINGERS: usize> Device<FINGERS> {
     pub fn step(&mut self, finger: usize, samples: &Samples) -> Outputs {
         let before = self.status(finger).state;
         let outputs = self.hand.step(finger, samples);
-        let Status { state, setpoint, .. } = self.status(finger);
+        let Status {
+            state, setpoint, ..
+        } = self.status(finger);
         let allowed = match before {
             State::Off | State::Ready => state == before,
             State::SelfTest => matches!(state, State::SelfTest | State::Armed),
@@ -119,7 +121,10 @@ impl<const FINGERS: usize> Device<FINGERS> {
         self.look_at_outputs(outputs, state, samples);
         if let Some(setpoint) = setpoint {
             let setpoint_c: f64 = setpoint.to_num();
-            assert!((15.0..=42.0).contains(&setpoint_c), "set-point {setpoint_c} C");
+            assert!(
+                (15.0..=42.0).contains(&setpoint_c),
+                "set-point {setpoint_c} C"
+            );
         }
         if let Some(telemetry) = self.hand.telemetry(finger) {
             let demand_a: f64 = telemetry.said.demand.to_num();
@@ -233,5 +238,8 @@ fn look_at_answer(answer: &str, done: bool) {
 /// A line to the host is short and printable.
 fn look_at_text(line: &str, longest: usize) {
     assert!(line.len() <= longest, "{} bytes: {line:?}", line.len());
-    assert!(line.bytes().all(|byte| matches!(byte, b' '..=b'~')), "{line:?}");
+    assert!(
+        line.bytes().all(|byte| matches!(byte, b' '..=b'~')),
+        "{line:?}"
+    );
 }

@@ -137,10 +137,15 @@ impl<const FINGERS: usize> Kit<FINGERS> {
                 let fit = bytes.len().min(BYTES - at);
                 assert!(self.cells.load(at, &bytes[..fit]));
             }
-            Event::Record { values, head, length } => self.record(values, *head, *length),
+            Event::Record {
+                values,
+                head,
+                length,
+            } => self.record(values, *head, *length),
             Event::Save { number, cut } => {
                 if let Some((nth, seed)) = cut {
-                    self.cells.cut_power_at(u64::from(*nth) + 1, u64::from(*seed));
+                    self.cells
+                        .cut_power_at(u64::from(*nth) + 1, u64::from(*seed));
                 }
                 let settings = numbered(u32::from(*number));
                 let done = self.save(settings);

@@ -34,7 +34,10 @@ fn look_at_error(error: &str, text: &str) {
     };
     let line: usize = line.parse().unwrap_or_default();
     let lines = 1 + text.matches('\n').count();
-    assert!((1..=lines).contains(&line), "line {line} of {lines}: {error:?}");
+    assert!(
+        (1..=lines).contains(&line),
+        "line {line} of {lines}: {error:?}"
+    );
     assert!(!problem.trim().is_empty(), "no problem: {error:?}");
 }
 

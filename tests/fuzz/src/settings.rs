@@ -39,9 +39,18 @@ impl Stored {
                 "set correction {name} {offset:.6} {slope:.7} {curvature:.8}"
             ));
         }
-        let ranges = [(0.1, 15.0), (0.0, 0.5), (0.0, 5.0), (0.001, 5.0), (0.0, 1.0)];
+        let ranges = [
+            (0.1, 15.0),
+            (0.0, 0.5),
+            (0.0, 5.0),
+            (0.001, 5.0),
+            (0.0, 1.0),
+        ];
         let tile = self.tile.iter().zip(ranges).map(|(value, (least, most))| {
-            format!(" {:.6}", least + (most - least) * f64::from(*value) / 65535.0)
+            format!(
+                " {:.6}",
+                least + (most - least) * f64::from(*value) / 65535.0
+            )
         });
         lines.push(format!("set tile{}", tile.collect::<String>()));
         lines

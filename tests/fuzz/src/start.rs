@@ -59,14 +59,25 @@ impl<const FINGERS: usize> Starts<FINGERS> {
             let answer = tuned.clone().line("@0 tune result");
             assert!(answer.is_ok(), "{answer:?}");
             let streaming = lead(
-                &["law pi", "object 20", "material foam", "arm", "start", "stream 1"],
+                &[
+                    "law pi",
+                    "object 20",
+                    "material foam",
+                    "arm",
+                    "start",
+                    "stream 1",
+                ],
                 0.5,
                 50,
             );
             let mut all = vec![
-                off, testing, armed, preset, contact, ready, tripped, tuning, on_the_way, tuned, streaming,
+                off, testing, armed, preset, contact, ready, tripped, tuning, on_the_way, tuned,
+                streaming,
             ];
-            let states: Vec<_> = all.iter_mut().map(|device| device.status(0).state).collect();
+            let states: Vec<_> = all
+                .iter_mut()
+                .map(|device| device.status(0).state)
+                .collect();
             let expected = [
                 State::Off,
                 State::SelfTest,

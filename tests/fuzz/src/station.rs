@@ -134,7 +134,11 @@ impl Line {
                     .iter()
                     .take(7)
                     .map(|step| format!(" {}", f64::from(*step) / 32.0));
-                format!("set steps {}{}", 10 + border % 13, steps.collect::<String>())
+                format!(
+                    "set steps {}{}",
+                    10 + border % 13,
+                    steps.collect::<String>()
+                )
             }
             Self::Correction(sensor, [offset, slope, curvature]) => {
                 let part = |value: &i16, most: f64| most * f64::from(*value) / 32768.0;
@@ -193,7 +197,10 @@ pub fn run(input: &[u8]) -> bool {
     for event in &course.events {
         match *event {
             Event::Run(ticks) => (0..limited(ticks)).for_each(|_| device.tick()),
-            Event::Sums([display, display_check, sink, skin, room, force, current], bridge_fault) => {
+            Event::Sums(
+                [display, display_check, sink, skin, room, force, current],
+                bridge_fault,
+            ) => {
                 let samples = Samples {
                     display,
                     display_check,
@@ -210,7 +217,9 @@ pub fn run(input: &[u8]) -> bool {
                 let scan = |counts: [u16; CHANNELS]| -> Scan { counts.map(|count| count & 0x0fff) };
                 let mut scans = [scan(counts); SCANS_PER_TICK];
                 scans[SCANS_PER_TICK - 1] = scan(last);
-                let broken = scan(last)[..5].iter().any(|count| matches!(count, 0 | 4095));
+                let broken = scan(last)[..5]
+                    .iter()
+                    .any(|count| matches!(count, 0 | 4095));
                 let outputs = device.step(0, &Samples::from_scans(&scans, false));
                 assert!(
                     !broken || outputs.drive == thermal_display::drive::Drive::Off,

@@ -96,8 +96,10 @@ impl Tile {
             }
         };
         // Beyond 0.5 A the dead times take 0.4 V.
-        let current_a = current_a.signum() * (current_a.abs() - 0.32 * (current_a.abs() / 0.5).min(1.0));
-        let slope_k_s = -2.91 * current_a * (1.0 - 0.0585 * current_a) - 0.103 * (self.plate_c - self.sink_c);
+        let current_a =
+            current_a.signum() * (current_a.abs() - 0.32 * (current_a.abs() / 0.5).min(1.0));
+        let slope_k_s =
+            -2.91 * current_a * (1.0 - 0.0585 * current_a) - 0.103 * (self.plate_c - self.sink_c);
         self.plate_c = (self.plate_c + 1e-3 * slope_k_s).clamp(-20.0, 80.0);
         self.display_c += 1e-3 / 0.1 * (self.plate_c - self.display_c);
         self.current = (6400.0 * current_a.abs()).min(f64::from(FULL)) as u16 & !3;

@@ -82,7 +82,10 @@ impl Process {
     }
 
     fn progress(&self) -> Progress {
-        self.said.lock().unwrap_or_else(PoisonError::into_inner).progress
+        self.said
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .progress
     }
 }
 
@@ -92,7 +95,8 @@ impl Engine {
         let program = folder().join("fuzz");
         // A run that goes on keeps its own.
         let _ = std::fs::remove_file(&program);
-        std::fs::copy(built, &program).with_context(|| format!("{}: cannot be copied", built.display()))?;
+        std::fs::copy(built, &program)
+            .with_context(|| format!("{}: cannot be copied", built.display()))?;
         create(&folder().join("found"))?;
         Ok(Self { program })
     }
@@ -190,7 +194,8 @@ impl Engine {
 
     /// Runs one input, and prints what it means.
     pub fn replay(&self, target: Target, input: &Path) -> Result<()> {
-        let input = std::path::absolute(input).with_context(|| format!("--replay {}", input.display()))?;
+        let input =
+            std::path::absolute(input).with_context(|| format!("--replay {}", input.display()))?;
         let status = self
             .command(target)
             .env("FUZZ_SHOW", "1")
@@ -229,7 +234,8 @@ impl Engine {
             bail!("{}: an input fails ({status})", target.name());
         }
         let kept = target.corpus();
-        std::fs::remove_dir_all(&kept).with_context(|| format!("{}: cannot be emptied", kept.display()))?;
+        std::fs::remove_dir_all(&kept)
+            .with_context(|| format!("{}: cannot be emptied", kept.display()))?;
         create(&kept)?;
         let mut bytes = 0;
         let mut files = 0;

@@ -129,6 +129,9 @@ mod tests {
             assert!(kind.flags("build_script_build").is_empty());
             assert!(!kind.flags("thermal_display").is_empty());
         }
-        assert_ne!(Instrumented::Fuzzing.program(), Instrumented::Coverage.program());
+        assert_ne!(
+            Instrumented::Fuzzing.program(),
+            Instrumented::Coverage.program()
+        );
     }
 }

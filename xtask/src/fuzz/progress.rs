@@ -37,7 +37,9 @@ impl Progress {
                 _ => continue,
             };
             let number = words.next().and_then(|word| word.split('/').next());
-            *place = number.and_then(|number| number.parse().ok()).unwrap_or(*place);
+            *place = number
+                .and_then(|number| number.parse().ok())
+                .unwrap_or(*place);
         }
     }
 

@@ -38,7 +38,9 @@ fn consent(situation: &Situation) -> Consent {
         } => Consent::Refused("installing needs root, and there is no sudo"),
         Situation { agreed: true, .. } => Consent::Given,
         Situation { terminal: true, .. } => Consent::Ask,
-        _ => Consent::Refused("installing needs root, and there is no terminal to ask on; --yes allows it"),
+        _ => Consent::Refused(
+            "installing needs root, and there is no terminal to ask on; --yes allows it",
+        ),
     }
 }
 
@@ -120,7 +122,11 @@ fn names(missing: &[Missing]) -> String {
 }
 
 fn packages(missing: &[Missing]) -> Vec<&'static str> {
-    missing.iter().flat_map(|missing| missing.apt).copied().collect()
+    missing
+        .iter()
+        .flat_map(|missing| missing.apt)
+        .copied()
+        .collect()
 }
 
 /// Updating the lists and installing, each within its time.
@@ -133,7 +139,12 @@ fn commands(packages: &[&str], root: bool) -> [Invocation; 2] {
         APT_LIMIT_S,
         "apt-get",
     ];
-    let options = ["-o", "Acquire::http::Timeout=30", "-o", "DPkg::Lock::Timeout=120"];
+    let options = [
+        "-o",
+        "Acquire::http::Timeout=30",
+        "-o",
+        "DPkg::Lock::Timeout=120",
+    ];
     [
         &["update"][..],
         &[&["install", "-y", "--no-install-recommends"], packages].concat(),
@@ -224,7 +235,11 @@ mod tests {
     #[test]
     fn sudo_comes_before_what_others_than_root_run() {
         let install = |root| commands(&["cmake"], root)[1].to_string();
-        assert!(install(false).starts_with("sudo env "), "{}", install(false));
+        assert!(
+            install(false).starts_with("sudo env "),
+            "{}",
+            install(false)
+        );
         assert!(install(true).starts_with("env "), "{}", install(true));
         assert!(
             install(true).ends_with(" install -y --no-install-recommends cmake"),

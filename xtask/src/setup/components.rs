@@ -51,7 +51,10 @@ pub fn prepare(ci: bool) -> Result<Lints> {
     if missing.is_empty() || on_path("rustup").is_none() {
         return found.accept(ci);
     }
-    let add = Invocation::new("rustup", ["component", "add"].iter().chain(&missing).copied());
+    let add = Invocation::new(
+        "rustup",
+        ["component", "add"].iter().chain(&missing).copied(),
+    );
     eprintln!("fetching: {add} (at most {} s)", RUSTUP_LIMIT.as_secs());
     if let Err(error) = add.run_bounded(RUSTUP_LIMIT) {
         eprintln!("{error}");

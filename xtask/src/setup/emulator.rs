@@ -109,7 +109,8 @@ fn has_libclang() -> bool {
                 .is_some_and(|name| is_libclang(&name.to_string_lossy()));
     }
     let folders = library_folders();
-    folders.iter().any(|folder| holds_libclang(folder)) && folders.iter().any(|folder| holds_headers(folder))
+    folders.iter().any(|folder| holds_libclang(folder))
+        && folders.iter().any(|folder| holds_headers(folder))
 }
 
 /// Where libraries of LLVM are kept: as its own `llvm-config` says, else the usual places.
@@ -120,8 +121,19 @@ fn library_folders() -> Vec<PathBuf> {
         .map(|text| text.trim().into())
         .into_iter()
         .collect();
-    folders.extend(env::var_os("LD_LIBRARY_PATH").iter().flat_map(env::split_paths));
-    for root in ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"].map(PathBuf::from) {
+    folders.extend(
+        env::var_os("LD_LIBRARY_PATH")
+            .iter()
+            .flat_map(env::split_paths),
+    );
+    for root in [
+        "/usr/lib",
+        "/usr/lib64",
+        "/usr/local/lib",
+        "/usr/local/lib64",
+    ]
+    .map(PathBuf::from)
+    {
         // Such as /usr/lib/x86_64-linux-gnu and /usr/lib/llvm-14/lib.
         for folder in entries(&root).filter(|folder| folder.is_dir()) {
             folders.push(folder.join("lib"));
@@ -134,7 +146,8 @@ fn library_folders() -> Vec<PathBuf> {
     }
     folders.push("/Library/Developer/CommandLineTools/usr/lib".into());
     folders.push(
-        "/Applications/Xcode.app/Contents/Developer/Toolchains/XcodeDefault.xctoolchain/usr/lib".into(),
+        "/Applications/Xcode.app/Contents/Developer/Toolchains/XcodeDefault.xctoolchain/usr/lib"
+            .into(),
     );
     folders
 }

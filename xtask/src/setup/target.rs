@@ -104,17 +104,23 @@ pub fn decide(choice: Choice, found: &Found, lints: bool, rustup_tried: bool) ->
 /// Looks at the machine.
 pub fn probe() -> Found {
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
-    let print = |program: &str, args: &[&str]| Invocation::new(program, args.iter().copied()).answer();
+    let print =
+        |program: &str, args: &[&str]| Invocation::new(program, args.iter().copied()).answer();
     let folder = |text: Option<String>| text.map(|text| PathBuf::from(text.trim()));
-    let target_libraries = folder(print(&rustc, &["--print", "target-libdir", "--target", TARGET]));
+    let target_libraries = folder(print(
+        &rustc,
+        &["--print", "target-libdir", "--target", TARGET],
+    ));
     let distribution_root = folder(print(RUSTC, &["--print", "sysroot"]));
     Found {
         active_has_target: target_libraries.is_some_and(|path| path.is_dir()),
         rustup: on_path("rustup").is_some(),
         rustc: print(RUSTC, &["--version"]).as_deref().and_then(version),
         cargo: print(CARGO, &["--version"]).as_deref().and_then(version),
-        source: distribution_root
-            .is_some_and(|root| root.join("lib/rustlib/src/rust/library/Cargo.toml").is_file()),
+        source: distribution_root.is_some_and(|root| {
+            root.join("lib/rustlib/src/rust/library/Cargo.toml")
+                .is_file()
+        }),
         clippy: Path::new(CARGO_CLIPPY).is_file(),
         linker: folder(print(&rustc, &["--print", "target-libdir"]))
             .and_then(|libraries| Some(libraries.parent()?.join("bin/rust-lld")))
@@ -297,6 +303,9 @@ mod tests {
         for (answer, expected) in cases {
             assert_eq!(version(answer), expected, "{answer}");
         }
-        assert!(needed_version() > (1, 85), "the 2024 edition needs 1.85 at least");
+        assert!(
+            needed_version() > (1, 85),
+            "the 2024 edition needs 1.85 at least"
+        );
     }
 }

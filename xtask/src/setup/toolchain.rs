@@ -81,7 +81,10 @@ impl Distribution {
     pub fn cargo(&self, subcommand: &str) -> Invocation {
         let (program, args) = match subcommand {
             // Not by way of cargo: it would prefer the clippy in the user's own folder of cargo programs.
-            "clippy" => (CARGO_CLIPPY, ["clippy", "-Zbuild-std=core,compiler_builtins"]),
+            "clippy" => (
+                CARGO_CLIPPY,
+                ["clippy", "-Zbuild-std=core,compiler_builtins"],
+            ),
             _ => (CARGO, [subcommand, "-Zbuild-std=core,compiler_builtins"]),
         };
         Invocation::new(program, args)
@@ -111,7 +114,10 @@ impl fmt::Display for Toolchain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Active => write!(f, "the active toolchain with {TARGET}"),
-            Self::Distribution(_) => write!(f, "the distribution's {RUSTC}, core library built for {TARGET}"),
+            Self::Distribution(_) => write!(
+                f,
+                "the distribution's {RUSTC}, core library built for {TARGET}"
+            ),
         }
     }
 }
@@ -127,7 +133,10 @@ mod tests {
         }
         .cargo("build")
         .to_string();
-        assert!(line.contains("RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 "), "{line}");
+        assert!(
+            line.contains("RUSTC=/usr/bin/rustc RUSTC_BOOTSTRAP=1 "),
+            "{line}"
+        );
         assert!(
             line.ends_with(" /usr/bin/cargo build -Zbuild-std=core,compiler_builtins"),
             "{line}"

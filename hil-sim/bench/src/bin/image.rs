@@ -72,9 +72,9 @@ fn measure(work: Work) -> u64 {
     free(|section| {
         let desk = DESK.borrow(section).borrow();
         match (&desk.work, &desk.station) {
-            (Some(Work::Scene(scene, _)), Some(station)) => {
-                station.set_point_c(scene.arithmetic, desk.set_point).to_bits()
-            }
+            (Some(Work::Scene(scene, _)), Some(station)) => station
+                .set_point_c(scene.arithmetic, desk.set_point)
+                .to_bits(),
             _ => desk.value.map_or(0, Value::to_bits),
         }
     })

@@ -109,7 +109,10 @@ mod tests {
     /// 50-digit values of the model's test data.
     #[test]
     fn truth_agrees_with_golden_values() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../model/tests/data/erfcx.csv");
+        let path = concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../model/tests/data/erfcx.csv"
+        );
         let mut reader = csv::Reader::from_path(path).unwrap();
         let mut checked = 0;
         for record in reader.records() {

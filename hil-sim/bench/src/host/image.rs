@@ -70,7 +70,9 @@ impl Image {
     /// There is none, or more than one.
     pub fn address(&self, path: &str) -> anyhow::Result<u32> {
         let mut found = self.symbols.iter().filter(|symbol| symbol.path == path);
-        let symbol = found.next().with_context(|| format!("the image has no {path}"))?;
+        let symbol = found
+            .next()
+            .with_context(|| format!("the image has no {path}"))?;
         ensure!(found.next().is_none(), "the image has more than one {path}");
         Ok(symbol.address)
     }
@@ -96,6 +98,8 @@ fn compiler(file: &object::File<'_>) -> anyhow::Result<String> {
         .section_by_name(".comment")
         .context("the image names no compiler")?;
     let comments = String::from_utf8_lossy(section.data()?);
-    let name = comments.split('\0').find(|comment| comment.starts_with("rustc"));
+    let name = comments
+        .split('\0')
+        .find(|comment| comment.starts_with("rustc"));
     Ok(name.context("the image was not compiled by rustc")?.into())
 }

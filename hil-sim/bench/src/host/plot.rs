@@ -76,7 +76,9 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
             .map(move |k| of((k.cost.cycles_max as f64, k.accuracy.worst_units)))
     };
     let range = |values: &mut dyn Iterator<Item = f64>| {
-        values.fold((f64::INFINITY, 0f64), |(low, high), v| (low.min(v), high.max(v)))
+        values.fold((f64::INFINITY, 0f64), |(low, high), v| {
+            (low.min(v), high.max(v))
+        })
     };
     let (x_low, x_high) = range(&mut points(|(x, _)| x));
     let (y_low, y_high) = range(&mut points(|(_, y)| y));
@@ -141,7 +143,11 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
         let better = "better: sooner done and closer";
         let corner = Frame::of_text(better, inside.left + 30, inside.bottom - 18);
         let tip = (inside.left + 8, inside.bottom - 8);
-        for tail in [(tip.0 + 9, tip.1), (tip.0, tip.1 - 9), (tip.0 + 15, tip.1 - 15)] {
+        for tail in [
+            (tip.0 + 9, tip.1),
+            (tip.0, tip.1 - 9),
+            (tip.0 + 15, tip.1 - 15),
+        ] {
             root.draw(&PathElement::new([tip, tail], GUIDE.stroke_width(2)))?;
         }
         write(&root, better, corner, &GUIDE)?;
@@ -162,7 +168,11 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
                 Some(_) => color.stroke_width(2),
                 None => color.filled(),
             };
-            let radius = if kernel.id == OURS { RADIUS + 2 } else { RADIUS };
+            let radius = if kernel.id == OURS {
+                RADIUS + 2
+            } else {
+                RADIUS
+            };
             let label = free_place(kernel.title, place, &inside, &taken);
             root.draw(&PathElement::new(
                 [place, label.nearest(place)],
@@ -181,7 +191,10 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
 impl Frame {
     /// The point of the frame that is nearest to `place`.
     fn nearest(&self, (x, y): (i32, i32)) -> (i32, i32) {
-        (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
+        (
+            x.clamp(self.left, self.right),
+            y.clamp(self.top, self.bottom),
+        )
     }
 }
 
@@ -219,7 +232,10 @@ fn write(
         .into_font()
         .color(color)
         .pos(Pos::new(HPos::Center, VPos::Center));
-    let middle = ((frame.left + frame.right) / 2, (frame.top + frame.bottom) / 2);
+    let middle = (
+        (frame.left + frame.right) / 2,
+        (frame.top + frame.bottom) / 2,
+    );
     root.draw(&Text::new(text.to_owned(), middle, style))?;
     Ok(())
 }

@@ -113,9 +113,9 @@ const LEVELS: u32 = 120;
 pub fn erfcx_of_root(u: Twofold) -> Twofold {
     let z = u.sqrt();
     if u.high > SERIES_UP_TO {
-        let tail = (1..=LEVELS)
-            .rev()
-            .fold(z, |tail, level| z + Twofold::from(0.5 * f64::from(level)) / tail);
+        let tail = (1..=LEVELS).rev().fold(z, |tail, level| {
+            z + Twofold::from(0.5 * f64::from(level)) / tail
+        });
         return Twofold::from(1.0) / (PI.sqrt() * tail);
     }
     let two = Twofold::from(2.0);

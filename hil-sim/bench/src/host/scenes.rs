@@ -36,7 +36,9 @@ pub fn judge(scene: &Scene) -> anyhow::Result<Judgement> {
             let error_mk = (found - exact_c(scene.kind, tick)).abs() * 1e3;
             judgement.worst_mk = judgement.worst_mk.max(error_mk);
         } else {
-            judgement.breaks_at_s.get_or_insert(f64::from(tick) * TICK_S);
+            judgement
+                .breaks_at_s
+                .get_or_insert(f64::from(tick) * TICK_S);
         }
     }
     Ok(judgement)

@@ -112,7 +112,9 @@ fn kernel_row(kernel: &KernelFigures) -> Vec<String> {
         short(accuracy.worst_units),
         short(accuracy.mean_units),
         short(accuracy.worst_mk),
-        accuracy.breaks_at_z.map_or("never".into(), |z| format!("{z:.2}")),
+        accuracy
+            .breaks_at_z
+            .map_or("never".into(), |z| format!("{z:.2}")),
         kernel
             .table_bytes
             .map_or("in code".into(), |bytes| bytes.to_string()),

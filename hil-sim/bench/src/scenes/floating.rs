@@ -61,7 +61,8 @@ impl<F: Native> Finger<F> {
             ratio: F::from_f64(contact.ratio),
             per_tick: F::from_f64(contact.rate_per_s * TICK_S),
             per_tick_at_hardness: F::from_f64(under(SKIN_MICROHARDNESS_PA).rate_per_s * TICK_S),
-            areas: STATED.map(|(force, pressure)| (F::from_f64(force), F::from_f64(force / pressure))),
+            areas: STATED
+                .map(|(force, pressure)| (F::from_f64(force), F::from_f64(force / pressure))),
             set_point_c: F::from_f64(0.0),
         }
     }

@@ -7,7 +7,13 @@ fn effect(first: u16, second: u16) -> Effect {
 
 #[test]
 fn lengths() {
-    for (first, length) in [(0x4770, 2), (0xe7fe, 2), (0xe92d, 4), (0xf000, 4), (0xfb00, 4)] {
+    for (first, length) in [
+        (0x4770, 2),
+        (0xe7fe, 2),
+        (0xe92d, 4),
+        (0xf000, 4),
+        (0xfb00, 4),
+    ] {
         assert_eq!(decode(0, first, 0).length, length, "{first:#x}");
     }
 }

@@ -16,12 +16,18 @@ struct Report<'a> {
 }
 
 /// Runs the campaigns of these numbers; a violation is a failure.
-pub fn run(arguments: &Arguments, device: Device<'_>, numbers: std::ops::Range<u64>) -> Result<(), Failure> {
+pub fn run(
+    arguments: &Arguments,
+    device: Device<'_>,
+    numbers: std::ops::Range<u64>,
+) -> Result<(), Failure> {
     let has_processor = matches!(device, Device::Image(_));
     let campaigns: Vec<_> = numbers
         .map(|number| Campaign::new(arguments.seed, number, has_processor))
         .collect();
-    if let (Some(folder), Some(_), [campaign]) = (&arguments.out, arguments.replay, campaigns.as_slice()) {
+    if let (Some(folder), Some(_), [campaign]) =
+        (&arguments.out, arguments.replay, campaigns.as_slice())
+    {
         let name = format!("campaign-{}.toml", campaign.number);
         write(folder, &name, &campaign.text()).map_err(Failure::run)?;
     }

@@ -19,20 +19,32 @@ struct Report<'a> {
 /// Runs the flips of these numbers; a limit that is broken is a failure, and its scene goes to `--out`.
 pub fn run(arguments: &Arguments, device: Device<'_>, numbers: Range<u64>) -> Result<(), Failure> {
     let Device::Image(firmware) = device else {
-        let problem = anyhow!("--flips with --engine native, which has no bits to flip; image is allowed");
+        let problem =
+            anyhow!("--flips with --engine native, which has no bits to flip; image is allowed");
         return Err(Failure::input(problem));
     };
     let of_place = |place: &_| Reference::new(firmware, *place);
-    let references =
-        each(arguments, "references", device, &Reference::PLACES, of_place).map_err(Failure::run)?;
+    let references = each(
+        arguments,
+        "references",
+        device,
+        &Reference::PLACES,
+        of_place,
+    )
+    .map_err(Failure::run)?;
     let stack_bytes = references.iter().filter_map(Reference::stack_bytes).max();
     let memory = Memory::of(firmware, stack_bytes.unwrap_or(0)).map_err(Failure::run)?;
     let seed = arguments.seed;
-    let flips: Vec<_> = numbers.map(|number| Flip::new(seed, number, &memory)).collect();
+    let flips: Vec<_> = numbers
+        .map(|number| Flip::new(seed, number, &memory))
+        .collect();
     let work = |flip: &Flip| {
         let flipped = flip.run(firmware, &references);
         let flipped = flipped.with_context(|| format!("number {} of seed {seed}", flip.number))?;
-        if let (Some(folder), true) = (&arguments.out, flips.len() == 1 || flipped.class == Class::Broken) {
+        if let (Some(folder), true) = (
+            &arguments.out,
+            flips.len() == 1 || flipped.class == Class::Broken,
+        ) {
             write(folder, &format!("flip-{}.toml", flip.number), &flip.text())?;
         }
         Ok(flipped)

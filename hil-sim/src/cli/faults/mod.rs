@@ -124,7 +124,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         Modes { pairs: true, .. } => pairs::run(arguments, device),
         Modes {
-            normal: Some(hours), ..
+            normal: Some(hours),
+            ..
         } => normal::run(arguments, device, hours),
         Modes { .. } => match arguments.replay {
             Some(number) => campaign::run(arguments, device, number..number + 1),
@@ -191,17 +192,29 @@ fn entries(only: &[String]) -> Result<Vec<Entry>, Failure> {
     Ok(all.into_iter().filter(chosen).collect())
 }
 
-fn outlines(arguments: &Arguments, plan: &Plan, device: Device<'_>) -> anyhow::Result<Vec<Outline>> {
-    let trials = each(arguments, "faults", device, &plan.runs(), |(row, moment)| {
-        let entry = &plan.entries[*row];
-        Ok((*row, Trial::run(device, entry, *moment, plan.seed)?))
-    });
+fn outlines(
+    arguments: &Arguments,
+    plan: &Plan,
+    device: Device<'_>,
+) -> anyhow::Result<Vec<Outline>> {
+    let trials = each(
+        arguments,
+        "faults",
+        device,
+        &plan.runs(),
+        |(row, moment)| {
+            let entry = &plan.entries[*row];
+            Ok((*row, Trial::run(device, entry, *moment, plan.seed)?))
+        },
+    );
     let mut by_row: Vec<Vec<Trial>> = plan.entries.iter().map(|_| Vec::new()).collect();
     for (row, trial) in trials? {
         by_row[row].extend(trial);
     }
     let rows = plan.entries.iter().zip(by_row);
-    Ok(rows.map(|(entry, trials)| Outline::new(entry, trials)).collect())
+    Ok(rows
+        .map(|(entry, trials)| Outline::new(entry, trials))
+        .collect())
 }
 
 /// Prints a report as one object if that is asked for, else as its table.
@@ -233,7 +246,8 @@ fn each<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T) -> anyhow::Result<R> + Sync,
 ) -> anyhow::Result<Vec<R>> {
-    let style = ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
+    let style =
+        ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
     let bar = ProgressBar::new(items.len() as u64).with_style(style);
     bar.set_message(format!("{what} on engine {}", device.name()));
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);

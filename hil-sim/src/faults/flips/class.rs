@@ -57,7 +57,8 @@ impl Class {
 
     /// Of a run that came to its end.
     pub(super) fn of(verdict: &Verdict, outcome: &Outcome, reference: &Outcome) -> Self {
-        let same = outcome.trace.rows() == reference.trace.rows() && outcome.answers == reference.answers;
+        let same =
+            outcome.trace.rows() == reference.trace.rows() && outcome.answers == reference.answers;
         match verdict.reason.as_str() {
             _ if !verdict.breaches.is_empty() => Self::Broken,
             _ if same && outcome.resets == reference.resets => Self::Nothing,

@@ -111,7 +111,10 @@ mod tests {
                     }
                 }
                 (Region::Float, MachineFault::CoreBit { register, .. }) => {
-                    assert!(matches!(register, CoreRegister::S(0..32) | CoreRegister::Fpscr));
+                    assert!(matches!(
+                        register,
+                        CoreRegister::S(0..32) | CoreRegister::Fpscr
+                    ));
                 }
                 (Region::Device, MachineFault::RegisterBit { .. }) => {}
                 other => panic!("{other:?}"),
@@ -119,7 +122,10 @@ mod tests {
             if number % 100 == 0 {
                 let scene = Scene::parse(&flip.text(), "flip".as_ref()).expect("a scene");
                 let injection = scene.injections.last().expect("an injection");
-                assert_eq!((injection.fault, injection.t_s), (flip.fault, flip.moment.t_s));
+                assert_eq!(
+                    (injection.fault, injection.t_s),
+                    (flip.fault, flip.moment.t_s)
+                );
             }
         }
         assert_eq!((places.len(), core.len()), (PLACES.len(), 17));

@@ -125,7 +125,11 @@ impl Flip {
                     error.downcast_ref(),
                     Some(RunError::<Stop>::NotInjected(NotInjected::Refused { .. }))
                 );
-                let class = if refused { Class::Refused } else { Class::Ended };
+                let class = if refused {
+                    Class::Refused
+                } else {
+                    Class::Ended
+                };
                 (class, Verdict::ended(&error), None)
             }
         };

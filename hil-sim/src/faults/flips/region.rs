@@ -130,7 +130,9 @@ impl Memory {
     pub fn of(firmware: &Firmware, stack_bytes: u32) -> anyhow::Result<Self> {
         let symbol = |name| {
             let at = firmware.symbol(name);
-            at.with_context(|| format!("the image has no symbol {name}, so its static data cannot be found"))
+            at.with_context(|| {
+                format!("the image has no symbol {name}, so its static data cannot be found")
+            })
         };
         let statics = symbol("__sdata")?..symbol("__sheap")?;
         let top = firmware.initial_sp();

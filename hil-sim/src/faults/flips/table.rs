@@ -30,7 +30,8 @@ pub fn flip_table(runs: &[Flipped]) -> String {
         }
         if class == Class::Broken {
             for breach in Breach::ALL {
-                let broke = |run: &Flipped| run.class == class && run.verdict.breaches.contains(&breach);
+                let broke =
+                    |run: &Flipped| run.class == class && run.verdict.breaches.contains(&breach);
                 if runs.iter().any(broke) {
                     line(&mut text, &format!("  {}", breach.name()), runs, broke);
                 }
@@ -50,7 +51,12 @@ pub fn flip_table(runs: &[Flipped]) -> String {
         );
     }
     for run in runs {
-        let what = format!("number {}: {} ({})", run.number, run.flip, run.region.name());
+        let what = format!(
+            "number {}: {} ({})",
+            run.number,
+            run.flip,
+            run.region.name()
+        );
         let _ = match (run.class, &run.verdict.ended) {
             (Class::Broken, _) => writeln!(
                 text,

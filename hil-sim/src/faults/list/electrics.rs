@@ -60,7 +60,12 @@ pub const ENTRIES: &[Entry] = &[
     Entry::trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
     Entry::trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
     Entry::trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(PLAIN),
-    Entry::trips(broken(Kind::BridgeShorted), &[Sign::FaultLine], &[Fault::Bridge]).at(WORST),
+    Entry::trips(
+        broken(Kind::BridgeShorted),
+        &[Sign::FaultLine],
+        &[Fault::Bridge],
+    )
+    .at(WORST),
     Entry::trips(
         broken(Kind::PolaritySwapped),
         &[

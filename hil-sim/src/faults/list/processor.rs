@@ -119,9 +119,21 @@ pub const ENTRIES: &[Entry] = &[
     Entry::harmless(flipped(TIM1 + 0x34, 10)),
     // Scans that are no longer started, converted, stored or taken.
     Entry::trips(flipped(TIM2, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
-    Entry::trips(flipped(ADC1 + 0x08, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
-    Entry::trips(flipped(DMA2_S0CR, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
-    Entry::trips(flipped(NVIC_ISER1, 24), NOW, &[Fault::TickLost, Fault::Sampling]),
+    Entry::trips(
+        flipped(ADC1 + 0x08, 0),
+        NOW,
+        &[Fault::TickLost, Fault::Sampling],
+    ),
+    Entry::trips(
+        flipped(DMA2_S0CR, 0),
+        NOW,
+        &[Fault::TickLost, Fault::Sampling],
+    ),
+    Entry::trips(
+        flipped(NVIC_ISER1, 24),
+        NOW,
+        &[Fault::TickLost, Fault::Sampling],
+    ),
     // The host's task is no longer called.
     Entry::trips(flipped(NVIC_ISER0, 6), ROLL_CALL, &[Fault::Watchdog]),
     // Scans at another rate: 0.6 % slower and faster, 9 %, 3.7 times faster, 6.8, 24 and 48 times slower; half of it and less.

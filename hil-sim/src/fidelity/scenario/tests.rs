@@ -25,7 +25,10 @@ fn every_case_is_a_scene_with_its_law_seed_and_temperatures() {
             (scene.law, scene.seed, scene.room_c),
             (Some(Law::Pi10Hz), 5, 24.0)
         );
-        assert_eq!((scene.skin_c, scene.object_c()), (case.skin_c, case.object_c));
+        assert_eq!(
+            (scene.skin_c, scene.object_c()),
+            (case.skin_c, case.object_c)
+        );
     }
 }
 
@@ -66,7 +69,11 @@ fn b_has_the_finger_there_before_the_object() {
         let scene = scene(case);
         assert_eq!(scene.object.appears_t_s, 2.0);
         assert_eq!(
-            (scene.force_n(0.499), scene.force_n(0.5), scene.force_n(12.0)),
+            (
+                scene.force_n(0.499),
+                scene.force_n(0.5),
+                scene.force_n(12.0)
+            ),
             (0.0, 2.0, 2.0)
         );
     }
@@ -76,8 +83,12 @@ fn b_has_the_finger_there_before_the_object() {
 fn c_lifts_and_replaces_ten_times() {
     let scene = scene(find(&Scenario::C.cases(), "abs", 0.5));
     let touches = |ms: u32| scene.force_n(f64::from(ms) * 1e-3) > 0.0;
-    let landings = (1..=21_000).filter(|&ms| touches(ms) && !touches(ms - 1)).count();
-    let lifts = (1..=21_000).filter(|&ms| !touches(ms) && touches(ms - 1)).count();
+    let landings = (1..=21_000)
+        .filter(|&ms| touches(ms) && !touches(ms - 1))
+        .count();
+    let lifts = (1..=21_000)
+        .filter(|&ms| !touches(ms) && touches(ms - 1))
+        .count();
     assert_eq!((landings, lifts), (10, 10));
     assert_eq!((0..21_000).filter(|&ms| touches(ms)).count(), 10_000);
 }
@@ -111,7 +122,10 @@ fn unseen_are_materials_warm_objects_other_skin_and_a_bar_that_is_too_warm() {
     assert!(cases.iter().filter(|case| case.object_c == 41.0).count() >= 4);
     let skins: Vec<_> = cases.iter().map(|case| case.skin_c).collect();
     assert!(skins.contains(&28.0) && skins.contains(&36.0));
-    let bar = cases.iter().find(|case| case.object_c == 44.0).expect("a bar");
+    let bar = cases
+        .iter()
+        .find(|case| case.object_c == 44.0)
+        .expect("a bar");
     assert_eq!(bar.measure, Measure::Limited);
     // Effusivities of handbooks, J/(m2 s^0.5 K): glass 1450, aluminium 24000, oak 490, cork 117.
     for (name, effusivity) in [
@@ -120,8 +134,15 @@ fn unseen_are_materials_warm_objects_other_skin_and_a_bar_that_is_too_warm() {
         ("oak", 490.0),
         ("cork", 117.0),
     ] {
-        let material = find(&cases, name, 2.0).thing.properties.expect("properties");
+        let material = find(&cases, name, 2.0)
+            .thing
+            .properties
+            .expect("properties");
         let ratio = material.effusivity() / effusivity;
-        assert!((0.95..1.05).contains(&ratio), "{name}: {}", material.effusivity());
+        assert!(
+            (0.95..1.05).contains(&ratio),
+            "{name}: {}",
+            material.effusivity()
+        );
     }
 }

@@ -1,5 +1,7 @@
 //! The address map: which device answers at an address, whether its clock runs, and what a store sets in motion.
-use super::{ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ, WWDG_IRQ};
+use super::{
+    ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ, WWDG_IRQ,
+};
 use crate::machine::adc::Trigger;
 use crate::machine::dma::Dma;
 use crate::machine::gpio::Port;
@@ -31,7 +33,10 @@ enum Device {
 fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
     let page = address >> 10 & 0xff;
     Some(match address & 0xffff_fc00 {
-        0x4002_0000..0x4002_2000 => (Device::Gpio(page as usize & 7), Some((Enr::Ahb1, page as u8 & 7))),
+        0x4002_0000..0x4002_2000 => (
+            Device::Gpio(page as usize & 7),
+            Some((Enr::Ahb1, page as u8 & 7)),
+        ),
         0x4002_3800 => (Device::Rcc, None),
         0x4002_3c00 => (Device::Flash, None),
         0x4002_6000 => (Device::Dma(0), Some((Enr::Ahb1, 21))),
@@ -40,8 +45,13 @@ fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
         0x4001_0400 => (Device::Tim(TIM8), Some((Enr::Apb2, 1))),
         0x4001_4400 => (Device::Tim(TIM10), Some((Enr::Apb2, 17))),
         0x4001_4800 => (Device::Tim(TIM11), Some((Enr::Apb2, 18))),
-        0x4000_0000..0x4000_1800 => (Device::Tim(page as usize + 1), Some((Enr::Apb1, page as u8))),
-        0x4001_2000 if !(0x100..0x300).contains(&(address & 0x3ff)) => (Device::Adc, Some((Enr::Apb2, 8))),
+        0x4000_0000..0x4000_1800 => (
+            Device::Tim(page as usize + 1),
+            Some((Enr::Apb1, page as u8)),
+        ),
+        0x4001_2000 if !(0x100..0x300).contains(&(address & 0x3ff)) => {
+            (Device::Adc, Some((Enr::Apb2, 8)))
+        }
         0x4000_4400 => (Device::Usart2, Some((Enr::Apb1, 17))),
         0x4000_7000 => (Device::Pwr, Some((Enr::Apb1, 28))),
         0x4000_3000 => (Device::Iwdg, None),
@@ -204,7 +214,8 @@ impl<W: Wiring> Chip<W> {
             }
             Device::Flash if offset == 0 => self.rcc.write_acr(value)?,
             Device::Flash => {
-                self.flash.write(offset, value, now, self.rcc.clocks().hclk_hz)?;
+                self.flash
+                    .write(offset, value, now, self.rcc.clocks().hclk_hz)?;
                 self.power_may_fail();
             }
             Device::Pwr => self.rcc.write_pwr(offset, value, now)?,
@@ -237,7 +248,9 @@ impl<W: Wiring> Chip<W> {
                 self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
                 self.kick = true;
             }
-            Device::Iwdg => self.iwdg.write(offset, value, now, self.rcc.clocks().hclk_hz)?,
+            Device::Iwdg => self
+                .iwdg
+                .write(offset, value, now, self.rcc.clocks().hclk_hz)?,
             Device::Wwdg => {
                 if self.wwdg.write(offset, value, now)? {
                     self.reset = Some(ResetCause::WindowWatchdog);

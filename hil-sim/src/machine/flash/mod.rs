@@ -101,7 +101,9 @@ impl Flash {
                 self.status &= !value;
                 Ok(())
             }
-            0x10 if self.lock != Lock::Open => Err(Refusal::NotModelled("FLASH_CR while it is locked")),
+            0x10 if self.lock != Lock::Open => {
+                Err(Refusal::NotModelled("FLASH_CR while it is locked"))
+            }
             0x10 => {
                 if value & LOCK != 0 {
                     (self.lock, self.control) = (Lock::Locked, value & !(LOCK | STRT));
@@ -146,7 +148,14 @@ impl Flash {
     }
 
     /// A store to the settings' sectors.
-    pub fn store(&mut self, address: u32, bytes: u8, value: u32, now: u64, hclk_hz: u32) -> Answer<()> {
+    pub fn store(
+        &mut self,
+        address: u32,
+        bytes: u8,
+        value: u32,
+        now: u64,
+        hclk_hz: u32,
+    ) -> Answer<()> {
         let value = &value.to_le_bytes()[..usize::from(bytes.min(4))];
         let error = if self.lock != Lock::Open || self.control & (PG | SER) != PG {
             PGSERR

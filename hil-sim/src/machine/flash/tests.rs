@@ -34,12 +34,19 @@ fn the_keys_open_the_control_register_in_their_order_only() {
 fn words_are_programmed_and_a_sector_erased_in_their_time() {
     let mut flash = unlocked();
     flash.write(0x10, PG | PSIZE_32, 0, HSI).unwrap();
-    flash.store(SETTINGS.start + 8, 4, 0x1234_5678, 100, HSI).unwrap();
-    flash.store(SETTINGS.start + 8, 4, 0xffff_00ff, 100, HSI).unwrap();
+    flash
+        .store(SETTINGS.start + 8, 4, 0x1234_5678, 100, HSI)
+        .unwrap();
+    flash
+        .store(SETTINGS.start + 8, 4, 0xffff_00ff, 100, HSI)
+        .unwrap();
     assert_eq!(flash.load(SETTINGS.start + 8, 4), 0x1234_0078);
     // 16 us are 256 cycles of 16 MHz.
     assert_eq!(
-        (flash.read(0x0c, 611).unwrap(), flash.read(0x0c, 612).unwrap()),
+        (
+            flash.read(0x0c, 611).unwrap(),
+            flash.read(0x0c, 612).unwrap()
+        ),
         (BSY, 0)
     );
     flash
@@ -48,7 +55,9 @@ fn words_are_programmed_and_a_sector_erased_in_their_time() {
     assert_eq!(flash.load(SETTINGS.start + 8, 4), u32::MAX);
     assert_eq!(flash.busy_until(), 1000 + 4_000_000, "250 ms");
     assert!(
-        flash.write(0x10, SER | PSIZE_32 | STRT, 9_000_000, HSI).is_err(),
+        flash
+            .write(0x10, SER | PSIZE_32 | STRT, 9_000_000, HSI)
+            .is_err(),
         "sector 0 holds code"
     );
 }
@@ -63,7 +72,9 @@ fn wrong_stores_change_nothing_and_set_their_flag() {
     ];
     for (control, bytes, offset, flag) in cases {
         flash.write(0x10, control, 0, HSI).unwrap();
-        flash.store(SETTINGS.start + offset, bytes, 0, 0, HSI).unwrap();
+        flash
+            .store(SETTINGS.start + offset, bytes, 0, 0, HSI)
+            .unwrap();
         assert_eq!(flash.read(0x0c, 0).unwrap(), flag);
         flash.write(0x0c, flag, 0, HSI).unwrap();
         assert_eq!(flash.read(0x0c, 0).unwrap(), 0);

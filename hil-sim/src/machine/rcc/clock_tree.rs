@@ -68,7 +68,9 @@ impl Rcc {
             return Err(Refusal::NotModelled("RCC_CFGR.SW = PLL_R"));
         }
         if !self.is_ready([HSI, HSE, PLL][source], now) {
-            return Err(Refusal::NotModelled("RCC_CFGR.SW = a source that is not ready"));
+            return Err(Refusal::NotModelled(
+                "RCC_CFGR.SW = a source that is not ready",
+            ));
         }
         only(value, 0x001f_fcff, "RCC_CFGR clock outputs")?;
         self.clocks = self.computed(value)?;

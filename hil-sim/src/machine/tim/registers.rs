@@ -81,7 +81,11 @@ impl Tim {
             0x0c => {
                 let channels = ((1u32 << self.kind.channels) - 1) << 1;
                 let advanced = if self.kind.advanced { 0xa0 } else { 0 };
-                only(value, UIF | channels | 0x40 | advanced, "TIM DIER (DMA requests)")?;
+                only(
+                    value,
+                    UIF | channels | 0x40 | advanced,
+                    "TIM DIER (DMA requests)",
+                )?;
                 self.dier = value;
             }
             0x10 => self.sr &= value,

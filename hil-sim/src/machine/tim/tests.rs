@@ -141,7 +141,10 @@ fn one_pulse_mode_stops_at_the_update() {
     tim.write(0x00, 9, 0).unwrap();
     assert_eq!(tim.read(0x00, 199).unwrap() & 1, 1);
     assert_eq!(
-        (tim.read(0x00, 200).unwrap() & 1, tim.read(0x10, 200).unwrap()),
+        (
+            tim.read(0x00, 200).unwrap() & 1,
+            tim.read(0x10, 200).unwrap()
+        ),
         (0, 1)
     );
 }
@@ -158,7 +161,11 @@ fn other_modes_are_refused() {
 #[test]
 fn a_timer_has_the_registers_of_its_kind_only() {
     for (kind, present, absent) in [
-        (ADVANCED, &[0x04, 0x08, 0x1c, 0x30, 0x40, 0x44][..], &[0x50][..]),
+        (
+            ADVANCED,
+            &[0x04, 0x08, 0x1c, 0x30, 0x40, 0x44][..],
+            &[0x50][..],
+        ),
         (GENERAL, &[0x04, 0x08, 0x1c, 0x40], &[0x30, 0x44]),
         (
             SINGLE,

@@ -99,7 +99,8 @@ impl DeadTime {
         let falls = (self.diode_v + tile_v) * self.part * self.per_v;
         let peak = (self.supply_v - tile_v) * pulse * self.per_v;
         let knee = peak - falls;
-        let mean_a = falls * self.part + peak * pulse + (peak + knee) * self.part + (knee + falls) * pause;
+        let mean_a =
+            falls * self.part + peak * pulse + (peak + knee) * self.part + (knee + falls) * pause;
         (0.5 * mean_a, lost_v)
     }
 
@@ -112,13 +113,17 @@ impl DeadTime {
         let rises = (self.supply_v + self.diode_v - tile_v) * self.part * self.per_v;
         let peak = tile_v * pause * self.per_v;
         let knee = peak - rises;
-        let mean_a = rises * self.part + peak * pause + (peak + knee) * self.part + (knee + rises) * pulse;
+        let mean_a =
+            rises * self.part + peak * pause + (peak + knee) * self.part + (knee + rises) * pulse;
         (-0.5 * mean_a, lost_v)
     }
 
     /// What a dead time leaves of a pulse and of a pause.
     fn rests(&self, width: f64) -> (f64, f64) {
-        ((width - self.part).max(0.0), (1.0 - width - self.part).max(0.0))
+        (
+            (width - self.part).max(0.0),
+            (1.0 - width - self.part).max(0.0),
+        )
     }
 
     /// Corners of the voltage lost, V, over the mean current, A, above a current; both rise to the last.
@@ -159,7 +164,8 @@ impl DeadTime {
         let low = before + rise - after;
         let from_a = 0.5 * (after * part - low * pause + (after - low) * width);
         let knee = rise - after;
-        let to_a = 0.5 * (rise * pulse - before * part + (rise + knee) * part + (knee - before) * pause);
+        let to_a =
+            0.5 * (rise * pulse - before * part + (rise + knee) * part + (knee - before) * pause);
         let middle_a = 0.5 * (from_a + to_a);
         let mut corners = [
             floating_after,

@@ -124,7 +124,8 @@ impl Bridge {
             (true, Leg::Duty(a), Leg::Duty(b)) if a > 0.0 || b > 0.0 => {
                 (a.clamp(0.0, 1.0), b.clamp(0.0, 1.0))
             }
-            (true, Leg::Shorted, Leg::Duty(_) | Leg::Shorted) | (true, Leg::Duty(_), Leg::Shorted) => {
+            (true, Leg::Shorted, Leg::Duty(_) | Leg::Shorted)
+            | (true, Leg::Duty(_), Leg::Shorted) => {
                 return self.trip();
             }
             _ => return Current::default(),
@@ -164,7 +165,9 @@ impl Bridge {
         };
         // The width that is left of the pulses, by the mean voltage across the legs.
         let applied_v = mean_a * ohm + load.seebeck_v;
-        let ripple_v2 = self.ripple.mean_square_v2((applied_v / params.supply_v).abs());
+        let ripple_v2 = self
+            .ripple
+            .mean_square_v2((applied_v / params.supply_v).abs());
         Current {
             mean_a,
             ripple_a2: ripple_v2 / (load.resistance_ohm * load.resistance_ohm),

@@ -86,5 +86,9 @@ fn passed(params: &BridgeParams, load_ohm: f64, omega: f64) -> f64 {
 /// Sum over the harmonics at one width.
 fn mean_square_v2(power_v2: &[f64], width: f64) -> f64 {
     let sines = (1..).map(|n| (PI * f64::from(n) * width).sin().powi(2));
-    power_v2.iter().zip(sines).map(|(power, sine)| power * sine).sum()
+    power_v2
+        .iter()
+        .zip(sines)
+        .map(|(power, sine)| power * sine)
+        .sum()
 }

@@ -60,7 +60,10 @@ fn mean_and_ripple_are_those_of_the_circuit() {
                 crossing += u32::from(!clear);
                 let (allowed_a, allowed) = if clear { (1e-3, 0.04) } else { (0.03, 0.15) };
                 let off_a = got.mean_a - mean_a;
-                assert!(off_a.abs() < allowed_a, "{at}: mean {mean_a} A, off by {off_a}");
+                assert!(
+                    off_a.abs() < allowed_a,
+                    "{at}: mean {mean_a} A, off by {off_a}"
+                );
                 let off_a2 = got.ripple_a2 - ripple_a2;
                 assert!(
                     off_a2.abs() < allowed * ripple_a2 + 2e-5,
@@ -88,7 +91,10 @@ fn mean_around_zero_is_exact_for_a_stiff_filter() {
         let load = Load { seebeck_v, ..TILE };
         let [mean_a, ..] = circuit::settled(&params, width, &load);
         let off_a = current(params, &driven(1.0, 1.0 - width), &load).mean_a - mean_a;
-        assert!(off_a.abs() < 2e-3, "{seebeck_v} V: {mean_a} A, off by {off_a}");
+        assert!(
+            off_a.abs() < 2e-3,
+            "{seebeck_v} V: {mean_a} A, off by {off_a}"
+        );
     }
 }
 
@@ -125,7 +131,10 @@ fn unfiltered_antiphase_burns_what_the_supply_does_at_rest() {
     // Both legs against each other at half width are pulses of twice the supply less the supply: no mean, and the
     // ripple of the pulses.
     let ripple_a2 = current(unfiltered(24.0), &driven(1.0, 0.5), &TILE).ripple_a2;
-    assert!((ripple_a2 * 1.061 / 136.0 - 1.0).abs() < 5e-3, "{ripple_a2} A2");
+    assert!(
+        (ripple_a2 * 1.061 / 136.0 - 1.0).abs() < 5e-3,
+        "{ripple_a2} A2"
+    );
 }
 
 #[test]
@@ -138,7 +147,8 @@ fn dead_time_costs_its_share_of_the_supply_either_way() {
     };
     let lost_a = (12.0 + 2.0 * 0.9) * 0.3e-6 * 96e3 / (1.061 + 0.17 + 0.02);
     for (a, b) in [(1.0, 0.5), (0.5, 1.0)] {
-        let [with, without] = [params, ideal].map(|params| current(params, &driven(a, b), &TILE).mean_a);
+        let [with, without] =
+            [params, ideal].map(|params| current(params, &driven(a, b), &TILE).mean_a);
         assert!(
             (without.abs() - with.abs() - lost_a).abs() < 1e-9,
             "{with} of {without}"
@@ -185,7 +195,12 @@ fn no_current_without_two_driven_legs() {
         seebeck_v: 1.0,
         ..TILE
     };
-    let open = |legs| assert_eq!(current(BridgeParams::NOMINAL, &legs, &warm), Current::default());
+    let open = |legs| {
+        assert_eq!(
+            current(BridgeParams::NOMINAL, &legs, &warm),
+            Current::default()
+        )
+    };
     open(Legs::default());
     open(Legs {
         b: Leg::Off,
@@ -247,8 +262,14 @@ fn shorted_output_trips_when_it_is_driven() {
         b: Leg::Duty(0.5),
         enabled,
     };
-    assert_eq!(bridge.current(STEP_S, &shorted(false), &TILE), Current::default());
+    assert_eq!(
+        bridge.current(STEP_S, &shorted(false), &TILE),
+        Current::default()
+    );
     assert!(!bridge.fault());
-    assert_eq!(bridge.current(STEP_S, &shorted(true), &TILE), Current::default());
+    assert_eq!(
+        bridge.current(STEP_S, &shorted(true), &TILE),
+        Current::default()
+    );
     assert!(bridge.fault());
 }

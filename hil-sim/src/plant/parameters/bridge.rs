@@ -29,7 +29,15 @@ pub fn slots(bridge: &mut BridgeParams) -> impl Iterator<Item = Slot<'_>> {
             (1.0, 40.0),
             Design,
         ),
-        slot(pwm_hz, "pwm_hz", "Hz", "PWM frequency", FIXED, (1e3, 1e6), Design),
+        slot(
+            pwm_hz,
+            "pwm_hz",
+            "Hz",
+            "PWM frequency",
+            FIXED,
+            (1e3, 1e6),
+            Design,
+        ),
         slot(
             dead_time_s,
             "dead_time_s",

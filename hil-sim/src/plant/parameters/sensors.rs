@@ -4,7 +4,8 @@ use super::Source::{ClassValue, DataSheet, Design, Literature, Recalled, Thesis}
 use super::slot::{Slot, slot, under};
 use super::spread::{FIXED, Tolerance, absolute, between, factor, relative};
 use crate::plant::sensors::{
-    ConverterParams, Delay, ForceParams, MirrorParams, ReferenceParams, SensorParams, ThermistorParams,
+    ConverterParams, Delay, ForceParams, MirrorParams, ReferenceParams, SensorParams,
+    ThermistorParams,
 };
 
 /// Lag of a thermistor on the display: literature's range for the class.

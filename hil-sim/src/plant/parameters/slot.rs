@@ -40,7 +40,10 @@ pub fn slot<'a>(
 }
 
 /// The numbers of a part under its name.
-pub fn under<'a>(part: &str, slots: impl IntoIterator<Item = Slot<'a>>) -> impl Iterator<Item = Slot<'a>> {
+pub fn under<'a>(
+    part: &str,
+    slots: impl IntoIterator<Item = Slot<'a>>,
+) -> impl Iterator<Item = Slot<'a>> {
     slots.into_iter().map(move |slot| Slot {
         key: format!("{part}.{}", slot.key),
         ..slot
@@ -71,7 +74,11 @@ impl Slot<'_> {
             high,
             distribution: self.tolerance.distribution(),
             least,
-            most: if self.is_endless() { f64::INFINITY } else { most },
+            most: if self.is_endless() {
+                f64::INFINITY
+            } else {
+                most
+            },
             source: self.source,
             meaning: self.meaning,
         }

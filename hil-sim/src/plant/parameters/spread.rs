@@ -42,9 +42,10 @@ impl Distribution {
         let mut random = Xoshiro256PlusPlus::seed_from_u64(stream(seed, key));
         let drawn = match self {
             Self::Normal => {
-                let sigmas = std::iter::repeat_with(|| -> f64 { StandardNormal.sample(&mut random) })
-                    .find(|sigmas| sigmas.abs() <= LIMIT_SIGMAS)
-                    .unwrap_or(0.0);
+                let sigmas =
+                    std::iter::repeat_with(|| -> f64 { StandardNormal.sample(&mut random) })
+                        .find(|sigmas| sigmas.abs() <= LIMIT_SIGMAS)
+                        .unwrap_or(0.0);
                 value + (high - low) / (2.0 * LIMIT_SIGMAS) * sigmas
             }
             Self::LogUniform => low * (high / low).powf(StandardUniform.sample(&mut random)),
@@ -132,7 +133,10 @@ impl Tolerance {
     }
 
     const fn shaped(self, distribution: Distribution) -> Self {
-        Self { distribution, ..self }
+        Self {
+            distribution,
+            ..self
+        }
     }
 
     pub const fn distribution(&self) -> Distribution {

@@ -58,7 +58,8 @@ fn keys_reach_the_fields_they_name() {
             .filter(|(before, after)| before != after)
             .map(|(_, after)| after.trim().to_owned())
             .collect();
-        let is_its_own = |line: &String| line.starts_with(&format!("{field}: ")) || field == "core_w_m2k";
+        let is_its_own =
+            |line: &String| line.starts_with(&format!("{field}: ")) || field == "core_w_m2k";
         assert!(
             differing.len() == 1 && differing.iter().all(is_its_own),
             "{}: {differing:?}",
@@ -73,7 +74,10 @@ fn nominal_values_are_possible_and_within_their_tolerance() {
         for p in all(&params) {
             assert!(p.least <= p.low && p.low <= p.value, "{p:?}");
             assert!(p.value <= p.high && p.high <= p.most, "{p:?}");
-            assert!(p.distribution != Distribution::Fixed || p.low == p.high, "{p:?}");
+            assert!(
+                p.distribution != Distribution::Fixed || p.low == p.high,
+                "{p:?}"
+            );
             assert!(!p.unit.is_empty() && p.meaning.len() > 3, "{p:?}");
         }
     }
@@ -94,7 +98,10 @@ fn draws_stay_in_tolerance_and_fill_it() {
         .collect();
     for (i, p) in limits.iter().enumerate() {
         let values = || drawn.iter().map(|draw| draw[i]);
-        assert!(values().all(|value| (p.low..=p.high).contains(&value)), "{p:?}");
+        assert!(
+            values().all(|value| (p.low..=p.high).contains(&value)),
+            "{p:?}"
+        );
         if p.distribution == Distribution::Fixed || p.low == p.high {
             assert!(values().all(|value| value == p.value), "{p:?}");
             continue;
@@ -126,7 +133,8 @@ fn draws_stay_in_tolerance_and_fill_it() {
     // No two parameters, and no two seeds, share their draws.
     let first = |draw: &Vec<f64>| {
         let places = limits.iter().zip(draw);
-        let free = places.filter(|(p, _)| p.distribution == Distribution::Uniform && p.low < p.high);
+        let free =
+            places.filter(|(p, _)| p.distribution == Distribution::Uniform && p.low < p.high);
         free.map(|(p, v)| ((v - p.low) / (p.high - p.low) * 1e9) as u64)
             .collect::<Vec<_>>()
     };

@@ -157,7 +157,8 @@ impl Sensors {
         self.read();
         // The 16 scans of a tick, spread over the step.
         self.left = [SCANS_PER_TICK; CHANNELS];
-        self.rise = std::array::from_fn(|i| (self.counts[i] - self.seen[i]) / SCANS_PER_TICK as f64);
+        self.rise =
+            std::array::from_fn(|i| (self.counts[i] - self.seen[i]) / SCANS_PER_TICK as f64);
     }
 
     /// Breaks or mends the sensors. Levels jump: the conversions of the coming step begin where they are then.
@@ -220,7 +221,8 @@ impl Sensors {
             *counts = self.pin_ratio(index) * CODES;
         }
         if !force.open {
-            ideal[Channel::Force as usize] = p.force.counts(self.force_n + force.offset_n) * self.per_volt();
+            ideal[Channel::Force as usize] =
+                p.force.counts(self.force_n + force.offset_n) * self.per_volt();
         }
         ideal[Channel::Current as usize] = self.mirror_counts();
         self.counts = ideal.map(|counts| self.converter.seen(counts));
@@ -229,7 +231,8 @@ impl Sensors {
 
 /// What each thermistor has around it.
 fn sites(params: &SensorParams, state: &Sensed) -> [Site; THERMISTORS] {
-    let edge_c = state.skin_before_c + params.skin_sees_contact * (state.skin_c - state.skin_before_c);
+    let edge_c =
+        state.skin_before_c + params.skin_sees_contact * (state.skin_c - state.skin_before_c);
     let surfaces_c = [
         state.display_c,
         state.display_c,

@@ -91,7 +91,10 @@ impl SensorParams {
         thermistors: [
             BONDED,
             BONDED,
-            ThermistorParams { lag_s: 1.0, ..BONDED },
+            ThermistorParams {
+                lag_s: 1.0,
+                ..BONDED
+            },
             ThermistorParams {
                 lag_s: 0.3,
                 dissipation_w_k: 3e-3,

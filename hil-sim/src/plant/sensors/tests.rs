@@ -69,11 +69,15 @@ fn counts_stay_within_twelve_bits() {
 #[test]
 fn skin_thermistor_hardly_sees_the_contact() {
     // The thesis: 0.05 deg C where the skin in the contact changed by 3 to 5.
-    let touched = Sensed { skin_c: 30.0, ..REST };
+    let touched = Sensed {
+        skin_c: 30.0,
+        ..REST
+    };
     let sensors = Sensors::new(ideal(), &touched, 1);
     let slope = (ideal().thermistors[3].ratio(33.5) - ideal().thermistors[3].ratio(34.5)) * CODES;
-    let fell_c =
-        (sensors.counts[Channel::Skin as usize] - ideal().thermistors[3].ratio(34.0) * CODES) / slope;
+    let fell_c = (sensors.counts[Channel::Skin as usize]
+        - ideal().thermistors[3].ratio(34.0) * CODES)
+        / slope;
     assert!((fell_c - 0.05).abs() < 1e-3, "{fell_c} K");
 }
 
@@ -117,7 +121,10 @@ fn mirror_has_gain_error_and_offset_but_no_negative_current() {
 #[test]
 fn force_sensor_follows_with_its_lag() {
     let mut sensors = Sensors::new(ideal(), &REST, 1);
-    let pressed = Sensed { force_n: 2.0, ..REST };
+    let pressed = Sensed {
+        force_n: 2.0,
+        ..REST
+    };
     for k in 1..=6 {
         sensors.step(0.5e-3, &pressed);
         let wanted_n = 2.0 * (1.0 - (-0.5 * f64::from(k)).exp());
@@ -146,11 +153,20 @@ fn conversions_of_a_tick_move_evenly_to_the_end_of_the_step() {
     params.converter.inl_counts = 0.0;
     let mut sensors = Sensors::new(params, &REST, 1);
     // 2 N are 600 counts above the zero of 410: 37.5 a conversion.
-    sensors.step(1e-3, &Sensed { force_n: 2.0, ..REST });
+    sensors.step(
+        1e-3,
+        &Sensed {
+            force_n: 2.0,
+            ..REST
+        },
+    );
     for k in 1..=16 {
         let code = sensors.convert(Channel::Force);
         let level = 410.0 + 37.5 * f64::from(k);
-        assert!((f64::from(code) - level).abs() <= 0.5, "conversion {k}: {code}");
+        assert!(
+            (f64::from(code) - level).abs() <= 0.5,
+            "conversion {k}: {code}"
+        );
     }
     assert_eq!(sensors.convert(Channel::Force), 1010, "and stay there");
 }

@@ -92,7 +92,10 @@ mod tests {
         for thickness_m in [1e-5, 1.01e-4, 2.5e-4, 1e-3, 0.07] {
             let cells = fill(thickness_m, 1e-4, 1.15);
             let sum: f64 = cells.iter().map(|c| c.width_m).sum();
-            assert!((sum / thickness_m - 1.0).abs() < 1e-14, "{thickness_m}: {sum}");
+            assert!(
+                (sum / thickness_m - 1.0).abs() < 1e-14,
+                "{thickness_m}: {sum}"
+            );
             for pair in cells.windows(2) {
                 assert!(pair[1].width_m / pair[0].width_m < 1.15 + 1e-12);
             }
@@ -133,6 +136,9 @@ mod tests {
                 .fold(0.0, f64::max)
         };
         assert!(worst(1.15, |c| c.node_m) < 2e-8);
-        assert!(worst(1.15, |c| 0.5 * c.width_m) > 1e-3, "nodes in the middle");
+        assert!(
+            worst(1.15, |c| 0.5 * c.width_m) > 1e-3,
+            "nodes in the middle"
+        );
     }
 }

@@ -13,7 +13,10 @@ const TISSUE: Medium = Medium {
 };
 
 fn layer(thickness_m: f64, medium: Medium) -> Layer {
-    Layer { thickness_m, medium }
+    Layer {
+        thickness_m,
+        medium,
+    }
 }
 
 /// Core at a temperature right at the deepest face.
@@ -78,7 +81,10 @@ fn half_space_answers_a_step_as_the_error_function() {
                         break;
                     }
                     let off_c = held.lanes.node_c(0, node) - exact_c;
-                    assert!(off_c.abs() < 6e-3, "off by {off_c} at z = {z} after {t_s} s");
+                    assert!(
+                        off_c.abs() < 6e-3,
+                        "off by {off_c} at z = {z} after {t_s} s"
+                    );
                 }
             }
         }
@@ -122,7 +128,10 @@ fn layers_at_rest_conduct_as_resistances_in_series() {
             above += left.min(l) / k;
             left = (left - l).max(0.0);
         }
-        assert!((t - (34.0 + loss_w_m2 * above)).abs() < 1e-11, "node {node}");
+        assert!(
+            (t - (34.0 + loss_w_m2 * above)).abs() < 1e-11,
+            "node {node}"
+        );
     }
 }
 
@@ -151,7 +160,10 @@ fn blood_and_metabolism_at_rest_follow_the_hyperbolic_solution() {
             worst_c = worst_c.max((t - core_c - above_c(*x)).abs());
         }
         println!("{} cells: {worst_c:.2e} K", slab.cells());
-        assert!(worst_c < 5e-3 && worst_c < last_c / 3.0, "{growth}: {worst_c}");
+        assert!(
+            worst_c < 5e-3 && worst_c < last_c / 3.0,
+            "{growth}: {worst_c}"
+        );
         last_c = worst_c;
 
         // And it stays so.
@@ -208,7 +220,8 @@ const CELLS: [i32; 3] = [32, 20, 16];
 impl Mode {
     fn new() -> Self {
         // Conductivity and heat capacity of a volume; thickness in diffusion lengths, as a row of cells counts.
-        let reached = |cells: i32| COARSE.first * (COARSE.growth.powi(cells) - 1.0) / (COARSE.growth - 1.0);
+        let reached =
+            |cells: i32| COARSE.first * (COARSE.growth.powi(cells) - 1.0) / (COARSE.growth - 1.0);
         let mut above = 0;
         let tissue = [(0.21, 4.0e6), (0.37, 3.6e6), (0.16, 2.2e6)];
         let tissue: [(f64, f64, f64); 3] = std::array::from_fn(|i| {
@@ -219,7 +232,11 @@ impl Mode {
         });
         let total_m2k_w: f64 = tissue.iter().map(|(l, k, _)| l / k).sum();
         let wave = (PI / total_m2k_w).powi(2);
-        let rate = 1.2 * tissue.iter().map(|(_, k, c)| wave / (k * c)).fold(0.0, f64::max);
+        let rate = 1.2
+            * tissue
+                .iter()
+                .map(|(_, k, c)| wave / (k * c))
+                .fold(0.0, f64::max);
         let layers = tissue.map(|(thickness_m, k, c)| {
             let medium = Medium {
                 conductivity_w_mk: k,
@@ -238,7 +255,11 @@ impl Mode {
 
     fn shape(&self, depth_m: f64) -> f64 {
         let (mut above, mut left) = (0.0, depth_m);
-        for Layer { thickness_m, medium } in &self.layers {
+        for Layer {
+            thickness_m,
+            medium,
+        } in &self.layers
+        {
             above += left.min(*thickness_m) / medium.conductivity_w_mk;
             left = (left - thickness_m).max(0.0);
         }

@@ -42,10 +42,14 @@ fn finger_on_object_follows_the_contact_equations() {
         run(plant, left_s, &Legs::default());
         let skin_off_mk = 1e3 * (plant.skin_real_c() - skin_c).abs();
         let object_off_mk = 1e3 * (plant.object_c() - object_c).abs();
-        let flux_off = (plant.heat.flux_w_m2(Finger::OnObject) - flux_w_m2).abs() / (10.0 / resistance_m2k_w);
+        let flux_off =
+            (plant.heat.flux_w_m2(Finger::OnObject) - flux_w_m2).abs() / (10.0 / resistance_m2k_w);
         let allowed_mk = 1.0;
         let at = format!("{material} at {force_n} N after {t_s} s");
-        assert!(skin_off_mk < allowed_mk, "{at}: skin off by {skin_off_mk} mK");
+        assert!(
+            skin_off_mk < allowed_mk,
+            "{at}: skin off by {skin_off_mk} mK"
+        );
         assert!(
             object_off_mk < allowed_mk,
             "{at}: object off by {object_off_mk} mK"
@@ -229,7 +233,10 @@ fn every_material_at_every_force_follows_equations_6_5_to_6_7() {
         println!(
             "{name:15} {skin:.3} {object:.3} {flux:.1e} | {early_skin:.3} {early_object:.3} {early_flux:.1e}"
         );
-        assert!(skin < 0.1 && object < 0.2 && flux < 2e-5, "{name} from 20 ms on");
+        assert!(
+            skin < 0.1 && object < 0.2 && flux < 2e-5,
+            "{name} from 20 ms on"
+        );
         assert!(
             early_skin < 0.5 && early_object < 1.0 && early_flux < 1e-4,
             "{name} before"

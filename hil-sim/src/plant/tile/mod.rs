@@ -124,7 +124,9 @@ impl Tile {
 
     /// Cools the sink as well as its defects allow.
     pub fn cool(&mut self, defects: &CoolingDefects) {
-        let coolant_c = defects.coolant_c.unwrap_or(self.room_c + self.params.coolant_k);
+        let coolant_c = defects
+            .coolant_c
+            .unwrap_or(self.room_c + self.params.coolant_k);
         let (to_c, k_w) = match defects.held_c {
             Some(held_c) => (held_c, HEATER_W_K.recip()),
             None => (coolant_c, self.params.sink_k_w * defects.resistance),
@@ -141,7 +143,11 @@ impl Tile {
     /// Lets a finger cover a part of the patch, m2; air films the rest of the plate.
     pub fn cover(&mut self, area_m2: f64) {
         for (z, m2) in self.zones.area_m2.into_iter().enumerate() {
-            let free_m2 = if z == PATCH { (m2 - area_m2).max(0.0) } else { m2 };
+            let free_m2 = if z == PATCH {
+                (m2 - area_m2).max(0.0)
+            } else {
+                m2
+            };
             let film_w_k = self.params.film_w_m2k * free_m2;
             self.stack.source[0][z] = film_w_k * self.room_c;
             self.stack.feedback[0][z] = -film_w_k;
@@ -162,7 +168,11 @@ impl Tile {
             for link in 0..LINKS {
                 let next_c = self.stack.ahead_c(COLD_TAB + link + 1, z, step_s);
                 let between_c = 0.5 * (here_c + next_c);
-                let half_cell = if link == 0 || link + 1 == LINKS { 2.0 } else { 1.0 };
+                let half_cell = if link == 0 || link + 1 == LINKS {
+                    2.0
+                } else {
+                    1.0
+                };
                 self.stack.axial[COLD_TAB + link][z] =
                     share * all_w_k * half_cell * self.legs.conductivity(between_c);
                 let seebeck_v_k = share * all_v_k * self.legs.seebeck(between_c);
@@ -233,9 +243,11 @@ impl Tile {
         }
         let mean_a = self.current.mean_a;
         let joule_w = (mean_a * mean_a + self.current.ripple_a2) * self.resistance_ohm;
-        let mut to_room_w = -(self.stack.sink.source + self.stack.sink.feedback * self.stack.mean_sink_c());
+        let mut to_room_w =
+            -(self.stack.sink.source + self.stack.sink.feedback * self.stack.mean_sink_c());
         for z in 0..ZONES {
-            to_room_w -= self.stack.source[0][z] + self.stack.feedback[0][z] * self.stack.mean_c(0, z);
+            to_room_w -=
+                self.stack.source[0][z] + self.stack.feedback[0][z] * self.stack.mean_c(0, z);
         }
         Energy {
             electrical_j: step_s * (mean_a * seebeck_v + joule_w),

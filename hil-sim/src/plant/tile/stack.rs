@@ -193,7 +193,8 @@ impl<const N: usize, const Z: usize> Stack<N, Z> {
                     self.sink.temperature
                 };
                 let below = self.axial[i][z] * (t[i][z] - next_c);
-                self.power[i][z] = self.source[i][z] + self.feedback[i][z] * t[i][z] + above[z] - below;
+                self.power[i][z] =
+                    self.source[i][z] + self.feedback[i][z] * t[i][z] + above[z] - below;
                 above[z] = below;
             }
             for z in 1..Z {
@@ -212,7 +213,8 @@ impl<const N: usize, const Z: usize> Stack<N, Z> {
         block[0][0] = extra_w_k;
         for i in 0..N {
             for (z, row) in block.iter_mut().enumerate() {
-                row[z] += scheme::inertia(self.capacity[i][z], h) + self.axial[i][z] - self.feedback[i][z];
+                row[z] += scheme::inertia(self.capacity[i][z], h) + self.axial[i][z]
+                    - self.feedback[i][z];
             }
             for z in 1..Z {
                 let across = self.lateral[i][z - 1];
@@ -234,7 +236,8 @@ impl<const N: usize, const Z: usize> Stack<N, Z> {
             }
         }
         let left: f64 = block.iter().flatten().sum();
-        self.sink.inverse = 1.0 / (scheme::inertia(self.sink.capacity, h) - self.sink.feedback + left);
+        self.sink.inverse =
+            1.0 / (scheme::inertia(self.sink.capacity, h) - self.sink.feedback + left);
     }
 }
 

@@ -89,13 +89,17 @@ fn beyond_the_best_current_more_current_heats() {
     // From a study of this module with constant properties: sink, K/W, and best current at 1 W, A.
     for (sink_k_w, best_a) in [(0.15, 5.6), (0.5, 4.7), (1.0, 3.7), (2.0, 2.6)] {
         let currents_a = || (1..=80).map(|i| 0.1 * f64::from(i));
-        let coldest = currents_a().min_by(|a, b| plate_c(sink_k_w, *a).total_cmp(&plate_c(sink_k_w, *b)));
+        let coldest =
+            currents_a().min_by(|a, b| plate_c(sink_k_w, *a).total_cmp(&plate_c(sink_k_w, *b)));
         let found_a = coldest.expect("some");
         println!(
             "{sink_k_w} K/W: coldest at {found_a:.1} A, {:.1} deg C",
             plate_c(sink_k_w, found_a)
         );
-        assert!((found_a - best_a).abs() < 0.15, "{found_a} A at {sink_k_w} K/W");
+        assert!(
+            (found_a - best_a).abs() < 0.15,
+            "{found_a} A at {sink_k_w} K/W"
+        );
         assert!(plate_c(sink_k_w, found_a + 1.0) > plate_c(sink_k_w, found_a) + 0.1);
     }
     let runaway_c = plate_c(2.0, 6.0);
@@ -122,7 +126,10 @@ fn varying_properties_keep_the_data_sheet() {
         .map(|i| difference_k(0.1 * f64::from(i)))
         .fold(0.0, f64::max);
     let sheet = TileParams::CLASS;
-    println!("largest difference {most_k:.1} K, sheet {} K", sheet.dtmax_k);
+    println!(
+        "largest difference {most_k:.1} K, sheet {} K",
+        sheet.dtmax_k
+    );
     assert!((most_k / sheet.dtmax_k - 1.0).abs() < 0.1, "{most_k} K");
     println!(
         "heat implied {:.1} W, sheet {} W",
@@ -152,7 +159,10 @@ fn responds_like_its_class() {
 /// A disc that conducts sideways and to its back, cut into very many rings, as dense as needed to be the truth.
 fn patch_rise_k(params: &TileParams, sheet_w_k: f64, back_w_m2k: f64) -> f64 {
     let n = 4000;
-    let (patch_m, edge_m) = ((params.patch_m2 / PI).sqrt(), (params.plate_m2() / PI).sqrt());
+    let (patch_m, edge_m) = (
+        (params.patch_m2 / PI).sqrt(),
+        (params.plate_m2() / PI).sqrt(),
+    );
     let ring_m = edge_m / n as f64;
     let area = |i: usize| PI * ring_m * ring_m * (2 * i + 1) as f64;
     let inside = |i: usize| {
@@ -174,7 +184,11 @@ fn patch_rise_k(params: &TileParams, sheet_w_k: f64, back_w_m2k: f64) -> f64 {
     }
     let mut rise = vec![0.0; n];
     for i in (0..n).rev() {
-        let from_outside = if i + 1 < n { link(i) * rise[i + 1] } else { 0.0 };
+        let from_outside = if i + 1 < n {
+            link(i) * rise[i + 1]
+        } else {
+            0.0
+        };
         rise[i] = (loads[i] + from_outside) / pivots[i];
     }
     (0..n).map(|i| rise[i] * inside(i)).sum::<f64>() / params.patch_m2
@@ -193,7 +207,12 @@ fn three_zones_spread_the_heat_of_a_finger_as_a_plate_does() {
             stack.feedback[0][z] = -back_w_m2k * zones.area_m2[z];
         }
         for _ in 0..6 {
-            stack.first(REST_S, if stack.sink_c() == 0.0 { 1.0 } else { 0.0 }, 0.0, 0.0);
+            stack.first(
+                REST_S,
+                if stack.sink_c() == 0.0 { 1.0 } else { 0.0 },
+                0.0,
+                0.0,
+            );
             stack.second(0.0);
         }
         let exact_k = patch_rise_k(&params, sheet_w_k, back_w_m2k);

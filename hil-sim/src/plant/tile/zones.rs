@@ -33,7 +33,8 @@ impl Zones {
             0 => 1.0 / (8.0 * PI),
             _ => (edge_m[z] / middle_m(edge_m[z - 1], edge_m[z])).ln() / (2.0 * PI),
         };
-        let outward = |z: usize| (middle_m(edge_m[z - 1], edge_m[z]) / edge_m[z - 1]).ln() / (2.0 * PI);
+        let outward =
+            |z: usize| (middle_m(edge_m[z - 1], edge_m[z]) / edge_m[z - 1]).ln() / (2.0 * PI);
         Self {
             area_m2: std::array::from_fn(|z| {
                 let hole_m = if z > 0 { edge_m[z - 1] } else { 0.0 };

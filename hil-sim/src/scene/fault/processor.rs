@@ -88,7 +88,10 @@ impl ProcessorKind {
         Self::new("hung-core", &[]),
         Self::new("hse-stopped", &[]),
         Self::new("adc-stopped", &[]),
-        Self::new("dma-stopped", &[ProcessorKey::Controller, ProcessorKey::Stream]),
+        Self::new(
+            "dma-stopped",
+            &[ProcessorKey::Controller, ProcessorKey::Stream],
+        ),
         Self::new("brown-out", &[]),
         Self::new("power-cycle", &[]),
         Self::new("reset-pin", &[]),
@@ -143,10 +146,14 @@ pub(super) fn injection(
     let mut at = Vec::new();
     for key in kind.keys {
         let said = key.said(row.get_ref()).map(|(_, said)| said);
-        at.push(said.or(key.unless_given().map(str::to_owned)).ok_or_else(|| {
-            let problem = format!("fault.{} is missing; {} needs it", key.name(), kind.name);
-            source.error(Some(row.span()), problem)
-        })?);
+        at.push(
+            said.or(key.unless_given().map(str::to_owned))
+                .ok_or_else(|| {
+                    let problem =
+                        format!("fault.{} is missing; {} needs it", key.name(), kind.name);
+                    source.error(Some(row.span()), problem)
+                })?,
+        );
     }
     if kind.name == "power-cycle" {
         at.push(seed.to_string());
@@ -156,8 +163,8 @@ pub(super) fn injection(
     } else {
         format!("{}={}", kind.name, at.join("."))
     };
-    let fault =
-        (text.parse()).map_err(|error: NoMachineFault| source.error(Some(row.span()), error.to_string()))?;
+    let fault = (text.parse())
+        .map_err(|error: NoMachineFault| source.error(Some(row.span()), error.to_string()))?;
     let t_s = source.time("fault.t_s", t_s, duration_s)?;
     Ok(Injection { t_s, fault })
 }

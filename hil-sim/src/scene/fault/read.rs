@@ -21,7 +21,9 @@ pub(in crate::scene) fn faults(
     let (mut faults, mut injections) = (Vec::new(), Vec::new());
     for row in rows {
         match ProcessorKind::of(row.get_ref().kind.get_ref()) {
-            Some(kind) => injections.push(processor::injection(source, row, kind, duration_s, seed)?),
+            Some(kind) => {
+                injections.push(processor::injection(source, row, kind, duration_s, seed)?)
+            }
             None => {
                 faults.push(fault(source, row, duration_s)?);
                 processor::no_keys(source, row)?;
@@ -31,7 +33,11 @@ pub(in crate::scene) fn faults(
     Ok((faults, injections))
 }
 
-fn fault(source: &Source<'_>, row: &Spanned<file::Fault>, duration_s: f64) -> Result<Fault, SceneError> {
+fn fault(
+    source: &Source<'_>,
+    row: &Spanned<file::Fault>,
+    duration_s: f64,
+) -> Result<Fault, SceneError> {
     let file::Fault {
         kind: word,
         t_s,
@@ -45,13 +51,17 @@ fn fault(source: &Source<'_>, row: &Spanned<file::Fault>, duration_s: f64) -> Re
     let t_s = source.time("fault.t_s", t_s, duration_s)?;
     let until_s = match until_s {
         Some(until_s) if !kind.lasts() => {
-            return Err(foreign(source, "until_s", until_s, kind, |kind| kind.lasts()));
+            return Err(foreign(source, "until_s", until_s, kind, |kind| {
+                kind.lasts()
+            }));
         }
         Some(until_s) => source.within("fault.until_s", until_s, t_s + SHORTEST_S, duration_s)?,
         None => f64::INFINITY,
     };
     if let Some(sensor) = sensor.as_ref().filter(|_| !kind.has_sensor()) {
-        return Err(foreign(source, "sensor", sensor, kind, |kind| kind.has_sensor()));
+        return Err(foreign(source, "sensor", sensor, kind, |kind| {
+            kind.has_sensor()
+        }));
     }
     if let Some(with) = with.as_ref().filter(|_| !kind.has_other()) {
         return Err(foreign(source, "with", with, kind, |kind| kind.has_other()));
@@ -81,7 +91,11 @@ fn fault(source: &Source<'_>, row: &Spanned<file::Fault>, duration_s: f64) -> Re
         with,
         value: amount(source, row, kind, value.as_ref())?,
     };
-    Ok(Fault { broken, t_s, until_s })
+    Ok(Fault {
+        broken,
+        t_s,
+        until_s,
+    })
 }
 
 /// The kind of a name.

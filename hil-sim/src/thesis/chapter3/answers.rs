@@ -63,7 +63,13 @@ const TABLE_3_5: [Pair; 10] = [
         [30.0, 43.0, 37.0],
         [-0.12, 0.33, 0.13],
     ),
-    pair("granite", "abs", 4.76, [53.0, 44.0, 49.0], [0.65, 0.36, 0.52]),
+    pair(
+        "granite",
+        "abs",
+        4.76,
+        [53.0, 44.0, 49.0],
+        [0.65, 0.36, 0.52],
+    ),
     pair(
         "copper",
         "stainless-steel",
@@ -78,10 +84,28 @@ const TABLE_3_5: [Pair; 10] = [
         [72.0, 59.0, 66.0],
         [1.31, 0.85, 1.09],
     ),
-    pair("copper", "granite", 15.52, [56.0, 44.0, 50.0], [0.75, 0.36, 0.56]),
+    pair(
+        "copper",
+        "granite",
+        15.52,
+        [56.0, 44.0, 50.0],
+        [0.75, 0.36, 0.56],
+    ),
     pair("abs", "foam", 17.28, [68.0, 46.0, 57.0], [1.16, 0.43, 0.78]),
-    pair("copper", "abs", 73.83, [69.0, 51.0, 60.0], [1.20, 0.59, 0.89]),
-    pair("granite", "foam", 82.21, [68.0, 61.0, 64.0], [1.16, 0.92, 1.02]),
+    pair(
+        "copper",
+        "abs",
+        73.83,
+        [69.0, 51.0, 60.0],
+        [1.20, 0.59, 0.89],
+    ),
+    pair(
+        "granite",
+        "foam",
+        82.21,
+        [68.0, 61.0, 64.0],
+        [1.16, 0.92, 1.02],
+    ),
     pair(
         "stainless-steel",
         "foam",
@@ -89,7 +113,13 @@ const TABLE_3_5: [Pair; 10] = [
         [79.0, 62.0, 71.0],
         [1.61, 0.95, 1.28],
     ),
-    pair("copper", "foam", 1275.59, [82.0, 66.0, 74.0], [1.75, 1.09, 1.39]),
+    pair(
+        "copper",
+        "foam",
+        1275.59,
+        [82.0, 66.0, 74.0],
+        [1.75, 1.09, 1.39],
+    ),
 ];
 const MODES: [&str; 3] = ["high / low", "low / high", "total"];
 
@@ -105,7 +135,9 @@ pub(super) fn table_3_3() -> Vec<Row> {
         .iter()
         .filter(|(one, other, _)| ratio(one, other, Material::effusivity) > 3.0);
     let worst = exceeding.fold(f64::MAX, |worst, (.., percent)| worst.min(*percent));
-    let failed = TABLE_3_3.iter().filter(|(.., percent)| *percent < THRESHOLD);
+    let failed = TABLE_3_3
+        .iter()
+        .filter(|(.., percent)| *percent < THRESHOLD);
     let failed = failed.map(|(one, other, _)| {
         Row::new(
             "Section 3.2.2",

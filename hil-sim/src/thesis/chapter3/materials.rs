@@ -83,9 +83,33 @@ pub(super) fn table_3_1() -> Vec<Row> {
             25.3,
             printed(0.11, 2),
         ),
-        column("g10", (0.29, 2), 1800.0, 1600.0, 910.0, 29.0, printed(0.003, 3)),
-        column("abs", (0.18, 2), 1010.0, 1386.0, 501.0, 30.3, printed(0.004, 3)),
-        column("foam", (0.029, 3), 24.0, 1210.0, 29.0, 32.8, printed(0.03, 2)),
+        column(
+            "g10",
+            (0.29, 2),
+            1800.0,
+            1600.0,
+            910.0,
+            29.0,
+            printed(0.003, 3),
+        ),
+        column(
+            "abs",
+            (0.18, 2),
+            1010.0,
+            1386.0,
+            501.0,
+            30.3,
+            printed(0.004, 3),
+        ),
+        column(
+            "foam",
+            (0.029, 3),
+            24.0,
+            1210.0,
+            29.0,
+            32.8,
+            printed(0.03, 2),
+        ),
     ];
     let mut rows = Vec::new();
     for printed_column in &columns {
@@ -98,7 +122,9 @@ pub(super) fn table_3_1() -> Vec<Row> {
             printed_column.fourier,
             fourier_number(&sample.material, LENGTH_3_1_M, 5.0),
         );
-        rows.push(row.note("with L_c = 12.71 mm, which the row needs and the thesis does not state"));
+        rows.push(
+            row.note("with L_c = 12.71 mm, which the row needs and the thesis does not state"),
+        );
     }
     rows
 }
@@ -141,7 +167,15 @@ pub(super) fn table_3_4() -> Vec<Row> {
             30.3,
             Stated::Below(0.001),
         ),
-        column("foam", (0.029, 3), 24.0, 1210.0, 29.0, 32.8, Stated::Below(0.001)),
+        column(
+            "foam",
+            (0.029, 3),
+            24.0,
+            1210.0,
+            29.0,
+            32.8,
+            Stated::Below(0.001),
+        ),
     ];
     let mut rows = Vec::new();
     for printed_column in &columns {
@@ -209,7 +243,10 @@ fn properties(place: &'static str, sample: &Sample, stated: &Printed) -> [Row; 5
             effusivity.remark(Remark::Cut)
         },
         if is_g10 {
-            interface.wrong("not what Eq. 3-1 gives", Correction::Reads(printed(29.1, 1)))
+            interface.wrong(
+                "not what Eq. 3-1 gives",
+                Correction::Reads(printed(29.1, 1)),
+            )
         } else {
             interface
         },

@@ -1,8 +1,8 @@
 //! Table 5-3, the limits of Eq. 5-1 and 5-2, and the way there and back of Eq. 5-3 and 5-4.
 
 use crate::infrared::{
-    BAND_M, BEAMSPLITTER, LineOfSight, Optic, SKIN_EMISSIVITY, SelfReflection, Surroundings, radiance,
-    temperature_c,
+    BAND_M, BEAMSPLITTER, LineOfSight, Optic, SKIN_EMISSIVITY, SelfReflection, Surroundings,
+    radiance, temperature_c,
 };
 use crate::thesis::row::{Correction, Row};
 use crate::thesis::stated::{Stated, printed};
@@ -36,7 +36,11 @@ pub(super) fn table_5_3() -> Vec<Row> {
         rows.extend([
             row("transmissivity", transmissivity, optic.transmissivity),
             row("reflectivity", reflectivity, optic.reflectivity),
-            row("emissivity, from the other two", emissivity, optic.emissivity()),
+            row(
+                "emissivity, from the other two",
+                emissivity,
+                optic.emissivity(),
+            ),
         ]);
     }
     rows
@@ -59,10 +63,22 @@ pub(super) fn limits() -> Vec<Row> {
         )
     };
     vec![
-        Row::new("Eq. 5-1", "lower limits", "µm", printed(7.5, 1), shortest_um),
+        Row::new(
+            "Eq. 5-1",
+            "lower limits",
+            "µm",
+            printed(7.5, 1),
+            shortest_um,
+        ),
         upper("Eq. 5-1", "numerator"),
         upper("Eq. 5-1", "denominator"),
-        Row::new("Eq. 5-2", "lower limits", "µm", printed(7.5, 1), shortest_um),
+        Row::new(
+            "Eq. 5-2",
+            "lower limits",
+            "µm",
+            printed(7.5, 1),
+            shortest_um,
+        ),
         upper("Eq. 5-2", "numerator"),
         Row::new(
             "Eq. 5-2",

@@ -66,7 +66,12 @@ fn table_5_1() -> Vec<Row> {
             )
             .remark(Remark::Cut),
             row("Rq", "µm", printed(roughness, 3), surface.roughness_um),
-            row("asperity slope", "rad", printed(slope, 3), surface.slope_rad),
+            row(
+                "asperity slope",
+                "rad",
+                printed(slope, 3),
+                surface.slope_rad,
+            ),
         ]);
     }
     rows

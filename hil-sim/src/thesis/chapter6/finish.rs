@@ -29,7 +29,13 @@ pub(super) fn rows() -> Vec<Row> {
             printed(0.1225, 4),
             SKIN_MICROHARDNESS_PA * 1e-6,
         ),
-        Row::new("Eq. 6-13", "factor of the model", "", printed(1.25, 2), factor),
+        Row::new(
+            "Eq. 6-13",
+            "factor of the model",
+            "",
+            printed(1.25, 2),
+            factor,
+        ),
         Row::new(
             "Eq. 6-13",
             "RMS over mean slope, Gaussian surface",

@@ -47,7 +47,13 @@ pub(super) fn figures_6_6_to_6_9() -> Vec<Row> {
             within: STEADY_K,
         };
         let row = |place, what: &str, unit, stated, computed| {
-            Row::new(place, format!("{}, {what}", sample.name), unit, stated, computed)
+            Row::new(
+                place,
+                format!("{}, {what}", sample.name),
+                unit,
+                stated,
+                computed,
+            )
         };
         rows.extend([
             row(
@@ -84,16 +90,23 @@ pub(super) fn figures_6_6_to_6_9() -> Vec<Row> {
                 "",
                 // "Similar to their corresponding material surface temperatures", or "closer to" the skin's.
                 match sample.name {
-                    "ABS" | "foam" => Stated::Between { low: 0.5, high: 1.0 },
-                    _ => Stated::Between { low: 0.0, high: 0.5 },
+                    "ABS" | "foam" => Stated::Between {
+                        low: 0.5,
+                        high: 1.0,
+                    },
+                    _ => Stated::Between {
+                        low: 0.0,
+                        high: 0.5,
+                    },
                 },
                 (end.display_c - end.object_c) / (end.skin_c - end.object_c),
             ),
         ]);
     }
     let at_end = |value: fn(&Case) -> f64| cases.map(|(_, case)| value(&case));
-    let ordered =
-        |place, what, values: [f64; 5]| Row::new(place, what, "", printed(4.0, 0), falling(&values) as f64);
+    let ordered = |place, what, values: [f64; 5]| {
+        Row::new(place, what, "", printed(4.0, 0), falling(&values) as f64)
+    };
     rows.extend([
         ordered(
             "Figure 6-6",
@@ -120,7 +133,8 @@ pub(super) fn figure_6_10() -> Vec<Row> {
     let skin = cases.map(|case| case.contact().at(END_S).skin_c - case.perfect().interface_c);
     let surface = cases.map(|case| case.perfect().interface_c - case.contact().at(END_S).object_c);
     let positive = |values: &[f64]| values.iter().filter(|value| **value > 0.0).count() as f64;
-    let row = |what: &str, unit, stated, computed| Row::new("Figure 6-10", what, unit, stated, computed);
+    let row =
+        |what: &str, unit, stated, computed| Row::new("Figure 6-10", what, unit, stated, computed);
     let none = Stated::About {
         value: 0.0,
         within: STEADY_K,

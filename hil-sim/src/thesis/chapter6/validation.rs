@@ -40,15 +40,18 @@ pub(super) fn pressures() -> Vec<Row> {
     let growth = area_mm2(2.0) - area_mm2(0.1);
     let below_1n = (area_mm2(1.0) - area_mm2(0.1)) / growth * 100.0;
     let stated = [730.0, 1680.0, 3140.0, 5900.0, 10_980.0];
-    let pressures = STATED.iter().zip(stated).map(|((force_n, pressure_pa), stated)| {
-        Row::new(
-            "Section 6.4.2",
-            format!("pressure of the model at {force_n} N"),
-            "Pa",
-            printed(stated, -1),
-            *pressure_pa,
-        )
-    });
+    let pressures = STATED
+        .iter()
+        .zip(stated)
+        .map(|((force_n, pressure_pa), stated)| {
+            Row::new(
+                "Section 6.4.2",
+                format!("pressure of the model at {force_n} N"),
+                "Pa",
+                printed(stated, -1),
+                *pressure_pa,
+            )
+        });
     let mut rows: Vec<Row> = pressures.collect();
     rows.extend([
         Row::new(
@@ -91,10 +94,16 @@ pub(super) fn falls() -> Vec<Row> {
                 // Underestimated: below all that was measured.
                 kpa if kpa < 1.0 => ("model below the measured 3 to 5 K", Stated::Below(3.0)),
                 // Underestimated: measured the same as at 5.90 kPa, where it is within 1 K of the model.
-                kpa if kpa < 3.0 => ("model below the measured", Stated::Below(cut(falls[3] - 1.0, 2))),
+                kpa if kpa < 3.0 => (
+                    "model below the measured",
+                    Stated::Below(cut(falls[3] - 1.0, 2)),
+                ),
                 _ => (
                     "model within 1 K of 3 to 5 K",
-                    Stated::Between { low: 2.0, high: 6.0 },
+                    Stated::Between {
+                        low: 2.0,
+                        high: 6.0,
+                    },
                 ),
             };
             rows.push(Row::new(
@@ -105,10 +114,14 @@ pub(super) fn falls() -> Vec<Row> {
                 fall_k,
             ));
         }
-        let slope = |from: usize, to: usize| (falls[to] - falls[from]) / (STATED[to].1 - STATED[from].1);
+        let slope =
+            |from: usize, to: usize| (falls[to] - falls[from]) / (STATED[to].1 - STATED[from].1);
         rows.push(Row::new(
             "Figure 6-19",
-            format!("{}, rise per kPa above 3.14 kPa over that below", window.name),
+            format!(
+                "{}, rise per kPa above 3.14 kPa over that below",
+                window.name
+            ),
             "",
             Stated::Below(0.5),
             slope(2, 4) / slope(0, 2),
@@ -120,7 +133,10 @@ pub(super) fn falls() -> Vec<Row> {
 /// "The skin temperature approached a steady state value within 2 s of contact", "consistent with the thermal model
 /// predictions": part of the fall within 10 s that the model has made by then.
 pub(super) fn steadiness() -> Vec<Row> {
-    let corrected = [[51.0, 58.0, 66.0, 75.0, 84.0], [51.0, 57.0, 65.0, 74.0, 83.0]];
+    let corrected = [
+        [51.0, 58.0, 66.0, 75.0, 84.0],
+        [51.0, 57.0, 65.0, 74.0, 83.0],
+    ];
     let mut rows = Vec::new();
     for (window, corrected) in WINDOWS.map(sample).iter().zip(corrected) {
         for ((_, pressure_pa), corrected) in STATED.iter().zip(corrected) {

@@ -47,8 +47,9 @@ pub fn apart(figures: &[Figure], others: &[Figure]) -> Vec<Apart> {
         .filter(|(figure, _)| !figure.number.starts_with(PERFECT))
         .map(|(figure, other)| {
             let (these, those) = (points(figure), points(other));
-            let most =
-                |values: &mut dyn Iterator<Item = f64>| values.fold(0.0f64, |most, v| most.max(v.abs()));
+            let most = |values: &mut dyn Iterator<Item = f64>| {
+                values.fold(0.0f64, |most, v| most.max(v.abs()))
+            };
             let off = || these.iter().zip(&those).map(|((x, a), (_, b))| (*x, a - b));
             Apart {
                 number: figure.number,

@@ -39,7 +39,9 @@ pub(super) fn figure_3_2() -> Vec<Figure> {
                     label: sample.name.into(),
                     kind: Kind::Line,
                     group,
-                    points: points.filter_map(|t_s| Some((t_s, value(&case, t_s)?))).collect(),
+                    points: points
+                        .filter_map(|t_s| Some((t_s, value(&case, t_s)?)))
+                        .collect(),
                 }
             })
             .collect(),
@@ -51,7 +53,10 @@ pub(super) fn figure_3_2() -> Vec<Figure> {
         figure("3-2 B", FLUX, "Heat flux from 0.05 s on", &|case, t_s| {
             let late = t_s >= FIRST_FLUX_S;
             // Eq. 3-3 counts it into the skin.
-            case.perfect().flux_w_m2(t_s).filter(|_| late).map(|flux| -flux)
+            case.perfect()
+                .flux_w_m2(t_s)
+                .filter(|_| late)
+                .map(|flux| -flux)
         }),
     ]
 }
@@ -72,7 +77,12 @@ pub(super) fn figures_6_6_to_6_9(source: &dyn Source) -> anyhow::Result<Vec<Figu
     let figure = |(number, title, y, value): (_, &str, _, _)| {
         let curves = five().into_iter().enumerate().map(|(group, sample)| {
             let case = Case::simulation(&sample);
-            over_time(source, &case, value, (sample.name.into(), Kind::Line, group))
+            over_time(
+                source,
+                &case,
+                value,
+                (sample.name.into(), Kind::Line, group),
+            )
         });
         Ok(Figure {
             number,
@@ -93,7 +103,12 @@ pub(super) fn figure_6_10(source: &dyn Source) -> anyhow::Result<Figure> {
         let label = |what| format!("{}, {what}", sample.name);
         let interface_c = case.perfect().interface_c;
         curves.extend([
-            over_time(source, &case, |at| at.skin_c, (label("skin"), Kind::Line, group))?,
+            over_time(
+                source,
+                &case,
+                |at| at.skin_c,
+                (label("skin"), Kind::Line, group),
+            )?,
             over_time(
                 source,
                 &case,
@@ -146,7 +161,11 @@ pub(super) fn figures_6_11_and_6_12(source: &dyn Source) -> anyhow::Result<[Figu
                 pressure_pa: pressure_pa(*force_n),
                 ..copper
             };
-            flux(&case, format!("{:.2} kPa ({force_n} N)", stated_pa * 1e-3), group)
+            flux(
+                &case,
+                format!("{:.2} kPa ({force_n} N)", stated_pa * 1e-3),
+                group,
+            )
         });
     let figure = |number, title: &str, curves| Figure {
         number,

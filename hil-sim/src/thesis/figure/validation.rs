@@ -6,7 +6,8 @@ use super::{Curve, END_S, FLUX, Figure, Kind, TEMPERATURE, TIME, over_time};
 use crate::thesis::case::{Case, Sample, Source, sample};
 
 /// The two windows with the part of figures 6-19 and 6-20 that shows them.
-const WINDOWS: [(&str, &str, &str); 2] = [("baf2", "6-19 A", "6-20 A"), ("zns", "6-19 B", "6-20 B")];
+const WINDOWS: [(&str, &str, &str); 2] =
+    [("baf2", "6-19 A", "6-20 A"), ("zns", "6-19 B", "6-20 B")];
 /// Steps of pressure of the curve in figure 6-19, and the highest, Pa.
 const PRESSURES: (u32, f64) = (60, 12e3);
 
@@ -45,7 +46,12 @@ pub(super) fn figure_6_13(source: &dyn Source) -> anyhow::Result<[Figure; 2]> {
         curves,
     };
     Ok([
-        figure("6-13 A", "Skin and material surface", TEMPERATURE, temperatures),
+        figure(
+            "6-13 A",
+            "Skin and material surface",
+            TEMPERATURE,
+            temperatures,
+        ),
         figure("6-13 B", "Heat flux exchanged", FLUX, fluxes),
     ])
 }
@@ -67,7 +73,13 @@ pub(super) fn figure_6_19(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
             y: "fall / K",
             curves: vec![
                 falls(source, &window, any, "model", Kind::Dashed)?,
-                falls(source, &window, measured, "at the five pressures", Kind::Dots)?,
+                falls(
+                    source,
+                    &window,
+                    measured,
+                    "at the five pressures",
+                    Kind::Dots,
+                )?,
             ],
         })
     };
@@ -100,11 +112,14 @@ fn falls(
 pub(super) fn figure_6_20(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
     let figure = |(key, _, number): (&'static str, _, _)| {
         let window = sample(key);
-        let curves = STATED.iter().enumerate().map(|(group, (force_n, pressure_pa))| {
-            let label = format!("{:.2} kPa ({force_n} N)", pressure_pa * 1e-3);
-            let case = Case::validation(&window, *pressure_pa);
-            over_time(source, &case, |at| at.skin_c, (label, Kind::Line, group))
-        });
+        let curves = STATED
+            .iter()
+            .enumerate()
+            .map(|(group, (force_n, pressure_pa))| {
+                let label = format!("{:.2} kPa ({force_n} N)", pressure_pa * 1e-3);
+                let case = Case::validation(&window, *pressure_pa);
+                over_time(source, &case, |at| at.skin_c, (label, Kind::Line, group))
+            });
         Ok(Figure {
             number,
             title: format!("Skin surface on {}, 34 and 26 °C", window.name),

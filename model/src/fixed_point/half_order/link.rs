@@ -15,7 +15,8 @@ pub struct Link {
 /// Binary places of a resistance.
 const RESISTANCE_BITS: u32 = 16;
 /// [`GAIN`] in these, rounded.
-const GAIN_HERE: u32 = (GAIN + (1 << (GAIN_BITS - RESISTANCE_BITS) >> 1)) >> (GAIN_BITS - RESISTANCE_BITS);
+const GAIN_HERE: u32 =
+    (GAIN + (1 << (GAIN_BITS - RESISTANCE_BITS) >> 1)) >> (GAIN_BITS - RESISTANCE_BITS);
 
 impl Link {
     /// Of a resistance; its conductance is right within 1e-5 of itself.

@@ -26,14 +26,21 @@ impl EveryTick {
         let rate = |k: i32| 2f64.powi(-(2 * k + 1));
         let weight = |r: f64| 4f64.ln() / PI * r.sqrt();
         let slowest = (FAST + SLOW - 1) as i32;
-        let mut parts: Vec<_> = (0..slowest).map(|k| (rate(k), weight(rate(k)), 0.0)).collect();
+        let mut parts: Vec<_> = (0..slowest)
+            .map(|k| (rate(k), weight(rate(k)), 0.0))
+            .collect();
         parts.push((0.0, 2.0 / PI * (rate(slowest - 1) / 2.0).sqrt(), 0.0));
         Self { parts }
     }
 
     /// `(1 - e^-r) / r` times the weight.
     fn given(&(rate, weight, _): &(f64, f64, f64)) -> f64 {
-        weight * if rate > 0.0 { -(-rate).exp_m1() / rate } else { 1.0 }
+        weight
+            * if rate > 0.0 {
+                -(-rate).exp_m1() / rate
+            } else {
+                1.0
+            }
     }
 
     fn step(&mut self, drive: f64) {
@@ -71,14 +78,22 @@ fn constants_are_those_of_the_sum() {
         assert_eq!(part.kept_ahead, scaled((-still * exact.0).exp(), 31));
     }
     for (part, exact) in SLOW_PARTS.iter().zip(slow) {
-        let mean = (0..WINDOW).map(|j| (exact.0 * f64::from(j)).exp()).sum::<f64>() / window;
+        let mean = (0..WINDOW)
+            .map(|j| (exact.0 * f64::from(j)).exp())
+            .sum::<f64>()
+            / window;
         assert_eq!(part.given, scaled(EveryTick::given(exact) * mean, 32));
         assert_eq!(part.lost, scaled(-(-window * exact.0).exp_m1(), 32));
     }
-    let slow_given = slow.iter().map(|part| EveryTick::given(part) * (-part.0).exp());
+    let slow_given = slow
+        .iter()
+        .map(|part| EveryTick::given(part) * (-part.0).exp());
     assert_eq!(SLOW_GIVEN, scaled(slow_given.sum(), 32));
     assert_eq!(GAIN as i32, scaled(EveryTick::gain(1), 20));
-    assert_eq!(PER_GAIN_AHEAD, scaled(1.0 / EveryTick::gain(AHEAD_TICKS), 32));
+    assert_eq!(
+        PER_GAIN_AHEAD,
+        scaled(1.0 / EveryTick::gain(AHEAD_TICKS), 32)
+    );
 }
 
 /// Error of a straight line over a window, per kelvin of drive: the fastest of the slow parts takes up 0.0098 of each
@@ -188,7 +203,10 @@ fn pulse_of_flux_moves_the_surface_as_a_half_space() {
         let now = f64::from(60_000 + tick);
         let error = left - (exact(now) - exact(f64::from(tick)));
         worst = worst.max(error.abs() / exact(60_000.0));
-        assert!(error.abs() < 0.006 * exact(60_000.0), "{tick} after: {error}");
+        assert!(
+            error.abs() < 0.006 * exact(60_000.0),
+            "{tick} after: {error}"
+        );
     }
     std::println!("after {worst}");
 }
@@ -198,7 +216,8 @@ fn pulse_of_flux_moves_the_surface_as_a_half_space() {
 fn contact_follows_equation_6_5() {
     let (mut worst_k, mut early_k) = (0f64, 0f64);
     for (name, material) in MATERIALS {
-        let pairing = Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
+        let pairing =
+            Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
         for (force_n, _) in crate::pressure::STATED {
             let contact = pairing.under(log2_relative_pressure(Force::from_num(force_n)));
             let exact = reference::Contact::<f64>::new(
@@ -219,7 +238,10 @@ fn contact_follows_equation_6_5() {
                 } else {
                     early_k = early_k.max(error_k);
                 }
-                assert!(error_k < 0.05, "{name}, {force_n} N, {tick} ms: {error_k} K");
+                assert!(
+                    error_k < 0.05,
+                    "{name}, {force_n} N, {tick} ms: {error_k} K"
+                );
             }
         }
     }
@@ -236,11 +258,13 @@ fn contact_follows_equation_6_5() {
 fn links_are_the_contacts_they_stand_for() {
     let mut worst = 0f64;
     for (name, material) in MATERIALS {
-        let pairing = Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
+        let pairing =
+            Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
         for force_n in [0.005, 0.02, 0.1, 0.3, 1.0, 3.0, 20.0, 250.0] {
             let contact = pairing.under(log2_relative_pressure(Force::from_num(force_n)));
             let on_object = 1.0 / contact.per_root_tick.to_f64();
-            let on_display = on_object * contact.ratio.to_num::<f64>() / contact.weight.to_num::<f64>();
+            let on_display =
+                on_object * contact.ratio.to_num::<f64>() / contact.weight.to_num::<f64>();
             let gain = EveryTick::gain(1);
             for (link, resistance) in [
                 (contact.on_object(), on_object),
@@ -315,9 +339,15 @@ fn a_long_contact_is_forgotten_as_a_half_space_does() {
     let root = |ticks: u32| f64::from(ticks).sqrt();
     let moved: f64 = body.left().to_num();
     let expected = 0.01 * 2.0 / PI.sqrt() * root(contact);
-    assert!((moved / expected - 1.0).abs() < 0.005, "{moved}, not {expected}");
+    assert!(
+        (moved / expected - 1.0).abs() < 0.005,
+        "{moved}, not {expected}"
+    );
     (0..rest).for_each(|_| body.step(Celsius::ZERO));
     let left = body.left().to_num::<f64>() / expected;
     let expected = (root(contact + rest) - root(rest)) / root(contact);
-    assert!((left / expected - 1.0).abs() < 0.02, "{left}, not {expected}");
+    assert!(
+        (left / expected - 1.0).abs() < 0.02,
+        "{left}, not {expected}"
+    );
 }

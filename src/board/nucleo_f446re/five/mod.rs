@@ -64,7 +64,8 @@ pub const SAMPLE_TIME: u8 = 1;
 pub fn cut() {
     // SAFETY: their owners do not run again: interrupts are off and no caller of this returns. The writes are to
     // registers that may be written at any time.
-    let (clocks, left, right, pins) = unsafe { (RCC::steal(), TIM1::steal(), TIM8::steal(), GPIOB::steal()) };
+    let (clocks, left, right, pins) =
+        unsafe { (RCC::steal(), TIM1::steal(), TIM8::steal(), GPIOB::steal()) };
     // As for one finger: without a clock they would take nothing.
     (clocks.apb2enr()).modify(|_, w| w.tim1en().enabled().tim8en().enabled());
     clocks.ahb1enr().modify(|_, w| w.gpioben().enabled());

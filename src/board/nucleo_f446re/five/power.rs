@@ -3,7 +3,9 @@
 use core::convert::Infallible;
 
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
-use stm32f4xx_hal::gpio::{ErasedPin, Input, Output, PA8, PA9, PA10, PA11, PB8, PB9, PC6, PC7, PC8, PC9};
+use stm32f4xx_hal::gpio::{
+    ErasedPin, Input, Output, PA8, PA9, PA10, PA11, PB8, PB9, PC6, PC7, PC8, PC9,
+};
 use stm32f4xx_hal::pac::{TIM1, TIM8, TIM10, TIM11};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
@@ -58,7 +60,13 @@ impl Wires {
         let (_, (b4, ..)) = tim11.pwm_hz(PWM_KHZ.kHz(), rcc);
         let (first, second, third, fourth, fifth) =
             (self.first, self.second, self.third, self.fourth, self.fifth);
-        let [first_lines, second_lines, third_lines, fourth_lines, fifth_lines] = self.lines;
+        let [
+            first_lines,
+            second_lines,
+            third_lines,
+            fourth_lines,
+            fifth_lines,
+        ] = self.lines;
         let stages = [
             PowerStage::new(
                 Leg::Tim1(a0.with(first.0).erase()),
@@ -111,7 +119,15 @@ fn release_outputs() {
 }
 
 impl PowerStage {
-    fn new(mut in1: Leg, mut in2: Leg, Lines { enable, fault, test }: Lines) -> Self {
+    fn new(
+        mut in1: Leg,
+        mut in2: Leg,
+        Lines {
+            enable,
+            fault,
+            test,
+        }: Lines,
+    ) -> Self {
         in1.enable();
         in2.enable();
         Self {

@@ -53,7 +53,13 @@ impl Cut {
     fn landing(&self, object: &Material, touch: Touch) -> Truth {
         let (skin_c, object_c) = START_C;
         let object = ObjectConfig::half_space(*object, object_c);
-        Truth::cut(skin_c, &object, touch, CONTACT_S, (&self.grading, self.step_s))
+        Truth::cut(
+            skin_c,
+            &object,
+            touch,
+            CONTACT_S,
+            (&self.grading, self.step_s),
+        )
     }
 
     /// A finger in contact, past its first steps.

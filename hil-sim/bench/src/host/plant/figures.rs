@@ -118,7 +118,10 @@ impl Cost {
 pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures> {
     let cuts = cuts();
     progress("errors of meshes and steps");
-    let errors = cuts.iter().map(Cut::errors).collect::<anyhow::Result<Vec<_>>>()?;
+    let errors = cuts
+        .iter()
+        .map(Cut::errors)
+        .collect::<anyhow::Result<Vec<_>>>()?;
     progress("fingers into contact");
     let mut banks = FINGERS
         .map(bank)
@@ -148,7 +151,10 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
     let times = side_by_side(&mut candidates, 0, WORK, rounds);
     drop(candidates);
 
-    banks.iter_mut().flatten().try_for_each(Finger::check_contact)?;
+    banks
+        .iter_mut()
+        .flatten()
+        .try_for_each(Finger::check_contact)?;
     parts.check()?;
     let fingers: Vec<_> = FINGERS
         .iter()
@@ -174,7 +180,10 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
         })
         .collect();
     let (meshes, steps) = of_cuts.split_at(GROWTHS.len());
-    let by_cells: Vec<_> = meshes.iter().map(|m| (m.cells as f64, m.cost.ratio)).collect();
+    let by_cells: Vec<_> = meshes
+        .iter()
+        .map(|m| (m.cells as f64, m.cost.ratio))
+        .collect();
     let line = fit::line(&by_cells);
     let one_ns = times[0].ns;
     let all: Vec<_> = fingers
@@ -187,7 +196,11 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
         cells: Cut::RUN.cells(),
         fingers_power: fit::power(&all),
         fingers,
-        parts: names.into_iter().zip(&times[parts_at..]).map(part).collect(),
+        parts: names
+            .into_iter()
+            .zip(&times[parts_at..])
+            .map(part)
+            .collect(),
         meshes: meshes.to_vec(),
         cell_ns: line.slope * one_ns,
         no_cells_ns: line.start * one_ns,

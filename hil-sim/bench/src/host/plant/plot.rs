@@ -81,7 +81,12 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
             &figures.meshes,
             growth,
         )?;
-        errors(&right, "The bodies in other steps (step)", &figures.steps, step)?;
+        errors(
+            &right,
+            "The bodies in other steps (step)",
+            &figures.steps,
+            step,
+        )?;
         root.present()?;
     }
     Ok(svg)
@@ -91,7 +96,9 @@ pub fn draw(figures: &Figures) -> anyhow::Result<String> {
 fn fingers(area: &Area<'_>, figures: &Figures) -> anyhow::Result<()> {
     let points = |of: fn(&Cost) -> f64| {
         let fingers = figures.fingers.iter();
-        fingers.map(|f| (f.fingers as f64, of(&f.cost) * 1e-3)).collect()
+        fingers
+            .map(|f| (f.fingers as f64, of(&f.cost) * 1e-3))
+            .collect()
     };
     let series = [
         Series {
@@ -120,7 +127,10 @@ fn fingers(area: &Area<'_>, figures: &Figures) -> anyhow::Result<()> {
         )
         .x_label_area_size(46)
         .y_label_area_size(70)
-        .build_cartesian_2d(FINGERS.log_scale().with_key_points(numbers), 0.0..1.25 * top_us)?;
+        .build_cartesian_2d(
+            FINGERS.log_scale().with_key_points(numbers),
+            0.0..1.25 * top_us,
+        )?;
     chart
         .configure_mesh()
         .x_desc("fingers on the core")
@@ -145,7 +155,11 @@ fn errors(
     cuts: &[CutFigures],
     name: impl Fn(&CutFigures) -> String,
 ) -> anyhow::Result<()> {
-    let points = |of: fn(&CutFigures) -> f64| cuts.iter().map(|cut| (cut.cost.ns * 1e-3, of(cut))).collect();
+    let points = |of: fn(&CutFigures) -> f64| {
+        cuts.iter()
+            .map(|cut| (cut.cost.ns * 1e-3, of(cut)))
+            .collect()
+    };
     let series = [
         Series {
             name: "flux / (1e-4 dT/R)",
@@ -173,7 +187,13 @@ fn errors(
         },
     ];
     let x = range(series[0].points.iter().map(|p| p.0));
-    let y = range(series.iter().flat_map(|s| &s.points).map(|p| p.1).chain([1.0]));
+    let y = range(
+        series
+            .iter()
+            .flat_map(|s| &s.points)
+            .map(|p| p.1)
+            .chain([1.0]),
+    );
     let x = x.start / 1.4..x.end * 1.4;
     let mut chart = ChartBuilder::on(area)
         .margin(14)
@@ -217,7 +237,9 @@ fn errors(
 
 /// From the least to the largest.
 fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
-    values.fold(f64::INFINITY..0.0, |all, v| all.start.min(v)..all.end.max(v))
+    values.fold(f64::INFINITY..0.0, |all, v| {
+        all.start.min(v)..all.end.max(v)
+    })
 }
 
 /// 1, 2 and 5 times powers of ten in a range.
@@ -260,7 +282,10 @@ where
 {
     for one in series {
         let (style, radius) = (one.dots.style(one.color), one.dots.radius());
-        chart.draw_series([PathElement::new(one.points.clone(), one.color.stroke_width(2))])?;
+        chart.draw_series([PathElement::new(
+            one.points.clone(),
+            one.color.stroke_width(2),
+        )])?;
         chart
             .draw_series(one.points.iter().map(|p| Circle::new(*p, radius, style)))?
             .label(one.name)
@@ -269,7 +294,10 @@ where
     Ok(())
 }
 
-fn legend<'a, 'b: 'a, X, Y>(chart: &mut Chart<'a, 'b, X, Y>, at: SeriesLabelPosition) -> anyhow::Result<()>
+fn legend<'a, 'b: 'a, X, Y>(
+    chart: &mut Chart<'a, 'b, X, Y>,
+    at: SeriesLabelPosition,
+) -> anyhow::Result<()>
 where
     X: Ranged<ValueType = f64>,
     Y: Ranged<ValueType = f64>,

@@ -34,7 +34,8 @@ impl Replay {
         };
         for ms in 0..READY_MS {
             for (_, line) in LINES.iter().filter(|(at, _)| *at == ms) {
-                let done = Command::parse(line, &settings).and_then(|command| station.execute(command));
+                let done =
+                    Command::parse(line, &settings).and_then(|command| station.execute(command));
                 if let Err(error) = done {
                     bail!("the station refuses {line:?}: {error}");
                 }

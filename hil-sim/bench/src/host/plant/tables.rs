@@ -31,7 +31,10 @@ pub fn tables(figures: &Figures) -> String {
             "x one finger",
             "x real time",
         ],
-        figures.parts.iter().map(|part| row(part.name.into(), &part.cost)),
+        figures
+            .parts
+            .iter()
+            .map(|part| row(part.name.into(), &part.cost)),
     );
     let heads = [
         "growth",

@@ -33,7 +33,8 @@ pub fn settled(params: &BridgeParams, width: f64, load: &Load) -> [f64; 4] {
                 _ if inductor_a < 0.0 => params.supply_v + params.diode_v,
                 _ => tile_v.clamp(-params.diode_v, params.supply_v + params.diode_v),
             };
-            let next_a = inductor_a + step_s / params.filter_h * (legs_v - tile_v - series_ohm * inductor_a);
+            let next_a =
+                inductor_a + step_s / params.filter_h * (legs_v - tile_v - series_ohm * inductor_a);
             let blocked = !low_side && !high_side && next_a * inductor_a < 0.0;
             capacitor_v += step_s / params.filter_f * (inductor_a - tile_a);
             inductor_a = if blocked { 0.0 } else { next_a };

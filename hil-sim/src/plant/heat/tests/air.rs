@@ -35,13 +35,18 @@ fn lifted_surfaces_lose_to_the_air_and_touching_ones_do_not() {
         bench.heat.touch(display, on, there);
         for _ in 0..1000 {
             let before: [f64; 3] = std::array::from_fn(|lane| {
-                let slab = if lane == 2 { &bench.object } else { &bench.finger };
+                let slab = if lane == 2 {
+                    &bench.object
+                } else {
+                    &bench.finger
+                };
                 stored_j_m2(&bench, lane, slab)
             });
             bench.step(None);
             let mean = |lane: usize| bench.heat.slabs.mean_c(lane, 0);
-            let film =
-                |lane: usize| (mean(lane) - ROOM_C) / (bench.heat.surface_m2k_w[lane] + 1.0 / film_w_m2k);
+            let film = |lane: usize| {
+                (mean(lane) - ROOM_C) / (bench.heat.surface_m2k_w[lane] + 1.0 / film_w_m2k)
+            };
             let given = bench.heat.on_object_w_m2k * (mean(1) - mean(2));
             let to_plate = bench.heat.on_display_w_m2k * (mean(0) - bench.heat.tile.mean_patch_c());
             let lost_w_m2 = match (on.is_some(), there) {
@@ -50,7 +55,11 @@ fn lifted_surfaces_lose_to_the_air_and_touching_ones_do_not() {
                 (false, false) => [film(0), film(1), 0.0],
             };
             for lane in 0..3 {
-                let slab = if lane == 2 { &bench.object } else { &bench.finger };
+                let slab = if lane == 2 {
+                    &bench.object
+                } else {
+                    &bench.finger
+                };
                 let lost = before[lane] - stored_j_m2(&bench, lane, slab);
                 let off = lost - STEP_S * lost_w_m2[lane];
                 assert!(

@@ -10,8 +10,10 @@ const STEPS: usize = 600_000;
 /// Heat above the start in a lane, J/m2.
 fn stored_j_m2(bench: &Bench, lane: usize, slab: &Slab, start_c: &[f64]) -> f64 {
     let heat = slab.capacity_j_m2k.iter().zip(start_c).enumerate();
-    heat.map(|(node, (capacity, start_c))| capacity * (bench.heat.slabs.node_c(lane, node) - start_c))
-        .sum()
+    heat.map(|(node, (capacity, start_c))| {
+        capacity * (bench.heat.slabs.node_c(lane, node) - start_c)
+    })
+    .sum()
 }
 
 fn nodes_c(bench: &Bench, lane: usize, slab: &Slab) -> Vec<f64> {

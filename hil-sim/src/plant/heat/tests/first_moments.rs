@@ -15,7 +15,10 @@ fn display_plate_takes_a_landing_as_its_ceramic_does() {
     );
     let touch = Touch::under(2.0, &SKIN.surface, &REFERENCE_DISPLAY).expect("pressed");
     let exact = |t_s: f64| {
-        let (finger, plate) = (SKIN.effusivity(), (tile.ceramic_w_mk * tile.ceramic_j_m3k).sqrt());
+        let (finger, plate) = (
+            SKIN.effusivity(),
+            (tile.ceramic_w_mk * tile.ceramic_j_m3k).sqrt(),
+        );
         let z = (1.0 / finger + 1.0 / plate) / touch.resistance_m2k_w * t_s.sqrt();
         let made = 1.0 - contact_model::reference::erfcx(z);
         let w = plate / (plate + finger);

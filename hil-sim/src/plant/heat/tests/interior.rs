@@ -26,8 +26,9 @@ fn skin_at_depth_follows_the_golden_solution() {
     rows.sort_by(|a, b| order(a).partial_cmp(&order(b)).expect("numbers"));
     for (name, [skin_c, object_c, resistance_m2k_w, depth_m, t_s, wanted_c]) in rows {
         assert_eq!(skin_c, SKIN_C);
-        let same =
-            |(material, ohm, ..): &(&str, f64, f64, Bench)| (*material, *ohm) == (name, resistance_m2k_w);
+        let same = |(material, ohm, ..): &(&str, f64, f64, Bench)| {
+            (*material, *ohm) == (name, resistance_m2k_w)
+        };
         if !running.as_ref().is_some_and(same) {
             let object = ObjectConfig::half_space(*find(name).expect("known"), object_c);
             let mut bench = Bench::new(&FingerParams::homogeneous(), &object, TileParams::CLASS);

@@ -52,9 +52,15 @@ fn bodies_in_contact_converge_at_second_order_in_time() {
         ]
     };
     let finest: Vec<[f64; 6]> = (0..5).map(run).collect();
-    for (i, what) in ["skin on display", "skin on object", "display", "object", "sink"]
-        .iter()
-        .enumerate()
+    for (i, what) in [
+        "skin on display",
+        "skin on object",
+        "display",
+        "object",
+        "sink",
+    ]
+    .iter()
+    .enumerate()
     {
         // Differences of successive solutions fall by four.
         let difference: Vec<f64> = finest.windows(2).map(|w| w[0][i] - w[1][i]).collect();

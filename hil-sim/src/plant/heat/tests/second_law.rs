@@ -13,7 +13,10 @@ fn extremes_c(bench: &Bench) -> (f64, f64) {
     }
     all.extend(bench.heat.tile.nodes().map(|(_, t)| t));
     let fold = |f: fn(f64, f64) -> f64, start| all.iter().copied().fold(start, f);
-    (fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY))
+    (
+        fold(f64::min, f64::INFINITY),
+        fold(f64::max, f64::NEG_INFINITY),
+    )
 }
 
 #[test]
@@ -80,7 +83,10 @@ fn entropy_never_falls() {
     for k in 0..60_000usize {
         if k % 10_000 == 2000 {
             let touching = k / 10_000 % 2 == 0;
-            bench.touch(on_display.filter(|_| touching), on_object.filter(|_| touching));
+            bench.touch(
+                on_display.filter(|_| touching),
+                on_object.filter(|_| touching),
+            );
         }
         // Apart and together, cooling, off and heating.
         bench.step([Some(4.0), None, Some(-2.0)][k / 5000 % 3]);
@@ -94,5 +100,8 @@ fn entropy_never_falls() {
     println!("entropy made in 60 s: {made_j_k:.4} J/K; least in a step: {least_j_k:.1e} J/K");
     assert!(made_j_k > 0.1);
     // A step's rounding: of the sum over nodes, about 1e2 J/K.
-    assert!(least_j_k > -1e-12, "entropy falls by {least_j_k} J/K in a step");
+    assert!(
+        least_j_k > -1e-12,
+        "entropy falls by {least_j_k} J/K in a step"
+    );
 }

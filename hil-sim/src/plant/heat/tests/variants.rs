@@ -11,7 +11,12 @@ use crate::plant::slab::{Back, Layer, Medium};
 const PRESSURE_PA: f64 = 2.0 / 135e-6;
 
 /// Skin on the object, deg C, at each time.
-fn skin_c(finger: &FingerParams, object: &ObjectConfig, core_c: Option<f64>, times_s: &[f64]) -> Vec<f64> {
+fn skin_c(
+    finger: &FingerParams,
+    object: &ObjectConfig,
+    core_c: Option<f64>,
+    times_s: &[f64],
+) -> Vec<f64> {
     let mut bench = Bench::new(finger, object, TileParams::CLASS);
     if let Some(core_c) = core_c {
         bench
@@ -47,8 +52,8 @@ fn blood_warms_the_skin() {
     perfused.layers[0].medium.perfusion_w_m3k = 8.3e-3 * 3.8e6;
     for (name, warmer_k) in [("copper", 0.11), ("abs", 0.23)] {
         let object = half_space(name);
-        let [plain, with] =
-            [&FingerParams::homogeneous(), &perfused].map(|f| skin_c(f, &object, Some(37.0), &[10.0])[0]);
+        let [plain, with] = [&FingerParams::homogeneous(), &perfused]
+            .map(|f| skin_c(f, &object, Some(37.0), &[10.0])[0]);
         println!("blood under {name}: {:+.3} K", with - plain);
         let off = (with - plain) / warmer_k - 1.0;
         assert!(off.abs() < 0.2, "{name}: {:+.3} K", with - plain);

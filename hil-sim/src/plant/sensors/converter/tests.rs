@@ -21,7 +21,10 @@ fn non_linearity_stays_within_its_bound_and_is_never_zero() {
     for seed in 0..1000 {
         let profile = converter(ConverterParams::NOMINAL, seed).profile;
         let errors = (0..4096).map(|code| profile.at(f64::from(code)));
-        let peak = errors.fold(0.0f64, |peak, e| if e.abs() > peak.abs() { e } else { peak });
+        let peak = errors.fold(
+            0.0f64,
+            |peak, e| if e.abs() > peak.abs() { e } else { peak },
+        );
         let (first, last) = (profile.at(0.0), profile.at(4095.0));
         assert!(
             first.abs() < 1e-12 && last.abs() < 2e-2,
@@ -35,7 +38,10 @@ fn non_linearity_stays_within_its_bound_and_is_never_zero() {
         (0.75..0.76).contains(&least) && (1.49..=1.5 + 1e-12).contains(&most),
         "{least} to {most}"
     );
-    assert!((400..600).contains(&positive), "{positive} of 1000 bend upwards");
+    assert!(
+        (400..600).contains(&positive),
+        "{positive} of 1000 bend upwards"
+    );
 }
 
 #[test]
@@ -49,7 +55,11 @@ fn steps_stand_at_the_transitions_of_the_upper_bits_only() {
         }
     }
     for (code, step) in largest.iter().enumerate().skip(1) {
-        assert_eq!(code % 128 == 0, *step > 0.02, "a step of {step} at code {code}");
+        assert_eq!(
+            code % 128 == 0,
+            *step > 0.02,
+            "a step of {step} at code {code}"
+        );
     }
     // The largest capacitor's is the largest error.
     let others = (1..32).filter(|k| *k != 16).map(|k| largest[128 * k]);
@@ -122,7 +132,10 @@ fn noise_has_the_width_asked_for_no_bias_and_no_memory() {
         (variance / expected - 1.0).abs() < 5.0 * 2f64.sqrt() / root_n,
         "variance {variance}"
     );
-    assert!(beside.abs() < 5.0 / root_n, "neighbours correlate by {beside}");
+    assert!(
+        beside.abs() < 5.0 / root_n,
+        "neighbours correlate by {beside}"
+    );
     // It has a normal's tails: at least 1e-4 of 2.7e-3 beyond three deviations and half a code.
     assert!(
         (1e-4..2.7e-3).contains(&beyond),

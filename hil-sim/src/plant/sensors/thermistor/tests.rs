@@ -17,7 +17,10 @@ fn divider_has_the_slopes_of_its_class() {
     assert!((DISPLAY.ratio(25.0) - 0.5).abs() < 1e-15);
     for (at_c, counts_per_k) in [(24.0, 46.0), (34.0, 41.0), (45.0, 34.0)] {
         let slope = (DISPLAY.ratio(at_c - 0.5) - DISPLAY.ratio(at_c + 0.5)) * 4096.0;
-        assert!((slope - counts_per_k).abs() < 0.5, "{slope} counts/K at {at_c}");
+        assert!(
+            (slope - counts_per_k).abs() < 0.5,
+            "{slope} counts/K at {at_c}"
+        );
     }
 }
 
@@ -25,7 +28,8 @@ fn divider_has_the_slopes_of_its_class() {
 fn tolerances_shift_the_reading_as_the_beta_equation_has_it() {
     // At 25 deg C: 1 % of resistance is 1 % / (beta/T^2) = 0.225 K; beta counts away from it only.
     let kelvin = |params: ThermistorParams, at_c: f64| {
-        (DISPLAY.ratio(at_c) - params.ratio(at_c)) / (DISPLAY.ratio(at_c - 0.5) - DISPLAY.ratio(at_c + 0.5))
+        (DISPLAY.ratio(at_c) - params.ratio(at_c))
+            / (DISPLAY.ratio(at_c - 0.5) - DISPLAY.ratio(at_c + 0.5))
     };
     let high = ThermistorParams {
         at_25c_ohm: 10.1e3,
@@ -72,7 +76,8 @@ fn heated_thermistor_rests_where_power_and_loss_balance() {
         };
         let at_rest = Thermistor::new(params, &site(surface_c), 3.3);
         let above_c = at_rest.reached_c - surface_c;
-        let ohm = 10e3 * (3950.0 * ((at_rest.reached_c + 273.15).recip() - 298.15f64.recip())).exp();
+        let ohm =
+            10e3 * (3950.0 * ((at_rest.reached_c + 273.15).recip() - 298.15f64.recip())).exp();
         let power_w = (3.3 / (ohm + 10e3)).powi(2) * ohm;
         assert!(
             (above_c * dissipation_w_k / power_w - 1.0).abs() < 1e-9,
@@ -115,7 +120,10 @@ fn thermistor_trails_by_its_lag() {
         thermistor.step(step_s, &site(44.0));
     }
     let left_c = 44.0 - thermistor.reached_c;
-    assert!((left_c - 10.0 * 0.1 * (-1.0f64).exp()).abs() < 1e-6, "{left_c}");
+    assert!(
+        (left_c - 10.0 * 0.1 * (-1.0f64).exp()).abs() < 1e-6,
+        "{left_c}"
+    );
 }
 
 /// A twentieth of 8 mW/K is left, of which its leads take what they took before, 16 uW/K: 4 %.
