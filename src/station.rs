@@ -2,7 +2,7 @@
 //!
 //! Armed, the display is neutral: at skin temperature, touched or not, or where it is held for calibration.
 
-use contact_model::fixed_point::{Celsius, Force, Pairing};
+use contact_model::fixed_point::{Celsius, ContactPair, Force};
 use contact_model::material::{MATERIALS, SKIN};
 
 use crate::TICK_HZ;
@@ -41,9 +41,9 @@ pub struct Station {
     told: Option<Fault>,
     touch: Touch,
     render: Render,
-    material: Option<(&'static str, Pairing)>,
+    material: Option<(&'static str, ContactPair)>,
     /// Of any material: how skin and display touch.
-    any: Option<Pairing>,
+    any: Option<ContactPair>,
     object: Option<Celsius>,
     mode: Mode,
     /// Where the display is held while armed, instead of neutral.
@@ -91,7 +91,7 @@ impl Station {
             touch: Touch::default(),
             render: Render::default(),
             material: None,
-            any: Pairing::new(
+            any: ContactPair::new(
                 &SKIN,
                 &MATERIALS[0].1,
                 &settings.display,

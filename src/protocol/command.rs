@@ -1,6 +1,6 @@
 //! Lines to commands.
 
-use contact_model::fixed_point::{Celsius, Pairing};
+use contact_model::fixed_point::{Celsius, ContactPair};
 use contact_model::material::{MATERIALS, Material, SKIN, Surface};
 use fixed::types::I32F32;
 
@@ -30,7 +30,7 @@ pub enum Command {
         /// Name, or `custom`.
         name: &'static str,
         /// The material under a finger on this display.
-        pairing: Pairing,
+        pairing: ContactPair,
     },
     /// `object CELSIUS` or `object room`: temperature of the object before contact.
     Object(Option<Celsius>),
@@ -254,6 +254,6 @@ fn custom<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<Material, Err
     })
 }
 
-fn pair(material: &Material, display: &Surface) -> Result<Pairing, Error> {
-    Pairing::new(&SKIN, material, display, 1.0 / f64::from(TICK_HZ)).map_err(Error::Pairing)
+fn pair(material: &Material, display: &Surface) -> Result<ContactPair, Error> {
+    ContactPair::new(&SKIN, material, display, 1.0 / f64::from(TICK_HZ)).map_err(Error::ContactPair)
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use contact_model::fixed_point::PairingError;
+use contact_model::fixed_point::ContactPairError;
 use contact_model::material::MATERIALS;
 
 use super::{Command, LINE_MAX, LineError};
@@ -83,7 +83,7 @@ pub enum Error {
     /// A number outside of its range.
     OutOfRange(&'static Number, Word),
     /// A custom material that cannot be rendered.
-    Pairing(PairingError),
+    ContactPair(ContactPairError),
     /// `start` before `arm`.
     NotArmed,
     /// `start` while the self-test goes on.
@@ -211,7 +211,7 @@ impl fmt::Display for Error {
             ) => {
                 write!(f, "{name} {word} out of range; {min} to {max} {unit}")
             }
-            Self::Pairing(error) => write!(f, "{error}"),
+            Self::ContactPair(error) => write!(f, "{error}"),
             Self::NotArmed => f.write_str("start needs arm first"),
             Self::Testing => f.write_str("the self-test goes on; ask again in a second"),
             Self::NoMaterial => f.write_str("start needs a material first"),

@@ -9,7 +9,9 @@ mod skin;
 
 use core::ops::RangeInclusive;
 
-use contact_model::fixed_point::{Celsius, Contact, Course, Force, Pairing, contact_area};
+use contact_model::fixed_point::{
+    Celsius, ChordInterpolation, Contact, ContactPair, Force, contact_area,
+};
 
 use force_mean::{Change, ForceMean, all_the_same};
 use skin::{Bodies, Links, Skin};
@@ -50,7 +52,7 @@ pub enum Mode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scene<'a> {
     /// The material.
-    pub pairing: &'a Pairing,
+    pub pairing: &'a ContactPair,
     /// Its temperature; that of the room if none was given.
     pub object: Option<Celsius>,
     /// Model.
@@ -86,7 +88,7 @@ struct Grip {
 
 impl Grip {
     /// What is in use from now on is the mean force.
-    fn use_mean(&mut self, pairing: &Pairing) {
+    fn use_mean(&mut self, pairing: &ContactPair) {
         self.force.take();
         if self.contact_in_use().is_none() {
             self.links = Some(Links::new(pairing, self.force.in_use()));
@@ -107,7 +109,7 @@ struct Touching {
     /// Forces for which contact resistance need not be computed again.
     same: RangeInclusive<Force>,
     /// Eq. 6-12 in closed form, if that holds.
-    course: Option<Course>,
+    course: Option<ChordInterpolation>,
     /// It is to be laid, for the force in use. What that needs of the force is computed a tick before.
     due: bool,
 }
@@ -225,7 +227,7 @@ impl Render {
 
     /// Heat into a display, W, whose surface is `display`; `pairing` is that of the scene, or any with that display if
     /// nothing is presented.
-    pub fn load(&mut self, pairing: &Pairing, display: Celsius) -> Watt {
+    pub fn load(&mut self, pairing: &ContactPair, display: Celsius) -> Watt {
         let Some(before) = self.before else {
             return Watt::ZERO;
         };
@@ -322,15 +324,17 @@ impl Render {
         let setpoint = match (grip.contact_in_use(), &mut touching.course) {
             (Some(contact), course) if touching.due && (known || !live) => {
                 let (laid, evaluations) =
-                    Course::new(contact, skin, object, touching.elapsed, TOLERANCE);
+                    ChordInterpolation::new(contact, skin, object, touching.elapsed, TOLERANCE);
                 self.evaluations = self.evaluations.wrapping_add(evaluations);
-                touching.same = all_the_same(grip.force.in_use(), laid.gain());
+                touching.same = all_the_same(grip.force.in_use(), laid.transient_amplitude());
                 touching.due = false;
                 course.insert(laid).setpoint()
             }
             (_, Some(course)) => {
                 let setpoint = course.advance();
-                self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
+                self.evaluations = self
+                    .evaluations
+                    .wrapping_add(course.has_just_evaluated().into());
                 setpoint
             }
             (_, None) => self.skin.display(bodies, skin, apart, true),
