@@ -4,7 +4,7 @@
 
 use core::fmt;
 
-use contact_model::fixed_point::{Celsius, Pairing};
+use contact_model::fixed_point::{Celsius, ContactPair};
 
 use crate::control::{Law, Tuned};
 use crate::identification::{Aborted, Row};
@@ -27,7 +27,7 @@ pub enum Command {
         /// Name, or `custom`.
         name: &'static str,
         /// The material under a finger, beside the display.
-        pairing: Pairing,
+        pair: ContactPair,
     },
     /// Temperature of the object before contact; `None` takes that of the room.
     Object(Option<Celsius>),

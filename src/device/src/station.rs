@@ -2,7 +2,7 @@
 //!
 //! Armed, the display is neutral: at skin temperature, touched or not, or where it is held for calibration.
 
-use contact_model::fixed_point::{Celsius, Force, Pairing};
+use contact_model::fixed_point::{Celsius, ContactPair, Force};
 use contact_model::material::{MATERIALS, SKIN};
 
 use crate::TICK_HZ;
@@ -42,9 +42,9 @@ pub struct Station {
     told: Option<Fault>,
     touch: Touch,
     render: Render,
-    material: Option<(&'static str, Pairing)>,
+    material: Option<(&'static str, ContactPair)>,
     /// Of any material: how skin and display touch.
-    any: Option<Pairing>,
+    any: Option<ContactPair>,
     object: Option<Celsius>,
     mode: Mode,
     /// Where the display is held while armed, instead of neutral.
@@ -92,7 +92,7 @@ impl Station {
             touch: Touch::default(),
             render: Render::default(),
             material: None,
-            any: Pairing::new(
+            any: ContactPair::new(
                 &SKIN,
                 &MATERIALS[0].1,
                 &settings.display,
@@ -325,10 +325,10 @@ impl Station {
         let touch: Option<Force> = touching.then_some(sound.force);
         self.render.observe(sound.skin, sound.room, touch, landed);
         let display = self.control.surface(sound.display);
-        let pairing = self.material.as_ref().map(|(_, pairing)| pairing);
+        let pair = self.material.as_ref().map(|(_, pair)| pair);
         // The skin is followed whatever the law, which may change under a finger.
-        match pairing.or(self.any.as_ref()) {
-            Some(pairing) => self.render.load(pairing, display),
+        match pair.or(self.any.as_ref()) {
+            Some(pair) => self.render.load(pair, display),
             None => Watt::ZERO,
         }
     }
@@ -352,9 +352,9 @@ impl Station {
                 } else {
                     State::Preset
                 };
-                let (_, pairing) = self.material.as_ref()?;
+                let (_, pair) = self.material.as_ref()?;
                 let scene = Scene {
-                    pairing,
+                    pair,
                     object: self.object,
                     mode: self.mode,
                 };
@@ -454,8 +454,8 @@ impl Station {
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Stream { interval_ms } => self.stream_ticks = interval_ms * (TICK_HZ / 1000),
             // Another object, under whatever finger rests there: a new contact.
-            Command::Material { name, pairing } => {
-                self.material = Some((name, pairing));
+            Command::Material { name, pair } => {
+                self.material = Some((name, pair));
                 self.render.forget_contact();
             }
             Command::Object(object) => {

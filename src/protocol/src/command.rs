@@ -1,6 +1,6 @@
 //! Lines to commands.
 
-use contact_model::fixed_point::Pairing;
+use contact_model::fixed_point::ContactPair;
 use contact_model::material::{MATERIALS, Material, SKIN, Surface};
 use fixed::types::I32F32;
 
@@ -113,7 +113,7 @@ impl Parsed {
                 };
                 Self::Station(Command::Material {
                     name,
-                    pairing: pair(&material, &settings.display)?,
+                    pair: pair(&material, &settings.display)?,
                 })
             }
             other => return Err(Error::UnknownCommand(other.into())),
@@ -230,6 +230,6 @@ fn custom<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<Material, Err
     })
 }
 
-fn pair(material: &Material, display: &Surface) -> Result<Pairing, Error> {
-    Pairing::new(&SKIN, material, display, 1.0 / f64::from(TICK_HZ)).map_err(Error::Pairing)
+fn pair(material: &Material, display: &Surface) -> Result<ContactPair, Error> {
+    ContactPair::new(&SKIN, material, display, 1.0 / f64::from(TICK_HZ)).map_err(Error::ContactPair)
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use contact_model::fixed_point::PairingError;
+use contact_model::fixed_point::ContactPairError;
 use contact_model::material::MATERIALS;
 
 use thermal_commissioning::{FARTHEST_K, NoTile, POINTS, PointError, SENSORS};
@@ -72,7 +72,7 @@ pub enum Error {
     /// A number outside of its range.
     OutOfRange(&'static Range, Word),
     /// A custom material that cannot be rendered.
-    Pairing(PairingError),
+    ContactPair(ContactPairError),
     /// Settings are stored only while the bridge is off.
     NeedsOff(&'static str),
     /// A command that no single finger can be given.
@@ -192,7 +192,7 @@ impl fmt::Display for Error {
             ) => {
                 write!(f, "{name} {word} out of range; {min} to {max} {unit}")
             }
-            Self::Pairing(error) => write!(f, "{error}"),
+            Self::ContactPair(error) => write!(f, "{error}"),
             Self::Refused(Refused::NotArmed) => f.write_str("start needs arm first"),
             Self::Refused(Refused::Testing) => {
                 f.write_str("the self-test goes on; ask again in a second")

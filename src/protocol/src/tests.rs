@@ -55,7 +55,7 @@ fn every_command_is_understood() {
     }
     // Copper by name and by its properties.
     let of = |line| match parse(line) {
-        Ok(Parsed::Station(Command::Material { pairing, .. })) => pairing,
+        Ok(Parsed::Station(Command::Material { pair, .. })) => pair,
         other => panic!("{line}: {other:?}"),
     };
     let (named, custom) = (

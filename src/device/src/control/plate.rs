@@ -5,7 +5,7 @@
 //! (71 couples, 30 mm square, 0.8 mm of alumina) are in [`CLASS`], neighbours taken together; what is faster than a
 //! tick follows at once.
 
-use contact_model::fixed_point::{AHEAD_TICKS, Celsius};
+use contact_model::fixed_point::{Celsius, MATCH_HORIZON_TICKS};
 use fixed::types::I8F24;
 
 use super::lag::{Lag, Share};
@@ -369,4 +369,4 @@ const fn kelvin(at: Celsius) -> i32 {
 }
 
 /// The horizon lies within what the skin's correction looks ahead.
-const _: () = assert!(HORIZON_TICKS <= AHEAD_TICKS as f64);
+const _: () = assert!(HORIZON_TICKS <= MATCH_HORIZON_TICKS as f64);

@@ -9,7 +9,9 @@ mod skin;
 
 use core::ops::RangeInclusive;
 
-use contact_model::fixed_point::{Celsius, Contact, Course, Force, Pairing, contact_area};
+use contact_model::fixed_point::{
+    Celsius, ChordInterpolation, Contact, ContactPair, Force, contact_area,
+};
 
 use force_mean::{Change, ForceMean, all_the_same};
 use skin::{Bodies, Links, Skin};
@@ -50,7 +52,7 @@ pub enum Mode {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scene<'a> {
     /// The material.
-    pub pairing: &'a Pairing,
+    pub pair: &'a ContactPair,
     /// Its temperature; that of the room if none was given.
     pub object: Option<Celsius>,
     /// Model.
@@ -86,10 +88,10 @@ struct Grip {
 
 impl Grip {
     /// What is in use from now on is the mean force.
-    fn use_mean(&mut self, pairing: &Pairing) {
+    fn use_mean(&mut self, pair: &ContactPair) {
         self.force.take();
         if self.contact_in_use().is_none() {
-            self.links = Some(Links::new(pairing, self.force.in_use()));
+            self.links = Some(Links::new(pair, self.force.in_use()));
         }
     }
 
@@ -107,7 +109,7 @@ struct Touching {
     /// Forces for which contact resistance need not be computed again.
     same: RangeInclusive<Force>,
     /// Eq. 6-12 in closed form, if that holds.
-    course: Option<Course>,
+    course: Option<ChordInterpolation>,
     /// It is to be laid, for the force in use. What that needs of the force is computed a tick before.
     due: bool,
 }
@@ -214,7 +216,7 @@ impl Render {
         self.before.map(|before| before.skin)
     }
 
-    /// A contact that begins with the next [`Self::present`] is a new one, with whatever pairing.
+    /// A contact that begins with the next [`Self::present`] is a new one, with whatever pair.
     pub fn forget_contact(&mut self) {
         self.touching = None;
         self.skin.forget_object();
@@ -223,9 +225,9 @@ impl Render {
         }
     }
 
-    /// Heat into a display, W, whose surface is `display`; `pairing` is that of the scene, or any with that display if
+    /// Heat into a display, W, whose surface is `display`; `pair` is that of the scene, or any with that display if
     /// nothing is presented.
-    pub fn load(&mut self, pairing: &Pairing, display: Celsius) -> Watt {
+    pub fn load(&mut self, pair: &ContactPair, display: Celsius) -> Watt {
         let Some(before) = self.before else {
             return Watt::ZERO;
         };
@@ -235,7 +237,7 @@ impl Render {
         };
         let force = grip.force.mean();
         if !grip.links.as_ref().is_some_and(|links| links.do_for(force)) {
-            grip.links = Some(Links::new(pairing, force));
+            grip.links = Some(Links::new(pair, force));
         }
         let drive = self
             .skin
@@ -261,18 +263,18 @@ impl Render {
         };
         if scene.mode == Mode::SemiInfinite {
             self.touching = None;
-            return only(scene.pairing.interface_temperature(skin, object));
+            return only(scene.pair.interface_temperature(skin, object));
         }
         let apart = skin.saturating_sub(object);
-        if !self.bodies.are_of(scene.pairing) {
-            self.bodies = Bodies::new(scene.pairing);
+        if !self.bodies.are_of(scene.pair) {
+            self.bodies = Bodies::new(scene.pair);
         }
         let bodies = &self.bodies;
         let Some(grip) = &mut self.grip else {
             self.touching = None;
             self.skin.touch_object(None, bodies, apart);
             if !live {
-                return only(scene.pairing.preset(skin, object));
+                return only(scene.pair.preset(skin, object));
             }
             let setpoint = self.skin.display(bodies, skin, apart, false);
             return Some(Wanted {
@@ -296,7 +298,7 @@ impl Render {
             }
         });
         if fresh {
-            let preset = scene.pairing.preset(skin, object);
+            let preset = scene.pair.preset(skin, object);
             // Half way between where it should be and where it waits for the finger.
             let half = landing(skin, preset) >> 1u32;
             let off = display.saturating_sub(preset).saturating_add(half).abs();
@@ -316,21 +318,23 @@ impl Render {
             closed && (grip.change != Change::Noise || !same || due || touching.course.is_none());
         let known = due && grip.contact_in_use().is_some();
         if touching.due && !known {
-            grip.use_mean(scene.pairing);
+            grip.use_mean(scene.pair);
         }
         // While the skin is followed, not both in one tick.
         let setpoint = match (grip.contact_in_use(), &mut touching.course) {
             (Some(contact), course) if touching.due && (known || !live) => {
                 let (laid, evaluations) =
-                    Course::new(contact, skin, object, touching.elapsed, TOLERANCE);
+                    ChordInterpolation::new(contact, skin, object, touching.elapsed, TOLERANCE);
                 self.evaluations = self.evaluations.wrapping_add(evaluations);
-                touching.same = all_the_same(grip.force.in_use(), laid.gain());
+                touching.same = all_the_same(grip.force.in_use(), laid.transient_amplitude());
                 touching.due = false;
                 course.insert(laid).setpoint()
             }
             (_, Some(course)) => {
                 let setpoint = course.advance();
-                self.evaluations = self.evaluations.wrapping_add(course.is_at_knot().into());
+                self.evaluations = self
+                    .evaluations
+                    .wrapping_add(course.has_just_evaluated().into());
                 setpoint
             }
             (_, None) => self.skin.display(bodies, skin, apart, true),

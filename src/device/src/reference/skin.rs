@@ -5,7 +5,8 @@
 //! the display, and what is missing when the skin is not where it should be.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, Force, Fraction, HalfOrder, Link, Pairing, Ratio, log2_relative_pressure,
+    Celsius, Contact, ContactConductance, ContactPair, Force, Fraction, HalfSpace, Ratio,
+    log2_relative_pressure,
 };
 
 /// Part of a force, as a power of two, by which it changes nothing that the skin could tell.
@@ -15,8 +16,8 @@ const SAME_SHIFT: u32 = 10;
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Skin {
     /// How far each has cooled at its surface.
-    on_display: HalfOrder,
-    on_object: HalfOrder,
+    on_display: HalfSpace,
+    on_object: HalfSpace,
     /// What flows on the object in this tick.
     drive: Celsius,
 }
@@ -26,20 +27,20 @@ pub struct Skin {
 pub struct Links {
     force: Force,
     contact: Contact,
-    display: Link,
-    object: Link,
+    display: ContactConductance,
+    object: ContactConductance,
 }
 
 impl Links {
-    /// Of a pairing.
+    /// Of a pair.
     #[must_use]
-    pub fn new(pairing: &Pairing, force: Force) -> Self {
-        let contact = pairing.under(log2_relative_pressure(force));
+    pub fn new(pair: &ContactPair, force: Force) -> Self {
+        let contact = pair.at_pressure(log2_relative_pressure(force));
         Self {
             force,
             contact,
-            display: contact.on_display(),
-            object: contact.on_object(),
+            display: contact.display_conductance(),
+            object: contact.object_conductance(),
         }
     }
 
@@ -68,21 +69,21 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// Of a pairing.
+    /// Of a pair.
     #[must_use]
-    pub fn new(pairing: &Pairing) -> Self {
-        let inverse = (1u64 << 48) / u64::from(pairing.weight().to_bits().max(1));
+    pub fn new(pair: &ContactPair) -> Self {
+        let inverse = (1u64 << 48) / u64::from(pair.weight().to_bits().max(1));
         Self {
-            weight: pairing.weight(),
+            weight: pair.weight(),
             inverse_weight: inverse.min(u64::from(u32::MAX)) as u32,
-            ratio: pairing.ratio(),
+            ratio: pair.ratio(),
         }
     }
 
-    /// Whether they are those of a pairing.
+    /// Whether they are those of a pair.
     #[must_use]
-    pub fn are_of(&self, pairing: &Pairing) -> bool {
-        self.weight == pairing.weight() && self.ratio == pairing.ratio()
+    pub fn are_of(&self, pair: &ContactPair) -> bool {
+        self.weight == pair.weight() && self.ratio == pair.ratio()
     }
 }
 
@@ -93,7 +94,7 @@ fn limited(bits: i64) -> Celsius {
 impl Skin {
     /// A new object, at rest; the skin stays as it is.
     pub fn forget_object(&mut self) {
-        self.on_object = self.on_display.out_of_step();
+        self.on_object = self.on_display.staggered();
         self.drive = Celsius::ZERO;
     }
 
@@ -108,7 +109,7 @@ impl Skin {
         let drive = links.map_or(Celsius::ZERO, |links| {
             links
                 .display
-                .drive(before.saturating_sub(display), &self.on_display)
+                .scaled_flux(before.saturating_sub(display), &self.on_display)
         });
         self.on_display.step(drive);
         drive
@@ -118,7 +119,7 @@ impl Skin {
     pub fn touch_object(&mut self, links: Option<&Links>, bodies: &Bodies, apart: Celsius) {
         self.drive = links.map_or(Celsius::ZERO, |links| {
             let in_front = (i64::from(apart.to_bits()) * i64::from(bodies.weight.to_bits())) >> 32;
-            links.object.drive(limited(in_front), &self.on_object)
+            links.object.scaled_flux(limited(in_front), &self.on_object)
         });
         self.on_object.step(self.drive);
     }
@@ -133,7 +134,7 @@ impl Skin {
         apart: Celsius,
         touching: bool,
     ) -> Celsius {
-        let moved = self.on_object.after(self.drive);
+        let moved = self.on_object.response_to(self.drive);
         let closed = (i64::from(moved.to_bits()) * i64::from(bodies.inverse_weight)) >> 16;
         // Within 512 K, so that the product has 63 bits.
         let step = limited(i64::from(apart.to_bits()) - closed).to_bits();
@@ -143,7 +144,7 @@ impl Skin {
         let skin = if touching {
             moved
         } else {
-            self.on_display.left()
+            self.on_display.free_response()
         };
         limited(i64::from(before.to_bits()) - i64::from(skin.to_bits()) - over_display)
     }
@@ -153,7 +154,7 @@ impl Skin {
     pub fn correction(&self, links: &Links) -> Celsius {
         links
             .display
-            .across(self.on_display.drive_to(&self.on_object))
+            .temperature_drop(self.on_display.scaled_flux_to_match(&self.on_object))
             .saturating_neg()
     }
 }

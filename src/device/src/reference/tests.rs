@@ -28,10 +28,10 @@ struct Seen {
 /// Lets a finger rest on a material under `force_n(t_s)`, for `ticks`; judges from `from_s` on.
 fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f64) -> Seen {
     let object = &MATERIALS[material].1;
-    let pairing = Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S).expect("pairing");
+    let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S).expect("pair");
     let object_c = Celsius::from_num(OBJECT_C);
     let scene = Scene {
-        pairing: &pairing,
+        pair: &pair,
         object: Some(object_c),
         mode: Mode::ContactResistance,
     };

@@ -15,9 +15,9 @@
 //! Two half-spaces that touch share their flux, and so one sum serves both: their surfaces move in the ratio of
 //! their effusivities, in opposite directions.
 
-mod link;
+mod conductance;
 
-pub use link::Link;
+pub use conductance::ContactConductance;
 
 use super::Celsius;
 
@@ -34,7 +34,7 @@ struct Fast {
     given: i32,
     /// Part of itself that it loses, `1 - e^-r`, in 2^-32.
     lost: i32,
-    /// Part of itself that it still has when [`HalfOrder::drive_to`] looks, `e^(-19 r)`, in 2^-31.
+    /// Part of itself that it still has when [`HalfSpace::drive_to`] looks, `e^(-19 r)`, in 2^-31.
     kept_ahead: i32,
 }
 
@@ -82,9 +82,9 @@ const SLOW_PARTS: [Slow; SLOW] = [
 /// What all slow parts have of a tick's drive when the next begins, the sum of `g e^-r`, in 2^-32.
 const SLOW_GIVEN: i32 = 83_730_349;
 
-/// How far ahead [`HalfOrder::drive_to`] looks.
-pub const AHEAD_TICKS: u32 = 20;
-/// The inverse of what a lasting drive of one kelvin moves the surface by in [`AHEAD_TICKS`], 1 / 5.060, in 2^-32.
+/// How far ahead [`HalfSpace::drive_to`] looks.
+pub const MATCH_HORIZON_TICKS: u32 = 20;
+/// The inverse of what a lasting drive of one kelvin moves the surface by in [`MATCH_HORIZON_TICKS`], 1 / 5.060, in 2^-32.
 const PER_GAIN_AHEAD: i32 = 848_800_003;
 /// What a drive of one kelvin moves the surface by in one tick, in 2^-20: the sum of all `g`, and `2 / pi` for what is
 /// faster than a tick.
@@ -98,10 +98,10 @@ const BELOW: u32 = 32;
 ///
 /// Its input is the *drive* `q sqrt(dt) / e`, in K. Under a constant drive the surface moves within 5 % of the
 /// half-space in the first tick, 1.2 % in the second, 0.4 % from 10 to 6e4 ticks; what it leaves after 6e4 ticks is
-/// within 0.6 % of what was (`cargo test -p contact-model half_order`). No input makes it overflow: a drive beyond
+/// within 0.6 % of what was (`cargo test -p contact-model half_space`). No input makes it overflow: a drive beyond
 /// ±32 K, more than any contact gives, counts as that, and the surface saturates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct HalfOrder {
+pub struct HalfSpace {
     /// What each has at the end of the coming tick if nothing flows, K, 54 binary places. As the drive is bounded,
     /// none leaves ±320 K.
     fast: [i64; FAST],
@@ -120,9 +120,19 @@ pub struct HalfOrder {
     left: Celsius,
 }
 
-impl Default for HalfOrder {
+impl Default for HalfSpace {
     fn default() -> Self {
-        Self::at_rest()
+        Self {
+            fast: [0; FAST],
+            slow: [0; SLOW],
+            slow_sum: Celsius::ZERO,
+            since: 0,
+            loss: 0,
+            drives: 0,
+            window: WINDOW,
+            to_come: WINDOW,
+            left: Celsius::ZERO,
+        }
     }
 }
 
@@ -149,27 +159,11 @@ fn bounded(drive: Celsius) -> i32 {
     drive.to_bits().clamp(-BOUND, BOUND - 1)
 }
 
-impl HalfOrder {
-    /// No flux for ever.
-    #[must_use]
-    pub const fn at_rest() -> Self {
-        Self {
-            fast: [0; FAST],
-            slow: [0; SLOW],
-            slow_sum: Celsius::ZERO,
-            since: 0,
-            loss: 0,
-            drives: 0,
-            window: WINDOW,
-            to_come: WINDOW,
-            left: Celsius::ZERO,
-        }
-    }
-
+impl HalfSpace {
     /// The same surface, whose windows end half a window apart from this one's: two that are stepped together then
     /// never have a long tick together.
     #[must_use]
-    pub fn out_of_step(&self) -> Self {
+    pub fn staggered(&self) -> Self {
         let mut other = *self;
         other.end_window((self.to_come + WINDOW / 2 - 1) % WINDOW + 1);
         other
@@ -177,13 +171,13 @@ impl HalfOrder {
 
     /// Where the surface is at the end of the coming tick if nothing flows in it.
     #[must_use]
-    pub const fn left(&self) -> Celsius {
+    pub const fn free_response(&self) -> Celsius {
         self.left
     }
 
     /// Where the surface is at the end of a tick in which `drive` flows.
     #[must_use]
-    pub fn after(&self, drive: Celsius) -> Celsius {
+    pub fn response_to(&self, drive: Celsius) -> Celsius {
         let moved = product(bounded(drive), GAIN as i32) >> GAIN_BITS;
         self.left.saturating_add(Celsius::from_bits(moved as i32))
     }
@@ -226,16 +220,16 @@ impl HalfOrder {
         (self.drives, self.window, self.to_come) = (0, ticks, ticks);
     }
 
-    /// The lasting drive that brings this surface in [`AHEAD_TICKS`] to where another one, which has the same drive
+    /// The lasting drive that brings this surface in [`MATCH_HORIZON_TICKS`] to where another one, which has the same drive
     /// besides, will be.
     #[must_use]
-    pub fn drive_to(&self, other: &Self) -> Celsius {
+    pub fn scaled_flux_to_match(&self, other: &Self) -> Celsius {
         let mut fast = 0;
         for ((from, to), part) in self.fast.iter().zip(&other.fast).zip(&FAST_PARTS) {
             fast += product(high(*to).saturating_sub(high(*from)), part.kept_ahead);
         }
         // The slow parts go on along their straight line.
-        let lost = (other.loss - self.loss) * i64::from(AHEAD_TICKS - 1);
+        let lost = (other.loss - self.loss) * i64::from(MATCH_HORIZON_TICKS - 1);
         let slow = other.slow_left().saturating_sub(self.slow_left());
         let half = high(fast);
         let apart = half

@@ -7,7 +7,7 @@ use super::{Log2, exp2};
 ///
 /// Holds `b² dt` (per tick) and contact conductances (W/(m² K)).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rate {
+pub struct MantissaExponent {
     fraction: u32,
     /// Held in a word because the kernel adds to it.
     exponent: i32,
@@ -16,7 +16,7 @@ pub struct Rate {
 /// Far beyond every contact, and within `i16`.
 const EXPONENT_MAX: i32 = 1 << 14;
 
-impl Rate {
+impl MantissaExponent {
     /// The number one.
     pub const ONE: Self = Self::new(0, 0);
 
@@ -99,7 +99,7 @@ impl Rate {
     /// The number times a power of two, exactly.
     #[must_use]
     #[inline]
-    pub const fn doubled(self, times: i16) -> Self {
+    pub const fn times_power_of_2(self, times: i16) -> Self {
         Self::clamped(self.fraction, self.exponent + times as i32)
     }
 

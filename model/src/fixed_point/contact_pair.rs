@@ -1,24 +1,24 @@
 //! A finger, a material and a display surface, reduced to the numbers that a tick needs.
 
 use super::properties::{
-    PairingError, check, moderate, of_display, of_object, of_skin, rate, weight,
+    ContactPairError, check, moderate, of_display, of_object, of_skin, rate, weight,
 };
-use super::{Celsius, Contact, Fraction, Log2, Rate, Ratio, contact, logarithm};
+use super::{Celsius, Contact, Fraction, Log2, MantissaExponent, Ratio, contact, logarithm};
 use crate::material::{Material, Surface};
 use crate::reference;
 
 /// One material under a finger, on one display; does not change with force or temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Pairing {
+pub struct ContactPair {
     weight: Fraction,
     ratio: Ratio,
     /// `b² dt`, its root and conductance at `P = H`.
-    per_tick: Rate,
-    per_root_tick: Rate,
-    conductance_w_m2k: Rate,
+    rate_per_tick: MantissaExponent,
+    root_rate_per_tick: MantissaExponent,
+    conductance_w_m2k: MantissaExponent,
 }
 
-impl Pairing {
+impl ContactPair {
     /// Derives the numbers, in `f64`, for ticks of `tick_s` seconds (any above 0; where `b² dt` leaves the range
     /// of `f64` it saturates). Errors are those of rounding: `w` 2^-33 (2^-32 beside one), `r` 2^-29, `b² dt` and
     /// the conductance 2^-32 of themselves.
@@ -30,7 +30,7 @@ impl Pairing {
         object: &Material,
         display: &Surface,
         tick_s: f64,
-    ) -> Result<Self, PairingError> {
+    ) -> Result<Self, ContactPairError> {
         check(of_skin(skin))?;
         check(of_object(object))?;
         check(of_display(display))?;
@@ -43,9 +43,9 @@ impl Pairing {
         let ratio = conductance / reference::mean_conductance::<f64>(&skin.surface, display);
         let b = (1.0 / es + 1.0 / eo) * conductance;
         Ok(Self {
-            ratio: Ratio::checked_from_num(ratio).ok_or(PairingError::Ratio(ratio))?,
-            per_tick: rate(moderate(b * b)? * tick_s)?,
-            per_root_tick: rate(b * libm::sqrt(tick_s))?,
+            ratio: Ratio::checked_from_num(ratio).ok_or(ContactPairError::Ratio(ratio))?,
+            rate_per_tick: rate(moderate(b * b)? * tick_s)?,
+            root_rate_per_tick: rate(b * libm::sqrt(tick_s))?,
             conductance_w_m2k: rate(conductance)?,
             weight: Fraction::saturating_from_num(weight(es, eo)),
         })
@@ -68,13 +68,14 @@ impl Pairing {
     /// logarithm, of `b² dt` below 2^-29, of the conductance below 2^-30, for logarithms within ±64; together
     /// with [`super::log2_relative_pressure`] at most 4e-9 and 2e-9.
     #[must_use]
-    pub fn under(&self, log2_relative_pressure: Log2) -> Contact {
-        let pressure_term = Rate::from_log2(logarithm::power_0_95(log2_relative_pressure));
+    pub fn at_pressure(&self, log2_relative_pressure: Log2) -> Contact {
+        let pressure_term =
+            MantissaExponent::from_log2(logarithm::power_0_95(log2_relative_pressure));
         Contact {
             weight: self.weight,
             ratio: self.ratio,
-            per_tick: self.per_tick.times(pressure_term).times(pressure_term),
-            per_root_tick: self.per_root_tick.times(pressure_term),
+            rate_per_tick: self.rate_per_tick.times(pressure_term).times(pressure_term),
+            root_rate_per_tick: self.root_rate_per_tick.times(pressure_term),
             conductance_w_m2k: self.conductance_w_m2k.times(pressure_term),
         }
     }

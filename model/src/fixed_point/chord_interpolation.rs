@@ -17,7 +17,7 @@
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use super::contact::{interface, preset};
-use super::{Celsius, Contact, Fraction, Rate, Ticks, erfcx};
+use super::{Celsius, Contact, Fraction, MantissaExponent, Ticks, erfcx};
 
 /// What the kernel and roundings may add to the error of a chord.
 const ROUNDING: Celsius = Celsius::from_bits(6);
@@ -35,7 +35,7 @@ const LAST: u64 = 1 << 59;
 /// Set-point of one finger's contact, tick by tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(C)] // Neighbours are loaded and stored in pairs.
-pub struct Course {
+pub struct ChordInterpolation {
     /// Where the length of a chord doubles, and where the chord ends, in lengths since landing.
     doubles: Ticks,
     end: Ticks,
@@ -49,10 +49,10 @@ pub struct Course {
     base: Celsius,
     twice_gain: Celsius,
     /// `b² dt` of one length.
-    rate: Rate,
+    rate: MantissaExponent,
 }
 
-impl Course {
+impl ChordInterpolation {
     /// The set-point from `elapsed` ticks after landing on, within `tolerance` (2 µK at least) of Eq. 6-12.
     /// Second is how often `E` was evaluated for it, up to two times.
     ///
@@ -81,11 +81,11 @@ impl Course {
         );
         let elapsed = elapsed.min(LAST);
         // `E` is below 1 / sqrt(pi u): all but perfect contact.
-        let octave = elapsed.max(1).ilog2() as i32 + contact.per_tick.exponent();
+        let octave = elapsed.max(1).ilog2() as i32 + contact.rate_per_tick.exponent();
         if octave > 2 * (size.ilog2() as i32 - bits.ilog2() as i32) {
             return (Self::held(base), 0);
         }
-        let first = first_octave(bits, size) - contact.per_tick.exponent();
+        let first = first_octave(bits, size) - contact.rate_per_tick.exponent();
         // Within two tolerances over the first chord means within eight of the preset: an eighth of it is 2^6 earlier.
         if first > LAST.ilog2() as i32 + 6 {
             return (Self::held(preset), 0);
@@ -94,10 +94,10 @@ impl Course {
         let later = octaves(elapsed, lengths);
         let length = (first.max(0) as u32).max(later).min(LONGEST);
         let end = (elapsed >> length) + 1;
-        let to = erfcx_at(end << length, contact.per_tick);
+        let to = erfcx_at(end << length, contact.rate_per_tick);
         let (from, evaluations) = match elapsed {
             0 => (Fraction::MAX, 1),
-            _ => (erfcx_at(elapsed, contact.per_tick), 2),
+            _ => (erfcx_at(elapsed, contact.rate_per_tick), 2),
         };
         let base = if gain > 0 {
             base - tolerance
@@ -117,7 +117,7 @@ impl Course {
             twice_fall: Celsius::from_bits((2 * fall) as i32),
             base,
             twice_gain: gain + gain,
-            rate: contact.per_tick.doubled(length as i16),
+            rate: contact.rate_per_tick.times_power_of_2(length as i16),
             end: Ticks::new(end as u32).unwrap_or(Ticks::MAX),
             doubles: Ticks::new(2 * lengths as u32).unwrap_or(Ticks::MAX),
         };
@@ -136,13 +136,13 @@ impl Course {
 
     /// Whether the last [`Self::advance`] evaluated `E`.
     #[must_use]
-    pub const fn is_at_knot(&self) -> bool {
+    pub const fn has_just_evaluated(&self) -> bool {
         self.left == 0
     }
 
     /// Size of what `E` is multiplied with, `|dT (w - r)|`.
     #[must_use]
-    pub const fn gain(&self) -> Celsius {
+    pub const fn transient_amplitude(&self) -> Celsius {
         Celsius::from_bits(self.twice_gain.to_bits() >> 1).abs()
     }
 
@@ -196,7 +196,7 @@ impl Course {
             twice_fall: Celsius::ZERO,
             base: at,
             twice_gain: Celsius::ZERO,
-            rate: Rate::ONE,
+            rate: MantissaExponent::ONE,
             end: Ticks::ONE,
             doubles: Ticks::MAX,
         }
@@ -263,10 +263,10 @@ const fn first_octave(tolerance: u64, gain: u64) -> i32 {
 
 /// `E` at `elapsed` ticks, which may be more than [`Ticks`] holds.
 #[inline(never)] // Called twice where time does not count.
-fn erfcx_at(elapsed: u64, per_tick: Rate) -> Fraction {
+fn erfcx_at(elapsed: u64, rate_per_tick: MantissaExponent) -> Fraction {
     let excess = (u64::BITS - elapsed.leading_zeros()).saturating_sub(LONGEST);
     Ticks::new((elapsed >> excess) as u32).map_or(Fraction::MAX, |ticks| {
-        erfcx(ticks, per_tick.doubled(excess as i16))
+        erfcx(ticks, rate_per_tick.times_power_of_2(excess as i16))
     })
 }
 

@@ -8,7 +8,7 @@ use std::vec::Vec;
 use proptest::prelude::*;
 
 use super::*;
-use crate::fixed_point::{Force, Pairing, log2_relative_pressure};
+use crate::fixed_point::{ContactPair, Force, log2_relative_pressure};
 use crate::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use crate::pressure::pressure_pa;
 use crate::reference;
@@ -17,7 +17,7 @@ const TICK_S: f64 = 1e-3;
 
 /// The same sum in `f64`, all of it stepped in every tick.
 struct EveryTick {
-    /// Rate, weight and value of each relaxation; the integrator has rate 0.
+    /// MantissaExponent, weight and value of each relaxation; the integrator has rate 0.
     parts: Vec<(f64, f64, f64)>,
 }
 
@@ -74,7 +74,7 @@ fn constants_are_those_of_the_sum() {
     for (part, exact) in FAST_PARTS.iter().zip(fast) {
         assert_eq!(part.given, scaled(EveryTick::given(exact), 32));
         assert_eq!(part.lost, scaled(-(-exact.0).exp_m1(), 32));
-        let still = f64::from(AHEAD_TICKS) - 1.0;
+        let still = f64::from(MATCH_HORIZON_TICKS) - 1.0;
         assert_eq!(part.kept_ahead, scaled((-still * exact.0).exp(), 31));
     }
     for (part, exact) in SLOW_PARTS.iter().zip(slow) {
@@ -92,7 +92,7 @@ fn constants_are_those_of_the_sum() {
     assert_eq!(GAIN as i32, scaled(EveryTick::gain(1), 20));
     assert_eq!(
         PER_GAIN_AHEAD,
-        scaled(1.0 / EveryTick::gain(AHEAD_TICKS), 32)
+        scaled(1.0 / EveryTick::gain(MATCH_HORIZON_TICKS), 32)
     );
 }
 
@@ -105,7 +105,7 @@ const STRAIGHT: f64 = 0.0098 * 28.0 / 2048.0;
 fn windows_differ_little_from_every_tick() {
     let mut worst_k = 0f64;
     for late in 0..WINDOW {
-        let (mut body, mut exact) = (HalfOrder::at_rest(), EveryTick::at_rest());
+        let (mut body, mut exact) = (HalfSpace::default(), EveryTick::at_rest());
         for _ in 0..late {
             body.step(Celsius::ZERO);
         }
@@ -122,34 +122,34 @@ fn windows_differ_little_from_every_tick() {
                 0.0
             };
             if tick == 7_000 {
-                body = body.out_of_step();
+                body = body.staggered();
             }
             body.step(Celsius::from_num(drive));
             exact.step(Celsius::from_num(drive).to_num());
-            worst_k = worst_k.max((body.left().to_num::<f64>() - exact.left(1.0)).abs());
+            worst_k = worst_k.max((body.free_response().to_num::<f64>() - exact.left(1.0)).abs());
         }
     }
     std::println!("windows: {:.3} mK", worst_k * 1e3);
     assert!(worst_k < STRAIGHT, "{worst_k}");
 }
 
-/// Two bodies that are apart come together in [`AHEAD_TICKS`] under the drive that is said to bring them there.
+/// Two bodies that are apart come together in [`MATCH_HORIZON_TICKS`] under the drive that is said to bring them there.
 #[test]
 fn drive_to_brings_one_body_to_the_other() {
     for ticks in [1, 3, 30, 1000, 30_000] {
-        let (mut from, mut to) = (HalfOrder::at_rest(), HalfOrder::at_rest().out_of_step());
+        let (mut from, mut to) = (HalfSpace::default(), HalfSpace::default().staggered());
         let (front, back) = (Celsius::lit("0.2"), Celsius::lit("0.12"));
         for _ in 0..ticks {
             from.step(back);
             to.step(front);
         }
-        let (more, mut apart) = (from.drive_to(&to), 0.0);
-        for _ in 0..AHEAD_TICKS {
-            apart = (to.after(back) - from.after(back + more)).to_num::<f64>();
+        let (more, mut apart) = (from.scaled_flux_to_match(&to), 0.0);
+        for _ in 0..MATCH_HORIZON_TICKS {
+            apart = (to.response_to(back) - from.response_to(back + more)).to_num::<f64>();
             from.step(back + more);
             to.step(back);
         }
-        let were = (to.left() - from.left()).to_num::<f64>();
+        let were = (to.free_response() - from.free_response()).to_num::<f64>();
         assert!(apart.abs() < 0.2e-3, "{ticks}: {apart} K left, {were}");
     }
 }
@@ -158,16 +158,16 @@ fn drive_to_brings_one_body_to_the_other() {
 #[test]
 fn out_of_step_is_half_a_window_away() {
     for ticks in 0..3 * WINDOW {
-        let mut body = HalfOrder::at_rest();
+        let mut body = HalfSpace::default();
         for _ in 0..ticks {
             body.step(Celsius::lit("0.3"));
         }
-        let mut other = body.out_of_step();
+        let mut other = body.staggered();
         for _ in 0..100 {
             assert_eq!(body.to_come.abs_diff(other.to_come), WINDOW / 2);
             body.step(Celsius::lit("0.1"));
             other.step(Celsius::lit("0.1"));
-            let apart = body.left().abs_diff(other.left());
+            let apart = body.free_response().abs_diff(other.free_response());
             assert!(apart.to_num::<f64>() < 0.3 * STRAIGHT, "{apart}");
         }
     }
@@ -177,10 +177,10 @@ fn out_of_step_is_half_a_window_away() {
 #[test]
 fn pulse_of_flux_moves_the_surface_as_a_half_space() {
     let exact = |ticks: f64| 2.0 * (ticks.max(0.0) / core::f64::consts::PI).sqrt();
-    let mut body = HalfOrder::at_rest();
+    let mut body = HalfSpace::default();
     let mut worst = 0f64;
     for tick in 1..=60_000u32 {
-        let after = body.after(Celsius::ONE).to_num::<f64>();
+        let after = body.response_to(Celsius::ONE).to_num::<f64>();
         body.step(Celsius::ONE);
         let error = after / exact(tick.into()) - 1.0;
         if tick >= 10 {
@@ -198,7 +198,7 @@ fn pulse_of_flux_moves_the_surface_as_a_half_space() {
     std::println!("late {worst}");
     worst = 0.0;
     for tick in 1..=60_000u32 {
-        let left = body.left().to_num::<f64>();
+        let left = body.free_response().to_num::<f64>();
         body.step(Celsius::ZERO);
         let now = f64::from(60_000 + tick);
         let error = left - (exact(now) - exact(f64::from(tick)));
@@ -217,9 +217,9 @@ fn contact_follows_equation_6_5() {
     let (mut worst_k, mut early_k) = (0f64, 0f64);
     for (name, material) in MATERIALS {
         let pairing =
-            Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
-        for (force_n, _) in crate::pressure::STATED {
-            let contact = pairing.under(log2_relative_pressure(Force::from_num(force_n)));
+            ContactPair::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
+        for (force_n, _) in crate::pressure::THESIS_PRESSURES {
+            let contact = pairing.at_pressure(log2_relative_pressure(Force::from_num(force_n)));
             let exact = reference::Contact::<f64>::new(
                 (&SKIN, 34.0),
                 (&material, 24.0),
@@ -227,10 +227,10 @@ fn contact_follows_equation_6_5() {
                 pressure_pa(force_n),
             );
             let weight = pairing.weight().to_num::<f64>();
-            let (link, mut body) = (contact.on_object(), HalfOrder::at_rest());
+            let (link, mut body) = (contact.object_conductance(), HalfSpace::default());
             for tick in 1..=10_000u32 {
-                let drive = link.drive(Celsius::from_num(weight * 10.0), &body);
-                let skin_c = 34.0 - body.after(drive).to_num::<f64>();
+                let drive = link.scaled_flux(Celsius::from_num(weight * 10.0), &body);
+                let skin_c = 34.0 - body.response_to(drive).to_num::<f64>();
                 body.step(drive);
                 let error_k = (skin_c - exact.at(f64::from(tick) * TICK_S).skin_c).abs();
                 if tick >= 20 {
@@ -259,20 +259,22 @@ fn links_are_the_contacts_they_stand_for() {
     let mut worst = 0f64;
     for (name, material) in MATERIALS {
         let pairing =
-            Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
+            ContactPair::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
         for force_n in [0.005, 0.02, 0.1, 0.3, 1.0, 3.0, 20.0, 250.0] {
-            let contact = pairing.under(log2_relative_pressure(Force::from_num(force_n)));
-            let on_object = 1.0 / contact.per_root_tick.to_f64();
+            let contact = pairing.at_pressure(log2_relative_pressure(Force::from_num(force_n)));
+            let on_object = 1.0 / contact.root_rate_per_tick.to_f64();
             let on_display =
                 on_object * contact.ratio.to_num::<f64>() / contact.weight.to_num::<f64>();
             let gain = EveryTick::gain(1);
             for (link, resistance) in [
-                (contact.on_object(), on_object),
-                (contact.on_display(), on_display),
+                (contact.object_conductance(), on_object),
+                (contact.display_conductance(), on_display),
             ] {
-                let (body, front) = (HalfOrder::at_rest(), Celsius::lit("20"));
-                let drive = link.drive(front, &body).to_num::<f64>();
-                let across = link.across(Celsius::lit("0.0078125")).to_num::<f64>();
+                let (body, front) = (HalfSpace::default(), Celsius::lit("20"));
+                let drive = link.scaled_flux(front, &body).to_num::<f64>();
+                let across = link
+                    .temperature_drop(Celsius::lit("0.0078125"))
+                    .to_num::<f64>();
                 let errors = [
                     (drive - 20.0 / (resistance + gain)).abs() / drive - 2f64.powi(-21) / drive,
                     (across - resistance / 128.0).abs() / across - 2f64.powi(-21) / across,
@@ -292,7 +294,7 @@ proptest! {
     #[test]
     fn inverse_is_that_of_a_long_division(n in 1u32 << 31..) {
         let exact = 2f64.powi(62) / f64::from(n);
-        let inverse = f64::from(link::inverse(n));
+        let inverse = f64::from(conductance::inverse(n));
         prop_assert!(inverse < 2f64.powi(31) && (inverse / exact - 1.0).abs() < 2f64.powi(-28));
     }
 
@@ -302,17 +304,17 @@ proptest! {
         fronts in prop::collection::vec((-170i32..170, 1u32..500), 1..20),
         force in 0.001..20.0,
     ) {
-        let pairing = Pairing::new(&SKIN, &MATERIALS[0].1, &REFERENCE_DISPLAY, TICK_S).expect("copper");
-        let contact = pairing.under(log2_relative_pressure(Force::from_num(force)));
-        let link = contact.on_display();
-        let mut body = HalfOrder::at_rest();
+        let pairing = ContactPair::new(&SKIN, &MATERIALS[0].1, &REFERENCE_DISPLAY, TICK_S).expect("copper");
+        let contact = pairing.at_pressure(log2_relative_pressure(Force::from_num(force)));
+        let link = contact.display_conductance();
+        let mut body = HalfSpace::default();
         let (mut low, mut high) = (0i32, 0i32);
         for (front, ticks) in fronts {
             (low, high) = (low.min(front), high.max(front));
             for _ in 0..ticks {
-                let drive = link.drive(Celsius::from_num(front), &body);
+                let drive = link.scaled_flux(Celsius::from_num(front), &body);
                 body.step(drive);
-                let at = body.left();
+                let at = body.free_response();
                 prop_assert!(at >= Celsius::from_num(low) - Celsius::DELTA * 64 && at <= Celsius::from_num(high) + Celsius::DELTA * 64);
             }
         }
@@ -320,7 +322,7 @@ proptest! {
 
     #[test]
     fn no_drive_overflows(drives in prop::collection::vec(any::<i32>(), 1..50)) {
-        let mut body = HalfOrder::at_rest();
+        let mut body = HalfSpace::default();
         for bits in drives {
             for _ in 0..200 {
                 body.step(Celsius::from_bits(bits));
@@ -334,17 +336,17 @@ proptest! {
 #[test]
 fn a_long_contact_is_forgotten_as_a_half_space_does() {
     let (contact, rest) = (300_000u32, 3_600_000u32);
-    let mut body = HalfOrder::at_rest();
+    let mut body = HalfSpace::default();
     (0..contact).for_each(|_| body.step(Celsius::lit("0.01")));
     let root = |ticks: u32| f64::from(ticks).sqrt();
-    let moved: f64 = body.left().to_num();
+    let moved: f64 = body.free_response().to_num();
     let expected = 0.01 * 2.0 / PI.sqrt() * root(contact);
     assert!(
         (moved / expected - 1.0).abs() < 0.005,
         "{moved}, not {expected}"
     );
     (0..rest).for_each(|_| body.step(Celsius::ZERO));
-    let left = body.left().to_num::<f64>() / expected;
+    let left = body.free_response().to_num::<f64>() / expected;
     let expected = (root(contact + rest) - root(rest)) / root(contact);
     assert!(
         (left / expected - 1.0).abs() < 0.02,

@@ -1,11 +1,11 @@
 //! A resistance in front of a half-space.
 
-use super::{GAIN, GAIN_BITS, HalfOrder};
-use crate::fixed_point::{Celsius, Contact, Fraction, Rate, Ratio};
+use super::{GAIN, GAIN_BITS, HalfSpace};
+use crate::fixed_point::{Celsius, Contact, Fraction, MantissaExponent, Ratio};
 
 /// A contact resistance in front of a half-space: what flows through it in a tick, for a difference of temperatures.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Link {
+pub struct ContactConductance {
     /// Drive per kelvin between what is in front of the resistance and the surface without this tick's drive, 2^-32.
     per_k: u32,
     /// Temperature across the resistance per kelvin of drive, 2^-16.
@@ -18,7 +18,7 @@ const RESISTANCE_BITS: u32 = 16;
 const GAIN_HERE: u32 =
     (GAIN + (1 << (GAIN_BITS - RESISTANCE_BITS) >> 1)) >> (GAIN_BITS - RESISTANCE_BITS);
 
-impl Link {
+impl ContactConductance {
     /// Of a resistance; its conductance is right within 1e-5 of itself.
     const fn new(resistance: u32) -> Self {
         // 1.2 at least: up to 15 zeros before it.
@@ -32,15 +32,15 @@ impl Link {
 
     /// Drive of the coming tick, if `in_front` is what the surface would reach without a resistance.
     #[must_use]
-    pub fn drive(&self, in_front: Celsius, body: &HalfOrder) -> Celsius {
-        let across = in_front.saturating_sub(body.left());
+    pub fn scaled_flux(&self, in_front: Celsius, body: &HalfSpace) -> Celsius {
+        let across = in_front.saturating_sub(body.free_response());
         let drive = (i64::from(across.to_bits()) * i64::from(self.per_k)) >> 32;
         Celsius::from_bits(drive as i32)
     }
 
     /// Temperature across the resistance under a drive.
     #[must_use]
-    pub fn across(&self, drive: Celsius) -> Celsius {
+    pub fn temperature_drop(&self, drive: Celsius) -> Celsius {
         let across = (i64::from(drive.to_bits()) * i64::from(self.resistance)) >> 16;
         Celsius::from_bits(across.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
     }
@@ -56,7 +56,7 @@ pub(super) const fn inverse(n: u32) -> u32 {
 }
 
 /// `ratio / (rate part)`, 16 binary places; saturates.
-fn resistance(ratio: Ratio, rate: Rate, part: Fraction) -> u32 {
+fn resistance(ratio: Ratio, rate: MantissaExponent, part: Fraction) -> u32 {
     let product = u64::from(rate.leading()) * u64::from(part.to_bits());
     let up = product.leading_zeros();
     let Some(leading) = product.checked_shl(up) else {
@@ -78,13 +78,17 @@ impl Contact {
     /// The skin on the object, with both bodies as one: `in_front` is `w (T_skin,i - T_object,i)`, and what moves is
     /// the skin, downwards.
     #[must_use]
-    pub fn on_object(&self) -> Link {
-        Link::new(resistance(Ratio::ONE, self.per_root_tick, Fraction::MAX))
+    pub fn object_conductance(&self) -> ContactConductance {
+        ContactConductance::new(resistance(
+            Ratio::ONE,
+            self.root_rate_per_tick,
+            Fraction::MAX,
+        ))
     }
 
     /// The skin on the display: `in_front` is `T_skin,i - T_display`.
     #[must_use]
-    pub fn on_display(&self) -> Link {
-        Link::new(resistance(self.ratio, self.per_root_tick, self.weight))
+    pub fn display_conductance(&self) -> ContactConductance {
+        ContactConductance::new(resistance(self.ratio, self.root_rate_per_tick, self.weight))
     }
 }
