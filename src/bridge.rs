@@ -47,7 +47,7 @@ where
 
     /// Drives with a mean voltage of `duty` of the supply.
     pub fn drive(&mut self, duty: Duty) {
-        let (in1, in2) = duty.legs(self.in1.max_duty_cycle());
+        let (in1, in2) = duty.half_bridge_on_times(self.in1.max_duty_cycle());
         let Ok(()) = self.in1.set_duty_cycle(in1);
         let Ok(()) = self.in2.set_duty_cycle(in2);
         let Ok(()) = self.enable.set_high();

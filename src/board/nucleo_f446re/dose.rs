@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use thermal_display::device::safety::Dose;
+use thermal_display::device::safety::ThermalDose;
 
 use super::FINGERS;
 use super::record::check;
@@ -12,20 +12,20 @@ use super::record::check;
 static KEPT: [[AtomicU32; 2]; FINGERS] = [const { [const { AtomicU32::new(0) }; 2] }; FINGERS];
 
 /// What is kept of a finger; nothing if that is noise.
-pub fn kept(finger: usize) -> Dose {
+pub fn kept(finger: usize) -> ThermalDose {
     let Some([dose, sum]) = KEPT.get(finger) else {
-        return Dose::default();
+        return ThermalDose::default();
     };
     let word = dose.load(Ordering::Relaxed);
     if check(&[word]) == sum.load(Ordering::Relaxed) {
-        Dose::from_word(word)
+        ThermalDose::from_word(word)
     } else {
-        Dose::default()
+        ThermalDose::default()
     }
 }
 
 /// Keeps a finger's.
-pub fn keep(finger: usize, dose: &Dose) {
+pub fn keep(finger: usize, dose: &ThermalDose) {
     let Some(place) = KEPT.get(finger) else {
         return;
     };
@@ -36,7 +36,7 @@ pub fn keep(finger: usize, dose: &Dose) {
     }
 }
 
-fn store([kept, sum]: &[AtomicU32; 2], dose: &Dose) {
+fn store([kept, sum]: &[AtomicU32; 2], dose: &ThermalDose) {
     let word = dose.to_word();
     kept.store(word, Ordering::Relaxed);
     sum.store(check(&[word]), Ordering::Relaxed);
@@ -44,5 +44,6 @@ fn store([kept, sum]: &[AtomicU32; 2], dose: &Dose) {
 
 /// Forgets all: the power was lost, and the RAM is noise.
 pub fn forget() {
-    KEPT.iter().for_each(|place| store(place, &Dose::default()));
+    KEPT.iter()
+        .for_each(|place| store(place, &ThermalDose::default()));
 }

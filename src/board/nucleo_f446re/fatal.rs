@@ -8,7 +8,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m_rt::{ExceptionFrame, exception};
 
-use thermal_display::device::safety::{Cause, Fault};
+use thermal_display::device::safety::{Fault, TripCause};
 
 use super::{record, watchdog, wiring};
 
@@ -16,7 +16,7 @@ use super::{record, watchdog, wiring};
 fn end(fault: Fault) {
     cortex_m::interrupt::disable();
     wiring::cut();
-    record::keep(&Cause::alone(fault));
+    record::keep(&TripCause::alone(fault));
 }
 
 /// Whether this is the first time that the end is reported: logging may be what failed.

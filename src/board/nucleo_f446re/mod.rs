@@ -44,7 +44,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use thermal_display::device::Telemetry;
 use thermal_display::device::command::Addressed;
-use thermal_display::device::safety::{Cause, Fault};
+use thermal_display::device::safety::{Fault, TripCause};
 use thermal_display::mailbox::Mailbox;
 use thermal_display::protocol::{Desk, Error, Reason, Reply};
 use thermal_display::settings::Settings;
@@ -97,7 +97,7 @@ impl Memory {
 }
 
 /// Why the device has tripped before it started; once, and first of all: what follows takes long, and may end in a reset.
-pub fn first_cause(rcc: &pac::RCC) -> Option<Cause> {
+pub fn first_cause(rcc: &pac::RCC) -> Option<TripCause> {
     let overrun = stack::is_overrun();
     stack::arm();
     let reset = Reset::of(rcc);
@@ -107,10 +107,10 @@ pub fn first_cause(rcc: &pac::RCC) -> Option<Cause> {
     let mut cause = record::of_reset(reset, store::is_planned());
     // The end of a program, without a tick that has seen why, is what comes of an overrun. Not so of the first start of
     // another program, whose stack may lie here.
-    let unseen = |cause: Cause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
+    let unseen = |cause: TripCause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
     if overrun && cause.is_some_and(unseen) {
         record::forget();
-        record::keep(&Cause::alone(Fault::Stack));
+        record::keep(&TripCause::alone(Fault::Stack));
         cause = record::kept();
     }
     // Only now that the cause is kept.

@@ -2,13 +2,13 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use thermal_display::device::safety::Cause;
+use thermal_display::device::safety::TripCause;
 
 use super::reset::Reset;
 
 /// What makes it unlikely that noise is taken for a record, or that of a firmware whose records mean something else.
-const SALT: u32 = 0x5afe_d15b ^ Cause::LAYOUT;
-const LENGTH: usize = Cause::WORDS + 1;
+const SALT: u32 = 0x5afe_d15b ^ TripCause::LAYOUT;
+const LENGTH: usize = TripCause::WORDS + 1;
 
 /// Words of the cause and their check. Neither the loader nor the start-up code writes to `.uninit`; only a loss of
 /// power does.
@@ -24,18 +24,18 @@ pub fn check(words: &[u32]) -> u32 {
 }
 
 /// What is kept, if anything.
-pub fn kept() -> Option<Cause> {
+pub fn kept() -> Option<TripCause> {
     let words: [u32; LENGTH] = core::array::from_fn(|i| KEPT[i].load(Ordering::Relaxed));
     let [cause @ .., sum] = words;
     if check(&cause) == sum {
-        Cause::from_words(cause)
+        TripCause::from_words(cause)
     } else {
         None
     }
 }
 
 /// Keeps a cause, unless there is one: the first one counts.
-pub fn keep(cause: &Cause) {
+pub fn keep(cause: &TripCause) {
     if kept().is_some() {
         return;
     }
@@ -56,25 +56,25 @@ pub fn forget() {
 }
 
 /// Why the device has tripped before it started: what was kept, or the reset itself if that is a fault.
-pub fn of_reset(reset: Reset, is_planned: bool) -> Option<Cause> {
+pub fn of_reset(reset: Reset, is_planned: bool) -> Option<TripCause> {
     if reset == Reset::PowerOn {
         // RAM is noise.
         forget();
     }
     if let Some(fault) = reset.fault(is_planned) {
-        keep(&Cause::alone(fault));
+        keep(&TripCause::alone(fault));
     }
     kept()
 }
 
 /// Keeps what trips while the program runs, and forgets it when the host has cleared it.
 pub struct Record {
-    kept: Option<Cause>,
+    kept: Option<TripCause>,
 }
 
 impl Record {
     /// After a start with or without a cause.
-    pub const fn new(kept: Option<Cause>) -> Self {
+    pub const fn new(kept: Option<TripCause>) -> Self {
         Self { kept }
     }
 
@@ -84,7 +84,7 @@ impl Record {
     }
 
     /// Follows the stations of one tick.
-    pub fn follow(&mut self, tripped: Option<&Cause>) {
+    pub fn follow(&mut self, tripped: Option<&TripCause>) {
         if tripped == self.kept.as_ref() {
             return;
         }

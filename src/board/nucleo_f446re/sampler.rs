@@ -57,7 +57,7 @@ pub enum SampleError {
     /// The multiplexers were switched too late for the next block.
     LateSwitch,
     /// A block has not come when it was due: the timer, or what is measured against it, has another rate.
-    Pace,
+    TickRateMonitor,
     /// The clocks are not those that were set.
     Clocks,
 }
@@ -66,7 +66,7 @@ impl SampleError {
     /// What it is to the guard.
     pub const fn fault(self) -> Fault {
         match self {
-            Self::Bus | Self::Late | Self::LateSwitch | Self::Pace => Fault::Sampling,
+            Self::Bus | Self::Late | Self::LateSwitch | Self::TickRateMonitor => Fault::Sampling,
             Self::Clocks => Fault::Clock,
         }
     }

@@ -11,7 +11,7 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use stm32f4xx_hal::pac::RCC;
 use thermal_display::device::TICK_HZ;
-use thermal_display::device::safety::Pace;
+use thermal_display::device::safety::TickRateMonitor;
 
 use super::sampler::SampleError;
 use super::wiring::FINGERS;
@@ -21,7 +21,7 @@ const ROUND: u32 = 0xff_ffff;
 
 /// The counter, and what it showed.
 pub struct Timekeeper {
-    pace: Pace,
+    pace: TickRateMonitor,
     /// RCC_CFGR as it was set.
     clocks: u32,
 }
@@ -40,7 +40,7 @@ impl Timekeeper {
         counter.clear_current();
         counter.enable_counter();
         Self {
-            pace: Pace::new(hclk_hz / (TICK_HZ * FINGERS as u32)),
+            pace: TickRateMonitor::new(hclk_hz / (TICK_HZ * FINGERS as u32)),
             clocks: clocks(),
         }
     }
@@ -53,8 +53,8 @@ impl Timekeeper {
         if clocks() != self.clocks {
             return Err(SampleError::Clocks);
         }
-        if !self.pace.keeps(SYST::get_current()) {
-            return Err(SampleError::Pace);
+        if !self.pace.tick_is_due(SYST::get_current()) {
+            return Err(SampleError::TickRateMonitor);
         }
         Ok(())
     }

@@ -5,7 +5,7 @@ use core::array;
 use crate::Station;
 use crate::command::{Addressed, Command, Refused, Reply};
 use crate::drive::Outputs;
-use crate::safety::{Cause, Dose, Fault};
+use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
 use thermal_settings::{Kept, Settings};
@@ -26,10 +26,10 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// The same after a reset, tripped by what was the cause of it.
     #[must_use]
     #[inline(never)]
-    pub fn after(cause: Option<Cause>, settings: &Settings) -> Self {
+    pub fn after(cause: Option<TripCause>, settings: &Settings) -> Self {
         let mut one = Station::new(settings);
         if let Some(cause) = cause {
-            one.latch(cause);
+            one.trip(cause);
         }
         Self {
             stations: array::from_fn(|_| one.clone()),
@@ -40,19 +40,19 @@ impl<const FINGERS: usize> Device<FINGERS> {
     #[inline(never)]
     pub fn restore(&mut self, kept: &[Kept; FINGERS]) {
         for (station, kept) in self.stations.iter_mut().zip(kept) {
-            station.restore(&kept.settings());
+            station.apply(&kept.settings());
         }
     }
 
     /// The dose of a finger so far, counted modulo `FINGERS`.
     #[must_use]
-    pub const fn dose(&self, finger: usize) -> &Dose {
+    pub const fn dose(&self, finger: usize) -> &ThermalDose {
         self.stations[finger % FINGERS].dose()
     }
 
     /// Goes on from the dose that a finger had before the start, counted modulo `FINGERS`.
-    pub const fn resume(&mut self, finger: usize, dose: Dose) {
-        self.stations[finger % FINGERS].resume(dose);
+    pub const fn resume(&mut self, finger: usize, dose: ThermalDose) {
+        self.stations[finger % FINGERS].restore_dose(dose);
     }
 
     /// One control tick of a finger, `finger` counted modulo `FINGERS`.
@@ -64,7 +64,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
     pub fn trip(&mut self, fault: Fault) {
         self.stations
             .iter_mut()
-            .for_each(|station| station.trip(fault));
+            .for_each(|station| station.raise(fault));
     }
 
     /// A fault is latched at a finger, counted modulo `FINGERS`.
@@ -75,14 +75,19 @@ impl<const FINGERS: usize> Device<FINGERS> {
 
     /// Why the finger that has been tripped for longest is.
     #[must_use]
-    pub fn tripped(&self) -> Option<&Cause> {
+    pub fn tripped(&self) -> Option<&TripCause> {
         let tripped = self.stations.iter().filter(|station| station.is_tripped());
-        tripped.min_by_key(|station| station.tripped_at())?.cause()
+        tripped
+            .min_by_key(|station| station.latch().tripped_at())?
+            .latch()
+            .cause()
     }
 
     /// The host is there.
     pub fn hear(&mut self) {
-        self.stations.iter_mut().for_each(Station::hear);
+        self.stations
+            .iter_mut()
+            .for_each(Station::note_host_activity);
     }
 
     /// Telemetry of a finger's last tick, if it is due.
