@@ -130,6 +130,20 @@ pub struct Readings {
     pub bridge_fault: bool,
 }
 
+impl Readings {
+    /// Before the first tick every sensor counts as disconnected.
+    pub const NONE: Self = Self {
+        display: Err(SensorFault::Open),
+        display_check: Err(SensorFault::Open),
+        sink: Err(SensorFault::Open),
+        skin: Err(SensorFault::Open),
+        room: Err(SensorFault::Open),
+        force: None,
+        current: Current::ZERO,
+        bridge_fault: false,
+    };
+}
+
 /// Number of the slow thermistors, skin and room. Their temperatures change by less than a millikelvin in two ticks and no
 /// limit depends on them, so a tick converts one of them only. Every tick checks the wires of both.
 const SLOW: usize = 2;

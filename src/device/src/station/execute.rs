@@ -41,10 +41,9 @@ impl Station {
             Command::Hold(setpoint) => {
                 self.needs_armed("hold")?;
                 self.identified.outcome = None;
-                let reading = self.last.and_then(|last| last.readings.display.ok());
-                self.state = State::Armed(match reading {
-                    Some(reading) => Task::Hold(Hold::new(setpoint, reading)),
-                    None => Task::Neutral,
+                self.state = State::Armed(match self.last.readings.display {
+                    Ok(reading) => Task::Hold(Hold::new(setpoint, reading)),
+                    Err(_) => Task::Neutral,
                 });
             }
             Command::Start => self.start()?,
@@ -77,7 +76,7 @@ impl Station {
     }
 
     fn status(&self) -> Status {
-        let reference = self.last_reference();
+        let reference = self.last.reference;
         Status {
             state: self.state.name(),
             material: self.object.material.map(|(name, _)| name),
@@ -192,8 +191,11 @@ impl Station {
         if self.contact.touching() {
             return Err(Refused::Touched);
         }
-        let sink = (self.last.and_then(|last| last.readings.sink.ok()))
-            .ok_or(Refused::NeedsArmed("tune"))?;
+        let sink = self
+            .last
+            .readings
+            .sink
+            .map_err(|_| Refused::NeedsArmed("tune"))?;
         self.identified = super::IdentificationResult::default();
         self.state = State::Armed(Task::Identify(Identification::new(sink)));
         Ok(())

@@ -50,8 +50,7 @@ pub struct Station {
     tick: u32,
     /// Ticks from one telemetry to the next; 0 for none.
     telemetry_ticks: u32,
-    /// `None` before the first tick.
-    last: Option<LastTick>,
+    last: LastTick,
 }
 
 /// The sums of the last identification of the tile, which outlive its state.
@@ -107,7 +106,11 @@ impl Station {
             identified: IdentificationResult::default(),
             tick: 0,
             telemetry_ticks: 0,
-            last: None,
+            last: LastTick {
+                readings: Readings::NONE,
+                reference: None,
+                demanded: Current::ZERO,
+            },
         }
     }
 
@@ -123,6 +126,7 @@ impl Station {
     }
 
     /// One control tick.
+    #[inline(never)]
     pub fn step(&mut self, samples: &Samples) -> Outputs {
         self.tick = self.tick.wrapping_add(1);
         let readings = self.sense(samples);
@@ -141,11 +145,11 @@ impl Station {
         };
         let demand = self.trip_on_fault(demand, &readings);
         let (outputs, demanded) = self.actuate(demand, previous_estimate.as_ref());
-        self.last = Some(LastTick {
+        self.last = LastTick {
             readings,
             reference,
             demanded,
-        });
+        };
         outputs
     }
 
@@ -162,8 +166,8 @@ impl Station {
     fn detect(&mut self, samples: &Samples, readings: &Readings) -> Result<ValidReadings, Fault> {
         // The bridge's command of the tick before, to which this tick's readings respond.
         let previous = PreviousActuation {
-            demanded: self.previously_demanded(),
-            setpoint: self.last_reference().map(|reference| reference.setpoint),
+            demanded: self.last.demanded,
+            setpoint: self.last.reference.map(|reference| reference.setpoint),
             residual_is_large: self.estimator.plate.residual_is_large(),
         };
         let frozen = self.detectors.check_samples(samples);
@@ -295,7 +299,7 @@ impl Station {
     fn trip_on_fault(&mut self, demand: Result<Demand, Fault>, readings: &Readings) -> Demand {
         self.latch.end_tick(demand.err());
         demand.unwrap_or_else(|fault| {
-            let previously_demanded = self.previously_demanded();
+            let previously_demanded = self.last.demanded;
             self.trip(TripCause::new(
                 fault,
                 self.tick,
@@ -312,9 +316,17 @@ impl Station {
         demand: Demand,
         previous_estimate: Option<&Estimate>,
     ) -> (Outputs, Current) {
+        let current = match demand {
+            Demand::Drive(current) => current,
+            Demand::Off { .. } => {
+                self.interrupt_identification();
+                self.controller.track(Current::ZERO);
+                Current::ZERO
+            }
+        };
+        self.estimator.plate.advance(current);
         match (demand, previous_estimate) {
-            (Demand::Drive(current), Some(Estimate { previous_legs, .. })) => {
-                self.estimator.plate.advance(current);
+            (Demand::Drive(_), Some(Estimate { previous_legs, .. })) => {
                 let current = SafeCurrent::saturating(current);
                 let outputs = Outputs {
                     drive: Drive::On(self.voltage.duty(current, previous_legs)),
@@ -322,22 +334,20 @@ impl Station {
                 };
                 (outputs, current.ampere())
             }
-            (demand, _) => {
-                self.interrupt_identification();
-                self.controller.track(Current::ZERO);
-                self.estimator.plate.advance(Current::ZERO);
-                let comparator_test = matches!(
-                    demand,
-                    Demand::Off {
-                        comparator_test: true
-                    }
-                );
+            (Demand::Off { comparator_test }, _) => {
                 let outputs = Outputs {
                     drive: Drive::Off,
                     comparator_test,
                 };
                 (outputs, Current::ZERO)
             }
+            (Demand::Drive(_), None) => (
+                Outputs {
+                    drive: Drive::Off,
+                    comparator_test: false,
+                },
+                Current::ZERO,
+            ),
         }
     }
 
@@ -421,24 +431,18 @@ impl Station {
         self.detectors.note_host_activity();
     }
 
-    fn previously_demanded(&self) -> Current {
-        self.last.map_or(Current::ZERO, |last| last.demanded)
-    }
-
-    fn last_reference(&self) -> Option<Reference> {
-        self.last?.reference
-    }
-
     /// Telemetry of the last tick, if it is due.
     #[must_use]
     pub fn telemetry(&self) -> Option<Telemetry> {
+        if self.telemetry_ticks == 0 || !self.tick.is_multiple_of(self.telemetry_ticks) {
+            return None;
+        }
         let LastTick {
             readings,
             reference,
             demanded,
-        } = self.last.as_ref()?;
-        let due = self.telemetry_ticks != 0 && self.tick.is_multiple_of(self.telemetry_ticks);
-        due.then(|| Telemetry {
+        } = &self.last;
+        Some(Telemetry {
             tick: self.tick,
             state: self.state.name(),
             setpoint: reference.map(|reference| reference.setpoint.celsius()),
