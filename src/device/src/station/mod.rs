@@ -18,7 +18,7 @@ pub use state::{Event, State, Task};
 
 use crate::control::{ControlParameters, Controller, Law, VoltageFeedforward};
 use crate::drive::{Current, Drive, Outputs, SafeCurrent};
-use crate::estimate::{Estimate, Estimator, FingerEstimator, PlateObserver};
+use crate::estimate::{Estimate, Estimator, FingerEstimator, LegTemperatures, PlateObserver};
 use crate::identification::{AbortReason, NormalEquations};
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
@@ -72,8 +72,13 @@ struct LastTick {
 /// What a tick demands of the bridge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Demand {
+    /// The bridge is off; the line that tests the comparator has this level.
     Off { comparator_test: bool },
-    Drive(Current),
+    /// A current through legs that had these temperatures in the tick before.
+    Drive {
+        current: Current,
+        previous_legs: LegTemperatures,
+    },
 }
 
 impl Demand {
@@ -131,20 +136,21 @@ impl Station {
         self.tick = self.tick.wrapping_add(1);
         let readings = self.sense(samples);
         let valid = self.detect(samples, &readings);
-        let (demand, reference, previous_estimate) = match valid {
+        let (demand, reference) = match valid {
             Ok(valid) => {
-                let previous_estimate = self.estimate(samples, &valid);
-                let reference = self.reference(&previous_estimate);
-                let demand = self.control(&valid, readings.bridge_fault, reference.as_ref());
-                (demand, reference, Some(previous_estimate))
+                let estimate = self.estimate(samples, &valid);
+                let reference = self.reference(&estimate);
+                let demand =
+                    self.control(&valid, readings.bridge_fault, &estimate, reference.as_ref());
+                (demand, reference)
             }
             Err(fault) => {
                 self.invalidate_estimates();
-                (Err(fault), None, None)
+                (Err(fault), None)
             }
         };
         let demand = self.trip_on_fault(demand, &readings);
-        let (outputs, demanded) = self.actuate(demand, previous_estimate.as_ref());
+        let (outputs, demanded) = self.actuate(demand);
         self.last = LastTick {
             readings,
             reference,
@@ -224,7 +230,7 @@ impl Station {
     }
 
     /// Where the display should be; `None` while nothing is to be followed.
-    fn reference(&mut self, previous_estimate: &Estimate) -> Option<Reference> {
+    fn reference(&mut self, estimate: &Estimate) -> Option<Reference> {
         let finger = &mut self.estimator.finger;
         let setpoint = match &mut self.state {
             State::Off | State::SelfTest(_) | State::Ready | State::Tripped(_) => return None,
@@ -233,7 +239,7 @@ impl Station {
             State::Armed(Task::Identify(tile)) => tile.operating_point().celsius(),
             State::Preset | State::Contact => {
                 let scene = self.object.scene()?;
-                let surface = previous_estimate.previous_surface;
+                let surface = estimate.previous_surface;
                 let follow_skin = self.controller.law() == Law::Model;
                 return self.reference.update(&scene, finger, surface, follow_skin);
             }
@@ -249,15 +255,20 @@ impl Station {
         &mut self,
         valid: &ValidReadings,
         bridge_fault: bool,
+        estimate: &Estimate,
         reference: Option<&Reference>,
     ) -> Result<Demand, Fault> {
+        let drive = |current| Demand::Drive {
+            current,
+            previous_legs: estimate.previous_legs,
+        };
         if let State::SelfTest(test) = &mut self.state {
             let touched = self.contact.may_be_landing() || self.contact.touching();
             return Ok(match test.step(valid, bridge_fault, touched)? {
                 SelfTestStep::Off { comparator_test } => Demand::Off { comparator_test },
                 SelfTestStep::Drive(current) => {
                     self.controller.track(current);
-                    Demand::Drive(current)
+                    drive(current)
                 }
                 SelfTestStep::Passed => {
                     self.change_state(Event::Pass);
@@ -278,7 +289,7 @@ impl Station {
                 (self.controller).update(reference, valid.display, valid.sink, plate)
             }
         };
-        Ok(Demand::Drive(current))
+        Ok(drive(current))
     }
 
     /// Current of the identification, if one runs.
@@ -311,43 +322,30 @@ impl Station {
     }
 
     /// Turns the demand into the bridge's command, and advances the plate's model under the current.
-    fn actuate(
-        &mut self,
-        demand: Demand,
-        previous_estimate: Option<&Estimate>,
-    ) -> (Outputs, Current) {
-        let current = match demand {
-            Demand::Drive(current) => current,
-            Demand::Off { .. } => {
-                self.interrupt_identification();
-                self.controller.track(Current::ZERO);
-                Current::ZERO
-            }
-        };
-        self.estimator.plate.advance(current);
-        match (demand, previous_estimate) {
-            (Demand::Drive(_), Some(Estimate { previous_legs, .. })) => {
+    fn actuate(&mut self, demand: Demand) -> (Outputs, Current) {
+        match demand {
+            Demand::Drive {
+                current,
+                previous_legs,
+            } => {
+                self.estimator.plate.advance(current);
                 let current = SafeCurrent::saturating(current);
                 let outputs = Outputs {
-                    drive: Drive::On(self.voltage.duty(current, previous_legs)),
+                    drive: Drive::On(self.voltage.duty(current, &previous_legs)),
                     comparator_test: false,
                 };
                 (outputs, current.ampere())
             }
-            (Demand::Off { comparator_test }, _) => {
+            Demand::Off { comparator_test } => {
+                self.interrupt_identification();
+                self.controller.track(Current::ZERO);
+                self.estimator.plate.advance(Current::ZERO);
                 let outputs = Outputs {
                     drive: Drive::Off,
                     comparator_test,
                 };
                 (outputs, Current::ZERO)
             }
-            (Demand::Drive(_), None) => (
-                Outputs {
-                    drive: Drive::Off,
-                    comparator_test: false,
-                },
-                Current::ZERO,
-            ),
         }
     }
 
