@@ -1,6 +1,6 @@
 //! What the device says of itself.
 
-/// The fields of a telemetry line that a run uses; see the README for all of them.
+/// The fields of a telemetry line that a run uses; see `docs/protocol.md` for all of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Telemetry {
     /// Ticks since the device's reset.

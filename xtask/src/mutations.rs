@@ -316,7 +316,7 @@ const COPIED: [&str; 12] = [
     "rust-toolchain.toml",
     "build.rs",
     "memory.x",
-    "README.md",
+    "docs",
     "src",
     "model",
     "hil-sim",

@@ -1,10 +1,10 @@
-//! The table of faults in the README.
+//! The table of faults in `docs/scenes.md`.
 
 use hil_sim::scene::{FaultKind, ProcessorKind};
 
 #[test]
 fn table_has_every_kind_with_unit_and_range() {
-    let readme = include_str!("../../../README.md");
+    let page = include_str!("../../../docs/scenes.md");
     for kind in FaultKind::ALL {
         let expected = kind.value().map_or_else(
             || format!("| `{}` | | | ", kind.name()),
@@ -17,7 +17,7 @@ fn table_has_every_kind_with_unit_and_range() {
             },
         );
         assert!(
-            readme.lines().any(|line| line.starts_with(&expected)),
+            page.lines().any(|line| line.starts_with(&expected)),
             "{expected}"
         );
     }
@@ -25,7 +25,7 @@ fn table_has_every_kind_with_unit_and_range() {
 
 #[test]
 fn table_has_every_fault_of_the_processor_with_its_keys() {
-    let readme = include_str!("../../../README.md");
+    let page = include_str!("../../../docs/scenes.md");
     for kind in ProcessorKind::ALL {
         let keys: Vec<_> = kind
             .keys
@@ -36,7 +36,7 @@ fn table_has_every_fault_of_the_processor_with_its_keys() {
         let keys = if keys.is_empty() { keys } else { keys + " " };
         let expected = format!("| `{}` | | {keys}| ", kind.name);
         assert!(
-            readme.lines().any(|line| line.starts_with(&expected)),
+            page.lines().any(|line| line.starts_with(&expected)),
             "{expected}"
         );
     }

@@ -43,19 +43,20 @@ pub fn tables(figures: &Figures) -> String {
     );
     format!(
         "{kernels}\n\
-         Errors over {} inputs, u = n K from 2^-24 to 2^16, against a 100-bit reference, of the results that are \
-         numbers; in mK of a set-point at a step of {} K. \"Breaks\": NaN, infinite or off by more than 1 %, for z up \
-         to 256. Costs of a call, call and return included: mean and most of {} inputs on the {}; {}. Host: {}, median of \
-         calls side by side.\n\n\
+         Errors over {} inputs, u = n K from 2^-24 to 2^16, against a 100-bit reference, without results that \
+         are not numbers; in mK: error of a set-point at a step of {} K. \"Breaks\": NaN, infinite or off by \
+         more than 1 %, for z up to 256. Costs of a call, call and return included: mean and largest of {} \
+         inputs on the {}; {}. Host: {}, median of calls side by side.\n\n\
          {scenes}\n\
-         The model's share of a control tick over {} ticks of 1 ms, skin 34 C, object 24 C, granite at 2 N (streaming: \
-         1 to 2 N, R and E in every tick); five fingers: granite, copper, stainless steel, ABS, foam. Errors of the \
-         set-point against Eq. 6-12 or 3-1 in f64. Under constant force integers follow chords within {:.1} mK and \
-         evaluate E where one ends: fewest are ticks without an evaluation, most those that double the length of the \
-         chords as well; an evaluation alone is between them.\n\n\
-         Render step: the firmware's own step from force to set-point, landing included. R is computed anew only when \
-         the force has moved, and a new chord laid. So the set-point under a streaming force follows a mean of its last \
-         64 ticks and lags behind: this is the error shown.\n",
+         The model's share of a control tick over {} ticks of 1 ms, skin 34 C, object 24 C, granite at 2 N \
+         (streaming: 1 to 2 N, R and E in every tick); five fingers: granite, copper, stainless steel, ABS, \
+         foam. Errors of the set-point against Eq. 6-12 or 3-1 in f64. Under constant force the integer path \
+         follows chords within {:.1} mK and evaluates E at their ends: the fewest instructions are those of a \
+         tick without an evaluation, the most those of a tick that also doubles the length of the chords; a \
+         tick with an evaluation only lies between.\n\n\
+         Render step: the firmware's step from force to set-point, landing included. R is computed again, and \
+         the chord interpolation rebuilt, only when the force has changed. Under a streaming force the \
+         set-point therefore follows the mean of the last 64 ticks with a delay, which is the error shown.\n",
         figures.inputs,
         figures.step_k,
         figures.inputs_on_target,
@@ -71,25 +72,25 @@ pub fn tables(figures: &Figures) -> String {
 const PEERS: &str = "\
 ## The peers
 \n\
-All take what the firmware has, the ticks since contact `n` and `K = b² dt`, each in the type that is natural to it, and \
-return `E`; forming `z = sqrt(n K)` is part of their cost and of their error. In `f32` rounding `K`, the product and its \
-root costs up to 141 units before anything is evaluated, rounding the result 128 more: nearly all of the larger tables' error. Coefficients are \
-derived by `hil-sim/bench/build.rs`.
+All take the inputs of the firmware's kernel, the ticks since contact `n` and `K = b² dt`, each in its natural \
+type, and return `E`; computing `z = sqrt(n K)` is part of their cost and error. In `f32` rounding `K`, the \
+product and its root causes up to 141 units of error before anything is evaluated, and rounding the result 128 \
+more: nearly all of the error of the larger tables. Coefficients are derived by `hil-sim/bench/build.rs`.
 
-- libm: `exp(u) erfc(z)`. On this FPU `f64` is software. Near the break the rounding of `z`, amplified by `2 z²`, is all of \
-its error. Past the break it returns early, which makes its mean cheaper than a useful result.
-- micromath: its `exp`. Its `sqrt`, good to 5 %, would hide everything else, so the FPU's is used throughout.
-- Abramowitz and Stegun, *Handbook of Mathematical Functions*, 7.1.26: the polynomial is `erfc(z) exp(z²)` to 1.5e-7 times \
-`exp(z²)`.
+- libm: `exp(u) erfc(z)`. On this FPU `f64` is software. Near the z at which it breaks, all of its error is the \
+rounding of `z`, amplified by `2 z²`. Beyond, it returns early, which lowers its mean cost.
+- micromath: its `exp`. Its `sqrt` has an error of 5 %, which would dominate, so the FPU's is used throughout.
+- Abramowitz and Stegun, *Handbook of Mathematical Functions*, 7.1.26: the polynomial is `erfc(z) exp(z²)` to \
+1.5e-7 times `exp(z²)`.
 - Shepherd and Laframboise, *Mathematics of Computation* 36 (1981): `(1 + 2z) erfcx(z)` as a polynomial in \
-`(z - 3.75) / (z + 3.75)`, 12 coefficients, two divisions. The compiler fuses no multiplication with an addition, so each \
-step of its Horner chain rounds twice.
+`(z - 3.75) / (z + 3.75)`, 12 coefficients, two divisions. The compiler does not fuse multiplications with \
+additions, so each step of its Horner chain rounds twice.
 - Faddeeva structure: a hundred parts of `4 / (4 + z)`, degree 6, as in S. G. Johnson's package.
 - Tables: equal steps of `z` up to 16, then three terms of the asymptotic series.
 - One polynomial: degree 14 in `1 / (1 + z/2)`, in integers after a root and a reciprocal that begin on the FPU.
 
-The square root is the FPU's `VSQRT`, reached by way of core registers: up to four moves that an intrinsic would save. \
-Rust keeps a frame in every function of this target, three instructions of each call.
+The square root is the FPU's `VSQRT`, reached through core registers, which costs up to four moves that an \
+intrinsic would save. Rust keeps a frame in every function of this target, three instructions of each call.
 ";
 
 /// The tables as a page with the plot.
@@ -97,8 +98,8 @@ Rust keeps a frame in every function of this target, three instructions of each 
 pub fn page(figures: &Figures) -> String {
     format!(
         "# Run time against error\n\n\
-         Written by `cargo xtask bench --out docs`. Instructions and cycles are those of an emulated STM32F446: a \
-         compiler gives the same ones on every machine, but not the same nanoseconds. Nobody has run this on silicon.\n\n\
+         Written by `cargo xtask bench --out docs`. Instructions and cycles are those of an emulated STM32F446 \
+         and the same on every host for the same compiler; nanoseconds are not. Nobody has run this on silicon.\n\n\
          ![Worst error against estimated cycles]({SVG})\n\n{}\n{PEERS}",
         tables(figures)
     )

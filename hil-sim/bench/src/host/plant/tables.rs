@@ -55,24 +55,24 @@ pub fn tables(figures: &Figures) -> String {
     let forces = FORCES_N.map(|n| n.to_string()).join(" and ");
     format!(
         "{fingers}\n\
-         A finger is the native plant with its truth (the same finger on the real object), sensors, converter and the \
-         firmware's logic in ticks of 1 ms, on {OBJECT} at {FORCE_N} N, half-spaces cut for {DURATION_S} s; all fingers \
-         take turns in every millisecond on one core. The cost of all of them grows with the power {power:.3} of their \
-         number (1 is linear). Host: {host}, medians of {rounds} rounds in which everything on this page takes its \
-         turn; ratios are those of the same round.\n\n\
+         A finger is the native plant with its truth (the same finger on the real object), sensors, converter \
+         and the firmware's logic in ticks of 1 ms, on {OBJECT} at {FORCE_N} N, half-spaces cut for \
+         {DURATION_S} s; all fingers take turns in every millisecond on one core. The cost of all of them grows \
+         with the power {power:.3} of their number (1 is linear). Host: {host}, medians of {rounds} rounds in \
+         which everything on this page takes its turn; ratios are those of the same round.\n\n\
          {parts}\n\
-         The first three are a finger taken apart; what they leave of it is the engine between them. The legs of a \
-         finger taken apart are held, its samples recorded.\n\n\
+         The first three rows are the parts of a finger, measured separately with recorded samples and a fixed \
+         bridge state; the rest of a finger's time is the engine that connects them.\n\n\
          {meshes}\n\
-         Both fingers, the object and the tile alone, in steps of 1 ms: a step costs {none:.2} us and {cell:.1} ns for \
-         each cell that all three slabs have, within {off:.1} %. {cells} cells are what every run uses: the \
-         surface would do with fewer, as the mesh is made for it; it is the receptors that need them.\n\n\
+         The two fingers, the object and the tile without the rest, in steps of 1 ms: a step costs {none:.2} us \
+         and {cell:.1} ns for each cell of all three slabs, within {off:.1} %. {cells} cells are what every run \
+         uses: the surface needs fewer, because the mesh is optimised for it; the receptors need them.\n\n\
          {steps}\n\
-         Errors are the largest of the surfaces of skin and object, of the skin at its receptors (0.16 and 0.45 mm deep) \
-         and of the flux, over {objects} at {forces} N for {CONTACT_S} s at \
-         a step of 10 K, against Eq. 6-5 to 6-7, and 6-5 continued into the skin, at the end of every step and sub-step from {counts} ms on; \"before\": \
-         from {told} ms to {counts} ms. Wanted are 1 mK at the surfaces and 1e-4 of the flux from {counts} ms on. The first sub-step is the step \
-         halved seven times.\n",
+         Errors are the largest of the surfaces of skin and object, of the skin at its receptors (0.16 and 0.45 \
+         mm deep) and of the flux, over {objects} at {forces} N for {CONTACT_S} s at a step of 10 K, against \
+         Eq. 6-5 to 6-7, and 6-5 continued into the skin, at the end of every step and sub-step from {counts} \
+         ms on; \"before\": from {told} ms to {counts} ms. The aim is 1 mK at the surfaces and 1e-4 of the flux \
+         from {counts} ms on. The first sub-step is the step halved seven times.\n",
         power = figures.fingers_power,
         host = figures.host,
         rounds = figures.rounds,
@@ -91,8 +91,8 @@ pub fn tables(figures: &Figures) -> String {
 pub fn page(figures: &Figures) -> String {
     format!(
         "# Cost of the simulated plant\n\n\
-         Written by `cargo xtask bench plant --out docs`. Times are those of one host, in one run; ratios travel \
-         better, errors are the same everywhere.\n\n\
+         Written by `cargo xtask bench plant --out docs`. Times are those of one host in one run; ratios are \
+         comparable between hosts, errors are the same everywhere.\n\n\
          ![Cost of a finger against their number, and error against run time over meshes and steps]({SVG})\n\n{}",
         tables(figures)
     )
