@@ -72,6 +72,6 @@ fn a_material_that_does_not_fit_is_refused_by_name() {
     ));
     assert!(matches!(
         with_skin(|m| m.surface.conductivity_w_mk = 1e-300),
-        Err(ContactPairError::MantissaExponent(_))
+        Err(ContactPairError::OutOfRange(_))
     ));
 }

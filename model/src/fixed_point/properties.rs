@@ -19,7 +19,7 @@ pub enum ContactPairError {
     Ratio(f64),
     /// `b²` (1/s), the conductance (W/(m² K)) at `P = H`, or the skin's effusivity or diffusivity is outside 2^-100
     /// to 2^100.
-    MantissaExponent(f64),
+    OutOfRange(f64),
 }
 
 impl fmt::Display for ContactPairError {
@@ -29,7 +29,7 @@ impl fmt::Display for ContactPairError {
                 write!(f, "{name} is {value}; it must be above 0 and finite")
             }
             Self::Ratio(value) => write!(f, "R_display / R_object is {value}; it must be below 16"),
-            Self::MantissaExponent(value) => write!(
+            Self::OutOfRange(value) => write!(
                 f,
                 "the contact's rate is {value}; it must be within 2^-100 to 2^100"
             ),
@@ -85,14 +85,14 @@ pub(super) fn moderate(value: f64) -> Result<f64, ContactPairError> {
     if libm::log2(value).abs() <= 100.0 {
         Ok(value)
     } else {
-        Err(ContactPairError::MantissaExponent(value))
+        Err(ContactPairError::OutOfRange(value))
     }
 }
 
 /// Converts a value that an extreme tick may have taken to 0 or infinity; saturates at the ends of `f64`.
 pub(super) fn rate(value: f64) -> Result<MantissaExponent, ContactPairError> {
     MantissaExponent::from_f64(value.clamp(f64::MIN_POSITIVE, f64::MAX))
-        .ok_or(ContactPairError::MantissaExponent(value))
+        .ok_or(ContactPairError::OutOfRange(value))
 }
 
 /// `e_object / (e_object + e_skin)`, for a positive, finite effusivity of the skin.
