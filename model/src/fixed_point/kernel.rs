@@ -20,6 +20,8 @@ pub const GUARD_BITS: u32 = 8;
 /// Octaves of `u` that have a descriptor, as the exponent of their lower end. In the first and the last octave,
 /// and beyond them, `E` saturates.
 pub const OCTAVES: core::ops::Range<i32> = -64..64;
+/// Octaves of `u` that contacts reach in practice, milliseconds to hours; the table is fitted for the smallest error there.
+pub const PRACTICAL_OCTAVES: core::ops::Range<i32> = -24..16;
 /// Rows in the table; 256, so that every 8-bit index is valid.
 pub const ROWS: usize = 256;
 /// Position in a descriptor of the number of rows in the octave; the index of the first is below it.

@@ -1,4 +1,4 @@
-//! From material and force to the outputs, against golden values and the `f64` reference.
+//! Errors from material and force to the outputs, against golden values and the `f64` reference.
 
 use std::collections::HashMap;
 
@@ -11,13 +11,15 @@ use contact_model::material::{
 use contact_model::pressure::pressure_pa;
 use contact_model::reference;
 
+use super::sweep::{UNIT, log_between, pair, points, relative, worst};
 use crate::golden::{number, rows};
-use crate::sweep::{UNIT, log_between, pair, points, relative, worst};
 
-/// Forces of the whole type: evenly in the logarithm, near zero, and around the points where area bends.
+/// Forces of the whole range: logarithmic, near zero, and around the five points where the slope of the area changes.
 fn forces() -> impl Iterator<Item = Force> {
-    let bends = [0.1, 0.25, 0.5, 1.0, 2.0].map(|n| Force::from_num(n).to_bits());
-    let around = bends.into_iter().flat_map(|bits| bits - 4..=bits + 4);
+    let points_of_thesis = [0.1, 0.25, 0.5, 1.0, 2.0].map(|n| Force::from_num(n).to_bits());
+    let around = points_of_thesis
+        .into_iter()
+        .flat_map(|bits| bits - 4..=bits + 4);
     let wide = points::<1>(20_000).map(|[part]| log_between(part, 1.0, f64::from(u32::MAX)) as u32);
     around.chain(1..1000).chain(wide).map(Force::from_bits)
 }
@@ -41,7 +43,7 @@ fn log2_of_pressure(pressure_pa: f64) -> Log2 {
     Log2::from_num((pressure_pa / SKIN_MICROHARDNESS_PA).log2())
 }
 
-/// The thesis's materials in turn.
+/// Every force, with the materials of the thesis in turn.
 fn each_force() -> impl Iterator<Item = (&'static Material, Force)> {
     forces()
         .zip(MATERIALS.iter().cycle())
@@ -58,7 +60,7 @@ pub fn resistance() -> f64 {
             .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "R_m2K_W"))
     });
-    let streaming = each_force().map(|(object, force)| {
+    let swept = each_force().map(|(object, force)| {
         let contact = pairing(object, 1e-3).at_pressure(log2_relative_pressure(force));
         (
             contact,
@@ -66,7 +68,7 @@ pub fn resistance() -> f64 {
         )
     });
     worst(
-        (golden.chain(streaming))
+        (golden.chain(swept))
             .map(|(contact, r)| 1e9 * relative(1.0 / contact.conductance_w_m2k.to_f64(), r)),
     )
 }
@@ -77,7 +79,7 @@ pub fn per_tick() -> f64 {
             .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "b_per_sqrt_s").powi(2) * 1e-3)
     });
-    let streaming = [1e-5, 1e-3, 0.1].into_iter().flat_map(|tick_s| {
+    let swept = [1e-5, 1e-3, 0.1].into_iter().flat_map(|tick_s| {
         each_force().map(move |(object, force)| {
             let contact = pairing(object, tick_s).at_pressure(log2_relative_pressure(force));
             (
@@ -87,12 +89,11 @@ pub fn per_tick() -> f64 {
         })
     });
     worst(
-        (golden.chain(streaming))
-            .map(|(contact, k)| 1e9 * relative(contact.rate_per_tick.to_f64(), k)),
+        (golden.chain(swept)).map(|(contact, k)| 1e9 * relative(contact.rate_per_tick.to_f64(), k)),
     )
 }
 
-/// Materials from insulators to better than diamond, from mirrors to finishes that make `r` nearly 16.
+/// Materials from insulators to conductors beyond diamond; slopes from mirrors to those that make `r` nearly 16.
 fn own_materials() -> impl Iterator<Item = Material> {
     points::<4>(5000).map(|[k, rho, c, slope]| {
         let mut material = MATERIALS[0].1;
@@ -127,14 +128,14 @@ pub fn weight() -> f64 {
     worst(golden.chain(own)) * 1e9
 }
 
-/// An output, once from fixed point and once true, and the flux `dT / R` of the moment of landing.
+/// Response in fixed point, exact response, and the heat flux at landing, `dT / R`.
 struct Compared {
     fixed: Response,
     truth: reference::Response<f64>,
     landing_flux: f64,
 }
 
-/// Rows of the golden table: as one tick of their time, under their pressure.
+/// Golden contacts. The time of each is one tick.
 fn golden() -> impl Iterator<Item = Compared> {
     rows("contact").into_iter().map(|row| {
         let t_s = number(&row, "t_s");
@@ -160,8 +161,8 @@ fn golden() -> impl Iterator<Item = Compared> {
     })
 }
 
-/// The stated domain: materials, resistances, ticks, times, temperatures; `ratio` replaces that of the display
-/// if given.
+/// Contacts of the stated domain: materials, resistances, ticks, times and temperatures. `ratio` replaces that of the
+/// display.
 fn swept(ratio: Option<f64>) -> impl Iterator<Item = Compared> {
     points::<6>(40_000).map(move |[index, r, tick, elapsed, skin, step]| {
         let object = &MATERIALS[(index * 8.0) as usize].1;
@@ -170,7 +171,7 @@ fn swept(ratio: Option<f64>) -> impl Iterator<Item = Compared> {
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
         let (skin_c, object_c) = pair(skin, step);
 
-        // Eq. 6-8 the other way round.
+        // Eq. 6-8 solved for the pressure.
         let mean = reference::mean_conductance::<f64>(&SKIN.surface, &object.surface);
         let log2_pressure = Log2::from_num(-(mean * r_m2k_w).log2() / 0.95);
         let pressure_pa = log2_pressure.to_num::<f64>().exp2() * SKIN_MICROHARDNESS_PA;
@@ -217,7 +218,7 @@ pub fn display() -> f64 {
     )
 }
 
-/// Where [`Celsius`] can hold it.
+/// Within the range of [`Celsius`].
 pub fn display_steep() -> f64 {
     worst(
         (swept(Some(15.99)).filter(|c| c.truth.display_c.abs() < 511.0))
@@ -225,7 +226,7 @@ pub fn display_steep() -> f64 {
     )
 }
 
-/// Less the resolution of the flux.
+/// Relative error beyond the resolution of the flux.
 pub fn flux() -> f64 {
     worst(both().map(|c| {
         let error = (c.fixed.flux_w_m2().to_num::<f64>() - c.truth.flux_w_m2).abs();

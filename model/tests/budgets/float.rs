@@ -1,12 +1,12 @@
-//! The floating-point reference against golden values.
+//! Errors of the floating-point reference against golden values.
 
 use std::collections::HashMap;
 
 use contact_model::material::{REFERENCE_DISPLAY, SKIN, find};
 use contact_model::reference::{Contact, Real, contact_resistance, erfcx};
 
+use super::sweep::{log_between, points, relative, worst};
 use crate::golden::{number, rows};
-use crate::sweep::{log_between, points, relative, worst};
 
 pub fn erfcx_f64() -> f64 {
     worst(
@@ -16,7 +16,7 @@ pub fn erfcx_f64() -> f64 {
     )
 }
 
-/// Where both argument and result can be held.
+/// For arguments and results within the normal range of `f32`.
 pub fn erfcx_f32() -> f64 {
     let error = |z: f32, truth: f64| {
         (truth > f64::from(f32::MIN_POSITIVE)).then(|| relative(f64::from(erfcx(z)), truth))
@@ -90,7 +90,7 @@ pub fn flux_f64() -> f64 {
     }))
 }
 
-/// The rows give R, not the pressure: the rate is scaled to it.
+/// The rows state the resistance and not the pressure, so the rate is scaled.
 pub fn contact_interior() -> f64 {
     worst(rows("contact_interior").iter().map(|row| {
         let mut contact = Contact::<f64>::new(

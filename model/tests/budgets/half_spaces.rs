@@ -1,4 +1,4 @@
-//! Perfect contact, Eq. 3-1 to 3-4.
+//! Errors of perfect contact (Eq. 3-1 to 3-4).
 
 use std::collections::HashMap;
 
@@ -6,8 +6,8 @@ use contact_model::fixed_point::{self, Celsius, Depth, MantissaExponent, Ticks};
 use contact_model::material::{MATERIALS, Material, SKIN, find};
 use contact_model::reference::{SemiInfinite, fourier_number, interface_temperature};
 
+use super::sweep::{UNIT, log_between, pair, points, relative, worst};
 use crate::golden::{number, rows};
-use crate::sweep::{UNIT, log_between, pair, points, relative, worst};
 
 type Row = HashMap<String, String>;
 
@@ -101,7 +101,7 @@ pub fn depth_fixed() -> f64 {
     worst(golden.chain(swept))
 }
 
-/// Relative error, less the resolution of the flux.
+/// Relative error beyond the resolution of the flux.
 pub fn flux_fixed() -> f64 {
     let error = |flux: fixed_point::Flux, truth: f64| {
         let beyond =
@@ -127,13 +127,13 @@ pub fn flux_fixed() -> f64 {
             SemiInfinite::<f64>::new((&SKIN, skin.to_num()), (object_material, object.to_num()))
                 .flux_w_m2(tick_s * f64::from(elapsed))
                 .expect("after landing");
-        // For a smaller step the rounding of the temperatures in `f64` shows.
+        // Below 1 K the rounding of the temperatures in `f64` dominates.
         (skin.abs_diff(object) >= 1).then(|| error(flux, truth))
     });
     worst(golden.chain(swept))
 }
 
-/// Table 3-1, whose samples' length follows from the copper's number; as many digits as are printed.
+/// Table 3-1, to the digits printed. The length of the samples follows from the Fourier number of copper.
 pub fn fourier_f64() -> f64 {
     let printed = [
         ("copper", 3.58, 0.01),
