@@ -17,7 +17,7 @@ const TICK_S: f64 = 1e-3;
 
 /// The same modes in `f64`, all updated in every tick.
 struct Exact {
-    /// Rate, weight and value of each relaxation; the integrator has rate 0.
+    /// Rate, weight and state of each mode; the integrator has rate 0.
     modes: Vec<(f64, f64, f64)>,
 }
 
