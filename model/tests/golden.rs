@@ -1,11 +1,14 @@
 //! Golden values: the equations of the thesis with 30 digits, computed by `data/generate.py` independently of this
 //! crate. `budgets` compares the crate with them.
 
+use contact_model::material::{Material, find};
 use std::collections::HashMap;
 use std::process::Command;
 
-/// Rows of a golden table, as column name to text.
-pub fn rows(name: &str) -> Vec<HashMap<String, String>> {
+/// A row of a golden table, as column name to text.
+pub type Row = HashMap<String, String>;
+
+pub fn rows(name: &str) -> Vec<Row> {
     let path = format!("{}/tests/data/{name}.csv", env!("CARGO_MANIFEST_DIR"));
     let rows = csv::Reader::from_path(&path)
         .expect("golden table")
@@ -14,10 +17,14 @@ pub fn rows(name: &str) -> Vec<HashMap<String, String>> {
 }
 
 /// The number in a column of a row.
-pub fn number(row: &HashMap<String, String>, column: &str) -> f64 {
+pub fn number(row: &Row, column: &str) -> f64 {
     row[column]
         .parse()
         .unwrap_or_else(|_| panic!("{column} is {:?}", row[column]))
+}
+
+pub fn material(row: &Row) -> &'static Material {
+    find(&row["material"]).expect("material of the thesis")
 }
 
 #[test]

@@ -1,18 +1,16 @@
 //! Errors from material and force to the outputs, against golden values and the `f64` reference.
 
-use std::collections::HashMap;
-
 use contact_model::fixed_point::{
     Celsius, ContactPair, Flux, Force, Log2, Ratio, Response, Ticks, log2_relative_pressure,
 };
 use contact_model::material::{
-    MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, find,
+    MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA,
 };
 use contact_model::pressure::pressure_pa;
 use contact_model::reference;
 
-use super::sweep::{UNIT, log_between, pair, points, relative, worst};
-use crate::golden::{number, rows};
+use super::sweep::{UNIT, log_between, points, relative, skin_and_object, worst};
+use crate::golden::{material, number, rows};
 
 /// Forces of the whole range: logarithmic, near zero, and around the five points where the slope of the area changes.
 fn forces() -> impl Iterator<Item = Force> {
@@ -31,7 +29,7 @@ pub fn log2_pressure() -> f64 {
     }))
 }
 
-fn pairing(object: &Material, tick_s: f64) -> ContactPair {
+fn contact_pair(object: &Material, tick_s: f64) -> ContactPair {
     ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("ordinary material")
 }
 
@@ -50,18 +48,14 @@ fn each_force() -> impl Iterator<Item = (&'static Material, Force)> {
         .map(|(force, (_, object))| (object, force))
 }
 
-fn golden_material(row: &HashMap<String, String>) -> &'static Material {
-    find(&row["material"]).expect("material")
-}
-
 pub fn resistance() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        let contact = pairing(golden_material(&row), 1e-3)
-            .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
+        let contact =
+            contact_pair(material(&row), 1e-3).at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "R_m2K_W"))
     });
     let swept = each_force().map(|(object, force)| {
-        let contact = pairing(object, 1e-3).at_pressure(log2_relative_pressure(force));
+        let contact = contact_pair(object, 1e-3).at_pressure(log2_relative_pressure(force));
         (
             contact,
             float(object, pressure_pa(force.to_num())).resistance_m2k_w,
@@ -75,13 +69,13 @@ pub fn resistance() -> f64 {
 
 pub fn per_tick() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        let contact = pairing(golden_material(&row), 1e-3)
-            .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
+        let contact =
+            contact_pair(material(&row), 1e-3).at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "b_per_sqrt_s").powi(2) * 1e-3)
     });
     let swept = [1e-5, 1e-3, 0.1].into_iter().flat_map(|tick_s| {
         each_force().map(move |(object, force)| {
-            let contact = pairing(object, tick_s).at_pressure(log2_relative_pressure(force));
+            let contact = contact_pair(object, tick_s).at_pressure(log2_relative_pressure(force));
             (
                 contact,
                 float(object, pressure_pa(force.to_num())).rate_per_s * tick_s,
@@ -96,21 +90,21 @@ pub fn per_tick() -> f64 {
 /// Materials from insulators to conductors beyond diamond; slopes from mirrors to those that make `r` nearly 16.
 fn own_materials() -> impl Iterator<Item = Material> {
     points::<4>(5000).map(|[k, rho, c, slope]| {
-        let mut material = MATERIALS[0].1;
-        material.surface.conductivity_w_mk = log_between(k, 0.01, 3000.0);
-        material.surface.slope_rad = log_between(slope, 1e-3, 4.5);
-        material.density_kg_m3 = log_between(rho, 1.0, 22_000.0);
-        material.specific_heat_j_kgk = log_between(c, 100.0, 14_000.0);
-        material
+        let mut own = MATERIALS[0].1;
+        own.surface.conductivity_w_mk = log_between(k, 0.01, 3000.0);
+        own.surface.slope_rad = log_between(slope, 1e-3, 4.5);
+        own.density_kg_m3 = log_between(rho, 1.0, 22_000.0);
+        own.specific_heat_j_kgk = log_between(c, 100.0, 14_000.0);
+        own
     })
 }
 
 pub fn ratio() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        pairing(golden_material(&row), 1e-3).ratio().to_num::<f64>() - number(&row, "ratio")
+        contact_pair(material(&row), 1e-3).ratio().to_num::<f64>() - number(&row, "ratio")
     });
     let own = own_materials()
-        .map(|own| pairing(&own, 1e-3).ratio().to_num::<f64>() - float(&own, 1e4).ratio);
+        .map(|own| contact_pair(&own, 1e-3).ratio().to_num::<f64>() - float(&own, 1e4).ratio);
     worst(golden.chain(own)) * 1e9
 }
 
@@ -118,13 +112,10 @@ pub fn weight() -> f64 {
     let golden = rows("semi_infinite").into_iter().map(|row| {
         let (skin, object) = (number(&row, "T_skin_i_C"), number(&row, "T_material_i_C"));
         let truth = (skin - number(&row, "T_s_C")) / (skin - object);
-        pairing(golden_material(&row), 1e-3)
-            .weight()
-            .to_num::<f64>()
-            - truth
+        contact_pair(material(&row), 1e-3).weight().to_num::<f64>() - truth
     });
     let own = own_materials()
-        .map(|own| pairing(&own, 1e-3).weight().to_num::<f64>() - float(&own, 1e4).weight);
+        .map(|own| contact_pair(&own, 1e-3).weight().to_num::<f64>() - float(&own, 1e4).weight);
     worst(golden.chain(own)) * 1e9
 }
 
@@ -140,7 +131,7 @@ fn golden() -> impl Iterator<Item = Compared> {
     rows("contact").into_iter().map(|row| {
         let t_s = number(&row, "t_s");
         let (elapsed, tick_s) = if t_s == 0.0 { (0, 1.0) } else { (1, t_s) };
-        let contact = pairing(golden_material(&row), tick_s)
+        let contact = contact_pair(material(&row), tick_s)
             .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         let (skin_c, object_c) = (number(&row, "T_skin_i_C"), number(&row, "T_object_i_C"));
         Compared {
@@ -169,14 +160,13 @@ fn swept(ratio: Option<f64>) -> impl Iterator<Item = Compared> {
         let r_m2k_w = log_between(r, 1e-7, 10.0);
         let tick_s = log_between(tick, 1e-5, 0.1);
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
-        let (skin_c, object_c) = pair(skin, step);
+        let (skin_c, object_c) = skin_and_object(skin, step);
 
         // Eq. 6-8 solved for the pressure.
         let mean = reference::mean_conductance::<f64>(&SKIN.surface, &object.surface);
         let log2_pressure = Log2::from_num(-(mean * r_m2k_w).log2() / 0.95);
         let pressure_pa = log2_pressure.to_num::<f64>().exp2() * SKIN_MICROHARDNESS_PA;
-        let pairing = pairing(object, tick_s);
-        let mut fixed = pairing.at_pressure(log2_pressure);
+        let mut fixed = contact_pair(object, tick_s).at_pressure(log2_pressure);
         let mut truth = reference::Contact::<f64>::new(
             (&SKIN, skin_c.to_num()),
             (object, object_c.to_num()),
@@ -245,16 +235,16 @@ pub fn preset() -> f64 {
         .filter(|row| number(row, "t_s") == 0.0)
         .map(|row| {
             let before = |column| Celsius::from_num(number(&row, column));
-            let t = pairing(golden_material(&row), 1e-3)
+            let t = contact_pair(material(&row), 1e-3)
                 .preset(before("T_skin_i_C"), before("T_object_i_C"));
             micro_kelvin(t, number(&row, "T_display_C"))
         });
     let swept = points::<3>(20_000).map(|[index, skin, step]| {
         let object = &MATERIALS[(index * 8.0) as usize].1;
-        let (skin_c, object_c) = pair(skin, step);
+        let (skin_c, object_c) = skin_and_object(skin, step);
         let step = (skin_c - object_c).to_num::<f64>();
         let truth = skin_c.to_num::<f64>() - float(object, 1e4).ratio * step;
-        micro_kelvin(pairing(object, 1e-3).preset(skin_c, object_c), truth)
+        micro_kelvin(contact_pair(object, 1e-3).preset(skin_c, object_c), truth)
     });
     worst(golden.chain(swept))
 }

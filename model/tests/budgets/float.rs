@@ -1,12 +1,10 @@
 //! Errors of the floating-point reference against golden values.
 
-use std::collections::HashMap;
-
-use contact_model::material::{REFERENCE_DISPLAY, SKIN, find};
+use contact_model::material::{REFERENCE_DISPLAY, SKIN};
 use contact_model::reference::{Contact, Real, contact_resistance, erfcx};
 
 use super::sweep::{log_between, points, relative, worst};
-use crate::golden::{number, rows};
+use crate::golden::{Row, material, number, rows};
 
 pub fn erfcx_f64() -> f64 {
     worst(
@@ -38,18 +36,16 @@ pub fn erfcx_f32() -> f64 {
 
 pub fn resistance() -> f64 {
     worst(rows("resistance").iter().map(|row| {
-        let object = find(&row["material"]).expect("material");
-        let r = contact_resistance(&SKIN.surface, &object.surface, number(row, "P_Pa"));
+        let r = contact_resistance(&SKIN.surface, &material(row).surface, number(row, "P_Pa"));
         relative(r, number(row, "R_m2K_W"))
     }))
 }
 
-fn contact<F: Real>(row: &HashMap<String, String>) -> Contact<F> {
-    let object = find(&row["material"]).expect("material");
+fn contact<F: Real>(row: &Row) -> Contact<F> {
     let f = |column| F::from_f64(number(row, column));
     Contact::new(
         (&SKIN, f("T_skin_i_C")),
-        (object, f("T_object_i_C")),
+        (material(row), f("T_object_i_C")),
         &REFERENCE_DISPLAY,
         f("P_Pa"),
     )
@@ -95,10 +91,7 @@ pub fn contact_interior() -> f64 {
     worst(rows("contact_interior").iter().map(|row| {
         let mut contact = Contact::<f64>::new(
             (&SKIN, number(row, "T_skin_i_C")),
-            (
-                find(&row["material"]).expect("material"),
-                number(row, "T_object_i_C"),
-            ),
+            (material(row), number(row, "T_object_i_C")),
             &REFERENCE_DISPLAY,
             1e4,
         );

@@ -1,19 +1,11 @@
 //! Errors of perfect contact (Eq. 3-1 to 3-4).
 
-use std::collections::HashMap;
-
 use contact_model::fixed_point::{self, Celsius, Depth, MantissaExponent, Ticks};
 use contact_model::material::{MATERIALS, Material, SKIN, find};
 use contact_model::reference::{SemiInfinite, fourier_number, interface_temperature};
 
-use super::sweep::{UNIT, log_between, pair, points, relative, worst};
-use crate::golden::{number, rows};
-
-type Row = HashMap<String, String>;
-
-fn material(row: &Row) -> &'static Material {
-    find(&row["material"]).expect("material")
-}
+use super::sweep::{UNIT, log_between, points, relative, skin_and_object, worst};
+use crate::golden::{Row, material, number, rows};
 
 fn temperatures(row: &Row) -> (f64, f64) {
     (number(row, "T_skin_i_C"), number(row, "T_material_i_C"))
@@ -87,7 +79,7 @@ pub fn depth_fixed() -> f64 {
     });
     let swept = points::<6>(40_000).map(|[index, skin, step, depth, tick, elapsed]| {
         let object_material = &MATERIALS[(index * 8.0) as usize].1;
-        let (skin, object) = pair(skin, step);
+        let (skin, object) = skin_and_object(skin, step);
         let tick_s = log_between(tick, 1e-5, 0.1);
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
         let depth = Depth::from_num(log_between(depth, 1.6e-5, 65535.9));
@@ -115,7 +107,7 @@ pub fn flux_fixed() -> f64 {
     });
     let swept = points::<5>(40_000).filter_map(|[index, skin, step, tick, elapsed]| {
         let object_material = &MATERIALS[(index * 8.0) as usize].1;
-        let (skin, object) = pair(skin, step);
+        let (skin, object) = skin_and_object(skin, step);
         let tick_s = log_between(tick, 1e-5, 0.1);
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
         let flux = fixed(object_material, tick_s).flux_w_m2(

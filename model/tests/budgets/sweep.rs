@@ -43,7 +43,7 @@ pub fn relative(value: f64, truth: f64) -> f64 {
 }
 
 /// Temperatures of skin and object, within the range of temperatures and at most 60 K apart.
-pub fn pair(skin: f64, step: f64) -> (Celsius, Celsius) {
+pub fn skin_and_object(skin: f64, step: f64) -> (Celsius, Celsius) {
     let skin_c = 165.0 * skin - 40.0;
     let object_c = (skin_c + 120.0 * step - 60.0).clamp(-40.0, 125.0);
     (Celsius::from_num(skin_c), Celsius::from_num(object_c))
