@@ -5,13 +5,13 @@ use super::{Celsius, Flux, Fraction, MantissaExponent, Ratio, Ticks, erfcx};
 /// Parameters of a finger in contact with an object under constant pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
-    /// `w = e_object / (e_object + e_skin)`.
+    /// Weight of the object's temperature in that of the interface (Eq. 3-1), `w = e_object / (e_object + e_skin)`.
     pub weight: Fraction,
-    /// `R_display / R_object`.
+    /// Ratio of contact resistances, `r = R_display / R_object`.
     pub ratio: Ratio,
-    /// `b² dt`.
+    /// `b² dt`, dimensionless, with `b = (1/e_skin + 1/e_object) / R` and the tick `dt`.
     pub rate_per_tick: MantissaExponent,
-    /// `b sqrt(dt)`.
+    /// `b sqrt(dt)`, dimensionless.
     pub root_rate_per_tick: MantissaExponent,
     /// Contact conductance `1 / R`, W/(m² K). Below 2^-33 every flux is below the resolution of [`Flux`].
     pub conductance_w_m2k: MantissaExponent,
@@ -45,7 +45,7 @@ impl Contact {
 /// `e` is the error of `E`: that of [`erfcx`] and 0.14 times the relative error of `rate_per_tick`. Beyond these
 /// ranges errors grow with `dT`, and the outputs saturate.
 impl Response {
-    /// `erfcx(b sqrt(t))`.
+    /// `E = erfcx(b sqrt(t))`: 1 at landing, 0 after a long time.
     #[must_use]
     pub const fn erfcx(&self) -> Fraction {
         self.erfcx

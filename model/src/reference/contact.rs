@@ -40,7 +40,7 @@ pub struct Contact<F> {
     pub resistance_m2k_w: F,
     /// `R_skin-display / R_skin-object`; independent of pressure.
     pub ratio: F,
-    /// `e_object / (e_object + e_skin)`.
+    /// Weight of the object's temperature in that of the interface, `w = e_object / (e_object + e_skin)`.
     pub weight: F,
     /// `b² = ((1/e_skin + 1/e_object) / R)²`, 1/s.
     pub rate_per_s: F,
@@ -49,7 +49,7 @@ pub struct Contact<F> {
 /// The state of a contact at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response<F> {
-    /// `erfcx(b sqrt(t))`.
+    /// `E = erfcx(b sqrt(t))`: 1 at landing, 0 after a long time.
     pub erfcx: F,
     /// Surface temperature of the skin, °C (Eq. 6-5).
     pub skin_c: F,
