@@ -1,4 +1,4 @@
-//! Writes the tables of the fixed-point path: `cargo run --release -p contact-model --example tables`.
+//! Writes the tables of the fixed-point path as source text: `cargo run --release -p contact-model --example tables`.
 
 #[path = "../tests/fit/mod.rs"]
 mod fit;

@@ -1,12 +1,12 @@
-//! Checks the kernel over every input where scenes live, and proves a bound for the other octaves:
+//! Measures the kernel's error over every input of the practical octaves, and proves a bound for the others:
 //! `cargo run --release -p contact-model --example verify`.
 //!
-//! Uses all cores. What is done is noted in `target/verify`, so that a run that was ended goes on where it was.
+//! Uses all cores. Results are recorded in `target/verify`, so that an interrupted run continues where it ended.
 
 #[path = "../tests/verify/mod.rs"]
 mod verify;
 
-use contact_model::fixed_point::kernel::OCTAVES;
+use contact_model::fixed_point::kernel::{OCTAVES, PRACTICAL_OCTAVES};
 use std::collections::HashMap;
 use std::fs;
 use std::io::{self, Write};
@@ -14,13 +14,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
-use verify::{INPUTS, LIVED_IN, TRUTH_ERROR, Tally, exhaustive, proof};
+use verify::{INPUTS, REFERENCE_ERROR, Statistics, exhaustive, proof};
 
-/// Pieces of an octave: what is lost when a run is ended.
+/// Pieces of an octave; an interrupted run loses at most one per core.
 const PIECES: u64 = 64;
 
 fn main() -> io::Result<()> {
-    let pieces: Vec<(i32, u64)> = LIVED_IN
+    let pieces: Vec<(i32, u64)> = PRACTICAL_OCTAVES
         .flat_map(|octave| (0..PIECES).map(move |piece| (octave, piece)))
         .collect();
     let mut record = Record::open()?;
@@ -29,8 +29,8 @@ fn main() -> io::Result<()> {
         .filter(|piece| !record.done.contains_key(piece))
         .collect();
     eprintln!(
-        "{} inputs in {} pieces, {} of them done before; notes in {}",
-        LIVED_IN.len() as u64 * INPUTS,
+        "{} inputs in {} pieces, {} of them done before; recorded in {}",
+        PRACTICAL_OCTAVES.len() as u64 * INPUTS,
         pieces.len(),
         pieces.len() - open.len(),
         record.path.display()
@@ -47,9 +47,9 @@ fn main() -> io::Result<()> {
                         open.get(next.fetch_add(1, Ordering::Relaxed))
                     {
                         let length = INPUTS / PIECES;
-                        let tally = exhaustive(octave, piece * length..(piece + 1) * length);
+                        let statistics = exhaustive(octave, piece * length..(piece + 1) * length);
                         let mut record = shared.lock().expect("no worker panics");
-                        record.add((octave, piece), tally)?;
+                        record.add((octave, piece), statistics)?;
                         let new = record.done.len() + open.len() - pieces.len();
                         let left_s =
                             begun.elapsed().as_secs_f64() / new as f64 * (open.len() - new) as f64;
@@ -71,17 +71,17 @@ fn main() -> io::Result<()> {
     report(&record)
 }
 
-/// Pieces that are done, in a file that belongs to one table.
+/// Pieces that are done, in a file that is named after the sources.
 struct Record {
     path: PathBuf,
-    done: HashMap<(i32, u64), Tally>,
+    done: HashMap<(i32, u64), Statistics>,
 }
 
 impl Record {
     fn open() -> io::Result<Self> {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/verify");
         fs::create_dir_all(&folder)?;
-        // All that the result depends on.
+        // Everything that the result depends on.
         let sources = concat!(
             include_str!("../src/fixed_point/kernel.rs"),
             include_str!("../src/fixed_point/kernel_table.rs"),
@@ -96,35 +96,35 @@ impl Record {
             });
         let path = folder.join(format!("kernel-{hash:016x}.txt"));
         let text = fs::read_to_string(&path).unwrap_or_default();
-        // A line that a run could not finish is not parsed, and its piece is checked again.
+        // The unfinished line of an interrupted run is ignored, and its piece is checked again.
         let done = text.lines().filter_map(parse).collect();
         Ok(Self { path, done })
     }
 
-    fn add(&mut self, piece: (i32, u64), tally: Tally) -> io::Result<()> {
+    fn add(&mut self, piece: (i32, u64), statistics: Statistics) -> io::Result<()> {
         let mut file = fs::OpenOptions::new()
             .create(true)
             .append(true)
             .open(&self.path)?;
-        let Tally {
+        let Statistics {
             inputs,
             worst,
             correctly_rounded,
-            rises,
-            largest_rise,
-        } = tally;
+            increases,
+            largest_increase,
+        } = statistics;
         let (octave, number) = piece;
-        // In one piece, and on a line of its own whatever an ended run has left.
+        // In one write, and on a new line even if the last one is unfinished.
         let line = format!(
-            "\n{octave} {number} {inputs} {worst} {correctly_rounded} {rises} {largest_rise} end"
+            "\n{octave} {number} {inputs} {worst} {correctly_rounded} {increases} {largest_increase} end"
         );
         file.write_all(line.as_bytes())?;
-        self.done.insert(piece, tally);
+        self.done.insert(piece, statistics);
         Ok(())
     }
 }
 
-fn parse(line: &str) -> Option<((i32, u64), Tally)> {
+fn parse(line: &str) -> Option<((i32, u64), Statistics)> {
     let words: Vec<_> = line.split(' ').collect();
     let [
         octave,
@@ -132,49 +132,49 @@ fn parse(line: &str) -> Option<((i32, u64), Tally)> {
         inputs,
         worst,
         correctly_rounded,
-        rises,
-        largest_rise,
+        increases,
+        largest_increase,
         "end",
     ] = words[..]
     else {
         return None;
     };
-    let tally = Tally {
+    let statistics = Statistics {
         inputs: inputs.parse().ok()?,
         worst: worst.parse().ok()?,
         correctly_rounded: correctly_rounded.parse().ok()?,
-        rises: rises.parse().ok()?,
-        largest_rise: largest_rise.parse().ok()?,
+        increases: increases.parse().ok()?,
+        largest_increase: largest_increase.parse().ok()?,
     };
-    Some(((octave.parse().ok()?, piece.parse().ok()?), tally))
+    Some(((octave.parse().ok()?, piece.parse().ok()?), statistics))
 }
 
 fn report(record: &Record) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(
         out,
-        "octave of u   checked   worst error   correctly rounded   rises   largest   proven bound"
+        "octave of u   checked   worst error   correctly rounded   increases   largest   proven bound"
     )?;
-    let mut all = Tally::default();
+    let mut all = Statistics::default();
     let mut proven = 0.0f64;
     for octave in OCTAVES.start + 1..OCTAVES.end - 1 {
         let bound = proof::bound(octave);
-        if !LIVED_IN.contains(&octave) {
+        if !PRACTICAL_OCTAVES.contains(&octave) {
             proven = proven.max(bound);
             continue;
         }
-        let mut tally = Tally::default();
+        let mut statistics = Statistics::default();
         for piece in 0..PIECES {
-            tally.merge(&record.done[&(octave, piece)]);
+            statistics.merge(&record.done[&(octave, piece)]);
         }
-        line(&mut out, &format!("2^{octave}"), &tally)?;
+        line(&mut out, &format!("2^{octave}"), &statistics)?;
         writeln!(out, "   {bound:.4}")?;
-        all.merge(&tally);
+        all.merge(&statistics);
     }
     line(&mut out, "all of them", &all)?;
     writeln!(
         out,
-        "\nunits of 2^-32; the truth is known to {TRUTH_ERROR} units"
+        "\nin units of 2^-32; the reference is exact to {REFERENCE_ERROR} units"
     )?;
     writeln!(
         out,
@@ -184,11 +184,11 @@ fn report(record: &Record) -> io::Result<()> {
     )
 }
 
-fn line(out: &mut impl Write, name: &str, tally: &Tally) -> io::Result<()> {
-    let share = 100.0 * tally.correctly_rounded as f64 / tally.inputs as f64;
+fn line(out: &mut impl Write, name: &str, statistics: &Statistics) -> io::Result<()> {
+    let percent = 100.0 * statistics.correctly_rounded as f64 / statistics.inputs as f64;
     write!(
         out,
-        "{name:<11} {:>12}   {:>9.5}   {share:>12.4} %   {:>9}   {:>3}",
-        tally.inputs, tally.worst, tally.rises, tally.largest_rise
+        "{name:<11} {:>12}   {:>9.5}   {percent:>12.4} %   {:>9}   {:>3}",
+        statistics.inputs, statistics.worst, statistics.increases, statistics.largest_increase
     )
 }

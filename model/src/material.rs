@@ -1,29 +1,29 @@
-//! Materials, the skin and the display surface (Tables 3-1, 3-4, 4-1, 5-1 and 6-1).
+//! Thermal and surface properties of materials, the skin and the display (Tables 3-1, 3-4, 4-1, 5-1 and 6-1).
 
-/// What contact resistance sees of a solid (Eq. 6-9 to 6-11).
+/// Properties of a solid that determine contact resistance (Eq. 6-9 to 6-11).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// Thermal conductivity, W/(m K).
     pub conductivity_w_mk: f64,
-    /// Root mean square roughness `R_q`, micrometres.
+    /// RMS roughness `R_q`, µm.
     pub roughness_um: f64,
-    /// Absolute average asperity slope, rad.
+    /// Mean absolute asperity slope, rad.
     pub slope_rad: f64,
 }
 
-/// Absolute average slope `da` from the RMS slope `R dq` of a profile, both in rad (Eq. 6-13).
+/// Mean absolute slope `da` from the RMS slope `R dq` of a profile, both in rad (Eq. 6-13).
 ///
-/// The 1.25 is `sqrt(pi / 2)`, that of Gaussian surfaces; a sinusoid would have 1.11. Average the slope of a
-/// profile that is at hand.
+/// The factor 1.25 is `sqrt(pi / 2)`, for Gaussian surfaces; for a sinusoid it is 1.11. Where the profile itself is
+/// known, average its absolute slope instead.
 #[must_use]
 pub fn average_slope_rad(rms_slope_rad: f64) -> f64 {
     rms_slope_rad / 1.25
 }
 
-/// A homogeneous solid, seen as a half-space.
+/// A homogeneous solid, modelled as a half-space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// Conductivity and finish.
+    /// Conductivity and surface finish.
     pub surface: Surface,
     /// Density, kg/m³.
     pub density_kg_m3: f64,
@@ -51,8 +51,8 @@ impl Material {
     }
 }
 
-/// The fingertip: a half-space with `k` 0.37 W/(m K) and diffusivity 1e-7 m²/s (section 2.1); finish is the
-/// mean over both sexes (Table 6-1).
+/// Skin of the fingertip: conductivity 0.37 W/(m K), diffusivity 1e-7 m²/s (section 2.1); surface finish averaged
+/// over women and men (Table 6-1).
 pub const SKIN: Material = Material {
     surface: Surface {
         conductivity_w_mk: 0.37,
@@ -66,7 +66,7 @@ pub const SKIN: Material = Material {
 /// Microhardness of the skin, Pa (section 6.1).
 pub const SKIN_MICROHARDNESS_PA: f64 = 0.1225e6;
 
-/// The display surface that reproduces the ratios `R_display / R_object` of section 6.3.
+/// Display surface with which the ratios `R_display / R_object` of section 6.3 result.
 pub const REFERENCE_DISPLAY: Surface = Surface {
     conductivity_w_mk: 36.0,
     roughness_um: 1.0,
@@ -85,7 +85,7 @@ const fn solid(k: f64, rho: f64, c: f64, roughness_um: f64, slope_rad: f64) -> M
     }
 }
 
-/// The materials of the thesis by name. The slopes of bronze and G10 are assumed: the thesis gives none.
+/// Materials of the thesis by name. The slopes of bronze and G10 are assumed, because the thesis gives none.
 pub const MATERIALS: [(&str, Material); 9] = [
     ("copper", solid(398.0, 8954.0, 384.0, 0.31, 0.045)),
     ("bronze", solid(54.0, 8780.0, 355.0, 0.32, 0.053)),
@@ -98,7 +98,7 @@ pub const MATERIALS: [(&str, Material); 9] = [
     ("zns", solid(27.2, 4090.0, 515.0, 0.006, 0.006)),
 ];
 
-/// The material of that name, as [`MATERIALS`] spells it.
+/// Looks up a material by its name in [`MATERIALS`].
 #[must_use]
 pub fn find(name: &str) -> Option<&'static Material> {
     MATERIALS

@@ -1,9 +1,9 @@
-//! Contact area and pressure of a fingertip from its force (section 6.4.2).
+//! Contact area and mean pressure of a fingertip from its force (section 6.4.2).
 //!
-//! The thesis states the mean pressure at five forces. Area is force over stated pressure there, linear in
-//! force between the points and constant outside them.
+//! The thesis gives the mean pressure at five forces. There the area is force over pressure; between the points it
+//! is interpolated linearly over force, and outside them it is constant.
 
-/// Force in N and mean contact pressure in Pa, as stated.
+/// The five points of the thesis: force, N, and mean contact pressure, Pa.
 pub const THESIS_PRESSURES: [(f64, f64); 5] = [
     (0.1, 730.0),
     (0.25, 1680.0),
@@ -16,19 +16,19 @@ pub const THESIS_PRESSURES: [(f64, f64); 5] = [
 #[must_use]
 pub fn contact_area_m2(force_n: f64) -> f64 {
     let area = |(force, pressure): (f64, f64)| force / pressure;
-    let mut below = THESIS_PRESSURES[0];
+    let mut previous = THESIS_PRESSURES[0];
     for point in THESIS_PRESSURES {
         if force_n < point.0 {
-            let span = point.0 - below.0;
+            let span = point.0 - previous.0;
             if span == 0.0 {
                 return area(point);
             }
-            let part = (force_n - below.0) / span;
-            return area(below) + part * (area(point) - area(below));
+            let fraction = (force_n - previous.0) / span;
+            return area(previous) + fraction * (area(point) - area(previous));
         }
-        below = point;
+        previous = point;
     }
-    area(below)
+    area(previous)
 }
 
 /// Mean contact pressure in Pa under `force_n` (N, not negative); relative error below 1e-15.

@@ -1,4 +1,5 @@
-//! Nothing panics or overflows for any bits whatever: run with overflow checks, `cargo test -p contact-model`.
+//! No bit pattern of the inputs causes a panic or an overflow. Overflow checks are on in
+//! `cargo test -p contact-model`, without `--release`.
 
 use contact_model::fixed_point::{
     Celsius, ChordInterpolation, Contact, ContactPair, Depth, ErfArgument, Flux, Force, Fraction,
@@ -9,7 +10,7 @@ use contact_model::material::{Material, Surface};
 use proptest::num::f64::ANY;
 use proptest::prelude::*;
 
-/// Bits of which the extreme ones are as likely as the others.
+/// 32 bits, in which extreme values are as likely as others.
 fn word() -> impl Strategy<Value = u32> {
     prop_oneof![
         any::<u32>(),
@@ -47,7 +48,7 @@ fn ticks() -> impl Strategy<Value = Ticks> {
     word().prop_map(|bits| Ticks::new(bits).unwrap_or(Ticks::MAX))
 }
 
-/// Mostly what set-up accepts.
+/// A property, in most cases valid.
 fn property() -> impl Strategy<Value = f64> {
     prop_oneof![30 => 1e-3..1e3f64, 1 => ANY]
 }
@@ -76,89 +77,88 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 4096, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn functions_of_numbers_are_total(a in word(), b in rate(), c in rate(), n in ticks(), times in any::<i16>()) {
+    fn elementary_functions_accept_any_bits(a in word(), b in rate(), c in rate(), n in ticks(), times in any::<i16>()) {
         let _ = (exp2(a), erfcx(n, b), fourier_number(b, n), b.to_f64());
         prop_assert!(log2(a) >= -1 && log2(a) < 32);
         prop_assert!(log2_relative_pressure(Force::from_bits(a)).abs() < 64);
         let product = b.times(c).times_power_of_2(times);
         prop_assert!(product.exponent().unsigned_abs() <= 1 << 14);
-        // Anything beyond 4.5 has the same error function, and nothing has a larger one.
+        // The error function is constant from 4.5 on, and nowhere larger.
         prop_assert!(erf(ErfArgument::from_bits(a)) <= erf(ErfArgument::MAX));
     }
 
     #[test]
-    fn response_is_total_and_saturates(
+    fn response_accepts_any_bits_and_stays_between_the_temperatures(
         contact in contact(),
         elapsed in word(), skin in celsius(), object in celsius(),
     ) {
-        let at = contact.at(elapsed, skin, object);
-        // Between the temperatures before, the display on the side that its ratio says, the flux downhill.
+        let response = contact.at(elapsed, skin, object);
+        // Skin and object lie between their initial temperatures; the flux is from warm to cold.
         let (low, high) = (skin.min(object), skin.max(object));
-        for t in [at.skin(), at.object()] {
+        for t in [response.skin(), response.object()] {
             prop_assert!(low <= t && t <= high);
         }
-        let (display, flux) = (at.display(), at.flux_w_m2());
+        let (display, flux) = (response.display(), response.flux_w_m2());
         prop_assert!((skin >= object && display <= skin && flux >= 0)
             || (skin <= object && display >= skin && flux <= 0));
     }
 
-    /// Whatever the contact, a course neither panics nor leaves ±255 °C.
     #[test]
-    fn course_is_total(
+    fn chord_interpolation_accepts_any_bits_and_stays_within_255_c(
         contact in contact(),
         (skin, object, tolerance) in (celsius(), celsius(), celsius()),
         elapsed: u64,
     ) {
-        let (mut course, evaluations) = ChordInterpolation::new(&contact, skin, object, elapsed, tolerance);
+        let (mut chords, evaluations) = ChordInterpolation::new(&contact, skin, object, elapsed, tolerance);
         prop_assert!(evaluations <= 2);
         for _ in 0..100 {
-            let setpoint = course.advance();
-            prop_assert_eq!(setpoint, course.setpoint());
+            let setpoint = chords.advance();
+            prop_assert_eq!(setpoint, chords.setpoint());
             prop_assert!(setpoint.abs() <= 255, "{}", setpoint);
         }
     }
 
-    /// Whatever the contact and whatever flows, no half-space panics; what flows on through a resistance heats or
-    /// cools no body beyond what is in front of it and what it was.
+    /// Through a resistance, a half-space stays between its initial temperature and its target.
     #[test]
-    fn half_space_is_total(
+    fn half_space_accepts_any_bits_and_stays_between_start_and_target(
         contact in contact(),
-        drives in prop::collection::vec((celsius(), 1u32..300), 1..8), front in celsius(),
+        fluxes in prop::collection::vec((celsius(), 1u32..300), 1..8), target in celsius(),
     ) {
         let (mut body, mut other) = (HalfSpace::default(), HalfSpace::default());
-        for (drive, ticks) in drives {
+        for (flux, ticks) in fluxes {
             for _ in 0..ticks {
-                body.step(drive);
+                body.step(flux);
                 other.step(body.scaled_flux_to_match(&other));
             }
-            for link in [contact.object_conductance(), contact.display_conductance()] {
-                let flow = link.scaled_flux(drive, &body);
-                prop_assert!(flow.abs() <= drive.saturating_sub(body.free_response()).saturating_abs());
-                let _ = (link.temperature_drop(flow), body.response_to(flow), other.response_to(drive));
+            for conductance in [contact.object_conductance(), contact.display_conductance()] {
+                let limited = conductance.scaled_flux(flux, &body);
+                prop_assert!(limited.abs() <= flux.saturating_sub(body.free_response()).saturating_abs());
+                let _ = (conductance.temperature_drop(limited), body.response_to(limited), other.response_to(flux));
             }
             other = body.staggered();
         }
         let mut body = HalfSpace::default();
-        let (low, high) = (front.min(Celsius::ZERO), front.max(Celsius::ZERO));
+        let (low, high) = (target.min(Celsius::ZERO), target.max(Celsius::ZERO));
         let rounding = Celsius::DELTA * 64;
-        for link in [contact.object_conductance(), contact.display_conductance()] {
+        for conductance in [contact.object_conductance(), contact.display_conductance()] {
             for _ in 0..100 {
-                body.step(link.scaled_flux(front, &body));
-                let at = body.free_response();
-                prop_assert!(low.saturating_sub(rounding) <= at && at <= high.saturating_add(rounding), "{at} of {front}");
+                body.step(conductance.scaled_flux(target, &body));
+                let response = body.free_response();
+                prop_assert!(low.saturating_sub(rounding) <= response, "{response} of {target}");
+                prop_assert!(response <= high.saturating_add(rounding), "{response} of {target}");
             }
         }
     }
 
     #[test]
-    fn set_up_refuses_or_is_total(
+    fn set_up_refuses_properties_or_gives_parameters_for_any_input(
         (skin, object, display) in (material(), material(), surface()), tick_s in property(),
         (high, low) in (word(), word()), (a, b) in (celsius(), celsius()), depth in word(), n in ticks(),
     ) {
-        if let Ok(pairing) = ContactPair::new(&skin, &object, &display, tick_s) {
+        if let Ok(pair) = ContactPair::new(&skin, &object, &display, tick_s) {
             let pressure = Log2::from_bits(i64::from(high.cast_signed()) << 32 | i64::from(low));
-            let at = pairing.at_pressure(pressure).at(n.get(), a, b);
-            let _ = (at.display(), at.flux_w_m2(), pairing.preset(a, b), pairing.interface_temperature(a, b));
+            let response = pair.at_pressure(pressure).at(n.get(), a, b);
+            let _ = (response.display(), response.flux_w_m2(), pair.preset(a, b), pair.interface_temperature(a, b));
         }
         if let Ok(perfect) = SemiInfinite::new(&skin, &object, tick_s) {
             let t = perfect.skin_at_depth(Depth::from_bits(depth), n, a, b);

@@ -1,63 +1,57 @@
-//! The kernel against the exact function: a sample of what `--example verify` checks in full, and the proof.
+//! Error of the kernel: a sample of the inputs that `--example verify` checks in full, and the proven bound.
 
-mod verify;
-
-use contact_model::fixed_point::kernel::OCTAVES;
+use contact_model::fixed_point::kernel::{OCTAVES, PRACTICAL_OCTAVES};
 use contact_model::fixed_point::{Fraction, MantissaExponent, Ticks, erfcx};
 use contact_model::reference;
 use proptest::prelude::*;
-use verify::{INPUTS, LIVED_IN, TRUTH_ERROR, Tally, exact, exhaustive, kernel, proof};
 
-/// Stated: where scenes live, elsewhere, and what the cut of the product adds.
-const LIVED_IN_UNITS: f64 = 0.51;
-const ELSEWHERE_UNITS: f64 = 0.54;
+use crate::verify::{INPUTS, REFERENCE_ERROR, Statistics, UNIT, exact, exhaustive, kernel, proof};
+
+/// Stated errors, in units of 2^-32: in the practical octaves, in the others, and of the bits cut off the product.
+const PRACTICAL_UNITS: f64 = 0.51;
+const OTHER_UNITS: f64 = 0.54;
 const CUT_UNITS: f64 = 0.07;
-/// Least share of results that are the nearest of all.
+/// Smallest fraction of results that are the nearest of all values.
 const CORRECTLY_ROUNDED: f64 = 0.998;
 
-const UNIT: f64 = 1.0 / 4_294_967_296.0;
-
-/// Stretches of 2^14 inputs: at both ends of every octave and at places spread over it.
+/// The sample is runs of 2^14 inputs: at both ends of every octave and spread over it.
 #[test]
-fn sampled_inputs_stay_within_the_stated_error_and_rise_by_one_unit_at_most() {
-    let mut all = Tally::default();
-    for octave in LIVED_IN {
-        const STRETCH: u64 = 1 << 14;
-        let last = INPUTS / STRETCH - 1;
+fn sampled_inputs_have_the_stated_error_and_increase_by_at_most_one_unit() {
+    let mut all = Statistics::default();
+    for octave in PRACTICAL_OCTAVES {
+        const RUN: u64 = 1 << 14;
+        let last = INPUTS / RUN - 1;
         let inner =
             (1..6u64).map(|i| (i * 0x2_f1ab + octave.unsigned_abs() as u64 * 0x51d7) % last);
-        for stretch in inner.chain([0, last]) {
-            all.merge(&exhaustive(
-                octave,
-                stretch * STRETCH..(stretch + 1) * STRETCH,
-            ));
+        for run in inner.chain([0, last]) {
+            all.merge(&exhaustive(octave, run * RUN..(run + 1) * RUN));
         }
     }
     println!("{all:?}");
-    assert!(all.worst + TRUTH_ERROR <= LIVED_IN_UNITS, "{all:?}");
-    assert!(all.largest_rise <= 1, "{all:?}");
-    let share = all.correctly_rounded as f64 / all.inputs as f64;
-    assert!(share > CORRECTLY_ROUNDED, "{share}");
+    assert!(all.worst + REFERENCE_ERROR <= PRACTICAL_UNITS, "{all:?}");
+    assert!(all.largest_increase <= 1, "{all:?}");
+    let fraction = all.correctly_rounded as f64 / all.inputs as f64;
+    assert!(fraction > CORRECTLY_ROUNDED, "{fraction}");
 }
 
 #[test]
-fn every_octave_is_proven_within_its_stated_error() {
+fn proven_bound_of_every_octave_is_within_the_stated_error() {
     let mut worst = [0.0f64; 2];
     for octave in OCTAVES.start + 1..OCTAVES.end - 1 {
-        let lived_in = LIVED_IN.contains(&octave);
+        let practical = PRACTICAL_OCTAVES.contains(&octave);
         let bound = proof::bound(octave);
-        worst[usize::from(lived_in)] = worst[usize::from(lived_in)].max(bound);
-        assert!(bound <= ELSEWHERE_UNITS, "2^{octave}: {bound}");
+        worst[usize::from(practical)] = worst[usize::from(practical)].max(bound);
+        assert!(bound <= OTHER_UNITS, "2^{octave}: {bound}");
     }
     println!(
-        "proven: {:.4} where scenes live, {:.4} elsewhere",
+        "proven bound: {:.4} in the practical octaves, {:.4} in the others",
         worst[1], worst[0]
     );
 }
 
-/// The proof holds for the function as it is called, not only for the table that it reads.
+/// The proof reads the table; this test calls the function.
 #[test]
-fn the_proven_bound_covers_what_the_kernel_returns() {
+fn kernel_stays_within_the_proven_bound() {
     for octave in OCTAVES.start + 1..OCTAVES.end - 1 {
         let bound = proof::bound(octave);
         for i in 0..2000u32 {
@@ -69,7 +63,7 @@ fn the_proven_bound_covers_what_the_kernel_returns() {
 }
 
 #[test]
-fn kernel_saturates_outside_of_its_octaves() {
+fn kernel_saturates_outside_the_octaves_of_its_table() {
     let (start, end) = (OCTAVES.start as i16, OCTAVES.end as i16);
     for fraction in [0, 1, u32::MAX / 3, u32::MAX] {
         for exponent in [i16::MIN, -1000, start - 1, start] {
@@ -91,15 +85,15 @@ fn kernel_saturates_outside_of_its_octaves() {
 
 proptest! {
     #[test]
-    fn kernel_holds_for_any_elapsed_time_and_rate(
+    fn kernel_has_the_stated_error_for_any_time_and_rate(
         elapsed in 1..=Ticks::MAX.get(),
         exponent in -63i16..32,
         fraction: u32,
     ) {
         let rate_per_tick = MantissaExponent::new(exponent, fraction);
         let e = erfcx(Ticks::new(elapsed).expect("in range"), rate_per_tick);
-        let truth = reference::erfcx((f64::from(elapsed) * rate_per_tick.to_f64()).sqrt()) / UNIT;
-        let error = (f64::from(e.to_bits()) - truth).abs();
-        prop_assert!(error <= ELSEWHERE_UNITS + CUT_UNITS, "{error} units");
+        let expected = reference::erfcx((f64::from(elapsed) * rate_per_tick.to_f64()).sqrt()) / UNIT;
+        let error = (f64::from(e.to_bits()) - expected).abs();
+        prop_assert!(error <= OTHER_UNITS + CUT_UNITS, "{error} units");
     }
 }

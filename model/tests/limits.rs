@@ -1,4 +1,4 @@
-//! Limits and symmetries of the fixed-point chain.
+//! Limits of the fixed-point path: time zero, no contact, no resistance, extreme ticks.
 
 use contact_model::fixed_point::{
     Celsius, Contact, ContactPair, Depth, Flux, Force, FourierNumber, Log2, MantissaExponent,
@@ -9,33 +9,33 @@ use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 const SKIN_C: Celsius = Celsius::lit("34");
 const OBJECT_C: Celsius = Celsius::lit("24");
 
-fn pairings() -> impl Iterator<Item = ContactPair> {
+fn contact_pairs() -> impl Iterator<Item = ContactPair> {
     (MATERIALS.iter()).map(|(_, object)| {
         ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, 1e-3).expect("ordinary")
     })
 }
 
-fn at_2_n(pairing: &ContactPair) -> Contact {
-    pairing.at_pressure(log2_relative_pressure(Force::lit("2")))
+fn at_2_n(pair: &ContactPair) -> Contact {
+    pair.at_pressure(log2_relative_pressure(Force::lit("2")))
 }
 
-fn near(a: Celsius, b: Celsius, units: i32) -> bool {
+fn agree(a: Celsius, b: Celsius, units: i32) -> bool {
     a.abs_diff(b).to_bits() <= units as u32
 }
 
 #[test]
-fn nothing_has_happened_at_time_zero() {
-    for pairing in pairings() {
-        let at = at_2_n(&pairing).at(0, SKIN_C, OBJECT_C);
+fn temperatures_at_time_zero_are_those_before_contact() {
+    for pair in contact_pairs() {
+        let at = at_2_n(&pair).at(0, SKIN_C, OBJECT_C);
         assert_eq!((at.skin(), at.object()), (SKIN_C, OBJECT_C));
-        assert!(near(at.display(), pairing.preset(SKIN_C, OBJECT_C), 1));
+        assert!(agree(at.display(), pair.preset(SKIN_C, OBJECT_C), 1));
     }
 }
 
 #[test]
-fn absent_contact_exchanges_nothing() {
-    for pairing in pairings() {
-        let absent = pairing.at_pressure(Log2::MIN);
+fn no_heat_flows_without_contact() {
+    for pair in contact_pairs() {
+        let absent = pair.at_pressure(Log2::MIN);
         for elapsed in [0, 1, u32::MAX] {
             let at = absent.at(elapsed, SKIN_C, OBJECT_C);
             assert_eq!(
@@ -46,22 +46,21 @@ fn absent_contact_exchanges_nothing() {
     }
 }
 
-/// Skin, object and display meet at once, for ever.
 #[test]
-fn contact_without_resistance_gives_the_interface_temperature() {
-    for pairing in pairings() {
-        let at = pairing.at_pressure(Log2::MAX).at(1, SKIN_C, OBJECT_C);
-        let interface = pairing.interface_temperature(SKIN_C, OBJECT_C);
+fn contact_without_resistance_gives_the_interface_temperature_at_once() {
+    for pair in contact_pairs() {
+        let at = pair.at_pressure(Log2::MAX).at(1, SKIN_C, OBJECT_C);
+        let interface = pair.interface_temperature(SKIN_C, OBJECT_C);
         for t in [at.skin(), at.object(), at.display()] {
-            assert!(near(t, interface, 1), "{t} {interface}");
+            assert!(agree(t, interface, 1), "{t} {interface}");
         }
-        // A resistance too small to hold: as large as a flux can be, not wrapped.
-        let landing = pairing
+        // A resistance below the range of the type gives the largest flux.
+        let landing = pair
             .at_pressure(Log2::MAX)
             .at(0, SKIN_C, OBJECT_C)
             .flux_w_m2();
         assert_eq!(landing, Flux::MAX);
-        let landing = pairing
+        let landing = pair
             .at_pressure(Log2::MAX)
             .at(0, OBJECT_C, SKIN_C)
             .flux_w_m2();
@@ -69,7 +68,7 @@ fn contact_without_resistance_gives_the_interface_temperature() {
     }
 }
 
-/// `b² dt` leaves the range of `f64`, on either side.
+/// `b² dt` exceeds the range of `f64` at both ends.
 #[test]
 fn ticks_of_any_length_saturate() {
     for (_, object) in &MATERIALS {
@@ -79,21 +78,21 @@ fn ticks_of_any_length_saturate() {
         let shortest = contact(f64::from_bits(1)).at(1, SKIN_C, OBJECT_C);
         assert_eq!((shortest.skin(), shortest.object()), (SKIN_C, OBJECT_C));
         let longest = contact(f64::MAX).at(1, SKIN_C, OBJECT_C);
-        assert!(near(longest.skin(), longest.object(), 1));
+        assert!(agree(longest.skin(), longest.object(), 1));
     }
 }
 
 #[test]
-fn response_holds_when_the_tick_counter_is_full() {
-    for pairing in pairings() {
-        let contact = at_2_n(&pairing);
+fn response_is_constant_after_the_largest_tick_count() {
+    for pair in contact_pairs() {
+        let contact = at_2_n(&pair);
         let last = contact.at(Ticks::MAX.get(), SKIN_C, OBJECT_C);
         assert_eq!(contact.at(u32::MAX, SKIN_C, OBJECT_C), last);
     }
 }
 
 #[test]
-fn perfect_contact_cools_from_the_surface_inwards() {
+fn perfect_contact_scales_with_depth_over_the_root_of_time() {
     for (_, object) in &MATERIALS {
         let perfect = SemiInfinite::new(&SKIN, object, 1e-3).expect("ordinary");
         let at = |depth, ticks| {
@@ -103,11 +102,11 @@ fn perfect_contact_cools_from_the_surface_inwards() {
         let interface = perfect.interface_temperature(SKIN_C, OBJECT_C);
         assert_eq!(at(Depth::ZERO, 1), interface);
         assert_eq!(at(Depth::MAX, 1), SKIN_C);
-        // Four hundred times as long, twenty times as deep.
+        // 400 times the time, 20 times the depth.
         let one = at(Depth::lit("20"), 1000);
         let other = at(Depth::lit("400"), 400_000);
-        assert!(interface < one && one < SKIN_C && near(one, other, 1));
-        // Flux falls with the root of time.
+        assert!(interface < one && one < SKIN_C && agree(one, other, 1));
+        // The flux is inversely proportional to the root of time.
         let flux =
             |ticks| perfect.flux_w_m2(Ticks::new(ticks).expect("in range"), SKIN_C, OBJECT_C);
         let ratio = flux(7).to_num::<f64>() / flux(700).to_num::<f64>();

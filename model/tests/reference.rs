@@ -1,26 +1,20 @@
-//! Materials, pressure and the limits of the floating-point reference; `budgets` measures its errors.
-
-mod golden;
+//! Materials, pressure and limits of the floating-point reference; `budgets` measures its errors.
 
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN, average_slope_rad, find};
 use contact_model::pressure::{contact_area_m2, pressure_pa};
 use contact_model::reference::{Contact, SemiInfinite};
-use golden::{number, rows};
 
-fn relative(value: f64, truth: f64) -> f64 {
-    if value == truth {
-        0.0
-    } else {
-        (value / truth - 1.0).abs()
-    }
-}
+use crate::budgets::sweep::relative;
+use crate::golden::{material, number, rows};
 
 #[test]
-fn effusivity_and_average_slope_meet_golden_values() {
+fn effusivity_and_average_slope_agree_with_golden_values() {
     for row in rows("semi_infinite") {
-        let object = find(&row["material"]).expect("material");
         let expected = number(&row, "e_from_k_rho_c");
-        assert!(relative(object.effusivity(), expected) < 1e-14, "{row:?}");
+        assert!(
+            relative(material(&row).effusivity(), expected) < 1e-14,
+            "{row:?}"
+        );
     }
     for row in rows("roughness_sinusoid") {
         let slope = average_slope_rad(number(&row, "Rdq"));
@@ -32,7 +26,7 @@ fn effusivity_and_average_slope_meet_golden_values() {
 }
 
 #[test]
-fn no_pressure_exchanges_nothing() {
+fn no_heat_flows_at_zero_pressure() {
     let (skin_c, object_c) = (34.0, 24.0);
     let (_, copper) = &MATERIALS[0];
     let contact = Contact::<f64>::new((&SKIN, skin_c), (copper, object_c), &REFERENCE_DISPLAY, 0.0);
@@ -45,17 +39,17 @@ fn no_pressure_exchanges_nothing() {
     }
 }
 
-/// Eq. 6-7 becomes Eq. 3-3 with the other sign, closer by `1 / (2 z²)`, the next term of `erfcx`.
+/// Eq. 6-7 approaches Eq. 3-3 with the opposite sign; the difference is `1 / (2 z²)`, the next term of `erfcx`.
 #[test]
-fn flux_becomes_that_of_perfect_contact_as_resistance_vanishes() {
+fn flux_approaches_that_of_perfect_contact_as_resistance_vanishes() {
     for (name, object) in &MATERIALS {
         let contact = Contact::<f64>::new((&SKIN, 34.0), (object, 24.0), &REFERENCE_DISPLAY, 1e12);
         let perfect = SemiInfinite::new((&SKIN, 34.0), (object, 24.0));
         for t_s in [1e-3, 1.0, 1e3] {
             let limit = -perfect.flux_w_m2(t_s).expect("after landing");
-            let left = 0.51 / (contact.rate_per_s * t_s) + 1e-12;
+            let difference = 0.51 / (contact.rate_per_s * t_s) + 1e-12;
             assert!(
-                relative(contact.at(t_s).flux_w_m2, limit) < left,
+                relative(contact.at(t_s).flux_w_m2, limit) < difference,
                 "{name} at {t_s} s"
             );
         }
@@ -74,7 +68,7 @@ fn every_material_of_the_thesis_is_found_by_its_name() {
 
 /// Section 6.4.2: 0.73, 1.68, 3.14, 5.90 and 10.98 kPa at 0.1, 0.25, 0.5, 1 and 2 N.
 #[test]
-fn pressure_meets_the_stated_points_and_area_is_constant_outside() {
+fn pressure_equals_the_five_points_of_the_thesis_and_area_is_constant_outside_them() {
     for (force, pressure) in [
         (0.1, 730.0),
         (0.25, 1680.0),

@@ -1,9 +1,9 @@
-//! The committed tables are what the generator writes.
+//! The committed tables of the fixed-point path against their generator.
 
-mod fit;
+use crate::fit;
 
 #[test]
-fn committed_tables_are_generated() {
+fn committed_tables_are_those_that_the_generator_writes() {
     let again = "run `cargo run --release -p contact-model --example tables`";
     assert!(
         include_str!("../src/fixed_point/kernel_table.rs") == fit::kernel::table(),

@@ -1,64 +1,65 @@
-//! The set-point of a lasting contact, evaluated only where a straight line would leave its tolerance.
+//! Set-point of a contact under constant force: `E` is evaluated at knots and interpolated by chords.
 //!
-//! Under constant force Eq. 6-12 is `base + gain E(u)`, with `base = T_skin,i - dT w`, `gain = dT (w - r)` and
-//! `u = b² t`. `E` is completely monotone, so a chord lies above it, by at most `u² E''(u) G(m)` if it begins at
-//! `u`, `m` of its own lengths after landing:
+//! Under constant force Eq. 6-12 is `base + amplitude E(u)`, with `base = T_skin,i - dT w`,
+//! `amplitude = dT (w - r)` and `u = b² t`. `E` is completely monotone, so a chord lies above it. A chord that
+//! begins at `u`, at `m` times its own length after landing, lies above by at most `u² E''(u) G(m)`:
 //!
 //! ```text
 //! u² E''(u) <= 0.1495        G(m) = y² / (y + 2) <= 1 / (4 m (2 m + 1))        y = sqrt(1 + 1/m) - 1
 //! ```
 //!
-//! `G` is what a chord does to a square root; `u^1.5 E''` falls, so `E` bends less. Knots lie one tolerance
-//! beyond `E`, so a chord may rise two tolerances above it.
+//! `G` is the bound for a square root; `E` bends less, because `u^1.5 E''` decreases. Knots lie one tolerance
+//! beyond `E`, on the side away from the chord, so that a chord may deviate from `E` by two tolerances.
 //!
-//! A chord's end is counted in lengths of the chord, from `m` to `2 m`; then the length doubles. So each octave
-//! of time takes `m` evaluations, and counts stay small however long the contact lasts.
+//! Time is counted in lengths of the current chord, from `m` to `2 m`; then the length doubles. Each octave of
+//! time so takes `m` evaluations, and the counts stay small however long the contact lasts.
 
 use core::sync::atomic::{Ordering, compiler_fence};
 
 use super::contact::{interface, preset};
-use super::{Celsius, Contact, Fraction, MantissaExponent, Ticks, erfcx};
+use super::{Celsius, Contact, Fraction, MantissaExponent, Ticks, erfcx, product};
 
-/// What the kernel and roundings may add to the error of a chord.
+/// Error that the kernel and rounding add to that of a chord.
 const ROUNDING: Celsius = Celsius::from_bits(6);
-/// Temperatures along a course saturate at this magnitude.
+/// Temperatures saturate at this magnitude.
 const LIMIT_C: Celsius = Celsius::const_from_int(127);
 /// Bound of `u² E''(u)`, in units of 1e-4.
-const BEND: u64 = 1495;
-/// The longest chord, as a power of two of ticks.
-const LONGEST: u32 = 31;
-/// All of a chord but its beginning, where as much is left as at its end.
-const LEFT: u32 = (1 << LONGEST) - 1;
-/// Contact time in ticks at which a new course stops to count: 180 000 years of 10 us.
-const LAST: u64 = 1 << 59;
+const CURVATURE: u64 = 1495;
+/// Length of the longest chord, log2 of ticks.
+const MAX_LENGTH_LOG2: u32 = 31;
+/// Mask that takes the fraction left of a chord from 1 to 0, where the next chord begins.
+const FRACTION_MASK: u32 = (1 << MAX_LENGTH_LOG2) - 1;
+/// Contact times saturate here, in ticks: 180 000 years of 10 us.
+const MAX_ELAPSED: u64 = 1 << 59;
 
-/// Set-point of one finger's contact, tick by tick.
+/// Set-point of one contact, tick by tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(C)] // Neighbours are loaded and stored in pairs.
+#[repr(C)] // Fields that are used together are neighbours, to be loaded and stored in pairs.
 pub struct ChordInterpolation {
-    /// Where the length of a chord doubles, and where the chord ends, in lengths since landing.
-    doubles: Ticks,
+    /// End at which the chords' length doubles, and end of the current chord, in chord lengths since landing.
+    doubling: Ticks,
     end: Ticks,
-    /// What is left of the chord, in 2^-31 of it; 0 at a knot.
+    /// Fraction of the chord that is left, 2^-31; 0 at a knot.
     left: u32,
-    /// What a tick takes off it.
-    per_tick: u32,
-    /// Set-point at the chord's end, and twice its fall along the chord.
-    to: Celsius,
+    /// Decrease of `left` in a tick.
+    left_per_tick: u32,
+    /// Set-point at the chord's end.
+    end_setpoint: Celsius,
+    /// Twice the difference of the set-points at the chord's start and end.
     twice_fall: Celsius,
     base: Celsius,
-    twice_gain: Celsius,
-    /// `b² dt` of one length.
-    rate: MantissaExponent,
+    twice_amplitude: Celsius,
+    /// `b² dt` for one chord length in place of `dt`.
+    rate_per_length: MantissaExponent,
 }
 
 impl ChordInterpolation {
-    /// The set-point from `elapsed` ticks after landing on, within `tolerance` (2 µK at least) of Eq. 6-12.
-    /// Second is how often `E` was evaluated for it, up to two times.
+    /// Interpolation from `elapsed` ticks after landing on, with an error of at most `tolerance` (2 µK or more)
+    /// from Eq. 6-12. The second value is the number of evaluations of `E` it took, at most 2.
     ///
-    /// The preset of Eq. 6-12 must be within ±127 °C; beyond, the course saturates. Nothing is evaluated where the
-    /// tolerance does not tell a contact from a perfect one, which is at the temperature of Eq. 3-1 for ever, or from
-    /// an absent one or `dT (w - r)` from 0, which leave the preset.
+    /// Set-points beyond ±127 °C saturate. Where an evaluation could not change the set-point by the tolerance, it
+    /// is constant and nothing is evaluated: contacts that cannot be told from perfect contact (Eq. 3-1), from no
+    /// contact, or whose `dT (w - r)` is nearly 0 (both at the preset).
     #[must_use]
     pub fn new(
         contact: &Contact,
@@ -67,71 +68,72 @@ impl ChordInterpolation {
         elapsed: u64,
         tolerance: Celsius,
     ) -> (Self, u32) {
-        let within = |t: Celsius| t.clamp(-LIMIT_C, LIMIT_C);
-        let base = within(interface(contact.weight, skin, object));
-        let preset = within(preset(contact.ratio, skin, object));
-        let gain = preset - base;
+        let limited = |t: Celsius| t.clamp(-LIMIT_C, LIMIT_C);
+        let base = limited(interface(contact.weight, skin, object));
+        let preset = limited(preset(contact.ratio, skin, object));
+        let amplitude = preset - base;
         let tolerance = tolerance.saturating_sub(ROUNDING).max(Celsius::DELTA);
-        if gain.abs() <= tolerance {
-            return (Self::held(preset), 0);
+        if amplitude.abs() <= tolerance {
+            return (Self::constant(preset), 0);
         }
-        let (bits, size) = (
+        let (tolerance_bits, size) = (
             u64::from(tolerance.to_bits().unsigned_abs()),
-            u64::from(gain.to_bits().unsigned_abs()),
+            u64::from(amplitude.to_bits().unsigned_abs()),
         );
-        let elapsed = elapsed.min(LAST);
-        // `E` is below 1 / sqrt(pi u): all but perfect contact.
+        let elapsed = elapsed.min(MAX_ELAPSED);
+        // `E` is below 1 / sqrt(pi u): too small to matter late in a contact with little resistance.
         let octave = elapsed.max(1).ilog2() as i32 + contact.rate_per_tick.exponent();
-        if octave > 2 * (size.ilog2() as i32 - bits.ilog2() as i32) {
-            return (Self::held(base), 0);
+        if octave > 2 * (size.ilog2() as i32 - tolerance_bits.ilog2() as i32) {
+            return (Self::constant(base), 0);
         }
-        let first = first_octave(bits, size) - contact.rate_per_tick.exponent();
-        // Within two tolerances over the first chord means within eight of the preset: an eighth of it is 2^6 earlier.
-        if first > LAST.ilog2() as i32 + 6 {
-            return (Self::held(preset), 0);
+        let first = first_octave(tolerance_bits, size) - contact.rate_per_tick.exponent();
+        // Over the first chord `E` falls by at most eight tolerances, and by one over its first 64th.
+        if first > MAX_ELAPSED.ilog2() as i32 + 6 {
+            return (Self::constant(preset), 0);
         }
-        let lengths = lengths_per_octave(size, bits);
+        let lengths = lengths_per_octave(size, tolerance_bits);
         let later = octaves(elapsed, lengths);
-        let length = (first.max(0) as u32).max(later).min(LONGEST);
+        let length = (first.max(0) as u32).max(later).min(MAX_LENGTH_LOG2);
         let end = (elapsed >> length) + 1;
-        let to = erfcx_at(end << length, contact.rate_per_tick);
-        let (from, evaluations) = match elapsed {
+        let end_erfcx = erfcx_at(end << length, contact.rate_per_tick);
+        let (start_erfcx, evaluations) = match elapsed {
             0 => (Fraction::MAX, 1),
             _ => (erfcx_at(elapsed, contact.rate_per_tick), 2),
         };
-        let base = if gain > 0 {
+        let base = if amplitude > 0 {
             base - tolerance
         } else {
             base + tolerance
         };
-        let at = |e: Fraction| along(base, gain + gain, e.to_bits() >> 1);
-        let (from, to) = (at(from), at(to));
+        let twice_amplitude = amplitude + amplitude;
+        let setpoint = |e: Fraction| plus_part(base, twice_amplitude, e.to_bits() >> 1);
+        let (start_setpoint, end_setpoint) = (setpoint(start_erfcx), setpoint(end_erfcx));
         let ticks = (end << length) - elapsed;
-        // As if the chord had begun at a multiple of its length.
-        let fall = per_length((from - to).to_bits(), length, ticks);
-        let per_tick = (1 << LONGEST) >> length;
-        let course = Self {
-            left: per_tick * ticks as u32,
-            per_tick,
-            to,
+        // The fall over a whole length, as if the chord had begun at a multiple of its length.
+        let fall = fall_per_length((start_setpoint - end_setpoint).to_bits(), length, ticks);
+        let left_per_tick = (1 << MAX_LENGTH_LOG2) >> length;
+        let chords = Self {
+            left: left_per_tick * ticks as u32,
+            left_per_tick,
+            end_setpoint,
             twice_fall: Celsius::from_bits((2 * fall) as i32),
             base,
-            twice_gain: gain + gain,
-            rate: contact.rate_per_tick.times_power_of_2(length as i16),
+            twice_amplitude,
+            rate_per_length: contact.rate_per_tick.times_power_of_2(length as i16),
             end: Ticks::new(end as u32).unwrap_or(Ticks::MAX),
-            doubles: Ticks::new(2 * lengths as u32).unwrap_or(Ticks::MAX),
+            doubling: Ticks::new(2 * lengths as u32).unwrap_or(Ticks::MAX),
         };
-        (course, evaluations)
+        (chords, evaluations)
     }
 
-    /// Set-point now.
+    /// Set-point of the current tick.
     #[must_use]
     pub fn setpoint(&self) -> Celsius {
         let left = match self.left {
-            0 => 1 << LONGEST,
+            0 => 1 << MAX_LENGTH_LOG2,
             left => left,
         };
-        along(self.to, self.twice_fall, left)
+        plus_part(self.end_setpoint, self.twice_fall, left)
     }
 
     /// Whether the last [`Self::advance`] evaluated `E`.
@@ -140,91 +142,91 @@ impl ChordInterpolation {
         self.left == 0
     }
 
-    /// Size of what `E` is multiplied with, `|dT (w - r)|`.
+    /// Magnitude of the set-point's change over the contact, `|dT (w - r)|`, K.
     #[must_use]
     pub const fn transient_amplitude(&self) -> Celsius {
-        Celsius::from_bits(self.twice_gain.to_bits() >> 1).abs()
+        Celsius::from_bits(self.twice_amplitude.to_bits() >> 1).abs()
     }
 
-    /// Set-point of the next tick: 8 instructions, 59 where `E` is evaluated, 67 where the chords' length doubles too.
+    /// Set-point of the next tick: 8 instructions, 59 where `E` is evaluated, 67 where the chords' length also doubles.
     #[inline(always)]
     pub fn advance(&mut self) -> Celsius {
-        let left = self.left.wrapping_sub(self.per_tick) & LEFT;
+        let left = self.left.wrapping_sub(self.left_per_tick) & FRACTION_MASK;
         if left == 0 {
-            return self.turn();
+            return self.start_chord();
         }
         self.left = left;
-        // Costs no instruction: keeps the compiler from making all of this conditional.
+        // No instruction: keeps the compiler from turning the branch into conditional instructions.
         compiler_fence(Ordering::SeqCst);
-        along(self.to, self.twice_fall, left)
+        plus_part(self.end_setpoint, self.twice_fall, left)
     }
 
-    /// Ends a chord and lays the next, twice as long if that is due and possible.
+    /// Starts the next chord, twice as long if it is due and possible.
     #[inline(always)]
-    fn turn(&mut self) -> Celsius {
-        let (mut begin, mut rate) = (self.end.get(), self.rate);
-        if begin == self.doubles.get() {
-            // Costs no instruction: keeps a branch around what is seldom due.
+    fn start_chord(&mut self) -> Celsius {
+        let (mut start, mut rate) = (self.end.get(), self.rate_per_length);
+        if start == self.doubling.get() {
+            // No instruction: keeps the compiler from executing this rare case conditionally.
             compiler_fence(Ordering::SeqCst);
-            if self.per_tick == 1 {
-                // The longest chord: from here on, as many of them as there is time.
-                self.doubles = Ticks::MAX;
+            if self.left_per_tick == 1 {
+                // The chords have their greatest length, and keep it.
+                self.doubling = Ticks::MAX;
             } else {
-                begin >>= 1;
-                self.per_tick >>= 1;
+                start >>= 1;
+                self.left_per_tick >>= 1;
                 rate = rate.twice();
-                self.rate = rate;
+                self.rate_per_length = rate;
             }
         }
-        (self.end, self.left) = (Ticks::after(begin), 0);
+        (self.end, self.left) = (Ticks::after(start), 0);
         let e = erfcx(self.end, rate).to_bits() >> 1;
-        // Costs no instruction: what follows is loaded only now, so the kernel has the registers to itself.
+        // No instruction: the fields below are loaded after the kernel, which needs the registers.
         compiler_fence(Ordering::SeqCst);
-        let from = self.to;
-        self.to = along(self.base, self.twice_gain, e);
-        let fall = from.wrapping_sub(self.to);
+        let start_setpoint = self.end_setpoint;
+        self.end_setpoint = plus_part(self.base, self.twice_amplitude, e);
+        let fall = start_setpoint.wrapping_sub(self.end_setpoint);
         self.twice_fall = fall.wrapping_add(fall);
-        from
+        start_setpoint
     }
 
-    /// No chord, for ever.
-    const fn held(at: Celsius) -> Self {
+    /// A set-point that does not change.
+    const fn constant(setpoint: Celsius) -> Self {
         Self {
             left: 1,
-            per_tick: 0,
-            to: at,
+            left_per_tick: 0,
+            end_setpoint: setpoint,
             twice_fall: Celsius::ZERO,
-            base: at,
-            twice_gain: Celsius::ZERO,
-            rate: MantissaExponent::ONE,
+            base: setpoint,
+            twice_amplitude: Celsius::ZERO,
+            rate_per_length: MantissaExponent::ONE,
             end: Ticks::ONE,
-            doubles: Ticks::MAX,
+            doubling: Ticks::MAX,
         }
     }
 }
 
-/// `end` and a part of `twice`, in 2^-32: one instruction, rounded down.
+/// `start + part twice / 2^32`, rounded down: one instruction. `part` is in units of 2^-31 and `twice` is twice
+/// the difference it is a part of.
 #[inline]
-const fn along(end: Celsius, twice: Celsius, part: u32) -> Celsius {
-    let above = (twice.to_bits() as i64 * part as i64) >> 32;
-    Celsius::from_bits(end.to_bits().wrapping_add(above as i32))
+fn plus_part(start: Celsius, twice: Celsius, part: u32) -> Celsius {
+    start.wrapping_add(product(twice, Fraction::from_bits(part)))
 }
 
-/// `floor(log2(elapsed / lengths))`, not below 0, for `lengths` above 0 and both up to 2^60: a long division costs a
-/// hundred cycles.
+/// `floor(log2(elapsed / lengths))`, at least 0, for `lengths` above 0 and both up to 2^60. Without division, which
+/// costs a hundred cycles in 64 bits.
 const fn octaves(elapsed: u64, lengths: u64) -> u32 {
     if elapsed < lengths {
         return 0;
     }
     // Both are above 0.
-    let least = lengths
+    let estimate = lengths
         .leading_zeros()
         .saturating_sub(elapsed.leading_zeros());
-    least - (lengths << (least & 63) > elapsed) as u32
+    estimate - (lengths << (estimate & 63) > elapsed) as u32
 }
 
-/// `fall` over `ticks`, for a length of `2^length` ticks: rounded towards 0, in a short division where that holds it.
-fn per_length(fall: i32, length: u32, ticks: u64) -> i64 {
+/// `fall 2^length / ticks`, rounded towards 0; in a 32-bit division where the numbers fit.
+fn fall_per_length(fall: i32, length: u32, ticks: u64) -> i64 {
     let scaled = u64::from(fall.unsigned_abs()) << length;
     let size = match (u32::try_from(scaled), u32::try_from(ticks)) {
         (Ok(scaled), Ok(ticks)) => u64::from(scaled.checked_div(ticks).unwrap_or(0)),
@@ -233,38 +235,39 @@ fn per_length(fall: i32, length: u32, ticks: u64) -> i64 {
     if fall < 0 { -size } else { size }
 }
 
-/// Smallest `m` for which a chord that begins `m` lengths after landing rises no more than two `tolerance` above a
-/// set-point of `gain`.
-fn lengths_per_octave(gain: u64, tolerance: u64) -> u64 {
-    // gain * BEND / (4 m (2 m + 1)) <= 2 tolerance, times 1e4
-    let (bend, allowed) = (gain * BEND, 20_000 * tolerance);
-    let too_few = |m: u64| 4 * m * (2 * m + 1) * allowed < bend;
+/// Smallest `m` for which a chord that begins `m` lengths after landing deviates by at most two tolerances, for a
+/// set-point of `amplitude`.
+fn lengths_per_octave(amplitude: u64, tolerance: u64) -> u64 {
+    // amplitude * CURVATURE / (4 m (2 m + 1)) <= 2 tolerance, times 1e4
+    let (curvature, allowed) = (amplitude * CURVATURE, 20_000 * tolerance);
+    let too_few = |m: u64| 4 * m * (2 * m + 1) * allowed < curvature;
     // The largest that is too few, bit by bit; it is below the root of this quotient.
-    let bits = octaves(bend, 8 * allowed) / 2;
-    let most = (0..=bits).rev().fold(0, |m, bit| {
-        let more = m | 1 << bit;
-        if too_few(more) { more } else { m }
+    let bits = octaves(curvature, 8 * allowed) / 2;
+    let largest = (0..=bits).rev().fold(0, |m, bit| {
+        let next = m | 1 << bit;
+        if too_few(next) { next } else { m }
     });
-    most + 1
+    largest + 1
 }
 
-/// Length of a chord from landing on, or from a later tick to the same end, as a power of two in units of `1 / K`: it
-/// rises at most `sqrt(u / pi) / 2` above `E`, for `u` at its end. For a `tolerance` above 0 and below the `gain`, and
-/// that below 2^32.
-const fn first_octave(tolerance: u64, gain: u64) -> i32 {
+/// Length of the first chord, log2 of units of `1 / (b² dt)` rounded to its octave. Such a chord, from landing or a
+/// later tick to the same end, deviates from `E` by at most `sqrt(u / pi) / 2`, for `u` at its end.
+///
+/// `tolerance` is above 0 and below `amplitude`, which is below 2^32.
+const fn first_octave(tolerance: u64, amplitude: u64) -> i32 {
     // The square root of 2, in 2^-31, rounded down.
     const ROOT: u64 = 3_037_000_499;
-    // u <= 4 pi (2 tolerance / gain)² in whole octaves: a length of 2^first has u below 2^(first + 1), 16 pi is above
-    // 2^5. The quotient's octaves, in 2^-32; those of its square are twice as many, or one more.
-    let octaves = octaves(tolerance << 32, gain);
-    let next = gain * ((ROOT >> (31 - octaves)) + 1);
+    // u <= 4 pi (2 tolerance / amplitude)² in whole octaves: a length of 2^first has u below 2^(first + 1), and
+    // 16 pi is above 2^5. The quotient's octaves are in 2^-32; its square has twice as many, or one more.
+    let octaves = octaves(tolerance << 32, amplitude);
+    let next = amplitude * ((ROOT >> (31 - octaves)) + 1);
     5 - 65 + 2 * octaves as i32 + (tolerance << 32 >= next) as i32
 }
 
-/// `E` at `elapsed` ticks, which may be more than [`Ticks`] holds.
-#[inline(never)] // Called twice where time does not count.
+/// `E` at `elapsed` ticks, also beyond the range of [`Ticks`].
+#[inline(never)] // It is called twice, and not in every tick.
 fn erfcx_at(elapsed: u64, rate_per_tick: MantissaExponent) -> Fraction {
-    let excess = (u64::BITS - elapsed.leading_zeros()).saturating_sub(LONGEST);
+    let excess = (u64::BITS - elapsed.leading_zeros()).saturating_sub(MAX_LENGTH_LOG2);
     Ticks::new((elapsed >> excess) as u32).map_or(Fraction::MAX, |ticks| {
         erfcx(ticks, rate_per_tick.times_power_of_2(excess as i16))
     })
@@ -289,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn short_ways_are_those_of_division() {
+    fn integer_shortcuts_agree_with_division() {
         let mut short = numbers(31);
         for (elapsed, lengths) in numbers(60).zip(numbers(31).map(|n| n + 1)).take(200_000) {
             let quotient = elapsed / lengths;
@@ -302,29 +305,29 @@ mod tests {
             for fall in [fall, -fall] {
                 let exact = (i64::from(fall) << length) / lengths as i64;
                 assert_eq!(
-                    per_length(fall, length, lengths),
+                    fall_per_length(fall, length, lengths),
                     exact,
                     "{fall} << {length} / {lengths}"
                 );
             }
-            let (tolerance, gain) = (elapsed % lengths, lengths);
+            let (tolerance, amplitude) = (elapsed % lengths, lengths);
             if tolerance > 0 {
-                let part = (tolerance << 32) / gain;
+                let part = (tolerance << 32) / amplitude;
                 let exact = i32::try_from((part * part).ilog2()).expect("below 64") - 60;
                 assert_eq!(
-                    first_octave(tolerance, gain),
+                    first_octave(tolerance, amplitude),
                     exact,
-                    "{tolerance} of {gain}"
+                    "{tolerance} of {amplitude}"
                 );
-                // The whole root below, or the next.
-                let needed = (gain * BEND).div_ceil(20_000 * tolerance);
+                // The integer part of the root, or one more.
+                let needed = (amplitude * CURVATURE).div_ceil(20_000 * tolerance);
                 let root = (needed / 8).isqrt().max(1);
                 let enough = 4 * root * (2 * root + 1) >= needed;
                 let exact = if enough { root } else { root + 1 };
                 assert_eq!(
-                    lengths_per_octave(gain, tolerance),
+                    lengths_per_octave(amplitude, tolerance),
                     exact,
-                    "{tolerance} of {gain}"
+                    "{tolerance} of {amplitude}"
                 );
             }
         }

@@ -1,23 +1,23 @@
-//! The response to contact, Eq. 6-5 to 6-7 and 6-12.
+//! Temperatures and heat flux during contact (Eq. 6-5 to 6-7 and 6-12).
 
 use super::{Celsius, Flux, Fraction, MantissaExponent, Ratio, Ticks, erfcx};
 
-/// A finger on an object under constant pressure.
+/// Parameters of a finger in contact with an object under constant pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Contact {
-    /// `e_object / (e_object + e_skin)`.
+    /// Weight of the object's temperature in that of the interface (Eq. 3-1), `w = e_object / (e_object + e_skin)`.
     pub weight: Fraction,
-    /// `R_display / R_object`.
+    /// Ratio of contact resistances, `r = R_display / R_object`.
     pub ratio: Ratio,
-    /// `b² dt`.
+    /// `b² dt`, dimensionless, with `b = (1/e_skin + 1/e_object) / R` and the tick `dt`.
     pub rate_per_tick: MantissaExponent,
-    /// `b sqrt(dt)`.
+    /// `b sqrt(dt)`, dimensionless.
     pub root_rate_per_tick: MantissaExponent,
-    /// `1 / R`, W/(m² K); below 2^-33 no difference gives a flux that [`Flux`] could hold.
+    /// Contact conductance `1 / R`, W/(m² K). Below 2^-33 every flux is below the resolution of [`Flux`].
     pub conductance_w_m2k: MantissaExponent,
 }
 
-/// `E` of one moment, and what it gives: each output is computed when it is asked for.
+/// State of a contact at one time. `E` is evaluated once; each output is computed when it is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Response {
     contact: Contact,
@@ -27,7 +27,7 @@ pub struct Response {
 }
 
 impl Contact {
-    /// State `elapsed` ticks after landing, from the temperatures before it; holds from [`Ticks::MAX`] on.
+    /// State `elapsed` ticks after landing, from the temperatures before landing; constant from [`Ticks::MAX`] on.
     #[must_use]
     #[inline]
     pub fn at(&self, elapsed: u32, skin_before: Celsius, object_before: Celsius) -> Response {
@@ -41,118 +41,122 @@ impl Contact {
     }
 }
 
-/// Outputs, for temperatures within [`super::TEMPERATURE_RANGE_C`] and steps `dT` up to 60 K, with `e` the error
-/// of `E` ([`erfcx`]'s own and 0.14 of the relative error of `rate_per_tick`). Beyond, errors grow with `dT`; nothing
-/// wraps.
+/// Error bounds hold for temperatures within [`super::TEMPERATURE_RANGE_C`] that differ by `dT` of at most 60 K.
+/// `e` is the error of `E`: that of [`erfcx`] and 0.14 times the relative error of `rate_per_tick`. Beyond these
+/// ranges errors grow with `dT`, and the outputs saturate.
 impl Response {
-    /// `erfcx(b sqrt(t))`.
+    /// `E = erfcx(b sqrt(t))`: 1 at landing, 0 after a long time.
     #[must_use]
     pub const fn erfcx(&self) -> Fraction {
         self.erfcx
     }
 
-    /// Skin surface (Eq. 6-5); error below 0.2 µK + `w e dT`.
+    /// Surface temperature of the skin, °C (Eq. 6-5); error below 0.2 µK + `w e dT`.
     #[must_use]
     pub fn skin(&self) -> Celsius {
         self.skin_before
-            .saturating_sub(part(self.step(), self.skin_part()))
+            .saturating_sub(fraction_of(self.difference(), self.skin_part()))
     }
 
-    /// Object surface (Eq. 6-6); error below 0.2 µK + `(1 - w) e dT`.
+    /// Surface temperature of the object, °C (Eq. 6-6); error below 0.2 µK + `(1 - w) e dT`.
     #[must_use]
     pub fn object(&self) -> Celsius {
-        let object_part = self.done().saturating_sub(self.skin_part());
+        let object_part = self.one_less_erfcx().saturating_sub(self.skin_part());
         self.object_before
-            .saturating_add(part(self.step(), object_part))
+            .saturating_add(fraction_of(self.difference(), object_part))
     }
 
-    /// Display surface that puts the skin where the object would (Eq. 6-12); error below
-    /// 0.6 µK + `|r - w| e dT`.
+    /// Temperature of the display's surface at which the skin has the temperature it has on the object, °C
+    /// (Eq. 6-12); error below 0.6 µK + `|r - w| e dT`.
     #[must_use]
     pub fn display(&self) -> Celsius {
-        // `w (1 - E) + r E` lies between w and r, so that 60 fraction bits fit below 16.
-        let (weight, done) = (self.contact.weight.to_bits(), self.done().to_bits());
-        let (ratio, left) = (self.contact.ratio.to_bits(), self.erfcx.to_bits());
-        let gain =
-            ((u64::from(weight) * u64::from(done)) >> 4) + u64::from(ratio) * u64::from(left);
-        let gain = (gain + (1 << 32)) >> 33;
-        let change = i64::from(self.step().to_bits()) * i64::from(gain as i32);
-        less::<27>(self.skin_before, change)
+        // `w (1 - E) + r E` lies between w and r, below 16, so 60 binary places fit in 64 bits.
+        let by_weight = self
+            .contact
+            .weight
+            .wide_mul(self.one_less_erfcx())
+            .to_bits();
+        let by_ratio = self.contact.ratio.wide_mul(self.erfcx).to_bits();
+        let factor = (by_weight >> 4) + by_ratio;
+        let factor = (factor + (1 << 32)) >> 33;
+        let change = i64::from(self.difference().to_bits()) * i64::from(factor as i32);
+        subtract_rounded::<27>(self.skin_before, change)
     }
 
-    /// Heat flux out of the skin (Eq. 6-7, positive for a cold object); error below `dT / R` times the sum of
+    /// Heat flux out of the skin, W/m² (Eq. 6-7, positive for a cold object); error below `dT / R` times the sum of
     /// `e`, 2^-30 and the relative error of the conductance, and the resolution of [`Flux`]. Saturates at
-    /// 5e11 W/m².
+    /// ±5e11 W/m².
     #[must_use]
     pub fn flux_w_m2(&self) -> Flux {
         flux(
-            i64::from(self.step().to_bits()) * i64::from(self.erfcx.to_bits()),
+            i64::from(self.difference().to_bits()) * i64::from(self.erfcx.to_bits()),
             self.contact.conductance_w_m2k,
         )
     }
 
-    fn step(&self) -> Celsius {
+    /// `dT`, the temperature difference of skin and object before landing.
+    fn difference(&self) -> Celsius {
         self.skin_before.saturating_sub(self.object_before)
     }
 
-    /// `1 - E`, where the largest `E` counts as one.
-    fn done(&self) -> Fraction {
+    /// `1 - E`; the largest [`Fraction`] stands for `E = 1`.
+    fn one_less_erfcx(&self) -> Fraction {
         !self.erfcx
     }
 
-    /// `w (1 - E)`.
+    /// `w (1 - E)`, the change of the skin's surface as a fraction of `dT`.
     fn skin_part(&self) -> Fraction {
-        product(self.contact.weight, self.done())
+        fraction_product(self.contact.weight, self.one_less_erfcx())
     }
 }
 
 /// The product of two fractions; error at most half of the resolution.
 #[inline]
-pub(super) fn product(a: Fraction, b: Fraction) -> Fraction {
+pub(super) fn fraction_product(a: Fraction, b: Fraction) -> Fraction {
     let bits = u64::from(a.to_bits()) * u64::from(b.to_bits());
     Fraction::from_bits(((bits + (1 << 31)) >> 32) as u32)
 }
 
-/// `from` less a change with `BITS` more fraction bits; error at most half of the resolution; saturates.
+/// `from - change`, for a change with `BITS` more binary places; error at most half of the resolution; saturates.
 #[inline]
-pub(super) fn less<const BITS: u32>(from: Celsius, change: i64) -> Celsius {
+pub(super) fn subtract_rounded<const BITS: u32>(from: Celsius, change: i64) -> Celsius {
     let rounded = change.saturating_add(1 << BITS >> 1) >> BITS;
     let bits = i64::from(from.to_bits()).saturating_sub(rounded);
     let low = bits as i32;
-    // Shorter than a clamp in 64 bits: what does not fit has the sign of its high half.
+    // Fewer instructions than a 64-bit clamp: the sign of the sum selects the end of the range.
     let end = (bits >> 63) as i32 ^ i32::MAX;
     Celsius::from_bits(if i64::from(low) == bits { low } else { end })
 }
 
-/// `fraction` of a temperature difference; error at most half of its resolution.
+/// `fraction` times a temperature difference; error at most half of the resolution.
 #[inline]
-pub(super) fn part(difference: Celsius, fraction: Fraction) -> Celsius {
+pub(super) fn fraction_of(difference: Celsius, fraction: Fraction) -> Celsius {
     let product = i64::from(difference.to_bits()) * i64::from(fraction.to_bits());
     Celsius::from_bits((product.saturating_add(1 << 31) >> 32) as i32)
 }
 
-/// Eq. 6-12 at landing.
+/// Display temperature at landing, °C (Eq. 6-12 at `t = 0`).
 pub(super) fn preset(ratio: Ratio, skin_c: Celsius, object_c: Celsius) -> Celsius {
-    let step = skin_c.saturating_sub(object_c);
-    less::<{ Ratio::FRAC_NBITS }>(
+    let difference = skin_c.saturating_sub(object_c);
+    subtract_rounded::<{ Ratio::FRAC_NBITS }>(
         skin_c,
-        i64::from(step.to_bits()) * i64::from(ratio.to_bits()),
+        i64::from(difference.to_bits()) * i64::from(ratio.to_bits()),
     )
 }
 
-/// Eq. 3-1: where both surfaces go for a part `weight` of the way from skin to object.
+/// Temperature of both surfaces in perfect contact, °C (Eq. 3-1).
 pub(super) fn interface(weight: Fraction, skin_c: Celsius, object_c: Celsius) -> Celsius {
-    skin_c.saturating_sub(part(skin_c.saturating_sub(object_c), weight))
+    skin_c.saturating_sub(fraction_of(skin_c.saturating_sub(object_c), weight))
 }
 
-/// Flux from a temperature difference with 54 fraction bits and a conductance; relative error below 2^-30,
-/// rounded towards zero; saturates.
+/// Heat flux, W/m², from a temperature difference (K, 54 binary places) and a conductance; relative error below
+/// 2^-30, rounded towards zero; saturates.
 pub(super) fn flux(difference: i64, conductance_w_m2k: MantissaExponent) -> Flux {
     let magnitude = difference.unsigned_abs();
     let zeros = magnitude.leading_zeros();
     let leading = (magnitude.checked_shl(zeros).unwrap_or(0) >> 32) as u32;
     let product = u64::from(leading) * u64::from(conductance_w_m2k.leading());
-    // Fraction bits of the difference, without those cut off, and of the mantissa, to those of the flux.
+    // From the binary places of the difference, less those cut off, and of the mantissa to those of the flux.
     let shift =
         54 - (32 - zeros as i32) + 31 - Flux::FRAC_NBITS as i32 - conductance_w_m2k.exponent();
     let bits = match shift {

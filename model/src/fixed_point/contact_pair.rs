@@ -1,4 +1,4 @@
-//! A finger, a material and a display surface, reduced to the numbers that a tick needs.
+//! Parameters of the contact between a finger and a material, reproduced by a display surface.
 
 use super::properties::{
     ContactPairError, check, moderate, of_display, of_object, of_skin, rate, weight,
@@ -7,24 +7,26 @@ use super::{Celsius, Contact, Fraction, Log2, MantissaExponent, Ratio, contact, 
 use crate::material::{Material, Surface};
 use crate::reference;
 
-/// One material under a finger, on one display; does not change with force or temperature.
+/// Parameters of a skin, an object and a display surface in contact; independent of force and temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContactPair {
     weight: Fraction,
     ratio: Ratio,
-    /// `b² dt`, its root and conductance at `P = H`.
+    /// `b² dt` where the pressure equals the microhardness of the skin.
     rate_per_tick: MantissaExponent,
+    /// `b sqrt(dt)` there.
     root_rate_per_tick: MantissaExponent,
+    /// Contact conductance there.
     conductance_w_m2k: MantissaExponent,
 }
 
 impl ContactPair {
-    /// Derives the numbers, in `f64`, for ticks of `tick_s` seconds (any above 0; where `b² dt` leaves the range
-    /// of `f64` it saturates). Errors are those of rounding: `w` 2^-33 (2^-32 beside one), `r` 2^-29, `b² dt` and
-    /// the conductance 2^-32 of themselves.
+    /// Derives the parameters in `f64` for ticks of `tick_s` seconds (any positive number; `b² dt` saturates at the
+    /// ends of `f64`). Errors are those of rounding: of the weight 2^-33 (2^-32 near 1), of the ratio 2^-29, of
+    /// `b² dt` and the conductance a relative 2^-32.
     ///
     /// # Errors
-    /// A property that is not positive and finite, or a result outside of the range of its type.
+    /// A property that is not positive and finite, or a parameter outside the range of its type.
     pub fn new(
         skin: &Material,
         object: &Material,
@@ -51,22 +53,22 @@ impl ContactPair {
         })
     }
 
-    /// `e_object / (e_object + e_skin)`: the part of the way to the object's temperature that the skin goes
-    /// in the end (Eq. 3-1).
+    /// `w = e_object / (e_object + e_skin)`: fraction of the initial temperature difference by which the skin's
+    /// surface changes in a long contact (Eq. 3-1).
     #[must_use]
     pub const fn weight(&self) -> Fraction {
         self.weight
     }
 
-    /// `R_display / R_object`.
+    /// Ratio of contact resistances, `R_display / R_object`.
     #[must_use]
     pub const fn ratio(&self) -> Ratio {
         self.ratio
     }
 
-    /// The contact under a pressure, given as `log2(P / H)`, any (Eq. 6-8). Relative error, beside that of the
-    /// logarithm, of `b² dt` below 2^-29, of the conductance below 2^-30, for logarithms within ±64; together
-    /// with [`super::log2_relative_pressure`] at most 4e-9 and 2e-9.
+    /// Contact under the pressure `P` given by `log2(P / H)`, with `H` the microhardness of the skin (Eq. 6-8). Any
+    /// logarithm is allowed. Within ±64 the relative error is below 2^-29 for `b² dt` and 2^-30 for the conductance;
+    /// with that of [`super::log2_relative_pressure`] at most 4e-9 and 2e-9.
     #[must_use]
     pub fn at_pressure(&self, log2_relative_pressure: Log2) -> Contact {
         let pressure_term =
@@ -80,14 +82,14 @@ impl ContactPair {
         }
     }
 
-    /// Display temperature at `t = 0`, which is also what it is preset to before contact (Eq. 6-12);
-    /// does not depend on pressure. Error below 0.15 µK + 2^-29 of the difference of the temperatures.
+    /// Display temperature at landing, °C, to which the display is set before contact (Eq. 6-12 at `t = 0`);
+    /// independent of pressure. Error below 0.15 µK + 2^-29 times the temperature difference of skin and object.
     #[must_use]
     pub fn preset(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
         contact::preset(self.ratio, skin_c, object_c)
     }
 
-    /// Interface temperature of perfect contact (Eq. 3-1); error below 0.16 µK.
+    /// Temperature of both surfaces in perfect contact, °C (Eq. 3-1); error below 0.16 µK.
     #[must_use]
     pub fn interface_temperature(&self, skin_c: Celsius, object_c: Celsius) -> Celsius {
         contact::interface(self.weight, skin_c, object_c)

@@ -1,21 +1,21 @@
-//! The error function, for depths in Eq. 3-2.
+//! Error function, for temperatures below the surface (Eq. 3-2).
 
 use super::Fraction;
 use super::erf_table::ERF;
 use super::piecewise::Row;
 
-/// Argument of [`erf`]: 0 to 8 at a resolution of 2^-29.
+/// Argument of [`erf`], dimensionless: 0 to 8, resolution 2^-29.
 pub type ErfArgument = fixed::types::U3F29;
 
-/// Rows per unit of the argument, as a power of two.
+/// log2 of the number of rows per unit of the argument.
 const ROW_BITS: u32 = 3;
-/// Fraction bits of the table's sloped part.
+/// Binary places of the table's coefficients, but for the constant ones.
 const SLOPE_BITS: u32 = 33;
 
-/// One piece of the table.
+/// One row of the table.
 pub(super) type ErfRow = Row<5, SLOPE_BITS>;
 
-/// `erf(x)`; error below 3 units of 2^-32 for every argument. From 4.5 on, one.
+/// `erf(x)`; error below 3 * 2^-32 for every argument. From 4.5 on it is 1 - 2^-32, the largest fraction.
 #[must_use]
 pub fn erf(x: ErfArgument) -> Fraction {
     let bits = x.to_bits();

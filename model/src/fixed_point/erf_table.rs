@@ -6,7 +6,7 @@ const fn row(constant: u32, rest: [i32; 5]) -> ErfRow {
     ErfRow { constant, rest }
 }
 
-/// `erf(x)` on 36 equal parts of `x` in `[0, 4.5)`.
+/// `erf(x)` on 36 equal intervals of `x` in `[0, 4.5)`.
 #[rustfmt::skip]
 pub(super) static ERF: [ErfRow; 36] = [
     row(0, [1211587894, 130, -6310882, 915, 28965]),

@@ -1,61 +1,68 @@
-//! The surface of a half-space under any flux: its heat content, not only its history under a constant force.
+//! Surface temperature of a half-space under any heat flux, for contacts whose force changes or that repeat.
 //!
-//! A flux `q` into a half-space of effusivity `e` moves its surface by the half-order integral of `q / e`: the bodies
-//! of Eq. 6-5 and 6-6 under whatever contact. Here `1 / sqrt(s)` is a sum of relaxations a factor of four apart,
+//! Eq. 6-5 and 6-6 hold for one contact under a constant force. For any history of the heat flux `q` the
+//! surface of a half-space of effusivity `e` moves by the half-order integral of `q / e`, whose transfer
+//! function is `1 / sqrt(s)`. A sum of first-order modes approximates it, with rates a factor of four apart:
 //!
 //! ```text
 //! 1 / sqrt(s) = (1 / pi) integral of e^(v/2) / (s + e^v) dv,  summed at steps of ln 4
 //! ```
 //!
-//! with an integrator for what is slower than all of them and a direct part for what is faster than a tick.
+//! An integrator stands for all slower modes, and a direct feed-through for all that settle within a tick.
 //!
-//! The fast relaxations are stepped in every tick. The slow ones are stepped once in a *window* of [`WINDOW`] ticks,
-//! with the sum of its drives; within it their sum follows a straight line, and is then summed afresh.
+//! The input is the *scaled flux* `q sqrt(dt) / e` of one tick, in K; the output is the change of the surface
+//! temperature since the half-space was uniform, in K.
 //!
-//! Two half-spaces that touch share their flux, and so one sum serves both: their surfaces move in the ratio of
-//! their effusivities, in opposite directions.
+//! Fast modes are updated every tick. Slow modes are updated once per window of [`WINDOW`] ticks, with the sum
+//! of the window's fluxes; within a window their sum is extrapolated along a straight line.
+//!
+//! Two half-spaces in contact exchange the same flux: their surfaces move in opposite directions, in the
+//! ratio of their effusivities. One [`HalfSpace`] therefore represents both.
 
 mod conductance;
 
 pub use conductance::ContactConductance;
 
-use super::Celsius;
+use fixed::traits::LossyFrom;
+use fixed::types::{I0F32, I1F31, I10F54, I11F53, I12F20};
 
-/// Relaxations `k`, with rates `r` of `2^-(2 k + 1)` a tick, that are fast: `k` from 0.
+use super::{Celsius, product};
+
+/// Number of fast modes. Mode `k`, from 0, has the rate `r = 2^-(2 k + 1)` per tick.
 const FAST: usize = 5;
-/// Slow ones after them, and the integrator.
+/// Number of slow modes, which continue the fast ones, with the integrator as the last.
 const SLOW: usize = 9;
-/// Ticks in which a slow relaxation is stepped once.
+/// Ticks between two updates of the slow modes.
 const WINDOW: u32 = 8;
 
-/// A fast relaxation, in one tick.
-struct Fast {
-    /// Part of a drive that it takes up, `g = (ln 4 / pi) (1 - e^-r) / sqrt(r)`, in 2^-32.
-    given: i32,
-    /// Part of itself that it loses, `1 - e^-r`, in 2^-32.
-    lost: i32,
-    /// Part of itself that it still has when [`HalfSpace::drive_to`] looks, `e^(-19 r)`, in 2^-31.
-    kept_ahead: i32,
+/// Coefficients of a fast mode, for one tick.
+struct FastMode {
+    /// Response to a scaled flux of 1: `g = (ln 4 / pi) (1 - e^-r) / sqrt(r)`.
+    input_gain: I0F32,
+    /// Fraction of the state that decays, `1 - e^-r`.
+    decay: I0F32,
+    /// Fraction of the state that remains at the horizon of [`HalfSpace::scaled_flux_to_match`], `e^(-19 r)`.
+    horizon_factor: I1F31,
 }
 
-/// A slow relaxation, in one window.
-struct Slow {
-    /// Part of each of its drives that it takes up, in 2^-32: `g` times the mean of `e^(r j)`, `j` from 0 to 7,
-    /// because a drive loses only for what is left of the window.
-    given: i32,
-    /// Part of itself that it loses, `1 - e^(-8 r)`, in 2^-32.
-    lost: i32,
+/// Coefficients of a slow mode, for one window.
+struct SlowMode {
+    /// Response to the sum of the window's scaled fluxes: `g` times the mean of `e^(r j)` for `j` from 0 to 7,
+    /// because a flux decays only from its own tick to the end of the window.
+    input_gain: I0F32,
+    /// Fraction of the state that decays, `1 - e^(-8 r)`.
+    decay: I0F32,
 }
 
-const fn fast(given: i32, lost: i32, kept_ahead: i32) -> Fast {
-    Fast {
-        given,
-        lost,
-        kept_ahead,
+const fn fast(input_gain: i32, decay: i32, horizon_factor: i32) -> FastMode {
+    FastMode {
+        input_gain: I0F32::from_bits(input_gain),
+        decay: I0F32::from_bits(decay),
+        horizon_factor: I1F31::from_bits(horizon_factor),
     }
 }
 
-const FAST_PARTS: [Fast; FAST] = [
+const FAST_MODES: [FastMode; FAST] = [
     fast(1_054_608_677, 1_689_937_949, 160_743),
     fast(629_882_806, 504_671_961, 199_747_095),
     fast(329_854_396, 132_142_252, 1_185_953_106),
@@ -63,11 +70,14 @@ const FAST_PARTS: [Fast; FAST] = [
     fast(83_677_061, 8_380_421, 2_069_252_406),
 ];
 
-const fn slow(given: i32, lost: i32) -> Slow {
-    Slow { given, lost }
+const fn slow(input_gain: i32, decay: i32) -> SlowMode {
+    SlowMode {
+        input_gain: I0F32::from_bits(input_gain),
+        decay: I0F32::from_bits(decay),
+    }
 }
 
-const SLOW_PARTS: [Slow; SLOW] = [
+const SLOW_MODES: [SlowMode; SLOW] = [
     slow(41_940_820, 16_744_491),
     slow(20_947_371, 4_192_257),
     slow(10_470_809, 1_048_448),
@@ -76,167 +86,161 @@ const SLOW_PARTS: [Slow; SLOW] = [
     slow(1_308_733, 16_384),
     slow(654_366, 4_096),
     slow(327_183, 1_024),
-    // The integrator: the integral of the sum above over all that is slower, `(2 / pi) sqrt(2^-26)`.
+    // The integrator: the integral of the sum above over all slower modes, `(2 / pi) sqrt(2^-26)`.
     slow(333_772, 0),
 ];
-/// What all slow parts have of a tick's drive when the next begins, the sum of `g e^-r`, in 2^-32.
-const SLOW_GIVEN: i32 = 83_730_349;
+/// Response of all slow modes together to a scaled flux of 1, one tick later: the sum of `g e^-r`.
+const SLOW_INPUT_GAIN: I0F32 = I0F32::from_bits(83_730_349);
 
-/// How far ahead [`HalfSpace::drive_to`] looks.
+/// Horizon of [`HalfSpace::scaled_flux_to_match`], ticks.
 pub const MATCH_HORIZON_TICKS: u32 = 20;
-/// The inverse of what a lasting drive of one kelvin moves the surface by in [`MATCH_HORIZON_TICKS`], 1 / 5.060, in 2^-32.
-const PER_GAIN_AHEAD: i32 = 848_800_003;
-/// What a drive of one kelvin moves the surface by in one tick, in 2^-20: the sum of all `g`, and `2 / pi` for what is
-/// faster than a tick.
-const GAIN: u32 = 1_240_943;
-/// Its binary places.
-const GAIN_BITS: u32 = 20;
-/// Binary places of a part below those of [`Celsius`].
-const BELOW: u32 = 32;
+/// Inverse of the response to a constant scaled flux of 1 after [`MATCH_HORIZON_TICKS`], 1 / 5.060.
+const INVERSE_HORIZON_GAIN: I0F32 = I0F32::from_bits(848_800_003);
+/// Response to a scaled flux of 1 at the end of its tick: the sum of all `g`, and `2 / pi` for the feed-through.
+const TICK_GAIN: I12F20 = I12F20::from_bits(1_240_943);
 
-/// How far the surface of a half-space has moved, tick by tick.
+/// Change of the surface temperature of a half-space, updated tick by tick; the default is uniform.
 ///
-/// Its input is the *drive* `q sqrt(dt) / e`, in K. Under a constant drive the surface moves within 5 % of the
-/// half-space in the first tick, 1.2 % in the second, 0.4 % from 10 to 6e4 ticks; what it leaves after 6e4 ticks is
-/// within 0.6 % of what was (`cargo test -p contact-model half_space`). No input makes it overflow: a drive beyond
-/// ±32 K, more than any contact gives, counts as that, and the surface saturates.
+/// Error of the response to a constant flux: 5 % at the first tick, 1.2 % at the second, 0.4 % from 10 to 6e4
+/// ticks. After a pulse of 6e4 ticks the error is 0.07 % of the peak
+/// (`cargo test -p contact-model half_space`). No input overflows: a scaled flux is limited to ±32 K, more
+/// than any contact gives, and the response saturates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct HalfSpace {
-    /// What each has at the end of the coming tick if nothing flows, K, 54 binary places. As the drive is bounded,
-    /// none leaves ±320 K.
-    fast: [i64; FAST],
-    /// What each had when the window began, likewise. They saturate at ±256 K.
-    slow: [i64; SLOW],
-    /// Their sum.
+    /// States of the fast modes at the end of the coming tick if no flux flows, K. The limited flux keeps them
+    /// within ±320 K.
+    fast: [I10F54; FAST],
+    /// States of the slow modes at the start of the window, K; limited to ±256 K.
+    slow: [I10F54; SLOW],
+    /// Sum of the slow modes at the start of the window.
     slow_sum: Celsius,
-    /// What it has changed by since, and what it loses in a tick, K, 54 binary places.
-    since: i64,
-    loss: i64,
-    /// Sum of the window's drives, in those of [`Celsius`].
-    drives: i32,
-    /// Ticks of the window, and those of them that are to come.
+    /// Change of this sum since, K.
+    slow_change: I10F54,
+    /// Decay of this sum in a tick, K.
+    slow_decay: I10F54,
+    /// Sum of the scaled fluxes since the start of the window.
+    flux_sum: Celsius,
+    /// Length of the window, ticks.
     window: u32,
-    to_come: u32,
-    left: Celsius,
+    /// Ticks until its end.
+    ticks_left: u32,
+    free_response: Celsius,
 }
 
 impl Default for HalfSpace {
     fn default() -> Self {
         Self {
-            fast: [0; FAST],
-            slow: [0; SLOW],
+            fast: [I10F54::ZERO; FAST],
+            slow: [I10F54::ZERO; SLOW],
             slow_sum: Celsius::ZERO,
-            since: 0,
-            loss: 0,
-            drives: 0,
+            slow_change: I10F54::ZERO,
+            slow_decay: I10F54::ZERO,
+            flux_sum: Celsius::ZERO,
             window: WINDOW,
-            to_come: WINDOW,
-            left: Celsius::ZERO,
+            ticks_left: WINDOW,
+            free_response: Celsius::ZERO,
         }
     }
 }
 
-/// `a b`: one instruction with the sum that it goes into.
-const fn product(a: i32, b: i32) -> i64 {
-    a as i64 * b as i64
+/// A state, rounded down.
+fn celsius(state: I10F54) -> Celsius {
+    Celsius::lossy_from(state)
 }
 
-/// A part, in the binary places of [`Celsius`].
-const fn high(part: i64) -> i32 {
-    (part >> BELOW) as i32
+/// A state limited to ±256 K, so that the fluxes of a window can be added. The low 32 bits stay as they are.
+fn limited(state: I10F54) -> I10F54 {
+    const LIMIT: Celsius = Celsius::const_from_int(256);
+    let high = celsius(state).clamp(-LIMIT, LIMIT - Celsius::DELTA);
+    I10F54::from(high) | (state & I10F54::from_bits(u32::MAX as i64))
 }
 
-/// A part within ±256 K, to which a window's drives can be added.
-fn limited(part: i64) -> i64 {
-    const LIMIT: i32 = Celsius::const_from_int(256).to_bits();
-    let size = high(part).clamp(-LIMIT, LIMIT - 1);
-    i64::from(size) << BELOW | (part & ((1 << BELOW) - 1))
-}
-
-/// A drive within ±32 K.
-fn bounded(drive: Celsius) -> i32 {
-    const BOUND: i32 = Celsius::const_from_int(32).to_bits();
-    drive.to_bits().clamp(-BOUND, BOUND - 1)
+/// A scaled flux limited to ±32 K.
+fn bounded(scaled_flux: Celsius) -> Celsius {
+    const BOUND: Celsius = Celsius::const_from_int(32);
+    scaled_flux.clamp(-BOUND, BOUND - Celsius::DELTA)
 }
 
 impl HalfSpace {
-    /// The same surface, whose windows end half a window apart from this one's: two that are stepped together then
-    /// never have a long tick together.
+    /// The same state with windows that end half a window apart from this one's. Of two half-spaces that are
+    /// updated together, only one then has to update its slow modes in any tick.
     #[must_use]
     pub fn staggered(&self) -> Self {
         let mut other = *self;
-        other.end_window((self.to_come + WINDOW / 2 - 1) % WINDOW + 1);
+        other.end_window((self.ticks_left + WINDOW / 2 - 1) % WINDOW + 1);
         other
     }
 
-    /// Where the surface is at the end of the coming tick if nothing flows in it.
+    /// Change of the surface temperature at the end of the coming tick if no flux flows, K.
     #[must_use]
     pub const fn free_response(&self) -> Celsius {
-        self.left
+        self.free_response
     }
 
-    /// Where the surface is at the end of a tick in which `drive` flows.
+    /// Change of the surface temperature at the end of the coming tick if `scaled_flux` flows in it, K.
     #[must_use]
-    pub fn response_to(&self, drive: Celsius) -> Celsius {
-        let moved = product(bounded(drive), GAIN as i32) >> GAIN_BITS;
-        self.left.saturating_add(Celsius::from_bits(moved as i32))
+    pub fn response_to(&self, scaled_flux: Celsius) -> Celsius {
+        self.free_response
+            .saturating_add(product(bounded(scaled_flux), TICK_GAIN))
     }
 
-    /// Lets a drive flow for one tick.
-    pub fn step(&mut self, drive: Celsius) {
-        let drive = bounded(drive);
-        let mut left = Celsius::ZERO;
-        for (state, part) in self.fast.iter_mut().zip(&FAST_PARTS) {
-            *state += product(drive, part.given);
-            *state += product(high(*state), -part.lost);
-            left = left.saturating_add(Celsius::from_bits(high(*state)));
+    /// Updates the state by one tick in which `scaled_flux` flows.
+    pub fn step(&mut self, scaled_flux: Celsius) {
+        let flux = bounded(scaled_flux);
+        let mut fast_sum = Celsius::ZERO;
+        for (state, mode) in self.fast.iter_mut().zip(&FAST_MODES) {
+            *state += flux.wide_mul(mode.input_gain);
+            *state += celsius(*state).wide_mul(-mode.decay);
+            fast_sum = fast_sum.saturating_add(celsius(*state));
         }
-        self.drives += drive;
-        self.since += product(drive, SLOW_GIVEN) - self.loss;
-        self.to_come -= 1;
-        if self.to_come == 0 {
+        self.flux_sum += flux;
+        self.slow_change += flux.wide_mul(SLOW_INPUT_GAIN) - self.slow_decay;
+        self.ticks_left -= 1;
+        if self.ticks_left == 0 {
             self.end_window(WINDOW);
         }
-        self.left = left.saturating_add(self.slow_left());
+        self.free_response = fast_sum.saturating_add(self.slow_response());
     }
 
-    /// What is left of the slow parts.
-    const fn slow_left(&self) -> Celsius {
-        self.slow_sum
-            .saturating_add(Celsius::from_bits(high(self.since)))
+    /// Sum of the slow modes, extrapolated from the start of the window.
+    fn slow_response(&self) -> Celsius {
+        self.slow_sum.saturating_add(celsius(self.slow_change))
     }
 
-    /// Steps the slow parts by those ticks of the window that have been. The next one has `ticks`.
+    /// Updates the slow modes by the ticks that have passed of the window, and starts one of `ticks`.
     fn end_window(&mut self, ticks: u32) {
-        let been = (self.window - self.to_come) as i32;
-        let (mut sum, mut loss) = (Celsius::ZERO, 0i64);
-        for (state, part) in self.slow.iter_mut().zip(&SLOW_PARTS) {
-            *state += product(self.drives, part.given);
-            *state = limited(*state - product(high(*state), part.lost / WINDOW as i32 * been));
-            sum = sum.saturating_add(Celsius::from_bits(high(*state)));
-            loss += product(high(*state), part.lost);
+        let passed = (self.window - self.ticks_left) as i32;
+        let (mut sum, mut decay) = (Celsius::ZERO, I10F54::ZERO);
+        for (state, mode) in self.slow.iter_mut().zip(&SLOW_MODES) {
+            *state += self.flux_sum.wide_mul(mode.input_gain);
+            let decayed = celsius(*state).wide_mul(mode.decay / WINDOW as i32 * passed);
+            *state = limited(*state - decayed);
+            sum = sum.saturating_add(celsius(*state));
+            decay += celsius(*state).wide_mul(mode.decay);
         }
-        (self.slow_sum, self.since, self.loss) = (sum, 0, loss / i64::from(WINDOW));
-        (self.drives, self.window, self.to_come) = (0, ticks, ticks);
+        (self.slow_sum, self.slow_change) = (sum, I10F54::ZERO);
+        self.slow_decay = decay / i64::from(WINDOW);
+        (self.flux_sum, self.window, self.ticks_left) = (Celsius::ZERO, ticks, ticks);
     }
 
-    /// The lasting drive that brings this surface in [`MATCH_HORIZON_TICKS`] to where another one, which has the same drive
-    /// besides, will be.
+    /// The constant scaled flux that, added to a flux common to both, brings this surface to that of `other`
+    /// within [`MATCH_HORIZON_TICKS`], K.
     #[must_use]
     pub fn scaled_flux_to_match(&self, other: &Self) -> Celsius {
-        let mut fast = 0;
-        for ((from, to), part) in self.fast.iter().zip(&other.fast).zip(&FAST_PARTS) {
-            fast += product(high(*to).saturating_sub(high(*from)), part.kept_ahead);
+        let mut fast = I11F53::ZERO;
+        for ((from, to), mode) in self.fast.iter().zip(&other.fast).zip(&FAST_MODES) {
+            let difference = celsius(*to).saturating_sub(celsius(*from));
+            fast += difference.wide_mul(mode.horizon_factor);
         }
-        // The slow parts go on along their straight line.
-        let lost = (other.loss - self.loss) * i64::from(MATCH_HORIZON_TICKS - 1);
-        let slow = other.slow_left().saturating_sub(self.slow_left());
-        let half = high(fast);
-        let apart = half
-            .saturating_add(half)
-            .saturating_add(slow.to_bits())
-            .saturating_sub(high(lost));
-        Celsius::from_bits(high(product(apart, PER_GAIN_AHEAD)))
+        // The slow modes are extrapolated along their straight lines.
+        let slow_decay = (other.slow_decay - self.slow_decay) * i64::from(MATCH_HORIZON_TICKS - 1);
+        let slow = other.slow_response().saturating_sub(self.slow_response());
+        let half_of_fast = Celsius::from_bits((fast.to_bits() >> 32) as i32);
+        let difference = half_of_fast
+            .saturating_add(half_of_fast)
+            .saturating_add(slow)
+            .saturating_sub(celsius(slow_decay));
+        product(difference, INVERSE_HORIZON_GAIN)
     }
 }
 

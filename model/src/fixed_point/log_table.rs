@@ -6,7 +6,7 @@ const fn row(constant: u32, rest: [i32; 4]) -> LogRow {
     LogRow { constant, rest }
 }
 
-/// `log2(1 + f)` on 32 equal parts of `f` in `[0, 1)`.
+/// `log2(1 + f)` on 32 equal intervals of `f` in `[0, 1)`.
 #[rustfmt::skip]
 pub(super) static LOG2: [LogRow; 32] = [
     row(0, [1549081978, -24204189, 503647, -11110]),
@@ -43,7 +43,7 @@ pub(super) static LOG2: [LogRow; 32] = [
     row(4197385310, [786835303, -6244717, 66060, -762]),
 ];
 
-/// `2^f - 1` on 32 equal parts of `f` in `[0, 1)`.
+/// `2^f - 1` on 32 equal intervals of `f` in `[0, 1)`.
 #[rustfmt::skip]
 pub(super) static EXP2: [LogRow; 32] = [
     row(0, [744261118, 8060665, 58197, 319]),

@@ -1,23 +1,23 @@
-//! Positive numbers over a wide range.
+//! Positive numbers over a wide range, as mantissa and exponent.
 
 use super::{Log2, exp2};
 
 /// A positive number `(1 + fraction / 2^32) 2^exponent`: 33 significant bits, exponent within ±16384, where it
 /// saturates.
 ///
-/// Holds `b² dt` (per tick) and contact conductances (W/(m² K)).
+/// For `b² dt` (per tick) and contact conductances (W/(m² K)), which span more than 32 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MantissaExponent {
     fraction: u32,
-    /// Held in a word because the kernel adds to it.
+    /// Not `i16`, because the kernel adds to it in 32 bits.
     exponent: i32,
 }
 
-/// Far beyond every contact, and within `i16`.
+/// Limit of the exponent: beyond every contact, and within `i16`.
 const EXPONENT_MAX: i32 = 1 << 14;
 
 impl MantissaExponent {
-    /// The number one.
+    /// The number 1.
     pub const ONE: Self = Self::new(0, 0);
 
     /// `(1 + fraction / 2^32) 2^exponent`.
@@ -37,14 +37,14 @@ impl MantissaExponent {
         Self { fraction, exponent }
     }
 
-    /// Rounds a positive, normal number (relative error at most 2^-33); `None` for anything else.
+    /// Rounds a positive, normal number; relative error at most 2^-33. `None` for any other.
     #[must_use]
     pub fn from_f64(value: f64) -> Option<Self> {
         if !value.is_normal() || value < 0.0 {
             return None;
         }
         let bits = value.to_bits();
-        // 52 fraction bits rounded to 32; a carry out of the fraction doubles the number.
+        // 52 fraction bits are rounded to 32; a carry out of them increments the exponent.
         let rounded = (bits + (1 << 19)) >> 20;
         Some(Self::clamped(rounded as u32, (rounded >> 32) as i32 - 1023))
     }
@@ -56,11 +56,11 @@ impl MantissaExponent {
         Self::clamped(exp2(bits as u32), (bits >> 32) as i32)
     }
 
-    /// The product; relative error below 2^-32.
+    /// Product; relative error below 2^-32.
     #[must_use]
     pub const fn times(self, other: Self) -> Self {
         let (a, b) = (self.fraction as u64, other.fraction as u64);
-        // The product of the mantissas, in 1..4 with 32 fraction bits.
+        // Product of the mantissas, from 1 to 4, with 32 binary places.
         let product = (1 << 32) + a + b + ((a * b + (1 << 31)) >> 32);
         let exponent = self.exponent + other.exponent;
         if product >> 33 == 0 {
@@ -70,7 +70,7 @@ impl MantissaExponent {
         }
     }
 
-    /// The number, exactly, where `f64` can hold it.
+    /// Converts exactly, within the range of `f64`.
     #[must_use]
     pub fn to_f64(self) -> f64 {
         libm::ldexp(
@@ -79,31 +79,31 @@ impl MantissaExponent {
         )
     }
 
-    /// The 32 bits after the leading one.
+    /// The 32 bits after the leading one of the mantissa.
     #[must_use]
     pub const fn fraction(self) -> u32 {
         self.fraction
     }
 
-    /// Floor of the logarithm to base 2.
+    /// Exponent: `log2` of the number, rounded down.
     #[must_use]
     pub const fn exponent(self) -> i32 {
         self.exponent
     }
 
-    /// The leading one and the 31 bits after it; relative error below 2^-31.
+    /// Mantissa from 1 to 2, in units of 2^-31, rounded down; relative error below 2^-31.
     pub(super) const fn leading(self) -> u32 {
         1 << 31 | self.fraction >> 1
     }
 
-    /// The number times a power of two, exactly.
+    /// The number times `2^exponent`, exact within the range of the exponent.
     #[must_use]
     #[inline]
-    pub const fn times_power_of_2(self, times: i16) -> Self {
-        Self::clamped(self.fraction, self.exponent + times as i32)
+    pub const fn times_power_of_2(self, exponent: i16) -> Self {
+        Self::clamped(self.fraction, self.exponent + exponent as i32)
     }
 
-    /// The number times two, without the limit of the exponent: for a few dozen times.
+    /// The number times 2. The exponent is not limited, so it is for few uses in succession.
     pub(super) const fn twice(self) -> Self {
         Self {
             fraction: self.fraction,

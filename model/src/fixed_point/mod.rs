@@ -1,7 +1,7 @@
-//! The model in integers: the control path of the microcontroller.
+//! Contact model in fixed point, for the control path of the microcontroller.
 //!
-//! No float, no panic and no overflow for any input; out-of-range values saturate. Set-up
-//! ([`ContactPair::new`]) is in `f64` and happens once per material, not per tick.
+//! No input causes a panic or an overflow; values out of range saturate. The control path uses no
+//! floating-point arithmetic. Set-up ([`ContactPair::new`]) uses `f64`, once per material.
 
 mod chord_interpolation;
 mod contact;
@@ -37,14 +37,14 @@ pub use ticks::Ticks;
 
 use fixed::types::{I10F22, I40F24, U0F32, U4F28};
 
-/// Temperature in °C or temperature difference in K: ±512 at a resolution of 0.24 µK.
+/// Temperature, °C, or temperature difference, K: ±512, resolution 0.24 µK.
 pub type Celsius = I10F22;
-/// Heat flux in W/m², resolution 6e-8.
+/// Heat flux, W/m²: ±5e11, resolution 6e-8.
 pub type Flux = I40F24;
-/// A part of the whole, 0 to 1 - 2^-32.
+/// Fraction, dimensionless: 0 to 1 - 2^-32, resolution 2^-32. The maximum stands for 1.
 pub type Fraction = U0F32;
-/// `R_display / R_object`, 0 to 16.
+/// Ratio of contact resistances `R_display / R_object`, dimensionless: 0 to 16, resolution 2^-28.
 pub type Ratio = U4F28;
 
-/// Temperature range over which the outputs keep their stated error, °C.
+/// Range of temperatures in which the stated error bounds hold, °C.
 pub const TEMPERATURE_RANGE_C: core::ops::RangeInclusive<i16> = -40..=125;

@@ -1,34 +1,34 @@
-//! Force to pressure, for a force that streams in.
+//! Contact area and pressure from a measured force.
 
 use super::{Log2, log2};
 use crate::pressure::THESIS_PRESSURES;
 
-/// Force in N: 0 to 256 at a resolution of 6e-8.
+/// Force, N: 0 to 256, resolution 6e-8.
 pub type Force = fixed::types::U8F24;
 
-/// Area is held in units of 2^-44 m².
+/// Binary places of an area in m².
 const AREA_BITS: i32 = 44;
-/// Slopes of area have this many more.
+/// Additional binary places of a slope.
 const SLOPE_BITS: i32 = 25;
 
-/// A straight piece of area over force: `intercept + slope * force`.
+/// One linear segment of area over force: `intercept + slope * force`.
 #[derive(Clone, Copy)]
-struct Piece {
-    /// The piece holds above this force. Rounded down, as no force lies between it and the stated one.
+struct Segment {
+    /// Force at which the segment begins, rounded down to the resolution of [`Force`].
     above: Force,
-    /// Area, with the slope's bits.
+    /// Area at zero force, units of 2^-69 m².
     intercept: u64,
-    /// Area per 2^-24 N.
+    /// Area per 2^-24 N, units of 2^-69 m².
     slope: u32,
 }
 
-/// The pieces between the stated points of section 6.4.2 and, flat, the one after them. Slopes refer to the
-/// stated forces themselves, not to those that [`Force`] can hold: the difference would cost 2e-8 of the area.
-const PIECES: [Piece; THESIS_PRESSURES.len()] = {
+/// Segments between the five points of section 6.4.2, and a constant one after them. They are computed from the
+/// points themselves: from forces rounded to [`Force`] the area would have a relative error of 2e-8.
+const SEGMENTS: [Segment; THESIS_PRESSURES.len()] = {
     const fn scaled(value: f64, bits: i32) -> u64 {
         (value * (1u128 << bits) as f64 + 0.5) as u64
     }
-    let mut pieces = [Piece {
+    let mut segments = [Segment {
         above: Force::ZERO,
         intercept: 0,
         slope: 0,
@@ -45,36 +45,36 @@ const PIECES: [Piece; THESIS_PRESSURES.len()] = {
         } else {
             0.0
         };
-        pieces[i] = Piece {
+        segments[i] = Segment {
             above: Force::from_bits((force * (1u64 << Force::FRAC_NBITS) as f64) as u32),
             intercept: scaled(area - slope * force, AREA_BITS + SLOPE_BITS),
             slope: scaled(slope, AREA_BITS + SLOPE_BITS - Force::FRAC_NBITS as i32) as u32,
         };
         i += 1;
     }
-    pieces
+    segments
 };
 
-/// Area up to the first stated force.
+/// Area up to the first of the five forces.
 const FIRST_AREA: u32 =
     (THESIS_PRESSURES[0].0 / THESIS_PRESSURES[0].1 * (1u64 << AREA_BITS) as f64 + 0.5) as u32;
 
 /// `log2(H)` of the skin's microhardness in Pa (Eq. 6-8).
 const LOG2_MICROHARDNESS: Log2 = Log2::lit("16.902422223664658");
 
-/// `log2(P / H)` under a force (section 6.4.2, as [`crate::pressure::pressure_pa`]); error below 6 * 2^-32 for
-/// every force.
+/// `log2(P / H)` under a force (section 6.4.2, as [`crate::pressure::pressure_pa`]), input of
+/// [`super::ContactPair::at_pressure`]; error below 6 * 2^-32 for every force.
 ///
-/// A force of zero counts as one half of the smallest force above it.
+/// Zero is treated as half of the smallest positive [`Force`].
 #[must_use]
 pub fn log2_relative_pressure(force: Force) -> Log2 {
-    const UNITS: Log2 = Log2::const_from_int(AREA_BITS as i64 - Force::FRAC_NBITS as i64);
+    const PLACES: Log2 = Log2::const_from_int(AREA_BITS as i64 - Force::FRAC_NBITS as i64);
     log2(force.to_bits())
         .saturating_sub(log2(area(force)))
-        .saturating_add(UNITS.saturating_sub(LOG2_MICROHARDNESS))
+        .saturating_add(PLACES.saturating_sub(LOG2_MICROHARDNESS))
 }
 
-/// Area in mm²: 0 to 65536 at a resolution of 15e-6.
+/// Area, mm²: 0 to 65536, resolution 15e-6.
 pub type Area = fixed::types::U16F16;
 
 /// Contact area under a force (section 6.4.2, as [`crate::pressure::contact_area_m2`]); error below 4e-5 mm².
@@ -89,10 +89,10 @@ pub fn contact_area(force: Force) -> Area {
 /// Contact area in units of 2^-44 m².
 fn area(force: Force) -> u32 {
     let mut area = FIRST_AREA;
-    for piece in &PIECES {
-        if force > piece.above {
-            let rise = u64::from(force.to_bits()) * u64::from(piece.slope);
-            area = ((piece.intercept + rise + (1 << SLOPE_BITS >> 1)) >> SLOPE_BITS) as u32;
+    for segment in &SEGMENTS {
+        if force > segment.above {
+            let rise = u64::from(force.to_bits()) * u64::from(segment.slope);
+            area = ((segment.intercept + rise + (1 << SLOPE_BITS >> 1)) >> SLOPE_BITS) as u32;
         }
     }
     area

@@ -1,24 +1,25 @@
-//! What a material must be to be held in fixed point.
+//! Checks of material properties before they are converted to fixed point.
 
 use core::fmt;
 
 use super::MantissaExponent;
 use crate::material::{Material, Surface};
 
-/// A material that the fixed-point path cannot hold.
+/// A material, surface or tick that fixed point cannot represent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ContactPairError {
     /// A property is zero, negative, infinite or not a number.
     Property {
-        /// Which one, with its unit.
+        /// Name of the property, with its unit.
         name: &'static str,
-        /// What was given.
+        /// Its value.
         value: f64,
     },
-    /// `R_display / R_object` does not fit: the object is too smooth or conducts too well.
+    /// `R_display / R_object` is 16 or more: the object is too smooth or conducts too well.
     Ratio(f64),
-    /// `b²` (1/s), the conductance (W/(m² K)) at `P = H`, or the skin's effusivity or diffusivity is beyond 2^±100.
-    MantissaExponent(f64),
+    /// `b²` (1/s), the conductance (W/(m² K)) at `P = H`, or the skin's effusivity or diffusivity is outside 2^-100
+    /// to 2^100.
+    OutOfRange(f64),
 }
 
 impl fmt::Display for ContactPairError {
@@ -28,7 +29,7 @@ impl fmt::Display for ContactPairError {
                 write!(f, "{name} is {value}; it must be above 0 and finite")
             }
             Self::Ratio(value) => write!(f, "R_display / R_object is {value}; it must be below 16"),
-            Self::MantissaExponent(value) => write!(
+            Self::OutOfRange(value) => write!(
                 f,
                 "the contact's rate is {value}; it must be within 2^-100 to 2^100"
             ),
@@ -38,13 +39,13 @@ impl fmt::Display for ContactPairError {
 
 impl core::error::Error for ContactPairError {}
 
-/// Properties by name and value.
+/// Properties as name with unit, and value.
 type Named<const N: usize> = [(&'static str, f64); N];
 
 pub(super) fn check<const N: usize>(properties: Named<N>) -> Result<(), ContactPairError> {
     properties
         .into_iter()
-        // Not `value <= 0.0`: that would let NaN pass.
+        // `value <= 0.0` would accept NaN.
         .find(|(_, value)| !(*value > 0.0 && value.is_finite()))
         .map_or(Ok(()), |(name, value)| {
             Err(ContactPairError::Property { name, value })
@@ -79,22 +80,22 @@ pub(super) fn of_display(display: &Surface) -> Named<3> {
     ]
 }
 
-/// The value, if it is far from the ends of what a [`MantissaExponent`] can hold.
+/// Refuses values outside 2^-100 to 2^100, so that their products stay within `f64` and [`MantissaExponent`].
 pub(super) fn moderate(value: f64) -> Result<f64, ContactPairError> {
     if libm::log2(value).abs() <= 100.0 {
         Ok(value)
     } else {
-        Err(ContactPairError::MantissaExponent(value))
+        Err(ContactPairError::OutOfRange(value))
     }
 }
 
-/// A moderate value, times a power of a duration that may be extreme; saturates at the ends of `f64`.
+/// Converts a value that an extreme tick may have taken to 0 or infinity; saturates at the ends of `f64`.
 pub(super) fn rate(value: f64) -> Result<MantissaExponent, ContactPairError> {
     MantissaExponent::from_f64(value.clamp(f64::MIN_POSITIVE, f64::MAX))
-        .ok_or(ContactPairError::MantissaExponent(value))
+        .ok_or(ContactPairError::OutOfRange(value))
 }
 
-/// `e_object / (e_object + e_skin)`, for a skin's effusivity that is neither 0 nor infinite.
+/// `e_object / (e_object + e_skin)`, for a positive, finite effusivity of the skin.
 pub(super) fn weight(e_skin: f64, e_object: f64) -> f64 {
     1.0 / (1.0 + e_skin / e_object)
 }

@@ -1,15 +1,15 @@
-//! Time since landing.
+//! Time since landing, in control ticks.
 
 use core::num::NonZeroU32;
 
-/// Control ticks since landing, 1 to 2^31 - 1. At zero nothing has to be evaluated: `E` is one.
+/// Control ticks since landing, 1 to 2^31 - 1. Zero is excluded because `E` is 1 there without evaluation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Ticks(NonZeroU32);
 
 impl Ticks {
-    /// The first tick.
+    /// One tick.
     pub const ONE: Self = Self(NonZeroU32::MIN);
-    /// The last one: 24 days at 1 kHz.
+    /// The largest number of ticks: 24 days at 1 kHz.
     pub const MAX: Self = match Self::new(u32::MAX >> 1) {
         Some(ticks) => ticks,
         None => Self::ONE,
@@ -24,13 +24,13 @@ impl Ticks {
         }
     }
 
-    /// The number.
+    /// The number of ticks.
     #[must_use]
     pub const fn get(self) -> u32 {
         self.0.get()
     }
 
-    /// The one after `ticks`, which must be below 2^30: further on it starts anew.
+    /// `ticks + 1`, for `ticks` below 2^30; wraps to 1 there.
     #[must_use]
     #[inline]
     pub(super) const fn after(ticks: u32) -> Self {

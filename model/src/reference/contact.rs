@@ -1,10 +1,10 @@
-//! Contact resistance (Eq. 6-8 to 6-11) and the response to contact (Eq. 6-5 to 6-7 and 6-12).
+//! Contact resistance (Eq. 6-8 to 6-11); temperatures and heat flux during contact (Eq. 6-5 to 6-7 and 6-12).
 
 use super::{Real, erfcx};
 use crate::material::{Material, SKIN_MICROHARDNESS_PA, Surface};
 
-/// Conductance `1.25 k_s da / R_q` of two finishes at `P = H`, in W/(m² K) (Eq. 6-8 to 6-11), for positive
-/// properties; relative error a few roundings of `F`.
+/// Contact conductance `1.25 k_s da / R_q` of two surfaces where the pressure equals the microhardness, W/(m² K)
+/// (Eq. 6-8 to 6-11), for positive properties; relative error of a few roundings of `F`.
 #[must_use]
 pub fn mean_conductance<F: Real>(a: &Surface, b: &Surface) -> F {
     let (ka, kb) = (
@@ -21,15 +21,15 @@ pub fn mean_conductance<F: Real>(a: &Surface, b: &Surface) -> F {
     F::from_f64(1.25) * harmonic_mean * slope / roughness_m
 }
 
-/// Contact resistance in m² K/W between skin and another finish under `pressure_pa`, not negative (Eq. 6-8);
-/// relative error below 2e-15 (`f64`). Infinite for no pressure.
+/// Contact resistance between skin and another surface under `pressure_pa` (at least 0), m² K/W (Eq. 6-8);
+/// relative error below 2e-15 in `f64`. Infinite at zero pressure.
 #[must_use]
 pub fn contact_resistance<F: Real>(skin: &Surface, other: &Surface, pressure_pa: F) -> F {
     let relative = pressure_pa / F::from_f64(SKIN_MICROHARDNESS_PA);
     F::from_f64(1.0) / (mean_conductance::<F>(skin, other) * relative.powf(F::from_f64(0.95)))
 }
 
-/// A finger that has landed on an object, and the display that stands in for it.
+/// A finger in contact with an object, and the display that reproduces the object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Contact<F> {
     /// Skin temperature before contact, °C.
@@ -38,9 +38,9 @@ pub struct Contact<F> {
     pub object_c: F,
     /// Contact resistance of skin and object, m² K/W.
     pub resistance_m2k_w: F,
-    /// `R_skin-display / R_skin-object`; does not depend on pressure.
+    /// `R_skin-display / R_skin-object`; independent of pressure.
     pub ratio: F,
-    /// `e_object / (e_object + e_skin)`.
+    /// Weight of the object's temperature in that of the interface, `w = e_object / (e_object + e_skin)`.
     pub weight: F,
     /// `b² = ((1/e_skin + 1/e_object) / R)²`, 1/s.
     pub rate_per_s: F,
@@ -49,24 +49,24 @@ pub struct Contact<F> {
 /// The state of a contact at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response<F> {
-    /// `erfcx(b sqrt(t))`.
+    /// `E = erfcx(b sqrt(t))`: 1 at landing, 0 after a long time.
     pub erfcx: F,
-    /// Skin surface, °C (Eq. 6-5).
+    /// Surface temperature of the skin, °C (Eq. 6-5).
     pub skin_c: F,
-    /// Object surface, °C (Eq. 6-6).
+    /// Surface temperature of the object, °C (Eq. 6-6).
     pub object_c: F,
     /// Heat flux out of the skin, W/m² (Eq. 6-7, positive for a cold object).
     pub flux_w_m2: F,
-    /// Display surface that puts the skin there, °C (Eq. 6-12).
+    /// Surface temperature of the display at which the skin has this temperature, °C (Eq. 6-12).
     pub display_c: F,
 }
 
 impl<F: Real> Contact<F> {
-    /// Contact of `skin` at `skin_c` with `object` at `object_c` under `pressure_pa`, on a display whose
-    /// surface is `display`.
+    /// Contact of `skin` at `skin_c` with `object` at `object_c` under `pressure_pa`, to be reproduced by a display
+    /// with the surface `display`.
     ///
-    /// No pressure is no contact: nothing is exchanged. An infinite one, and so no resistance, is
-    /// [`super::SemiInfinite`]; here its flux is not a number.
+    /// At zero pressure no heat flows. At infinite pressure, without resistance, the flux is NaN; use
+    /// [`super::SemiInfinite`].
     #[must_use]
     pub fn new(
         (skin, skin_c): (&Material, F),
@@ -92,27 +92,27 @@ impl<F: Real> Contact<F> {
         }
     }
 
-    /// State `t_s` seconds after landing (not negative). For the thesis's conditions temperatures are in error
-    /// by at most 1e-7 µK in `f64` and 10 µK in `f32`, the flux by 5e-15 of itself in `f64`.
+    /// State `t_s` seconds after landing (at least 0). For the conditions of the thesis the error of temperatures is
+    /// at most 1e-7 µK in `f64` and 10 µK in `f32`; the relative error of the flux is at most 5e-15 in `f64`.
     #[must_use]
     pub fn at(&self, t_s: F) -> Response<F> {
         let erfcx = erfcx((self.rate_per_s * t_s).sqrt());
-        let step = self.skin_c - self.object_c;
-        let done = F::from_f64(1.0) - erfcx;
-        let skin_c = self.skin_c - step * self.weight * done;
+        let difference = self.skin_c - self.object_c;
+        let progress = F::from_f64(1.0) - erfcx;
+        let skin_c = self.skin_c - difference * self.weight * progress;
         Response {
             erfcx,
             skin_c,
-            object_c: self.object_c + step * (F::from_f64(1.0) - self.weight) * done,
-            flux_w_m2: step / self.resistance_m2k_w * erfcx,
-            display_c: skin_c - self.ratio * step * erfcx,
+            object_c: self.object_c + difference * (F::from_f64(1.0) - self.weight) * progress,
+            flux_w_m2: difference / self.resistance_m2k_w * erfcx,
+            display_c: skin_c - self.ratio * difference * erfcx,
         }
     }
 
-    /// Temperature in °C inside of the skin, `depth_m` below its surface, `t_s` seconds after landing, neither
-    /// negative; error at most 1e-7 µK in `f64` down to 10 mm.
+    /// Skin temperature `depth_m` below the surface, `t_s` seconds after landing (both at least 0), °C; error at
+    /// most 1e-7 µK in `f64` down to 10 mm.
     ///
-    /// Eq. 6-5 continued into the half-space: `T_i - dT w (erfc x - exp(-x²) erfcx(x + z))` with
+    /// Eq. 6-5 extended below the surface: `T_i - dT w (erfc x - exp(-x²) erfcx(x + z))` with
     /// `x = depth / (2 sqrt(alpha t))` and `z = b sqrt(t)`.
     #[must_use]
     pub fn skin_at_depth(&self, skin: &Material, depth_m: F, t_s: F) -> F {
@@ -120,10 +120,10 @@ impl<F: Real> Contact<F> {
         if t_s <= zero {
             return self.skin_c;
         }
-        let spread_m = F::from_f64(2.0) * (F::from_f64(skin.diffusivity_m2_s()) * t_s).sqrt();
-        let x = depth_m / spread_m;
+        let diffusion_m = F::from_f64(2.0) * (F::from_f64(skin.diffusivity_m2_s()) * t_s).sqrt();
+        let x = depth_m / diffusion_m;
         let z = (self.rate_per_s * t_s).sqrt();
-        let part = x.erfc() - (-(x * x)).exp() * erfcx(x + z);
-        self.skin_c - (self.skin_c - self.object_c) * self.weight * part
+        let fraction = x.erfc() - (-(x * x)).exp() * erfcx(x + z);
+        self.skin_c - (self.skin_c - self.object_c) * self.weight * fraction
     }
 }

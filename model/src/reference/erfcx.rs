@@ -1,8 +1,8 @@
-//! The scaled complementary error function.
+//! Scaled complementary error function.
 
 use super::Real;
 
-/// From here on the continued fraction is used: `exp(z²)` has not overflowed yet, even in `f32`.
+/// Smallest `z` for the continued fraction. Below it `exp(z²)` does not overflow, even in `f32`.
 const CONTINUED_FRACTION_FROM: f64 = 6.0;
 /// Levels of the continued fraction; enough for `f64` from [`CONTINUED_FRACTION_FROM`] on.
 const LEVELS: u32 = 40;
@@ -10,9 +10,9 @@ const LEVELS: u32 = 40;
 /// `erfcx(z) = exp(z²) erfc(z)` for `z >= 0`; relative error below 2e-15 (`f64`) and 5e-7 (`f32`) for
 /// every finite `z`, 0 at infinity.
 ///
-/// The rounding of `z²` would cost `z²` ulp; its remainder is exact by a fused multiply and put back as a
-/// factor. For large `z`: Laplace's continued fraction
-/// `sqrt(pi) erfcx(z) = 1/(z + (1/2)/(z + 1/(z + (3/2)/(z + ...))))`, from the innermost level outwards.
+/// Rounding `z²` would cause an error of `z²` ulp. A fused multiply-add gives the exact remainder, which is applied
+/// as a factor. Large `z` use Laplace's continued fraction
+/// `sqrt(pi) erfcx(z) = 1/(z + (1/2)/(z + 1/(z + (3/2)/(z + ...))))`, evaluated from the innermost level outwards.
 #[must_use]
 pub fn erfcx<F: Real>(z: F) -> F {
     if z < F::from_f64(CONTINUED_FRACTION_FROM) {

@@ -1,6 +1,6 @@
-//! The model in floating point: the yardstick of the fixed-point path, and what tools and set-up use.
+//! Contact model in floating point: reference for the fixed-point path, and for tools and set-up.
 //!
-//! Generic over [`Real`], so that `f32` shows what single precision costs.
+//! Generic over [`Real`], so that the error of `f32` can be measured too.
 
 mod contact;
 mod erfcx;

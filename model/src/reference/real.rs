@@ -1,8 +1,9 @@
-//! The floating-point types of the reference.
+//! Floating-point types of the reference model.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-/// `f32` or `f64`, with the functions that the model needs (from `libm`, the same on every machine).
+/// `f32` or `f64`, with the functions that the model needs. They come from `libm`, whose results are the same on
+/// every machine.
 pub trait Real:
     Copy
     + PartialOrd
@@ -12,9 +13,9 @@ pub trait Real:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// Rounds a constant to this type.
+    /// Rounds to this type.
     fn from_f64(value: f64) -> Self;
-    /// Widens, exactly.
+    /// Converts exactly.
     fn to_f64(self) -> f64;
     /// Square root.
     fn sqrt(self) -> Self;

@@ -1,10 +1,10 @@
-//! Perfect contact of two half-spaces, Eq. 3-1 to 3-4.
+//! Perfect contact of two half-spaces (Eq. 3-1 to 3-4).
 
 use super::Real;
 use crate::material::Material;
 
-/// Temperature in °C that both surfaces take at perfect contact, for ever (Eq. 3-1); error at most 1e-7 µK
-/// in `f64`.
+/// Temperature of both surfaces in perfect contact, °C, constant over time (Eq. 3-1); error at most 1e-7 µK in
+/// `f64`.
 #[must_use]
 pub fn interface_temperature<F: Real>(
     skin: &Material,
@@ -19,14 +19,14 @@ pub fn interface_temperature<F: Real>(
     (object_c * eo + skin_c * es) / (eo + es)
 }
 
-/// Fourier number `alpha t / L²` (Eq. 3-4) of a body whose volume over contact area is `length_m`; relative
-/// error a few roundings of `F`. The bodies count as half-spaces below 0.05.
+/// Fourier number `alpha t / L²`, dimensionless (Eq. 3-4), of a body whose volume over contact area is `length_m`;
+/// relative error of a few roundings of `F`. Bodies are approximated by half-spaces where it is below 0.05.
 #[must_use]
 pub fn fourier_number<F: Real>(material: &Material, length_m: F, t_s: F) -> F {
     F::from_f64(material.diffusivity_m2_s()) * t_s / (length_m * length_m)
 }
 
-/// A finger in perfect contact with an object: the limit of [`super::Contact`] for no contact resistance.
+/// A finger in perfect contact with an object: the limit of [`super::Contact`] for zero contact resistance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SemiInfinite<F> {
     /// Skin temperature before contact, °C.
@@ -51,9 +51,8 @@ impl<F: Real> SemiInfinite<F> {
         }
     }
 
-    /// Skin temperature in °C, `depth_m` below its surface, `t_s` seconds after landing, neither negative
-    /// (Eq. 3-2); error at most 1e-7 µK in `f64`. At time zero that before contact, except on the surface
-    /// itself.
+    /// Skin temperature `depth_m` below the surface, `t_s` seconds after landing (both at least 0), °C (Eq. 3-2);
+    /// error at most 1e-7 µK in `f64`. At time zero it is the temperature before contact, except at the surface.
     #[must_use]
     pub fn skin_at_depth(&self, depth_m: F, t_s: F) -> F {
         if depth_m <= F::from_f64(0.0) {
@@ -63,15 +62,15 @@ impl<F: Real> SemiInfinite<F> {
         self.interface_c + (self.skin_c - self.interface_c) * argument.erf()
     }
 
-    /// Heat flux in W/m² in the skin at its surface, signed as Eq. 3-3 has it: negative for a cold object, where
-    /// [`super::Response::flux_w_m2`] is positive; relative error below 1e-13 in `f64`. `None` at time zero,
-    /// where it is singular, and before.
+    /// Heat flux in the skin at its surface, W/m², with the sign of Eq. 3-3: negative for a cold object, where
+    /// [`super::Response::flux_w_m2`] is positive; relative error below 1e-13 in `f64`. `None` for `t_s` of 0 or less,
+    /// because it is infinite at landing.
     #[must_use]
     pub fn flux_w_m2(&self, t_s: F) -> Option<F> {
         if t_s <= F::from_f64(0.0) {
             return None;
         }
-        let spread_m = (F::from_f64(core::f64::consts::PI) * self.diffusivity_m2_s * t_s).sqrt();
-        Some(self.conductivity_w_mk * (self.interface_c - self.skin_c) / spread_m)
+        let diffusion_m = (F::from_f64(core::f64::consts::PI) * self.diffusivity_m2_s * t_s).sqrt();
+        Some(self.conductivity_w_mk * (self.interface_c - self.skin_c) / diffusion_m)
     }
 }

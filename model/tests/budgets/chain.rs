@@ -1,23 +1,23 @@
-//! From material and force to the outputs, against golden values and the `f64` reference.
-
-use std::collections::HashMap;
+//! Errors from material and force to the outputs, against golden values and the `f64` reference.
 
 use contact_model::fixed_point::{
     Celsius, ContactPair, Flux, Force, Log2, Ratio, Response, Ticks, log2_relative_pressure,
 };
 use contact_model::material::{
-    MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, find,
+    MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA,
 };
 use contact_model::pressure::pressure_pa;
 use contact_model::reference;
 
-use crate::golden::{number, rows};
-use crate::sweep::{UNIT, log_between, pair, points, relative, worst};
+use super::sweep::{UNIT, log_between, points, relative, skin_and_object, worst};
+use crate::golden::{material, number, rows};
 
-/// Forces of the whole type: evenly in the logarithm, near zero, and around the points where area bends.
+/// Forces of the whole range: logarithmic, near zero, and around the five points where the slope of the area changes.
 fn forces() -> impl Iterator<Item = Force> {
-    let bends = [0.1, 0.25, 0.5, 1.0, 2.0].map(|n| Force::from_num(n).to_bits());
-    let around = bends.into_iter().flat_map(|bits| bits - 4..=bits + 4);
+    let points_of_thesis = [0.1, 0.25, 0.5, 1.0, 2.0].map(|n| Force::from_num(n).to_bits());
+    let around = points_of_thesis
+        .into_iter()
+        .flat_map(|bits| bits - 4..=bits + 4);
     let wide = points::<1>(20_000).map(|[part]| log_between(part, 1.0, f64::from(u32::MAX)) as u32);
     around.chain(1..1000).chain(wide).map(Force::from_bits)
 }
@@ -29,7 +29,7 @@ pub fn log2_pressure() -> f64 {
     }))
 }
 
-fn pairing(object: &Material, tick_s: f64) -> ContactPair {
+fn contact_pair(object: &Material, tick_s: f64) -> ContactPair {
     ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("ordinary material")
 }
 
@@ -41,45 +41,41 @@ fn log2_of_pressure(pressure_pa: f64) -> Log2 {
     Log2::from_num((pressure_pa / SKIN_MICROHARDNESS_PA).log2())
 }
 
-/// The thesis's materials in turn.
+/// Every force, with the materials of the thesis in turn.
 fn each_force() -> impl Iterator<Item = (&'static Material, Force)> {
     forces()
         .zip(MATERIALS.iter().cycle())
         .map(|(force, (_, object))| (object, force))
 }
 
-fn golden_material(row: &HashMap<String, String>) -> &'static Material {
-    find(&row["material"]).expect("material")
-}
-
 pub fn resistance() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        let contact = pairing(golden_material(&row), 1e-3)
-            .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
+        let contact =
+            contact_pair(material(&row), 1e-3).at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "R_m2K_W"))
     });
-    let streaming = each_force().map(|(object, force)| {
-        let contact = pairing(object, 1e-3).at_pressure(log2_relative_pressure(force));
+    let swept = each_force().map(|(object, force)| {
+        let contact = contact_pair(object, 1e-3).at_pressure(log2_relative_pressure(force));
         (
             contact,
             float(object, pressure_pa(force.to_num())).resistance_m2k_w,
         )
     });
     worst(
-        (golden.chain(streaming))
+        (golden.chain(swept))
             .map(|(contact, r)| 1e9 * relative(1.0 / contact.conductance_w_m2k.to_f64(), r)),
     )
 }
 
 pub fn per_tick() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        let contact = pairing(golden_material(&row), 1e-3)
-            .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
+        let contact =
+            contact_pair(material(&row), 1e-3).at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "b_per_sqrt_s").powi(2) * 1e-3)
     });
-    let streaming = [1e-5, 1e-3, 0.1].into_iter().flat_map(|tick_s| {
+    let swept = [1e-5, 1e-3, 0.1].into_iter().flat_map(|tick_s| {
         each_force().map(move |(object, force)| {
-            let contact = pairing(object, tick_s).at_pressure(log2_relative_pressure(force));
+            let contact = contact_pair(object, tick_s).at_pressure(log2_relative_pressure(force));
             (
                 contact,
                 float(object, pressure_pa(force.to_num())).rate_per_s * tick_s,
@@ -87,29 +83,28 @@ pub fn per_tick() -> f64 {
         })
     });
     worst(
-        (golden.chain(streaming))
-            .map(|(contact, k)| 1e9 * relative(contact.rate_per_tick.to_f64(), k)),
+        (golden.chain(swept)).map(|(contact, k)| 1e9 * relative(contact.rate_per_tick.to_f64(), k)),
     )
 }
 
-/// Materials from insulators to better than diamond, from mirrors to finishes that make `r` nearly 16.
+/// Materials from insulators to conductors beyond diamond; slopes from mirrors to those that make `r` nearly 16.
 fn own_materials() -> impl Iterator<Item = Material> {
     points::<4>(5000).map(|[k, rho, c, slope]| {
-        let mut material = MATERIALS[0].1;
-        material.surface.conductivity_w_mk = log_between(k, 0.01, 3000.0);
-        material.surface.slope_rad = log_between(slope, 1e-3, 4.5);
-        material.density_kg_m3 = log_between(rho, 1.0, 22_000.0);
-        material.specific_heat_j_kgk = log_between(c, 100.0, 14_000.0);
-        material
+        let mut own = MATERIALS[0].1;
+        own.surface.conductivity_w_mk = log_between(k, 0.01, 3000.0);
+        own.surface.slope_rad = log_between(slope, 1e-3, 4.5);
+        own.density_kg_m3 = log_between(rho, 1.0, 22_000.0);
+        own.specific_heat_j_kgk = log_between(c, 100.0, 14_000.0);
+        own
     })
 }
 
 pub fn ratio() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        pairing(golden_material(&row), 1e-3).ratio().to_num::<f64>() - number(&row, "ratio")
+        contact_pair(material(&row), 1e-3).ratio().to_num::<f64>() - number(&row, "ratio")
     });
     let own = own_materials()
-        .map(|own| pairing(&own, 1e-3).ratio().to_num::<f64>() - float(&own, 1e4).ratio);
+        .map(|own| contact_pair(&own, 1e-3).ratio().to_num::<f64>() - float(&own, 1e4).ratio);
     worst(golden.chain(own)) * 1e9
 }
 
@@ -117,29 +112,26 @@ pub fn weight() -> f64 {
     let golden = rows("semi_infinite").into_iter().map(|row| {
         let (skin, object) = (number(&row, "T_skin_i_C"), number(&row, "T_material_i_C"));
         let truth = (skin - number(&row, "T_s_C")) / (skin - object);
-        pairing(golden_material(&row), 1e-3)
-            .weight()
-            .to_num::<f64>()
-            - truth
+        contact_pair(material(&row), 1e-3).weight().to_num::<f64>() - truth
     });
     let own = own_materials()
-        .map(|own| pairing(&own, 1e-3).weight().to_num::<f64>() - float(&own, 1e4).weight);
+        .map(|own| contact_pair(&own, 1e-3).weight().to_num::<f64>() - float(&own, 1e4).weight);
     worst(golden.chain(own)) * 1e9
 }
 
-/// An output, once from fixed point and once true, and the flux `dT / R` of the moment of landing.
+/// Response in fixed point, exact response, and the heat flux at landing, `dT / R`.
 struct Compared {
     fixed: Response,
     truth: reference::Response<f64>,
     landing_flux: f64,
 }
 
-/// Rows of the golden table: as one tick of their time, under their pressure.
+/// Golden contacts. The time of each is one tick.
 fn golden() -> impl Iterator<Item = Compared> {
     rows("contact").into_iter().map(|row| {
         let t_s = number(&row, "t_s");
         let (elapsed, tick_s) = if t_s == 0.0 { (0, 1.0) } else { (1, t_s) };
-        let contact = pairing(golden_material(&row), tick_s)
+        let contact = contact_pair(material(&row), tick_s)
             .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         let (skin_c, object_c) = (number(&row, "T_skin_i_C"), number(&row, "T_object_i_C"));
         Compared {
@@ -160,22 +152,21 @@ fn golden() -> impl Iterator<Item = Compared> {
     })
 }
 
-/// The stated domain: materials, resistances, ticks, times, temperatures; `ratio` replaces that of the display
-/// if given.
+/// Contacts of the stated domain: materials, resistances, ticks, times and temperatures. `ratio` replaces that of the
+/// display.
 fn swept(ratio: Option<f64>) -> impl Iterator<Item = Compared> {
     points::<6>(40_000).map(move |[index, r, tick, elapsed, skin, step]| {
         let object = &MATERIALS[(index * 8.0) as usize].1;
         let r_m2k_w = log_between(r, 1e-7, 10.0);
         let tick_s = log_between(tick, 1e-5, 0.1);
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
-        let (skin_c, object_c) = pair(skin, step);
+        let (skin_c, object_c) = skin_and_object(skin, step);
 
-        // Eq. 6-8 the other way round.
+        // Eq. 6-8 solved for the pressure.
         let mean = reference::mean_conductance::<f64>(&SKIN.surface, &object.surface);
         let log2_pressure = Log2::from_num(-(mean * r_m2k_w).log2() / 0.95);
         let pressure_pa = log2_pressure.to_num::<f64>().exp2() * SKIN_MICROHARDNESS_PA;
-        let pairing = pairing(object, tick_s);
-        let mut fixed = pairing.at_pressure(log2_pressure);
+        let mut fixed = contact_pair(object, tick_s).at_pressure(log2_pressure);
         let mut truth = reference::Contact::<f64>::new(
             (&SKIN, skin_c.to_num()),
             (object, object_c.to_num()),
@@ -217,7 +208,7 @@ pub fn display() -> f64 {
     )
 }
 
-/// Where [`Celsius`] can hold it.
+/// Within the range of [`Celsius`].
 pub fn display_steep() -> f64 {
     worst(
         (swept(Some(15.99)).filter(|c| c.truth.display_c.abs() < 511.0))
@@ -225,7 +216,7 @@ pub fn display_steep() -> f64 {
     )
 }
 
-/// Less the resolution of the flux.
+/// Relative error beyond the resolution of the flux.
 pub fn flux() -> f64 {
     worst(both().map(|c| {
         let error = (c.fixed.flux_w_m2().to_num::<f64>() - c.truth.flux_w_m2).abs();
@@ -244,16 +235,16 @@ pub fn preset() -> f64 {
         .filter(|row| number(row, "t_s") == 0.0)
         .map(|row| {
             let before = |column| Celsius::from_num(number(&row, column));
-            let t = pairing(golden_material(&row), 1e-3)
+            let t = contact_pair(material(&row), 1e-3)
                 .preset(before("T_skin_i_C"), before("T_object_i_C"));
             micro_kelvin(t, number(&row, "T_display_C"))
         });
     let swept = points::<3>(20_000).map(|[index, skin, step]| {
         let object = &MATERIALS[(index * 8.0) as usize].1;
-        let (skin_c, object_c) = pair(skin, step);
+        let (skin_c, object_c) = skin_and_object(skin, step);
         let step = (skin_c - object_c).to_num::<f64>();
         let truth = skin_c.to_num::<f64>() - float(object, 1e4).ratio * step;
-        micro_kelvin(pairing(object, 1e-3).preset(skin_c, object_c), truth)
+        micro_kelvin(contact_pair(object, 1e-3).preset(skin_c, object_c), truth)
     });
     worst(golden.chain(swept))
 }

@@ -1,4 +1,4 @@
-//! Functions of one number.
+//! Errors of the elementary functions.
 
 use contact_model::fixed_point::kernel::OCTAVES;
 use contact_model::fixed_point::{
@@ -6,16 +6,16 @@ use contact_model::fixed_point::{
 };
 use contact_model::reference::{self, Real};
 
+use super::sweep::{UNIT, log_between, points, relative, worst};
 use crate::golden::{number, rows};
-use crate::sweep::{UNIT, log_between, points, relative, worst};
 
-/// In units, against the largest fraction where the truth is above it.
+/// Error of the kernel in units of 2^-32; exact values above the largest fraction count as that.
 fn kernel_units(elapsed: u32, rate_per_tick: MantissaExponent, truth: f64) -> f64 {
     let e = f64::from(erfcx(Ticks::new(elapsed).expect("in range"), rate_per_tick).to_bits());
     e - (truth / UNIT).min(f64::from(u32::MAX))
 }
 
-/// Every octave with 4096 mantissas; times and rates whose product lies in one.
+/// Every octave of the table with 4096 mantissas each; times and rates whose product lies in one.
 pub fn kernel() -> f64 {
     let inner = OCTAVES.start + 1..OCTAVES.end - 1;
     let octaves = inner.clone().flat_map(mantissas);
@@ -28,7 +28,7 @@ pub fn kernel() -> f64 {
     )
 }
 
-/// The same, and octaves beyond both ends, and golden values whose square is rounded on its way in.
+/// The same, octaves beyond both ends, and golden values, whose squared argument is rounded.
 pub fn kernel_anywhere() -> f64 {
     let outer = (OCTAVES.start - 8..OCTAVES.start + 1).chain(OCTAVES.end - 1..OCTAVES.end + 8);
     let golden = rows("erfcx").into_iter().filter_map(|row| {
@@ -43,7 +43,7 @@ pub fn kernel_anywhere() -> f64 {
     worst(all.map(|(_, error)| error))
 }
 
-/// `u` and error in one octave.
+/// `u` and error for the mantissas of one octave.
 fn mantissas(octave: i32) -> impl Iterator<Item = (f64, f64)> {
     (0..4096u32).map(move |i| {
         let fraction = i << 20 | i.wrapping_mul(2_654_435_761) >> 12;
@@ -70,7 +70,7 @@ fn times_and_rates() -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// All magnitudes, both ends of each.
+/// Numbers of all magnitudes, and both ends of each octave.
 pub fn log2_error() -> f64 {
     let integers =
         (0..1u32 << 18).map(|i| ((i.wrapping_mul(2_654_435_761) | 1) >> (i % 32)).max(1));
@@ -90,7 +90,7 @@ pub fn erf_error() -> f64 {
     }))
 }
 
-/// Numbers of 32 bits, evenly, and both ends of all powers of two.
+/// 32-bit numbers, evenly distributed, and both ends of each octave.
 fn spread() -> impl Iterator<Item = u32> {
     let even = (0..1u32 << 18).map(|i| i << 14 | i >> 4);
     even.chain((0..32).flat_map(|bit| [1 << bit, u32::MAX >> bit]))
@@ -99,7 +99,7 @@ fn spread() -> impl Iterator<Item = u32> {
 pub fn rate_from_log2() -> f64 {
     worst(points::<1>(100_000).map(|[part]| {
         let log2 = Log2::from_num(2000.0 * part - 1000.0);
-        // Whole and fraction apart: exp2 of a large number is less exact.
+        // Integer and fraction separately, because exp2 of a large number is less exact.
         let whole = log2.floor();
         let fraction = (log2 - whole).to_num::<f64>().exp2();
         let scale = f64::from(-whole.to_num::<i32>()).exp2();

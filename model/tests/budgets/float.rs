@@ -1,12 +1,10 @@
-//! The floating-point reference against golden values.
+//! Errors of the floating-point reference against golden values.
 
-use std::collections::HashMap;
-
-use contact_model::material::{REFERENCE_DISPLAY, SKIN, find};
+use contact_model::material::{REFERENCE_DISPLAY, SKIN};
 use contact_model::reference::{Contact, Real, contact_resistance, erfcx};
 
-use crate::golden::{number, rows};
-use crate::sweep::{log_between, points, relative, worst};
+use super::sweep::{log_between, points, relative, worst};
+use crate::golden::{Row, material, number, rows};
 
 pub fn erfcx_f64() -> f64 {
     worst(
@@ -16,7 +14,7 @@ pub fn erfcx_f64() -> f64 {
     )
 }
 
-/// Where both argument and result can be held.
+/// For arguments and results within the normal range of `f32`.
 pub fn erfcx_f32() -> f64 {
     let error = |z: f32, truth: f64| {
         (truth > f64::from(f32::MIN_POSITIVE)).then(|| relative(f64::from(erfcx(z)), truth))
@@ -38,18 +36,16 @@ pub fn erfcx_f32() -> f64 {
 
 pub fn resistance() -> f64 {
     worst(rows("resistance").iter().map(|row| {
-        let object = find(&row["material"]).expect("material");
-        let r = contact_resistance(&SKIN.surface, &object.surface, number(row, "P_Pa"));
+        let r = contact_resistance(&SKIN.surface, &material(row).surface, number(row, "P_Pa"));
         relative(r, number(row, "R_m2K_W"))
     }))
 }
 
-fn contact<F: Real>(row: &HashMap<String, String>) -> Contact<F> {
-    let object = find(&row["material"]).expect("material");
+fn contact<F: Real>(row: &Row) -> Contact<F> {
     let f = |column| F::from_f64(number(row, column));
     Contact::new(
         (&SKIN, f("T_skin_i_C")),
-        (object, f("T_object_i_C")),
+        (material(row), f("T_object_i_C")),
         &REFERENCE_DISPLAY,
         f("P_Pa"),
     )
@@ -90,15 +86,12 @@ pub fn flux_f64() -> f64 {
     }))
 }
 
-/// The rows give R, not the pressure: the rate is scaled to it.
+/// The rows state the resistance and not the pressure, so the rate is scaled.
 pub fn contact_interior() -> f64 {
     worst(rows("contact_interior").iter().map(|row| {
         let mut contact = Contact::<f64>::new(
             (&SKIN, number(row, "T_skin_i_C")),
-            (
-                find(&row["material"]).expect("material"),
-                number(row, "T_object_i_C"),
-            ),
+            (material(row), number(row, "T_object_i_C")),
             &REFERENCE_DISPLAY,
             1e4,
         );

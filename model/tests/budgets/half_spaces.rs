@@ -1,19 +1,11 @@
-//! Perfect contact, Eq. 3-1 to 3-4.
-
-use std::collections::HashMap;
+//! Errors of perfect contact (Eq. 3-1 to 3-4).
 
 use contact_model::fixed_point::{self, Celsius, Depth, MantissaExponent, Ticks};
 use contact_model::material::{MATERIALS, Material, SKIN, find};
 use contact_model::reference::{SemiInfinite, fourier_number, interface_temperature};
 
-use crate::golden::{number, rows};
-use crate::sweep::{UNIT, log_between, pair, points, relative, worst};
-
-type Row = HashMap<String, String>;
-
-fn material(row: &Row) -> &'static Material {
-    find(&row["material"]).expect("material")
-}
+use super::sweep::{UNIT, log_between, points, relative, skin_and_object, worst};
+use crate::golden::{Row, material, number, rows};
 
 fn temperatures(row: &Row) -> (f64, f64) {
     (number(row, "T_skin_i_C"), number(row, "T_material_i_C"))
@@ -87,7 +79,7 @@ pub fn depth_fixed() -> f64 {
     });
     let swept = points::<6>(40_000).map(|[index, skin, step, depth, tick, elapsed]| {
         let object_material = &MATERIALS[(index * 8.0) as usize].1;
-        let (skin, object) = pair(skin, step);
+        let (skin, object) = skin_and_object(skin, step);
         let tick_s = log_between(tick, 1e-5, 0.1);
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
         let depth = Depth::from_num(log_between(depth, 1.6e-5, 65535.9));
@@ -101,7 +93,7 @@ pub fn depth_fixed() -> f64 {
     worst(golden.chain(swept))
 }
 
-/// Relative error, less the resolution of the flux.
+/// Relative error beyond the resolution of the flux.
 pub fn flux_fixed() -> f64 {
     let error = |flux: fixed_point::Flux, truth: f64| {
         let beyond =
@@ -115,7 +107,7 @@ pub fn flux_fixed() -> f64 {
     });
     let swept = points::<5>(40_000).filter_map(|[index, skin, step, tick, elapsed]| {
         let object_material = &MATERIALS[(index * 8.0) as usize].1;
-        let (skin, object) = pair(skin, step);
+        let (skin, object) = skin_and_object(skin, step);
         let tick_s = log_between(tick, 1e-5, 0.1);
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
         let flux = fixed(object_material, tick_s).flux_w_m2(
@@ -127,13 +119,13 @@ pub fn flux_fixed() -> f64 {
             SemiInfinite::<f64>::new((&SKIN, skin.to_num()), (object_material, object.to_num()))
                 .flux_w_m2(tick_s * f64::from(elapsed))
                 .expect("after landing");
-        // For a smaller step the rounding of the temperatures in `f64` shows.
+        // Below 1 K the rounding of the temperatures in `f64` dominates.
         (skin.abs_diff(object) >= 1).then(|| error(flux, truth))
     });
     worst(golden.chain(swept))
 }
 
-/// Table 3-1, whose samples' length follows from the copper's number; as many digits as are printed.
+/// Table 3-1, to the digits printed. The length of the samples follows from the Fourier number of copper.
 pub fn fourier_f64() -> f64 {
     let printed = [
         ("copper", 3.58, 0.01),

@@ -1,12 +1,11 @@
-//! Points that fill a box evenly, its corners among them.
+//! Evenly distributed points of a domain, with its corners, and error measures.
 
 use contact_model::fixed_point::Celsius;
 
-/// One unit of a fraction.
-pub const UNIT: f64 = 1.0 / 4_294_967_296.0;
+pub use crate::verify::UNIT;
 
-/// All corners of the unit cube of `N` dimensions, then `count` points of an additive recurrence, whose steps are
-/// the powers of the inverse of the root of `x^(N+1) = x + 1`.
+/// All corners of the unit cube of `N` dimensions, then `count` points of a low-discrepancy sequence: an additive
+/// recurrence whose steps are powers of the inverse of the root of `x^(N+1) = x + 1`.
 pub fn points<const N: usize>(count: u32) -> impl Iterator<Item = [f64; N]> {
     let mut root = 1.5f64;
     for _ in 0..40 {
@@ -18,12 +17,12 @@ pub fn points<const N: usize>(count: u32) -> impl Iterator<Item = [f64; N]> {
     corners.chain(inside)
 }
 
-/// From `low` at 0 to `high` at 1, evenly in the logarithm.
+/// Logarithmic interpolation from `low` at 0 to `high` at 1.
 pub fn log_between(part: f64, low: f64, high: f64) -> f64 {
     (low.ln() + part * (high / low).ln()).exp().clamp(low, high)
 }
 
-/// The largest, NaN if any is.
+/// Largest magnitude of the errors; NaN if one is NaN.
 pub fn worst(errors: impl Iterator<Item = f64>) -> f64 {
     errors.map(f64::abs).fold(0.0, |worst, error| {
         if worst.is_nan() || error <= worst {
@@ -34,17 +33,17 @@ pub fn worst(errors: impl Iterator<Item = f64>) -> f64 {
     })
 }
 
-/// Relative error.
+/// Magnitude of the relative error.
 pub fn relative(value: f64, truth: f64) -> f64 {
     if value == truth {
         0.0
     } else {
-        value / truth - 1.0
+        (value / truth - 1.0).abs()
     }
 }
 
-/// Skin and object within the range of temperatures, at most 60 K apart, either way.
-pub fn pair(skin: f64, step: f64) -> (Celsius, Celsius) {
+/// Temperatures of skin and object, within the range of temperatures and at most 60 K apart.
+pub fn skin_and_object(skin: f64, step: f64) -> (Celsius, Celsius) {
     let skin_c = 165.0 * skin - 40.0;
     let object_c = (skin_c + 120.0 * step - 60.0).clamp(-40.0, 125.0);
     (Celsius::from_num(skin_c), Celsius::from_num(object_c))

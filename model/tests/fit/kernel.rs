@@ -1,6 +1,8 @@
-//! Fits the kernel's table: rows for each octave, and the polynomial of each row.
+//! Fits the kernel's table: divides each octave into rows, and fits a polynomial to each row.
 
-use contact_model::fixed_point::kernel::{COUNT_SHIFT, GUARD_BITS, OCTAVES, ROWS};
+use contact_model::fixed_point::kernel::{
+    COUNT_SHIFT, GUARD_BITS, OCTAVES, PRACTICAL_OCTAVES, ROWS,
+};
 use contact_model::reference;
 use std::f64::consts::PI;
 use std::fmt::Write;
@@ -10,18 +12,16 @@ use std::ops::RangeInclusive;
 const DEGREE: usize = 7;
 /// Chebyshev points on which a row is fitted.
 const POINTS: usize = 24;
-/// Octaves in which the error shall be smallest: where scenes live.
-const FAVOURED: std::ops::Range<i32> = -24..16;
-/// How much larger an error counts there.
-const FAVOUR: f64 = 4.0;
-/// Octaves that have an own fit; the two outside saturate.
+/// Weight of an error in the octaves that contacts reach in practice; 1 in the others.
+const PRACTICAL_WEIGHT: f64 = 4.0;
+/// Octaves that are fitted; the first and the last saturate.
 const FITTED: RangeInclusive<i32> = OCTAVES.start + 1..=OCTAVES.end - 2;
 
-/// One unit of 2^-32 in guard units.
+/// One unit of 2^-32, in units of the higher terms.
 const UNIT: f64 = (1u64 << GUARD_BITS) as f64;
 
-/// Integers of a row, and the largest error of the polynomial that they stand for, in units of 2^-32,
-/// before the rounding of its evaluation.
+/// Integer coefficients of a row, and the largest error of their polynomial in units of 2^-32, without that of
+/// rounding in its evaluation.
 #[derive(Clone, Copy)]
 struct Fit {
     constant: u32,
@@ -30,7 +30,7 @@ struct Fit {
     error: f64,
 }
 
-/// Chebyshev polynomials at the Chebyshev points, and the points themselves (-1 to 1).
+/// Chebyshev points from -1 to 1, and the Chebyshev polynomials at these points.
 struct Basis {
     points: [f64; POINTS],
     polynomials: [[f64; POINTS]; DEGREE + 1],
@@ -46,8 +46,7 @@ impl Basis {
         }
     }
 
-    /// Coefficient of `t^k` (`t` from -1/2 to 1/2) in the best polynomial of degree `k` for `values`, in the
-    /// sense of a Chebyshev series cut off.
+    /// Coefficient of `t^k` (`t` from -1/2 to 1/2) in the Chebyshev series of `values`, truncated after degree `k`.
     fn leading(&self, k: usize, values: &[f64; POINTS]) -> f64 {
         let sum: f64 = values
             .iter()
@@ -70,7 +69,8 @@ impl Basis {
     }
 }
 
-/// Whether no sum of the evaluation leaves its word: powers from 7 down to 2, then 6 and 7 again as guard bits.
+/// Whether every sum of the evaluation fits in 32 bits: powers from 7 down to 2, then 6 and 7 again for the low bits of
+/// slope and constant.
 fn fits(powers: &[i64; DEGREE + 1]) -> bool {
     let mut sum = 0.0;
     let order = (2..=DEGREE).rev().chain([DEGREE - 1, DEGREE]);
@@ -83,15 +83,15 @@ fn fits(powers: &[i64; DEGREE + 1]) -> bool {
     true
 }
 
-/// Fits row `index` of `count` in an octave; `None` if a sum of its evaluation may leave its word.
+/// Fits row `index` of `count` in an octave; `None` if a sum of its evaluation could overflow 32 bits.
 ///
-/// From the highest power down, each coefficient is rounded and what it leaves is fitted by those below. The
-/// lowest bits of the two highest are the guard bits of constant and slope, which are known last: a few
-/// rounds settle them, and the best is kept.
+/// From the highest power down, each coefficient is rounded, and the residual is fitted by the lower ones. The low bits
+/// of the two highest are further bits of constant and slope, which are known last: the fit is repeated, and the best
+/// of eight is kept.
 fn fit(basis: &Basis, octave: i32, index: u32, count: u32) -> Option<Fit> {
-    // The kernel's input stands for the middle of what was cut off from it.
+    // The kernel's input stands for the middle of the bits cut off the product.
     let half_bit = 0.5 / 4_294_967_296.0;
-    let wanted = basis.points.map(|x| {
+    let exact = basis.points.map(|x| {
         let place = (f64::from(index) + 0.5 + x / 2.0) / f64::from(count);
         let u = (1.0 + place + half_bit) * f64::from(octave).exp2();
         reference::erfcx(u.sqrt()) * 4_294_967_296.0
@@ -99,10 +99,10 @@ fn fit(basis: &Basis, octave: i32, index: u32, count: u32) -> Option<Fit> {
     let mut best: Option<Fit> = None;
     let (mut constant_guard, mut slope_guard) = (0, 0);
     for _ in 0..8 {
-        let mut rest = wanted;
+        let mut residual = exact;
         let mut powers = [0i64; DEGREE + 1];
         for k in (0..=DEGREE).rev() {
-            let leading = basis.leading(k, &rest) * UNIT;
+            let leading = basis.leading(k, &residual) * UNIT;
             let with_low_bits =
                 |guard: i64| ((leading - guard as f64) / UNIT).round() as i64 * UNIT as i64 + guard;
             powers[k] = match k {
@@ -110,21 +110,23 @@ fn fit(basis: &Basis, octave: i32, index: u32, count: u32) -> Option<Fit> {
                 k if k == DEGREE - 1 => with_low_bits(slope_guard),
                 _ => leading.round() as i64,
             };
-            basis.subtract(k, powers[k] as f64 / UNIT, &mut rest);
+            basis.subtract(k, powers[k] as f64 / UNIT, &mut residual);
         }
-        // What the words add besides the constant: one half that rounds, the low word's start.
+        // The evaluation also adds the seventh coefficient as the low word, and one half is subtracted for rounding.
         let low_word = f64::from(powers[DEGREE] as i32 as u32) / 4_294_967_296.0;
         let constant = powers[0] as f64 / UNIT + 0.5 - low_word;
         let constant_word = (constant - powers[DEGREE] as f64 / UNIT).round();
         let slope_word = ((powers[1] - powers[DEGREE - 1]) as f64 / UNIT).round();
-        let off = [
+        let rounding = [
             constant - powers[DEGREE] as f64 / UNIT - constant_word,
             (powers[1] - powers[DEGREE - 1]) as f64 / UNIT - slope_word,
         ];
-        for (k, off) in off.into_iter().enumerate() {
-            basis.subtract(k, -off, &mut rest);
+        for (k, error) in rounding.into_iter().enumerate() {
+            basis.subtract(k, -error, &mut residual);
         }
-        let error = rest.iter().fold(0.0, |worst: f64, e| worst.max(e.abs()));
+        let error = residual
+            .iter()
+            .fold(0.0, |worst: f64, e| worst.max(e.abs()));
         if best.is_none_or(|best| error < best.error) {
             if !fits(&powers) {
                 return None;
@@ -142,17 +144,17 @@ fn fit(basis: &Basis, octave: i32, index: u32, count: u32) -> Option<Fit> {
     best
 }
 
-/// An octave cut into equal rows.
-fn cut(basis: &Basis, octave: i32, count: u32) -> Option<Vec<Fit>> {
+/// Fits an octave that is divided into `count` equal rows.
+fn fit_octave(basis: &Basis, octave: i32, count: u32) -> Option<Vec<Fit>> {
     (0..count)
         .map(|index| fit(basis, octave, index, count))
         .collect()
 }
 
-/// How bad an octave is: its largest error, weighted.
-fn badness(octave: i32, rows: &[Fit]) -> f64 {
-    let weight = if FAVOURED.contains(&octave) {
-        FAVOUR
+/// Weighted largest error of an octave.
+fn weighted_error(octave: i32, rows: &[Fit]) -> f64 {
+    let weight = if PRACTICAL_OCTAVES.contains(&octave) {
+        PRACTICAL_WEIGHT
     } else {
         1.0
     };
@@ -161,11 +163,11 @@ fn badness(octave: i32, rows: &[Fit]) -> f64 {
         * weight
 }
 
-/// The rows of every fitted octave: one each, then more where the error is largest until all are used.
+/// Rows of every fitted octave: one each, then one more where the error is largest, until the table is full.
 fn octaves(basis: &Basis) -> Vec<Vec<Fit>> {
     let smallest = |octave: i32, from: u32| {
         (from..)
-            .find_map(|count| cut(basis, octave, count))
+            .find_map(|count| fit_octave(basis, octave, count))
             .unwrap()
     };
     let mut octaves: Vec<_> = FITTED.map(|octave| smallest(octave, 1)).collect();
@@ -173,10 +175,10 @@ fn octaves(basis: &Basis) -> Vec<Vec<Fit>> {
         let used: usize = octaves.iter().map(Vec::len).sum();
         let (octave, rows) = FITTED
             .zip(&mut octaves)
-            .max_by(|(a, x), (b, y)| badness(*a, x).total_cmp(&badness(*b, y)))
+            .max_by(|(a, x), (b, y)| weighted_error(*a, x).total_cmp(&weighted_error(*b, y)))
             .unwrap();
         let finer = smallest(octave, rows.len() as u32 + 1);
-        // Two rows are for the octaves that saturate.
+        // Two rows are for the saturating octaves.
         if used + finer.len() - rows.len() > ROWS - 2 {
             return octaves;
         }

@@ -1,4 +1,4 @@
-//! Fits the tables of the fixed-point path to the reference and writes them as source text.
+//! Fits the tables of the fixed-point path to the reference, and formats them as source text.
 
 use contact_model::reference::Real;
 use std::fmt::Write;
@@ -12,7 +12,7 @@ fn fit<const N: usize>(f: impl Fn(f64) -> f64) -> [f64; N] {
         let angle = std::f64::consts::PI * (2 * i + 1) as f64 / (2 * N) as f64;
         0.5 - 0.5 * angle.cos()
     });
-    // Newton's divided differences, then Horner on polynomials.
+    // Newton's divided differences, then expanded into powers by Horner's scheme.
     let mut differences = nodes.map(f);
     for level in 1..N {
         for i in (level..N).rev() {
@@ -29,17 +29,17 @@ fn fit<const N: usize>(f: impl Fn(f64) -> f64) -> [f64; N] {
     powers
 }
 
-/// Rows of a table of `f` in pieces of the length `1 / per_unit`: the constants in 2^-32, the `N - 1` powers
-/// after them in `2^-slope_bits`.
-fn pieces<const N: usize>(
+/// Rows of a table of `f`, each over an interval of `1 / per_unit`: constants in units of 2^-32, the `N - 1` higher
+/// coefficients in units of `2^-slope_bits`.
+fn table_rows<const N: usize>(
     rows: u32,
     per_unit: u32,
     slope_bits: i32,
     f: impl Fn(f64) -> f64,
 ) -> String {
     let mut text = String::new();
-    for part in 0..rows {
-        let powers = fit::<N>(|t| f((f64::from(part) + t) / f64::from(per_unit)));
+    for row in 0..rows {
+        let powers = fit::<N>(|t| f((f64::from(row) + t) / f64::from(per_unit)));
         let constant = (powers[0] * 2f64.powi(32)).round().max(0.0) as u64;
         let rest: Vec<i64> = powers[1..]
             .iter()
@@ -56,12 +56,12 @@ pub fn log_table() -> String {
         "//! Written by `cargo run --release -p contact-model --example tables`; do not edit.\n\n\
          use super::logarithm::LogRow;\n\n\
          const fn row(constant: u32, rest: [i32; 4]) -> LogRow {{\n    LogRow {{ constant, rest }}\n}}\n\n\
-         /// `log2(1 + f)` on 32 equal parts of `f` in `[0, 1)`.\n\
+         /// `log2(1 + f)` on 32 equal intervals of `f` in `[0, 1)`.\n\
          #[rustfmt::skip]\npub(super) static LOG2: [LogRow; 32] = [\n{}\n\
-         /// `2^f - 1` on 32 equal parts of `f` in `[0, 1)`.\n\
+         /// `2^f - 1` on 32 equal intervals of `f` in `[0, 1)`.\n\
          #[rustfmt::skip]\npub(super) static EXP2: [LogRow; 32] = [\n{}",
-        pieces::<5>(32, 32, 35, |f| libm::log1p(f) / std::f64::consts::LN_2),
-        pieces::<5>(32, 32, 35, |f| libm::expm1(f * std::f64::consts::LN_2)),
+        table_rows::<5>(32, 32, 35, |f| libm::log1p(f) / std::f64::consts::LN_2),
+        table_rows::<5>(32, 32, 35, |f| libm::expm1(f * std::f64::consts::LN_2)),
     )
 }
 
@@ -71,8 +71,8 @@ pub fn erf_table() -> String {
         "//! Written by `cargo run --release -p contact-model --example tables`; do not edit.\n\n\
          use super::erf::ErfRow;\n\n\
          const fn row(constant: u32, rest: [i32; 5]) -> ErfRow {{\n    ErfRow {{ constant, rest }}\n}}\n\n\
-         /// `erf(x)` on 36 equal parts of `x` in `[0, 4.5)`.\n\
+         /// `erf(x)` on 36 equal intervals of `x` in `[0, 4.5)`.\n\
          #[rustfmt::skip]\npub(super) static ERF: [ErfRow; 36] = [\n{}",
-        pieces::<6>(36, 8, 33, Real::erf),
+        table_rows::<6>(36, 8, 33, Real::erf),
     )
 }

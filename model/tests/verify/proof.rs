@@ -1,15 +1,15 @@
-//! A bound of the kernel's error over whole octaves, without trying every input.
+//! Proof of a bound of the kernel's error over whole octaves, without evaluating every input.
 //!
-//! On a row the kernel is `floor(P(t) + 1/2 + r)`: a polynomial `P` with known coefficients and the rounding `r` of
-//! its evaluation, less than one guard unit in all (halves that each step multiplies by at most 1/2). So its
-//! error is at most one half, plus a guard unit, plus the largest `|P - E|`. Between two neighbours of a grid of
-//! step `h`, a function is at most `h²/8` times its largest second derivative off the chord; that of `P` follows
-//! from the coefficients, that of `E` from `u² d²E/du² <= min(sqrt(u) / (2 sqrt(pi)), 3 / (4 sqrt(pi u)))`,
-//! the first terms of alternating series that enclose it.
+//! On a row the kernel is `floor(P(t) + 1/2 + r)`, with a polynomial `P` of known coefficients and the rounding error
+//! `r` of its evaluation. `r` is below one unit of 2^-40, because each step of Horner's scheme halves the error so far
+//! and adds at most half a unit. The error is therefore at most one half, plus that unit, plus the largest `|P - E|`.
+//! `|P - E|` is computed on a grid. Between grid points a step `h` apart a function differs from its chord by at most
+//! `h²/8` times its largest second derivative. For `P` this follows from the coefficients, for `E` from
+//! `u² d²E/du² <= min(sqrt(u) / (2 sqrt(pi)), 3 / (4 sqrt(pi u)))`, the first terms of enclosing alternating series.
 
 use contact_model::reference;
 
-use super::{TRUTH_ERROR, UNIT};
+use super::{REFERENCE_ERROR, UNIT};
 
 /// The committed table, read as data.
 mod kernel {
@@ -31,11 +31,11 @@ mod kernel {
 mod kernel_table;
 
 const GUARD: f64 = 256.0;
-/// How much of the bound may come from the curvature between grid points.
+/// Contribution to the bound that is allowed from the curvature between grid points.
 const CURVATURE: f64 = 1e-3;
 
-/// Largest error of the kernel in `octave`, in units of 2^-32; every input is covered. Infinite if a sum might
-/// leave its word.
+/// Upper bound of the kernel's error for every input of `octave`, in units of 2^-32. Infinite if a sum could overflow
+/// 32 bits.
 pub fn bound(octave: i32) -> f64 {
     let descriptor = kernel_table::TABLE.octaves[(octave + 64) as usize];
     let (count, first) = (descriptor >> 12, descriptor & 0xfff);
@@ -51,7 +51,7 @@ pub fn bound(octave: i32) -> f64 {
         .fold(0.0, worse)
 }
 
-/// The larger; infinite if one is no number.
+/// The larger of two errors; infinite if one is NaN.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() {
         f64::INFINITY
@@ -62,9 +62,9 @@ fn worse(a: f64, b: f64) -> f64 {
 
 fn row_bound(octave: i32, index: u16, count: u16, row: &kernel::Row) -> f64 {
     let powers = powers(row);
-    // In t, which runs over one unit: u grows by 2^octave / count.
+    // Second derivatives with respect to t, over whose unit u increases by 2^octave / count.
     let count = f64::from(count);
-    let bends = |powers: [f64; 8]| {
+    let curvature = |powers: [f64; 8]| {
         let terms = powers.iter().enumerate().skip(2);
         terms
             .map(|(k, c)| (k * (k - 1)) as f64 * c.abs() * 0.5f64.powi(k as i32 - 2))
@@ -74,8 +74,8 @@ fn row_bound(octave: i32, index: u16, count: u16, row: &kernel::Row) -> f64 {
     let pi_root = std::f64::consts::PI.sqrt();
     let rising = (2.0 * u).sqrt() / (2.0 * pi_root);
     let falling = 0.75 / (pi_root * u.sqrt());
-    let exact_bends = rising.min(falling) / UNIT / (count * count);
-    let steps = ((bends(powers) + exact_bends) / (8.0 * CURVATURE))
+    let exact_curvature = rising.min(falling) / UNIT / (count * count);
+    let steps = ((curvature(powers) + exact_curvature) / (8.0 * CURVATURE))
         .sqrt()
         .ceil()
         .max(1.0) as u32;
@@ -86,17 +86,18 @@ fn row_bound(octave: i32, index: u16, count: u16, row: &kernel::Row) -> f64 {
         let place = (f64::from(index) + 0.5 + t) / count + 0.5 * UNIT;
         (polynomial - exact((1.0 + place) * u)).abs()
     });
-    let off = 1.0 / GUARD + CURVATURE + TRUTH_ERROR + at_grid.fold(0.0, worse);
-    // `E` falls: with what it may be off, and the half that rounds, it stays within the result's 32 bits.
+    let deviation = 1.0 / GUARD + CURVATURE + REFERENCE_ERROR + at_grid.fold(0.0, worse);
+    // `E` decreases. With its deviation and the half for rounding it stays within the 32 bits of the result.
     let place = |index: u16| exact((1.0 + f64::from(index) / count) * u);
-    let within = place(index) + off + 0.5 < 1.0 / UNIT && place(index + 1) - off + 0.5 >= 0.0;
+    let within =
+        place(index) + deviation + 0.5 < 1.0 / UNIT && place(index + 1) - deviation + 0.5 >= 0.0;
     if !within || !fits(row) {
         return f64::INFINITY;
     }
-    0.5 + off
+    0.5 + deviation
 }
 
-/// Whether every sum of the evaluation stays within 32 bits for any `t`.
+/// Whether every sum of the evaluation fits in 32 bits for any `t`.
 fn fits(row: &kernel::Row) -> bool {
     let [second, third, fourth, fifth] = row.inner;
     let order = [
@@ -120,7 +121,7 @@ fn fits(row: &kernel::Row) -> bool {
 fn powers(row: &kernel::Row) -> [f64; 8] {
     let [second, third, fourth, fifth] = row.inner.map(|c| f64::from(c) / GUARD);
     let (sixth, seventh) = (f64::from(row.sixth) / GUARD, f64::from(row.seventh) / GUARD);
-    // The low word begins with the bits of the seventh coefficient; one half is for rounding.
+    // The low word starts at the bits of the seventh coefficient; one half was subtracted for rounding.
     let low_word = f64::from(row.seventh as u32) * UNIT;
     let constant = f64::from(row.constant) + low_word + seventh - 0.5;
     let slope = f64::from(row.slope) + sixth;
@@ -129,9 +130,9 @@ fn powers(row: &kernel::Row) -> [f64; 8] {
     ]
 }
 
-/// `E` in units of 2^-32, by enclosing series where they converge at once: for small `z = sqrt(u)` the powers
-/// `(-z)^k / gamma(k/2 + 1)`, for large `z` the asymptotic series. Both alternate and fall: the error is below
-/// the first term left out, here 1e-8 units.
+/// `E` in units of 2^-32. For small `z = sqrt(u)` it is the power series with terms `(-z)^k / gamma(k/2 + 1)`, for large
+/// `z` the asymptotic series. Both alternate with decreasing terms, so the error is below the first omitted term,
+/// here 1e-8 units.
 fn exact(u: f64) -> f64 {
     let z = u.sqrt();
     let pi_root = std::f64::consts::PI.sqrt();

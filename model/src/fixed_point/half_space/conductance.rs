@@ -1,82 +1,89 @@
-//! A resistance in front of a half-space.
+//! Contact resistance in series with a half-space.
 
-use super::{GAIN, GAIN_BITS, HalfSpace};
-use crate::fixed_point::{Celsius, Contact, Fraction, MantissaExponent, Ratio};
+use fixed::types::{I12F20, U0F32, U16F16};
 
-/// A contact resistance in front of a half-space: what flows through it in a tick, for a difference of temperatures.
+use super::{HalfSpace, TICK_GAIN};
+use crate::fixed_point::{
+    Celsius, Contact, Fraction, MantissaExponent, Ratio, product, saturating_product,
+};
+
+/// A contact resistance in series with a [`HalfSpace`], for one tick: gives the scaled flux for a temperature
+/// difference, and the temperature difference for a scaled flux. The default conducts nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactConductance {
-    /// Drive per kelvin between what is in front of the resistance and the surface without this tick's drive, 2^-32.
-    per_k: u32,
-    /// Temperature across the resistance per kelvin of drive, 2^-16.
-    resistance: u32,
+    /// Scaled flux per kelvin between the body in front of the resistance and the free response of the surface:
+    /// the resistance and the half-space's own response of one tick, in series.
+    series: U0F32,
+    /// Temperature difference across the resistance per kelvin of scaled flux.
+    resistance: U16F16,
 }
 
-/// Binary places of a resistance.
-const RESISTANCE_BITS: u32 = 16;
-/// [`GAIN`] in these, rounded.
-const GAIN_HERE: u32 =
-    (GAIN + (1 << (GAIN_BITS - RESISTANCE_BITS) >> 1)) >> (GAIN_BITS - RESISTANCE_BITS);
+/// [`TICK_GAIN`] in the binary places of a resistance, rounded.
+const TICK_RESISTANCE: u32 = {
+    const FEWER: u32 = I12F20::FRAC_NBITS - U16F16::FRAC_NBITS;
+    (TICK_GAIN.to_bits() as u32 + (1 << FEWER >> 1)) >> FEWER
+};
 
 impl ContactConductance {
-    /// Of a resistance; its conductance is right within 1e-5 of itself.
-    const fn new(resistance: u32) -> Self {
-        // 1.2 at least: up to 15 zeros before it.
-        let in_all = resistance.saturating_add(GAIN_HERE);
-        let up = in_all.leading_zeros();
+    /// The series conductance has a relative error of at most 1e-5.
+    const fn new(resistance: U16F16) -> Self {
+        // At least 1.18, so at most 15 zeros lead it.
+        let total = resistance.to_bits().saturating_add(TICK_RESISTANCE);
+        let zeros = total.leading_zeros();
         Self {
-            per_k: inverse(in_all << up) << 1 >> (15 - up),
+            series: U0F32::from_bits(inverse(total << zeros) << 1 >> (15 - zeros)),
             resistance,
         }
     }
 
-    /// Drive of the coming tick, if `in_front` is what the surface would reach without a resistance.
+    /// Scaled flux of the coming tick, K, if the surface would reach a change of `target` kelvin without
+    /// the resistance.
     #[must_use]
-    pub fn scaled_flux(&self, in_front: Celsius, body: &HalfSpace) -> Celsius {
-        let across = in_front.saturating_sub(body.free_response());
-        let drive = (i64::from(across.to_bits()) * i64::from(self.per_k)) >> 32;
-        Celsius::from_bits(drive as i32)
+    pub fn scaled_flux(&self, target: Celsius, half_space: &HalfSpace) -> Celsius {
+        product(
+            target.saturating_sub(half_space.free_response()),
+            self.series,
+        )
     }
 
-    /// Temperature across the resistance under a drive.
+    /// Temperature difference across the resistance under a scaled flux, both in K; saturates.
     #[must_use]
-    pub fn temperature_drop(&self, drive: Celsius) -> Celsius {
-        let across = (i64::from(drive.to_bits()) * i64::from(self.resistance)) >> 16;
-        Celsius::from_bits(across.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+    pub fn temperature_drop(&self, scaled_flux: Celsius) -> Celsius {
+        saturating_product(scaled_flux, self.resistance)
     }
 }
 
-/// `2^62 / n` for `n` from 2^31 on: below 2^31, relative error below 2^-28. A division of 32 bits and a step of
-/// Newton's, because a long division costs three hundred cycles.
+/// `2^62 / n` for `n` from 2^31 on: below 2^31, relative error below 2^-28. A 32-bit division and one step of
+/// Newton's method, because a 64-bit division costs three hundred cycles.
 pub(super) const fn inverse(n: u32) -> u32 {
-    // 2^48 / n, within 2^-15 of itself.
-    let rough = (u32::MAX / (n >> 16 | 1 << 15)) as i64;
-    let missing = (1 << 48) - rough * n as i64;
-    ((rough << 14) + ((rough * (missing >> 17)) >> 17)) as u32
+    // 2^48 / n, relative error below 2^-15.
+    let estimate = (u32::MAX / (n >> 16 | 1 << 15)) as i64;
+    let residual = (1 << 48) - estimate * n as i64;
+    ((estimate << 14) + ((estimate * (residual >> 17)) >> 17)) as u32
 }
 
-/// `ratio / (rate part)`, 16 binary places; saturates.
-fn resistance(ratio: Ratio, rate: MantissaExponent, part: Fraction) -> u32 {
-    let product = u64::from(rate.leading()) * u64::from(part.to_bits());
-    let up = product.leading_zeros();
-    let Some(leading) = product.checked_shl(up) else {
-        return u32::MAX;
+/// `ratio / (rate weight)`; saturates.
+fn resistance(ratio: Ratio, rate: MantissaExponent, weight: Fraction) -> U16F16 {
+    let product = u64::from(rate.leading()) * u64::from(weight.to_bits());
+    let zeros = product.leading_zeros();
+    let Some(leading) = product.checked_shl(zeros) else {
+        return U16F16::MAX;
     };
-    let size = u64::from(ratio.to_bits()) * u64::from(inverse((leading >> 32) as u32));
-    // From the places of the ratio and the inverse to those of a resistance; the product's are 31 and 32, and
-    // 32 of its bits are not in the inverse.
-    const DOWN: i32 = Ratio::FRAC_NBITS as i32 + 62 - (31 + 32 - 32) - RESISTANCE_BITS as i32;
-    match DOWN + rate.exponent() - up as i32 {
-        _ if size == 0 => 0,
+    let quotient = u64::from(ratio.to_bits()) * u64::from(inverse((leading >> 32) as u32));
+    // From the binary places of the quotient to those of a resistance. The product has 31 + 32 places, and the
+    // inverse leaves out 32 of them.
+    const DOWN: i32 = (Ratio::FRAC_NBITS + 62 - (31 + 32 - 32) - U16F16::FRAC_NBITS) as i32;
+    U16F16::from_bits(match DOWN + rate.exponent() - zeros as i32 {
+        _ if quotient == 0 => 0,
         64.. => 0,
-        down @ 0..64 => (size >> down).min(u64::from(u32::MAX)) as u32,
+        down @ 0..64 => (quotient >> down).min(u64::from(u32::MAX)) as u32,
         _ => u32::MAX,
-    }
+    })
 }
 
 impl Contact {
-    /// The skin on the object, with both bodies as one: `in_front` is `w (T_skin,i - T_object,i)`, and what moves is
-    /// the skin, downwards.
+    /// Conductance between skin and object. The [`HalfSpace`] is the cooling of the skin's surface on the
+    /// object; its target is `w (T_skin,i - T_object,i)`.
     #[must_use]
     pub fn object_conductance(&self) -> ContactConductance {
         ContactConductance::new(resistance(
@@ -86,7 +93,8 @@ impl Contact {
         ))
     }
 
-    /// The skin on the display: `in_front` is `T_skin,i - T_display`.
+    /// Conductance between skin and display. The [`HalfSpace`] is the cooling of the skin's surface on the
+    /// display; its target is `T_skin,i - T_display`.
     #[must_use]
     pub fn display_conductance(&self) -> ContactConductance {
         ContactConductance::new(resistance(self.ratio, self.root_rate_per_tick, self.weight))

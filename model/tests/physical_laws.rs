@@ -1,4 +1,4 @@
-//! The contact model at its limits and against laws that hold for any contact, in `f64`, `f32` and integers.
+//! Physical laws that hold for every contact, checked in `f64`, `f32` and fixed point.
 
 use contact_model::fixed_point::{Celsius, Contact as Fixed, ContactPair, Flux, Log2, Ticks};
 use contact_model::material::{
@@ -7,14 +7,14 @@ use contact_model::material::{
 use contact_model::reference::{Contact, Real, interface_temperature};
 use proptest::prelude::*;
 
-/// What the integers may be off, K.
+/// Largest error of temperatures in fixed point, K.
 const FIXED_K: f64 = 2e-6;
-/// What the integer flux may be off as a part of `dT / R`.
-const FIXED_FLUX_PART: f64 = 4e-9;
-/// What `f32` may be off as a part of the temperatures: some roundings.
-const F32_PART: f64 = 2e-6;
+/// Largest error of the flux in fixed point, as a fraction of `dT / R`.
+const FIXED_FLUX: f64 = 4e-9;
+/// Largest error of `f32`, as a fraction of the temperatures.
+const F32_RELATIVE: f64 = 2e-6;
 
-/// Pressures from a touch far below the thesis's to a press far above.
+/// From far below the pressures of the thesis to far above.
 const PRESSURES_PA: std::ops::Range<f64> = 10.0..1e5;
 
 fn contact<F: Real>(skin_c: f64, object: &Material, object_c: f64, pressure_pa: f64) -> Contact<F> {
@@ -27,7 +27,6 @@ fn contact<F: Real>(skin_c: f64, object: &Material, object_c: f64, pressure_pa: 
     )
 }
 
-/// One tick of `tick_s`.
 fn fixed(skin: &Material, object: &Material, pressure_pa: f64, tick_s: f64) -> Fixed {
     ContactPair::new(skin, object, &REFERENCE_DISPLAY, tick_s)
         .expect("within the domain")
@@ -40,7 +39,7 @@ fn celsius(t_c: f64) -> Celsius {
     Celsius::from_num(t_c)
 }
 
-/// Any solid between foam and copper, and rougher or smoother than both.
+/// Solids between foam and copper, with a wider range of surface finishes.
 fn any_material() -> impl Strategy<Value = Material> {
     (
         0.02..400.0f64,
@@ -64,9 +63,9 @@ fn any_material() -> impl Strategy<Value = Material> {
         )
 }
 
-/// Surface temperature change of a half-space of effusivity `e` from which `flux` is drawn, by Duhamel's integral
-/// `1 / (e sqrt(pi)) * integral of q(s) / sqrt(t - s) ds`; with `s = t cos²θ` that is `2 sqrt(t) cosθ dθ`, and
-/// smooth.
+/// Change of the surface temperature of a half-space of effusivity `e` that loses `flux`, by Duhamel's integral
+/// `1 / (e sqrt(pi)) * integral of q(s) / sqrt(t - s) ds`; the substitution `s = t cos²θ` gives the
+/// smooth integrand `2 sqrt(t) q cosθ`.
 fn duhamel(e: f64, t_s: f64, flux: impl Fn(f64) -> f64) -> f64 {
     const STEPS: u32 = 20_000;
     let h = std::f64::consts::FRAC_PI_2 / f64::from(STEPS);
@@ -87,9 +86,8 @@ fn duhamel(e: f64, t_s: f64, flux: impl Fn(f64) -> f64) -> f64 {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// The flux, integrated, gives back both surface temperatures: energy is neither lost nor made.
     #[test]
-    fn flux_integrates_to_the_surface_temperatures(
+    fn energy_is_conserved_the_integrated_flux_gives_both_surface_temperatures(
         object in any_material(),
         skin_c in 15.0..42.0f64,
         object_c in -40.0..125.0f64,
@@ -106,9 +104,8 @@ proptest! {
         prop_assert!((at.object_c - object_c - rise).abs() < bound, "{} {rise}", at.object_c - object_c);
     }
 
-    /// The same for the integers.
     #[test]
-    fn integer_flux_integrates_to_the_integer_temperatures(
+    fn energy_is_conserved_in_fixed_point(
         index in 0..MATERIALS.len(),
         skin_c in 28.0..36.0f64,
         object_c in 0.0..60.0f64,
@@ -125,31 +122,29 @@ proptest! {
         prop_assert!(error.abs() < 4.0 * FIXED_K, "{error}");
     }
 
-    /// What the object is to the skin, the skin is to the object.
     #[test]
-    fn exchange_of_skin_and_object_mirrors_everything(
+    fn exchange_of_skin_and_object_exchanges_temperatures_and_reverses_the_flux(
         object in any_material(),
         skin_c in -40.0..125.0f64,
         object_c in -40.0..125.0f64,
         pressure_pa in PRESSURES_PA,
         t_s in 1e-4..100.0f64,
     ) {
-        let here = fixed(&SKIN, &object, pressure_pa, t_s).at(1, celsius(skin_c), celsius(object_c));
-        let there = fixed(&object, &SKIN, pressure_pa, t_s).at(1, celsius(object_c), celsius(skin_c));
+        let original = fixed(&SKIN, &object, pressure_pa, t_s).at(1, celsius(skin_c), celsius(object_c));
+        let exchanged = fixed(&object, &SKIN, pressure_pa, t_s).at(1, celsius(object_c), celsius(skin_c));
         let same = |a: Celsius, b: Celsius| (a.to_num::<f64>() - b.to_num::<f64>()).abs() < FIXED_K;
-        prop_assert!(same(here.skin(), there.object()), "{} {}", here.skin(), there.object());
-        prop_assert!(same(here.object(), there.skin()), "{} {}", here.object(), there.skin());
-        let (out, back) = (here.flux_w_m2().to_num::<f64>(), there.flux_w_m2().to_num::<f64>());
+        prop_assert!(same(original.skin(), exchanged.object()), "{} {}", original.skin(), exchanged.object());
+        prop_assert!(same(original.object(), exchanged.skin()), "{} {}", original.object(), exchanged.skin());
+        let (out, back) = (original.flux_w_m2().to_num::<f64>(), exchanged.flux_w_m2().to_num::<f64>());
         let contact = contact::<f64>(skin_c, &object, object_c, pressure_pa);
         // The temperatures are rounded, and so is the flux.
-        let step_k = (skin_c - object_c).abs() * FIXED_FLUX_PART + 2.0 * Celsius::DELTA.to_num::<f64>();
-        let bound = 2.0 * (step_k / contact.resistance_m2k_w + Flux::DELTA.to_num::<f64>());
+        let bound_k = (skin_c - object_c).abs() * FIXED_FLUX + 2.0 * Celsius::DELTA.to_num::<f64>();
+        let bound = 2.0 * (bound_k / contact.resistance_m2k_w + Flux::DELTA.to_num::<f64>());
         prop_assert!((out + back).abs() <= bound, "{out} {back} {bound}");
     }
 
-    /// Two of a kind share the difference.
     #[test]
-    fn equal_effusivities_meet_in_the_middle(
+    fn equal_effusivities_keep_the_mean_temperature(
         skin_c in -40.0..125.0f64,
         object_c in -40.0..125.0f64,
         pressure_pa in PRESSURES_PA,
@@ -160,9 +155,8 @@ proptest! {
         prop_assert!((sum - skin_c - object_c).abs() < 2.0 * FIXED_K, "{sum}");
     }
 
-    /// Nothing happens between equals, at any time and force: exactly.
     #[test]
-    fn equal_temperatures_stay_as_they_are(
+    fn equal_temperatures_stay_exactly_constant_without_flux(
         object in any_material(),
         bits in -(40 << 22)..125i32 << 22,
         pressure_pa in PRESSURES_PA,
@@ -174,9 +168,8 @@ proptest! {
         prop_assert_eq!(at.flux_w_m2(), 0);
     }
 
-    /// Integers, single and double precision tell the same story.
     #[test]
-    fn the_three_paths_agree(
+    fn fixed_point_single_and_double_precision_agree(
         object in any_material(),
         skin_c in -40.0..125.0f64,
         object_c in -40.0..125.0f64,
@@ -187,59 +180,58 @@ proptest! {
         let exact = contact::<f64>(skin_c, &object, object_c, pressure_pa).at(t_s);
         let single = contact::<f32>(skin_c, &object, object_c, pressure_pa).at(t_s as f32);
         let integer = fixed(&SKIN, &object, pressure_pa, t_s).at(1, celsius(skin_c), celsius(object_c));
-        // The set-point is on the scale of r times the step.
+        // The set-point scales with r times the temperature difference.
         let ratio = contact::<f64>(skin_c, &object, object_c, pressure_pa).ratio;
         let scale = 125.0 + 60.0 + ratio * (skin_c - object_c).abs();
-        let step_k = (skin_c - object_c).abs().max(60.0) / 60.0 * ratio.max(1.0);
+        let bound_k = (skin_c - object_c).abs().max(60.0) / 60.0 * ratio.max(1.0);
         for (exact, single, integer) in [
             (exact.skin_c, single.skin_c, integer.skin()),
             (exact.object_c, single.object_c, integer.object()),
             (exact.display_c, single.display_c, integer.display()),
         ] {
-            prop_assert!((f64::from(single) - exact).abs() < F32_PART * scale, "{single} {exact}");
-            // Beyond the range of the type it saturates.
+            prop_assert!((f64::from(single) - exact).abs() < F32_RELATIVE * scale, "{single} {exact}");
+            // Beyond the range of the type the fixed-point path saturates.
             if exact.abs() < 500.0 {
-                prop_assert!((integer.to_num::<f64>() - exact).abs() < FIXED_K * step_k, "{integer} {exact}");
+                prop_assert!((integer.to_num::<f64>() - exact).abs() < FIXED_K * bound_k, "{integer} {exact}");
             }
         }
     }
 }
 
-/// After ages Eq. 3-1 holds.
 #[test]
-fn time_runs_to_equation_3_1() {
+fn temperatures_approach_equation_3_1_after_a_long_time() {
     for (name, object) in &MATERIALS {
         for (skin_c, object_c) in [(34.0, 24.0), (28.0, 60.0), (-40.0, 125.0), (36.0, -24.0)] {
             let exact = contact::<f64>(skin_c, object, object_c, 10_980.0);
-            // So long that 1 / (z sqrt(pi)) of the step is below a microkelvin.
+            // So long that 1 / (z sqrt(pi)) of the temperature difference is below a microkelvin.
             let t_s = 1e16 / exact.rate_per_s;
-            let ages =
+            let late =
                 fixed(&SKIN, object, 10_980.0, t_s).at(1, celsius(skin_c), celsius(object_c));
-            let meeting_c = interface_temperature(&SKIN, skin_c, object, object_c);
-            for t in [ages.skin(), ages.object(), ages.display()] {
-                let error_k = t.to_num::<f64>() - meeting_c;
-                assert!(error_k.abs() < FIXED_K, "{name}: {t} {meeting_c}");
+            let interface_c = interface_temperature(&SKIN, skin_c, object, object_c);
+            for t in [late.skin(), late.object(), late.display()] {
+                let error_k = t.to_num::<f64>() - interface_c;
+                assert!(error_k.abs() < FIXED_K, "{name}: {t} {interface_c}");
             }
         }
     }
 }
 
-/// Every hour of 24 days at 1 kHz: the count of ticks times the rate is exact, nothing accumulates.
+/// Every hour of 24 days at 1 kHz. The product of tick count and rate is exact, so no error accumulates.
 #[test]
-fn days_of_contact_do_not_drift() {
+fn error_does_not_grow_over_days_of_contact() {
     for (name, object) in &MATERIALS {
         let exact = contact::<f64>(34.0, object, 24.0, 10_980.0);
         let integer = fixed(&SKIN, object, 10_980.0, 1e-3);
         for hour in 1..=Ticks::MAX.get() / 3_600_000 {
             let ticks = hour * 3_600_000;
-            let wanted = exact.at(f64::from(ticks) * 1e-3).display_c;
-            let got: f64 = integer
+            let expected = exact.at(f64::from(ticks) * 1e-3).display_c;
+            let display_c: f64 = integer
                 .at(ticks, celsius(34.0), celsius(24.0))
                 .display()
                 .to_num();
             assert!(
-                (got - wanted).abs() < FIXED_K,
-                "{name}, hour {hour}: {got} {wanted}"
+                (display_c - expected).abs() < FIXED_K,
+                "{name}, hour {hour}: {display_c} {expected}"
             );
         }
     }

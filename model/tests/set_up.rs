@@ -1,4 +1,4 @@
-//! Invariants of the fixed-point path; `budgets` measures its errors.
+//! Set-up of the fixed-point path from materials, and the range of its outputs.
 
 use contact_model::fixed_point::{
     Celsius, Contact, ContactPair, ContactPairError, Force, log2_relative_pressure,
@@ -16,24 +16,24 @@ proptest! {
         force in 0.001..20.0f64,
     ) {
         let contact = fixed_contact(&MATERIALS[index].1, force, 1e-3);
-        let at = contact.at(elapsed, Celsius::from_num(skin), Celsius::from_num(object));
-        let between = |t: Celsius| {
+        let response = contact.at(elapsed, Celsius::from_num(skin), Celsius::from_num(object));
+        let is_between = |t: Celsius| {
             t.to_num::<f64>() >= skin.min(object) - 2e-6 && t.to_num::<f64>() <= skin.max(object) + 2e-6
         };
-        prop_assert!(between(at.skin()) && between(at.object()));
-        prop_assert!((at.object() <= at.skin() + Celsius::DELTA * 8) == (object <= skin + 1e-6)
-            || (at.object() - at.skin()).abs() < Celsius::DELTA * 8);
+        prop_assert!(is_between(response.skin()) && is_between(response.object()));
+        prop_assert!((response.object() <= response.skin() + Celsius::DELTA * 8) == (object <= skin + 1e-6)
+            || (response.object() - response.skin()).abs() < Celsius::DELTA * 8);
     }
 }
 
 fn fixed_contact(object: &Material, force_n: f64, tick_s: f64) -> Contact {
     ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)
-        .expect("pairing")
+        .expect("material within the range")
         .at_pressure(log2_relative_pressure(Force::from_num(force_n)))
 }
 
 #[test]
-fn a_material_that_does_not_fit_is_refused_by_name() {
+fn material_outside_the_range_is_refused_with_the_name_of_the_property() {
     let copper = *find("copper").expect("material");
     let with = |change: fn(&mut Material)| {
         let mut material = copper;
@@ -72,6 +72,6 @@ fn a_material_that_does_not_fit_is_refused_by_name() {
     ));
     assert!(matches!(
         with_skin(|m| m.surface.conductivity_w_mk = 1e-300),
-        Err(ContactPairError::MantissaExponent(_))
+        Err(ContactPairError::OutOfRange(_))
     ));
 }
