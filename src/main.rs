@@ -26,7 +26,7 @@ mod app {
     use thermal_display::device::command::Addressed;
     use thermal_display::device::safety::Fault;
     use thermal_display::device::sense::Samples;
-    use thermal_display::device::{Device, Telemetry};
+    use thermal_display::device::{Device, Finger, Telemetry};
     use thermal_display::settings::Settings;
     use thermal_display::task_liveness::{Task, TaskLiveness};
 
@@ -71,17 +71,17 @@ mod app {
         let fingers = cx
             .local
             .fingers
-            .insert(Device::after(cause, &Settings::default()));
+            .insert(Device::with_cause(cause, &Settings::default()));
         match &found.kept {
-            Ok(Some(kept)) => fingers.restore(kept),
+            Ok(Some(kept)) => fingers.restore_settings(kept),
             Ok(None) => {}
-            Err(_) => fingers.trip(Fault::SettingsCorrupt),
+            Err(_) => fingers.trip_all(Fault::SettingsCorrupt),
         }
-        for finger in 0..FINGERS {
-            fingers.resume(finger, kept_dose(finger));
+        for finger in Finger::all() {
+            fingers.restore_dose(finger, kept_dose(finger));
         }
         // What the flash says it says again after a reset, unless other settings are stored.
-        let record = Record::new(fingers.tripped().copied());
+        let record = Record::new(fingers.earliest_cause().copied());
         let board = Board::new(cx.core.SYST, cx.device, cx.local.memory, &found);
         let shared = Shared {
             fingers,
@@ -133,33 +133,30 @@ mod app {
                 stages.iter_mut().for_each(PowerStage::off);
                 cx.shared.sampler.stop();
                 fingers.lock(|fingers| {
-                    fingers.trip(error.fault());
-                    cx.shared.record.follow(fingers.tripped());
+                    fingers.trip_all(error.fault());
+                    cx.shared.record.follow(fingers.earliest_cause());
                 });
                 return defmt::error!("sampling stopped: {}", error);
             }
         };
         cx.local.window_watchdog.feed();
-        // There is one for each finger.
-        let Some(stage) = stages.get_mut(finger) else {
-            return;
-        };
+        let stage = &mut stages[finger.index()];
         let samples = Samples::from_scans(scans, stage.fault());
         let heard = cx.shared.heard.swap(false, Ordering::Relaxed);
         let outputs = fingers.lock(|fingers| {
             if heard {
-                fingers.hear();
+                fingers.note_host_activity();
             }
             if stack_is_overrun() {
-                fingers.trip(Fault::Stack);
+                fingers.trip_all(Fault::Stack);
             }
             if !*cx.local.has_clock {
-                fingers.trip(Fault::Clock);
+                fingers.trip_all(Fault::Clock);
             }
             let outputs = fingers.step(finger, &samples);
             // Five are not asked on every tick of one.
             if cx.shared.record.keeps() || fingers.is_tripped(finger) {
-                cx.shared.record.follow(fingers.tripped());
+                cx.shared.record.follow(fingers.earliest_cause());
             }
             keep_dose(finger, fingers.dose(finger));
             outputs
@@ -184,8 +181,8 @@ mod app {
         cx.shared.stages.iter_mut().for_each(PowerStage::off);
         cx.shared.sampler.stop();
         cx.shared.fingers.lock(|fingers| {
-            fingers.trip(Fault::Sampling);
-            cx.shared.record.follow(fingers.tripped());
+            fingers.trip_all(Fault::Sampling);
+            cx.shared.record.follow(fingers.earliest_cause());
         });
         defmt::error!("sampling stopped: converter overrun");
     }
@@ -212,7 +209,7 @@ mod app {
         let fingers = &mut cx.shared.fingers;
         cx.local
             .console
-            .serve(|request| fingers.lock(|fingers| fingers.execute(request)));
+            .serve(|finger, command| fingers.lock(|fingers| fingers.execute(finger, command)));
         cx.shared.task_liveness.check_in(Task::Host);
     }
 }

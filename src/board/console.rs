@@ -45,7 +45,7 @@ impl Console {
     /// What waits stays in its queue, so that answers are never lost and only telemetry that finds its
     /// queue full is. `execute` is called with requests that are parsed, checked and computed, since
     /// that takes longer than executing and needs no lock.
-    pub fn serve(&mut self, mut execute: impl Execute) {
+    pub fn serve(&mut self, mut execute: impl Execute<FINGERS>) {
         while self.outbox.has_room() {
             if let Some(order) = self.order {
                 if self.outbox.is_empty() {

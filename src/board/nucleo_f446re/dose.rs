@@ -2,6 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
+use thermal_display::device::Finger;
 use thermal_display::device::safety::Dose;
 
 use super::FINGERS;
@@ -12,10 +13,8 @@ use super::record::check;
 static KEPT: [[AtomicU32; 2]; FINGERS] = [const { [const { AtomicU32::new(0) }; 2] }; FINGERS];
 
 /// What is kept of a finger; nothing if that is noise.
-pub fn kept(finger: usize) -> Dose {
-    let Some([dose, sum]) = KEPT.get(finger) else {
-        return Dose::default();
-    };
+pub fn kept(finger: Finger<FINGERS>) -> Dose {
+    let [dose, sum] = &KEPT[finger.index()];
     let word = dose.load(Ordering::Relaxed);
     if check(&[word]) == sum.load(Ordering::Relaxed) {
         Dose::from_word(word)
@@ -25,10 +24,8 @@ pub fn kept(finger: usize) -> Dose {
 }
 
 /// Keeps a finger's.
-pub fn keep(finger: usize, dose: &Dose) {
-    let Some(place) = KEPT.get(finger) else {
-        return;
-    };
+pub fn keep(finger: Finger<FINGERS>, dose: &Dose) {
+    let place = &KEPT[finger.index()];
     let [kept, _] = place;
     // It changes four times a second.
     if kept.load(Ordering::Relaxed) != dose.to_word() {

@@ -16,9 +16,9 @@ use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, DMA2, TIM2, tim2};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::timer::{CounterHz, Timer};
-use thermal_display::device::TICK_HZ;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Scan};
+use thermal_display::device::{Finger, TICK_HZ};
 
 use super::log;
 use super::timekeeper::Timekeeper;
@@ -81,7 +81,7 @@ pub struct Sampler {
     last: CurrentBuffer,
     multiplexer: Multiplexer,
     /// The finger whose block is being filled.
-    finger: usize,
+    finger: Finger<FINGERS>,
     timekeeper: Timekeeper,
 }
 
@@ -127,7 +127,7 @@ impl Sampler {
             spare: Some(spare),
             last: CurrentBuffer::SecondBuffer,
             multiplexer,
-            finger: 0,
+            finger: Finger::FIRST,
             timekeeper,
         };
         (sampler, Trigger(timer.counter_hz()))
@@ -137,11 +137,11 @@ impl Sampler {
     ///
     /// # Errors
     /// [`SampleError`]; samples are then missing and control cannot go on.
-    pub fn take(&mut self) -> Result<(usize, &[Scan; SCANS_PER_TICK]), SampleError> {
+    pub fn take(&mut self) -> Result<(Finger<FINGERS>, &[Scan; SCANS_PER_TICK]), SampleError> {
         // First, as it is the tick's begin that counts; what else is wrong says more.
         let in_time = self.timekeeper.take();
         let finger = self.finger;
-        self.finger = if finger + 1 < FINGERS { finger + 1 } else { 0 };
+        self.finger = finger.next_cyclic();
         self.multiplexer.select(self.finger);
         if Multiplexer::SETTLING_SCANS != 0 && self.has_completed_a_scan() {
             return Err(SampleError::LateSwitch);
@@ -162,7 +162,7 @@ impl Sampler {
         }
         self.last = which;
         in_time?;
-        if finger == 0 {
+        if finger == Finger::FIRST {
             log::count_tick();
         }
         let scans = self

@@ -14,6 +14,7 @@ pub mod command;
 pub mod control;
 mod device;
 pub mod drive;
+mod finger;
 mod hold;
 pub mod identification;
 pub mod reference;
@@ -23,6 +24,7 @@ mod station;
 mod telemetry;
 
 pub use device::Device;
+pub use finger::Finger;
 pub use safety::State;
 pub use station::Station;
 pub use telemetry::Telemetry;

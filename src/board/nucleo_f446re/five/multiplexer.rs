@@ -2,6 +2,9 @@
 
 use stm32f4xx_hal::gpio::outport::{OutPort, OutPort3};
 use stm32f4xx_hal::gpio::{Input, PC10, PC11, PC12};
+use thermal_display::device::Finger;
+
+use super::FINGERS;
 
 /// The lines that choose.
 pub struct Multiplexer(OutPort3<'C', 10, 11, 12>);
@@ -18,12 +21,12 @@ impl Multiplexer {
             bit2.into_push_pull_output(),
         );
         let mut multiplexer = Self(lines.outport());
-        multiplexer.select(0);
+        multiplexer.select(Finger::FIRST);
         multiplexer
     }
 
     /// Shows a finger; all lines change at once.
-    pub fn select(&mut self, finger: usize) {
-        self.0.write(finger as u32);
+    pub fn select(&mut self, finger: Finger<FINGERS>) {
+        self.0.write(finger.number().into());
     }
 }

@@ -15,6 +15,7 @@
 mod power;
 
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1};
+use thermal_display::device::Finger;
 
 pub use power::PowerStage;
 
@@ -34,7 +35,7 @@ impl Multiplexer {
     pub const SETTLING_SCANS: usize = 0;
 
     /// Nothing to do.
-    pub fn select(&mut self, _finger: usize) {}
+    pub fn select(&mut self, _finger: Finger<FINGERS>) {}
 }
 
 /// The bridge high-impedance, whatever the program was doing; for the end of it.
