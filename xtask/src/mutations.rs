@@ -244,7 +244,7 @@ const MUTATIONS: [Mutation; 33] = [
     ),
     mutation(
         "pace",
-        "src/board/nucleo_f446re/timekeeper.rs",
+        "src/board/nucleo_f446re/clock_monitor.rs",
         "if !self.pace.keeps(SYST::get_current()) {",
         "if !self.pace.keeps(SYST::get_current()) && FINGERS > 9 {",
         &["register-bit"],
@@ -252,7 +252,7 @@ const MUTATIONS: [Mutation; 33] = [
     .of_image(),
     mutation(
         "clocks",
-        "src/board/nucleo_f446re/timekeeper.rs",
+        "src/board/nucleo_f446re/clock_monitor.rs",
         "if clocks() != self.clocks {",
         "if clocks() != self.clocks && FINGERS > 9 {",
         &["register-bit"],
@@ -268,7 +268,7 @@ const MUTATIONS: [Mutation; 33] = [
     .of_image(),
     mutation(
         "roll-call",
-        "src/board/vigil.rs",
+        "src/task_liveness.rs",
         "const ALL: u8 = Task::Tick as u8 | Task::Host as u8;",
         "const ALL: u8 = Task::Tick as u8;",
         &["register-bit"],
@@ -284,7 +284,7 @@ const MUTATIONS: [Mutation; 33] = [
     .of_image(),
     mutation(
         "window watchdog",
-        "src/board/nucleo_f446re/window.rs",
+        "src/board/nucleo_f446re/window_watchdog.rs",
         "w.wdga().enabled()",
         "w.wdga().disabled()",
         &["hung-core"],

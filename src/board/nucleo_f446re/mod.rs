@@ -19,23 +19,23 @@
 //! `bridge enable` acts on DISABLE of the DRV8873, through a transistor that inverts it (DISABLE is pulled up).
 //! nSLEEP stays high: a bridge that wakes up may report a fault until its charge pump runs.
 
-mod dose;
-mod fatal;
+mod clock_monitor;
+mod fatal_errors;
+mod fault_record;
 #[cfg(feature = "five-fingers")]
-mod five;
+mod five_fingers;
 mod flash;
 mod log;
 #[cfg(not(feature = "five-fingers"))]
-mod one;
-mod record;
+mod one_finger;
 mod reset;
 mod sampler;
+mod saved_dose;
 mod serial;
+mod settings_storage;
 mod stack;
-mod store;
-mod timekeeper;
 mod watchdog;
-mod window;
+mod window_watchdog;
 
 use cortex_m::peripheral::SYST;
 use heapless::spsc::{Producer, Queue};
@@ -49,24 +49,24 @@ use thermal_display::mailbox::Mailbox;
 use thermal_display::protocol::{Desk, Error, Reason, Reply};
 use thermal_display::settings::Settings;
 
-pub use dose::{keep as keep_dose, kept as kept_dose};
+pub use fault_record::Record;
 #[cfg(feature = "five-fingers")]
-use five as wiring;
+use five_fingers as wiring;
 #[cfg(not(feature = "five-fingers"))]
-use one as wiring;
-pub use record::Record;
+use one_finger as wiring;
 pub use sampler::{Sampler, Trigger};
+pub use saved_dose::{keep as keep_dose, kept as kept_dose};
 pub use serial::{End, Outbox, Receiver, Transmitter};
+pub use settings_storage::{Found, at_start, restart};
 pub use stack::is_overrun as stack_is_overrun;
 pub use stm32f4xx_hal::pac;
-pub use store::{Found, at_start, restart};
 pub use watchdog::Watchdog;
-pub use window::WindowWatchdog;
+pub use window_watchdog::WindowWatchdog;
 pub use wiring::{FINGERS, PowerStage};
 
 use super::console::Console;
+use clock_monitor::Timekeeper;
 use reset::Reset;
-use timekeeper::Timekeeper;
 
 /// Telemetry that may wait for the host task: what it can be late, in ticks, before a line is left out.
 const TELEMETRY_DEPTH: usize = 8 * FINGERS;
@@ -102,16 +102,16 @@ pub fn first_cause(rcc: &pac::RCC) -> Option<Cause> {
     stack::arm();
     let reset = Reset::of(rcc);
     if reset == Reset::PowerOn {
-        dose::forget();
+        saved_dose::forget();
     }
-    let mut cause = record::of_reset(reset, store::is_planned());
+    let mut cause = fault_record::of_reset(reset, settings_storage::is_planned());
     // The end of a program, without a tick that has seen why, is what comes of an overrun. Not so of the first start of
     // another program, whose stack may lie here.
     let unseen = |cause: Cause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
     if overrun && cause.is_some_and(unseen) {
-        record::forget();
-        record::keep(&Cause::alone(Fault::Stack));
-        cause = record::kept();
+        fault_record::forget();
+        fault_record::keep(&Cause::alone(Fault::Stack));
+        cause = fault_record::kept();
     }
     // Only now that the cause is kept.
     Reset::clear(rcc);

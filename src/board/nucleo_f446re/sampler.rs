@@ -20,8 +20,8 @@ use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Scan};
 use thermal_display::device::{Finger, TICK_HZ};
 
+use super::clock_monitor::Timekeeper;
 use super::log;
-use super::timekeeper::Timekeeper;
 use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME};
 
 /// Scans of one block: those of a finger's tick, after those that may show the finger before.

@@ -6,7 +6,7 @@ use thermal_display::device::Finger;
 use thermal_display::device::safety::Dose;
 
 use super::FINGERS;
-use super::record::check;
+use super::fault_record::check;
 
 /// The dose and its check, of each finger.
 #[unsafe(link_section = ".uninit.dose")]

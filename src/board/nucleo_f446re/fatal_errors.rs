@@ -10,13 +10,13 @@ use cortex_m_rt::{ExceptionFrame, exception};
 
 use thermal_display::device::safety::{Cause, Fault};
 
-use super::{record, watchdog, wiring};
+use super::{fault_record, watchdog, wiring};
 
 /// Every bridge high-impedance, for good; why is kept.
 fn end(fault: Fault) {
     cortex_m::interrupt::disable();
     wiring::cut();
-    record::keep(&Cause::alone(fault));
+    fault_record::keep(&Cause::alone(fault));
 }
 
 /// Whether this is the first time that the end is reported: logging may be what failed.
