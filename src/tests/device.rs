@@ -17,8 +17,8 @@ fn host<const FINGERS: usize>(device: &mut Device<FINGERS>, line: &str) -> Strin
     done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
 }
 
-/// Samples of a device without a fault: 26 °C, the skin 34 °C, no force. `noise`, in counts, lets them differ from tick to
-/// tick, as a sensor's samples do that is not frozen.
+/// Samples of a device without a fault: 26 °C, the skin 34 °C, no force. `noise`, in counts, lets
+/// them differ from tick to tick, as a sensor's samples do that is not frozen.
 pub fn samples(noise: u16) -> Samples {
     let count = |counts: u16| counts * SCANS_PER_TICK as u16;
     Samples {
@@ -33,7 +33,8 @@ pub fn samples(noise: u16) -> Samples {
     }
 }
 
-/// Arms a finger and simulates, during its self-test, a display that responds to the current and a comparator that works.
+/// Arms a finger and simulates, during its self-test, a display that responds to the current and a
+/// comparator that works.
 pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: Finger<FINGERS>) {
     let number = finger.number();
     host(device, &format!("@{number} arm"));
@@ -86,7 +87,8 @@ fn a_command_is_executed_by_the_addressed_finger_or_by_all() {
         let expected = if finger == 3 { "preset" } else { "off" };
         assert_eq!(state_of(&mut device, finger), expected, "{finger}");
     }
-    // Finger 0 is the first to refuse: it is not armed. Finger 3 would refuse too, because it has started already.
+    // Finger 0 is the first to refuse: it is not armed. Finger 3 would refuse too, because it has
+    // started already.
     assert_eq!(host(&mut device, "start"), "@0 err start needs arm first");
     arm(&mut device, finger(0));
     assert_eq!(

@@ -253,8 +253,8 @@ const MUTATIONS: [Mutation; 33] = [
     mutation(
         "clocks",
         "src/board/nucleo_f446re/clock_monitor.rs",
-        "if clocks() != self.clocks {",
-        "if clocks() != self.clocks && FINGERS > 9 {",
+        "if clock_settings() != self.clock_settings {",
+        "if clock_settings() != self.clock_settings && FINGERS > 9 {",
         &["register-bit"],
     )
     .of_image(),
@@ -267,7 +267,7 @@ const MUTATIONS: [Mutation; 33] = [
     )
     .of_image(),
     mutation(
-        "roll-call",
+        "task liveness",
         "src/task_liveness.rs",
         "const ALL: u8 = Task::Tick as u8 | Task::Host as u8;",
         "const ALL: u8 = Task::Tick as u8;",

@@ -1,11 +1,13 @@
-//! Whether ticks come at their rate, and whether the clocks are those that were set.
+//! The clock monitor: checks the rate of the ticks and the clock settings.
 //!
-//! Everything that lasts is counted in ticks. What makes them is one timer, TIM2, behind two prescalers; a wrong bit in any
-//! of them would stretch or shorten all of that, while everything else works. SysTick counts the core's clock and shares
-//! none of these with it; it goes on while the core waits for interrupts, and needs no interrupt itself. What both share is
-//! looked at: the register that divides the core's clock.
+//! All durations of the device are counted in ticks, which the timer TIM2 generates through two
+//! prescalers. A wrong bit in the timer or in a prescaler would scale every duration, and nothing
+//! else would fail. SysTick counts the clock of the core, independently of TIM2 and its prescalers,
+//! also while the core waits for interrupts, and needs no interrupt of its own. The prescaler of
+//! the core's clock acts on both, so its register is compared with the value that was set.
 //!
-//! What is in front of it, the 8 MHz themselves, this cannot tell.
+//! The monitor cannot detect a wrong frequency of the 8 MHz oscillator, from which both counters
+//! are derived.
 
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
@@ -16,41 +18,43 @@ use thermal_display::device::safety::Pace;
 use super::sampler::SampleError;
 use super::wiring::FINGERS;
 
-/// All of the counter's 24 bits.
-const ROUND: u32 = 0xff_ffff;
+/// Reload value of SysTick: the largest that its 24 bits hold.
+const RELOAD: u32 = 0xff_ffff;
 
-/// The counter, and what it showed.
-pub struct Timekeeper {
+/// Compares the ticks with SysTick, and the clock settings with those of the start.
+pub struct ClockMonitor {
     pace: Pace,
-    /// RCC_CFGR as it was set.
-    clocks: u32,
+    /// The register RCC_CFGR, as the start has set it.
+    clock_settings: u32,
 }
 
-/// RCC_CFGR.
-fn clocks() -> u32 {
-    // SAFETY: a load without effect from a register that only the start writes.
+/// The register RCC_CFGR: source and prescalers of the clocks.
+fn clock_settings() -> u32 {
+    // SAFETY: a load without side effects, from a register that is written at the start only.
     unsafe { &*RCC::ptr() }.cfgr().read().bits()
 }
 
-impl Timekeeper {
-    /// Starts the counter, for blocks of samples that are taken one for each finger a tick, with a core clock of `hclk_hz`.
+impl ClockMonitor {
+    /// Starts SysTick, on a core clock of `hclk_hz`. Checks are expected once for each finger and
+    /// tick.
     pub fn new(mut counter: SYST, hclk_hz: u32) -> Self {
         counter.set_clock_source(SystClkSource::Core);
-        counter.set_reload(ROUND);
+        counter.set_reload(RELOAD);
         counter.clear_current();
         counter.enable_counter();
         Self {
             pace: Pace::new(hclk_hz / (TICK_HZ * FINGERS as u32)),
-            clocks: clocks(),
+            clock_settings: clock_settings(),
         }
     }
 
-    /// A block of samples is there.
+    /// Checks clocks and rate; to be called when a block of samples is complete.
     ///
     /// # Errors
-    /// It has not come when it was due, or the clocks are others.
-    pub fn take(&mut self) -> Result<(), SampleError> {
-        if clocks() != self.clocks {
+    /// [`SampleError::Clocks`] if the clock settings have changed, [`SampleError::Pace`] if the
+    /// block is early or late.
+    pub fn check(&mut self) -> Result<(), SampleError> {
+        if clock_settings() != self.clock_settings {
             return Err(SampleError::Clocks);
         }
         if !self.pace.keeps(SYST::get_current()) {

@@ -1,7 +1,8 @@
-//! When the program cannot go on: bridges off, say why, wait for the watchdog.
+//! Handlers of errors after which the program cannot continue: they turn the bridges off, log the
+//! error, and wait until the watchdog resets the device.
 //!
-//! The watchdog rather than a reset at once, so that the log can be read, and a fault that comes back after
-//! every start does not flicker.
+//! They do not reset it at once, so that a debug probe has time to read the log, and so that a
+//! fault which recurs at every start does not cause a rapid series of resets.
 
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -12,21 +13,24 @@ use thermal_display::device::safety::{Cause, Fault};
 
 use super::{fault_record, watchdog, wiring};
 
-/// Every bridge high-impedance, for good; why is kept.
-fn end(fault: Fault) {
+/// Disables interrupts, turns all bridges off and stores `fault` as the cause of the reset that
+/// will follow.
+fn shut_down(fault: Fault) {
     cortex_m::interrupt::disable();
-    wiring::cut();
-    fault_record::keep(&Cause::alone(fault));
+    wiring::disable_bridges();
+    fault_record::store_if_empty(&Cause::alone(fault));
 }
 
-/// Whether this is the first time that the end is reported: logging may be what failed.
+/// Whether no handler has logged yet. Only the first error is logged, because logging may be what
+/// raised the next one.
 fn first_report() -> bool {
     static REPORTED: AtomicBool = AtomicBool::new(false);
     !REPORTED.swap(true, Ordering::Relaxed)
 }
 
-/// 47 ms, or at most 188 when its clock is what failed; a second at most where the start has not come so far. Awake, so that
-/// the probe can read the log.
+/// Waits for the reset by a watchdog: 47 ms, or at most 188 ms if the clock of the window watchdog
+/// has failed, or at most a second if the start-up has not set the watchdogs up yet. The processor
+/// stays awake, so that the debug probe can read the log.
 fn wait_for_watchdog() -> ! {
     watchdog::start();
     loop {
@@ -36,17 +40,18 @@ fn wait_for_watchdog() -> ! {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    end(Fault::Panic);
+    shut_down(Fault::Panic);
     if first_report() {
         defmt::error!("{}", defmt::Display2Format(info));
     }
     wait_for_watchdog()
 }
 
-// SAFETY: `unsafe` because memory may be corrupt. It reads the frame that the processor has just stacked.
+// SAFETY: `unsafe` because memory may be corrupt. The handler reads the frame that the processor
+// has just stacked.
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    end(Fault::HardFault);
+    shut_down(Fault::HardFault);
     if first_report() {
         defmt::error!(
             "hard fault at pc {=u32:#x}, lr {=u32:#x}",
@@ -57,20 +62,20 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
     wait_for_watchdog()
 }
 
-// SAFETY: `unsafe` because it interrupts critical sections. It touches nothing that one protects.
+// SAFETY: `unsafe` because it interrupts critical sections. It accesses no data that they protect.
 #[exception]
 unsafe fn NonMaskableInt() -> ! {
-    end(Fault::Clock);
+    shut_down(Fault::Clock);
     if first_report() {
         defmt::error!("the 8 MHz clock has failed");
     }
     wait_for_watchdog()
 }
 
-// SAFETY: `unsafe` because it may interrupt anything. It touches nothing that others use.
+// SAFETY: `unsafe` because it may interrupt any code. It accesses no data that other code uses.
 #[exception]
 unsafe fn DefaultHandler(irqn: i16) -> ! {
-    end(Fault::HardFault);
+    shut_down(Fault::HardFault);
     if first_report() {
         defmt::error!("interrupt {=i16} has no task", irqn);
     }

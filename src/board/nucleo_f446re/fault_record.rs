@@ -1,4 +1,4 @@
-//! The first cause, where resets do not reach it.
+//! The fault record: the cause of the earliest trip, in RAM that a reset does not clear.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -6,93 +6,101 @@ use thermal_display::device::safety::Cause;
 
 use super::reset::Reset;
 
-/// What makes it unlikely that noise is taken for a record, or that of a firmware whose records mean something else.
-const SALT: u32 = 0x5afe_d15b ^ Cause::LAYOUT;
+/// Initial value of the checksum. It differs between versions of the firmware whose records have
+/// different layouts, so that none takes the record of another for its own.
+const CHECKSUM_START: u32 = 0x5afe_d15b ^ Cause::LAYOUT;
 const LENGTH: usize = Cause::WORDS + 1;
 
-/// Words of the cause and their check. Neither the loader nor the start-up code writes to `.uninit`; only a loss of
-/// power does.
+/// The words of the cause and their checksum. Neither the loader nor the start-up code writes to
+/// `.uninit`; its content is lost only with the power.
 #[unsafe(link_section = ".uninit.cause")]
-static KEPT: [AtomicU32; LENGTH] = [const { AtomicU32::new(0) }; LENGTH];
+static STORED: [AtomicU32; LENGTH] = [const { AtomicU32::new(0) }; LENGTH];
 
-pub fn check(words: &[u32]) -> u32 {
-    words.iter().fold(SALT, |sum, word| {
+/// Checksum of data in RAM that is not initialised at start.
+pub fn checksum(words: &[u32]) -> u32 {
+    words.iter().fold(CHECKSUM_START, |sum, word| {
         sum.rotate_left(5)
             .wrapping_add(*word)
             .wrapping_mul(0x9e37_79b1)
     })
 }
 
-/// What is kept, if anything.
-pub fn kept() -> Option<Cause> {
-    let words: [u32; LENGTH] = core::array::from_fn(|i| KEPT[i].load(Ordering::Relaxed));
+/// The stored cause, if there is one.
+pub fn stored() -> Option<Cause> {
+    let words: [u32; LENGTH] = core::array::from_fn(|i| STORED[i].load(Ordering::Relaxed));
     let [cause @ .., sum] = words;
-    if check(&cause) == sum {
+    if checksum(&cause) == sum {
         Cause::from_words(cause)
     } else {
         None
     }
 }
 
-/// Keeps a cause, unless there is one: the first one counts.
-pub fn keep(cause: &Cause) {
-    if kept().is_some() {
+/// Stores a cause, unless one is stored already: an earlier cause explains the later ones.
+pub fn store_if_empty(cause: &Cause) {
+    if stored().is_some() {
         return;
     }
     let words = cause.to_words();
-    for (place, word) in KEPT.iter().zip(words.into_iter().chain([check(&words)])) {
+    for (place, word) in STORED
+        .iter()
+        .zip(words.into_iter().chain([checksum(&words)]))
+    {
         place.store(word, Ordering::Relaxed);
     }
 }
 
-/// Keeps nothing.
-pub fn forget() {
-    let [.., sum] = &KEPT;
-    sum.fetch_xor(SALT, Ordering::Relaxed);
-    // By chance that may be the check of something else.
-    if kept().is_some() {
+/// Erases the stored cause by making its checksum invalid.
+pub fn erase() {
+    let [.., sum] = &STORED;
+    sum.fetch_xor(CHECKSUM_START, Ordering::Relaxed);
+    // The words may have been invalid before, and valid with the changed checksum.
+    if stored().is_some() {
         sum.fetch_add(1, Ordering::Relaxed);
     }
 }
 
-/// Why the device has tripped before it started: what was kept, or the reset itself if that is a fault.
-pub fn of_reset(reset: Reset, is_planned: bool) -> Option<Cause> {
+/// The cause by which the device is tripped when it starts: the stored one, or else the reset
+/// itself if that is a fault.
+pub fn cause_at_start(reset: Reset, restart_is_planned: bool) -> Option<Cause> {
     if reset == Reset::PowerOn {
-        // RAM is noise.
-        forget();
+        // The content of the RAM is arbitrary.
+        erase();
     }
-    if let Some(fault) = reset.fault(is_planned) {
-        keep(&Cause::alone(fault));
+    if let Some(fault) = reset.fault(restart_is_planned) {
+        store_if_empty(&Cause::alone(fault));
     }
-    kept()
+    stored()
 }
 
-/// Keeps what trips while the program runs, and forgets it when the host has cleared it.
-pub struct Record {
-    kept: Option<Cause>,
+/// Keeps the stored cause up to date while the program runs: stores it when a finger trips, erases
+/// it when the host has cleared the fault.
+pub struct FaultRecord {
+    stored: Option<Cause>,
 }
 
-impl Record {
-    /// After a start with or without a cause.
-    pub const fn new(kept: Option<Cause>) -> Self {
-        Self { kept }
+impl FaultRecord {
+    /// A record of the cause that is stored at the start.
+    pub const fn new(stored: Option<Cause>) -> Self {
+        Self { stored }
     }
 
-    /// Something has tripped, and was not cleared when this was last followed.
-    pub const fn keeps(&self) -> bool {
-        self.kept.is_some()
+    /// Whether a cause is stored.
+    pub const fn is_stored(&self) -> bool {
+        self.stored.is_some()
     }
 
-    /// Follows the stations of one tick.
-    pub fn follow(&mut self, tripped: Option<&Cause>) {
-        if tripped == self.kept.as_ref() {
+    /// Stores the earliest cause of all fingers, or erases the stored one if no finger is tripped
+    /// any more.
+    pub fn update(&mut self, earliest: Option<&Cause>) {
+        if earliest == self.stored.as_ref() {
             return;
         }
-        // It was cleared, whether or not something has tripped since.
-        forget();
-        if let Some(cause) = tripped {
-            keep(cause);
+        // The stored cause has been cleared, even if another fault has tripped since.
+        erase();
+        if let Some(cause) = earliest {
+            store_if_empty(cause);
         }
-        self.kept = tripped.copied();
+        self.stored = earliest.copied();
     }
 }

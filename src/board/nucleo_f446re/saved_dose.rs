@@ -1,4 +1,4 @@
-//! The dose of each finger, where resets do not reach it.
+//! The thermal dose of each finger, in RAM that a reset does not clear.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -6,40 +6,42 @@ use thermal_display::device::Finger;
 use thermal_display::device::safety::Dose;
 
 use super::FINGERS;
-use super::fault_record::check;
+use super::fault_record::checksum;
 
-/// The dose and its check, of each finger.
+/// Dose and checksum of each finger. The start-up code does not initialise `.uninit`.
 #[unsafe(link_section = ".uninit.dose")]
-static KEPT: [[AtomicU32; 2]; FINGERS] = [const { [const { AtomicU32::new(0) }; 2] }; FINGERS];
+static SAVED: [[AtomicU32; 2]; FINGERS] = [const { [const { AtomicU32::new(0) }; 2] }; FINGERS];
 
-/// What is kept of a finger; nothing if that is noise.
-pub fn kept(finger: Finger<FINGERS>) -> Dose {
-    let [dose, sum] = &KEPT[finger.index()];
+/// The saved dose of a finger; zero if the checksum does not match.
+pub fn saved_dose(finger: Finger<FINGERS>) -> Dose {
+    let [dose, sum] = &SAVED[finger.index()];
     let word = dose.load(Ordering::Relaxed);
-    if check(&[word]) == sum.load(Ordering::Relaxed) {
+    if checksum(&[word]) == sum.load(Ordering::Relaxed) {
         Dose::from_word(word)
     } else {
         Dose::default()
     }
 }
 
-/// Keeps a finger's.
-pub fn keep(finger: Finger<FINGERS>, dose: &Dose) {
-    let place = &KEPT[finger.index()];
-    let [kept, _] = place;
-    // It changes four times a second.
-    if kept.load(Ordering::Relaxed) != dose.to_word() {
-        store(place, dose);
+/// Saves the dose of a finger.
+pub fn save_dose(finger: Finger<FINGERS>, dose: &Dose) {
+    let saved = &SAVED[finger.index()];
+    // The dose changes every 256 ticks only; the comparison is faster than the checksum.
+    if saved[0].load(Ordering::Relaxed) != dose.to_word() {
+        store(saved, dose);
     }
 }
 
-fn store([kept, sum]: &[AtomicU32; 2], dose: &Dose) {
+fn store([saved, sum]: &[AtomicU32; 2], dose: &Dose) {
     let word = dose.to_word();
-    kept.store(word, Ordering::Relaxed);
-    sum.store(check(&[word]), Ordering::Relaxed);
+    saved.store(word, Ordering::Relaxed);
+    sum.store(checksum(&[word]), Ordering::Relaxed);
 }
 
-/// Forgets all: the power was lost, and the RAM is noise.
-pub fn forget() {
-    KEPT.iter().for_each(|place| store(place, &Dose::default()));
+/// Sets the saved dose of all fingers to zero, after a loss of power, when the content of the RAM
+/// is arbitrary.
+pub fn clear_doses() {
+    SAVED
+        .iter()
+        .for_each(|saved| store(saved, &Dose::default()));
 }

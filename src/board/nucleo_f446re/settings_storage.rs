@@ -1,8 +1,12 @@
-//! Settings from one start to the next.
+//! Storage of the settings in flash, by means of a restart.
 //!
-//! What is to be stored waits in RAM that a reset does not clear; the start that follows stores it while the bridges are off by
-//! their hardware, and before anything runs that the flash could delay: the watchdogs, the sampling, the host. A reset meanwhile
-//! leads to a second attempt, which stores the same, and no third: it may be storing that brings the reset about.
+//! The flash stalls the processor while it is written, so settings are stored only at the start of
+//! the program, before anything runs that must not be delayed (watchdogs, sampling, host link) and
+//! while the hardware keeps the bridges off. To store settings, the running program writes their
+//! bytes to RAM that a reset does not clear, and resets the device.
+//!
+//! If a reset interrupts the storing, the next start tries a second time. There is no third
+//! attempt, because the storing itself may cause the resets.
 
 use core::fmt;
 use core::sync::atomic::Ordering::Relaxed;
@@ -15,75 +19,77 @@ use thermal_display::settings::{Kept, LONGEST, Store, StoreError, StoredBytes, d
 use super::FINGERS;
 use super::flash::{FlashError, SettingsFlash};
 
-/// Says that something waits; and one more for each attempt that has begun. What power-up leaves in the RAM is not that, and
-/// not followed by its checksum.
+/// Value of [`PendingSave::state`] when settings wait and no attempt has begun; each attempt adds
+/// 1. The RAM is unlikely to hold such a value after power-up, and even then the checksum of the
+/// bytes would not match.
 const WAITING: u32 = 0x7361_7665;
-/// Attempts at storing it.
+/// Attempts to store the settings.
 const ATTEMPTS: u32 = 2;
-/// Longer than a frame and what the USART holds take at 1 Mbaud, at 180 MHz: 1.74 ms.
+/// 2 ms at 180 MHz. The last frame and the bytes in the USART take 1.74 ms at 1 Mbaud.
 const LAST_FRAME_CYCLES: u32 = 180_000_000 / 1000 * 2;
 
-/// What waits for the next start.
-struct Handover {
-    waiting: AtomicU32,
-    length: AtomicU32,
-    record: [AtomicU8; LONGEST],
+/// Settings that wait to be stored by the next start.
+struct PendingSave {
+    state: AtomicU32,
+    length_bytes: AtomicU32,
+    bytes: [AtomicU8; LONGEST],
 }
 
-// SAFETY: the section is left alone by the start-up code, and nothing else is in it; any bits are a handover.
+// SAFETY: the start-up code does not initialise the section, which holds nothing else; all bit
+// patterns are valid.
 #[unsafe(link_section = ".uninit.settings")]
-static HANDOVER: Handover = Handover {
-    waiting: AtomicU32::new(0),
-    length: AtomicU32::new(0),
-    record: [const { AtomicU8::new(0) }; LONGEST],
+static PENDING: PendingSave = PendingSave {
+    state: AtomicU32::new(0),
+    length_bytes: AtomicU32::new(0),
+    bytes: [const { AtomicU8::new(0) }; LONGEST],
 };
 
-impl Handover {
-    /// Attempts that have begun, if something waits.
+impl PendingSave {
+    /// Number of attempts that have begun, if settings wait.
     fn attempts(&self) -> Option<u32> {
-        let begun = self.waiting.load(Relaxed).wrapping_sub(WAITING);
+        let begun = self.state.load(Relaxed).wrapping_sub(WAITING);
         (begun <= ATTEMPTS).then_some(begun)
     }
 
-    /// What waits, for one more attempt.
-    fn begin(&self) -> Option<Result<StoredBytes, NotStored>> {
+    /// Begins an attempt: counts it and returns the bytes to be stored. `None` if no settings wait.
+    fn begin(&self) -> Option<Result<StoredBytes, SaveError>> {
         let begun = self.attempts()?;
         if begun == ATTEMPTS {
-            return Some(Err(NotStored::Interrupted));
+            return Some(Err(SaveError::Interrupted));
         }
-        self.waiting.store(WAITING + begun + 1, Relaxed);
-        let record = self.record.get(..self.length.load(Relaxed) as usize);
-        let bytes = record.map(|record| record.iter().map(|byte| byte.load(Relaxed)).collect());
-        Some(bytes.ok_or(NotStored::Damaged))
+        self.state.store(WAITING + begun + 1, Relaxed);
+        let bytes = self.bytes.get(..self.length_bytes.load(Relaxed) as usize);
+        let bytes = bytes.map(|bytes| bytes.iter().map(|byte| byte.load(Relaxed)).collect());
+        Some(bytes.ok_or(SaveError::Damaged))
     }
 
-    fn put(&self, record: &StoredBytes) {
-        for (place, byte) in self.record.iter().zip(record) {
+    fn put(&self, bytes: &StoredBytes) {
+        for (place, byte) in self.bytes.iter().zip(bytes) {
             place.store(*byte, Relaxed);
         }
-        self.length.store(record.len() as u32, Relaxed);
-        self.waiting.store(WAITING, Relaxed);
+        self.length_bytes.store(bytes.len() as u32, Relaxed);
+        self.state.store(WAITING, Relaxed);
     }
 
     fn clear(&self) {
-        self.waiting.store(0, Relaxed);
+        self.state.store(0, Relaxed);
     }
 }
 
-/// Why settings could not be read or stored.
-type Failure = StoreError<FlashError>;
+/// Why settings could not be read from the flash or written to it.
+type FlashStoreError = StoreError<FlashError>;
 
-/// Why what waited was not stored.
-pub enum NotStored {
-    /// By the store.
-    Failed(Failure),
-    /// Each attempt has ended in a reset; the flash has the old settings or these.
+/// Why waiting settings were not stored.
+pub enum SaveError {
+    /// The flash could not be written.
+    Failed(FlashStoreError),
+    /// A reset has interrupted every attempt; the flash holds either the old or the new settings.
     Interrupted,
-    /// It is no record any more.
+    /// The bytes in RAM have been changed.
     Damaged,
 }
 
-impl fmt::Display for NotStored {
+impl fmt::Display for SaveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Failed(error) => error.fmt(f),
@@ -93,41 +99,46 @@ impl fmt::Display for NotStored {
     }
 }
 
-/// What a start has found.
-pub struct Found {
-    /// The settings of all fingers; none are factory defaults.
-    pub kept: Result<Option<[Kept; FINGERS]>, Failure>,
-    /// How storing went, if something waited to be stored.
-    pub stored: Option<Result<(), NotStored>>,
+/// Stored settings, and the result of the last request to store some.
+pub struct StartupStorage {
+    /// The stored settings of all fingers; `None` stands for factory defaults.
+    pub settings: Result<Option<[Kept; FINGERS]>, FlashStoreError>,
+    /// Whether the waiting settings were stored; `None` if no settings waited.
+    pub save_result: Option<Result<(), SaveError>>,
 }
 
-/// Whether the device was started anew to store something.
-pub fn is_planned() -> bool {
-    HANDOVER.attempts().is_some()
+/// Whether the device was restarted to store settings.
+pub fn save_is_pending() -> bool {
+    PENDING.attempts().is_some()
 }
 
-/// Stores what waits, and reads what is stored. To be called before anything is set up.
+/// Stores settings if any wait, and reads the stored ones. Must be called before peripherals are
+/// set up.
 #[inline(never)]
-pub fn at_start(registers: &FLASH) -> Found {
+pub fn save_pending_and_load(registers: &FLASH) -> StartupStorage {
     let mut store = Store::<_, FINGERS>::new(SettingsFlash::new(registers));
-    let stored = HANDOVER.begin().map(|record| {
-        let kept = decode::<FINGERS>(&record?).map_err(|_| NotStored::Damaged)?;
-        store.save(kept.as_ref()).map_err(NotStored::Failed)
+    let save_result = PENDING.begin().map(|bytes| {
+        let settings = decode::<FINGERS>(&bytes?).map_err(|_| SaveError::Damaged)?;
+        store.save(settings.as_ref()).map_err(SaveError::Failed)
     });
-    HANDOVER.clear();
-    let kept = store.load();
-    if let Err(error) = &kept {
+    PENDING.clear();
+    let settings = store.load();
+    if let Err(error) = &settings {
         defmt::error!("{}", defmt::Display2Format(error));
     }
-    if let Some(Err(error)) = &stored {
+    if let Some(Err(error)) = &save_result {
         defmt::error!("not stored: {}", defmt::Display2Format(error));
     }
-    Found { kept, stored }
+    StartupStorage {
+        settings,
+        save_result,
+    }
 }
 
-/// Starts the device anew, with a record to be stored. Bridges are off, and the line to the host has its last frame.
-pub fn restart(record: &StoredBytes) -> ! {
+/// Resets the device, which then stores `bytes`. The bridges must be off, and the last frame to the
+/// host must be in the stream.
+pub fn restart_to_save(bytes: &StoredBytes) -> ! {
     cortex_m::asm::delay(LAST_FRAME_CYCLES);
-    HANDOVER.put(record);
+    PENDING.put(bytes);
     SCB::sys_reset()
 }

@@ -1,32 +1,35 @@
-//! The window watchdog: resets a device whose tick does not come.
+//! The window watchdog: resets the device when the control tick no longer runs.
 
 use stm32f4xx_hal::pac::WWDG;
 use stm32f4xx_hal::rcc::Rcc;
 
-/// Counts down from here, and resets below 0x40: 64 steps of 4096 * 8 periods of 45 MHz, 46.6 ms (RM0390, 21.4). It
-/// stands still with its clock, which is the independent watchdog's part.
-const FULL: u8 = 0x7f;
+/// Value from which the counter counts down; it resets the device below 0x40. These 64 counts of
+/// 4096 * 8 periods of 45 MHz take 46.6 ms (RM0390, 21.4).
+///
+/// The counter stops if its clock does; the independent watchdog then resets the device.
+const START_COUNT: u8 = 0x7f;
 
-/// The running watchdog; it cannot be stopped.
+/// The running window watchdog, which cannot be stopped.
 pub struct WindowWatchdog(WWDG);
 
 impl WindowWatchdog {
-    /// Starts it. It may be fed at any time: a tick that comes too early is none of its business.
+    /// Starts the watchdog, with a window that is always open: it resets the device if a feeding is
+    /// late, never if it is early.
     pub fn start(wwdg: WWDG, rcc: &mut Rcc) -> Self {
         rcc.apb1enr().modify(|_, w| w.wwdgen().enabled());
         wwdg.cfr().write(|w| {
             w.wdgtb().div8();
-            w.w().set(FULL)
+            w.w().set(START_COUNT)
         });
-        let mut started = Self(wwdg);
-        started.feed();
-        started
+        let mut watchdog = Self(wwdg);
+        watchdog.feed();
+        watchdog
     }
 
-    /// Begins, or begins anew.
+    /// Restarts the countdown; the first call starts it.
     pub fn feed(&mut self) {
         self.0.cr().write(|w| {
-            w.t().set(FULL);
+            w.t().set(START_COUNT);
             w.wdga().enabled()
         });
     }

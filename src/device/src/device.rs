@@ -17,14 +17,15 @@ pub struct Device<const FINGERS: usize> {
 }
 
 impl<const FINGERS: usize> Device<FINGERS> {
-    /// A device whose bridges are off and that no fault has tripped. Evaluates `f64` in software, once for all fingers.
+    /// A device whose bridges are off and that no fault has tripped. Evaluates `f64` in software,
+    /// once for all fingers.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         Self::with_cause(None, settings)
     }
 
-    /// A device as [`new`](Self::new) makes it, whose fingers are all tripped by `cause`, if there is one: the fault
-    /// that ended the previous run of the program.
+    /// A device as [`new`](Self::new) makes it, whose fingers are all tripped by `cause`, if there
+    /// is one: the fault that ended the previous run of the program.
     #[must_use]
     #[inline(never)]
     pub fn with_cause(cause: Option<Cause>, settings: &Settings) -> Self {
@@ -37,7 +38,8 @@ impl<const FINGERS: usize> Device<FINGERS> {
         }
     }
 
-    /// Applies the stored settings of each finger. Evaluates `f64` in software, once for each finger.
+    /// Applies the stored settings of each finger. Evaluates `f64` in software, once for each
+    /// finger.
     #[inline(never)]
     pub fn restore_settings(&mut self, stored: &[Kept; FINGERS]) {
         for (station, stored) in self.stations.iter_mut().zip(stored) {
@@ -96,18 +98,21 @@ impl<const FINGERS: usize> Device<FINGERS> {
         })
     }
 
-    /// Number that a finger's lines begin with if the host has named none: omitted on a device with a single finger.
+    /// Number that a finger's lines begin with if the host has named none: omitted on a device with
+    /// a single finger.
     fn address(finger: Finger<FINGERS>) -> Option<u8> {
         (FINGERS > 1).then_some(finger.number())
     }
 
-    /// Executes a command, in bounded and short time, on one finger, or on all if `finger` is `None`.
+    /// Executes a command, in bounded and short time, on one finger, or on all if `finger` is
+    /// `None`.
     ///
-    /// A query to all is answered by the first finger. `clear` to all succeeds if a fault was cleared at one finger at
-    /// least.
+    /// A query to all is answered by the first finger. `clear` to all succeeds if a fault was
+    /// cleared at one finger at least.
     ///
     /// # Errors
-    /// The first refusal, if the state of a finger does not permit the command; the other fingers have executed it.
+    /// The first refusal, if the state of a finger does not permit the command; the other fingers
+    /// have executed it.
     pub fn execute(
         &mut self,
         finger: Option<Finger<FINGERS>>,

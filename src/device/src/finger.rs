@@ -2,8 +2,8 @@
 
 /// One of the `FINGERS` fingers of a device, counted from 0.
 ///
-/// Its index is below `FINGERS` by construction, so an index that is out of range cannot select another finger's
-/// station or bridge.
+/// Its index is below `FINGERS` by construction, so an index that is out of range cannot select
+/// another finger's station or bridge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Finger<const FINGERS: usize>(u8);
 
@@ -44,7 +44,8 @@ impl<const FINGERS: usize> Finger<FINGERS> {
     /// Index of the finger, below `FINGERS`.
     #[must_use]
     pub const fn index(self) -> usize {
-        // The remainder changes nothing. It tells the compiler that an array of `FINGERS` elements needs no bounds check.
+        // The remainder changes nothing. It tells the compiler that an array of `FINGERS` elements
+        // needs no bounds check.
         self.number() as usize % FINGERS
     }
 

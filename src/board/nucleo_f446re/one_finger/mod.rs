@@ -1,4 +1,4 @@
-//! One finger, its sensors on the converter's inputs.
+//! Wiring for one finger, whose sensors are connected to the inputs of the converter.
 //!
 //! | pin  | header | signal        | notes                                                   |
 //! |------|--------|---------------|---------------------------------------------------------|
@@ -6,11 +6,12 @@
 //! | PA9  | D8     | bridge IN2    | TIM1 channel 2; external pull-down                      |
 //! | PB10 | D6     | bridge enable | high enables; external pull-down                        |
 //! | PA6  | D12    | bridge nFAULT | TIM1 break input, low is a fault; external 4.7k pull-up |
-//! | PC3  | CN7-37 | comparator test | high: the comparator cuts; external pull-down        |
+//! | PC3  | CN7-37 | comparator test | high: the comparator trips; external pull-down      |
 //! | PA5  | D13    | LED LD2       | lit while the bridge may drive                          |
 //!
-//! The comparator that watches the second display thermistor pulls nFAULT low too. Its cut of the bridge
-//! supply needs no processor; the break input makes the processor know.
+//! The comparator that monitors the second display thermistor disconnects the supply of the bridge
+//! without the processor. It also pulls nFAULT low, so that the break input reports the trip to the
+//! processor.
 
 mod power;
 
@@ -19,32 +20,36 @@ use thermal_display::device::Finger;
 
 pub use power::PowerStage;
 
-/// Fingers of this wiring.
+/// Number of fingers of this wiring.
 pub const FINGERS: usize = 1;
 
-/// Sampling for 56 cycles, 2.5 us: settling to a quarter of a step takes 9.7 time constants of 7 pF times 6 kOhm
-/// inside and 5 kOhm of a 10k/10k divider, 0.75 us; that leaves room for a cold thermistor (30 kOhm, with its
-/// partner 7.5 kOhm). With 12 more cycles to convert, seven channels take 21 us of the 62.5 us between two scans.
+/// Register value for a sampling time of 56 cycles, 2.5 us.
+///
+/// The input must settle to a quarter of a step, which takes 9.7 time constants: 0.75 us with 7 pF,
+/// 6 kOhm inside the converter and 5 kOhm of a 10k/10k divider. The margin is for a cold thermistor
+/// of 30 kOhm, whose divider has 7.5 kOhm. With 12 more cycles for the conversion, seven channels
+/// take 21 us of the 62.5 us between two scans.
 pub const SAMPLE_TIME: u8 = 3;
 
-/// There is nothing to choose.
+/// Stands for the multiplexers of the five-finger wiring; one finger needs none.
 pub struct Multiplexer;
 
 impl Multiplexer {
-    /// Scans after a switch that may still show the finger before.
+    /// Scans after a switch that may still belong to the previous finger.
     pub const SETTLING_SCANS: usize = 0;
 
-    /// Nothing to do.
+    /// Does nothing.
     pub fn select(&mut self, _finger: Finger<FINGERS>) {}
 }
 
-/// The bridge high-impedance, whatever the program was doing; for the end of it.
-pub fn cut() {
-    // SAFETY: their owners do not run again: interrupts are off and no caller of this returns. All
-    // writes are to registers that may be written at any time.
+/// Makes the bridge high-impedance, in any state of the program, which must not continue
+/// afterwards.
+pub fn disable_bridges() {
+    // SAFETY: the owners of these peripherals do not run again, because interrupts are disabled and
+    // no caller of this function returns. The registers may be written at any time.
     let (clocks, timer, pins) = unsafe { (RCC::steal(), TIM1::steal(), GPIOB::steal()) };
-    // Without a clock they would take nothing. The start may have ended before they had one; the dsb is the delay that
-    // the errata sheet wants after it.
+    // The start-up may have failed before these clocks were enabled, and without them writes have
+    // no effect. The errata sheet demands a delay after enabling, which the barrier provides.
     clocks.apb2enr().modify(|_, w| w.tim1en().enabled());
     clocks.ahb1enr().modify(|_, w| w.gpioben().enabled());
     cortex_m::asm::dsb();
