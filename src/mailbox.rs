@@ -17,6 +17,7 @@ pub const DEPTH: usize = 4;
 type Received = Result<Line, LineError>;
 
 /// The queue, which [`split`](Self::split) divides into its two ends.
+#[derive(Default)]
 pub struct Mailbox {
     // The queue always keeps one slot free, to tell full from empty.
     lines: Queue<Received, { DEPTH + 1 }>,

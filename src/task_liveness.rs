@@ -17,7 +17,7 @@ const ALL: u8 = Task::Tick as u8 | Task::Host as u8;
 ///
 /// The idle task reads it. It runs only when the other tasks leave it time, so it needs no bit of
 /// its own.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct TaskLiveness(AtomicU8);
 
 impl TaskLiveness {
@@ -42,7 +42,7 @@ impl TaskLiveness {
 
 /// Counts the ticks until the host task is called although nothing waits for it, so that it can
 /// check in.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct HostPoll {
     ticks_left: u8,
 }

@@ -152,7 +152,7 @@ impl PowerStage {
             enable,
             fault,
             test,
-        }: Lines,
+        }: ControlLines,
     ) -> Self {
         in1.enable();
         in2.enable();
