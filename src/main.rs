@@ -11,8 +11,8 @@
 //!
 //! Priorities are rate-monotonic. `receive` has the highest one because a byte is lost if it is not
 //! fetched before the next but one arrives. Nothing is lost when a tick starts some microseconds
-//! late: a timer starts the conversions, and a new duty takes effect at the next PWM period. At 1
-//! Mbaud `receive` runs at most 100 000 times a second and only briefly, so it cannot starve the
+//! late: a timer starts the conversions, and a new duty takes effect at the next PWM period. At
+//! 1 Mbaud `receive` runs at most 100 000 times a second and only briefly, so it cannot starve the
 //! tick. `tick` may delay `transmit`; the line to the host then pauses for as long as that tick
 //! runs.
 #![no_std]

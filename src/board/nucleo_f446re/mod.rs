@@ -71,8 +71,7 @@ use clock_monitor::ClockMonitor;
 use reset::Reset;
 use settings_storage::StartupStorage;
 
-/// Telemetry lines that may wait for the host task, which may thus be eight ticks late before a
-/// line is dropped.
+/// Telemetry lines that can wait for the host task: those of eight ticks.
 const TELEMETRY_DEPTH: usize = 8 * FINGERS;
 
 /// Memory that hardware and tasks share by reference, and that must live as long as the program.
@@ -298,8 +297,8 @@ impl Board {
     }
 }
 
-/// Starts the clock that the debug probe provides; returns whether its 8 MHz are stable within 20
-/// ms or a little more, at a core clock of 16 MHz.
+/// Starts the 8 MHz clock that the debug probe provides, and returns whether it has become stable.
+/// Waits for at least 20 ms, at a core clock of 16 MHz.
 fn start_probe_clock(rcc: &pac::RCC) -> bool {
     rcc.cr().modify(|_, w| w.hsebyp().bypassed().hseon().on());
     (0..1 << 16).any(|_| rcc.cr().read().hserdy().is_ready())

@@ -95,8 +95,8 @@ pub struct Sampler {
 
 /// The timer that triggers the scans.
 ///
-/// It is started last, once interrupts are enabled: the tick must switch the multiplexers within 11
-/// us of the last scan of a finger.
+/// It is started last, once interrupts are enabled: the tick must switch the multiplexers within
+/// 11 us of the last scan of a finger.
 pub struct SampleTrigger(CounterHz<TIM2>);
 
 impl SampleTrigger {

@@ -19,9 +19,9 @@ use thermal_display::settings::{Kept, LONGEST, Store, StoreError, StoredBytes, d
 use super::FINGERS;
 use super::flash::{FlashError, SettingsFlash};
 
-/// Value of [`PendingSave::state`] when settings wait and no attempt has begun; each attempt adds
-/// 1. The RAM is unlikely to hold such a value after power-up, and even then the checksum of the
-/// bytes would not match.
+/// Value of [`PendingSave::state`] when settings wait and no attempt has begun; each attempt
+/// increments it. The RAM is unlikely to hold such a value after power-up, and even then the
+/// checksum of the bytes would not match.
 const WAITING: u32 = 0x7361_7665;
 /// Attempts to store the settings.
 const ATTEMPTS: u32 = 2;
