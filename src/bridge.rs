@@ -50,7 +50,7 @@ where
     /// Drives the module with a mean voltage of `duty` times the supply voltage; positive values
     /// cool the display.
     pub fn drive(&mut self, duty: Duty) {
-        let (in1, in2) = duty.legs(self.in1.max_duty_cycle());
+        let (in1, in2) = duty.half_bridge_on_times(self.in1.max_duty_cycle());
         let Ok(()) = self.in1.set_duty_cycle(in1);
         let Ok(()) = self.in2.set_duty_cycle(in2);
         let Ok(()) = self.enable.set_high();

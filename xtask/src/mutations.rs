@@ -243,10 +243,10 @@ const MUTATIONS: [Mutation; 33] = [
         &["mirror-stuck"],
     ),
     mutation(
-        "pace",
+        "tick rate",
         "src/board/nucleo_f446re/clock_monitor.rs",
-        "if !self.pace.keeps(SYST::get_current()) {",
-        "if !self.pace.keeps(SYST::get_current()) && FINGERS > 9 {",
+        "if !self.tick_rate.tick_is_due(SYST::get_current()) {",
+        "if !self.tick_rate.tick_is_due(SYST::get_current()) && FINGERS > 9 {",
         &["register-bit"],
     )
     .of_image(),

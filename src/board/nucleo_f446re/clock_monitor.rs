@@ -13,7 +13,7 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use stm32f4xx_hal::pac::RCC;
 use thermal_display::device::TICK_HZ;
-use thermal_display::device::safety::Pace;
+use thermal_display::device::safety::TickRateMonitor;
 
 use super::sampler::SampleError;
 use super::wiring::FINGERS;
@@ -23,7 +23,7 @@ const RELOAD: u32 = 0xff_ffff;
 
 /// Compares the ticks with SysTick, and the clock settings with those of the start.
 pub struct ClockMonitor {
-    pace: Pace,
+    tick_rate: TickRateMonitor,
     /// The register RCC_CFGR, as the start has set it.
     clock_settings: u32,
 }
@@ -43,7 +43,7 @@ impl ClockMonitor {
         counter.clear_current();
         counter.enable_counter();
         Self {
-            pace: Pace::new(hclk_hz / (TICK_HZ * FINGERS as u32)),
+            tick_rate: TickRateMonitor::new(hclk_hz / (TICK_HZ * FINGERS as u32)),
             clock_settings: clock_settings(),
         }
     }
@@ -51,14 +51,14 @@ impl ClockMonitor {
     /// Checks clocks and rate; to be called when a block of samples is complete.
     ///
     /// # Errors
-    /// [`SampleError::Clocks`] if the clock settings have changed, [`SampleError::Pace`] if the
+    /// [`SampleError::Clocks`] if the clock settings have changed, [`SampleError::TickRate`] if the
     /// block is early or late.
     pub fn check(&mut self) -> Result<(), SampleError> {
         if clock_settings() != self.clock_settings {
             return Err(SampleError::Clocks);
         }
-        if !self.pace.keeps(SYST::get_current()) {
-            return Err(SampleError::Pace);
+        if !self.tick_rate.tick_is_due(SYST::get_current()) {
+            return Err(SampleError::TickRate);
         }
         Ok(())
     }

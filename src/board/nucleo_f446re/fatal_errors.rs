@@ -9,7 +9,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m_rt::{ExceptionFrame, exception};
 
-use thermal_display::device::safety::{Cause, Fault};
+use thermal_display::device::safety::{Fault, TripCause};
 
 use super::{fault_record, watchdog, wiring};
 
@@ -18,7 +18,7 @@ use super::{fault_record, watchdog, wiring};
 fn shut_down(fault: Fault) {
     cortex_m::interrupt::disable();
     wiring::disable_bridges();
-    fault_record::store_if_empty(&Cause::alone(fault));
+    fault_record::store_if_empty(&TripCause::alone(fault));
 }
 
 /// Whether no handler has logged yet. Only the first error is logged, because logging may be what

@@ -2,14 +2,14 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use thermal_display::device::safety::Cause;
+use thermal_display::device::safety::TripCause;
 
 use super::reset::Reset;
 
 /// Initial value of the checksum. It differs between versions of the firmware whose records have
 /// different layouts, so that none takes the record of another for its own.
-const CHECKSUM_START: u32 = 0x5afe_d15b ^ Cause::LAYOUT;
-const LENGTH: usize = Cause::WORDS + 1;
+const CHECKSUM_START: u32 = 0x5afe_d15b ^ TripCause::LAYOUT;
+const LENGTH: usize = TripCause::WORDS + 1;
 
 /// The words of the cause and their checksum. Neither the loader nor the start-up code writes to
 /// `.uninit`; its content is lost only with the power.
@@ -26,18 +26,18 @@ pub fn checksum(words: &[u32]) -> u32 {
 }
 
 /// The stored cause, if there is one.
-pub fn stored() -> Option<Cause> {
+pub fn stored() -> Option<TripCause> {
     let words: [u32; LENGTH] = core::array::from_fn(|i| STORED[i].load(Ordering::Relaxed));
     let [cause @ .., sum] = words;
     if checksum(&cause) == sum {
-        Cause::from_words(cause)
+        TripCause::from_words(cause)
     } else {
         None
     }
 }
 
 /// Stores a cause, unless one is stored already: an earlier cause explains the later ones.
-pub fn store_if_empty(cause: &Cause) {
+pub fn store_if_empty(cause: &TripCause) {
     if stored().is_some() {
         return;
     }
@@ -62,13 +62,13 @@ pub fn erase() {
 
 /// The cause by which the device is tripped when it starts: the stored one, or else the reset
 /// itself if that is a fault.
-pub fn cause_at_start(reset: Reset, restart_is_planned: bool) -> Option<Cause> {
+pub fn cause_at_start(reset: Reset, restart_is_planned: bool) -> Option<TripCause> {
     if reset == Reset::PowerOn {
         // The content of the RAM is arbitrary.
         erase();
     }
     if let Some(fault) = reset.fault(restart_is_planned) {
-        store_if_empty(&Cause::alone(fault));
+        store_if_empty(&TripCause::alone(fault));
     }
     stored()
 }
@@ -76,12 +76,12 @@ pub fn cause_at_start(reset: Reset, restart_is_planned: bool) -> Option<Cause> {
 /// Keeps the stored cause up to date while the program runs: stores it when a finger trips, erases
 /// it when the host has cleared the fault.
 pub struct FaultRecord {
-    stored: Option<Cause>,
+    stored: Option<TripCause>,
 }
 
 impl FaultRecord {
     /// A record of the cause that is stored at the start.
-    pub const fn new(stored: Option<Cause>) -> Self {
+    pub const fn new(stored: Option<TripCause>) -> Self {
         Self { stored }
     }
 
@@ -92,7 +92,7 @@ impl FaultRecord {
 
     /// Stores the earliest cause of all fingers, or erases the stored one if no finger is tripped
     /// any more.
-    pub fn update(&mut self, earliest: Option<&Cause>) {
+    pub fn update(&mut self, earliest: Option<&TripCause>) {
         if earliest == self.stored.as_ref() {
             return;
         }

@@ -45,7 +45,7 @@ use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use thermal_display::device::command::Addressed;
-use thermal_display::device::safety::{Cause, Fault};
+use thermal_display::device::safety::{Fault, TripCause};
 use thermal_display::device::{Device, Finger, Telemetry};
 use thermal_display::mailbox::Mailbox;
 use thermal_display::protocol::{Desk, Error, Reason, Reply};
@@ -101,7 +101,7 @@ impl Memory {
 
 /// Determines the fault by which the device is tripped from the start, and stores it before
 /// anything else is done: the rest of the start-up takes long, and another reset may end it.
-fn cause_at_start(rcc: &pac::RCC) -> Option<Cause> {
+fn cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
     let stack_was_overrun = stack::stack_is_overrun();
     stack::init_guard();
     let reset = Reset::read(rcc);
@@ -112,10 +112,10 @@ fn cause_at_start(rcc: &pac::RCC) -> Option<Cause> {
     // A fault that no tick has recorded is a consequence of the overrun. The first start of another
     // version of the firmware is excepted, because its predecessor may have used the words of the
     // guard.
-    let is_consequence = |cause: Cause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
+    let is_consequence = |cause: TripCause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
     if stack_was_overrun && cause.is_some_and(is_consequence) {
         fault_record::erase();
-        fault_record::store_if_empty(&Cause::alone(Fault::Stack));
+        fault_record::store_if_empty(&TripCause::alone(Fault::Stack));
         cause = fault_record::stored();
     }
     // The flags are cleared last: if a reset intervenes, the next start still finds them.
@@ -127,7 +127,7 @@ fn cause_at_start(rcc: &pac::RCC) -> Option<Cause> {
 /// Creates the device with its stored settings and doses, tripped by `cause` if there is one.
 fn restore_device(
     place: &'static mut Option<Device<FINGERS>>,
-    cause: Option<Cause>,
+    cause: Option<TripCause>,
     storage: &StartupStorage,
 ) -> &'static mut Device<FINGERS> {
     let device = place.insert(Device::with_cause(cause, &Settings::default()));

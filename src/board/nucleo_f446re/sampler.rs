@@ -59,7 +59,7 @@ pub enum SampleError {
     /// The multiplexers were switched after the first scan of the next block.
     LateSwitch,
     /// A block was complete too early or too late: TIM2 or SysTick runs at a wrong rate.
-    Pace,
+    TickRate,
     /// The clock settings have changed since the start.
     Clocks,
     /// The converter has lost a conversion, because the stream did not fetch the one before in
@@ -71,7 +71,7 @@ impl SampleError {
     /// The fault that this error trips.
     pub const fn fault(self) -> Fault {
         match self {
-            Self::Bus | Self::Late | Self::LateSwitch | Self::Pace | Self::Overrun => {
+            Self::Bus | Self::Late | Self::LateSwitch | Self::TickRate | Self::Overrun => {
                 Fault::Sampling
             }
             Self::Clocks => Fault::Clock,

@@ -3,28 +3,28 @@
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use thermal_display::device::Finger;
-use thermal_display::device::safety::Dose;
+use thermal_display::device::safety::ThermalDose;
 
 use super::FINGERS;
 use super::fault_record::checksum;
 
-/// Dose and checksum of each finger. The start-up code does not initialise `.uninit`.
+/// ThermalDose and checksum of each finger. The start-up code does not initialise `.uninit`.
 #[unsafe(link_section = ".uninit.dose")]
 static SAVED: [[AtomicU32; 2]; FINGERS] = [const { [const { AtomicU32::new(0) }; 2] }; FINGERS];
 
 /// The saved dose of a finger; zero if the checksum does not match.
-pub fn saved_dose(finger: Finger<FINGERS>) -> Dose {
+pub fn saved_dose(finger: Finger<FINGERS>) -> ThermalDose {
     let [dose, sum] = &SAVED[finger.index()];
     let word = dose.load(Ordering::Relaxed);
     if checksum(&[word]) == sum.load(Ordering::Relaxed) {
-        Dose::from_word(word)
+        ThermalDose::from_word(word)
     } else {
-        Dose::default()
+        ThermalDose::default()
     }
 }
 
 /// Saves the dose of a finger.
-pub fn save_dose(finger: Finger<FINGERS>, dose: &Dose) {
+pub fn save_dose(finger: Finger<FINGERS>, dose: &ThermalDose) {
     let saved = &SAVED[finger.index()];
     // The dose changes every 256 ticks only; the comparison is faster than the checksum.
     if saved[0].load(Ordering::Relaxed) != dose.to_word() {
@@ -32,7 +32,7 @@ pub fn save_dose(finger: Finger<FINGERS>, dose: &Dose) {
     }
 }
 
-fn store([saved, sum]: &[AtomicU32; 2], dose: &Dose) {
+fn store([saved, sum]: &[AtomicU32; 2], dose: &ThermalDose) {
     let word = dose.to_word();
     saved.store(word, Ordering::Relaxed);
     sum.store(checksum(&[word]), Ordering::Relaxed);
@@ -43,5 +43,5 @@ fn store([saved, sum]: &[AtomicU32; 2], dose: &Dose) {
 pub fn clear_doses() {
     SAVED
         .iter()
-        .for_each(|saved| store(saved, &Dose::default()));
+        .for_each(|saved| store(saved, &ThermalDose::default()));
 }

@@ -4,12 +4,14 @@ use core::ops::RangeInclusive;
 
 use super::solve::solve;
 use thermal_device::TICK_HZ;
-use thermal_device::identification::{ROWS, Row, Totals, UNIT_BITS, UNKNOWNS};
+use thermal_device::identification::{
+    NormalEquationRow, ROWS, Statistic, TIME_UNIT_SHIFT, UNKNOWNS,
+};
 use thermal_settings::Tile;
 use thermal_settings::{Range, TILE_RANGES};
 
 /// The equations' unit of time, s.
-const UNIT_S: f64 = (1 << UNIT_BITS) as f64 / TICK_HZ as f64;
+const UNIT_S: f64 = (1 << TIME_UNIT_SHIFT) as f64 / TICK_HZ as f64;
 /// A current that is asked for flows a tick later.
 const ASKED_S: f64 = 1.0 / TICK_HZ as f64;
 /// Dead time of plates of this class, s. A sensor's lag of as little looks almost the same, so only the sum of both is
@@ -60,9 +62,9 @@ pub enum NoTile {
 ///
 /// # Errors
 /// The sums belong to no tile within the limits of settings.
-pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
+pub fn identify(rows: &[NormalEquationRow; ROWS]) -> Result<Tile, NoTile> {
     let [.., totals] = rows;
-    let total = |place: Totals| totals[place as usize] as f64;
+    let total = |place: Statistic| totals[place as usize] as f64;
     let measured_per_asked = part_measured(total, 0.0);
     if !CURRENT.contains(&measured_per_asked) {
         return Err(NoTile::Current(measured_per_asked));
@@ -70,7 +72,7 @@ pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
     // First with any dead time, to know the gain; then with what is likely of it.
     let free = fit(rows, 0.0, 0.0).ok_or(NoTile::Nothing)?;
     let likely = fit(rows, WEIGHT, -free[GAIN] / UNIT_S * LIKELY_S).ok_or(NoTile::Nothing)?;
-    let left = unexplained(rows, &likely, total(Totals::Made));
+    let left = unexplained(rows, &likely, total(Statistic::SquaredRegressand));
     if left.is_nan() || left > UNEXPLAINED {
         return Err(NoTile::Unlike(left));
     }
@@ -98,20 +100,20 @@ pub fn identify(rows: &[Row; ROWS]) -> Result<Tile, NoTile> {
 }
 
 /// What is measured of a large current that is asked for, by the line through what was compared, less the mirror's zero, A.
-fn part_measured(total: impl Fn(Totals) -> f64, zero_a: f64) -> f64 {
+fn part_measured(total: impl Fn(Statistic) -> f64, zero_a: f64) -> f64 {
     let (ticks, asked, measured) = (
-        total(Totals::Ticks),
-        total(Totals::Asked),
-        total(Totals::Measured),
+        total(Statistic::ComparedTicks),
+        total(Statistic::Demanded),
+        total(Statistic::Measured),
     );
-    let slope = (ticks * total(Totals::AskedMeasured) - asked * measured)
-        / (ticks * total(Totals::AskedSquared) - asked * asked);
+    let slope = (ticks * total(Statistic::DemandedTimesMeasured) - asked * measured)
+        / (ticks * total(Statistic::SquaredDemanded) - asked * asked);
     let at_none = (measured - slope * asked) / ticks;
     slope + (at_none - zero_a * AMPERE) / LARGE
 }
 
 /// Root of the mean square that a fit leaves, as a part of that of what it explains.
-fn unexplained(rows: &[Row; ROWS], fitted: &[f64; UNKNOWNS], made: f64) -> f64 {
+fn unexplained(rows: &[NormalEquationRow; ROWS], fitted: &[f64; UNKNOWNS], made: f64) -> f64 {
     let left: f64 = made
         + rows.iter().zip(fitted).fold(0.0, |sum, (row, x)| {
             let explained: f64 = row.iter().zip(fitted).map(|(a, y)| *a as f64 * y).sum();
@@ -121,7 +123,7 @@ fn unexplained(rows: &[Row; ROWS], fitted: &[f64; UNKNOWNS], made: f64) -> f64 {
 }
 
 /// Least squares, with a weight on a value of gain times dead time.
-fn fit(rows: &[Row; ROWS], weight: f64, gain_dead: f64) -> Option<[f64; UNKNOWNS]> {
+fn fit(rows: &[NormalEquationRow; ROWS], weight: f64, gain_dead: f64) -> Option<[f64; UNKNOWNS]> {
     let mut normal: [[f64; UNKNOWNS]; UNKNOWNS] =
         core::array::from_fn(|i| core::array::from_fn(|j| rows[i][j] as f64));
     let mut right: [f64; UNKNOWNS] = core::array::from_fn(|i| rows[i][UNKNOWNS] as f64);

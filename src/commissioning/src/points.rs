@@ -3,7 +3,7 @@
 use contact_model::fixed_point::Celsius;
 use heapless::Vec;
 
-use thermal_device::sense::{Average, THERMISTORS};
+use thermal_device::sense::{THERMISTORS, ThermistorAverage};
 
 /// Points of one thermistor.
 pub const POINTS: usize = 24;
@@ -65,14 +65,14 @@ impl Points {
     pub fn add(
         &mut self,
         thermistor: usize,
-        average: &Average,
+        average: &ThermistorAverage,
         reads_c: f64,
         reference_c: f64,
     ) -> Result<(), PointError> {
         if !average.is_steady() {
             return Err(PointError::Unsteady);
         }
-        let segments = average.sum() / f64::from(16 * thermal_settings::SEGMENT_CODES);
+        let segments = average.mean_sum() / f64::from(16 * thermal_settings::SEGMENT_CODES);
         let from_border =
             (segments - libm::round(segments)) * f64::from(thermal_settings::SEGMENT_CODES);
         if libm::fabs(from_border) < BORDER_CODES {
@@ -82,7 +82,7 @@ impl Points {
             return Err(PointError::TooFar(Celsius::saturating_from_num(reads_c)));
         }
         let point = Point {
-            sum: average.sum(),
+            sum: average.mean_sum(),
             reference_c,
         };
         let points = self.of.get_mut(thermistor).ok_or(PointError::Full)?;

@@ -6,9 +6,9 @@ use super::margins::Margins;
 use super::points::{PointError, Points};
 use super::request::{Error, Reply, Request, SENSORS, STEPS_A_LINE, Setting};
 use thermal_device::command::{self, Command, Refused};
-use thermal_device::control::Tuned;
-use thermal_device::identification::{ROWS, Row};
-use thermal_device::sense::Calibrated;
+use thermal_device::control::ControlParameters;
+use thermal_device::identification::{NormalEquationRow, ROWS};
+use thermal_device::sense::CalibrationTables;
 use thermal_settings::{BORDERS, Calibration, Correction, FIRST_BORDER, Settings, Tile};
 
 /// Lines that hold all commissioned settings: the steps, a correction each, the tile.
@@ -88,9 +88,9 @@ impl Service {
         &mut self,
         execute: &mut impl FnMut(Command) -> Result<command::Reply, Refused>,
     ) -> Result<Reply, Error> {
-        let mut rows = [Row::default(); ROWS];
+        let mut rows = [NormalEquationRow::default(); ROWS];
         for (i, row) in rows.iter_mut().enumerate() {
-            let command::Reply::Row(sums) = execute(Command::Experiment(i))? else {
+            let command::Reply::NormalEquation(sums) = execute(Command::NormalEquation(i))? else {
                 return Err(Refused::NotTuned.into());
             };
             *row = sums;
@@ -107,7 +107,7 @@ impl Service {
     ) -> Result<Reply, Error> {
         let mut settings = self.settings;
         settings.retune(tile);
-        execute(Command::Retune(Tuned::new(&settings)))?;
+        execute(Command::Retune(ControlParameters::new(&settings)))?;
         self.settings = settings;
         Ok(Reply::Done)
     }
@@ -153,7 +153,7 @@ impl Service {
     }
 
     fn calibrated(&self) -> Command {
-        Command::Calibrate(Calibrated::new(&self.settings))
+        Command::Calibrate(CalibrationTables::new(&self.settings))
     }
 
     fn point(
@@ -169,7 +169,7 @@ impl Service {
             &self.settings,
             &self.settings.calibration,
             sensor,
-            average.sum(),
+            average.mean_sum(),
         );
         (self.points.add(sensor, &average, reads_c, reference_c)).map_err(Error::Point)?;
         let fitted = fit(&self.settings, &self.before, &self.points)

@@ -3,7 +3,7 @@
 //! The flash is written by a device that does nothing else. So an order is obeyed by starting anew: what is to be stored waits in a
 //! memory that a reset does not clear, and is stored before anything else happens; then the order is answered.
 
-use thermal_device::State;
+use thermal_device::StateName;
 use thermal_settings::{Kept, StoredBytes, encode};
 
 use crate::Service;
@@ -44,6 +44,9 @@ pub fn record<const FINGERS: usize>(
 
 /// Whether the bridge is off in a state, so that nobody can feel a device that starts anew.
 #[must_use]
-pub const fn is_off(state: State) -> bool {
-    matches!(state, State::Off | State::Ready | State::Tripped(_))
+pub const fn is_off(state: StateName) -> bool {
+    matches!(
+        state,
+        StateName::Off | StateName::Ready | StateName::Tripped(_)
+    )
 }

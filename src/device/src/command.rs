@@ -6,11 +6,12 @@ use core::fmt;
 
 use contact_model::fixed_point::{Celsius, ContactPair};
 
-use crate::control::{Law, Tuned};
-use crate::identification::{Aborted, Row};
+use crate::StateName;
+use crate::control::{ControlParameters, Law};
+use crate::identification::{AbortReason, NormalEquationRow};
 use crate::reference::Mode;
-use crate::safety::{Cause, Fault, Setpoint, State};
-use crate::sense::{Average, Calibrated};
+use crate::safety::{Fault, Setpoint, TripCause};
+use crate::sense::{CalibrationTables, ThermistorAverage};
 
 /// A command for one station, checked and ready to execute.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,11 +53,11 @@ pub enum Command {
     /// Identify the tile: drive current pulses and record the display's response.
     Tune,
     /// Report a row of the identification's normal equations.
-    Experiment(usize),
+    NormalEquation(usize),
     /// Use another calibration of the thermistors.
-    Calibrate(Calibrated),
+    Calibrate(CalibrationTables),
     /// Control another tile.
-    Retune(Tuned),
+    Retune(ControlParameters),
 }
 
 /// What a station answers.
@@ -69,11 +70,11 @@ pub enum Reply {
     /// Answer to [`Command::Law`] without a law.
     Law(Law),
     /// Answer to [`Command::Cause`].
-    Cause(Option<Cause>),
+    Cause(Option<TripCause>),
     /// Answer to [`Command::Average`].
-    Average(Average),
-    /// Answer to [`Command::Experiment`].
-    Row(Row),
+    Average(ThermistorAverage),
+    /// Answer to [`Command::NormalEquation`].
+    NormalEquation(NormalEquationRow),
 }
 
 /// Why a station refuses a command; nothing has changed then.
@@ -98,7 +99,7 @@ pub enum Refused {
     /// The identification is running.
     Tuning,
     /// The identification ended early.
-    TuneAborted(Aborted),
+    TuneAborted(AbortReason),
     /// The mean of a thermistor is not complete.
     TooEarly,
     /// A fault is latched.
@@ -113,7 +114,7 @@ pub enum Refused {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Status {
     /// State and, if tripped, the fault.
-    pub state: State,
+    pub state: StateName,
     /// Chosen material.
     pub material: Option<&'static str>,
     /// Object temperature; `None` takes that of the room.

@@ -4,7 +4,7 @@ use core::array;
 
 use crate::command::{Addressed, Command, Refused, Reply};
 use crate::drive::Outputs;
-use crate::safety::{Cause, Dose, Fault};
+use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
 use crate::{Finger, Station};
@@ -28,10 +28,10 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// is one: the fault that ended the previous run of the program.
     #[must_use]
     #[inline(never)]
-    pub fn with_cause(cause: Option<Cause>, settings: &Settings) -> Self {
+    pub fn with_cause(cause: Option<TripCause>, settings: &Settings) -> Self {
         let mut station = Station::new(settings);
         if let Some(cause) = cause {
-            station.latch(cause);
+            station.trip(cause);
         }
         Self {
             stations: array::from_fn(|_| station.clone()),
@@ -43,19 +43,19 @@ impl<const FINGERS: usize> Device<FINGERS> {
     #[inline(never)]
     pub fn restore_settings(&mut self, stored: &[Kept; FINGERS]) {
         for (station, stored) in self.stations.iter_mut().zip(stored) {
-            station.restore(&stored.settings());
+            station.apply(&stored.settings());
         }
     }
 
     /// Thermal dose of a finger so far.
     #[must_use]
-    pub const fn dose(&self, finger: Finger<FINGERS>) -> &Dose {
+    pub const fn dose(&self, finger: Finger<FINGERS>) -> &ThermalDose {
         self.stations[finger.index()].dose()
     }
 
     /// Sets the thermal dose that a finger had accumulated before a restart.
-    pub const fn restore_dose(&mut self, finger: Finger<FINGERS>, dose: Dose) {
-        self.stations[finger.index()].resume(dose);
+    pub const fn restore_dose(&mut self, finger: Finger<FINGERS>, dose: ThermalDose) {
+        self.stations[finger.index()].restore_dose(dose);
     }
 
     /// Runs one control tick of a finger.
@@ -67,7 +67,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
     pub fn trip_all(&mut self, fault: Fault) {
         self.stations
             .iter_mut()
-            .for_each(|station| station.trip(fault));
+            .for_each(|station| station.raise(fault));
     }
 
     /// Whether a fault is latched at this finger.
@@ -78,14 +78,19 @@ impl<const FINGERS: usize> Device<FINGERS> {
 
     /// Cause of the earliest trip that is still latched, of all fingers.
     #[must_use]
-    pub fn earliest_cause(&self) -> Option<&Cause> {
+    pub fn earliest_cause(&self) -> Option<&TripCause> {
         let tripped = self.stations.iter().filter(|station| station.is_tripped());
-        tripped.min_by_key(|station| station.tripped_at())?.cause()
+        tripped
+            .min_by_key(|station| station.latch().tripped_at())?
+            .latch()
+            .cause()
     }
 
     /// Restarts the time-out that trips a finger when the host falls silent.
     pub fn note_host_activity(&mut self) {
-        self.stations.iter_mut().for_each(Station::hear);
+        self.stations
+            .iter_mut()
+            .for_each(Station::note_host_activity);
     }
 
     /// Telemetry of a finger's last tick, if the interval of its stream has elapsed.

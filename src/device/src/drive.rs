@@ -1,18 +1,18 @@
-//! What the bridge is told.
+//! Outputs of a control tick: current, duty cycle and state of the bridge.
 
 use fixed::types::{I1F15, I8F24};
 
-/// Current through the module in A, ±128; positive cools the display.
+/// Current through the module in A, ±128 at a resolution of 60 nA; positive cools the display.
 pub type Current = I8F24;
 
-/// A current that a module may be driven with; positive cools the display.
+/// A current within the limit of every module; nothing else can be constructed. Positive cools the display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SafeCurrent(Current);
 
 impl SafeCurrent {
     /// Largest magnitude, A: that of the smallest module of the class.
     pub const LIMIT: Current = Current::lit("6");
-    /// None.
+    /// No current.
     pub const ZERO: Self = Self(Current::ZERO);
 
     /// Clamps to plus or minus [`Self::LIMIT`].
@@ -28,12 +28,12 @@ impl SafeCurrent {
     }
 }
 
-/// Signed fraction of the bridge supply; positive cools the display.
+/// Mean voltage of the bridge as a fraction of its supply, -0.9 to 0.9; positive cools the display.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Duty(I1F15);
 
 impl Duty {
-    /// Largest magnitude: 10.8 V of 12 V, more than 6 A through a cold module ever need.
+    /// Largest magnitude: 10.8 V of 12 V, more than 6 A need through a cold module.
     pub const LIMIT: I1F15 = I1F15::lit("0.9");
     /// No voltage; both legs are driven to the same level.
     pub const ZERO: Self = Self(I1F15::ZERO);
@@ -50,21 +50,22 @@ impl Duty {
         self.0
     }
 
-    /// Time at the supply of the legs that cool and warm, in steps of a PWM period of `full` steps.
+    /// On-times of the half-bridges that cool and warm, in steps of a PWM period of `period` steps.
     ///
-    /// Slow decay: one leg stays high while the other takes away its share of the period, so the current
-    /// circulates between the pulses and the mean voltage is the fraction of the supply, rounded to the
-    /// nearest step. With fast decay (the other leg low) it would also depend on the current.
+    /// Slow decay: one half-bridge stays high and the other is low for the duty's part of the period, so that the
+    /// current circulates between the pulses and the mean voltage is the fraction of the supply, rounded to the
+    /// nearest step. With fast decay (both low between the pulses) the voltage would also depend on the current.
     #[must_use]
-    pub fn legs(self, full: u16) -> (u16, u16) {
+    pub fn half_bridge_on_times(self, period: u16) -> (u16, u16) {
+        // The fraction has 15 binary places; half a step is added to round.
         let fraction = self.0.to_bits();
-        let taken = (u32::from(full) * u32::from(fraction.unsigned_abs()) + (1 << 14)) >> 15;
-        // `taken` is at most `full`, because the fraction is below one.
-        let rest = full.saturating_sub(taken as u16);
+        let low = (u32::from(period) * u32::from(fraction.unsigned_abs()) + (1 << 14)) >> 15;
+        // No overflow, because the fraction is below one.
+        let high = period.saturating_sub(low as u16);
         if fraction >= 0 {
-            (full, rest)
+            (period, high)
         } else {
-            (rest, full)
+            (high, period)
         }
     }
 }
@@ -72,17 +73,17 @@ impl Duty {
 /// Command to the bridge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drive {
-    /// Both legs high-impedance.
+    /// Both half-bridges high-impedance.
     Off,
-    /// Drive with this mean voltage.
+    /// Drive with this duty.
     On(Duty),
 }
 
-/// What one tick tells the board.
+/// Outputs of one control tick to the board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outputs {
     /// The bridge.
     pub drive: Drive,
-    /// Level of the line that lets the comparator cut the supply, and with its falling edge give it back.
+    /// Level of the comparator's test line: high makes the comparator cut the supply, and the falling edge restores it.
     pub comparator_test: bool,
 }

@@ -1,36 +1,36 @@
-//! A display that is held at a temperature, as for calibration.
+//! A display that is held at a temperature, for example for a calibration.
 
 use contact_model::fixed_point::Celsius;
 
 use crate::TICK_HZ;
 use crate::safety::Setpoint;
 
-/// How fast the set-point goes there, K/s. A plain loop overshoots by what it lags behind: on the slowest sensors by 0.7 K then, to
-/// 42.7 °C, where a step from skin temperature takes it to 44 °C, which trips. Nor do thermistors of different lags part.
-const RATE_K_S: u32 = 1;
-/// The same, a tick.
-const STEP: Celsius = Celsius::from_bits(((RATE_K_S << Celsius::FRAC_NBITS) / TICK_HZ) as i32);
+/// Slew rate of the set-point, K/s. A proportional-integral loop on the slowest thermistors overshoots by 0.7 K at this rate, to
+/// 42.7 °C; a step from skin temperature would reach 44 °C and trip. Thermistors of different lags stay together, too.
+const SLEW_RATE_K_S: u32 = 1;
+/// The same per tick.
+const STEP: Celsius = Celsius::from_bits(((SLEW_RATE_K_S << Celsius::FRAC_NBITS) / TICK_HZ) as i32);
 
-/// Where a display is held, and how far its set-point has come.
+/// The temperature at which a display is held, and the present set-point on the way there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Hold {
-    goal: Setpoint,
+    target: Setpoint,
     setpoint: Setpoint,
 }
 
 impl Hold {
-    /// Sets out for a temperature from the nearest set-point to what the display reads.
+    /// Starts at the set-point that is nearest to the display's reading.
     #[must_use]
-    pub fn new(goal: Setpoint, reading: Celsius) -> Self {
+    pub fn new(target: Setpoint, reading: Celsius) -> Self {
         let (setpoint, _) = Setpoint::limited(reading);
-        Self { goal, setpoint }
+        Self { target, setpoint }
     }
 
     /// The set-point of the next tick.
     pub fn step(&mut self) -> Setpoint {
         let now = self.setpoint.celsius();
-        let missing = self.goal.celsius().saturating_sub(now);
-        (self.setpoint, _) = Setpoint::limited(now.saturating_add(missing.clamp(-STEP, STEP)));
+        let distance = self.target.celsius().saturating_sub(now);
+        (self.setpoint, _) = Setpoint::limited(now.saturating_add(distance.clamp(-STEP, STEP)));
         self.setpoint
     }
 }
@@ -40,11 +40,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_setpoint_goes_by_a_kelvin_a_second_to_its_goal_and_stays() {
-        for (from_c, goal_c) in [(30.0, 42.0), (42.0, 15.0), (20.0, 20.0)] {
-            let (goal, _) = Setpoint::limited(Celsius::from_num(goal_c));
-            let mut hold = Hold::new(goal, Celsius::from_num(from_c));
-            let way_k: f64 = goal_c - from_c;
+    fn the_set_point_moves_to_the_target_by_1_k_per_second_and_stays() {
+        for (from_c, target_c) in [(30.0, 42.0), (42.0, 15.0), (20.0, 20.0)] {
+            let (target, _) = Setpoint::limited(Celsius::from_num(target_c));
+            let mut hold = Hold::new(target, Celsius::from_num(from_c));
+            let way_k: f64 = target_c - from_c;
             for tick in 1..60_000 {
                 let gone_k = (f64::from(tick) * 1e-3).min(way_k.abs()) * way_k.signum();
                 let setpoint_c = hold.step().celsius().to_num::<f64>();
@@ -55,12 +55,12 @@ mod tests {
                     "{setpoint_c} {tick}"
                 );
             }
-            assert_eq!(hold.step(), goal);
+            assert_eq!(hold.step(), target);
         }
     }
 
     #[test]
-    fn a_reading_beyond_the_range_is_no_setpoint() {
+    fn a_reading_outside_the_range_starts_at_the_nearest_set_point() {
         let mut hold = Hold::new(Setpoint::MAX, Celsius::lit("42.6"));
         assert_eq!(hold.step(), Setpoint::MAX);
         let mut hold = Hold::new(Setpoint::MAX, Celsius::lit("-20"));

@@ -10,22 +10,27 @@
 #[cfg(test)]
 extern crate std;
 
+mod bismuth_telluride;
 pub mod command;
 pub mod control;
 mod device;
 pub mod drive;
+pub mod estimate;
 mod finger;
 mod hold;
 pub mod identification;
+mod low_pass;
+pub mod pi;
 pub mod reference;
 pub mod safety;
 pub mod sense;
+mod state_name;
 mod station;
 mod telemetry;
 
 pub use device::Device;
 pub use finger::Finger;
-pub use safety::State;
+pub use state_name::StateName;
 pub use station::Station;
 pub use telemetry::Telemetry;
 pub use thermal_settings::TICK_HZ;

@@ -2,19 +2,16 @@
 
 use contact_model::fixed_point::{Celsius, Force};
 
+use crate::StateName;
 use crate::drive::Current;
-use crate::safety::State;
 
-/// One tick; `Display` writes the telemetry line without its end, at most 128 bytes.
-///
-/// `T tick state setpoint_c display_c sink_c skin_c room_c force_n demand_a current_a evaluations remark`,
-/// with `-` for what is not known; the remark is the fault that tripped, `limited` or `-`.
+/// One tick, as it is reported to the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Telemetry {
     /// Ticks since reset.
     pub tick: u32,
-    /// State.
-    pub state: State,
+    /// State of the station.
+    pub state: StateName,
     /// Set-point, °C, if the bridge is driven.
     pub setpoint: Option<Celsius>,
     /// The set-point was limited to the safe range.
@@ -29,31 +26,10 @@ pub struct Telemetry {
     pub room: Option<Celsius>,
     /// Force, N.
     pub force: Option<Force>,
-    /// Current asked for, A; positive cools.
+    /// Demanded current, A; positive cools.
     pub demand: Current,
     /// Magnitude of the measured current, A.
     pub current: Current,
     /// Evaluations of `erfcx` since reset.
     pub evaluations: u32,
-}
-
-impl Telemetry {
-    /// Before the first tick.
-    #[must_use]
-    pub const fn before_first_tick() -> Self {
-        Self {
-            tick: 0,
-            state: State::Off,
-            setpoint: None,
-            limited: false,
-            display: None,
-            sink: None,
-            skin: None,
-            room: None,
-            force: None,
-            demand: Current::ZERO,
-            current: Current::ZERO,
-            evaluations: 0,
-        }
-    }
 }

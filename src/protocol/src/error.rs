@@ -218,7 +218,7 @@ impl fmt::Display for Error {
             }
             Self::Refused(Refused::Tuning) => f.write_str("tuning goes on; ask again in a second"),
             Self::Refused(Refused::TuneAborted(why)) => {
-                write!(f, "tune was ended: {}", why.reason())
+                write!(f, "tune was ended: {}", why.description())
             }
             Self::NoTile(NoTile::Current(part)) => write!(
                 f,

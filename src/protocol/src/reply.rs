@@ -5,7 +5,7 @@ use core::fmt::{self, Display as _};
 use thermal_commissioning::{Margins, Setting, StorageOrder};
 use thermal_device::command::{self, Status};
 use thermal_device::reference::Mode;
-use thermal_device::safety::Cause;
+use thermal_device::safety::TripCause;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, Correction, Tile};
 
@@ -53,7 +53,7 @@ fn station(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fmt::Result {
         command::Reply::Law(law) => write!(f, "ok law={}", law.name()),
         command::Reply::Cause(cause) => cause_line(cause.as_ref()).fmt(f),
         // Averages and sums go to the commissioning session only.
-        command::Reply::Done | command::Reply::Average(_) | command::Reply::Row(_) => {
+        command::Reply::Done | command::Reply::Average(_) | command::Reply::NormalEquation(_) => {
             f.write_str("ok")
         }
     }
@@ -106,7 +106,7 @@ fn status_line(status: &Status) -> Text {
     line
 }
 
-fn cause_line(cause: Option<&Cause>) -> Text {
+fn cause_line(cause: Option<&TripCause>) -> Text {
     let mut line = Text::new();
     line.word("ok cause=");
     let Some(cause) = cause else {
@@ -127,7 +127,7 @@ fn cause_line(cause: Option<&Cause>) -> Text {
     line.word(" current_a=");
     line.current(cause.current);
     line.word(" asked_a=");
-    line.current(cause.asked);
+    line.current(cause.demanded);
     line
 }
 

@@ -8,12 +8,13 @@ use contact_model::fixed_point::{Celsius, Force};
 
 use super::{ANSWER_MAX, Error, LINE_MAX, LineError, LineReader, Parsed, Reply, TelemetryLine};
 use thermal_commissioning::NoTile;
+use thermal_device::StateName;
 use thermal_device::Telemetry;
 use thermal_device::command::{self, Command, Status};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
 use thermal_device::reference::Mode;
-use thermal_device::safety::{Fault, State};
+use thermal_device::safety::Fault;
 use thermal_settings::Settings;
 
 fn parse(line: &str) -> Result<Parsed, Error> {
@@ -176,7 +177,7 @@ proptest! {
 
 #[test]
 fn the_longest_lines_fit() {
-    let tripped = State::Tripped(Fault::DisplayShort);
+    let tripped = StateName::Tripped(Fault::DisplayShort);
     let status = Status {
         state: tripped,
         material: Some("stainless-steel"),

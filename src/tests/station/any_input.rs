@@ -6,8 +6,9 @@ use std::cell::Cell;
 use std::vec::Vec;
 
 use super::Bench;
+use crate::device::StateName;
 use crate::device::drive::{Drive, Duty};
-use crate::device::safety::{Setpoint, State};
+use crate::device::safety::Setpoint;
 use crate::device::sense::Samples;
 use crate::protocol::ANSWER_MAX;
 
@@ -129,7 +130,7 @@ impl Count {
     /// What must hold in one tick, of these samples or of the bench's.
     fn tick(&self, bench: &mut Bench, samples: Option<&Samples>) -> Result<(), TestCaseError> {
         let tripped = bench.station.is_tripped();
-        let tested = bench.state() == State::SelfTest;
+        let tested = bench.state() == StateName::SelfTest;
         let (outputs, telemetry) = match samples {
             Some(samples) => (
                 bench.station.step(samples),
@@ -140,11 +141,11 @@ impl Count {
         let on = outputs.drive != Drive::Off;
         let driven = matches!(
             telemetry.state,
-            State::Armed | State::Preset | State::Contact
+            StateName::Armed | StateName::Preset | StateName::Contact
         );
         // In the tick in which the self-test passes, the bridge rests.
         let follows = driven && !tested;
-        prop_assert!(follows == on || telemetry.state == State::SelfTest);
+        prop_assert!(follows == on || telemetry.state == StateName::SelfTest);
         prop_assert_eq!(follows, telemetry.setpoint.is_some());
         prop_assert!(!tripped || !on);
         prop_assert!(!on || samples.is_none_or(|samples| !samples.bridge_fault));
@@ -159,7 +160,7 @@ impl Count {
             prop_assert_eq!(Setpoint::limited(setpoint).1, false);
         }
         // What the self-test asks for it gets.
-        if telemetry.state == State::SelfTest {
+        if telemetry.state == StateName::SelfTest {
             bench.display_c -= 2.7e-3 * telemetry.demand.to_num::<f64>();
             bench.check_c = bench.display_c;
         }
@@ -177,7 +178,7 @@ impl Count {
         for tick in 0..phase.ticks {
             let samples = phase.once.as_ref().filter(|_| tick == phase.ticks / 2);
             self.tick(bench, samples)?;
-            if bench.state() == State::SelfTest {
+            if bench.state() == StateName::SelfTest {
                 continue;
             }
             let display_c = if bench.answers {
@@ -205,7 +206,7 @@ fn tell(bench: &mut Bench, line: &str) -> Result<(), TestCaseError> {
     let answer = bench.host(line);
     prop_assert!(answer.len() <= ANSWER_MAX);
     prop_assert!(line != "abort" || answer == "ok");
-    if matches!(before, State::Tripped(_)) && line != "clear" {
+    if matches!(before, StateName::Tripped(_)) && line != "clear" {
         prop_assert_eq!(before, bench.state());
     }
     Ok(())

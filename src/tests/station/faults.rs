@@ -1,6 +1,7 @@
 //! Faults switch off, at once and for good; limits hold.
 
-use super::{Bench, State};
+use super::Bench;
+use crate::device::StateName;
 use crate::device::drive::Drive;
 use crate::device::safety::Fault;
 
@@ -51,7 +52,7 @@ fn every_fault_trips_in_its_tick_from_every_state_and_stays() {
     for sound in everywhere() {
         for (word, happen) in TROUBLES {
             // The comparator may have kept the line since the last self-test.
-            if word == "bridge" && sound.state() == State::Off {
+            if word == "bridge" && sound.state() == StateName::Off {
                 continue;
             }
             let mut bench = sound.clone();
@@ -120,7 +121,7 @@ fn the_first_fault_is_kept_and_a_later_one_keeps_clear_from_passing() {
 fn what_tripped_while_it_was_tripped_comes_to_light_with_clear() {
     let mut bench = Bench::presenting("copper");
     for fault in [Fault::SinkHot, Fault::SettingsCorrupt] {
-        bench.station.trip(fault);
+        bench.station.raise(fault);
     }
     bench.steps(2);
     assert_eq!(bench.state().fault(), Some(Fault::SinkHot));
@@ -131,14 +132,14 @@ fn what_tripped_while_it_was_tripped_comes_to_light_with_clear() {
     assert_eq!(bench.state().fault(), Some(Fault::SettingsCorrupt));
     assert!(bench.host("cause").contains("settings-corrupt"));
     bench.obey(&["clear"]);
-    assert_eq!(bench.state(), State::Off);
+    assert_eq!(bench.state(), StateName::Off);
 }
 
 #[test]
 fn what_stands_and_no_sample_shows_keeps_clear_from_being_obeyed() {
     let mut bench = Bench::new();
     for _ in 0..3 {
-        bench.station.trip(Fault::Clock);
+        bench.station.raise(Fault::Clock);
         bench.step();
         assert_eq!(bench.host("clear"), "err fault clock is still present");
     }
@@ -174,7 +175,7 @@ fn a_force_sensor_that_is_noisy_delays_no_self_test() {
         bench.force_n = if tick % 100 == 50 { 0.004 } else { 0.0 };
         bench.step_tested();
     }
-    assert_eq!(bench.state(), State::Armed);
+    assert_eq!(bench.state(), StateName::Armed);
 }
 
 /// A force that is hardly above its zero comes and goes with the noise; a slow landing passes there.
@@ -189,7 +190,7 @@ fn a_force_that_comes_and_goes_delays_a_self_test_by_two_seconds_at_most() {
             bench.force_n = force(tick);
             bench.step_tested();
         }
-        assert_eq!(bench.state(), State::Armed);
+        assert_eq!(bench.state(), StateName::Armed);
     }
 }
 
@@ -199,7 +200,7 @@ fn a_self_test_that_is_never_left_alone_trips_after_20_s() {
     let mut bench = Bench::new();
     assert_eq!(bench.host("arm"), "ok");
     let mut ticks = 0;
-    while bench.state() == State::SelfTest {
+    while bench.state() == StateName::SelfTest {
         bench.force_n = if ticks / 500 % 2 == 0 { 1.0 } else { 0.0 };
         bench.step_tested();
         ticks += 1;
@@ -213,7 +214,7 @@ fn a_self_test_that_is_never_left_alone_trips_after_20_s() {
 fn a_self_test_without_current_one_way_round_trips() {
     let mut bench = Bench::new();
     assert_eq!(bench.host("arm"), "ok");
-    while bench.state() == State::SelfTest {
+    while bench.state() == StateName::SelfTest {
         let (outputs, telemetry) = bench.step_all();
         let flows_a = telemetry.demand.to_num::<f64>().max(0.0);
         bench.current_a = Some(flows_a);
@@ -288,7 +289,7 @@ fn a_converter_that_stands_still_trips_within_50_ms() {
     }
     bench.noise = 0;
     bench.steps(45);
-    assert_eq!(bench.state(), State::Preset);
+    assert_eq!(bench.state(), StateName::Preset);
     let (drive, _) = bench.steps(1);
     assert_eq!(
         (bench.state().fault().map(Fault::name), drive),
@@ -307,12 +308,12 @@ fn display_thermistors_that_stay_apart_trip() {
     };
     drift(&mut bench, 2.9);
     bench.steps(200);
-    assert_eq!(bench.state(), State::Preset);
+    assert_eq!(bench.state(), StateName::Preset);
     drift(&mut bench, -2.9);
     bench.steps(4);
     bench.check_c = bench.display_c - 3.1;
     bench.steps(39);
-    assert_eq!(bench.state(), State::Preset);
+    assert_eq!(bench.state(), StateName::Preset);
     let (drive, _) = bench.steps(1);
     assert_eq!(
         (bench.state().fault().map(Fault::name), drive),
@@ -345,9 +346,9 @@ fn a_comparator_that_has_cut_can_be_cleared() {
     bench.check_c = check_c;
     bench.step();
     bench.obey(&["clear"]);
-    assert_eq!(bench.state(), State::Off);
+    assert_eq!(bench.state(), StateName::Off);
     bench.obey(&["arm"]);
-    assert_eq!(bench.state(), State::Armed);
+    assert_eq!(bench.state(), StateName::Armed);
 }
 
 #[test]
@@ -369,7 +370,7 @@ fn a_finger_that_lands_in_the_self_test_is_waited_for() {
     let mut bench = Bench::new();
     assert_eq!(bench.host("arm"), "ok");
     for tick in 0..3000 {
-        if bench.state() != State::SelfTest {
+        if bench.state() != StateName::SelfTest {
             break;
         }
         bench.force_n = if tick < 150 { 0.0 } else { 1.0 };
@@ -381,5 +382,5 @@ fn a_finger_that_lands_in_the_self_test_is_waited_for() {
         };
         bench.check_c = bench.display_c;
     }
-    assert_eq!(bench.state(), State::Armed);
+    assert_eq!(bench.state(), StateName::Armed);
 }

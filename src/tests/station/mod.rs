@@ -16,7 +16,7 @@ use crate::device::command::Addressed;
 use crate::device::drive::Drive;
 use crate::device::drive::Outputs;
 use crate::device::sense::Samples;
-use crate::device::{State, Station};
+use crate::device::{StateName, Station};
 use crate::protocol::Desk;
 use crate::settings::{Settings, Tile};
 
@@ -123,7 +123,7 @@ impl Bench {
         let (display_c, check_c, current_a) = (self.display_c, self.check_c, self.current_a);
         let answers = mem::replace(&mut self.answers, false);
         self.current_a = None;
-        while self.state() == State::SelfTest {
+        while self.state() == StateName::SelfTest {
             self.step_tested();
         }
         (self.display_c, self.check_c, self.current_a) = (display_c, check_c, current_a);
@@ -172,7 +172,7 @@ impl Bench {
             }
         }
         if self.host_there {
-            self.station.hear();
+            self.station.note_host_activity();
         }
         let outputs = self.station.step(&samples);
         let telemetry = self.station.telemetry().expect("streamed on every tick");
@@ -202,7 +202,7 @@ impl Bench {
         self.step()
     }
 
-    fn state(&self) -> State {
+    fn state(&self) -> StateName {
         self.station.state()
     }
 

@@ -4,7 +4,7 @@ use contact_model::material::{SKIN, find};
 use contact_model::reference::{Contact, interface_temperature};
 
 use super::{Bench, assert_close};
-use crate::device::State;
+use crate::device::StateName;
 
 /// Two ticks of force make a contact, which then is two ticks old.
 const DETECTION_S: f64 = 2e-3;
@@ -33,7 +33,7 @@ fn follows_from(bench: &mut Bench, contact: &Contact<f64>, from_s: f64, ticks: u
     for tick in 0..ticks {
         let expected = contact.at(from_s + f64::from(tick) * 1e-3);
         assert_close(bench.setpoint_c(), expected.display_c);
-        assert_eq!(bench.state(), State::Contact);
+        assert_eq!(bench.state(), StateName::Contact);
     }
 }
 
@@ -53,7 +53,7 @@ fn armed_is_neutral_touched_or_not() {
         bench.force_n = force_n;
         for _ in 0..200 {
             assert_close(bench.setpoint_c(), 34.0);
-            assert_eq!(bench.state(), State::Armed);
+            assert_eq!(bench.state(), StateName::Armed);
         }
     }
 }
@@ -141,9 +141,9 @@ fn semi_infinite_mode_holds_the_interface_temperature() {
     let granite = find("granite").expect("a material of the thesis");
     let expected_c = interface_temperature(&SKIN, 34.0, granite, 24.0);
     for (force_n, state) in [
-        (0.0, State::Preset),
-        (2.0, State::Contact),
-        (0.0, State::Preset),
+        (0.0, StateName::Preset),
+        (2.0, StateName::Contact),
+        (0.0, StateName::Preset),
     ] {
         bench.force_n = force_n;
         for _ in 0..500 {

@@ -1,8 +1,8 @@
 //! The documented state diagram.
 
 use super::Bench;
+use crate::device::StateName;
 use crate::device::drive::Drive;
-use crate::device::safety::State;
 
 #[test]
 fn a_station_is_off_until_it_is_armed() {
@@ -12,7 +12,7 @@ fn a_station_is_off_until_it_is_armed() {
         let (drive, telemetry) = bench.step();
         assert_eq!(
             (drive, telemetry.state, telemetry.setpoint),
-            (Drive::Off, State::Off, None)
+            (Drive::Off, StateName::Off, None)
         );
         assert_eq!(telemetry.demand, 0);
     }
@@ -29,7 +29,7 @@ fn every_arrow_of_the_state_diagram() {
     let landed = |bench: &mut Bench| {
         bench.force_n = 1.0;
         bench.steps(2);
-        assert_eq!(bench.state(), State::Contact);
+        assert_eq!(bench.state(), StateName::Contact);
     };
     let started = |bench: &mut Bench| {
         bench.force_n = 0.0;
@@ -37,26 +37,26 @@ fn every_arrow_of_the_state_diagram() {
         bench.steps(2);
         bench.obey(&["start"]);
         bench.step();
-        assert_eq!(bench.state(), State::Preset);
+        assert_eq!(bench.state(), StateName::Preset);
     };
 
     bench.obey(&["arm"]);
-    assert_eq!(bench.state(), State::Armed);
+    assert_eq!(bench.state(), StateName::Armed);
     bench.obey(&["arm", "abort"]);
-    assert_eq!(bench.state(), State::Ready);
+    assert_eq!(bench.state(), StateName::Ready);
 
     started(&mut bench);
     landed(&mut bench);
     bench.force_n = 0.0;
     bench.steps(2);
-    assert_eq!(bench.state(), State::Preset);
+    assert_eq!(bench.state(), StateName::Preset);
 
     bench.obey(&["arm"]);
-    assert_eq!(bench.state(), State::Armed);
+    assert_eq!(bench.state(), StateName::Armed);
     started(&mut bench);
     landed(&mut bench);
     bench.obey(&["arm"]);
-    assert_eq!(bench.state(), State::Armed);
+    assert_eq!(bench.state(), StateName::Armed);
 
     for touched in [false, true] {
         started(&mut bench);
@@ -64,7 +64,10 @@ fn every_arrow_of_the_state_diagram() {
             landed(&mut bench);
         }
         bench.obey(&["abort"]);
-        assert_eq!((bench.step().0, bench.state()), (Drive::Off, State::Ready));
+        assert_eq!(
+            (bench.step().0, bench.state()),
+            (Drive::Off, StateName::Ready)
+        );
     }
 }
 
@@ -73,7 +76,7 @@ fn a_start_out_of_turn_changes_nothing() {
     let mut bench = Bench::new();
     bench.obey(&["arm"]);
     assert_eq!(bench.host("start"), "err start needs a material first");
-    assert_eq!(bench.state(), State::Armed);
+    assert_eq!(bench.state(), StateName::Armed);
     bench.obey(&["material copper", "start"]);
     bench.force_n = 2.0;
     bench.steps(500);

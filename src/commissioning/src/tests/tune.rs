@@ -8,8 +8,8 @@ use crate::Error;
 use crate::identify::{NoTile, identify};
 use thermal_device::command::Refused;
 use thermal_device::drive::Current;
-use thermal_device::identification::{Aborted, Experiment};
-use thermal_device::safety::Sound;
+use thermal_device::identification::{AbortReason, Identification, NormalEquations};
+use thermal_device::safety::ValidReadings;
 use thermal_settings::Tile;
 
 /// A tile that answers current.
@@ -66,29 +66,33 @@ impl Plant {
         Current::saturating_from_num((self.mirror)(flowing_a))
     }
 
-    fn sound(&self, tick: u32) -> Sound {
+    fn readings(&self, tick: u32, current: Current) -> ValidReadings {
         let c = |t_c: f64| Celsius::saturating_from_num(t_c);
-        Sound {
+        ValidReadings {
             display: c(self.reading_c + (self.disturbance)(tick)),
             check: c(self.reading_c),
             sink: c(self.sink_c),
             skin: c(33.0),
             room: c(24.0),
             force: Force::ZERO,
+            current,
         }
     }
 
     /// Lets it be tuned; a finger lands at some tick.
     fn tune(mut self, touched_at: u32) -> Result<Tile, Error> {
-        let mut experiment = Experiment::new(Celsius::saturating_from_num(self.sink_c));
+        let mut equations = NormalEquations::default();
+        let mut identification = Identification::new(Celsius::saturating_from_num(self.sink_c));
         let mut measured = Current::ZERO;
         for tick in 0..80_000 {
-            match experiment.outcome() {
-                Some(Ok(rows)) => return identify(rows).map_err(Error::NoTile),
+            match identification.outcome() {
+                Some(Ok(())) => return identify(equations.rows()).map_err(Error::NoTile),
                 Some(Err(why)) => return Err(Refused::TuneAborted(why).into()),
                 None => {}
             }
-            let current = experiment.update(&self.sound(tick), measured, tick >= touched_at);
+            let touching = tick >= touched_at;
+            let current =
+                identification.update(&mut equations, &self.readings(tick, measured), touching);
             measured = self.step(current.unwrap_or(Current::ZERO));
         }
         panic!("80 s are over");
@@ -169,23 +173,23 @@ fn gain_is_that_of_large_currents_where_a_bridge_loses_some() {
 fn each_reason_to_end_is_told() {
     assert_eq!(
         Plant::new(TILE).tune(0),
-        Err(Refused::TuneAborted(Aborted::Finger).into())
+        Err(Refused::TuneAborted(AbortReason::Touched).into())
     );
     assert_eq!(
         Plant::new(TILE).tune(9000),
-        Err(Refused::TuneAborted(Aborted::Finger).into())
+        Err(Refused::TuneAborted(AbortReason::Touched).into())
     );
     let mut hot = Plant::new(TILE);
     hot.sink_c = 42.6;
     assert_eq!(
         hot.tune(NEVER),
-        Err(Refused::TuneAborted(Aborted::Sink).into())
+        Err(Refused::TuneAborted(AbortReason::SinkHot).into())
     );
     let mut restless = Plant::new(TILE);
     restless.disturbance = |tick| if tick / 700 % 2 == 0 { 0.1 } else { -0.1 };
     assert_eq!(
         restless.tune(NEVER),
-        Err(Refused::TuneAborted(Aborted::Restless).into())
+        Err(Refused::TuneAborted(AbortReason::NotSettled).into())
     );
     // It is at rest, so it begins; what the pulses would move by 2.3 K moves by eight times that.
     let mut wild = Plant::new(Tile {
@@ -196,7 +200,7 @@ fn each_reason_to_end_is_told() {
     wild.plate_c = 25.0;
     assert_eq!(
         wild.tune(NEVER),
-        Err(Refused::TuneAborted(Aborted::Display).into())
+        Err(Refused::TuneAborted(AbortReason::TooFar).into())
     );
 }
 

@@ -1,23 +1,21 @@
-//! Set-point to current, and current to bridge voltage.
+//! Control laws: from reference and estimate to current, and from current to bridge voltage.
 
-mod lag;
-mod pi;
-mod plate;
-mod tuned;
-mod two_degrees;
-mod voltage;
+mod parameters;
+mod voltage_feedforward;
 
-pub use pi::{Period, Pi, Response};
-pub use plate::Watt;
-pub use tuned::Tuned;
-use two_degrees::TwoDegrees;
-pub use voltage::{Legs, Voltage};
+pub use parameters::ControlParameters;
+pub use voltage_feedforward::VoltageFeedforward;
 
-use contact_model::fixed_point::Celsius;
+use contact_model::fixed_point::{Celsius, product};
 
 use crate::drive::Current;
-use crate::safety::Setpoint;
-use thermal_settings::Settings;
+use crate::estimate::PlateObserver;
+use crate::pi::Pi;
+use crate::reference::Reference;
+use crate::safety::limits::COOLING_REDUCED_FROM;
+
+/// Above that sink temperature cooling is reduced by this part of its limit per K, as a power of two.
+const REDUCTION_SHIFT: u32 = 1;
 
 /// Which law finds the current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,20 +24,20 @@ pub enum Law {
     Pi10Hz,
     /// Proportional-integral, every tick.
     Pi,
-    /// With a model of plate and finger beside the loop.
+    /// Feed-forward by the internal model of plate and finger, with a disturbance observer.
     #[default]
     Model,
 }
 
 impl Law {
-    /// All of them, by their words in the protocol.
+    /// All laws with their words in the protocol.
     pub const WORDS: [(&'static str, Self); 3] = [
         ("pi-10hz", Self::Pi10Hz),
         ("pi", Self::Pi),
         ("model", Self::Model),
     ];
 
-    /// Its word in the protocol.
+    /// The law's word in the protocol.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -50,40 +48,32 @@ impl Law {
     }
 }
 
-/// The law in use.
+/// The controller: the law in use, and the state of the proportional-integral laws.
 #[derive(Clone, Debug)]
-pub struct Control {
+pub struct Controller {
     law: Law,
     pi_10hz: Pi,
     pi: Pi,
-    two_degrees: TwoDegrees,
-    /// Reading of this tick.
-    display: Celsius,
     /// Current of the last tick.
-    last: Current,
+    current: Current,
 }
 
-impl Control {
-    /// At rest; `f64`, once.
+impl Controller {
+    /// A controller with current zero, and the default law.
     #[must_use]
-    pub fn new(settings: &Settings) -> Self {
-        let tuned = Tuned::new(settings);
-        let limit = Current::saturating_from_num(settings.module.current_limit_a);
+    pub fn new(parameters: &ControlParameters, limit: Current) -> Self {
         Self {
             law: Law::default(),
-            pi_10hz: Pi::new(tuned.pi_10hz, limit),
-            pi: Pi::new(tuned.pi, limit),
-            two_degrees: TwoDegrees::new(tuned, limit),
-            display: Celsius::ZERO,
-            last: Current::ZERO,
+            pi_10hz: Pi::new(parameters.pi_10hz, limit),
+            pi: Pi::new(parameters.pi, limit),
+            current: Current::ZERO,
         }
     }
 
-    /// Controls another tile; goes on from where it is.
-    pub fn retune(&mut self, tuned: &Tuned) {
-        self.pi.retune(tuned.pi);
-        self.pi_10hz.retune(tuned.pi_10hz);
-        self.two_degrees.retune(tuned);
+    /// Takes the parameters of another tile; the current goes on from where it is.
+    pub fn set_parameters(&mut self, parameters: &ControlParameters) {
+        self.pi.set_coefficients(parameters.pi);
+        self.pi_10hz.set_coefficients(parameters.pi_10hz);
     }
 
     /// The law in use.
@@ -92,83 +82,52 @@ impl Control {
         self.law
     }
 
-    /// Uses another law, which goes on with the current that flows.
+    /// Uses another law, which starts from the present current (bumpless transfer).
     pub fn select(&mut self, law: Law) {
         if law != self.law {
             self.law = law;
-            self.restart_loops();
+            self.track(self.current);
         }
     }
 
-    /// The largest current that [`Self::update`] returns.
+    /// Largest current that [`Self::update`] returns.
     #[must_use]
     pub const fn limit(&self) -> Current {
         self.pi.limit()
     }
 
-    /// The reading is to be of another scale.
-    pub const fn rescale(&mut self) {
-        self.two_degrees.rescale();
+    /// Takes the current of a tick in which something else has chosen it, so that the laws start from there.
+    pub fn track(&mut self, current: Current) {
+        self.current = current;
+        self.pi_10hz.track(current);
+        self.pi.track(current);
     }
 
-    /// A tick from which nothing is known; the current is zero.
-    pub fn lose_sight(&mut self) {
-        self.two_degrees.lose_sight();
-    }
-
-    /// Takes a tick's reading of the display, the sink, and the heat from the finger into the display.
-    pub fn observe(&mut self, display: Celsius, sink: Celsius, finger: Watt) {
-        self.display = display;
-        self.two_degrees.observe(display, sink, finger);
-    }
-
-    /// Takes the current of a tick in which something else has chosen it.
-    pub fn follow(&mut self, current: Current) {
-        self.last = current;
-        self.restart_loops();
-        self.two_degrees.go_on(current);
-    }
-
-    fn restart_loops(&mut self) {
-        self.pi_10hz.restart(self.last);
-        self.pi.restart(self.last);
-    }
-
-    /// The display's surface, as well as model and reading know it.
-    #[must_use]
-    pub fn surface(&self, reading: Celsius) -> Celsius {
-        self.two_degrees.surface().unwrap_or(reading)
-    }
-
-    /// Whether the model's residual is beyond that of a sound tile.
-    #[must_use]
-    pub fn strays(&self) -> bool {
-        self.two_degrees.strays()
-    }
-
-    /// Ends and mean of the legs.
-    #[must_use]
-    pub fn legs(&self, display: Celsius, sink: Celsius) -> Legs {
-        if self.two_degrees.surface().is_none() {
-            return Legs::between(display, sink);
-        }
-        let plate = self.two_degrees.plate();
-        Legs {
-            cold: plate.surface(),
-            hot: plate.hot(),
-            mean: plate.legs(),
-        }
-    }
-
-    /// The law's current for a tick that was [observed](Self::observe); positive cools. `target` is the set-point, and what
-    /// brings the skin back to where it should be; the plain loops go by the set-point.
-    pub fn update(&mut self, setpoint: Setpoint, target: Setpoint) -> Current {
-        self.last = match self.law {
-            Law::Pi10Hz => self.pi_10hz.update(setpoint, self.display),
-            Law::Pi => self.pi.update(setpoint, self.display),
-            Law::Model => self.two_degrees.wish(target.celsius()),
+    /// Current of this tick, A; positive cools. `plate` has been corrected by this tick's readings.
+    pub fn update(
+        &mut self,
+        reference: &Reference,
+        display: Celsius,
+        sink: Celsius,
+        plate: &PlateObserver,
+    ) -> Current {
+        self.current = match self.law {
+            Law::Pi10Hz => self.pi_10hz.update(reference.setpoint, display),
+            Law::Pi => self.pi.update(reference.setpoint, display),
+            Law::Model => plate
+                .current_to(reference.target.celsius())
+                .min(self.cooling_limit(sink))
+                .max(-self.limit()),
         };
-        self.two_degrees.go_on(self.last);
-        self.last
+        self.current
+    }
+
+    /// Largest cooling current. It falls to zero over 2 K of the sink, because there more current would warm the sink more
+    /// than cool the display.
+    fn cooling_limit(&self, sink: Celsius) -> Current {
+        let excess =
+            sink.saturating_sub(COOLING_REDUCED_FROM).max(Celsius::ZERO) >> REDUCTION_SHIFT;
+        let part = Celsius::ONE.saturating_sub(excess).max(Celsius::ZERO);
+        product(self.limit(), part)
     }
 }

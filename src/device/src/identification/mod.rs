@@ -1,46 +1,46 @@
-//! The experiment that shows what the tile is like: pulses of current around rest, and sums of what follows.
+//! Identification of the tile: current pulses about an operating point, and the least squares of what follows.
 //!
-//! The model of [`Tile`](thermal_settings::Tile), integrated twice from rest on, is linear in what is to be found:
+//! The model of [`Tile`](thermal_settings::Tile), integrated twice from the steady state on, is linear in its unknowns:
 //!
 //! ```text
 //! m Y1 = -lag y - gain (U2 - zero D2) + gain dead U1 + gain joule V2 - leak Y2 + a t + b t^2/2,   m = 1 + leak lag
 //! ```
 //!
-//! with the reading's change `y`, its integrals `Y1` and `Y2`, those of the current's change `U1`, `U2`, and of its
-//! square `V2`. Integrals of noise are small, and nothing is ever differentiated. `a` and `b` take up what the reading
-//! at rest was not known to, and what drifts; `zero`, with the integral `D2` of the direction's change, what the mirror
-//! shows when nothing flows, of which the 0.05 A of its class are much of a small pulse. The tick adds up the normal
-//! equations of least squares in integers.
+//! with the change of the reading `y`, its first and second integral `Y1` and `Y2`, the integrals `U1` and `U2` of the
+//! current's change, and `V2` of its square. Integration averages noise, and nothing is differentiated. `a` and `b`
+//! absorb the error of the baseline reading and a drift. `zero`, with the second integral `D2` of the change of the
+//! current's direction, is what the current mirror shows when no current flows: up to 0.05 A, which is much of a small
+//! pulse. The tick adds up the [`NormalEquations`] in integers.
 //!
-//! Two things would be taken for lag or leak if they were left out. The legs take up heat with the plate, later than
-//! it, so a part of the current acts late; and Joule's heat must come up the legs. Both are first-order filters with
-//! the times of diffusion along the legs of a module of this class. The current is the measured one, since that asked
-//! for goes through a bridge and a module whose tolerances are unknown; how both compare is added up as well.
+//! Two effects would bias lag and leak if they were neglected. The legs take up heat with the plate, later than the
+//! plate, so a part of the current acts late; and Joule's heat reaches the plate through the legs. Both are first-order
+//! low-pass filters with the time constants of diffusion along the legs of a module of this class. The current is the
+//! measured one, because bridge and module turn a demanded current into one that is unknown to their tolerances; the
+//! relation of both is added up as well.
 
 use contact_model::fixed_point::Celsius;
 
-mod sums;
+mod normal_equations;
 
 use crate::TICK_HZ;
-use crate::control::{Period, Pi, Response};
 use crate::drive::Current;
-use crate::safety::{Setpoint, Sound};
-use sums::{COLUMNS, Sums};
-pub use sums::{ROWS, Totals, UNIT_BITS, UNKNOWNS};
+use crate::pi::{Pi, PiCoefficients, UpdatePeriod};
+use crate::safety::limits::SINK_MAX_IDENTIFICATION;
+use crate::safety::{Setpoint, ValidReadings};
+pub use normal_equations::{
+    NormalEquationRow, NormalEquations, ROWS, Statistic, TIME_UNIT_SHIFT, UNKNOWNS,
+};
 use thermal_settings::Gains;
 
-/// Current below which its direction is not certain, and that asked for is taken.
-const DIRECTED: Current = Current::lit("0.25");
-/// Current above which what is measured is compared with what was asked for: below, the dead times of the bridge take less the
-/// smaller it is.
-const COMPARED_FROM: Current = Current::lit("1");
-/// A row of the normal equations: sums of products with each unknown's part, and with what they make up.
-pub type Row = [i64; COLUMNS];
+/// A demanded current below this may flow in either direction; it is taken instead of the measured magnitude.
+const DIRECTION_CERTAIN_FROM: Current = Current::lit("0.25");
+/// Demanded and measured current are compared above this: the smaller the current, the less the bridge's dead times take.
+const COMPARED_ABOVE: Current = Current::lit("1");
 
-/// Pulses: change of current in eighths of [`AMPLITUDE`], and how long, ms. Both signs last equally long at each
-/// height, so the display moves by 2.3 K at most, and heights differ to tell Joule's heat from drift. There are no
-/// pauses: near zero the bridge does not give what is asked for, and the mirror not what flows; what that makes of the
-/// current at rest is like a drift.
+/// Excitation pulses: change of the current in eighths of [`AMPLITUDE`], and length in ticks. Both signs last equally
+/// long at each height, so that the display moves by 2.3 K at most; heights differ to tell Joule's heat from drift. There
+/// are no pauses, because near zero the bridge does not give the demanded current and the mirror does not show the one
+/// that flows; an error of the baseline current has the effect of a drift.
 const PULSES: [(i32, u32); 15] = [
     (8, 150),
     (-8, 300),
@@ -60,7 +60,7 @@ const PULSES: [(i32, u32); 15] = [
 ];
 const AMPLITUDE: Current = Current::lit("1.5");
 /// Ticks of all pulses.
-pub const AFTER: u32 = {
+const EXCITATION_TICKS: u32 = {
     let (mut ticks, mut pulse) = (0, 0);
     while pulse < PULSES.len() {
         ticks += PULSES[pulse].1;
@@ -69,169 +69,167 @@ pub const AFTER: u32 = {
     ticks
 };
 
-/// A loop that is stable for any tile of its class, whatever its sensor's lag to half a second.
-const CAUTIOUS: Gains = Gains {
+/// Gains that are stable for any tile of its class and a sensor's lag of up to half a second.
+const SETTLING_GAINS: Gains = Gains {
     proportional_a_k: 0.3,
     integral_s: 5.0,
 };
-/// Its largest current, A: the display moves by 3 K/s, at which sensors of different lags stay together.
-const CAUTIOUS_A: Current = Current::ONE;
-/// The display is at rest when it stays this near for this long.
-const NEAR: Celsius = Celsius::lit("0.06");
-const REST_TICKS: u32 = 1500;
-/// Longest wait for that, ticks.
-const PATIENCE_TICKS: u32 = 60 * TICK_HZ;
-/// Ticks over which current and reading at rest are found.
-const BASE_TICKS: u32 = 512;
-/// The display rests at the sink's temperature, where no current is needed, within these.
-const COLDEST: Celsius = Celsius::lit("22");
-const HOTTEST: Celsius = Celsius::lit("35");
-/// What ends the experiment: a display this far from rest, or a sink this hot.
-const FARTHEST: Celsius = Celsius::lit("7");
-const SINK_HOTTEST: Celsius = Celsius::lit("41.5");
+/// Largest current while settling: the display moves by 3 K/s, at which sensors of different lags agree closely enough.
+const SETTLING_CURRENT_LIMIT: Current = Current::ONE;
+/// The display has settled when it has been this near the operating point, K, for this many ticks.
+const SETTLED_WITHIN: Celsius = Celsius::lit("0.06");
+const SETTLED_TICKS: u32 = 1500;
+/// Ticks after which a display that has not settled ends the identification.
+const SETTLING_TIMEOUT_TICKS: u32 = 60 * TICK_HZ;
+/// Ticks over which the baseline current is averaged, and then the baseline reading.
+const BASELINE_TICKS: u32 = 512;
+/// The operating point is the sink's temperature, which needs no current, limited to this range.
+const OPERATING_POINT_MIN: Celsius = Celsius::lit("22");
+const OPERATING_POINT_MAX: Celsius = Celsius::lit("35");
+/// Largest difference of the display from the operating point, K, from the baseline on.
+const MAX_EXCURSION: Celsius = Celsius::lit("7");
 
-/// Why an experiment ended early.
+/// Why an identification ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Aborted {
+pub enum AbortReason {
     /// A finger touches the display.
-    Finger,
-    /// The display does not come to rest.
-    Restless,
-    /// The display went too far.
-    Display,
+    Touched,
+    /// The display did not settle in time.
+    NotSettled,
+    /// The display went too far from the operating point.
+    TooFar,
     /// The sink is too hot.
-    Sink,
-    /// The host wanted something else, or a fault tripped.
-    Ended,
+    SinkHot,
+    /// Another command or a fault ended it.
+    Interrupted,
 }
 
-impl Aborted {
-    /// What the host is told.
+impl AbortReason {
+    /// The words of the reply to the host.
     #[must_use]
-    pub const fn reason(self) -> &'static str {
+    pub const fn description(self) -> &'static str {
         match self {
-            Self::Finger => "a finger touches the display",
-            Self::Restless => "the display did not come to rest within 60 s",
-            Self::Display => "the display went more than 7 C from rest",
-            Self::Sink => "the sink is above 41.5 C",
-            Self::Ended => "another command or a fault ended it",
+            Self::Touched => "a finger touches the display",
+            Self::NotSettled => "the display did not come to rest within 60 s",
+            Self::TooFar => "the display went more than 7 C from rest",
+            Self::SinkHot => "the sink is above 41.5 C",
+            Self::Interrupted => "another command or a fault ended it",
         }
     }
 }
 
-/// How far it is.
+/// Stages of the identification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Phase {
-    /// Coming to rest; near for so many ticks.
+    /// The loop brings the display to the operating point; `near` is the number of ticks for which it has been near.
     Settling { ticks: u32, near: u32 },
-    /// Finding current and reading at rest.
-    Base { ticks: u32 },
-    /// Pulses, with the ticks of the one that lasts.
+    /// The baseline current is averaged, then the baseline reading at this current.
+    Baseline { ticks: u32 },
+    /// The pulse of this index is applied, for `ticks` so far.
     Pulses { pulse: usize, ticks: u32 },
-    /// All sums are there; the display is held at rest.
+    /// The normal equations are complete; the loop holds the display at the operating point.
     Done,
-    /// The host has them; the display is let go.
-    Taken,
     /// Ended early.
-    Aborted(Aborted),
+    Aborted(AbortReason),
 }
 
-/// The experiment, from tick to tick.
+/// The course of an identification: settling, baseline, pulses.
 #[derive(Clone, Debug)]
-pub struct Experiment {
+pub struct Identification {
     phase: Phase,
-    rest: Setpoint,
+    operating_point: Setpoint,
     pi: Pi,
-    /// Totals over [`BASE_TICKS`], then means: current asked for, reading and measured current at rest.
-    base_current: i64,
-    base_reading: i64,
-    base_measured: i64,
-    /// Current asked for in the tick before, which flows now.
-    asked: Current,
-    sums: Sums,
+    /// Demanded current, reading and measured current before the pulses, in units of their resolution: totals over
+    /// [`BASELINE_TICKS`]; the last two become means when the pulses begin.
+    baseline_demand: i64,
+    baseline_reading: i64,
+    baseline_measured: i64,
+    /// Current demanded in the tick before, which flows in this tick.
+    previous_demand: Current,
 }
 
-impl Experiment {
-    /// Begins with a sink of some temperature.
+impl Identification {
+    /// Starts an identification at the temperature of the sink.
     #[must_use]
     pub fn new(sink: Celsius) -> Self {
+        let operating_point = sink.clamp(OPERATING_POINT_MIN, OPERATING_POINT_MAX);
         Self {
             phase: Phase::Settling { ticks: 0, near: 0 },
-            rest: Setpoint::limited(sink.clamp(COLDEST, HOTTEST)).0,
-            pi: Pi::new(Response::new(&CAUTIOUS, Period::EveryTick), CAUTIOUS_A),
-            base_current: 0,
-            base_reading: 0,
-            base_measured: 0,
-            asked: Current::ZERO,
-            sums: Sums::default(),
+            operating_point: Setpoint::limited(operating_point).0,
+            pi: Pi::new(
+                PiCoefficients::new(&SETTLING_GAINS, UpdatePeriod::EveryTick),
+                SETTLING_CURRENT_LIMIT,
+            ),
+            baseline_demand: 0,
+            baseline_reading: 0,
+            baseline_measured: 0,
+            previous_demand: Current::ZERO,
         }
     }
 
-    /// The temperature around which the display moves.
+    /// The temperature about which the pulses move the display, 22 to 35 °C.
     #[must_use]
-    pub const fn rest(&self) -> Setpoint {
-        self.rest
+    pub const fn operating_point(&self) -> Setpoint {
+        self.operating_point
     }
 
-    /// The display follows it: it has neither ended early nor been let go.
-    #[must_use]
-    pub const fn drives(&self) -> bool {
-        !matches!(self.phase, Phase::Taken | Phase::Aborted(_))
-    }
-
-    /// Ends it, unless it has ended already.
-    pub fn abort(&mut self, why: Aborted) {
-        if !matches!(self.phase, Phase::Done | Phase::Taken | Phase::Aborted(_)) {
-            self.phase = Phase::Aborted(why);
+    /// Ends the identification early; no effect if it has already ended.
+    fn abort(&mut self, reason: AbortReason) {
+        if self.outcome().is_none() {
+            self.phase = Phase::Aborted(reason);
         }
     }
 
-    /// Lets the display go. What was found stays, so that who has lost the answer can ask again.
-    pub fn release(&mut self) {
-        match self.phase {
-            Phase::Done | Phase::Taken => self.phase = Phase::Taken,
-            _ => self.abort(Aborted::Ended),
-        }
-    }
-
-    /// Whether the normal equations are complete; `None` while it goes on.
+    /// Whether the normal equations are complete; `None` while the identification is running.
     ///
     /// # Errors
-    /// Why it ended early.
+    /// Why the identification ended early.
     #[must_use]
-    pub const fn outcome(&self) -> Option<Result<&[Row; ROWS], Aborted>> {
+    pub const fn outcome(&self) -> Option<Result<(), AbortReason>> {
         match self.phase {
-            Phase::Done | Phase::Taken => Some(Ok(&self.sums.rows)),
-            Phase::Aborted(why) => Some(Err(why)),
-            _ => None,
+            Phase::Done => Some(Ok(())),
+            Phase::Aborted(reason) => Some(Err(reason)),
+            Phase::Settling { .. } | Phase::Baseline { .. } | Phase::Pulses { .. } => None,
         }
     }
 
-    /// Current of one tick in which one of a magnitude was measured; `None` when it does not drive.
-    pub fn update(&mut self, sound: &Sound, measured: Current, touching: bool) -> Option<Current> {
-        let from_rest = sound.display.saturating_sub(self.rest.celsius());
+    /// The current to demand in this tick; `None` if the identification has been aborted. The `equations` must be empty when the identification starts.
+    pub fn update(
+        &mut self,
+        equations: &mut NormalEquations,
+        readings: &ValidReadings,
+        touching: bool,
+    ) -> Option<Current> {
+        let excursion = readings
+            .display
+            .saturating_sub(self.operating_point.celsius())
+            .abs();
         if touching {
-            self.abort(Aborted::Finger);
+            self.abort(AbortReason::Touched);
         }
-        if sound.sink > SINK_HOTTEST {
-            self.abort(Aborted::Sink);
+        if readings.sink > SINK_MAX_IDENTIFICATION {
+            self.abort(AbortReason::SinkHot);
         }
-        // Before that it may come from anywhere.
-        if matches!(self.phase, Phase::Base { .. } | Phase::Pulses { .. })
-            && from_rest.abs() > FARTHEST
+        // While it settles, the display may come from any temperature.
+        if matches!(self.phase, Phase::Baseline { .. } | Phase::Pulses { .. })
+            && excursion > MAX_EXCURSION
         {
-            self.abort(Aborted::Display);
+            self.abort(AbortReason::TooFar);
         }
-        let reading = i64::from(sound.display.to_bits());
+        let reading = i64::from(readings.display.to_bits());
         match self.phase {
-            Phase::Taken | Phase::Aborted(_) => return None,
+            Phase::Aborted(_) => return None,
             Phase::Done => {}
             Phase::Settling { ticks, near } => {
-                let near = if from_rest.abs() < NEAR { near + 1 } else { 0 };
-                self.phase = if near == REST_TICKS {
-                    Phase::Base { ticks: 0 }
-                } else if ticks == PATIENCE_TICKS {
-                    Phase::Aborted(Aborted::Restless)
+                let near = if excursion < SETTLED_WITHIN {
+                    near + 1
+                } else {
+                    0
+                };
+                self.phase = if near == SETTLED_TICKS {
+                    Phase::Baseline { ticks: 0 }
+                } else if ticks == SETTLING_TIMEOUT_TICKS {
+                    Phase::Aborted(AbortReason::NotSettled)
                 } else {
                     Phase::Settling {
                         ticks: ticks + 1,
@@ -239,77 +237,75 @@ impl Experiment {
                     }
                 };
             }
-            Phase::Base { ticks } if ticks < BASE_TICKS => {
-                let current = self.pi.update(self.rest, sound.display);
-                self.base_current += i64::from(current.to_bits());
-                self.phase = Phase::Base { ticks: ticks + 1 };
+            Phase::Baseline { ticks } if ticks < BASELINE_TICKS => {
+                let current = self.pi.update(self.operating_point, readings.display);
+                self.baseline_demand += i64::from(current.to_bits());
+                self.phase = Phase::Baseline { ticks: ticks + 1 };
                 return Some(current);
             }
-            Phase::Base { ticks } if ticks < 2 * BASE_TICKS => {
-                self.base_reading += reading;
-                self.asked = self.current(0);
-                let measured = measured_along(self.asked, measured);
-                self.base_measured += i64::from(measured.to_bits());
-                self.phase = Phase::Base { ticks: ticks + 1 };
-                return Some(self.current(0));
+            Phase::Baseline { ticks } if ticks < 2 * BASELINE_TICKS => {
+                self.baseline_reading += reading;
+                self.previous_demand = self.demand(0);
+                let measured = signed(readings.current, self.previous_demand);
+                self.baseline_measured += i64::from(measured.to_bits());
+                self.phase = Phase::Baseline { ticks: ticks + 1 };
+                return Some(self.demand(0));
             }
-            Phase::Base { .. } => {
-                self.base_reading /= i64::from(BASE_TICKS);
-                self.base_measured /= i64::from(BASE_TICKS);
+            Phase::Baseline { .. } => {
+                self.baseline_reading /= i64::from(BASELINE_TICKS);
+                self.baseline_measured /= i64::from(BASELINE_TICKS);
                 self.phase = Phase::Pulses { pulse: 0, ticks: 0 };
-                return Some(self.current(0));
+                return Some(self.demand(0));
             }
             Phase::Pulses { pulse, ticks } => {
                 let Some((eighths, length)) = PULSES.get(pulse) else {
                     self.phase = Phase::Done;
-                    return Some(self.current(0));
+                    return Some(self.demand(0));
                 };
-                let current = self.current(*eighths);
-                let measured = measured_along(self.asked, measured);
-                if self.asked.abs() > COMPARED_FROM {
-                    self.sums.compare(self.asked, measured);
+                let demand = self.demand(*eighths);
+                let measured = signed(readings.current, self.previous_demand);
+                if self.previous_demand.abs() > COMPARED_ABOVE {
+                    equations.compare(self.previous_demand, measured);
                 }
-                let turned = direction(self.asked) - direction(self.current(0));
-                let y = reading - self.base_reading;
-                self.sums.take(y, measured, self.base_measured, turned);
-                self.asked = current;
-                self.phase = if ticks + 1 < *length {
-                    Phase::Pulses {
-                        pulse,
-                        ticks: ticks + 1,
-                    }
+                equations.add(
+                    reading - self.baseline_reading,
+                    measured,
+                    self.baseline_measured,
+                    direction(self.previous_demand) - direction(self.demand(0)),
+                );
+                self.previous_demand = demand;
+                let (pulse, ticks) = if ticks + 1 < *length {
+                    (pulse, ticks + 1)
                 } else {
-                    Phase::Pulses {
-                        pulse: pulse + 1,
-                        ticks: 0,
-                    }
+                    (pulse + 1, 0)
                 };
-                return Some(current);
+                self.phase = Phase::Pulses { pulse, ticks };
+                return Some(demand);
             }
         }
-        Some(self.pi.update(self.rest, sound.display))
+        Some(self.pi.update(self.operating_point, readings.display))
     }
 
-    /// That at rest, and eighths of the amplitude.
-    fn current(&self, eighths: i32) -> Current {
-        let rest = Current::from_bits((self.base_current / i64::from(BASE_TICKS)) as i32);
-        rest.saturating_add(AMPLITUDE * eighths / 8)
+    /// The baseline current and some eighths of the pulses' amplitude.
+    fn demand(&self, eighths: i32) -> Current {
+        let baseline = self.baseline_demand / i64::from(BASELINE_TICKS);
+        Current::from_bits(baseline as i32).saturating_add(AMPLITUDE * eighths / 8)
     }
 }
 
-/// Which way a current that is asked for flows, 1 if it cools; 0 if that is not certain.
-fn direction(asked: Current) -> i64 {
-    if asked.abs() < DIRECTED {
+/// Direction in which a demanded current flows: 1 if it cools, -1 if it heats, 0 if that is not certain.
+fn direction(demanded: Current) -> i64 {
+    if demanded.abs() < DIRECTION_CERTAIN_FROM {
         0
     } else {
-        asked.signum().to_num()
+        demanded.signum().to_num()
     }
 }
 
-/// A measured magnitude in the direction of the current that was asked for.
-fn measured_along(asked: Current, measured: Current) -> Current {
-    match direction(asked) {
-        0 => asked,
+/// The measured magnitude with the sign of the demanded current; the demanded current if its direction is not certain.
+fn signed(measured: Current, demanded: Current) -> Current {
+    match direction(demanded) {
+        0 => demanded,
         1.. => measured,
         _ => -measured,
     }

@@ -1,202 +1,189 @@
-//! Scene to set-point: what the display should feel like, now.
+//! The reference of the control loop: the display temperature that makes the finger feel the object.
 //!
-//! Before contact the display is preset to Eq. 6-12 at `t = 0`, from the skin's and the object's
-//! temperatures; from landing on it follows Eq. 6-12; when the finger lifts it is preset again. In the
-//! semi-infinite mode (chapter 4 of the thesis) it holds the interface temperature of Eq. 3-1 throughout.
+//! Before contact the display waits at its preset, Eq. 6-12 at `t = 0`, from the skin's and the object's temperatures. From
+//! landing on it follows Eq. 6-12, and returns to the preset when the finger lifts. In the semi-infinite mode (chapter 4 of
+//! the thesis) it stays at the interface temperature of Eq. 3-1.
 
-mod force_mean;
-mod skin;
+mod equivalent_forces;
+mod skin_on_object;
 
 use core::ops::RangeInclusive;
 
-use contact_model::fixed_point::{
-    Celsius, ChordInterpolation, Contact, ContactPair, Force, contact_area,
-};
+use contact_model::fixed_point::{Celsius, ChordInterpolation, ContactPair, Force};
 
-use force_mean::{Change, ForceMean, all_the_same};
-use skin::{Bodies, Links, Skin};
+use crate::estimate::{FingerContact, FingerEstimator, ForceChange, PreContact};
+use crate::safety::Setpoint;
+use equivalent_forces::equivalent_forces;
+use skin_on_object::{PairFactors, SkinOnObject};
 
-use crate::control::Watt;
-
-/// How far the set-point may be from Eq. 6-12 at the force for which contact resistance was computed. What
-/// is left to noise of the force makes this 0.5 mK.
+/// Largest error of the interpolated set-point against Eq. 6-12 at the force for which the contact resistance was computed,
+/// K. Noise of the force adds to it, 0.5 mK in all.
 pub const TOLERANCE: Celsius = Celsius::lit("0.0004");
-
-/// Time constant of the filters before contact, as a power of two of ticks (0.26 s).
-const FILTER_SHIFT: u32 = 8;
-
-/// A skin that was touched is believed again after this many ticks: until then its sensor sees what the contact left.
-const RESTED_TICKS: u32 = 2000;
-/// A force may still rise for this many ticks after landing and count as constant.
-const SETTLED_TICKS: u64 = 16;
-/// The mean of a constant force has forgotten its rise after this many ticks, and then stays within this part of itself,
-/// as a power of two.
-const MEAN_TICKS: u64 = 64;
-const CONSTANT_SHIFT: u32 = 6;
-/// A display this far from its preset at landing was not in time.
+/// A display that is farther than this from its preset at landing was late.
 const LATE: Celsius = Celsius::lit("0.1");
-/// `e_skin / sqrt(dt)` per mm², W/K in 2^-30: what a drive of one kelvin carries.
-const FLUX_W_MM2K: u32 = 39_728_000;
+/// Part of the difference between skin and preset, as a power of two, by which a display waits below its preset.
+const LEAD_SHIFT: u32 = 7;
 
 /// Which model gives the set-point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
-    /// Eq. 6-12: contact resistance, follows the contact.
+    /// Eq. 6-12, with contact resistance: the set-point changes during contact.
     #[default]
     ContactResistance,
-    /// Eq. 3-1: perfect contact, constant.
+    /// Eq. 3-1, perfect contact: the set-point is constant.
     SemiInfinite,
 }
 
-/// What the host asked for.
+/// The object that is presented.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Scene<'a> {
-    /// The material.
+    /// The object's material under a finger, beside the display.
     pub pair: &'a ContactPair,
-    /// Its temperature; that of the room if none was given.
+    /// Temperature of the object before contact; `None` takes that of the room.
     pub object: Option<Celsius>,
-    /// Model.
+    /// Model that gives the set-point.
     pub mode: Mode,
 }
 
-/// Temperatures from which a contact starts.
+/// Where the display should be in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Before {
-    skin: Celsius,
-    room: Celsius,
+pub struct Reference {
+    /// Set-point that is reported, and that the proportional-integral laws control to.
+    pub setpoint: Setpoint,
+    /// The set-point had to be limited to the safe range.
+    pub limited: bool,
+    /// Set-point plus what brings the skin back to where the object would have it; the model law controls to it.
+    pub target: Setpoint,
 }
 
-/// First-order filter of `FILTER_SHIFT`.
-fn filter(state: Celsius, input: Celsius) -> Celsius {
-    state.saturating_add(input.saturating_sub(state) >> FILTER_SHIFT)
-}
-
-/// How the finger holds on, whatever it holds on to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Grip {
-    force: ForceMean,
-    /// What the last tick brought.
-    change: Change,
-    /// The first touch of a rested skin, and its force has not changed since.
-    steady: bool,
-    /// Its mean once it had risen.
-    risen: Force,
-    /// Ticks since landing.
-    elapsed: u64,
-    links: Option<Links>,
-}
-
-impl Grip {
-    /// What is in use from now on is the mean force.
-    fn use_mean(&mut self, pair: &ContactPair) {
-        self.force.take();
-        if self.contact_in_use().is_none() {
-            self.links = Some(Links::new(pair, self.force.in_use()));
+impl Reference {
+    /// Limits both temperatures to the safe range.
+    #[must_use]
+    pub fn new(setpoint: Celsius, target: Celsius) -> Self {
+        let (setpoint, limited) = Setpoint::limited(setpoint);
+        let (target, _) = Setpoint::limited(target);
+        Self {
+            setpoint,
+            limited,
+            target,
         }
     }
 
-    /// The contact under the force in use, if that is known.
-    fn contact_in_use(&self) -> Option<&Contact> {
-        self.links.as_ref()?.contact_under(self.force.in_use())
+    /// A set-point without a correction of the skin.
+    #[must_use]
+    pub fn at(setpoint: Celsius) -> Self {
+        Self::new(setpoint, setpoint)
     }
 }
 
-/// A contact with an object that lasts.
+/// A contact with the presented object.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct Touching {
+struct ObjectContact {
     /// Ticks since it began.
     elapsed: u64,
-    /// Forces for which contact resistance need not be computed again.
-    same: RangeInclusive<Force>,
-    /// Eq. 6-12 in closed form, if that holds.
-    course: Option<ChordInterpolation>,
-    /// It is to be laid, for the force in use. What that needs of the force is computed a tick before.
-    due: bool,
+    /// Forces for which Eq. 6-12 need not be evaluated again.
+    equivalent_forces: RangeInclusive<Force>,
+    /// Eq. 6-12 in closed form, while that holds.
+    interpolation: Option<ChordInterpolation>,
+    /// The interpolation must be rebuilt for the present force. The conductances that it needs are computed one tick
+    /// earlier, so that no tick pays for both.
+    rebuild: bool,
+    /// The conductances for the rebuild have been computed in an earlier tick.
+    prepared: bool,
 }
 
-/// What the display should do.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Wanted {
-    /// Eq. 6-12.
-    pub setpoint: Celsius,
-    /// The same, and what brings the skin back to where the object would have it.
-    pub target: Celsius,
+impl ObjectContact {
+    /// A contact begins. A finger that rests on the display when the object appears touches the object from now on.
+    fn begin(finger: &FingerContact) -> Self {
+        let has_just_landed = finger.change() == ForceChange::New;
+        Self {
+            elapsed: if has_just_landed { finger.elapsed() } else { 0 },
+            equivalent_forces: Force::ZERO..=Force::ZERO,
+            interpolation: None,
+            rebuild: false,
+            prepared: false,
+        }
+    }
+
+    /// Decides whether the interpolation must be rebuilt, and takes the finger's mean force into use one tick before.
+    fn schedule(
+        &mut self,
+        finger: &mut FingerContact,
+        pair: &ContactPair,
+        closed_form: bool,
+        follow_skin: bool,
+    ) {
+        let is_new = finger.change() == ForceChange::New;
+        let force = finger.force();
+        let is_equivalent =
+            !force.is_more_accurate() || self.equivalent_forces.contains(&force.mean());
+        if !closed_form || (is_new && follow_skin) {
+            self.interpolation = None;
+        }
+        let was_scheduled = self.rebuild && closed_form && !is_new;
+        self.rebuild = closed_form
+            && (finger.change() != ForceChange::Noise
+                || !is_equivalent
+                || was_scheduled
+                || self.interpolation.is_none());
+        self.prepared = was_scheduled && finger.contact_in_use().is_some();
+        if self.rebuild && !self.prepared {
+            finger.use_mean_force(pair);
+        }
+    }
+
+    /// The set-point by the interpolation of Eq. 6-12, which is rebuilt if that is due; `None` without one.
+    fn interpolate(
+        &mut self,
+        finger: &FingerContact,
+        (skin, object): (Celsius, Celsius),
+        follow_skin: bool,
+        evaluations: &mut u32,
+    ) -> Option<Celsius> {
+        match finger.contact_in_use() {
+            // While the skin is followed, conductances and interpolation are not computed in the same tick.
+            Some(contact) if self.rebuild && (self.prepared || !follow_skin) => {
+                let (interpolation, count) =
+                    ChordInterpolation::new(contact, skin, object, self.elapsed, TOLERANCE);
+                *evaluations = evaluations.wrapping_add(count);
+                self.equivalent_forces =
+                    equivalent_forces(finger.force().in_use(), interpolation.transient_amplitude());
+                self.rebuild = false;
+                Some(self.interpolation.insert(interpolation).setpoint())
+            }
+            _ => {
+                let interpolation = self.interpolation.as_mut()?;
+                let setpoint = interpolation.advance();
+                let count = interpolation.has_just_evaluated().into();
+                *evaluations = evaluations.wrapping_add(count);
+                Some(setpoint)
+            }
+        }
+    }
 }
 
-/// Follows skin and contact; gives the wanted display temperature.
+/// Generates the reference while an object is presented.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Render {
-    /// Skin and room before contact, filtered.
-    before: Option<Before>,
-    /// Ticks for which nothing has touched.
-    lifted_ticks: u32,
-    grip: Option<Grip>,
-    skin: Skin,
-    /// Of the scene that was last presented.
-    bodies: Bodies,
-    touching: Option<Touching>,
+pub struct ReferenceGenerator {
+    skin_on_object: SkinOnObject,
+    /// Of the object that was presented last.
+    factors: PairFactors,
+    contact: Option<ObjectContact>,
     evaluations: u32,
 }
 
-/// How far off its set-point a display waits, away from the skin, for a finger to land: the bridge takes away in the
-/// first 50 ms what the finger brings in the first 10, and half of that in advance halves its trace on the skin. That is
-/// in proportion to the flux, whatever the material, and so to how much warmer than the display the skin is.
-fn landing(skin: Celsius, setpoint: Celsius) -> Celsius {
-    const LANDING_SHIFT: u32 = 7;
-    skin.saturating_sub(setpoint) >> LANDING_SHIFT
+/// How far below its preset a display waits for a finger.
+///
+/// In the first 10 ms of contact the finger brings heat that the bridge needs 50 ms to remove; removing half of it in advance
+/// halves the trace on the skin. That heat is proportional to the flux for every material, and so to the difference between
+/// skin and display.
+fn lead(skin: Celsius, preset: Celsius) -> Celsius {
+    skin.saturating_sub(preset) >> LEAD_SHIFT
 }
 
-impl Render {
-    /// Follows skin, room and force, of which a contact that begins began `landed_ticks` ago. Temperatures before
-    /// contact only: the skin's sensor sees little of it during contact, and for some time after it what the contact
-    /// left.
-    pub fn observe(
-        &mut self,
-        skin: Celsius,
-        room: Celsius,
-        touch: Option<Force>,
-        landed_ticks: u32,
-    ) {
-        let at_rest = touch.is_none() && self.lifted_ticks >= RESTED_TICKS;
-        self.before = Some(match self.before {
-            None => Before { skin, room },
-            Some(before) if !at_rest => before,
-            Some(before) => Before {
-                skin: filter(before.skin, skin),
-                room: filter(before.room, room),
-            },
-        });
-        match (touch, &mut self.grip) {
-            (None, grip) => *grip = None,
-            (Some(force), grip @ None) => {
-                *grip = Some(Grip {
-                    force: ForceMean::new(force),
-                    change: Change::New,
-                    steady: self.lifted_ticks >= RESTED_TICKS,
-                    risen: force,
-                    elapsed: landed_ticks.into(),
-                    links: None,
-                });
-            }
-            (Some(force), Some(grip)) => {
-                grip.change = grip.force.update(force);
-                grip.elapsed += 1;
-                if grip.elapsed < MEAN_TICKS {
-                    grip.risen = grip.force.mean();
-                }
-                let drifted = grip.force.mean().abs_diff(grip.risen) > grip.risen >> CONSTANT_SHIFT;
-                let changed = grip.change == Change::New && grip.elapsed >= SETTLED_TICKS;
-                grip.steady &= !drifted && !changed;
-            }
-        }
-        self.lifted_ticks = match touch {
-            Some(_) => 0,
-            None => self.lifted_ticks.saturating_add(1),
-        };
-    }
-
-    /// Forgets skin and contact: they were not watched.
-    pub fn lose_sight(&mut self) {
+impl ReferenceGenerator {
+    /// Forgets the contact, because the finger was not observed.
+    pub fn invalidate(&mut self) {
         *self = Self {
             evaluations: self.evaluations,
             ..Self::default()
@@ -209,144 +196,95 @@ impl Render {
         self.evaluations
     }
 
-    /// Wanted display temperature while no object is presented: that of the skin before contact. `None`
-    /// until it was observed.
-    #[must_use]
-    pub fn neutral(&self) -> Option<Celsius> {
-        self.before.map(|before| before.skin)
+    /// Lets the next tick begin a new contact, because another object is presented.
+    pub fn restart_contact(&mut self, finger: &mut FingerEstimator) {
+        self.contact = None;
+        self.skin_on_object.restart(finger.skin_on_display());
+        finger.forget_conductances();
     }
 
-    /// A contact that begins with the next [`Self::present`] is a new one, with whatever pair.
-    pub fn forget_contact(&mut self) {
-        self.touching = None;
-        self.skin.forget_object();
-        if let Some(grip) = &mut self.grip {
-            grip.links = None;
-        }
-    }
-
-    /// Heat into a display, W, whose surface is `display`; `pair` is that of the scene, or any with that display if
-    /// nothing is presented.
-    pub fn load(&mut self, pair: &ContactPair, display: Celsius) -> Watt {
-        let Some(before) = self.before else {
-            return Watt::ZERO;
-        };
-        let Some(grip) = &mut self.grip else {
-            self.skin.touch_display(None, before.skin, display);
-            return Watt::ZERO;
-        };
-        let force = grip.force.mean();
-        if !grip.links.as_ref().is_some_and(|links| links.do_for(force)) {
-            grip.links = Some(Links::new(pair, force));
-        }
-        let drive = self
-            .skin
-            .touch_display(grip.links.as_ref(), before.skin, display);
-        // mm2 in 2^-16 and K in 2^-22 to W in 2^-24.
-        let area = i64::from(contact_area(force).to_bits());
-        let per_mm2 = (i64::from(drive.to_bits()) * i64::from(FLUX_W_MM2K)) >> 30;
-        Watt::from_bits(((per_mm2 * area) >> 14).clamp(i32::MIN.into(), i32::MAX.into()) as i32)
-    }
-
-    /// Wanted display temperature of this tick while `scene` is presented. `None` until the skin was observed.
+    /// The reference of this tick; `None` until the finger was observed. `surface` is that of the display.
     ///
-    /// `live`: the skin is followed as it is on the display, whose surface is at `display`; otherwise Eq. 6-12 holds
-    /// in closed form, as if every contact were the first and its force had always been what it is.
-    pub fn present(&mut self, scene: &Scene<'_>, display: Celsius, live: bool) -> Option<Wanted> {
-        let Before { skin, room } = self.before?;
+    /// `follow_skin`: the skin is followed as it is on the display, and the target corrects it. Otherwise the closed form
+    /// of Eq. 6-12 holds, as if every contact were the first and its force had always been the present one.
+    pub fn update(
+        &mut self,
+        scene: &Scene<'_>,
+        finger: &mut FingerEstimator,
+        surface: Celsius,
+        follow_skin: bool,
+    ) -> Option<Reference> {
+        let PreContact { skin, room } = finger.before_contact()?;
         let object = scene.object.unwrap_or(room);
-        let only = |setpoint| {
-            Some(Wanted {
-                setpoint,
-                target: setpoint,
-            })
-        };
         if scene.mode == Mode::SemiInfinite {
-            self.touching = None;
-            return only(scene.pair.interface_temperature(skin, object));
+            self.contact = None;
+            return Some(Reference::at(
+                scene.pair.interface_temperature(skin, object),
+            ));
         }
-        let apart = skin.saturating_sub(object);
-        if !self.bodies.are_of(scene.pair) {
-            self.bodies = Bodies::new(scene.pair);
+        let skin_above_object = skin.saturating_sub(object);
+        if !self.factors.belong_to(scene.pair) {
+            self.factors = PairFactors::new(scene.pair);
         }
-        let bodies = &self.bodies;
-        let Some(grip) = &mut self.grip else {
-            self.touching = None;
-            self.skin.touch_object(None, bodies, apart);
-            if !live {
-                return only(scene.pair.preset(skin, object));
+        let factors = &self.factors;
+        let (contact, skin_on_display) = finger.contact_and_skin();
+        let Some(finger) = contact else {
+            self.contact = None;
+            self.skin_on_object.step(None, factors, skin_above_object);
+            if !follow_skin {
+                return Some(Reference::at(scene.pair.preset(skin, object)));
             }
-            let setpoint = self.skin.display(bodies, skin, apart, false);
-            return Some(Wanted {
+            let setpoint = self.skin_on_object.setpoint(
+                factors,
+                skin,
+                skin_above_object,
+                Some(skin_on_display),
+            );
+            return Some(Reference::new(
                 setpoint,
-                target: setpoint.saturating_sub(landing(skin, setpoint)),
-            });
+                setpoint.saturating_sub(lead(skin, setpoint)),
+            ));
         };
-        let fresh = self.touching.is_none();
-        let touching = self.touching.get_or_insert_with(|| {
-            // A finger that rests there when the object appears touches it now.
-            let elapsed = if grip.change == Change::New {
-                grip.elapsed
-            } else {
-                0
-            };
-            Touching {
-                elapsed,
-                same: Force::ZERO..=Force::ZERO,
-                course: None,
-                due: false,
+        let contact = match &mut self.contact {
+            Some(contact) => {
+                contact.elapsed += 1;
+                contact
             }
+            none => {
+                let preset = scene.pair.preset(skin, object);
+                if is_late(surface, preset, lead(skin, preset)) {
+                    finger.note_late_display();
+                }
+                none.insert(ObjectContact::begin(finger))
+            }
+        };
+        let conductance = finger.conductances().map(|both| &both.object);
+        (self.skin_on_object).step(conductance, factors, skin_above_object);
+        let closed_form = finger.is_constant() || !follow_skin;
+        contact.schedule(finger, scene.pair, closed_form, follow_skin);
+        let interpolated =
+            contact.interpolate(finger, (skin, object), follow_skin, &mut self.evaluations);
+        let setpoint = interpolated.unwrap_or_else(|| {
+            (self.skin_on_object).setpoint(factors, skin, skin_above_object, None)
         });
-        if fresh {
-            let preset = scene.pair.preset(skin, object);
-            // Half way between where it should be and where it waits for the finger.
-            let half = landing(skin, preset) >> 1u32;
-            let off = display.saturating_sub(preset).saturating_add(half).abs();
-            grip.steady &= off <= LATE.saturating_add(half.abs());
-        } else {
-            touching.elapsed += 1;
-        }
-        self.skin.touch_object(grip.links.as_ref(), bodies, apart);
-        let closed = grip.steady || !live;
-        let new = grip.change == Change::New;
-        let same = !grip.force.is_better() || touching.same.contains(&grip.force.mean());
-        if !closed || (new && live) {
-            touching.course = None;
-        }
-        let due = touching.due && closed && !new;
-        touching.due =
-            closed && (grip.change != Change::Noise || !same || due || touching.course.is_none());
-        let known = due && grip.contact_in_use().is_some();
-        if touching.due && !known {
-            grip.use_mean(scene.pair);
-        }
-        // While the skin is followed, not both in one tick.
-        let setpoint = match (grip.contact_in_use(), &mut touching.course) {
-            (Some(contact), course) if touching.due && (known || !live) => {
-                let (laid, evaluations) =
-                    ChordInterpolation::new(contact, skin, object, touching.elapsed, TOLERANCE);
-                self.evaluations = self.evaluations.wrapping_add(evaluations);
-                touching.same = all_the_same(grip.force.in_use(), laid.transient_amplitude());
-                touching.due = false;
-                course.insert(laid).setpoint()
+        let correction = match finger.conductances() {
+            Some(both) if follow_skin => {
+                (self.skin_on_object).correction(skin_on_display, &both.display)
             }
-            (_, Some(course)) => {
-                let setpoint = course.advance();
-                self.evaluations = self
-                    .evaluations
-                    .wrapping_add(course.has_just_evaluated().into());
-                setpoint
-            }
-            (_, None) => self.skin.display(bodies, skin, apart, true),
-        };
-        let correction = match (&grip.links, live) {
-            (Some(links), true) => self.skin.correction(links),
             _ => Celsius::ZERO,
         };
         let target = setpoint.saturating_add(correction);
-        let setpoint = if closed { setpoint } else { target };
-        Some(Wanted { setpoint, target })
+        // A skin that is followed tick by tick has its correction in the reported set-point, too.
+        let setpoint = if closed_form { setpoint } else { target };
+        Some(Reference::new(setpoint, target))
     }
+}
+
+/// Whether a display is not where it should be at landing: half way between its preset and where it waits for the finger.
+fn is_late(surface: Celsius, preset: Celsius, lead: Celsius) -> bool {
+    let half_lead = lead >> 1u32;
+    let error = surface.saturating_sub(preset).saturating_add(half_lead);
+    error.abs() > LATE.saturating_add(half_lead.abs())
 }
 
 #[cfg(test)]

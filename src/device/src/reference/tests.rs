@@ -35,19 +35,20 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
         object: Some(object_c),
         mode: Mode::ContactResistance,
     };
-    let mut render = Render::default();
-    render.observe(Celsius::from_num(SKIN_C), object_c, None, 0);
+    let mut finger_estimator = FingerEstimator::default();
+    let mut generator = ReferenceGenerator::default();
+    finger_estimator.observe(Celsius::from_num(SKIN_C), object_c, None, 0);
     let (mut worst_k, mut step_k, mut before) = (0.0f64, 0.0f64, None);
     for tick in 0..ticks {
         let t_s = f64::from(tick) * TICK_S;
         let noise_n =
             NOISE_N * (f64::from(tick.wrapping_mul(2_654_435_761) >> 8) / 2f64.powi(23) - 1.0);
         let force = Force::from_num(force_n(t_s) + noise_n);
-        render.observe(Celsius::from_num(SKIN_C), object_c, Some(force), 0);
-        let wanted = render
-            .present(&scene, Celsius::ZERO, false)
+        finger_estimator.observe(Celsius::from_num(SKIN_C), object_c, Some(force), 0);
+        let reference = generator
+            .update(&scene, &mut finger_estimator, Celsius::ZERO, false)
             .expect("observed");
-        let setpoint_c = wanted.setpoint.to_num::<f64>();
+        let setpoint_c = reference.setpoint.celsius().to_num::<f64>();
         let finger = (&SKIN, SKIN_C);
         let exact = Contact::new(
             finger,
@@ -64,7 +65,7 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
     Seen {
         worst_k,
         step_k,
-        evaluations: render.evaluations(),
+        evaluations: generator.evaluations(),
     }
 }
 

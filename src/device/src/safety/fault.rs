@@ -1,20 +1,20 @@
-//! What can be wrong, by name.
+//! The faults that switch the bridge off.
 
 use crate::sense::SensorFault;
 
 /// Declares [`Fault`] with the words of the protocol.
 macro_rules! faults {
     ($($(#[$doc:meta])+ $fault:ident = $word:literal,)+) => {
-        /// Why the bridge is off.
+        /// A fault that switches the bridge off.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum Fault { $($(#[$doc])+ $fault,)+ }
 
         impl Fault {
-            /// All of them; the place of one is its number in a record.
+            /// All faults; a fault's place is its number in a record.
             pub const ALL: &'static [Self] = &[$(Self::$fault,)+];
 
-            /// The word for it in the protocol.
+            /// The fault's word in the protocol.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$fault => $word,)+ }
@@ -24,109 +24,109 @@ macro_rules! faults {
 }
 
 faults! {
-    /// Display thermistor: no current flows.
+    /// Display thermistor open: no current flows.
     DisplayOpen = "display-open",
-    /// Display thermistor: no voltage drops.
+    /// Display thermistor shorted: no voltage drops.
     DisplayShort = "display-short",
-    /// Second display thermistor.
+    /// Second display thermistor open.
     CheckOpen = "check-open",
-    /// Second display thermistor.
+    /// Second display thermistor shorted.
     CheckShort = "check-short",
-    /// Sink thermistor.
+    /// Sink thermistor open.
     SinkOpen = "sink-open",
-    /// Sink thermistor.
+    /// Sink thermistor shorted.
     SinkShort = "sink-short",
-    /// Skin thermistor.
+    /// Skin thermistor open.
     SkinOpen = "skin-open",
-    /// Skin thermistor.
+    /// Skin thermistor shorted.
     SkinShort = "skin-short",
-    /// Room thermistor.
+    /// Room thermistor open.
     RoomOpen = "room-open",
-    /// Room thermistor.
+    /// Room thermistor shorted.
     RoomShort = "room-short",
-    /// All thermistors are shorted at once: what feeds them is gone.
+    /// All thermistors read shorted at once: their supply has failed.
     Excitation = "excitation",
-    /// The display's reading moves faster than a display can.
+    /// The display reading changes faster than a display can.
     DisplayJump = "display-jump",
-    /// That of its second thermistor.
+    /// The second display reading changes faster than a display can.
     CheckJump = "check-jump",
-    /// That of the sink.
+    /// The sink reading changes faster than a sink can.
     SinkJump = "sink-jump",
-    /// The display's samples repeat themselves.
+    /// Samples of the display thermistor repeat.
     DisplayFrozen = "display-frozen",
-    /// Those of its second thermistor.
+    /// Samples of the second display thermistor repeat.
     CheckFrozen = "check-frozen",
-    /// Those of the sink.
+    /// Samples of the sink thermistor repeat.
     SinkFrozen = "sink-frozen",
-    /// Those of the skin.
+    /// Samples of the skin thermistor repeat.
     SkinFrozen = "skin-frozen",
-    /// Those of the room.
+    /// Samples of the room thermistor repeat.
     RoomFrozen = "room-frozen",
-    /// Those of the force sensor.
+    /// Samples of the force sensor repeat.
     ForceFrozen = "force-frozen",
-    /// All do: the converter stands still.
+    /// Samples of all channels repeat: the converter has stopped.
     SamplesFrozen = "samples-frozen",
-    /// The display's thermistors are apart.
+    /// The two display thermistors disagree.
     DisplaysApart = "displays-apart",
-    /// The room is warmer than the skin: their thermistors are swapped, or one is not where it should be.
+    /// The room reads warmer than the skin: their thermistors are swapped, or one is misplaced.
     RoomAboveSkin = "room-above-skin",
-    /// Force sensor below its live zero or at the end of its range.
+    /// The force signal is below its live zero or at the end of its range.
     ForceSensor = "force-sensor",
-    /// A display thermistor above its limit.
+    /// A display thermistor reads above its limit.
     DisplayHot = "display-hot",
-    /// A display thermistor below its limit.
+    /// A display thermistor reads below its limit.
     DisplayCold = "display-cold",
-    /// Sink above its limit.
+    /// The sink reads above its limit.
     SinkHot = "sink-hot",
-    /// The display goes the wrong way, fast.
+    /// The display moves against the current quickly: the polarity is wrong, or a thermistor is misplaced.
     Polarity = "polarity",
-    /// The display goes the wrong way, slowly: current warms the sink more than it cools the display.
+    /// The display moves against the current slowly: the current warms the sink more than it cools the display.
     Runaway = "runaway",
-    /// The display does not do what the law's model of it says: the module or its contact with the plate is not what it was, or
-    /// there is heat of which no sensor tells.
+    /// The display does not follow its internal model: the module or its thermal contact has changed, or heat enters that
+    /// no sensor measures.
     UnlikeModel = "unlike-model",
-    /// Measured current beyond what is ever asked for.
+    /// The measured current exceeds the largest that is ever demanded.
     OverCurrent = "over-current",
-    /// More current than is asked for.
+    /// More current flows than is demanded.
     CurrentHigh = "current-high",
-    /// Less current than is asked for: a leg, a wire or the supply is gone.
+    /// Less current flows than is demanded: a leg, a wire or the supply has failed.
     CurrentLow = "current-low",
     /// The bridge driver reports a fault, or the comparator has cut the supply.
     Bridge = "bridge",
-    /// The skin has had its share of heat.
+    /// The thermal dose has reached its limit.
     Dose = "dose",
-    /// The host is silent while telemetry streams.
+    /// A host that has asked for telemetry is silent.
     HostSilent = "host-silent",
-    /// Self-test: the comparator does not cut the supply, or does not give it back.
+    /// Self-test: the comparator does not cut the supply, or does not release it.
     Comparator = "comparator",
-    /// Self-test: the display does not answer to current.
+    /// Self-test: the display does not respond to current.
     NoResponse = "no-response",
-    /// Samples were lost: a tick took too long, or they could not be stored.
+    /// Samples were lost: a tick took too long, or the samples could not be stored.
     Sampling = "sampling",
     /// The stack has grown into its guard.
     Stack = "stack",
     /// The program has panicked.
     Panic = "panic",
-    /// The processor met something that it cannot execute, or an interrupt without a task.
+    /// The processor met an instruction that it cannot execute, or an interrupt without a handler.
     HardFault = "hard-fault",
-    /// The board's clock has failed, or is missing since the start.
+    /// The external clock has failed, or was missing at the start.
     Clock = "clock",
-    /// The control tick did not come; the window watchdog has reset the device.
+    /// The control tick did not run; the window watchdog has reset the device.
     TickLost = "tick-lost",
     /// A task did not check in; the independent watchdog has reset the device.
     Watchdog = "watchdog",
-    /// The program was started anew by itself, and nobody had asked for that.
+    /// The program has reset the device without an order to do so.
     UnaskedReset = "unasked-reset",
-    /// The stored settings cannot be read; the device has those of its class.
+    /// The stored settings cannot be read; the device uses those of its class.
     SettingsCorrupt = "settings-corrupt",
 }
 
-/// One of the five thermistors.
+/// Names one of the five thermistors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Thermistor {
+pub enum ThermistorId {
     /// Display surface.
     Display,
-    /// Display surface, second.
+    /// Second thermistor of the display surface.
     Check,
     /// Sink.
     Sink,
@@ -137,20 +137,20 @@ pub enum Thermistor {
 }
 
 impl Fault {
-    /// A thermistor that has no temperature.
+    /// The fault of a thermistor that is open or shorted.
     #[must_use]
-    pub const fn of_sensor(which: Thermistor, fault: SensorFault) -> Self {
-        match (which, fault) {
-            (Thermistor::Display, SensorFault::Open) => Self::DisplayOpen,
-            (Thermistor::Display, SensorFault::Short) => Self::DisplayShort,
-            (Thermistor::Check, SensorFault::Open) => Self::CheckOpen,
-            (Thermistor::Check, SensorFault::Short) => Self::CheckShort,
-            (Thermistor::Sink, SensorFault::Open) => Self::SinkOpen,
-            (Thermistor::Sink, SensorFault::Short) => Self::SinkShort,
-            (Thermistor::Skin, SensorFault::Open) => Self::SkinOpen,
-            (Thermistor::Skin, SensorFault::Short) => Self::SkinShort,
-            (Thermistor::Room, SensorFault::Open) => Self::RoomOpen,
-            (Thermistor::Room, SensorFault::Short) => Self::RoomShort,
+    pub const fn of_thermistor(thermistor: ThermistorId, fault: SensorFault) -> Self {
+        match (thermistor, fault) {
+            (ThermistorId::Display, SensorFault::Open) => Self::DisplayOpen,
+            (ThermistorId::Display, SensorFault::Short) => Self::DisplayShort,
+            (ThermistorId::Check, SensorFault::Open) => Self::CheckOpen,
+            (ThermistorId::Check, SensorFault::Short) => Self::CheckShort,
+            (ThermistorId::Sink, SensorFault::Open) => Self::SinkOpen,
+            (ThermistorId::Sink, SensorFault::Short) => Self::SinkShort,
+            (ThermistorId::Skin, SensorFault::Open) => Self::SkinOpen,
+            (ThermistorId::Skin, SensorFault::Short) => Self::SkinShort,
+            (ThermistorId::Room, SensorFault::Open) => Self::RoomOpen,
+            (ThermistorId::Room, SensorFault::Short) => Self::RoomShort,
         }
     }
 }
@@ -160,7 +160,7 @@ mod tests {
     use super::Fault;
 
     #[test]
-    fn a_number_belongs_to_one_fault_and_a_word_too() {
+    fn every_fault_has_its_own_number_and_word() {
         for (number, fault) in Fault::ALL.iter().enumerate() {
             assert_eq!(*fault as usize, number);
             let same = Fault::ALL

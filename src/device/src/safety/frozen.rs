@@ -1,17 +1,17 @@
-//! Signals that repeat themselves.
+//! Detects signals whose samples repeat.
 
 use super::Fault;
 use crate::sense::Samples;
 
-/// Ticks of identical samples of a channel that count as one that stands still: noise moves the sum of 16
-/// conversions by 3, so it repeats once in ten ticks by chance, and 46 times in a row never. The tick in which it begins
-/// to stand still still has sound samples, and the bridge is off a tick after the last: 50 ms in all.
+/// Ticks of identical samples after which a channel is frozen. Noise moves the sum of 16 conversions by 3 units, so a sum
+/// repeats once in ten ticks by chance, and never 46 times in a row. With the tick in which the signal freezes, and the one
+/// in which the bridge is switched off, the fault lasts less than 50 ms.
 pub const FROZEN_TICKS: u8 = 46;
-/// When one channel is through, others that have repeated themselves for this long are so too.
-const NEARLY_TICKS: u8 = 30;
-/// Thermistors and force. The current may well be none.
+/// When one channel is frozen, and all others have repeated for this long, the converter itself is.
+const ALL_CHANNELS_TICKS: u8 = 30;
+/// The thermistors and the force. The current is left out: it is zero while the bridge is off.
 const CHANNELS: usize = 6;
-const NAMES: [Fault; CHANNELS] = [
+const FAULTS: [Fault; CHANNELS] = [
     Fault::DisplayFrozen,
     Fault::CheckFrozen,
     Fault::SinkFrozen,
@@ -20,22 +20,22 @@ const NAMES: [Fault; CHANNELS] = [
     Fault::ForceFrozen,
 ];
 
-/// What the channels were, and for how long.
+/// The last sample of each channel, and how often it has repeated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Frozen {
+pub struct FrozenDetector {
     last: [u16; CHANNELS],
     ticks: [u8; CHANNELS],
 }
 
-impl Frozen {
-    /// Takes one tick.
+impl FrozenDetector {
+    /// Takes the samples of one tick.
     ///
     /// # Errors
-    /// A channel that stands still, or all.
+    /// A channel is frozen, or all are.
     pub fn check(&mut self, samples: &Samples) -> Result<(), Fault> {
         let [display, check, sink, skin, room] = samples.thermistors();
         let now = [display, check, sink, skin, room, samples.force];
-        let mut through = None;
+        let mut frozen = None;
         for (i, now) in now.into_iter().enumerate() {
             let same = now == self.last[i];
             self.last[i] = now;
@@ -46,12 +46,12 @@ impl Frozen {
             };
             self.ticks[i] = ticks;
             if ticks >= FROZEN_TICKS {
-                through = through.or(Some(NAMES[i]));
+                frozen = frozen.or(Some(FAULTS[i]));
             }
         }
-        match through {
+        match frozen {
             None => Ok(()),
-            Some(_) if self.ticks.iter().all(|ticks| *ticks >= NEARLY_TICKS) => {
+            Some(_) if self.ticks.iter().all(|ticks| *ticks >= ALL_CHANNELS_TICKS) => {
                 Err(Fault::SamplesFrozen)
             }
             Some(one) => Err(one),

@@ -1,141 +1,48 @@
-//! What one tick shows: levels.
+//! The temperatures, currents and times that keep a finger safe, in one place.
 
-use contact_model::fixed_point::{Celsius, Force};
+use contact_model::fixed_point::Celsius;
 
-use super::{Fault, Thermistor};
 use crate::drive::Current;
-use crate::sense::{Readings, SensorFault};
 
-/// Display temperatures that trip. Commands stay within [`Setpoint`](super::Setpoint); pain begins at 13 and 45 °C.
-const DISPLAY_COLDEST: Celsius = Celsius::lit("13.5");
-const DISPLAY_HOTTEST: Celsius = Celsius::lit("43");
-/// Sink temperature that trips. With the bridge off, the plate drifts to the sink's temperature, and the finger on it
-/// with the plate: at 42 °C it takes four minutes of that to make one of the dose's, and the sink cools meanwhile.
-const SINK_HOTTEST: Celsius = Celsius::lit("42");
-/// Current above the limit of the command that trips: before it is tuned, supply, module and mirror may make 1.8 A more of 6 A.
-const CURRENT_MARGIN: Current = Current::lit("3");
-
-/// Readings without a fault.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Sound {
-    /// Display surface.
-    pub display: Celsius,
-    /// The same, by the second thermistor.
-    pub check: Celsius,
-    /// Sink.
-    pub sink: Celsius,
-    /// Skin at the edge of the contact.
-    pub skin: Celsius,
-    /// Room.
-    pub room: Celsius,
-    /// Force.
-    pub force: Force,
+/// Converts a limit, °C or K, that has at most 22 binary places.
+const fn celsius(limit: f64) -> Celsius {
+    Celsius::from_bits((limit * (1u32 << Celsius::FRAC_NBITS) as f64) as i32)
 }
 
-/// Checks one tick; `limit` is the largest current that is ever asked for.
-///
-/// # Errors
-/// The first fault, sensors before what they measure.
-pub fn check(readings: &Readings, limit: Current) -> Result<Sound, Fault> {
-    let all = [
-        readings.display,
-        readings.display_check,
-        readings.sink,
-        readings.skin,
-        readings.room,
-    ];
-    if all == [Err(SensorFault::Short); 5] {
-        return Err(Fault::Excitation);
-    }
-    let named = |reading: Result<Celsius, SensorFault>, which| {
-        reading.map_err(|fault| Fault::of_sensor(which, fault))
-    };
-    let sound = Sound {
-        display: named(readings.display, Thermistor::Display)?,
-        check: named(readings.display_check, Thermistor::Check)?,
-        sink: named(readings.sink, Thermistor::Sink)?,
-        skin: named(readings.skin, Thermistor::Skin)?,
-        room: named(readings.room, Thermistor::Room)?,
-        force: readings.force.ok_or(Fault::ForceSensor)?,
-    };
-    if sound.display.max(sound.check) > DISPLAY_HOTTEST {
-        return Err(Fault::DisplayHot);
-    }
-    if sound.display.min(sound.check) < DISPLAY_COLDEST {
-        return Err(Fault::DisplayCold);
-    }
-    if sound.sink > SINK_HOTTEST {
-        return Err(Fault::SinkHot);
-    }
-    if readings.current > limit.saturating_add(CURRENT_MARGIN) {
-        return Err(Fault::OverCurrent);
-    }
-    Ok(sound)
-}
+/// Coldest set-point, °C: lasting contact with a colder surface is painful.
+pub const SETPOINT_MIN_C: f64 = 15.0;
+/// Hottest set-point, °C.
+pub const SETPOINT_MAX_C: f64 = 42.0;
+/// The same, in fixed point.
+pub const SETPOINT_MIN: Celsius = celsius(SETPOINT_MIN_C);
+/// The same, in fixed point.
+pub const SETPOINT_MAX: Celsius = celsius(SETPOINT_MAX_C);
+/// Display temperature below which the station trips; cold pain begins at 13 °C.
+pub const DISPLAY_MIN: Celsius = celsius(13.5);
+/// Display temperature above which the station trips; heat pain begins at [`HEAT_PAIN`].
+pub const DISPLAY_MAX: Celsius = celsius(43.0);
+/// Skin temperature at which heat pain begins.
+pub const HEAT_PAIN: Celsius = celsius(45.0);
+/// Sink temperature above which the station trips. With the bridge off, the plate and the finger on it drift to the sink's
+/// temperature: at 42 °C four minutes make one minute of thermal dose, and the sink cools meanwhile.
+pub const SINK_MAX: Celsius = celsius(42.0);
+/// Sink temperature above which an identification of the tile ends.
+pub const SINK_MAX_IDENTIFICATION: Celsius = celsius(41.5);
+/// Sink temperature above which the law `model` reduces cooling, before the station trips.
+pub const COOLING_REDUCED_FROM: Celsius = celsius(39.5);
+/// Display temperature below which no thermal dose is counted, and dose is forgotten.
+pub const DOSE_MIN: Celsius = celsius(39.0);
+/// Temperature whose minutes are the unit of thermal dose.
+pub const DOSE_REFERENCE: Celsius = celsius(43.0);
+/// Current above the controller's limit at which the station trips. Before the tile is identified, tolerances of supply,
+/// module and mirror can show 1.8 A more than 6 A.
+pub const OVER_CURRENT_MARGIN: Current = Current::lit("3");
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn sound() -> Readings {
-        let t = |t: i32| Ok(Celsius::from_num(t));
-        Readings {
-            display: t(30),
-            display_check: t(30),
-            sink: t(25),
-            skin: t(34),
-            room: t(24),
-            force: Some(Force::ZERO),
-            current: Current::ZERO,
-            bridge_fault: false,
-        }
-    }
-
-    fn fault_of(change: impl Fn(&mut Readings)) -> Option<&'static str> {
-        let mut readings = sound();
-        change(&mut readings);
-        check(&readings, Current::lit("6")).err().map(Fault::name)
-    }
-
-    #[test]
-    fn each_bad_reading_is_named() {
-        let t = |t: f64| Ok(Celsius::from_num(t));
-        let short = Err(SensorFault::Short);
-        assert_eq!(fault_of(|_| ()), None);
-        assert_eq!(
-            fault_of(|r| r.display = Err(SensorFault::Open)),
-            Some("display-open")
-        );
-        assert_eq!(fault_of(|r| r.display_check = short), Some("check-short"));
-        assert_eq!(
-            fault_of(|r| r.sink = Err(SensorFault::Open)),
-            Some("sink-open")
-        );
-        assert_eq!(fault_of(|r| r.skin = short), Some("skin-short"));
-        assert_eq!(
-            fault_of(|r| r.room = Err(SensorFault::Open)),
-            Some("room-open")
-        );
-        let all = |r: &mut Readings| {
-            (r.display, r.display_check, r.sink, r.skin, r.room) =
-                (short, short, short, short, short);
-        };
-        assert_eq!(fault_of(all), Some("excitation"));
-        assert_eq!(fault_of(|r| r.force = None), Some("force-sensor"));
-        assert_eq!(fault_of(|r| r.display = t(43.01)), Some("display-hot"));
-        assert_eq!(
-            fault_of(|r| r.display_check = t(43.01)),
-            Some("display-hot")
-        );
-        assert_eq!(fault_of(|r| r.display = t(42.99)), None);
-        assert_eq!(
-            fault_of(|r| r.display_check = t(13.49)),
-            Some("display-cold")
-        );
-        assert_eq!(fault_of(|r| r.sink = t(42.1)), Some("sink-hot"));
-        assert_eq!(
-            fault_of(|r| r.current = Current::lit("9.1")),
-            Some("over-current")
-        );
-    }
-}
+const _: () = assert!(DISPLAY_MIN.to_bits() < SETPOINT_MIN.to_bits());
+const _: () = assert!(SETPOINT_MIN.to_bits() < SETPOINT_MAX.to_bits());
+const _: () = assert!(DOSE_MIN.to_bits() < COOLING_REDUCED_FROM.to_bits());
+const _: () = assert!(COOLING_REDUCED_FROM.to_bits() < SINK_MAX_IDENTIFICATION.to_bits());
+const _: () = assert!(SINK_MAX_IDENTIFICATION.to_bits() < SINK_MAX.to_bits());
+const _: () = assert!(SINK_MAX.to_bits() < DISPLAY_MAX.to_bits());
+const _: () = assert!(SETPOINT_MAX.to_bits() < DISPLAY_MAX.to_bits());
+const _: () = assert!(DISPLAY_MAX.to_bits() < HEAT_PAIN.to_bits());

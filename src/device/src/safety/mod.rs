@@ -1,80 +1,66 @@
-//! What keeps a finger safe: states, faults, and the limits of what may be asked for.
+//! What keeps a finger safe: faults, their detectors, the limits of what may be commanded, and the self-test.
 //!
-//! ```text
-//!                   arm                    passed                   start
-//!     power-up --> off ----> self-test -----------------> armed ------------> preset <--> contact
-//!                   ^            |                        ^   |                | lands / lifts |
-//!                   |            |           arm          |   | abort          |               |
-//!                   |            |       ready -----------+   v                | arm: armed    |
-//!                   |            |         ^------------------+----------------+-- abort ------+
-//!                   |            v
-//!                   +- clear - tripped <--- any fault, from any state; a reset by a watchdog
-//! ```
+//! The bridge is driven in the states self-test, armed, preset and contact. In all others, and in the tick that sees a
+//! fault, both of its legs are high-impedance; only that is called "off". Off is safe as long as the sink is, because heat
+//! flows back from the sink to the display; so the sink's limit is the lowest of all.
 //!
-//! The bridge is driven in self-test, armed, preset and contact. Everywhere else, and in the very tick that sees a
-//! fault, both of its legs are high-impedance; nothing else is ever called off. Off is safe as long as the sink is:
-//! heat flows back from it to the display, which is why the sink's limit is the lowest of all.
+//! **Detection.** Every detector sees every tick in every state, so that a fault that was present before `arm` refuses it,
+//! and one that is still present after a trip refuses `clear`. Faults that one tick does not show have detectors that count
+//! ticks; these need valid readings, except for frozen signals and the thermal dose. Only the bridge's fault line is ignored
+//! while the bridge is off and untested, or tripped: the comparator pulls it, too, until the next self-test.
 //!
-//! **Faults are levels.** What one tick shows is looked at on every tick in every state, so that what was wrong before
-//! `arm` keeps it from being obeyed, and what is wrong after a trip keeps `clear` from it. Where one tick is not enough to
-//! know, the detector says for how long a thing must last, and looks at every tick in which no reading is at an end of its
-//! range or beyond its limit; signals that stand still and the dose are followed even then. Only the fault line of the bridge
-//! is not looked at while the bridge is off and untested, or tripped: the comparator pulls it too, and keeps pulling until
-//! the next self-test.
+//! **Latch.** The first fault latches, with the readings of its tick, as [`TripCause`]; later ones do not replace it. A second
+//! fault that the board has raised is reported when the first is cleared. The cause and the dose survive every reset except
+//! the loss of power. The comparator latches by itself, in hardware.
 //!
-//! **What latches.** The first fault does, with the readings of its tick, as [`Cause`]; later ones do not replace it. A
-//! later one that no sample shows comes to light when the first is cleared. Until it is cleared the cause
-//! survives every reset but the loss of power, and the dose does too. The comparator latches on its own, in hardware.
+//! **Clear.** `clear` is accepted once no fault is present, and leads to off, not to ready: the self-test comes next. Faults of
+//! the program and resets clear the same way.
 //!
-//! **What clears it.** `clear`, once no level is there any more, leads to off, not to ready: what comes next is the
-//! self-test. Faults of the program and resets clear the same way.
+//! | detector                     | faults                                 | trips when                                    |
+//! |------------------------------|----------------------------------------|-----------------------------------------------|
+//! | [`check`]                    | open, short, excitation, force sensor  | the last conversion of a tick is at an end    |
+//! |                              | display hot, display cold              | 43 °C, 13.5 °C by either thermistor           |
+//! |                              | sink hot                               | 42 °C                                         |
+//! |                              | over-current                           | 3 A above the largest demand                  |
+//! | bridge fault line            | bridge                                 | the driver or the comparator pulls it         |
+//! | `FrozenDetector`             | one channel frozen, or all             | a sum repeats 46 times                        |
+//! | `JumpDetector`               | display, second display or sink jump   | 0.5 K in 4 ms                                 |
+//! | [`FaultDetectors`]           | display thermistors disagree           | 3 K for 40 ms                                 |
+//! |                              | room above skin                        | 8 K for 40 ms                                 |
+//! |                              | unlike its model                       | residual of 3.75 K (8 K before it is identified) for 30 ms |
+//! |                              | host silent                            | 2 s without a line while telemetry streams    |
+//! | `CurrentMismatchDetector`    | current high, current low              | 1 A and a quarter of the demand, for 30 ms    |
+//! | `WrongWayDetector`           | polarity, runaway                      | 2.5 K against a mean current of 1 A           |
+//! | [`ThermalDose`]              | dose                                   | half a minute of CEM43                        |
+//! | [`TickRateMonitor`]          | sampling                               | a tick is off by a quarter of its period      |
+//! | [`SelfTest`]                 | comparator, polarity, no response, …   | before the first current for a finger         |
 //!
-//! **Who looks at what**
-//!
-//! | detector       | faults                                   | trips when                                           |
-//! |----------------|------------------------------------------|------------------------------------------------------|
-//! | [`check`]      | open, short, excitation, force sensor    | in the tick whose last conversion is at an end       |
-//! |                | display hot, cold                        | 43, 13.5 °C by either thermistor                     |
-//! |                | sink hot                                 | 42 °C                                                |
-//! |                | over-current                             | 3 A above what is ever asked for                     |
-//! | bridge         | its fault line, the comparator           | in that tick; of one finger, a pulse between, too    |
-//! | `frozen`       | a channel, or all                        | a sum repeats itself 46 times                        |
-//! | `jump`         | display, its second thermistor, sink     | 0.5 K in 4 ms                                        |
-//! | `apart`        | the display's thermistors                | 3 K for 40 ms                                        |
-//! | `room`         | room above skin                          | 8 K for 40 ms                                        |
-//! | `electrical`   | current high, low                        | 1 A and a quarter for 30 ms                          |
-//! | law            | unlike model                             | residual of 3.75 K, 8 untuned, for 30 ms             |
-//! | `response`     | polarity, runaway                        | 2.5 K the wrong way at a mean of 1 A                 |
-//! | `dose`         | dose                                     | half a minute of CEM43 by the display                |
-//! | `watch`        | host silent                              | 2 s without a line while telemetry streams           |
-//! | [`Pace`]       | sampling                                 | a tick is off by a quarter of its period             |
-//! | [`SelfTest`]   | comparator, polarity, no response, …     | before the first current for a finger                |
-//!
-//! Beside these, without this program: the window watchdog resets a device whose tick does not come for 47 ms, the
-//! independent one a device whose tasks do not check in for 68 to 188 ms, and the comparator cuts the supply at 10 and
-//! 45 °C of the second thermistor.
+//! Independent of this program, the window watchdog resets a device whose tick does not run for 47 ms, the independent
+//! watchdog one whose tasks do not check in for 68 to 188 ms, and the comparator cuts the supply at 10 and 45 °C of the
+//! second display thermistor.
 
-mod cause;
-mod dose;
-mod electrical;
+mod current_mismatch;
+mod debounce;
+mod detectors;
 mod fault;
 mod frozen;
 mod jump;
-mod lasting;
-mod limits;
-mod pace;
-mod response;
+mod latch;
+pub mod limits;
 mod self_test;
 mod setpoint;
-mod state;
-mod watch;
+mod thermal_dose;
+mod tick_rate;
+mod trip_cause;
+mod validity;
+mod wrong_way;
 
-pub use cause::Cause;
-pub use dose::Dose;
-pub use fault::{Fault, Thermistor};
-pub use limits::{Sound, check};
-pub use pace::Pace;
-pub use self_test::{Progress, SelfTest};
+pub use detectors::{FaultDetectors, PreviousActuation};
+pub use fault::{Fault, ThermistorId};
+pub use latch::FaultLatch;
+pub use self_test::{SelfTest, SelfTestStep};
 pub use setpoint::Setpoint;
-pub use state::State;
-pub use watch::{Before, Watch};
+pub use thermal_dose::ThermalDose;
+pub use tick_rate::TickRateMonitor;
+pub use trip_cause::TripCause;
+pub use validity::{ValidReadings, check};

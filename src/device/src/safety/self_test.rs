@@ -1,220 +1,227 @@
-//! What must work before the bridge may drive: the comparator, the thermistors' places, polarity, gain and mirror.
+//! Self-test before the bridge may drive: comparator, places of the thermistors, polarity, gain and current mirror.
 //!
 //! ```text
-//! ms    0         20      40                 104          304        504       704
-//!       | test on  | off   | display at rest   | 1 A cools  | none      | 1 A warms |
-//!       comparator   gives   its slope           mirror       answer      mirror
-//!       cuts         back
+//! ms    0         20        40                      104          304        504       704
+//!       | test on | test off | baseline of display   | 1 A cools  | none      | 1 A warms |
+//!       comparator comparator  two means, so a slope   mirror       response    mirror
+//!       cuts       releases
 //! ```
 //!
-//! The bridge is off for the first 40 ms, so the comparator cuts and gives back a supply that nobody uses. Then the
-//! display is told to do a little, 0.2 to 0.5 K, and both of its thermistors must show it, against the slope that they
-//! had before; a display that answers the wrong way round, or not at all, trips. Nothing else than a display answers in
-//! 0.2 s: a thermistor on the sink moves by a hundredth of it, the other way. What flows is looked at both ways round. A
-//! finger that rests there, lands or lifts lets the rest begin a second later.
+//! The bridge is off for the first 40 ms, so the comparator cuts and releases a supply that nobody uses. Then 1 A moves the
+//! display by 0.2 to 0.5 K, and both of its thermistors must show that against the line through their baseline. A response
+//! with the wrong sign, or none, trips. Nothing but a display responds within 0.2 s: a thermistor on the sink moves by a
+//! hundredth of it, with the opposite sign. The mirror is checked for both signs of the current. A finger that lands or
+//! lifts restarts the baseline one second later.
 
 use core::mem;
+use core::ops::RangeInclusive;
 
 use contact_model::fixed_point::Celsius;
 
 use super::Fault;
-use super::limits::Sound;
+use super::validity::ValidReadings;
 use crate::drive::Current;
 
+/// Length of one half of the baseline, each of which gives a mean, ticks.
+const HALF_BASELINE_TICKS: u16 = 32;
+/// Length of a pulse, ticks.
+const PULSE_TICKS: u16 = 200;
 /// Ticks at which the phases end.
-const TESTED: u16 = 20;
-const GIVEN_BACK: u16 = 40;
-const RESTED: u16 = GIVEN_BACK + 2 * HALF;
-const COOLED: u16 = RESTED + PULSE;
-const ANSWERED: u16 = COOLED + PULSE;
-const DONE: u16 = ANSWERED + PULSE;
-/// Half of the rest, over each of which the reading is averaged, and how long the pulses last.
-const HALF: u16 = 32;
-const PULSE: u16 = 200;
-/// Within this the comparator has cut, and has given back.
+const COMPARATOR_CUT_END: u16 = 20;
+const COMPARATOR_RELEASE_END: u16 = 40;
+const BASELINE_END: u16 = COMPARATOR_RELEASE_END + 2 * HALF_BASELINE_TICKS;
+const COOLING_END: u16 = BASELINE_END + PULSE_TICKS;
+const RESPONSE_END: u16 = COOLING_END + PULSE_TICKS;
+const WARMING_END: u16 = RESPONSE_END + PULSE_TICKS;
+/// Ticks within which the comparator must have cut, or released.
 const COMPARATOR_TICKS: u16 = 10;
-/// What is driven.
+/// Current of the pulses.
 const AMPLITUDE: Current = Current::ONE;
-/// What must flow while it is, in the second half of the pulse on average.
-const LEAST_A: Current = Current::lit("0.4");
-const MOST_A: Current = Current::lit("2");
-/// How far the display must and may answer: the class does 0.54 K with its pulse, a thermistor of 0.5 s lag sees a third
-/// of it meanwhile, and a finger that rests there takes as much.
-const LEAST: Celsius = Celsius::lit("0.05");
-const MOST: Celsius = Celsius::lit("1.5");
+/// Measured current in the second half of a pulse, on average.
+const CURRENT_MIN: Current = Current::lit("0.4");
+const CURRENT_MAX: Current = Current::lit("2");
+/// Response of the display to the cooling pulse. The class responds by 0.54 K; a thermistor of 0.5 s lag sees a third of that
+/// in time, and a finger that rests on the display takes as much.
+const RESPONSE_MIN: Celsius = Celsius::lit("0.05");
+const RESPONSE_MAX: Celsius = Celsius::lit("1.5");
+/// Ticks without a landing or lifting before the baseline, because a finger bends its line.
+const UNDISTURBED_TICKS: u16 = 1000;
+/// Ticks after which a display that is disturbed again and again trips.
+const LONGEST_WAIT_TICKS: u16 = 20 * UNDISTURBED_TICKS;
+/// Ticks without force after which a finger has lifted. A force just above its threshold falls below it by noise now and then.
+const LIFTED_TICKS: u8 = 32;
 
-/// For how long nothing must have landed or lifted before the rest, ticks: what a finger does to the display is no line.
-const UNTOUCHED: u16 = 1000;
-/// For how long in all.
-const PATIENCE: u16 = 20 * UNTOUCHED;
-/// Who has lifted has left the force at its zero for so many ticks: one that is hardly above it shows by the noise now and then.
-const LIFTED: u8 = 32;
-
-/// Sums of both readings over half of the rest.
+/// Sums of both display readings over half of the baseline.
 type Sums = [i64; 2];
 
-/// How it goes on.
+/// What the bridge does in one tick of the self-test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Progress {
-    /// The bridge stays off; whether the comparator is to be tested.
+pub enum SelfTestStep {
+    /// The bridge is off.
     Off {
-        /// Level of the test line.
+        /// Level of the line that tests the comparator.
         comparator_test: bool,
     },
-    /// This current.
+    /// This current is driven.
     Drive(Current),
-    /// Everything works.
+    /// The self-test has passed.
     Passed,
 }
 
-/// The self-test, from tick to tick.
+/// The self-test.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelfTest {
     tick: u16,
-    first: Sums,
-    second: Sums,
+    first_half: Sums,
+    second_half: Sums,
     /// Sum of the measured current over the second half of a pulse.
     current: i64,
     touched: bool,
-    /// Ticks since nothing was felt.
-    untouched: u8,
-    /// Ticks to wait before the rest, and how many have been waited in all.
-    wait: u16,
-    waited: u16,
+    /// Ticks since a finger was felt.
+    untouched_ticks: u8,
+    /// Ticks to wait until the baseline.
+    wait_ticks: u16,
+    /// Ticks waited in all.
+    waited_ticks: u16,
 }
 
 impl SelfTest {
-    /// The comparator is expected to pull the fault line, so that it does is no fault.
+    /// Whether the comparator is expected to pull the bridge's fault line, which is then no fault.
     #[must_use]
-    pub const fn expects_cut(&self) -> bool {
-        self.tick < GIVEN_BACK
+    pub const fn expects_bridge_fault(&self) -> bool {
+        self.tick < COMPARATOR_RELEASE_END
     }
 
-    /// Takes one tick; `cut` is whether the fault line is pulled, `felt` whether anything is felt on the display.
+    /// Takes one tick. `bridge_fault` is the level of the fault line, `touched` whether a finger is felt.
     ///
     /// # Errors
-    /// What does not work.
+    /// The part that does not work.
     pub fn step(
         &mut self,
-        sound: &Sound,
-        measured: Current,
-        cut: bool,
-        felt: bool,
-    ) -> Result<Progress, Fault> {
-        self.untouched = if felt {
+        readings: &ValidReadings,
+        bridge_fault: bool,
+        touched: bool,
+    ) -> Result<SelfTestStep, Fault> {
+        const OFF: SelfTestStep = SelfTestStep::Off {
+            comparator_test: false,
+        };
+        self.untouched_ticks = if touched {
             0
         } else {
-            self.untouched.saturating_add(1)
+            self.untouched_ticks.saturating_add(1)
         };
-        if felt != self.touched && (felt || self.untouched >= LIFTED) {
-            self.begin_anew(felt);
+        if touched != self.touched && (touched || self.untouched_ticks >= LIFTED_TICKS) {
+            self.restart_baseline(touched);
         }
-        if self.tick == GIVEN_BACK && self.wait > 0 {
-            if self.waited >= PATIENCE {
+        if self.tick == COMPARATOR_RELEASE_END && self.wait_ticks > 0 {
+            if self.waited_ticks >= LONGEST_WAIT_TICKS {
                 return Err(Fault::NoResponse);
             }
-            self.wait -= 1;
-            self.waited += 1;
-            return Ok(Progress::Off {
-                comparator_test: false,
-            });
+            self.wait_ticks -= 1;
+            self.waited_ticks += 1;
+            return Ok(OFF);
         }
         let tick = self.tick;
         self.tick += 1;
-        let readings = [sound.display, sound.check].map(|reading| i64::from(reading.to_bits()));
-        let add = |sums: &mut Sums| {
-            for (sum, reading) in sums.iter_mut().zip(readings) {
+        let display = [readings.display, readings.check].map(|reading| reading.to_bits().into());
+        if tick < COMPARATOR_RELEASE_END {
+            return test_comparator(tick, bridge_fault);
+        }
+        if tick < BASELINE_END {
+            let is_first = tick < COMPARATOR_RELEASE_END + HALF_BASELINE_TICKS;
+            let half = if is_first {
+                &mut self.first_half
+            } else {
+                &mut self.second_half
+            };
+            for (sum, reading) in half.iter_mut().zip(display) {
                 *sum += reading;
             }
-        };
-        if tick < GIVEN_BACK {
-            let testing = tick < TESTED;
-            let since = if testing { tick } else { tick - TESTED };
-            // Within the time that it has, either will do.
-            if since >= COMPARATOR_TICKS && cut != testing {
-                return Err(Fault::Comparator);
-            }
-            return Ok(Progress::Off {
-                comparator_test: testing,
-            });
+            return Ok(OFF);
         }
-        if tick < RESTED {
-            add(if tick < GIVEN_BACK + HALF {
-                &mut self.first
-            } else {
-                &mut self.second
-            });
-            return Ok(Progress::Off {
-                comparator_test: false,
-            });
+        if tick < COOLING_END {
+            self.add_current(tick - BASELINE_END, readings.current);
+            return Ok(SelfTestStep::Drive(AMPLITUDE));
         }
-        if tick < COOLED {
-            self.add_current(tick, RESTED, measured);
-            return Ok(Progress::Drive(AMPLITUDE));
+        if tick == COOLING_END {
+            self.check_current()?;
         }
-        if tick == COOLED {
-            self.judge_current()?;
+        if tick < RESPONSE_END {
+            return Ok(SelfTestStep::Drive(Current::ZERO));
         }
-        if tick < ANSWERED {
-            return Ok(Progress::Drive(Current::ZERO));
+        if tick == RESPONSE_END {
+            self.check_response(display)?;
         }
-        if tick == ANSWERED {
-            self.judge_answer(readings)?;
+        if tick < WARMING_END {
+            self.add_current(tick - RESPONSE_END, readings.current);
+            return Ok(SelfTestStep::Drive(AMPLITUDE.saturating_neg()));
         }
-        if tick < DONE {
-            self.add_current(tick, ANSWERED, measured);
-            return Ok(Progress::Drive(AMPLITUDE.saturating_neg()));
-        }
-        self.judge_current()?;
-        Ok(Progress::Passed)
+        self.check_current()?;
+        Ok(SelfTestStep::Passed)
     }
 
-    /// A finger has landed or lifted: what was seen since the comparator's test does not count.
-    fn begin_anew(&mut self, touched: bool) {
+    /// Discards everything after the comparator's test, because a finger has landed or lifted.
+    fn restart_baseline(&mut self, touched: bool) {
         *self = Self {
-            tick: self.tick.min(GIVEN_BACK),
+            tick: self.tick.min(COMPARATOR_RELEASE_END),
             touched,
-            untouched: self.untouched,
-            wait: UNTOUCHED,
-            waited: self.waited,
+            untouched_ticks: self.untouched_ticks,
+            wait_ticks: UNDISTURBED_TICKS,
+            waited_ticks: self.waited_ticks,
             ..Self::default()
         };
     }
 
-    /// In a pulse that began in a tick.
-    fn add_current(&mut self, tick: u16, begun: u16, measured: Current) {
-        if tick >= begun + PULSE / 2 {
+    fn add_current(&mut self, pulse_tick: u16, measured: Current) {
+        if pulse_tick >= PULSE_TICKS / 2 {
             self.current += i64::from(measured.to_bits());
         }
     }
 
-    /// Of the pulse that is over; the next one begins with none.
-    fn judge_current(&mut self) -> Result<(), Fault> {
-        let mean = mem::take(&mut self.current) / i64::from(PULSE / 2);
-        if mean < i64::from(LEAST_A.to_bits()) {
+    /// Checks the mean current of the pulse that has ended, and clears its sum.
+    fn check_current(&mut self) -> Result<(), Fault> {
+        let mean = mem::take(&mut self.current) / i64::from(PULSE_TICKS / 2);
+        if mean < i64::from(CURRENT_MIN.to_bits()) {
             Err(Fault::CurrentLow)
-        } else if mean > i64::from(MOST_A.to_bits()) {
+        } else if mean > i64::from(CURRENT_MAX.to_bits()) {
             Err(Fault::CurrentHigh)
         } else {
             Ok(())
         }
     }
 
-    /// Against the line through the means of both halves of the rest.
-    fn judge_answer(&self, readings: [i64; 2]) -> Result<(), Fault> {
-        let half = i64::from(HALF);
-        let since = i64::from(ANSWERED - (RESTED - HALF / 2));
-        for (i, reading) in readings.into_iter().enumerate() {
-            let (first, second) = (self.first[i], self.second[i]);
-            let expected = second / half + (second - first) * since / (half * half);
-            let fell = expected - reading;
-            if fell < -i64::from(LEAST.to_bits()) {
+    /// Checks how far both readings are below the line through the means of both halves of the baseline.
+    fn check_response(&self, display: [i64; 2]) -> Result<(), Fault> {
+        const MIN: i64 = RESPONSE_MIN.to_bits() as i64;
+        const RANGE: RangeInclusive<i64> = MIN..=RESPONSE_MAX.to_bits() as i64;
+        let half = i64::from(HALF_BASELINE_TICKS);
+        let ticks = i64::from(RESPONSE_END - (BASELINE_END - HALF_BASELINE_TICKS / 2));
+        let halves = self.first_half.iter().zip(&self.second_half);
+        for ((first, second), reading) in halves.zip(display) {
+            let expected = second / half + (second - first) * ticks / (half * half);
+            let response = expected - reading;
+            if response < -MIN {
                 return Err(Fault::Polarity);
             }
-            if !(i64::from(LEAST.to_bits())..=i64::from(MOST.to_bits())).contains(&fell) {
+            if !RANGE.contains(&response) {
                 return Err(Fault::NoResponse);
             }
         }
         Ok(())
     }
+}
+
+/// Checks in the first ticks that the comparator cuts the supply when told to, and releases it.
+fn test_comparator(tick: u16, bridge_fault: bool) -> Result<SelfTestStep, Fault> {
+    let comparator_test = tick < COMPARATOR_CUT_END;
+    let elapsed = if comparator_test {
+        tick
+    } else {
+        tick - COMPARATOR_CUT_END
+    };
+    // Before its time is over, either level is allowed.
+    if elapsed >= COMPARATOR_TICKS && bridge_fault != comparator_test {
+        return Err(Fault::Comparator);
+    }
+    Ok(SelfTestStep::Off { comparator_test })
 }

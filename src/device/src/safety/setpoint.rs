@@ -1,22 +1,24 @@
-//! A temperature that the display may be told to take.
+//! Display temperatures that may be commanded.
 
 use contact_model::fixed_point::Celsius;
 
-/// A set-point within 15 to 42 °C; nothing else can be constructed.
+use super::limits::{SETPOINT_MAX, SETPOINT_MIN};
+
+/// A set-point within [`SETPOINT_MIN`] to [`SETPOINT_MAX`]; no other can be constructed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Setpoint(Celsius);
 
 impl Setpoint {
-    /// Coldest set-point: contact colder than this is painful in the long run.
-    pub const MIN: Self = Self(Celsius::lit("15"));
+    /// Coldest set-point.
+    pub const MIN: Self = Self(SETPOINT_MIN);
     /// Hottest set-point.
-    pub const MAX: Self = Self(Celsius::lit("42"));
+    pub const MAX: Self = Self(SETPOINT_MAX);
 
-    /// The nearest allowed set-point, and whether that is another one than was asked for.
+    /// The nearest allowed set-point, and whether the demanded one had to be limited.
     #[must_use]
-    pub fn limited(wanted: Celsius) -> (Self, bool) {
-        let allowed = wanted.clamp(Self::MIN.0, Self::MAX.0);
-        (Self(allowed), allowed != wanted)
+    pub fn limited(demanded: Celsius) -> (Self, bool) {
+        let allowed = demanded.clamp(Self::MIN.0, Self::MAX.0);
+        (Self(allowed), allowed != demanded)
     }
 
     /// The temperature.
@@ -32,10 +34,10 @@ mod tests {
 
     #[test]
     fn setpoint_cannot_leave_its_range() {
-        for (wanted, allowed, limited) in
+        for (demanded, allowed, limited) in
             [(14.9, 15.0, true), (15.0, 15.0, false), (42.5, 42.0, true)]
         {
-            let (setpoint, was_limited) = Setpoint::limited(Celsius::from_num(wanted));
+            let (setpoint, was_limited) = Setpoint::limited(Celsius::from_num(demanded));
             assert_eq!(
                 (setpoint.celsius().to_num::<f64>(), was_limited),
                 (allowed, limited)

@@ -1,127 +1,129 @@
-//! Calibration in integers: the converter's steps and each thermistor's polynomial.
+//! Calibration in fixed point: the converter's non-linearity and each thermistor's correction.
 
-use contact_model::fixed_point::Celsius;
+use contact_model::fixed_point::{Celsius, product};
+use fixed::types::{I0F32, U28F4};
 
 use super::{SCANS_PER_TICK, THERMISTORS};
-use thermal_settings::{BORDERS, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES, Settings};
+use thermal_settings::{
+    BORDERS, Correction, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES, Settings,
+};
 
-/// Binary places of a sum of conversions after its steps were taken out.
-pub const FINE_BITS: u32 = 4;
-/// Sums of one segment, as a power of two.
+/// A sum of conversions after the correction of the converter: below 2^16, in sixteenths.
+pub type CorrectedSum = U28F4;
+
+/// Width of a segment in sums, as a power of two.
 const SEGMENT_BITS: u32 = (SEGMENT_CODES * SCANS_PER_TICK as u32).ilog2();
 const SEGMENTS: usize = 1 << (u16::BITS - SEGMENT_BITS);
-/// Sums around a border over which noise spreads its step, as a power of two: four codes, two either way.
-const BLUR_BITS: u32 = 6;
-const HALF_BLUR: u32 = 1 << (BLUR_BITS - 1);
+/// Width in sums, as a power of two, over which noise spreads the step at a border: two codes on either side.
+const TRANSITION_BITS: u32 = 6;
+const HALF_TRANSITION: u32 = 1 << (TRANSITION_BITS - 1);
 
-/// What a converter of this class is off by at most, counts. Single steps are within what lines may set and may all
-/// have one sign; together they would hide more than a kelvin from the guard.
-const OFF_COUNTS: f64 = 8.0;
+/// Largest error of a converter of this class, counts. The host may set each step within its own range and all with
+/// one sign; without this limit they could hide more than a kelvin from the fault detectors.
+const MAX_ERROR_COUNTS: f64 = 8.0;
 
-/// A calibration, ready for the tick.
+/// The calibration of one finger's temperature readings, in the fixed point that a tick uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Calibrated {
-    /// Of the converter.
-    pub steps: Steps,
-    /// Of the thermistors.
-    pub polynomials: [Polynomial; THERMISTORS],
+pub struct CalibrationTables {
+    pub(super) converter: ConverterCorrection,
+    pub(super) thermistors: [ThermistorCorrection; THERMISTORS],
 }
 
-impl Calibrated {
-    /// `f64`, once.
+impl CalibrationTables {
+    /// Converts the calibration from `f64`: for set-up, not for the tick.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
-        let warmer_k = &settings.self_heating_k;
+        let self_heating_k = &settings.self_heating_k;
         let corrections = &settings.calibration.corrections;
         Self {
-            steps: Steps::new(&settings.calibration.steps_counts),
-            polynomials: core::array::from_fn(|i| Polynomial::new(&corrections[i], warmer_k[i])),
+            converter: ConverterCorrection::new(&settings.calibration.steps_counts),
+            thermistors: core::array::from_fn(|i| {
+                ThermistorCorrection::new(&corrections[i], self_heating_k[i])
+            }),
         }
     }
 }
 
-/// What the converter reads too much in each segment of its range.
+/// The converter's error, constant within each segment of its range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Steps {
-    /// In sixteenths of a sum.
-    too_much: [i16; SEGMENTS],
+pub(super) struct ConverterCorrection {
+    /// Reading minus true value in each segment, in sixteenths of a sum.
+    errors: [i16; SEGMENTS],
 }
 
-impl Steps {
-    /// From the steps at its borders, counts; `f64`, once.
-    #[must_use]
-    pub fn new(steps_counts: &[f64; BORDERS]) -> Self {
-        let per_count = libm::ldexp(SCANS_PER_TICK as f64, FINE_BITS as i32);
-        let mut sum = 0.0;
+impl ConverterCorrection {
+    /// From the steps at the segments' borders, counts.
+    fn new(steps_counts: &[f64; BORDERS]) -> Self {
+        let units_per_count = libm::ldexp(SCANS_PER_TICK as f64, CorrectedSum::FRAC_NBITS as i32);
+        let mut error = 0.0;
         Self {
-            too_much: core::array::from_fn(|segment| {
+            errors: core::array::from_fn(|segment| {
                 if let Some(step) = segment
                     .checked_sub(FIRST_BORDER)
                     .and_then(|border| steps_counts.get(border))
                 {
-                    sum += step;
+                    error += step;
                 }
-                libm::round(sum.clamp(-OFF_COUNTS, OFF_COUNTS) * per_count) as i16
+                let error = error.clamp(-MAX_ERROR_COUNTS, MAX_ERROR_COUNTS);
+                libm::round(error * units_per_count) as i16
             }),
         }
     }
 
-    /// The sum without them, in sixteenths, within what 16 bits of sum can be. Across a border they change along a line, over the codes into
-    /// which noise spreads it: where in them the border lies, the device does not know.
+    /// The sum without the converter's error, 0 to 2^16 - 1/16. Near a border the error is interpolated linearly
+    /// over the codes into which noise spreads the step, because a sum does not tell on which side each conversion was.
     #[must_use]
-    pub fn without(&self, sum: u16) -> u32 {
-        let ahead = u32::from(sum) + HALF_BLUR;
-        let segment = (ahead >> SEGMENT_BITS) as usize;
-        let within = ahead & ((1 << SEGMENT_BITS) - 1);
-        let of = |segment: usize| i32::from(self.too_much[segment % SEGMENTS]);
-        let mut too_much = of(segment.min(SEGMENTS - 1));
-        if within < 1 << BLUR_BITS {
-            let before = of(segment.saturating_sub(1));
-            too_much = before + (((too_much - before) * within as i32) >> BLUR_BITS);
+    pub fn correct(&self, sum: u16) -> CorrectedSum {
+        let shifted = u32::from(sum) + HALF_TRANSITION;
+        let segment = (shifted >> SEGMENT_BITS) as usize;
+        let from_transition = shifted & ((1 << SEGMENT_BITS) - 1);
+        let error_in = |segment: usize| i32::from(self.errors[segment % SEGMENTS]);
+        let mut error = error_in(segment.min(SEGMENTS - 1));
+        if from_transition < 1 << TRANSITION_BITS {
+            let below = error_in(segment.saturating_sub(1));
+            error = below + (((error - below) * from_transition as i32) >> TRANSITION_BITS);
         }
-        (u32::from(sum) << FINE_BITS)
-            .saturating_add_signed(-too_much)
-            .min((1 << (u16::BITS + FINE_BITS)) - 1)
+        let units = (u32::from(sum) << CorrectedSum::FRAC_NBITS).saturating_add_signed(-error);
+        CorrectedSum::from_bits(units.min((1 << (u16::BITS + CorrectedSum::FRAC_NBITS)) - 1))
     }
 }
 
-/// What is added to a thermistor's temperature.
+/// What is added to the temperature of one thermistor: `offset + slope u + curvature u²`, with `u` its difference from
+/// 29 °C, limited to ±16 K.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Polynomial {
+pub(super) struct ThermistorCorrection {
     offset: Celsius,
-    /// In 2^-32, per K.
-    slope: i32,
-    curvature: i32,
+    /// K/K.
+    slope: I0F32,
+    /// 1/K.
+    curvature: I0F32,
 }
 
-impl Polynomial {
-    const MIDDLE: Celsius = Celsius::const_from_int(MIDDLE_C as i32);
-    const REACH: Celsius = Celsius::const_from_int(REACH_K as i32);
+impl ThermistorCorrection {
+    const CENTRE: Celsius = Celsius::const_from_int(MIDDLE_C as i32);
+    const HALF_RANGE: Celsius = Celsius::const_from_int(REACH_K as i32);
 
-    /// `f64`, once; what the thermistor warms itself, K, is taken away.
-    #[must_use]
-    pub fn new(correction: &thermal_settings::Correction, self_heating_k: f64) -> Self {
+    /// Subtracts the thermistor's self-heating, K, from the correction's offset.
+    fn new(correction: &Correction, self_heating_k: f64) -> Self {
+        let coefficient = |value| I0F32::from_bits(libm::ldexp(value, 32) as i32);
         Self {
             offset: Celsius::saturating_from_num(correction.offset_k - self_heating_k),
-            slope: libm::ldexp(correction.slope, 32) as i32,
-            curvature: libm::ldexp(correction.curvature_1_k, 32) as i32,
+            slope: coefficient(correction.slope),
+            curvature: coefficient(correction.curvature_1_k),
         }
     }
 
-    /// The corrected temperature. No product overflows: `u` has 26 bits, its square in the same unit 30, slope and
-    /// curvature 31.
+    /// The corrected temperature. No product overflows: of their 64 bits, `slope u` uses 57 and `curvature u²` 61.
     #[must_use]
-    pub fn apply(&self, reached: Celsius) -> Celsius {
-        let u = reached
-            .saturating_sub(Self::MIDDLE)
-            .clamp(-Self::REACH, Self::REACH)
-            .to_bits();
-        let times = |a: i32, b: i32| i64::from(a) * i64::from(b);
-        let square = (times(u, u) >> Celsius::FRAC_NBITS) as i32;
-        let change = (times(self.slope, u) + times(self.curvature, square)) >> 32;
-        reached
+    pub fn apply(&self, uncorrected: Celsius) -> Celsius {
+        let u = uncorrected
+            .saturating_sub(Self::CENTRE)
+            .clamp(-Self::HALF_RANGE, Self::HALF_RANGE);
+        let square: Celsius = product(u, u);
+        let change = self.slope.wide_mul(u) + self.curvature.wide_mul(square);
+        uncorrected
             .saturating_add(self.offset)
-            .saturating_add(Celsius::from_bits(change as i32))
+            .saturating_add(Celsius::wrapping_from_num(change))
     }
 }
 
@@ -129,16 +131,17 @@ impl Polynomial {
 mod tests {
     use super::*;
 
-    /// Steps that lines may set one by one, all of one sign: 13 times 4 counts would be 1.2 K at 43 °C.
+    /// The host may set each step to 4 counts; 13 of one sign would be 1.2 K at 43 °C.
     #[test]
-    fn steps_together_move_a_reading_by_what_a_converter_can_be_off() {
+    fn converter_correction_is_at_most_8_counts_whatever_the_steps() {
         for step in [-4.0, 4.0] {
-            let steps = Steps::new(&[step; BORDERS]);
+            let correction = ConverterCorrection::new(&[step; BORDERS]);
             for sum in (0..=65_520).step_by(7) {
-                let off = i64::from(steps.without(sum)) - (i64::from(sum) << FINE_BITS);
+                let change = i64::from(correction.correct(sum).to_bits())
+                    - (i64::from(sum) << CorrectedSum::FRAC_NBITS);
                 assert!(
-                    off.abs() <= (8 * 16) << FINE_BITS,
-                    "{off} sixteenths at {sum}"
+                    change.abs() <= (8 * 16) << CorrectedSum::FRAC_NBITS,
+                    "{change} sixteenths at {sum}"
                 );
             }
         }

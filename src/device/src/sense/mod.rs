@@ -1,35 +1,38 @@
-//! From converter counts to temperatures, force and current.
+//! Sensing: sums of conversions to temperatures, force and current.
 
 mod average;
 mod correction;
 mod force;
 mod thermistor;
 
-pub use average::{Average, Averages};
-pub use correction::{Calibrated, Polynomial, Steps};
-pub use force::{ForceScale, Touch};
-pub use thermistor::{SensorFault, Thermistor};
+pub use average::{ThermistorAverage, ThermistorAverages};
+pub use correction::CalibrationTables;
+pub use force::ContactDetector;
+pub use thermistor::SensorFault;
 
 use core::array;
 
 use contact_model::fixed_point::{Celsius, Force};
 
 use crate::drive::Current;
+use correction::ThermistorCorrection;
+use force::ForceChannel;
 use thermal_settings::Settings;
+use thermistor::ThermistorTable;
 
-/// Signals of one finger, in the order in which the converter scans them.
+/// Signals of one finger; [`Samples`] lists them in the order in which the converter scans them.
 pub const CHANNELS: usize = 7;
 
-/// The first of them are thermistors: display, second display, sink, skin, room.
+/// The first channels are thermistors: display, second display, sink, skin, room.
 pub use thermal_settings::THERMISTORS;
 
-/// Scans that are summed into the [`Samples`] of one control tick.
+/// Oversampling: scans that are summed into the [`Samples`] of one control tick.
 pub const SCANS_PER_TICK: usize = 16;
 
 /// One scan: a 12-bit count per channel, in the order of the fields of [`Samples`].
 pub type Scan = [u16; CHANNELS];
 
-/// What one control tick knows: sums of [`SCANS_PER_TICK`] 12-bit conversions (0..=65520) per channel.
+/// Input of one control tick: for each channel the sum of [`SCANS_PER_TICK`] conversions of 12 bits, 0 to 65520.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Samples {
     /// Display thermistor, in the contact patch.
@@ -51,7 +54,7 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Those of the thermistors.
+    /// Sums of the thermistors, in the order of the channels.
     #[must_use]
     pub const fn thermistors(&self) -> [u16; THERMISTORS] {
         [
@@ -65,18 +68,18 @@ impl Samples {
 
     /// Sums the scans of one tick.
     ///
-    /// A thermistor whose last conversion is at an end of the range counts as being there for the whole tick:
-    /// the mean of a tick in which a wire broke would be a temperature.
+    /// A thermistor whose last conversion is out of range is out of range for the whole tick, because the sum over
+    /// a tick in which a wire breaks would pass for a temperature.
     #[must_use]
     pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], bridge_fault: bool) -> Self {
-        let mut sum = sums(scans);
+        let mut sums = sums(scans);
         let [.., last] = scans;
-        for (s, &count) in sum.iter_mut().zip(last).take(THERMISTORS) {
-            if thermistor::is_at_an_end(count) {
-                *s = count.saturating_mul(SCANS_PER_TICK as u16);
+        for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTORS) {
+            if thermistor::is_out_of_range(code) {
+                *sum = code.saturating_mul(SCANS_PER_TICK as u16);
             }
         }
-        let [display, display_check, sink, skin, room, force, current] = sum;
+        let [display, display_check, sink, skin, room, force, current] = sums;
         Self {
             display,
             display_check,
@@ -90,10 +93,10 @@ impl Samples {
     }
 }
 
-/// The sum of every channel. Two counts are added at a time: sums of 8 times 4095 and of 16 stay within their halves of
-/// a word.
+/// The sum of every channel. One addition of words adds two codes, because sums of 8 codes, and of 16, stay within half a
+/// word.
 fn sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNELS] {
-    // Two scans are as many whole words as a scan has channels.
+    // A scan has an odd number of half-words: two scans are a whole number of words, as many as there are channels.
     let mut words = [0u32; CHANNELS];
     let (pairs, _) = scans.as_chunks::<2>();
     for pair in pairs {
@@ -106,12 +109,12 @@ fn sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNELS] {
     core::array::from_fn(|channel| half(channel).wrapping_add(half(channel + CHANNELS)))
 }
 
-/// What the samples of one tick say.
+/// Readings of one control tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Readings {
     /// Display surface, in the contact patch.
     pub display: Result<Celsius, SensorFault>,
-    /// The same, by the second thermistor.
+    /// Display surface by the second thermistor.
     pub display_check: Result<Celsius, SensorFault>,
     /// Sink.
     pub sink: Result<Celsius, SensorFault>,
@@ -119,7 +122,7 @@ pub struct Readings {
     pub skin: Result<Celsius, SensorFault>,
     /// Room.
     pub room: Result<Celsius, SensorFault>,
-    /// Force; `None` if the sensor's wire is broken.
+    /// Force; `None` if the sensor's wire is broken or shorted.
     pub force: Option<Force>,
     /// Magnitude of the module's current.
     pub current: Current,
@@ -127,74 +130,75 @@ pub struct Readings {
     pub bridge_fault: bool,
 }
 
-/// The sensors of one finger.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sensors {
-    thermistor: Thermistor,
-    calibrated: Calibrated,
-    force: ForceScale,
-    /// Current of one unit of the sum, in 2^-24 A.
-    current_per_unit: i32,
-    /// What the slow thermistors said when it was last their turn.
-    slow: Option<[Celsius; SLOW]>,
-    /// Whose turn it is.
-    turn: usize,
-}
-
-/// Skin and room move by less than a millikelvin in two ticks, and no limit depends on them, so they are converted in
-/// turn. Whether their wires are whole is looked at on every tick.
+/// Number of the slow thermistors, skin and room. Their temperatures change by less than a millikelvin in two ticks and no
+/// limit depends on them, so a tick converts one of them only. Every tick checks the wires of both.
 const SLOW: usize = 2;
 
+/// Conversion of one finger's samples to readings.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Sensors {
+    thermistor: ThermistorTable,
+    calibration: CalibrationTables,
+    force: ForceChannel,
+    current_per_unit: Current,
+    /// Last temperatures of skin and room; `None` before both are known.
+    slow_temperatures: Option<[Celsius; SLOW]>,
+    /// Index of the slow thermistor that the next tick converts.
+    next_slow: usize,
+}
+
 impl Sensors {
-    /// `f64`, once.
+    /// Converts the settings from `f64`: for set-up, not for the tick.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let per_unit = 1.0 / (settings.current_counts_per_a * SCANS_PER_TICK as f64);
         Self {
-            thermistor: Thermistor::new(&settings.thermistor),
-            calibrated: Calibrated::new(settings),
-            force: ForceScale::new(&settings.force),
-            current_per_unit: Current::saturating_from_num(per_unit).to_bits(),
-            slow: None,
-            turn: 0,
+            thermistor: ThermistorTable::new(&settings.thermistor),
+            calibration: CalibrationTables::new(settings),
+            force: ForceChannel::new(&settings.force),
+            current_per_unit: Current::saturating_from_num(per_unit),
+            slow_temperatures: None,
+            next_slow: 0,
         }
     }
 
-    /// Follows the force sensor's zero, after a tick whose force `touch` has taken.
-    pub fn follow_zero(&mut self, samples: &Samples, touch: &Touch) {
-        if !touch.touching() {
-            self.force.follow_zero(samples.force, touch.left_zero());
+    /// Tracks the force sensor's zero while nothing touches; `contact` has been updated by the force of this tick.
+    pub fn track_zero(&mut self, samples: &Samples, contact: &ContactDetector) {
+        if !contact.touching() {
+            self.force.track_zero(samples.force, contact.is_off_zero());
         }
     }
 
-    /// Reads by another calibration from now on.
-    pub fn recalibrate(&mut self, calibrated: &Calibrated) {
-        self.calibrated = *calibrated;
+    /// Uses another calibration from the next tick on.
+    pub fn recalibrate(&mut self, calibration: &CalibrationTables) {
+        self.calibration = *calibration;
     }
 
     /// Converts the samples of one tick.
     #[must_use]
     pub fn read(&mut self, samples: &Samples) -> Readings {
-        let Calibrated { steps, polynomials } = &self.calibrated;
-        let [display, display_check, sink, slow_corrections @ ..] = polynomials;
+        let CalibrationTables {
+            converter,
+            thermistors: [display, display_check, sink, slow_corrections @ ..],
+        } = &self.calibration;
         let thermistor = &self.thermistor;
-        let temperature = |sum, correction: &Polynomial| {
-            let reached = thermistor.temperature(sum, steps.without(sum))?;
-            Ok(correction.apply(reached))
+        let temperature = |sum, correction: &ThermistorCorrection| {
+            let uncorrected = thermistor.temperature(sum, converter.correct(sum))?;
+            Ok(correction.apply(uncorrected))
         };
-        let sums = [samples.skin, samples.room];
-        let slow = if let Some(before) = &mut self.slow {
-            let turn = self.turn % SLOW;
-            self.turn = turn + 1;
-            if let Ok(now) = temperature(sums[turn], &slow_corrections[turn]) {
-                before[turn] = now;
+        let slow_sums = [samples.skin, samples.room];
+        let slow = if let Some(last) = &mut self.slow_temperatures {
+            let converted = self.next_slow % SLOW;
+            self.next_slow = converted + 1;
+            if let Ok(now) = temperature(slow_sums[converted], &slow_corrections[converted]) {
+                last[converted] = now;
             }
-            let before = *before;
-            array::from_fn(|i| thermistor::connected(sums[i]).map(|()| before[i]))
+            let last = *last;
+            array::from_fn(|i| thermistor::check_wiring(slow_sums[i]).map(|()| last[i]))
         } else {
-            let all = array::from_fn(|i| temperature(sums[i], &slow_corrections[i]));
+            let all = array::from_fn(|i| temperature(slow_sums[i], &slow_corrections[i]));
             if let [Ok(skin), Ok(room)] = all {
-                self.slow = Some([skin, room]);
+                self.slow_temperatures = Some([skin, room]);
             }
             all
         };
@@ -206,9 +210,9 @@ impl Sensors {
             skin,
             room,
             force: self.force.force(samples.force),
+            // On the bits: `saturating_mul_int` takes more instructions.
             current: Current::from_bits(
-                self.current_per_unit
-                    .saturating_mul(i32::from(samples.current)),
+                (self.current_per_unit.to_bits()).saturating_mul(samples.current.into()),
             ),
             bridge_fault: samples.bridge_fault,
         }

@@ -1,25 +1,26 @@
-//! Thermistor counts to temperature.
+//! Thermistor sums to temperature.
 
-use contact_model::fixed_point::Celsius;
+use contact_model::fixed_point::{Celsius, product};
+use fixed::types::I0F32;
 
-use super::correction::FINE_BITS;
+use super::correction::CorrectedSum;
 use thermal_settings as settings;
 
-/// Sums of counts at which a thermistor counts as open or shorted. The range between them is wider than
+/// Sums of 16 conversions beyond which a thermistor counts as shorted or open. The range between them is wider than
 /// -40 to 125 °C of a 10 k thermistor of beta 3950 K under 10 k.
 const SHORT_BELOW: u16 = 40 * 16;
 const OPEN_ABOVE: u16 = 4060 * 16;
 
-/// Whether one code is beyond the range of temperatures.
-pub(super) const fn is_at_an_end(code: u16) -> bool {
+/// Whether the code of one conversion is that of a shorted or open thermistor.
+pub(super) const fn is_out_of_range(code: u16) -> bool {
     code < SHORT_BELOW / 16 || code > OPEN_ABOVE / 16
 }
 
-/// Whether a sum is that of a thermistor.
+/// Checks that a sum is within the range of a connected thermistor.
 ///
 /// # Errors
 /// Open or shorted.
-pub(super) const fn connected(sum: u16) -> Result<(), SensorFault> {
+pub(super) const fn check_wiring(sum: u16) -> Result<(), SensorFault> {
     match sum {
         ..SHORT_BELOW => Err(SensorFault::Short),
         SHORT_BELOW..=OPEN_ABOVE => Ok(()),
@@ -27,9 +28,9 @@ pub(super) const fn connected(sum: u16) -> Result<(), SensorFault> {
     }
 }
 
-/// Equal parts of the range of sums, as a power of two.
-const PARTS_SHIFT: u32 = 6;
-const PARTS: usize = 1 << PARTS_SHIFT;
+/// Number of equal intervals of the range of sums, and its power of two.
+const INTERVALS_LOG2: u32 = 6;
+const INTERVALS: usize = 1 << INTERVALS_LOG2;
 
 /// Why a thermistor has no temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,58 +41,63 @@ pub enum SensorFault {
     Short,
 }
 
-/// Sum to temperature as a cubic on each of 64 equal parts of the range, whatever the curve: a tick pays three
-/// multiplications a sensor, no logarithm and no division.
+/// The curve from sum to temperature as one cubic for each of 64 equal intervals: a tick pays three
+/// multiplications a sensor, no logarithm and no division, whatever the curve.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Thermistor {
-    /// Coefficients in 2^-22 °C, lowest power first, of the position in the part from 0 to 1/2.
-    parts: [[i32; 4]; PARTS],
+pub(super) struct ThermistorTable {
+    /// Coefficients, lowest power first, for the position in the interval from 0 to 1/2.
+    cubics: [[Celsius; 4]; INTERVALS],
 }
 
-impl Thermistor {
-    /// Fits the cubics through four points of each part; `f64`, once.
+impl ThermistorTable {
+    /// Fits each cubic through four points of the curve, in `f64`: for set-up, not for the tick.
     #[must_use]
     pub fn new(settings: &settings::Thermistor) -> Self {
-        let width = 65536.0 / PARTS as f64;
+        let width = 65536.0 / INTERVALS as f64;
         Self {
-            parts: core::array::from_fn(|part| {
-                let at = |third: f64| settings.temperature_c((part as f64 + third / 3.0) * width);
+            cubics: core::array::from_fn(|interval| {
+                let at =
+                    |third: f64| settings.temperature_c((interval as f64 + third / 3.0) * width);
                 cubic([at(0.0), at(1.0), at(2.0), at(3.0)])
             }),
         }
     }
 
-    /// Temperature for the sum of 16 12-bit conversions (0..=65520) whose `fine` value, in sixteenths, is free of
-    /// the converter's steps.
+    /// Temperature for the sum of 16 conversions of 12 bits (0 to 65520), which is also given corrected for the
+    /// converter's error.
     ///
-    /// Error against the curve below 0.1 mK from -20 to 80 °C (`cargo test --lib thermistor`).
+    /// Error against the curve below 0.1 mK from -20 to 80 °C
+    /// (test `the_table_inverts_the_beta_equation_within_0_1_mk`).
     ///
     /// # Errors
-    /// Open or shorted, by the sum itself.
-    pub fn temperature(&self, sum: u16, fine: u32) -> Result<Celsius, SensorFault> {
-        connected(sum)?;
-        let position_bits = u16::BITS + FINE_BITS - PARTS_SHIFT;
-        // From 0 to 1/2, in 2^-32.
-        let position =
-            i64::from(fine & ((1 << position_bits) - 1)) << (u32::BITS - 1 - position_bits);
-        // Steps are small beside what lies between the ends of the range and those of its last parts.
-        let [constant, rest @ ..] = self.parts[(fine >> position_bits) as usize % PARTS];
-        let change = rest.iter().rev().fold(0i32, |sum, &c| {
-            ((i64::from(sum.saturating_add(c)) * position) >> 32) as i32
-        });
-        Ok(Celsius::from_bits(constant.saturating_add(change)))
+    /// Open or shorted, by the uncorrected sum.
+    pub fn temperature(&self, sum: u16, corrected: CorrectedSum) -> Result<Celsius, SensorFault> {
+        check_wiring(sum)?;
+        let position_bits = u16::BITS + CorrectedSum::FRAC_NBITS - INTERVALS_LOG2;
+        let units = corrected.to_bits();
+        let within = units & ((1 << position_bits) - 1);
+        // From 0 to 1/2.
+        let position = I0F32::from_bits((within << (u32::BITS - 1 - position_bits)) as i32);
+        let [constant, others @ ..] = self.cubics[(units >> position_bits) as usize % INTERVALS];
+        let change = others
+            .iter()
+            .rev()
+            .fold(Celsius::ZERO, |sum, &coefficient| {
+                product(sum.saturating_add(coefficient), position)
+            });
+        Ok(constant.saturating_add(change))
     }
 }
 
-/// The cubic through values in °C at 0, 1/6, 1/3 and 1/2.
-fn cubic([a, b, c, d]: [f64; 4]) -> [i32; 4] {
-    let powers = [
+/// Coefficients of the cubic through values in °C at 0, 1/6, 1/3 and 1/2.
+fn cubic([a, b, c, d]: [f64; 4]) -> [Celsius; 4] {
+    [
         a,
         -11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d,
         2.0 * (18.0 * a - 45.0 * b + 36.0 * c - 9.0 * d),
         4.0 * (-9.0 * a + 27.0 * b - 27.0 * c + 9.0 * d),
-    ];
-    powers.map(|power| Celsius::saturating_from_num(power).to_bits())
+    ]
+    .map(Celsius::saturating_from_num)
 }
 
 #[cfg(test)]
@@ -99,9 +105,9 @@ mod tests {
     use super::*;
     use thermal_settings::{Curve, Settings};
 
-    /// Of a sum from a converter without steps.
-    fn temperature(thermistor: &Thermistor, sum: u16) -> Result<Celsius, SensorFault> {
-        thermistor.temperature(sum, u32::from(sum) << FINE_BITS)
+    /// Temperature of a sum from a converter without error.
+    fn temperature(table: &ThermistorTable, sum: u16) -> Result<Celsius, SensorFault> {
+        table.temperature(sum, CorrectedSum::from(sum))
     }
 
     /// The sum that the divider's ideal converter gives at a temperature, by the beta equation.
@@ -111,14 +117,14 @@ mod tests {
     }
 
     #[test]
-    fn thermistor_inverts_the_beta_equation() {
-        let thermistor = Thermistor::new(&Settings::default().thermistor);
+    fn the_table_inverts_the_beta_equation_within_0_1_mk() {
+        let table = ThermistorTable::new(&Settings::default().thermistor);
         for milli in (-20_000..=80_000).step_by(7) {
             let sum = sum_at(f64::from(milli) * 1e-3).round();
             // The temperature of exactly this sum, by the equation solved for T.
             let r = 10e3 * sum / (65536.0 - sum);
             let exact = 1.0 / (1.0 / 298.15 + (r / 10e3).ln() / 3950.0) - 273.15;
-            let error = temperature(&thermistor, sum as u16)
+            let error = temperature(&table, sum as u16)
                 .expect("in range")
                 .to_num::<f64>()
                 - exact;
@@ -126,37 +132,35 @@ mod tests {
         }
     }
 
-    /// A published set of a 10 k thermistor: 25 °C at 10 kohm, 0 °C at 32.65 kohm, 50 °C at 3.603 kohm.
+    /// A published set of coefficients of a 10 k thermistor: 25 °C at 10 kohm, 0 °C at 32.65 kohm, 50 °C at 3.603 kohm.
     #[test]
-    fn thermistor_follows_steinhart_and_hart() {
+    fn the_table_agrees_with_a_published_steinhart_hart_thermistor() {
         let curve = Curve::SteinhartHart {
             a: 1.129_148e-3,
             b: 2.341_25e-4,
             c: 8.767_41e-8,
         };
-        let thermistor = Thermistor::new(&settings::Thermistor {
+        let table = ThermistorTable::new(&settings::Thermistor {
             pull_up_ohm: 10e3,
             curve,
         });
         for (t_c, ohm) in [(0.0, 32_650.0), (25.0, 10_000.0), (50.0, 3_603.0)] {
             let sum = (ohm / (ohm + 10e3) * 65536.0f64).round() as u16;
-            let t = temperature(&thermistor, sum)
-                .expect("in range")
-                .to_num::<f64>();
+            let t = temperature(&table, sum).expect("in range").to_num::<f64>();
             assert!((t - t_c).abs() < 0.05, "{t_c}: {t}");
         }
     }
 
     #[test]
-    fn thermistor_range_ends_in_open_and_short() {
-        let thermistor = Thermistor::new(&Settings::default().thermistor);
-        assert_eq!(temperature(&thermistor, 65520), Err(SensorFault::Open));
-        assert_eq!(temperature(&thermistor, 0), Err(SensorFault::Short));
+    fn sums_at_the_ends_of_the_range_are_open_and_short_circuits() {
+        let table = ThermistorTable::new(&Settings::default().thermistor);
+        assert_eq!(temperature(&table, 65520), Err(SensorFault::Open));
+        assert_eq!(temperature(&table, 0), Err(SensorFault::Short));
         for t_c in [-40.0, 125.0] {
-            assert!(temperature(&thermistor, sum_at(t_c) as u16).is_ok());
+            assert!(temperature(&table, sum_at(t_c) as u16).is_ok());
         }
         for sum in 0..=65520 {
-            let _any_count_has_an_answer = temperature(&thermistor, sum);
+            let _no_sum_panics = temperature(&table, sum);
         }
     }
 }

@@ -1,24 +1,24 @@
-//! Ticks against a counter that has no part in them.
+//! Monitors the rate of the control ticks by a second counter.
 
 /// Bits of the counter: SysTick's.
 const BITS: u32 = 24;
-/// Part of a period that a tick may be off, either way.
+/// Part of a period by which a tick may be early or late.
 const PART: u32 = 4;
 
-/// When ticks are due, by a counter that counts down without end.
+/// Predicts when ticks are due, by a counter that counts down without end.
 ///
-/// Counter and ticks come from one oscillator, so that what one tick is late never adds up; what a wrong rate is off does.
-/// Half a percent has become a quarter of a period after 50 ticks, a rate that is 10 times wrong shows at once.
+/// Counter and ticks derive from one oscillator, so the jitter of single ticks never adds up, but a wrong rate does: half a
+/// percent becomes a quarter of a period after 50 ticks, and a rate that is wrong by a factor of ten is detected at once.
 #[derive(Clone, Copy, Debug)]
-pub struct Pace {
-    /// Of a tick, in the upper bits, so that all wraps where the counter does.
+pub struct TickRateMonitor {
+    /// Counts per tick, in the upper bits, so that times wrap where the counter does.
     period: u32,
-    /// When the last tick was due; none before the first, which is when it comes.
+    /// When the last tick was due; `None` before the first, which is due when it comes.
     due: Option<u32>,
 }
 
-impl Pace {
-    /// Ticks that are `period` counts apart, of the counter's 2^24.
+impl TickRateMonitor {
+    /// Monitors ticks that are `period` counts apart, of the counter's 2^24.
     #[must_use]
     pub const fn new(period: u32) -> Self {
         Self {
@@ -27,10 +27,10 @@ impl Pace {
         }
     }
 
-    /// Takes one tick, with what the counter shows; whether the tick has come when it was due.
+    /// Takes one tick with the counter's value; returns whether the tick came when it was due.
     ///
-    /// One that is off by half a round of the counter or more may be taken for another: that is a watchdog's part.
-    pub fn keeps(&mut self, count: u32) -> bool {
+    /// A tick that is off by half a turn of the counter or more may be taken for another one; the watchdogs detect that.
+    pub fn tick_is_due(&mut self, count: u32) -> bool {
         let now = (count << (u32::BITS - BITS)).wrapping_neg();
         let due = self.due.map_or(now, |due| due.wrapping_add(self.period));
         self.due = Some(due);
@@ -40,40 +40,40 @@ impl Pace {
 
 #[cfg(test)]
 mod tests {
-    use super::Pace;
+    use super::TickRateMonitor;
 
     /// A millisecond of 180 MHz.
     const PERIOD: u32 = 180_000;
     const ROUND: u64 = 1 << 24;
 
-    /// Ticks until one is off, of so many, that come at these cycles.
-    fn until_off(ticks: u64, cycle: impl Fn(u64) -> u64) -> Option<u64> {
-        let mut pace = Pace::new(PERIOD);
+    /// Number of the first tick that is off, of `ticks` ticks that come at these cycles.
+    fn first_off(ticks: u64, cycle: impl Fn(u64) -> u64) -> Option<u64> {
+        let mut monitor = TickRateMonitor::new(PERIOD);
         let shown = |cycle: u64| (ROUND - 1 - (cycle + 123_456) % ROUND) as u32;
-        (0..ticks).find(|n| !pace.keeps(shown(cycle(*n))))
+        (0..ticks).find(|n| !monitor.tick_is_due(shown(cycle(*n))))
     }
 
     #[test]
-    fn ticks_that_come_in_time_pass_for_an_hour_though_each_is_late_by_something() {
+    fn ticks_with_jitter_pass_for_an_hour() {
         let period = u64::from(PERIOD);
-        assert_eq!(until_off(3_600_000, |n| n * period), None);
+        assert_eq!(first_off(3_600_000, |n| n * period), None);
         assert_eq!(
-            until_off(3_600_000, |n| n * period + n * 7919 % 44_000),
+            first_off(3_600_000, |n| n * period + n * 7919 % 44_000),
             None
         );
         // A first tick that is late makes the others early.
         assert_eq!(
-            until_off(1000, |n| n * period + if n == 0 { 44_000 } else { 0 }),
+            first_off(1000, |n| n * period + if n == 0 { 44_000 } else { 0 }),
             None
         );
     }
 
     #[test]
-    fn one_tick_that_is_off_by_more_than_a_quarter_shows() {
+    fn a_tick_that_is_off_by_more_than_a_quarter_of_its_period_is_detected() {
         let period = u64::from(PERIOD);
         for n in [1, 93, 94, 1000] {
             let with = |off: i64| {
-                until_off(2000, |tick| {
+                first_off(2000, |tick| {
                     (tick * period + period).saturating_add_signed(if tick == n { off } else { 0 })
                 })
             };
@@ -87,7 +87,7 @@ mod tests {
     fn a_wrong_rate_shows_within_50_ms() {
         let of = |scan: u64| {
             let tick = scan * 16 * 2;
-            let n = until_off(10_000, |n| n * tick)?;
+            let n = first_off(10_000, |n| n * tick)?;
             Some((n * tick) as f64 / 180e3)
         };
         assert_eq!(of(5625), None);
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_counter_that_stands_or_runs_at_an_eighth_shows_at_once() {
-        assert_eq!(until_off(10, |_| 77), Some(1));
-        assert_eq!(until_off(10, |n| n * u64::from(PERIOD) / 8), Some(1));
+        assert_eq!(first_off(10, |_| 77), Some(1));
+        assert_eq!(first_off(10, |n| n * u64::from(PERIOD) / 8), Some(1));
     }
 }

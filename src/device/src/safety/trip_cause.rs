@@ -1,4 +1,4 @@
-//! The first cause: what tripped, when, and what was read then.
+//! Why a station tripped: the fault, its time, and the readings of that tick.
 
 use contact_model::fixed_point::Celsius;
 
@@ -6,39 +6,40 @@ use super::Fault;
 use crate::drive::Current;
 use crate::sense::Readings;
 
-/// What is known of the moment of a fault.
+/// What is known of the tick in which a station tripped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Cause {
-    /// What tripped.
+pub struct TripCause {
+    /// The fault.
     pub fault: Fault,
-    /// Ticks since the start of the program that saw it.
+    /// Ticks since the reset before it; 0 if no tick has seen the fault.
     pub tick: u32,
-    /// Display thermistor, if it had a temperature.
+    /// Reading of the display; `None` if it was invalid.
     pub display: Option<Celsius>,
-    /// Second display thermistor.
+    /// Reading of the second display thermistor.
     pub check: Option<Celsius>,
-    /// Sink.
+    /// Reading of the sink.
     pub sink: Option<Celsius>,
     /// Magnitude of the measured current.
     pub current: Current,
-    /// Current asked for in the tick before.
-    pub asked: Current,
+    /// Current demanded in the tick before.
+    pub demanded: Current,
 }
 
-impl Cause {
-    /// Words of [`Self::to_words`].
+impl TripCause {
+    /// Length of [`Self::to_words`].
     pub const WORDS: usize = 7;
 
-    /// Another one where the words mean something else: their number, which of them they are, or the faults by their numbers.
+    /// Identifies the meaning of the words: their number, their order, and the numbers of the faults. A record that was kept by
+    /// another firmware is recognised by it.
     pub const LAYOUT: u32 = layout(
         "fault tick display check sink current asked",
         Self::WORDS,
         Fault::ALL,
     );
 
-    /// In a tick.
+    /// The cause in a tick.
     #[must_use]
-    pub fn new(fault: Fault, tick: u32, readings: &Readings, asked: Current) -> Self {
+    pub fn new(fault: Fault, tick: u32, readings: &Readings, demanded: Current) -> Self {
         Self {
             fault,
             tick,
@@ -46,11 +47,11 @@ impl Cause {
             check: readings.display_check.ok(),
             sink: readings.sink.ok(),
             current: readings.current,
-            asked,
+            demanded,
         }
     }
 
-    /// Of a fault that no tick has seen.
+    /// The cause for a fault that no tick has seen.
     #[must_use]
     pub const fn alone(fault: Fault) -> Self {
         Self {
@@ -60,14 +61,14 @@ impl Cause {
             check: None,
             sink: None,
             current: Current::ZERO,
-            asked: Current::ZERO,
+            demanded: Current::ZERO,
         }
     }
 
-    /// To be kept; what changes here changes [`Self::LAYOUT`].
+    /// Words to be kept through a reset. A change here must change [`Self::LAYOUT`].
     #[must_use]
     pub fn to_words(&self) -> [u32; Self::WORDS] {
-        // No thermistor reads the least of all temperatures.
+        // Stands for an invalid reading: no thermistor reads the lowest representable temperature.
         let word = |t: Option<Celsius>| t.unwrap_or(Celsius::MIN).to_bits().cast_unsigned();
         [
             self.fault as u32,
@@ -76,14 +77,14 @@ impl Cause {
             word(self.check),
             word(self.sink),
             self.current.to_bits().cast_unsigned(),
-            self.asked.to_bits().cast_unsigned(),
+            self.demanded.to_bits().cast_unsigned(),
         ]
     }
 
-    /// From what was kept; none if there is no such fault.
+    /// The cause from words that were kept; `None` if there is no such fault.
     #[must_use]
     pub fn from_words(
-        [fault, tick, display, check, sink, measured, asked]: [u32; Self::WORDS],
+        [fault, tick, display, check, sink, measured, demanded]: [u32; Self::WORDS],
     ) -> Option<Self> {
         let celsius = |word: u32| {
             let t = Celsius::from_bits(word.cast_signed());
@@ -97,24 +98,24 @@ impl Cause {
             check: celsius(check),
             sink: celsius(sink),
             current: current(measured),
-            asked: current(asked),
+            demanded: current(demanded),
         })
     }
 }
 
-/// A sum over what a record is made of (FNV-1a).
+/// FNV-1a hash over what a record consists of.
 const fn layout(order: &str, words: usize, faults: &[Fault]) -> u32 {
-    let mut sum = spelt(0x811c_9dc5 ^ words as u32, order);
+    let mut sum = hash_word(0x811c_9dc5 ^ words as u32, order);
     let mut number = 0;
     while number < faults.len() {
-        sum = spelt(sum, faults[number].name());
+        sum = hash_word(sum, faults[number].name());
         number += 1;
     }
     sum
 }
 
-/// Goes on with a word and its end.
-const fn spelt(mut sum: u32, word: &str) -> u32 {
+/// Continues the hash with a word and its end.
+const fn hash_word(mut sum: u32, word: &str) -> u32 {
     let bytes = word.as_bytes();
     let mut at = 0;
     while at < bytes.len() {
@@ -129,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_record_of_other_faults_or_other_words_has_another_layout() {
+    fn other_faults_or_other_words_have_another_layout() {
         let order = "fault tick";
         let of = |faults: &[Fault]| layout(order, 2, faults);
         let (stack, panic) = (Fault::Stack, Fault::Panic);
@@ -146,7 +147,7 @@ mod tests {
         }
         // FNV-1a of "a", as its authors give it; a word's end is one more byte.
         assert_eq!(
-            spelt(0x811c_9dc5, "a"),
+            hash_word(0x811c_9dc5, "a"),
             (0xe40c_292c_u32 ^ 0xff).wrapping_mul(0x0100_0193)
         );
     }

@@ -1,0 +1,422 @@
+//! Internal model of the display plate: its surface temperature under current, a finger's heat and the sink.
+//!
+//! A column of the tile (plate, solder tab, legs, hot plate on the sink), and the difference between the patch under the
+//! finger and the rest of the plate, form a network of heat capacities, so the surface is a sum of first-order relaxations.
+//! [`CLASS`] has those of the class module (71 couples, 30 mm square, 0.8 mm of alumina), with neighbouring time
+//! constants merged. What is faster than a tick acts at once.
+
+use core::ops::Add;
+
+use contact_model::fixed_point::{
+    Celsius, MATCH_HORIZON_TICKS, product, saturated, saturating_product,
+};
+use fixed::types::extra::{LeEqU32, LeEqU64, U24};
+use fixed::types::{I0F32, I1F31, I2F30, I4F28, I6F26, I8F24, I12F20, I12F52, I20F12};
+use fixed::{FixedI32, FixedI64};
+use thermal_settings::{Module, Tile};
+
+use crate::TICK_HZ;
+use crate::bismuth_telluride::{DATA_SHEET_TEMPERATURE, RESISTIVITY_PER_K, SEEBECK_PER_K};
+use crate::drive::Current;
+use crate::low_pass::{Coefficient, LowPass};
+
+/// Power in W, ±128.
+pub type Watt = I8F24;
+
+/// A temperature or temperature difference within the model, ±2048 K.
+type Kelvin = I12F20;
+
+/// One relaxation: its time constant, and the steady-state temperature per watt pumped out of the plate, per watt of Joule
+/// heat in the legs, and per watt of a finger on the patch (K/W).
+#[derive(Clone, Copy)]
+struct Relaxation {
+    time_constant_s: f64,
+    gains_k_w: [f64; 3],
+}
+
+const fn relaxation(time_constant_s: f64, pumped: f64, joule: f64, finger: f64) -> Relaxation {
+    Relaxation {
+        time_constant_s,
+        gains_k_w: [pumped, joule, finger],
+    }
+}
+
+const RELAXATIONS: usize = 5;
+
+/// The class module: the plate against the sink, the patch against the rest of the plate, the legs, the hot plate, and the
+/// depth of the ceramic. The steady state of the first includes the sink's temperature.
+const CLASS: [Relaxation; RELAXATIONS] = [
+    relaxation(10.241_19, 3.540_82, 1.813_82, 3.555_85),
+    relaxation(2.361_25, 0.0, 0.0, 3.203_31),
+    relaxation(0.186_38, 0.002_51, -0.029_89, 0.018_41),
+    relaxation(0.010_79, -0.007_31, -0.000_99, 0.047_71),
+    relaxation(0.003_73, 0.001_38, -0.000_03, 0.002_40),
+];
+/// Temperature of the surface that a finger's heat causes within its tick, K/W.
+const FINGER_FEEDTHROUGH_K_W: f64 = 0.023_80;
+/// Joule heat raises the mean temperature of the legs above the mean of their ends, K/W, with this time constant, s.
+const LEG_HEATING_K_W: I4F28 = I4F28::lit("0.292");
+const LEG_TIME_CONSTANT_S: f64 = 0.186;
+/// Thermal resistance from the legs' hot ends to the sink, K/W.
+const HOT_SIDE_K_W: I4F28 = I4F28::lit("0.0285");
+const ZERO_C_IN_K: Celsius = Celsius::lit("273.15");
+
+/// A tile's gain differs from its class by the module's pumping and by the plate's heat capacity; only the capacity changes
+/// the response to a finger. This part of the gain's logarithm is the capacity's.
+const CAPACITY_EXPONENT: f64 = 0.4;
+/// Largest ratio, either way, of a tile's parameter to that of its class.
+const LARGEST_RATIO: f64 = 2.0;
+/// Limits of the inputs, within which no state overflows: pumped or Joule heat, the finger's heat, the sink, and the legs'
+/// distance from the data sheet's temperature.
+const LARGEST_HEAT: Watt = Watt::lit("64");
+const LARGEST_FINGER_HEAT: Watt = Watt::lit("8");
+const LARGEST_SINK: Celsius = Celsius::lit("100");
+const LARGEST_LEG_DIFFERENCE: Celsius = Celsius::lit("100");
+
+/// Ticks for which a chosen current is assumed to stay, when the next one is chosen.
+const HORIZON_TICKS: f64 = 12.0;
+/// The skin's correction is computed for a horizon that includes this one.
+const _: () = assert!(HORIZON_TICKS <= MATCH_HORIZON_TICKS as f64);
+
+/// Temperature change per watt of each input: pumped heat, Joule heat, the finger's heat.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct InputGains<Gain> {
+    pumped: Gain,
+    joule: Gain,
+    finger: Gain,
+}
+
+impl<Frac: LeEqU32> InputGains<FixedI32<Frac>> {
+    fn new([pumped, joule, finger]: [f64; 3]) -> Self {
+        Self {
+            pumped: rounded(pumped),
+            joule: rounded(joule),
+            finger: rounded(finger),
+        }
+    }
+
+    /// Temperature change that the inputs cause, K; pumped heat leaves the plate.
+    fn effect(&self, inputs: &PlateInputs) -> FixedI64<<U24 as Add<Frac>>::Output>
+    where
+        U24: Add<Frac, Output: LeEqU64>,
+    {
+        inputs.joule.wide_mul(self.joule) - inputs.pumped.wide_mul(self.pumped)
+            + inputs.finger.wide_mul(self.finger)
+    }
+}
+
+/// How a tile differs from its class: factors of the gains, and of the leak to the sink.
+struct Ratios {
+    pumped: f64,
+    joule: f64,
+    finger: f64,
+    leak: f64,
+}
+
+impl Ratios {
+    fn of(tile: &Tile) -> Self {
+        let ratio = |identified: f64, class: f64| {
+            (identified / class).clamp(1.0 / LARGEST_RATIO, LARGEST_RATIO)
+        };
+        let gain = ratio(tile.gain_k_s_a, Tile::CLASS.gain_k_s_a);
+        Self {
+            pumped: gain,
+            joule: ratio(gain * tile.joule_per_a, Tile::CLASS.joule_per_a),
+            finger: libm::pow(gain, CAPACITY_EXPONENT),
+            leak: ratio(tile.leak_1_s, Tile::CLASS.leak_1_s),
+        }
+    }
+
+    /// Scales a relaxation of the class. The slowest one is the leak to the sink: when the leak's rate changes, its initial
+    /// slopes stay.
+    fn scale(&self, slowest: bool, class: Relaxation) -> Relaxation {
+        let leak = if slowest { self.leak } else { 1.0 };
+        let [pumped, joule, finger] = class.gains_k_w;
+        Relaxation {
+            time_constant_s: class.time_constant_s / leak,
+            gains_k_w: [
+                pumped * self.pumped / leak,
+                joule * self.joule / leak,
+                finger * self.finger / leak,
+            ],
+        }
+    }
+}
+
+/// Fixed-point form of one [`Relaxation`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct RelaxationState {
+    /// Temperature, K.
+    state: I12F52,
+    /// What the inputs add to the state in one tick.
+    tick_gains: InputGains<I4F28>,
+    /// What the inputs bring the state to in the end.
+    steady_state_gains: InputGains<I4F28>,
+    /// Part of the state that decays in one tick.
+    tick_decay: I0F32,
+    /// Part of the state that decays within [`HORIZON_TICKS`].
+    horizon_decay: I2F30,
+}
+
+impl RelaxationState {
+    fn kelvin(&self) -> Kelvin {
+        Kelvin::from_bits((self.state.to_bits() >> KELVIN_SHIFT) as i32)
+    }
+
+    fn set_kelvin(&mut self, temperature: Kelvin) {
+        self.state = widened(temperature);
+    }
+}
+
+const KELVIN_SHIFT: u32 = I12F52::FRAC_NBITS - Kelvin::FRAC_NBITS;
+
+fn widened(temperature: Kelvin) -> I12F52 {
+    I12F52::from_bits(i64::from(temperature.to_bits()) << KELVIN_SHIFT)
+}
+
+/// What warms and cools the plate in one tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PlateInputs {
+    /// Heat that the module pumps out of the plate.
+    pub pumped: Watt,
+    /// Joule heat in the legs.
+    pub joule: Watt,
+    /// Heat from the finger.
+    pub finger: Watt,
+    /// Temperature of the sink.
+    pub sink: Celsius,
+}
+
+/// A property of the legs: its value at the data sheet's temperature, and its rise per K.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct LegProperty<Value> {
+    value: Value,
+    rise_per_k: Value,
+}
+
+impl<Frac: LeEqU32> LegProperty<FixedI32<Frac>> {
+    fn new(value: f64, rise_per_k: f64) -> Self {
+        Self {
+            value: rounded(value),
+            rise_per_k: rounded(rise_per_k * value),
+        }
+    }
+
+    fn at(&self, above_data_sheet: Celsius) -> FixedI32<Frac> {
+        self.value
+            .saturating_add(product(above_data_sheet, self.rise_per_k))
+    }
+}
+
+/// Temperatures of the module's legs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LegTemperatures {
+    /// Ends at the display.
+    pub cold: Celsius,
+    /// Ends at the sink.
+    pub hot: Celsius,
+    /// Mean over the legs.
+    pub mean: Celsius,
+}
+
+impl LegTemperatures {
+    /// Those of legs that carry little current, between display and sink.
+    #[must_use]
+    pub fn between(display: Celsius, sink: Celsius) -> Self {
+        Self {
+            cold: display,
+            hot: sink,
+            mean: (display >> 1u32).saturating_add(sink >> 1u32),
+        }
+    }
+}
+
+/// The internal model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlateModel {
+    relaxations: [RelaxationState; RELAXATIONS],
+    /// What the inputs add to the surface by the horizon.
+    horizon_gains: InputGains<I6F26>,
+    finger_feedthrough: I4F28,
+    /// Mean temperature of the legs above the mean of their ends.
+    leg_heating: LowPass,
+    hot: Celsius,
+    surface: Celsius,
+    /// V/K.
+    seebeck: LegProperty<I1F31>,
+    /// Ohm.
+    resistance: LegProperty<I8F24>,
+    /// Current per temperature difference at the horizon, at 300 K, A/K.
+    current_per_kelvin: I20F12,
+}
+
+/// Rounds to the nearest fixed-point number. Computed in `f64`, for start-up.
+fn rounded<Frac: LeEqU32>(value: f64) -> FixedI32<Frac> {
+    let places = FixedI32::<Frac>::FRAC_NBITS;
+    FixedI32::from_bits(libm::round(libm::ldexp(value, places as i32)) as i32)
+}
+
+impl PlateModel {
+    /// The model of a module on a tile that was identified. Computed in `f64`, for start-up.
+    #[must_use]
+    pub fn new(module: &Module, tile: &Tile) -> Self {
+        let tick_s = 1.0 / f64::from(TICK_HZ);
+        let decay =
+            |ticks: f64, time_constant_s: f64| 1.0 - libm::exp(-ticks * tick_s / time_constant_s);
+        let ratios = Ratios::of(tile);
+        let mut slowest = true;
+        let relaxations = CLASS.map(|class| ratios.scale(core::mem::take(&mut slowest), class));
+        let mut horizon_gains = [0.0; 3];
+        for relaxation in &relaxations {
+            let decay = decay(HORIZON_TICKS, relaxation.time_constant_s);
+            for (sum, gain) in horizon_gains.iter_mut().zip(relaxation.gains_k_w) {
+                *sum += decay * gain;
+            }
+        }
+        let [pumped_k_w, ..] = horizon_gains;
+        Self {
+            relaxations: relaxations.map(|relaxation| {
+                let Relaxation {
+                    time_constant_s,
+                    gains_k_w,
+                } = relaxation;
+                let tick_decay = decay(1.0, time_constant_s);
+                RelaxationState {
+                    state: I12F52::ZERO,
+                    tick_gains: InputGains::new(gains_k_w.map(|gain| tick_decay * gain)),
+                    steady_state_gains: InputGains::new(gains_k_w),
+                    tick_decay: rounded(tick_decay),
+                    horizon_decay: rounded(decay(HORIZON_TICKS, time_constant_s)),
+                }
+            }),
+            horizon_gains: InputGains::new(horizon_gains),
+            finger_feedthrough: rounded(ratios.finger * FINGER_FEEDTHROUGH_K_W),
+            leg_heating: LowPass::new(Coefficient::from_time_constant_s(LEG_TIME_CONSTANT_S)),
+            hot: DATA_SHEET_TEMPERATURE,
+            surface: DATA_SHEET_TEMPERATURE,
+            seebeck: LegProperty::new(module.seebeck_v_k, SEEBECK_PER_K),
+            resistance: LegProperty::new(module.legs_ohm, RESISTIVITY_PER_K),
+            current_per_kelvin: rounded(1.0 / (pumped_k_w * module.seebeck_v_k * 300.0)),
+        }
+    }
+
+    /// Starts from a surface temperature, as if current, finger and sink had been the same for long; returns the inputs that
+    /// they are.
+    pub fn initialise(
+        &mut self,
+        surface: Celsius,
+        current: Current,
+        finger: Watt,
+        sink: Celsius,
+    ) -> PlateInputs {
+        self.leg_heating.set(Celsius::ZERO);
+        (self.hot, self.surface) = (sink, surface);
+        let inputs = self.inputs(current, finger, sink);
+        let mut remainder =
+            kelvin(surface).saturating_sub(product(inputs.finger, self.finger_feedthrough));
+        let [slowest, others @ ..] = &mut self.relaxations;
+        for relaxation in others {
+            relaxation.state = relaxation.steady_state_gains.effect(&inputs);
+            remainder -= relaxation.kelvin();
+        }
+        slowest.set_kelvin(remainder);
+        inputs
+    }
+
+    /// Takes the parameters of another model; the temperatures stay.
+    pub fn set_parameters(&mut self, other: &Self) {
+        let previous = *self;
+        *self = *other;
+        for (relaxation, previous) in self.relaxations.iter_mut().zip(&previous.relaxations) {
+            relaxation.state = previous.state;
+        }
+        self.leg_heating = previous.leg_heating;
+        (self.hot, self.surface) = (previous.hot, previous.surface);
+    }
+
+    /// Adds an offset to all temperatures of the plate, because the thermistor's calibration has changed.
+    pub fn offset(&mut self, by: Celsius) {
+        let [slowest, ..] = &mut self.relaxations;
+        slowest.state += widened(kelvin(by));
+        self.surface = self.surface.saturating_add(by);
+    }
+
+    /// Surface of the patch under the finger.
+    #[must_use]
+    pub const fn surface(&self) -> Celsius {
+        self.surface
+    }
+
+    /// The legs' ends and mean.
+    #[must_use]
+    pub fn legs(&self) -> LegTemperatures {
+        let LegTemperatures { cold, hot, mean } = LegTemperatures::between(self.surface, self.hot);
+        LegTemperatures {
+            cold,
+            hot,
+            mean: mean.saturating_add(self.leg_heating.output()),
+        }
+    }
+
+    /// Inputs of a tick with this current, finger and sink. The pumped heat follows the legs' mean Seebeck coefficient, which
+    /// includes Thomson's heat.
+    #[must_use]
+    pub fn inputs(&self, current: Current, finger: Watt, sink: Celsius) -> PlateInputs {
+        let above_data_sheet = self
+            .legs()
+            .mean
+            .saturating_sub(DATA_SHEET_TEMPERATURE)
+            .clamp(-LARGEST_LEG_DIFFERENCE, LARGEST_LEG_DIFFERENCE);
+        let surface_k = self.surface.saturating_add(ZERO_C_IN_K);
+        let peltier_v: I8F24 = product(self.seebeck.at(above_data_sheet), surface_k);
+        let current_squared: I8F24 = saturating_product(current, current);
+        let heat = |volts_or_ohms: I8F24, factor: I8F24| -> Watt {
+            let heat: Watt = saturating_product(volts_or_ohms, factor);
+            heat.clamp(-LARGEST_HEAT, LARGEST_HEAT)
+        };
+        PlateInputs {
+            pumped: heat(peltier_v, current),
+            joule: heat(self.resistance.at(above_data_sheet), current_squared),
+            finger: finger.clamp(-LARGEST_FINGER_HEAT, LARGEST_FINGER_HEAT),
+            sink: sink.clamp(-LARGEST_SINK, LARGEST_SINK),
+        }
+    }
+
+    /// Additional current that brings the surface to a target at the horizon, if the inputs stay until then.
+    #[must_use]
+    pub fn current_to(&self, target: Celsius, inputs: &PlateInputs) -> Current {
+        const ONE: I4F28 = I4F28::ONE;
+        let [slowest, ..] = &self.relaxations;
+        let mut change =
+            self.horizon_gains.effect(inputs) + kelvin(inputs.sink).wide_mul(slowest.horizon_decay);
+        for relaxation in &self.relaxations {
+            change -= relaxation.kelvin().wide_mul(relaxation.horizon_decay);
+        }
+        change += self.surface.wide_mul(ONE) - target.wide_mul(ONE);
+        let excess: Celsius = saturated(change);
+        saturating_product(excess, self.current_per_kelvin)
+    }
+
+    /// Advances the temperatures by one tick.
+    pub fn step(&mut self, inputs: &PlateInputs) {
+        let mut surface: Kelvin = product(inputs.finger, self.finger_feedthrough);
+        let [slowest, ..] = &mut self.relaxations;
+        slowest.state += kelvin(inputs.sink).wide_mul(slowest.tick_decay);
+        for relaxation in &mut self.relaxations {
+            relaxation.state += relaxation.tick_gains.effect(inputs)
+                - relaxation.kelvin().wide_mul(relaxation.tick_decay);
+            surface += relaxation.kelvin();
+        }
+        self.surface = surface.saturating_to_num();
+        self.leg_heating
+            .update(product(inputs.joule, LEG_HEATING_K_W));
+        let heat_out = inputs.joule.saturating_add(inputs.pumped);
+        let hot_side_rise = product(heat_out, HOT_SIDE_K_W);
+        self.hot = inputs.sink.saturating_add(hot_side_rise);
+    }
+}
+
+/// Rounded down to the model's resolution.
+fn kelvin(temperature: Celsius) -> Kelvin {
+    Kelvin::from_bits(temperature.to_bits() >> (Celsius::FRAC_NBITS - Kelvin::FRAC_NBITS))
+}

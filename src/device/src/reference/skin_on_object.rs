@@ -1,0 +1,108 @@
+//! The skin as it would be on the object, followed from the heat that would flow, whatever force and timing did to it.
+//!
+//! From it follows Eq. 6-12 where its closed form does not hold: under a changing force, or in a second contact.
+
+use contact_model::fixed_point::{
+    Celsius, ContactConductance, ContactPair, Fraction, HalfSpace, Ratio, saturating_product,
+};
+use fixed::types::U16F16;
+
+/// The pair's quantities that Eq. 6-12 needs. Without a pair all are zero, and no heat flows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PairFactors {
+    /// `e_object / (e_object + e_skin)`, with effusivities `e`.
+    weight: Fraction,
+    /// Its reciprocal.
+    inverse_weight: U16F16,
+    /// `R_display / R_object`, with contact resistances `R`.
+    ratio: Ratio,
+}
+
+impl PairFactors {
+    /// Computes the factors of a pair.
+    #[must_use]
+    pub fn new(pair: &ContactPair) -> Self {
+        // 1 in 2^-48 over the weight in 2^-32.
+        let inverse = (1u64 << 48) / u64::from(pair.weight().to_bits().max(1));
+        Self {
+            weight: pair.weight(),
+            inverse_weight: U16F16::from_bits(inverse.min(u64::from(u32::MAX)) as u32),
+            ratio: pair.ratio(),
+        }
+    }
+
+    /// Whether a pair has these factors.
+    #[must_use]
+    pub fn belong_to(&self, pair: &ContactPair) -> bool {
+        self.weight == pair.weight() && self.ratio == pair.ratio()
+    }
+}
+
+/// The skin on the object.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct SkinOnObject {
+    /// How far the skin's surface has cooled.
+    cooling: HalfSpace,
+    /// Heat flow of this tick, as the temperature step that it causes.
+    scaled_flux: Celsius,
+}
+
+impl SkinOnObject {
+    /// Starts a contact with an object at its own temperature, by a skin as it is on the display.
+    pub fn restart(&mut self, skin_on_display: &HalfSpace) {
+        self.cooling = skin_on_display.staggered();
+        self.scaled_flux = Celsius::ZERO;
+    }
+
+    /// Advances by one tick. `skin_above_object` is the difference before contact; without a conductance nothing touches.
+    pub fn step(
+        &mut self,
+        conductance: Option<&ContactConductance>,
+        factors: &PairFactors,
+        skin_above_object: Celsius,
+    ) {
+        self.scaled_flux = conductance.map_or(Celsius::ZERO, |conductance| {
+            let without_resistance = saturating_product(skin_above_object, factors.weight);
+            conductance.scaled_flux(without_resistance, &self.cooling)
+        });
+        self.cooling.step(self.scaled_flux);
+    }
+
+    /// The set-point by Eq. 6-12. `skin_on_display` is given between contacts, when it is the skin that will land.
+    #[must_use]
+    pub fn setpoint(
+        &self,
+        factors: &PairFactors,
+        skin_before_contact: Celsius,
+        skin_above_object: Celsius,
+        skin_on_display: Option<&HalfSpace>,
+    ) -> Celsius {
+        let cooling = self.cooling.response_to(self.scaled_flux);
+        // Temperature steps in 2^-22 K; the product has 38 places and up to 63 bits.
+        let step_at_interface = (i64::from(cooling.to_bits())
+            * i64::from(factors.inverse_weight.to_bits()))
+            >> U16F16::FRAC_NBITS;
+        let step_at_object = limited(i64::from(skin_above_object.to_bits()) - step_at_interface);
+        let step_at_display = (i64::from(step_at_object.to_bits())
+            * i64::from(factors.ratio.to_bits()))
+            >> Ratio::FRAC_NBITS;
+        let skin_cooling = skin_on_display.map_or(cooling, HalfSpace::free_response);
+        limited(
+            i64::from(skin_before_contact.to_bits())
+                - i64::from(skin_cooling.to_bits())
+                - step_at_display,
+        )
+    }
+
+    /// What must be added to the set-point for the skin on the display to reach the skin on the object.
+    #[must_use]
+    pub fn correction(&self, skin_on_display: &HalfSpace, display: &ContactConductance) -> Celsius {
+        let scaled_flux = skin_on_display.scaled_flux_to_match(&self.cooling);
+        display.temperature_drop(scaled_flux).saturating_neg()
+    }
+}
+
+/// A temperature in 2^-22 K, limited to the range of its type.
+fn limited(bits: i64) -> Celsius {
+    Celsius::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
+}

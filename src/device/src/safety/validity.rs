@@ -1,0 +1,136 @@
+//! Checks the readings of one tick: sensors first, then the limits of what they measure.
+
+use contact_model::fixed_point::{Celsius, Force};
+
+use super::limits::{DISPLAY_MAX, DISPLAY_MIN, OVER_CURRENT_MARGIN, SINK_MAX};
+use super::{Fault, ThermistorId};
+use crate::drive::Current;
+use crate::sense::{Readings, SensorFault};
+
+/// Readings of sensors that work, within their limits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ValidReadings {
+    /// Display, by its first thermistor.
+    pub display: Celsius,
+    /// Display, by its second thermistor.
+    pub check: Celsius,
+    /// Sink.
+    pub sink: Celsius,
+    /// Skin at the edge of the contact.
+    pub skin: Celsius,
+    /// Room.
+    pub room: Celsius,
+    /// Force.
+    pub force: Force,
+    /// Magnitude of the measured current.
+    pub current: Current,
+}
+
+/// Checks the readings of one tick; `current_limit` is the largest current that is ever demanded.
+///
+/// # Errors
+/// The first fault; sensors come before what they measure.
+pub fn check(readings: &Readings, current_limit: Current) -> Result<ValidReadings, Fault> {
+    let thermistors = [
+        readings.display,
+        readings.display_check,
+        readings.sink,
+        readings.skin,
+        readings.room,
+    ];
+    if thermistors == [Err(SensorFault::Short); 5] {
+        return Err(Fault::Excitation);
+    }
+    let temperature = |reading: Result<Celsius, SensorFault>, thermistor| {
+        reading.map_err(|fault| Fault::of_thermistor(thermistor, fault))
+    };
+    let valid = ValidReadings {
+        display: temperature(readings.display, ThermistorId::Display)?,
+        check: temperature(readings.display_check, ThermistorId::Check)?,
+        sink: temperature(readings.sink, ThermistorId::Sink)?,
+        skin: temperature(readings.skin, ThermistorId::Skin)?,
+        room: temperature(readings.room, ThermistorId::Room)?,
+        force: readings.force.ok_or(Fault::ForceSensor)?,
+        current: readings.current,
+    };
+    if valid.display.max(valid.check) > DISPLAY_MAX {
+        return Err(Fault::DisplayHot);
+    }
+    if valid.display.min(valid.check) < DISPLAY_MIN {
+        return Err(Fault::DisplayCold);
+    }
+    if valid.sink > SINK_MAX {
+        return Err(Fault::SinkHot);
+    }
+    if valid.current > current_limit.saturating_add(OVER_CURRENT_MARGIN) {
+        return Err(Fault::OverCurrent);
+    }
+    Ok(valid)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn valid() -> Readings {
+        let t = |t: i32| Ok(Celsius::from_num(t));
+        Readings {
+            display: t(30),
+            display_check: t(30),
+            sink: t(25),
+            skin: t(34),
+            room: t(24),
+            force: Some(Force::ZERO),
+            current: Current::ZERO,
+            bridge_fault: false,
+        }
+    }
+
+    fn fault_of(change: impl Fn(&mut Readings)) -> Option<&'static str> {
+        let mut readings = valid();
+        change(&mut readings);
+        check(&readings, Current::lit("6")).err().map(Fault::name)
+    }
+
+    #[test]
+    fn each_invalid_reading_has_its_fault() {
+        let t = |t: f64| Ok(Celsius::from_num(t));
+        let short = Err(SensorFault::Short);
+        assert_eq!(fault_of(|_| ()), None);
+        assert_eq!(
+            fault_of(|r| r.display = Err(SensorFault::Open)),
+            Some("display-open")
+        );
+        assert_eq!(fault_of(|r| r.display_check = short), Some("check-short"));
+        assert_eq!(
+            fault_of(|r| r.sink = Err(SensorFault::Open)),
+            Some("sink-open")
+        );
+        assert_eq!(fault_of(|r| r.skin = short), Some("skin-short"));
+        assert_eq!(
+            fault_of(|r| r.room = Err(SensorFault::Open)),
+            Some("room-open")
+        );
+        let all = |r: &mut Readings| {
+            (r.display, r.display_check, r.sink, r.skin, r.room) =
+                (short, short, short, short, short);
+        };
+        assert_eq!(fault_of(all), Some("excitation"));
+        assert_eq!(fault_of(|r| r.force = None), Some("force-sensor"));
+        assert_eq!(fault_of(|r| r.display = t(43.01)), Some("display-hot"));
+        assert_eq!(
+            fault_of(|r| r.display_check = t(43.01)),
+            Some("display-hot")
+        );
+        assert_eq!(fault_of(|r| r.display = t(42.99)), None);
+        assert_eq!(
+            fault_of(|r| r.display_check = t(13.49)),
+            Some("display-cold")
+        );
+        assert_eq!(fault_of(|r| r.sink = t(42.1)), Some("sink-hot"));
+        assert_eq!(
+            fault_of(|r| r.current = Current::lit("9.1")),
+            Some("over-current")
+        );
+    }
+}
