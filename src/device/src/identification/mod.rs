@@ -153,13 +153,11 @@ impl Identification {
     #[must_use]
     pub fn new(sink: Celsius) -> Self {
         let operating_point = sink.clamp(OPERATING_POINT_MIN, OPERATING_POINT_MAX);
+        let coefficients = PiCoefficients::new(&SETTLING_GAINS, UpdatePeriod::EveryTick);
         Self {
             phase: Phase::Settling { ticks: 0, near: 0 },
             operating_point: Setpoint::limited(operating_point).0,
-            pi: Pi::new(
-                PiCoefficients::new(&SETTLING_GAINS, UpdatePeriod::EveryTick),
-                SETTLING_CURRENT_LIMIT,
-            ),
+            pi: Pi::new(coefficients, SETTLING_CURRENT_LIMIT),
             baseline_demand: 0,
             baseline_reading: 0,
             baseline_measured: 0,
@@ -200,10 +198,7 @@ impl Identification {
         readings: &ValidReadings,
         touching: bool,
     ) -> Option<Current> {
-        let excursion = readings
-            .display
-            .saturating_sub(self.operating_point.celsius())
-            .abs();
+        let excursion = (readings.display).saturating_sub(self.operating_point.celsius());
         if touching {
             self.abort(AbortReason::Touched);
         }
@@ -212,7 +207,7 @@ impl Identification {
         }
         // While it settles, the display may come from any temperature.
         if matches!(self.phase, Phase::Baseline { .. } | Phase::Pulses { .. })
-            && excursion > MAX_EXCURSION
+            && excursion.abs() > MAX_EXCURSION
         {
             self.abort(AbortReason::TooFar);
         }
@@ -221,11 +216,8 @@ impl Identification {
             Phase::Aborted(_) => return None,
             Phase::Done => {}
             Phase::Settling { ticks, near } => {
-                let near = if excursion < SETTLED_WITHIN {
-                    near + 1
-                } else {
-                    0
-                };
+                let is_near = excursion.abs() < SETTLED_WITHIN;
+                let near = if is_near { near + 1 } else { 0 };
                 self.phase = if near == SETTLED_TICKS {
                     Phase::Baseline { ticks: 0 }
                 } else if ticks == SETTLING_TIMEOUT_TICKS {
@@ -267,12 +259,9 @@ impl Identification {
                 if self.previous_demand.abs() > COMPARED_ABOVE {
                     equations.compare(self.previous_demand, measured);
                 }
-                equations.add(
-                    reading - self.baseline_reading,
-                    measured,
-                    self.baseline_measured,
-                    direction(self.previous_demand) - direction(self.demand(0)),
-                );
+                let change = reading - self.baseline_reading;
+                let turned = direction(self.previous_demand) - direction(self.demand(0));
+                equations.add(change, measured, self.baseline_measured, turned);
                 self.previous_demand = demand;
                 let (pulse, ticks) = if ticks + 1 < *length {
                     (pulse, ticks + 1)

@@ -37,10 +37,7 @@ const CURRENT_PLACES: u32 = 24;
 /// Largest magnitude: 16 K, or 16 A for a unit of time, which a current within its limits does not reach. The product of
 /// two is below 2^52, and there are 1010 equations: their sums stay in 62 bits.
 const MAX_REGRESSOR: i64 = (1 << (REGRESSOR_PLACES + 4)) - 1;
-const _: () = assert!(
-    EXCITATION_TICKS / TICKS_PER_EQUATION <= 1 << 10,
-    "sums of products overflow"
-);
+const _: () = assert!(EXCITATION_TICKS / TICKS_PER_EQUATION <= 1 << 10);
 
 /// Indices of the last row. Currents are counted along the demanded one, in 2^-16 A.
 pub enum Statistic {
@@ -130,11 +127,8 @@ impl NormalEquations {
         self.ticks += 1;
         (self.current).add(change - through_legs(&mut self.filtered_current, change));
         (self.direction).add(direction - through_legs(&mut self.filtered_direction, direction));
-        (self.squared_current).add(low_pass(
-            &mut self.filtered_squared_current,
-            squared_change,
-            JOULE_COEFFICIENT,
-        ));
+        let joule_state = &mut self.filtered_squared_current;
+        (self.squared_current).add(low_pass(joule_state, squared_change, JOULE_COEFFICIENT));
         self.reading.add(reading);
         if self.ticks.is_multiple_of(TICKS_PER_EQUATION) {
             self.add_equation(reading);

@@ -4,9 +4,7 @@ use contact_model::fixed_point::{Celsius, product};
 use fixed::types::{I0F32, U28F4};
 
 use super::{SCANS_PER_TICK, THERMISTORS};
-use thermal_settings::{
-    BORDERS, Correction, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES, Settings,
-};
+use thermal_settings::{BORDERS, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES, Settings};
 
 /// A sum of conversions after the correction of the converter: below 2^16, in sixteenths.
 pub type CorrectedSum = U28F4;
@@ -104,7 +102,7 @@ impl ThermistorCorrection {
     const HALF_RANGE: Celsius = Celsius::const_from_int(REACH_K as i32);
 
     /// Subtracts the thermistor's self-heating, K, from the correction's offset.
-    fn new(correction: &Correction, self_heating_k: f64) -> Self {
+    fn new(correction: &thermal_settings::Correction, self_heating_k: f64) -> Self {
         let coefficient = |value| I0F32::from_bits(libm::ldexp(value, 32) as i32);
         Self {
             offset: Celsius::saturating_from_num(correction.offset_k - self_heating_k),

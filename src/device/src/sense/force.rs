@@ -67,9 +67,8 @@ impl ForceChannel {
         if sum < self.broken_below || sum > SATURATED_ABOVE {
             return None;
         }
-        let above_zero = FineSum::from(sum)
-            .saturating_sub(self.zero)
-            .max(FineSum::ZERO);
+        let change = FineSum::from(sum).saturating_sub(self.zero);
+        let above_zero = change.max(FineSum::ZERO);
         Some(saturating_product(above_zero, self.n_per_unit))
     }
 
@@ -84,12 +83,8 @@ impl ForceChannel {
             self.initial_ticks += 1;
             error.checked_div_int(self.initial_ticks).unwrap_or(error)
         } else {
-            error
-                >> if is_off_zero {
-                    OFF_ZERO_SHIFT
-                } else {
-                    AT_ZERO_SHIFT
-                }
+            let shifts = [AT_ZERO_SHIFT, OFF_ZERO_SHIFT];
+            error >> shifts[usize::from(is_off_zero)]
         };
     }
 }
@@ -110,11 +105,8 @@ impl ContactDetector {
     /// A contact begins in the second tick off zero at the earliest, so that one noisy tick does not begin one.
     pub fn update(&mut self, force: Force) {
         if self.touching {
-            self.release_ticks = if force < RELEASE_BELOW {
-                self.release_ticks + 1
-            } else {
-                0
-            };
+            let low = force < RELEASE_BELOW;
+            self.release_ticks = if low { self.release_ticks + 1 } else { 0 };
             if self.release_ticks == DEBOUNCE_TICKS {
                 *self = Self::default();
             }

@@ -79,12 +79,10 @@ impl ThermistorTable {
         // From 0 to 1/2.
         let position = I0F32::from_bits((within << (u32::BITS - 1 - position_bits)) as i32);
         let [constant, others @ ..] = self.cubics[(units >> position_bits) as usize % INTERVALS];
-        let change = others
-            .iter()
-            .rev()
-            .fold(Celsius::ZERO, |sum, &coefficient| {
-                product(sum.saturating_add(coefficient), position)
-            });
+        let mut change = Celsius::ZERO;
+        for &coefficient in others.iter().rev() {
+            change = product(change.saturating_add(coefficient), position);
+        }
         Ok(constant.saturating_add(change))
     }
 }
