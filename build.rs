@@ -1,4 +1,5 @@
-//! Tells the linker of the firmware where `memory.x` is; host builds need nothing.
+//! Passes the folder of `memory.x` to the linker if the firmware is built; host builds need no
+//! linker script.
 
 use std::env::var;
 

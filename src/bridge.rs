@@ -1,4 +1,5 @@
-//! An H-bridge with two logic inputs and an enable input (DRV8873 and its kin, IN/IN mode).
+//! Driver of an H-bridge with two logic inputs and an enable input, such as the DRV8873 in IN/IN
+//! mode.
 //!
 //! | enable | IN1 | IN2 | outputs                                    |
 //! |--------|-----|-----|--------------------------------------------|
@@ -8,8 +9,9 @@
 //! | high   | 0   | 1   | OUT1 low, OUT2 high: the display is warmed |
 //! | high   | 1   | 1   | both at the same level                     |
 //!
-//! Off is the first two rows, never the last one: a module whose faces differ in temperature is a voltage
-//! source, and a short across it carries heat.
+//! "Off" means the first two rows and never the last one, which short-circuits the Peltier module:
+//! a module whose faces differ in temperature is a voltage source, and the current through a short
+//! circuit would carry heat.
 
 use core::convert::Infallible;
 
@@ -17,7 +19,7 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::pwm::SetDutyCycle;
 use thermal_device::drive::Duty;
 
-/// The bridge on two PWM channels of one period and a pin of the microcontroller, which cannot fail.
+/// A bridge on two PWM channels with the same period and an output pin of the microcontroller.
 #[derive(Debug)]
 pub struct Bridge<In1, In2, Enable> {
     in1: In1,
@@ -31,21 +33,22 @@ where
     In2: SetDutyCycle<Error = Infallible>,
     Enable: OutputPin<Error = Infallible>,
 {
-    /// Takes the inputs of the bridge and turns it off.
+    /// A driver of the bridge with these inputs, which it turns off.
     pub fn new(in1: In1, in2: In2, enable: Enable) -> Self {
         let mut bridge = Self { in1, in2, enable };
         bridge.off();
         bridge
     }
 
-    /// Both outputs high-impedance.
+    /// Makes both outputs high-impedance.
     pub fn off(&mut self) {
         let Ok(()) = self.enable.set_low();
         let Ok(()) = self.in1.set_duty_cycle_fully_off();
         let Ok(()) = self.in2.set_duty_cycle_fully_off();
     }
 
-    /// Drives with a mean voltage of `duty` of the supply.
+    /// Drives the module with a mean voltage of `duty` times the supply voltage; positive values
+    /// cool the display.
     pub fn drive(&mut self, duty: Duty) {
         let (in1, in2) = duty.half_bridge_on_times(self.in1.max_duty_cycle());
         let Ok(()) = self.in1.set_duty_cycle(in1);

@@ -1,33 +1,36 @@
-//! Lines on their way from the receiver to the task that answers them.
+//! The queue of received lines, between the interrupt that receives them and the task that answers
+//! them.
 //!
-//! Every line gets exactly one answer, in order. When more lines arrive than are waited for, those that do
-//! not fit are counted and the sender is told so; until it has been told of all of them, nothing is accepted,
-//! which keeps the answers in the order of the lines.
+//! Every line gets exactly one answer, in the order of arrival. A line that arrives while the queue
+//! is full is only counted, and answered by an error. Until all counted lines are answered, no
+//! other line enters the queue, because its answer would overtake theirs.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use heapless::spsc::{Consumer, Producer, Queue};
 use thermal_protocol::{Line, LineError};
 
-/// Lines that may wait.
+/// Lines that the queue holds.
 pub const DEPTH: usize = 4;
 
+/// A received line, or why it could not be received.
 type Received = Result<Line, LineError>;
 
-/// The store of both ends.
+/// The queue, which [`split`](Self::split) divides into its two ends.
+#[derive(Default)]
 pub struct Mailbox {
-    // One slot of the queue tells full from empty.
+    // The queue always keeps one slot free, to tell full from empty.
     lines: Queue<Received, { DEPTH + 1 }>,
     refused: AtomicU32,
 }
 
-/// Where lines come in.
+/// The end that the receiver puts lines into.
 pub struct Inlet<'a> {
     lines: Producer<'a, Received>,
     refused: &'a AtomicU32,
 }
 
-/// Where lines are taken out.
+/// The end that the answering task takes lines from.
 pub struct Outlet<'a> {
     lines: Consumer<'a, Received>,
     refused: &'a AtomicU32,
@@ -42,7 +45,7 @@ impl Mailbox {
         }
     }
 
-    /// Its two ends, one for each of two tasks.
+    /// The two ends of the queue, each for one task.
     pub fn split(&mut self) -> (Inlet<'_>, Outlet<'_>) {
         let (producer, consumer) = self.lines.split();
         let refused = &self.refused;
@@ -60,7 +63,8 @@ impl Mailbox {
 }
 
 impl Inlet<'_> {
-    /// Puts a line in, or counts it as refused.
+    /// Appends a line to the queue, or counts it as refused if the queue is full or refused lines
+    /// are not answered yet.
     pub fn put(&mut self, line: Received) {
         if self.refused.load(Ordering::Acquire) > 0 || self.lines.enqueue(line).is_err() {
             self.refused.fetch_add(1, Ordering::Release);
@@ -69,10 +73,11 @@ impl Inlet<'_> {
 }
 
 impl Outlet<'_> {
-    /// The next line to be answered; [`LineError::Refused`] for one that found no place.
+    /// Takes the next line to be answered; [`LineError::Refused`] stands for a line that did not
+    /// fit into the queue.
     pub fn take(&mut self) -> Option<Received> {
-        // Looked at before the queue: while it is not zero nothing is put in, so an empty queue then means
-        // that the refused lines are next.
+        // The count is read before the queue. While it is above zero no line enters the queue, so
+        // if the queue is empty then the refused lines are next.
         let refused = self.refused.load(Ordering::Acquire);
         if let Some(line) = self.lines.dequeue() {
             return Some(line);

@@ -1,4 +1,4 @@
-//! The device's side of the conversation with the host.
+//! The console: answers the host's lines and sends telemetry.
 
 use heapless::spsc::Consumer;
 use thermal_display::commissioning::StorageOrder;
@@ -7,55 +7,38 @@ use thermal_display::device::command::Addressed;
 use thermal_display::mailbox::Outlet;
 use thermal_display::protocol::{Desk, Error, Execute, Reply, telemetry_line};
 
-use super::{FINGERS, Outbox, restart};
+use super::{FINGERS, Outbox, restart_to_save};
 
-/// Answers lines and sends telemetry, as far as there is room to send.
+/// Takes received lines and telemetry from their queues and sends answers and telemetry lines to
+/// the host.
 pub struct Console {
-    lines: Outlet<'static>,
-    telemetry: Consumer<'static, Addressed<Telemetry>>,
-    outbox: Outbox,
-    desk: &'static mut Desk<FINGERS>,
-    /// What the device says first.
-    first: Option<Result<Reply, Error>>,
-    /// What is to be stored by starting anew.
-    order: Option<StorageOrder>,
+    pub lines: Outlet<'static>,
+    pub telemetry: Consumer<'static, Addressed<Telemetry>>,
+    pub outbox: Outbox,
+    pub desk: &'static mut Desk<FINGERS>,
+    /// Sent before anything else: the answer to the line that requested the restart.
+    pub first_answer: Option<Result<Reply, Error>>,
+    /// The settings are to be stored or erased by a restart, once all answers are sent.
+    pub storage_order: Option<StorageOrder>,
 }
 
 impl Console {
-    /// A console that answers `lines` by its `desk` and sends `telemetry` through `outbox`, after what is to be said `first`.
-    pub fn new(
-        lines: Outlet<'static>,
-        telemetry: Consumer<'static, Addressed<Telemetry>>,
-        outbox: Outbox,
-        desk: &'static mut Desk<FINGERS>,
-        first: Option<Result<Reply, Error>>,
-    ) -> Self {
-        Self {
-            lines,
-            telemetry,
-            outbox,
-            desk,
-            first,
-            order: None,
-        }
-    }
-
-    /// Does what waits: answers first, then telemetry; returns when nothing waits or the outbox is full.
+    /// Sends what waits, answers before telemetry, until nothing waits or the outbox is full.
     ///
-    /// What waits stays in its queue, so that answers are never lost and only telemetry that finds its
-    /// queue full is. `execute` is called with requests that are parsed, checked and computed, since
-    /// that takes longer than executing and needs no lock.
-    pub fn serve(&mut self, mut execute: impl Execute) {
+    /// What does not fit into the outbox stays in its queue. No answer is ever lost; telemetry is
+    /// lost only when its queue is full. A request is parsed, checked and computed here, which
+    /// takes long but needs no lock; `execute` then executes the resulting command under one.
+    pub fn serve(&mut self, mut execute: impl Execute<FINGERS>) {
         while self.outbox.has_room() {
-            if let Some(order) = self.order {
+            if let Some(order) = self.storage_order {
                 if self.outbox.is_empty() {
-                    restart(&self.desk.record(order));
+                    restart_to_save(&self.desk.record(order));
                 }
-                // The end of each line leads here again.
+                // The task is called again whenever a line has been sent.
                 return;
             }
-            if let Some(first) = self.first.take() {
-                match first {
+            if let Some(first_answer) = self.first_answer.take() {
+                match first_answer {
                     Ok(reply) => self.outbox.send(&reply),
                     Err(error) => self.outbox.send(&error),
                 }
@@ -67,7 +50,7 @@ impl Console {
                     Ok(Addressed {
                         said: Reply::Restart(order),
                         ..
-                    }) => self.order = Some(order),
+                    }) => self.storage_order = Some(order),
                     Ok(reply) => self.outbox.send(&reply),
                     Err(error) => {
                         defmt::warn!("line refused: {}", defmt::Display2Format(&error));

@@ -1,18 +1,21 @@
-//! What the firmware needs of a board, and the boards that have it.
+//! What the firmware needs from a board, and the boards that provide it.
 //!
-//! A board is a module with a `Board` that sets up its pins, clocks and peripherals and hands out what the
-//! tasks own, and with the handlers that leave the bridge off when the program cannot go on. What does not
-//! depend on the board lies beside it: the bridge driver, the queues between the tasks and the roll-call.
+//! A board is a module with a `Board` that sets up pins, clocks and peripherals and hands out what
+//! the tasks own. It also has the exception handlers that turn the bridges off when the program
+//! cannot continue. The control loop and the console do not depend on the board, nor do the parts
+//! in the library: bridge driver, queue of lines, task liveness.
 
 mod console;
+mod control_loop;
 
 #[cfg(feature = "nucleo-f446re")]
 mod nucleo_f446re;
 
 pub use console::Console;
+pub use control_loop::ControlLoop;
 #[cfg(feature = "nucleo-f446re")]
 pub use nucleo_f446re::{
-    Board, End, FINGERS, Memory, Outbox, PowerStage, Receiver, Record, Sampler, Transmitter,
-    Trigger, Watchdog, WindowWatchdog, at_start, first_cause, keep_dose, kept_dose, pac, restart,
+    Board, Completed, FINGERS, FaultRecord, Memory, Outbox, PowerStage, Receiver, SampleError,
+    SampleTrigger, Sampler, Transmitter, Watchdog, WindowWatchdog, pac, restart_to_save, save_dose,
     stack_is_overrun,
 };

@@ -1,4 +1,4 @@
-//! The bridge driver against the truth table of an IN/IN bridge.
+//! The bridge driver, checked against the truth table of a bridge in IN/IN mode.
 
 use std::cell::Cell;
 use std::convert::Infallible;
@@ -9,24 +9,25 @@ use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::pwm::{self, SetDutyCycle};
 use fixed::types::I1F15;
 
-/// Steps of the PWM on the NUCLEO-F446RE.
+/// Steps of a PWM period on the NUCLEO-F446RE.
 const STEPS: u16 = 1875;
 
-/// The wires between microcontroller and bridge.
+/// Levels of the lines between microcontroller and bridge: compare values of the inputs, in steps,
+/// and the enable line.
 #[derive(Default)]
-struct Wires {
+struct Lines {
     in1: Cell<u16>,
     in2: Cell<u16>,
     enable: Cell<bool>,
 }
 
-impl Wires {
+impl Lines {
     fn bridge(&self) -> Bridge<Compare<'_>, Compare<'_>, Enable<'_>> {
         Bridge::new(Compare(&self.in1), Compare(&self.in2), Enable(&self.enable))
     }
 
-    /// Mean of OUT1 - OUT2 in units of the supply; none if an output is high-impedance at any time of
-    /// the period. Both inputs rise together at the start of a period.
+    /// Mean of OUT1 - OUT2 over one period, in units of the supply voltage; `None` if the outputs
+    /// are high-impedance during any step. Both inputs rise together at the start of a period.
     fn mean_voltage(&self) -> Option<f64> {
         let mut sum = 0;
         for step in 0..STEPS {
@@ -83,12 +84,12 @@ impl OutputPin for Enable<'_> {
 
 #[test]
 fn mean_voltage_is_the_duty_to_half_a_step() {
-    let wires = Wires::default();
-    let mut bridge = wires.bridge();
+    let lines = Lines::default();
+    let mut bridge = lines.bridge();
     for bits in i16::MIN..=i16::MAX {
         let duty = Duty::saturating(I1F15::from_bits(bits));
         bridge.drive(duty);
-        let voltage = wires.mean_voltage().expect("driven throughout the period");
+        let voltage = lines.mean_voltage().expect("driven throughout the period");
         let error = voltage - duty.fraction().to_num::<f64>();
         assert!(
             error.abs() <= 0.5 / f64::from(STEPS),
@@ -98,14 +99,14 @@ fn mean_voltage_is_the_duty_to_half_a_step() {
 }
 
 #[test]
-fn off_is_high_impedance_by_either_input() {
-    let wires = Wires {
+fn off_makes_the_outputs_high_impedance_by_the_enable_line_and_by_the_inputs() {
+    let lines = Lines {
         in1: STEPS.into(),
         in2: STEPS.into(),
         enable: true.into(),
     };
-    let mut bridge = wires.bridge();
-    let is_off = || (wires.in1.get(), wires.in2.get(), wires.enable.get()) == (0, 0, false);
+    let mut bridge = lines.bridge();
+    let is_off = || (lines.in1.get(), lines.in2.get(), lines.enable.get()) == (0, 0, false);
     assert!(is_off(), "a new bridge is off");
     for bits in [i16::MAX, 0, i16::MIN] {
         bridge.drive(Duty::saturating(I1F15::from_bits(bits)));

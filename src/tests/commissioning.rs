@@ -5,8 +5,8 @@ use std::string::{String, ToString};
 use std::vec::Vec;
 
 use super::device::arm;
-use crate::device::Device;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
+use crate::device::{Device, Finger};
 use crate::protocol::Desk;
 use crate::settings::Settings;
 
@@ -39,7 +39,7 @@ impl<const FINGERS: usize> Bench<FINGERS> {
     fn host(&mut self, line: &str) -> String {
         let done = self
             .desk
-            .answer(line, |request| self.device.execute(request));
+            .answer(line, |finger, command| self.device.execute(finger, command));
         done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
 
@@ -53,7 +53,7 @@ impl<const FINGERS: usize> Bench<FINGERS> {
     /// 25 degrees everywhere, for so long that points can be taken; each finger's display sees another noise.
     fn watch(&mut self) {
         for tick in 0..600u16 {
-            for finger in 0..FINGERS {
+            for finger in Finger::all() {
                 let count = |counts: u16| counts * SCANS_PER_TICK as u16 + tick % 2;
                 let samples = Samples {
                     display: count(2000),
@@ -136,7 +136,7 @@ fn all_obey_an_order_and_the_first_answers_a_question() {
 fn refusals_name_the_first_finger_that_refuses_and_the_others_obey() {
     let mut five = Bench::<5>::new();
     five.watch();
-    arm(&mut five.device, 2);
+    arm(&mut five.device, Finger::new(2).expect("a finger"));
     assert_eq!(five.host("@2 material copper"), "@2 ok");
     assert_eq!(five.host("@2 start"), "@2 ok");
     let refused = "@2 err not while an object is presented: abort or arm first";

@@ -1,12 +1,11 @@
-//! Lines to five fingers, and what each of them makes of its own samples.
+//! Commands to five fingers, each of which is controlled by its own samples.
 
 use std::format;
 use std::string::{String, ToString};
 
-use crate::device::Device;
 use crate::device::drive::Drive;
-use crate::device::sense::SCANS_PER_TICK;
-use crate::device::sense::Samples;
+use crate::device::sense::{SCANS_PER_TICK, Samples};
+use crate::device::{Device, Finger};
 use crate::protocol::{Desk, telemetry_line};
 use crate::settings::Settings;
 
@@ -14,11 +13,12 @@ const FIVE: usize = 5;
 
 fn host<const FINGERS: usize>(device: &mut Device<FINGERS>, line: &str) -> String {
     let mut desk = Desk::<FINGERS>::new(Settings::default());
-    let done = desk.answer(line, |request| device.execute(request));
+    let done = desk.answer(line, |finger, command| device.execute(finger, command));
     done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
 }
 
-/// Samples without a fault: 26 °C, but for the skin at 34 °C; no force. `noise` keeps them from repeating.
+/// Samples of a device without a fault: 26 °C, the skin 34 °C, no force. `noise`, in counts, lets
+/// them differ from tick to tick, as a sensor's samples do that is not frozen.
 pub fn samples(noise: u16) -> Samples {
     let count = |counts: u16| counts * SCANS_PER_TICK as u16;
     Samples {
@@ -33,12 +33,14 @@ pub fn samples(noise: u16) -> Samples {
     }
 }
 
-/// Arms a finger, whose display answers to current, and whose comparator works.
-pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: usize) {
-    host(device, &format!("@{finger} arm"));
-    // 46 counts to the kelvin, 2.7 K/s per ampere.
+/// Arms a finger and simulates, during its self-test, a display that responds to the current and a
+/// comparator that works.
+pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: Finger<FINGERS>) {
+    let number = finger.number();
+    host(device, &format!("@{number} arm"));
+    // 46 counts per kelvin; 2.7 K/s per ampere.
     let (mut tick, mut cooler, mut current, mut bridge_fault) = (0, 0.0, 0, false);
-    while host(device, &format!("@{finger} state")).contains("state=self-test") {
+    while host(device, &format!("@{number} state")).contains("state=self-test") {
         tick += 1;
         let sound = samples(tick % 2);
         let moved = (cooler * 46.0 * 16.0) as i16;
@@ -63,6 +65,10 @@ pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: usize) {
     }
 }
 
+fn finger(index: usize) -> Finger<FIVE> {
+    Finger::new(index).expect("one of five fingers")
+}
+
 fn state_of(device: &mut Device<FIVE>, finger: usize) -> String {
     let answer = host(device, &format!("@{finger} state"));
     let words = answer
@@ -72,23 +78,28 @@ fn state_of(device: &mut Device<FIVE>, finger: usize) -> String {
 }
 
 #[test]
-fn a_line_is_for_one_finger_or_for_all() {
+fn a_command_is_executed_by_the_addressed_finger_or_by_all() {
     let mut device = Device::<FIVE>::new(&Settings::default());
     assert_eq!(host(&mut device, "@3 material abs"), "@3 ok");
-    arm(&mut device, 3);
+    arm(&mut device, finger(3));
     assert_eq!(host(&mut device, "@3 start"), "@3 ok");
     for finger in 0..FIVE {
         let expected = if finger == 3 { "preset" } else { "off" };
         assert_eq!(state_of(&mut device, finger), expected, "{finger}");
     }
-    // Four have no material yet, and the one that has started already is not the first to refuse.
+    // Finger 0 is the first to refuse: it is not armed. Finger 3 would refuse too, because it has
+    // started already.
     assert_eq!(host(&mut device, "start"), "@0 err start needs arm first");
-    arm(&mut device, 0);
+    arm(&mut device, finger(0));
     assert_eq!(
         host(&mut device, "start"),
         "@0 err start needs a material first"
     );
-    assert_eq!(state_of(&mut device, 3), "preset", "the others have obeyed");
+    assert_eq!(
+        state_of(&mut device, 3),
+        "preset",
+        "the other fingers have executed it"
+    );
     assert_eq!(host(&mut device, "abort"), "ok");
     for finger in 0..FIVE {
         let expected = if [0, 3].contains(&finger) {
@@ -100,13 +111,13 @@ fn a_line_is_for_one_finger_or_for_all() {
     }
 }
 
-/// A fault is its finger's own; the host's `abort` still reaches the fingers behind it.
+/// A finger that is tripped neither trips the others nor keeps the host's `abort` from them.
 #[test]
-fn fingers_share_no_fault() {
+fn a_fault_at_one_finger_does_not_affect_the_others() {
     let mut device = Device::<FIVE>::new(&Settings::default());
-    (0..FIVE).for_each(|finger| arm(&mut device, finger));
-    for finger in 0..FIVE {
-        let bridge_fault = finger == 1;
+    Finger::all().for_each(|finger| arm(&mut device, finger));
+    for finger in Finger::all() {
+        let bridge_fault = finger.index() == 1;
         let drive = device.step(
             finger,
             &Samples {
@@ -114,7 +125,7 @@ fn fingers_share_no_fault() {
                 ..samples(0)
             },
         );
-        assert_eq!(drive.drive == Drive::Off, finger == 1, "{finger}");
+        assert_eq!(drive.drive == Drive::Off, bridge_fault, "{finger:?}");
     }
     assert_eq!(state_of(&mut device, 1), "tripped");
     assert_eq!(
@@ -122,21 +133,21 @@ fn fingers_share_no_fault() {
         "@1 err tripped by bridge; clear it first"
     );
     assert_eq!(host(&mut device, "abort"), "ok");
-    for finger in [0, 2, 3, 4] {
+    for finger in [0, 2, 3, 4].map(finger) {
         assert_eq!(
             device.step(finger, &samples(1)).drive,
             Drive::Off,
-            "{finger}"
+            "{finger:?}"
         );
     }
-    device.step(1, &samples(1));
+    device.step(finger(1), &samples(1));
     assert_eq!(host(&mut device, "clear"), "ok");
     assert_eq!(state_of(&mut device, 1), "off");
     assert_eq!(host(&mut device, "clear"), "@0 err no fault to clear");
 }
 
 #[test]
-fn answers_and_telemetry_say_whose_they_are() {
+fn answers_and_telemetry_have_the_address_of_their_finger() {
     let mut device = Device::<FIVE>::new(&Settings::default());
     assert!(host(&mut device, "id").contains(" fingers=5 "));
     assert!(host(&mut device, "@4 id").starts_with("@4 ok thermal-display "));
@@ -157,30 +168,30 @@ fn answers_and_telemetry_say_whose_they_are() {
     }
     assert_eq!(host(&mut device, "@2"), "@2 err command missing");
     assert_eq!(host(&mut device, "@2 stream 1"), "@2 ok");
-    for finger in 0..FIVE {
+    for finger in Finger::all() {
         device.step(finger, &samples(0));
         let line = device
             .telemetry(finger)
             .map(|telemetry| telemetry_line(telemetry).to_string());
-        assert_eq!(line.is_some(), finger == 2, "{finger}");
+        assert_eq!(line.is_some(), finger.index() == 2, "{finger:?}");
         assert!(line.is_none_or(|line| line.starts_with("@2 T 1 off ")));
     }
 }
 
-/// A single finger is called nothing, but may be called 0.
+/// The host may still address it as finger 0.
 #[test]
-fn one_finger_has_no_name() {
+fn lines_of_a_single_finger_have_no_address() {
     let mut device = Device::<1>::new(&Settings::default());
     assert_eq!(host(&mut device, "stream 1"), "ok");
     assert!(host(&mut device, "id").contains(" fingers=1 "));
     assert!(host(&mut device, "state").starts_with("ok state=off"));
     assert_eq!(host(&mut device, "@0 arm"), "@0 ok");
-    arm(&mut device, 0);
+    arm(&mut device, Finger::FIRST);
     assert_eq!(
         host(&mut device, "@1 arm"),
         "err unknown finger '1' after @; known: 0 to 0"
     );
-    device.step(0, &samples(0));
-    let line = telemetry_line(device.telemetry(0).expect("telemetry")).to_string();
+    device.step(Finger::FIRST, &samples(0));
+    let line = telemetry_line(device.telemetry(Finger::FIRST).expect("telemetry")).to_string();
     assert!(line.contains(" armed "), "{line}");
 }

@@ -1,4 +1,4 @@
-//! Every line has one answer, in order, whatever the load.
+//! The mailbox yields one answer for each line, in the order of the lines, also when it overflows.
 
 use std::format;
 use std::vec::Vec;
@@ -6,7 +6,7 @@ use std::vec::Vec;
 use crate::mailbox::{self, DEPTH, Mailbox};
 use crate::protocol::{Line, LineError};
 
-/// Puts line number `n` in and notes it.
+/// Puts a numbered line into the mailbox and appends it to `sent`.
 fn put(inlet: &mut mailbox::Inlet<'_>, sent: &mut Vec<Line>) {
     let line = Line::try_from(format!("line {}", sent.len()).as_str()).expect("short");
     sent.push(line.clone());
@@ -14,7 +14,7 @@ fn put(inlet: &mut mailbox::Inlet<'_>, sent: &mut Vec<Line>) {
 }
 
 #[test]
-fn lines_that_fit_come_out_and_the_others_are_counted() {
+fn lines_beyond_the_depth_are_taken_as_refused() {
     let mut mailbox = Mailbox::new();
     let (mut inlet, mut outlet) = mailbox.split();
     let mut sent = Vec::new();
@@ -30,26 +30,26 @@ fn lines_that_fit_come_out_and_the_others_are_counted() {
     assert_eq!(outlet.take(), None);
 }
 
-/// All ways to mix 18 arrivals and answers.
+/// Tries every sequence of 18 steps, each of which puts or takes one line.
 #[test]
-fn answers_come_in_the_order_of_the_lines() {
-    for order in 0..1u32 << 18 {
+fn lines_are_taken_in_the_order_in_which_they_were_put() {
+    for sequence in 0..1u32 << 18 {
         let mut mailbox = Mailbox::new();
         let (mut inlet, mut outlet) = mailbox.split();
         let (mut sent, mut answered) = (Vec::new(), Vec::new());
         for step in 0..18 {
-            if order >> step & 1 == 1 {
+            if sequence >> step & 1 == 1 {
                 put(&mut inlet, &mut sent);
             } else {
                 answered.extend(outlet.take());
             }
         }
         answered.extend(std::iter::from_fn(|| outlet.take()));
-        assert_eq!(answered.len(), sent.len(), "order {order:#b}");
+        assert_eq!(answered.len(), sent.len(), "sequence {sequence:#b}");
         for (answer, line) in answered.iter().zip(&sent) {
             match answer {
-                Ok(text) => assert_eq!(text, line, "order {order:#b}"),
-                Err(error) => assert_eq!(*error, LineError::Refused, "order {order:#b}"),
+                Ok(text) => assert_eq!(text, line, "sequence {sequence:#b}"),
+                Err(error) => assert_eq!(*error, LineError::Refused, "sequence {sequence:#b}"),
             }
         }
     }

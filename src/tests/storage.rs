@@ -15,7 +15,7 @@ fn answer<const FINGERS: usize>(
     device: &mut Device<FINGERS>,
     line: &str,
 ) -> Reply {
-    desk.answer(line, |request| device.execute(request))
+    desk.answer(line, |finger, command| device.execute(finger, command))
         .expect(line)
         .said
 }
@@ -25,7 +25,7 @@ fn refusal<const FINGERS: usize>(
     device: &mut Device<FINGERS>,
     line: &str,
 ) -> std::string::String {
-    let refused = desk.answer(line, |request| device.execute(request));
+    let refused = desk.answer(line, |finger, command| device.execute(finger, command));
     refused.expect_err(line).to_string()
 }
 
@@ -53,7 +53,7 @@ fn settings_are_stored_while_all_bridges_are_off_only() {
         );
         answer(&mut desk, &mut device, "@3 abort");
     }
-    device.trip(Fault::SettingsCorrupt);
+    device.trip_all(Fault::SettingsCorrupt);
     assert_eq!(
         answer(&mut desk, &mut device, "save"),
         Reply::Restart(StorageOrder::Save)

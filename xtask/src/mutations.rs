@@ -243,18 +243,18 @@ const MUTATIONS: [Mutation; 33] = [
         &["mirror-stuck"],
     ),
     mutation(
-        "pace",
-        "src/board/nucleo_f446re/timekeeper.rs",
-        "if !self.pace.keeps(SYST::get_current()) {",
-        "if !self.pace.keeps(SYST::get_current()) && FINGERS > 9 {",
+        "tick rate",
+        "src/board/nucleo_f446re/clock_monitor.rs",
+        "if !self.tick_rate.tick_is_due(SYST::get_current()) {",
+        "if !self.tick_rate.tick_is_due(SYST::get_current()) && FINGERS > 9 {",
         &["register-bit"],
     )
     .of_image(),
     mutation(
         "clocks",
-        "src/board/nucleo_f446re/timekeeper.rs",
-        "if clocks() != self.clocks {",
-        "if clocks() != self.clocks && FINGERS > 9 {",
+        "src/board/nucleo_f446re/clock_monitor.rs",
+        "if clock_settings() != self.clock_settings {",
+        "if clock_settings() != self.clock_settings && FINGERS > 9 {",
         &["register-bit"],
     )
     .of_image(),
@@ -267,8 +267,8 @@ const MUTATIONS: [Mutation; 33] = [
     )
     .of_image(),
     mutation(
-        "roll-call",
-        "src/board/vigil.rs",
+        "task liveness",
+        "src/task_liveness.rs",
         "const ALL: u8 = Task::Tick as u8 | Task::Host as u8;",
         "const ALL: u8 = Task::Tick as u8;",
         &["register-bit"],
@@ -284,7 +284,7 @@ const MUTATIONS: [Mutation; 33] = [
     .of_image(),
     mutation(
         "window watchdog",
-        "src/board/nucleo_f446re/window.rs",
+        "src/board/nucleo_f446re/window_watchdog.rs",
         "w.wdga().enabled()",
         "w.wdga().disabled()",
         &["hung-core"],

@@ -1,9 +1,10 @@
-//! The flash that the settings are in: sectors 1 to 3, 16 KiB each (RM0390, chapter 3).
+//! Driver of the flash sectors that hold the settings: 1 to 3, of 16 KiB each (RM0390, chapter 3).
 //!
-//! Not the library's driver: it waits without end, programs byte by byte, and leaves error flags standing, after which
-//! nothing can be programmed any more.
+//! The driver of `stm32f4xx-hal` is not used: it waits without a time limit, programs single bytes,
+//! and does not clear error flags, which block all later programming.
 //!
-//! Code in the same flash stands still while it is busy. To be used at 16 MHz, before caches are switched on.
+//! The processor stalls while the flash is busy, because its code is in the same flash. The driver
+//! must be used at 16 MHz, before the caches are switched on.
 
 use core::fmt;
 use core::ptr;
@@ -13,31 +14,36 @@ use embedded_storage::nor_flash::{
 };
 use stm32f4xx_hal::pac::FLASH;
 
-/// First address of sector 1, and bytes of sectors 1 to 3.
+/// Address of sector 1.
 const BASE: usize = 0x0800_4000;
+/// Bytes of the three sectors together, of one sector, and of one word.
 const BYTES: usize = 3 * SECTOR;
 const SECTOR: usize = 16 * 1024;
 const WORD: usize = 4;
+/// Sequence that unlocks the control register (RM0390, 3.5.1).
 const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
-/// Error flags of FLASH_SR, cleared by writing 1: operation, protection, alignment, parallelism, sequence, read-out.
+/// Error flags of FLASH_SR, cleared by writing 1: operation, protection, alignment, parallelism,
+/// sequence, read-out.
 const ERRORS: u32 = 0x1f2;
+/// The error flag of write protection, WRPERR.
 const PROTECTION: u32 = 1 << 4;
-/// Looks at the busy flag that last longer than any operation: 500 ms (datasheet, sector of 16 KiB, 32 bits at a time), a
-/// look takes more than four cycles of 16 MHz.
-const PATIENCE: u32 = 2_000_000;
+/// Reads of the busy flag until an operation is given up. Each read takes more than four cycles of
+/// 16 MHz, all of them more than 500 ms, the longest operation: erasing a sector of 16 KiB with 32
+/// bits of parallelism (datasheet).
+const BUSY_READS: u32 = 2_000_000;
 
 /// Why the flash was not programmed or erased.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlashError {
-    /// The control register stays locked.
+    /// The control register has stayed locked.
     Locked,
-    /// It is busy for longer than it may be.
+    /// An operation has not ended in time.
     Busy,
-    /// The sector is protected by an option byte.
+    /// An option byte protects the sector from being written.
     Protected,
-    /// Flags of FLASH_SR that should not come up.
+    /// Other error flags of FLASH_SR.
     Flags(u32),
-    /// An address outside of the sectors, or no whole words or sectors.
+    /// The access reaches beyond the sectors or is not aligned to words or sectors.
     OutOfBounds,
 }
 
@@ -62,16 +68,16 @@ impl NorFlashError for FlashError {
     }
 }
 
-/// The three sectors.
+/// The three sectors, addressed from 0.
 pub struct SettingsFlash<'a>(&'a FLASH);
 
 impl<'a> SettingsFlash<'a> {
-    /// By these registers.
+    /// A driver on the registers of the flash interface.
     pub const fn new(registers: &'a FLASH) -> Self {
         Self(registers)
     }
 
-    /// Opens the control register for some work, and locks it afterwards.
+    /// Unlocks the control register, does `work`, and locks the register again.
     fn unlocked(
         &mut self,
         work: impl FnOnce(&mut Self) -> Result<(), FlashError>,
@@ -79,14 +85,15 @@ impl<'a> SettingsFlash<'a> {
         self.wait_until_idle()?;
         if self.0.cr().read().lock().bit_is_set() {
             for key in KEYS {
-                // SAFETY: the sequence of RM0390, 3.5.1.
+                // SAFETY: any value may be written; a wrong one locks the register until the next
+                // reset.
                 self.0.keyr().write(|w| unsafe { w.key().bits(key) });
             }
         }
         if self.0.cr().read().lock().bit_is_set() {
             return Err(FlashError::Locked);
         }
-        // What was before, a stray store for one, is no error of this work, and would keep it from being done (RM0390, 3.8.4).
+        // Flags of earlier errors, such as a stray store, would block programming (RM0390, 3.8.4).
         // SAFETY: flags are cleared by writing 1.
         self.0.sr().write(|w| unsafe { w.bits(ERRORS) });
         let done = work(self);
@@ -94,9 +101,9 @@ impl<'a> SettingsFlash<'a> {
         done
     }
 
-    /// Until no operation is under way; what the flags say then.
+    /// Waits until no operation is in progress and returns the error flags.
     fn wait_until_idle(&self) -> Result<u32, FlashError> {
-        for _ in 0..PATIENCE {
+        for _ in 0..BUSY_READS {
             let status = self.0.sr().read();
             if status.bsy().bit_is_clear() {
                 return Ok(status.bits() & ERRORS);
@@ -105,7 +112,10 @@ impl<'a> SettingsFlash<'a> {
         Err(FlashError::Busy)
     }
 
-    /// Until the operation is done, well.
+    /// Waits for the end of an operation.
+    ///
+    /// # Errors
+    /// The operation has failed or has not ended in time.
     fn wait(&self) -> Result<(), FlashError> {
         match self.wait_until_idle()? {
             0 => Ok(()),
@@ -115,10 +125,11 @@ impl<'a> SettingsFlash<'a> {
     }
 }
 
-/// Whether a range lies within the sectors, in whole parts of that many bytes.
-fn check(from: usize, bytes: usize, part: usize) -> Result<(), FlashError> {
+/// Checks that a range lies within the sectors and consists of whole, aligned units of `unit`
+/// bytes.
+fn check(from: usize, bytes: usize, unit: usize) -> Result<(), FlashError> {
     let within = from.checked_add(bytes).is_some_and(|end| end <= BYTES);
-    if within && from.is_multiple_of(part) && bytes.is_multiple_of(part) {
+    if within && from.is_multiple_of(unit) && bytes.is_multiple_of(unit) {
         Ok(())
     } else {
         Err(FlashError::OutOfBounds)
@@ -135,7 +146,8 @@ impl ReadNorFlash for SettingsFlash<'_> {
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
         check(offset as usize, bytes.len(), 1)?;
         for (byte, address) in bytes.iter_mut().zip(BASE + offset as usize..) {
-            // SAFETY: within the sectors, where nothing of the program lies. Volatile, as the flash changes.
+            // SAFETY: the address is within the sectors, which hold no part of the program. The
+            // read is volatile because the content of the flash changes.
             *byte = unsafe { ptr::read_volatile(address as *const u8) };
         }
         Ok(())
@@ -156,9 +168,10 @@ impl NorFlash for SettingsFlash<'_> {
         self.unlocked(|flash| {
             for number in 1 + from / SECTOR..1 + to / SECTOR {
                 flash.0.cr().write(|w| {
-                    // The reset value that a write starts from is locked.
+                    // `write` starts from the reset value of the register, in which the lock is
+                    // set.
                     w.lock().clear_bit().psize().psize32().ser().set_bit();
-                    // SAFETY: one of the sectors 1 to 3.
+                    // SAFETY: the number is that of one of the sectors 1 to 3.
                     unsafe { w.snb().bits(number as u8) };
                     w.strt().set_bit()
                 });
@@ -172,10 +185,11 @@ impl NorFlash for SettingsFlash<'_> {
         check(offset as usize, bytes.len(), WORD)?;
         let (words, _) = bytes.as_chunks::<WORD>();
         self.unlocked(|flash| {
-            // As above.
+            // `write` starts from the reset value, as in `erase`.
             (flash.0.cr()).write(|w| w.lock().clear_bit().psize().psize32().pg().set_bit());
             for (word, address) in words.iter().zip((BASE + offset as usize..).step_by(WORD)) {
-                // SAFETY: an aligned word within the sectors, where nothing of the program lies; PG is set.
+                // SAFETY: the address is that of an aligned word within the sectors, which hold no
+                // part of the program; PG is set.
                 unsafe { ptr::write_volatile(address as *mut u32, u32::from_le_bytes(*word)) };
                 cortex_m::asm::dsb();
                 flash.wait()?;

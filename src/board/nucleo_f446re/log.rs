@@ -1,15 +1,15 @@
-//! What goes into the log besides what the tasks say.
+//! Transport and time stamps of the debug log.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use defmt_rtt as _;
 
-/// Milliseconds since the start, counted by the tick.
+/// Milliseconds since sampling began.
 static UPTIME_MS: AtomicU32 = AtomicU32::new(0);
 
 defmt::timestamp!("{=u32:ms}", UPTIME_MS.load(Ordering::Relaxed));
 
-/// One more tick has passed.
+/// Advances the time stamp of the log by one tick, a millisecond.
 pub fn count_tick() {
     UPTIME_MS.fetch_add(1, Ordering::Relaxed);
 }

@@ -1,4 +1,5 @@
-//! NUCLEO-F446RE with DRV8873-class bridges and a sensor front end on its headers, for one finger or for five.
+//! NUCLEO-F446RE with DRV8873-class bridges and a sensor front end on its headers, for one finger
+//! or for five.
 //!
 //! | pin | header | signal                | notes                                     |
 //! |-----|--------|-----------------------|-------------------------------------------|
@@ -13,72 +14,74 @@
 //! | PA3 | -      | from the host         | USART2 by way of the on-board probe       |
 //! | PH0 | -      | 8 MHz from the probe  | HSE, bypassed oscillator                  |
 //!
-//! The bridges' pins depend on the number of fingers, a constant of the build: `one`, or `five` with the feature
-//! `five-fingers`.
+//! The pins of the bridges depend on the number of fingers, which is fixed when the firmware is
+//! built: see `one_finger`, or `five_fingers` for the feature `five-fingers`.
 //!
-//! `bridge enable` acts on DISABLE of the DRV8873, through a transistor that inverts it (DISABLE is pulled up).
-//! nSLEEP stays high: a bridge that wakes up may report a fault until its charge pump runs.
+//! The line `bridge enable` drives the input DISABLE of the DRV8873, which has a pull-up, through
+//! an inverting transistor. nSLEEP stays high, because a bridge that wakes up may report a fault
+//! until its charge pump runs.
 
-mod dose;
-mod fatal;
+mod clock_monitor;
+mod fatal_errors;
+mod fault_record;
 #[cfg(feature = "five-fingers")]
-mod five;
+mod five_fingers;
 mod flash;
 mod log;
 #[cfg(not(feature = "five-fingers"))]
-mod one;
-mod record;
+mod one_finger;
 mod reset;
 mod sampler;
+mod saved_dose;
 mod serial;
+mod settings_storage;
 mod stack;
-mod store;
-mod timekeeper;
 mod watchdog;
-mod window;
+mod window_watchdog;
 
 use cortex_m::peripheral::SYST;
-use heapless::spsc::{Producer, Queue};
+use heapless::spsc::Queue;
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use thermal_display::device::Telemetry;
 use thermal_display::device::command::Addressed;
 use thermal_display::device::safety::{Fault, TripCause};
+use thermal_display::device::{Device, Finger, Telemetry};
 use thermal_display::mailbox::Mailbox;
 use thermal_display::protocol::{Desk, Error, Reason, Reply};
 use thermal_display::settings::Settings;
 
-pub use dose::{keep as keep_dose, kept as kept_dose};
+pub use fault_record::FaultRecord;
 #[cfg(feature = "five-fingers")]
-use five as wiring;
+use five_fingers as wiring;
 #[cfg(not(feature = "five-fingers"))]
-use one as wiring;
-pub use record::Record;
-pub use sampler::{Sampler, Trigger};
-pub use serial::{End, Outbox, Receiver, Transmitter};
-pub use stack::is_overrun as stack_is_overrun;
+use one_finger as wiring;
+pub use sampler::{SampleError, SampleTrigger, Sampler};
+pub use saved_dose::save_dose;
+pub use serial::{Completed, Outbox, Receiver, Transmitter};
+pub use settings_storage::restart_to_save;
+pub use stack::stack_is_overrun;
 pub use stm32f4xx_hal::pac;
-pub use store::{Found, at_start, restart};
 pub use watchdog::Watchdog;
-pub use window::WindowWatchdog;
+pub use window_watchdog::WindowWatchdog;
 pub use wiring::{FINGERS, PowerStage};
 
-use super::console::Console;
+use super::{Console, ControlLoop};
+use clock_monitor::ClockMonitor;
 use reset::Reset;
-use timekeeper::Timekeeper;
+use settings_storage::StartupStorage;
 
-/// Telemetry that may wait for the host task: what it can be late, in ticks, before a line is left out.
+/// Telemetry lines that can wait for the host task: those of eight ticks.
 const TELEMETRY_DEPTH: usize = 8 * FINGERS;
 
-/// What the hardware and the tasks share by reference; it must live as long as the program.
+/// Memory that hardware and tasks share by reference, and that must live as long as the program.
 pub struct Memory {
-    scans: [sampler::Block; sampler::BLOCKS],
-    frames: [serial::Bytes; serial::FRAMES],
-    links: serial::Links,
+    scans: [sampler::ScanBlock; sampler::BLOCKS],
+    frames: [serial::FrameBuffer; serial::FRAMES],
+    frame_queues: serial::FrameQueues,
     mailbox: Mailbox,
     telemetry: Queue<Addressed<Telemetry>, { TELEMETRY_DEPTH + 1 }>,
-    // Here, as moving it once samples are taken makes the first tick late.
+    // Created in place, because moving it while sampling runs would delay the first tick.
     desk: Option<Desk<FINGERS>>,
 }
 
@@ -87,8 +90,8 @@ impl Memory {
     pub const fn new() -> Self {
         Self {
             scans: [sampler::EMPTY; sampler::BLOCKS],
-            frames: [const { serial::Bytes::new() }; serial::FRAMES],
-            links: serial::Links::new(),
+            frames: [const { serial::FrameBuffer::new() }; serial::FRAMES],
+            frame_queues: serial::FrameQueues::new(),
             mailbox: Mailbox::new(),
             telemetry: Queue::new(),
             desk: None,
@@ -96,152 +99,166 @@ impl Memory {
     }
 }
 
-/// Why the device has tripped before it started; once, and first of all: what follows takes long, and may end in a reset.
-pub fn first_cause(rcc: &pac::RCC) -> Option<TripCause> {
-    let overrun = stack::is_overrun();
-    stack::arm();
-    let reset = Reset::of(rcc);
+/// Determines the fault by which the device is tripped from the start, and stores it before
+/// anything else is done: the rest of the start-up takes long, and another reset may end it.
+fn cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
+    let stack_was_overrun = stack::stack_is_overrun();
+    stack::init_guard();
+    let reset = Reset::read(rcc);
     if reset == Reset::PowerOn {
-        dose::forget();
+        saved_dose::clear_doses();
     }
-    let mut cause = record::of_reset(reset, store::is_planned());
-    // The end of a program, without a tick that has seen why, is what comes of an overrun. Not so of the first start of
-    // another program, whose stack may lie here.
-    let unseen = |cause: TripCause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
-    if overrun && cause.is_some_and(unseen) {
-        record::forget();
-        record::keep(&TripCause::alone(Fault::Stack));
-        cause = record::kept();
+    let mut cause = fault_record::cause_at_start(reset, settings_storage::save_is_pending());
+    // A fault that no tick has recorded is a consequence of the overrun. The first start of another
+    // version of the firmware is excepted, because its predecessor may have used the words of the
+    // guard.
+    let is_consequence = |cause: TripCause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
+    if stack_was_overrun && cause.is_some_and(is_consequence) {
+        fault_record::erase();
+        fault_record::store_if_empty(&TripCause::alone(Fault::Stack));
+        cause = fault_record::stored();
     }
-    // Only now that the cause is kept.
+    // The flags are cleared last: if a reset intervenes, the next start still finds them.
     Reset::clear(rcc);
     defmt::info!("start after reset: {}", reset);
     cause
 }
 
-/// The board, set up and ready to take samples; the parts go to the tasks that own them.
+/// Creates the device with its stored settings and doses, tripped by `cause` if there is one.
+fn restore_device(
+    place: &'static mut Option<Device<FINGERS>>,
+    cause: Option<TripCause>,
+    storage: &StartupStorage,
+) -> &'static mut Device<FINGERS> {
+    let device = place.insert(Device::with_cause(cause, &Settings::default()));
+    match &storage.settings {
+        Ok(Some(settings)) => device.restore_settings(settings),
+        Ok(None) => {}
+        Err(_) => device.trip_all(Fault::SettingsCorrupt),
+    }
+    for finger in Finger::all() {
+        device.restore_dose(finger, saved_dose::saved_dose(finger));
+    }
+    device
+}
+
+/// The parts of the board, set up and ready to take samples, which are moved to the tasks that own
+/// them.
 pub struct Board {
-    /// Scans of the sensors.
-    pub sampler: Sampler,
-    /// What starts them.
-    pub trigger: Trigger,
-    /// Each finger's bridge and its fault line.
-    pub stages: [PowerStage; FINGERS],
-    /// Bytes of the host.
+    /// Stations of all fingers.
+    pub device: &'static mut Device<FINGERS>,
+    /// Sampling, bridges and window watchdog, which is already running.
+    pub control_loop: ControlLoop,
+    /// Starts the sampling.
+    pub trigger: SampleTrigger,
+    /// Receives bytes from the host.
     pub receiver: Receiver,
-    /// Lines to the host, at the hardware's end.
+    /// Sends lines to the host.
     pub transmitter: Transmitter,
-    /// Lines to the host, at the other end.
+    /// Answers the host.
     pub console: Console,
-    /// Telemetry on its way to the console.
-    pub telemetry: Producer<'static, Addressed<Telemetry>>,
-    /// The probe's clock runs; without it nothing may be rendered.
-    pub has_clock: bool,
     /// The independent watchdog, already running.
     pub watchdog: Watchdog,
-    /// The window watchdog, already running.
-    pub window_watchdog: WindowWatchdog,
 }
 
 impl Board {
-    /// Sets everything up, with what the start has [found](at_start); the bridge is off before anything else happens and
-    /// stays off.
-    pub fn new(
-        counter: SYST,
-        device: pac::Peripherals,
+    /// Starts the device in the memory that is passed: stores settings if the restart was requested
+    /// for that, and sets everything up with the bridges off.
+    pub fn start(
+        systick: SYST,
+        peripherals: pac::Peripherals,
         memory: &'static mut Memory,
-        found: &Found,
+        device: &'static mut Option<Device<FINGERS>>,
     ) -> Self {
-        // First, on its own oscillator.
-        let watchdog = Watchdog::start(device.IWDG);
-        let has_clock = probe_clock_runs(&device.RCC);
-        let mut rcc = device.RCC.freeze(clocks(has_clock));
+        let cause = cause_at_start(&peripherals.RCC);
+        // Before anything is set up that the flash would delay.
+        let storage = settings_storage::save_pending_and_load(&peripherals.FLASH);
+        // This takes 0.2 s at 16 MHz, so it comes before the watchdogs and the sampling start.
+        let device = restore_device(device, cause, &storage);
+        // A fault of the settings is not stored, because every start finds it again until other
+        // settings are stored.
+        let fault_record = FaultRecord::new(device.earliest_cause().copied());
+
+        // First, because it has its own oscillator.
+        let watchdog = Watchdog::start(peripherals.IWDG);
+        let has_clock = start_probe_clock(&peripherals.RCC);
+        let mut rcc = peripherals.RCC.freeze(clock_config(has_clock));
         if has_clock {
-            watch_clock(&mut rcc);
+            enable_clock_security(&mut rcc);
         }
 
-        let gpioa = device.GPIOA.split(&mut rcc);
-        let gpiob = device.GPIOB.split(&mut rcc);
-        let gpioc = device.GPIOC.split(&mut rcc);
+        let gpioa = peripherals.GPIOA.split(&mut rcc);
+        let gpiob = peripherals.GPIOB.split(&mut rcc);
+        let gpioc = peripherals.GPIOC.split(&mut rcc);
 
         #[cfg(not(feature = "five-fingers"))]
         let (stages, multiplexer) = {
             let stage = PowerStage::new(
-                device.TIM1,
+                peripherals.TIM1,
                 (gpioa.pa8, gpioa.pa9),
-                gpiob.pb10.into_push_pull_output(),
+                gpiob.pb10,
                 gpioa.pa6,
-                gpioc.pc3.into_push_pull_output(),
-                gpioa.pa5.into_push_pull_output(),
+                gpioc.pc3,
+                gpioa.pa5,
                 &mut rcc,
             );
             ([stage], wiring::Multiplexer)
         };
         #[cfg(feature = "five-fingers")]
         let (stages, multiplexer) = {
-            let wires = wiring::Wires {
-                timers: (device.TIM1, device.TIM8, device.TIM10, device.TIM11),
+            let pins = wiring::BridgePins {
+                timers: (
+                    peripherals.TIM1,
+                    peripherals.TIM8,
+                    peripherals.TIM10,
+                    peripherals.TIM11,
+                ),
                 first: (gpioa.pa8, gpioa.pa9),
                 second: (gpioa.pa10, gpioa.pa11),
                 third: (gpioc.pc6, gpioc.pc7),
                 fourth: (gpioc.pc8, gpioc.pc9),
                 fifth: (gpiob.pb8, gpiob.pb9),
                 lines: [
-                    wiring::Lines {
-                        enable: gpiob.pb10.into_push_pull_output().erase(),
-                        fault: gpioa.pa6.into_pull_down_input().erase(),
-                        test: gpioc.pc3.into_push_pull_output().erase(),
-                    },
-                    wiring::Lines {
-                        enable: gpiob.pb13.into_push_pull_output().erase(),
-                        fault: gpioa.pa7.into_pull_down_input().erase(),
-                        test: gpioc.pc4.into_push_pull_output().erase(),
-                    },
-                    wiring::Lines {
-                        enable: gpiob.pb14.into_push_pull_output().erase(),
-                        fault: gpioa.pa12.into_pull_down_input().erase(),
-                        test: gpioc.pc5.into_push_pull_output().erase(),
-                    },
-                    wiring::Lines {
-                        enable: gpiob.pb15.into_push_pull_output().erase(),
-                        fault: gpiob.pb5.into_pull_down_input().erase(),
-                        test: gpiob.pb6.into_push_pull_output().erase(),
-                    },
-                    wiring::Lines {
-                        enable: gpiob.pb1.into_push_pull_output().erase(),
-                        fault: gpiob.pb12.into_pull_down_input().erase(),
-                        test: gpiob.pb7.into_push_pull_output().erase(),
-                    },
+                    wiring::ControlLines::new(gpiob.pb10, gpioa.pa6, gpioc.pc3),
+                    wiring::ControlLines::new(gpiob.pb13, gpioa.pa7, gpioc.pc4),
+                    wiring::ControlLines::new(gpiob.pb14, gpioa.pa12, gpioc.pc5),
+                    wiring::ControlLines::new(gpiob.pb15, gpiob.pb5, gpiob.pb6),
+                    wiring::ControlLines::new(gpiob.pb1, gpiob.pb12, gpiob.pb7),
                 ],
             };
             let multiplexer = wiring::Multiplexer::new(gpioc.pc10, gpioc.pc11, gpioc.pc12);
-            (wires.into_stages(&mut rcc), multiplexer)
+            (pins.into_stages(&mut rcc), multiplexer)
         };
 
         let (inlet, outlet) = memory.mailbox.split();
-        let (telemetry, telemetry_out) = memory.telemetry.split();
-        let dma1 = StreamsTuple::new(device.DMA1, &mut rcc);
+        let (telemetry_in, telemetry_out) = memory.telemetry.split();
+        let dma1 = StreamsTuple::new(peripherals.DMA1, &mut rcc);
         let (receiver, transmitter, outbox) = serial::start(
-            device.USART2,
+            peripherals.USART2,
             (gpioa.pa2, gpioa.pa3),
             dma1.6,
             &mut memory.frames,
-            &mut memory.links,
+            &mut memory.frame_queues,
             inlet,
             &mut rcc,
         );
-        let desk = memory.desk.insert(match &found.kept {
-            Ok(Some(kept)) => Desk::restored(kept),
+        let desk = match &storage.settings {
+            Ok(Some(settings)) => Desk::restored(settings),
             Ok(None) | Err(_) => Desk::new(Settings::default()),
-        });
-        // The answer to the line that the device was started anew by.
-        let first = found.stored.as_ref().map(|stored| match stored {
-            Ok(()) => Ok(Reply::DONE),
-            Err(error) => Err(Error::NotStored(Reason::of(error))),
-        });
-        let console = Console::new(outlet, telemetry_out, outbox, desk, first);
+        };
+        let console = Console {
+            lines: outlet,
+            telemetry: telemetry_out,
+            outbox,
+            desk: memory.desk.insert(desk),
+            first_answer: storage.save_result.map(|result| match result {
+                Ok(()) => Ok(Reply::DONE),
+                Err(error) => Err(Error::NotStored(Reason::of(&error))),
+            }),
+            storage_order: None,
+        };
 
-        let inputs = sampler::Inputs {
+        let pins = sampler::SensorPins {
             display: gpioa.pa0.into_analog(),
             display_check: gpioa.pa1.into_analog(),
             sink: gpioa.pa4.into_analog(),
@@ -250,11 +267,11 @@ impl Board {
             force: gpioc.pc0.into_analog(),
             current: gpioc.pc2.into_analog(),
         };
-        let dma2 = StreamsTuple::new(device.DMA2, &mut rcc);
+        let dma2 = StreamsTuple::new(peripherals.DMA2, &mut rcc);
         let (sampler, trigger) = Sampler::new(
-            sampler::Converter::new(device.ADC1, inputs, &mut rcc),
-            device.TIM2,
-            Timekeeper::new(counter, rcc.clocks.hclk().raw()),
+            sampler::Converter::new(peripherals.ADC1, pins, &mut rcc),
+            peripherals.TIM2,
+            ClockMonitor::new(systick, rcc.clocks.hclk().raw()),
             dma2.0,
             multiplexer,
             &mut memory.scans,
@@ -262,31 +279,39 @@ impl Board {
         );
 
         Self {
-            has_clock,
-            sampler,
+            device,
+            control_loop: ControlLoop {
+                sampler,
+                stages,
+                fault_record,
+                telemetry: telemetry_in,
+                window_watchdog: WindowWatchdog::start(peripherals.WWDG, &mut rcc),
+                has_clock,
+            },
             trigger,
-            stages,
             receiver,
             transmitter,
             console,
-            telemetry,
             watchdog,
-            window_watchdog: WindowWatchdog::start(device.WWDG, &mut rcc),
         }
     }
 }
 
-/// Starts the probe's 8 MHz; whether they come within at least 20 ms of 16 MHz.
-fn probe_clock_runs(rcc: &pac::RCC) -> bool {
+/// Starts the 8 MHz clock that the debug probe provides, and returns whether it has become stable.
+/// Waits for at least 20 ms, at a core clock of 16 MHz.
+fn start_probe_clock(rcc: &pac::RCC) -> bool {
     rcc.cr().modify(|_, w| w.hsebyp().bypassed().hseon().on());
     (0..1 << 16).any(|_| rcc.cr().read().hserdy().is_ready())
 }
 
-/// 180 MHz, the most this part can do, from the crystal of the on-board probe: the internal oscillator's
-/// 1 % would be an error of time in every rendered contact. Without it the internal one is good enough to tell the host why
-/// nothing is rendered. 45 MHz is 45 times the baud rate and 90 MHz (both timer clocks are multiples of it) a multiple of
-/// the scan and PWM rates: all are exact.
-fn clocks(has_clock: bool) -> Config {
+/// 180 MHz, the maximum of this microcontroller, derived from the crystal of the debug probe. The
+/// internal oscillator has a tolerance of 1 %, which would be an error of time in every rendered
+/// contact; it is used only if the probe's clock is missing, so that the host can be told why
+/// nothing is rendered.
+///
+/// All rates are exact: 45 MHz is a multiple of the baud rate, and 90 MHz, of which both timer
+/// clocks are multiples, is a multiple of the scan and PWM rates.
+fn clock_config(has_clock: bool) -> Config {
     let source = if has_clock {
         Config::hse(8.MHz()).bypass_hse_oscillator()
     } else {
@@ -299,8 +324,9 @@ fn clocks(has_clock: bool) -> Config {
         .pclk2(90.MHz())
 }
 
-/// Lets the clock security system watch the probe's clock. When it fails, TIM1's outputs are cut by its
-/// break input, without a program, and the non-maskable interrupt follows (RM0390, 6.2.7).
-fn watch_clock(rcc: &mut Rcc) {
+/// Enables the clock security system. When the probe's clock fails, the hardware disables the
+/// outputs of TIM1 by its break input, without any code, and raises the non-maskable interrupt
+/// (RM0390, 6.2.7).
+fn enable_clock_security(rcc: &mut Rcc) {
     rcc.cr().modify(|_, w| w.csson().on());
 }

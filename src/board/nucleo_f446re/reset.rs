@@ -1,32 +1,34 @@
-//! Why the processor started.
+//! The cause of the last reset, from the flags of the reset and clock controller.
 
 use stm32f4xx_hal::pac::RCC;
 use thermal_display::device::safety::Fault;
 
-/// What reset it (RM0390, 6.3.21).
+/// Cause of a reset (RM0390, 6.3.21).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
 pub enum Reset {
-    /// The supply came up; the RAM is noise.
+    /// The supply was switched on; the content of the RAM is arbitrary.
     PowerOn,
-    /// The tick did not come.
+    /// The window watchdog: the control tick did not run.
     WindowWatchdog,
-    /// A task did not check in, or the program was at an end.
+    /// The independent watchdog: a task did not check in, or a handler of a fatal error waited for
+    /// the reset.
     Watchdog,
-    /// A program asked for it.
+    /// The program requested it.
     Software,
-    /// The supply was low, the RAM has kept what it held.
+    /// The supply voltage was too low; the RAM has kept its content.
     BrownOut,
-    /// The reset pin was pulled: the button, or the probe.
+    /// The reset pin was pulled low, by the button or by the debug probe.
     Pin,
-    /// A low-power mode that no program of this device enters.
+    /// A reset on entry to a low-power mode, which the firmware never requests.
     Other,
 }
 
 impl Reset {
-    /// By the flags since they were last [cleared](Self::clear).
-    pub fn of(rcc: &RCC) -> Self {
+    /// Reads the reset flags, which accumulate until they are [cleared](Self::clear).
+    pub fn read(rcc: &RCC) -> Self {
         let flags = rcc.csr().read();
-        // Power-on clears those of before, and sets that of the brown-out too; every reset pulls the pin: most special first.
+        // The most specific flag is tested first: power-on sets the flag of the brown-out too, and
+        // every reset sets that of the pin.
         if flags.porrstf().bit_is_set() {
             Self::PowerOn
         } else if flags.wwdgrstf().bit_is_set() {
@@ -44,17 +46,18 @@ impl Reset {
         }
     }
 
-    /// Clears the flags; they gather until then.
+    /// Clears the reset flags.
     pub fn clear(rcc: &RCC) {
         rcc.csr().modify(|_, w| w.rmvf().clear());
     }
 
-    /// The fault that it is; none where somebody wanted it or the supply did it: the device is then off, as after power-up.
-    pub const fn fault(self, is_planned: bool) -> Option<Fault> {
+    /// The fault that this reset indicates; `None` if it was requested by the user, by the probe or
+    /// by the host, or caused by the supply.
+    pub const fn fault(self, restart_is_planned: bool) -> Option<Fault> {
         match self {
             Self::WindowWatchdog => Some(Fault::TickLost),
             Self::Watchdog => Some(Fault::Watchdog),
-            Self::Software if is_planned => None,
+            Self::Software if restart_is_planned => None,
             Self::Software | Self::Other => Some(Fault::UnaskedReset),
             Self::PowerOn | Self::BrownOut | Self::Pin => None,
         }

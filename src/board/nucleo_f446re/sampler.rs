@@ -1,11 +1,12 @@
-//! Scans of the sensors: TIM2 starts them, ADC1 converts, DMA2 stores, the tick takes a block of them.
+//! Sampling of the sensors: TIM2 starts each scan, ADC1 converts its channels, a stream of DMA2
+//! stores the results, and the tick takes a block of scans.
 //!
-//! No program takes part between the timer and the memory, so sampling has no jitter. The stream writes
-//! to two blocks in turn without a gap; the tick exchanges the one that is full for a third one. Nothing is
-//! lost if it does so within the millisecond in which the other block fills up, and a block always
-//! begins with the first channel of a scan.
+//! No code runs between timer and memory, so sampling has no jitter. The stream fills two blocks
+//! alternately, without a gap; the tick exchanges the full one for a third. No sample is lost if it
+//! does so while the other block is being filled, which takes a millisecond divided by the number
+//! of fingers. A block always begins with the first channel of a scan.
 //!
-//! A block is of one finger; several fingers take turns, block by block.
+//! Each block belongs to one finger. Several fingers are sampled in turn, block by block.
 
 use stm32f4xx_hal::ReadFlags;
 use stm32f4xx_hal::dma::config::{DmaConfig, Priority};
@@ -16,28 +17,29 @@ use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, DMA2, TIM2, tim2};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::timer::{CounterHz, Timer};
-use thermal_display::device::TICK_HZ;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Scan};
+use thermal_display::device::{Finger, TICK_HZ};
 
+use super::clock_monitor::ClockMonitor;
 use super::log;
-use super::timekeeper::Timekeeper;
 use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME};
 
-/// Scans of one block: those of a finger's tick, after those that may show the finger before.
+/// Scans of one block: those that are dropped while the multiplexers settle, and those of a
+/// finger's tick.
 const SCANS_PER_BLOCK: usize = Multiplexer::SETTLING_SCANS + SCANS_PER_TICK;
 
-/// The scans of one finger's turn.
-pub type Block = [Scan; SCANS_PER_BLOCK];
+/// Consecutive scans of one finger.
+pub type ScanBlock = [Scan; SCANS_PER_BLOCK];
 
-/// Blocks in circulation: one is filled, one is filled next, one is read.
+/// Number of blocks: one is being filled, one is filled next, one is read by the tick.
 pub const BLOCKS: usize = 3;
 
-/// A block before its first scan.
-pub const EMPTY: Block = [[0; CHANNELS]; SCANS_PER_BLOCK];
+/// A block that has not been filled yet.
+pub const EMPTY: ScanBlock = [[0; CHANNELS]; SCANS_PER_BLOCK];
 
-/// The pins of the sensors, named as in `Samples`.
-pub struct Inputs {
+/// The analog input pins, with the names of the fields of `Samples`.
+pub struct SensorPins {
     pub display: PA0<Analog>,
     pub display_check: PA1<Analog>,
     pub sink: PA4<Analog>,
@@ -47,51 +49,61 @@ pub struct Inputs {
     pub current: PC2<Analog>,
 }
 
-/// Why there is no block.
+/// Why there is no valid block of samples.
 #[derive(Clone, Copy, Debug, defmt::Format)]
 pub enum SampleError {
-    /// The stream could not write.
+    /// The DMA stream has reported an error.
     Bus,
-    /// A block was overwritten before it was taken: the last tick took longer than its period.
+    /// A block was overwritten before the tick took it: the last tick took longer than its period.
     Late,
-    /// The multiplexers were switched too late for the next block.
+    /// The multiplexers were switched after the first scan of the next block.
     LateSwitch,
-    /// A block has not come when it was due: the timer, or what is measured against it, has another rate.
-    TickRateMonitor,
-    /// The clocks are not those that were set.
+    /// A block was complete too early or too late: TIM2 or SysTick runs at a wrong rate.
+    TickRate,
+    /// The clock settings have changed since the start.
     Clocks,
+    /// The converter has lost a conversion, because the stream did not fetch the one before in
+    /// time.
+    Overrun,
 }
 
 impl SampleError {
-    /// What it is to the guard.
+    /// The fault that this error trips.
     pub const fn fault(self) -> Fault {
         match self {
-            Self::Bus | Self::Late | Self::LateSwitch | Self::TickRateMonitor => Fault::Sampling,
+            Self::Bus | Self::Late | Self::LateSwitch | Self::TickRate | Self::Overrun => {
+                Fault::Sampling
+            }
             Self::Clocks => Fault::Clock,
         }
     }
 }
 
-/// The samples of the sensors, tick by tick.
+/// Collects the samples of the fingers, one block a tick and finger.
 pub struct Sampler {
-    transfer: Transfer<Stream0<DMA2>, 0, Converter, PeripheralToMemory, &'static mut Block>,
-    /// The block that the stream is given next; until then it may be read.
-    spare: Option<&'static mut Block>,
-    /// Which of the stream's two blocks was taken last.
+    transfer: Transfer<Stream0<DMA2>, 0, Converter, PeripheralToMemory, &'static mut ScanBlock>,
+    /// The block that was taken last. It may be read until the next one is taken, and is then given
+    /// to the stream.
+    spare: Option<&'static mut ScanBlock>,
+    /// The buffer of the stream that was taken last, of two.
     last: CurrentBuffer,
     multiplexer: Multiplexer,
-    /// The finger whose block is being filled.
-    finger: usize,
-    timekeeper: Timekeeper,
+    /// The finger that is being sampled.
+    finger: Finger<FINGERS>,
+    clock_monitor: ClockMonitor,
 }
 
-/// What starts the scans, once somebody waits for them: the multiplexers must be switched 11 us after a finger's last.
-pub struct Trigger(CounterHz<TIM2>);
+/// The timer that triggers the scans.
+///
+/// It is started last, once interrupts are enabled: the tick must switch the multiplexers within
+/// 11 us of the last scan of a finger.
+pub struct SampleTrigger(CounterHz<TIM2>);
 
-impl Trigger {
-    /// Begins.
+impl SampleTrigger {
+    /// Starts the timer.
     pub fn start(&mut self) {
-        // Cannot fail: 90 MHz over 16 or 90 kHz fits the counter. Both divide it exactly.
+        // This cannot fail, because the counter has 32 bits. 90 MHz is an exact multiple of both
+        // scan rates, 16 and 90 kHz.
         let _ = self
             .0
             .start(((SCANS_PER_BLOCK * FINGERS) as u32 * TICK_HZ).Hz());
@@ -99,16 +111,16 @@ impl Trigger {
 }
 
 impl Sampler {
-    /// Gets ready to sample, finger 0 first: a block of each finger a tick.
+    /// Sets up the stream and the timer; sampling begins with finger 0 when the trigger is started.
     pub fn new(
         converter: Converter,
         timer: TIM2,
-        timekeeper: Timekeeper,
+        clock_monitor: ClockMonitor,
         stream: Stream0<DMA2>,
         multiplexer: Multiplexer,
-        blocks: &'static mut [Block; BLOCKS],
+        blocks: &'static mut [ScanBlock; BLOCKS],
         rcc: &mut Rcc,
-    ) -> (Self, Trigger) {
+    ) -> (Self, SampleTrigger) {
         let [first, second, spare] = blocks;
         let config = DmaConfig::default()
             .priority(Priority::VeryHigh)
@@ -127,21 +139,23 @@ impl Sampler {
             spare: Some(spare),
             last: CurrentBuffer::SecondBuffer,
             multiplexer,
-            finger: 0,
-            timekeeper,
+            finger: Finger::FIRST,
+            clock_monitor,
         };
-        (sampler, Trigger(timer.counter_hz()))
+        (sampler, SampleTrigger(timer.counter_hz()))
     }
 
-    /// The finger whose block has just been filled, and its scans; the next finger's turn has begun.
+    /// Returns the finger whose block has just been filled, with its scans, and switches the
+    /// multiplexers to the next finger.
     ///
     /// # Errors
-    /// [`SampleError`]; samples are then missing and control cannot go on.
-    pub fn take(&mut self) -> Result<(usize, &[Scan; SCANS_PER_TICK]), SampleError> {
-        // First, as it is the tick's begin that counts; what else is wrong says more.
-        let in_time = self.timekeeper.take();
+    /// [`SampleError`] if samples are missing or the clocks are wrong; control must then stop.
+    pub fn take(&mut self) -> Result<(Finger<FINGERS>, &[Scan; SCANS_PER_TICK]), SampleError> {
+        // Checked first, because the start of the tick is measured; reported last, because the
+        // other errors are more specific.
+        let clock_check = self.clock_monitor.check();
         let finger = self.finger;
-        self.finger = if finger + 1 < FINGERS { finger + 1 } else { 0 };
+        self.finger = finger.next_cyclic();
         self.multiplexer.select(self.finger);
         if Multiplexer::SETTLING_SCANS != 0 && self.has_completed_a_scan() {
             return Err(SampleError::LateSwitch);
@@ -161,8 +175,8 @@ impl Sampler {
             return Err(SampleError::Late);
         }
         self.last = which;
-        in_time?;
-        if finger == 0 {
+        clock_check?;
+        if finger == Finger::FIRST {
             log::count_tick();
         }
         let scans = self
@@ -173,33 +187,34 @@ impl Sampler {
         Ok((finger, scans))
     }
 
-    /// Whether the first scan of the block that is being filled is in memory.
+    /// Whether the first scan of the next block is complete.
     fn has_completed_a_scan(&self) -> bool {
         usize::from(self.transfer.number_of_transfers()) <= (SCANS_PER_BLOCK - 1) * CHANNELS
     }
 
-    /// Stops for good. No tick follows, so the watchdog resets the device.
+    /// Stops sampling for good. No tick follows, so the watchdogs reset the device.
     pub fn stop(&mut self) {
         self.transfer.pause(Converter::stop);
     }
 }
 
-/// ADC1, scanning the inputs at every trigger.
+/// ADC1, which converts all channels once for each trigger.
 ///
-/// The library's driver measures the supply by the internal reference when it is set up; here every sensor
-/// is ratiometric to the supply, so that would be a second, slower path through the same registers for
-/// nothing. It also knows nothing of the overrun interrupt.
+/// The driver of `stm32f4xx-hal` is not used: it measures the supply voltage during its set-up,
+/// which is of no use here because all sensors are ratiometric to the supply, and it does not
+/// support the overrun interrupt.
 pub struct Converter {
     adc: ADC1,
-    _inputs: Inputs,
+    _inputs: SensorPins,
 }
 
 impl Converter {
-    /// 90 MHz / 4: 22.5 MHz (36 at most), sampling for [`SAMPLE_TIME`].
-    pub fn new(adc: ADC1, inputs: Inputs, rcc: &mut Rcc) -> Self {
+    /// Sets the converter up, with a clock of 90 MHz / 4 = 22.5 MHz (the maximum is 36 MHz) and
+    /// [`SAMPLE_TIME`].
+    pub fn new(adc: ADC1, inputs: SensorPins, rcc: &mut Rcc) -> Self {
         ADC1::enable(rcc);
         ADC1::reset(rcc);
-        // SAFETY: the common registers belong to the three converters, of which only ADC1 is used.
+        // SAFETY: the common registers are shared by three converters, of which only ADC1 is used.
         let common = unsafe { ADC_COMMON::steal() };
         common.ccr().write(|w| w.adcpre().div4());
         adc.smpr1().write(|w| {
@@ -213,7 +228,7 @@ impl Converter {
             w.smp4().set(SAMPLE_TIME);
             w.smp8().set(SAMPLE_TIME)
         });
-        // SAFETY: these are channels that ADC1 has, in the order of `Samples`.
+        // SAFETY: ADC1 has these channels. Their order is that of the fields of `Samples`.
         adc.sqr3().write(|w| unsafe {
             w.sq1().bits(0); // display, PA0
             w.sq2().bits(1); // display_check, PA1
@@ -222,7 +237,7 @@ impl Converter {
             w.sq5().bits(11); // room, PC1
             w.sq6().bits(10) // force, PC0
         });
-        // SAFETY: as above.
+        // SAFETY: ADC1 has this channel.
         adc.sqr2().write(|w| unsafe { w.sq7().bits(12) }); // current, PC2
         adc.sqr1().write(|w| w.l().set(CHANNELS as u8 - 1));
         adc.cr1().write(|w| w.scan().enabled().ovrie().enabled());
@@ -233,7 +248,7 @@ impl Converter {
             w.exten().rising_edge();
             w.adon().enabled()
         });
-        // 3 us for the converter to wake up (datasheet, t_STAB), at 180 MHz.
+        // The converter takes 3 us to start (datasheet, t_STAB); the core runs at 180 MHz.
         cortex_m::asm::delay(3 * 180);
         Self {
             adc,
@@ -241,14 +256,14 @@ impl Converter {
         }
     }
 
-    /// Converts no more and asks for no interrupt.
+    /// Stops conversions and disables the overrun interrupt.
     fn stop(&mut self) {
         self.adc.cr1().write(|w| w.ovrie().disabled());
         self.adc.cr2().write(|w| w.adon().disabled());
     }
 }
 
-// SAFETY: the data register of ADC1, which is read as half-words.
+// SAFETY: the address is that of the data register of ADC1, which may be read as half-words.
 unsafe impl PeriAddress for Converter {
     type MemSize = u16;
 
@@ -257,5 +272,5 @@ unsafe impl PeriAddress for Converter {
     }
 }
 
-// SAFETY: stream 0, channel 0 of DMA2 is a request of ADC1 (RM0390, table 29).
+// SAFETY: channel 0 of stream 0 of DMA2 serves the requests of ADC1 (RM0390, table 29).
 unsafe impl DMASet<Stream0<DMA2>, 0, PeripheralToMemory> for Converter {}

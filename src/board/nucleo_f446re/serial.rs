@@ -1,6 +1,7 @@
-//! The line to the host: USART2, received byte by byte, sent by DMA a line at a time.
+//! The serial line to the host: USART2, which receives byte by byte and sends line by line, by DMA.
 //!
-//! Full frames go to the transmitter and empty ones come back, so nothing is copied and nobody waits.
+//! Full frames are passed to the transmitter through a queue and empty ones are passed back through
+//! another, so no line is copied and no task waits.
 
 use core::fmt::{self, Write as _};
 
@@ -20,35 +21,36 @@ use thermal_display::protocol::{ANSWER_MAX, LineError, LineReader};
 
 use thermal_display::mailbox::Inlet;
 
-/// Bits per second. A telemetry line a millisecond needs more than the usual 115 200; both ends divide their
-/// clocks to this rate exactly.
+/// Bits per second. One telemetry line per millisecond does not fit into the usual 115 200. The
+/// clocks of both ends are exact multiples of this rate.
 const BAUD: u32 = 1_000_000;
 
-/// Frames in circulation: one on the line, one kept by the stream after it has been sent, two to be written
-/// meanwhile.
+/// Number of frames: one is being sent, one has been sent and is still held by the stream, two are
+/// written meanwhile.
 pub const FRAMES: usize = 4;
 
-/// Longest line to the host, in bytes, with its end.
+/// Longest line to the host with its end, bytes.
 const FRAME_MAX: usize = "@0 ".len() + ANSWER_MAX + 1;
 
-/// The store of a frame.
-pub type Bytes = Vec<u8, FRAME_MAX>;
+/// Memory of one frame.
+pub type FrameBuffer = Vec<u8, FRAME_MAX>;
 
 /// One line to the host.
-struct Frame(&'static mut Bytes);
+struct Frame(&'static mut FrameBuffer);
 
 impl Frame {
-    /// Replaces the content by `line` and an end of line.
+    /// Writes `line` and an end of line, in place of the previous content.
     fn fill(&mut self, line: &impl fmt::Display) {
         self.0.clear();
-        // Lines of the library fit; of any other the host gets the beginning.
+        // All lines of the protocol fit; a longer one would be truncated.
         let _ = write!(self.0, "{line}");
         self.0.truncate(FRAME_MAX - 1);
         let _ = self.0.push(b'\n');
     }
 }
 
-// SAFETY: the bytes live as long as the program, and nobody writes to a frame that the stream owns.
+// SAFETY: the memory lives as long as the program, and no code writes to a frame that the stream
+// owns.
 unsafe impl ReadBuffer for Frame {
     type Word = u8;
 
@@ -57,14 +59,15 @@ unsafe impl ReadBuffer for Frame {
     }
 }
 
-/// The queues between [`Outbox`] and [`Transmitter`]; each holds all frames, so it is never full.
-pub struct Links {
+/// The queues between [`Outbox`] and [`Transmitter`]. Each has room for all frames, so it is never
+/// full.
+pub struct FrameQueues {
     full: Queue<Frame, { FRAMES + 1 }>,
     empty: Queue<Frame, { FRAMES + 1 }>,
 }
 
-impl Links {
-    /// No frame yet.
+impl FrameQueues {
+    /// Two empty queues.
     pub const fn new() -> Self {
         Self {
             full: Queue::new(),
@@ -73,36 +76,37 @@ impl Links {
     }
 }
 
-/// Lines to be sent.
+/// The end of the queues at which lines to the host are written.
 pub struct Outbox {
     full: Producer<'static, Frame>,
     empty: Consumer<'static, Frame>,
 }
 
 impl Outbox {
-    /// Whether a line can be sent without waiting.
+    /// Whether there is an empty frame for another line.
     pub fn has_room(&self) -> bool {
         self.empty.ready()
     }
 
-    /// Whether nothing waits; the last frame may still be on the line.
+    /// Whether no line waits; the last one may not have been sent completely.
     pub fn is_empty(&self) -> bool {
         self.empty.len() == FRAMES - 1
     }
 
-    /// Sends one line, or nothing if there is no room.
+    /// Writes one line into an empty frame, which is sent later; drops the line if there is none.
     pub fn send(&mut self, line: &impl fmt::Display) {
         let Some(mut frame) = self.empty.dequeue() else {
             return;
         };
         frame.fill(line);
         let _ = self.full.enqueue(frame);
-        // The stream asks for the next line when it has sent one; this is for when it sends nothing.
+        // The interrupt otherwise occurs only at the end of a line, so an idle transmitter would
+        // not start.
         NVIC::pend(Interrupt::DMA1_STREAM6);
     }
 }
 
-/// Sends frame after frame.
+/// Sends the full frames one after the other.
 pub struct Transmitter {
     transfer: Transfer<Stream6<DMA1>, 4, Tx<USART2>, MemoryToPeripheral, Frame>,
     sending: bool,
@@ -111,15 +115,15 @@ pub struct Transmitter {
 }
 
 impl Transmitter {
-    /// Starts the next frame if the last one has left the memory. There are then still two bytes in the
-    /// USART, 20 us, in which the next one must start if the line is not to pause.
-    pub fn refill(&mut self) {
+    /// Starts to send the next frame if the stream has read the last one completely. The USART then
+    /// still holds two bytes; the line pauses if the next frame is not started within these 20 us.
+    pub fn send_next(&mut self) {
         if self.sending {
             let flags = self.transfer.flags();
             if !flags.is_transfer_complete() && !flags.is_transfer_error() {
                 return;
             }
-            // All of them, or the stream cannot be enabled again (RM0390, 9.3.18).
+            // All flags must be cleared before the stream can be enabled again (RM0390, 9.3.18).
             self.transfer.clear_all_flags();
             self.sending = false;
         }
@@ -134,16 +138,16 @@ impl Transmitter {
     }
 }
 
-/// What a byte has ended.
+/// What a received byte has completed.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum End {
-    /// A line that waits for its answer.
+pub enum Completed {
+    /// A line, which now waits for its answer.
     Line,
-    /// A blank line: the host is there.
-    Blank,
+    /// A blank line, which has no answer but shows that the host is active.
+    BlankLine,
 }
 
-/// Lines of the host.
+/// Assembles the received bytes to lines and puts these into the mailbox.
 pub struct Receiver {
     rx: Rx<USART2>,
     reader: LineReader,
@@ -151,15 +155,15 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// Takes the byte that has come; what it ended, if anything.
-    pub fn take(&mut self) -> Option<End> {
+    /// Reads the byte that has arrived and returns what it has completed, if anything.
+    pub fn receive(&mut self) -> Option<Completed> {
         match self.rx.read() {
             Ok(byte) => match self.reader.push(byte) {
                 Some(line) => {
                     self.inlet.put(line);
-                    Some(End::Line)
+                    Some(Completed::Line)
                 }
-                None => LineReader::is_end(byte).then_some(End::Blank),
+                None => LineReader::is_end(byte).then_some(Completed::BlankLine),
             },
             Err(nb::Error::WouldBlock) => None,
             Err(nb::Error::Other(_)) => {
@@ -170,13 +174,13 @@ impl Receiver {
     }
 }
 
-/// Sets up the USART and its stream.
+/// Sets up the USART and the stream that sends.
 pub fn start(
     usart: USART2,
     (tx, rx): (PA2<Input>, PA3<Input>),
     stream: Stream6<DMA1>,
-    bytes: &'static mut [Bytes; FRAMES],
-    links: &'static mut Links,
+    buffers: &'static mut [FrameBuffer; FRAMES],
+    queues: &'static mut FrameQueues,
     inlet: Inlet<'static>,
     rcc: &mut Rcc,
 ) -> (Receiver, Transmitter, Outbox) {
@@ -188,9 +192,9 @@ pub fn start(
         .split();
     rx.listen();
 
-    let (full_in, full_out) = links.full.split();
-    let (mut empty_in, empty_out) = links.empty.split();
-    let [first, rest @ ..] = bytes.each_mut().map(Frame);
+    let (full_in, full_out) = queues.full.split();
+    let (mut empty_in, empty_out) = queues.empty.split();
+    let [first, rest @ ..] = buffers.each_mut().map(Frame);
     for frame in rest {
         let _ = empty_in.enqueue(frame);
     }

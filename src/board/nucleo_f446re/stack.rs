@@ -1,32 +1,33 @@
-//! The end of the stack, which nothing else may reach.
+//! The stack guard: words with a known value at the end of the stack, which an overflowing stack
+//! overwrites.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// Words at the end of the stack that must stay as they are.
-const GUARD: usize = 4;
+/// Words of the guard.
+const GUARD_WORDS: usize = 4;
+/// Value of each word while the stack has not reached it.
 const UNTOUCHED: u32 = 0x57ac_0bad;
 
 unsafe extern "C" {
-    /// Below the stack, by `memory.x`.
-    static _stack_guard: [AtomicU32; GUARD];
+    /// Placed below the stack by `memory.x`.
+    static _stack_guard: [AtomicU32; GUARD_WORDS];
 }
 
-/// The guard's words.
-fn guard() -> &'static [AtomicU32; GUARD] {
-    // SAFETY: `memory.x` keeps these words, the first of the RAM, for nothing else; atomics may be written by whoever
-    // overruns the stack.
+fn guard() -> &'static [AtomicU32; GUARD_WORDS] {
+    // SAFETY: `memory.x` reserves these words, the first of the RAM, for the guard. They are
+    // atomics because code that overruns the stack may write to them.
     unsafe { &_stack_guard }
 }
 
-/// Whether the stack has grown into its guard since [`arm`].
-pub fn is_overrun() -> bool {
+/// Whether the stack has overwritten the guard since it was last [initialised](init_guard).
+pub fn stack_is_overrun() -> bool {
     guard()
         .iter()
         .any(|word| word.load(Ordering::Relaxed) != UNTOUCHED)
 }
 
-/// Sets the guard up.
-pub fn arm() {
+/// Writes the known value into the guard.
+pub fn init_guard() {
     guard()
         .iter()
         .for_each(|word| word.store(UNTOUCHED, Ordering::Relaxed));

@@ -1,81 +1,84 @@
-//! The stations of all fingers, and lines that are for one or all of them.
+//! A device with several fingers: one station for each, and commands to one of them or to all.
 
 use core::array;
 
-use crate::Station;
 use crate::command::{Addressed, Command, Refused, Reply};
 use crate::drive::Outputs;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
+use crate::{Finger, Station};
 use thermal_settings::{Kept, Settings};
 
-/// As many stations as the device has fingers, ten at most. They share nothing.
+/// One [`Station`] for each finger; the stations share no state.
 #[derive(Clone, Debug)]
 pub struct Device<const FINGERS: usize> {
     stations: [Station; FINGERS],
 }
 
 impl<const FINGERS: usize> Device<FINGERS> {
-    /// Stations that are off. `f64` in software, once for all fingers.
+    /// A device whose bridges are off and that no fault has tripped. Evaluates `f64` in software,
+    /// once for all fingers.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
-        Self::after(None, settings)
+        Self::with_cause(None, settings)
     }
 
-    /// The same after a reset, tripped by what was the cause of it.
+    /// A device as [`new`](Self::new) makes it, whose fingers are all tripped by `cause`, if there
+    /// is one: the fault that ended the previous run of the program.
     #[must_use]
     #[inline(never)]
-    pub fn after(cause: Option<TripCause>, settings: &Settings) -> Self {
-        let mut one = Station::new(settings);
+    pub fn with_cause(cause: Option<TripCause>, settings: &Settings) -> Self {
+        let mut station = Station::new(settings);
         if let Some(cause) = cause {
-            one.trip(cause);
+            station.trip(cause);
         }
         Self {
-            stations: array::from_fn(|_| one.clone()),
+            stations: array::from_fn(|_| station.clone()),
         }
     }
 
-    /// Reads and controls by what was kept. `f64` in software, once for each finger.
+    /// Applies the stored settings of each finger. Evaluates `f64` in software, once for each
+    /// finger.
     #[inline(never)]
-    pub fn restore(&mut self, kept: &[Kept; FINGERS]) {
-        for (station, kept) in self.stations.iter_mut().zip(kept) {
-            station.apply(&kept.settings());
+    pub fn restore_settings(&mut self, stored: &[Kept; FINGERS]) {
+        for (station, stored) in self.stations.iter_mut().zip(stored) {
+            station.apply(&stored.settings());
         }
     }
 
-    /// The dose of a finger so far, counted modulo `FINGERS`.
+    /// Thermal dose of a finger so far.
     #[must_use]
-    pub const fn dose(&self, finger: usize) -> &ThermalDose {
-        self.stations[finger % FINGERS].dose()
+    pub const fn dose(&self, finger: Finger<FINGERS>) -> &ThermalDose {
+        self.stations[finger.index()].dose()
     }
 
-    /// Goes on from the dose that a finger had before the start, counted modulo `FINGERS`.
-    pub const fn resume(&mut self, finger: usize, dose: ThermalDose) {
-        self.stations[finger % FINGERS].restore_dose(dose);
+    /// Sets the thermal dose that a finger had accumulated before a restart.
+    pub const fn restore_dose(&mut self, finger: Finger<FINGERS>, dose: ThermalDose) {
+        self.stations[finger.index()].restore_dose(dose);
     }
 
-    /// One control tick of a finger, `finger` counted modulo `FINGERS`.
-    pub fn step(&mut self, finger: usize, samples: &Samples) -> Outputs {
-        self.stations[finger % FINGERS].step(samples)
+    /// Runs one control tick of a finger.
+    pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> Outputs {
+        self.stations[finger.index()].step(samples)
     }
 
-    /// Trips all fingers for a reason that samples do not show.
-    pub fn trip(&mut self, fault: Fault) {
+    /// Trips all fingers by a fault that is detected outside of the stations.
+    pub fn trip_all(&mut self, fault: Fault) {
         self.stations
             .iter_mut()
             .for_each(|station| station.raise(fault));
     }
 
-    /// A fault is latched at a finger, counted modulo `FINGERS`.
+    /// Whether a fault is latched at this finger.
     #[must_use]
-    pub const fn is_tripped(&self, finger: usize) -> bool {
-        self.stations[finger % FINGERS].is_tripped()
+    pub const fn is_tripped(&self, finger: Finger<FINGERS>) -> bool {
+        self.stations[finger.index()].is_tripped()
     }
 
-    /// Why the finger that has been tripped for longest is.
+    /// Cause of the earliest trip that is still latched, of all fingers.
     #[must_use]
-    pub fn tripped(&self) -> Option<&TripCause> {
+    pub fn earliest_cause(&self) -> Option<&TripCause> {
         let tripped = self.stations.iter().filter(|station| station.is_tripped());
         tripped
             .min_by_key(|station| station.latch().tripped_at())?
@@ -83,61 +86,63 @@ impl<const FINGERS: usize> Device<FINGERS> {
             .cause()
     }
 
-    /// The host is there.
-    pub fn hear(&mut self) {
+    /// Restarts the time-out that trips a finger when the host falls silent.
+    pub fn note_host_activity(&mut self) {
         self.stations
             .iter_mut()
             .for_each(Station::note_host_activity);
     }
 
-    /// Telemetry of a finger's last tick, if it is due.
+    /// Telemetry of a finger's last tick, if the interval of its stream has elapsed.
     #[must_use]
-    pub fn telemetry(&self, finger: usize) -> Option<Addressed<Telemetry>> {
-        let finger = finger % FINGERS;
-        let said = self.stations[finger].telemetry()?;
+    pub fn telemetry(&self, finger: Finger<FINGERS>) -> Option<Addressed<Telemetry>> {
+        let said = self.stations[finger.index()].telemetry()?;
         Some(Addressed {
-            finger: Self::name(finger),
+            finger: Self::address(finger),
             said,
         })
     }
 
-    /// How a finger is called when nobody has asked for it: not at all if it is the only one.
-    fn name(finger: usize) -> Option<u8> {
-        (FINGERS > 1).then_some(finger as u8)
+    /// Number that a finger's lines begin with if the host has named none: omitted on a device with
+    /// a single finger.
+    fn address(finger: Finger<FINGERS>) -> Option<u8> {
+        (FINGERS > 1).then_some(finger.number())
     }
 
-    /// Executes a line, in bounded and short time: for one finger, or for all. A question to all is answered by
-    /// the first. Who has nothing to clear obeys `clear` with the others.
+    /// Executes a command, in bounded and short time, on one finger, or on all if `finger` is
+    /// `None`.
+    ///
+    /// A query to all is answered by the first finger. `clear` to all succeeds if a fault was
+    /// cleared at one finger at least.
     ///
     /// # Errors
-    /// The command does not fit the state of a finger; of those, the first. The others have obeyed.
+    /// The first refusal, if the state of a finger does not permit the command; the other fingers
+    /// have executed it.
     pub fn execute(
         &mut self,
-        request: Addressed<Command>,
+        finger: Option<Finger<FINGERS>>,
+        command: Command,
     ) -> Result<Addressed<Reply>, Addressed<Refused>> {
-        let Addressed {
-            finger,
-            said: command,
-        } = request;
         if let Some(one) = finger {
-            return match self.stations[usize::from(one) % FINGERS].execute(command) {
+            let finger = Some(one.number());
+            return match self.stations[one.index()].execute(command) {
                 Ok(said) => Ok(Addressed { finger, said }),
                 Err(said) => Err(Addressed { finger, said }),
             };
         }
-        let (mut refused, mut healthy, mut obeyed) = (None, None, false);
-        for (finger, station) in self.stations.iter_mut().enumerate() {
-            let finger = Self::name(finger);
+        let (mut refused, mut nothing_to_clear, mut executed) = (None, None, false);
+        for (finger, station) in Finger::all().zip(&mut self.stations) {
+            let finger = Self::address(finger);
             match station.execute(command) {
-                Ok(Reply::Done) => obeyed = true,
+                Ok(Reply::Done) => executed = true,
                 Ok(said) => return Ok(Addressed { finger, said }),
                 Err(said @ Refused::NothingToClear) => {
-                    healthy = healthy.or(Some(Addressed { finger, said }))
+                    nothing_to_clear = nothing_to_clear.or(Some(Addressed { finger, said }))
                 }
                 Err(said) => refused = refused.or(Some(Addressed { finger, said })),
             }
         }
-        let refused = refused.or(healthy.filter(|_| !obeyed));
+        let refused = refused.or(nothing_to_clear.filter(|_| !executed));
         refused.map_or(Ok(Addressed::device(Reply::Done)), Err)
     }
 }

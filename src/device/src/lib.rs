@@ -16,6 +16,7 @@ pub mod control;
 mod device;
 pub mod drive;
 pub mod estimate;
+mod finger;
 mod hold;
 pub mod identification;
 mod low_pass;
@@ -28,6 +29,7 @@ mod station;
 mod telemetry;
 
 pub use device::Device;
+pub use finger::Finger;
 pub use state_name::StateName;
 pub use station::Station;
 pub use telemetry::Telemetry;

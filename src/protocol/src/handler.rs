@@ -3,16 +3,23 @@
 use core::array;
 
 use thermal_commissioning::{Request, Service, StorageOrder, is_off, record};
+use thermal_device::Finger;
 use thermal_device::command::{self, Addressed, Command, Refused};
 use thermal_settings::{Kept, Settings, StoredBytes};
 
 use crate::address::address;
 use crate::{Error, Parsed, Reply};
 
-/// Executes a command on the stations: for one finger, or for all.
-pub trait Execute: FnMut(Addressed<Command>) -> Executed {}
+/// Executes a command on the station of one finger, or on all stations if there is no finger.
+pub trait Execute<const FINGERS: usize>:
+    FnMut(Option<Finger<FINGERS>>, Command) -> Executed
+{
+}
 
-impl<F: FnMut(Addressed<Command>) -> Executed> Execute for F {}
+impl<const FINGERS: usize, F> Execute<FINGERS> for F where
+    F: FnMut(Option<Finger<FINGERS>>, Command) -> Executed
+{
+}
 
 /// What the stations answer.
 pub type Executed = Result<Addressed<command::Reply>, Addressed<Refused>>;
@@ -55,9 +62,10 @@ impl<const FINGERS: usize> Desk<FINGERS> {
     pub fn answer(
         &mut self,
         line: &str,
-        mut execute: impl Execute,
+        mut execute: impl Execute<FINGERS>,
     ) -> Result<Addressed<Reply>, Addressed<Error>> {
-        let (finger, rest) = address(line, FINGERS)?;
+        let (addressed, rest) = address(line)?;
+        let finger = addressed.map(Finger::number);
         let of = |said: Error| Addressed { finger, said };
         let [first, ..] = self.fingers.as_slice() else {
             return Err(of(Error::Missing("finger")));
@@ -69,12 +77,12 @@ impl<const FINGERS: usize> Desk<FINGERS> {
                     fingers: FINGERS as u8,
                 },
             }),
-            Parsed::Station(said) => match execute(Addressed { finger, said }) {
+            Parsed::Station(said) => match execute(addressed, said) {
                 Ok(reply) => Ok(reply.map(Reply::Station)),
                 Err(refused) => Err(refused.map(Error::from)),
             },
-            Parsed::Commissioning(request) => self.commission(request, finger, execute),
-            Parsed::Storage(order) => Self::accept(order, finger, execute),
+            Parsed::Commissioning(request) => self.commission(request, addressed, execute),
+            Parsed::Storage(order) => Self::accept(order, addressed, execute),
         }
     }
 
@@ -82,36 +90,32 @@ impl<const FINGERS: usize> Desk<FINGERS> {
     fn commission(
         &mut self,
         request: Request,
-        finger: Option<u8>,
-        mut execute: impl Execute,
+        finger: Option<Finger<FINGERS>>,
+        mut execute: impl Execute<FINGERS>,
     ) -> Result<Addressed<Reply>, Addressed<Error>> {
         let finger = match request {
-            Request::Settings(_) | Request::Margins => finger.or(first_of(FINGERS)),
+            // A query to all is answered by the first; nobody is named if there is one finger only.
+            Request::Settings(_) | Request::Margins if FINGERS > 1 => {
+                finger.or(Some(Finger::FIRST))
+            }
             // Milliseconds of `f64` each, which the watchdog waits for once.
             Request::Point { .. } | Request::Tuned if finger.is_none() && FINGERS > 1 => {
-                return Err(Addressed {
-                    finger,
-                    said: Error::Missing("finger (as @0)"),
-                });
+                return Err(Addressed::device(Error::Missing("finger (as @0)")));
             }
             _ => finger,
         };
         let mut told = Ok(Addressed::device(thermal_commissioning::Reply::Done));
-        for (index, service) in self.fingers.iter_mut().enumerate() {
-            if finger.is_some_and(|one| usize::from(one) != index) {
+        for (one, service) in Finger::all().zip(&mut self.fingers) {
+            if finger.is_some_and(|finger| finger != one) {
                 continue;
             }
-            let station = Some(index as u8);
-            let answered = service.answer(request.clone(), |said| {
-                execute(Addressed {
-                    finger: station,
-                    said,
-                })
-                .map(|reply| reply.said)
-                .map_err(|error| error.said)
+            let answered = service.answer(request.clone(), |command| {
+                execute(Some(one), command)
+                    .map(|reply| reply.said)
+                    .map_err(|error| error.said)
             });
             // A finger that nobody has asked for is named if it is not the only one.
-            let finger = finger.or((FINGERS > 1).then_some(index as u8));
+            let finger = finger.or((FINGERS > 1).then_some(one)).map(Finger::number);
             told = match (told, answered) {
                 (Err(first), _) => Err(first),
                 (Ok(_), Err(said)) => Err(Addressed {
@@ -130,7 +134,7 @@ impl<const FINGERS: usize> Desk<FINGERS> {
         }
         // Whoever is asked for by name answers by name.
         told.map(|reply| Addressed {
-            finger: reply.finger.or(finger),
+            finger: reply.finger.or(finger.map(Finger::number)),
             said: Reply::Commissioning(reply.said),
         })
     }
@@ -138,35 +142,33 @@ impl<const FINGERS: usize> Desk<FINGERS> {
     /// Accepts an order if nobody can feel a device that starts anew: all bridges are off.
     fn accept(
         order: StorageOrder,
-        finger: Option<u8>,
-        mut execute: impl Execute,
+        finger: Option<Finger<FINGERS>>,
+        mut execute: impl Execute<FINGERS>,
     ) -> Result<Addressed<Reply>, Addressed<Error>> {
         if finger.is_some() && FINGERS > 1 {
             let said = Error::WholeDevice(order.name());
-            return Err(Addressed { finger, said });
+            return Err(Addressed {
+                finger: finger.map(Finger::number),
+                said,
+            });
         }
-        for one in 0..FINGERS as u8 {
-            let status = execute(Addressed {
-                finger: Some(one),
-                said: Command::Status,
-            })
-            .map_err(|refused| refused.map(Error::from))?;
+        for one in Finger::all() {
+            let status =
+                execute(Some(one), Command::Status).map_err(|refused| refused.map(Error::from))?;
             let off =
                 matches!(&status.said, command::Reply::Status(status) if is_off(status.state));
             if !off {
                 let finger = (FINGERS > 1).then_some(one).or(finger);
                 let said = Error::NeedsOff(order.name());
-                return Err(Addressed { finger, said });
+                return Err(Addressed {
+                    finger: finger.map(Finger::number),
+                    said,
+                });
             }
         }
         Ok(Addressed {
-            finger,
+            finger: finger.map(Finger::number),
             said: Reply::Restart(order),
         })
     }
-}
-
-/// Who answers a question to all; nobody is named if there is one finger only.
-fn first_of(fingers: usize) -> Option<u8> {
-    (fingers > 1).then_some(0)
 }

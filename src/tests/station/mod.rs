@@ -79,11 +79,8 @@ impl Bench {
 
     /// Sends a line, gives the answer.
     fn host(&mut self, line: &str) -> String {
-        let done = self.desk.answer(line, |request| {
-            let said = self
-                .station
-                .execute(request.said)
-                .map_err(Addressed::device)?;
+        let done = self.desk.answer(line, |_, command| {
+            let said = self.station.execute(command).map_err(Addressed::device)?;
             Ok(Addressed::device(said))
         });
         done.map_or_else(|error| error.to_string(), |reply| reply.to_string())

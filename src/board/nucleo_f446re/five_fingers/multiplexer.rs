@@ -1,16 +1,19 @@
-//! The finger whose sensors the converter sees.
+//! The analog multiplexers, which connect the sensors of one finger to the converter.
 
 use stm32f4xx_hal::gpio::outport::{OutPort, OutPort3};
 use stm32f4xx_hal::gpio::{Input, PC10, PC11, PC12};
+use thermal_display::device::Finger;
 
-/// The lines that choose.
+use super::FINGERS;
+
+/// The three select lines, which are common to all multiplexers.
 pub struct Multiplexer(OutPort3<'C', 10, 11, 12>);
 
 impl Multiplexer {
-    /// Scans after a switch that may still show the finger before.
+    /// Scans after a switch that may still belong to the previous finger.
     pub const SETTLING_SCANS: usize = 2;
 
-    /// Shows finger 0.
+    /// Sets the select lines up and selects finger 0.
     pub fn new(bit0: PC10<Input>, bit1: PC11<Input>, bit2: PC12<Input>) -> Self {
         let lines = (
             bit0.into_push_pull_output(),
@@ -18,12 +21,12 @@ impl Multiplexer {
             bit2.into_push_pull_output(),
         );
         let mut multiplexer = Self(lines.outport());
-        multiplexer.select(0);
+        multiplexer.select(Finger::FIRST);
         multiplexer
     }
 
-    /// Shows a finger; all lines change at once.
-    pub fn select(&mut self, finger: usize) {
-        self.0.write(finger as u32);
+    /// Selects a finger. All lines change at the same time.
+    pub fn select(&mut self, finger: Finger<FINGERS>) {
+        self.0.write(finger.number().into());
     }
 }

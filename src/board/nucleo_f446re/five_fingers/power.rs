@@ -1,10 +1,11 @@
-//! The power stages: TIM1, TIM8, TIM10 and TIM11 in front of five bridges, and their fault lines.
+//! The power stages: TIM1, TIM8, TIM10 and TIM11, which generate the PWM signals of five bridges,
+//! and the fault lines.
 
 use core::convert::Infallible;
 
 use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use stm32f4xx_hal::gpio::{
-    ErasedPin, Input, Output, PA8, PA9, PA10, PA11, PB8, PB9, PC6, PC7, PC8, PC9,
+    ErasedPin, Input, Output, PA8, PA9, PA10, PA11, PB8, PB9, PC6, PC7, PC8, PC9, Pin,
 };
 use stm32f4xx_hal::pac::{TIM1, TIM8, TIM10, TIM11};
 use stm32f4xx_hal::prelude::*;
@@ -15,43 +16,67 @@ use thermal_display::device::drive::{Drive, Outputs};
 use super::FINGERS;
 use thermal_display::bridge::Bridge;
 
-/// PWM frequency in kHz, as for one finger: the filters and what dead time takes are made for it. 1875 steps.
+/// PWM frequency, kHz: that of the one-finger wiring, for which the LC filters and the dead-time
+/// compensation are designed. A period has 1875 steps.
 const PWM_KHZ: u32 = 96;
 
 /// One bridge and its fault line.
 ///
-/// Off takes effect within the instruction that writes the enable line; a new duty at the next PWM period, since the
-/// compare registers are preloaded.
+/// Turning the bridge off takes effect at once; a new duty takes effect at the next PWM period,
+/// because the compare registers are preloaded.
 pub struct PowerStage {
-    bridge: Bridge<Leg, Leg, ErasedPin<Output>>,
+    bridge: Bridge<PwmOutput, PwmOutput, ErasedPin<Output>>,
     fault: ErasedPin<Input>,
     test: ErasedPin<Output>,
     on: bool,
 }
 
-/// Everything that the bridges hang on, in the order of the fingers.
-pub struct Wires {
+/// Timers and pins of all bridges, in the order of the fingers.
+pub struct BridgePins {
     pub timers: (TIM1, TIM8, TIM10, TIM11),
     pub first: (PA8<Input>, PA9<Input>),
     pub second: (PA10<Input>, PA11<Input>),
     pub third: (PC6<Input>, PC7<Input>),
     pub fourth: (PC8<Input>, PC9<Input>),
     pub fifth: (PB8<Input>, PB9<Input>),
-    pub lines: [Lines; FINGERS],
+    pub lines: [ControlLines; FINGERS],
 }
 
-/// What goes between processor and one bridge beside its legs.
-pub struct Lines {
-    /// Low: both legs are high-impedance.
-    pub enable: ErasedPin<Output>,
-    /// Pulled down weakly against the external pull-up: a wire that is off reads as a fault.
-    pub fault: ErasedPin<Input>,
-    /// Test of the comparator.
-    pub test: ErasedPin<Output>,
+/// The lines between the processor and one finger's bridge and comparator, except for the PWM
+/// signals.
+pub struct ControlLines {
+    enable: ErasedPin<Output>,
+    fault: ErasedPin<Input>,
+    test: ErasedPin<Output>,
 }
 
-impl Wires {
-    /// Sets the bridges up; they are off.
+impl ControlLines {
+    /// Sets the pins of one finger up: enable line of the bridge, fault line, test line of the
+    /// comparator.
+    pub fn new<
+        const ENABLE_PORT: char,
+        const ENABLE: u8,
+        const FAULT_PORT: char,
+        const FAULT: u8,
+        const TEST_PORT: char,
+        const TEST: u8,
+    >(
+        enable: Pin<ENABLE_PORT, ENABLE>,
+        fault: Pin<FAULT_PORT, FAULT>,
+        test: Pin<TEST_PORT, TEST>,
+    ) -> Self {
+        Self {
+            enable: enable.into_push_pull_output().erase(),
+            // The weak internal pull-down loses against the external pull-up; a broken wire
+            // therefore reads as a fault.
+            fault: fault.into_pull_down_input().erase(),
+            test: test.into_push_pull_output().erase(),
+        }
+    }
+}
+
+impl BridgePins {
+    /// Sets the timers up, with all bridges off.
     pub fn into_stages(self, rcc: &mut Rcc) -> [PowerStage; FINGERS] {
         let (tim1, tim8, tim10, tim11) = self.timers;
         let (_, (a0, b0, a1, b1)) = tim1.pwm_hz(PWM_KHZ.kHz(), rcc);
@@ -69,42 +94,43 @@ impl Wires {
         ] = self.lines;
         let stages = [
             PowerStage::new(
-                Leg::Tim1(a0.with(first.0).erase()),
-                Leg::Tim1(b0.with(first.1).erase()),
+                PwmOutput::Tim1(a0.with(first.0).erase()),
+                PwmOutput::Tim1(b0.with(first.1).erase()),
                 first_lines,
             ),
             PowerStage::new(
-                Leg::Tim1(a1.with(second.0).erase()),
-                Leg::Tim1(b1.with(second.1).erase()),
+                PwmOutput::Tim1(a1.with(second.0).erase()),
+                PwmOutput::Tim1(b1.with(second.1).erase()),
                 second_lines,
             ),
             PowerStage::new(
-                Leg::Tim8(a2.with(third.0).erase()),
-                Leg::Tim8(b2.with(third.1).erase()),
+                PwmOutput::Tim8(a2.with(third.0).erase()),
+                PwmOutput::Tim8(b2.with(third.1).erase()),
                 third_lines,
             ),
             PowerStage::new(
-                Leg::Tim8(a3.with(fourth.0).erase()),
-                Leg::Tim8(b3.with(fourth.1).erase()),
+                PwmOutput::Tim8(a3.with(fourth.0).erase()),
+                PwmOutput::Tim8(b3.with(fourth.1).erase()),
                 fourth_lines,
             ),
             PowerStage::new(
-                Leg::Tim10(a4.with(fifth.0).erase()),
-                Leg::Tim11(b4.with(fifth.1).erase()),
+                PwmOutput::Tim10(a4.with(fifth.0).erase()),
+                PwmOutput::Tim11(b4.with(fifth.1).erase()),
                 fifth_lines,
             ),
         ];
-        release_outputs();
+        enable_outputs();
         stages
     }
 }
 
-/// Lets TIM1 and TIM8 drive their pins, until the clock fails: no pin is a break input, which the polarity makes
-/// inactive, but a failing clock is a break too (RM0390, 17.3.12). The lock keeps a program gone astray from
-/// changing any of it, and the PWM mode, before the next reset.
-fn release_outputs() {
-    // SAFETY: the handles went into `pwm_hz`. The channels write the compare and enable registers only; break and
-    // dead-time registers are written here, and once more when the program ends.
+/// Lets TIM1 and TIM8 drive their pins until the clock fails, which is a break (RM0390, 17.3.12).
+/// No pin is connected to the break inputs; their polarity makes them inactive. The lock prevents
+/// faulty code from changing these settings or the PWM mode before the next reset.
+fn enable_outputs() {
+    // SAFETY: `pwm_hz` has consumed the handles of the timers. Their channels write only the
+    // compare and enable registers; the break and dead-time registers are written here and by
+    // `disable_bridges` only.
     let (tim1, tim8) = unsafe { (TIM1::steal(), TIM8::steal()) };
     for timer in [&*tim1, &*tim8] {
         timer.bdtr().write(|w| {
@@ -120,13 +146,13 @@ fn release_outputs() {
 
 impl PowerStage {
     fn new(
-        mut in1: Leg,
-        mut in2: Leg,
-        Lines {
+        mut in1: PwmOutput,
+        mut in2: PwmOutput,
+        ControlLines {
             enable,
             fault,
             test,
-        }: Lines,
+        }: ControlLines,
     ) -> Self {
         in1.enable();
         in2.enable();
@@ -138,13 +164,12 @@ impl PowerStage {
         }
     }
 
-    /// Whether the bridge or the comparator pulls the fault line; pulled down weakly against the external pull-up, a
-    /// wire that is off reads as a fault.
+    /// Whether the bridge or the comparator pulls the fault line low.
     pub fn fault(&mut self) -> bool {
         self.fault.is_low()
     }
 
-    /// Tells bridge and comparator what to do from now on.
+    /// Applies the outputs of a tick to the bridge and to the test line of the comparator.
     pub fn apply(&mut self, outputs: &Outputs) {
         self.test.set_state(outputs.comparator_test.into());
         match outputs.drive {
@@ -159,7 +184,7 @@ impl PowerStage {
         }
     }
 
-    /// Both bridge outputs high-impedance, at once.
+    /// Makes both outputs of the bridge high-impedance at once.
     pub fn off(&mut self) {
         self.bridge.off();
         if self.on {
@@ -169,15 +194,15 @@ impl PowerStage {
     }
 }
 
-/// A PWM channel in front of one leg.
-enum Leg {
+/// The PWM channel of one input of a bridge.
+enum PwmOutput {
     Tim1(ErasedChannel<TIM1>),
     Tim8(ErasedChannel<TIM8>),
     Tim10(ErasedChannel<TIM10>),
     Tim11(ErasedChannel<TIM11>),
 }
 
-impl Leg {
+impl PwmOutput {
     fn enable(&mut self) {
         match self {
             Self::Tim1(channel) => channel.enable(),
@@ -188,11 +213,11 @@ impl Leg {
     }
 }
 
-impl ErrorType for Leg {
+impl ErrorType for PwmOutput {
     type Error = Infallible;
 }
 
-impl SetDutyCycle for Leg {
+impl SetDutyCycle for PwmOutput {
     fn max_duty_cycle(&self) -> u16 {
         match self {
             Self::Tim1(channel) => channel.max_duty_cycle(),

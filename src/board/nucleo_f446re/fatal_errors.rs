@@ -1,0 +1,83 @@
+//! Handlers of errors after which the program cannot continue: they turn the bridges off, log the
+//! error, and wait until the watchdog resets the device.
+//!
+//! They do not reset it at once, so that a debug probe has time to read the log, and so that a
+//! fault which recurs at every start does not cause a rapid series of resets.
+
+use core::panic::PanicInfo;
+use core::sync::atomic::{AtomicBool, Ordering};
+
+use cortex_m_rt::{ExceptionFrame, exception};
+
+use thermal_display::device::safety::{Fault, TripCause};
+
+use super::{fault_record, watchdog, wiring};
+
+/// Disables interrupts, turns all bridges off and stores `fault` as the cause of the reset that
+/// will follow.
+fn shut_down(fault: Fault) {
+    cortex_m::interrupt::disable();
+    wiring::disable_bridges();
+    fault_record::store_if_empty(&TripCause::alone(fault));
+}
+
+/// Whether no handler has logged yet. Only the first error is logged, because logging may be what
+/// raised the next one.
+fn first_report() -> bool {
+    static REPORTED: AtomicBool = AtomicBool::new(false);
+    !REPORTED.swap(true, Ordering::Relaxed)
+}
+
+/// Waits for the reset by a watchdog: 47 ms, or at most 188 ms if the clock of the window watchdog
+/// has failed, or at most a second if the start-up has not set the watchdogs up yet. The processor
+/// stays awake, so that the debug probe can read the log.
+fn wait_for_watchdog() -> ! {
+    watchdog::start();
+    loop {
+        cortex_m::asm::nop();
+    }
+}
+
+#[panic_handler]
+fn panic(info: &PanicInfo<'_>) -> ! {
+    shut_down(Fault::Panic);
+    if first_report() {
+        defmt::error!("{}", defmt::Display2Format(info));
+    }
+    wait_for_watchdog()
+}
+
+// SAFETY: `unsafe` because memory may be corrupt. The handler reads the frame that the processor
+// has just stacked.
+#[exception]
+unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
+    shut_down(Fault::HardFault);
+    if first_report() {
+        defmt::error!(
+            "hard fault at pc {=u32:#x}, lr {=u32:#x}",
+            frame.pc(),
+            frame.lr()
+        );
+    }
+    wait_for_watchdog()
+}
+
+// SAFETY: `unsafe` because it interrupts critical sections. It accesses no data that they protect.
+#[exception]
+unsafe fn NonMaskableInt() -> ! {
+    shut_down(Fault::Clock);
+    if first_report() {
+        defmt::error!("the 8 MHz clock has failed");
+    }
+    wait_for_watchdog()
+}
+
+// SAFETY: `unsafe` because it may interrupt any code. It accesses no data that other code uses.
+#[exception]
+unsafe fn DefaultHandler(irqn: i16) -> ! {
+    shut_down(Fault::HardFault);
+    if first_report() {
+        defmt::error!("interrupt {=i16} has no task", irqn);
+    }
+    wait_for_watchdog()
+}

@@ -1,0 +1,58 @@
+//! Wiring for one finger, whose sensors are connected to the inputs of the converter.
+//!
+//! | pin  | header | signal        | notes                                                   |
+//! |------|--------|---------------|---------------------------------------------------------|
+//! | PA8  | D7     | bridge IN1    | TIM1 channel 1; external pull-down                      |
+//! | PA9  | D8     | bridge IN2    | TIM1 channel 2; external pull-down                      |
+//! | PB10 | D6     | bridge enable | high enables; external pull-down                        |
+//! | PA6  | D12    | bridge nFAULT | TIM1 break input, low is a fault; external 4.7k pull-up |
+//! | PC3  | CN7-37 | comparator test | high: the comparator trips; external pull-down      |
+//! | PA5  | D13    | LED LD2       | lit while the bridge may drive                          |
+//!
+//! The comparator that monitors the second display thermistor disconnects the supply of the bridge
+//! without the processor. It also pulls nFAULT low, so that the break input reports the trip to the
+//! processor.
+
+mod power;
+
+use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1};
+use thermal_display::device::Finger;
+
+pub use power::PowerStage;
+
+/// Number of fingers of this wiring.
+pub const FINGERS: usize = 1;
+
+/// Register value for a sampling time of 56 cycles, 2.5 us.
+///
+/// The input must settle to a quarter of a step, which takes 9.7 time constants: 0.75 us with 7 pF,
+/// 6 kOhm inside the converter and 5 kOhm of a 10k/10k divider. The margin is for a cold thermistor
+/// of 30 kOhm, whose divider has 7.5 kOhm. With 12 more cycles for the conversion, seven channels
+/// take 21 us of the 62.5 us between two scans.
+pub const SAMPLE_TIME: u8 = 3;
+
+/// Stands for the multiplexers of the five-finger wiring; one finger needs none.
+pub struct Multiplexer;
+
+impl Multiplexer {
+    /// Scans after a switch that may still belong to the previous finger.
+    pub const SETTLING_SCANS: usize = 0;
+
+    /// Does nothing.
+    pub fn select(&mut self, _finger: Finger<FINGERS>) {}
+}
+
+/// Makes the bridge high-impedance, in any state of the program, which must not continue
+/// afterwards.
+pub fn disable_bridges() {
+    // SAFETY: the owners of these peripherals do not run again, because interrupts are disabled and
+    // no caller of this function returns. The registers may be written at any time.
+    let (clocks, timer, pins) = unsafe { (RCC::steal(), TIM1::steal(), GPIOB::steal()) };
+    // The start-up may have failed before these clocks were enabled, and without them writes have
+    // no effect. The errata sheet demands a delay after enabling, which the barrier provides.
+    clocks.apb2enr().modify(|_, w| w.tim1en().enabled());
+    clocks.ahb1enr().modify(|_, w| w.gpioben().enabled());
+    cortex_m::asm::dsb();
+    timer.bdtr().modify(|_, w| w.moe().disabled_idle());
+    pins.bsrr().write(|w| w.br10().set_bit());
+}
