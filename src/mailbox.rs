@@ -69,7 +69,7 @@ impl Inlet<'_> {
 }
 
 impl Outlet<'_> {
-    /// The next line to be answered; [`LineError::Refused`] for one that found no place.
+    /// The next line to be answered; [`LineError::QueueFull`] for one that found no place.
     pub fn take(&mut self) -> Option<Received> {
         // Looked at before the queue: while it is not zero nothing is put in, so an empty queue then means
         // that the refused lines are next.
@@ -79,7 +79,7 @@ impl Outlet<'_> {
         }
         (refused > 0).then(|| {
             self.refused.fetch_sub(1, Ordering::Release);
-            Err(LineError::Refused)
+            Err(LineError::QueueFull)
         })
     }
 }

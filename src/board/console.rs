@@ -5,7 +5,7 @@ use thermal_display::commissioning::StorageOrder;
 use thermal_display::device::Telemetry;
 use thermal_display::device::command::Addressed;
 use thermal_display::mailbox::Outlet;
-use thermal_display::protocol::{Desk, Error, Execute, Reply, telemetry_line};
+use thermal_display::protocol::{CommandHandler, Error, Execute, Reply, telemetry_line};
 
 use super::{FINGERS, Outbox, restart};
 
@@ -14,7 +14,7 @@ pub struct Console {
     lines: Outlet<'static>,
     telemetry: Consumer<'static, Addressed<Telemetry>>,
     outbox: Outbox,
-    desk: &'static mut Desk<FINGERS>,
+    handler: &'static mut CommandHandler<FINGERS>,
     /// What the device says first.
     first: Option<Result<Reply, Error>>,
     /// What is to be stored by starting anew.
@@ -22,19 +22,19 @@ pub struct Console {
 }
 
 impl Console {
-    /// A console that answers `lines` by its `desk` and sends `telemetry` through `outbox`, after what is to be said `first`.
+    /// A console that answers `lines` by its `handler` and sends `telemetry` through `outbox`, after what is to be said `first`.
     pub fn new(
         lines: Outlet<'static>,
         telemetry: Consumer<'static, Addressed<Telemetry>>,
         outbox: Outbox,
-        desk: &'static mut Desk<FINGERS>,
+        handler: &'static mut CommandHandler<FINGERS>,
         first: Option<Result<Reply, Error>>,
     ) -> Self {
         Self {
             lines,
             telemetry,
             outbox,
-            desk,
+            handler,
             first,
             order: None,
         }
@@ -49,7 +49,7 @@ impl Console {
         while self.outbox.has_room() {
             if let Some(order) = self.order {
                 if self.outbox.is_empty() {
-                    restart(&self.desk.record(order));
+                    restart(&self.handler.settings_record(order));
                 }
                 // The end of each line leads here again.
                 return;
@@ -62,10 +62,10 @@ impl Console {
             } else if let Some(line) = self.lines.take() {
                 let answer = line
                     .map_err(|error| Addressed::device(Error::from(error)))
-                    .and_then(|line| self.desk.answer(&line, &mut execute));
+                    .and_then(|line| self.handler.answer(&line, &mut execute));
                 match answer {
                     Ok(Addressed {
-                        said: Reply::Restart(order),
+                        content: Reply::Restart(order),
                         ..
                     }) => self.order = Some(order),
                     Ok(reply) => self.outbox.send(&reply),

@@ -46,7 +46,7 @@ use thermal_display::device::Telemetry;
 use thermal_display::device::command::Addressed;
 use thermal_display::device::safety::{Fault, TripCause};
 use thermal_display::mailbox::Mailbox;
-use thermal_display::protocol::{Desk, Error, Reason, Reply};
+use thermal_display::protocol::{CommandHandler, Error, FailureText, Reply};
 use thermal_display::settings::Settings;
 
 pub use dose::{keep as keep_dose, kept as kept_dose};
@@ -79,7 +79,7 @@ pub struct Memory {
     mailbox: Mailbox,
     telemetry: Queue<Addressed<Telemetry>, { TELEMETRY_DEPTH + 1 }>,
     // Here, as moving it once samples are taken makes the first tick late.
-    desk: Option<Desk<FINGERS>>,
+    handler: Option<CommandHandler<FINGERS>>,
 }
 
 impl Memory {
@@ -91,7 +91,7 @@ impl Memory {
             links: serial::Links::new(),
             mailbox: Mailbox::new(),
             telemetry: Queue::new(),
-            desk: None,
+            handler: None,
         }
     }
 }
@@ -230,16 +230,16 @@ impl Board {
             inlet,
             &mut rcc,
         );
-        let desk = memory.desk.insert(match &found.kept {
-            Ok(Some(kept)) => Desk::restored(kept),
-            Ok(None) | Err(_) => Desk::new(Settings::default()),
+        let handler = memory.handler.insert(match &found.kept {
+            Ok(Some(kept)) => CommandHandler::from_stored(kept),
+            Ok(None) | Err(_) => CommandHandler::new(Settings::default()),
         });
         // The answer to the line that the device was started anew by.
         let first = found.stored.as_ref().map(|stored| match stored {
             Ok(()) => Ok(Reply::DONE),
-            Err(error) => Err(Error::NotStored(Reason::of(error))),
+            Err(error) => Err(Error::NotStored(FailureText::new(error))),
         });
-        let console = Console::new(outlet, telemetry_out, outbox, desk, first);
+        let console = Console::new(outlet, telemetry_out, outbox, handler, first);
 
         let inputs = sampler::Inputs {
             display: gpioa.pa0.into_analog(),

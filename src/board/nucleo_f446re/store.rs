@@ -10,7 +10,9 @@ use core::sync::atomic::{AtomicU8, AtomicU32};
 
 use cortex_m::peripheral::SCB;
 use stm32f4xx_hal::pac::FLASH;
-use thermal_display::settings::{Kept, LONGEST, Store, StoreError, StoredBytes, decode};
+use thermal_display::settings::{
+    RECORD_MAX_BYTES, SettingsRecord, SettingsStore, StoreError, StoredSettings, decode,
+};
 
 use super::FINGERS;
 use super::flash::{FlashError, SettingsFlash};
@@ -27,7 +29,7 @@ const LAST_FRAME_CYCLES: u32 = 180_000_000 / 1000 * 2;
 struct Handover {
     waiting: AtomicU32,
     length: AtomicU32,
-    record: [AtomicU8; LONGEST],
+    record: [AtomicU8; RECORD_MAX_BYTES],
 }
 
 // SAFETY: the section is left alone by the start-up code, and nothing else is in it; any bits are a handover.
@@ -35,7 +37,7 @@ struct Handover {
 static HANDOVER: Handover = Handover {
     waiting: AtomicU32::new(0),
     length: AtomicU32::new(0),
-    record: [const { AtomicU8::new(0) }; LONGEST],
+    record: [const { AtomicU8::new(0) }; RECORD_MAX_BYTES],
 };
 
 impl Handover {
@@ -46,7 +48,7 @@ impl Handover {
     }
 
     /// What waits, for one more attempt.
-    fn begin(&self) -> Option<Result<StoredBytes, NotStored>> {
+    fn begin(&self) -> Option<Result<SettingsRecord, NotStored>> {
         let begun = self.attempts()?;
         if begun == ATTEMPTS {
             return Some(Err(NotStored::Interrupted));
@@ -57,7 +59,7 @@ impl Handover {
         Some(bytes.ok_or(NotStored::Damaged))
     }
 
-    fn put(&self, record: &StoredBytes) {
+    fn put(&self, record: &SettingsRecord) {
         for (place, byte) in self.record.iter().zip(record) {
             place.store(*byte, Relaxed);
         }
@@ -96,7 +98,7 @@ impl fmt::Display for NotStored {
 /// What a start has found.
 pub struct Found {
     /// The settings of all fingers; none are factory defaults.
-    pub kept: Result<Option<[Kept; FINGERS]>, Failure>,
+    pub kept: Result<Option<[StoredSettings; FINGERS]>, Failure>,
     /// How storing went, if something waited to be stored.
     pub stored: Option<Result<(), NotStored>>,
 }
@@ -109,7 +111,7 @@ pub fn is_planned() -> bool {
 /// Stores what waits, and reads what is stored. To be called before anything is set up.
 #[inline(never)]
 pub fn at_start(registers: &FLASH) -> Found {
-    let mut store = Store::<_, FINGERS>::new(SettingsFlash::new(registers));
+    let mut store = SettingsStore::<_, FINGERS>::new(SettingsFlash::new(registers));
     let stored = HANDOVER.begin().map(|record| {
         let kept = decode::<FINGERS>(&record?).map_err(|_| NotStored::Damaged)?;
         store.save(kept.as_ref()).map_err(NotStored::Failed)
@@ -126,7 +128,7 @@ pub fn at_start(registers: &FLASH) -> Found {
 }
 
 /// Starts the device anew, with a record to be stored. Bridges are off, and the line to the host has its last frame.
-pub fn restart(record: &StoredBytes) -> ! {
+pub fn restart(record: &SettingsRecord) -> ! {
     cortex_m::asm::delay(LAST_FRAME_CYCLES);
     HANDOVER.put(record);
     SCB::sys_reset()

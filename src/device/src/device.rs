@@ -8,7 +8,7 @@ use crate::drive::Outputs;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
-use thermal_settings::{Kept, Settings};
+use thermal_settings::{Settings, StoredSettings};
 
 /// As many stations as the device has fingers, ten at most. They share nothing.
 #[derive(Clone, Debug)]
@@ -38,7 +38,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
 
     /// Reads and controls by what was kept. `f64` in software, once for each finger.
     #[inline(never)]
-    pub fn restore(&mut self, kept: &[Kept; FINGERS]) {
+    pub fn restore(&mut self, kept: &[StoredSettings; FINGERS]) {
         for (station, kept) in self.stations.iter_mut().zip(kept) {
             station.apply(&kept.settings());
         }
@@ -94,10 +94,10 @@ impl<const FINGERS: usize> Device<FINGERS> {
     #[must_use]
     pub fn telemetry(&self, finger: usize) -> Option<Addressed<Telemetry>> {
         let finger = finger % FINGERS;
-        let said = self.stations[finger].telemetry()?;
+        let content = self.stations[finger].telemetry()?;
         Some(Addressed {
             finger: Self::name(finger),
-            said,
+            content,
         })
     }
 
@@ -117,12 +117,12 @@ impl<const FINGERS: usize> Device<FINGERS> {
     ) -> Result<Addressed<Reply>, Addressed<Refused>> {
         let Addressed {
             finger,
-            said: command,
+            content: command,
         } = request;
         if let Some(one) = finger {
             return match self.stations[usize::from(one) % FINGERS].execute(command) {
-                Ok(said) => Ok(Addressed { finger, said }),
-                Err(said) => Err(Addressed { finger, said }),
+                Ok(content) => Ok(Addressed { finger, content }),
+                Err(content) => Err(Addressed { finger, content }),
             };
         }
         let (mut refused, mut healthy, mut obeyed) = (None, None, false);
@@ -130,11 +130,11 @@ impl<const FINGERS: usize> Device<FINGERS> {
             let finger = Self::name(finger);
             match station.execute(command) {
                 Ok(Reply::Done) => obeyed = true,
-                Ok(said) => return Ok(Addressed { finger, said }),
-                Err(said @ Refused::NothingToClear) => {
-                    healthy = healthy.or(Some(Addressed { finger, said }))
+                Ok(content) => return Ok(Addressed { finger, content }),
+                Err(content @ Refused::NothingToClear) => {
+                    healthy = healthy.or(Some(Addressed { finger, content }))
                 }
-                Err(said) => refused = refused.or(Some(Addressed { finger, said })),
+                Err(content) => refused = refused.or(Some(Addressed { finger, content })),
             }
         }
         let refused = refused.or(healthy.filter(|_| !obeyed));

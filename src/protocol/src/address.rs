@@ -1,30 +1,30 @@
-//! Whom a line is for, on a device with several fingers.
+//! Addressing of fingers.
 //!
-//! A line may begin with `@` and the number of a finger, `@2 material copper`; its answer then begins so too.
-//! Without that it is for every finger. Telemetry says whose it is if there is more than one finger.
+//! A line may begin with `@`, the index of a finger and a space, as in `@2 material copper`; its answer then begins in the
+//! same way. Without that, a line addresses all fingers. Telemetry names its finger if the device has more than one.
 
 use thermal_device::command::Addressed;
 
 use crate::Error;
 
-/// Splits a line into the finger that it is for and the rest, on a device with that many fingers, ten at most.
+/// Splits a line into the index of the finger that it addresses and the rest, on a device with at most ten fingers.
 ///
 /// # Errors
-/// There is no such finger.
+/// The device has no such finger.
 pub fn address(line: &str, fingers: usize) -> Result<(Option<u8>, &str), Addressed<Error>> {
     let line = line.trim_ascii_start();
     let Some(addressed) = line.strip_prefix('@') else {
         return Ok((None, line));
     };
-    let (number, rest) = addressed.split_once(' ').unwrap_or((addressed, ""));
-    let known = match number.as_bytes() {
+    let (index, rest) = addressed.split_once(' ').unwrap_or((addressed, ""));
+    let finger = match index.as_bytes() {
         [digit @ b'0'..=b'9'] => Some(digit - b'0').filter(|&n| usize::from(n) < fingers),
         _ => None,
     };
-    match known {
+    match finger {
         Some(finger) => Ok((Some(finger), rest)),
         None => Err(Addressed::device(Error::UnknownFinger(
-            number.into(),
+            index.into(),
             fingers,
         ))),
     }

@@ -1,172 +1,177 @@
-//! Lines to answers: what the host task does, for every finger of the device.
+//! Execution of the host's lines for all fingers of a device.
 
 use core::array;
 
-use thermal_commissioning::{Request, Service, StorageOrder, is_off, record};
+use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
+use thermal_device::StateName;
 use thermal_device::command::{self, Addressed, Command, Refused};
-use thermal_settings::{Kept, Settings, StoredBytes};
+use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode};
 
 use crate::address::address;
-use crate::{Error, Parsed, Reply};
+use crate::{Error, Reply, Request};
 
-/// Executes a command on the stations: for one finger, or for all.
-pub trait Execute: FnMut(Addressed<Command>) -> Executed {}
+/// Executes a command on the station of one finger or on all stations, in bounded and short time.
+pub trait Execute: FnMut(Addressed<Command>) -> ExecutionResult {}
 
-impl<F: FnMut(Addressed<Command>) -> Executed> Execute for F {}
+impl<F: FnMut(Addressed<Command>) -> ExecutionResult> Execute for F {}
 
-/// What the stations answer.
-pub type Executed = Result<Addressed<command::Reply>, Addressed<Refused>>;
+/// The reply of the stations.
+pub type ExecutionResult = Result<Addressed<command::Reply>, Addressed<Refused>>;
 
-/// The settings of as many fingers as the device has, ten at most, and what answers their lines.
+/// Answers the host's lines, by the commissioning sessions of all fingers, one to ten, and by their stations.
 #[derive(Clone, Debug)]
-pub struct Desk<const FINGERS: usize> {
-    fingers: [Service; FINGERS],
+pub struct CommandHandler<const FINGERS: usize> {
+    sessions: [CommissioningSession; FINGERS],
 }
 
-impl<const FINGERS: usize> Desk<FINGERS> {
-    /// For a device with these settings.
+impl<const FINGERS: usize> CommandHandler<FINGERS> {
+    /// A handler for a device whose fingers all have these settings.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
         Self {
-            fingers: array::from_fn(|_| Service::new(settings)),
+            sessions: array::from_fn(|_| CommissioningSession::new(settings)),
         }
     }
 
-    /// For a device of this class that was commissioned so.
+    /// A handler for a device with stored settings.
     #[must_use]
-    pub fn restored(kept: &[Kept; FINGERS]) -> Self {
+    pub fn from_stored(stored: &[StoredSettings; FINGERS]) -> Self {
+        let session = |stored: &StoredSettings| CommissioningSession::new(stored.settings());
         Self {
-            fingers: kept.each_ref().map(|kept| Service::new(kept.settings())),
+            sessions: stored.each_ref().map(session),
         }
     }
 
-    /// The bytes that an order stores.
+    /// The record that an order stores.
     #[must_use]
-    pub fn record(&self, order: StorageOrder) -> StoredBytes {
-        record(order, &self.fingers)
+    pub fn settings_record(&self, order: StorageOrder) -> SettingsRecord {
+        match order {
+            StorageOrder::Save => {
+                let sessions = self.sessions.each_ref();
+                let stored = sessions.map(|one| StoredSettings::from_settings(one.settings()));
+                encode(Some(&stored))
+            }
+            StorageOrder::Forget => encode::<FINGERS>(None),
+        }
     }
 
-    /// Answers a line, for one finger or for all. `execute` is what the stations do with a [`Command`], in bounded and
-    /// short time; all that takes longer is done here. A question to all is answered by the first; all obey an order,
-    /// and what the first has found is told.
+    /// Answers a line for one finger or for all. Time-consuming computations are done here, outside of `execute`, which
+    /// runs with the control tick locked out. If a line addresses all fingers, a query is answered by the first one, and
+    /// a change is made by each.
     ///
     /// # Errors
-    /// Why the line is refused: nothing has changed for the finger that is named, the first of those that refuse.
+    /// The line is rejected. The error names the first finger that rejects it, which is unchanged; the other fingers have
+    /// executed the line.
     pub fn answer(
         &mut self,
         line: &str,
         mut execute: impl Execute,
     ) -> Result<Addressed<Reply>, Addressed<Error>> {
-        let (finger, rest) = address(line, FINGERS)?;
-        let of = |said: Error| Addressed { finger, said };
-        let [first, ..] = self.fingers.as_slice() else {
-            return Err(of(Error::Missing("finger")));
-        };
-        match Parsed::parse(rest, first.settings()).map_err(of)? {
-            Parsed::Identify => Ok(Addressed {
-                finger,
-                said: Reply::Identity {
-                    fingers: FINGERS as u8,
-                },
-            }),
-            Parsed::Station(said) => match execute(Addressed { finger, said }) {
+        const { assert!(FINGERS > 0 && FINGERS <= 10) };
+        let (finger, line) = address(line, FINGERS)?;
+        let addressed = |content| Addressed { finger, content };
+        let request = Request::parse(line, self.sessions[0].settings())
+            .map_err(|content| Addressed { finger, content })?;
+        match request {
+            Request::Identify => Ok(addressed(Reply::Identity {
+                fingers: FINGERS as u8,
+            })),
+            Request::Station(content) => match execute(Addressed { finger, content }) {
                 Ok(reply) => Ok(reply.map(Reply::Station)),
                 Err(refused) => Err(refused.map(Error::from)),
             },
-            Parsed::Commissioning(request) => self.commission(request, finger, execute),
-            Parsed::Storage(order) => Self::accept(order, finger, execute),
+            Request::Commissioning(request) => self.commission(request, finger, execute),
+            Request::Storage(order) => match Self::reject_storage(order, finger, execute) {
+                None => Ok(addressed(Reply::Restart(order))),
+                Some(error) => Err(error),
+            },
         }
     }
 
-    /// Lets the sessions of one finger or of all do what a line of commissioning asks.
+    /// The name of a finger that no line has addressed: its index, or none if it is the only one.
+    fn name(finger: usize) -> Option<u8> {
+        (FINGERS > 1).then_some(finger as u8)
+    }
+
+    /// Executes a request in the session of one finger or of all.
     fn commission(
         &mut self,
-        request: Request,
+        request: SessionRequest,
         finger: Option<u8>,
         mut execute: impl Execute,
     ) -> Result<Addressed<Reply>, Addressed<Error>> {
         let finger = match request {
-            Request::Settings(_) | Request::Margins => finger.or(first_of(FINGERS)),
-            // Milliseconds of `f64` each, which the watchdog waits for once.
-            Request::Point { .. } | Request::Tuned if finger.is_none() && FINGERS > 1 => {
-                return Err(Addressed {
-                    finger,
-                    said: Error::Missing("finger (as @0)"),
-                });
+            SessionRequest::CountSettingsLines
+            | SessionRequest::SettingsLine(_)
+            | SessionRequest::Margins => finger.or(Self::name(0)),
+            // Each takes milliseconds of `f64`: for all fingers at once it would exceed the watchdog's period.
+            SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
+                if finger.is_none() && FINGERS > 1 =>
+            {
+                return Err(Addressed::device(Error::Missing("finger (as @0)")));
             }
             _ => finger,
         };
-        let mut told = Ok(Addressed::device(thermal_commissioning::Reply::Done));
-        for (index, service) in self.fingers.iter_mut().enumerate() {
+        let (mut reply, mut first_error) = (SessionReply::Done, None);
+        for (index, session) in self.sessions.iter_mut().enumerate() {
             if finger.is_some_and(|one| usize::from(one) != index) {
                 continue;
             }
-            let station = Some(index as u8);
-            let answered = service.answer(request.clone(), |said| {
-                execute(Addressed {
-                    finger: station,
-                    said,
-                })
-                .map(|reply| reply.said)
-                .map_err(|error| error.said)
+            let answer = session.answer(request.clone(), |content| {
+                let finger = Some(index as u8);
+                match execute(Addressed { finger, content }) {
+                    Ok(reply) => Ok(reply.content),
+                    Err(refused) => Err(refused.content),
+                }
             });
-            // A finger that nobody has asked for is named if it is not the only one.
-            let finger = finger.or((FINGERS > 1).then_some(index as u8));
-            told = match (told, answered) {
-                (Err(first), _) => Err(first),
-                (Ok(_), Err(said)) => Err(Addressed {
-                    finger,
-                    said: Error::from(said),
-                }),
-                (
-                    Ok(Addressed {
-                        said: thermal_commissioning::Reply::Done,
-                        ..
-                    }),
-                    Ok(said),
-                ) if said != thermal_commissioning::Reply::Done => Ok(Addressed { finger, said }),
-                (told, Ok(_)) => told,
-            };
+            match answer {
+                // A request to several fingers has no other reply than `Done`.
+                Ok(answer) => reply = answer,
+                Err(error) => {
+                    first_error.get_or_insert(Addressed {
+                        finger: finger.or(Self::name(index)),
+                        content: Error::from(error),
+                    });
+                }
+            }
         }
-        // Whoever is asked for by name answers by name.
-        told.map(|reply| Addressed {
-            finger: reply.finger.or(finger),
-            said: Reply::Commissioning(reply.said),
-        })
+        let content = Reply::Commissioning(reply);
+        first_error.map_or(Ok(Addressed { finger, content }), Err)
     }
 
-    /// Accepts an order if nobody can feel a device that starts anew: all bridges are off.
-    fn accept(
+    /// Rejects an order for a single finger, and while any bridge is driven: the device restarts to store the settings,
+    /// which a user must not feel.
+    fn reject_storage(
         order: StorageOrder,
         finger: Option<u8>,
         mut execute: impl Execute,
-    ) -> Result<Addressed<Reply>, Addressed<Error>> {
+    ) -> Option<Addressed<Error>> {
         if finger.is_some() && FINGERS > 1 {
-            let said = Error::WholeDevice(order.name());
-            return Err(Addressed { finger, said });
+            let content = Error::WholeDevice(order.name());
+            return Some(Addressed { finger, content });
         }
-        for one in 0..FINGERS as u8 {
+        for index in 0..FINGERS as u8 {
             let status = execute(Addressed {
-                finger: Some(one),
-                said: Command::Status,
-            })
-            .map_err(|refused| refused.map(Error::from))?;
-            let off =
-                matches!(&status.said, command::Reply::Status(status) if is_off(status.state));
-            if !off {
-                let finger = (FINGERS > 1).then_some(one).or(finger);
-                let said = Error::NeedsOff(order.name());
-                return Err(Addressed { finger, said });
+                finger: Some(index),
+                content: Command::Status,
+            });
+            match status {
+                Err(refused) => return Some(refused.map(Error::from)),
+                Ok(Addressed {
+                    content: command::Reply::Status(status),
+                    ..
+                }) if matches!(
+                    status.state,
+                    StateName::Off | StateName::Ready | StateName::Tripped(_)
+                ) => {}
+                Ok(_) => {
+                    return Some(Addressed {
+                        finger: Self::name(index.into()).or(finger),
+                        content: Error::NeedsOff(order.name()),
+                    });
+                }
             }
         }
-        Ok(Addressed {
-            finger,
-            said: Reply::Restart(order),
-        })
+        None
     }
-}
-
-/// Who answers a question to all; nobody is named if there is one finger only.
-fn first_of(fingers: usize) -> Option<u8> {
-    (fingers > 1).then_some(0)
 }
