@@ -1,4 +1,4 @@
-//! Lines to five fingers, and what each of them makes of its own samples.
+//! Tests of a device with several fingers: addressing, and independence of the fingers.
 
 use std::format;
 use std::string::{String, ToString};
@@ -7,18 +7,20 @@ use crate::device::Device;
 use crate::device::drive::Drive;
 use crate::device::sense::SCANS_PER_TICK;
 use crate::device::sense::Samples;
-use crate::protocol::{Desk, telemetry_line};
+use crate::protocol::{CommandHandler, telemetry_line};
 use crate::settings::Settings;
 
 const FIVE: usize = 5;
 
-fn host<const FINGERS: usize>(device: &mut Device<FINGERS>, line: &str) -> String {
-    let mut desk = Desk::<FINGERS>::new(Settings::default());
-    let done = desk.answer(line, |request| device.execute(request));
-    done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
+/// Sends a line to a device with factory defaults, and returns the answer.
+fn send<const FINGERS: usize>(device: &mut Device<FINGERS>, line: &str) -> String {
+    let mut handler = CommandHandler::<FINGERS>::new(Settings::default());
+    let answer = handler.answer(line, |request| device.execute(request));
+    answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
 }
 
-/// Samples without a fault: 26 °C, but for the skin at 34 °C; no force. `noise` keeps them from repeating.
+/// Samples without a fault: skin at 34 °C, all else at 26 °C, no force. `noise` is added to each, so that they can differ from
+/// tick to tick.
 pub fn samples(noise: u16) -> Samples {
     let count = |counts: u16| counts * SCANS_PER_TICK as u16;
     Samples {
@@ -33,38 +35,38 @@ pub fn samples(noise: u16) -> Samples {
     }
 }
 
-/// Arms a finger, whose display answers to current, and whose comparator works.
+/// Arms a finger whose display responds to the current and whose comparator works.
 pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: usize) {
-    host(device, &format!("@{finger} arm"));
-    // 46 counts to the kelvin, 2.7 K/s per ampere.
-    let (mut tick, mut cooler, mut current, mut bridge_fault) = (0, 0.0, 0, false);
-    while host(device, &format!("@{finger} state")).contains("state=self-test") {
+    send(device, &format!("@{finger} arm"));
+    // 46 counts/K, 2.7 K/s per ampere.
+    let (mut tick, mut cooled_k, mut current, mut bridge_fault) = (0, 0.0, 0, false);
+    while send(device, &format!("@{finger} state")).contains("state=self-test") {
         tick += 1;
-        let sound = samples(tick % 2);
-        let moved = (cooler * 46.0 * 16.0) as i16;
+        let healthy = samples(tick % 2);
+        let cooled_counts = (cooled_k * 46.0 * 16.0) as i16;
         let outputs = device.step(
             finger,
             &Samples {
-                display: sound.display.wrapping_add_signed(moved),
-                display_check: sound.display_check.wrapping_add_signed(moved),
+                display: healthy.display.wrapping_add_signed(cooled_counts),
+                display_check: healthy.display_check.wrapping_add_signed(cooled_counts),
                 current,
                 bridge_fault,
-                ..sound
+                ..healthy
             },
         );
-        let asked = match outputs.drive {
+        let direction = match outputs.drive {
             Drive::On(duty) if duty.fraction() > 0.05 => 1,
             Drive::On(duty) if duty.fraction() < -0.05 => -1,
             _ => 0,
         };
-        cooler += 2.7e-3 * f64::from(asked);
-        current = 6400 * u16::from(asked != 0);
+        cooled_k += 2.7e-3 * f64::from(direction);
+        current = 6400 * u16::from(direction != 0);
         bridge_fault = outputs.comparator_test;
     }
 }
 
 fn state_of(device: &mut Device<FIVE>, finger: usize) -> String {
-    let answer = host(device, &format!("@{finger} state"));
+    let answer = send(device, &format!("@{finger} state"));
     let words = answer
         .strip_prefix(&format!("@{finger} ok state="))
         .expect("an answer");
@@ -72,24 +74,28 @@ fn state_of(device: &mut Device<FIVE>, finger: usize) -> String {
 }
 
 #[test]
-fn a_line_is_for_one_finger_or_for_all() {
+fn a_line_is_executed_by_the_addressed_finger_or_by_all() {
     let mut device = Device::<FIVE>::new(&Settings::default());
-    assert_eq!(host(&mut device, "@3 material abs"), "@3 ok");
+    assert_eq!(send(&mut device, "@3 material abs"), "@3 ok");
     arm(&mut device, 3);
-    assert_eq!(host(&mut device, "@3 start"), "@3 ok");
+    assert_eq!(send(&mut device, "@3 start"), "@3 ok");
     for finger in 0..FIVE {
         let expected = if finger == 3 { "preset" } else { "off" };
         assert_eq!(state_of(&mut device, finger), expected, "{finger}");
     }
-    // Four have no material yet, and the one that has started already is not the first to refuse.
-    assert_eq!(host(&mut device, "start"), "@0 err start needs arm first");
+    // All refuse: four are not armed, finger 3 has already started. The error is that of the first.
+    assert_eq!(send(&mut device, "start"), "@0 err start needs arm first");
     arm(&mut device, 0);
     assert_eq!(
-        host(&mut device, "start"),
+        send(&mut device, "start"),
         "@0 err start needs a material first"
     );
-    assert_eq!(state_of(&mut device, 3), "preset", "the others have obeyed");
-    assert_eq!(host(&mut device, "abort"), "ok");
+    assert_eq!(
+        state_of(&mut device, 3),
+        "preset",
+        "the others have executed it"
+    );
+    assert_eq!(send(&mut device, "abort"), "ok");
     for finger in 0..FIVE {
         let expected = if [0, 3].contains(&finger) {
             "ready"
@@ -100,9 +106,9 @@ fn a_line_is_for_one_finger_or_for_all() {
     }
 }
 
-/// A fault is its finger's own; the host's `abort` still reaches the fingers behind it.
+/// `abort` reaches the fingers after the one that is tripped.
 #[test]
-fn fingers_share_no_fault() {
+fn a_fault_trips_only_its_own_finger() {
     let mut device = Device::<FIVE>::new(&Settings::default());
     (0..FIVE).for_each(|finger| arm(&mut device, finger));
     for finger in 0..FIVE {
@@ -118,10 +124,10 @@ fn fingers_share_no_fault() {
     }
     assert_eq!(state_of(&mut device, 1), "tripped");
     assert_eq!(
-        host(&mut device, "arm"),
+        send(&mut device, "arm"),
         "@1 err tripped by bridge; clear it first"
     );
-    assert_eq!(host(&mut device, "abort"), "ok");
+    assert_eq!(send(&mut device, "abort"), "ok");
     for finger in [0, 2, 3, 4] {
         assert_eq!(
             device.step(finger, &samples(1)).drive,
@@ -130,19 +136,19 @@ fn fingers_share_no_fault() {
         );
     }
     device.step(1, &samples(1));
-    assert_eq!(host(&mut device, "clear"), "ok");
+    assert_eq!(send(&mut device, "clear"), "ok");
     assert_eq!(state_of(&mut device, 1), "off");
-    assert_eq!(host(&mut device, "clear"), "@0 err no fault to clear");
+    assert_eq!(send(&mut device, "clear"), "@0 err no fault to clear");
 }
 
 #[test]
-fn answers_and_telemetry_say_whose_they_are() {
+fn answers_and_telemetry_carry_the_address_of_their_finger() {
     let mut device = Device::<FIVE>::new(&Settings::default());
-    assert!(host(&mut device, "id").contains(" fingers=5 "));
-    assert!(host(&mut device, "@4 id").starts_with("@4 ok thermal-display "));
-    assert!(host(&mut device, "state").starts_with("@0 ok state=off"));
+    assert!(send(&mut device, "id").contains(" fingers=5 "));
+    assert!(send(&mut device, "@4 id").starts_with("@4 ok thermal-display "));
+    assert!(send(&mut device, "state").starts_with("@0 ok state=off"));
     assert_eq!(
-        host(&mut device, "@2 frobnicate me").split(';').next(),
+        send(&mut device, "@2 frobnicate me").split(';').next(),
         Some("@2 err unknown command 'frobnicate'")
     );
     for (line, named) in [
@@ -153,10 +159,10 @@ fn answers_and_telemetry_say_whose_they_are() {
         ("@x", "x"),
     ] {
         let refused = format!("err unknown finger '{named}' after @; known: 0 to 4");
-        assert_eq!(host(&mut device, line), refused);
+        assert_eq!(send(&mut device, line), refused);
     }
-    assert_eq!(host(&mut device, "@2"), "@2 err command missing");
-    assert_eq!(host(&mut device, "@2 stream 1"), "@2 ok");
+    assert_eq!(send(&mut device, "@2"), "@2 err command missing");
+    assert_eq!(send(&mut device, "@2 stream 1"), "@2 ok");
     for finger in 0..FIVE {
         device.step(finger, &samples(0));
         let line = device
@@ -167,17 +173,17 @@ fn answers_and_telemetry_say_whose_they_are() {
     }
 }
 
-/// A single finger is called nothing, but may be called 0.
+/// It may still be addressed as finger 0.
 #[test]
-fn one_finger_has_no_name() {
+fn a_single_finger_answers_without_an_address() {
     let mut device = Device::<1>::new(&Settings::default());
-    assert_eq!(host(&mut device, "stream 1"), "ok");
-    assert!(host(&mut device, "id").contains(" fingers=1 "));
-    assert!(host(&mut device, "state").starts_with("ok state=off"));
-    assert_eq!(host(&mut device, "@0 arm"), "@0 ok");
+    assert_eq!(send(&mut device, "stream 1"), "ok");
+    assert!(send(&mut device, "id").contains(" fingers=1 "));
+    assert!(send(&mut device, "state").starts_with("ok state=off"));
+    assert_eq!(send(&mut device, "@0 arm"), "@0 ok");
     arm(&mut device, 0);
     assert_eq!(
-        host(&mut device, "@1 arm"),
+        send(&mut device, "@1 arm"),
         "err unknown finger '1' after @; known: 0 to 0"
     );
     device.step(0, &samples(0));

@@ -25,7 +25,7 @@ fn lines_that_fit_come_out_and_the_others_are_counted() {
         assert_eq!(outlet.take(), Some(Ok(line.clone())));
     }
     for _ in 0..3 {
-        assert_eq!(outlet.take(), Some(Err(LineError::Refused)));
+        assert_eq!(outlet.take(), Some(Err(LineError::QueueFull)));
     }
     assert_eq!(outlet.take(), None);
 }
@@ -49,7 +49,7 @@ fn answers_come_in_the_order_of_the_lines() {
         for (answer, line) in answered.iter().zip(&sent) {
             match answer {
                 Ok(text) => assert_eq!(text, line, "order {order:#b}"),
-                Err(error) => assert_eq!(*error, LineError::Refused, "order {order:#b}"),
+                Err(error) => assert_eq!(*error, LineError::QueueFull, "order {order:#b}"),
             }
         }
     }
