@@ -73,7 +73,7 @@ impl Inlet<'_> {
 }
 
 impl Outlet<'_> {
-    /// Takes the next line to be answered; [`LineError::Refused`] stands for a line that did not
+    /// Takes the next line to be answered; [`LineError::QueueFull`] stands for a line that did not
     /// fit into the queue.
     pub fn take(&mut self) -> Option<Received> {
         // The count is read before the queue. While it is above zero no line enters the queue, so
@@ -84,7 +84,7 @@ impl Outlet<'_> {
         }
         (refused > 0).then(|| {
             self.refused.fetch_sub(1, Ordering::Release);
-            Err(LineError::Refused)
+            Err(LineError::QueueFull)
         })
     }
 }

@@ -1,4 +1,4 @@
-//! The whole device by its lines, without the board: lines and samples in, answers and outputs out.
+//! Tests of the device as a whole without its hardware: lines and samples in, answers and outputs out.
 
 mod bridge;
 mod commissioning;

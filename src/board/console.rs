@@ -5,7 +5,7 @@ use thermal_display::commissioning::StorageOrder;
 use thermal_display::device::Telemetry;
 use thermal_display::device::command::Addressed;
 use thermal_display::mailbox::Outlet;
-use thermal_display::protocol::{Desk, Error, Execute, Reply, telemetry_line};
+use thermal_display::protocol::{CommandHandler, Error, Execute, Reply, telemetry_line};
 
 use super::{FINGERS, Outbox, restart_to_save};
 
@@ -15,7 +15,7 @@ pub struct Console {
     pub lines: Outlet<'static>,
     pub telemetry: Consumer<'static, Addressed<Telemetry>>,
     pub outbox: Outbox,
-    pub desk: &'static mut Desk<FINGERS>,
+    pub handler: &'static mut CommandHandler<FINGERS>,
     /// Sent before anything else: the answer to the line that requested the restart.
     pub first_answer: Option<Result<Reply, Error>>,
     /// The settings are to be stored or erased by a restart, once all answers are sent.
@@ -32,7 +32,7 @@ impl Console {
         while self.outbox.has_room() {
             if let Some(order) = self.storage_order {
                 if self.outbox.is_empty() {
-                    restart_to_save(&self.desk.record(order));
+                    restart_to_save(&self.handler.settings_record(order));
                 }
                 // The task is called again whenever a line has been sent.
                 return;
@@ -45,10 +45,10 @@ impl Console {
             } else if let Some(line) = self.lines.take() {
                 let answer = line
                     .map_err(|error| Addressed::device(Error::from(error)))
-                    .and_then(|line| self.desk.answer(&line, &mut execute));
+                    .and_then(|line| self.handler.answer(&line, &mut execute));
                 match answer {
                     Ok(Addressed {
-                        said: Reply::Restart(order),
+                        content: Reply::Restart(order),
                         ..
                     }) => self.storage_order = Some(order),
                     Ok(reply) => self.outbox.send(&reply),

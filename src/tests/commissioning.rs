@@ -1,4 +1,4 @@
-//! Lines that commission five fingers, or one.
+//! Commissioning commands on devices with five fingers and with one.
 
 use std::format;
 use std::string::{String, ToString};
@@ -7,11 +7,11 @@ use std::vec::Vec;
 use super::device::arm;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, Finger};
-use crate::protocol::Desk;
+use crate::protocol::CommandHandler;
 use crate::settings::Settings;
 
-/// Settings that a device has given of itself.
-const LINES: [&str; 8] = [
+/// Lines that hold all commissioned settings, as a device reports them.
+const SETTINGS: [&str; 8] = [
     "set steps 10 0.000 -0.310 0.127 1.000 -2.250 0.004 0.000",
     "set steps 17 0.500 -0.499 0.333 0.000 0.000 4.000",
     "set correction display -0.123456 0.0012345 -0.00001234",
@@ -22,8 +22,9 @@ const LINES: [&str; 8] = [
     "set tile 2.911500 0.057812 0.102600 0.101112 0.015902",
 ];
 
+/// A device and its command handler.
 struct Bench<const FINGERS: usize> {
-    desk: Desk<FINGERS>,
+    handler: CommandHandler<FINGERS>,
     device: Device<FINGERS>,
 }
 
@@ -31,27 +32,28 @@ impl<const FINGERS: usize> Bench<FINGERS> {
     fn new() -> Self {
         let settings = Settings::default();
         Self {
-            desk: Desk::new(settings),
+            handler: CommandHandler::new(settings),
             device: Device::new(&settings),
         }
     }
 
-    fn host(&mut self, line: &str) -> String {
-        let done = self
-            .desk
+    /// Sends a line, and returns the answer.
+    fn send(&mut self, line: &str) -> String {
+        let answer = self
+            .handler
             .answer(line, |finger, command| self.device.execute(finger, command));
-        done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
+        answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
 
-    /// Its settings, by the lines that it gives of them.
-    fn lines(&mut self, of: &str) -> Vec<String> {
+    /// The answers that report the settings of the finger that `address` names.
+    fn settings(&mut self, address: &str) -> Vec<String> {
         (1..=8)
-            .map(|line| self.host(&format!("{of}settings {line}")))
+            .map(|line| self.send(&format!("{address}settings {line}")))
             .collect()
     }
 
-    /// 25 degrees everywhere, for so long that points can be taken; each finger's display sees another noise.
-    fn watch(&mut self) {
+    /// Steps at 26 °C and a skin of 34 °C until all averages are complete.
+    fn complete_averages(&mut self) {
         for tick in 0..600u16 {
             for finger in Finger::all() {
                 let count = |counts: u16| counts * SCANS_PER_TICK as u16 + tick % 2;
@@ -72,126 +74,128 @@ impl<const FINGERS: usize> Bench<FINGERS> {
 }
 
 #[test]
-fn a_line_changes_the_finger_that_it_names() {
+fn an_addressed_set_line_changes_only_its_finger() {
     let mut five = Bench::<5>::new();
-    let untouched = five.lines("@0 ");
-    for line in LINES {
-        assert_eq!(five.host(&format!("@3 {line}")), "@3 ok");
+    let unchanged = five.settings("@0 ");
+    for line in SETTINGS {
+        assert_eq!(five.send(&format!("@3 {line}")), "@3 ok");
     }
-    let told: Vec<_> = LINES.iter().map(|line| format!("@3 ok {line}")).collect();
-    assert_eq!(five.lines("@3 "), told);
+    let expected: Vec<_> = SETTINGS
+        .iter()
+        .map(|line| format!("@3 ok {line}"))
+        .collect();
+    assert_eq!(five.settings("@3 "), expected);
     for finger in [0, 1, 2, 4] {
-        let of = format!("@{finger} ");
-        let same: Vec<_> = untouched
+        let address = format!("@{finger} ");
+        let expected: Vec<_> = unchanged
             .iter()
-            .map(|line| line.replace("@0 ", &of))
+            .map(|line| line.replace("@0 ", &address))
             .collect();
-        assert_eq!(five.lines(&of), same);
+        assert_eq!(five.settings(&address), expected);
     }
 }
 
-/// What a device gives of its settings is what it takes, and says the same again.
 #[test]
-fn lines_of_settings_restore_them() {
+fn reported_settings_are_accepted_and_reported_again() {
     let mut one = Bench::<1>::new();
-    for line in LINES {
-        assert_eq!(one.host(line), "ok");
+    for line in SETTINGS {
+        assert_eq!(one.send(line), "ok");
     }
-    for (line, told) in LINES.iter().zip(one.lines("")) {
-        assert_eq!(told, format!("ok {line}"));
+    for (line, answer) in SETTINGS.iter().zip(one.settings("")) {
+        assert_eq!(answer, format!("ok {line}"));
     }
 }
 
 #[test]
-fn all_obey_an_order_and_the_first_answers_a_question() {
+fn an_unaddressed_change_is_made_by_all_fingers_and_a_query_answered_by_the_first() {
     let mut five = Bench::<5>::new();
-    assert_eq!(five.host("set correction room 0.5 0 0"), "ok");
-    assert_eq!(five.host("@4 set correction room 0.25 0 0"), "@4 ok");
+    assert_eq!(five.send("set correction room 0.5 0 0"), "ok");
+    assert_eq!(five.send("@4 set correction room 0.25 0 0"), "@4 ok");
     for (finger, offset) in ["0.5", "0.5", "0.5", "0.5", "0.25"].iter().enumerate() {
-        let told = five.host(&format!("@{finger} settings 7"));
+        let answer = five.send(&format!("@{finger} settings 7"));
         assert!(
-            told.starts_with(&format!("@{finger} ok set correction room {offset}")),
-            "{told}"
+            answer.starts_with(&format!("@{finger} ok set correction room {offset}")),
+            "{answer}"
         );
     }
     assert_eq!(
-        five.host("settings 7"),
+        five.send("settings 7"),
         "@0 ok set correction room 0.500000 0.0000000 0.00000000"
     );
-    assert_eq!(five.host("settings"), "@0 ok lines=8");
-    assert_eq!(Bench::<1>::new().host("settings"), "ok lines=8");
-    assert!(five.host("@2 margins").starts_with("@2 ok gain="));
-    five.watch();
-    let told = five.host("@1 calibrate display 26.5");
-    assert!(told.starts_with("@1 ok points=1 worst_mk=0."), "{told}");
-    // What takes long is for one at a time.
+    assert_eq!(five.send("settings"), "@0 ok lines=8");
+    assert_eq!(Bench::<1>::new().send("settings"), "ok lines=8");
+    assert!(five.send("@2 margins").starts_with("@2 ok gain="));
+    five.complete_averages();
+    let answer = five.send("@1 calibrate display 26.5");
+    assert!(answer.starts_with("@1 ok points=1 worst_mk=0."), "{answer}");
+    // Requests that take long address one finger at a time.
     assert_eq!(
-        five.host("calibrate display 26.5"),
+        five.send("calibrate display 26.5"),
         "err finger (as @0) missing"
     );
-    assert_eq!(five.host("tune result"), "err finger (as @0) missing");
+    assert_eq!(five.send("tune result"), "err finger (as @0) missing");
 }
 
 #[test]
-fn refusals_name_the_first_finger_that_refuses_and_the_others_obey() {
+fn an_error_names_the_first_finger_that_refuses_and_the_others_execute_the_line() {
     let mut five = Bench::<5>::new();
-    five.watch();
+    five.complete_averages();
     arm(&mut five.device, Finger::new(2).expect("a finger"));
-    assert_eq!(five.host("@2 material copper"), "@2 ok");
-    assert_eq!(five.host("@2 start"), "@2 ok");
+    assert_eq!(five.send("@2 material copper"), "@2 ok");
+    assert_eq!(five.send("@2 start"), "@2 ok");
     let refused = "@2 err not while an object is presented: abort or arm first";
-    assert_eq!(five.host("set correction display 0.2 0 0"), refused);
-    assert_eq!(five.host("set steps 10 0.5"), refused);
-    assert_eq!(five.host("calibrate check clear"), refused);
-    assert_eq!(five.host("@2 calibrate display 26"), refused);
-    assert_eq!(five.host("@2 set tile 2.5 0.05 0.1 0.1 0.016"), refused);
+    assert_eq!(five.send("set correction display 0.2 0 0"), refused);
+    assert_eq!(five.send("set steps 10 0.5"), refused);
+    assert_eq!(five.send("calibrate check clear"), refused);
+    assert_eq!(five.send("@2 calibrate display 26"), refused);
+    assert_eq!(five.send("@2 set tile 2.5 0.05 0.1 0.1 0.016"), refused);
     for finger in [0, 1, 3, 4] {
-        let told = five.host(&format!("@{finger} settings 3"));
+        let answer = five.send(&format!("@{finger} settings 3"));
         let set = format!("@{finger} ok set correction display 0.200000 0.0000000 0.00000000");
-        assert_eq!(told, set);
+        assert_eq!(answer, set);
     }
     assert_eq!(
-        five.host("@2 settings 3"),
+        five.send("@2 settings 3"),
         "@2 ok set correction display 0.000000 0.0000000 0.00000000"
     );
-    // 2000 counts are 26.0 degrees.
+    // 2000 counts are 26.0 °C.
     assert_eq!(
-        five.host("@1 calibrate sink 23.5"),
+        five.send("@1 calibrate sink 23.5"),
         "@1 err the device reads 26.04 C; allowed is within 2 C of that"
     );
     assert_eq!(
-        five.host("@5 margins"),
+        five.send("@5 margins"),
         "err unknown finger '5' after @; known: 0 to 4"
     );
     assert_eq!(
-        five.host("@1 set colour 3"),
+        five.send("@1 set colour 3"),
         "@1 err unknown setting 'colour'; known: steps correction tile"
     );
     assert_eq!(
-        five.host("@0 tune result"),
+        five.send("@0 tune result"),
         "@0 err nothing was tuned since arm; tune first"
     );
 }
 
-/// What is read then is moved by the test's own current.
+/// The current of the self-test moves the readings.
 #[test]
-fn a_self_test_that_goes_on_keeps_calibration_from_changing_anything() {
+fn calibrate_is_refused_during_the_self_test() {
     let mut one = Bench::<1>::new();
-    one.watch();
-    assert_eq!(one.host("arm"), "ok");
-    let before = one.lines("");
-    let refused = one.host("calibrate room 25.5");
+    one.complete_averages();
+    assert_eq!(one.send("arm"), "ok");
+    let before = one.settings("");
+    let refused = one.send("calibrate room 25.5");
     assert!(
         refused.starts_with("err the self-test goes on"),
         "{refused}"
     );
-    assert_eq!(one.lines(""), before);
+    assert_eq!(one.settings(""), before);
 }
 
 #[test]
-fn nonsense_is_refused_and_changes_nothing() {
+fn invalid_arguments_are_refused_and_change_nothing() {
     let mut one = Bench::<1>::new();
-    let before = one.lines("");
+    let before = one.settings("");
     for (line, answer) in [
         (
             "settings 0",
@@ -260,22 +264,23 @@ fn nonsense_is_refused_and_changes_nothing() {
         ("tune it", "err unexpected 'it' after the command"),
         ("margins 3", "err unexpected '3' after the command"),
     ] {
-        assert_eq!(one.host(line), answer, "{line}");
+        assert_eq!(one.send(line), answer, "{line}");
     }
-    assert_eq!(one.lines(""), before);
+    assert_eq!(one.settings(""), before);
 }
 
-/// One point on a restored calibration moves it there, and keeps what many points had found.
+/// One point shifts a restored calibration, but hardly changes its slope, curvature and steps, which many points had
+/// determined.
 #[test]
-fn a_point_after_restored_settings_refines_them() {
+fn a_point_refines_a_restored_calibration() {
     let mut one = Bench::<1>::new();
-    one.watch();
+    one.complete_averages();
     let set = "set correction display 0.400000 0.0100000 0.00010000";
-    assert_eq!(one.host("set steps 14 0.5 0.5"), "ok");
-    assert_eq!(one.host(set), "ok");
-    let told = one.host("calibrate display 26.5");
-    assert!(told.starts_with("ok points=1 worst_mk=0."), "{told}");
-    let numbers: Vec<f64> = (one.host("settings 3").split(' '))
+    assert_eq!(one.send("set steps 14 0.5 0.5"), "ok");
+    assert_eq!(one.send(set), "ok");
+    let answer = one.send("calibrate display 26.5");
+    assert!(answer.starts_with("ok points=1 worst_mk=0."), "{answer}");
+    let numbers: Vec<f64> = (one.send("settings 3").split(' '))
         .filter_map(|word| word.parse().ok())
         .collect();
     let [_, slope, curvature] = numbers[..] else {
@@ -285,42 +290,45 @@ fn a_point_after_restored_settings_refines_them() {
         (slope - 0.01).abs() < 2e-3 && (curvature - 1e-4).abs() < 1e-5,
         "{numbers:?}"
     );
-    let steps = one.host("settings 1");
+    let steps = one.send("settings 1");
     assert!(steps.starts_with("ok set steps 10 0.0"), "{steps}");
     assert!(steps.contains(" 0.5"), "{steps}");
-    // Without points and corrections of either sensor nothing is left of the steps.
-    assert_eq!(one.host("calibrate display clear"), "ok");
+    // The steps are cleared with the last correction of the display's sensors.
+    assert_eq!(one.send("calibrate display clear"), "ok");
     assert_eq!(
-        one.host("settings 1"),
+        one.send("settings 1"),
         "ok set steps 10 0.000 0.000 0.000 0.000 0.000 0.000 0.000"
     );
 }
 
-/// Points that walk away from the class values by less than what is refused at once end where `set` would.
+/// Each point deviates by less than what is rejected by itself; together they end at the range that `set` accepts.
 #[test]
-fn a_calibration_never_leaves_what_can_be_restored() {
+fn a_calibration_never_leaves_the_range_that_set_accepts() {
     let mut one = Bench::<1>::new();
-    one.watch();
+    one.complete_averages();
     let reads = |one: &mut Bench<1>| -> f64 {
-        let told = one.host("calibrate room 60");
-        let word = told.split(' ').nth(4).expect("what it reads");
+        let answer = one.send("calibrate room 60");
+        let word = answer.split(' ').nth(4).expect("the reading");
         word.parse().expect("degrees")
     };
     let first = reads(&mut one);
-    let mut told = String::new();
+    let mut answer = String::new();
     for point in 1..=24 {
         let reads_c = reads(&mut one);
-        told = one.host(&format!("calibrate room {:.2}", reads_c + 0.4));
-        if told.starts_with("err ") {
+        answer = one.send(&format!("calibrate room {:.2}", reads_c + 0.4));
+        if answer.starts_with("err ") {
             break;
         }
-        assert!(told.starts_with(&format!("ok points={point} ")), "{told}");
+        assert!(
+            answer.starts_with(&format!("ok points={point} ")),
+            "{answer}"
+        );
     }
     assert_eq!(
-        told,
+        answer,
         "err no correction fits this and the points before; clear them and begin again"
     );
     assert!((0.7..1.6).contains(&(reads(&mut one) - first)));
-    let line = one.host("settings 7");
-    assert_eq!(one.host(line.strip_prefix("ok ").expect("a line")), "ok");
+    let line = one.send("settings 7");
+    assert_eq!(one.send(line.strip_prefix("ok ").expect("a line")), "ok");
 }

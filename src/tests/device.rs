@@ -6,14 +6,14 @@ use std::string::{String, ToString};
 use crate::device::drive::Drive;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, Finger};
-use crate::protocol::{Desk, telemetry_line};
+use crate::protocol::{CommandHandler, telemetry_line};
 use crate::settings::Settings;
 
 const FIVE: usize = 5;
 
 fn host<const FINGERS: usize>(device: &mut Device<FINGERS>, line: &str) -> String {
-    let mut desk = Desk::<FINGERS>::new(Settings::default());
-    let done = desk.answer(line, |finger, command| device.execute(finger, command));
+    let mut handler = CommandHandler::<FINGERS>::new(Settings::default());
+    let done = handler.answer(line, |finger, command| device.execute(finger, command));
     done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
 }
 

@@ -25,7 +25,7 @@ fn lines_beyond_the_depth_are_taken_as_refused() {
         assert_eq!(outlet.take(), Some(Ok(line.clone())));
     }
     for _ in 0..3 {
-        assert_eq!(outlet.take(), Some(Err(LineError::Refused)));
+        assert_eq!(outlet.take(), Some(Err(LineError::QueueFull)));
     }
     assert_eq!(outlet.take(), None);
 }
@@ -49,7 +49,7 @@ fn lines_are_taken_in_the_order_in_which_they_were_put() {
         for (answer, line) in answered.iter().zip(&sent) {
             match answer {
                 Ok(text) => assert_eq!(text, line, "sequence {sequence:#b}"),
-                Err(error) => assert_eq!(*error, LineError::Refused, "sequence {sequence:#b}"),
+                Err(error) => assert_eq!(*error, LineError::QueueFull, "sequence {sequence:#b}"),
             }
         }
     }

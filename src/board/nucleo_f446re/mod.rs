@@ -48,7 +48,7 @@ use thermal_display::device::command::Addressed;
 use thermal_display::device::safety::{Fault, TripCause};
 use thermal_display::device::{Device, Finger, Telemetry};
 use thermal_display::mailbox::Mailbox;
-use thermal_display::protocol::{Desk, Error, Reason, Reply};
+use thermal_display::protocol::{CommandHandler, Error, FailureText, Reply};
 use thermal_display::settings::Settings;
 
 pub use fault_record::FaultRecord;
@@ -82,7 +82,7 @@ pub struct Memory {
     mailbox: Mailbox,
     telemetry: Queue<Addressed<Telemetry>, { TELEMETRY_DEPTH + 1 }>,
     // Created in place, because moving it while sampling runs would delay the first tick.
-    desk: Option<Desk<FINGERS>>,
+    handler: Option<CommandHandler<FINGERS>>,
 }
 
 impl Memory {
@@ -94,7 +94,7 @@ impl Memory {
             frame_queues: serial::FrameQueues::new(),
             mailbox: Mailbox::new(),
             telemetry: Queue::new(),
-            desk: None,
+            handler: None,
         }
     }
 }
@@ -242,18 +242,18 @@ impl Board {
             inlet,
             &mut rcc,
         );
-        let desk = match &storage.settings {
-            Ok(Some(settings)) => Desk::restored(settings),
-            Ok(None) | Err(_) => Desk::new(Settings::default()),
+        let handler = match &storage.settings {
+            Ok(Some(settings)) => CommandHandler::from_stored(settings),
+            Ok(None) | Err(_) => CommandHandler::new(Settings::default()),
         };
         let console = Console {
             lines: outlet,
             telemetry: telemetry_out,
             outbox,
-            desk: memory.desk.insert(desk),
+            handler: memory.handler.insert(handler),
             first_answer: storage.save_result.map(|result| match result {
                 Ok(()) => Ok(Reply::DONE),
-                Err(error) => Err(Error::NotStored(Reason::of(&error))),
+                Err(error) => Err(Error::NotStored(FailureText::new(&error))),
             }),
             storage_order: None,
         };

@@ -17,7 +17,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::serial::{Config, Rx, RxListen, Serial, Tx, config};
 use stm32f4xx_hal::{ClearFlags, ReadFlags, nb};
-use thermal_display::protocol::{ANSWER_MAX, LineError, LineReader};
+use thermal_display::protocol::{ANSWER_MAX_BYTES, LineError, LineReader};
 
 use thermal_display::mailbox::Inlet;
 
@@ -30,7 +30,7 @@ const BAUD: u32 = 1_000_000;
 pub const FRAMES: usize = 4;
 
 /// Longest line to the host with its end, bytes.
-const FRAME_MAX: usize = "@0 ".len() + ANSWER_MAX + 1;
+const FRAME_MAX: usize = "@0 ".len() + ANSWER_MAX_BYTES + 1;
 
 /// Memory of one frame.
 pub type FrameBuffer = Vec<u8, FRAME_MAX>;

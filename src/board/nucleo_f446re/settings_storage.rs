@@ -14,7 +14,9 @@ use core::sync::atomic::{AtomicU8, AtomicU32};
 
 use cortex_m::peripheral::SCB;
 use stm32f4xx_hal::pac::FLASH;
-use thermal_display::settings::{Kept, LONGEST, Store, StoreError, StoredBytes, decode};
+use thermal_display::settings::{
+    RECORD_MAX_BYTES, SettingsRecord, SettingsStore, StoreError, StoredSettings, decode,
+};
 
 use super::FINGERS;
 use super::flash::{FlashError, SettingsFlash};
@@ -32,7 +34,7 @@ const LAST_FRAME_CYCLES: u32 = 180_000_000 / 1000 * 2;
 struct PendingSave {
     state: AtomicU32,
     length_bytes: AtomicU32,
-    bytes: [AtomicU8; LONGEST],
+    bytes: [AtomicU8; RECORD_MAX_BYTES],
 }
 
 // SAFETY: the start-up code does not initialise the section, which holds nothing else; all bit
@@ -41,7 +43,7 @@ struct PendingSave {
 static PENDING: PendingSave = PendingSave {
     state: AtomicU32::new(0),
     length_bytes: AtomicU32::new(0),
-    bytes: [const { AtomicU8::new(0) }; LONGEST],
+    bytes: [const { AtomicU8::new(0) }; RECORD_MAX_BYTES],
 };
 
 impl PendingSave {
@@ -52,7 +54,7 @@ impl PendingSave {
     }
 
     /// Begins an attempt: counts it and returns the bytes to be stored. `None` if no settings wait.
-    fn begin(&self) -> Option<Result<StoredBytes, SaveError>> {
+    fn begin(&self) -> Option<Result<SettingsRecord, SaveError>> {
         let begun = self.attempts()?;
         if begun == ATTEMPTS {
             return Some(Err(SaveError::Interrupted));
@@ -63,7 +65,7 @@ impl PendingSave {
         Some(bytes.ok_or(SaveError::Damaged))
     }
 
-    fn put(&self, bytes: &StoredBytes) {
+    fn put(&self, bytes: &SettingsRecord) {
         for (place, byte) in self.bytes.iter().zip(bytes) {
             place.store(*byte, Relaxed);
         }
@@ -102,7 +104,7 @@ impl fmt::Display for SaveError {
 /// Stored settings, and the result of the last request to store some.
 pub struct StartupStorage {
     /// The stored settings of all fingers; `None` stands for factory defaults.
-    pub settings: Result<Option<[Kept; FINGERS]>, FlashStoreError>,
+    pub settings: Result<Option<[StoredSettings; FINGERS]>, FlashStoreError>,
     /// Whether the waiting settings were stored; `None` if no settings waited.
     pub save_result: Option<Result<(), SaveError>>,
 }
@@ -116,7 +118,7 @@ pub fn save_is_pending() -> bool {
 /// set up.
 #[inline(never)]
 pub fn save_pending_and_load(registers: &FLASH) -> StartupStorage {
-    let mut store = Store::<_, FINGERS>::new(SettingsFlash::new(registers));
+    let mut store = SettingsStore::<_, FINGERS>::new(SettingsFlash::new(registers));
     let save_result = PENDING.begin().map(|bytes| {
         let settings = decode::<FINGERS>(&bytes?).map_err(|_| SaveError::Damaged)?;
         store.save(settings.as_ref()).map_err(SaveError::Failed)
@@ -137,7 +139,7 @@ pub fn save_pending_and_load(registers: &FLASH) -> StartupStorage {
 
 /// Resets the device, which then stores `bytes`. The bridges must be off, and the last frame to the
 /// host must be in the stream.
-pub fn restart_to_save(bytes: &StoredBytes) -> ! {
+pub fn restart_to_save(bytes: &SettingsRecord) -> ! {
     cortex_m::asm::delay(LAST_FRAME_CYCLES);
     PENDING.put(bytes);
     SCB::sys_reset()

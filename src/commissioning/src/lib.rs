@@ -1,28 +1,27 @@
-//! Commissioning: the device calibrates its thermistors against a reference thermometer, and finds out about its tile.
-//!
-//! What needs `f64` is done here, by the task that answers the host, while the tick goes on; the station only averages
-//! and adds up.
+#![doc = include_str!("../README.md")]
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
 
-mod fit;
-mod identify;
-mod margins;
-mod points;
+mod calibration_fit;
+mod calibration_points;
+mod cholesky;
+mod identification;
 mod request;
 mod session;
-mod solve;
+mod stability_margins;
 mod storage;
 
-pub use identify::NoTile;
-pub use margins::Margins;
-pub use points::{FARTHEST_K, POINTS, Point, PointError};
-pub use request::{Error, Reply, Request, SENSORS, STEPS_A_LINE, Setting};
-pub use session::{SETTINGS_LINES, Service};
-pub use storage::{StorageOrder, is_off, record};
+pub use calibration_points::{POINT_DEVIATION_MAX_K, POINTS_MAX, PointError};
+pub use identification::IdentificationError;
+pub use request::{
+    SENSOR_WORDS, STEPS_PER_LINE, SessionError, SessionReply, SessionRequest, Setting,
+};
+pub use session::{CommissioningSession, ExecuteOnStation, SETTINGS_LINES};
+pub use stability_margins::StabilityMargins;
+pub use storage::StorageOrder;
 
 #[cfg(test)]
 mod tests;

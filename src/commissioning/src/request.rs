@@ -1,103 +1,91 @@
-//! What a host may ask of a commissioning session, and what is answered.
+//! Requests to a commissioning session, its replies and its errors.
 
 use thermal_device::command::Refused;
 use thermal_device::sense::THERMISTORS;
 use thermal_settings::{Correction, Tile};
 
-use crate::{Margins, NoTile, PointError};
+use crate::{IdentificationError, PointError, StabilityMargins};
 
-/// The thermistors' words.
-pub const SENSORS: [&str; THERMISTORS] = ["display", "check", "sink", "skin", "room"];
-/// Steps on one line.
-pub const STEPS_A_LINE: usize = 7;
+/// Words for the thermistors on a line of text, in the order of their indices.
+pub const SENSOR_WORDS: [&str; THERMISTORS] = ["display", "check", "sink", "skin", "room"];
+/// Largest number of converter steps on one line.
+pub const STEPS_PER_LINE: usize = 7;
 
-/// What a line of commissioning asks of one finger.
+/// A request to the commissioning session of one finger, read from a line of text.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Request {
-    /// `calibrate SENSOR CELSIUS`: what the reference thermometer says.
-    Point {
-        /// Which thermistor.
+pub enum SessionRequest {
+    /// `calibrate SENSOR CELSIUS`: adds a calibration point.
+    AddPoint {
+        /// Index of the thermistor.
         sensor: usize,
-        /// The reference thermometer, °C.
+        /// Temperature of the reference thermometer, °C.
         reference_c: f64,
     },
-    /// `calibrate SENSOR clear`: back to the class values.
-    Clear {
-        /// Which thermistor.
+    /// `calibrate SENSOR clear`: removes a thermistor's points and its correction.
+    ClearCalibration {
+        /// Index of the thermistor.
         sensor: usize,
     },
-    /// `settings`: how many lines; `settings N`: one of them.
-    Settings(Option<usize>),
-    /// `set steps BORDER COUNTS...`: up to seven of the converter's steps.
-    SetSteps {
-        /// The first border.
-        first: usize,
-        /// Steps from there on, counts.
-        counts: heapless::Vec<f64, STEPS_A_LINE>,
-    },
-    /// `set correction SENSOR OFFSET SLOPE CURVATURE`.
-    SetCorrection {
-        /// Which thermistor.
-        sensor: usize,
-        /// Its correction.
-        correction: Correction,
-    },
-    /// `set tile GAIN JOULE LEAK LAG DEAD`.
-    SetTile(Tile),
-    /// `tune result`.
-    Tuned,
-    /// `margins`.
+    /// `settings`: reports the number of lines that [`Self::SettingsLine`] has.
+    CountSettingsLines,
+    /// `settings N`: reports one line of the settings, by its index from 0.
+    SettingsLine(usize),
+    /// `set ...`: replaces a part of the settings.
+    Set(Setting),
+    /// `tune result`: identifies the tile from the recorded response, and uses it.
+    TuneResult,
+    /// `margins`: reports the tile and the stability margins of its loop.
     Margins,
 }
 
-/// What a commissioning session answers.
+/// The reply of a commissioning session.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Reply {
+pub enum SessionReply {
     /// The request was executed.
     Done,
-    /// Answer to [`Request::Tuned`] and [`Request::Margins`].
-    Tile(Tile, Margins),
-    /// Answer to [`Request::Point`].
-    Calibrated {
-        /// Points of this thermistor.
+    /// Reply to [`SessionRequest::TuneResult`] and [`SessionRequest::Margins`].
+    Tile(Tile, StabilityMargins),
+    /// Reply to [`SessionRequest::AddPoint`].
+    PointAdded {
+        /// Number of points of this thermistor.
         points: usize,
-        /// Largest difference of the device from the reference in them, mK.
+        /// Largest difference between the new calibration and the reference over these points, mK.
         worst_mk: f64,
     },
-    /// How many lines hold all commissioned settings.
+    /// Reply to [`SessionRequest::CountSettingsLines`].
     SettingsLines(usize),
-    /// One of these lines.
+    /// Reply to [`SessionRequest::SettingsLine`].
     Setting(Setting),
 }
 
-/// A part of the settings.
+/// The part of the settings that one `set` line holds.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Setting {
-    /// Some of the converter's steps.
+    /// `steps BORDER COUNTS...`: up to seven steps of the converter.
     Steps {
-        /// The first border.
+        /// The first border, at least [`FIRST_BORDER`](thermal_settings::FIRST_BORDER).
         first: usize,
-        /// Steps from there on, counts.
-        counts: heapless::Vec<f64, STEPS_A_LINE>,
+        /// Steps at this border and the next ones, counts.
+        counts: heapless::Vec<f64, STEPS_PER_LINE>,
     },
-    /// A thermistor's correction.
-    Correction(&'static str, Correction),
-    /// The tile.
+    /// `correction SENSOR OFFSET SLOPE CURVATURE`: the correction of a thermistor, by its index.
+    Correction(usize, Correction),
+    /// `tile GAIN JOULE LEAK LAG DEAD`: the parameters of the tile.
     Tile(Tile),
 }
 
-/// Why a commissioning session refuses a request; nothing has changed then.
+/// Why a commissioning session rejects a request; the settings are unchanged then.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Error {
-    /// The station refuses.
+pub enum SessionError {
+    /// The station refuses a command that the request needs.
     Refused(Refused),
-    /// The identification's sums belong to no tile within the limits of settings.
-    NoTile(NoTile),
-    /// A point of a calibration is not taken.
+    /// The recorded response is not that of a tile.
+    Identification(IdentificationError),
+    /// The calibration point is rejected.
     Point(PointError),
 }
 
-impl From<Refused> for Error {
+impl From<Refused> for SessionError {
     fn from(refused: Refused) -> Self {
         Self::Refused(refused)
     }

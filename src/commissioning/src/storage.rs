@@ -1,24 +1,19 @@
-//! Settings that outlive the power: `save` and `forget`.
+//! Orders to store the settings: `save` and `forget`.
 //!
-//! The flash is written by a device that does nothing else. So an order is obeyed by starting anew: what is to be stored waits in a
-//! memory that a reset does not clear, and is stored before anything else happens; then the order is answered.
+//! The flash stalls the processor, so it is written while nothing else runs: the device hands the record over in memory that
+//! a reset preserves, restarts, stores the record before anything else, and then replies to the order.
 
-use thermal_device::StateName;
-use thermal_settings::{Kept, StoredBytes, encode};
-
-use crate::Service;
-
-/// What is to be stored.
+/// An order to store the settings of all fingers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StorageOrder {
-    /// `save`: the settings of all fingers.
+    /// `save`: store the present settings.
     Save,
-    /// `forget`: factory defaults.
+    /// `forget`: store factory defaults.
     Forget,
 }
 
 impl StorageOrder {
-    /// The command.
+    /// The word that begins its line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -26,27 +21,4 @@ impl StorageOrder {
             Self::Forget => "forget",
         }
     }
-}
-
-/// The bytes that an order stores for the sessions of all fingers.
-#[must_use]
-pub fn record<const FINGERS: usize>(
-    order: StorageOrder,
-    fingers: &[Service; FINGERS],
-) -> StoredBytes {
-    match order {
-        StorageOrder::Save => encode(Some(
-            &fingers.each_ref().map(|one| Kept::of(one.settings())),
-        )),
-        StorageOrder::Forget => encode::<FINGERS>(None),
-    }
-}
-
-/// Whether the bridge is off in a state, so that nobody can feel a device that starts anew.
-#[must_use]
-pub const fn is_off(state: StateName) -> bool {
-    matches!(
-        state,
-        StateName::Off | StateName::Ready | StateName::Tripped(_)
-    )
 }

@@ -127,36 +127,39 @@ pub struct Status {
     pub limited: bool,
 }
 
-/// Something said to or by one finger, or to or by the device as a whole.
+/// A command, reply or telemetry with the finger that it is for or from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Addressed<T> {
-    /// Number of the finger, from 0; `None` for the device.
+    /// Index of the finger, from 0; `None` addresses the device as a whole.
     pub finger: Option<u8>,
-    /// What is said.
-    pub said: T,
+    /// The command, reply or telemetry.
+    pub content: T,
 }
 
 impl<T> Addressed<T> {
-    /// Said to or by the device as a whole.
-    pub const fn device(said: T) -> Self {
-        Self { finger: None, said }
+    /// Addresses the device as a whole.
+    pub const fn device(content: T) -> Self {
+        Self {
+            finger: None,
+            content,
+        }
     }
 
-    /// Applies a function to what is said.
+    /// Applies a function to the content and keeps the address.
     pub fn map<U>(self, function: impl FnOnce(T) -> U) -> Addressed<U> {
         Addressed {
             finger: self.finger,
-            said: function(self.said),
+            content: function(self.content),
         }
     }
 }
 
-/// Writes `@` and the finger's number before what is said: three bytes more.
+/// Writes `@`, the index of the finger and a space, three bytes, before the content if a finger is addressed.
 impl<T: fmt::Display> fmt::Display for Addressed<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(finger) = self.finger {
             write!(f, "@{finger} ")?;
         }
-        self.said.fmt(f)
+        self.content.fmt(f)
     }
 }

@@ -8,7 +8,7 @@ use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
 use crate::{Finger, Station};
-use thermal_settings::{Kept, Settings};
+use thermal_settings::{Settings, StoredSettings};
 
 /// One [`Station`] for each finger; the stations share no state.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// Applies the stored settings of each finger. Evaluates `f64` in software, once for each
     /// finger.
     #[inline(never)]
-    pub fn restore_settings(&mut self, stored: &[Kept; FINGERS]) {
+    pub fn restore_settings(&mut self, stored: &[StoredSettings; FINGERS]) {
         for (station, stored) in self.stations.iter_mut().zip(stored) {
             station.apply(&stored.settings());
         }
@@ -96,17 +96,11 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// Telemetry of a finger's last tick, if the interval of its stream has elapsed.
     #[must_use]
     pub fn telemetry(&self, finger: Finger<FINGERS>) -> Option<Addressed<Telemetry>> {
-        let said = self.stations[finger.index()].telemetry()?;
+        let content = self.stations[finger.index()].telemetry()?;
         Some(Addressed {
-            finger: Self::address(finger),
-            said,
+            finger: finger.address(),
+            content,
         })
-    }
-
-    /// Number that a finger's lines begin with if the host has named none: omitted on a device with
-    /// a single finger.
-    fn address(finger: Finger<FINGERS>) -> Option<u8> {
-        (FINGERS > 1).then_some(finger.number())
     }
 
     /// Executes a command, in bounded and short time, on one finger, or on all if `finger` is
@@ -126,20 +120,20 @@ impl<const FINGERS: usize> Device<FINGERS> {
         if let Some(one) = finger {
             let finger = Some(one.number());
             return match self.stations[one.index()].execute(command) {
-                Ok(said) => Ok(Addressed { finger, said }),
-                Err(said) => Err(Addressed { finger, said }),
+                Ok(content) => Ok(Addressed { finger, content }),
+                Err(content) => Err(Addressed { finger, content }),
             };
         }
         let (mut refused, mut nothing_to_clear, mut executed) = (None, None, false);
-        for (finger, station) in Finger::all().zip(&mut self.stations) {
-            let finger = Self::address(finger);
+        for (finger, station) in Finger::<FINGERS>::all().zip(&mut self.stations) {
+            let finger = finger.address();
             match station.execute(command) {
                 Ok(Reply::Done) => executed = true,
-                Ok(said) => return Ok(Addressed { finger, said }),
-                Err(said @ Refused::NothingToClear) => {
-                    nothing_to_clear = nothing_to_clear.or(Some(Addressed { finger, said }))
+                Ok(content) => return Ok(Addressed { finger, content }),
+                Err(content @ Refused::NothingToClear) => {
+                    nothing_to_clear = nothing_to_clear.or(Some(Addressed { finger, content }))
                 }
-                Err(said) => refused = refused.or(Some(Addressed { finger, said })),
+                Err(content) => refused = refused.or(Some(Addressed { finger, content })),
             }
         }
         let refused = refused.or(nothing_to_clear.filter(|_| !executed));

@@ -54,6 +54,13 @@ impl<const FINGERS: usize> Finger<FINGERS> {
     pub const fn number(self) -> u8 {
         self.0
     }
+
+    /// Number that the finger's lines begin with if the host has named no finger: omitted on a
+    /// device with a single finger.
+    #[must_use]
+    pub const fn address(self) -> Option<u8> {
+        if FINGERS > 1 { Some(self.0) } else { None }
+    }
 }
 
 #[cfg(test)]

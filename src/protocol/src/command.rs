@@ -1,129 +1,108 @@
-//! Lines to commands.
+//! Parsing of a line to a request.
 
-use contact_model::fixed_point::ContactPair;
+use contact_model::fixed_point::{Celsius, ContactPair};
 use contact_model::material::{MATERIALS, Material, SKIN, Surface};
-use fixed::types::I32F32;
 
-use thermal_commissioning::{Request, StorageOrder};
+use thermal_commissioning::{SessionRequest, StorageOrder};
 use thermal_device::TICK_HZ;
 use thermal_device::command::Command;
 use thermal_device::control::Law;
 use thermal_device::reference::Mode;
 use thermal_device::safety::Setpoint;
+use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
 use thermal_settings::{Range, Settings};
 
 use crate::Error;
-use crate::commissioning;
+use crate::arguments::{Words, lookup, number, numbers, skip, word};
+use crate::commissioning_commands::{calibrate, set, settings};
 
 /// A line of the host, checked and ready to execute.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box the larger one in"
+)]
 #[derive(Clone, Debug, PartialEq)]
-pub enum Parsed {
-    /// `id`: who is there.
+pub enum Request {
+    /// `id`: reports what the device is.
     Identify,
-    /// For the stations.
+    /// A command for the stations.
     Station(Command),
-    /// For the commissioning sessions.
-    Commissioning(Request),
-    /// `save` or `forget`, for the device as a whole.
+    /// A request to the commissioning sessions.
+    Commissioning(SessionRequest),
+    /// `save` or `forget`: an order for the device as a whole.
     Storage(StorageOrder),
 }
 
-impl Parsed {
-    /// Words that begin a command.
-    pub const WORDS: [&'static str; 20] = [
-        "id",
-        "state",
-        "stream",
-        "material",
-        "object",
-        "mode",
-        "law",
-        "arm",
-        "hold",
-        "start",
-        "abort",
-        "clear",
-        "cause",
-        "calibrate",
-        "tune",
-        "margins",
-        "settings",
-        "set",
-        "save",
-        "forget",
-    ];
+/// Declares the commands, each by its first word and the expression that reads its arguments: once for the parser, and
+/// once for the list of known commands in an error message.
+macro_rules! commands {
+    (|$words:ident, $display:ident| { $($name:literal => $request:expr,)* }) => {
+        /// First words of all commands.
+        pub const WORDS: &[&str] = &[$($name),*];
 
-    /// Reads one line. Does the costly part of a command (soft-float set-up of a material), so that
-    /// executing it is short.
+        fn parse_arguments(
+            name: &str,
+            $words: &mut Words<'_>,
+            $display: &Surface,
+        ) -> Result<Self, Error> {
+            Ok(match name {
+                $($name => $request,)*
+                unknown => return Err(Error::UnknownCommand(unknown.into())),
+            })
+        }
+    };
+}
+
+impl Request {
+    commands!(|words, display| {
+        "id" => Self::Identify,
+        "state" => Self::Station(Command::Status),
+        "stream" => Self::Station(stream(words)?),
+        "material" => Self::Station(material(words, display)?),
+        "object" => Self::Station(Command::Object(object(words)?)),
+        "mode" => Self::Station(Command::Mode(mode(words)?)),
+        "law" => Self::Station(Command::Law(words.next().map(law).transpose()?)),
+        "arm" => Self::Station(Command::Arm),
+        "hold" => Self::Station(Command::Hold(hold(words)?)),
+        "start" => Self::Station(Command::Start),
+        "abort" => Self::Station(Command::Abort),
+        "clear" => Self::Station(Command::Clear),
+        "cause" => Self::Station(Command::Cause),
+        "calibrate" => Self::Commissioning(calibrate(words)?),
+        "tune" => match skip(words, "result") {
+            true => Self::Commissioning(SessionRequest::TuneResult),
+            false => Self::Station(Command::Tune),
+        },
+        "margins" => Self::Commissioning(SessionRequest::Margins),
+        "settings" => Self::Commissioning(settings(words)?),
+        "set" => Self::Commissioning(SessionRequest::Set(set(words)?)),
+        "save" => Self::Storage(StorageOrder::Save),
+        "forget" => Self::Storage(StorageOrder::Forget),
+    });
+
+    /// Parses one line. The costly part of a command, the floating-point set-up of a material, is done here, so that
+    /// executing the request takes a short time.
     ///
     /// # Errors
-    /// What is wrong with the line, and what is allowed.
+    /// The line is no request; the error says what is wrong with it and what is allowed.
     pub fn parse(line: &str, settings: &Settings) -> Result<Self, Error> {
         let mut words = line.split_ascii_whitespace();
-        let first = words.next().ok_or(Error::Missing("command"))?;
-        let parsed = match first {
-            "id" => Self::Identify,
-            "state" => Self::Station(Command::Status),
-            "arm" => Self::Station(Command::Arm),
-            "start" => Self::Station(Command::Start),
-            "abort" => Self::Station(Command::Abort),
-            "clear" => Self::Station(Command::Clear),
-            "cause" => Self::Station(Command::Cause),
-            "tune" => match words.next() {
-                None => Self::Station(Command::Tune),
-                Some("result") => Self::Commissioning(Request::Tuned),
-                Some(other) => return Err(Error::Extra(other.into())),
-            },
-            "calibrate" => Self::Commissioning(commissioning::calibrate(&mut words)?),
-            "settings" => Self::Commissioning(commissioning::settings(&mut words)?),
-            "set" => Self::Commissioning(commissioning::set(&mut words)?),
-            "margins" => Self::Commissioning(Request::Margins),
-            "save" => Self::Storage(StorageOrder::Save),
-            "forget" => Self::Storage(StorageOrder::Forget),
-            "hold" => Self::Station(Command::Hold(hold(number(&mut words, &HOLD)?))),
-            "stream" => {
-                // A part of a millisecond counts as a whole one, so that only 0 ends the stream.
-                let interval_ms = number(&mut words, &STREAM)?.saturating_ceil();
-                Self::Station(Command::Stream {
-                    interval_ms: interval_ms.to_num::<i64>().unsigned_abs() as u32,
-                })
-            }
-            "mode" => match words.next().ok_or(Error::Missing("mode"))? {
-                "contact" => Self::Station(Command::Mode(Mode::ContactResistance)),
-                "semi-infinite" => Self::Station(Command::Mode(Mode::SemiInfinite)),
-                other => return Err(Error::UnknownMode(other.into())),
-            },
-            "law" => Self::Station(Command::Law(words.next().map(law).transpose()?)),
-            "object" => match words.clone().next() {
-                Some("room") => {
-                    words.next();
-                    Self::Station(Command::Object(None))
-                }
-                _ => Self::Station(Command::Object(Some(number(&mut words, &OBJECT)?.to_num()))),
-            },
-            "material" => {
-                let name = words.next().ok_or(Error::Missing("material"))?;
-                let (name, material) = if name == "custom" {
-                    ("custom", custom(&mut words)?)
-                } else {
-                    let known = MATERIALS.iter().find(|(known, _)| *known == name);
-                    known
-                        .map(|(name, material)| (*name, *material))
-                        .ok_or(Error::UnknownMaterial(name.into()))?
-                };
-                Self::Station(Command::Material {
-                    name,
-                    pair: pair(&material, &settings.display)?,
-                })
-            }
-            other => return Err(Error::UnknownCommand(other.into())),
-        };
+        let name = word(&mut words, "command")?;
+        let request = Self::parse_arguments(name, &mut words, &settings.display)?;
         match words.next() {
-            None => Ok(parsed),
+            None => Ok(request),
             Some(extra) => Err(Error::Extra(extra.into())),
         }
     }
 }
+
+/// Words of the modes.
+pub const MODES: [(&str, Mode); 2] = [
+    ("contact", Mode::ContactResistance),
+    ("semi-infinite", Mode::SemiInfinite),
+];
+/// Word of a material that is given by its properties.
+pub const CUSTOM: &str = "custom";
 
 static STREAM: Range = Range {
     name: "interval",
@@ -131,12 +110,11 @@ static STREAM: Range = Range {
     min: 0.0,
     max: 60_000.0,
 };
-/// The range of [`Setpoint`].
 static HOLD: Range = Range {
     name: "temperature",
     unit: "C",
-    min: 15.0,
-    max: 42.0,
+    min: SETPOINT_MIN_C,
+    max: SETPOINT_MAX_C,
 };
 static OBJECT: Range = Range {
     name: "object temperature",
@@ -178,58 +156,64 @@ static PROPERTIES: [Range; 5] = [
     },
 ];
 
-/// Takes the next word as a decimal number within its range.
-pub(crate) fn number<'a>(
-    words: &mut impl Iterator<Item = &'a str>,
-    expected: &'static Range,
-) -> Result<I32F32, Error> {
-    let word = words.next().ok_or(Error::Missing(expected.name))?;
-    // Saturates, so that too many digits are out of range.
-    let value =
-        I32F32::saturating_from_str(word).map_err(|_| Error::NotANumber(expected, word.into()))?;
-    let range = I32F32::from_num(expected.min)..=I32F32::from_num(expected.max);
-    if range.contains(&value) {
-        Ok(value)
-    } else {
-        Err(Error::OutOfRange(expected, word.into()))
-    }
+fn stream(words: &mut Words<'_>) -> Result<Command, Error> {
+    // Rounds a fraction of a millisecond up, so that only 0 ends the stream.
+    let interval_ms = number(words, &STREAM)?.saturating_ceil().to_num::<i64>();
+    Ok(Command::Stream {
+        interval_ms: interval_ms.unsigned_abs() as u32,
+    })
 }
 
-fn hold(celsius: I32F32) -> Setpoint {
-    Setpoint::limited(celsius.to_num()).0
+fn object(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
+    if skip(words, "room") {
+        return Ok(None);
+    }
+    Ok(Some(number(words, &OBJECT)?.to_num()))
+}
+
+fn mode(words: &mut Words<'_>) -> Result<Mode, Error> {
+    let name = word(words, "mode")?;
+    let (_, mode) = lookup(&MODES, name).ok_or(Error::UnknownMode(name.into()))?;
+    Ok(mode)
 }
 
 fn law(name: &str) -> Result<Law, Error> {
-    let known = Law::WORDS.iter().find(|(known, _)| *known == name);
-    known
-        .map(|(_, law)| *law)
-        .ok_or(Error::UnknownLaw(name.into()))
+    let (_, law) = lookup(&Law::WORDS, name).ok_or(Error::UnknownLaw(name.into()))?;
+    Ok(law)
 }
 
-fn custom<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<Material, Error> {
-    let mut values = [0.0; PROPERTIES.len()];
-    for (value, property) in values.iter_mut().zip(&PROPERTIES) {
-        *value = number(words, property)?.to_num();
-    }
+fn hold(words: &mut Words<'_>) -> Result<Setpoint, Error> {
+    let celsius = number(words, &HOLD)?.to_num();
+    Ok(Setpoint::limited(celsius).0)
+}
+
+fn material(words: &mut Words<'_>, display: &Surface) -> Result<Command, Error> {
+    let name = word(words, "material")?;
+    let (name, material) = if name == CUSTOM {
+        (CUSTOM, custom_material(words)?)
+    } else {
+        lookup(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
+    };
+    let pair = ContactPair::new(&SKIN, &material, display, 1.0 / f64::from(TICK_HZ))
+        .map_err(Error::ContactPair)?;
+    Ok(Command::Material { name, pair })
+}
+
+fn custom_material(words: &mut Words<'_>) -> Result<Material, Error> {
     let [
         conductivity_w_mk,
         density_kg_m3,
         specific_heat_j_kgk,
         roughness_um,
         slope_rad,
-    ] = values;
-    let surface = Surface {
-        conductivity_w_mk,
-        roughness_um,
-        slope_rad,
-    };
+    ] = numbers(words, &PROPERTIES)?;
     Ok(Material {
-        surface,
+        surface: Surface {
+            conductivity_w_mk,
+            roughness_um,
+            slope_rad,
+        },
         density_kg_m3,
         specific_heat_j_kgk,
     })
-}
-
-fn pair(material: &Material, display: &Surface) -> Result<ContactPair, Error> {
-    ContactPair::new(&SKIN, material, display, 1.0 / f64::from(TICK_HZ)).map_err(Error::ContactPair)
 }

@@ -1,89 +1,100 @@
-//! Why a line was refused.
+//! Error messages: why a line was rejected.
 
 use core::fmt;
 
 use contact_model::fixed_point::ContactPairError;
 use contact_model::material::MATERIALS;
 
-use thermal_commissioning::{FARTHEST_K, NoTile, POINTS, PointError, SENSORS};
+use thermal_commissioning::{
+    IdentificationError, POINT_DEVIATION_MAX_K, POINTS_MAX, PointError, SENSOR_WORDS, SessionError,
+};
 use thermal_device::command::Refused;
 use thermal_device::control::Law;
 use thermal_settings::Range;
 
-use crate::{LINE_MAX, LineError, Parsed};
+use crate::command::{CUSTOM, MODES};
+use crate::commissioning_commands::SETTING_WORDS;
+use crate::{LINE_MAX_BYTES, LineError, Request};
 
-/// The beginning of a word from the host.
+/// The first 20 bytes of a word from the host, to be quoted in an error message.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Word(heapless::String<20>);
+pub struct WordExcerpt(heapless::String<20>);
 
-impl From<&str> for Word {
+impl From<&str> for WordExcerpt {
+    #[inline(never)]
     fn from(word: &str) -> Self {
-        let mut kept = heapless::String::new();
+        let mut excerpt = heapless::String::new();
         for c in word.chars() {
-            if kept.push(c).is_err() {
+            if excerpt.push(c).is_err() {
                 break;
             }
         }
-        Self(kept)
+        Self(excerpt)
     }
 }
 
-/// Why the hardware refused, in its own words.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Reason(heapless::String<56>);
+impl fmt::Display for WordExcerpt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "'{}'", self.0)
+    }
+}
 
-impl Reason {
-    /// As it is displayed, cut to what a line holds.
+/// The message of a hardware error, at most 56 bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FailureText(heapless::String<56>);
+
+impl FailureText {
+    /// The beginning of an error's message.
     #[must_use]
-    pub fn of(why: &impl fmt::Display) -> Self {
+    pub fn new(error: &impl fmt::Display) -> Self {
         let mut text = heapless::String::new();
-        // The beginning of what does not fit says enough.
-        let _ = fmt::Write::write_fmt(&mut text, format_args!("{why}"));
+        // A longer message is cut off.
+        let _ = fmt::Write::write_fmt(&mut text, format_args!("{error}"));
         Self(text)
     }
 }
 
-/// Why a line was refused; `Display` writes the answer without its end, at most
-/// [`ANSWER_MAX`](super::ANSWER_MAX) bytes.
+/// Why a line was rejected; `Display` writes the answer without its line ending, at most
+/// [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// The bytes made no line.
+    /// The received bytes form no line.
     Line(LineError),
-    /// First word unknown.
-    UnknownCommand(Word),
-    /// No such finger; there are that many.
-    UnknownFinger(Word, usize),
-    /// Material unknown.
-    UnknownMaterial(Word),
-    /// Mode unknown.
-    UnknownMode(Word),
-    /// Law unknown.
-    UnknownLaw(Word),
-    /// Thermistor unknown.
-    UnknownSensor(Word),
-    /// Setting unknown.
-    UnknownSetting(Word),
-    /// A word is missing.
+    /// The first word is no command.
+    UnknownCommand(WordExcerpt),
+    /// The device has no such finger; the number is that of its fingers.
+    UnknownFinger(WordExcerpt, usize),
+    /// The word is no material.
+    UnknownMaterial(WordExcerpt),
+    /// The word is no mode.
+    UnknownMode(WordExcerpt),
+    /// The word is no control law.
+    UnknownLaw(WordExcerpt),
+    /// The word is no thermistor.
+    UnknownSensor(WordExcerpt),
+    /// The word is no setting.
+    UnknownSetting(WordExcerpt),
+    /// The named argument is missing.
     Missing(&'static str),
-    /// A word too many.
-    Extra(Word),
-    /// A word that should be a decimal number.
-    NotANumber(&'static Range, Word),
-    /// A number outside of its range.
-    OutOfRange(&'static Range, Word),
-    /// A custom material that cannot be rendered.
+    /// A word follows the last argument.
+    Extra(WordExcerpt),
+    /// The word is not a decimal number.
+    NotANumber(&'static Range, WordExcerpt),
+    /// The number is outside its range.
+    OutOfRange(&'static Range, WordExcerpt),
+    /// The contact with a custom material is outside the domain of the contact model.
     ContactPair(ContactPairError),
-    /// Settings are stored only while the bridge is off.
+    /// The named command needs all bridges off.
     NeedsOff(&'static str),
-    /// A command that no single finger can be given.
+    /// The named command cannot address a single finger.
     WholeDevice(&'static str),
-    /// Settings could not be stored.
-    NotStored(Reason),
-    /// The station refuses.
+    /// The settings could not be stored.
+    NotStored(FailureText),
+    /// The station refuses the command.
     Refused(Refused),
-    /// The identification's sums belong to no tile within the limits of settings.
-    NoTile(NoTile),
-    /// A point of a calibration is not taken.
+    /// The recorded response is not that of a tile.
+    Identification(IdentificationError),
+    /// The calibration point is rejected.
     Point(PointError),
 }
 
@@ -93,12 +104,12 @@ impl From<Refused> for Error {
     }
 }
 
-impl From<thermal_commissioning::Error> for Error {
-    fn from(error: thermal_commissioning::Error) -> Self {
+impl From<SessionError> for Error {
+    fn from(error: SessionError) -> Self {
         match error {
-            thermal_commissioning::Error::Refused(refused) => Self::Refused(refused),
-            thermal_commissioning::Error::NoTile(no_tile) => Self::NoTile(no_tile),
-            thermal_commissioning::Error::Point(point) => Self::Point(point),
+            SessionError::Refused(refused) => Self::Refused(refused),
+            SessionError::Identification(error) => Self::Identification(error),
+            SessionError::Point(error) => Self::Point(error),
         }
     }
 }
@@ -109,169 +120,148 @@ impl From<LineError> for Error {
     }
 }
 
-impl fmt::Display for Word {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "'{}'", self.0)
-    }
-}
-
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("err ")?;
         match self {
-            Self::Line(LineError::TooLong) => write!(f, "line too long; at most {LINE_MAX} bytes"),
-            Self::Line(LineError::NotText(byte)) => {
-                write!(f, "byte 0x{byte:02x} is not printable ASCII")
-            }
-            Self::Line(LineError::Reception) => {
-                f.write_str("a byte was damaged or lost; send the line again")
-            }
-            Self::Line(LineError::Refused) => {
-                f.write_str("busy; wait for the answer before the next line")
-            }
+            Self::Line(error) => line(f, *error),
             Self::UnknownCommand(word) => {
-                write!(f, "unknown command {word}; known:")?;
-                Parsed::WORDS
-                    .iter()
-                    .try_for_each(|known| write!(f, " {known}"))
+                unknown(f, "command", word, Request::WORDS.iter().copied())
             }
             Self::UnknownFinger(word, fingers) => {
-                write!(
-                    f,
-                    "unknown finger {word} after @; known: 0 to {}",
-                    fingers.saturating_sub(1)
-                )
+                let last = fingers.saturating_sub(1);
+                write!(f, "unknown finger {word} after @; known: 0 to {last}")
             }
             Self::UnknownMaterial(word) => {
-                write!(f, "unknown material {word}; known:")?;
-                MATERIALS
-                    .iter()
-                    .try_for_each(|(known, _)| write!(f, " {known}"))?;
-                f.write_str(" custom")
+                let names = MATERIALS.iter().map(|(name, _)| *name);
+                unknown(f, "material", word, names.chain([CUSTOM]))
             }
             Self::UnknownMode(word) => {
-                write!(f, "unknown mode {word}; known: contact semi-infinite")
+                unknown(f, "mode", word, MODES.iter().map(|(name, _)| *name))
             }
             Self::UnknownLaw(word) => {
-                write!(f, "unknown law {word}; known:")?;
-                Law::WORDS
-                    .iter()
-                    .try_for_each(|(known, _)| write!(f, " {known}"))
+                unknown(f, "law", word, Law::WORDS.iter().map(|(name, _)| *name))
             }
-            Self::UnknownSensor(word) => {
-                write!(f, "unknown sensor {word}; known:")?;
-                SENSORS.iter().try_for_each(|known| write!(f, " {known}"))
-            }
+            Self::UnknownSensor(word) => unknown(f, "sensor", word, SENSOR_WORDS.iter().copied()),
             Self::UnknownSetting(word) => {
-                write!(f, "unknown setting {word}; known: steps correction tile")
+                unknown(f, "setting", word, SETTING_WORDS.iter().copied())
             }
-            Self::Missing(what) => write!(f, "{what} missing"),
+            Self::Missing(argument) => write!(f, "{argument} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
-            Self::NotANumber(
-                Range {
-                    name,
-                    unit,
-                    min,
-                    max,
-                },
-                word,
-            ) => {
-                write!(
-                    f,
-                    "{name} {word} is not a decimal number; {min} to {max} {unit}"
-                )
+            Self::NotANumber(range, word) => {
+                write!(f, "{} {word} is not a decimal number; {range}", range.name)
             }
-            Self::OutOfRange(
-                Range {
-                    name,
-                    unit,
-                    min,
-                    max,
-                },
-                word,
-            ) => {
-                write!(f, "{name} {word} out of range; {min} to {max} {unit}")
+            Self::OutOfRange(range, word) => {
+                write!(f, "{} {word} out of range; {range}", range.name)
             }
-            Self::ContactPair(error) => write!(f, "{error}"),
-            Self::Refused(Refused::NotArmed) => f.write_str("start needs arm first"),
-            Self::Refused(Refused::Testing) => {
-                f.write_str("the self-test goes on; ask again in a second")
-            }
-            Self::Refused(Refused::NoMaterial) => f.write_str("start needs a material first"),
-            Self::Refused(Refused::AlreadyStarted) => {
-                f.write_str("already started; arm takes the object away")
-            }
-            Self::Refused(Refused::NeedsArmed(command)) => {
-                write!(f, "{command} needs the state armed")
-            }
+            Self::ContactPair(error) => error.fmt(f),
             Self::NeedsOff(command) => write!(f, "{command} needs the bridge off: abort first"),
             Self::WholeDevice(command) => write!(f, "{command} is for all fingers at once"),
-            Self::NotStored(Reason(why)) => write!(f, "not stored: {why}"),
-            Self::Refused(Refused::Presenting) => {
-                f.write_str("not while an object is presented: abort or arm first")
-            }
-            Self::Refused(Refused::Touched) => {
-                f.write_str("tune needs a display without a finger on it")
-            }
-            Self::Refused(Refused::NotTuned) => {
-                f.write_str("nothing was tuned since arm; tune first")
-            }
-            Self::Refused(Refused::Tuning) => f.write_str("tuning goes on; ask again in a second"),
-            Self::Refused(Refused::TuneAborted(why)) => {
-                write!(f, "tune was ended: {}", why.description())
-            }
-            Self::NoTile(NoTile::Current(part)) => write!(
-                f,
-                "tune measured {part:.2} of the current asked for; look at bridge, module and current mirror"
-            ),
-            Self::NoTile(NoTile::Nothing) => f.write_str(
-                "tune saw no answer of the display to the current; look at its thermistor",
-            ),
-            Self::NoTile(NoTile::Unlike(part)) => write!(
-                f,
-                "tune saw {:.2} % of what the display did come from elsewhere; look for a loose sensor, a draught, a touch",
-                100.0 * part
-            ),
-            Self::NoTile(NoTile::Beyond(
-                Range {
-                    name,
-                    unit,
-                    min,
-                    max,
-                },
-                value,
-            )) => write!(
-                f,
-                "tune found a {name} of {value:.3} {unit}; {min} to {max} is a tile; look at sensor and polarity"
-            ),
-            Self::Refused(Refused::TooEarly) => {
-                f.write_str("not watched for long enough; wait half a second")
-            }
-            Self::Point(PointError::Unsteady) => f.write_str(
-                "the reading moves; wait until it is steady to 3 mK in a quarter of a second",
-            ),
-            Self::Point(PointError::AtBorder) => {
-                f.write_str("at a step of the converter; take a temperature 0.3 C from here")
-            }
-            Self::Point(PointError::TooFar(reads)) => {
-                write!(
-                    f,
-                    "the device reads {reads:.2} C; allowed is within {FARTHEST_K} C of that"
-                )
-            }
-            Self::Point(PointError::Contradicts) => f.write_str(
-                "no correction fits this and the points before; clear them and begin again",
-            ),
-            Self::Point(PointError::Full) => {
-                write!(f, "no room for more than {POINTS} points; clear them")
-            }
-            Self::Refused(Refused::Tripped(fault)) => {
-                write!(f, "tripped by {}; clear it first", fault.name())
-            }
-            Self::Refused(Refused::StillFaulty(fault)) => {
-                write!(f, "fault {} is still present", fault.name())
-            }
-            Self::Refused(Refused::NothingToClear) => f.write_str("no fault to clear"),
+            Self::NotStored(FailureText(failure)) => write!(f, "not stored: {failure}"),
+            Self::Refused(refused) => refusal(f, refused),
+            Self::Identification(error) => identification(f, error),
+            Self::Point(error) => point(f, error),
         }
+    }
+}
+
+/// Writes that a word is unknown, and the known words.
+fn unknown<'a>(
+    f: &mut fmt::Formatter<'_>,
+    kind: &str,
+    word: &WordExcerpt,
+    known: impl Iterator<Item = &'a str>,
+) -> fmt::Result {
+    unknown_word(f, kind, word)?;
+    for known in known {
+        f.write_str(" ")?;
+        f.write_str(known)?;
+    }
+    Ok(())
+}
+
+/// The part of [`unknown`] that does not depend on the iterator, so that the image contains it once.
+#[inline(never)]
+fn unknown_word(f: &mut fmt::Formatter<'_>, kind: &str, word: &WordExcerpt) -> fmt::Result {
+    write!(f, "unknown {kind} {word}; known:")
+}
+
+fn line(f: &mut fmt::Formatter<'_>, error: LineError) -> fmt::Result {
+    match error {
+        LineError::TooLong => write!(f, "line too long; at most {LINE_MAX_BYTES} bytes"),
+        LineError::NotText(byte) => write!(f, "byte 0x{byte:02x} is not printable ASCII"),
+        LineError::Reception => f.write_str("a byte was damaged or lost; send the line again"),
+        LineError::QueueFull => f.write_str("busy; wait for the answer before the next line"),
+    }
+}
+
+fn refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::Result {
+    f.write_str(match refused {
+        Refused::NotArmed => "start needs arm first",
+        Refused::Testing => "the self-test goes on; ask again in a second",
+        Refused::NoMaterial => "start needs a material first",
+        Refused::AlreadyStarted => "already started; arm takes the object away",
+        Refused::NeedsArmed(command) => return write!(f, "{command} needs the state armed"),
+        Refused::Presenting => "not while an object is presented: abort or arm first",
+        Refused::Touched => "tune needs a display without a finger on it",
+        Refused::NotTuned => "nothing was tuned since arm; tune first",
+        Refused::Tuning => "tuning goes on; ask again in a second",
+        Refused::TuneAborted(why) => return write!(f, "tune was ended: {}", why.description()),
+        Refused::TooEarly => "not watched for long enough; wait half a second",
+        Refused::Tripped(fault) => {
+            return write!(f, "tripped by {}; clear it first", fault.name());
+        }
+        Refused::StillFaulty(fault) => {
+            return write!(f, "fault {} is still present", fault.name());
+        }
+        Refused::NothingToClear => "no fault to clear",
+    })
+}
+
+fn identification(f: &mut fmt::Formatter<'_>, error: &IdentificationError) -> fmt::Result {
+    match error {
+        IdentificationError::CurrentRatio(ratio) => write!(
+            f,
+            "tune measured {ratio:.2} of the current asked for; look at bridge, module and current mirror"
+        ),
+        IdentificationError::NoResponse => {
+            f.write_str("tune saw no answer of the display to the current; look at its thermistor")
+        }
+        IdentificationError::ModelMismatch(residual) => write!(
+            f,
+            "tune saw {:.2} % of what the display did come from elsewhere; look for a loose sensor, a draught, a touch",
+            100.0 * residual
+        ),
+        IdentificationError::OutOfRange(
+            Range {
+                name,
+                unit,
+                min,
+                max,
+            },
+            value,
+        ) => write!(
+            f,
+            "tune found a {name} of {value:.3} {unit}; {min} to {max} is a tile; look at sensor and polarity"
+        ),
+    }
+}
+
+fn point(f: &mut fmt::Formatter<'_>, error: &PointError) -> fmt::Result {
+    match error {
+        PointError::Unsteady => f.write_str(
+            "the reading moves; wait until it is steady to 3 mK in a quarter of a second",
+        ),
+        PointError::AtBorder => {
+            f.write_str("at a step of the converter; take a temperature 0.3 C from here")
+        }
+        PointError::TooFar(reading) => write!(
+            f,
+            "the device reads {reading:.2} C; allowed is within {POINT_DEVIATION_MAX_K} C of that"
+        ),
+        PointError::Contradicts => {
+            f.write_str("no correction fits this and the points before; clear them and begin again")
+        }
+        PointError::Full => write!(f, "no room for more than {POINTS_MAX} points; clear them"),
     }
 }

@@ -1,174 +1,186 @@
-//! Lines to answers: what the host task does, for every finger of the device.
+//! Execution of the host's lines for all fingers of a device.
 
 use core::array;
 
-use thermal_commissioning::{Request, Service, StorageOrder, is_off, record};
-use thermal_device::Finger;
+use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
 use thermal_device::command::{self, Addressed, Command, Refused};
-use thermal_settings::{Kept, Settings, StoredBytes};
+use thermal_device::{Finger, StateName};
+use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode};
 
 use crate::address::address;
-use crate::{Error, Parsed, Reply};
+use crate::{Error, Reply, Request};
 
-/// Executes a command on the station of one finger, or on all stations if there is no finger.
+/// Executes a command on the station of one finger, or on all stations if there is no finger, in bounded and short time.
 pub trait Execute<const FINGERS: usize>:
-    FnMut(Option<Finger<FINGERS>>, Command) -> Executed
+    FnMut(Option<Finger<FINGERS>>, Command) -> ExecutionResult
 {
 }
 
 impl<const FINGERS: usize, F> Execute<FINGERS> for F where
-    F: FnMut(Option<Finger<FINGERS>>, Command) -> Executed
+    F: FnMut(Option<Finger<FINGERS>>, Command) -> ExecutionResult
 {
 }
 
-/// What the stations answer.
-pub type Executed = Result<Addressed<command::Reply>, Addressed<Refused>>;
+/// The reply of the stations.
+pub type ExecutionResult = Result<Addressed<command::Reply>, Addressed<Refused>>;
 
-/// The settings of as many fingers as the device has, ten at most, and what answers their lines.
+/// Answers the host's lines, by the commissioning sessions of all fingers, one to ten, and by their stations.
 #[derive(Clone, Debug)]
-pub struct Desk<const FINGERS: usize> {
-    fingers: [Service; FINGERS],
+pub struct CommandHandler<const FINGERS: usize> {
+    sessions: [CommissioningSession; FINGERS],
 }
 
-impl<const FINGERS: usize> Desk<FINGERS> {
-    /// For a device with these settings.
+impl<const FINGERS: usize> CommandHandler<FINGERS> {
+    /// A handler for a device whose fingers all have these settings.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
         Self {
-            fingers: array::from_fn(|_| Service::new(settings)),
+            sessions: array::from_fn(|_| CommissioningSession::new(settings)),
         }
     }
 
-    /// For a device of this class that was commissioned so.
+    /// A handler for a device with stored settings.
     #[must_use]
-    pub fn restored(kept: &[Kept; FINGERS]) -> Self {
+    pub fn from_stored(stored: &[StoredSettings; FINGERS]) -> Self {
+        let session = |stored: &StoredSettings| CommissioningSession::new(stored.settings());
         Self {
-            fingers: kept.each_ref().map(|kept| Service::new(kept.settings())),
+            sessions: stored.each_ref().map(session),
         }
     }
 
-    /// The bytes that an order stores.
+    /// The record that an order stores.
     #[must_use]
-    pub fn record(&self, order: StorageOrder) -> StoredBytes {
-        record(order, &self.fingers)
+    pub fn settings_record(&self, order: StorageOrder) -> SettingsRecord {
+        match order {
+            StorageOrder::Save => {
+                let sessions = self.sessions.each_ref();
+                let stored = sessions.map(|one| StoredSettings::from_settings(one.settings()));
+                encode(Some(&stored))
+            }
+            StorageOrder::Forget => encode::<FINGERS>(None),
+        }
     }
 
-    /// Answers a line, for one finger or for all. `execute` is what the stations do with a [`Command`], in bounded and
-    /// short time; all that takes longer is done here. A question to all is answered by the first; all obey an order,
-    /// and what the first has found is told.
+    /// Answers a line for one finger or for all. Time-consuming computations are done here, outside of `execute`, which
+    /// runs with the control tick locked out. If a line addresses all fingers, a query is answered by the first one, and
+    /// a change is made by each.
     ///
     /// # Errors
-    /// Why the line is refused: nothing has changed for the finger that is named, the first of those that refuse.
+    /// The line is rejected. The error names the first finger that rejects it, which is unchanged; the other fingers have
+    /// executed the line.
     pub fn answer(
         &mut self,
         line: &str,
         mut execute: impl Execute<FINGERS>,
     ) -> Result<Addressed<Reply>, Addressed<Error>> {
-        let (addressed, rest) = address(line)?;
-        let finger = addressed.map(Finger::number);
-        let of = |said: Error| Addressed { finger, said };
-        let [first, ..] = self.fingers.as_slice() else {
-            return Err(of(Error::Missing("finger")));
+        const { assert!(FINGERS > 0 && FINGERS <= 10) };
+        let (finger, line) = address(line)?;
+        let number = finger.map(Finger::number);
+        let addressed = |content| Addressed {
+            finger: number,
+            content,
         };
-        match Parsed::parse(rest, first.settings()).map_err(of)? {
-            Parsed::Identify => Ok(Addressed {
-                finger,
-                said: Reply::Identity {
-                    fingers: FINGERS as u8,
-                },
-            }),
-            Parsed::Station(said) => match execute(addressed, said) {
+        let request =
+            Request::parse(line, self.sessions[0].settings()).map_err(|content| Addressed {
+                finger: number,
+                content,
+            })?;
+        match request {
+            Request::Identify => Ok(addressed(Reply::Identity {
+                fingers: FINGERS as u8,
+            })),
+            Request::Station(command) => match execute(finger, command) {
                 Ok(reply) => Ok(reply.map(Reply::Station)),
                 Err(refused) => Err(refused.map(Error::from)),
             },
-            Parsed::Commissioning(request) => self.commission(request, addressed, execute),
-            Parsed::Storage(order) => Self::accept(order, addressed, execute),
+            Request::Commissioning(request) => self.commission(request, finger, execute),
+            Request::Storage(order) => match Self::reject_storage(order, finger, execute) {
+                None => Ok(addressed(Reply::Restart(order))),
+                Some(error) => Err(error),
+            },
         }
     }
 
-    /// Lets the sessions of one finger or of all do what a line of commissioning asks.
+    /// Executes a request in the session of one finger or of all.
     fn commission(
         &mut self,
-        request: Request,
+        request: SessionRequest,
         finger: Option<Finger<FINGERS>>,
         mut execute: impl Execute<FINGERS>,
     ) -> Result<Addressed<Reply>, Addressed<Error>> {
         let finger = match request {
-            // A query to all is answered by the first; nobody is named if there is one finger only.
-            Request::Settings(_) | Request::Margins if FINGERS > 1 => {
+            SessionRequest::CountSettingsLines
+            | SessionRequest::SettingsLine(_)
+            | SessionRequest::Margins
+                if FINGERS > 1 =>
+            {
                 finger.or(Some(Finger::FIRST))
             }
-            // Milliseconds of `f64` each, which the watchdog waits for once.
-            Request::Point { .. } | Request::Tuned if finger.is_none() && FINGERS > 1 => {
+            // Each takes milliseconds of `f64`: for all fingers at once it would exceed the watchdog's period.
+            SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
+                if finger.is_none() && FINGERS > 1 =>
+            {
                 return Err(Addressed::device(Error::Missing("finger (as @0)")));
             }
             _ => finger,
         };
-        let mut told = Ok(Addressed::device(thermal_commissioning::Reply::Done));
-        for (one, service) in Finger::all().zip(&mut self.fingers) {
+        let (mut reply, mut first_error) = (SessionReply::Done, None);
+        for (one, session) in Finger::all().zip(&mut self.sessions) {
             if finger.is_some_and(|finger| finger != one) {
                 continue;
             }
-            let answered = service.answer(request.clone(), |command| {
-                execute(Some(one), command)
-                    .map(|reply| reply.said)
-                    .map_err(|error| error.said)
+            let answer = session.answer(request.clone(), |command| {
+                match execute(Some(one), command) {
+                    Ok(reply) => Ok(reply.content),
+                    Err(refused) => Err(refused.content),
+                }
             });
-            // A finger that nobody has asked for is named if it is not the only one.
-            let finger = finger.or((FINGERS > 1).then_some(one)).map(Finger::number);
-            told = match (told, answered) {
-                (Err(first), _) => Err(first),
-                (Ok(_), Err(said)) => Err(Addressed {
-                    finger,
-                    said: Error::from(said),
-                }),
-                (
-                    Ok(Addressed {
-                        said: thermal_commissioning::Reply::Done,
-                        ..
-                    }),
-                    Ok(said),
-                ) if said != thermal_commissioning::Reply::Done => Ok(Addressed { finger, said }),
-                (told, Ok(_)) => told,
-            };
+            match answer {
+                // A request to several fingers has no other reply than `Done`.
+                Ok(answer) => reply = answer,
+                Err(error) => {
+                    first_error.get_or_insert(Addressed {
+                        finger: finger.map(Finger::number).or(one.address()),
+                        content: Error::from(error),
+                    });
+                }
+            }
         }
-        // Whoever is asked for by name answers by name.
-        told.map(|reply| Addressed {
-            finger: reply.finger.or(finger.map(Finger::number)),
-            said: Reply::Commissioning(reply.said),
-        })
+        let content = Reply::Commissioning(reply);
+        let finger = finger.map(Finger::number);
+        first_error.map_or(Ok(Addressed { finger, content }), Err)
     }
 
-    /// Accepts an order if nobody can feel a device that starts anew: all bridges are off.
-    fn accept(
+    /// Rejects an order for a single finger, and while any bridge is driven: the device restarts to store the settings,
+    /// which a user must not feel.
+    fn reject_storage(
         order: StorageOrder,
         finger: Option<Finger<FINGERS>>,
         mut execute: impl Execute<FINGERS>,
-    ) -> Result<Addressed<Reply>, Addressed<Error>> {
+    ) -> Option<Addressed<Error>> {
         if finger.is_some() && FINGERS > 1 {
-            let said = Error::WholeDevice(order.name());
-            return Err(Addressed {
-                finger: finger.map(Finger::number),
-                said,
-            });
+            let content = Error::WholeDevice(order.name());
+            let finger = finger.map(Finger::number);
+            return Some(Addressed { finger, content });
         }
         for one in Finger::all() {
-            let status =
-                execute(Some(one), Command::Status).map_err(|refused| refused.map(Error::from))?;
-            let off =
-                matches!(&status.said, command::Reply::Status(status) if is_off(status.state));
-            if !off {
-                let finger = (FINGERS > 1).then_some(one).or(finger);
-                let said = Error::NeedsOff(order.name());
-                return Err(Addressed {
-                    finger: finger.map(Finger::number),
-                    said,
-                });
+            match execute(Some(one), Command::Status) {
+                Err(refused) => return Some(refused.map(Error::from)),
+                Ok(Addressed {
+                    content: command::Reply::Status(status),
+                    ..
+                }) if matches!(
+                    status.state,
+                    StateName::Off | StateName::Ready | StateName::Tripped(_)
+                ) => {}
+                Ok(_) => {
+                    return Some(Addressed {
+                        finger: one.address().or(finger.map(Finger::number)),
+                        content: Error::NeedsOff(order.name()),
+                    });
+                }
             }
         }
-        Ok(Addressed {
-            finger: finger.map(Finger::number),
-            said: Reply::Restart(order),
-        })
+        None
     }
 }

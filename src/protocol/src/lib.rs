@@ -1,6 +1,4 @@
-//! The line protocol between host and device: one line of words to the device, one line back.
-//!
-//! Answers start with `ok` or `err`, streamed telemetry with `T`.
+#![doc = include_str!("../README.md")]
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -8,19 +6,20 @@
 extern crate std;
 
 mod address;
+mod arguments;
 mod command;
-mod commissioning;
+mod commissioning_commands;
 mod error;
 mod handler;
-mod line;
+mod line_buffer;
+mod line_reader;
 mod reply;
 mod telemetry;
-mod text;
 
-pub use command::Parsed;
-pub use error::{Error, Reason, Word};
-pub use handler::{Desk, Execute, Executed};
-pub use line::{ANSWER_MAX, LINE_MAX, Line, LineError, LineReader};
+pub use command::Request;
+pub use error::{Error, FailureText, WordExcerpt};
+pub use handler::{CommandHandler, Execute, ExecutionResult};
+pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use reply::Reply;
 pub use telemetry::{TelemetryLine, telemetry_line};
 

@@ -1,34 +1,34 @@
-//! Answers to commands that were executed.
+//! Answers to executed requests.
 
 use core::fmt::{self, Display as _};
 
-use thermal_commissioning::{Margins, Setting, StorageOrder};
+use thermal_commissioning::{SENSOR_WORDS, SessionReply, Setting, StabilityMargins, StorageOrder};
 use thermal_device::command::{self, Status};
-use thermal_device::reference::Mode;
 use thermal_device::safety::TripCause;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
-use thermal_settings::{Calibration, Correction, Tile};
+use thermal_settings::{Calibration, Tile};
 
-use crate::text::Text;
+use crate::command::MODES;
+use crate::line_buffer::LineBuffer;
 
-/// An answer; `Display` writes the line without its end, at most [`ANSWER_MAX`](super::ANSWER_MAX) bytes.
+/// An answer; `Display` writes it without its line ending, at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
     /// Answer to `id`.
     Identity {
-        /// Fingers of the device.
+        /// Number of fingers of the device.
         fingers: u8,
     },
-    /// A station's answer.
+    /// Reply of a station.
     Station(command::Reply),
-    /// A commissioning session's answer.
-    Commissioning(thermal_commissioning::Reply),
-    /// `save` or `forget` is executed by a device that starts anew, which then answers `ok`.
+    /// Reply of a commissioning session.
+    Commissioning(SessionReply),
+    /// `save` or `forget`: the device restarts to execute the order, and answers `ok` afterwards.
     Restart(StorageOrder),
 }
 
 impl Reply {
-    /// The command was executed, and there is nothing to report.
+    /// The request was executed, and has no other result.
     pub const DONE: Self = Self::Station(command::Reply::Done);
 }
 
@@ -52,20 +52,19 @@ fn station(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fmt::Result {
         command::Reply::Status(status) => status_line(status).fmt(f),
         command::Reply::Law(law) => write!(f, "ok law={}", law.name()),
         command::Reply::Cause(cause) => cause_line(cause.as_ref()).fmt(f),
-        // Averages and sums go to the commissioning session only.
+        // A commissioning session evaluates averages and normal equations; no line requests them.
         command::Reply::Done | command::Reply::Average(_) | command::Reply::NormalEquation(_) => {
             f.write_str("ok")
         }
     }
 }
 
-fn commissioning(f: &mut fmt::Formatter<'_>, reply: &thermal_commissioning::Reply) -> fmt::Result {
-    use thermal_commissioning::Reply;
+fn commissioning(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt::Result {
     match reply {
-        Reply::Done => f.write_str("ok"),
-        Reply::Tile(tile, margins) => {
+        SessionReply::Done => f.write_str("ok"),
+        SessionReply::Tile(tile, margins) => {
             let [gain, joule, leak, lag, dead] = tile.to_array();
-            let Margins {
+            let StabilityMargins {
                 phase_deg,
                 gain: margin,
             } = margins;
@@ -75,63 +74,62 @@ fn commissioning(f: &mut fmt::Formatter<'_>, reply: &thermal_commissioning::Repl
             )?;
             write!(f, " phase_deg={phase_deg:.1} margin={margin:.2}")
         }
-        Reply::Calibrated { points, worst_mk } => {
+        SessionReply::PointAdded { points, worst_mk } => {
             write!(f, "ok points={points} worst_mk={worst_mk:.2}")
         }
-        Reply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
-        Reply::Setting(setting) => write_setting(f, setting),
+        SessionReply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
+        SessionReply::Setting(setting) => write_setting(f, setting),
     }
 }
 
-fn status_line(status: &Status) -> Text {
-    let mut line = Text::new();
-    line.word("ok state=");
-    line.word(status.state.name());
-    line.word(" fault=");
-    line.word(status.state.fault().map_or("-", |fault| fault.name()));
-    line.word(" material=");
-    line.word(status.material.unwrap_or("-"));
-    line.word(" object_c=");
+fn status_line(status: &Status) -> LineBuffer {
+    let mut line = LineBuffer::new();
+    line.push_str("ok state=");
+    line.push_str(status.state.name());
+    line.push_str(" fault=");
+    line.push_str(status.state.fault().map_or("-", |fault| fault.name()));
+    line.push_str(" material=");
+    line.push_str(status.material.unwrap_or("-"));
+    line.push_str(" object_c=");
     match status.object {
-        Some(_) => line.celsius::<2>(status.object),
-        None => line.word("room"),
+        Some(_) => line.push_celsius::<2>(status.object),
+        None => line.push_str("room"),
     }
-    line.word(match status.mode {
-        Mode::ContactResistance => " mode=contact",
-        Mode::SemiInfinite => " mode=semi-infinite",
-    });
-    line.word(" setpoint_c=");
-    line.celsius::<2>(status.setpoint);
-    line.word(if status.limited { " limited" } else { "" });
+    line.push_str(" mode=");
+    let mode = MODES.iter().find(|(_, mode)| *mode == status.mode);
+    line.push_str(mode.map_or("-", |(name, _)| name));
+    line.push_str(" setpoint_c=");
+    line.push_celsius::<2>(status.setpoint);
+    line.push_str(if status.limited { " limited" } else { "" });
     line
 }
 
-fn cause_line(cause: Option<&TripCause>) -> Text {
-    let mut line = Text::new();
-    line.word("ok cause=");
+fn cause_line(cause: Option<&TripCause>) -> LineBuffer {
+    let mut line = LineBuffer::new();
+    line.push_str("ok cause=");
     let Some(cause) = cause else {
-        line.word("-");
+        line.push_str("-");
         return line;
     };
-    line.word(cause.fault.name());
-    line.word(" tick=");
-    line.count(cause.tick);
+    line.push_str(cause.fault.name());
+    line.push_str(" tick=");
+    line.push_integer(cause.tick);
     for (name, temperature) in [
         (" display_c=", cause.display),
         (" check_c=", cause.check),
         (" sink_c=", cause.sink),
     ] {
-        line.word(name);
-        line.celsius::<2>(temperature);
+        line.push_str(name);
+        line.push_celsius::<2>(temperature);
     }
-    line.word(" current_a=");
-    line.current(cause.current);
-    line.word(" asked_a=");
-    line.current(cause.demanded);
+    line.push_str(" current_a=");
+    line.push_current(cause.current);
+    line.push_str(" asked_a=");
+    line.push_current(cause.demanded);
     line
 }
 
-/// Writes `ok` and the line that sets this part of the settings.
+/// Writes `ok` and the `set` line that restores this part of the settings.
 fn write_setting(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result {
     f.write_str("ok set ")?;
     match setting {
@@ -143,16 +141,15 @@ fn write_setting(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result {
                 .try_for_each(|count| write!(f, " {count:.decimals$}"))
         }
         Setting::Correction(sensor, correction) => {
-            let [a, b, c] = Calibration::DECIMALS.map(|decimals| decimals as usize);
-            let Correction {
-                offset_k,
-                slope,
-                curvature_1_k,
-            } = correction;
             write!(
                 f,
-                "correction {sensor} {offset_k:.a$} {slope:.b$} {curvature_1_k:.c$}"
-            )
+                "correction {}",
+                SENSOR_WORDS[sensor % SENSOR_WORDS.len()]
+            )?;
+            let values = correction.to_array().into_iter();
+            values
+                .zip(Calibration::CORRECTION_DECIMALS.map(|decimals| decimals as usize))
+                .try_for_each(|(value, decimals)| write!(f, " {value:.decimals$}"))
         }
         Setting::Tile(tile) => {
             f.write_str("tile")?;

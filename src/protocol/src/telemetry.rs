@@ -1,20 +1,21 @@
-//! The telemetry line.
+//! The line of streamed telemetry.
 
 use core::fmt;
 
 use thermal_device::Telemetry;
 use thermal_device::command::Addressed;
 
-use crate::text::Text;
+use crate::line_buffer::LineBuffer;
 
-/// Writes a telemetry line without its end, at most 128 bytes:
+/// Telemetry whose `Display` writes a line without its line ending, at most 128 bytes:
 ///
-/// `T tick state setpoint_c display_c sink_c skin_c room_c force_n demand_a current_a evaluations remark`,
-/// with `-` for what is not known; the remark is the fault that tripped, `limited` or `-`.
+/// `T tick state setpoint_c display_c sink_c skin_c room_c force_n demand_a current_a evaluations remark`.
+/// An unknown quantity is written as `-`. The remark is the fault that tripped the station, `limited` if the set-point is,
+/// or `-`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TelemetryLine(pub Telemetry);
 
-/// The line of one finger.
+/// The telemetry line of one finger, with its address.
 #[must_use]
 pub fn telemetry_line(telemetry: Addressed<Telemetry>) -> Addressed<TelemetryLine> {
     telemetry.map(TelemetryLine)
@@ -22,31 +23,32 @@ pub fn telemetry_line(telemetry: Addressed<Telemetry>) -> Addressed<TelemetryLin
 
 impl fmt::Display for TelemetryLine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let mut line = Text::new();
-        line.word("T ");
-        line.count(self.0.tick);
-        line.word(" ");
-        line.word(self.0.state.name());
-        line.word(" ");
-        line.celsius::<5>(self.0.setpoint);
-        line.word(" ");
-        line.celsius::<4>(self.0.display);
-        for temperature in [self.0.sink, self.0.skin, self.0.room] {
-            line.word(" ");
-            line.celsius::<2>(temperature);
+        let mut line = LineBuffer::new();
+        let telemetry = &self.0;
+        line.push_str("T ");
+        line.push_integer(telemetry.tick);
+        line.push_str(" ");
+        line.push_str(telemetry.state.name());
+        line.push_str(" ");
+        line.push_celsius::<5>(telemetry.setpoint);
+        line.push_str(" ");
+        line.push_celsius::<4>(telemetry.display);
+        for temperature in [telemetry.sink, telemetry.skin, telemetry.room] {
+            line.push_str(" ");
+            line.push_celsius::<2>(temperature);
         }
-        line.word(" ");
-        line.force(self.0.force);
-        for current in [self.0.demand, self.0.current] {
-            line.word(" ");
-            line.current(current);
+        line.push_str(" ");
+        line.push_force(telemetry.force);
+        for current in [telemetry.demand, telemetry.current] {
+            line.push_str(" ");
+            line.push_current(current);
         }
-        line.word(" ");
-        line.count(self.0.evaluations);
-        line.word(" ");
-        line.word(match self.0.state.fault() {
+        line.push_str(" ");
+        line.push_integer(telemetry.evaluations);
+        line.push_str(" ");
+        line.push_str(match telemetry.state.fault() {
             Some(fault) => fault.name(),
-            None if self.0.limited => "limited",
+            None if telemetry.limited => "limited",
             None => "-",
         });
         line.fmt(f)

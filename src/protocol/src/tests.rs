@@ -1,4 +1,4 @@
-//! Lines in, answers out.
+//! Parsing of lines, error messages and the lengths of answers.
 
 use proptest::prelude::*;
 use std::string::{String, ToString};
@@ -6,30 +6,31 @@ use std::vec::Vec;
 
 use contact_model::fixed_point::{Celsius, Force};
 
-use super::{ANSWER_MAX, Error, LINE_MAX, LineError, LineReader, Parsed, Reply, TelemetryLine};
-use thermal_commissioning::NoTile;
-use thermal_device::StateName;
-use thermal_device::Telemetry;
+use super::{
+    ANSWER_MAX_BYTES, Error, LINE_MAX_BYTES, LineError, LineReader, Reply, Request, TelemetryLine,
+};
+use thermal_commissioning::IdentificationError;
 use thermal_device::command::{self, Command, Status};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
 use thermal_device::reference::Mode;
 use thermal_device::safety::Fault;
+use thermal_device::{StateName, Telemetry};
 use thermal_settings::Settings;
 
-fn parse(line: &str) -> Result<Parsed, Error> {
-    Parsed::parse(line, &Settings::default())
+fn parse(line: &str) -> Result<Request, Error> {
+    Request::parse(line, &Settings::default())
 }
 
 fn refusal(line: &str) -> String {
     let answer = parse(line).expect_err(line).to_string();
-    assert!(answer.len() <= ANSWER_MAX, "{answer}");
+    assert!(answer.len() <= ANSWER_MAX_BYTES, "{answer}");
     answer
 }
 
 #[test]
-fn every_command_is_understood() {
-    assert_eq!(parse("id"), Ok(Parsed::Identify));
+fn every_command_is_parsed() {
+    assert_eq!(parse("id"), Ok(Request::Identify));
     for (line, command) in [
         ("state", Command::Status),
         ("stream 0", Command::Stream { interval_ms: 0 }),
@@ -52,22 +53,22 @@ fn every_command_is_understood() {
         ("abort", Command::Abort),
         ("clear", Command::Clear),
     ] {
-        assert_eq!(parse(line), Ok(Parsed::Station(command)), "{line}");
+        assert_eq!(parse(line), Ok(Request::Station(command)), "{line}");
     }
-    // Copper by name and by its properties.
-    let of = |line| match parse(line) {
-        Ok(Parsed::Station(Command::Material { pair, .. })) => pair,
+    // Copper by its name and by its properties.
+    let pair_of = |line| match parse(line) {
+        Ok(Request::Station(Command::Material { pair, .. })) => pair,
         other => panic!("{line}: {other:?}"),
     };
     let (named, custom) = (
-        of("material copper"),
-        of("material custom 398 8954 384 0.31 0.045"),
+        pair_of("material copper"),
+        pair_of("material custom 398 8954 384 0.31 0.045"),
     );
     assert!((named.ratio().to_num::<f64>() - custom.ratio().to_num::<f64>()).abs() < 1e-5);
 }
 
 #[test]
-fn both_ends_of_each_range_are_allowed() {
+fn both_ends_of_a_range_are_allowed() {
     for line in [
         "object 60",
         "material custom 0.001 1 10 0.001 0.0001",
@@ -78,7 +79,7 @@ fn both_ends_of_each_range_are_allowed() {
 }
 
 #[test]
-fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
+fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
@@ -133,8 +134,8 @@ fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
     }
 }
 
-/// What a reader makes of bytes.
-fn read(bytes: impl IntoIterator<Item = u8>) -> Vec<Result<String, LineError>> {
+/// The lines and errors that a reader returns for bytes.
+fn read_lines(bytes: impl IntoIterator<Item = u8>) -> Vec<Result<String, LineError>> {
     let mut reader = LineReader::new();
     let lines = bytes.into_iter().filter_map(|byte| reader.push(byte));
     lines
@@ -143,17 +144,17 @@ fn read(bytes: impl IntoIterator<Item = u8>) -> Vec<Result<String, LineError>> {
 }
 
 #[test]
-fn bad_bytes_spoil_their_line_only() {
+fn an_invalid_byte_rejects_only_its_line() {
     let line = |text: &str| Ok(text.to_string());
-    assert_eq!(read(*b"arm\r\n\n\rid\n"), [line("arm"), line("id")]);
+    assert_eq!(read_lines(*b"arm\r\n\n\rid\n"), [line("arm"), line("id")]);
     assert_eq!(
-        read(*b"a\xffrm\nid\n"),
+        read_lines(*b"a\xffrm\nid\n"),
         [Err(LineError::NotText(0xff)), line("id")]
     );
-    let full = "x".repeat(LINE_MAX);
+    let full = "x".repeat(LINE_MAX_BYTES);
     let bytes = [full.as_str(), "\n", &full, "x\nid\n"].concat();
     assert_eq!(
-        read(bytes.bytes()),
+        read_lines(bytes.bytes()),
         [line(&full), Err(LineError::TooLong), line("id")]
     );
     assert_eq!(
@@ -164,19 +165,19 @@ fn bad_bytes_spoil_their_line_only() {
 
 proptest! {
     #[test]
-    fn a_good_line_is_understood_after_any_bytes(garbage in prop::collection::vec(any::<u8>(), 0..300)) {
-        let lines = read(garbage.into_iter().chain(*b"\nobject 25\n"));
+    fn a_valid_line_is_parsed_after_any_bytes(garbage in prop::collection::vec(any::<u8>(), 0..300)) {
+        let lines = read_lines(garbage.into_iter().chain(*b"\nobject 25\n"));
         prop_assert_eq!(lines.last(), Some(&Ok("object 25".to_string())));
         for line in lines.into_iter().flatten() {
             if let Err(error) = parse(&line) {
-                prop_assert!(error.to_string().len() <= ANSWER_MAX);
+                prop_assert!(error.to_string().len() <= ANSWER_MAX_BYTES);
             }
         }
     }
 }
 
 #[test]
-fn the_longest_lines_fit() {
+fn the_longest_answers_fit_their_limit() {
     let tripped = StateName::Tripped(Fault::DisplayShort);
     let status = Status {
         state: tripped,
@@ -188,12 +189,12 @@ fn the_longest_lines_fit() {
     };
     let answer = Reply::Station(command::Reply::Status(status)).to_string();
     assert!(
-        answer.len() <= ANSWER_MAX && answer.ends_with(" limited"),
+        answer.len() <= ANSWER_MAX_BYTES && answer.ends_with(" limited"),
         "{answer}"
     );
-    let unknown = refusal(&"x".repeat(LINE_MAX));
+    let unknown = refusal(&"x".repeat(LINE_MAX_BYTES));
     assert!(
-        unknown.len() == ANSWER_MAX && unknown.ends_with(" forget"),
+        unknown.len() == ANSWER_MAX_BYTES && unknown.ends_with(" forget"),
         "{unknown}"
     );
 
@@ -213,21 +214,21 @@ fn the_longest_lines_fit() {
     };
     let line = TelemetryLine(longest).to_string();
     assert!(
-        line.len() <= ANSWER_MAX && line.ends_with(" display-short"),
+        line.len() <= ANSWER_MAX_BYTES && line.ends_with(" display-short"),
         "{line}"
     );
 }
 
 #[test]
-fn every_refusal_of_an_identification_fits_a_line() {
+fn every_identification_error_fits_an_answer() {
     let number = -123_456.789;
-    for no_tile in [
-        NoTile::Current(number),
-        NoTile::Nothing,
-        NoTile::Unlike(number),
-        NoTile::Beyond(&thermal_settings::TILE_RANGES[1], number),
+    for error in [
+        IdentificationError::CurrentRatio(number),
+        IdentificationError::NoResponse,
+        IdentificationError::ModelMismatch(number),
+        IdentificationError::OutOfRange(&thermal_settings::TILE_RANGES[1], number),
     ] {
-        let answer = Error::NoTile(no_tile).to_string();
-        assert!(answer.len() <= ANSWER_MAX, "{answer}");
+        let answer = Error::Identification(error).to_string();
+        assert!(answer.len() <= ANSWER_MAX_BYTES, "{answer}");
     }
 }

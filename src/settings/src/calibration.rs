@@ -1,78 +1,100 @@
-//! What calibration has found out about the thermistors and the converter.
+//! Calibration of the thermistors and of the analogue-to-digital converter.
 
-/// Temperature about which [`Correction`] is a polynomial, °C.
-pub const MIDDLE_C: f64 = 29.0;
-/// A correction does not change any more this far from [`MIDDLE_C`], K.
-pub const REACH_K: f64 = 16.0;
+/// Centre of a [`Correction`]'s polynomial, °C.
+pub const CORRECTION_CENTER_C: f64 = 29.0;
+/// Half of the range over which a [`Correction`] is a polynomial, K; beyond it the correction is constant.
+pub const CORRECTION_HALF_SPAN_K: f64 = 16.0;
 
-/// The converter's codes are even within equal segments of this many, and have a step from each to the next.
+/// Codes in one segment of the converter. Codes are evenly spaced within a segment; at the border to the next one the
+/// characteristic has a step.
 pub const SEGMENT_CODES: u32 = 128;
-/// First border between segments whose step is known, as the number of segments below it.
+/// Index of the first border whose step is calibrated; border `n` lies at code `n * SEGMENT_CODES`.
 pub const FIRST_BORDER: usize = 10;
-/// Borders with a known step: codes 1280 to 2816, 9 to 44 °C of a 10 k thermistor of beta 3950 K under 10 k.
-pub const BORDERS: usize = 13;
+/// Number of borders whose step is calibrated: codes 1280 to 2816, which are 44 to 9 °C of a 10 kΩ thermistor with a
+/// beta of 3950 K under 10 kΩ.
+pub const BORDER_COUNT: usize = 13;
 
-/// How readings differ from those of the class values in [`super::Settings`].
+/// Deviation of the readings from the nominal components in [`super::Settings`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Calibration {
-    /// The one converter's steps, counts of what it reads too much above a border, from [`FIRST_BORDER`] on.
-    pub steps_counts: [f64; BORDERS],
-    /// The five thermistors' corrections: display, second display, sink, skin, room.
+    /// Excess of the converter's code above a border over that below it, counts; the first is that of
+    /// [`FIRST_BORDER`]. All sensors share the one converter.
+    pub steps_counts: [f64; BORDER_COUNT],
+    /// Corrections of the five thermistors: display, second display, sink, skin, room.
     pub corrections: [Correction; 5],
 }
 
-/// What is added to a reading `T` in °C: `offset + slope u + curvature u^2` with `u = T - 29 °C` within ±16 K.
+/// Correction of one thermistor: `offset + slope u + curvature u^2` is added to a reading `T`, where
+/// `u = T - 29 °C`, limited to ±16 K.
 ///
-/// A thermistor's tolerances, its divider's and the converter's offset, gain and bow are that to below a
-/// millikelvin from 15 to 43 °C.
+/// From 15 to 43 °C this describes the tolerances of a thermistor and its divider and the offset, gain error and
+/// nonlinearity of the converter to better than 1 mK.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Correction {
-    /// K.
+    /// Constant term, K.
     pub offset_k: f64,
-    /// K/K.
+    /// Linear term, K/K.
     pub slope: f64,
-    /// 1/K.
+    /// Quadratic term, 1/K.
     pub curvature_1_k: f64,
 }
 
 impl Calibration {
-    /// Decimals that are kept, so that a line of text holds all of it.
+    /// Decimals of a stored step. Values are rounded to their decimals, so that text and record hold them exactly.
     pub const STEP_DECIMALS: i32 = 3;
-    /// Of a correction's offset, slope and curvature.
-    pub const DECIMALS: [i32; 3] = [6, 7, 8];
+    /// Decimals of a stored correction: offset, slope, curvature.
+    pub const CORRECTION_DECIMALS: [i32; 3] = [6, 7, 8];
 
-    /// The same with the decimals that are kept.
+    /// Rounds all values to the decimals that are stored.
     #[must_use]
     pub fn rounded(&self) -> Self {
         Self {
             steps_counts: self
                 .steps_counts
-                .map(|step| rounded(step, Self::STEP_DECIMALS)),
+                .map(|step| round_to_decimals(step, Self::STEP_DECIMALS)),
             corrections: self.corrections.map(|correction| correction.rounded()),
         }
     }
 }
 
 impl Correction {
-    /// The same with the decimals that are kept.
+    /// Offset, slope and curvature, in their order on a line of text.
+    #[must_use]
+    pub const fn to_array(&self) -> [f64; 3] {
+        [self.offset_k, self.slope, self.curvature_1_k]
+    }
+
+    /// The inverse of [`Self::to_array`].
+    #[must_use]
+    pub const fn from_array([offset_k, slope, curvature_1_k]: [f64; 3]) -> Self {
+        Self {
+            offset_k,
+            slope,
+            curvature_1_k,
+        }
+    }
+
+    /// Rounds all values to the decimals that are stored.
     #[must_use]
     pub fn rounded(&self) -> Self {
-        let [offset, slope, curvature] = Calibration::DECIMALS;
+        let [offset, slope, curvature] = Calibration::CORRECTION_DECIMALS;
         Self {
-            offset_k: rounded(self.offset_k, offset),
-            slope: rounded(self.slope, slope),
-            curvature_1_k: rounded(self.curvature_1_k, curvature),
+            offset_k: round_to_decimals(self.offset_k, offset),
+            slope: round_to_decimals(self.slope, slope),
+            curvature_1_k: round_to_decimals(self.curvature_1_k, curvature),
         }
     }
 }
 
-/// The nearest number of so many decimals.
+/// Rounds to a number of decimals.
 #[must_use]
-pub fn rounded(value: f64, decimals: i32) -> f64 {
-    let mut scale = 1.0;
-    for _ in 0..decimals {
-        scale *= 10.0;
-    }
-    // Adding zero makes a negative one positive, which lines of text do not tell apart.
+pub fn round_to_decimals(value: f64, decimals: i32) -> f64 {
+    let scale = power_of_ten(decimals);
+    // Adding zero turns -0 into 0, so that text cannot tell them apart.
     libm::round(value * scale) / scale + 0.0
+}
+
+/// `10^exponent` for an exponent that is not negative.
+pub(crate) fn power_of_ten(exponent: i32) -> f64 {
+    (0..exponent).fold(1.0, |power, _| 10.0 * power)
 }

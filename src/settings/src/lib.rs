@@ -1,4 +1,4 @@
-//! What differs between two built devices, in physical units, and how it outlives the power.
+#![doc = include_str!("../README.md")]
 #![no_std]
 #![forbid(unsafe_code)]
 
@@ -7,18 +7,19 @@ extern crate std;
 
 mod calibration;
 mod range;
-mod sectors;
+mod record;
+mod redundant_sectors;
 mod store;
-mod stored;
 mod tile;
 
 pub use calibration::{
-    BORDERS, Calibration, Correction, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES, rounded,
+    BORDER_COUNT, CORRECTION_CENTER_C, CORRECTION_HALF_SPAN_K, Calibration, Correction,
+    FIRST_BORDER, SEGMENT_CODES, round_to_decimals,
 };
 pub use range::{CORRECTION_RANGES, Range, STEP_RANGE, TILE_RANGES};
-pub use sectors::{SectorError, Sectors};
-pub use store::{Store, StoreError};
-pub use stored::{Kept, LONGEST, StoredBytes, StoredError, decode, encode};
+pub use record::{RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode, encode};
+pub use redundant_sectors::{RedundantSectors, SectorError};
+pub use store::{SettingsStore, StoreError};
 pub use tile::Tile;
 
 use contact_model::material::{REFERENCE_DISPLAY, Surface};
@@ -26,58 +27,60 @@ use contact_model::material::{REFERENCE_DISPLAY, Surface};
 /// Control ticks per second of one finger.
 pub const TICK_HZ: u32 = 1000;
 
-/// Thermistors of one finger, in this order: display, second display, sink, skin, room.
+/// Number of thermistors of one finger, in this order: display, second display, sink, skin, room.
 pub const THERMISTORS: usize = 5;
 
-/// Everything that is derived from these is derived once, at start-up.
+/// Settings of one finger in physical units. The fixed-point constants of the control tick are computed from them once,
+/// at start-up and after each change.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// All five thermistors.
-    pub thermistor: Thermistor,
-    /// How much each thermistor warms itself above what it sits on, K: display, second display, sink, skin, room.
+    /// Divider that each of the five thermistors is read by.
+    pub thermistor: ThermistorDivider,
+    /// Self-heating of each thermistor above the surface that it is mounted on, K: display, second display, sink, skin,
+    /// room.
     pub self_heating_k: [f64; 5],
-    /// Force sensor.
+    /// Force sensor under the display.
     pub force: ForceSensor,
-    /// Current mirror of the bridge: counts (of 4096) per ampere.
+    /// Sensitivity of the bridge's current mirror: counts (of 4096) per ampere.
     pub current_counts_per_a: f64,
-    /// Thermoelectric module, as the bridge sees it.
+    /// Electrical parameters of the Peltier module and its bridge.
     pub module: Module,
-    /// Temperature loop.
+    /// Gains of the temperature loop that is closed at every tick.
     pub gains: Gains,
-    /// Temperature loop of the law that looks ten times a second.
+    /// Gains of the temperature loop that is closed ten times a second.
     pub gains_10hz: Gains,
-    /// Finish of the display's surface.
+    /// Surface finish of the display.
     pub display: Surface,
-    /// What calibration has found.
+    /// Calibration of the sensors.
     pub calibration: Calibration,
-    /// What tuning has found; the gains follow from it.
+    /// Parameters of the tile, from which [`Self::set_tile`] derives the gains.
     pub tile: Tile,
 }
 
 impl Settings {
-    /// Controls another tile.
+    /// Replaces the parameters of the tile, and the gains that follow from them.
     #[inline(never)]
-    pub fn retune(&mut self, tile: Tile) {
+    pub fn set_tile(&mut self, tile: Tile) {
         self.tile = tile;
-        [self.gains, self.gains_10hz] = Gains::of_tile(&tile);
+        [self.gains, self.gains_10hz] = Gains::for_tile(&tile);
     }
 }
 
-/// A thermistor to ground under a pull-up resistor, read ratiometrically.
+/// A voltage divider of a thermistor to ground under a pull-up resistor, read ratiometrically.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thermistor {
+pub struct ThermistorDivider {
     /// Pull-up resistor, ohm.
     pub pull_up_ohm: f64,
-    /// Resistance to temperature.
+    /// Characteristic of the thermistor.
     pub curve: Curve,
 }
 
-impl Thermistor {
-    /// Temperature in °C for a voltage in 65536ths of the reference, which codes are centred on; within
+impl ThermistorDivider {
+    /// Temperature in °C for a voltage in 65536ths of the reference voltage; the result is limited to
     /// -100 to 300 °C.
     #[must_use]
-    pub fn temperature_c(&self, part: f64) -> f64 {
-        let ohm = self.pull_up_ohm * part / (65536.0 - part);
+    pub fn temperature_c(&self, voltage: f64) -> f64 {
+        let ohm = self.pull_up_ohm * voltage / (65536.0 - voltage);
         let (a, b, c) = self.curve.steinhart_hart();
         let log = libm::log(ohm.clamp(1e-3, 1e12));
         let inverse = (a + b * log + c * log * log * log).clamp(1.0 / 573.0, 1.0 / 173.0);
@@ -85,29 +88,29 @@ impl Thermistor {
     }
 }
 
-/// Resistance to temperature, `R` in ohm and `T` in kelvin.
+/// Characteristic of a thermistor: temperature `T` in kelvin as a function of resistance `R` in ohm.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Curve {
-    /// `1/T = 1/298.15 + ln(R / r25_ohm) / beta_k`.
+    /// Beta equation: `1/T = 1/298.15 + ln(R / r25_ohm) / beta_k`.
     Beta {
         /// Resistance at 25 °C, ohm.
         r25_ohm: f64,
         /// Beta, K.
         beta_k: f64,
     },
-    /// `1/T = a + b ln R + c (ln R)^3`.
+    /// Steinhart-Hart equation: `1/T = a + b ln R + c (ln R)^3`.
     SteinhartHart {
-        /// 1/K.
+        /// Constant coefficient, 1/K.
         a: f64,
-        /// 1/K.
+        /// Linear coefficient, 1/K.
         b: f64,
-        /// 1/K.
+        /// Cubic coefficient, 1/K.
         c: f64,
     },
 }
 
 impl Curve {
-    /// The coefficients `a`, `b`, `c` of the Steinhart-Hart form.
+    /// The coefficients `a`, `b`, `c` of the Steinhart-Hart equation.
     #[must_use]
     pub fn steinhart_hart(&self) -> (f64, f64, f64) {
         match *self {
@@ -121,19 +124,19 @@ impl Curve {
     }
 }
 
-/// A force sensor with a live zero, so that a broken wire reads below it.
+/// A linear force sensor with a live zero: its output without force is well above 0, so that a broken wire is detected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceSensor {
-    /// Counts (of 4096) without force.
+    /// Output without force, counts (of 4096).
     pub zero_counts: f64,
-    /// Counts per newton.
+    /// Sensitivity, counts per newton.
     pub counts_per_n: f64,
 }
 
-/// A thermoelectric module on its supply.
+/// Electrical parameters of a Peltier module, its bridge and its supply.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Module {
-    /// Resistance of the legs at 27 °C, ohm.
+    /// Resistance of the semiconductor legs at 27 °C, ohm.
     pub legs_ohm: f64,
     /// Resistance of the bridge's switches, its filter and the leads, ohm.
     pub leads_ohm: f64,
@@ -141,39 +144,39 @@ pub struct Module {
     pub seebeck_v_k: f64,
     /// Voltage that the bridge loses in its dead times, V, 0 or more.
     pub dead_time_v: f64,
-    /// Half of the ripple in its filter's inductor, A, over `w (1 - w)` for pulses of a part `w` of the period.
+    /// Half of the ripple current in the filter's inductor, divided by `w (1 - w)` for a duty cycle `w`, A.
     pub ripple_a: f64,
-    /// What one dead time changes the inductor's current by, A, above 0.
+    /// Change of the inductor's current during one dead time, A, above 0.
     pub dead_time_a: f64,
-    /// Supply of the bridge, V.
+    /// Supply voltage of the bridge, V.
     pub supply_v: f64,
-    /// Largest current either way, A.
+    /// Largest current in either direction, A.
     pub current_limit_a: f64,
 }
 
-/// A proportional-integral law from temperature error to current.
+/// Gains of a proportional-integral controller from temperature error to current.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
-    /// A/K.
+    /// Proportional gain, A/K.
     pub proportional_a_k: f64,
     /// Integral time, s.
     pub integral_s: f64,
 }
 
 impl Default for Settings {
-    /// The class values that the wiring table names: 10 k thermistors of beta 3950 K under 10 k, a 30 mm,
-    /// 6 A module on 12 V, and the tile of that class.
+    /// Factory defaults, the nominal values of the components in the wiring table: 10 kΩ thermistors with a beta of
+    /// 3950 K under 10 kΩ, a 30 mm, 6 A module on 12 V, and its nominal tile.
     fn default() -> Self {
-        let [gains, gains_10hz] = Gains::of_tile(&Tile::CLASS);
+        let [gains, gains_10hz] = Gains::for_tile(&Tile::CLASS);
         Self {
-            thermistor: Thermistor {
+            thermistor: ThermistorDivider {
                 pull_up_ohm: 10e3,
                 curve: Curve::Beta {
                     r25_ohm: 10e3,
                     beta_k: 3950.0,
                 },
             },
-            // 0.27 mW of the divider into 8 mW/K when bonded, 3 on the skin, 1 in still air.
+            // 0.27 mW of the divider, dissipated by 8 mW/K when bonded, 3 mW/K on the skin, 1 mW/K in still air.
             self_heating_k: [0.034, 0.034, 0.034, 0.09, 0.27],
             force: ForceSensor {
                 zero_counts: 410.0,

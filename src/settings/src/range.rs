@@ -1,17 +1,19 @@
-//! The range that each setting may have, on a line from the host and in flash.
+//! Ranges of the stored settings, which hold for a line from the host and for a record in flash alike.
 
-use super::{Calibration, Correction, Tile};
+use core::fmt;
 
-/// The range of a number, with the words that an error message needs.
+use super::{Calibration, Tile};
+
+/// The range of a quantity, with its name and unit for error messages; it is displayed as `15 to 42 C`.
 #[derive(Debug, PartialEq)]
 pub struct Range {
     /// Name of the quantity.
     pub name: &'static str,
-    /// Its unit.
+    /// Unit of the quantity.
     pub unit: &'static str,
-    /// Smallest value allowed.
+    /// Smallest allowed value.
     pub min: f64,
-    /// Largest value allowed.
+    /// Largest allowed value.
     pub max: f64,
 }
 
@@ -23,7 +25,13 @@ impl Range {
     }
 }
 
-/// Range of one of the converter's steps.
+impl fmt::Display for Range {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} to {} {}", self.min, self.max, self.unit)
+    }
+}
+
+/// Range of a step of the converter.
 pub static STEP_RANGE: Range = Range {
     name: "step",
     unit: "counts",
@@ -32,9 +40,9 @@ pub static STEP_RANGE: Range = Range {
 };
 /// Ranges of a correction's offset, slope and curvature.
 ///
-/// Together they change a reading by at most 2.5 K within the calibrated temperatures, ten times what parts of this class
-/// need. The converter's steps add at most 0.2 K. So no `set` line can hide from the safety limits a display that is
-/// hotter than its limit by more than the sum of both.
+/// A correction within them changes a reading by at most 2.5 K in the calibrated range, ten times what components of
+/// this class need; the steps of the converter add at most 0.2 K. So no calibration hides from the safety limits a
+/// display that exceeds them by more than 2.7 K.
 pub static CORRECTION_RANGES: [Range; 3] = [
     Range {
         name: "offset",
@@ -55,7 +63,7 @@ pub static CORRECTION_RANGES: [Range; 3] = [
         max: 0.002,
     },
 ];
-/// Ranges of a tile's values, in the order of [`Tile::to_array`].
+/// Ranges of the tile's parameters, in the order of [`Tile::to_array`].
 pub static TILE_RANGES: [Range; 5] = [
     Range {
         name: "gain",
@@ -94,16 +102,10 @@ impl Calibration {
     #[must_use]
     pub fn out_of_range(&self) -> Option<(&'static Range, f64)> {
         let steps = self.steps_counts.iter().map(|step| (&STEP_RANGE, *step));
-        let corrections = self.corrections.iter().flat_map(|correction| {
-            let Correction {
-                offset_k,
-                slope,
-                curvature_1_k,
-            } = *correction;
-            CORRECTION_RANGES
-                .iter()
-                .zip([offset_k, slope, curvature_1_k])
-        });
+        let corrections = self
+            .corrections
+            .iter()
+            .flat_map(|correction| CORRECTION_RANGES.iter().zip(correction.to_array()));
         first_outside(steps.chain(corrections))
     }
 }

@@ -1,4 +1,4 @@
-//! Settings in flash: the newest record counts, and a record is there as a whole or not at all.
+//! The settings in flash: a log of records, of which the newest is valid.
 
 use core::fmt;
 
@@ -11,36 +11,42 @@ use sequential_storage::cache::page_pointers::ArrayPagePointers;
 use sequential_storage::cache::page_states::ArrayPageStates;
 use sequential_storage::map::{MapConfig, MapStorage};
 
-use super::{Kept, LONGEST, SectorError, Sectors, StoredError, decode, encode};
+use super::{
+    RECORD_MAX_BYTES, RecordError, RedundantSectors, SectorError, StoredSettings, decode, encode,
+};
 
-/// Sectors that the records take turns in.
-const SECTORS: usize = 3;
+/// Sectors that the log rotates through.
+const SECTOR_COUNT: usize = 3;
 
-/// Where the newest record is, for as long as one operation takes. Without, the whole flash is searched for each record of
-/// a page that is given up: seconds.
-type Remembered =
-    Cache<ArrayPageStates<SECTORS>, ArrayPagePointers<SECTORS>, ArrayKeyPointers<(), 1>, ()>;
+/// Position of the newest record, cached during one operation. Without it, the whole flash would be searched once for
+/// every record of a sector that is reclaimed, which takes seconds.
+type LogCache = Cache<
+    ArrayPageStates<SECTOR_COUNT>,
+    ArrayPagePointers<SECTOR_COUNT>,
+    ArrayKeyPointers<(), 1>,
+    (),
+>;
 
-/// The settings of a device with that many fingers, in three sectors of a flash.
+/// The stored settings of a device with `FINGERS` fingers, in three sectors of a flash.
 ///
-/// Everything waits until the flash is done. Power may fail at any time: what is stored then is what was stored before,
-/// or what was to be.
-pub struct Store<F: NorFlash, const FINGERS: usize> {
-    flash: Sectors<F>,
-    buffer: [u8; LONGEST],
+/// Every operation blocks until the flash has finished. After a power failure at any time, the flash holds either the
+/// previous settings or the new ones.
+pub struct SettingsStore<F: NorFlash, const FINGERS: usize> {
+    flash: RedundantSectors<F>,
+    buffer: [u8; RECORD_MAX_BYTES],
 }
 
-/// Why settings could not be read or stored.
+/// Why settings could not be loaded or saved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StoreError<E> {
     /// The flash failed.
     Flash(SectorError<E>),
-    /// No order can be found in the flash.
+    /// The structure of the log is damaged.
     Corrupt,
-    /// What is stored last is no settings.
-    Stored(StoredError),
-    /// What was stored reads differently.
-    NotKept,
+    /// The newest record holds no valid settings.
+    Record(RecordError),
+    /// A record that was written reads back differently.
+    VerifyFailed,
 }
 
 impl<E: fmt::Display> fmt::Display for StoreError<E> {
@@ -48,8 +54,8 @@ impl<E: fmt::Display> fmt::Display for StoreError<E> {
         match self {
             Self::Flash(error) => error.fmt(f),
             Self::Corrupt => f.write_str("the flash is in disorder"),
-            Self::Stored(error) => error.fmt(f),
-            Self::NotKept => f.write_str("the flash does not keep what it is given"),
+            Self::Record(error) => error.fmt(f),
+            Self::VerifyFailed => f.write_str("the flash does not keep what it is given"),
         }
     }
 }
@@ -63,72 +69,80 @@ impl<E: fmt::Debug> From<Error<SectorError<E>>> for StoreError<E> {
     }
 }
 
-impl<F: NorFlash, const FINGERS: usize> Store<F, FINGERS> {
-    /// In the first three sectors of `flash`.
+impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
+    /// A store in the first three sectors of `flash`.
     pub const fn new(flash: F) -> Self {
         Self {
-            flash: Sectors::new(flash),
-            buffer: [0; LONGEST],
+            flash: RedundantSectors::new(flash),
+            buffer: [0; RECORD_MAX_BYTES],
         }
     }
 
-    /// The records, and room for one: nothing is known but what the flash says.
-    fn records(&mut self) -> (MapStorage<(), &mut Sectors<F>, Remembered>, &mut [u8]) {
-        let end = (SECTORS * Sectors::<F>::BYTES) as u32;
-        let nothing = Cache::new(
+    /// Opens the log with an empty cache, and the buffer for one record.
+    fn log(
+        &mut self,
+    ) -> (
+        MapStorage<(), &mut RedundantSectors<F>, LogCache>,
+        &mut [u8],
+    ) {
+        let end = (SECTOR_COUNT * RedundantSectors::<F>::SECTOR_BYTES) as u32;
+        let empty_cache = Cache::new(
             ArrayPageStates::new(),
             ArrayPagePointers::new(),
             ArrayKeyPointers::new(),
         );
-        let records = MapStorage::new(&mut self.flash, MapConfig::new(0..end), nothing);
-        (records, &mut self.buffer)
+        let log = MapStorage::new(&mut self.flash, MapConfig::new(0..end), empty_cache);
+        (log, &mut self.buffer)
     }
 
-    /// What was stored last; none are factory defaults, which are also what an empty flash has.
+    /// The settings that were saved last; `None` means factory defaults, which an empty flash holds too.
     ///
     /// # Errors
-    /// The flash cannot be read, or what is stored is no settings of this device.
+    /// The flash cannot be read, or the newest record holds no valid settings of this device.
     #[inline(never)]
-    pub fn load(&mut self) -> Result<Option<[Kept; FINGERS]>, StoreError<F::Error>> {
-        let (mut records, buffer) = self.records();
-        let stored = block_on(records.fetch_item::<&[u8]>(buffer, &()))?;
-        stored.map_or(Ok(None), |bytes| decode(bytes).map_err(StoreError::Stored))
+    pub fn load(&mut self) -> Result<Option<[StoredSettings; FINGERS]>, StoreError<F::Error>> {
+        let (mut log, buffer) = self.log();
+        let record = block_on(log.fetch_item::<&[u8]>(buffer, &()))?;
+        record.map_or(Ok(None), |bytes| decode(bytes).map_err(StoreError::Record))
     }
 
-    /// Stores settings, or factory defaults, and reads them back, whatever the flash holds before.
+    /// Saves settings, or factory defaults for `None`, and verifies them, whatever the flash held before.
     ///
-    /// Only damage that leaves no other way has all of it erased, and what was there is then lost if power fails meanwhile;
-    /// a power cut does no such damage.
+    /// Only if the log is damaged beyond repair is all of it erased first; a power failure in the middle of that loses the
+    /// old settings. A power failure by itself causes no such damage.
     ///
     /// # Errors
-    /// They are not stored; what was before still is, unless nothing could be read of it or all was erased.
+    /// The settings are not saved. The previous ones remain, unless they were unreadable or all was erased.
     #[inline(never)]
-    pub fn save(&mut self, kept: Option<&[Kept; FINGERS]>) -> Result<(), StoreError<F::Error>> {
-        let bytes = encode(kept);
-        let mut done = self.append(&bytes);
-        if matches!(done, Err(StoreError::NotKept)) {
-            // Bits of that place were not erased any more. The next one may be better.
-            done = self.append(&bytes);
+    pub fn save(
+        &mut self,
+        settings: Option<&[StoredSettings; FINGERS]>,
+    ) -> Result<(), StoreError<F::Error>> {
+        let bytes = encode(settings);
+        let mut saved = self.append(&bytes);
+        if matches!(saved, Err(StoreError::VerifyFailed)) {
+            // Some bits at that place were no longer erased; the next place may be intact.
+            saved = self.append(&bytes);
         }
-        if matches!(done, Err(StoreError::Corrupt | StoreError::NotKept)) {
-            // It can last, though a record is found: two sectors that both seem to be the newest.
-            block_on(self.records().0.erase_all())?;
-            done = self.append(&bytes);
+        if matches!(saved, Err(StoreError::Corrupt | StoreError::VerifyFailed)) {
+            // The log can be damaged though a record is found: two sectors both look like the newest.
+            block_on(self.log().0.erase_all())?;
+            saved = self.append(&bytes);
         }
-        done
+        saved
     }
 
-    /// Appends a record, and reads it back as a device does that is switched on.
+    /// Appends a record, and verifies it with an empty cache, as after power-up.
     #[inline(never)]
     fn append(&mut self, bytes: &[u8]) -> Result<(), StoreError<F::Error>> {
-        let (mut records, buffer) = self.records();
-        // Learns where the newest record is; what is wrong with it does not matter any more.
-        let _before = block_on(records.fetch_item::<&[u8]>(buffer, &()));
-        block_on(records.store_item(buffer, &(), &bytes))?;
-        let (mut records, buffer) = self.records();
-        match block_on(records.fetch_item::<&[u8]>(buffer, &()))? {
-            Some(kept) if kept == bytes => Ok(()),
-            _ => Err(StoreError::NotKept),
+        let (mut log, buffer) = self.log();
+        // Fills the cache with the position of the newest record, whose content no longer matters.
+        let _newest = block_on(log.fetch_item::<&[u8]>(buffer, &()));
+        block_on(log.store_item(buffer, &(), &bytes))?;
+        let (mut log, buffer) = self.log();
+        match block_on(log.fetch_item::<&[u8]>(buffer, &()))? {
+            Some(read) if read == bytes => Ok(()),
+            _ => Err(StoreError::VerifyFailed),
         }
     }
 }

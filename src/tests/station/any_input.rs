@@ -1,23 +1,23 @@
-//! What must hold whatever the sensors say and the host wants.
+//! Safety properties that hold for any samples and any lines from the host.
 
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
 use std::vec::Vec;
 
-use super::Bench;
+use super::TestBench;
 use crate::device::StateName;
 use crate::device::drive::{Drive, Duty};
 use crate::device::safety::Setpoint;
 use crate::device::sense::Samples;
-use crate::protocol::ANSWER_MAX;
+use crate::protocol::ANSWER_MAX_BYTES;
 
-/// A sum of counts: mostly a plausible one, sometimes any.
+/// A sum of conversions: mostly a plausible one, sometimes any.
 fn sum(plausible: core::ops::Range<u16>) -> impl Strategy<Value = u16> {
     prop_oneof![30 => plausible, 1 => any::<u16>(), 1 => Just(0), 1 => Just(u16::MAX)]
 }
 
-/// 20 to 40 °C, 0 to 3 N, 0 to 6 A.
+/// Samples of 20 to 40 °C, 0 to 3 N, 0 to 6 A, and sometimes of any value.
 fn samples() -> impl Strategy<Value = Samples> {
     let temperature = || sum(23_000..36_000);
     let temperatures = (
@@ -27,12 +27,12 @@ fn samples() -> impl Strategy<Value = Samples> {
         temperature(),
         temperature(),
     );
-    let rest = (
+    let others = (
         sum(6_560..21_000),
         sum(0..38_400),
         prop::bool::weighted(0.02),
     );
-    (temperatures, rest).prop_map(
+    (temperatures, others).prop_map(
         |((display, display_check, sink, skin, room), (force, current, bridge_fault))| Samples {
             display,
             display_check,
@@ -86,7 +86,8 @@ fn line() -> impl Strategy<Value = &'static str> {
     )
 }
 
-/// Where the world goes, as fast as a world can; lines that are sent before, and samples that come once amid it.
+/// Lines that are sent first; targets that the physical quantities then approach at 0.1 K a tick; samples of one tick in the
+/// middle, with their probability in [`scenario`].
 #[derive(Clone, Debug)]
 struct Phase {
     lines: Vec<&'static str>,
@@ -96,16 +97,16 @@ struct Phase {
     room_c: f64,
     force_n: f64,
     ticks: u16,
-    once: Option<Samples>,
+    outlier: Option<Samples>,
 }
 
-fn story(phases: usize, ticks: u16, once: f64) -> impl Strategy<Value = Vec<Phase>> {
+fn scenario(phases: usize, ticks: u16, outlier: f64) -> impl Strategy<Value = Vec<Phase>> {
     let force = prop_oneof![Just(0.0), 0.0..5.0];
-    let world = (16.0..41.0, 15.0..38.0, 28.0..38.0, 18.0..30.0, force);
+    let quantities = (16.0..41.0, 15.0..38.0, 28.0..38.0, 18.0..30.0, force);
     let lines = prop::collection::vec(line(), 0..4);
-    let once = prop::option::weighted(once, samples());
-    let phase = (lines, world, 1..ticks, once).prop_map(
-        |(lines, (display_c, sink_c, skin_c, room_c, force_n), ticks, once)| Phase {
+    let outlier = prop::option::weighted(outlier, samples());
+    let phase = (lines, quantities, 1..ticks, outlier).prop_map(
+        |(lines, (display_c, sink_c, skin_c, room_c, force_n), ticks, outlier)| Phase {
             lines,
             display_c,
             sink_c,
@@ -113,40 +114,40 @@ fn story(phases: usize, ticks: u16, once: f64) -> impl Strategy<Value = Vec<Phas
             room_c,
             force_n,
             ticks,
-            once,
+            outlier,
         },
     );
     prop::collection::vec(phase, 1..phases)
 }
 
-/// Ticks, and those in which the bridge was driven.
+/// Number of ticks, and of those in which the bridge was driven.
 #[derive(Debug, Default)]
-struct Count {
+struct TickCount {
     all: Cell<u32>,
     driven: Cell<u32>,
 }
 
-impl Count {
-    /// What must hold in one tick, of these samples or of the bench's.
-    fn tick(&self, bench: &mut Bench, samples: Option<&Samples>) -> Result<(), TestCaseError> {
+impl TickCount {
+    /// Advances by one tick, with these samples or those of the bench, and checks what must hold.
+    fn tick(&self, bench: &mut TestBench, samples: Option<&Samples>) -> Result<(), TestCaseError> {
         let tripped = bench.station.is_tripped();
-        let tested = bench.state() == StateName::SelfTest;
+        let was_testing = bench.state() == StateName::SelfTest;
         let (outputs, telemetry) = match samples {
             Some(samples) => (
                 bench.station.step(samples),
                 bench.station.telemetry().expect("streamed on every tick"),
             ),
-            None => bench.step_all(),
+            None => bench.step_with_outputs(),
         };
         let on = outputs.drive != Drive::Off;
         let driven = matches!(
             telemetry.state,
             StateName::Armed | StateName::Preset | StateName::Contact
         );
-        // In the tick in which the self-test passes, the bridge rests.
-        let follows = driven && !tested;
-        prop_assert!(follows == on || telemetry.state == StateName::SelfTest);
-        prop_assert_eq!(follows, telemetry.setpoint.is_some());
+        // The bridge stays off in the tick in which the self-test passes.
+        let controls = driven && !was_testing;
+        prop_assert!(controls == on || telemetry.state == StateName::SelfTest);
+        prop_assert_eq!(controls, telemetry.setpoint.is_some());
         prop_assert!(!tripped || !on);
         prop_assert!(!on || samples.is_none_or(|samples| !samples.bridge_fault));
         prop_assert!(on || telemetry.demand == 0);
@@ -159,7 +160,7 @@ impl Count {
             prop_assert!((15.0..=42.0).contains(&setpoint.to_num::<f64>()));
             prop_assert_eq!(Setpoint::limited(setpoint).1, false);
         }
-        // What the self-test asks for it gets.
+        // The display responds to the self-test.
         if telemetry.state == StateName::SelfTest {
             bench.display_c -= 2.7e-3 * telemetry.demand.to_num::<f64>();
             bench.check_c = bench.display_c;
@@ -170,18 +171,18 @@ impl Count {
         Ok(())
     }
 
-    fn phase(&self, bench: &mut Bench, phase: &Phase) -> Result<(), TestCaseError> {
+    fn phase(&self, bench: &mut TestBench, phase: &Phase) -> Result<(), TestCaseError> {
         for line in &phase.lines {
-            tell(bench, line)?;
+            send(bench, line)?;
         }
         bench.force_n = phase.force_n;
         for tick in 0..phase.ticks {
-            let samples = phase.once.as_ref().filter(|_| tick == phase.ticks / 2);
+            let samples = phase.outlier.as_ref().filter(|_| tick == phase.ticks / 2);
             self.tick(bench, samples)?;
             if bench.state() == StateName::SelfTest {
                 continue;
             }
-            let display_c = if bench.answers {
+            let display_c = if bench.plate_responds {
                 bench.display_c
             } else {
                 phase.display_c
@@ -200,11 +201,11 @@ impl Count {
     }
 }
 
-/// Sends a line, and checks what it may change.
-fn tell(bench: &mut Bench, line: &str) -> Result<(), TestCaseError> {
+/// Sends a line, and checks its answer and the state.
+fn send(bench: &mut TestBench, line: &str) -> Result<(), TestCaseError> {
     let before = bench.state();
-    let answer = bench.host(line);
-    prop_assert!(answer.len() <= ANSWER_MAX);
+    let answer = bench.send(line);
+    prop_assert!(answer.len() <= ANSWER_MAX_BYTES);
     prop_assert!(line != "abort" || answer == "ok");
     if matches!(before, StateName::Tripped(_)) && line != "clear" {
         prop_assert_eq!(before, bench.state());
@@ -212,16 +213,16 @@ fn tell(bench: &mut Bench, line: &str) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-/// Runs stories; what was driven must be a part that is worth it.
+/// Runs scenarios, and asserts that the bridge was driven in more than a tenth of the ticks.
 #[track_caller]
-fn check(cases: u32, answers: bool, stories: &impl Strategy<Value = Vec<Phase>>) {
-    let count = Count::default();
+fn check(cases: u32, plate_responds: bool, scenarios: &impl Strategy<Value = Vec<Phase>>) {
+    let count = TickCount::default();
     let mut runner = TestRunner::new(ProptestConfig::with_cases(cases));
-    let outcome = runner.run(stories, |story| {
-        let mut bench = Bench::new();
-        bench.answers = answers;
-        bench.obey(&["law model", "material granite", "arm", "start"]);
-        story
+    let outcome = runner.run(scenarios, |scenario| {
+        let mut bench = TestBench::new();
+        bench.plate_responds = plate_responds;
+        bench.send_ok(&["law model", "material granite", "arm", "start"]);
+        scenario
             .iter()
             .try_for_each(|phase| count.phase(&mut bench, phase))
     });
@@ -233,12 +234,12 @@ fn check(cases: u32, answers: bool, stories: &impl Strategy<Value = Vec<Phase>>)
 }
 
 #[test]
-fn limits_hold_whatever_comes() {
-    check(64, false, &story(12, 60, 0.3));
+fn safety_limits_hold_for_any_samples_and_lines() {
+    check(64, false, &scenario(12, 60, 0.3));
 }
 
 #[test]
-fn limits_hold_for_long() {
-    // A display that goes where it likes is none that the model fits for long.
-    check(12, true, &story(8, 3000, 0.05));
+fn safety_limits_hold_in_long_scenarios() {
+    // The plate responds to the current: a display that moves independently trips the model's residual soon.
+    check(12, true, &scenario(8, 3000, 0.05));
 }

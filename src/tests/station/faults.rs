@@ -1,15 +1,15 @@
-//! Faults switch off, at once and for good; limits hold.
+//! Faults trip at once and stay latched; current and voltage stay within their limits.
 
-use super::Bench;
+use super::TestBench;
 use crate::device::StateName;
 use crate::device::drive::Drive;
 use crate::device::safety::Fault;
 
-/// What goes wrong with a world, and the word for it.
-type Trouble = (&'static str, fn(&mut Bench));
+/// The name of a fault, and the change of the bench that causes it.
+type FaultCase = (&'static str, fn(&mut TestBench));
 
-/// Thermistors at ±200 °C read as shorted and open.
-const TROUBLES: [Trouble; 16] = [
+/// A thermistor at 200 °C reads as shorted, at -200 °C as open.
+const FAULT_CASES: [FaultCase; 16] = [
     ("display-open", |bench| bench.display_c = -200.0),
     ("display-short", |bench| bench.display_c = 200.0),
     ("check-open", |bench| bench.check_c = -200.0),
@@ -24,63 +24,63 @@ const TROUBLES: [Trouble; 16] = [
     ("display-hot", |bench| bench.check_c = 43.1),
     ("display-cold", |bench| bench.display_c = 13.4),
     ("sink-hot", |bench| bench.sink_c = 42.1),
-    ("over-current", |bench| bench.current_a = Some(9.1)),
+    ("over-current", |bench| bench.measured_a = Some(9.1)),
     ("bridge", |bench| bench.bridge_fault = true),
 ];
 
-/// A bench in each of the states but tripped and self-test.
-fn everywhere() -> [Bench; 5] {
+/// One bench in each state other than tripped and self-test.
+fn bench_in_each_state() -> [TestBench; 5] {
     let armed = {
-        let mut bench = Bench::new();
-        bench.obey(&["material copper", "arm"]);
+        let mut bench = TestBench::new();
+        bench.send_ok(&["material copper", "arm"]);
         bench.step();
         bench
     };
-    let preset = Bench::presenting("copper");
+    let preset = TestBench::presenting("copper");
     let mut contact = preset.clone();
     contact.force_n = 2.0;
     contact.steps(10);
-    let mut off = Bench::new();
-    off.obey(&["material copper"]);
+    let mut off = TestBench::new();
+    off.send_ok(&["material copper"]);
     let mut ready = armed.clone();
-    ready.obey(&["abort"]);
+    ready.send_ok(&["abort"]);
     [off, ready, armed, preset, contact]
 }
 
 #[test]
-fn every_fault_trips_in_its_tick_from_every_state_and_stays() {
-    for sound in everywhere() {
-        for (word, happen) in TROUBLES {
-            // The comparator may have kept the line since the last self-test.
-            if word == "bridge" && sound.state() == StateName::Off {
+fn every_fault_trips_in_its_tick_from_every_state_and_stays_latched() {
+    for healthy in bench_in_each_state() {
+        for (word, cause) in FAULT_CASES {
+            // While off, the station ignores the fault line, which the comparator may have latched since the last self-test.
+            if word == "bridge" && healthy.state() == StateName::Off {
                 continue;
             }
-            let mut bench = sound.clone();
-            happen(&mut bench);
+            let mut bench = healthy.clone();
+            cause(&mut bench);
             let (drive, telemetry) = bench.step();
             let fault = telemetry.state.fault().map(|fault| fault.name());
             assert_eq!(
                 (drive, fault),
                 (Drive::Off, Some(word)),
                 "from {:?}",
-                sound.state()
+                healthy.state()
             );
             assert_eq!(telemetry.demand, 0);
 
             let tripped = ["err tripped by ", word, "; clear it first"].concat();
             let present = ["err fault ", word, " is still present"].concat();
-            // The line may be the comparator's, which only the next self-test lets go.
+            // The fault line may be latched by the comparator, which only the next self-test releases.
             if word == "bridge" {
                 continue;
             }
-            assert_eq!(bench.host("clear"), present);
+            assert_eq!(bench.send("clear"), present);
 
-            // Gone again, but nobody has said so.
-            bench = Bench {
+            // The cause is gone, but no tick has sampled that yet.
+            bench = TestBench {
                 station: bench.station,
-                ..sound.clone()
+                ..healthy.clone()
             };
-            assert_eq!(bench.host("clear"), present);
+            assert_eq!(bench.send("clear"), present);
             for _ in 0..100 {
                 assert_eq!(bench.step().0, Drive::Off, "{word}");
             }
@@ -89,136 +89,135 @@ fn every_fault_trips_in_its_tick_from_every_state_and_stays() {
                 ("start", &tripped),
                 ("abort", "ok"),
             ] {
-                assert_eq!(bench.host(line), answer);
+                assert_eq!(bench.send(line), answer);
                 assert_eq!(bench.step().0, Drive::Off, "{word} after {line}");
                 assert_eq!(bench.state().name(), "tripped");
             }
-            bench.obey(&["clear"]);
+            bench.send_ok(&["clear"]);
             assert_eq!((bench.step().0, bench.state().name()), (Drive::Off, "off"));
-            bench.obey(&["arm", "start"]);
+            bench.send_ok(&["arm", "start"]);
             assert!(matches!(bench.step().0, Drive::On(_)));
         }
     }
 }
 
 #[test]
-fn the_first_fault_is_kept_and_a_later_one_keeps_clear_from_passing() {
-    let mut bench = Bench::presenting("copper");
+fn the_first_fault_stays_latched_and_clear_is_refused_while_a_later_one_is_present() {
+    let mut bench = TestBench::presenting("copper");
     bench.bridge_fault = true;
     bench.step();
     bench.bridge_fault = false;
     bench.sink_c = 50.0;
     bench.step();
-    assert_eq!(bench.host("arm"), "err tripped by bridge; clear it first");
-    assert_eq!(bench.host("clear"), "err fault sink-hot is still present");
+    assert_eq!(bench.send("arm"), "err tripped by bridge; clear it first");
+    assert_eq!(bench.send("clear"), "err fault sink-hot is still present");
     bench.sink_c = 25.0;
     bench.step();
-    bench.obey(&["clear"]);
+    bench.send_ok(&["clear"]);
 }
 
-/// What no sample shows is not lost because something else came first.
+/// A fault that no sample shows is not lost when another one is already latched.
 #[test]
-fn what_tripped_while_it_was_tripped_comes_to_light_with_clear() {
-    let mut bench = Bench::presenting("copper");
+fn clear_reports_an_external_fault_that_was_raised_while_tripped() {
+    let mut bench = TestBench::presenting("copper");
     for fault in [Fault::SinkHot, Fault::SettingsCorrupt] {
         bench.station.raise(fault);
     }
     bench.steps(2);
     assert_eq!(bench.state().fault(), Some(Fault::SinkHot));
     assert_eq!(
-        bench.host("clear"),
+        bench.send("clear"),
         "err fault settings-corrupt is still present"
     );
     assert_eq!(bench.state().fault(), Some(Fault::SettingsCorrupt));
-    assert!(bench.host("cause").contains("settings-corrupt"));
-    bench.obey(&["clear"]);
+    assert!(bench.send("cause").contains("settings-corrupt"));
+    bench.send_ok(&["clear"]);
     assert_eq!(bench.state(), StateName::Off);
 }
 
 #[test]
-fn what_stands_and_no_sample_shows_keeps_clear_from_being_obeyed() {
-    let mut bench = Bench::new();
+fn clear_is_refused_until_a_tick_passes_without_the_external_fault() {
+    let mut bench = TestBench::new();
     for _ in 0..3 {
         bench.station.raise(Fault::Clock);
         bench.step();
-        assert_eq!(bench.host("clear"), "err fault clock is still present");
+        assert_eq!(bench.send("clear"), "err fault clock is still present");
     }
     bench.step();
-    assert_eq!(bench.host("clear"), "ok");
+    assert_eq!(bench.send("clear"), "ok");
 }
 
-/// 42.8 °C are three quarters of a minute's worth a minute; the force sensor fails meanwhile.
+/// At 42.8 °C the thermal dose rises by three quarters of its rate at 43 °C; the force sensor has failed before.
 #[test]
-fn the_dose_goes_on_while_something_else_is_wrong() {
-    let mut bench = Bench::presenting("copper");
+fn the_dose_accumulates_while_another_fault_is_latched() {
+    let mut bench = TestBench::presenting("copper");
     bench.force_n = -1.3;
     bench.step();
     (bench.display_c, bench.check_c) = (42.8, 42.8);
     bench.steps(32_000);
     assert_eq!(
-        bench.host("clear"),
+        bench.send("clear"),
         "err fault force-sensor is still present"
     );
     bench.force_n = 0.0;
     bench.steps(10_000);
     (bench.display_c, bench.check_c) = (39.5, 39.5);
     bench.steps(5);
-    assert_eq!(bench.host("clear"), "err fault dose is still present");
+    assert_eq!(bench.send("clear"), "err fault dose is still present");
 }
 
-/// 1.2 counts of noise are 1.1 mN, of which 3 mN come once in 800 ticks.
+/// Noise of 1.2 counts is 1.1 mN RMS, and exceeds 3 mN once in 800 ticks.
 #[test]
-fn a_force_sensor_that_is_noisy_delays_no_self_test() {
-    let mut bench = Bench::new();
-    assert_eq!(bench.host("arm"), "ok");
+fn force_sensor_noise_does_not_delay_the_self_test() {
+    let mut bench = TestBench::new();
+    assert_eq!(bench.send("arm"), "ok");
     for tick in 0..800 {
         bench.force_n = if tick % 100 == 50 { 0.004 } else { 0.0 };
-        bench.step_tested();
+        bench.step_self_test();
     }
     assert_eq!(bench.state(), StateName::Armed);
 }
 
-/// A force that is hardly above its zero comes and goes with the noise; a slow landing passes there.
+/// With noise, a force near the detection threshold, or one that rises slowly through it, is detected intermittently.
 #[test]
-fn a_force_that_comes_and_goes_delays_a_self_test_by_two_seconds_at_most() {
-    let hovers = |tick: u32| if tick % 7 < 4 { 0.004 } else { 0.002 };
-    let lands = |tick: u32| 1e-5 * f64::from(tick) + if tick % 7 < 4 { 1e-3 } else { 0.0 };
-    for force in [&hovers as &dyn Fn(u32) -> f64, &lands] {
-        let mut bench = Bench::new();
-        assert_eq!(bench.host("arm"), "ok");
+fn an_intermittently_detected_force_delays_the_self_test_by_at_most_two_seconds() {
+    let near_threshold = |tick: u32| if tick % 7 < 4 { 0.004 } else { 0.002 };
+    let slow_landing = |tick: u32| 1e-5 * f64::from(tick) + if tick % 7 < 4 { 1e-3 } else { 0.0 };
+    for force in [&near_threshold as &dyn Fn(u32) -> f64, &slow_landing] {
+        let mut bench = TestBench::new();
+        assert_eq!(bench.send("arm"), "ok");
         for tick in 0..2750 {
             bench.force_n = force(tick);
-            bench.step_tested();
+            bench.step_self_test();
         }
         assert_eq!(bench.state(), StateName::Armed);
     }
 }
 
-/// Landings without end.
 #[test]
-fn a_self_test_that_is_never_left_alone_trips_after_20_s() {
-    let mut bench = Bench::new();
-    assert_eq!(bench.host("arm"), "ok");
+fn a_self_test_that_is_touched_again_and_again_trips_after_20_s() {
+    let mut bench = TestBench::new();
+    assert_eq!(bench.send("arm"), "ok");
     let mut ticks = 0;
     while bench.state() == StateName::SelfTest {
         bench.force_n = if ticks / 500 % 2 == 0 { 1.0 } else { 0.0 };
-        bench.step_tested();
+        bench.step_self_test();
         ticks += 1;
     }
     assert_eq!(bench.state().fault(), Some(Fault::NoResponse));
     assert!((20_000..20_100).contains(&ticks), "{ticks}");
 }
 
-/// A leg that cannot warm.
+/// One half of the bridge is defective, so that the display cannot be warmed.
 #[test]
-fn a_self_test_without_current_one_way_round_trips() {
-    let mut bench = Bench::new();
-    assert_eq!(bench.host("arm"), "ok");
+fn a_self_test_without_current_in_one_direction_trips() {
+    let mut bench = TestBench::new();
+    assert_eq!(bench.send("arm"), "ok");
     while bench.state() == StateName::SelfTest {
-        let (outputs, telemetry) = bench.step_all();
-        let flows_a = telemetry.demand.to_num::<f64>().max(0.0);
-        bench.current_a = Some(flows_a);
-        bench.display_c -= 2.7e-3 * flows_a;
+        let (outputs, telemetry) = bench.step_with_outputs();
+        let flowing_a = telemetry.demand.to_num::<f64>().max(0.0);
+        bench.measured_a = Some(flowing_a);
+        bench.display_c -= 2.7e-3 * flowing_a;
         bench.check_c = bench.display_c;
         bench.bridge_fault = outputs.comparator_test;
     }
@@ -226,25 +225,25 @@ fn a_self_test_without_current_one_way_round_trips() {
 }
 
 #[test]
-fn a_fault_ends_the_contact() {
-    let mut bench = Bench::presenting("copper");
+fn a_fault_ends_the_simulated_contact() {
+    let mut bench = TestBench::presenting("copper");
     bench.force_n = 2.0;
     bench.steps(5000);
     bench.bridge_fault = true;
     bench.step();
     bench.bridge_fault = false;
     bench.step();
-    bench.obey(&["clear", "arm", "start"]);
+    bench.send_ok(&["clear", "arm", "start"]);
     let expected_c = bench.contact("copper", 24.0).at(0.0).display_c;
     super::assert_close(bench.setpoint_c(), expected_c);
 }
 
 #[test]
-fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
-    let mut bench = Bench::presenting("copper");
+fn the_demanded_current_saturates_at_its_limit_and_reverses_at_once() {
+    let mut bench = TestBench::presenting("copper");
     for (line, demand_a) in [("object 60", -6), ("object -20", 6)] {
-        bench.obey(&[line]);
-        // No longer than a display that stands still is taken for one.
+        bench.send_ok(&[line]);
+        // Shorter than the time after which a display that does not respond trips.
         for _ in 0..200 {
             let (_, telemetry) = bench.step();
             assert_eq!(telemetry.demand, demand_a);
@@ -252,26 +251,27 @@ fn the_current_asked_for_stays_within_its_limit_and_turns_at_once() {
     }
 }
 
-/// Of a tile that has been at rest: 6 A through leads and legs of 12 V, the dead time, and what the module gives or takes.
+/// From a steady state: the voltage drop of 6 A in leads and legs, the loss of the dead times and the Seebeck voltage, as
+/// fractions of 12 V.
 #[test]
-fn the_voltage_is_what_the_current_needs() {
+fn the_bridge_voltage_is_the_feed_forward_of_the_demanded_current() {
     for (line, duty) in [("object 60", -0.5), ("object -20", 0.5)] {
-        let mut bench = Bench::new();
+        let mut bench = TestBench::new();
         let display_c = bench.skin_c;
         (bench.display_c, bench.check_c) = (display_c, display_c);
-        bench.obey(&["material copper", line, "arm"]);
+        bench.send_ok(&["material copper", line, "arm"]);
         bench.steps(1000);
-        bench.obey(&["start"]);
+        bench.send_ok(&["start"]);
         let (drive, telemetry) = bench.step();
         assert_eq!(telemetry.demand, 12.0 * duty);
         let Drive::On(voltage) = drive else {
             panic!("{drive:?}")
         };
         let voltage = voltage.fraction().to_num::<f64>();
-        let seebeck = 0.0273 * (25.0 - display_c) / 12.0;
-        let legs_k = (25.0 + display_c) / 2.0 - 27.0;
-        let ohm = 0.19 + 1.061 * (1.0 + 0.0049 * legs_k);
-        let expected = duty * (ohm + 0.397 / 6.0) + seebeck;
+        let seebeck_fraction = 0.0273 * (25.0 - display_c) / 12.0;
+        let legs_above_27_c_k = (25.0 + display_c) / 2.0 - 27.0;
+        let ohm = 0.19 + 1.061 * (1.0 + 0.0049 * legs_above_27_c_k);
+        let expected = duty * (ohm + 0.397 / 6.0) + seebeck_fraction;
         assert!(
             (voltage - expected).abs() < 1e-3,
             "{line}: {voltage}, {expected}"
@@ -279,11 +279,11 @@ fn the_voltage_is_what_the_current_needs() {
     }
 }
 
-/// The bench without its noise: a converter that repeats its last conversions.
+/// Without noise, every sample equals the previous one.
 #[test]
-fn a_converter_that_stands_still_trips_within_50_ms() {
-    let mut bench = Bench::presenting("copper");
-    // To the tick in which the last noise has gone again.
+fn frozen_samples_trip_within_50_ms() {
+    let mut bench = TestBench::presenting("copper");
+    // To the first tick after the last noise.
     while bench.tick % 40 != 22 {
         bench.step();
     }
@@ -298,11 +298,11 @@ fn a_converter_that_stands_still_trips_within_50_ms() {
 }
 
 #[test]
-fn display_thermistors_that_stay_apart_trip() {
-    let mut bench = Bench::presenting("copper");
-    let drift = |bench: &mut Bench, to_k: f64| {
-        while (bench.check_c - bench.display_c - to_k).abs() > 0.05 {
-            bench.check_c += 0.1f64.copysign(bench.display_c + to_k - bench.check_c);
+fn display_thermistors_that_differ_by_more_than_3_k_trip_after_40_ms() {
+    let mut bench = TestBench::presenting("copper");
+    let drift = |bench: &mut TestBench, difference_k: f64| {
+        while (bench.check_c - bench.display_c - difference_k).abs() > 0.05 {
+            bench.check_c += 0.1f64.copysign(bench.display_c + difference_k - bench.check_c);
             bench.step();
         }
     };
@@ -321,60 +321,61 @@ fn display_thermistors_that_stay_apart_trip() {
     );
 }
 
-/// Against the current, by more than a display that goes the wrong way: in every phase of the detectors.
+/// The step is against the direction of the current, which could be mistaken for a wrong response; it comes in every phase
+/// of the detectors' period.
 #[test]
-fn a_reading_that_steps_is_a_jump_whatever_the_current_does() {
+fn a_step_of_the_reading_trips_as_a_jump_in_every_phase() {
     for phase in 0..8 {
-        let mut bench = Bench::presenting("copper");
-        bench.current_a = None;
+        let mut bench = TestBench::presenting("copper");
+        bench.measured_a = None;
         bench.steps(300 + phase);
-        let cooled = bench.display_c > bench.setpoint_c();
-        bench.display_c += if cooled { 2.0 } else { -2.0 };
+        let cooling = bench.display_c > bench.setpoint_c();
+        bench.display_c += if cooling { 2.0 } else { -2.0 };
         bench.step();
         assert_eq!(bench.state().fault(), Some(Fault::DisplayJump), "{phase}");
     }
 }
 
-/// The comparator keeps the supply cut after the wire is mended; the self-test gives it back.
+/// The comparator keeps the supply off after the sensor's wire is repaired, until the self-test resets it.
 #[test]
-fn a_comparator_that_has_cut_can_be_cleared() {
-    let mut bench = Bench::presenting("copper");
+fn a_latched_comparator_can_be_cleared() {
+    let mut bench = TestBench::presenting("copper");
     let check_c = bench.check_c;
     (bench.check_c, bench.bridge_fault) = (-200.0, true);
     bench.step();
     assert_eq!(bench.state().fault().map(Fault::name), Some("check-open"));
     bench.check_c = check_c;
     bench.step();
-    bench.obey(&["clear"]);
+    bench.send_ok(&["clear"]);
     assert_eq!(bench.state(), StateName::Off);
-    bench.obey(&["arm"]);
+    bench.send_ok(&["arm"]);
     assert_eq!(bench.state(), StateName::Armed);
 }
 
 #[test]
-fn armed_after_a_fault_the_display_is_neutral_again() {
-    let mut bench = Bench::new();
-    bench.obey(&["arm", "hold 41.5"]);
+fn a_fault_ends_a_hold() {
+    let mut bench = TestBench::new();
+    bench.send_ok(&["arm", "hold 41.5"]);
     bench.step();
     bench.force_n = -1.3;
     bench.step();
     bench.force_n = 0.0;
     bench.step();
-    bench.obey(&["clear", "arm"]);
+    bench.send_ok(&["clear", "arm"]);
     assert!((bench.setpoint_c() - bench.skin_c).abs() < 0.1);
 }
 
-/// A finger that lands in the self-test warms the display as it cools.
+/// A finger that lands during the self-test warms the display while the test cools it.
 #[test]
-fn a_finger_that_lands_in_the_self_test_is_waited_for() {
-    let mut bench = Bench::new();
-    assert_eq!(bench.host("arm"), "ok");
+fn the_self_test_passes_after_a_finger_has_landed_during_it() {
+    let mut bench = TestBench::new();
+    assert_eq!(bench.send("arm"), "ok");
     for tick in 0..3000 {
         if bench.state() != StateName::SelfTest {
             break;
         }
         bench.force_n = if tick < 150 { 0.0 } else { 1.0 };
-        bench.step_tested();
+        bench.step_self_test();
         bench.display_c += if (150..450).contains(&tick) {
             2e-3
         } else {

@@ -1,4 +1,4 @@
-//! A station on a bench: physical quantities in, set-point and bridge command out.
+//! Tests of one station: physical quantities in, set-point and bridge command out.
 
 mod any_input;
 mod faults;
@@ -17,20 +17,20 @@ use crate::device::drive::Drive;
 use crate::device::drive::Outputs;
 use crate::device::sense::Samples;
 use crate::device::{StateName, Station};
-use crate::protocol::Desk;
+use crate::protocol::CommandHandler;
 use crate::settings::{Settings, Tile};
 
-/// Part of the way that its thermistor goes in a tick: that of a lag of 0.1 s.
-const FOLLOWS: f64 = 0.01;
+/// Coefficient per tick of the thermistor's low-pass filter: a lag of 0.1 s.
+const SENSOR_LAG_COEFFICIENT: f64 = 0.01;
 
-/// A station and the world that its sensors see.
+/// A station, its command handler and the physical quantities that its sensors measure.
 #[derive(Clone, Debug)]
-struct Bench {
+struct TestBench {
     station: Station,
-    desk: Desk<1>,
-    /// Of the last tick.
+    handler: CommandHandler<1>,
+    /// Number of the last tick.
     tick: u32,
-    /// Surface of the plate, which the thermistors follow.
+    /// Temperature of the plate's surface, which the thermistors lag behind.
     plate_c: f64,
     display_c: f64,
     check_c: f64,
@@ -38,25 +38,25 @@ struct Bench {
     skin_c: f64,
     room_c: f64,
     force_n: f64,
-    /// Current that the device demanded in the last tick, magnitude.
+    /// Magnitude of the current that the station demanded in the last tick.
     demanded_a: f64,
-    /// Measured; what was asked for if nothing else.
-    current_a: Option<f64>,
+    /// Measured current; `None` for the demanded one.
+    measured_a: Option<f64>,
     bridge_fault: bool,
-    /// The host gives a sign of life on every tick.
-    host_there: bool,
-    /// The plate answers the demanded current as a tile of its class, and its thermistors follow it.
-    answers: bool,
-    /// The converter's noise: one unit of each sum once in 40 ticks.
+    /// A byte from the host arrives before every tick.
+    host_alive: bool,
+    /// The plate responds to the demanded current as the nominal tile does.
+    plate_responds: bool,
+    /// Noise of the converter: added to each sum once in 40 ticks.
     noise: u16,
 }
 
-impl Bench {
-    /// Nobody touches, nothing is wrong, telemetry comes on every tick.
+impl TestBench {
+    /// Untouched and without a fault, with telemetry on every tick and the law `pi`.
     fn new() -> Self {
         let mut bench = Self {
             station: Station::new(&Settings::default()),
-            desk: Desk::new(Settings::default()),
+            handler: CommandHandler::new(Settings::default()),
             tick: 0,
             plate_c: 30.0,
             display_c: 30.0,
@@ -66,78 +66,79 @@ impl Bench {
             room_c: 24.0,
             force_n: 0.0,
             demanded_a: 0.0,
-            current_a: None,
+            measured_a: None,
             bridge_fault: false,
-            host_there: true,
-            answers: false,
+            host_alive: true,
+            plate_responds: false,
             noise: 1,
         };
-        assert_eq!(bench.host("stream 1"), "ok");
-        assert_eq!(bench.host("law pi"), "ok");
+        assert_eq!(bench.send("stream 1"), "ok");
+        assert_eq!(bench.send("law pi"), "ok");
         bench
     }
 
-    /// Sends a line, gives the answer.
-    fn host(&mut self, line: &str) -> String {
-        let done = self.desk.answer(line, |_, command| {
-            let said = self.station.execute(command).map_err(Addressed::device)?;
-            Ok(Addressed::device(said))
+    /// Sends a line, and returns the answer.
+    fn send(&mut self, line: &str) -> String {
+        let answer = self.handler.answer(line, |_, command| {
+            let content = self.station.execute(command).map_err(Addressed::device)?;
+            Ok(Addressed::device(content))
         });
-        done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
+        answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
 
-    /// Sends lines that must be obeyed; `arm` until the device is armed.
-    fn obey(&mut self, lines: &[&str]) {
+    /// Sends lines that must be accepted; completes the self-test that `arm` starts.
+    fn send_ok(&mut self, lines: &[&str]) {
         for line in lines {
-            assert_eq!(self.host(line), "ok", "{line}");
-            self.pass_self_test();
+            assert_eq!(self.send(line), "ok", "{line}");
+            self.complete_self_test();
         }
     }
 
-    /// A bench on which `material` is presented, and nobody touches it.
+    /// A station that presents `material` and is not touched.
     fn presenting(material: &str) -> Self {
         let mut bench = Self::new();
-        let chosen = ["material ", material].concat();
-        bench.obey(&[&chosen, "arm", "start"]);
+        let material_line = ["material ", material].concat();
+        bench.send_ok(&[&material_line, "arm", "start"]);
         bench.step();
         bench
     }
 
-    /// The same with a display that answers.
-    fn answering(material: &str) -> Self {
+    /// The same with a plate that responds to the current.
+    fn presenting_with_plate(material: &str) -> Self {
         let mut bench = Self::presenting(material);
-        bench.answers = true;
+        bench.plate_responds = true;
         bench
     }
 
-    /// One tick of a self-test, on a display that answers with 2.7 K/s per ampere and a comparator that works.
-    fn step_tested(&mut self) {
-        let (outputs, telemetry) = self.step_all();
+    /// One tick of a self-test, on a display that responds with 2.7 K/s per ampere and with a working comparator.
+    fn step_self_test(&mut self) {
+        let (outputs, telemetry) = self.step_with_outputs();
         let moved_k = 2.7e-3 * telemetry.demand.to_num::<f64>();
         (self.display_c, self.check_c) = (self.display_c - moved_k, self.check_c - moved_k);
         self.bridge_fault = outputs.comparator_test;
     }
 
-    /// Lets the device test itself.
-    fn pass_self_test(&mut self) {
-        let (display_c, check_c, current_a) = (self.display_c, self.check_c, self.current_a);
-        let answers = mem::replace(&mut self.answers, false);
-        self.current_a = None;
+    /// Steps until the self-test has ended, and restores the temperatures.
+    fn complete_self_test(&mut self) {
+        let (display_c, check_c, measured_a) = (self.display_c, self.check_c, self.measured_a);
+        let plate_responds = mem::replace(&mut self.plate_responds, false);
+        self.measured_a = None;
         while self.state() == StateName::SelfTest {
-            self.step_tested();
+            self.step_self_test();
         }
-        (self.display_c, self.check_c, self.current_a) = (display_c, check_c, current_a);
-        (self.plate_c, self.answers) = (display_c, answers);
+        (self.display_c, self.check_c, self.measured_a) = (display_c, check_c, measured_a);
+        (self.plate_c, self.plate_responds) = (display_c, plate_responds);
     }
 
-    /// What the converter makes of the world: 10 k thermistors of beta 3950 K under 10 k that warm themselves, 410
-    /// counts and 300 counts/N, 400 counts/A, sixteen conversions.
+    /// Sums of sixteen conversions: 10 kΩ thermistors with a beta of 3950 K and self-heating under 10 kΩ, a force sensor
+    /// with 410 counts at zero and 300 counts/N, a current mirror with 400 counts/A.
     fn samples(&self) -> Samples {
-        let thermistor = |t_c: f64, warmer_k: f64| {
-            let ohm = 10e3 * (3950.0 * (1.0 / (t_c + warmer_k + 273.15) - 1.0 / 298.15)).exp();
+        let thermistor = |t_c: f64, self_heating_k: f64| {
+            let ohm =
+                10e3 * (3950.0 * (1.0 / (t_c + self_heating_k + 273.15) - 1.0 / 298.15)).exp();
             (65536.0 * ohm / (ohm + 10e3)).round() as u16
         };
-        let current_a = self.current_a.unwrap_or(self.demanded_a);
+        let current_a = self.measured_a.unwrap_or(self.demanded_a);
         Samples {
             display: thermistor(self.display_c, 0.034),
             display_check: thermistor(self.check_c, 0.034),
@@ -150,13 +151,13 @@ impl Bench {
         }
     }
 
-    /// One tick.
+    /// Advances by one tick.
     fn step(&mut self) -> (Drive, Telemetry) {
-        let (outputs, telemetry) = self.step_all();
+        let (outputs, telemetry) = self.step_with_outputs();
         (outputs.drive, telemetry)
     }
 
-    fn step_all(&mut self) -> (Outputs, Telemetry) {
+    fn step_with_outputs(&mut self) -> (Outputs, Telemetry) {
         let mut samples = self.samples();
         let noisy = [
             &mut samples.display,
@@ -171,25 +172,25 @@ impl Bench {
                 *sum = sum.saturating_add(self.noise);
             }
         }
-        if self.host_there {
+        if self.host_alive {
             self.station.note_host_activity();
         }
         let outputs = self.station.step(&samples);
         let telemetry = self.station.telemetry().expect("streamed on every tick");
         self.tick = telemetry.tick;
         self.demanded_a = telemetry.demand.to_num::<f64>().abs();
-        if self.answers {
-            let ampere = telemetry.demand.to_num::<f64>();
+        if self.plate_responds {
+            let demand_a = telemetry.demand.to_num::<f64>();
             let Tile {
                 gain_k_s_a,
                 joule_per_a,
                 leak_1_s,
                 ..
             } = Tile::CLASS;
-            let pumped_k_s = gain_k_s_a * (ampere - joule_per_a * ampere * ampere);
+            let pumped_k_s = gain_k_s_a * (demand_a - joule_per_a * demand_a * demand_a);
             let leak_k_s = leak_1_s * (self.plate_c - self.sink_c);
             self.plate_c -= 1e-3 * (pumped_k_s + leak_k_s);
-            self.display_c += FOLLOWS * (self.plate_c - self.display_c);
+            self.display_c += SENSOR_LAG_COEFFICIENT * (self.plate_c - self.display_c);
             self.check_c = self.display_c;
         }
         (outputs, telemetry)
@@ -206,14 +207,14 @@ impl Bench {
         self.station.state()
     }
 
-    /// Set-point of one tick, °C.
+    /// Advances by one tick, and returns its set-point, °C.
     fn setpoint_c(&mut self) -> f64 {
         let (_, telemetry) = self.step();
         assert_eq!(telemetry.state.fault(), None);
         telemetry.setpoint.expect("the bridge is driven").to_num()
     }
 
-    /// The thesis's contact of this finger with an object, in `f64`.
+    /// The contact of this finger with an object by the thesis's equations, in `f64`.
     fn contact(&self, material: &str, object_c: f64) -> reference::Contact<f64> {
         let object: &Material = material::find(material).expect("a material of the thesis");
         let pressure_pa = pressure::pressure_pa(self.force_n);
@@ -226,8 +227,8 @@ impl Bench {
     }
 }
 
-/// One count of a thermistor's sum is 1.4 mK at 25 to 35 °C, so rounding moves a temperature by 0.7 mK, and
-/// what is computed from skin and room by little more.
+/// Asserts agreement to 2 mK: a count of a thermistor's sum is 1.4 mK at 25 to 35 °C, so rounding shifts a temperature by
+/// 0.7 mK, and a set-point that is computed from skin and room by little more.
 #[track_caller]
 fn assert_close(actual_c: f64, expected_c: f64) {
     assert!(

@@ -1,12 +1,12 @@
-//! The documented state diagram.
+//! The documented state diagram, and the commands that depend on the state.
 
-use super::Bench;
+use super::TestBench;
 use crate::device::StateName;
 use crate::device::drive::Drive;
 
 #[test]
 fn a_station_is_off_until_it_is_armed() {
-    let mut bench = Bench::new();
+    let mut bench = TestBench::new();
     bench.force_n = 2.0;
     for _ in 0..100 {
         let (drive, telemetry) = bench.step();
@@ -16,54 +16,54 @@ fn a_station_is_off_until_it_is_armed() {
         );
         assert_eq!(telemetry.demand, 0);
     }
-    assert_eq!(bench.host("start"), "err start needs arm first");
+    assert_eq!(bench.send("start"), "err start needs arm first");
     assert_eq!(bench.step().0, Drive::Off);
-    bench.obey(&["arm"]);
+    bench.send_ok(&["arm"]);
     assert!(matches!(bench.step().0, Drive::On(_)));
 }
 
 #[test]
-fn every_arrow_of_the_state_diagram() {
-    let mut bench = Bench::new();
-    bench.obey(&["material granite"]);
-    let landed = |bench: &mut Bench| {
+fn every_transition_of_the_state_diagram_is_taken() {
+    let mut bench = TestBench::new();
+    bench.send_ok(&["material granite"]);
+    let land = |bench: &mut TestBench| {
         bench.force_n = 1.0;
         bench.steps(2);
         assert_eq!(bench.state(), StateName::Contact);
     };
-    let started = |bench: &mut Bench| {
+    let start = |bench: &mut TestBench| {
         bench.force_n = 0.0;
-        bench.obey(&["arm"]);
+        bench.send_ok(&["arm"]);
         bench.steps(2);
-        bench.obey(&["start"]);
+        bench.send_ok(&["start"]);
         bench.step();
         assert_eq!(bench.state(), StateName::Preset);
     };
 
-    bench.obey(&["arm"]);
+    bench.send_ok(&["arm"]);
     assert_eq!(bench.state(), StateName::Armed);
-    bench.obey(&["arm", "abort"]);
+    bench.send_ok(&["arm", "abort"]);
     assert_eq!(bench.state(), StateName::Ready);
 
-    started(&mut bench);
-    landed(&mut bench);
+    start(&mut bench);
+    land(&mut bench);
     bench.force_n = 0.0;
     bench.steps(2);
     assert_eq!(bench.state(), StateName::Preset);
 
-    bench.obey(&["arm"]);
+    bench.send_ok(&["arm"]);
     assert_eq!(bench.state(), StateName::Armed);
-    started(&mut bench);
-    landed(&mut bench);
-    bench.obey(&["arm"]);
+    start(&mut bench);
+    land(&mut bench);
+    bench.send_ok(&["arm"]);
     assert_eq!(bench.state(), StateName::Armed);
 
     for touched in [false, true] {
-        started(&mut bench);
+        start(&mut bench);
         if touched {
-            landed(&mut bench);
+            land(&mut bench);
         }
-        bench.obey(&["abort"]);
+        bench.send_ok(&["abort"]);
         assert_eq!(
             (bench.step().0, bench.state()),
             (Drive::Off, StateName::Ready)
@@ -72,54 +72,54 @@ fn every_arrow_of_the_state_diagram() {
 }
 
 #[test]
-fn a_start_out_of_turn_changes_nothing() {
-    let mut bench = Bench::new();
-    bench.obey(&["arm"]);
-    assert_eq!(bench.host("start"), "err start needs a material first");
+fn a_start_in_the_wrong_state_is_refused_and_changes_nothing() {
+    let mut bench = TestBench::new();
+    bench.send_ok(&["arm"]);
+    assert_eq!(bench.send("start"), "err start needs a material first");
     assert_eq!(bench.state(), StateName::Armed);
-    bench.obey(&["material copper", "start"]);
+    bench.send_ok(&["material copper", "start"]);
     bench.force_n = 2.0;
     bench.steps(500);
     let mut undisturbed = bench.clone();
     assert_eq!(
-        bench.host("start"),
+        bench.send("start"),
         "err already started; arm takes the object away"
     );
-    assert_eq!(bench.host("clear"), "err no fault to clear");
+    assert_eq!(bench.send("clear"), "err no fault to clear");
     assert_eq!(bench.step(), undisturbed.step());
 }
 
 #[test]
-fn the_host_is_told_what_the_device_does() {
-    let mut bench = Bench::new();
+fn state_and_id_report_the_station_and_the_device() {
+    let mut bench = TestBench::new();
     assert_eq!(
-        bench.host("state"),
+        bench.send("state"),
         "ok state=off fault=- material=- object_c=room mode=contact setpoint_c=-"
     );
-    bench.obey(&[
+    bench.send_ok(&[
         "material abs",
         "object 60",
         "mode semi-infinite",
         "law model",
         "arm",
     ]);
-    bench.answers = true;
+    bench.plate_responds = true;
     bench.skin_c = 45.0;
     bench.steps(3000);
     assert_eq!(
-        bench.host("state"),
+        bench.send("state"),
         "ok state=armed fault=- material=abs object_c=60.00 mode=semi-infinite setpoint_c=42.00 limited"
     );
     assert_eq!(
-        bench.host("id"),
+        bench.send("id"),
         "ok thermal-display 0.1.0 fingers=1 tick_hz=1000 scan_hz=16000"
     );
 }
 
 #[test]
-fn telemetry_comes_at_its_interval() {
-    let mut bench = Bench::new();
-    bench.obey(&["stream 7"]);
+fn telemetry_is_streamed_at_its_interval() {
+    let mut bench = TestBench::new();
+    bench.send_ok(&["stream 7"]);
     let streamed = (1..=70)
         .filter(|tick| {
             let samples = bench.samples();
@@ -130,7 +130,7 @@ fn telemetry_comes_at_its_interval() {
         })
         .count();
     assert_eq!(streamed, 10);
-    bench.obey(&["stream 0"]);
+    bench.send_ok(&["stream 0"]);
     let samples = bench.samples();
     for _ in 0..100 {
         bench.station.step(&samples);
@@ -139,24 +139,24 @@ fn telemetry_comes_at_its_interval() {
 }
 
 #[test]
-fn a_display_that_is_held_sets_out_from_where_it_is() {
-    let mut bench = Bench::new();
-    bench.obey(&["arm", "hold 42"]);
-    for gone_k in [1.0, 2.0] {
+fn a_hold_ramps_from_the_present_temperature() {
+    let mut bench = TestBench::new();
+    bench.send_ok(&["arm", "hold 42"]);
+    for ramp_k in [1.0, 2.0] {
         bench.steps(999);
-        super::assert_close(bench.setpoint_c(), bench.display_c + gone_k);
+        super::assert_close(bench.setpoint_c(), bench.display_c + ramp_k);
     }
-    bench.obey(&["hold 20"]);
+    bench.send_ok(&["hold 20"]);
     bench.steps(999);
     super::assert_close(bench.setpoint_c(), bench.display_c - 1.0);
 }
 
 #[test]
-fn a_display_that_was_tuned_is_held_no_longer() {
-    let mut bench = Bench::new();
-    bench.obey(&["arm", "hold 42", "tune"]);
+fn tune_ends_a_hold() {
+    let mut bench = TestBench::new();
+    bench.send_ok(&["arm", "hold 42", "tune"]);
     bench.step();
-    // Ends the experiment.
+    // A touch aborts the identification.
     bench.force_n = 1.0;
     bench.steps(100);
     super::assert_close(bench.setpoint_c(), bench.skin_c);

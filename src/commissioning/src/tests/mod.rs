@@ -1,5 +1,5 @@
-//! What commissioning finds, against equations and numbers from elsewhere.
+//! Identification, stability margins and least squares against simulated tiles and published values.
 
-mod margins;
-mod solve;
-mod tune;
+mod cholesky;
+mod identification;
+mod stability_margins;

@@ -4,7 +4,10 @@ use contact_model::fixed_point::{Celsius, product};
 use fixed::types::{I0F32, U28F4};
 
 use super::{SCANS_PER_TICK, THERMISTORS};
-use thermal_settings::{BORDERS, FIRST_BORDER, MIDDLE_C, REACH_K, SEGMENT_CODES, Settings};
+use thermal_settings::{
+    BORDER_COUNT, CORRECTION_CENTER_C, CORRECTION_HALF_SPAN_K, FIRST_BORDER, SEGMENT_CODES,
+    Settings,
+};
 
 /// A sum of conversions after the correction of the converter: below 2^16, in sixteenths.
 pub type CorrectedSum = U28F4;
@@ -51,7 +54,7 @@ pub(super) struct ConverterCorrection {
 
 impl ConverterCorrection {
     /// From the steps at the segments' borders, counts.
-    fn new(steps_counts: &[f64; BORDERS]) -> Self {
+    fn new(steps_counts: &[f64; BORDER_COUNT]) -> Self {
         let units_per_count = libm::ldexp(SCANS_PER_TICK as f64, CorrectedSum::FRAC_NBITS as i32);
         let mut error = 0.0;
         Self {
@@ -98,8 +101,8 @@ pub(super) struct ThermistorCorrection {
 }
 
 impl ThermistorCorrection {
-    const CENTRE: Celsius = Celsius::const_from_int(MIDDLE_C as i32);
-    const HALF_RANGE: Celsius = Celsius::const_from_int(REACH_K as i32);
+    const CENTRE: Celsius = Celsius::const_from_int(CORRECTION_CENTER_C as i32);
+    const HALF_RANGE: Celsius = Celsius::const_from_int(CORRECTION_HALF_SPAN_K as i32);
 
     /// Subtracts the thermistor's self-heating, K, from the correction's offset.
     fn new(correction: &thermal_settings::Correction, self_heating_k: f64) -> Self {
@@ -133,7 +136,7 @@ mod tests {
     #[test]
     fn converter_correction_is_at_most_8_counts_whatever_the_steps() {
         for step in [-4.0, 4.0] {
-            let correction = ConverterCorrection::new(&[step; BORDERS]);
+            let correction = ConverterCorrection::new(&[step; BORDER_COUNT]);
             for sum in (0..=65_520).step_by(7) {
                 let change = i64::from(correction.correct(sum).to_bits())
                     - (i64::from(sum) << CorrectedSum::FRAC_NBITS);

@@ -52,7 +52,7 @@ pub(super) struct ThermistorTable {
 impl ThermistorTable {
     /// Fits each cubic through four points of the curve, in `f64`: for set-up, not for the tick.
     #[must_use]
-    pub fn new(settings: &settings::Thermistor) -> Self {
+    pub fn new(settings: &settings::ThermistorDivider) -> Self {
         let width = 65536.0 / INTERVALS as f64;
         Self {
             cubics: core::array::from_fn(|interval| {
@@ -138,7 +138,7 @@ mod tests {
             b: 2.341_25e-4,
             c: 8.767_41e-8,
         };
-        let table = ThermistorTable::new(&settings::Thermistor {
+        let table = ThermistorTable::new(&settings::ThermistorDivider {
             pull_up_ohm: 10e3,
             curve,
         });

@@ -1,30 +1,30 @@
-//! Bytes from the host to lines.
+//! Assembly of received bytes to lines.
 
 use heapless::String;
 
-/// Longest line from the host, in bytes, without its end.
-pub const LINE_MAX: usize = 96;
+/// Longest line from the host, bytes, without its line ending.
+pub const LINE_MAX_BYTES: usize = 96;
 
-/// Longest line to the host, in bytes, without a finger before it and without its end.
-pub const ANSWER_MAX: usize = 172;
+/// Longest line to the host, bytes, without the address of a finger and without its line ending.
+pub const ANSWER_MAX_BYTES: usize = 172;
 
-/// One complete line.
-pub type Line = String<LINE_MAX>;
+/// A complete line from the host, without its line ending.
+pub type Line = String<LINE_MAX_BYTES>;
 
-/// Why bytes did not make a line.
+/// Why received bytes form no line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LineError {
-    /// More than [`LINE_MAX`] bytes before the end of the line.
+    /// The line is longer than [`LINE_MAX_BYTES`].
     TooLong,
-    /// A byte that is not printable ASCII.
+    /// The line contains this byte, which is not printable ASCII.
     NotText(u8),
-    /// A byte was damaged or lost on the line.
+    /// A byte of the line was damaged or lost during reception.
     Reception,
-    /// More lines were waiting for their answers than there is room for.
-    Refused,
+    /// The queue of lines that wait for their answers was full.
+    QueueFull,
 }
 
-/// Collects bytes into lines; a bad line is dropped whole, up to its end.
+/// Collects bytes to lines. An invalid line is dropped as a whole, and reported at its end.
 #[derive(Debug, Default)]
 pub struct LineReader {
     line: Line,
@@ -41,7 +41,7 @@ impl LineReader {
         }
     }
 
-    /// Spoils the line that is being collected; its end is then answered with `error`.
+    /// Marks the line that is being collected as invalid; [`Self::push`] returns `error` at its end.
     pub fn fail(&mut self, error: LineError) {
         self.error.get_or_insert(error);
     }
@@ -52,7 +52,7 @@ impl LineReader {
         matches!(byte, b'\r' | b'\n')
     }
 
-    /// Takes one byte; carriage return or line feed ends a line, empty lines are skipped.
+    /// Takes one byte, and returns the line that it ends. Carriage return and line feed end a line; empty lines are skipped.
     pub fn push(&mut self, byte: u8) -> Option<Result<Line, LineError>> {
         match byte {
             _ if Self::is_end(byte) => {

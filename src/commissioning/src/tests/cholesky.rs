@@ -1,8 +1,8 @@
-//! Least squares against polynomials that are known.
+//! Least squares on polynomials with known coefficients.
 
-use crate::solve::solve;
+use crate::cholesky::solve;
 
-/// Normal equations of `c0 + c1 t + c2 t^2` for points on it.
+/// Normal equations for points on the parabola `c0 + c1 t + c2 t^2`.
 fn parabola(
     points: impl Iterator<Item = f64> + Clone,
     [c0, c1, c2]: [f64; 3],
@@ -25,24 +25,24 @@ fn parabola(
 fn points_on_a_parabola_give_its_coefficients() {
     let known = [2.0, -3.0, 0.5];
     let (mut a, mut b) = parabola((0..5).map(f64::from), known);
-    solve(&mut a, &mut b, 3).expect("five points");
+    solve(&mut a, &mut b).expect("five points");
     for (found, known) in b.into_iter().zip(known) {
         assert!((found - known).abs() < 1e-12, "{found}, {known}");
     }
 }
 
-/// Two points leave a direction of parabolas free.
+/// Two points leave one coefficient undetermined.
 #[test]
-fn too_few_points_are_no_parabola() {
+fn singular_equations_have_no_solution() {
     let (mut a, mut b) = parabola([1.0, 2.0].into_iter(), [2.0, -3.0, 0.5]);
-    assert_eq!(solve(&mut a, &mut b, 3), None);
-    assert_eq!(solve(&mut [[f64::NAN]], &mut [1.0], 1), None);
+    assert_eq!(solve(&mut a, &mut b), None);
+    assert_eq!(solve(&mut [[f64::NAN]], &mut [1.0]), None);
 }
 
-/// `1/d^2` of a point beside `1/s^2` of what is likely: the mean goes by those weights.
+/// A point at 0.5 with weight 4 and a prior at 0 with weight 1 have the weighted mean 0.4.
 #[test]
-fn only_the_first_equations_count() {
-    let (mut a, mut b) = ([[4.0 + 1.0, 9.0], [9.0, -9.0]], [4.0 * 0.5, 7.0]);
-    solve(&mut a, &mut b, 1).expect("one equation");
-    assert_eq!(b, [0.4, 7.0]);
+fn one_unknown_is_the_weighted_mean_of_point_and_prior() {
+    let (mut a, mut b) = ([[4.0 + 1.0]], [4.0 * 0.5]);
+    solve(&mut a, &mut b).expect("one equation");
+    assert_eq!(b, [0.4]);
 }

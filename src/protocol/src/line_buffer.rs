@@ -1,7 +1,7 @@
-//! Lines of words and decimals, without the general formatting of numbers.
+//! Fast formatting of lines with words and decimal numbers.
 //!
-//! A streamed line has ten numbers, a thousand times a second: the formatting of the number types costs ten
-//! times as much.
+//! A telemetry line has ten numbers and is written up to a thousand times a second; the `Display` of the fixed-point types
+//! takes ten times as long.
 
 use core::fmt;
 
@@ -9,82 +9,82 @@ use contact_model::fixed_point::{Celsius, Force};
 
 use thermal_device::drive::Current;
 
-/// Longest line, bytes.
-const LONGEST: usize = 128;
+/// Capacity of a buffer, bytes.
+const CAPACITY_BYTES: usize = 128;
 
-/// A line that is being written; what does not fit is left out.
-pub(super) struct Text {
-    bytes: [u8; LONGEST],
+/// A line that is being written. A word or number that does not fit is left out as a whole.
+pub(super) struct LineBuffer {
+    bytes: [u8; CAPACITY_BYTES],
     length: usize,
 }
 
-impl Text {
+impl LineBuffer {
     pub(super) const fn new() -> Self {
         Self {
-            bytes: [0; LONGEST],
+            bytes: [0; CAPACITY_BYTES],
             length: 0,
         }
     }
 
-    fn byte(&mut self, byte: u8) {
+    fn push_byte(&mut self, byte: u8) {
         if let Some(place) = self.bytes.get_mut(self.length) {
             *place = byte;
             self.length += 1;
         }
     }
 
-    /// Appends ASCII.
-    pub(super) fn word(&mut self, word: &str) {
-        let end = self.length + word.len();
+    /// Appends ASCII text.
+    pub(super) fn push_str(&mut self, ascii: &str) {
+        let end = self.length + ascii.len();
         if let Some(place) = self.bytes.get_mut(self.length..end) {
-            for (place, byte) in place.iter_mut().zip(word.bytes()) {
+            for (place, byte) in place.iter_mut().zip(ascii.bytes()) {
                 *place = byte;
             }
             self.length = end;
         }
     }
 
-    /// Appends a temperature in °C with that many decimals.
-    pub(super) fn celsius<const DIGITS: usize>(&mut self, value: Option<Celsius>) {
+    /// Appends a temperature in °C with `DIGITS` decimals, or `-` if it is unknown.
+    pub(super) fn push_celsius<const DIGITS: usize>(&mut self, value: Option<Celsius>) {
         match value {
-            Some(value) => self.decimal::<22, DIGITS>(value.to_bits().into()),
-            None => self.byte(b'-'),
+            Some(value) => self.push_decimal::<22, DIGITS>(value.to_bits().into()),
+            None => self.push_byte(b'-'),
         }
     }
 
-    /// Appends a force in N with three decimals.
-    pub(super) fn force(&mut self, value: Option<Force>) {
+    /// Appends a force in N with three decimals, or `-` if it is unknown.
+    pub(super) fn push_force(&mut self, value: Option<Force>) {
         match value {
-            Some(value) => self.decimal::<24, 3>(value.to_bits().into()),
-            None => self.byte(b'-'),
+            Some(value) => self.push_decimal::<24, 3>(value.to_bits().into()),
+            None => self.push_byte(b'-'),
         }
     }
 
     /// Appends a current in A with three decimals.
-    pub(super) fn current(&mut self, value: Current) {
-        self.decimal::<24, 3>(value.to_bits().into());
+    pub(super) fn push_current(&mut self, value: Current) {
+        self.push_decimal::<24, 3>(value.to_bits().into());
     }
 
-    /// Appends a whole number.
-    pub(super) fn count(&mut self, value: u32) {
-        self.digits::<0>(value);
+    /// Appends an integer.
+    pub(super) fn push_integer(&mut self, value: u32) {
+        self.push_digits::<0>(value);
     }
 
-    /// Appends `bits / 2^FRACTION` with `DIGITS` decimals, rounded to nearest.
-    fn decimal<const FRACTION: u32, const DIGITS: usize>(&mut self, bits: i64) {
+    /// Appends `bits / 2^FRACTION` with `DIGITS` decimals, rounded to the nearest.
+    fn push_decimal<const FRACTION: u32, const DIGITS: usize>(&mut self, bits: i64) {
         let scale = const { 10u64.pow(DIGITS as u32) };
         let scaled = (bits.unsigned_abs() * scale + (1 << (FRACTION - 1))) >> FRACTION;
-        // The number types stay below 2^10, so five decimals fit.
+        // All fixed-point types are below 2^10, so a `u32` holds five decimals.
         let scaled = u32::try_from(scaled).unwrap_or(u32::MAX);
         if bits < 0 && scaled != 0 {
-            self.byte(b'-');
+            self.push_byte(b'-');
         }
-        self.digits::<DIGITS>(scaled);
+        self.push_digits::<DIGITS>(scaled);
     }
 
     /// Appends `value / 10^DIGITS`.
-    fn digits<const DIGITS: usize>(&mut self, mut value: u32) {
-        // Digits before the point: at least one, and all in all no more than ten.
+    fn push_digits<const DIGITS: usize>(&mut self, mut value: u32) {
+        // Digits before the decimal point: at least one, and at most ten digits altogether, those of a `u32`.
         let mut whole = 1;
         let mut bound = const { 10u32.pow(DIGITS as u32 + 1) };
         while value >= bound && whole + DIGITS < 10 {
@@ -111,7 +111,7 @@ impl Text {
     }
 }
 
-impl fmt::Display for Text {
+impl fmt::Display for LineBuffer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let written = self.bytes.get(..self.length).unwrap_or_default();
         // Only ASCII is ever appended.
@@ -124,20 +124,20 @@ mod tests {
     use super::*;
     use std::string::{String, ToString};
 
-    fn text(write: impl Fn(&mut Text)) -> String {
-        let mut text = Text::new();
+    fn text(write: impl Fn(&mut LineBuffer)) -> String {
+        let mut text = LineBuffer::new();
         write(&mut text);
         text.to_string()
     }
 
     #[test]
-    fn decimals_agree_with_exact_arithmetic() {
+    fn decimals_are_the_exact_value_rounded() {
         for bits in (i32::MIN..=i32::MAX)
             .step_by(9973)
             .chain([i32::MIN, -1, 0, 1, i32::MAX])
         {
             let exact = f64::from(bits) / f64::from(1 << 22);
-            let text = text(|text| text.celsius::<5>(Some(Celsius::from_bits(bits))));
+            let text = text(|text| text.push_celsius::<5>(Some(Celsius::from_bits(bits))));
             let value: f64 = text.parse().expect("a number");
             assert!(
                 (value - exact).abs() <= 0.5e-5 + 1e-12,
@@ -150,23 +150,26 @@ mod tests {
             );
             assert_ne!(text, "-0.00000");
         }
-        assert_eq!(text(|text| text.celsius::<2>(None)), "-");
-        assert_eq!(text(|text| text.force(Some(Force::MAX))), "256.000");
-        assert_eq!(text(|text| text.current(Current::lit("-1.25"))), "-1.250");
+        assert_eq!(text(|text| text.push_celsius::<2>(None)), "-");
+        assert_eq!(text(|text| text.push_force(Some(Force::MAX))), "256.000");
+        assert_eq!(
+            text(|text| text.push_current(Current::lit("-1.25"))),
+            "-1.250"
+        );
         for count in [0, 9, 10, 12_345, u32::MAX] {
-            assert_eq!(text(|text| text.count(count)), count.to_string());
+            assert_eq!(text(|text| text.push_integer(count)), count.to_string());
         }
     }
 
     #[test]
-    fn what_does_not_fit_is_left_out() {
+    fn a_word_or_number_that_does_not_fit_is_left_out() {
         assert_eq!(
-            text(|text| (0..100).for_each(|_| text.word("ab "))).len(),
-            LONGEST / 3 * 3
+            text(|text| (0..100).for_each(|_| text.push_str("ab "))).len(),
+            CAPACITY_BYTES / 3 * 3
         );
         assert_eq!(
-            text(|text| (0..100).for_each(|_| text.count(12345))).len(),
-            LONGEST / 5 * 5
+            text(|text| (0..100).for_each(|_| text.push_integer(12345))).len(),
+            CAPACITY_BYTES / 5 * 5
         );
     }
 }

@@ -4,8 +4,8 @@ use proptest::prelude::*;
 
 use super::*;
 
-/// Values of settings: multiples of their decimals, within what `set` takes.
-fn kept() -> impl Strategy<Value = Kept> {
+/// Any settings within their ranges, in units of their last decimals.
+fn stored_settings() -> impl Strategy<Value = StoredSettings> {
     let correction = (
         -1_200_000..=1_200_000,
         -500_000..=500_000,
@@ -20,25 +20,25 @@ fn kept() -> impl Strategy<Value = Kept> {
     );
     let steps = proptest::array::uniform13(-4000..=4000);
     (steps, proptest::array::uniform5(correction), tile).prop_map(|(steps, corrections, tile)| {
-        let of = |units: i32, per: f64| f64::from(units) / per;
-        Kept {
+        let scaled = |units: i32, per: f64| f64::from(units) / per;
+        StoredSettings {
             calibration: Calibration {
-                steps_counts: steps.map(|step| of(step, 1e3)),
+                steps_counts: steps.map(|step| scaled(step, 1e3)),
                 corrections: corrections.map(|(offset, slope, curvature)| Correction {
-                    offset_k: of(offset, 1e6),
-                    slope: of(slope, 1e7),
-                    curvature_1_k: of(curvature, 1e8),
+                    offset_k: scaled(offset, 1e6),
+                    slope: scaled(slope, 1e7),
+                    curvature_1_k: scaled(curvature, 1e8),
                 }),
             },
             tile: Tile::from_array(
-                [tile.0, tile.1, tile.2, tile.3, tile.4].map(|value| of(value, 1e6)),
+                [tile.0, tile.1, tile.2, tile.3, tile.4].map(|value| scaled(value, 1e6)),
             ),
         }
     })
 }
 
-/// With the checksum that belongs to it.
-fn sealed(content: &[u8]) -> std::vec::Vec<u8> {
+/// Appends the checksum.
+fn with_checksum(content: &[u8]) -> std::vec::Vec<u8> {
     // Bit by bit, as the polynomial 0xedb88320 is defined.
     let crc = content.iter().fold(u32::MAX, |crc, byte| {
         (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
@@ -50,37 +50,37 @@ fn sealed(content: &[u8]) -> std::vec::Vec<u8> {
 
 proptest! {
     #[test]
-    fn all_settings_come_back_bit_for_bit(kept in proptest::array::uniform5(kept())) {
-        prop_assert_eq!(decode::<5>(&encode(Some(&kept))), Ok(Some(kept)));
+    fn decode_restores_what_encode_wrote_bit_for_bit(stored in proptest::array::uniform5(stored_settings())) {
+        prop_assert_eq!(decode::<5>(&encode(Some(&stored))), Ok(Some(stored)));
     }
 
     #[test]
-    fn no_bytes_are_too_strange(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+    fn decode_accepts_any_bytes_without_panicking_and_checks_ranges(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
         prop_assert!(decode::<1>(&bytes).is_err());
-        // Bytes that get past the checksum, and past the head.
-        let _any_content = decode::<1>(&sealed(&bytes));
+        // Bytes with a valid checksum, then with a valid header too.
+        let _any_content = decode::<1>(&with_checksum(&bytes));
         let mut content = std::vec![1, 0, 1, 1];
-        content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { FINGER }));
-        if let Ok(Some([kept])) = decode::<1>(&sealed(&content)) {
-            prop_assert_eq!(kept.beyond(), None);
+        content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { FINGER_BYTES }));
+        if let Ok(Some([stored])) = decode::<1>(&with_checksum(&content)) {
+            prop_assert_eq!(stored.out_of_range(), None);
         }
     }
 
     #[test]
-    fn any_bit_that_changes_is_noticed(kept in kept(), bit in 0..8 * (HEAD + FINGER + TAIL)) {
-        let mut bytes = encode(Some(&[kept]));
+    fn the_checksum_detects_any_flipped_bit(stored in stored_settings(), bit in 0..8 * (HEADER_BYTES + FINGER_BYTES + CHECKSUM_BYTES)) {
+        let mut bytes = encode(Some(&[stored]));
         bytes[bit / 8] ^= 1 << (bit % 8);
-        prop_assert_eq!(decode::<1>(&bytes), Err(StoredError::Checksum));
+        prop_assert_eq!(decode::<1>(&bytes), Err(RecordError::Checksum));
     }
 }
 
 #[test]
-fn the_layout_is_the_one_described() {
-    let kept = Kept::of(&Settings::default());
-    let bytes = encode(Some(&[kept]));
+fn the_record_has_the_documented_layout() {
+    let stored = StoredSettings::from_settings(&Settings::default());
+    let bytes = encode(Some(&[stored]));
     assert_eq!(bytes.len(), 140);
     assert_eq!(bytes[..4], [1, 0, 1, 1]);
-    // 28 zeros, then the class's tile in millionths.
+    // 28 zeros, then the nominal tile in millionths.
     let tile = [2_910_000, 58_500, 103_000, 100_000, 16_000]
         .map(i32::to_le_bytes)
         .concat();
@@ -88,19 +88,19 @@ fn the_layout_is_the_one_described() {
         (&bytes[4..116], &bytes[116..136]),
         (&[0; 112][..], &tile[..])
     );
-    assert_eq!(sealed(&bytes[..136]), bytes[..]);
-    assert_eq!(encode::<1>(None)[..], sealed(&[1, 0, 0, 0])[..]);
-    assert_eq!(decode::<1>(&sealed(&[1, 0, 0, 0])), Ok(None));
+    assert_eq!(with_checksum(&bytes[..136]), bytes[..]);
+    assert_eq!(encode::<1>(None)[..], with_checksum(&[1, 0, 0, 0])[..]);
+    assert_eq!(decode::<1>(&with_checksum(&[1, 0, 0, 0])), Ok(None));
 }
 
 #[test]
-fn what_is_wrong_is_named() {
-    let good = encode(Some(&[Kept::of(&Settings::default())]));
-    let content = &good[..good.len() - TAIL];
+fn each_invalid_record_has_its_error_message() {
+    let good = encode(Some(&[StoredSettings::from_settings(&Settings::default())]));
+    let content = &good[..good.len() - CHECKSUM_BYTES];
     let changed = |at: usize, value: &[u8]| {
         let mut content = content.to_vec();
         content[at..at + value.len()].copy_from_slice(value);
-        decode::<1>(&sealed(&content))
+        decode::<1>(&with_checksum(&content))
             .expect_err("changed")
             .to_string()
     };
@@ -127,25 +127,25 @@ fn what_is_wrong_is_named() {
         "stored gain 0.099999 of finger 0 out of range; 0.1 to 15 K/s/A"
     );
     assert_eq!(
-        decode::<1>(&sealed(&content[..100])),
-        Err(StoredError::Length(104))
+        decode::<1>(&with_checksum(&content[..100])),
+        Err(RecordError::Length(104))
     );
-    assert_eq!(decode::<1>(&[]), Err(StoredError::Length(0)));
-    assert_eq!(decode::<5>(&good), Err(StoredError::Fingers(1)));
+    assert_eq!(decode::<1>(&[]), Err(RecordError::Length(0)));
+    assert_eq!(decode::<5>(&good), Err(RecordError::Fingers(1)));
 }
 
 #[test]
-fn kept_settings_tune_the_loop() {
+fn stored_settings_determine_the_gains() {
     let mut tile = Tile::CLASS;
     tile.gain_k_s_a = 5.0;
-    let kept = Kept {
+    let stored = StoredSettings {
         calibration: Calibration::default(),
         tile,
     };
-    let settings = kept.settings();
-    assert_eq!(Kept::of(&settings), kept);
+    let settings = stored.settings();
+    assert_eq!(StoredSettings::from_settings(&settings), stored);
     assert_eq!(
         [settings.gains, settings.gains_10hz],
-        super::super::Gains::of_tile(&tile)
+        super::super::Gains::for_tile(&tile)
     );
 }
