@@ -12,17 +12,16 @@ pub mod fidelity;
 pub mod firmware;
 pub mod hand;
 pub mod host;
-pub mod infrared;
 pub mod machine;
 pub mod metrics;
-pub mod plant;
 pub mod report;
-pub mod roughness;
 pub mod run;
 pub mod scene;
 pub mod telemetry;
-pub mod thesis;
 pub mod trace;
 mod world;
+
+pub use thermal_plant::{self as plant, infrared};
+pub use thermal_thesis::{self as thesis, roughness};
 
 pub use world::{World, WorldError};

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::table::{broken, cells, outcome};
 use super::{Breach, Outline};
-use crate::report::{document, escape};
+use thermal_charts::{document, escape};
 
 /// Name of the page.
 pub const HTML: &str = "faults.html";

@@ -75,10 +75,7 @@ impl Draw {
             let Some(parameter) = nominal.iter().find(|parameter| parameter.key == key) else {
                 continue;
             };
-            let limits = tolerance.limits(parameter.value);
-            let value = tolerance
-                .distribution()
-                .draw(parameter.value, limits, own, key);
+            let value = tolerance.draw(parameter.value, own, key);
             plant.push((key.to_owned(), value));
             if key == TWIN.0 {
                 plant.push((TWIN.1.to_owned(), value));

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{Boxed, Row, box_table, table};
-use crate::report::{document, element, escape};
+use thermal_charts::{document, element, escape};
 
 /// Name of the page.
 pub const HTML: &str = "fidelity.html";

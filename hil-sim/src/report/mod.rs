@@ -1,13 +1,12 @@
 //! What a person reads of a run: a table, plots, a page.
 
-pub(crate) mod panel;
 mod plots;
 mod table;
 
 use std::fmt::Write;
 use std::path::Path;
 
-use anyhow::Context;
+use thermal_charts::{document, element, escape};
 
 use crate::metrics::Figures;
 use crate::run::Outcome;
@@ -31,29 +30,8 @@ pub fn write(
     figures: &Figures,
 ) -> anyhow::Result<()> {
     let plots = plots::draw(scene, outcome)?;
-    for (name, text) in [(HTML, page(scene, outcome, figures, &plots)), (SVG, plots)] {
-        let path = folder.join(name);
-        std::fs::write(&path, text).with_context(|| path.display().to_string())?;
-    }
-    Ok(())
-}
-
-const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:62rem;margin:2rem auto;padding:0 1rem;color:#222}\
-table{border-collapse:collapse}td,th{padding:.2rem .8rem;border-bottom:1px solid #ddd;text-align:left}\
-svg{max-width:100%;height:auto}code{background:#f3f3f3}";
-
-/// A page that needs no other file; `style` is added to the style of all pages, `body` is HTML.
-pub(crate) fn document(title: &str, style: &str, body: &str) -> String {
-    let title = escape(title);
-    format!(
-        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>{title}</title>\
-         <style>{STYLE}{style}</style><h1>{title}</h1>{body}</html>\n"
-    )
-}
-
-/// The `<svg>` element of an SVG document.
-pub(crate) fn element(svg: &str) -> &str {
-    svg.find("<svg").map_or("", |start| &svg[start..])
+    thermal_charts::write(folder, HTML, page(scene, outcome, figures, &plots))?;
+    thermal_charts::write(folder, SVG, plots)
 }
 
 fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> String {
@@ -81,11 +59,4 @@ fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> Str
         element(plots),
     );
     document(&title, "", &body)
-}
-
-/// Text as HTML.
-pub(crate) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }

@@ -1,8 +1,8 @@
 //! Temperatures, current and errors over time.
 
 use plotters::prelude::*;
+use thermal_charts::{Curve, Legend, Panel, Stroke};
 
-use super::panel::{Curve, Legend, Panel, Stroke};
 use crate::metrics::contact_times;
 use crate::run::Outcome;
 use crate::scene::Scene;
