@@ -13,6 +13,7 @@ mod process;
 mod proof;
 mod report;
 mod setup;
+mod soak;
 mod step;
 mod suite;
 
@@ -35,8 +36,25 @@ struct Cli {
 enum Task {
     /// Build the image and run it in the emulator: a finger lands on "copper"
     Demo(SetUp),
-    /// Run the whole test suite: formatting, lints, documentation, units, the image on the simulated plant
-    Test(SetUp),
+    /// Run the test suite: formatting, lints, documentation, units, fuzzers, the image on the simulated plant
+    Test {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// Only what takes less than a minute: formatting, lints and units of the small packages, the native device
+        #[arg(long)]
+        quick: bool,
+    },
+    /// Run long jobs (campaigns, fuzzing, mutations, every input of the kernel) and print a table of their results
+    Soak {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// Run the job of this name only, may be repeated
+        #[arg(long, value_name = "NAME")]
+        only: Vec<String>,
+        /// Print names and commands of the jobs and run nothing
+        #[arg(long)]
+        list: bool,
+    },
     /// Build the image exactly as it is flashed; print its path, flash and RAM use
     Firmware {
         #[command(flatten)]
@@ -142,7 +160,12 @@ fn main() -> ExitCode {
     }
     let result = match Cli::parse().command {
         Task::Demo(set_up) => demo::run(set_up.permission()),
-        Task::Test(set_up) => suite::run(set_up.permission()),
+        Task::Test { set_up, quick } => suite::run(set_up.permission(), quick),
+        Task::Soak { list: true, .. } => {
+            soak::list();
+            Ok(())
+        }
+        Task::Soak { set_up, only, .. } => soak::run(set_up.permission(), &only),
         Task::Firmware {
             set_up,
             fingers,

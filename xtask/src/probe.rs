@@ -7,12 +7,9 @@ use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 /// `cargo xtask probe`: builds the image and prints its path.
 pub fn run(permission: Permission) -> Result<()> {
     let toolchain = setup::prepare(Needs::default(), permission)?;
-    let folder = match &toolchain {
-        Toolchain::Active => "target/probe",
-        Toolchain::Distribution(_) => "target/probe-distribution",
-    };
-    build(&toolchain, folder).run_to_stderr()?;
-    let elf = workspace().join(folder).join(TARGET).join("release/probe");
+    build(&toolchain).run_to_stderr()?;
+    let folder = workspace().join(folder(&toolchain));
+    let elf = folder.join(TARGET).join("release/probe");
     println!("{}", elf.display());
     Ok(())
 }
@@ -26,7 +23,15 @@ pub fn link_flags() -> String {
     )
 }
 
-fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
+fn folder(toolchain: &Toolchain) -> &'static str {
+    match toolchain {
+        Toolchain::Active => "target/probe",
+        Toolchain::Distribution(_) => "target/probe-distribution",
+    }
+}
+
+/// Builds the test image.
+pub fn build(toolchain: &Toolchain) -> Invocation {
     toolchain
         .cargo("build")
         .args([
@@ -35,7 +40,7 @@ fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
             "--manifest-path",
             "hil-sim/probe/Cargo.toml",
         ])
-        .args(["--target", TARGET, "--target-dir", folder])
+        .args(["--target", TARGET, "--target-dir", folder(toolchain)])
         .without(&["CARGO_ENCODED_RUSTFLAGS"])
         .env("RUSTFLAGS", link_flags())
 }

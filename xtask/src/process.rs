@@ -1,6 +1,7 @@
 //! Commands as they are run, shown to the user for repeating, and waited for.
 use std::ffi::OsString;
 use std::fmt;
+use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread::sleep;
@@ -89,6 +90,21 @@ impl Invocation {
     /// As [`run`](Self::run), with everything the command prints on standard error.
     pub fn run_to_stderr(&self) -> Result<()> {
         self.check(self.command().stdout(std::io::stderr()).status())
+    }
+
+    /// Appends everything the command prints to a file, without standard input.
+    pub fn run_to_file(&self, path: &Path) -> Result<()> {
+        let file = OpenOptions::new().create(true).append(true).open(path);
+        let file = file.with_context(|| path.display().to_string())?;
+        let mut command = self.command();
+        command.stdin(Stdio::null()).stdout(file.try_clone()?);
+        self.check(command.stderr(file).status())
+    }
+
+    /// Writes what the command prints on standard output to a file; its progress stays on standard error.
+    pub fn run_with_stdout_in(&self, path: &Path) -> Result<()> {
+        let file = File::create(path).with_context(|| path.display().to_string())?;
+        self.check(self.command().stdout(file).status())
     }
 
     /// As [`run_to_stderr`](Self::run_to_stderr) without standard input, killed after `limit`.

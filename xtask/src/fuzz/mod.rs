@@ -7,7 +7,7 @@ mod progress;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 
 pub use instrument::compile_if_called_as_compiler;
@@ -67,7 +67,7 @@ impl Target {
 /// Options of `cargo xtask fuzz`.
 #[derive(Args)]
 pub struct Options {
-    /// What to fuzz, may be repeated [default: all, one after another]
+    /// What to fuzz, may be repeated [default: all]
     #[arg(long, value_enum)]
     target: Vec<Target>,
     /// Time for each target, s, after the inputs that are known
@@ -76,7 +76,7 @@ pub struct Options {
     /// Executions for each target, in place of a time
     #[arg(long)]
     runs: Option<u64>,
-    /// Processes at a time, which share what they find
+    /// Processes for each target, which share what they find; as many targets run side by side as the cores allow
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     jobs: u64,
     /// Run this one input of the one target, and print what it means
@@ -135,12 +135,22 @@ pub fn run(permission: Permission, options: &Options) -> Result<()> {
         Some(runs) => Effort::Runs(runs),
         None => Effort::Time(Duration::from_secs(options.seconds)),
     };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let at_once = cores.div_ceil(usize::try_from(options.jobs)?);
     let mut lines = Vec::new();
     let mut total = 0;
-    for target in targets {
-        let reached = engine.fuzz(*target, effort, options.jobs)?;
-        total += reached.executions;
-        lines.push(format!("{:<10}{reached}", target.name()));
+    for group in targets.chunks(at_once) {
+        let fuzz = |target: &Target| engine.fuzz(*target, effort, options.jobs);
+        let results: Vec<_> = std::thread::scope(|scope| {
+            let running = group.iter().map(|target| scope.spawn(|| fuzz(target)));
+            let running: Vec<_> = running.collect();
+            running.into_iter().map(|thread| thread.join()).collect()
+        });
+        for (target, result) in group.iter().zip(results) {
+            let reached = result.map_err(|_| anyhow!("{}: panicked", target.name()))??;
+            total += reached.executions;
+            lines.push(format!("{:<10}{reached}", target.name()));
+        }
     }
     println!(
         "{:<10}{:>14}{:>10}{:>8}{:>10}{:>8}",

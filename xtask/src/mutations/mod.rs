@@ -1,7 +1,7 @@
-//! Each detector of the guard removed in turn: the fault-injection matrix must notice.
+//! Mutation testing of the fault detectors: each is disabled in turn, and the fault matrix must then fail.
 //!
-//! A copy of the sources, in which one line is changed, is built and runs the rows that the detector is for, natively or, if
-//! it is the board's, as an image. A mutation that no row notices is a hole in the matrix.
+//! `table.txt` lists the detectors. One replaced text disables a detector in a copy of the sources, which is built and runs the
+//! faults that the detector is for. A mutation that no fault reveals is a gap in the matrix.
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
@@ -10,444 +10,168 @@ use anyhow::{Context, Result, bail, ensure};
 
 use crate::process::{Invocation, workspace};
 
-/// A detector that no longer detects.
+/// How one detector is disabled.
+#[derive(Debug, Default)]
 struct Mutation {
-    /// Its name.
     detector: &'static str,
-    /// Where it is.
+    /// Path of the source file in the workspace.
     file: &'static str,
-    /// The text that is changed, which stands there once.
-    from: &'static str,
-    /// What stands there instead.
-    to: &'static str,
-    /// Kinds of the faults that it is for.
-    only: &'static [&'static str],
-    /// What runs them: the board's detectors are in the image only.
+    /// Text that occurs once in the file.
+    before: &'static str,
+    /// Its replacement.
+    after: &'static str,
+    /// Kinds of faults that the detector is for.
+    faults: Vec<&'static str>,
+    /// Engine that runs the faults; detectors in the board's code are in the image only.
     engine: &'static str,
 }
 
-const fn mutation(
-    detector: &'static str,
-    file: &'static str,
-    from: &'static str,
-    to: &'static str,
-    only: &'static [&'static str],
-) -> Mutation {
-    Mutation {
-        detector,
-        file,
-        from,
-        to,
-        only,
-        engine: "native",
-    }
-}
-
 impl Mutation {
-    /// Of a detector that only the image has.
-    const fn of_image(self) -> Self {
-        Self {
-            engine: "image",
-            ..self
-        }
+    fn apply(&self, text: &str) -> Result<String> {
+        let Self {
+            detector,
+            file,
+            before,
+            after,
+            ..
+        } = self;
+        let count = text.matches(before).count();
+        ensure!(
+            count == 1,
+            "{detector}: `{before}` occurs {count} times in {file} and must occur once; see {TABLE}"
+        );
+        Ok(text.replacen(before, after, 1))
     }
 }
 
-const LIMITS: &str = "src/guard/limits.rs";
-const JUMP: &str = "src/guard/jump.rs";
-const WATCH: &str = "src/guard/watch.rs";
-const SELF_TEST: &str = "src/guard/self_test.rs";
-const THERMISTOR: &str = "src/sense/thermistor.rs";
-
-const MUTATIONS: [Mutation; 33] = [
-    mutation(
-        "excitation",
-        LIMITS,
-        "Err(SensorFault::Short); 5]",
-        "Err(SensorFault::Open); 5]",
-        &["reference-off"],
-    ),
-    mutation(
-        "open thermistor",
-        THERMISTOR,
-        "SHORT_BELOW..=OPEN_ABOVE => Ok(()),",
-        "SHORT_BELOW..=u16::MAX => Ok(()),",
-        &["thermistor-open"],
-    ),
-    mutation(
-        "shorted thermistor",
-        THERMISTOR,
-        "..SHORT_BELOW => Err(SensorFault::Short),",
-        "..SHORT_BELOW => Ok(()),",
-        &["thermistor-short"],
-    ),
-    mutation(
-        "force sensor",
-        "src/sense/force.rs",
-        "if sum < self.broken_below || sum > TOP {",
-        "if sum < self.broken_below && sum > TOP {",
-        &["force-open"],
-    ),
-    mutation(
-        "display hot",
-        LIMITS,
-        "> DISPLAY_HOTTEST {",
-        "> Celsius::MAX {",
-        &["thermistor-drift"],
-    ),
-    mutation(
-        "display cold",
-        LIMITS,
-        "< DISPLAY_COLDEST {",
-        "< Celsius::MIN {",
-        &["thermistor-drift"],
-    ),
-    mutation(
-        "sink hot",
-        LIMITS,
-        "sound.sink > SINK_HOTTEST",
-        "sound.sink > Celsius::MAX",
-        &["chiller-off"],
-    ),
-    mutation(
-        "over-current",
-        LIMITS,
-        "limit.saturating_add(CURRENT_MARGIN)",
-        "Current::MAX",
-        &["mirror-stuck"],
-    ),
-    mutation(
-        "display jump",
-        JUMP,
-        "if jumped(sound.display, display) {",
-        "if jumped(display, display) {",
-        &["thermistor-offset"],
-    ),
-    mutation(
-        "check jump",
-        JUMP,
-        "if jumped(sound.check, check) {",
-        "if jumped(check, check) {",
-        &["thermistor-offset"],
-    ),
-    mutation(
-        "sink jump",
-        JUMP,
-        "if jumped(sound.sink, sink) {",
-        "if jumped(sink, sink) {",
-        &["thermistor-offset"],
-    ),
-    mutation(
-        "apart",
-        WATCH,
-        "named(self.apart.has(apart, APART_TICKS)",
-        "named(self.apart.has(false, APART_TICKS)",
-        &["thermistor-drift"],
-    ),
-    mutation(
-        "unlike model",
-        WATCH,
-        "self.unlike.has(unlike_model, UNLIKE_TICKS)",
-        "self.unlike.has(false, UNLIKE_TICKS)",
-        &["module-weak"],
-    ),
-    mutation(
-        "room",
-        WATCH,
-        "named(self.room.has(room, ROOM_TICKS)",
-        "named(self.room.has(false, ROOM_TICKS)",
-        &["thermistor-drift"],
-    ),
-    mutation(
-        "host silent",
-        WATCH,
-        "self.silent_ticks >= SILENT_TICKS",
-        "self.silent_ticks > u16::MAX - 1",
-        &["host-silent"],
-    ),
-    mutation(
-        "dose",
-        WATCH,
-        "self.dose.check(|| both.into_iter().flatten().max())",
-        "self.dose.check(|| None)",
-        &["host-line"],
-    ),
-    mutation(
-        "current high",
-        "src/guard/electrical.rs",
-        "has(high || low, TICKS)",
-        "has(low, TICKS)",
-        &["mirror-stuck"],
-    ),
-    mutation(
-        "current low",
-        "src/guard/electrical.rs",
-        "has(high || low, TICKS)",
-        "has(high, TICKS)",
-        &["leg-open"],
-    ),
-    mutation(
-        "frozen",
-        "src/guard/frozen.rs",
-        "if ticks >= FROZEN_TICKS {",
-        "if ticks > FROZEN_TICKS + 200 {",
-        &["adc-stuck"],
-    ),
-    mutation(
-        "response",
-        "src/guard/response.rs",
-        "const BACK: Celsius = Celsius::lit(\"2.5\");",
-        "const BACK: Celsius = Celsius::lit(\"90\");",
-        &["polarity-swapped"],
-    ),
-    mutation(
-        "fault line",
-        "src/station.rs",
-        "let bridge = if pulled {",
-        "let bridge = if pulled && self.tick == 0 {",
-        &["bridge-shorted"],
-    ),
-    mutation(
-        "self-test",
-        "src/station.rs",
-        "self.state = State::SelfTest;",
-        "self.state = State::Armed;",
-        &["comparator-dead"],
-    ),
-    mutation(
-        "comparator test",
-        SELF_TEST,
-        "&& cut != testing {",
-        "&& cut && !testing {",
-        &["comparator-dead"],
-    ),
-    mutation(
-        "polarity test",
-        SELF_TEST,
-        "if fell < -i64::from(LEAST.to_bits()) {",
-        "if fell < -i64::from(Celsius::MAX.to_bits()) {",
-        &["polarity-swapped"],
-    ),
-    mutation(
-        "response test",
-        SELF_TEST,
-        "if !(i64::from(LEAST.to_bits())..=",
-        "if !(i64::MIN..=",
-        &["module-weak"],
-    ),
-    mutation(
-        "current test",
-        SELF_TEST,
-        "if mean < i64::from(LEAST_A.to_bits()) {",
-        "if mean < 0 {",
-        &["mirror-stuck"],
-    ),
-    mutation(
-        "pace",
-        "src/board/nucleo_f446re/timekeeper.rs",
-        "if !self.pace.keeps(SYST::get_current()) {",
-        "if !self.pace.keeps(SYST::get_current()) && FINGERS > 9 {",
-        &["register-bit"],
-    )
-    .of_image(),
-    mutation(
-        "clocks",
-        "src/board/nucleo_f446re/timekeeper.rs",
-        "if clocks() != self.clocks {",
-        "if clocks() != self.clocks && FINGERS > 9 {",
-        &["register-bit"],
-    )
-    .of_image(),
-    mutation(
-        "unasked reset",
-        "src/board/nucleo_f446re/reset.rs",
-        "Self::Software | Self::Other => Some(Fault::UnaskedReset),",
-        "Self::Software | Self::Other => None,",
-        &["software-reset"],
-    )
-    .of_image(),
-    mutation(
-        "roll-call",
-        "src/board/vigil.rs",
-        "const ALL: u8 = Task::Tick as u8 | Task::Host as u8;",
-        "const ALL: u8 = Task::Tick as u8;",
-        &["register-bit"],
-    )
-    .of_image(),
-    mutation(
-        "stack guard",
-        "src/board/nucleo_f446re/stack.rs",
-        ".any(|word| word.load(Ordering::Relaxed) != UNTOUCHED)",
-        ".all(|word| word.load(Ordering::Relaxed) != UNTOUCHED)",
-        &["ram-bit"],
-    )
-    .of_image(),
-    mutation(
-        "window watchdog",
-        "src/board/nucleo_f446re/window.rs",
-        "w.wdga().enabled()",
-        "w.wdga().disabled()",
-        &["hung-core"],
-    )
-    .of_image(),
-    mutation(
-        "clock security",
-        "src/board/nucleo_f446re/mod.rs",
-        "w.csson().on()",
-        "w.csson().off()",
-        &["hse-stopped"],
-    )
-    .of_image(),
-];
-
-/// Folder of the copy and of what is built from it.
+const TABLE: &str = "xtask/src/mutations/table.txt";
+/// Folder of the copied sources and of their builds.
 const FOLDER: &str = "target/mutations";
-/// What is built for each mutation runs a few rows only.
-const QUICKLY_BUILT: [&str; 3] = [
-    "profile.release.lto = \"off\"",
-    "profile.release.codegen-units = 16",
-    "profile.release.incremental = true",
-];
-/// What of the workspace is copied; not Cargo's configuration, which is read from the folders above, too, and would add its flags
-/// twice.
-const COPIED: [&str; 12] = [
-    "Cargo.toml",
-    "Cargo.lock",
-    "rust-toolchain.toml",
-    "build.rs",
-    "memory.x",
-    "README.md",
-    "src",
-    "model",
-    "hil-sim",
-    "xtask",
-    "tests",
-    "scenes",
-];
+/// Builds that are quick to link, as each runs a few faults only.
+const INCREMENTAL: &str = "profile.release.incremental = true";
 
-/// Runs every mutation; an error names those that no row notices.
+/// The mutations of the table.
+fn mutations() -> Result<Vec<Mutation>> {
+    let mut all = Vec::<Mutation>::new();
+    for line in include_str!("table.txt").lines() {
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        if let Some(name) = line.strip_prefix('[') {
+            all.push(Mutation {
+                detector: name.trim_end_matches(']'),
+                ..Mutation::default()
+            });
+            continue;
+        }
+        let last = all.last_mut().context("a line before the first detector")?;
+        let (key, value) = line.split_once(' ').context(line)?;
+        let value = value.trim();
+        match key {
+            "file" => last.file = value,
+            "before" => last.before = value,
+            "after" => last.after = value,
+            "faults" => last.faults = value.split(' ').collect(),
+            "engine" => last.engine = value,
+            _ => bail!("{TABLE}: unknown key in `{line}`"),
+        }
+    }
+    Ok(all)
+}
+
+/// `cargo xtask faults --mutations`; an error names the mutations that no fault reveals.
 pub fn run() -> Result<()> {
+    let mutations = mutations()?;
     let copy = workspace().join(FOLDER).join("sources");
-    if copy.exists() {
-        fs::remove_dir_all(&copy).with_context(|| copy.display().to_string())?;
-    }
-    fs::create_dir_all(&copy).with_context(|| copy.display().to_string())?;
-    for name in COPIED {
-        let from = workspace().join(name);
-        if from.exists() {
-            copied(&from, &copy.join(name))?;
-        }
-    }
-    let hil_sim = |command: &str| {
-        let mut line: Vec<OsString> = [
-            command,
-            "--release",
-            "--package",
-            "hil-sim",
-            "--manifest-path",
-        ]
-        .map(OsString::from)
-        .into();
-        line.push(copy.join("Cargo.toml").into());
-        line.push("--target-dir".into());
-        line.push(workspace().join(FOLDER).join("target").into());
-        for setting in QUICKLY_BUILT {
-            line.extend(["--config", setting].map(OsString::from));
-        }
-        line
-    };
-    let matrix = |engine: &str, only: &[&str]| {
-        let mut line = hil_sim("run");
-        line.extend(
-            [
-                "--",
-                "faults",
-                "--engine",
-                engine,
-                "--moments",
-                "4",
-                "--only",
-            ]
-            .map(OsString::from),
-        );
-        line.extend(only.iter().map(OsString::from));
-        Invocation::cargo(line)
-    };
+    copy_sources(&copy)?;
     for engine in ["native", "image"] {
-        let of_engine = MUTATIONS
-            .iter()
-            .filter(|mutation| mutation.engine == engine);
-        let mut kinds: Vec<_> = of_engine
-            .flat_map(|mutation| mutation.only)
-            .copied()
-            .collect();
-        kinds.sort_unstable();
-        kinds.dedup();
-        matrix(engine, &kinds)
+        let of_engine = mutations.iter().filter(|one| one.engine == engine);
+        let mut faults: Vec<_> = of_engine.flat_map(|one| &one.faults).copied().collect();
+        faults.sort_unstable();
+        faults.dedup();
+        matrix(&copy, engine, &faults)
             .run_to_stderr()
-            .context("the sources as they are must pass")?;
+            .context("the unchanged sources must pass")?;
     }
-    let mut unnoticed = Vec::new();
-    for mutation in &MUTATIONS {
+    let mut unrevealed = Vec::new();
+    for (number, mutation) in mutations.iter().enumerate() {
+        eprintln!(
+            "mutation {} of {}: {}",
+            number + 1,
+            mutations.len(),
+            mutation.detector
+        );
         let path = copy.join(mutation.file);
         let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
-        fs::write(&path, mutated(mutation, &text)?)?;
-        // What does not build is no mutation.
-        Invocation::cargo(hil_sim("build")).run_to_stderr()?;
+        fs::write(&path, mutation.apply(&text)?)?;
+        // A mutation that does not compile would fail the matrix as well, and prove nothing.
+        Invocation::cargo(hil_sim(&copy, "build")).run_to_stderr()?;
         if mutation.engine == "image" {
             let manifest = copy.join("Cargo.toml").into();
             let line = ["run", "--package", "xtask", "--manifest-path"].map(OsString::from);
             let firmware = [manifest, "--".into(), "firmware".into()];
             Invocation::cargo(line.into_iter().chain(firmware)).run_to_stderr()?;
         }
-        let noticed = matrix(mutation.engine, mutation.only)
+        let revealed = matrix(&copy, mutation.engine, &mutation.faults)
             .run_to_stderr()
             .is_err();
         fs::write(&path, text)?;
         println!(
-            "{:16} {}",
+            "{:20} {}",
             mutation.detector,
-            if noticed { "noticed" } else { "NOT noticed" }
+            if revealed { "revealed" } else { "NOT revealed" }
         );
-        if !noticed {
-            unnoticed.push(mutation.detector);
+        if !revealed {
+            unrevealed.push(mutation.detector);
         }
     }
-    if !unnoticed.is_empty() {
-        bail!(
-            "no row notices that these are gone: {}",
-            unnoticed.join(", ")
-        );
-    }
-    Ok(())
-}
-
-/// The text without the detector.
-fn mutated(mutation: &Mutation, text: &str) -> Result<String> {
-    let found = text.matches(mutation.from).count();
     ensure!(
-        found == 1,
-        "{}: `{}` stands {found} times in {}; a mutation needs it once",
-        mutation.detector,
-        mutation.from,
-        mutation.file
+        unrevealed.is_empty(),
+        "no fault reveals that these are disabled: {}",
+        unrevealed.join(", ")
     );
-    Ok(text.replacen(mutation.from, mutation.to, 1))
+    println!("all {} mutations are revealed", mutations.len());
+    Ok(())
 }
 
-fn copied(from: &Path, to: &Path) -> Result<()> {
-    if !from.is_dir() {
-        fs::copy(from, to).with_context(|| from.display().to_string())?;
-        return Ok(());
+/// Copies all files that git tracks or would track, but for `.cargo`: cargo also reads the configuration of the folders above
+/// the copy, and would apply its flags twice.
+fn copy_sources(copy: &Path) -> Result<()> {
+    if copy.exists() {
+        fs::remove_dir_all(copy).with_context(|| copy.display().to_string())?;
     }
-    fs::create_dir_all(to)?;
-    for entry in fs::read_dir(from)? {
-        let entry = entry?;
-        if entry.file_name() != "target" {
-            copied(&entry.path(), &to.join(entry.file_name()))?;
+    let list = ["ls-files", "--cached", "--others", "--exclude-standard"];
+    let files = Invocation::new("git", list).answer();
+    for name in files.context("git cannot list the sources")?.lines() {
+        let (from, to) = (workspace().join(name), copy.join(name));
+        if name.starts_with(".cargo/") || !from.is_file() {
+            continue;
         }
+        fs::create_dir_all(to.parent().context("a file has a folder")?)?;
+        fs::copy(&from, &to).with_context(|| name.to_owned())?;
     }
     Ok(())
+}
+
+/// `cargo COMMAND` for `hil-sim` of the copy.
+fn hil_sim(copy: &Path, command: &str) -> Vec<OsString> {
+    let options = ["--release", "--package", "hil-sim", "--config", INCREMENTAL];
+    let mut line = vec![OsString::from(command)];
+    line.extend(options.map(OsString::from));
+    line.extend(["--manifest-path".into(), copy.join("Cargo.toml").into()]);
+    let target = workspace().join(FOLDER).join("target");
+    line.extend(["--target-dir".into(), target.into()]);
+    line
+}
+
+/// `hil-sim faults` of the copy, with these kinds of faults.
+fn matrix(copy: &Path, engine: &str, faults: &[&str]) -> Invocation {
+    let mut line = hil_sim(copy, "run");
+    let options = ["--", "faults", "--engine", engine, "--moments", "4"];
+    line.extend(options.into_iter().map(OsString::from));
+    line.push("--only".into());
+    line.extend(faults.iter().map(OsString::from));
+    Invocation::cargo(line)
 }
 
 #[cfg(test)]
@@ -455,11 +179,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_mutation_fits_the_sources_as_they_are() {
-        for mutation in &MUTATIONS {
+    fn the_text_of_every_mutation_occurs_once_in_its_file() {
+        let mutations = mutations().unwrap();
+        assert!(mutations.len() >= 33, "{}", mutations.len());
+        for mutation in mutations {
             let text = fs::read_to_string(workspace().join(mutation.file)).expect(mutation.file);
-            let changed = mutated(mutation, &text).expect(mutation.detector);
+            let changed = mutation.apply(&text).unwrap();
             assert_ne!(changed, text, "{}", mutation.detector);
+            assert!(["native", "image"].contains(&mutation.engine));
+            assert!(!mutation.faults.is_empty(), "{}", mutation.detector);
         }
     }
 }
