@@ -1,4 +1,4 @@
-//! Run time against error of the contact model and its peers, and of the simulated plant.
+//! `cargo xtask bench`: run time against error of the contact model, of alternatives to it, and of the simulated plant.
 use std::path::PathBuf;
 
 use anyhow::Result;
@@ -11,16 +11,16 @@ use crate::{probe, report};
 /// The profile of the flashed image, so that the model is compiled as it is there.
 const PROFILE: &str = "firmware";
 
-/// What is measured.
+/// Subject of the measurement.
 #[derive(Clone, Copy, ValueEnum)]
 pub enum Job {
-    /// The contact model and its peers
+    /// The contact model and alternatives to it
     Model,
-    /// The simulated plant, on this host
+    /// The simulated plant on this host
     Plant,
 }
 
-/// `cargo xtask bench`; a relative `out` is one of the caller's folder.
+/// `cargo xtask bench`; a relative `out` is relative to the caller's folder.
 pub fn run(permission: Permission, job: Job, json: bool, out: Option<PathBuf>) -> Result<()> {
     let job = match job {
         Job::Model => "model",

@@ -1,4 +1,4 @@
-//! The test image that the tests of the emulated machine run.
+//! The image for the tests of the emulated microcontroller.
 use anyhow::Result;
 
 use crate::process::{Invocation, workspace};
@@ -14,8 +14,8 @@ pub fn run(permission: Permission) -> Result<()> {
     Ok(())
 }
 
-/// Compiler flags of an image that is not the firmware: in place of the workspace's flags, which link what only the
-/// firmware has; the memory layout is the same.
+/// Compiler flags of an image that is not the firmware. They replace the workspace's flags, which link the firmware's log; the
+/// memory layout is the same.
 pub fn link_flags() -> String {
     format!(
         "-C link-arg=--nmagic -C link-arg=-Tlink.x -L {}",
