@@ -1,33 +1,18 @@
-//! The hardware-free half of a Peltier thermal display: one [`Station`] per finger, together a [`Hand`].
-//!
-//! [`Station::step`] is the product: a pure function of the station and one tick's [`sense::Samples`], without
-//! hardware, clock, allocation or global state. All of it is integer arithmetic, so nothing in the control
-//! path can be NaN, and it computes the same bits on the microcontroller and on the host. `f64` is used where
-//! settings and materials are turned into integers, once each.
+//! The hardware-free half of the thermal display's firmware.
 #![no_std]
 #![forbid(unsafe_code)]
 
 #[cfg(test)]
 extern crate std;
 
-pub mod commission;
-pub mod control;
-pub mod drive;
-pub mod guard;
-mod hand;
-mod hold;
-pub mod protocol;
-pub mod render;
-pub mod sense;
-pub mod settings;
-mod station;
+pub mod bridge;
+pub mod mailbox;
+pub mod task_liveness;
 
-pub use guard::State;
-pub use hand::Hand;
-pub use station::Station;
+pub use thermal_commissioning as commissioning;
+pub use thermal_device as device;
+pub use thermal_protocol as protocol;
+pub use thermal_settings as settings;
 
-/// Control ticks per second.
-pub const TICK_HZ: u32 = 1000;
-
-/// Scans of all channels per second.
-pub const SCANS_PER_SECOND: u32 = TICK_HZ * sense::SCANS_PER_TICK as u32;
+#[cfg(test)]
+mod tests;

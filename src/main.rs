@@ -23,22 +23,23 @@ mod app {
     use core::sync::atomic::{AtomicBool, Ordering};
     use heapless::spsc::Producer;
 
-    use thermal_display::Hand;
-    use thermal_display::guard::Fault;
-    use thermal_display::protocol::{Addressed, Telemetry};
-    use thermal_display::sense::Samples;
+    use thermal_display::device::command::Addressed;
+    use thermal_display::device::safety::Fault;
+    use thermal_display::device::sense::Samples;
+    use thermal_display::device::{Device, Telemetry};
     use thermal_display::settings::Settings;
+    use thermal_display::task_liveness::{Task, TaskLiveness};
 
     use crate::board::{
-        Board, Console, End, FINGERS, Memory, PowerStage, Receiver, Record, Sampler, Task,
-        Transmitter, Trigger, Vigil, Watchdog, WindowWatchdog, at_start, first_cause, keep_dose,
-        kept_dose, stack_is_overrun,
+        Board, Console, End, FINGERS, Memory, PowerStage, Receiver, Record, Sampler, Transmitter,
+        Trigger, Watchdog, WindowWatchdog, at_start, first_cause, keep_dose, kept_dose,
+        stack_is_overrun,
     };
 
     #[shared]
     struct Shared {
-        hand: &'static mut Hand<FINGERS>,
-        vigil: Vigil,
+        fingers: &'static mut Device<FINGERS>,
+        task_liveness: TaskLiveness,
         /// A line has come since the last tick.
         heard: AtomicBool,
         #[lock_free]
@@ -61,30 +62,30 @@ mod app {
         has_clock: bool,
     }
 
-    #[init(local = [memory: Memory = Memory::new(), hand: Option<Hand<FINGERS>> = None])]
+    #[init(local = [memory: Memory = Memory::new(), fingers: Option<Device<FINGERS>> = None])]
     fn init(cx: init::Context) -> (Shared, Local) {
         let cause = first_cause(&cx.device.RCC);
         // Before anything that the flash could delay.
         let found = at_start(&cx.device.FLASH);
         // Takes 0.2 s at 16 MHz, so it comes before the board starts to sample.
-        let hand = cx
+        let fingers = cx
             .local
-            .hand
-            .insert(Hand::after(cause, &Settings::default()));
+            .fingers
+            .insert(Device::after(cause, &Settings::default()));
         match &found.kept {
-            Ok(Some(kept)) => hand.restore(kept),
+            Ok(Some(kept)) => fingers.restore(kept),
             Ok(None) => {}
-            Err(_) => hand.trip(Fault::SettingsCorrupt),
+            Err(_) => fingers.trip(Fault::SettingsCorrupt),
         }
         for finger in 0..FINGERS {
-            hand.resume(finger, kept_dose(finger));
+            fingers.resume(finger, kept_dose(finger));
         }
         // What the flash says it says again after a reset, unless other settings are stored.
-        let record = Record::new(hand.tripped().copied());
+        let record = Record::new(fingers.tripped().copied());
         let board = Board::new(cx.core.SYST, cx.device, cx.local.memory, &found);
         let shared = Shared {
-            hand,
-            vigil: Vigil::new(),
+            fingers,
+            task_liveness: TaskLiveness::new(),
             heard: AtomicBool::new(false),
             record,
             stages: board.stages,
@@ -103,12 +104,12 @@ mod app {
         (shared, local)
     }
 
-    #[idle(shared = [&vigil], local = [watchdog, trigger])]
+    #[idle(shared = [&task_liveness], local = [watchdog, trigger])]
     fn idle(cx: idle::Context) -> ! {
         // Now that everything is in its place and interrupts are taken.
         cx.local.trigger.start();
         loop {
-            if cx.shared.vigil.all_checked_in() {
+            if cx.shared.task_liveness.all_checked_in() {
                 cx.local.watchdog.feed();
             }
             rtic::export::wfi();
@@ -121,19 +122,19 @@ mod app {
     #[task(
         binds = DMA2_STREAM0,
         priority = 3,
-        shared = [hand, record, stages, sampler, &vigil, &heard],
+        shared = [fingers, record, stages, sampler, &task_liveness, &heard],
         local = [telemetry, window_watchdog, has_clock, until_host: u8 = 0],
     )]
     fn tick(mut cx: tick::Context) {
-        let (hand, stages) = (&mut cx.shared.hand, cx.shared.stages);
+        let (fingers, stages) = (&mut cx.shared.fingers, cx.shared.stages);
         let (finger, scans) = match cx.shared.sampler.take() {
             Ok(block) => block,
             Err(error) => {
                 stages.iter_mut().for_each(PowerStage::off);
                 cx.shared.sampler.stop();
-                hand.lock(|hand| {
-                    hand.trip(error.fault());
-                    cx.shared.record.follow(hand.tripped());
+                fingers.lock(|fingers| {
+                    fingers.trip(error.fault());
+                    cx.shared.record.follow(fingers.tripped());
                 });
                 return defmt::error!("sampling stopped: {}", error);
             }
@@ -145,31 +146,31 @@ mod app {
         };
         let samples = Samples::from_scans(scans, stage.fault());
         let heard = cx.shared.heard.swap(false, Ordering::Relaxed);
-        let outputs = hand.lock(|hand| {
+        let outputs = fingers.lock(|fingers| {
             if heard {
-                hand.hear();
+                fingers.hear();
             }
             if stack_is_overrun() {
-                hand.trip(Fault::Stack);
+                fingers.trip(Fault::Stack);
             }
             if !*cx.local.has_clock {
-                hand.trip(Fault::Clock);
+                fingers.trip(Fault::Clock);
             }
-            let outputs = hand.step(finger, &samples);
+            let outputs = fingers.step(finger, &samples);
             // Five are not asked on every tick of one.
-            if cx.shared.record.keeps() || hand.is_tripped(finger) {
-                cx.shared.record.follow(hand.tripped());
+            if cx.shared.record.keeps() || fingers.is_tripped(finger) {
+                cx.shared.record.follow(fingers.tripped());
             }
-            keep_dose(finger, hand.dose(finger));
+            keep_dose(finger, fingers.dose(finger));
             outputs
         });
         stage.apply(&outputs);
-        if let Some(telemetry) = hand.lock(|hand| hand.telemetry(finger)) {
+        if let Some(telemetry) = fingers.lock(|fingers| fingers.telemetry(finger)) {
             // A full queue means that the host link cannot keep up: this line is left out.
             let _ = cx.local.telemetry.enqueue(telemetry);
             *cx.local.until_host = 0;
         }
-        cx.shared.vigil.check_in(Task::Tick);
+        cx.shared.task_liveness.check_in(Task::Tick);
         // Refused while `host` is at work: it then finds what waits by itself, or is called by the next tick. What the
         // other tasks bring while it ends waits for the roll-call.
         *cx.local.until_host = match *cx.local.until_host {
@@ -178,13 +179,13 @@ mod app {
         };
     }
 
-    #[task(binds = ADC, priority = 3, shared = [hand, record, stages, sampler])]
+    #[task(binds = ADC, priority = 3, shared = [fingers, record, stages, sampler])]
     fn overrun(mut cx: overrun::Context) {
         cx.shared.stages.iter_mut().for_each(PowerStage::off);
         cx.shared.sampler.stop();
-        cx.shared.hand.lock(|hand| {
-            hand.trip(Fault::Sampling);
-            cx.shared.record.follow(hand.tripped());
+        cx.shared.fingers.lock(|fingers| {
+            fingers.trip(Fault::Sampling);
+            cx.shared.record.follow(fingers.tripped());
         });
         defmt::error!("sampling stopped: converter overrun");
     }
@@ -206,12 +207,12 @@ mod app {
         let _ = host::spawn();
     }
 
-    #[task(priority = 1, shared = [hand, &vigil], local = [console])]
+    #[task(priority = 1, shared = [fingers, &task_liveness], local = [console])]
     async fn host(mut cx: host::Context) {
-        let hand = &mut cx.shared.hand;
+        let fingers = &mut cx.shared.fingers;
         cx.local
             .console
-            .serve(|request| hand.lock(|hand| hand.execute(request)));
-        cx.shared.vigil.check_in(Task::Host);
+            .serve(|request| fingers.lock(|fingers| fingers.execute(request)));
+        cx.shared.task_liveness.check_in(Task::Host);
     }
 }

@@ -85,7 +85,7 @@ impl Record {
         let sources = concat!(
             include_str!("../src/fixed_point/kernel.rs"),
             include_str!("../src/fixed_point/kernel_table.rs"),
-            include_str!("../src/fixed_point/rate.rs"),
+            include_str!("../src/fixed_point/mantissa_exponent.rs"),
             include_str!("../src/reference/erfcx.rs"),
             include_str!("../tests/verify/mod.rs"),
         );

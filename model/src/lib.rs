@@ -26,8 +26,8 @@
 //! - [`mod@reference`]: the same formulas in `f64` (or `f32`), for tests, tools and set-up.
 //! - [`fixed_point`]: integers only, for the control path of a microcontroller: no float, no panic, no
 //!   overflow for any input. Its parameters are derived once per material, in `f64`, by
-//!   [`fixed_point::Pairing::new`]; a force that streams in becomes resistance and rate by
-//!   [`fixed_point::log2_relative_pressure`] and [`fixed_point::Pairing::under`], without division or float.
+//!   [`fixed_point::ContactPair::new`]; a force that streams in becomes resistance and rate by
+//!   [`fixed_point::log2_relative_pressure`] and [`fixed_point::ContactPair::at_pressure`], without division or float.
 //!   `tests/budgets.rs` measures each stated error (`cargo test --release -p contact-model --test budgets --
 //!   --nocapture`).
 //!

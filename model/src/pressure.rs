@@ -4,7 +4,7 @@
 //! force between the points and constant outside them.
 
 /// Force in N and mean contact pressure in Pa, as stated.
-pub const STATED: [(f64, f64); 5] = [
+pub const THESIS_PRESSURES: [(f64, f64); 5] = [
     (0.1, 730.0),
     (0.25, 1680.0),
     (0.5, 3140.0),
@@ -16,8 +16,8 @@ pub const STATED: [(f64, f64); 5] = [
 #[must_use]
 pub fn contact_area_m2(force_n: f64) -> f64 {
     let area = |(force, pressure): (f64, f64)| force / pressure;
-    let mut below = STATED[0];
-    for point in STATED {
+    let mut below = THESIS_PRESSURES[0];
+    for point in THESIS_PRESSURES {
         if force_n < point.0 {
             let span = point.0 - below.0;
             if span == 0.0 {

@@ -1,9 +1,9 @@
 //! Nothing panics or overflows for any bits whatever: run with overflow checks, `cargo test -p contact-model`.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, Course, Depth, ErfArgument, Flux, Force, Fraction, HalfOrder, Log2, Pairing,
-    Rate, Ratio, SemiInfinite, Ticks, erf, erfcx, exp2, fourier_number, log2,
-    log2_relative_pressure,
+    Celsius, ChordInterpolation, Contact, ContactPair, Depth, ErfArgument, Flux, Force, Fraction,
+    HalfSpace, Log2, MantissaExponent, Ratio, SemiInfinite, Ticks, erf, erfcx, exp2,
+    fourier_number, log2, log2_relative_pressure,
 };
 use contact_model::material::{Material, Surface};
 use proptest::num::f64::ANY;
@@ -23,9 +23,9 @@ fn celsius() -> impl Strategy<Value = Celsius> {
     word().prop_map(|bits| Celsius::from_bits(bits.cast_signed()))
 }
 
-fn rate() -> impl Strategy<Value = Rate> {
+fn rate() -> impl Strategy<Value = MantissaExponent> {
     (word(), word()).prop_map(|(high, low)| {
-        Rate::from_log2(Log2::from_bits(
+        MantissaExponent::from_log2(Log2::from_bits(
             (i64::from(high) << 32 | i64::from(low)) >> (high % 32),
         ))
     })
@@ -33,11 +33,11 @@ fn rate() -> impl Strategy<Value = Rate> {
 
 fn contact() -> impl Strategy<Value = Contact> {
     (word(), word(), rate(), rate(), rate()).prop_map(
-        |(weight, ratio, per_tick, per_root_tick, conductance_w_m2k)| Contact {
+        |(weight, ratio, rate_per_tick, root_rate_per_tick, conductance_w_m2k)| Contact {
             weight: Fraction::from_bits(weight),
             ratio: Ratio::from_bits(ratio),
-            per_tick,
-            per_root_tick,
+            rate_per_tick,
+            root_rate_per_tick,
             conductance_w_m2k,
         },
     )
@@ -80,7 +80,7 @@ proptest! {
         let _ = (exp2(a), erfcx(n, b), fourier_number(b, n), b.to_f64());
         prop_assert!(log2(a) >= -1 && log2(a) < 32);
         prop_assert!(log2_relative_pressure(Force::from_bits(a)).abs() < 64);
-        let product = b.times(c).doubled(times);
+        let product = b.times(c).times_power_of_2(times);
         prop_assert!(product.exponent().unsigned_abs() <= 1 << 14);
         // Anything beyond 4.5 has the same error function, and nothing has a larger one.
         prop_assert!(erf(ErfArgument::from_bits(a)) <= erf(ErfArgument::MAX));
@@ -109,7 +109,7 @@ proptest! {
         (skin, object, tolerance) in (celsius(), celsius(), celsius()),
         elapsed: u64,
     ) {
-        let (mut course, evaluations) = Course::new(&contact, skin, object, elapsed, tolerance);
+        let (mut course, evaluations) = ChordInterpolation::new(&contact, skin, object, elapsed, tolerance);
         prop_assert!(evaluations <= 2);
         for _ in 0..100 {
             let setpoint = course.advance();
@@ -125,26 +125,26 @@ proptest! {
         contact in contact(),
         drives in prop::collection::vec((celsius(), 1u32..300), 1..8), front in celsius(),
     ) {
-        let (mut body, mut other) = (HalfOrder::at_rest(), HalfOrder::at_rest());
+        let (mut body, mut other) = (HalfSpace::default(), HalfSpace::default());
         for (drive, ticks) in drives {
             for _ in 0..ticks {
                 body.step(drive);
-                other.step(body.drive_to(&other));
+                other.step(body.scaled_flux_to_match(&other));
             }
-            for link in [contact.on_object(), contact.on_display()] {
-                let flow = link.drive(drive, &body);
-                prop_assert!(flow.abs() <= drive.saturating_sub(body.left()).saturating_abs());
-                let _ = (link.across(flow), body.after(flow), other.after(drive));
+            for link in [contact.object_conductance(), contact.display_conductance()] {
+                let flow = link.scaled_flux(drive, &body);
+                prop_assert!(flow.abs() <= drive.saturating_sub(body.free_response()).saturating_abs());
+                let _ = (link.temperature_drop(flow), body.response_to(flow), other.response_to(drive));
             }
-            other = body.out_of_step();
+            other = body.staggered();
         }
-        let mut body = HalfOrder::at_rest();
+        let mut body = HalfSpace::default();
         let (low, high) = (front.min(Celsius::ZERO), front.max(Celsius::ZERO));
         let rounding = Celsius::DELTA * 64;
-        for link in [contact.on_object(), contact.on_display()] {
+        for link in [contact.object_conductance(), contact.display_conductance()] {
             for _ in 0..100 {
-                body.step(link.drive(front, &body));
-                let at = body.left();
+                body.step(link.scaled_flux(front, &body));
+                let at = body.free_response();
                 prop_assert!(low.saturating_sub(rounding) <= at && at <= high.saturating_add(rounding), "{at} of {front}");
             }
         }
@@ -155,9 +155,9 @@ proptest! {
         (skin, object, display) in (material(), material(), surface()), tick_s in property(),
         (high, low) in (word(), word()), (a, b) in (celsius(), celsius()), depth in word(), n in ticks(),
     ) {
-        if let Ok(pairing) = Pairing::new(&skin, &object, &display, tick_s) {
+        if let Ok(pairing) = ContactPair::new(&skin, &object, &display, tick_s) {
             let pressure = Log2::from_bits(i64::from(high.cast_signed()) << 32 | i64::from(low));
-            let at = pairing.under(pressure).at(n.get(), a, b);
+            let at = pairing.at_pressure(pressure).at(n.get(), a, b);
             let _ = (at.display(), at.flux_w_m2(), pairing.preset(a, b), pairing.interface_temperature(a, b));
         }
         if let Ok(perfect) = SemiInfinite::new(&skin, &object, tick_s) {

@@ -1,7 +1,8 @@
 //! Chords between evaluations against Eq. 6-12 in `f64`, tick by tick.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, Course, Force, Fraction, Pairing, Rate, Ratio, log2_relative_pressure,
+    Celsius, ChordInterpolation, Contact, ContactPair, Force, Fraction, MantissaExponent, Ratio,
+    log2_relative_pressure,
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use contact_model::{pressure, reference};
@@ -12,13 +13,13 @@ const TOLERANCE_K: f64 = 0.5e-3;
 
 /// A course, and how often it evaluated `E`.
 struct Watched {
-    course: Course,
+    course: ChordInterpolation,
     evaluations: u32,
 }
 
 impl Watched {
     fn new(contact: &Contact, object_c: f64, elapsed: u64, tolerance_k: f64) -> Self {
-        let (course, evaluations) = Course::new(
+        let (course, evaluations) = ChordInterpolation::new(
             contact,
             Celsius::from_num(SKIN_C),
             Celsius::from_num(object_c),
@@ -38,14 +39,14 @@ impl Watched {
     fn next_c(&mut self) -> f64 {
         let setpoint = self.course.advance();
         assert_eq!(setpoint, self.course.setpoint());
-        self.evaluations += u32::from(self.course.is_at_knot());
+        self.evaluations += u32::from(self.course.has_just_evaluated());
         setpoint.to_num()
     }
 }
 
 /// Eq. 6-12 at `elapsed` ticks, of the contact's own numbers.
 fn exact_c(contact: &Contact, object_c: f64, elapsed: f64) -> f64 {
-    let e = reference::erfcx((elapsed * contact.per_tick.to_f64()).sqrt());
+    let e = reference::erfcx((elapsed * contact.rate_per_tick.to_f64()).sqrt());
     let step = SKIN_C - object_c;
     SKIN_C
         - step * contact.weight.to_num::<f64>() * (1.0 - e)
@@ -57,16 +58,16 @@ fn contact_with(weight: f64, ratio: f64, log2_rate: f64) -> Contact {
     Contact {
         weight: Fraction::from_num(weight),
         ratio: Ratio::from_num(ratio),
-        per_tick: Rate::from_f64(log2_rate.exp2()).expect("normal"),
-        per_root_tick: Rate::from_f64((0.5 * log2_rate).exp2()).expect("normal"),
-        conductance_w_m2k: Rate::ONE,
+        rate_per_tick: MantissaExponent::from_f64(log2_rate.exp2()).expect("normal"),
+        root_rate_per_tick: MantissaExponent::from_f64((0.5 * log2_rate).exp2()).expect("normal"),
+        conductance_w_m2k: MantissaExponent::ONE,
     }
 }
 
 fn contact_of(material: usize, force_n: f64) -> Contact {
-    Pairing::new(&SKIN, &MATERIALS[material].1, &REFERENCE_DISPLAY, 1e-3)
+    ContactPair::new(&SKIN, &MATERIALS[material].1, &REFERENCE_DISPLAY, 1e-3)
         .expect("pairing")
-        .under(log2_relative_pressure(Force::from_num(force_n)))
+        .at_pressure(log2_relative_pressure(Force::from_num(force_n)))
 }
 
 /// Every material at every force of the thesis, hot and cold, each tick of 10 s.
@@ -74,7 +75,7 @@ fn contact_of(material: usize, force_n: f64) -> Contact {
 fn every_contact_of_the_thesis_is_within_tolerance_in_at_most_100_evaluations() {
     for (material, (name, properties)) in MATERIALS.iter().enumerate() {
         let mut line = format!("{name:16}");
-        for (force_n, pressure_pa) in pressure::STATED {
+        for (force_n, pressure_pa) in pressure::THESIS_PRESSURES {
             let contact = contact_of(material, force_n);
             for object_c in [24.0, 44.0] {
                 let thesis = reference::Contact::new(

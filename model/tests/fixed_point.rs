@@ -1,7 +1,7 @@
 //! Invariants of the fixed-point path; `budgets` measures its errors.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, Force, Pairing, PairingError, log2_relative_pressure,
+    Celsius, Contact, ContactPair, ContactPairError, Force, log2_relative_pressure,
 };
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN, find};
 use proptest::prelude::*;
@@ -27,9 +27,9 @@ proptest! {
 }
 
 fn fixed_contact(object: &Material, force_n: f64, tick_s: f64) -> Contact {
-    Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)
+    ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)
         .expect("pairing")
-        .under(log2_relative_pressure(Force::from_num(force_n)))
+        .at_pressure(log2_relative_pressure(Force::from_num(force_n)))
 }
 
 #[test]
@@ -38,11 +38,11 @@ fn a_material_that_does_not_fit_is_refused_by_name() {
     let with = |change: fn(&mut Material)| {
         let mut material = copper;
         change(&mut material);
-        Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, 1e-3)
+        ContactPair::new(&SKIN, &material, &REFERENCE_DISPLAY, 1e-3)
     };
     assert_eq!(
         with(|m| m.density_kg_m3 = -1.0),
-        Err(PairingError::Property {
+        Err(ContactPairError::Property {
             name: "density (kg/m3)",
             value: -1.0
         })
@@ -51,12 +51,12 @@ fn a_material_that_does_not_fit_is_refused_by_name() {
     assert!(with(|m| m.surface.slope_rad = f64::INFINITY).is_err());
     assert!(matches!(
         with(|m| m.surface.slope_rad = 1e4),
-        Err(PairingError::Ratio(_))
+        Err(ContactPairError::Ratio(_))
     ));
     assert!(with(|_| ()).is_ok());
     assert!(matches!(
-        Pairing::new(&copper, &copper, &REFERENCE_DISPLAY, 0.0),
-        Err(PairingError::Property {
+        ContactPair::new(&copper, &copper, &REFERENCE_DISPLAY, 0.0),
+        Err(ContactPairError::Property {
             name: "tick (s)",
             ..
         })
@@ -64,14 +64,14 @@ fn a_material_that_does_not_fit_is_refused_by_name() {
     let with_skin = |change: fn(&mut Material)| {
         let mut skin = SKIN;
         change(&mut skin);
-        Pairing::new(&skin, &copper, &REFERENCE_DISPLAY, 1e-3)
+        ContactPair::new(&skin, &copper, &REFERENCE_DISPLAY, 1e-3)
     };
     assert!(matches!(
         with_skin(|m| m.specific_heat_j_kgk = f64::NAN),
-        Err(PairingError::Property { .. })
+        Err(ContactPairError::Property { .. })
     ));
     assert!(matches!(
         with_skin(|m| m.surface.conductivity_w_mk = 1e-300),
-        Err(PairingError::Rate(_))
+        Err(ContactPairError::MantissaExponent(_))
     ));
 }

@@ -3,7 +3,7 @@
 mod verify;
 
 use contact_model::fixed_point::kernel::OCTAVES;
-use contact_model::fixed_point::{Fraction, Rate, Ticks, erfcx};
+use contact_model::fixed_point::{Fraction, MantissaExponent, Ticks, erfcx};
 use contact_model::reference;
 use proptest::prelude::*;
 use verify::{INPUTS, LIVED_IN, TRUTH_ERROR, Tally, exact, exhaustive, kernel, proof};
@@ -74,14 +74,14 @@ fn kernel_saturates_outside_of_its_octaves() {
     for fraction in [0, 1, u32::MAX / 3, u32::MAX] {
         for exponent in [i16::MIN, -1000, start - 1, start] {
             assert_eq!(
-                erfcx(Ticks::ONE, Rate::new(exponent, fraction)),
+                erfcx(Ticks::ONE, MantissaExponent::new(exponent, fraction)),
                 Fraction::MAX
             );
         }
         for exponent in [end - 1, end, 1000, i16::MAX] {
             for elapsed in [Ticks::ONE, Ticks::MAX] {
                 assert_eq!(
-                    erfcx(elapsed, Rate::new(exponent, fraction)),
+                    erfcx(elapsed, MantissaExponent::new(exponent, fraction)),
                     Fraction::ZERO
                 );
             }
@@ -96,9 +96,9 @@ proptest! {
         exponent in -63i16..32,
         fraction: u32,
     ) {
-        let per_tick = Rate::new(exponent, fraction);
-        let e = erfcx(Ticks::new(elapsed).expect("in range"), per_tick);
-        let truth = reference::erfcx((f64::from(elapsed) * per_tick.to_f64()).sqrt()) / UNIT;
+        let rate_per_tick = MantissaExponent::new(exponent, fraction);
+        let e = erfcx(Ticks::new(elapsed).expect("in range"), rate_per_tick);
+        let truth = reference::erfcx((f64::from(elapsed) * rate_per_tick.to_f64()).sqrt()) / UNIT;
         let error = (f64::from(e.to_bits()) - truth).abs();
         prop_assert!(error <= ELSEWHERE_UNITS + CUT_UNITS, "{error} units");
     }

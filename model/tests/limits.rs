@@ -1,21 +1,22 @@
 //! Limits and symmetries of the fixed-point chain.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, Depth, Flux, Force, FourierNumber, Log2, Pairing, Rate, SemiInfinite, Ticks,
-    fourier_number, log2_relative_pressure,
+    Celsius, Contact, ContactPair, Depth, Flux, Force, FourierNumber, Log2, MantissaExponent,
+    SemiInfinite, Ticks, fourier_number, log2_relative_pressure,
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 
 const SKIN_C: Celsius = Celsius::lit("34");
 const OBJECT_C: Celsius = Celsius::lit("24");
 
-fn pairings() -> impl Iterator<Item = Pairing> {
-    (MATERIALS.iter())
-        .map(|(_, object)| Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, 1e-3).expect("ordinary"))
+fn pairings() -> impl Iterator<Item = ContactPair> {
+    (MATERIALS.iter()).map(|(_, object)| {
+        ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, 1e-3).expect("ordinary")
+    })
 }
 
-fn at_2_n(pairing: &Pairing) -> Contact {
-    pairing.under(log2_relative_pressure(Force::lit("2")))
+fn at_2_n(pairing: &ContactPair) -> Contact {
+    pairing.at_pressure(log2_relative_pressure(Force::lit("2")))
 }
 
 fn near(a: Celsius, b: Celsius, units: i32) -> bool {
@@ -34,7 +35,7 @@ fn nothing_has_happened_at_time_zero() {
 #[test]
 fn absent_contact_exchanges_nothing() {
     for pairing in pairings() {
-        let absent = pairing.under(Log2::MIN);
+        let absent = pairing.at_pressure(Log2::MIN);
         for elapsed in [0, 1, u32::MAX] {
             let at = absent.at(elapsed, SKIN_C, OBJECT_C);
             assert_eq!(
@@ -49,15 +50,21 @@ fn absent_contact_exchanges_nothing() {
 #[test]
 fn contact_without_resistance_gives_the_interface_temperature() {
     for pairing in pairings() {
-        let at = pairing.under(Log2::MAX).at(1, SKIN_C, OBJECT_C);
+        let at = pairing.at_pressure(Log2::MAX).at(1, SKIN_C, OBJECT_C);
         let interface = pairing.interface_temperature(SKIN_C, OBJECT_C);
         for t in [at.skin(), at.object(), at.display()] {
             assert!(near(t, interface, 1), "{t} {interface}");
         }
         // A resistance too small to hold: as large as a flux can be, not wrapped.
-        let landing = pairing.under(Log2::MAX).at(0, SKIN_C, OBJECT_C).flux_w_m2();
+        let landing = pairing
+            .at_pressure(Log2::MAX)
+            .at(0, SKIN_C, OBJECT_C)
+            .flux_w_m2();
         assert_eq!(landing, Flux::MAX);
-        let landing = pairing.under(Log2::MAX).at(0, OBJECT_C, SKIN_C).flux_w_m2();
+        let landing = pairing
+            .at_pressure(Log2::MAX)
+            .at(0, OBJECT_C, SKIN_C)
+            .flux_w_m2();
         assert_eq!(landing, -Flux::MAX);
     }
 }
@@ -67,7 +74,7 @@ fn contact_without_resistance_gives_the_interface_temperature() {
 fn ticks_of_any_length_saturate() {
     for (_, object) in &MATERIALS {
         let contact = |tick_s| {
-            at_2_n(&Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("any tick"))
+            at_2_n(&ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("any tick"))
         };
         let shortest = contact(f64::from_bits(1)).at(1, SKIN_C, OBJECT_C);
         assert_eq!((shortest.skin(), shortest.object()), (SKIN_C, OBJECT_C));
@@ -110,12 +117,12 @@ fn perfect_contact_cools_from_the_surface_inwards() {
 
 #[test]
 fn fourier_number_saturates() {
-    let huge = Rate::from_f64(1e300).expect("normal");
-    let tiny = Rate::from_f64(1e-300).expect("normal");
+    let huge = MantissaExponent::from_f64(1e300).expect("normal");
+    let tiny = MantissaExponent::from_f64(1e-300).expect("normal");
     assert_eq!(fourier_number(huge, Ticks::ONE), FourierNumber::MAX);
     assert_eq!(fourier_number(tiny, Ticks::MAX), FourierNumber::ZERO);
     assert_eq!(
-        fourier_number(Rate::ONE, Ticks::MAX),
+        fourier_number(MantissaExponent::ONE, Ticks::MAX),
         FourierNumber::from_num(Ticks::MAX.get())
     );
 }

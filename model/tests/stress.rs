@@ -1,6 +1,6 @@
 //! The contact model at its limits and against laws that hold for any contact, in `f64`, `f32` and integers.
 
-use contact_model::fixed_point::{Celsius, Contact as Fixed, Flux, Log2, Pairing, Ticks};
+use contact_model::fixed_point::{Celsius, Contact as Fixed, ContactPair, Flux, Log2, Ticks};
 use contact_model::material::{
     MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface,
 };
@@ -29,9 +29,9 @@ fn contact<F: Real>(skin_c: f64, object: &Material, object_c: f64, pressure_pa: 
 
 /// One tick of `tick_s`.
 fn fixed(skin: &Material, object: &Material, pressure_pa: f64, tick_s: f64) -> Fixed {
-    Pairing::new(skin, object, &REFERENCE_DISPLAY, tick_s)
+    ContactPair::new(skin, object, &REFERENCE_DISPLAY, tick_s)
         .expect("within the domain")
-        .under(Log2::saturating_from_num(
+        .at_pressure(Log2::saturating_from_num(
             (pressure_pa / SKIN_MICROHARDNESS_PA).log2(),
         ))
 }

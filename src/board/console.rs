@@ -1,10 +1,12 @@
 //! The device's side of the conversation with the host.
 
 use heapless::spsc::Consumer;
-use thermal_display::commission::{Desk, Order};
-use thermal_display::protocol::{Addressed, Error, Reply, Request, Telemetry};
+use thermal_display::commissioning::StorageOrder;
+use thermal_display::device::Telemetry;
+use thermal_display::device::command::Addressed;
+use thermal_display::mailbox::Outlet;
+use thermal_display::protocol::{Desk, Error, Execute, Reply, telemetry_line};
 
-use super::mailbox::Outlet;
 use super::{FINGERS, Outbox, restart};
 
 /// Answers lines and sends telemetry, as far as there is room to send.
@@ -16,7 +18,7 @@ pub struct Console {
     /// What the device says first.
     first: Option<Result<Reply, Error>>,
     /// What is to be stored by starting anew.
-    order: Option<Order>,
+    order: Option<StorageOrder>,
 }
 
 impl Console {
@@ -43,10 +45,7 @@ impl Console {
     /// What waits stays in its queue, so that answers are never lost and only telemetry that finds its
     /// queue full is. `execute` is called with requests that are parsed, checked and computed, since
     /// that takes longer than executing and needs no lock.
-    pub fn serve(
-        &mut self,
-        mut execute: impl FnMut(Request) -> Result<Addressed<Reply>, Addressed<Error>>,
-    ) {
+    pub fn serve(&mut self, mut execute: impl Execute) {
         while self.outbox.has_room() {
             if let Some(order) = self.order {
                 if self.outbox.is_empty() {
@@ -76,7 +75,7 @@ impl Console {
                     }
                 }
             } else if let Some(telemetry) = self.telemetry.dequeue() {
-                self.outbox.send(&telemetry);
+                self.outbox.send(&telemetry_line(telemetry));
             } else {
                 break;
             }

@@ -4,10 +4,7 @@
 //! tasks own, and with the handlers that leave the bridge off when the program cannot go on. What does not
 //! depend on the board lies beside it: the bridge driver, the queues between the tasks and the roll-call.
 
-mod bridge;
 mod console;
-mod mailbox;
-mod vigil;
 
 #[cfg(feature = "nucleo-f446re")]
 mod nucleo_f446re;
@@ -19,4 +16,3 @@ pub use nucleo_f446re::{
     Trigger, Watchdog, WindowWatchdog, at_start, first_cause, keep_dose, kept_dose, pac, restart,
     stack_is_overrun,
 };
-pub use vigil::{Task, Vigil};

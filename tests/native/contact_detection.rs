@@ -1,7 +1,7 @@
 //! Contact detection on the simulated force sensor and converter: delay of detection, estimated time of landing, and false
 //! detections by noise and drift.
 
-use thermal_display::sense::{SCANS_PER_TICK, Samples, Sensors, Touch};
+use thermal_display::device::sense::{SCANS_PER_TICK, Samples, Sensors, Touch};
 use thermal_display::settings::Settings;
 use thermal_plant::sensors::{Channel, Sensed, SensorParams, Sensors as Plant};
 

@@ -1,5 +1,5 @@
 //! The inputs of the kernels: the same numbers everywhere.
-use contact_model::fixed_point::{Rate, Ticks};
+use contact_model::fixed_point::{MantissaExponent, Ticks};
 
 /// Octaves of the product of the leading powers of two of `n` and `K`; with both mantissas below 2, `u = n K` lies
 /// from 2^-24 to 2^16, where scenes live.
@@ -15,7 +15,7 @@ pub struct Input {
     /// Ticks since contact.
     pub elapsed: Ticks,
     /// `K`, exactly.
-    pub rate: Rate,
+    pub rate: MantissaExponent,
     /// `K`, exactly.
     pub double: f64,
     /// `K`, rounded.
@@ -26,7 +26,7 @@ impl Input {
     /// `elapsed` ticks at a `K` that is rounded to 33 bits; `None` if that is no positive, normal number.
     #[must_use]
     pub fn new(elapsed: Ticks, per_tick: f64) -> Option<Self> {
-        let rate = Rate::from_f64(per_tick)?;
+        let rate = MantissaExponent::from_f64(per_tick)?;
         let double = rate.to_f64();
         Some(Self {
             elapsed,

@@ -5,10 +5,10 @@
 mod floating;
 
 use contact_model::fixed_point::{
-    Celsius, Course, Force, Pairing, PairingError, log2_relative_pressure,
+    Celsius, ChordInterpolation, ContactPair, ContactPairError, Force, log2_relative_pressure,
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
-use thermal_display::render::{self, Mode, Render, TOLERANCE};
+use thermal_display::device::reference::{self, Mode, Render, TOLERANCE};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
 use floating::Finger as FloatingFinger;
@@ -57,8 +57,8 @@ pub enum Arithmetic {
 /// A finger by the model's integers.
 #[derive(Clone)]
 struct Finger {
-    pairing: Pairing,
-    course: Course,
+    pairing: ContactPair,
+    course: ChordInterpolation,
     /// Of five fingers, each is left here.
     set_point: Celsius,
 }
@@ -80,14 +80,14 @@ impl Station {
     ///
     /// # Errors
     /// None for these materials.
-    pub fn new() -> Result<Self, PairingError> {
+    pub fn new() -> Result<Self, ContactPairError> {
         let force = Force::from_num(FORCE_N);
         let (skin, object_c) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
         let fixed = |finger: usize| {
             let object = &MATERIALS[FINGERS[finger]].1;
-            let pairing = Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
-            let contact = pairing.under(log2_relative_pressure(force));
-            let (course, _) = Course::new(&contact, skin, object_c, 0, TOLERANCE);
+            let pairing = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
+            let contact = pairing.at_pressure(log2_relative_pressure(force));
+            let (course, _) = ChordInterpolation::new(&contact, skin, object_c, 0, TOLERANCE);
             Ok(Finger {
                 pairing,
                 course,
@@ -164,7 +164,7 @@ fn constant_force(station: &mut Station, _: u32) -> u32 {
 fn streaming_force(station: &mut Station, tick: u32) -> u32 {
     let contact = station.fixed[0]
         .pairing
-        .under(log2_relative_pressure(streaming_fixed(tick)));
+        .at_pressure(log2_relative_pressure(streaming_fixed(tick)));
     bits(contact.at(tick, station.skin, station.object).display())
 }
 

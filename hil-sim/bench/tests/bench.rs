@@ -8,7 +8,7 @@ use contact_model::reference::Contact;
 use image_proof::compiler::recorded_with;
 use model_bench::scenes::{FINGERS, TICKS, kind};
 use serde_json::Value;
-use thermal_display::render::TOLERANCE;
+use thermal_display::device::reference::TOLERANCE;
 
 /// 2^32: errors are in units of the fixed-point result.
 const UNITS: f64 = 4_294_967_296.0;

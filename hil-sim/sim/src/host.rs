@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use thermal_display::protocol::LINE_MAX;
-use thermal_display::render::Mode;
+use thermal_display::device::reference::Mode;
 
 use crate::scene::{FaultKind, Scene, custom_line};
 

@@ -3,7 +3,7 @@
 use std::io::{self, BufRead, BufWriter, Write};
 
 use anyhow::anyhow;
-use contact_model::fixed_point::{Fraction, Rate, Ticks, erfcx};
+use contact_model::fixed_point::{Fraction, MantissaExponent, Ticks, erfcx};
 
 use super::Failure;
 
@@ -38,7 +38,7 @@ fn bits(z: f64) -> u32 {
             (u.to_bits() >> 52) as i16 - 1023,
             (u.to_bits() >> 20) as u32,
         );
-        erfcx(Ticks::ONE, Rate::new(exponent, fraction)).to_bits()
+        erfcx(Ticks::ONE, MantissaExponent::new(exponent, fraction)).to_bits()
     } else if z < 1.0 {
         Fraction::MAX.to_bits()
     } else {

@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use thermal_campaigns::fidelity::{self, Boxed, Case, Draw, Drawn, Row, Scenario, Without};
 use thermal_campaigns::map;
-use thermal_display::control::Law;
+use thermal_display::device::control::Law;
 use thermal_sim::{Device, NativeDevice};
 
 use super::device::{self, Kind};

@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use anyhow::{Context, anyhow, ensure};
 use clap::{Args, ValueEnum};
-use contact_model::fixed_point::{Celsius, Log2, Pairing, TEMPERATURE_RANGE_C};
+use contact_model::fixed_point::{Celsius, ContactPair, Log2, TEMPERATURE_RANGE_C};
 use contact_model::material::{
     Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, Surface, find,
 };
@@ -202,8 +202,8 @@ fn fixed(
 ) -> anyhow::Result<Row> {
     let (elapsed, tick_s) = if t_s == 0.0 { (0, 1.0) } else { (1, t_s) };
     let relative = (pressure_pa / SKIN_MICROHARDNESS_PA).log2();
-    let contact = Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)?
-        .under(Log2::saturating_from_num(relative));
+    let contact = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)?
+        .at_pressure(Log2::saturating_from_num(relative));
     let (skin, object) = (
         Celsius::from_num(arguments.skin_c),
         Celsius::from_num(arguments.object_c),
@@ -213,7 +213,7 @@ fn fixed(
         z: if elapsed == 0 {
             0.0
         } else {
-            contact.per_tick.to_f64().sqrt()
+            contact.rate_per_tick.to_f64().sqrt()
         },
         erfcx: at.erfcx().to_num(),
         t_skin_c: at.skin().to_num(),

@@ -1,6 +1,6 @@
 //! The response to contact, Eq. 6-5 to 6-7 and 6-12.
 
-use super::{Celsius, Flux, Fraction, Rate, Ratio, Ticks, erfcx};
+use super::{Celsius, Flux, Fraction, MantissaExponent, Ratio, Ticks, erfcx};
 
 /// A finger on an object under constant pressure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,11 +10,11 @@ pub struct Contact {
     /// `R_display / R_object`.
     pub ratio: Ratio,
     /// `b² dt`.
-    pub per_tick: Rate,
+    pub rate_per_tick: MantissaExponent,
     /// `b sqrt(dt)`.
-    pub per_root_tick: Rate,
+    pub root_rate_per_tick: MantissaExponent,
     /// `1 / R`, W/(m² K); below 2^-33 no difference gives a flux that [`Flux`] could hold.
-    pub conductance_w_m2k: Rate,
+    pub conductance_w_m2k: MantissaExponent,
 }
 
 /// `E` of one moment, and what it gives: each output is computed when it is asked for.
@@ -36,13 +36,13 @@ impl Contact {
             skin_before,
             object_before,
             erfcx: Ticks::new(elapsed.min(Ticks::MAX.get()))
-                .map_or(Fraction::MAX, |elapsed| erfcx(elapsed, self.per_tick)),
+                .map_or(Fraction::MAX, |elapsed| erfcx(elapsed, self.rate_per_tick)),
         }
     }
 }
 
 /// Outputs, for temperatures within [`super::TEMPERATURE_RANGE_C`] and steps `dT` up to 60 K, with `e` the error
-/// of `E` ([`erfcx`]'s own and 0.14 of the relative error of `per_tick`). Beyond, errors grow with `dT`; nothing
+/// of `E` ([`erfcx`]'s own and 0.14 of the relative error of `rate_per_tick`). Beyond, errors grow with `dT`; nothing
 /// wraps.
 impl Response {
     /// `erfcx(b sqrt(t))`.
@@ -147,7 +147,7 @@ pub(super) fn interface(weight: Fraction, skin_c: Celsius, object_c: Celsius) ->
 
 /// Flux from a temperature difference with 54 fraction bits and a conductance; relative error below 2^-30,
 /// rounded towards zero; saturates.
-pub(super) fn flux(difference: i64, conductance_w_m2k: Rate) -> Flux {
+pub(super) fn flux(difference: i64, conductance_w_m2k: MantissaExponent) -> Flux {
     let magnitude = difference.unsigned_abs();
     let zeros = magnitude.leading_zeros();
     let leading = (magnitude.checked_shl(zeros).unwrap_or(0) >> 32) as u32;

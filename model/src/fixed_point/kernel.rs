@@ -13,7 +13,7 @@
 //! the product that are left out count as one half.
 
 use super::kernel_table::TABLE;
-use super::{Fraction, Rate, Ticks};
+use super::{Fraction, MantissaExponent, Ticks};
 
 /// Fraction bits of what is above the linear term, in units of 2^-32.
 pub const GUARD_BITS: u32 = 8;
@@ -25,22 +25,22 @@ pub const ROWS: usize = 256;
 /// Bits of a descriptor below the number of rows of its octave.
 pub const COUNT_SHIFT: u32 = 12;
 
-/// `E = erfcx(sqrt(u))` for `u = elapsed * per_tick`: `elapsed` ticks since contact, `per_tick = b² dt`.
+/// `E = erfcx(sqrt(u))` for `u = elapsed * rate_per_tick`: `elapsed` ticks since contact, `rate_per_tick = b² dt`.
 ///
 /// The input is the leading 33 bits of the exact product, so time does not drift; what is cut off moves `E`
 /// by at most 0.07 units of 2^-32. From that input on, the error is at most 0.51 units for `u` from 2^-24 to
 /// 2^16, checked for every input, and at most 0.54 from 2^-63 to 2^63, proven
 /// (`cargo run --release -p contact-model --example verify`). Outside it saturates and never wraps, for every
-/// `elapsed` and `per_tick`: below at 1 - 2^-32, the largest fraction, off by at most 0.6; above at 0, by 0.8.
+/// `elapsed` and `rate_per_tick`: below at 1 - 2^-32, the largest fraction, off by at most 0.6; above at 0, by 0.8.
 /// Later times never give more than one unit above an earlier one.
 ///
 /// Constant time: no square root, no division, no branch. On a Cortex-M4 34 instructions where it is inlined,
 /// 40 with call and return (emulated, `cargo xtask bench`); 8.25 KiB of table.
 #[must_use]
 #[inline]
-pub fn erfcx(elapsed: Ticks, per_tick: Rate) -> Fraction {
+pub fn erfcx(elapsed: Ticks, rate_per_tick: MantissaExponent) -> Fraction {
     // elapsed * (1 + fraction / 2^32), never below one.
-    let product = u64::from(elapsed.get()) * u64::from(per_tick.fraction());
+    let product = u64::from(elapsed.get()) * u64::from(rate_per_tick.fraction());
     let (whole, part) = (
         ((product >> 32) as u32).wrapping_add(elapsed.get()),
         product as u32,
@@ -50,7 +50,7 @@ pub fn erfcx(elapsed: Ticks, per_tick: Rate) -> Fraction {
     let places = 31 - shift;
     let bits = whole << shift << 1 | part >> places;
 
-    let octave = (per_tick.exponent() + places as i32).clamp(OCTAVES.start, OCTAVES.end - 1);
+    let octave = (rate_per_tick.exponent() + places as i32).clamp(OCTAVES.start, OCTAVES.end - 1);
     let descriptor = TABLE.octaves[(octave - OCTAVES.start) as usize];
     let split = u64::from(bits) * u64::from(descriptor >> COUNT_SHIFT);
     let row =

@@ -1,35 +1,37 @@
 //! The model in integers: the control path of the microcontroller.
 //!
 //! No float, no panic and no overflow for any input; out-of-range values saturate. Set-up
-//! ([`Pairing::new`]) is in `f64` and happens once per material, not per tick.
+//! ([`ContactPair::new`]) is in `f64` and happens once per material, not per tick.
 
+mod chord_interpolation;
 mod contact;
-mod course;
+mod contact_pair;
 mod erf;
 mod erf_table;
-mod half_order;
+mod half_space;
 pub mod kernel;
 mod kernel_table;
 mod log_table;
 mod logarithm;
-mod pairing;
+mod mantissa_exponent;
 mod piecewise;
 mod pressure;
+mod product;
 mod properties;
-mod rate;
 mod semi_infinite;
 mod ticks;
 
+pub use chord_interpolation::ChordInterpolation;
 pub use contact::{Contact, Response};
-pub use course::Course;
+pub use contact_pair::ContactPair;
 pub use erf::{ErfArgument, erf};
-pub use half_order::{AHEAD_TICKS, HalfOrder, Link};
+pub use half_space::{ContactConductance, HalfSpace, MATCH_HORIZON_TICKS};
 pub use kernel::erfcx;
 pub use logarithm::{Log2, exp2, log2};
-pub use pairing::Pairing;
+pub use mantissa_exponent::MantissaExponent;
 pub use pressure::{Area, Force, contact_area, log2_relative_pressure};
-pub use properties::PairingError;
-pub use rate::Rate;
+pub use product::{Word, product, saturated, saturating_product, to_fixed};
+pub use properties::ContactPairError;
 pub use semi_infinite::{Depth, FourierNumber, SemiInfinite, fourier_number};
 pub use ticks::Ticks;
 

@@ -1,7 +1,7 @@
 //! Force to pressure, for a force that streams in.
 
 use super::{Log2, log2};
-use crate::pressure::STATED;
+use crate::pressure::THESIS_PRESSURES;
 
 /// Force in N: 0 to 256 at a resolution of 6e-8.
 pub type Force = fixed::types::U8F24;
@@ -24,7 +24,7 @@ struct Piece {
 
 /// The pieces between the stated points of section 6.4.2 and, flat, the one after them. Slopes refer to the
 /// stated forces themselves, not to those that [`Force`] can hold: the difference would cost 2e-8 of the area.
-const PIECES: [Piece; STATED.len()] = {
+const PIECES: [Piece; THESIS_PRESSURES.len()] = {
     const fn scaled(value: f64, bits: i32) -> u64 {
         (value * (1u128 << bits) as f64 + 0.5) as u64
     }
@@ -32,12 +32,16 @@ const PIECES: [Piece; STATED.len()] = {
         above: Force::ZERO,
         intercept: 0,
         slope: 0,
-    }; STATED.len()];
+    }; THESIS_PRESSURES.len()];
     let mut i = 0;
-    while i < STATED.len() {
-        let (force, area) = (STATED[i].0, STATED[i].0 / STATED[i].1);
-        let slope = if i + 1 < STATED.len() {
-            (STATED[i + 1].0 / STATED[i + 1].1 - area) / (STATED[i + 1].0 - force)
+    while i < THESIS_PRESSURES.len() {
+        let (force, area) = (
+            THESIS_PRESSURES[i].0,
+            THESIS_PRESSURES[i].0 / THESIS_PRESSURES[i].1,
+        );
+        let slope = if i + 1 < THESIS_PRESSURES.len() {
+            (THESIS_PRESSURES[i + 1].0 / THESIS_PRESSURES[i + 1].1 - area)
+                / (THESIS_PRESSURES[i + 1].0 - force)
         } else {
             0.0
         };
@@ -52,7 +56,8 @@ const PIECES: [Piece; STATED.len()] = {
 };
 
 /// Area up to the first stated force.
-const FIRST_AREA: u32 = (STATED[0].0 / STATED[0].1 * (1u64 << AREA_BITS) as f64 + 0.5) as u32;
+const FIRST_AREA: u32 =
+    (THESIS_PRESSURES[0].0 / THESIS_PRESSURES[0].1 * (1u64 << AREA_BITS) as f64 + 0.5) as u32;
 
 /// `log2(H)` of the skin's microhardness in Pa (Eq. 6-8).
 const LOG2_MICROHARDNESS: Log2 = Log2::lit("16.902422223664658");

@@ -2,12 +2,12 @@
 
 use core::fmt;
 
-use super::Rate;
+use super::MantissaExponent;
 use crate::material::{Material, Surface};
 
 /// A material that the fixed-point path cannot hold.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PairingError {
+pub enum ContactPairError {
     /// A property is zero, negative, infinite or not a number.
     Property {
         /// Which one, with its unit.
@@ -18,17 +18,17 @@ pub enum PairingError {
     /// `R_display / R_object` does not fit: the object is too smooth or conducts too well.
     Ratio(f64),
     /// `b²` (1/s), the conductance (W/(m² K)) at `P = H`, or the skin's effusivity or diffusivity is beyond 2^±100.
-    Rate(f64),
+    MantissaExponent(f64),
 }
 
-impl fmt::Display for PairingError {
+impl fmt::Display for ContactPairError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Property { name, value } => {
                 write!(f, "{name} is {value}; it must be above 0 and finite")
             }
             Self::Ratio(value) => write!(f, "R_display / R_object is {value}; it must be below 16"),
-            Self::Rate(value) => write!(
+            Self::MantissaExponent(value) => write!(
                 f,
                 "the contact's rate is {value}; it must be within 2^-100 to 2^100"
             ),
@@ -36,18 +36,18 @@ impl fmt::Display for PairingError {
     }
 }
 
-impl core::error::Error for PairingError {}
+impl core::error::Error for ContactPairError {}
 
 /// Properties by name and value.
 type Named<const N: usize> = [(&'static str, f64); N];
 
-pub(super) fn check<const N: usize>(properties: Named<N>) -> Result<(), PairingError> {
+pub(super) fn check<const N: usize>(properties: Named<N>) -> Result<(), ContactPairError> {
     properties
         .into_iter()
         // Not `value <= 0.0`: that would let NaN pass.
         .find(|(_, value)| !(*value > 0.0 && value.is_finite()))
         .map_or(Ok(()), |(name, value)| {
-            Err(PairingError::Property { name, value })
+            Err(ContactPairError::Property { name, value })
         })
 }
 
@@ -79,18 +79,19 @@ pub(super) fn of_display(display: &Surface) -> Named<3> {
     ]
 }
 
-/// The value, if it is far from the ends of what a [`Rate`] can hold.
-pub(super) fn moderate(value: f64) -> Result<f64, PairingError> {
+/// The value, if it is far from the ends of what a [`MantissaExponent`] can hold.
+pub(super) fn moderate(value: f64) -> Result<f64, ContactPairError> {
     if libm::log2(value).abs() <= 100.0 {
         Ok(value)
     } else {
-        Err(PairingError::Rate(value))
+        Err(ContactPairError::MantissaExponent(value))
     }
 }
 
 /// A moderate value, times a power of a duration that may be extreme; saturates at the ends of `f64`.
-pub(super) fn rate(value: f64) -> Result<Rate, PairingError> {
-    Rate::from_f64(value.clamp(f64::MIN_POSITIVE, f64::MAX)).ok_or(PairingError::Rate(value))
+pub(super) fn rate(value: f64) -> Result<MantissaExponent, ContactPairError> {
+    MantissaExponent::from_f64(value.clamp(f64::MIN_POSITIVE, f64::MAX))
+        .ok_or(ContactPairError::MantissaExponent(value))
 }
 
 /// `e_object / (e_object + e_skin)`, for a skin's effusivity that is neither 0 nor infinite.

@@ -2,8 +2,10 @@
 
 use fixed::types::{U16F16, U32F32};
 
-use super::properties::{PairingError, check, moderate, of_object, of_skin, rate, weight};
-use super::{Celsius, ErfArgument, Flux, Fraction, Log2, Rate, Ticks, contact, erf, log2};
+use super::properties::{ContactPairError, check, moderate, of_object, of_skin, rate, weight};
+use super::{
+    Celsius, ErfArgument, Flux, Fraction, Log2, MantissaExponent, Ticks, contact, erf, log2,
+};
 use crate::material::Material;
 
 /// Depth in µm: 0 to 65536 at a resolution of 15 pm.
@@ -18,7 +20,7 @@ pub struct SemiInfinite {
     /// `1 / (2 sqrt(alpha_skin dt))`, 1/µm.
     log2_reach: Log2,
     /// `w k_skin / sqrt(pi alpha_skin dt)`, W/(m² K).
-    conductance_w_m2k: Rate,
+    conductance_w_m2k: MantissaExponent,
 }
 
 impl SemiInfinite {
@@ -26,7 +28,7 @@ impl SemiInfinite {
     ///
     /// # Errors
     /// A property that is not positive and finite, or an effusivity or diffusivity of the skin beyond 2^±100.
-    pub fn new(skin: &Material, object: &Material, tick_s: f64) -> Result<Self, PairingError> {
+    pub fn new(skin: &Material, object: &Material, tick_s: f64) -> Result<Self, ContactPairError> {
         check(of_skin(skin))?;
         check(of_object(object))?;
         check([("tick (s)", tick_s)])?;
@@ -64,7 +66,7 @@ impl SemiInfinite {
             .saturating_sub(UNITS)
             .saturating_add(self.log2_reach)
             .saturating_sub(log2(elapsed.get()) >> 1);
-        let gone = !erf(argument(Rate::from_log2(log2_argument)));
+        let gone = !erf(argument(MantissaExponent::from_log2(log2_argument)));
         let gain = contact::product(self.weight, gone);
         skin_c.saturating_sub(contact::part(skin_c.saturating_sub(object_c), gain))
     }
@@ -74,7 +76,8 @@ impl SemiInfinite {
     #[must_use]
     pub fn flux_w_m2(&self, elapsed: Ticks, skin_c: Celsius, object_c: Celsius) -> Flux {
         let step = i64::from(object_c.saturating_sub(skin_c).to_bits()) << 32;
-        let inverse_root = Rate::from_log2(Log2::ZERO.saturating_sub(log2(elapsed.get()) >> 1));
+        let inverse_root =
+            MantissaExponent::from_log2(Log2::ZERO.saturating_sub(log2(elapsed.get()) >> 1));
         contact::flux(step, self.conductance_w_m2k.times(inverse_root))
     }
 }
@@ -82,9 +85,9 @@ impl SemiInfinite {
 /// The Fourier number after `elapsed` ticks from that of one tick, `alpha dt / L²` (Eq. 3-4); error below
 /// 2^-33 of itself + 2^-32. The bodies count as half-spaces below 0.05.
 #[must_use]
-pub fn fourier_number(per_tick: Rate, elapsed: Ticks) -> FourierNumber {
-    let product = u64::from(elapsed.get()) * (1 << 32 | u64::from(per_tick.fraction()));
-    let exponent = per_tick.exponent();
+pub fn fourier_number(rate_per_tick: MantissaExponent, elapsed: Ticks) -> FourierNumber {
+    let product = u64::from(elapsed.get()) * (1 << 32 | u64::from(rate_per_tick.fraction()));
+    let exponent = rate_per_tick.exponent();
     FourierNumber::from_bits(if exponent <= 0 {
         product.checked_shr(exponent.unsigned_abs()).unwrap_or(0)
     } else if exponent.unsigned_abs() <= product.leading_zeros() {
@@ -95,7 +98,7 @@ pub fn fourier_number(per_tick: Rate, elapsed: Ticks) -> FourierNumber {
 }
 
 /// Rounded down; saturates.
-fn argument(rate: Rate) -> ErfArgument {
+fn argument(rate: MantissaExponent) -> ErfArgument {
     let down = ErfArgument::INT_NBITS as i32 - 1 - rate.exponent();
     ErfArgument::from_bits(match down {
         0.. => rate.leading().checked_shr(down.unsigned_abs()).unwrap_or(0),

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use contact_model::fixed_point::{
-    Celsius, Flux, Force, Log2, Pairing, Ratio, Response, Ticks, log2_relative_pressure,
+    Celsius, ContactPair, Flux, Force, Log2, Ratio, Response, Ticks, log2_relative_pressure,
 };
 use contact_model::material::{
     MATERIALS, Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA, find,
@@ -29,8 +29,8 @@ pub fn log2_pressure() -> f64 {
     }))
 }
 
-fn pairing(object: &Material, tick_s: f64) -> Pairing {
-    Pairing::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("ordinary material")
+fn pairing(object: &Material, tick_s: f64) -> ContactPair {
+    ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("ordinary material")
 }
 
 fn float(object: &Material, pressure_pa: f64) -> reference::Contact<f64> {
@@ -54,12 +54,12 @@ fn golden_material(row: &HashMap<String, String>) -> &'static Material {
 
 pub fn resistance() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        let contact =
-            pairing(golden_material(&row), 1e-3).under(log2_of_pressure(number(&row, "P_Pa")));
+        let contact = pairing(golden_material(&row), 1e-3)
+            .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "R_m2K_W"))
     });
     let streaming = each_force().map(|(object, force)| {
-        let contact = pairing(object, 1e-3).under(log2_relative_pressure(force));
+        let contact = pairing(object, 1e-3).at_pressure(log2_relative_pressure(force));
         (
             contact,
             float(object, pressure_pa(force.to_num())).resistance_m2k_w,
@@ -73,13 +73,13 @@ pub fn resistance() -> f64 {
 
 pub fn per_tick() -> f64 {
     let golden = rows("resistance").into_iter().map(|row| {
-        let contact =
-            pairing(golden_material(&row), 1e-3).under(log2_of_pressure(number(&row, "P_Pa")));
+        let contact = pairing(golden_material(&row), 1e-3)
+            .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         (contact, number(&row, "b_per_sqrt_s").powi(2) * 1e-3)
     });
     let streaming = [1e-5, 1e-3, 0.1].into_iter().flat_map(|tick_s| {
         each_force().map(move |(object, force)| {
-            let contact = pairing(object, tick_s).under(log2_relative_pressure(force));
+            let contact = pairing(object, tick_s).at_pressure(log2_relative_pressure(force));
             (
                 contact,
                 float(object, pressure_pa(force.to_num())).rate_per_s * tick_s,
@@ -87,7 +87,8 @@ pub fn per_tick() -> f64 {
         })
     });
     worst(
-        (golden.chain(streaming)).map(|(contact, k)| 1e9 * relative(contact.per_tick.to_f64(), k)),
+        (golden.chain(streaming))
+            .map(|(contact, k)| 1e9 * relative(contact.rate_per_tick.to_f64(), k)),
     )
 }
 
@@ -138,8 +139,8 @@ fn golden() -> impl Iterator<Item = Compared> {
     rows("contact").into_iter().map(|row| {
         let t_s = number(&row, "t_s");
         let (elapsed, tick_s) = if t_s == 0.0 { (0, 1.0) } else { (1, t_s) };
-        let contact =
-            pairing(golden_material(&row), tick_s).under(log2_of_pressure(number(&row, "P_Pa")));
+        let contact = pairing(golden_material(&row), tick_s)
+            .at_pressure(log2_of_pressure(number(&row, "P_Pa")));
         let (skin_c, object_c) = (number(&row, "T_skin_i_C"), number(&row, "T_object_i_C"));
         Compared {
             fixed: contact.at(
@@ -174,7 +175,7 @@ fn swept(ratio: Option<f64>) -> impl Iterator<Item = Compared> {
         let log2_pressure = Log2::from_num(-(mean * r_m2k_w).log2() / 0.95);
         let pressure_pa = log2_pressure.to_num::<f64>().exp2() * SKIN_MICROHARDNESS_PA;
         let pairing = pairing(object, tick_s);
-        let mut fixed = pairing.under(log2_pressure);
+        let mut fixed = pairing.at_pressure(log2_pressure);
         let mut truth = reference::Contact::<f64>::new(
             (&SKIN, skin_c.to_num()),
             (object, object_c.to_num()),

@@ -1,15 +1,17 @@
 //! Functions of one number.
 
 use contact_model::fixed_point::kernel::OCTAVES;
-use contact_model::fixed_point::{ErfArgument, Log2, Rate, Ticks, erf, erfcx, exp2, log2};
+use contact_model::fixed_point::{
+    ErfArgument, Log2, MantissaExponent, Ticks, erf, erfcx, exp2, log2,
+};
 use contact_model::reference::{self, Real};
 
 use crate::golden::{number, rows};
 use crate::sweep::{UNIT, log_between, points, relative, worst};
 
 /// In units, against the largest fraction where the truth is above it.
-fn kernel_units(elapsed: u32, per_tick: Rate, truth: f64) -> f64 {
-    let e = f64::from(erfcx(Ticks::new(elapsed).expect("in range"), per_tick).to_bits());
+fn kernel_units(elapsed: u32, rate_per_tick: MantissaExponent, truth: f64) -> f64 {
+    let e = f64::from(erfcx(Ticks::new(elapsed).expect("in range"), rate_per_tick).to_bits());
     e - (truth / UNIT).min(f64::from(u32::MAX))
 }
 
@@ -31,7 +33,8 @@ pub fn kernel_anywhere() -> f64 {
     let outer = (OCTAVES.start - 8..OCTAVES.start + 1).chain(OCTAVES.end - 1..OCTAVES.end + 8);
     let golden = rows("erfcx").into_iter().filter_map(|row| {
         let z = number(&row, "x");
-        Rate::from_f64(z * z).map(|u| (z * z, kernel_units(1, u, number(&row, "erfcx"))))
+        MantissaExponent::from_f64(z * z)
+            .map(|u| (z * z, kernel_units(1, u, number(&row, "erfcx"))))
     });
     let all = outer
         .flat_map(mantissas)
@@ -44,9 +47,12 @@ pub fn kernel_anywhere() -> f64 {
 fn mantissas(octave: i32) -> impl Iterator<Item = (f64, f64)> {
     (0..4096u32).map(move |i| {
         let fraction = i << 20 | i.wrapping_mul(2_654_435_761) >> 12;
-        let per_tick = Rate::new(octave as i16, fraction);
-        let u = per_tick.to_f64();
-        (u, kernel_units(1, per_tick, reference::erfcx(u.sqrt())))
+        let rate_per_tick = MantissaExponent::new(octave as i16, fraction);
+        let u = rate_per_tick.to_f64();
+        (
+            u,
+            kernel_units(1, rate_per_tick, reference::erfcx(u.sqrt())),
+        )
     })
 }
 
@@ -54,11 +60,12 @@ fn mantissas(octave: i32) -> impl Iterator<Item = (f64, f64)> {
 fn times_and_rates() -> impl Iterator<Item = (f64, f64)> {
     points::<2>(20_000).map(|[elapsed, rate]| {
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
-        let per_tick = Rate::from_f64(log_between(rate, 1e-25, 1e20)).expect("normal");
-        let u = f64::from(elapsed) * per_tick.to_f64();
+        let rate_per_tick =
+            MantissaExponent::from_f64(log_between(rate, 1e-25, 1e20)).expect("normal");
+        let u = f64::from(elapsed) * rate_per_tick.to_f64();
         (
             u,
-            kernel_units(elapsed, per_tick, reference::erfcx(u.sqrt())),
+            kernel_units(elapsed, rate_per_tick, reference::erfcx(u.sqrt())),
         )
     })
 }
@@ -96,14 +103,15 @@ pub fn rate_from_log2() -> f64 {
         let whole = log2.floor();
         let fraction = (log2 - whole).to_num::<f64>().exp2();
         let scale = f64::from(-whole.to_num::<i32>()).exp2();
-        relative(Rate::from_log2(log2).to_f64() * scale, fraction) / UNIT
+        relative(MantissaExponent::from_log2(log2).to_f64() * scale, fraction) / UNIT
     }))
 }
 
 pub fn rate_times() -> f64 {
     worst(points::<2>(100_000).map(|[a, b]| {
-        let [a, b] =
-            [a, b].map(|part| Rate::from_f64((1000.0 * part - 500.0).exp2()).expect("normal"));
+        let [a, b] = [a, b].map(|part| {
+            MantissaExponent::from_f64((1000.0 * part - 500.0).exp2()).expect("normal")
+        });
         relative(a.times(b).to_f64(), a.to_f64() * b.to_f64()) / UNIT
     }))
 }

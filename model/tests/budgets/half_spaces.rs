@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use contact_model::fixed_point::{self, Celsius, Depth, Rate, Ticks};
+use contact_model::fixed_point::{self, Celsius, Depth, MantissaExponent, Ticks};
 use contact_model::material::{MATERIALS, Material, SKIN, find};
 use contact_model::reference::{SemiInfinite, fourier_number, interface_temperature};
 
@@ -152,9 +152,10 @@ pub fn fourier_f64() -> f64 {
 pub fn fourier_fixed() -> f64 {
     worst(points::<2>(40_000).map(|[number, elapsed]| {
         let elapsed = log_between(elapsed, 1.0, f64::from(Ticks::MAX.get())) as u32;
-        let per_tick = log_between(number, 1e-12, 1000.0) / f64::from(elapsed);
-        let per_tick = Rate::from_f64(per_tick).expect("normal");
-        let number = fixed_point::fourier_number(per_tick, Ticks::new(elapsed).expect("in range"));
-        (number.to_num::<f64>() - per_tick.to_f64() * f64::from(elapsed)) / UNIT
+        let rate_per_tick = log_between(number, 1e-12, 1000.0) / f64::from(elapsed);
+        let rate_per_tick = MantissaExponent::from_f64(rate_per_tick).expect("normal");
+        let number =
+            fixed_point::fourier_number(rate_per_tick, Ticks::new(elapsed).expect("in range"));
+        (number.to_num::<f64>() - rate_per_tick.to_f64() * f64::from(elapsed)) / UNIT
     }))
 }

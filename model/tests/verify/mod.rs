@@ -2,7 +2,7 @@
 
 pub mod proof;
 
-use contact_model::fixed_point::{Rate, Ticks, erfcx};
+use contact_model::fixed_point::{MantissaExponent, Ticks, erfcx};
 use contact_model::reference;
 use std::ops::Range;
 
@@ -47,7 +47,7 @@ pub fn exact(octave: i32, bits: f64) -> f64 {
 
 /// The kernel at an input.
 pub fn kernel(octave: i32, bits: u32) -> u32 {
-    erfcx(Ticks::ONE, Rate::new(octave as i16, bits)).to_bits()
+    erfcx(Ticks::ONE, MantissaExponent::new(octave as i16, bits)).to_bits()
 }
 
 /// Every input of `octave` in `bits`, whose ends are multiples of the block.

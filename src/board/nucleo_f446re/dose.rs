@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use thermal_display::guard::Dose;
+use thermal_display::device::safety::Dose;
 
 use super::FINGERS;
 use super::record::check;

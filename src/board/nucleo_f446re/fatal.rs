@@ -8,7 +8,7 @@ use core::sync::atomic::{AtomicBool, Ordering};
 
 use cortex_m_rt::{ExceptionFrame, exception};
 
-use thermal_display::guard::{Cause, Fault};
+use thermal_display::device::safety::{Cause, Fault};
 
 use super::{record, watchdog, wiring};
 

@@ -42,9 +42,11 @@ use heapless::spsc::{Producer, Queue};
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use thermal_display::commission::Desk;
-use thermal_display::guard::{Cause, Fault};
-use thermal_display::protocol::{Addressed, Error, Reason, Reply, Telemetry};
+use thermal_display::device::Telemetry;
+use thermal_display::device::command::Addressed;
+use thermal_display::device::safety::{Cause, Fault};
+use thermal_display::mailbox::Mailbox;
+use thermal_display::protocol::{Desk, Error, Reason, Reply};
 use thermal_display::settings::Settings;
 
 pub use dose::{keep as keep_dose, kept as kept_dose};
@@ -63,7 +65,6 @@ pub use window::WindowWatchdog;
 pub use wiring::{FINGERS, PowerStage};
 
 use super::console::Console;
-use super::mailbox::Mailbox;
 use reset::Reset;
 use timekeeper::Timekeeper;
 
@@ -235,7 +236,7 @@ impl Board {
         });
         // The answer to the line that the device was started anew by.
         let first = found.stored.as_ref().map(|stored| match stored {
-            Ok(()) => Ok(Reply::Done),
+            Ok(()) => Ok(Reply::DONE),
             Err(error) => Err(Error::NotStored(Reason::of(error))),
         });
         let console = Console::new(outlet, telemetry_out, outbox, desk, first);

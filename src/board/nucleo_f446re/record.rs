@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use thermal_display::guard::Cause;
+use thermal_display::device::safety::Cause;
 
 use super::reset::Reset;
 

@@ -1,7 +1,7 @@
 //! Why the processor started.
 
 use stm32f4xx_hal::pac::RCC;
-use thermal_display::guard::Fault;
+use thermal_display::device::safety::Fault;
 
 /// What reset it (RM0390, 6.3.21).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]

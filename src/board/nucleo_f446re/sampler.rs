@@ -16,9 +16,9 @@ use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, DMA2, TIM2, tim2};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::timer::{CounterHz, Timer};
-use thermal_display::TICK_HZ;
-use thermal_display::guard::Fault;
-use thermal_display::sense::{CHANNELS, SCANS_PER_TICK, Scan};
+use thermal_display::device::TICK_HZ;
+use thermal_display::device::safety::Fault;
+use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Scan};
 
 use super::log;
 use super::timekeeper::Timekeeper;

@@ -18,7 +18,7 @@ use stm32f4xx_hal::serial::{Config, Rx, RxListen, Serial, Tx, config};
 use stm32f4xx_hal::{ClearFlags, ReadFlags, nb};
 use thermal_display::protocol::{ANSWER_MAX, LineError, LineReader};
 
-use crate::board::mailbox::Inlet;
+use thermal_display::mailbox::Inlet;
 
 /// Bits per second. A telemetry line a millisecond needs more than the usual 115 200; both ends divide their
 /// clocks to this rate exactly.

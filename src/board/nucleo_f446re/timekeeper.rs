@@ -10,8 +10,8 @@
 use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use stm32f4xx_hal::pac::RCC;
-use thermal_display::TICK_HZ;
-use thermal_display::guard::Pace;
+use thermal_display::device::TICK_HZ;
+use thermal_display::device::safety::Pace;
 
 use super::sampler::SampleError;
 use super::wiring::FINGERS;

@@ -3,7 +3,7 @@
 use image_tests::on_image;
 use system_tests::{between, forces, host, scene, worst_k};
 use thermal_campaigns::fidelity::Scenario;
-use thermal_display::control::Law;
+use thermal_display::device::control::Law;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 

@@ -1,8 +1,8 @@
 //! Test bench: a controller on the simulated tile, read through a thermistor that is a first-order lag.
 
 use contact_model::fixed_point::Celsius;
-use thermal_display::control::{Control, Watt};
-use thermal_display::guard::Setpoint;
+use thermal_display::device::control::{Control, Watt};
+use thermal_display::device::safety::Setpoint;
 use thermal_display::settings::{self, Settings};
 use thermal_plant::STEP_S;
 use thermal_plant::bridge::Current;

@@ -1,6 +1,6 @@
 //! Bumpless transfer: gains and controllers that change while a finger is on the display.
 
-use thermal_display::control::{Law, Tuned};
+use thermal_display::device::control::{Law, Tuned};
 use thermal_display::settings::Tile;
 
 use super::bench::{Bench, IDENTIFIED, settings_of};

@@ -1,7 +1,7 @@
 //! The model-based controller, [`Law::Model`], on the simulated tile: finite volumes in `f64`, independent of the controller's
 //! own plate model.
 //!
-//! [`Law::Model`]: thermal_display::control::Law
+//! [`Law::Model`]: thermal_display::device::control::Law
 
 mod bench;
 mod gain_and_law_changes;

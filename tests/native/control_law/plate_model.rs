@@ -4,7 +4,7 @@
 //! that reads what the model predicts leaves no innovation.
 
 use contact_model::fixed_point::Celsius;
-use thermal_display::control::Control;
+use thermal_display::device::control::Control;
 use thermal_plant::tile::{Tile, TileParams, ZERO_C_K};
 
 use super::bench::{ROOM_C, Sensor, advance, settings, step, ticks};

@@ -1,7 +1,7 @@
 //! The cooling current is limited by the temperature of the sink.
 
 use contact_model::fixed_point::Celsius;
-use thermal_display::control::Control;
+use thermal_display::device::control::Control;
 use thermal_display::settings::Settings;
 
 use super::bench::step;

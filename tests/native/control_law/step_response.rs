@@ -1,6 +1,6 @@
 //! Responses to steps of the target and of the load.
 
-use thermal_display::drive::Current;
+use thermal_display::device::drive::Current;
 use thermal_plant::tile::TileParams;
 
 use super::bench::{Bench, settings, settled, ticks};

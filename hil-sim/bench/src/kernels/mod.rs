@@ -8,7 +8,7 @@ mod one_polynomial;
 mod root;
 mod tables;
 
-use contact_model::fixed_point::{Fraction, Rate, Ticks, erfcx};
+use contact_model::fixed_point::{Fraction, MantissaExponent, Ticks, erfcx};
 
 use crate::inputs::Input;
 
@@ -29,7 +29,7 @@ pub struct Kernel {
 }
 
 /// The firmware's kernel as a function of its own.
-fn firmware(elapsed: Ticks, per_tick: Rate) -> Fraction {
+fn firmware(elapsed: Ticks, per_tick: MantissaExponent) -> Fraction {
     erfcx(elapsed, per_tick)
 }
 
@@ -48,7 +48,7 @@ pub enum Table {
 #[derive(Clone, Copy)]
 pub enum Call {
     /// Integers.
-    Fixed(fn(Ticks, Rate) -> Fraction),
+    Fixed(fn(Ticks, MantissaExponent) -> Fraction),
     /// Single precision, the width of the FPU.
     Single(fn(u32, f32) -> f32),
     /// Double precision, in software on this microcontroller.
@@ -98,7 +98,7 @@ pub const ONLY_RETURN: [&str; 4] = [
 ];
 
 #[inline(never)]
-fn only_return_fixed(elapsed: Ticks, _: Rate) -> Fraction {
+fn only_return_fixed(elapsed: Ticks, _: MantissaExponent) -> Fraction {
     Fraction::from_bits(elapsed.get())
 }
 

@@ -1,12 +1,12 @@
 //! The fewest bytes: one polynomial for all `z`.
-use contact_model::fixed_point::{Fraction, Rate, Ticks};
+use contact_model::fixed_point::{Fraction, MantissaExponent, Ticks};
 
 use super::coefficients::ONE_POLYNOMIAL;
 use super::root::sqrt;
 
 /// Degree 14 in `y = 1 / (1 + z / 2)`: a Horner chain of 32-bit high multiplications on a root and a reciprocal of
 /// 32 bits, both found by the FPU to 24 bits and then improved by a step of Newton's in integers.
-pub(super) fn one_polynomial(elapsed: Ticks, per_tick: Rate) -> Fraction {
+pub(super) fn one_polynomial(elapsed: Ticks, per_tick: MantissaExponent) -> Fraction {
     let product = u64::from(elapsed.get()) * (1 << 32 | u64::from(per_tick.fraction()));
     let zeros = product.leading_zeros();
     // u = square 2^exponent with an even exponent and square in 2^62..2^64, so z = root 2^(exponent / 2) with root

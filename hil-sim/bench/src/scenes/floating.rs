@@ -1,6 +1,6 @@
 //! A finger in floating point.
 use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, SKIN_MICROHARDNESS_PA};
-use contact_model::pressure::{STATED, pressure_pa};
+use contact_model::pressure::{THESIS_PRESSURES, pressure_pa};
 use contact_model::reference::{Contact, Real};
 
 use super::{FORCE_N, OBJECT_C, SKIN_C, TICK_S};
@@ -37,7 +37,7 @@ pub(super) struct Finger<F> {
     /// `b² dt` at `P = H`.
     per_tick_at_hardness: F,
     /// Stated forces (N) and contact areas (m²).
-    areas: [(F, F); STATED.len()],
+    areas: [(F, F); THESIS_PRESSURES.len()],
     /// What the last step found.
     pub(super) set_point_c: F,
 }
@@ -61,7 +61,7 @@ impl<F: Native> Finger<F> {
             ratio: F::from_f64(contact.ratio),
             per_tick: F::from_f64(contact.rate_per_s * TICK_S),
             per_tick_at_hardness: F::from_f64(under(SKIN_MICROHARDNESS_PA).rate_per_s * TICK_S),
-            areas: STATED
+            areas: THESIS_PRESSURES
                 .map(|(force, pressure)| (F::from_f64(force), F::from_f64(force / pressure))),
             set_point_c: F::from_f64(0.0),
         }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use thermal_display::guard::Fault;
+use thermal_display::device::safety::Fault;
 use thermal_sim::processor::MachineFault;
 use thermal_sim::scene::{Broken, FaultKind, Sensor};
 

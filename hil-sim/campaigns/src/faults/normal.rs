@@ -6,7 +6,7 @@ use contact_model::material::MATERIALS;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
-use thermal_display::control::Law;
+use thermal_display::device::control::Law;
 use thermal_plant::parameters::stream;
 use thermal_sim::Device;
 use thermal_sim::metrics::Range;

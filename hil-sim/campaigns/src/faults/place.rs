@@ -3,8 +3,8 @@
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
-use thermal_display::control::Law;
-use thermal_display::guard::Fault;
+use thermal_display::device::control::Law;
+use thermal_display::device::safety::Fault;
 
 use super::script;
 

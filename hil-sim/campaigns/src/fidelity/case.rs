@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use contact_model::material::Surface;
-use thermal_display::control::Law;
+use thermal_display::device::control::Law;
 use thermal_sim::scene::{Scene, SceneError};
 
 use super::{Measure, Scenario, Thing};

@@ -1,9 +1,9 @@
 //! The box of plants that a device may turn out to be, drawn by seed.
 
 use contact_model::material::MATERIALS;
-use contact_model::pressure::STATED;
+use contact_model::pressure::THESIS_PRESSURES;
 use serde::Serialize;
-use thermal_display::control::Law;
+use thermal_display::device::control::Law;
 use thermal_plant::Params;
 use thermal_plant::parameters::{self, Tolerance, absolute, all, between, relative, stream};
 use thermal_sim::Device;
@@ -83,7 +83,7 @@ impl Draw {
                 plant.push((TWIN.1.to_owned(), value));
             }
         }
-        let pairs = (MATERIALS.len() * STATED.len()) as u64;
+        let pairs = (MATERIALS.len() * THESIS_PRESSURES.len()) as u64;
         let mut cases = Scenario::A.cases();
         Self {
             number,

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use serde::Serialize;
-use thermal_display::control::Law;
+use thermal_display::device::control::Law;
 use thermal_sim::Device;
 use thermal_sim::metrics::{Figures, skin_errors};
 use thermal_sim::run::Outcome;

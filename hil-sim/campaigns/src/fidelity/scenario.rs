@@ -1,6 +1,6 @@
 //! The scenarios.
 
-use contact_model::pressure::STATED;
+use contact_model::pressure::THESIS_PRESSURES;
 
 use super::case::ROOM_C;
 use super::things::UNSEEN;
@@ -145,7 +145,7 @@ impl Scenario {
     fn unseen(self) -> Vec<Case> {
         let mut cases = Vec::new();
         for thing in UNSEEN {
-            cases.extend(STATED.map(|(force_n, _)| self.lands(thing, force_n)));
+            cases.extend(THESIS_PRESSURES.map(|(force_n, _)| self.lands(thing, force_n)));
         }
         for thing in FOUR.map(Thing::known) {
             cases.push(Case {
@@ -175,7 +175,7 @@ impl Scenario {
 fn each_force(case: impl Fn(Thing, f64) -> Case) -> Vec<Case> {
     let case = &case;
     Thing::thesis()
-        .flat_map(|thing| STATED.map(move |(force_n, _)| case(thing, force_n)))
+        .flat_map(|thing| THESIS_PRESSURES.map(move |(force_n, _)| case(thing, force_n)))
         .collect()
 }
 

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use thermal_campaigns::faults::{Breach, Entry, Injected, Place, Right, Sign, Trial, entries};
-use thermal_display::guard::Fault;
+use thermal_display::device::safety::Fault;
 use thermal_sim::NativeDevice;
 use thermal_sim::scene::{FaultKind, ProcessorKind};
 

@@ -4,12 +4,13 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::fmt::Display;
 
-use thermal_display::Hand;
-use thermal_display::commission::{Desk, Order};
-use thermal_display::drive::{Drive, Outputs};
-use thermal_display::guard::{Cause, Dose, Fault};
-use thermal_display::protocol::{Addressed, Error, LineReader, Reply};
-use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
+use thermal_display::device::Device;
+use thermal_display::commissioning::StorageOrder;
+use thermal_display::device::drive::{Drive, Outputs};
+use thermal_display::device::safety::{Cause, Dose, Fault};
+use thermal_display::device::command::Addressed;
+use thermal_display::protocol::{Desk, Error, LineReader, Reply, telemetry_line};
+use thermal_display::device::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::{Kept, Settings, decode};
 use thermal_plant::bridge::{Leg, Legs};
 use thermal_plant::sensors::Channel;
@@ -45,7 +46,7 @@ const SCANS_IN_FIRST_HALF: usize = 8;
 pub struct Native {
     world: World,
     desk: Desk<1>,
-    hand: Hand<1>,
+    device: Device<1>,
     reader: LineReader,
     /// Bytes on their way to the device, and when they arrive.
     incoming: VecDeque<(u64, u8)>,
@@ -86,7 +87,7 @@ impl Native {
         let mut native = Self {
             world,
             desk: Desk::new(settings),
-            hand: Hand::new(&settings),
+            device: Device::new(&settings),
             reader: LineReader::new(),
             incoming: VecDeque::new(),
             outgoing: Vec::new(),
@@ -130,17 +131,17 @@ impl Native {
         self.serve((self.halves - 1) * HALF_NS + TICK_NS);
         let samples = Samples::from_scans(&self.scans, self.fault);
         self.fault = self.world.bridge_fault();
-        self.outputs = self.hand.step(0, &samples);
+        self.outputs = self.device.step(0, &samples);
         self.world.comparator_test(self.outputs.comparator_test);
-        if let Some(telemetry) = self.hand.telemetry(0) {
-            self.answer(&telemetry);
+        if let Some(telemetry) = self.device.telemetry(0) {
+            self.answer(&telemetry_line(telemetry));
         }
     }
 
     /// The logic as after power-up, with the bridge off, and with what the board has kept of a fault and the dose. It starts at once:
     /// what the board needs for that is not here.
     fn restart(&mut self, cause: ResetCause) {
-        let tripped = self.hand.tripped().copied();
+        let tripped = self.device.tripped().copied();
         let kept = match cause {
             ResetCause::PowerOn => None,
             ResetCause::WindowWatchdog => tripped.or(Some(Cause::alone(Fault::TickLost))),
@@ -148,14 +149,14 @@ impl Native {
         };
         let dose = match cause {
             ResetCause::PowerOn => Dose::default(),
-            _ => Dose::from_word(self.hand.dose(0).to_word()),
+            _ => Dose::from_word(self.device.dose(0).to_word()),
         };
         let settings = Settings::default();
-        self.hand = Hand::after(kept, &settings);
-        self.hand.resume(0, dose);
+        self.device = Device::after(kept, &settings);
+        self.device.resume(0, dose);
         self.desk = match &self.stored {
             Some(stored) => {
-                self.hand.restore(stored);
+                self.device.restore(stored);
                 Desk::restored(stored)
             }
             None => Desk::new(settings),
@@ -173,7 +174,7 @@ impl Native {
     }
 
     /// Starts anew, with what is stored by then; how long that takes is left out.
-    fn obey(&mut self, order: Order) {
+    fn obey(&mut self, order: StorageOrder) {
         self.stored = decode(&self.desk.record(order)).ok().flatten();
         self.restart(ResetCause::Software);
     }
@@ -182,7 +183,7 @@ impl Native {
     fn serve(&mut self, now_ns: u64) {
         while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
             if LineReader::is_end(byte) {
-                self.hand.hear();
+                self.device.hear();
             }
             let Some(line) = self.reader.push(byte) else {
                 continue;
@@ -191,7 +192,7 @@ impl Native {
                 .map_err(|error| Addressed::device(Error::from(error)))
                 .and_then(|line| {
                     self.desk
-                        .answer(&line, |request| self.hand.execute(request))
+                        .answer(&line, |request| self.device.execute(request))
                 });
             if let Ok(Addressed {
                 said: Reply::Restart(order),

@@ -3,9 +3,9 @@
 use std::ops::Range;
 use std::path::Path;
 
-use thermal_display::control::Law;
-use thermal_display::guard::Setpoint;
-use thermal_display::render::Mode;
+use thermal_display::device::control::Law;
+use thermal_display::device::safety::Setpoint;
+use thermal_display::device::reference::Mode;
 use thermal_plant::{ConfigError, Plant};
 use toml::Spanned;
 

@@ -1,6 +1,6 @@
 //! Section 6.4: pressures, the fall of the skin's temperature on BaF2 and ZnS, and how soon it is steady.
 
-use contact_model::pressure::{STATED, contact_area_m2};
+use contact_model::pressure::{THESIS_PRESSURES, contact_area_m2};
 
 use crate::case::{Case, sample};
 use crate::row::{Correction, Row};
@@ -40,7 +40,7 @@ pub(super) fn pressures() -> Vec<Row> {
     let growth = area_mm2(2.0) - area_mm2(0.1);
     let below_1n = (area_mm2(1.0) - area_mm2(0.1)) / growth * 100.0;
     let stated = [730.0, 1680.0, 3140.0, 5900.0, 10_980.0];
-    let pressures = STATED
+    let pressures = THESIS_PRESSURES
         .iter()
         .zip(stated)
         .map(|((force_n, pressure_pa), stated)| {
@@ -75,7 +75,7 @@ pub(super) fn pressures() -> Vec<Row> {
 /// Figures 6-13 and 6-19: model falls within 10 s beside what the text says of model and measurement.
 pub(super) fn falls() -> Vec<Row> {
     let [baf2, zns] = WINDOWS.map(sample);
-    let firmest_pa = STATED[4].1;
+    let firmest_pa = THESIS_PRESSURES[4].1;
     let fall = |window, pressure_pa| Case::validation(window, pressure_pa).drop_k(10.0);
     let mut rows = vec![Row::new(
         "Figure 6-13",
@@ -88,8 +88,8 @@ pub(super) fn falls() -> Vec<Row> {
         fall(&zns, firmest_pa) - fall(&baf2, firmest_pa),
     )];
     for window in [&baf2, &zns] {
-        let falls = STATED.map(|(_, pressure_pa)| fall(window, pressure_pa));
-        for ((_, pressure_pa), fall_k) in STATED.iter().zip(falls) {
+        let falls = THESIS_PRESSURES.map(|(_, pressure_pa)| fall(window, pressure_pa));
+        for ((_, pressure_pa), fall_k) in THESIS_PRESSURES.iter().zip(falls) {
             let (what, stated) = match pressure_pa * 1e-3 {
                 // Underestimated: below all that was measured.
                 kpa if kpa < 1.0 => ("model below the measured 3 to 5 K", Stated::Below(3.0)),
@@ -114,8 +114,9 @@ pub(super) fn falls() -> Vec<Row> {
                 fall_k,
             ));
         }
-        let slope =
-            |from: usize, to: usize| (falls[to] - falls[from]) / (STATED[to].1 - STATED[from].1);
+        let slope = |from: usize, to: usize| {
+            (falls[to] - falls[from]) / (THESIS_PRESSURES[to].1 - THESIS_PRESSURES[from].1)
+        };
         rows.push(Row::new(
             "Figure 6-19",
             format!(
@@ -139,7 +140,7 @@ pub(super) fn steadiness() -> Vec<Row> {
     ];
     let mut rows = Vec::new();
     for (window, corrected) in WINDOWS.map(sample).iter().zip(corrected) {
-        for ((_, pressure_pa), corrected) in STATED.iter().zip(corrected) {
+        for ((_, pressure_pa), corrected) in THESIS_PRESSURES.iter().zip(corrected) {
             let case = Case::validation(window, *pressure_pa);
             let row = Row::new(
                 "Figure 6-20",

@@ -1,6 +1,6 @@
 //! Figure 3-2 and the simulations of section 6.3.
 
-use contact_model::pressure::{STATED, pressure_pa};
+use contact_model::pressure::{THESIS_PRESSURES, pressure_pa};
 
 use super::{Curve, END_S, FLUX, Figure, Kind, TEMPERATURE, TIME, over_time, times_s};
 use crate::case::{Case, Source, Surfaces, five, sample};
@@ -153,7 +153,7 @@ pub(super) fn figures_6_11_and_6_12(source: &dyn Source) -> anyhow::Result<[Figu
             case.object.surface.roughness_um = roughness_um;
             flux(&case, format!("Rq {roughness_um} µm, {finish}"), group)
         });
-    let pressed = STATED[2..]
+    let pressed = THESIS_PRESSURES[2..]
         .iter()
         .enumerate()
         .map(|(group, (force_n, stated_pa))| {

@@ -1,6 +1,6 @@
 //! BaF2 and ZnS, section 6.4.
 
-use contact_model::pressure::STATED;
+use contact_model::pressure::THESIS_PRESSURES;
 
 use super::{Curve, END_S, FLUX, Figure, Kind, TEMPERATURE, TIME, over_time};
 use crate::case::{Case, Sample, Source, sample};
@@ -14,7 +14,7 @@ const PRESSURES: (u32, f64) = (60, 12e3);
 /// Under 2 N; the thesis does not say at which pressure it drew it.
 pub(super) fn figure_6_13(source: &dyn Source) -> anyhow::Result<[Figure; 2]> {
     let (mut temperatures, mut fluxes) = (Vec::new(), Vec::new());
-    let pressure_pa = STATED[4].1;
+    let pressure_pa = THESIS_PRESSURES[4].1;
     for (group, (key, ..)) in WINDOWS.iter().enumerate() {
         let window = sample(key);
         let case = Case::validation(&window, pressure_pa);
@@ -62,7 +62,7 @@ pub(super) fn figure_6_19(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
         let window = sample(key);
         let (steps, highest_pa) = PRESSURES;
         let any = (1..=steps).map(|i| highest_pa * f64::from(i) / f64::from(steps));
-        let measured = STATED.map(|(_, pressure_pa)| pressure_pa);
+        let measured = THESIS_PRESSURES.map(|(_, pressure_pa)| pressure_pa);
         Ok(Figure {
             number,
             title: format!(
@@ -112,7 +112,7 @@ fn falls(
 pub(super) fn figure_6_20(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
     let figure = |(key, _, number): (&'static str, _, _)| {
         let window = sample(key);
-        let curves = STATED
+        let curves = THESIS_PRESSURES
             .iter()
             .enumerate()
             .map(|(group, (force_n, pressure_pa))| {

@@ -10,10 +10,10 @@ use stm32f4xx_hal::pac::{TIM1, TIM8, TIM10, TIM11};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::timer::ErasedChannel;
-use thermal_display::drive::{Drive, Outputs};
+use thermal_display::device::drive::{Drive, Outputs};
 
 use super::FINGERS;
-use crate::board::bridge::Bridge;
+use thermal_display::bridge::Bridge;
 
 /// PWM frequency in kHz, as for one finger: the filters and what dead time takes are made for it. 1875 steps.
 const PWM_KHZ: u32 = 96;

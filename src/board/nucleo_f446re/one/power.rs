@@ -5,9 +5,9 @@ use stm32f4xx_hal::pac::TIM1;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::timer::{C1, C2, PwmChannel};
-use thermal_display::drive::{Drive, Outputs};
+use thermal_display::device::drive::{Drive, Outputs};
 
-use crate::board::bridge::Bridge;
+use thermal_display::bridge::Bridge;
 
 /// PWM frequency in kHz: exactly six periods a scan, so that every conversion sees the same phase of the
 /// ripple and no beat reaches the control band; 1875 steps of 5.6 ns.

@@ -5,7 +5,7 @@ mod interruption;
 use image_tests::{Bare, START, image};
 use stm32_emulator::Firmware;
 use system_tests::flash::{append, changes_page, erased, numbered, saved};
-use thermal_display::commission::Desk;
+use thermal_display::commissioning::Desk;
 use thermal_display::settings::{Kept, LONGEST, encode};
 use thermal_sim::Cells;
 use thermal_sim::processor::ResetCause;

@@ -1,6 +1,6 @@
 //! What cools the sink. Nothing here holds the sink above what hurts: no device could keep a finger from that.
 
-use thermal_display::guard::Fault;
+use thermal_display::device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
 use crate::faults::entry::valued;

@@ -1,6 +1,6 @@
 //! Bridge, supply, mirror, comparator.
 
-use thermal_display::guard::Fault;
+use thermal_display::device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
 use crate::faults::entry::{broken, valued};

@@ -1,6 +1,6 @@
 //! The host, and what it says.
 
-use thermal_display::guard::Fault;
+use thermal_display::device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
 use crate::faults::entry::broken;

@@ -1,6 +1,6 @@
 //! The microcontroller: core, clock, memory, peripherals, supply.
 
-use thermal_display::guard::Fault;
+use thermal_display::device::safety::Fault;
 use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::MachineFault as Fails;
 

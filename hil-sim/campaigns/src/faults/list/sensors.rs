@@ -1,6 +1,6 @@
 //! Thermistors, force sensor, converter.
 
-use thermal_display::guard::Fault;
+use thermal_display::device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 use thermal_sim::scene::Sensor::{Check, Display, Room, Sink, Skin};
 

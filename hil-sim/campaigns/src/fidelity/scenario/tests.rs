@@ -1,7 +1,7 @@
 //! The scenes are those that the scenarios promise.
 
 use contact_model::material::MATERIALS;
-use thermal_display::control::Law;
+use thermal_display::device::control::Law;
 use thermal_sim::scene::Scene;
 
 use super::*;

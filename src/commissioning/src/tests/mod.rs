@@ -1,0 +1,5 @@
+//! What commissioning finds, against equations and numbers from elsewhere.
+
+mod margins;
+mod solve;
+mod tune;

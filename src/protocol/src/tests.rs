@@ -1,0 +1,232 @@
+//! Lines in, answers out.
+
+use proptest::prelude::*;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use contact_model::fixed_point::{Celsius, Force};
+
+use super::{ANSWER_MAX, Error, LINE_MAX, LineError, LineReader, Parsed, Reply, TelemetryLine};
+use thermal_commissioning::NoTile;
+use thermal_device::Telemetry;
+use thermal_device::command::{self, Command, Status};
+use thermal_device::control::Law;
+use thermal_device::drive::Current;
+use thermal_device::reference::Mode;
+use thermal_device::safety::{Fault, State};
+use thermal_settings::Settings;
+
+fn parse(line: &str) -> Result<Parsed, Error> {
+    Parsed::parse(line, &Settings::default())
+}
+
+fn refusal(line: &str) -> String {
+    let answer = parse(line).expect_err(line).to_string();
+    assert!(answer.len() <= ANSWER_MAX, "{answer}");
+    answer
+}
+
+#[test]
+fn every_command_is_understood() {
+    assert_eq!(parse("id"), Ok(Parsed::Identify));
+    for (line, command) in [
+        ("state", Command::Status),
+        ("stream 0", Command::Stream { interval_ms: 0 }),
+        (
+            " stream  60000 ",
+            Command::Stream {
+                interval_ms: 60_000,
+            },
+        ),
+        ("object room", Command::Object(None)),
+        ("object -20", Command::Object(Some(Celsius::lit("-20")))),
+        ("object 23.25", Command::Object(Some(Celsius::lit("23.25")))),
+        ("law", Command::Law(None)),
+        ("law pi-10hz", Command::Law(Some(Law::Pi10Hz))),
+        ("law pi", Command::Law(Some(Law::Pi))),
+        ("mode contact", Command::Mode(Mode::ContactResistance)),
+        ("mode semi-infinite", Command::Mode(Mode::SemiInfinite)),
+        ("arm", Command::Arm),
+        ("start", Command::Start),
+        ("abort", Command::Abort),
+        ("clear", Command::Clear),
+    ] {
+        assert_eq!(parse(line), Ok(Parsed::Station(command)), "{line}");
+    }
+    // Copper by name and by its properties.
+    let of = |line| match parse(line) {
+        Ok(Parsed::Station(Command::Material { pair, .. })) => pair,
+        other => panic!("{line}: {other:?}"),
+    };
+    let (named, custom) = (
+        of("material copper"),
+        of("material custom 398 8954 384 0.31 0.045"),
+    );
+    assert!((named.ratio().to_num::<f64>() - custom.ratio().to_num::<f64>()).abs() < 1e-5);
+}
+
+#[test]
+fn both_ends_of_each_range_are_allowed() {
+    for line in [
+        "object 60",
+        "material custom 0.001 1 10 0.001 0.0001",
+        "material custom 5000 30000 10000 1000 1.5",
+    ] {
+        assert!(parse(line).is_ok(), "{}", refusal(line));
+    }
+}
+
+#[test]
+fn every_bad_line_is_told_what_is_wrong_and_what_is_allowed() {
+    for (line, answer) in [
+        (
+            "fly",
+            "err unknown command 'fly'; known: id state stream material object mode law arm hold start abort clear cause \
+             calibrate tune margins settings set save forget",
+        ),
+        (
+            "material unobtainium-of-the-first-kind",
+            "err unknown material 'unobtainium-of-the-f'; known: copper bronze stainless-steel granite g10 abs foam \
+             baf2 zns custom",
+        ),
+        (
+            "mode x",
+            "err unknown mode 'x'; known: contact semi-infinite",
+        ),
+        ("law x", "err unknown law 'x'; known: pi-10hz pi model"),
+        (" ", "err command missing"),
+        ("stream", "err interval missing"),
+        ("object", "err object temperature missing"),
+        ("material", "err material missing"),
+        ("material custom 1 1", "err specific heat missing"),
+        ("mode", "err mode missing"),
+        ("arm now", "err unexpected 'now' after the command"),
+        ("object room 3", "err unexpected '3' after the command"),
+        (
+            "object warm",
+            "err object temperature 'warm' is not a decimal number; -20 to 60 C",
+        ),
+        (
+            "object nan",
+            "err object temperature 'nan' is not a decimal number; -20 to 60 C",
+        ),
+        (
+            "object inf",
+            "err object temperature 'inf' is not a decimal number; -20 to 60 C",
+        ),
+        (
+            "object 60.001",
+            "err object temperature '60.001' out of range; -20 to 60 C",
+        ),
+        ("stream -1", "err interval '-1' out of range; 0 to 60000 ms"),
+        (
+            "stream 99999999999999999999999",
+            "err interval '99999999999999999999' out of range; 0 to 60000 ms",
+        ),
+        (
+            "material custom 0 1 10 1 0.1",
+            "err conductivity '0' out of range; 0.001 to 5000 W/mK",
+        ),
+    ] {
+        assert_eq!(refusal(line), answer);
+    }
+}
+
+/// What a reader makes of bytes.
+fn read(bytes: impl IntoIterator<Item = u8>) -> Vec<Result<String, LineError>> {
+    let mut reader = LineReader::new();
+    let lines = bytes.into_iter().filter_map(|byte| reader.push(byte));
+    lines
+        .map(|line| line.map(|line| line.to_string()))
+        .collect()
+}
+
+#[test]
+fn bad_bytes_spoil_their_line_only() {
+    let line = |text: &str| Ok(text.to_string());
+    assert_eq!(read(*b"arm\r\n\n\rid\n"), [line("arm"), line("id")]);
+    assert_eq!(
+        read(*b"a\xffrm\nid\n"),
+        [Err(LineError::NotText(0xff)), line("id")]
+    );
+    let full = "x".repeat(LINE_MAX);
+    let bytes = [full.as_str(), "\n", &full, "x\nid\n"].concat();
+    assert_eq!(
+        read(bytes.bytes()),
+        [line(&full), Err(LineError::TooLong), line("id")]
+    );
+    assert_eq!(
+        Error::from(LineError::TooLong).to_string(),
+        "err line too long; at most 96 bytes"
+    );
+}
+
+proptest! {
+    #[test]
+    fn a_good_line_is_understood_after_any_bytes(garbage in prop::collection::vec(any::<u8>(), 0..300)) {
+        let lines = read(garbage.into_iter().chain(*b"\nobject 25\n"));
+        prop_assert_eq!(lines.last(), Some(&Ok("object 25".to_string())));
+        for line in lines.into_iter().flatten() {
+            if let Err(error) = parse(&line) {
+                prop_assert!(error.to_string().len() <= ANSWER_MAX);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_longest_lines_fit() {
+    let tripped = State::Tripped(Fault::DisplayShort);
+    let status = Status {
+        state: tripped,
+        material: Some("stainless-steel"),
+        object: Some(Celsius::MIN),
+        mode: Mode::SemiInfinite,
+        setpoint: Some(Celsius::MIN),
+        limited: true,
+    };
+    let answer = Reply::Station(command::Reply::Status(status)).to_string();
+    assert!(
+        answer.len() <= ANSWER_MAX && answer.ends_with(" limited"),
+        "{answer}"
+    );
+    let unknown = refusal(&"x".repeat(LINE_MAX));
+    assert!(
+        unknown.len() == ANSWER_MAX && unknown.ends_with(" forget"),
+        "{unknown}"
+    );
+
+    let longest = Telemetry {
+        tick: u32::MAX,
+        state: tripped,
+        setpoint: Some(Celsius::MIN),
+        limited: true,
+        display: Some(Celsius::MIN),
+        sink: Some(Celsius::MIN),
+        skin: Some(Celsius::MIN),
+        room: Some(Celsius::MIN),
+        force: Some(Force::MAX),
+        demand: Current::MIN,
+        current: Current::MIN,
+        evaluations: u32::MAX,
+    };
+    let line = TelemetryLine(longest).to_string();
+    assert!(
+        line.len() <= ANSWER_MAX && line.ends_with(" display-short"),
+        "{line}"
+    );
+}
+
+#[test]
+fn every_refusal_of_an_identification_fits_a_line() {
+    let number = -123_456.789;
+    for no_tile in [
+        NoTile::Current(number),
+        NoTile::Nothing,
+        NoTile::Unlike(number),
+        NoTile::Beyond(&thermal_settings::TILE_RANGES[1], number),
+    ] {
+        let answer = Error::NoTile(no_tile).to_string();
+        assert!(answer.len() <= ANSWER_MAX, "{answer}");
+    }
+}

@@ -1,0 +1,186 @@
+//! Lines to five fingers, and what each of them makes of its own samples.
+
+use std::format;
+use std::string::{String, ToString};
+
+use crate::device::Device;
+use crate::device::drive::Drive;
+use crate::device::sense::SCANS_PER_TICK;
+use crate::device::sense::Samples;
+use crate::protocol::{Desk, telemetry_line};
+use crate::settings::Settings;
+
+const FIVE: usize = 5;
+
+fn host<const FINGERS: usize>(device: &mut Device<FINGERS>, line: &str) -> String {
+    let mut desk = Desk::<FINGERS>::new(Settings::default());
+    let done = desk.answer(line, |request| device.execute(request));
+    done.map_or_else(|error| error.to_string(), |reply| reply.to_string())
+}
+
+/// Samples without a fault: 26 °C, but for the skin at 34 °C; no force. `noise` keeps them from repeating.
+pub fn samples(noise: u16) -> Samples {
+    let count = |counts: u16| counts * SCANS_PER_TICK as u16;
+    Samples {
+        display: count(2000) + noise,
+        display_check: count(2000) + noise,
+        sink: count(2000) + noise,
+        skin: count(1650) + noise,
+        room: count(2000) + noise,
+        force: count(410) + noise,
+        current: 0,
+        bridge_fault: false,
+    }
+}
+
+/// Arms a finger, whose display answers to current, and whose comparator works.
+pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: usize) {
+    host(device, &format!("@{finger} arm"));
+    // 46 counts to the kelvin, 2.7 K/s per ampere.
+    let (mut tick, mut cooler, mut current, mut bridge_fault) = (0, 0.0, 0, false);
+    while host(device, &format!("@{finger} state")).contains("state=self-test") {
+        tick += 1;
+        let sound = samples(tick % 2);
+        let moved = (cooler * 46.0 * 16.0) as i16;
+        let outputs = device.step(
+            finger,
+            &Samples {
+                display: sound.display.wrapping_add_signed(moved),
+                display_check: sound.display_check.wrapping_add_signed(moved),
+                current,
+                bridge_fault,
+                ..sound
+            },
+        );
+        let asked = match outputs.drive {
+            Drive::On(duty) if duty.fraction() > 0.05 => 1,
+            Drive::On(duty) if duty.fraction() < -0.05 => -1,
+            _ => 0,
+        };
+        cooler += 2.7e-3 * f64::from(asked);
+        current = 6400 * u16::from(asked != 0);
+        bridge_fault = outputs.comparator_test;
+    }
+}
+
+fn state_of(device: &mut Device<FIVE>, finger: usize) -> String {
+    let answer = host(device, &format!("@{finger} state"));
+    let words = answer
+        .strip_prefix(&format!("@{finger} ok state="))
+        .expect("an answer");
+    words.split(' ').next().expect("a state").into()
+}
+
+#[test]
+fn a_line_is_for_one_finger_or_for_all() {
+    let mut device = Device::<FIVE>::new(&Settings::default());
+    assert_eq!(host(&mut device, "@3 material abs"), "@3 ok");
+    arm(&mut device, 3);
+    assert_eq!(host(&mut device, "@3 start"), "@3 ok");
+    for finger in 0..FIVE {
+        let expected = if finger == 3 { "preset" } else { "off" };
+        assert_eq!(state_of(&mut device, finger), expected, "{finger}");
+    }
+    // Four have no material yet, and the one that has started already is not the first to refuse.
+    assert_eq!(host(&mut device, "start"), "@0 err start needs arm first");
+    arm(&mut device, 0);
+    assert_eq!(
+        host(&mut device, "start"),
+        "@0 err start needs a material first"
+    );
+    assert_eq!(state_of(&mut device, 3), "preset", "the others have obeyed");
+    assert_eq!(host(&mut device, "abort"), "ok");
+    for finger in 0..FIVE {
+        let expected = if [0, 3].contains(&finger) {
+            "ready"
+        } else {
+            "off"
+        };
+        assert_eq!(state_of(&mut device, finger), expected, "{finger}");
+    }
+}
+
+/// A fault is its finger's own; the host's `abort` still reaches the fingers behind it.
+#[test]
+fn fingers_share_no_fault() {
+    let mut device = Device::<FIVE>::new(&Settings::default());
+    (0..FIVE).for_each(|finger| arm(&mut device, finger));
+    for finger in 0..FIVE {
+        let bridge_fault = finger == 1;
+        let drive = device.step(
+            finger,
+            &Samples {
+                bridge_fault,
+                ..samples(0)
+            },
+        );
+        assert_eq!(drive.drive == Drive::Off, finger == 1, "{finger}");
+    }
+    assert_eq!(state_of(&mut device, 1), "tripped");
+    assert_eq!(
+        host(&mut device, "arm"),
+        "@1 err tripped by bridge; clear it first"
+    );
+    assert_eq!(host(&mut device, "abort"), "ok");
+    for finger in [0, 2, 3, 4] {
+        assert_eq!(
+            device.step(finger, &samples(1)).drive,
+            Drive::Off,
+            "{finger}"
+        );
+    }
+    device.step(1, &samples(1));
+    assert_eq!(host(&mut device, "clear"), "ok");
+    assert_eq!(state_of(&mut device, 1), "off");
+    assert_eq!(host(&mut device, "clear"), "@0 err no fault to clear");
+}
+
+#[test]
+fn answers_and_telemetry_say_whose_they_are() {
+    let mut device = Device::<FIVE>::new(&Settings::default());
+    assert!(host(&mut device, "id").contains(" fingers=5 "));
+    assert!(host(&mut device, "@4 id").starts_with("@4 ok thermal-display "));
+    assert!(host(&mut device, "state").starts_with("@0 ok state=off"));
+    assert_eq!(
+        host(&mut device, "@2 frobnicate me").split(';').next(),
+        Some("@2 err unknown command 'frobnicate'")
+    );
+    for (line, named) in [
+        ("@5 arm", "5"),
+        ("@ arm", ""),
+        ("@-1 arm", "-1"),
+        ("@01 arm", "01"),
+        ("@x", "x"),
+    ] {
+        let refused = format!("err unknown finger '{named}' after @; known: 0 to 4");
+        assert_eq!(host(&mut device, line), refused);
+    }
+    assert_eq!(host(&mut device, "@2"), "@2 err command missing");
+    assert_eq!(host(&mut device, "@2 stream 1"), "@2 ok");
+    for finger in 0..FIVE {
+        device.step(finger, &samples(0));
+        let line = device
+            .telemetry(finger)
+            .map(|telemetry| telemetry_line(telemetry).to_string());
+        assert_eq!(line.is_some(), finger == 2, "{finger}");
+        assert!(line.is_none_or(|line| line.starts_with("@2 T 1 off ")));
+    }
+}
+
+/// A single finger is called nothing, but may be called 0.
+#[test]
+fn one_finger_has_no_name() {
+    let mut device = Device::<1>::new(&Settings::default());
+    assert_eq!(host(&mut device, "stream 1"), "ok");
+    assert!(host(&mut device, "id").contains(" fingers=1 "));
+    assert!(host(&mut device, "state").starts_with("ok state=off"));
+    assert_eq!(host(&mut device, "@0 arm"), "@0 ok");
+    arm(&mut device, 0);
+    assert_eq!(
+        host(&mut device, "@1 arm"),
+        "err unknown finger '1' after @; known: 0 to 0"
+    );
+    device.step(0, &samples(0));
+    let line = telemetry_line(device.telemetry(0).expect("telemetry")).to_string();
+    assert!(line.contains(" armed "), "{line}");
+}
