@@ -29,7 +29,7 @@ pub fn run(
         (&arguments.out, arguments.replay, campaigns.as_slice())
     {
         let name = format!("campaign-{}.toml", campaign.number);
-        output::write(folder, &name, &campaign.text()).map_err(Failure::run)?;
+        output::write(folder, &name, campaign.text()).map_err(Failure::run)?;
     }
     let work = |campaign: &Campaign| {
         let ran = campaign.run(device);

@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments, device: &dyn Device, numbers: Range<u64>) -> R
             &arguments.out,
             flips.len() == 1 || flipped.class == Class::Broken,
         ) {
-            output::write(folder, &format!("flip-{}.toml", flip.number), &flip.text())?;
+            output::write(folder, &format!("flip-{}.toml", flip.number), flip.text())?;
         }
         Ok(flipped)
     };

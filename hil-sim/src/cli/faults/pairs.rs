@@ -24,7 +24,7 @@ pub fn run(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
         if let (Some(folder), Some(false)) = (&arguments.out, ran.as_ref().map(RanPair::holds)) {
             let words = format!("{} then {}", pair.latent.fault, pair.active.fault);
             let name = words.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
-            output::write(folder, &(name + ".toml"), &pair.text(seed))?;
+            output::write(folder, &(name + ".toml"), pair.text(seed))?;
         }
         Ok(ran)
     };
