@@ -174,7 +174,7 @@ pub static LOOPS: [Entry; 7] = [
     },
     Entry {
         trees: &[TICK],
-        names: &["thermal_display::commission::sums::Sums::equation"],
+        names: &["thermal_display::commissioning::sums::Sums::equation"],
         why: "arrays of constant length",
     },
     Entry {

@@ -2,14 +2,16 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use hil_sim::World;
-use hil_sim::commission::{Plants, commission};
-use hil_sim::engine::{Cost, Engine, Image};
-use hil_sim::fidelity::map;
-use hil_sim::hand::{self, FINGERS, Hand as _, ImageHand};
-use hil_sim::machine::Firmware;
-use hil_sim::run::{Outcome, run};
-use hil_sim::scene::Scene;
+use stm32_emulator::Firmware;
+use stm32_emulator::Image;
+use stm32_emulator::ImageHand;
+use thermal_campaigns::map;
+use thermal_sim::World;
+use thermal_sim::commission::{Plants, commission};
+use thermal_sim::engine::{Cost, Engine};
+use thermal_sim::hand::{self, FINGERS, Hand as _};
+use thermal_sim::run::{Outcome, run};
+use thermal_sim::scene::Scene;
 
 use crate::scenes::{faulty, touched};
 use crate::{Proof, Section, levels};
@@ -55,30 +57,30 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
     let cycles = of(|cost| cost.cycles_max)?;
     let stack = of(|cost| cost.stack_bytes.unwrap_or(0).into())?;
     ensure!(stack.0 > 0, "the image does not say where its stack ends");
-    let figures = [
-        (
-            "instructions of the longest tick",
-            instructions,
-            INSTRUCTIONS,
-        ),
-        ("cycles of it, estimated", cycles, CYCLES),
-        ("bytes of stack", stack, bound.into()),
-    ];
     section.lines.push(format!(
         "{} scenes; {available} cycles are there for a tick",
         all.len()
     ));
-    for (what, (value, scene), limit) in figures {
-        section
-            .lines
-            .push(format!("{value} of {limit} {what} ({scene})"));
+    let Section {
+        lines,
+        violations,
+        differences,
+        ..
+    } = &mut section;
+    let mut limit = |list: &mut Vec<String>, what, (value, scene), limit: u64| {
+        lines.push(format!("{value} of {limit} {what} ({scene})"));
         if value > limit {
-            section
-                .violations
-                .push(format!("{value} {what} in {scene}, allowed are {limit}"));
+            list.push(format!("{value} {what} in {scene}, allowed are {limit}"));
         }
+    };
+    let longest = "instructions of the longest tick";
+    limit(differences, longest, instructions, INSTRUCTIONS);
+    limit(differences, "cycles of it, estimated", cycles, CYCLES);
+    limit(violations, "bytes of stack", stack, bound.into());
+    if cycles.0 > available {
+        violations.push(format!("{} cycles in {}: late", cycles.0, cycles.1));
     }
-    Ok(section)
+    Ok(section.judged(&proof.compiler))
 }
 
 /// What a scene on one finger costs, without the eight seconds before it.

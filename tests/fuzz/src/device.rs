@@ -3,12 +3,12 @@
 //! Limits are written out here as the documentation has them, and temperatures are recomputed from the sums by the class's
 //! curve, so that a wrong constant or a wrong conversion does not vouch for itself.
 
-use thermal_display::Hand;
-use thermal_display::commission::Desk;
-use thermal_display::drive::{Drive, Outputs};
-use thermal_display::guard::{Fault, State};
+use thermal_display::device::Device;
+use thermal_display::commissioning::Desk;
+use thermal_display::device::drive::{Drive, Outputs};
+use thermal_display::device::safety::{Fault, State};
 use thermal_display::protocol::{Addressed, Command, Error, LineReader, Reply, Status};
-use thermal_display::sense::Samples;
+use thermal_display::device::sense::Samples;
 use thermal_display::settings::Settings;
 
 use crate::tile::{FULL, Tile, sum_at};

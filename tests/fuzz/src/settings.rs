@@ -1,7 +1,7 @@
 //! Any settings that lines can set, and what is read by them.
 
 use arbitrary::{Arbitrary, Unstructured};
-use thermal_display::commission::SENSORS;
+use thermal_display::commissioning::SENSORS;
 
 use crate::device::{Device, READING_K};
 use crate::start::Starts;

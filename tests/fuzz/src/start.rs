@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use thermal_display::guard::{Fault, State};
+use thermal_display::device::safety::{Fault, State};
 
 use crate::device::Device;
 

@@ -1,9 +1,9 @@
 //! Samples of any kind, and lines in between.
 
 use arbitrary::{Arbitrary, Unstructured};
-use thermal_display::commission::SENSORS;
-use thermal_display::guard::Fault;
-use thermal_display::sense::{CHANNELS, SCANS_PER_TICK, Samples, Scan};
+use thermal_display::commissioning::SENSORS;
+use thermal_display::device::safety::Fault;
+use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Samples, Scan};
 
 use crate::start::Starts;
 
@@ -222,7 +222,7 @@ pub fn run(input: &[u8]) -> bool {
                     .any(|count| matches!(count, 0 | 4095));
                 let outputs = device.step(0, &Samples::from_scans(&scans, false));
                 assert!(
-                    !broken || outputs.drive == thermal_display::drive::Drive::Off,
+                    !broken || outputs.drive == thermal_display::device::drive::Drive::Off,
                     "driven in the tick in which a wire broke"
                 );
             }

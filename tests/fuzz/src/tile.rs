@@ -1,7 +1,7 @@
 //! A tile that answers as one of its class does, so that a device on it passes its self-test and stays armed.
 
-use thermal_display::drive::{Drive, Outputs};
-use thermal_display::sense::Samples;
+use thermal_display::device::drive::{Drive, Outputs};
+use thermal_display::device::sense::Samples;
 
 /// What the sensors of one finger see. Not the plant: a first-order tile, to keep a tick short.
 #[derive(Clone, Copy, Debug)]

@@ -6,7 +6,7 @@ use model_bench::job::{Checksum, ON_TARGET};
 use model_bench::kernels::{Call, KERNELS, Kernel, Table};
 use model_bench::scenes::{Arithmetic, SCENES, Station, TICKS};
 use serde::Serialize;
-use thermal_display::render::TOLERANCE;
+use thermal_display::device::reference::TOLERANCE;
 
 use super::accuracy::{Accuracy, STEP_K, Truth};
 use super::emulated::{Cost, Emulated};

@@ -1,10 +1,11 @@
 //! `--pairs`: an unnoticed fault, then another one.
 
 use anyhow::anyhow;
-use hil_sim::faults::{Device, Pair, RanPair, pair_table, pairs};
 use serde::Serialize;
+use thermal_campaigns::faults::{Pair, RanPair, pair_table, pairs};
+use thermal_sim::Device;
 
-use super::{Arguments, Failure, each, tell, write};
+use super::{Arguments, Failure, each, output, tell};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -16,14 +17,14 @@ struct Report<'a> {
 }
 
 /// Runs all pairs; one that breaks the claim is a failure, and its scene goes to `--out`.
-pub fn run(arguments: &Arguments, device: Device<'_>) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
     let seed = arguments.seed;
     let work = |pair: &Pair| {
         let ran = pair.run(device, seed)?;
         if let (Some(folder), Some(false)) = (&arguments.out, ran.as_ref().map(RanPair::holds)) {
             let words = format!("{} then {}", pair.latent.fault, pair.active.fault);
             let name = words.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
-            write(folder, &(name + ".toml"), &pair.text(seed))?;
+            output::write(folder, &(name + ".toml"), pair.text(seed))?;
         }
         Ok(ran)
     };

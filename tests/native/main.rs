@@ -1,0 +1,10 @@
+//! Tests on the host, without an image: the native engine on the simulated plant, and hardware-free parts of the firmware.
+
+mod contact_detection;
+mod control_law;
+mod display_modes;
+mod hold_stability;
+mod processor_faults;
+mod range_limits;
+mod settings_storage;
+mod weak_module;
