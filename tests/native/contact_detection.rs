@@ -1,7 +1,7 @@
 //! Contact detection on the simulated force sensor and converter: delay of detection, estimated time of landing, and false
 //! detections by noise and drift.
 
-use thermal_display::device::sense::{SCANS_PER_TICK, Samples, Sensors, Touch};
+use thermal_display::device::sense::{ContactDetector, SCANS_PER_TICK, Samples, Sensors};
 use thermal_display::settings::Settings;
 use thermal_plant::sensors::{Channel, Sensed, SensorParams, Sensors as Plant};
 
@@ -12,7 +12,7 @@ const SCANS_BEFORE: usize = 4;
 struct Bench {
     plant: Plant,
     sensors: Sensors,
-    touch: Touch,
+    touch: ContactDetector,
     sum: u16,
 }
 
@@ -21,7 +21,7 @@ impl Bench {
         let mut bench = Self {
             plant: Plant::new(params, &state(0.0), seed),
             sensors: Sensors::new(&Settings::default()),
-            touch: Touch::default(),
+            touch: ContactDetector::default(),
             sum: 0,
         };
         bench.scan(SCANS_BEFORE);
@@ -44,7 +44,7 @@ impl Bench {
         };
         let force = self.sensors.read(&samples).force.expect("a sound sensor");
         self.touch.update(force);
-        self.sensors.follow_zero(&samples, &self.touch);
+        self.sensors.track_zero(&samples, &self.touch);
         self.sum = 0;
         self.scan(SCANS_BEFORE);
     }
@@ -54,7 +54,7 @@ impl Bench {
         for tick in 1..100 {
             self.tick(force_n);
             if self.touch.touching() {
-                return (tick, self.touch.landed_ticks());
+                return (tick, self.touch.detection_delay_ticks());
             }
         }
         panic!("{force_n} N is not detected");

@@ -9,7 +9,10 @@ use embedded_storage::nor_flash::{
 };
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
-use thermal_display::settings::{Calibration, Correction, Kept, LONGEST, Sectors, Store, Tile};
+use thermal_display::settings::{
+    Calibration, Correction, RECORD_MAX_BYTES, RedundantSectors, SettingsStore, StoredSettings,
+    Tile,
+};
 use thermal_sim::Cells;
 
 /// Bytes of a sector.
@@ -102,14 +105,14 @@ impl NorFlash for Flash {
 
 /// Settings that differ from number to number in every value; for some numbers none, which stands for factory defaults.
 #[must_use]
-pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[Kept; FINGERS]> {
+pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FINGERS]> {
     if number % 50 == 17 {
         return None;
     }
     let of = |i: u32, per: f64| f64::from((number * 7919 + i * 104_729) % 2000) / per;
     Some(std::array::from_fn(|finger| {
         let finger = 40 * finger as u32;
-        Kept {
+        StoredSettings {
             calibration: Calibration {
                 steps_counts: std::array::from_fn(|i| of(finger + i as u32, 1e3)),
                 corrections: std::array::from_fn(|i| Correction {
@@ -128,11 +131,14 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[Kept; FINGERS]> {
 /// Appends any bytes as the newest record; whether that succeeded.
 pub fn append(cells: &mut Cells, record: &[u8]) -> bool {
     let flash = Flash::new(cells.clone());
-    let end = (3 * Sectors::<Flash>::BYTES) as u32;
+    let end = (3 * RedundantSectors::<Flash>::SECTOR_BYTES) as u32;
     let config = MapConfig::new(0..end);
-    let mut map =
-        MapStorage::<(), _, _>::new(Sectors::new(flash.clone()), config, Cache::new_uncached());
-    let done = block_on(map.store_item(&mut [0; LONGEST], &(), &record));
+    let mut map = MapStorage::<(), _, _>::new(
+        RedundantSectors::new(flash.clone()),
+        config,
+        Cache::new_uncached(),
+    );
+    let done = block_on(map.store_item(&mut [0; RECORD_MAX_BYTES], &(), &record));
     *cells = flash.cells();
     done.is_ok()
 }
@@ -143,9 +149,9 @@ pub fn erased() -> Cells {
     Cells::new(vec![0xff; BYTES])
 }
 
-fn store<const FINGERS: usize>(cells: Cells) -> (Store<Flash, FINGERS>, Flash) {
+fn store<const FINGERS: usize>(cells: Cells) -> (SettingsStore<Flash, FINGERS>, Flash) {
     let flash = Flash::new(cells);
-    (Store::new(flash.clone()), flash)
+    (SettingsStore::new(flash.clone()), flash)
 }
 
 /// The settings that a device finds when it is switched on with these cells.
@@ -153,7 +159,7 @@ fn store<const FINGERS: usize>(cells: Cells) -> (Store<Flash, FINGERS>, Flash) {
 /// # Panics
 /// They are not valid.
 #[must_use]
-pub fn loaded<const FINGERS: usize>(cells: &Cells) -> Option<[Kept; FINGERS]> {
+pub fn loaded<const FINGERS: usize>(cells: &Cells) -> Option<[StoredSettings; FINGERS]> {
     store(cells.clone()).0.load().expect("valid settings")
 }
 
@@ -164,7 +170,7 @@ pub fn loaded<const FINGERS: usize>(cells: &Cells) -> Option<[Kept; FINGERS]> {
 #[must_use]
 pub fn saved<const FINGERS: usize>(
     cells: &Cells,
-    settings: Option<&[Kept; FINGERS]>,
+    settings: Option<&[StoredSettings; FINGERS]>,
     cut: Option<(u64, u64)>,
 ) -> Cells {
     let mut cells = cells.clone();

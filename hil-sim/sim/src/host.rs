@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use thermal_display::protocol::LINE_MAX;
 use thermal_display::device::reference::Mode;
+use thermal_display::protocol::LINE_MAX_BYTES;
 
 use crate::scene::{FaultKind, Scene, custom_line};
 
@@ -135,7 +135,7 @@ fn space_out(queue: &mut [(u64, Vec<u8>)]) {
     let mut free_ms = 0;
     for (ms, bytes) in queue {
         *ms = (*ms).max(free_ms);
-        let line_ms = (bytes.len() / LINE_MAX) as u64;
+        let line_ms = (bytes.len() / LINE_MAX_BYTES) as u64;
         // A blank line has no answer.
         let answered_ms = if bytes == BLANK { 1 } else { SPACING_MS };
         free_ms = *ms + line_ms + answered_ms;

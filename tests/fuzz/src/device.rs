@@ -3,12 +3,12 @@
 //! Limits are written out here as the documentation has them, and temperatures are recomputed from the sums by the class's
 //! curve, so that a wrong constant or a wrong conversion does not vouch for itself.
 
-use thermal_display::device::Device;
 use thermal_display::commissioning::Desk;
+use thermal_display::device::{Device, Finger};
 use thermal_display::device::drive::{Drive, Outputs};
 use thermal_display::device::safety::{Fault, State};
-use thermal_display::protocol::{Addressed, Command, Error, LineReader, Reply, Status};
 use thermal_display::device::sense::Samples;
+use thermal_display::protocol::{Addressed, Command, Error, LineReader, Reply, Status};
 use thermal_display::settings::Settings;
 
 use crate::tile::{FULL, Tile, sum_at};
@@ -55,11 +55,11 @@ impl<const FINGERS: usize> Device<FINGERS> {
     pub fn status(&mut self, finger: usize) -> Status {
         let asked = Addressed {
             finger: Some((finger % FINGERS) as u8),
-            said: Command::Status,
+            content: Command::Status,
         };
         match self.hand.execute(asked) {
             Ok(Addressed {
-                said: Reply::Status(status),
+                content: Reply::Status(status),
                 ..
             }) => status,
             other => panic!("state is answered by {other:?}"),
@@ -68,7 +68,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
 
     /// What the first finger's display reads, °C, if it streams and there is anything to read.
     pub fn display_c(&self) -> Option<f64> {
-        let telemetry = self.hand.telemetry(0)?.said;
+        let telemetry = self.hand.telemetry(0)?.content;
         telemetry.display.map(|celsius| celsius.to_num())
     }
 
@@ -127,7 +127,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
             );
         }
         if let Some(telemetry) = self.hand.telemetry(finger) {
-            let demand_a: f64 = telemetry.said.demand.to_num();
+            let demand_a: f64 = telemetry.content.demand.to_num();
             assert!(demand_a.abs() <= 6.0, "demand {demand_a} A");
             let off = outputs.drive == Drive::Off;
             assert!(!off || demand_a == 0.0, "demand {demand_a} A while off");

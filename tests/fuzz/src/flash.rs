@@ -4,7 +4,9 @@ use std::sync::OnceLock;
 
 use arbitrary::{Arbitrary, Unstructured};
 use system_tests::flash::{BYTES, Flash, append, numbered};
-use thermal_display::settings::{Calibration, Correction, Kept, Store, StoreError, Tile};
+use thermal_display::settings::{
+    Calibration, Correction, SettingsStore, StoreError, StoredSettings, Tile,
+};
 use thermal_sim::Cells;
 
 /// Saves that an input begins after: none, few, all that fit into a sector, and turns to another.
@@ -57,7 +59,7 @@ enum Event {
 #[derive(Clone)]
 struct Kit<const FINGERS: usize> {
     cells: Cells,
-    written: Vec<Option<[Kept; FINGERS]>>,
+    written: Vec<Option<[StoredSettings; FINGERS]>>,
 }
 
 static ONE: OnceLock<Vec<Kit<1>>> = OnceLock::new();
@@ -113,16 +115,18 @@ impl<const FINGERS: usize> Kit<FINGERS> {
     }
 
     /// By a device that is switched on anew.
-    fn save(&mut self, settings: Option<[Kept; FINGERS]>) -> Result<(), String> {
+    fn save(&mut self, settings: Option<[StoredSettings; FINGERS]>) -> Result<(), String> {
         let flash = Flash::new(self.cells.clone());
-        let done = Store::new(flash.clone()).save(settings.as_ref());
+        let done = SettingsStore::new(flash.clone()).save(settings.as_ref());
         self.cells = flash.cells();
         self.written.push(settings);
         done.map_err(|error| format!("{error:?}"))
     }
 
-    fn load(&self) -> Result<Option<[Kept; FINGERS]>, StoreError<system_tests::flash::Dead>> {
-        Store::new(Flash::new(self.cells.clone())).load()
+    fn load(
+        &self,
+    ) -> Result<Option<[StoredSettings; FINGERS]>, StoreError<system_tests::flash::Dead>> {
+        SettingsStore::new(Flash::new(self.cells.clone())).load()
     }
 
     fn take(&mut self, event: &Event) {
@@ -186,7 +190,7 @@ impl<const FINGERS: usize> Kit<FINGERS> {
                 .zip(VALUES)
                 .map(|(unit, (_, _, per))| f64::from(*unit) / per);
             let mut next = || values.next().unwrap_or_default();
-            let kept = Kept {
+            let kept = StoredSettings {
                 calibration: Calibration {
                     steps_counts: std::array::from_fn(|_| next()),
                     corrections: std::array::from_fn(|_| Correction {

@@ -1,7 +1,7 @@
 //! Any settings that lines can set, and what is read by them.
 
 use arbitrary::{Arbitrary, Unstructured};
-use thermal_display::commissioning::SENSORS;
+use thermal_display::commissioning::SENSOR_WORDS;
 
 use crate::device::{Device, READING_K};
 use crate::start::Starts;
@@ -32,7 +32,7 @@ impl Stored {
                 steps.collect::<String>()
             ));
         }
-        for (name, [offset, slope, curvature]) in SENSORS.iter().zip(self.corrections) {
+        for (name, [offset, slope, curvature]) in SENSOR_WORDS.iter().zip(self.corrections) {
             let (offset, slope) = (part(offset, 1.2), part(slope, 0.05));
             let curvature = part(curvature, 0.002);
             lines.push(format!(

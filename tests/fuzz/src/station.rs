@@ -1,7 +1,7 @@
 //! Samples of any kind, and lines in between.
 
 use arbitrary::{Arbitrary, Unstructured};
-use thermal_display::commissioning::SENSORS;
+use thermal_display::commissioning::SENSOR_WORDS;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Samples, Scan};
 
@@ -144,7 +144,7 @@ impl Line {
                 let part = |value: &i16, most: f64| most * f64::from(*value) / 32768.0;
                 format!(
                     "set correction {} {:.6} {:.7} {:.8}",
-                    of(&SENSORS, *sensor),
+                    of(&SENSOR_WORDS, *sensor),
                     part(offset, 1.2),
                     part(slope, 0.05),
                     part(curvature, 0.002)
@@ -161,7 +161,7 @@ impl Line {
             Self::Point(sensor, celsius) => {
                 format!(
                     "calibrate {} {:.3}",
-                    of(&SENSORS, *sensor),
+                    of(&SENSOR_WORDS, *sensor),
                     fraction(*celsius, 60.0)
                 )
             }

@@ -51,7 +51,7 @@ fn play<const FINGERS: usize>(mut device: Device<FINGERS>, bytes: &[u8]) -> bool
                 (0..FINGERS).for_each(|finger| device.tile(finger).press(newton));
             }
             0xd0 => reader.fail(LineError::Reception),
-            0xd1 => reader.fail(LineError::Refused),
+            0xd1 => reader.fail(LineError::QueueFull),
             0xd2 => device.hear(),
             byte => device.byte(&mut reader, byte),
         }

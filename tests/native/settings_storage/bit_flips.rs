@@ -1,7 +1,7 @@
 //! A single flipped bit anywhere in the settings' flash loses nothing that was stored.
 
 use system_tests::flash::{BYTES, Flash, SECTOR, erased, loaded, numbered, saved};
-use thermal_display::settings::Store;
+use thermal_display::settings::SettingsStore;
 
 /// Outside the sectors' headers, settings are saved again after every 37th flipped bit.
 const STRIDE: usize = 37;
@@ -19,7 +19,7 @@ fn flip_each_bit<const FINGERS: usize>(saves: u32) {
     let mut stored = 0;
     for bit in 0..8 * BYTES {
         flash.flip(bit);
-        let found = Store::new(flash.clone()).load();
+        let found = SettingsStore::new(flash.clone()).load();
         assert_eq!(found, Ok(newest), "{saves} saves, bit {bit}");
         if bit % (8 * SECTOR) < 192 || bit % STRIDE == 0 {
             let after = saved(&flash.cells(), next.as_ref(), None);

@@ -4,14 +4,14 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::fmt::Display;
 
-use thermal_display::device::Device;
 use thermal_display::commissioning::StorageOrder;
-use thermal_display::device::drive::{Drive, Outputs};
-use thermal_display::device::safety::{Cause, Dose, Fault};
+use thermal_display::device::{Device, Finger};
 use thermal_display::device::command::Addressed;
-use thermal_display::protocol::{Desk, Error, LineReader, Reply, telemetry_line};
+use thermal_display::device::drive::{Drive, Outputs};
+use thermal_display::device::safety::{Fault, ThermalDose, TripCause};
 use thermal_display::device::sense::{SCANS_PER_TICK, Samples, Scan};
-use thermal_display::settings::{Kept, Settings, decode};
+use thermal_display::protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
+use thermal_display::settings::{Settings, StoredSettings, decode};
 use thermal_plant::bridge::{Leg, Legs};
 use thermal_plant::sensors::Channel;
 
@@ -45,7 +45,7 @@ const SCANS_IN_FIRST_HALF: usize = 8;
 #[derive(Debug)]
 pub struct Native {
     world: World,
-    desk: Desk<1>,
+    handler: CommandHandler<1>,
     device: Device<1>,
     reader: LineReader,
     /// Bytes on their way to the device, and when they arrive.
@@ -62,7 +62,7 @@ pub struct Native {
     hung_ms: Option<u64>,
     resets: Vec<DeviceReset>,
     /// Settings in what stands for the flash.
-    stored: Option<[Kept; 1]>,
+    stored: Option<[StoredSettings; 1]>,
     /// Half milliseconds since the first boundary.
     halves: u64,
 }
@@ -86,7 +86,7 @@ impl Native {
         let settings = Settings::default();
         let mut native = Self {
             world,
-            desk: Desk::new(settings),
+            handler: CommandHandler::new(settings),
             device: Device::new(&settings),
             reader: LineReader::new(),
             incoming: VecDeque::new(),
@@ -131,9 +131,9 @@ impl Native {
         self.serve((self.halves - 1) * HALF_NS + TICK_NS);
         let samples = Samples::from_scans(&self.scans, self.fault);
         self.fault = self.world.bridge_fault();
-        self.outputs = self.device.step(0, &samples);
+        self.outputs = self.device.step(Finger::FIRST, &samples);
         self.world.comparator_test(self.outputs.comparator_test);
-        if let Some(telemetry) = self.device.telemetry(0) {
+        if let Some(telemetry) = self.device.telemetry(Finger::FIRST) {
             self.answer(&telemetry_line(telemetry));
         }
     }
@@ -141,25 +141,25 @@ impl Native {
     /// The logic as after power-up, with the bridge off, and with what the board has kept of a fault and the dose. It starts at once:
     /// what the board needs for that is not here.
     fn restart(&mut self, cause: ResetCause) {
-        let tripped = self.device.tripped().copied();
+        let tripped = self.device.earliest_cause().copied();
         let kept = match cause {
             ResetCause::PowerOn => None,
-            ResetCause::WindowWatchdog => tripped.or(Some(Cause::alone(Fault::TickLost))),
+            ResetCause::WindowWatchdog => tripped.or(Some(TripCause::alone(Fault::TickLost))),
             _ => tripped,
         };
         let dose = match cause {
-            ResetCause::PowerOn => Dose::default(),
-            _ => Dose::from_word(self.device.dose(0).to_word()),
+            ResetCause::PowerOn => ThermalDose::default(),
+            _ => ThermalDose::from_word(self.device.dose(Finger::FIRST).to_word()),
         };
         let settings = Settings::default();
-        self.device = Device::after(kept, &settings);
-        self.device.resume(0, dose);
-        self.desk = match &self.stored {
+        self.device = Device::with_cause(kept, &settings);
+        self.device.restore_dose(Finger::FIRST, dose);
+        self.handler = match &self.stored {
             Some(stored) => {
-                self.device.restore(stored);
-                Desk::restored(stored)
+                self.device.restore_settings(stored);
+                CommandHandler::from_stored(stored)
             }
-            None => Desk::new(settings),
+            None => CommandHandler::new(settings),
         };
         self.reader = LineReader::new();
         (self.fault, self.outputs, self.hung_ms) = (false, OFF, None);
@@ -175,7 +175,7 @@ impl Native {
 
     /// Starts anew, with what is stored by then; how long that takes is left out.
     fn obey(&mut self, order: StorageOrder) {
-        self.stored = decode(&self.desk.record(order)).ok().flatten();
+        self.stored = decode(&self.handler.settings_record(order)).ok().flatten();
         self.restart(ResetCause::Software);
     }
 
@@ -183,7 +183,7 @@ impl Native {
     fn serve(&mut self, now_ns: u64) {
         while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
             if LineReader::is_end(byte) {
-                self.device.hear();
+                self.device.note_host_activity();
             }
             let Some(line) = self.reader.push(byte) else {
                 continue;
@@ -191,11 +191,11 @@ impl Native {
             let executed = line
                 .map_err(|error| Addressed::device(Error::from(error)))
                 .and_then(|line| {
-                    self.desk
-                        .answer(&line, |request| self.device.execute(request))
+                    self.handler
+                        .answer(&line, |finger, command| self.device.execute(finger, command))
                 });
             if let Ok(Addressed {
-                said: Reply::Restart(order),
+                content: Reply::Restart(order),
                 ..
             }) = &executed
             {
@@ -222,7 +222,7 @@ impl Engine for Native {
         match self.outputs.drive {
             Drive::Off => Legs::default(),
             Drive::On(duty) => {
-                let (a, b) = duty.legs(PWM_STEPS);
+                let (a, b) = duty.half_bridge_on_times(PWM_STEPS);
                 let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(PWM_STEPS));
                 Legs {
                     a: leg(a),

@@ -4,8 +4,8 @@ use std::ops::Range;
 use std::path::Path;
 
 use thermal_display::device::control::Law;
-use thermal_display::device::safety::Setpoint;
 use thermal_display::device::reference::Mode;
+use thermal_display::device::safety::Setpoint;
 use thermal_plant::{ConfigError, Plant};
 use toml::Spanned;
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use contact_model::material::{Material, Surface, find};
-use thermal_display::protocol::Parsed;
+use thermal_display::protocol::Request;
 use thermal_display::settings::Settings;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::Back;
@@ -160,7 +160,7 @@ fn custom(
         density_kg_m3,
         specific_heat_j_kgk,
     };
-    match Parsed::parse(&custom_line(&material), &Settings::default()) {
+    match Request::parse(&custom_line(&material), &Settings::default()) {
         Ok(_) => Ok(material),
         Err(refused) => {
             let problem = format!("object: the device would answer {:?}", refused.to_string());

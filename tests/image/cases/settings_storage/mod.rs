@@ -6,13 +6,16 @@ use image_tests::{Bare, START, image};
 use stm32_emulator::Firmware;
 use system_tests::flash::{append, changes_page, erased, numbered, saved};
 use thermal_display::commissioning::Desk;
-use thermal_display::settings::{Kept, LONGEST, encode};
+use thermal_display::settings::{RECORD_MAX_BYTES, StoredSettings, encode};
 use thermal_sim::Cells;
 use thermal_sim::processor::ResetCause;
 
 /// The answers to `settings 1` to `settings 8` of a device with these settings.
-pub fn lines(kept: Option<&[Kept; 1]>) -> Vec<String> {
-    let mut desk: Desk<1> = kept.map_or_else(|| Desk::new(Default::default()), Desk::restored);
+pub fn lines(kept: Option<&[StoredSettings; 1]>) -> Vec<String> {
+    let mut desk: Desk<1> = kept.map_or_else(
+        || Desk::new(Default::default()),
+        CommandHandler::from_stored,
+    );
     (1..=8)
         .map(|line| {
             let answer = desk.answer(&format!("settings {line}"), |_| {
@@ -68,8 +71,8 @@ fn saved_settings_survive_a_power_cycle_and_can_be_forgotten() {
 fn corrupt_settings_trip_the_device_until_others_are_saved() {
     let mut cells = after(1);
     // A record with the version of a future firmware and valid checksums.
-    let record = encode(Some(&[Kept::of(&Default::default())]));
-    assert!(record.len() < LONGEST);
+    let record = encode(Some(&[StoredSettings::from_settings(&Default::default())]));
+    assert!(record.len() < RECORD_MAX_BYTES);
     let mut content = record[..record.len() - 4].to_vec();
     content[0] = 2;
     let crc = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&content);
