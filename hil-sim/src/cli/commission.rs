@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use clap::Args;
-use hil_sim::commission::{Commissioned, Event, Plants, Tile, commission, restore, survey, table};
-use hil_sim::engine::{Engine, Image, Native};
-use hil_sim::fidelity::map;
-use hil_sim::plant::{Params, parameters};
-use hil_sim::scene::Scene;
+use thermal_sim::commission::{Commissioned, Event, Plants, Tile, commission, restore, survey, table};
+use thermal_sim::engine::{Engine, Image, Native};
+use thermal_campaigns::map;
+use thermal_plant::{Params, parameters};
+use thermal_sim::scene::Scene;
 use serde_json::json;
 
 use super::device::{self, Kind};

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
-use hil_sim::machine::Firmware;
-use hil_sim::scene::Scene;
+use stm32_emulator::Firmware;
+use thermal_sim::scene::Scene;
 use hil_sim::{World, firmware};
 
 use super::Failure;

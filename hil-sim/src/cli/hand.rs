@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use clap::Args;
-use hil_sim::World;
-use hil_sim::engine::{Cost, Engine, Image, Native};
-use hil_sim::hand::{FINGERS, Hand, ImageHand, NativeHand, run as run_hand};
-use hil_sim::metrics::{Figures, figures as figures_of};
-use hil_sim::scene::Scene;
+use thermal_sim::World;
+use thermal_sim::engine::{Cost, Engine, Native};
+use thermal_sim::hand::{FINGERS, Hand, ImageHand, NativeHand, run as run_hand};
+use thermal_sim::metrics::{Figures, figures as figures_of};
+use thermal_sim::scene::Scene;
 use serde::Serialize;
 
 use super::device::{self, Kind};

@@ -6,9 +6,9 @@ use std::path::PathBuf;
 use addr2line::Loader;
 use anyhow::{Context, anyhow};
 use clap::Args;
-use hil_sim::engine::Image;
-use hil_sim::machine::{Ran, cold_fetch_stalls};
-use hil_sim::run::run as run_scene;
+use thermal_sim::engine::Image;
+use stm32_emulator::{Ran, cold_fetch_stalls};
+use thermal_sim::run::run as run_scene;
 
 use super::{Failure, device, output};
 

@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::Args;
-use hil_sim::engine::{Engine, Image, Native, NoMachineFault};
-use hil_sim::metrics::{Figures, figures};
-use hil_sim::report;
-use hil_sim::run::{Injection, Outcome, run_with};
-use hil_sim::scene::Scene;
+use thermal_sim::engine::{Engine, Image, Native, NoMachineFault};
+use thermal_sim::metrics::{Figures, figures};
+use thermal_sim::report;
+use thermal_sim::run::{Injection, Outcome, run_with};
+use thermal_sim::scene::Scene;
 
 use super::device::{self, Kind};
 use super::{Failure, output};

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hil_sim::thesis::figure::{apart, figures};
-use hil_sim::thesis::{self, ClosedForm, FiniteVolumes};
+use thermal_thesis::figure::{apart, figures};
+use thermal_thesis::{self, ClosedForm, FiniteVolumes};
 
 use super::{Failure, output};
 

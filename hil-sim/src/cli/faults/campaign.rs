@@ -1,7 +1,7 @@
 //! `--campaign` and `--replay`: random campaigns.
 
 use anyhow::{Context, anyhow};
-use hil_sim::faults::{Campaign, Device, Ran, summary};
+use thermal_campaigns::faults::{Campaign, Device, Ran, summary};
 use serde::Serialize;
 
 use super::{Arguments, Failure, each, tell, write};
@@ -18,7 +18,7 @@ struct Report<'a> {
 /// Runs the campaigns of these numbers; a violation is a failure.
 pub fn run(
     arguments: &Arguments,
-    device: Device<'_>,
+    device: &dyn Device,
     numbers: std::ops::Range<u64>,
 ) -> Result<(), Failure> {
     let has_processor = matches!(device, Device::Image(_));

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use anyhow::{Context, anyhow};
-use hil_sim::faults::{Class, Device, Flip, Flipped, Memory, Reference, flip_table};
+use thermal_campaigns::faults::{Class, Device, Flip, Flipped, Memory, Reference, flip_table};
 use serde::Serialize;
 
 use super::{Arguments, Failure, each, tell, write};
@@ -17,7 +17,7 @@ struct Report<'a> {
 }
 
 /// Runs the flips of these numbers; a limit that is broken is a failure, and its scene goes to `--out`.
-pub fn run(arguments: &Arguments, device: Device<'_>, numbers: Range<u64>) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, device: &dyn Device, numbers: Range<u64>) -> Result<(), Failure> {
     let Device::Image(firmware) = device else {
         let problem =
             anyhow!("--flips with --engine native, which has no bits to flip; image is allowed");

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use hil_sim::faults::{self, Device, Entry, Outline, Place, Plan, Trial};
-use hil_sim::fidelity;
+use thermal_campaigns::faults::{self, Device, Entry, Outline, Place, Plan, Trial};
+use thermal_campaigns::fidelity;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 
@@ -135,7 +135,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Runs the matrix, prints it, writes its page; a fault that does not hold is a failure.
-fn matrix(arguments: &Arguments, device: Device<'_>) -> Result<(), Failure> {
+fn matrix(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
     let plan = Plan {
         entries: entries(&arguments.only)?,
         places: match arguments.scene.as_slice() {
@@ -195,7 +195,7 @@ fn entries(only: &[String]) -> Result<Vec<Entry>, Failure> {
 fn outlines(
     arguments: &Arguments,
     plan: &Plan,
-    device: Device<'_>,
+    device: &dyn Device,
 ) -> anyhow::Result<Vec<Outline>> {
     let trials = each(
         arguments,
@@ -242,7 +242,7 @@ fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
 fn each<T: Sync, R: Send>(
     arguments: &Arguments,
     what: &str,
-    device: Device<'_>,
+    device: &dyn Device,
     items: &[T],
     work: impl Fn(&T) -> anyhow::Result<R> + Sync,
 ) -> anyhow::Result<Vec<R>> {
