@@ -3,13 +3,13 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-
-use thermal_sim::commission::{Bench, CommissionError, Plants, Response, Tile, of_device};
-use thermal_sim::engine::Native;
-use crate::percentile;
 use thermal_plant::Params;
 use thermal_plant::parameters;
 use thermal_plant::tile::ZERO_C_K;
+use thermal_sim::commission::{Bench, CommissionError, Plants, Response, Tile, of_device};
+use thermal_sim::engine::Native;
+
+use crate::percentile;
 
 /// Room of the devices, deg C.
 const ROOM_C: f64 = 24.0;

@@ -1,7 +1,8 @@
 //! The cells of the flash: what programming, erasing, and power that fails meanwhile do to them.
+use std::ops::Range;
+
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
-use std::ops::Range;
 
 /// Bits of a flash. Programming clears bits, erasing sets all of a range.
 ///

@@ -1,5 +1,7 @@
 //! Devices on which campaigns run one scene after the other.
 
+use std::ops::Range;
+
 use anyhow::Context;
 
 use crate::World;
@@ -19,6 +21,30 @@ pub trait Device: Sync {
     /// The plant cannot be built, the device stopped, or it refused the scene. A fault of the processor that was not
     /// injected is a [`NotInjected`](crate::processor::NotInjected).
     fn run(&self, scene: &Scene) -> anyhow::Result<(Outcome, Figures)>;
+
+    /// Whether it has a processor, whose parts can fail.
+    fn has_processor(&self) -> bool {
+        false
+    }
+
+    /// Where its program keeps what in the RAM.
+    ///
+    /// # Errors
+    /// It has no RAM, or the image does not say.
+    fn ram_layout(&self) -> anyhow::Result<RamLayout> {
+        anyhow::bail!("engine {} has no RAM", self.name())
+    }
+}
+
+/// Where an image keeps what: addresses of bytes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RamLayout {
+    /// All of the RAM.
+    pub ram: Range<u32>,
+    /// Static data, what resets keep included.
+    pub statics: Range<u32>,
+    /// Where the stack begins, which grows down.
+    pub stack_top: u32,
 }
 
 /// The device's logic, called directly.
@@ -48,6 +74,6 @@ pub fn run_on<E: Engine>(
         RunError::NotInjected(error) => anyhow::Error::from(error),
         error => error.into(),
     })?;
-    let figures = figures::<E>(scene, &outcome);
+    let figures = figures(scene, &outcome);
     Ok((outcome, figures))
 }

@@ -17,5 +17,5 @@ pub mod trace;
 mod world;
 
 pub use cells::Cells;
-pub use device::{Device, NativeDevice, run_on};
+pub use device::{Device, NativeDevice, RamLayout, run_on};
 pub use world::{World, WorldError};

@@ -1,10 +1,9 @@
 //! Figures of a run.
 
 use serde::Serialize;
+use thermal_plant::STEP_S;
 
 use crate::dose::cem43_min;
-use crate::engine::Engine;
-use thermal_plant::STEP_S;
 use crate::run::Outcome;
 use crate::scene::Scene;
 
@@ -124,7 +123,7 @@ pub fn contact_times(scene: &Scene, outcome: &Outcome) -> Vec<Option<f64>> {
 
 /// Computes the figures.
 #[must_use]
-pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
+pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
     let rows = outcome.trace.rows();
     let contacts = contact_times(scene, outcome);
     let touching = || {
@@ -145,7 +144,7 @@ pub fn figures<E: Engine>(scene: &Scene, outcome: &Outcome) -> Figures {
     };
     let skins = || rows.iter().map(|row| row.skin_c);
     Figures {
-        engine: E::NAME,
+        engine: outcome.engine,
         material: scene.object.name.clone(),
         ticks: rows.len().saturating_sub(1),
         skin_error_mk: errors(skin_errors(scene, outcome)),

@@ -18,6 +18,8 @@ const HALF_MS_US: u64 = 500;
 /// What a run has given.
 #[derive(Clone, Debug)]
 pub struct Outcome {
+    /// Name of the engine that has run it.
+    pub engine: &'static str,
     /// One row a millisecond.
     pub trace: Trace,
     /// Every line of the device that is not telemetry, with the time at which it was complete, s.
@@ -151,6 +153,7 @@ pub fn run_with<E: Engine>(
     let simulated_s = (end_ms + DRAIN_MS) as f64 * 1e-3;
     let real_time_factor = simulated_s / began.elapsed().as_secs_f64();
     Ok(Outcome {
+        engine: E::NAME,
         trace,
         answers,
         resets: in_scene(&session.engine.resets(), zero_ms),

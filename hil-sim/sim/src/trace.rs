@@ -7,6 +7,7 @@ use std::path::Path;
 use thermal_plant::infrared::Reading;
 use thermal_plant::sensors::Taken;
 use thermal_plant::{Finger, Plant, RECEPTORS_M};
+
 use crate::telemetry::Telemetry;
 
 /// Rows that wait for their telemetry, and telemetry that waits for its row.

@@ -2,10 +2,11 @@
 
 mod defects;
 
-use thermal_plant::infrared::{Camera, ParameterError, Reading};
 use thermal_plant::bridge::Legs;
+use thermal_plant::infrared::{Camera, ParameterError, Reading};
 use thermal_plant::sensors::Channel;
 use thermal_plant::{ConfigError, Plant, PlantConfig};
+
 use crate::scene::{Broken, Infrared, Scene};
 use defects::Damage;
 

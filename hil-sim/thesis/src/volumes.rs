@@ -2,11 +2,11 @@
 
 use contact_model::material::{REFERENCE_DISPLAY, SKIN};
 use contact_model::reference::contact_resistance;
-
-use super::case::{Case, Source, Surfaces};
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::touch::Touch;
 use thermal_plant::truth::Truth;
+
+use super::case::{Case, Source, Surfaces};
 
 /// The plant's finger on the plant's object, with its own mesh, steps and sub-steps.
 #[derive(Clone, Copy, Debug)]

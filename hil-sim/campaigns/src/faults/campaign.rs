@@ -1,9 +1,9 @@
 //! What of the matrix is run, and what came of each row.
 
 use serde::Serialize;
+use thermal_plant::parameters::stream;
 
 use super::{Entry, Moment, Place, Trial};
-use thermal_plant::parameters::stream;
 
 /// A part of the matrix.
 #[derive(Clone, Debug)]

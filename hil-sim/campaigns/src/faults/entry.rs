@@ -3,10 +3,10 @@
 use std::fmt;
 
 use thermal_display::guard::Fault;
-
-use super::{Place, Sign};
 use thermal_sim::processor::MachineFault;
 use thermal_sim::scene::{Broken, FaultKind, Sensor};
+
+use super::{Place, Sign};
 
 /// What happens.
 #[derive(Clone, Copy, Debug, PartialEq)]

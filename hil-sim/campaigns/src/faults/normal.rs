@@ -7,13 +7,13 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
 use thermal_display::control::Law;
+use thermal_plant::parameters::stream;
+use thermal_sim::Device;
+use thermal_sim::metrics::Range;
+use thermal_sim::scene::Scene;
 
 use super::script;
-use thermal_sim::Device;
 use crate::fidelity::Draw;
-use thermal_sim::metrics::Range;
-use thermal_plant::parameters::stream;
-use thermal_sim::scene::Scene;
 
 /// Length of a session, s, after the time in which the device is armed and settles.
 const SESSION_S: f64 = 120.0;

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
+use thermal_charts::{document, escape};
+
 use super::table::{broken, cells, outcome};
 use super::{Breach, Outline};
-use thermal_charts::{document, escape};
 
 /// Name of the page.
 pub const HTML: &str = "faults.html";

@@ -3,12 +3,12 @@
 use std::fmt::Write;
 
 use serde::Serialize;
+use thermal_plant::parameters::stream;
+use thermal_sim::Device;
+use thermal_sim::scene::FaultKind;
 
 use super::table::broken;
-use thermal_sim::Device;
 use super::{Breach, Entry, Injected, Moment, Place, Right, Trial, entries, trial};
-use thermal_plant::parameters::stream;
-use thermal_sim::scene::FaultKind;
 
 /// When the first fault comes, s: after the self-test that settling begins with, before every moment of a place.
 const LATENT_S: f64 = 0.05;

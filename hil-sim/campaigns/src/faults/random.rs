@@ -5,12 +5,12 @@ use std::fmt::Write;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
+use thermal_plant::parameters::stream;
+use thermal_sim::Device;
 
 use super::table::broken;
-use thermal_sim::Device;
 use super::{Breach, Entry, Injected, Moment, Place, Trial, entries, trial};
 use crate::fidelity::Draw;
-use thermal_plant::parameters::stream;
 
 /// Campaigns in a row on the same device of the box: commissioning one takes longer than a campaign.
 const ON_ONE_DEVICE: u64 = 8;

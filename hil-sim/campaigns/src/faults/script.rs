@@ -2,10 +2,11 @@
 
 use std::fmt::Write;
 
-use super::Injected;
-use super::entry::sensor;
 use thermal_sim::processor::MachineFault;
 use thermal_sim::scene::FaultKind;
+
+use super::Injected;
+use super::entry::sensor;
 
 /// A host that fell silent comes back after so long, s, to ask.
 const SILENT_S: f64 = 6.0;

@@ -10,8 +10,8 @@
 //! too little: at 42 °C that is an eighth of it. A deviation that takes its time counts from its begin, if it lasts for as
 //! long as a device must wait to tell it from what a sound one does.
 
-use thermal_sim::dose::rate;
 use thermal_plant::STEP_S;
+use thermal_sim::dose::rate;
 use thermal_sim::trace::Row;
 
 /// A deviation that counts as detectable.

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use serde::Serialize;
-
-use super::verdict::Verdict;
 use thermal_sim::Device;
-use super::{Entry, Injected, Moment, Place, script};
-use thermal_sim::processor::NotInjected;
 use thermal_sim::metrics::Figures;
+use thermal_sim::processor::NotInjected;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
+
+use super::verdict::Verdict;
+use super::{Entry, Injected, Moment, Place, script};
 
 /// What is asked at the end, and how long before it, s. Twice: a reset tears a line of telemetry, which the first answer
 /// then ends.

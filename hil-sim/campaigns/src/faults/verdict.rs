@@ -1,11 +1,11 @@
 //! What came of a run, against what must be.
 
 use serde::Serialize;
-
-use super::{Entry, Moment, Right};
 use thermal_sim::metrics::{Figures, Range};
 use thermal_sim::run::Outcome;
 use thermal_sim::trace::Row;
+
+use super::{Entry, Moment, Right};
 
 /// Range of the skin, °C: pain begins at its ends.
 const SKIN_C: std::ops::RangeInclusive<f64> = 13.0..=45.0;

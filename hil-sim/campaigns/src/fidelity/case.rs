@@ -5,9 +5,9 @@ use std::path::PathBuf;
 
 use contact_model::material::Surface;
 use thermal_display::control::Law;
+use thermal_sim::scene::{Scene, SceneError};
 
 use super::{Measure, Scenario, Thing};
-use thermal_sim::scene::{Scene, SceneError};
 
 /// A force that is held from a time on: [`thermal_sim::scene::Force`] as a case has it.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -4,13 +4,13 @@ use contact_model::material::MATERIALS;
 use contact_model::pressure::STATED;
 use serde::Serialize;
 use thermal_display::control::Law;
-
-use super::case::ROOM_C;
-use thermal_sim::Device;
-use crate::percentile;
-use super::{Case, Scenario};
 use thermal_plant::Params;
 use thermal_plant::parameters::{self, Tolerance, absolute, all, between, relative, stream};
+use thermal_sim::Device;
+
+use super::case::ROOM_C;
+use super::{Case, Scenario};
+use crate::percentile;
 
 /// What is drawn, and from what. Whatever is not here stays nominal.
 ///

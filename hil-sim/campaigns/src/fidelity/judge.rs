@@ -1,7 +1,6 @@
 //! What of a run is held against a bound.
 
 use serde::Serialize;
-
 use thermal_sim::metrics::skin_errors;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{Boxed, Row, box_table, table};
 use thermal_charts::{document, element, escape};
+
+use super::{Boxed, Row, box_table, table};
 
 /// Name of the page.
 pub const HTML: &str = "fidelity.html";

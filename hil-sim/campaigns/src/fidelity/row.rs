@@ -4,12 +4,12 @@ use std::cmp::Ordering;
 
 use serde::Serialize;
 use thermal_display::control::Law;
-
-use super::{Case, Judged, Scenario, Without};
 use thermal_sim::Device;
 use thermal_sim::metrics::{Figures, skin_errors};
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
+
+use super::{Case, Judged, Scenario, Without};
 
 /// A run's figures and what it was a run of.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{Boxed, Row, Scenario};
 use thermal_sim::metrics::{Errors, PerTick};
+
+use super::{Boxed, Row, Scenario};
 
 const HEAD: &str = "   N    judged            skin rms   display max/rms    A max/rms     J     E      instructions   cycles (est.)";
 const NAME: usize = 20;

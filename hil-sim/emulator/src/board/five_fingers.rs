@@ -3,11 +3,11 @@
 use thermal_plant::bridge::Legs;
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
-use thermal_sim::engine::{BAUD, Cost, DeviceReset, Lines};
+use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _, Lines};
 use thermal_sim::hand::{FINGERS, Hand};
 
 use super::meter::Meter;
-use super::one_finger::{ADC_INPUTS, StartError, power_up, resets};
+use super::one_finger::{ADC_INPUTS, Image, StartError, power_up, resets};
 use crate::{Firmware, Machine, Stop, Wiring};
 
 /// A pin: port (0 is A) and bit.
@@ -91,6 +91,8 @@ impl ImageHand {
 
 impl Hand for ImageHand {
     type Stop = Stop;
+
+    const NAME: &'static str = Image::NAME;
 
     fn run_to(&mut self, _finger: usize) -> Result<(), Stop> {
         let at_ps = self.first_boundary_ps + self.boundaries * TURN_PS;

@@ -1,5 +1,6 @@
 //! The release image in the emulated microcontroller, wired as the NUCLEO-F446RE board is.
 
+use anyhow::Context;
 use thermal_plant::bridge::{Leg, Legs};
 use thermal_plant::sensors::Channel;
 use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine};
@@ -7,10 +8,10 @@ use thermal_sim::metrics::Figures;
 use thermal_sim::processor::{MachineFault, NotInjected};
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
-use thermal_sim::{Device, World, run_on};
+use thermal_sim::{Device, RamLayout, World, run_on};
 
 use super::meter::{Meter, TICK};
-use crate::{Firmware, InjectError, LegState, Machine, Stop, Wiring};
+use crate::{Firmware, InjectError, LegState, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
 
 /// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2.
 pub const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12];
@@ -213,6 +214,24 @@ impl Device for Firmware {
 
     fn run(&self, scene: &Scene) -> anyhow::Result<(Outcome, Figures)> {
         run_on(scene, |world| Ok(Image::new(self, world)?))
+    }
+
+    fn has_processor(&self) -> bool {
+        true
+    }
+
+    fn ram_layout(&self) -> anyhow::Result<RamLayout> {
+        let symbol = |name| {
+            let at = self.symbol(name);
+            at.with_context(|| {
+                format!("the image has no symbol {name}, so its static data cannot be found")
+            })
+        };
+        Ok(RamLayout {
+            ram: RAM_BASE..RAM_BASE + RAM_SIZE,
+            statics: symbol("__sdata")?..symbol("__sheap")?,
+            stack_top: self.initial_sp(),
+        })
     }
 }
 

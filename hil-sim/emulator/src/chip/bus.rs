@@ -8,10 +8,10 @@ use crate::gpio::Port;
 use crate::iwdg::Iwdg;
 use crate::nvic::exception;
 use crate::rcc::{Clocks, Enr, HSI_HZ};
-use thermal_sim::processor::ResetCause;
 use crate::stop::{Answer, Refusal};
 use crate::{Wiring, names};
 use crate::{exti::Exti, nvic::Nvic, ppb::Ppb, wwdg::Wwdg};
+use thermal_sim::processor::ResetCause;
 
 /// Peripheral behind an address, with its clock enable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

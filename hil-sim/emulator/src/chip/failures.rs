@@ -1,10 +1,10 @@
 //! What an injected fault does to the devices.
-use thermal_sim::processor::ResetCause;
 use super::{Chip, TIM1, TIM8, TIMERS};
 use crate::Wiring;
 use crate::nvic::exception;
 use crate::rcc::AfterHse;
 use crate::stop::Answer;
+use thermal_sim::processor::ResetCause;
 
 impl<W: Wiring> Chip<W> {
     /// A watchdog runs that will end whatever the CPU is caught in.

@@ -1,8 +1,8 @@
 //! What becomes of the clocks when the external oscillator fails (RM0390 6.2.7, clock security system), and of the
 //! reset flags at a reset.
 use super::{Clocks, Rcc};
-use thermal_sim::processor::ResetCause;
 use crate::stop::Answer;
+use thermal_sim::processor::ResetCause;
 
 const HSEON: u32 = 1 << 16;
 const CSSON: u32 = 1 << 19;

@@ -11,7 +11,6 @@ mod thermistor;
 use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;
 
-
 pub use converter::ConverterParams;
 pub use defects::{Circuit, ForceDefect, SensorDefects, ThermistorDefect};
 pub(crate) use params::BONDED;

@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
-use super::*;
 use contact_model::material::SKIN;
+
+use super::*;
 
 const TISSUE: Medium = Medium {
     conductivity_w_mk: 0.37,

@@ -3,12 +3,12 @@
 use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal};
+use thermal_plant::HostParams;
 
 use super::CommissionError;
+use crate::World;
 use crate::engine::{Engine, Lines};
 use crate::host::leaves_at_half;
-use thermal_plant::HostParams;
-use crate::World;
 
 /// Longest wait for an answer, ms.
 const PATIENCE_MS: u64 = 500;

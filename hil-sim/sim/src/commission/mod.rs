@@ -13,8 +13,9 @@ use std::collections::HashMap;
 use std::convert::Infallible;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
-use crate::engine::Native;
 use thermal_plant::{ConfigError, Params};
+
+use crate::engine::Native;
 use crate::scene::Scene;
 
 pub use bench::Bench;

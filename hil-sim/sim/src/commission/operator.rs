@@ -5,8 +5,8 @@ use thermal_display::settings::{SEGMENT_CODES, Settings};
 use super::bench::Bench;
 use super::record::{Commissioned, Event, Point, Tile};
 use super::{CommissionError, Plants};
-use crate::engine::Engine;
 use crate::World;
+use crate::engine::Engine;
 
 /// Display temperatures to calibrate at, deg C; within them lies what the display is used for.
 const DISPLAY_C: (f64, f64) = (15.3, 41.7);

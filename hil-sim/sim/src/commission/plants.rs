@@ -1,13 +1,13 @@
 //! The places that a device is put in to be commissioned.
 
 use contact_model::material::MATERIALS;
-
-use crate::World;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::parameters::stream;
 use thermal_plant::slab::Back;
 use thermal_plant::{ConfigError, Params, PlantConfig};
+
+use crate::World;
 
 /// Skin thermistor on a hand, deg C, while the display is calibrated.
 const SKIN_C: f64 = 33.0;

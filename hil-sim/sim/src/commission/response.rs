@@ -6,9 +6,10 @@
 
 use std::f64::consts::TAU;
 
-use super::Plants;
 use thermal_plant::bridge::{Leg, Legs};
 use thermal_plant::{ConfigError, STEP_S};
+
+use super::Plants;
 
 /// Duty around one half: about 1.5 A.
 const DUTY: f64 = 0.08;

@@ -20,9 +20,10 @@ mod native;
 pub use lines::Lines;
 pub use native::Native;
 
-use crate::processor::{MachineFault, NotInjected, ResetCause};
 use thermal_plant::bridge::Legs;
+
 use crate::World;
+use crate::processor::{MachineFault, NotInjected, ResetCause};
 
 /// Baud rate of the host, as the board sets it.
 pub const BAUD: u64 = 1_000_000;

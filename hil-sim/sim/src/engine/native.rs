@@ -11,12 +11,12 @@ use thermal_display::guard::{Cause, Dose, Fault};
 use thermal_display::protocol::{Addressed, Error, LineReader, Reply};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::{Kept, Settings, decode};
-
-use super::{BAUD, Cost, DeviceReset, Engine};
-use crate::processor::{MachineFault, NotInjected, ResetCause};
 use thermal_plant::bridge::{Leg, Legs};
 use thermal_plant::sensors::Channel;
+
+use super::{BAUD, Cost, DeviceReset, Engine};
 use crate::World;
+use crate::processor::{MachineFault, NotInjected, ResetCause};
 
 /// Nanoseconds of one half millisecond, of one byte on the line, and of the tick after the whole-millisecond
 /// boundary that lies before it.

@@ -15,15 +15,15 @@ use std::time::Instant;
 
 pub use native::NativeHand;
 
+use crate::World;
 use crate::commission;
 use crate::engine::{Cost, DeviceReset};
 use crate::host::Host;
-use thermal_plant::bridge::Legs;
 use crate::run::{Outcome, RunError, broken, in_scene};
 use crate::scene::Scene;
 use crate::telemetry::Telemetry;
 use crate::trace::{Row, Trace};
-use crate::World;
+use thermal_plant::bridge::Legs;
 
 /// Fingers of the device.
 pub const FINGERS: usize = 5;
@@ -37,6 +37,9 @@ const DRAIN_MS: u64 = 10;
 pub trait Hand {
     /// Why it can stop before its time.
     type Stop: std::error::Error + Send + Sync + 'static;
+
+    /// Name of the engine, as the command line has it.
+    const NAME: &'static str;
 
     /// Runs the device to a finger's next boundary. The fingers follow each other in turn.
     ///
@@ -114,6 +117,7 @@ pub fn run<H: Hand>(
     let cost = hand.cost();
     let resets = hand.resets();
     Ok(fingers.map(|finger| Outcome {
+        engine: H::NAME,
         resets: in_scene(&resets, finger.zero_ms),
         trace: finger.trace,
         answers: finger.answers,

@@ -2,10 +2,11 @@
 
 use std::convert::Infallible;
 
-use super::{FINGERS, Hand};
-use crate::engine::{Cost, DeviceReset, Engine, Lines, Native};
 use thermal_plant::bridge::Legs;
+
+use super::{FINGERS, Hand};
 use crate::World;
+use crate::engine::{Cost, DeviceReset, Engine, Lines, Native};
 
 /// Five native devices of one finger.
 #[derive(Debug)]
@@ -36,6 +37,8 @@ impl NativeHand {
 
 impl Hand for NativeHand {
     type Stop = Infallible;
+
+    const NAME: &'static str = Native::NAME;
 
     fn run_to(&mut self, finger: usize) -> Result<(), Infallible> {
         if self.started < FINGERS {

@@ -6,6 +6,7 @@ use std::path::Path;
 use thermal_display::control::Law;
 use thermal_display::guard::Setpoint;
 use thermal_display::render::Mode;
+use thermal_plant::{ConfigError, Plant};
 use toml::Spanned;
 
 use super::depth;
@@ -16,7 +17,6 @@ use super::object::object;
 use super::plant::params;
 use super::source::{SceneError, Source};
 use super::{Force, HostLine, Scene};
-use thermal_plant::{ConfigError, Plant};
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
+use thermal_plant::infrared::{
+    Camera, CameraParams, Optic, ParameterError, SelfReflection, Surroundings,
+};
+use thermal_plant::parameters::stream;
 use toml::Spanned;
 
 use super::file::{self, Glass};
 use super::source::{SceneError, Source};
-use thermal_plant::infrared::{Camera, CameraParams, Optic, ParameterError, SelfReflection, Surroundings};
-use thermal_plant::parameters::stream;
 
 /// Frames per second where a scene gives none: a class value of uncooled cameras.
 const RATE_HZ: f64 = 30.0;

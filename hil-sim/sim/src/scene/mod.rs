@@ -17,11 +17,11 @@ use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
 use thermal_display::control::Law;
 use thermal_display::render::Mode;
-
-use crate::processor::Injection;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::Back;
 use thermal_plant::{Params, PlantConfig};
+
+use crate::processor::Injection;
 
 pub use fault::{Broken, DRIFT_K_S, Fault, FaultKind, ProcessorKey, ProcessorKind, Sensor, Value};
 pub use infrared::Infrared;

@@ -5,13 +5,13 @@ use std::ops::Range;
 use contact_model::material::{Material, Surface, find};
 use thermal_display::protocol::Command;
 use thermal_display::settings::Settings;
+use thermal_plant::object::ObjectConfig;
+use thermal_plant::slab::Back;
 use toml::Spanned;
 
 use super::file::{self, Number};
 use super::source::{SceneError, Source};
 use super::{Object, known_materials};
-use thermal_plant::object::ObjectConfig;
-use thermal_plant::slab::Back;
 
 /// Checks the object's table.
 pub(super) fn object(

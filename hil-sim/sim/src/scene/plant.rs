@@ -3,13 +3,13 @@
 use std::ops::Range;
 
 use contact_model::material::SKIN;
+use thermal_plant::finger::{BLOOD_J_M3K, FingerParams, Vessels};
+use thermal_plant::slab::{Layer, Medium};
+use thermal_plant::{Params, parameters};
 use toml::Spanned;
 
 use super::file::{self, Node};
 use super::source::{SceneError, Source};
-use thermal_plant::finger::{BLOOD_J_M3K, FingerParams, Vessels};
-use thermal_plant::slab::{Layer, Medium};
-use thermal_plant::{Params, parameters};
 
 /// The parameters: nominal ones, drawn if the scene asks for it, then what the scene itself says.
 pub(super) fn params(

@@ -4,9 +4,10 @@ use std::fmt;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use super::file::Number;
 use thermal_plant::Params;
 use thermal_plant::parameters;
+
+use super::file::Number;
 
 /// What is wrong with a scene, and where.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -4,6 +4,7 @@ use thermal_plant::Defects;
 use thermal_plant::bridge::LegDefect;
 use thermal_plant::comparator::ComparatorDefect;
 use thermal_plant::sensors::{Channel, Circuit};
+
 use crate::scene::{Broken, FaultKind};
 
 /// What is broken in plant and converter.

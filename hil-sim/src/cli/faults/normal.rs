@@ -1,8 +1,9 @@
 //! `--normal`: use without a fault.
 
 use anyhow::anyhow;
-use thermal_campaigns::faults::{Device, Session, Used, use_table};
 use serde::Serialize;
+use thermal_campaigns::faults::{Session, Used, use_table};
+use thermal_sim::Device;
 
 use super::{Arguments, Failure, each, tell, write};
 

@@ -1,8 +1,9 @@
 //! `--pairs`: an unnoticed fault, then another one.
 
 use anyhow::anyhow;
-use thermal_campaigns::faults::{Device, Pair, RanPair, pair_table, pairs};
 use serde::Serialize;
+use thermal_campaigns::faults::{Pair, RanPair, pair_table, pairs};
+use thermal_sim::Device;
 
 use super::{Arguments, Failure, each, tell, write};
 

@@ -4,6 +4,7 @@ use thermal_plant::infrared::{
     BAND_M, BEAMSPLITTER, LineOfSight, Optic, SKIN_EMISSIVITY, SelfReflection, Surroundings,
     radiance, temperature_c,
 };
+
 use crate::row::{Correction, Row};
 use crate::stated::{Stated, printed};
 

@@ -1,9 +1,9 @@
 //! What a flip was for the finger.
 
 use serde::Serialize;
+use thermal_sim::run::Outcome;
 
 use crate::faults::Verdict;
-use thermal_sim::run::Outcome;
 
 /// The first that is so.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

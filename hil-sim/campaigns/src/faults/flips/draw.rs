@@ -2,11 +2,11 @@
 
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
+use thermal_plant::parameters::stream;
+use thermal_sim::processor::MachineFault;
 
 use super::{Memory, PLACES, Region, WITHIN_S};
-use thermal_sim::processor::MachineFault;
 use crate::faults::{Injected, Moment, Place};
-use thermal_plant::parameters::stream;
 
 /// When the control tick runs, µs of the millisecond: every other flip comes then, else the core would sleep in most.
 const TICK_US: std::ops::Range<u32> = 700..900;
@@ -69,8 +69,11 @@ mod tests {
     use thermal_sim::scene::Scene;
 
     fn memory() -> Memory {
-        let (statics, stack) = (0x2001_0000..0x2001_2000, 0x2000_f000..0x2001_0000);
-        Memory::new(0x2000_0000..0x2002_0000, statics, stack).expect("neither is empty")
+        Memory {
+            ram: 0x2000_0000..0x2002_0000,
+            statics: 0x2001_0000..0x2001_2000,
+            stack: 0x2000_f000..0x2001_0000,
+        }
     }
 
     #[test]

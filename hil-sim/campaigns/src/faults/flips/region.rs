@@ -4,10 +4,11 @@ use std::ops::Range;
 
 use rand::{Rng, RngExt};
 use serde::Serialize;
+use thermal_sim::processor::CoreRegister;
+use thermal_sim::processor::MachineFault;
+use thermal_sim::{Device, RamLayout};
 
 use super::registers::REGISTERS;
-use thermal_sim::processor::MachineFault;
-use thermal_sim::processor::CoreRegister;
 
 /// A part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -112,20 +113,29 @@ fn one_of(bits: u32, draw: &mut impl Rng) -> u8 {
     set.nth(which as usize).unwrap_or_default()
 }
 
-/// Where an image keeps what: addresses of RAM, none of them empty.
+/// Where an image keeps what: addresses of RAM.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Memory {
-    pub(super) ram: Range<u32>,
-    pub(super) statics: Range<u32>,
-    pub(super) stack: Range<u32>,
+    /// All of it.
+    pub ram: Range<u32>,
+    /// Static data.
+    pub statics: Range<u32>,
+    /// Used stack.
+    pub stack: Range<u32>,
 }
 
 impl Memory {
-    /// The addresses of the RAM, those of an image's static data, and those of the part of the stack that it uses.
+    /// That of a device whose image uses so much of its stack, bytes.
     ///
     /// # Errors
-    /// There is no static data, or nothing of the stack is used.
-    pub fn new(ram: Range<u32>, statics: Range<u32>, stack: Range<u32>) -> anyhow::Result<Self> {
+    /// It has no RAM, its image does not say where its static data are, or there are none, or it uses no stack.
+    pub fn of(device: &dyn Device, stack_bytes: u32) -> anyhow::Result<Self> {
+        let RamLayout {
+            ram,
+            statics,
+            stack_top,
+        } = device.ram_layout()?;
+        let stack = stack_top.saturating_sub(stack_bytes)..stack_top;
         anyhow::ensure!(
             !statics.is_empty() && !stack.is_empty(),
             "the image has {} bytes of static data and uses {} of stack; some of both are needed",

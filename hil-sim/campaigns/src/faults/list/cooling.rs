@@ -1,10 +1,10 @@
 //! What cools the sink. Nothing here holds the sink above what hurts: no device could keep a finger from that.
 
 use thermal_display::guard::Fault;
+use thermal_sim::scene::FaultKind as Kind;
 
 use crate::faults::entry::valued;
 use crate::faults::{Entry, Place, Sign};
-use thermal_sim::scene::FaultKind as Kind;
 
 const HOT: &[Sign] = &[Sign::SinkLimit, Sign::WrongWay, Sign::DisplayLimit];
 const HOT_REASONS: &[Fault] = &[Fault::SinkHot, Fault::Runaway, Fault::DisplayHot];

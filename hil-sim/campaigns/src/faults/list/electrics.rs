@@ -1,10 +1,10 @@
 //! Bridge, supply, mirror, comparator.
 
 use thermal_display::guard::Fault;
+use thermal_sim::scene::FaultKind as Kind;
 
 use crate::faults::entry::{broken, valued};
 use crate::faults::{Entry, Place, Sign};
-use thermal_sim::scene::FaultKind as Kind;
 
 /// A leg that does not do what it is told shows in the current, the display's way, or the self-test.
 const LEG: &[Sign] = &[

@@ -1,10 +1,10 @@
 //! The host, and what it says.
 
 use thermal_display::guard::Fault;
+use thermal_sim::scene::FaultKind as Kind;
 
 use crate::faults::entry::broken;
 use crate::faults::{Entry, Injected, Place, Sign};
-use thermal_sim::scene::FaultKind as Kind;
 
 /// Silence, noise, and wrong or unwise lines.
 pub const ENTRIES: &[Entry] = &[

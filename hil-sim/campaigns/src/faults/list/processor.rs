@@ -1,11 +1,11 @@
 //! The microcontroller: core, clock, memory, peripherals, supply.
 
 use thermal_display::guard::Fault;
+use thermal_sim::processor::CoreRegister;
+use thermal_sim::processor::MachineFault as Fails;
 
 use super::electrics::LEG_REASONS;
-use thermal_sim::processor::MachineFault as Fails;
 use crate::faults::{Entry, Injected, Place, Sign};
-use thermal_sim::processor::CoreRegister;
 
 const fn processor(fault: Fails) -> Injected {
     Injected::Processor(fault)

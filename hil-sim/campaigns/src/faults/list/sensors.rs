@@ -1,11 +1,11 @@
 //! Thermistors, force sensor, converter.
 
 use thermal_display::guard::Fault;
+use thermal_sim::scene::FaultKind as Kind;
+use thermal_sim::scene::Sensor::{Check, Display, Room, Sink, Skin};
 
 use crate::faults::entry::{broken, swapped, thermistor, valued};
 use crate::faults::{Entry, Injected, Place, Sign};
-use thermal_sim::scene::FaultKind as Kind;
-use thermal_sim::scene::Sensor::{Check, Display, Room, Sink, Skin};
 
 const NOW: &[Sign] = &[Sign::Injection];
 

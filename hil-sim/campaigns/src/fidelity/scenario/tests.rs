@@ -2,9 +2,9 @@
 
 use contact_model::material::MATERIALS;
 use thermal_display::control::Law;
+use thermal_sim::scene::Scene;
 
 use super::*;
-use thermal_sim::scene::Scene;
 
 fn scene(case: &Case) -> Scene {
     case.scene(Law::Pi10Hz, 5, &[]).expect("a scene")
