@@ -2,14 +2,16 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use hil_sim::World;
-use hil_sim::commission::{Plants, commission};
-use hil_sim::engine::{Cost, Engine, Image};
-use hil_sim::fidelity::map;
-use hil_sim::hand::{self, FINGERS, Hand as _, ImageHand};
-use hil_sim::machine::Firmware;
-use hil_sim::run::{Outcome, run};
-use hil_sim::scene::Scene;
+use stm32_emulator::Firmware;
+use stm32_emulator::Image;
+use stm32_emulator::ImageHand;
+use thermal_campaigns::map;
+use thermal_sim::World;
+use thermal_sim::commission::{Plants, commission};
+use thermal_sim::engine::{Cost, Engine};
+use thermal_sim::hand::{self, FINGERS, Hand as _};
+use thermal_sim::run::{Outcome, run};
+use thermal_sim::scene::Scene;
 
 use crate::scenes::{faulty, touched};
 use crate::{Proof, Section, levels};

@@ -9,13 +9,13 @@ use image_proof::{Proof, Section, measure, panics};
 /// The image of the current sources for one finger, built once.
 fn one() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
-    IMAGE.get_or_init(|| hil_sim::firmware::build(1).expect("the image builds"))
+    IMAGE.get_or_init(|| stm32_emulator::build(1).expect("the image builds"))
 }
 
 /// The same for five.
 fn five() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
-    IMAGE.get_or_init(|| hil_sim::firmware::build(5).expect("the image builds"))
+    IMAGE.get_or_init(|| stm32_emulator::build(5).expect("the image builds"))
 }
 
 fn proof(elf: &Path) -> Proof {
