@@ -57,30 +57,30 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
     let cycles = of(|cost| cost.cycles_max)?;
     let stack = of(|cost| cost.stack_bytes.unwrap_or(0).into())?;
     ensure!(stack.0 > 0, "the image does not say where its stack ends");
-    let figures = [
-        (
-            "instructions of the longest tick",
-            instructions,
-            INSTRUCTIONS,
-        ),
-        ("cycles of it, estimated", cycles, CYCLES),
-        ("bytes of stack", stack, bound.into()),
-    ];
     section.lines.push(format!(
         "{} scenes; {available} cycles are there for a tick",
         all.len()
     ));
-    for (what, (value, scene), limit) in figures {
-        section
-            .lines
-            .push(format!("{value} of {limit} {what} ({scene})"));
+    let Section {
+        lines,
+        violations,
+        differences,
+        ..
+    } = &mut section;
+    let mut limit = |list: &mut Vec<String>, what, (value, scene), limit: u64| {
+        lines.push(format!("{value} of {limit} {what} ({scene})"));
         if value > limit {
-            section
-                .violations
-                .push(format!("{value} {what} in {scene}, allowed are {limit}"));
+            list.push(format!("{value} {what} in {scene}, allowed are {limit}"));
         }
+    };
+    let longest = "instructions of the longest tick";
+    limit(differences, longest, instructions, INSTRUCTIONS);
+    limit(differences, "cycles of it, estimated", cycles, CYCLES);
+    limit(violations, "bytes of stack", stack, bound.into());
+    if cycles.0 > available {
+        violations.push(format!("{} cycles in {}: late", cycles.0, cycles.1));
     }
-    Ok(section)
+    Ok(section.judged(&proof.compiler))
 }
 
 /// What a scene on one finger costs, without the eight seconds before it.
