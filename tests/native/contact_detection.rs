@@ -1,11 +1,11 @@
 //! Contact detection on the simulated force sensor and converter: delay of detection, estimated time of landing, and false
 //! detections by noise and drift.
 
-use hil_sim::plant::sensors::{Channel, Sensed, SensorParams, Sensors as Plant};
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Sensors, Touch};
 use thermal_display::settings::Settings;
+use thermal_plant::sensors::{Channel, Sensed, SensorParams, Sensors as Plant};
 
-/// Scans of a tick before the plant's step (see `hil_sim::engine`).
+/// Scans of a tick before the plant's step (see `thermal_sim::engine`).
 const SCANS_BEFORE: usize = 4;
 
 /// Simulated force sensor and converter, read by the device's contact detection.

@@ -1,7 +1,7 @@
 //! The display of chapter 4 (constant temperature of Eq. 3-1) beside that of chapter 6 (Eq. 6-12).
 
-use hil_sim::run::Outcome;
 use system_tests::{between, forces, mean, natively, scene};
+use thermal_sim::run::Outcome;
 
 const LANDED_S: f64 = 1.0;
 

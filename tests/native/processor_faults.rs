@@ -1,10 +1,12 @@
 //! Processor faults in the native engine, which has no registers and no clocks: each is either modelled or refused by name.
 
-use hil_sim::World;
-use hil_sim::engine::{MachineFault, Native, NotInjected};
-use hil_sim::machine::ResetCause;
-use hil_sim::run::{Injection, RunError, run, run_with};
 use system_tests::{between, copper_contact};
+use thermal_sim::World;
+use thermal_sim::engine::Native;
+use thermal_sim::processor::Injection;
+use thermal_sim::processor::ResetCause;
+use thermal_sim::processor::{MachineFault, NotInjected};
+use thermal_sim::run::{RunError, run, run_with};
 
 #[test]
 fn the_native_engine_refuses_or_models_each_processor_fault() {

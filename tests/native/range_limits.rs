@@ -1,7 +1,7 @@
 //! The display held at an end of its range, or moved there by a host line, a correction or a finger: nothing trips.
 
-use hil_sim::trace::Row;
 use system_tests::{between, forces, host, natively, scene};
+use thermal_sim::trace::Row;
 
 /// PI controllers with the slowest thermistors of the parameter box, from skin temperature to either end of the range.
 #[test]

@@ -7,10 +7,10 @@ use embassy_futures::block_on;
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use hil_sim::machine::Cells;
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 use thermal_display::settings::{Calibration, Correction, Kept, LONGEST, Sectors, Store, Tile};
+use thermal_sim::Cells;
 
 /// Bytes of a sector.
 pub const SECTOR: usize = 16 * 1024;

@@ -6,12 +6,12 @@ pub mod flash;
 
 use std::path::Path;
 
-use hil_sim::World;
-use hil_sim::engine::Native;
-use hil_sim::metrics::skin_errors;
-use hil_sim::run::{Outcome, run};
-use hil_sim::scene::Scene;
-use hil_sim::trace::Row;
+use thermal_sim::World;
+use thermal_sim::engine::Native;
+use thermal_sim::metrics::skin_errors;
+use thermal_sim::run::{Outcome, run};
+use thermal_sim::scene::Scene;
+use thermal_sim::trace::Row;
 
 /// A scene with a finger of 34 °C on `material`, room and object at 24 °C; `keys` and `tables` are appended to the scene's text.
 ///

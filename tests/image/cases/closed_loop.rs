@@ -1,12 +1,11 @@
 //! A finger lands on the preset display of a commissioned device that runs the release image: skin, display and set-point
 //! against the equations.
 
-use hil_sim::engine::Image;
-use hil_sim::metrics::figures;
-use hil_sim::run::Outcome;
-use hil_sim::scene::Scene;
 use image_tests::on_image;
 use system_tests::{between, forces, scene, worst_k};
+use thermal_sim::metrics::figures;
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
 
 const LANDED_S: f64 = 1.0;
 /// Largest skin error: people feel cooling pulses from 20 mK on.
@@ -26,7 +25,7 @@ fn landing(material: &str) -> (Scene, Outcome) {
 /// its target.
 fn assert_displayed(material: &str, display_rms_mk: f64) {
     let (scene, outcome) = landing(material);
-    let figures = figures::<Image>(&scene, &outcome);
+    let figures = figures(&scene, &outcome);
     let (skin_k, display) = (
         worst_k(&scene, &outcome, 0.05),
         figures.display_error_mk.expect("contact"),

@@ -1,12 +1,12 @@
 //! Transients beyond the closed form of Eq. 6-12, on the release image: an object that appears under a resting finger, repeated
 //! contacts, a force that changes.
 
-use hil_sim::fidelity::{Case, Scenario};
-use hil_sim::run::Outcome;
-use hil_sim::scene::Scene;
 use image_tests::on_image;
 use system_tests::{between, worst_k};
+use thermal_campaigns::fidelity::{Case, Scenario};
 use thermal_display::control::Law;
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
 
 /// Largest skin error after the time that the tile's power needs, K.
 const SETTLED_K: f64 = 0.05;

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use hil_sim::machine::Firmware;
-use hil_sim::run::Outcome;
-use hil_sim::scene::Scene;
 use image_tests::{image, on, on_image};
+use stm32_emulator::Firmware;
 use system_tests::{between, forces, host, natively, scene};
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
 
 fn csv(outcome: &Outcome, name: &str) -> String {
     let path =

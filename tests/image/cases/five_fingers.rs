@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use hil_sim::World;
-use hil_sim::hand::{FINGERS, Hand, ImageHand, NativeHand, run};
-use hil_sim::machine::Firmware;
-use hil_sim::run::Outcome;
-use hil_sim::scene::Scene;
 use image_proof::compiler::{of_elf, recorded_with};
+use stm32_emulator::Firmware;
+use stm32_emulator::ImageHand;
 use system_tests::{forces, host, natively, scene};
+use thermal_sim::World;
+use thermal_sim::hand::{FINGERS, Hand, NativeHand, run};
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
 
 /// Cycles in a millisecond at 180 MHz.
 const MILLISECOND: f64 = 180_000.0;
@@ -17,7 +18,7 @@ const MILLISECOND: f64 = 180_000.0;
 /// The ELF file of the image of the current sources for five fingers, built once.
 fn elf() -> &'static Path {
     static ELF: OnceLock<PathBuf> = OnceLock::new();
-    ELF.get_or_init(|| hil_sim::firmware::build(FINGERS).expect("the image builds"))
+    ELF.get_or_init(|| stm32_emulator::build(FINGERS).expect("the image builds"))
 }
 
 fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {

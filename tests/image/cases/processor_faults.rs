@@ -1,11 +1,13 @@
 //! The bridge when the processor fails or is reset, on the release image.
 
-use hil_sim::World;
-use hil_sim::engine::Image;
-use hil_sim::machine::{Firmware, ResetCause};
-use hil_sim::run::{Injection, Outcome, run_with};
 use image_tests::{image, on_image};
+use stm32_emulator::Firmware;
+use stm32_emulator::Image;
 use system_tests::{between, copper_contact, forces, host, scene};
+use thermal_sim::World;
+use thermal_sim::processor::Injection;
+use thermal_sim::processor::ResetCause;
+use thermal_sim::run::{Outcome, run_with};
 
 /// Runs a contact with copper and injects a fault.
 fn with_fault(t_s: f64, fault: &str) -> Outcome {

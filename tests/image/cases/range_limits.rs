@@ -1,11 +1,11 @@
 //! The release image at the ends of its range: warm objects, cool and warm skin, and an object that is too warm to be displayed.
 
-use hil_sim::fidelity::Scenario;
-use hil_sim::run::Outcome;
-use hil_sim::scene::Scene;
 use image_tests::on_image;
 use system_tests::{between, forces, host, scene, worst_k};
+use thermal_campaigns::fidelity::Scenario;
 use thermal_display::control::Law;
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
 
 /// Runs a case of the scenario "unseen", whose temperatures no tuning has used.
 fn unseen(name: &str) -> (Scene, Outcome) {

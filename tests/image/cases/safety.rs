@@ -1,8 +1,8 @@
 //! The release image switches the bridge off when a sensor, the bridge or the converter fails, and limits the thermal dose.
 
-use hil_sim::trace::Row;
 use image_tests::on_image;
 use system_tests::{between, forces, host, scene};
+use thermal_sim::trace::Row;
 
 #[test]
 fn a_broken_display_thermistor_ends_the_current_and_is_reported() {

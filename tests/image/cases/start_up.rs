@@ -1,8 +1,9 @@
 //! Faults that the release image reports after a reset, and starts that fail.
 
-use hil_sim::machine::{CoreRegister, Firmware, ResetCause};
 use image_tests::{Bare, START, image};
+use stm32_emulator::Firmware;
 use system_tests::flash::erased;
+use thermal_sim::processor::{CoreRegister, ResetCause};
 
 fn firmware() -> Firmware {
     Firmware::from_file(image()).expect("an image for this chip")

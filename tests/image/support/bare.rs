@@ -1,8 +1,8 @@
 //! A device without sensors: it answers the host and stores settings, and can do nothing else.
 
-use hil_sim::machine::{Cells, Firmware, Machine, Wiring};
-
+use stm32_emulator::{Firmware, Machine, Wiring};
 use system_tests::flash::{BYTES, SECTOR};
+use thermal_sim::Cells;
 
 /// Offset of the settings' sectors in the flash.
 const BEGIN: usize = SECTOR;

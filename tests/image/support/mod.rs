@@ -5,11 +5,11 @@ mod bare;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use hil_sim::World;
-use hil_sim::engine::Image;
-use hil_sim::machine::Firmware;
-use hil_sim::run::{Outcome, run};
-use hil_sim::scene::Scene;
+use stm32_emulator::Firmware;
+use stm32_emulator::Image;
+use thermal_sim::World;
+use thermal_sim::run::{Outcome, run};
+use thermal_sim::scene::Scene;
 
 pub use bare::{Bare, START};
 
@@ -19,7 +19,7 @@ pub use bare::{Bare, START};
 /// It cannot be built.
 pub fn image() -> &'static Path {
     static IMAGE: OnceLock<PathBuf> = OnceLock::new();
-    IMAGE.get_or_init(|| hil_sim::firmware::build(1).expect("the image builds"))
+    IMAGE.get_or_init(|| stm32_emulator::build(1).expect("the image builds"))
 }
 
 /// Runs a scene on an image.

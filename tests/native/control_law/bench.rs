@@ -1,12 +1,12 @@
 //! Test bench: a controller on the simulated tile, read through a thermistor that is a first-order lag.
 
 use contact_model::fixed_point::Celsius;
-use hil_sim::plant::STEP_S;
-use hil_sim::plant::bridge::Current;
-use hil_sim::plant::tile::{Tile, TileParams};
 use thermal_display::control::{Control, Watt};
 use thermal_display::guard::Setpoint;
 use thermal_display::settings::{self, Settings};
+use thermal_plant::STEP_S;
+use thermal_plant::bridge::Current;
+use thermal_plant::tile::{Tile, TileParams};
 
 /// Initial temperature of room, sink and tile, °C.
 pub const ROOM_C: f64 = 24.0;

@@ -4,8 +4,8 @@
 //! that reads what the model predicts leaves no innovation.
 
 use contact_model::fixed_point::Celsius;
-use hil_sim::plant::tile::{Tile, TileParams, ZERO_C_K};
 use thermal_display::control::Control;
+use thermal_plant::tile::{Tile, TileParams, ZERO_C_K};
 
 use super::bench::{ROOM_C, Sensor, advance, settings, step, ticks};
 

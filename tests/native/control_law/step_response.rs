@@ -1,7 +1,7 @@
 //! Responses to steps of the target and of the load.
 
-use hil_sim::plant::tile::TileParams;
 use thermal_display::drive::Current;
+use thermal_plant::tile::TileParams;
 
 use super::bench::{Bench, settings, settled, ticks};
 

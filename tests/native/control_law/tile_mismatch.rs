@@ -1,6 +1,6 @@
 //! Tiles whose parameters differ from the controller's model.
 
-use hil_sim::plant::tile::TileParams;
+use thermal_plant::tile::TileParams;
 
 use super::bench::{Bench, peak_to_peak, settings};
 

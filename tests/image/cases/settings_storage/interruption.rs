@@ -1,8 +1,9 @@
 //! Resets while the image saves settings, and error flags that an earlier access left in the flash controller.
 
-use hil_sim::machine::{Cells, ResetCause};
 use image_tests::{Bare, START};
 use system_tests::flash::numbered;
+use thermal_sim::Cells;
+use thermal_sim::processor::ResetCause;
 
 use super::{after, firmware, lines};
 

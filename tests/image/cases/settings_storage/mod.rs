@@ -2,11 +2,13 @@
 
 mod interruption;
 
-use hil_sim::machine::{Cells, Firmware, ResetCause};
 use image_tests::{Bare, START, image};
+use stm32_emulator::Firmware;
 use system_tests::flash::{append, changes_page, erased, numbered, saved};
 use thermal_display::commission::Desk;
 use thermal_display::settings::{Kept, LONGEST, encode};
+use thermal_sim::Cells;
+use thermal_sim::processor::ResetCause;
 
 /// The answers to `settings 1` to `settings 8` of a device with these settings.
 pub fn lines(kept: Option<&[Kept; 1]>) -> Vec<String> {
