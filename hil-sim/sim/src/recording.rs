@@ -3,10 +3,28 @@
 use crate::World;
 use crate::engine::{Cost, DeviceReset};
 use crate::host::Host;
-use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::telemetry::Telemetry;
 use crate::trace::{Row, Trace};
+
+/// What a run has given.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Name of the engine that has run it.
+    pub engine: &'static str,
+    /// One row a millisecond.
+    pub trace: Trace,
+    /// Every line of the device that is not telemetry, with the time at which it was complete, s.
+    pub answers: Vec<(f64, String)>,
+    /// Resets of the device after its power-up, at times of the scene: negative while it settles.
+    pub resets: Vec<DeviceReset>,
+    /// Electrical work that the module has taken up in the scene, J.
+    pub electrical_j: f64,
+    /// Cost of the scene, without set-up and settling.
+    pub cost: Option<Cost>,
+    /// Simulated seconds per second of this machine, settling included.
+    pub real_time_factor: f64,
+}
 
 /// A scene on one finger, from power-up on. Milliseconds count from the finger's first boundary.
 pub struct Recording<'a> {

@@ -3,35 +3,17 @@
 use std::time::Instant;
 
 use crate::commission::{self, CommissionError};
-use crate::engine::{Cost, DeviceReset, Engine, Lines};
+use crate::engine::{Engine, Lines};
 use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::recording::Recording;
 use crate::scene::Scene;
-use crate::trace::Trace;
+
+pub use crate::recording::Outcome;
 
 /// Time after the last row in which its telemetry arrives, ms.
 const DRAIN_MS: u64 = 5;
 /// Half a millisecond, µs.
 const HALF_MS_US: u64 = 500;
-
-/// What a run has given.
-#[derive(Clone, Debug)]
-pub struct Outcome {
-    /// Name of the engine that has run it.
-    pub engine: &'static str,
-    /// One row a millisecond.
-    pub trace: Trace,
-    /// Every line of the device that is not telemetry, with the time at which it was complete, s.
-    pub answers: Vec<(f64, String)>,
-    /// Resets of the device after its power-up, at times of the scene: negative while it settles.
-    pub resets: Vec<DeviceReset>,
-    /// Electrical work that the module has taken up in the scene, J.
-    pub electrical_j: f64,
-    /// Cost of the scene, without set-up and settling.
-    pub cost: Option<Cost>,
-    /// Simulated seconds per second of this machine, settling included.
-    pub real_time_factor: f64,
-}
 
 /// Why a run ended early.
 #[derive(Debug, thiserror::Error)]
