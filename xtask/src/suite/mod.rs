@@ -7,7 +7,6 @@ use crate::firmware::{self, Fingers};
 use crate::process::Invocation;
 use crate::setup::{self, Choice, Lints, Needs, Permission, Toolchain};
 use crate::step::Steps;
-use crate::{bench, probe};
 use lanes::{Check, Lane};
 
 /// Packages that need no emulator, and so no cmake and no libclang. A build of the whole workspace would not notice if one
@@ -83,21 +82,15 @@ fn quick(lints: Lints) -> Vec<Vec<Lane>> {
 /// profile, and so once.
 fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> {
     let firmware_lints = lints.clippy || matches!(toolchain, Toolchain::Distribution(_));
-    let image = |title, build| Check {
+    let image = |title, line| Check {
         title,
-        commands: Ok(vec![build]),
+        commands: Ok(vec![choice.handed_to(cargo(line))]),
     };
     let images = vec![
-        image(
-            "image for one finger",
-            firmware::build(toolchain, Fingers::One),
-        ),
-        image(
-            "image for five fingers",
-            firmware::build(toolchain, Fingers::Five),
-        ),
-        image("test image of the emulator", probe::build(toolchain)),
-        image("image of the benchmark", bench::build(toolchain)),
+        image("image for one finger", "xtask firmware"),
+        image("image for five fingers", "xtask firmware --fingers 5"),
+        image("test image of the emulator", "xtask probe"),
+        image("image of the benchmark", "xtask bench-image"),
         only_if(
             firmware_lints,
             NO_CLIPPY,
@@ -111,7 +104,9 @@ fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> 
         units(),
     ];
     let native = NATIVE_PACKAGES.map(|name| format!("-p {name}")).join(" ");
-    let without_emulator = format!("check --release --all-targets {native}");
+    // clippy shares its artifacts with the lints of the whole workspace.
+    let checker = if lints.clippy { "clippy" } else { "check" };
+    let without_emulator = format!("{checker} --release --all-targets {native}");
     let lints_of_all = "clippy --release --workspace --all-targets -- -Dwarnings";
     let documentation = cargo("doc --release --workspace --no-deps");
     let host = vec![
