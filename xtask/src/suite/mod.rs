@@ -108,12 +108,16 @@ fn whole(
     let native = members::options(members, Member::is_native);
     // clippy shares its artifacts with the lints of the whole workspace.
     let checker = if lints.clippy { "clippy" } else { "check" };
+    let native_command = format!("{checker} --release -p hil-sim --no-default-features");
     let without_emulator = format!("{checker} --release --all-targets {native}");
     let lints_of_all = "clippy --release --workspace --all-targets -- -Dwarnings";
     let documentation = cargo("doc --release --workspace --no-deps");
     let host = vec![
         formatting(lints),
-        check("native packages without the emulator", [&without_emulator]),
+        check(
+            "native packages without the emulator",
+            [&without_emulator, &native_command],
+        ),
         only_if(
             lints.clippy,
             NO_CLIPPY,
