@@ -17,81 +17,30 @@ struct Job {
     line: &'static str,
 }
 
-const JOBS: [Job; 13] = [
-    Job {
-        name: "kernel",
-        title: "kernel at every input",
-        line: "run --release -p contact-model --example verify",
-    },
-    Job {
-        name: "fuzz",
-        title: "a million executions of each fuzz target",
-        line: "xtask fuzz --runs 1000000",
-    },
-    Job {
-        name: "faults",
-        title: "every single fault at 8 moments",
-        line: "hil-sim faults --moments 8",
-    },
-    Job {
-        name: "campaigns",
-        title: "1000 random fault campaigns on the image",
-        line: "hil-sim faults --campaign 1000 --seed 102",
-    },
-    Job {
-        name: "campaigns-native",
-        title: "9000 random fault campaigns, native",
-        line: "hil-sim faults --campaign 9000 --engine native --seed 101",
-    },
-    Job {
-        name: "campaigns-other-seed",
-        title: "1000 random fault campaigns of another seed, native",
-        line: "hil-sim faults --campaign 1000 --engine native --seed 104",
-    },
-    Job {
-        name: "use",
-        title: "2 hours of use without a fault on the image",
-        line: "hil-sim faults --normal 2 --seed 103",
-    },
-    Job {
-        name: "use-native",
-        title: "100 hours of use without a fault, native",
-        line: "hil-sim faults --normal 100 --engine native --seed 103",
-    },
-    Job {
-        name: "pairs",
-        title: "pairs of faults, native",
-        line: "hil-sim faults --pairs --engine native",
-    },
-    Job {
-        name: "flips",
-        title: "1000 bit flips of the running image",
-        line: "hil-sim faults --flips 1000 --seed 1",
-    },
-    Job {
-        name: "commissioning",
-        title: "commissioning of 200 devices of the parameter box",
-        line: "hil-sim commission --box 200",
-    },
-    Job {
-        name: "fidelity",
-        title: "fidelity of 1000 plants of the parameter box, native",
-        line: "hil-sim fidelity --box 1000",
-    },
-    Job {
-        name: "mutations",
-        title: "each fault detector disabled in turn",
-        line: "xtask faults --mutations",
-    },
-];
+/// The jobs of `soak_jobs.txt`.
+fn jobs() -> Vec<Job> {
+    let lines = include_str!("soak_jobs.txt").lines();
+    let jobs = lines.filter(|line| !line.starts_with('#'));
+    let job = |line: &'static str| {
+        let mut fields = line.split(" | ");
+        Some(Job {
+            name: fields.next()?,
+            title: fields.next()?,
+            line: fields.next()?,
+        })
+    };
+    jobs.filter_map(job).collect()
+}
 
 /// Runs the jobs of these names, or all, and prints a Markdown table of their results; each one's output goes to
 /// `target/soak/NAME.txt`. An error names the jobs that failed.
 pub fn run(permission: Permission, only: &[String]) -> Result<()> {
-    if let Some(name) = only.iter().find(|name| find(name).is_none()) {
-        let known = JOBS.map(|job| job.name).join(", ");
-        bail!("--only {name}; known are {known}");
+    let mut chosen = jobs();
+    let known: Vec<_> = chosen.iter().map(|job| job.name).collect();
+    if let Some(name) = only.iter().find(|name| !known.contains(&name.as_str())) {
+        bail!("--only {name}; known are {}", known.join(", "));
     }
+    chosen.retain(|job| only.is_empty() || only.iter().any(|name| name == job.name));
     let needs = Needs {
         emulator: true,
         fuzzer: true,
@@ -100,10 +49,6 @@ pub fn run(permission: Permission, only: &[String]) -> Result<()> {
     setup::prepare(needs, permission)?;
     let folder = workspace().join("target/soak");
     fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    let chosen = JOBS
-        .iter()
-        .filter(|job| only.is_empty() || only.iter().any(|name| name == job.name));
-    let chosen: Vec<_> = chosen.collect();
     let mut table = heading();
     let mut failed = Vec::new();
     for (number, job) in chosen.iter().enumerate() {
@@ -143,13 +88,9 @@ pub fn run(permission: Permission, only: &[String]) -> Result<()> {
 
 /// `--list`
 pub fn list() {
-    for Job { name, title, line } in JOBS {
+    for Job { name, title, line } in jobs() {
         println!("{name:22}{title}: cargo {line}");
     }
-}
-
-fn find(name: &str) -> Option<&'static Job> {
-    JOBS.iter().find(|job| job.name == name)
 }
 
 /// Commit, compiler and number of cores, and the head of the table.
@@ -169,13 +110,17 @@ fn heading() -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
     use super::*;
 
     #[test]
     fn every_job_has_a_name_of_its_own() {
-        for job in &JOBS {
-            let same = JOBS.iter().filter(|other| other.name == job.name);
-            assert_eq!(same.count(), 1, "{}", job.name);
-        }
+        let names: BTreeSet<_> = jobs().iter().map(|job| job.name).collect();
+        let lines = include_str!("soak_jobs.txt").lines();
+        assert_eq!(
+            names.len(),
+            lines.filter(|line| !line.starts_with('#')).count()
+        );
     }
 }

@@ -25,12 +25,6 @@ pub fn of_elf(elf: &[u8]) -> Result<String> {
 }
 
 /// Whether differences from recorded figures are failures for an image of this compiler; else prints them as warnings.
-///
-/// ```
-/// use image_proof::compiler::recorded_with;
-/// assert!(recorded_with("rustc version 1.95.0 (59807616e 2026-04-14)", &["2 bytes more"]));
-/// assert!(!recorded_with("rustc version 1.96.0 (ac68faa20 2026-05-25)", &["2 bytes more"]));
-/// ```
 pub fn recorded_with(compiler: &str, differences: &[impl Display]) -> bool {
     let same = compiler.split(' ').any(|word| word == RECORDED_WITH);
     if !same {
@@ -41,4 +35,20 @@ pub fn recorded_with(compiler: &str, differences: &[impl Display]) -> bool {
         }
     }
     same
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_difference_fails_with_the_recorded_compiler_only() {
+        let difference = ["2 bytes more"];
+        let recorded = "rustc version 1.95.0 (59807616e 2026-04-14)";
+        assert!(recorded_with(recorded, &difference));
+        assert!(!recorded_with(
+            "rustc version 1.96.0 (ac68faa20 2026-05-25)",
+            &difference
+        ));
+    }
 }

@@ -97,7 +97,8 @@ pub fn advice(missing: &[Missing]) -> String {
     // One line for each command, in the order of first use.
     let apt = "apt-get update && apt-get install -y --no-install-recommends";
     let mut ways: Vec<(&str, Vec<&str>)> = vec![(apt, packages(missing))];
-    for &(command, operand) in missing.iter().flat_map(|missing| missing.elsewhere) {
+    let elsewhere = missing.iter().flat_map(|missing| missing.elsewhere);
+    for (command, operand) in elsewhere.filter_map(|way| way.rsplit_once(' ')) {
         match ways.iter_mut().find(|(known, _)| *known == command) {
             Some((_, operands)) if operands.contains(&operand) => {}
             Some((_, operands)) => operands.push(operand),
@@ -253,12 +254,12 @@ mod tests {
         let one = Missing {
             what: "a",
             apt: &["a-dev", "b"],
-            elsewhere: &[("dnf install", "a"), ("xcode-select", "--install")],
+            elsewhere: &["dnf install a", "xcode-select --install"],
         };
         let two = Missing {
             what: "c",
             apt: &["c"],
-            elsewhere: &[("dnf install", "c"), ("xcode-select", "--install")],
+            elsewhere: &["dnf install c", "xcode-select --install"],
         };
         let advice = advice(&[one, two]);
         assert!(

@@ -23,11 +23,7 @@ pub fn missing(found: &Found) -> Vec<Missing> {
             Missing {
                 what: "cmake",
                 apt: &["cmake"],
-                elsewhere: &[
-                    ("dnf install", "cmake"),
-                    ("pacman -S", "cmake"),
-                    ("brew install", "cmake"),
-                ],
+                elsewhere: &["dnf install cmake", "pacman -S cmake", "brew install cmake"],
             },
         ),
         (
@@ -36,9 +32,9 @@ pub fn missing(found: &Found) -> Vec<Missing> {
                 what: "make",
                 apt: &["make"],
                 elsewhere: &[
-                    ("dnf install", "make"),
-                    ("pacman -S", "make"),
-                    ("xcode-select", "--install"),
+                    "dnf install make",
+                    "pacman -S make",
+                    "xcode-select --install",
                 ],
             },
         ),
@@ -47,11 +43,7 @@ pub fn missing(found: &Found) -> Vec<Missing> {
             Missing {
                 what: "a C compiler",
                 apt: &["gcc", "libc6-dev"],
-                elsewhere: &[
-                    ("dnf install", "gcc"),
-                    ("pacman -S", "gcc"),
-                    ("xcode-select", "--install"),
-                ],
+                elsewhere: &["dnf install gcc", "pacman -S gcc", "xcode-select --install"],
             },
         ),
         (
@@ -60,9 +52,9 @@ pub fn missing(found: &Found) -> Vec<Missing> {
                 what: "libclang with its headers",
                 apt: &["libclang-dev"],
                 elsewhere: &[
-                    ("dnf install", "clang-devel"),
-                    ("pacman -S", "clang"),
-                    ("brew install", "llvm"),
+                    "dnf install clang-devel",
+                    "pacman -S clang",
+                    "brew install llvm",
                 ],
             },
         ),
@@ -93,9 +85,9 @@ pub fn missing_for_fuzzer() -> Option<Missing> {
         what: "a C++ compiler",
         apt: &["g++"],
         elsewhere: &[
-            ("dnf install", "gcc-c++"),
-            ("pacman -S", "gcc"),
-            ("xcode-select", "--install"),
+            "dnf install gcc-c++",
+            "pacman -S gcc",
+            "xcode-select --install",
         ],
     })
 }

@@ -39,8 +39,8 @@ pub struct Needs {
 struct Missing {
     what: &'static str,
     apt: &'static [&'static str],
-    /// Other commands that install it, each with its argument.
-    elsewhere: &'static [(&'static str, &'static str)],
+    /// Other commands that install it, each with one argument.
+    elsewhere: &'static [&'static str],
 }
 
 /// Whether this is continuous integration, where nobody can be asked.

@@ -40,7 +40,7 @@ pub enum Decision {
 const COMPILER: Missing = Missing {
     what: "a Rust compiler for thumbv7em-none-eabihf",
     apt: &["rustc-web", "cargo-web", "rust-web-src"],
-    elsewhere: &[("rustup target add", TARGET)],
+    elsewhere: &["rustup target add thumbv7em-none-eabihf"],
 };
 const RUSTUP_TARGET: Missing = Missing {
     what: "the Rust target thumbv7em-none-eabihf",
@@ -50,16 +50,12 @@ const RUSTUP_TARGET: Missing = Missing {
 const LINKER: Missing = Missing {
     what: "a linker for thumbv7em-none-eabihf",
     apt: &["lld"],
-    elsewhere: &[
-        ("dnf install", "lld"),
-        ("pacman -S", "lld"),
-        ("brew install", "lld"),
-    ],
+    elsewhere: &["dnf install lld", "pacman -S lld", "brew install lld"],
 };
 const CLIPPY: Missing = Missing {
     what: "clippy of the distribution's Rust",
     apt: &["rust-web-clippy"],
-    elsewhere: &[("rustup target add", TARGET)],
+    elsewhere: &["rustup target add thumbv7em-none-eabihf"],
 };
 
 /// The next step. A complete toolchain of the distribution comes before rustup's download, so that a machine that
