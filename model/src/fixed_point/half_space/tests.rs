@@ -5,6 +5,7 @@ extern crate std;
 use std::f64::consts::PI;
 use std::vec::Vec;
 
+use documented_figures::assert_figure;
 use proptest::prelude::*;
 
 use super::*;
@@ -142,7 +143,7 @@ fn updates_once_per_window_agree_with_updates_every_tick() {
                 .max((body.free_response().to_num::<f64>() - exact.free_response(1.0)).abs());
         }
     }
-    std::println!("updates once per window: {:.3} mK", worst_k * 1e3);
+    assert_figure("half_space.windows", 1e3 * worst_k);
     assert!(worst_k < LINE_ERROR, "{worst_k}");
 }
 
@@ -257,12 +258,8 @@ fn skin_on_each_material_agrees_with_equation_6_5() {
             }
         }
     }
-    std::println!(
-        "error of the skin temperature at a step of 10 K: {:.1} mK in the first 20 ms, then {:.1} mK",
-        early_k * 1e3,
-        worst_k * 1e3
-    );
-    assert!(early_k < 0.019 && worst_k < 0.0026, "{early_k} {worst_k}");
+    assert_figure("half_space.skin_first_20_ms", 1e3 * early_k);
+    assert_figure("half_space.skin_later", 1e3 * worst_k);
 }
 
 /// The scaled flux of one tick is `target / (resistance + gain)`, and the temperature drop `flux resistance`.
