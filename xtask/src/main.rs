@@ -4,6 +4,7 @@
 //! something failed or is missing, 2 that the command line is wrong.
 mod bench;
 mod demo;
+mod docs;
 mod firmware;
 mod fuzz;
 mod image;
@@ -111,6 +112,12 @@ enum Task {
         #[command(flatten)]
         options: fuzz::Options,
     },
+    /// Write the figures of docs/figures.toml into the documents
+    Docs {
+        /// Write nothing; fail if a document differs, or if no test asserts a figure
+        #[arg(long)]
+        check: bool,
+    },
     /// Build the image that the benchmark runs in the emulator, print its path; the benchmark calls this
     BenchImage(SetUp),
     /// Build the test image of the emulated machine, print its path; its tests call this
@@ -182,6 +189,7 @@ fn main() -> ExitCode {
             code_only,
         } => proof::run(set_up.permission(), fingers, code_only),
         Task::Fuzz { set_up, options } => fuzz::run(set_up.permission(), &options),
+        Task::Docs { check } => docs::run(check),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

@@ -1,0 +1,73 @@
+//! Comparison of a measured number with the documented one.
+
+use std::fmt;
+
+use crate::{Demand, Figure, HEADROOM};
+
+/// What comes of a comparison.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// The documentation is right.
+    Holds,
+    /// It is not, and this is why.
+    Differs(String),
+}
+
+impl Figure {
+    /// Prints a measured number and compares it.
+    #[must_use]
+    pub fn judge(&self, measured: f64) -> Verdict {
+        println!("{}: measured {measured:.6} {}, {self}", self.key, self.unit);
+        let value = self.value();
+        let problem = match self.demand {
+            Demand::AtMost(bound) if measured.is_nan() || measured > bound.get() => "is too large",
+            Demand::AtLeast(bound) if measured.is_nan() || measured < bound.get() => "is too small",
+            Demand::AtMost(_) if measured * HEADROOM < value => "is smaller: state less",
+            Demand::AtLeast(_) if measured > value * HEADROOM => "is larger: state more",
+            Demand::Exactly if measured != value => "is another number",
+            _ => return Verdict::Holds,
+        };
+        let Self { key, unit, .. } = self;
+        Verdict::Differs(format!("{key}: {measured} {unit} {problem}; {self}"))
+    }
+}
+
+/// What the documentation states, and what is demanded.
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "documented {}, ", self.shown())?;
+        match &self.demand {
+            Demand::AtMost(bound) => write!(f, "at most {bound}"),
+            Demand::AtLeast(bound) => write!(f, "at least {bound}"),
+            Demand::Exactly => write!(f, "exactly"),
+            Demand::Recorded(commit) => write!(f, "recorded at {commit}"),
+        }
+    }
+}
+
+/// The compiler of a program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Compiler(String);
+
+impl Compiler {
+    /// The Rust compiler that an ELF file names in its section `.comment`.
+    #[must_use]
+    pub fn of_elf(bytes: &[u8]) -> Self {
+        const MARK: &[u8] = b"rustc version ";
+        let at = bytes.windows(MARK.len()).position(|part| part == MARK);
+        let name = at.map_or(&[][..], |at| &bytes[at + MARK.len()..]);
+        let version = name.split(|byte| matches!(byte, b' ' | 0)).next();
+        let version = String::from_utf8_lossy(version.unwrap_or_default());
+        Self(format!("rustc {version}"))
+    }
+
+    pub(crate) fn is(&self, name: &str) -> bool {
+        self.0 == name
+    }
+}
+
+impl fmt::Display for Compiler {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}

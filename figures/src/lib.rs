@@ -1,0 +1,165 @@
+//! Every figure that the documentation states: `docs/figures.toml`, read once.
+//!
+//! Tests assert a figure with [`assert_figure`], `cargo xtask docs` writes it into the documents. So a figure that is no
+//! longer true fails a test, and a document that states another one fails the check of the documents.
+//!
+//! ```
+//! use documented_figures::{assert_figure, figure};
+//! assert_eq!(figure("kernel.instructions").unit, "instructions");
+//! assert_figure("kernel.error_sampled", 0.5082);
+//! ```
+
+use std::fmt;
+use std::sync::LazyLock;
+
+mod check;
+mod parse;
+
+pub use check::{Compiler, Verdict};
+
+/// The source of all figures.
+const TEXT: &str = include_str!("../../docs/figures.toml");
+static ALL: LazyLock<Vec<Figure>> =
+    LazyLock::new(|| parse::figures(TEXT).unwrap_or_else(|error| panic!("figures.toml: {error}")));
+
+/// Largest ratio of a bound to its value, and of a value to what is measured, without a reason.
+pub const HEADROOM: f64 = 1.3;
+
+/// A number as the documentation prints it.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Deserialize)]
+#[serde(untagged)]
+pub enum Number {
+    /// A count.
+    Whole(i64),
+    /// A measurement.
+    Real(f64),
+}
+
+impl Number {
+    /// As a floating-point number.
+    #[must_use]
+    pub const fn get(self) -> f64 {
+        match self {
+            Self::Whole(value) => value as f64,
+            Self::Real(value) => value,
+        }
+    }
+}
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole(value) => write!(f, "{value}"),
+            Self::Real(value) => write!(f, "{value:?}"),
+        }
+    }
+}
+
+/// What a test demands of the measured number.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Demand {
+    /// It is at most this.
+    AtMost(Number),
+    /// It is at least this.
+    AtLeast(Number),
+    /// It is the stated value.
+    Exactly,
+    /// No test measures it: recorded by its command at this commit.
+    Recorded(String),
+}
+
+/// One documented figure.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Its name, `group.name`.
+    pub key: String,
+    /// What it is, for a reader.
+    pub what: String,
+    /// The stated value; several in a row of a table, which a test demands exactly.
+    pub values: Vec<Number>,
+    /// What a test demands.
+    pub demand: Demand,
+    /// Unit of value and bound; empty for a count.
+    pub unit: String,
+    /// Where it holds.
+    pub domain: String,
+    /// What measures it.
+    pub command: String,
+    /// Why the bound is more than [`HEADROOM`] from the value.
+    pub why: Option<String>,
+    /// The compiler that it depends on, such as `rustc 1.95.0`.
+    pub recorded_with: Option<String>,
+}
+
+impl Figure {
+    /// The stated value, or the first of several.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        self.values.first().map_or(f64::NAN, |value| value.get())
+    }
+
+    /// As the documentation prints it; several as cells of a table.
+    #[must_use]
+    pub fn shown(&self) -> String {
+        let values: Vec<_> = self.values.iter().map(Number::to_string).collect();
+        values.join(" | ")
+    }
+}
+
+/// All figures, in the order of the file.
+#[must_use]
+pub fn all() -> &'static [Figure] {
+    &ALL
+}
+
+/// The figure of a key.
+///
+/// # Panics
+/// There is none.
+#[must_use]
+pub fn figure(key: &str) -> &'static Figure {
+    let found = all().iter().find(|figure| figure.key == key);
+    found.unwrap_or_else(|| panic!("docs/figures.toml has no figure {key}"))
+}
+
+/// Prints what was measured, and compares it with the documented figure.
+///
+/// # Panics
+/// It is beyond the bound, or so much better than stated that the documentation is out of date.
+#[track_caller]
+pub fn assert_figure(key: &str, measured: f64) {
+    let figure = figure(key);
+    assert!(
+        figure.recorded_with.is_none(),
+        "{key} depends on the compiler: assert_compiled"
+    );
+    if let Verdict::Differs(why) = figure.judge(measured) {
+        panic!("{why}");
+    }
+}
+
+/// Compares a row of measured numbers with the documented row.
+///
+/// # Panics
+/// A number differs.
+#[track_caller]
+pub fn assert_row(key: &str, measured: &[f64]) {
+    let stated: Vec<f64> = figure(key).values.iter().map(|value| value.get()).collect();
+    println!("{key}: measured {measured:?}");
+    assert_eq!(stated, measured, "{key}: documented, measured");
+}
+
+/// The same as [`assert_figure`] of a figure that depends on the compiler; under another one a difference is a printed warning.
+///
+/// # Panics
+/// As [`assert_figure`], under the compiler that the figure was recorded with.
+#[track_caller]
+pub fn assert_compiled(key: &str, measured: f64, compiler: &Compiler) {
+    let figure = figure(key);
+    let recorded_with = figure.recorded_with.as_deref();
+    let recorded_with = recorded_with.unwrap_or_else(|| panic!("{key} names no compiler"));
+    if let Verdict::Differs(why) = figure.judge(measured) {
+        assert!(!compiler.is(recorded_with), "{why}");
+        println!("warning: {why} (recorded with {recorded_with}, this is {compiler})");
+    }
+}
