@@ -5,6 +5,7 @@ extern crate std;
 use std::f64::consts::PI;
 use std::vec::Vec;
 
+use documented_figures::assert_figure;
 use proptest::prelude::*;
 
 use super::*;
@@ -129,7 +130,7 @@ fn windows_differ_little_from_every_tick() {
             worst_k = worst_k.max((body.left().to_num::<f64>() - exact.left(1.0)).abs());
         }
     }
-    std::println!("windows: {:.3} mK", worst_k * 1e3);
+    assert_figure("half_order.windows", 1e3 * worst_k);
     assert!(worst_k < STRAIGHT, "{worst_k}");
 }
 
@@ -215,7 +216,7 @@ fn pulse_of_flux_moves_the_surface_as_a_half_space() {
 #[test]
 fn contact_follows_equation_6_5() {
     let (mut worst_k, mut early_k) = (0f64, 0f64);
-    for (name, material) in MATERIALS {
+    for (_, material) in MATERIALS {
         let pairing =
             Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
         for (force_n, _) in crate::pressure::STATED {
@@ -238,19 +239,11 @@ fn contact_follows_equation_6_5() {
                 } else {
                     early_k = early_k.max(error_k);
                 }
-                assert!(
-                    error_k < 0.05,
-                    "{name}, {force_n} N, {tick} ms: {error_k} K"
-                );
             }
         }
     }
-    std::println!(
-        "skin within {:.1} mK in 20 ms, {:.1} mK then, of 10 K",
-        early_k * 1e3,
-        worst_k * 1e3
-    );
-    assert!(worst_k < 0.02, "{worst_k}");
+    assert_figure("half_order.skin_first_20_ms", 1e3 * early_k);
+    assert_figure("half_order.skin_later", 1e3 * worst_k);
 }
 
 /// A drive of one tick through a resistance is `in_front / (resistance + gain)`, and what is across it its share.
