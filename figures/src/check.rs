@@ -17,11 +17,16 @@ impl Figure {
     /// Prints a measured number and compares it.
     #[must_use]
     pub fn judge(&self, measured: f64) -> Verdict {
-        println!("{}: measured {measured:.6} {}, {self}", self.key, self.unit);
+        println!("{}: measured {measured} {}, {self}", self.key, self.unit);
         let value = self.value();
         let problem = match self.demand {
-            Demand::AtMost(bound) if measured.is_nan() || measured > bound.get() => "is too large",
-            Demand::AtLeast(bound) if measured.is_nan() || measured < bound.get() => "is too small",
+            _ if measured.is_nan() => "is no number",
+            Demand::AtMost(bound) | Demand::Between(_, bound) if measured > bound.get() => {
+                "is too large"
+            }
+            Demand::AtLeast(least) | Demand::Between(least, _) if measured < least.get() => {
+                "is too small"
+            }
             Demand::AtMost(_) if measured * HEADROOM < value => "is smaller: state less",
             Demand::AtLeast(_) if measured > value * HEADROOM => "is larger: state more",
             Demand::Exactly if measured != value => "is another number",
@@ -39,6 +44,7 @@ impl fmt::Display for Figure {
         match &self.demand {
             Demand::AtMost(bound) => write!(f, "at most {bound}"),
             Demand::AtLeast(bound) => write!(f, "at least {bound}"),
+            Demand::Between(least, bound) => write!(f, "{least} to {bound}"),
             Demand::Exactly => write!(f, "exactly"),
             Demand::Recorded(commit) => write!(f, "recorded at {commit}"),
         }

@@ -62,6 +62,8 @@ pub enum Demand {
     AtMost(Number),
     /// It is at least this.
     AtLeast(Number),
+    /// It is at least the first and at most the second.
+    Between(Number, Number),
     /// It is the stated value.
     Exactly,
     /// No test measures it: recorded by its command at this commit.

@@ -55,6 +55,7 @@ fn figure(key: String, entry: Entry) -> Result<Figure, String> {
     let demand = match (entry.bound, entry.least, entry.exact, entry.recorded_at) {
         (Some(bound), None, false, None) => Demand::AtMost(bound),
         (None, Some(least), false, None) => Demand::AtLeast(least),
+        (Some(bound), Some(least), false, None) => Demand::Between(least, bound),
         (None, None, true, None) => Demand::Exactly,
         (None, None, false, Some(commit)) => Demand::Recorded(commit),
         _ => return Err(format!("{key}: one of bound, least, exact, recorded_at")),
@@ -68,12 +69,17 @@ fn figure(key: String, entry: Entry) -> Result<Figure, String> {
         _ if demand == Demand::Exactly => 1.0,
         _ => return Err(format!("{key}: several values are exact")),
     };
-    let headroom = match &demand {
-        Demand::AtMost(bound) => bound.get() / value,
-        Demand::AtLeast(least) => value / least.get(),
-        _ => 1.0,
+    let above = |bound: &Number| bound.get() / value;
+    let below = |least: &Number| value / least.get();
+    // How far the ends of what is allowed are from the value, as factors.
+    let factors = match &demand {
+        Demand::AtMost(bound) => vec![above(bound)],
+        Demand::AtLeast(least) => vec![below(least)],
+        Demand::Between(least, bound) => vec![below(least), above(bound)],
+        Demand::Exactly | Demand::Recorded(_) => vec![],
     };
-    if headroom < 1.0 {
+    let headroom = factors.iter().copied().fold(1.0, f64::max);
+    if factors.iter().any(|factor| *factor < 1.0) {
         return Err(format!("{key}: the stated value is beyond its bound"));
     }
     // One part in a million for what a decimal fraction loses.
@@ -128,6 +134,7 @@ mod tests {
     fn a_figure_has_one_demand() {
         assert!(parsed("value = 10").is_err());
         assert!(parsed("value = 10\nbound = 11\nexact = true").is_err());
+        assert!(parsed("value = 10\nbound = 11\nleast = 9").is_ok());
         assert!(parsed("value = 10\nrecorded_at = \"abcdef0\"").is_ok());
     }
 
@@ -146,6 +153,10 @@ mod tests {
                 expected,
                 "{measured}"
             );
+        }
+        for (measured, expected) in [(9.0, true), (11.0, true), (8.9, false), (11.1, false)] {
+            let range = "value = 10\nleast = 9\nbound = 11";
+            assert_eq!(holds(range, measured), expected, "{measured}");
         }
         assert!(holds("value = 10\nexact = true", 10.0));
         assert!(!holds("value = 10\nexact = true", 10.1));

@@ -1,5 +1,6 @@
 //! Tiles that are not what the law believes.
 
+use documented_figures::assert_figure;
 use hil_sim::plant::tile::TileParams;
 
 use crate::bench::{Bench, settings, swing};
@@ -18,6 +19,7 @@ const CHANGES: [Change; 5] = [
 /// A load of 1 W of which the law does not know, on a tile that is 10 % another: the loop still ends on its target.
 #[test]
 fn ten_percent_leave_no_steady_error() {
+    let mut most_left_k = 0.0f64;
     for (name, change) in CHANGES {
         for factor in [0.9, 1.1] {
             let mut params = TileParams::CLASS;
@@ -42,8 +44,9 @@ fn ten_percent_leave_no_steady_error() {
                 disturbed_k > 0.02,
                 "{name}: the load disturbs by {disturbed_k} K"
             );
-            assert!(left_k < 2e-3, "{name} x {factor}: {left_k} K");
+            most_left_k = most_left_k.max(left_k);
             assert!(current_a < 0.02, "{name} x {factor}: {current_a} A");
         }
     }
+    assert_figure("law.mismatch_left", 1e3 * most_left_k);
 }

@@ -4,6 +4,7 @@
 //! predicts leaves its model alone. So the model runs open, under a current and a load of the test's choice.
 
 use contact_model::fixed_point::Celsius;
+use documented_figures::assert_figure;
 use hil_sim::plant::tile::{Tile, TileParams, ZERO_C_K};
 use thermal_display::control::Control;
 
@@ -50,21 +51,21 @@ fn moved(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> {
     answer
 }
 
-/// Whether both are within a part of where the tile is, and some kelvins; says where they are.
-#[must_use]
-fn agree(what: &str, answer: &[(f64, f64, f64)], part: f64, more_k: f64) -> bool {
-    answer.iter().fold(true, |agree, &(t_s, model_k, tile_k)| {
+/// The largest difference beyond some kelvins, % of where the tile is; says where both are.
+fn apart_percent(what: &str, answer: &[(f64, f64, f64)], beyond_k: f64) -> f64 {
+    answer.iter().fold(0.0, |most, &(t_s, model_k, tile_k)| {
         let error_k = (model_k - tile_k).abs();
         println!(
             "{what}, {t_s} s: model {model_k:.4} K, tile {tile_k:.4} K, off by {error_k:.4} K"
         );
-        agree && error_k < more_k + part * tile_k.abs()
+        f64::max(most, 100.0 * (error_k - beyond_k) / tile_k.abs())
     })
 }
 
-/// Within 3 %, and 3 mK per ampere: what a current does within 20 ms.
+/// Beside 3 mK per ampere, what a current does within 20 ms.
 #[test]
 fn a_current_moves_the_model_as_the_tile() {
+    let mut most = 0.0f64;
     for (current_a, seconds) in [
         (0.3, 40.0),
         (3.0, 0.3),
@@ -74,24 +75,24 @@ fn a_current_moves_the_model_as_the_tile() {
         (-6.0, 0.3),
     ] {
         let answer = moved(current_a, 0.0, seconds);
-        assert!(agree(
-            &format!("{current_a} A"),
-            &answer,
-            0.03,
-            3e-3 * current_a.abs()
-        ));
+        let beyond_k = 3e-3 * current_a.abs();
+        most = most.max(apart_percent(&format!("{current_a} A"), &answer, beyond_k));
     }
+    assert_figure("plate.current_error", most);
 }
 
-/// Within 2 % as long as the loop is slower, 11 % while heat spreads over the plate.
+/// Close as long as the loop is slower, less so while heat spreads over the plate.
 #[test]
 fn a_finger_moves_the_model_as_the_tile() {
+    let (mut most_soon, mut most_late) = (0.0f64, 0.0f64);
     for load_w in [0.5, 2.0, -1.0] {
         let answer = moved(1e-3, load_w, 40.0);
         let (soon, late) = answer.split_at(3);
-        assert!(agree(&format!("{load_w} W"), soon, 0.02, 1e-3));
-        assert!(agree(&format!("{load_w} W"), late, 0.11, 1e-3));
+        most_soon = most_soon.max(apart_percent(&format!("{load_w} W"), soon, 0.0));
+        most_late = most_late.max(apart_percent(&format!("{load_w} W"), late, 0.0));
     }
+    assert_figure("plate.finger_error_soon", most_soon);
+    assert_figure("plate.finger_error_late", most_late);
 }
 
 /// By the equations of a module at rest without load: `a I Tc = I^2 R/2 + K (Th - Tc)`, and the hot side at the sink.

@@ -1,5 +1,6 @@
 //! The same on the image: lines to the emulated microcontroller, power that is cut while it stores, lines back.
 
+use documented_figures::assert_figure;
 use hil_sim::machine::{Cells, Firmware, ResetCause};
 use system_tests::flash::{BYTES, append, numbered};
 use system_tests::{Bare, START, image};
@@ -111,17 +112,16 @@ fn the_flash_delays_a_start_by_little() {
     let never = first_conversion_ms(&firmware, &after(0));
     let (one, full) = (after(1), after(37));
     let [with_one, with_most] = [&one, &full].map(|cells| first_conversion_ms(&firmware, cells));
-    println!(
-        "start: {never:.1} ms, {with_one:.1} with one record, {with_most:.1} with a page of them"
-    );
-    assert!(with_most - never < 100.0);
+    assert_figure("storage.start", never);
+    assert_figure("storage.start_one", with_one);
+    assert_figure("storage.start_full", with_most);
     let [first, second, turning] = [(&after(0), 0), (&one, 1), (&full, 37)]
         .map(|(cells, number)| save_ms(&firmware, cells, number));
-    println!(
-        "save: {first:.1} ms the first time, {second:.1} then, {turning:.1} when it turns to another page"
-    );
-    // 250 ms of that are the sector's erasure (DS10693, typical).
-    assert!(second < 350.0 && turning - second > 250.0 && turning < 1000.0);
+    assert_figure("storage.save_first", first);
+    assert_figure("storage.save", second);
+    assert_figure("storage.save_turning", turning);
+    // The sector's erasure (DS10693, typical).
+    assert!(turning - second > 250.0);
 }
 
 /// Saves on the image with power that is cut in some of the operations, and what is found then: the number of times it was

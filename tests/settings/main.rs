@@ -4,6 +4,7 @@ mod image;
 mod interrupted;
 mod turned;
 
+use documented_figures::assert_figure;
 use hil_sim::machine::Cells;
 use system_tests::flash::{BYTES, Flash, SECTOR, numbered};
 use thermal_display::settings::{Kept, Store};
@@ -107,15 +108,15 @@ fn campaign<const FINGERS: usize>(saves: u32, stride: u32) -> Tried {
 #[test]
 fn one_fingers_settings_survive_a_cut_in_any_operation() {
     let tried = campaign::<1>(230, 12);
-    println!("{tried:?}");
-    assert!(tried.cuts > 1000 && tried.turns >= 5, "{tried:?}");
+    assert_figure("storage.cuts_one", tried.cuts as f64);
+    assert!(tried.turns >= 5, "{tried:?}");
 }
 
 #[test]
 fn five_fingers_settings_survive_a_cut_in_any_operation() {
     let tried = campaign::<5>(45, 20);
-    println!("{tried:?}");
-    assert!(tried.cuts > 1000 && tried.turns >= 5, "{tried:?}");
+    assert_figure("storage.cuts_five", tried.cuts as f64);
+    assert!(tried.turns >= 5, "{tried:?}");
 }
 
 #[test]

@@ -140,7 +140,9 @@ fn stated(key: &str, part: &str) -> Result<String> {
     Ok(match (part, &figure.demand) {
         ("all", _) => with_unit(figure.shown(), &figure.unit),
         ("value", _) => figure.shown(),
-        ("bound", Demand::AtMost(bound) | Demand::AtLeast(bound)) => bound.to_string(),
+        ("bound", Demand::AtMost(bound) | Demand::AtLeast(bound) | Demand::Between(_, bound)) => {
+            bound.to_string()
+        }
         _ => bail!("{key} has no {part}"),
     })
 }
@@ -169,6 +171,7 @@ fn table(group: &str) -> Result<String> {
         let allowed = match &figure.demand {
             Demand::AtMost(bound) => format!("at most {bound}"),
             Demand::AtLeast(least) => format!("at least {least}"),
+            Demand::Between(least, bound) => format!("{least} to {bound}"),
             Demand::Exactly => "no other".to_owned(),
             Demand::Recorded(commit) => format!("recorded at {commit}"),
         };
