@@ -35,10 +35,7 @@ fn feels(name: &str) -> (Scene, Outcome, Figures) {
 fn feels_like(material: &str) -> Figures {
     let (scene, outcome, figures) = feels(material);
     let evaluations = figures.kernel_evaluations.expect("an answer");
-    assert_figure(
-        &format!("tick.{material}_evaluations"),
-        f64::from(evaluations),
-    );
+    assert_figure(&format!("tick.{material}_evaluations"), evaluations as f64);
     follows_equation_6_12(&scene, &outcome);
     follows_golden_values(material, &outcome);
     figures

@@ -14,11 +14,17 @@ pub enum Verdict {
 }
 
 impl Figure {
-    /// Prints a measured number and compares it.
+    /// A line that says what was measured beside what is documented.
+    pub(crate) fn print(&self, measured: f64) {
+        println!("{}: measured {measured:?} {}, {self}", self.key, self.unit);
+    }
+
+    /// Compares a measured number.
     #[must_use]
     pub fn judge(&self, measured: f64) -> Verdict {
-        println!("{}: measured {measured} {}, {self}", self.key, self.unit);
         let value = self.value();
+        // What leaves its bound far from its value varies.
+        let tight = self.why.is_none();
         let problem = match self.demand {
             _ if measured.is_nan() => "is no number",
             Demand::AtMost(bound) | Demand::Between(_, bound) if measured > bound.get() => {
@@ -27,13 +33,13 @@ impl Figure {
             Demand::AtLeast(least) | Demand::Between(least, _) if measured < least.get() => {
                 "is too small"
             }
-            Demand::AtMost(_) if measured * HEADROOM < value => "is smaller: state less",
-            Demand::AtLeast(_) if measured > value * HEADROOM => "is larger: state more",
+            Demand::AtMost(_) if tight && measured * HEADROOM < value => "is smaller: state less",
+            Demand::AtLeast(_) if tight && measured > value * HEADROOM => "is larger: state more",
             Demand::Exactly if measured != value => "is another number",
             _ => return Verdict::Holds,
         };
         let Self { key, unit, .. } = self;
-        Verdict::Differs(format!("{key}: {measured} {unit} {problem}; {self}"))
+        Verdict::Differs(format!("{key}: {measured:?} {unit} {problem}; {self}"))
     }
 }
 
@@ -47,6 +53,10 @@ impl fmt::Display for Figure {
             Demand::Between(least, bound) => write!(f, "{least} to {bound}"),
             Demand::Exactly => write!(f, "exactly"),
             Demand::Recorded(commit) => write!(f, "recorded at {commit}"),
+        }?;
+        match &self.recorded_with {
+            Some(compiler) => write!(f, " with {compiler}"),
+            None => Ok(()),
         }
     }
 }
@@ -67,8 +77,13 @@ impl Compiler {
         Self(format!("rustc {version}"))
     }
 
-    pub(crate) fn is(&self, name: &str) -> bool {
-        self.0 == name
+    /// Whether the figure was recorded with it, or depends on none.
+    #[must_use]
+    pub fn wrote(&self, figure: &Figure) -> bool {
+        figure
+            .recorded_with
+            .as_ref()
+            .is_none_or(|name| *name == self.0)
     }
 }
 

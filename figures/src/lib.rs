@@ -131,6 +131,7 @@ pub fn figure(key: &str) -> &'static Figure {
 #[track_caller]
 pub fn assert_figure(key: &str, measured: f64) {
     let figure = figure(key);
+    figure.print(measured);
     assert!(
         figure.recorded_with.is_none(),
         "{key} depends on the compiler: assert_compiled"
@@ -158,10 +159,9 @@ pub fn assert_row(key: &str, measured: &[f64]) {
 #[track_caller]
 pub fn assert_compiled(key: &str, measured: f64, compiler: &Compiler) {
     let figure = figure(key);
-    let recorded_with = figure.recorded_with.as_deref();
-    let recorded_with = recorded_with.unwrap_or_else(|| panic!("{key} names no compiler"));
+    figure.print(measured);
     if let Verdict::Differs(why) = figure.judge(measured) {
-        assert!(!compiler.is(recorded_with), "{why}");
-        println!("warning: {why} (recorded with {recorded_with}, this is {compiler})");
+        assert!(!compiler.wrote(figure), "{why}");
+        println!("warning: {why}; this is {compiler}");
     }
 }

@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use contact_model::reference::Contact;
+use documented_figures::{Compiler, assert_compiled, assert_figure};
 use model_bench::scenes::{FINGERS, TICKS, kind};
 use serde_json::Value;
 use thermal_display::render::TOLERANCE;
@@ -61,6 +62,12 @@ fn number(row: &Value, name: &str) -> f64 {
     row[name]
         .as_f64()
         .unwrap_or_else(|| panic!("{name} of {row} is a number"))
+}
+
+/// Of the image whose costs are counted.
+fn compiler() -> Compiler {
+    let name = RUNS[0]["compiler"].as_str().expect("a compiler");
+    Compiler::of_elf(name.as_bytes())
 }
 
 /// The factor between `value` and `expected`, whichever way round, is below `1 + share`.
@@ -210,14 +217,21 @@ fn costs_are_those_of_a_call() {
         assert_eq!(number(row, name), 11.0, "{name}");
     }
     let firmware = kernel("firmware");
+    let compiler = compiler();
     for cost in ["instructions", "cycles"] {
         let (min, max) = (format!("{cost}_min"), format!("{cost}_max"));
         assert_eq!(number(firmware, &min), number(firmware, &max), "{firmware}");
+        assert_compiled(&format!("kernel.{cost}"), number(firmware, &max), &compiler);
     }
-    assert!(
-        number(firmware, "table_bytes") >= 1024.0,
-        "its table is found in the image"
-    );
+    assert_figure("kernel.table_bytes", number(firmware, "table_bytes"));
+    let constant = scene(kind::CONSTANT, INTEGERS);
+    let render = scene(kind::RENDER_CONSTANT, FIRMWARE);
+    for (name, row) in [("setpoint", constant), ("render", render)] {
+        for which in ["min", "max"] {
+            let measured = number(row, &format!("instructions_{which}"));
+            assert_compiled(&format!("{name}.instructions_{which}"), measured, &compiler);
+        }
+    }
 }
 
 #[test]
