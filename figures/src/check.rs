@@ -14,6 +14,15 @@ pub enum Verdict {
 }
 
 impl Figure {
+    /// Whether it was recorded with a compiler, by the name that an ELF file has of it, or depends on none.
+    #[must_use]
+    pub fn holds_for(&self, compiler: &str) -> bool {
+        let name = compiler.replace(" version ", " ");
+        let recorded = self.recorded_with.as_deref().unwrap_or_default();
+        name.strip_prefix(recorded)
+            .is_some_and(|rest| recorded.is_empty() || rest.is_empty() || rest.starts_with(' '))
+    }
+
     /// A line that says what was measured beside what is documented.
     pub(crate) fn print(&self, measured: f64) {
         println!("{}: measured {measured:?} {}, {self}", self.key, self.unit);
@@ -58,37 +67,5 @@ impl fmt::Display for Figure {
             Some(compiler) => write!(f, " with {compiler}"),
             None => Ok(()),
         }
-    }
-}
-
-/// The compiler of a program.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Compiler(String);
-
-impl Compiler {
-    /// The Rust compiler that an ELF file names in its section `.comment`.
-    #[must_use]
-    pub fn of_elf(bytes: &[u8]) -> Self {
-        const MARK: &[u8] = b"rustc version ";
-        let at = bytes.windows(MARK.len()).position(|part| part == MARK);
-        let name = at.map_or(&[][..], |at| &bytes[at + MARK.len()..]);
-        let version = name.split(|byte| matches!(byte, b' ' | 0)).next();
-        let version = String::from_utf8_lossy(version.unwrap_or_default());
-        Self(format!("rustc {version}"))
-    }
-
-    /// Whether the figure was recorded with it, or depends on none.
-    #[must_use]
-    pub fn wrote(&self, figure: &Figure) -> bool {
-        figure
-            .recorded_with
-            .as_ref()
-            .is_none_or(|name| *name == self.0)
-    }
-}
-
-impl fmt::Display for Compiler {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0)
     }
 }

@@ -164,6 +164,19 @@ mod tests {
     }
 
     #[test]
+    fn a_figure_depends_on_its_compiler() {
+        let figure = parsed("value = 1\nexact = true\nrecorded_with = \"rustc 1.95.0\"");
+        let figure = figure.expect("a figure");
+        for (compiler, expected) in [
+            ("rustc version 1.95.0 (59807616e 2026-04-14)", true),
+            ("rustc version 1.95.01", false),
+            ("rustc version 1.96.0 (ac68faa20 2026-05-25)", false),
+        ] {
+            assert_eq!(figure.holds_for(compiler), expected, "{compiler}");
+        }
+    }
+
+    #[test]
     fn figures_keep_the_order_of_the_file() {
         let keys: Vec<_> = crate::all().iter().map(|figure| &figure.key).collect();
         let places: Vec<_> = keys

@@ -7,9 +7,11 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
+#[cfg(feature = "emulator")]
+use cli::profile;
 use cli::{
-    Failure, commission, erfcx, faults, fidelity, hand, infrared, model, parameters, profile,
-    roughness, run, thesis,
+    Failure, commission, erfcx, faults, fidelity, hand, infrared, model, parameters, roughness,
+    run, thesis,
 };
 
 /// Simulated plant and emulated microcontroller of the thermal display.
@@ -23,6 +25,7 @@ enum Cli {
     /// Run five scenes side by side, on the five fingers of one device
     Hand(hand::Arguments),
     /// Run a scene on the image; say which functions a control tick spends its time in
+    #[cfg(feature = "emulator")]
     Profile(profile::Arguments),
     /// Evaluate the contact model (Eq. 6-5 to 6-12) and print CSV
     Model(model::Arguments),
@@ -47,6 +50,7 @@ fn main() -> ExitCode {
         Cli::Run(arguments) => run::run(&arguments),
         Cli::Commission(arguments) => commission::run(&arguments),
         Cli::Hand(arguments) => hand::run(&arguments),
+        #[cfg(feature = "emulator")]
         Cli::Profile(arguments) => profile::run(&arguments),
         Cli::Model(arguments) => model::run(&arguments),
         Cli::Erfcx => erfcx::run(),

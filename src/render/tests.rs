@@ -7,7 +7,7 @@ use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
 use documented_figures::assert_figure;
 use std::f64::consts::TAU;
-use std::format;
+use std::{format, println};
 
 use super::*;
 

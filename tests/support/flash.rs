@@ -1,4 +1,4 @@
-//! Three sectors of the emulated flash without a microcontroller, and what is kept in them.
+//! The settings' three flash sectors without a microcontroller, and settings to store in them.
 
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -7,21 +7,21 @@ use embassy_futures::block_on;
 use embedded_storage::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
-use hil_sim::machine::Cells;
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
-use thermal_display::settings::{Calibration, Correction, Kept, LONGEST, Sectors, Tile};
+use thermal_display::settings::{Calibration, Correction, Kept, LONGEST, Sectors, Store, Tile};
+use thermal_sim::Cells;
 
 /// Bytes of a sector.
 pub const SECTOR: usize = 16 * 1024;
-/// Bytes of all three.
+/// Bytes of all three sectors.
 pub const BYTES: usize = 3 * SECTOR;
 
-/// Shared, so that cells outlive the store.
+/// A flash driver over cells that outlive the store which uses it.
 #[derive(Clone, Debug)]
 pub struct Flash(Rc<RefCell<Cells>>);
 
-/// Power is gone.
+/// The error of an operation without power.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Dead;
 
@@ -32,20 +32,20 @@ impl NorFlashError for Dead {
 }
 
 impl Flash {
-    /// Of these cells.
+    /// A flash with these cells.
     #[must_use]
     pub fn new(cells: Cells) -> Self {
         Self(Rc::new(RefCell::new(cells)))
     }
 
-    /// As they are now.
+    /// The cells as they are now.
     #[must_use]
     pub fn cells(&self) -> Cells {
         self.0.borrow().clone()
     }
 
-    /// Lets a bit read otherwise; the lowest of the first byte is 0.
-    pub fn turn(&self, bit: usize) {
+    /// Flips a bit; bit 0 is the lowest of the first byte.
+    pub fn flip(&self, bit: usize) {
         let mut cells = self.0.borrow_mut();
         let byte = cells.bytes()[bit / 8] ^ 1 << (bit % 8);
         assert!(cells.load(bit / 8, &[byte]));
@@ -100,10 +100,9 @@ impl NorFlash for Flash {
     }
 }
 
-/// Settings that differ from each other in every value, or factory defaults.
+/// Settings that differ from number to number in every value; for some numbers none, which stands for factory defaults.
 #[must_use]
 pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[Kept; FINGERS]> {
-    // Factory defaults are as good as any.
     if number % 50 == 17 {
         return None;
     }
@@ -126,7 +125,7 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[Kept; FINGERS]> {
     }))
 }
 
-/// Appends any bytes as the newest record; whether the flash has taken them.
+/// Appends any bytes as the newest record; whether that succeeded.
 pub fn append(cells: &mut Cells, record: &[u8]) -> bool {
     let flash = Flash::new(cells.clone());
     let end = (3 * Sectors::<Flash>::BYTES) as u32;
@@ -136,4 +135,54 @@ pub fn append(cells: &mut Cells, record: &[u8]) -> bool {
     let done = block_on(map.store_item(&mut [0; LONGEST], &(), &record));
     *cells = flash.cells();
     done.is_ok()
+}
+
+/// Three erased sectors.
+#[must_use]
+pub fn erased() -> Cells {
+    Cells::new(vec![0xff; BYTES])
+}
+
+fn store<const FINGERS: usize>(cells: Cells) -> (Store<Flash, FINGERS>, Flash) {
+    let flash = Flash::new(cells);
+    (Store::new(flash.clone()), flash)
+}
+
+/// The settings that a device finds when it is switched on with these cells.
+///
+/// # Panics
+/// They are not valid.
+#[must_use]
+pub fn loaded<const FINGERS: usize>(cells: &Cells) -> Option<[Kept; FINGERS]> {
+    store(cells.clone()).0.load().expect("valid settings")
+}
+
+/// The cells after a save and, if power is cut in the given operation (with a seed for what that leaves), after power-up.
+///
+/// # Panics
+/// The save fails with power, or succeeds without.
+#[must_use]
+pub fn saved<const FINGERS: usize>(
+    cells: &Cells,
+    settings: Option<&[Kept; FINGERS]>,
+    cut: Option<(u64, u64)>,
+) -> Cells {
+    let mut cells = cells.clone();
+    if let Some((nth, seed)) = cut {
+        cells.cut_power_at(nth, seed);
+    }
+    let (mut store, flash) = store(cells);
+    let done = store.save(settings);
+    let mut cells = flash.cells();
+    assert_eq!(done.is_ok(), cells.is_powered(), "{done:?}");
+    cells.power_up();
+    cells
+}
+
+/// Whether a save began a new page: the header of its sector is written, that of the next one erased.
+#[must_use]
+pub fn changes_page(before: &Cells, after: &Cells) -> bool {
+    let headers =
+        |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * SECTOR..][..24].to_vec());
+    headers(before) != headers(after)
 }

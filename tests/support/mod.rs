@@ -1,32 +1,19 @@
-//! What the whole-system tests share: scenes, and runs of them on either engine; the flash of settings.
+//! Shared by the tests of the whole system: scenes, native runs of them, figures of a run, and the flash of the settings.
+//!
+//! Nothing here needs the emulator.
 
 pub mod flash;
 
-mod bare;
+use std::path::Path;
 
-use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use thermal_sim::World;
+use thermal_sim::engine::Native;
+use thermal_sim::metrics::skin_errors;
+use thermal_sim::run::{Outcome, run};
+use thermal_sim::scene::Scene;
+use thermal_sim::trace::Row;
 
-use hil_sim::World;
-use hil_sim::engine::{Image, Native};
-use hil_sim::machine::Firmware;
-use hil_sim::metrics::skin_errors;
-use hil_sim::run::{Outcome, run};
-use hil_sim::scene::Scene;
-use hil_sim::trace::Row;
-
-pub use bare::{Bare, START};
-
-/// The image of the current sources, built once.
-///
-/// # Panics
-/// It cannot be built.
-pub fn image() -> &'static Path {
-    static IMAGE: OnceLock<PathBuf> = OnceLock::new();
-    IMAGE.get_or_init(|| hil_sim::firmware::build(1).expect("the image builds"))
-}
-
-/// A finger of 34 °C on `material`, room and object at 24 °C; `rest` is what else the scene says, tables last.
+/// A scene with a finger of 34 °C on `material`, room and object at 24 °C; `keys` and `tables` are appended to the scene's text.
 ///
 /// # Panics
 /// The scene is wrong.
@@ -39,7 +26,7 @@ pub fn scene(material: &str, duration_s: f64, keys: &str, tables: &str) -> Scene
     Scene::parse(&text, Path::new("test scene")).expect("a good scene")
 }
 
-/// Forces as a scene has them: pairs of time in s and force in N.
+/// A scene's `[[force]]` tables of pairs of time, s, and force, N.
 #[must_use]
 pub fn forces(pairs: &[(f64, f64)]) -> String {
     let table =
@@ -47,7 +34,7 @@ pub fn forces(pairs: &[(f64, f64)]) -> String {
     pairs.iter().map(table).collect()
 }
 
-/// Lines of the host as a scene has them.
+/// A scene's `[[host]]` tables of pairs of time, s, and line.
 #[must_use]
 pub fn host(lines: &[(f64, &str)]) -> String {
     lines
@@ -56,26 +43,16 @@ pub fn host(lines: &[(f64, &str)]) -> String {
         .collect()
 }
 
-/// Runs a scene on an image.
-///
-/// # Errors
-/// The image is no image, or its run stops.
-pub fn on(image: &Firmware, scene: &Scene) -> anyhow::Result<Outcome> {
-    let mut engine = Image::new(image, World::new(scene)?)?;
-    Ok(run(scene, &mut engine, |_| ())?)
-}
-
-/// Runs a scene on the release image.
+/// 2 s with copper under 2 N from 0.5 s on.
 ///
 /// # Panics
-/// It does not run to its end.
+/// The scene is wrong.
 #[must_use]
-pub fn on_image(scene: &Scene) -> Outcome {
-    let firmware = Firmware::from_file(image()).expect("an image for this chip");
-    on(&firmware, scene).expect("the image runs to the end")
+pub fn copper_contact() -> Scene {
+    scene("copper", 2.0, "", &forces(&[(0.5, 2.0)]))
 }
 
-/// Runs a scene natively.
+/// Runs a scene on the native engine.
 ///
 /// # Panics
 /// The plant refuses the scene.
@@ -85,7 +62,7 @@ pub fn natively(scene: &Scene) -> Outcome {
     run(scene, &mut engine, |_| ()).expect("the device takes the scene")
 }
 
-/// Rows from one time to another, s.
+/// Rows of a trace from one time up to another, s.
 pub fn between(outcome: &Outcome, from_s: f64, to_s: f64) -> impl Iterator<Item = &Row> {
     outcome
         .trace
@@ -94,13 +71,13 @@ pub fn between(outcome: &Outcome, from_s: f64, to_s: f64) -> impl Iterator<Item 
         .filter(move |row| row.t_s >= from_s && row.t_s < to_s)
 }
 
-/// Largest error of the skin from a time after each landing or appearance on, K.
+/// Largest skin error from a time after each landing or appearance on, K.
 ///
 /// # Panics
-/// No contact lasts that long.
+/// There is no contact that long.
 #[must_use]
 pub fn worst_k(scene: &Scene, outcome: &Outcome, from_s: f64) -> f64 {
-    // Half a row of slack: times are differences of sums.
+    // Half a row of tolerance for rounding of times.
     let late = skin_errors(scene, outcome).filter(|(since_s, _)| *since_s > from_s - 0.5e-3);
     let errors_k = late.map(|(_, error_k)| error_k.abs());
     errors_k.reduce(f64::max).expect("contact")

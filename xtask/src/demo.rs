@@ -1,4 +1,4 @@
-//! A finger lands on "copper", in the emulator.
+//! `cargo xtask demo`: a finger lands on "copper" in the emulator.
 use anyhow::Result;
 
 use crate::firmware::{self, Fingers};

@@ -1,4 +1,4 @@
-//! The image as it is flashed.
+//! `cargo xtask firmware`: builds the image exactly as it is flashed.
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
@@ -10,20 +10,20 @@ use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 const PROFILE: &str = "firmware";
 const PACKAGE: &str = "thermal-display";
 
-/// For how many fingers an image is built.
+/// Number of fingers of an image.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Fingers {
     /// One, on the NUCLEO-F446RE
     #[default]
     #[value(name = "1")]
     One,
-    /// Five, whose signals take turns on multiplexers
+    /// Five, whose signals are multiplexed
     #[value(name = "5")]
     Five,
 }
 
 impl Fingers {
-    /// The number, as the command line has it.
+    /// The number as on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::One => "1",
@@ -39,7 +39,7 @@ impl Fingers {
     }
 }
 
-/// What in a user's environment would change the image; the log level is that of `.cargo/config.toml`.
+/// Variables of a user's environment that would change the image; the log level is that of `.cargo/config.toml`.
 const FOREIGN_FLAGS: [&str; 5] = [
     "RUSTFLAGS",
     "CARGO_ENCODED_RUSTFLAGS",
@@ -48,8 +48,8 @@ const FOREIGN_FLAGS: [&str; 5] = [
     "DEFMT_LOG",
 ];
 
-/// The folder that cargo builds the image in. One for each compiler, neither that of host builds: compilers that
-/// share a folder rebuild each other's work, and images that share one replace each other.
+/// Target folder of an image. Compilers that share one rebuild each other's artifacts, and images that share one overwrite each
+/// other.
 fn target_folder(toolchain: &Toolchain, fingers: Fingers) -> &'static str {
     match (toolchain, fingers) {
         (Toolchain::Active, Fingers::One) => "target/firmware",
@@ -59,7 +59,7 @@ fn target_folder(toolchain: &Toolchain, fingers: Fingers) -> &'static str {
     }
 }
 
-/// The ELF file that [`build`] leaves.
+/// The ELF file that [`build`] writes.
 pub fn elf(toolchain: &Toolchain, fingers: Fingers) -> PathBuf {
     workspace()
         .join(target_folder(toolchain, fingers))
@@ -68,7 +68,7 @@ pub fn elf(toolchain: &Toolchain, fingers: Fingers) -> PathBuf {
         .join(PACKAGE)
 }
 
-/// `cargo SUBCOMMAND` for the image, in its own folder.
+/// `cargo SUBCOMMAND` for the image in its own target folder.
 fn cargo(toolchain: &Toolchain, fingers: Fingers, subcommand: &str) -> Invocation {
     let folder = target_folder(toolchain, fingers);
     toolchain
@@ -93,7 +93,7 @@ pub fn build(toolchain: &Toolchain, fingers: Fingers) -> Invocation {
     cargo(toolchain, fingers, "build")
 }
 
-/// Lints what only the microcontroller's target compiles.
+/// Lints the code that is compiled for the microcontroller only.
 pub fn clippy(toolchain: &Toolchain, fingers: Fingers) -> Invocation {
     cargo(toolchain, fingers, "clippy").args(["--", "-Dwarnings"])
 }

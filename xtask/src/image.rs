@@ -1,4 +1,4 @@
-//! How much of the microcontroller's memory an image takes.
+//! Flash and RAM that an image uses.
 use anyhow::{Context, Result, bail};
 use object::elf::{SHF_ALLOC, SHT_NOBITS};
 use object::{Architecture, Object, ObjectSection, SectionFlags};
@@ -78,16 +78,16 @@ fn number(text: &str) -> Option<u64> {
     digits.trim().parse::<u64>().ok()?.checked_mul(unit)
 }
 
-/// A section that is in memory while the image runs.
+/// A section that is loaded or reserved in memory.
 struct Section {
     name: String,
     address: u64,
     size: u64,
-    /// Its contents come out of flash, wherever it runs; otherwise it is zeroed or left alone at start.
+    /// Its contents are stored in flash; otherwise it is zeroed or left uninitialised at the start.
     stored: bool,
 }
 
-/// Bytes of flash and of RAM with a fixed place; the stack has what the RAM leaves.
+/// Bytes of flash, and of RAM without the stack.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Usage {
     flash: u64,
@@ -142,7 +142,7 @@ impl Usage {
         Ok(usage)
     }
 
-    /// Two lines: what is used of what there is.
+    /// Two lines: used and available bytes of flash and RAM.
     pub fn against(&self, memory: &Memory) -> String {
         let line = |used: u64, length: u64| {
             let percent = 100.0 * used as f64 / length as f64;
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn a_broken_script_is_answered_with_the_line() {
+    fn an_error_in_the_linker_script_is_reported_with_its_line() {
         let cases = [
             (
                 "FLASH : ORIGIN = 0x08000000, LENGTH = 512K",
@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn initialised_data_counts_twice_and_zeroed_data_only_in_ram() {
+    fn initialised_data_counts_in_flash_and_ram_and_zeroed_data_in_ram_only() {
         let sections = [
             section(".vector_table", 0x0800_0000, 0x1c4, true),
             section(".text", 0x0801_0000, 1000, true),
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_may_lie_where_the_settings_are() {
+    fn a_section_in_the_settings_sectors_is_an_error() {
         for (address, size) in [(0x0800_3ffc, 8), (0x0800_fffc, 4), (0x0800_0000, 0x1_0000)] {
             let error =
                 Usage::of_sections(&[section(".text", address, size, true)], &F446RE).unwrap_err();

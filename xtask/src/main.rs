@@ -1,7 +1,7 @@
-//! The front door of the thermal display: set-up, build, demo, test, benchmark.
+//! `cargo xtask`: set-up, build, demo, tests and measurements of the thermal display.
 //!
-//! Headings and the output of tools go to standard error, results to standard output. Exit status 1 means that
-//! something failed or is missing, 2 that the command line is wrong.
+//! Headings and the output of tools go to standard error, results to standard output. Exit status 1 is a failure or a missing
+//! tool, 2 a wrong command line.
 mod bench;
 mod demo;
 mod docs;
@@ -14,6 +14,7 @@ mod process;
 mod proof;
 mod report;
 mod setup;
+mod soak;
 mod step;
 mod suite;
 
@@ -36,27 +37,44 @@ struct Cli {
 enum Task {
     /// Build the image and run it in the emulator: a finger lands on "copper"
     Demo(SetUp),
-    /// Run the whole test suite: formatting, lints, documentation, units, the image on the simulated plant
-    Test(SetUp),
+    /// Run the test suite: formatting, lints, documentation, units, fuzzers, the image on the simulated plant
+    Test {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// Only what takes less than a minute: formatting, lints and units of the small packages, the native device
+        #[arg(long)]
+        quick: bool,
+    },
+    /// Run long jobs (campaigns, fuzzing, mutations, every input of the kernel) and print a table of their results
+    Soak {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// Run the job of this name only, may be repeated
+        #[arg(long, value_name = "NAME")]
+        only: Vec<String>,
+        /// Print names and commands of the jobs and run nothing
+        #[arg(long)]
+        list: bool,
+    },
     /// Build the image exactly as it is flashed; print its path, flash and RAM use
     Firmware {
         #[command(flatten)]
         set_up: SetUp,
-        /// How many fingers the image is for
+        /// Number of fingers
         #[arg(long, value_enum, default_value_t)]
         fingers: firmware::Fingers,
         /// Print the path of the ELF file on standard output and nothing else there
         #[arg(long)]
         print_path: bool,
     },
-    /// Print run time against error of the contact model and its peers, or of the simulated plant, and draw it
+    /// Print and plot run time against error of the contact model and alternatives, or of the simulated plant
     Bench {
         #[command(flatten)]
         set_up: SetUp,
         /// What to measure
         #[arg(value_enum, default_value = "model")]
         job: bench::Job,
-        /// Print one JSON object in place of the tables
+        /// Print one JSON object instead of the tables
         #[arg(long)]
         json: bool,
         /// Folder for the page and its picture: benchmark.md and .svg, or plant-benchmark.md and .svg [default: target/bench]
@@ -67,17 +85,17 @@ enum Task {
     Fidelity {
         #[command(flatten)]
         set_up: SetUp,
-        /// Print one JSON object in place of the tables
+        /// Print one JSON object instead of the tables
         #[arg(long)]
         json: bool,
         /// Folder for the page, its picture and CSV
         #[arg(long)]
         out: Option<PathBuf>,
-        /// Of `hil-sim fidelity`, after the above: --scenario, --law, --box and others, see its --help
+        /// Options of `hil-sim fidelity`: --scenario, --law, --box and others, see its --help
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
     },
-    /// Inject every single fault into the emulated machine and the plant; print what each comes to
+    /// Inject every single fault into the emulated microcontroller and the plant; print the device's response
     Faults {
         #[command(flatten)]
         set_up: SetUp,
@@ -87,25 +105,25 @@ enum Task {
         /// Folder for the page
         #[arg(long)]
         out: Option<PathBuf>,
-        /// Remove each detector in turn, in a copy of the sources, and see that the matrix notices, natively or, of the board's, with an image; an hour
+        /// Disable each fault detector in turn in a copy of the sources; the fault matrix must reveal it; takes an hour
         #[arg(long, exclusive = true)]
         mutations: bool,
-        /// Of `hil-sim faults`, after the above: --only, --scene, --moments and others, see its --help
+        /// Options of `hil-sim faults`: --only, --scene, --moments and others, see its --help
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
     },
-    /// Check the image's machine code: where it can panic, how deep its stack grows, what it loops on; measure its ticks
+    /// Check the image's machine code (panics, stack, loops, floating point) and measure its ticks in the emulator
     Proof {
         #[command(flatten)]
         set_up: SetUp,
-        /// How many fingers the image is for
+        /// Number of fingers
         #[arg(long, value_enum, default_value_t)]
         fingers: firmware::Fingers,
-        /// Leave out what takes a run in the emulator
+        /// Leave out the measurements in the emulator
         #[arg(long)]
         code_only: bool,
     },
-    /// Fuzz all that takes bytes, text or samples from outside, guided by coverage
+    /// Fuzz every interface that takes external bytes, text or samples, guided by coverage
     Fuzz {
         #[command(flatten)]
         set_up: SetUp,
@@ -118,9 +136,9 @@ enum Task {
         #[arg(long)]
         check: bool,
     },
-    /// Build the image that the benchmark runs in the emulator, print its path; the benchmark calls this
+    /// Build the image that the benchmark runs in the emulator and print its path; called by the benchmark
     BenchImage(SetUp),
-    /// Build the test image of the emulated machine, print its path; its tests call this
+    /// Build the image for the emulator's own tests and print its path; called by those tests
     Probe(SetUp),
 }
 
@@ -149,7 +167,12 @@ fn main() -> ExitCode {
     }
     let result = match Cli::parse().command {
         Task::Demo(set_up) => demo::run(set_up.permission()),
-        Task::Test(set_up) => suite::run(set_up.permission()),
+        Task::Test { set_up, quick } => suite::run(set_up.permission(), quick),
+        Task::Soak { list: true, .. } => {
+            soak::list();
+            Ok(())
+        }
+        Task::Soak { set_up, only, .. } => soak::run(set_up.permission(), &only),
         Task::Firmware {
             set_up,
             fingers,

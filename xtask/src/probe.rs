@@ -1,4 +1,4 @@
-//! The test image that the tests of the emulated machine run.
+//! The image for the tests of the emulated microcontroller.
 use anyhow::Result;
 
 use crate::process::{Invocation, workspace};
@@ -7,18 +7,15 @@ use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 /// `cargo xtask probe`: builds the image and prints its path.
 pub fn run(permission: Permission) -> Result<()> {
     let toolchain = setup::prepare(Needs::default(), permission)?;
-    let folder = match &toolchain {
-        Toolchain::Active => "target/probe",
-        Toolchain::Distribution(_) => "target/probe-distribution",
-    };
-    build(&toolchain, folder).run_to_stderr()?;
-    let elf = workspace().join(folder).join(TARGET).join("release/probe");
+    build(&toolchain).run_to_stderr()?;
+    let folder = workspace().join(folder(&toolchain));
+    let elf = folder.join(TARGET).join("release/probe");
     println!("{}", elf.display());
     Ok(())
 }
 
-/// Compiler flags of an image that is not the firmware: in place of the workspace's flags, which link what only the
-/// firmware has; the memory layout is the same.
+/// Compiler flags of an image that is not the firmware. They replace the workspace's flags, which link the firmware's log; the
+/// memory layout is the same.
 pub fn link_flags() -> String {
     format!(
         "-C link-arg=--nmagic -C link-arg=-Tlink.x -L {}",
@@ -26,7 +23,15 @@ pub fn link_flags() -> String {
     )
 }
 
-fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
+fn folder(toolchain: &Toolchain) -> &'static str {
+    match toolchain {
+        Toolchain::Active => "target/probe",
+        Toolchain::Distribution(_) => "target/probe-distribution",
+    }
+}
+
+/// Builds the test image.
+pub fn build(toolchain: &Toolchain) -> Invocation {
     toolchain
         .cargo("build")
         .args([
@@ -35,7 +40,7 @@ fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
             "--manifest-path",
             "hil-sim/probe/Cargo.toml",
         ])
-        .args(["--target", TARGET, "--target-dir", folder])
+        .args(["--target", TARGET, "--target-dir", folder(toolchain)])
         .without(&["CARGO_ENCODED_RUSTFLAGS"])
         .env("RUSTFLAGS", link_flags())
 }

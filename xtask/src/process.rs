@@ -1,6 +1,7 @@
-//! Commands as they are run, shown to the user for repeating, and waited for.
+//! Runs commands, and prints them so that the user can repeat them.
 use std::ffi::OsString;
 use std::fmt;
+use std::fs::{File, OpenOptions};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::thread::sleep;
@@ -8,21 +9,21 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 
-/// How often a bounded wait looks whether the command has ended.
+/// Interval of polling in a wait with a time limit.
 const POLL: Duration = Duration::from_millis(20);
 
-/// The longest that a question such as `rustc --version` may take.
+/// Time limit of queries such as `rustc --version`.
 const PROBE_LIMIT: Duration = Duration::from_secs(20);
 
-/// The root of the workspace: where every command runs.
+/// The root of the workspace, in which every command runs.
 pub fn workspace() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
         .parent()
         .unwrap_or(Path::new("."))
 }
 
-/// A command line with the environment it changes. Its `Display` is a line for a shell in the workspace's root; what is
-/// not Unicode is marked there, but passed on as it is.
+/// A command line with changes of the environment. Its `Display` is a shell command for the workspace's root, in which bytes
+/// that are not Unicode are replaced.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Invocation {
     program: String,
@@ -33,7 +34,7 @@ pub struct Invocation {
 }
 
 impl Invocation {
-    /// `program` with `args`, both as a shell would see them after quoting.
+    /// `program` with `args`, without quoting.
     pub fn new<A: Into<OsString>>(program: &str, args: impl IntoIterator<Item = A>) -> Self {
         Self {
             program: program.into(),
@@ -44,7 +45,7 @@ impl Invocation {
         }
     }
 
-    /// The cargo that runs this program, shown as plain `cargo`.
+    /// The cargo that runs this program, printed as `cargo`.
     pub fn cargo<A: Into<OsString>>(args: impl IntoIterator<Item = A>) -> Self {
         let program = std::env::var("CARGO").unwrap_or_else(|_| "cargo".into());
         Self {
@@ -59,13 +60,13 @@ impl Invocation {
         self
     }
 
-    /// Sets an environment variable; shown as part of the command.
+    /// Sets an environment variable; printed with the command.
     pub fn env(mut self, name: &str, value: impl Into<String>) -> Self {
         self.set.push((name.into(), value.into()));
         self
     }
 
-    /// Hides variables of the surrounding environment; not shown, as a user's own shell rarely has them.
+    /// Removes inherited environment variables; not printed, as a user's shell rarely has them.
     pub fn without(mut self, names: &[&'static str]) -> Self {
         self.unset.extend(names);
         self
@@ -81,19 +82,34 @@ impl Invocation {
         command
     }
 
-    /// Runs to the end with the terminal's streams; an error if it does not start or does not succeed.
+    /// Runs the command with the terminal's streams; an error if it does not start or fails.
     pub fn run(&self) -> Result<()> {
         self.check(self.command().status())
     }
 
-    /// As [`run`](Self::run), with everything the command prints on standard error.
+    /// As [`run`](Self::run), with the command's standard output on standard error.
     pub fn run_to_stderr(&self) -> Result<()> {
         self.check(self.command().stdout(std::io::stderr()).status())
     }
 
+    /// Appends everything the command prints to a file, without standard input.
+    pub fn run_to_file(&self, path: &Path) -> Result<()> {
+        let file = OpenOptions::new().create(true).append(true).open(path);
+        let file = file.with_context(|| path.display().to_string())?;
+        let mut command = self.command();
+        command.stdin(Stdio::null()).stdout(file.try_clone()?);
+        self.check(command.stderr(file).status())
+    }
+
+    /// Writes what the command prints on standard output to a file; its progress stays on standard error.
+    pub fn run_with_stdout_in(&self, path: &Path) -> Result<()> {
+        let file = File::create(path).with_context(|| path.display().to_string())?;
+        self.check(self.command().stdout(file).status())
+    }
+
     /// As [`run_to_stderr`](Self::run_to_stderr) without standard input, killed after `limit`.
     ///
-    /// Only the process itself is killed: a program that does its work in children needs another way.
+    /// Only the process itself is killed, not its children.
     pub fn run_bounded(&self, limit: Duration) -> Result<()> {
         let mut command = self.command();
         command.stdin(Stdio::null()).stdout(std::io::stderr());
@@ -117,7 +133,7 @@ impl Invocation {
         Ok(())
     }
 
-    /// What a short question prints on standard output; `None` if it cannot be asked, fails or does not end.
+    /// Standard output of a short query; `None` if it does not start, fails or exceeds the time limit.
     pub fn answer(&self) -> Option<String> {
         let mut command = self.command();
         command
@@ -126,7 +142,7 @@ impl Invocation {
             .stderr(Stdio::null());
         let mut child = command.spawn().ok()?;
         let stdout = child.stdout.take()?;
-        // Read beside the wait: a full pipe would keep the command from ending.
+        // Read in a thread: a full pipe would block the command.
         let text = std::thread::spawn(|| std::io::read_to_string(stdout));
         if !wait(child, PROBE_LIMIT).ok()??.success() {
             return None;
@@ -164,7 +180,7 @@ impl fmt::Display for Invocation {
     }
 }
 
-/// `word` so that a shell reads it as one word.
+/// `word` quoted for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -174,7 +190,7 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// Where `program` is found on the search path.
+/// Path of `program` on the search path.
 pub fn on_path(program: &str) -> Option<PathBuf> {
     let paths = std::env::var_os("PATH")?;
     std::env::split_paths(&paths)
@@ -187,7 +203,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_shown_command_reads_back_in_a_shell() {
+    fn a_printed_command_can_be_run_by_a_shell() {
         let odd = "it's $HOME; \"two  words\"";
         let shown = Invocation::new("printf", ["%s", odd])
             .env("UNUSED", "a b")
@@ -198,7 +214,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn arguments_need_not_be_unicode() {
+    fn arguments_that_are_not_unicode_are_passed_unchanged() {
         use std::os::unix::ffi::OsStringExt;
         // One byte that begins no character: it counts as one, its replacement would be three.
         let odd = OsString::from_vec(vec![0xff]);
@@ -208,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_hanging_command_is_stopped_and_named() {
+    fn a_command_beyond_its_time_limit_is_stopped_and_named() {
         let error = Invocation::new("sleep", ["600"])
             .run_bounded(Duration::from_millis(50))
             .unwrap_err();
@@ -216,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn failures_are_told_from_success() {
+    fn a_failed_or_missing_command_is_an_error() {
         assert!(Invocation::new("true", [""; 0]).run().is_ok());
         assert!(Invocation::new("false", [""; 0]).run().is_err());
         assert!(
@@ -231,13 +247,13 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_longer_than_a_pipe_holds_is_read_whole() {
+    fn an_answer_longer_than_the_pipes_buffer_is_read_completely() {
         let answer = Invocation::new("head", ["-c", "300000", "/dev/zero"]).answer();
         assert_eq!(answer.map(|text| text.len()), Some(300_000));
     }
 
     #[test]
-    fn hidden_variables_do_not_reach_the_command() {
+    fn removed_variables_do_not_reach_the_command() {
         let question =
             Invocation::new("sh", ["-c", "echo ${PATH-none} $ADDED"]).env("ADDED", "here");
         assert_ne!(question.answer().as_deref(), Some("none here\n"));

@@ -1,4 +1,4 @@
-//! What can be shown of the image from its machine code.
+//! Checks of the image's machine code.
 use anyhow::Result;
 
 use crate::firmware::Fingers;

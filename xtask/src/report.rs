@@ -1,4 +1,4 @@
-//! Commands of other packages that measure, and print or write a report.
+//! Commands of other packages that measure and write a report.
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use crate::process::Invocation;
 use crate::setup::{self, Needs, Permission};
 
-/// Runs a command of a package; a relative `out` is one of the caller's folder.
+/// Runs a command of a package; a relative `out` is relative to the caller's folder.
 pub fn run(
     permission: Permission,
     (package, command): (&str, &str),

@@ -1,4 +1,4 @@
-//! Numbered steps with headings, durations and a closing table.
+//! Numbered steps with headings, times and a closing table.
 use std::fmt;
 use std::time::{Duration, Instant};
 
@@ -7,14 +7,16 @@ use anyhow::Result;
 /// How a step ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Outcome {
+    Unfinished,
     Passed,
     Failed,
     Skipped(String),
 }
 
-/// A run of a known number of steps. Headings go to standard error; `Display` is the table of what was done.
+/// A run of a known number of steps. Headings go to standard error; `Display` is the closing table.
 pub struct Steps {
     total: usize,
+    begun: Instant,
     done: Vec<(String, Outcome, Duration)>,
 }
 
@@ -23,6 +25,7 @@ impl Steps {
     pub fn new(total: usize) -> Self {
         Self {
             total,
+            begun: Instant::now(),
             done: Vec::new(),
         }
     }
@@ -39,60 +42,57 @@ impl Steps {
         } else {
             format!(" ({hint})")
         };
-        eprintln!("\n[{}/{}] {title}{hint}", self.done.len() + 1, self.total);
+        let index = self.start(title, &hint);
         let start = Instant::now();
         let result = step();
-        let outcome = if result.is_ok() {
+        self.finish(index, result.is_ok(), start.elapsed());
+        result
+    }
+
+    /// Announces the next step, which others may run beside; its index.
+    pub fn start(&mut self, title: &str, hint: &str) -> usize {
+        let index = self.done.len();
+        eprintln!("\n[{}/{}] {title}{hint}", index + 1, self.total);
+        let entry = (title.into(), Outcome::Unfinished, Duration::ZERO);
+        self.done.push(entry);
+        index
+    }
+
+    /// Records how the step of an index ended.
+    pub fn finish(&mut self, index: usize, passed: bool, took: Duration) {
+        let (_, outcome, time) = &mut self.done[index];
+        *time = took;
+        *outcome = if passed {
             Outcome::Passed
         } else {
             Outcome::Failed
         };
-        self.done.push((title.into(), outcome, start.elapsed()));
-        result
     }
 
     /// Leaves the next step out and says why.
     pub fn skip(&mut self, title: &str, why: &str) {
-        eprintln!(
-            "\n[{}/{}] {title}: SKIPPED, {why}",
-            self.done.len() + 1,
-            self.total
-        );
-        self.done
-            .push((title.into(), Outcome::Skipped(why.into()), Duration::ZERO));
+        let index = self.start(title, &format!(": SKIPPED, {why}"));
+        self.done[index].1 = Outcome::Skipped(why.into());
     }
 }
 
 impl fmt::Display for Steps {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let width = self
-            .done
-            .iter()
-            .map(|(title, ..)| title.chars().count())
-            .max()
-            .unwrap_or(0);
-        let mut sum = Duration::ZERO;
+        let lengths = self.done.iter().map(|(title, ..)| title.chars().count());
+        let width = lengths.max().unwrap_or(0);
         for (title, outcome, took) in &self.done {
-            sum += *took;
             let verdict = match outcome {
+                Outcome::Unfinished => "not finished",
                 Outcome::Passed => "passed",
                 Outcome::Failed => "FAILED",
                 Outcome::Skipped(why) => &format!("SKIPPED, {why}"),
             };
-            writeln!(
-                f,
-                "{title:width$}  {:>7.1} s  {verdict}",
-                took.as_secs_f64()
-            )?;
+            let took = took.as_secs_f64();
+            writeln!(f, "{title:width$}  {took:>7.1} s  {verdict}")?;
         }
-        write!(
-            f,
-            "{:width$}  {:>7.1} s  {} of {} steps",
-            "",
-            sum.as_secs_f64(),
-            self.done.len(),
-            self.total
-        )
+        let all = self.begun.elapsed().as_secs_f64();
+        let (done, total) = (self.done.len(), self.total);
+        write!(f, "{:width$}  {all:>7.1} s  {done} of {total} steps", "")
     }
 }
 
@@ -101,23 +101,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_table_tells_passed_failed_and_skipped_apart() {
-        let mut steps = Steps::new(4);
+    fn the_table_distinguishes_passed_failed_skipped_and_unfinished_steps() {
+        let mut steps = Steps::new(5);
         assert_eq!(steps.run("one", "", || Ok(7)).unwrap(), 7);
         steps.skip("second", "no tool");
-        assert!(
-            steps
-                .run("three", "slow", || -> Result<()> { anyhow::bail!("no") })
-                .is_err()
-        );
+        let failing = || -> Result<()> { anyhow::bail!("no") };
+        assert!(steps.run("three", "slow", failing).is_err());
+        steps.start("four", "");
         let table = steps.to_string();
         let lines: Vec<_> = table.lines().collect();
-        assert!(
-            lines[0].starts_with("one     ") && lines[0].ends_with("passed"),
-            "{table}"
-        );
+        assert!(lines[0].starts_with("one     ") && lines[0].ends_with("passed"));
         assert!(lines[1].ends_with("SKIPPED, no tool"), "{table}");
         assert!(lines[2].ends_with("FAILED"), "{table}");
-        assert!(lines[3].ends_with("3 of 4 steps"), "{table}");
+        assert!(lines[3].ends_with("not finished"), "{table}");
+        assert!(lines[4].ends_with("4 of 5 steps"), "{table}");
     }
 }

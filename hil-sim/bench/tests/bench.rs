@@ -5,7 +5,8 @@ use std::sync::LazyLock;
 
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use contact_model::reference::Contact;
-use documented_figures::{Compiler, assert_compiled, assert_figure};
+use documented_figures::{assert_compiled, assert_figure};
+use image_proof::compiler::recorded_with;
 use model_bench::scenes::{FINGERS, TICKS, kind};
 use serde_json::Value;
 use thermal_display::render::TOLERANCE;
@@ -62,12 +63,6 @@ fn number(row: &Value, name: &str) -> f64 {
     row[name]
         .as_f64()
         .unwrap_or_else(|| panic!("{name} of {row} is a number"))
-}
-
-/// Of the image whose costs are counted.
-fn compiler() -> Compiler {
-    let name = RUNS[0]["compiler"].as_str().expect("a compiler");
-    Compiler::of_elf(name.as_bytes())
 }
 
 /// The factor between `value` and `expected`, whichever way round, is below `1 + share`.
@@ -213,15 +208,16 @@ fn costs_repeat_exactly() {
 #[test]
 fn costs_are_those_of_a_call() {
     let row = scene("semi-infinite", "f32, libm");
-    for name in ["instructions_min", "instructions_mean", "instructions_max"] {
-        assert_eq!(number(row, name), 11.0, "{name}");
-    }
+    let names = ["instructions_min", "instructions_mean", "instructions_max"];
+    let counts = names.map(|name| number(row, name));
+    let difference = format!("{counts:?} instructions of {names:?} for 11");
+    let compiler = RUNS[0]["compiler"].as_str().expect("a name");
+    assert!(counts == [11.0; 3] || !recorded_with(compiler, &[difference]));
     let firmware = kernel("firmware");
-    let compiler = compiler();
     for cost in ["instructions", "cycles"] {
         let (min, max) = (format!("{cost}_min"), format!("{cost}_max"));
         assert_eq!(number(firmware, &min), number(firmware, &max), "{firmware}");
-        assert_compiled(&format!("kernel.{cost}"), number(firmware, &max), &compiler);
+        assert_compiled(&format!("kernel.{cost}"), number(firmware, &max), compiler);
     }
     assert_figure("kernel.table_bytes", number(firmware, "table_bytes"));
     let constant = scene(kind::CONSTANT, INTEGERS);
@@ -229,7 +225,7 @@ fn costs_are_those_of_a_call() {
     for (name, row) in [("setpoint", constant), ("render", render)] {
         for which in ["min", "max"] {
             let measured = number(row, &format!("instructions_{which}"));
-            assert_compiled(&format!("{name}.instructions_{which}"), measured, &compiler);
+            assert_compiled(&format!("{name}.instructions_{which}"), measured, compiler);
         }
     }
 }

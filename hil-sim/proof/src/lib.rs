@@ -9,6 +9,7 @@
 //! [`measure`] sets the emulated machine's figures beside them.
 
 pub mod allowed;
+pub mod compiler;
 pub mod float;
 pub mod flow;
 pub mod graph;

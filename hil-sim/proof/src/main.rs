@@ -46,7 +46,7 @@ fn run(cli: &Cli) -> Result<()> {
     let fingers = cli.fingers as usize;
     let elf = match &cli.elf {
         Some(elf) => elf.clone(),
-        None => hil_sim::firmware::build(fingers)?,
+        None => stm32_emulator::build(fingers)?,
     };
     let proof = Proof::read(&elf)?;
     let mut sections = proof.check()?;

@@ -2,15 +2,17 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use documented_figures::{Compiler, Verdict, figure};
-use hil_sim::World;
-use hil_sim::commission::{Plants, commission};
-use hil_sim::engine::{Cost, Engine, Image};
-use hil_sim::fidelity::map;
-use hil_sim::hand::{self, FINGERS, Hand as _, ImageHand};
-use hil_sim::machine::Firmware;
-use hil_sim::run::{Outcome, run};
-use hil_sim::scene::Scene;
+use documented_figures::{Verdict, figure};
+use stm32_emulator::Firmware;
+use stm32_emulator::Image;
+use stm32_emulator::ImageHand;
+use thermal_campaigns::map;
+use thermal_sim::World;
+use thermal_sim::commission::{Plants, commission};
+use thermal_sim::engine::{Cost, Engine};
+use thermal_sim::hand::{self, FINGERS, Hand as _};
+use thermal_sim::run::{Outcome, run};
+use thermal_sim::scene::Scene;
 
 use crate::scenes::{faulty, touched};
 use crate::{Proof, Section, levels};
@@ -24,7 +26,7 @@ struct Measured {
     cost: Cost,
 }
 
-/// Every tick of the scenes is as `docs/figures.toml` states, and their stack within the bound.
+/// Ticks and stack of the scenes are as `docs/figures.toml` states, and the stack is within the proven bound.
 ///
 /// # Errors
 /// A scene does not run to its end.
@@ -54,7 +56,12 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
         "{} scenes; {available} cycles are there for a tick",
         all.len()
     ));
-    let compiler = Compiler::of_elf(&std::fs::read(elf)?);
+    let Section {
+        lines,
+        violations,
+        differences,
+        ..
+    } = &mut section;
     let hand = if fingers == 1 { "one" } else { "five" };
     for (what, (value, scene)) in [
         ("instructions", instructions),
@@ -62,27 +69,21 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
         ("stack", stack),
     ] {
         let figure = figure(&format!("proof.{what}_{hand}"));
-        section
-            .lines
-            .push(format!("{value} {} ({scene}), {figure}", figure.unit));
+        lines.push(format!("{value} {} ({scene}), {figure}", figure.unit));
         if let Verdict::Differs(why) = figure.judge(value as f64) {
-            let found = format!("{why} ({scene})");
-            if compiler.wrote(figure) {
-                section.violations.push(found);
-            } else {
-                section
-                    .lines
-                    .push(format!("warning: {found}; this is {compiler}"));
-            }
+            differences.push(format!("{why} ({scene})"));
         }
     }
-    if stack.0 > bound.into() {
+    if stack.0 > u64::from(bound) {
         let (seen, scene) = stack;
-        section.violations.push(format!(
+        violations.push(format!(
             "{seen} bytes of stack in {scene}, proven are {bound}"
         ));
     }
-    Ok(section)
+    if cycles.0 > available {
+        violations.push(format!("{} cycles in {}: late", cycles.0, cycles.1));
+    }
+    Ok(section.judged(&proof.compiler))
 }
 
 /// What a scene on one finger costs, without the eight seconds before it.

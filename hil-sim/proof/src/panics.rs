@@ -107,7 +107,12 @@ pub fn check(proof: &Proof) -> Result<Section> {
         for site in &sites {
             *owners.entry(&site.owner).or_default() += 1;
             if allowed.why(tree, &site.owner).is_none() {
-                section.violations.push(site.complaint(tree));
+                let list = if site.ours {
+                    &mut section.violations
+                } else {
+                    &mut section.differences
+                };
+                list.push(site.complaint(tree));
             }
         }
         section.lines.extend(
@@ -130,6 +135,6 @@ pub fn check(proof: &Proof) -> Result<Section> {
             section.violations.extend(undefined.map(complain));
         }
     }
-    section.violations.extend(allowed.unused());
+    section.differences.extend(allowed.unused());
     Ok(section)
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
+use crate::compiler::{of_elf, recorded_with};
 use crate::graph::Graph;
 use crate::image::Image;
 use crate::names::Names;
@@ -17,6 +18,8 @@ pub struct Proof {
     pub graph: Graph,
     /// Its names.
     pub names: Names,
+    /// Name and version of the compiler.
+    pub compiler: String,
     /// What the vector table calls: the exception's name, the function.
     pub vectors: Vec<(String, u32)>,
 }
@@ -30,6 +33,19 @@ pub struct Section {
     pub lines: Vec<String>,
     /// What is wrong.
     pub violations: Vec<String>,
+    /// What differs from names and counts that depend on the compiler.
+    pub differences: Vec<String>,
+}
+
+impl Section {
+    /// Makes the differences violations, or warnings if another compiler than the recorded one has compiled the image.
+    #[must_use]
+    pub fn judged(mut self, compiler: &str) -> Self {
+        if recorded_with(compiler, &self.differences) {
+            self.violations.append(&mut self.differences);
+        }
+        self
+    }
 }
 
 impl Proof {
@@ -45,6 +61,7 @@ impl Proof {
         Ok(Self {
             graph: Graph::new(&image, &handlers),
             names: Names::read(elf)?,
+            compiler: of_elf(&bytes)?,
             vectors,
             image,
         })
@@ -66,13 +83,15 @@ impl Proof {
     /// # Errors
     /// A handler is missing.
     pub fn check(&self) -> Result<Vec<Section>> {
-        Ok(vec![
+        Ok([
             self.decoded(),
             panics::check(self)?,
             levels::check(self)?,
             loops::check(self)?,
             float::check(self)?,
-        ])
+        ]
+        .map(|section| section.judged(&self.compiler))
+        .into())
     }
 
     /// What could not be followed.
@@ -103,6 +122,7 @@ impl Proof {
             violations: flows()
                 .flat_map(|flow| flow.troubles.iter().cloned())
                 .collect(),
+            differences: Vec::new(),
         }
     }
 }

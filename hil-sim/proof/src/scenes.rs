@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use contact_model::material::MATERIALS;
-use hil_sim::scene::{FaultKind, Scene};
+use thermal_sim::scene::{FaultKind, Scene};
 
 /// When each fault begins, s: in contact.
 const FAULT_S: f64 = 0.5;

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use clap::Args;
-use hil_sim::commission::{Commissioned, Event, Plants, Tile, commission, restore, survey, table};
-use hil_sim::engine::{Engine, Image, Native};
-use hil_sim::fidelity::map;
-use hil_sim::plant::{Params, parameters};
-use hil_sim::scene::Scene;
 use serde_json::json;
+use thermal_campaigns::{map, survey, survey_table};
+use thermal_plant::{Params, parameters};
+use thermal_sim::commission::{Commissioned, Event, Plants, Tile, commission, restore};
+use thermal_sim::engine::{Engine, Native};
+use thermal_sim::scene::Scene;
 
 use super::device::{self, Kind};
 use super::{Failure, output};
@@ -77,11 +77,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             device::no_image(elf)?;
             with(arguments, &plants, &mut Native::new(world))
         }
-        Kind::Image => {
-            let (firmware, _) = device::image(elf, 1)?;
-            let mut engine = Image::new(&firmware, world).map_err(Failure::run)?;
-            with(arguments, &plants, &mut engine)
-        }
+        #[cfg(feature = "emulator")]
+        Kind::Image => with(arguments, &plants, &mut super::image::engine(elf, world)?),
     }
 }
 
@@ -170,7 +167,7 @@ fn surveyed(devices: u64, json: bool) -> Result<(), Failure> {
         let all = json!({ "devices": found, "failed": failed });
         return print(&serde_json::to_string(&all).map_err(Failure::run)?);
     }
-    print(table(&found).trim_end())?;
+    print(survey_table(&found).trim_end())?;
     for failed in &failed {
         print(&format!("not among them: {failed}"))?;
     }

@@ -1,22 +1,45 @@
 //! What a command runs: a scene, and the image or its logic.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, anyhow};
 use clap::ValueEnum;
-use hil_sim::machine::Firmware;
-use hil_sim::scene::Scene;
-use hil_sim::{World, firmware};
+use thermal_sim::scene::Scene;
+use thermal_sim::{Device, NativeDevice, World};
 
 use super::Failure;
+#[cfg(feature = "emulator")]
+use super::image;
 
 /// What runs the device's logic.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
     /// The release image in the emulated microcontroller
+    #[cfg(feature = "emulator")]
     Image,
     /// The same logic, called directly: faster, without cost figures
     Native,
+}
+
+impl Kind {
+    /// The engine of a command that names none: the image, if this build can run it.
+    #[cfg(feature = "emulator")]
+    pub const USUAL: Self = Self::Image;
+    /// The engine of a command that names none: the only one of this build.
+    #[cfg(not(feature = "emulator"))]
+    pub const USUAL: Self = Self::Native;
+}
+
+/// The device of a campaign.
+pub fn device(kind: Kind, elf: Option<&Path>) -> Result<Box<dyn Device>, Failure> {
+    match kind {
+        #[cfg(feature = "emulator")]
+        Kind::Image => Ok(Box::new(image::firmware(elf, 1)?.0)),
+        Kind::Native => {
+            no_image(elf)?;
+            Ok(Box::new(NativeDevice))
+        }
+    }
 }
 
 /// A scene and what surrounds its device.
@@ -26,18 +49,6 @@ pub fn scene(path: &Path) -> Result<(Scene, World), Failure> {
         .with_context(|| path.display().to_string())
         .map_err(Failure::input)?;
     Ok((scene, world))
-}
-
-/// The image that `--elf` names, or that of the current sources for so many fingers; and where it lies.
-pub fn image(elf: Option<&Path>, fingers: usize) -> Result<(Firmware, PathBuf), Failure> {
-    let path = match elf {
-        Some(path) => path.to_owned(),
-        None => firmware::build(fingers).map_err(Failure::run)?,
-    };
-    let firmware = Firmware::from_file(&path)
-        .with_context(|| path.display().to_string())
-        .map_err(Failure::input)?;
-    Ok((firmware, path))
 }
 
 /// `--elf` where no image runs is a mistake.

@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use hil_sim::fidelity::{self, Boxed, Case, Device, Draw, Drawn, Row, Scenario, Without};
-use hil_sim::machine::Firmware;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
+use thermal_campaigns::fidelity::{self, Boxed, Case, Draw, Drawn, Row, Scenario, Without};
+use thermal_campaigns::map;
 use thermal_display::control::Law;
+use thermal_sim::{Device, NativeDevice};
 
 use super::device::{self, Kind};
 use super::{Failure, output};
@@ -114,16 +115,21 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let cases = cases(arguments)?;
     output::create(arguments.out.as_deref())?;
-    let firmware = firmware(arguments, !cases.is_empty())?;
+    let usual = if cases.is_empty() {
+        Kind::Native
+    } else {
+        Kind::USUAL
+    };
+    let kind = arguments.engine.unwrap_or(usual);
     let campaign = Campaign {
         arguments,
-        firmware,
+        device: device::device(kind, arguments.elf.as_deref())?,
         laws,
     };
     let rows = campaign.rows(&cases).map_err(Failure::run)?;
     let drawn = campaign.draws().map_err(Failure::run)?;
     let boxed = (!drawn.is_empty()).then(|| Boxed {
-        engine: campaign.device(Kind::Native).name(),
+        engine: campaign.device_of_draws().name(),
         draws: drawn.len() as u64 / campaign.laws.len().max(1) as u64,
         seed: arguments.seed,
         laws: fidelity::summarise(&drawn),
@@ -187,28 +193,19 @@ fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
     Ok(cases)
 }
 
-/// The image, if one is needed.
-fn firmware(arguments: &Arguments, scenarios: bool) -> Result<Option<Firmware>, Failure> {
-    let image = arguments.engine == Some(Kind::Image) || (arguments.engine.is_none() && scenarios);
-    let elf = arguments.elf.as_deref();
-    if !image {
-        return device::no_image(elf).map(|()| None);
-    }
-    device::image(elf, 1).map(|(firmware, _)| Some(firmware))
-}
-
 struct Campaign<'a> {
     arguments: &'a Arguments,
-    firmware: Option<Firmware>,
+    /// What runs the scenarios.
+    device: Box<dyn Device>,
     laws: Vec<Law>,
 }
 
 impl Campaign<'_> {
-    /// The device, of a kind unless the command line names one.
-    fn device(&self, usual: Kind) -> Device<'_> {
-        match (self.arguments.engine.unwrap_or(usual), &self.firmware) {
-            (Kind::Image, Some(firmware)) => Device::Image(firmware),
-            _ => Device::Native,
+    /// What runs the draws of the box: the native engine unless the command line names one.
+    fn device_of_draws(&self) -> &dyn Device {
+        match self.arguments.engine {
+            Some(_) => self.device.as_ref(),
+            None => &NativeDevice,
         }
     }
 
@@ -229,7 +226,7 @@ impl Campaign<'_> {
                 jobs.extend(plants.iter().map(|without| (case, *law, *without)));
             }
         }
-        let device = self.device(Kind::Image);
+        let device = self.device.as_ref();
         self.map("scenarios", &jobs, |(case, law, without)| {
             Row::run(device, case, *law, *without, self.arguments.seed).with_context(|| {
                 format!("{} {} {} N", case.scenario.name(), case.name, case.force_n)
@@ -247,7 +244,7 @@ impl Campaign<'_> {
         for number in numbers {
             jobs.extend(self.laws.iter().map(|law| (number, *law)));
         }
-        let device = self.device(Kind::Native);
+        let device = self.device_of_draws();
         self.map("box", &jobs, |(number, law)| {
             Draw::new(self.arguments.seed, *number)
                 .run(device, *law)
@@ -265,7 +262,7 @@ impl Campaign<'_> {
             ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
         let bar = ProgressBar::new(jobs.len() as u64).with_style(style);
         bar.set_message(name);
-        let results = fidelity::map(jobs, self.threads(), work, || bar.inc(1));
+        let results = map(jobs, self.threads(), work, || bar.inc(1));
         bar.finish_and_clear();
         results
     }

@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use clap::Args;
-use hil_sim::World;
-use hil_sim::engine::{Cost, Engine, Image, Native};
-use hil_sim::hand::{FINGERS, Hand, ImageHand, NativeHand, run as run_hand};
-use hil_sim::metrics::{Figures, figures as figures_of};
-use hil_sim::scene::Scene;
 use serde::Serialize;
+use thermal_sim::World;
+use thermal_sim::engine::Cost;
+use thermal_sim::hand::{FINGERS, Hand, NativeHand, run as run_hand};
+use thermal_sim::metrics::{Figures, figures as figures_of};
+use thermal_sim::scene::Scene;
 
 use super::device::{self, Kind};
 use super::{Failure, output};
@@ -20,7 +20,7 @@ pub struct Arguments {
     #[arg(num_args = FINGERS, required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     /// What runs the device's logic
-    #[arg(long, value_enum, default_value_t = Kind::Image)]
+    #[arg(long, value_enum, default_value_t = Kind::USUAL)]
     engine: Kind,
     /// Image to run instead of the five-finger image of the current sources
     #[arg(long)]
@@ -55,13 +55,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (figures, cost) = match arguments.engine {
         Kind::Native => {
             device::no_image(elf)?;
-            measure::<Native, _>(&scenes, &mut NativeHand::new(worlds))
+            measure(&scenes, &mut NativeHand::new(worlds))
         }
-        Kind::Image => {
-            let (firmware, _) = device::image(elf, FINGERS)?;
-            let mut hand = ImageHand::new(&firmware, worlds).map_err(Failure::run)?;
-            measure::<Image, _>(&scenes, &mut hand)
-        }
+        #[cfg(feature = "emulator")]
+        Kind::Image => measure(&scenes, &mut super::image::hand(elf, worlds)?),
     }?;
     let text = if arguments.json {
         let report = Report {
@@ -75,16 +72,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::print(&text)
 }
 
-/// `E` names the engine that each finger would have alone.
-fn measure<E: Engine, H: Hand>(
+fn measure<H: Hand>(
     scenes: &[Scene; FINGERS],
     hand: &mut H,
 ) -> Result<(Vec<Figures>, Option<Cost>), Failure> {
-    let name = format!("five fingers on engine {}", E::NAME);
+    let name = format!("five fingers on engine {}", H::NAME);
     let outcomes = output::with_progress(name, |progress| run_hand(scenes, hand, progress))?;
     let outcomes = outcomes.map_err(Failure::run)?;
     let figures = scenes.iter().zip(&outcomes);
-    let figures = figures.map(|(scene, outcome)| figures_of::<E>(scene, outcome));
+    let figures = figures.map(|(scene, outcome)| figures_of(scene, outcome));
     Ok((figures.collect(), hand.cost()))
 }
 

@@ -4,7 +4,7 @@ use std::io::{self, BufWriter, Write};
 
 use anyhow::{anyhow, ensure};
 use clap::{Args, ValueEnum};
-use hil_sim::infrared::{
+use thermal_plant::infrared::{
     Camera, CameraParams, Optic, ParameterError, RANGE_C, Reading, SKIN_EMISSIVITY, SelfReflection,
     Surroundings,
 };

@@ -6,10 +6,13 @@ pub mod erfcx;
 pub mod faults;
 pub mod fidelity;
 pub mod hand;
+#[cfg(feature = "emulator")]
+mod image;
 pub mod infrared;
 pub mod model;
 mod output;
 pub mod parameters;
+#[cfg(feature = "emulator")]
 pub mod profile;
 pub mod roughness;
 pub mod run;

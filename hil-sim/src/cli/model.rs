@@ -10,7 +10,7 @@ use contact_model::material::{
 };
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, Real};
-use hil_sim::scene::known_materials;
+use thermal_sim::scene::known_materials;
 
 use super::Failure;
 

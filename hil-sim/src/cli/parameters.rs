@@ -3,9 +3,9 @@
 use std::io::{Write, stdout};
 
 use clap::{Args, ValueEnum};
-use hil_sim::plant::Params;
-use hil_sim::plant::finger::FingerParams;
-use hil_sim::plant::parameters::{self, Parameter};
+use thermal_plant::Params;
+use thermal_plant::finger::FingerParams;
+use thermal_plant::parameters::{self, Parameter};
 
 use super::Failure;
 

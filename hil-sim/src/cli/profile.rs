@@ -6,11 +6,10 @@ use std::path::PathBuf;
 use addr2line::Loader;
 use anyhow::{Context, anyhow};
 use clap::Args;
-use hil_sim::engine::Image;
-use hil_sim::machine::{Ran, cold_fetch_stalls};
-use hil_sim::run::run as run_scene;
+use stm32_emulator::{Image, Ran, cold_fetch_stalls};
+use thermal_sim::run::run as run_scene;
 
-use super::{Failure, device, output};
+use super::{Failure, device, image, output};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -34,13 +33,13 @@ struct Share {
 /// Runs the scene and prints a line for each function.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (scene, world) = device::scene(&arguments.scene)?;
-    let (firmware, path) = device::image(arguments.elf.as_deref(), 1)?;
+    let (firmware, path) = image::firmware(arguments.elf.as_deref(), 1)?;
     let symbols = Loader::new(&path)
         .map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))?;
-    let mut image = Image::new(&firmware, world).map_err(Failure::run)?;
-    image.watch_tick();
-    run_scene(&scene, &mut image, |_| ()).map_err(Failure::run)?;
-    let machine = image.machine();
+    let mut engine = Image::new(&firmware, world).map_err(Failure::run)?;
+    engine.watch_tick();
+    run_scene(&scene, &mut engine, |_| ()).map_err(Failure::run)?;
+    let machine = engine.machine();
     let watched = machine
         .path()
         .context("the image ran no tick")

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
-use hil_sim::roughness::{Profile, Roughness};
+use thermal_thesis::roughness::{Profile, Roughness};
 
 use super::Failure;
 

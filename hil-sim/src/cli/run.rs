@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::Args;
-use hil_sim::engine::{Engine, Image, Native, NoMachineFault};
-use hil_sim::metrics::{Figures, figures};
-use hil_sim::report;
-use hil_sim::run::{Injection, Outcome, run_with};
-use hil_sim::scene::Scene;
+use thermal_sim::engine::{Engine, Native};
+use thermal_sim::metrics::{Figures, figures};
+use thermal_sim::processor::{Injection, NoMachineFault};
+use thermal_sim::report;
+use thermal_sim::run::{Outcome, run_with};
+use thermal_sim::scene::Scene;
 
 use super::device::{self, Kind};
 use super::{Failure, output};
@@ -18,7 +19,7 @@ pub struct Arguments {
     /// The scene, TOML
     scene: PathBuf,
     /// What runs the device's logic
-    #[arg(long, value_enum, default_value_t = Kind::Image)]
+    #[arg(long, value_enum, default_value_t = Kind::USUAL)]
     engine: Kind,
     /// A fault of the processor at a time of the scene, such as 2.5:hung-core or 1:core-bit=r4.7; may be repeated
     #[arg(long, value_name = "T_S:FAULT", value_parser = injection)]
@@ -44,9 +45,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             device::no_image(elf)?;
             measure(&scene, &arguments.inject, &mut Native::new(world))
         }
+        #[cfg(feature = "emulator")]
         Kind::Image => {
-            let (firmware, _) = device::image(elf, 1)?;
-            let mut engine = Image::new(&firmware, world).map_err(Failure::run)?;
+            let mut engine = super::image::engine(elf, world)?;
             measure(&scene, &arguments.inject, &mut engine)
         }
     }?;
@@ -87,7 +88,7 @@ fn measure<E: Engine>(
         run_with(scene, injections, engine, progress)
     })?;
     let outcome = outcome.map_err(Failure::run)?;
-    let figures = figures::<E>(scene, &outcome);
+    let figures = figures(scene, &outcome);
     Ok((outcome, figures))
 }
 

@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use hil_sim::thesis::figure::{apart, figures};
-use hil_sim::thesis::{self, ClosedForm, FiniteVolumes};
+use thermal_thesis::figure::{apart, figures};
+use thermal_thesis::{ClosedForm, FiniteVolumes};
 
 use super::{Failure, output};
 
@@ -20,20 +20,21 @@ pub struct Arguments {
 
 /// Recomputes, prints, writes.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let chapters = thesis::chapters();
+    let chapters = thermal_thesis::chapters();
     output::create(arguments.out.as_deref())?;
     let closed = figures(&ClosedForm).map_err(Failure::run)?;
     let apart = apart(&closed, &figures(&FiniteVolumes).map_err(Failure::run)?);
     if let Some(folder) = &arguments.out {
-        thesis::write(folder, &chapters, &closed, &apart).map_err(Failure::run)?;
+        thermal_thesis::write(folder, &chapters, &closed, &apart).map_err(Failure::run)?;
     }
     let mut text = if arguments.json {
-        serde_json::to_string(&thesis::json(&chapters, &apart)).map_err(Failure::run)? + "\n"
+        serde_json::to_string(&thermal_thesis::json(&chapters, &apart)).map_err(Failure::run)?
+            + "\n"
     } else {
-        thesis::table(&chapters, &apart)
+        thermal_thesis::table(&chapters, &apart)
     };
     if let (Some(folder), false) = (&arguments.out, arguments.json) {
-        text += &format!("report: {}\n", folder.join(thesis::HTML).display());
+        text += &format!("report: {}\n", folder.join(thermal_thesis::HTML).display());
     }
     output::print(&text)
 }

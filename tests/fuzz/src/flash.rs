@@ -3,9 +3,9 @@
 use std::sync::OnceLock;
 
 use arbitrary::{Arbitrary, Unstructured};
-use hil_sim::machine::Cells;
 use system_tests::flash::{BYTES, Flash, append, numbered};
 use thermal_display::settings::{Calibration, Correction, Kept, Store, StoreError, Tile};
+use thermal_sim::Cells;
 
 /// Saves that an input begins after: none, few, all that fit into a sector, and turns to another.
 const SAVES: [u32; 8] = [0, 1, 2, 3, 20, 37, 38, 80];

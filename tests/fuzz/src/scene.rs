@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use hil_sim::plant::Plant;
-use hil_sim::plant::bridge::Legs;
-use hil_sim::scene::Scene;
+use thermal_plant::Plant;
+use thermal_plant::bridge::Legs;
+use thermal_sim::scene::Scene;
 
 const FILE: &str = "scene.toml";
 

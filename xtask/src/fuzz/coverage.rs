@@ -1,4 +1,4 @@
-//! Which lines the inputs reach, by LLVM's source-based coverage.
+//! Coverage of the sources by the inputs, by LLVM's source-based coverage.
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -8,10 +8,10 @@ use super::instrument::Instrumented;
 use super::{Target, create, folder, found};
 use crate::process::{Invocation, workspace};
 
-/// What is under test: without what formats the host's own text or measures it.
+/// Folders of the sources under test.
 const SOURCES: [&str; 3] = ["src", "model/src", "hil-sim/src/scene"];
 
-/// Runs all inputs and prints a row for each file.
+/// Runs all inputs and prints the coverage of each source file.
 pub fn report(targets: &[Target]) -> Result<()> {
     let tools = tools()?;
     let program = Instrumented::Coverage.build()?;
@@ -58,7 +58,7 @@ fn run(command: &mut Command) -> Result<()> {
     Ok(())
 }
 
-/// The folder of the compiler's own LLVM tools: others do not read what this compiler writes.
+/// The folder of the LLVM tools of this compiler; tools of another version cannot read its profiles.
 fn tools() -> Result<PathBuf> {
     let ask = |args: &[&'static str]| Invocation::new("rustc", args.iter().copied()).answer();
     let root = ask(&["--print", "sysroot"]).context("rustc --print sysroot")?;

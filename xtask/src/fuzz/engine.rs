@@ -1,4 +1,4 @@
-//! libFuzzer's processes.
+//! Processes of libFuzzer: started, watched, and their results collected.
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
@@ -13,43 +13,43 @@ use super::progress::{Progress, Reached};
 use super::{Target, create, folder, found};
 use crate::process::workspace;
 
-/// An input that takes longer hangs, s.
+/// Limit for the time of one input, s; a longer one is reported as a hang.
 const HANG_S: u32 = 10;
-/// Longest inputs, bytes: more of the same finds nothing more.
+/// Largest size of an input, bytes.
 const LONGEST: u32 = 1024;
-/// Between two lines of progress.
-const TELL: Duration = Duration::from_secs(10);
+/// Time between two lines of progress.
+const REPORT_INTERVAL: Duration = Duration::from_secs(10);
 const POLL: Duration = Duration::from_millis(100);
-/// Lines that are shown of a process that has failed.
+/// Lines of output that are printed for a failed process.
 const LAST_LINES: usize = 30;
 
-/// How much is done for each target.
+/// Amount of fuzzing for each target.
 #[derive(Clone, Copy, Debug)]
 pub enum Effort {
-    /// For so long.
+    /// Duration.
     Time(Duration),
-    /// So many executions, all processes together.
+    /// Number of executions, summed over all processes.
     Runs(u64),
 }
 
 /// The instrumented program.
 pub struct Engine {
-    /// A copy, which later builds leave alone.
+    /// A copy, which later builds do not overwrite.
     program: PathBuf,
 }
 
-/// What a process says: its progress, and its last lines.
+/// Output of a process: its progress and its last lines.
 #[derive(Default)]
-struct Said {
+struct Output {
     progress: Progress,
     last: Vec<String>,
 }
 
-/// A process, and the thread that listens to it.
+/// A process, and the thread that reads its output.
 struct Process {
     child: Child,
-    said: Arc<Mutex<Said>>,
-    listener: thread::JoinHandle<()>,
+    output: Arc<Mutex<Output>>,
+    reader: thread::JoinHandle<()>,
 }
 
 impl Process {
@@ -61,28 +61,28 @@ impl Process {
             .spawn()
             .with_context(|| format!("{}: did not start", command.get_program().display()))?;
         let stderr = child.stderr.take().context("no standard error")?;
-        let said = Arc::new(Mutex::new(Said::default()));
-        let heard = Arc::clone(&said);
-        let listener = thread::spawn(move || {
+        let output = Arc::new(Mutex::new(Output::default()));
+        let shared = Arc::clone(&output);
+        let reader = thread::spawn(move || {
             for line in BufReader::new(stderr).split(b'\n').map_while(Result::ok) {
                 let line = String::from_utf8_lossy(&line).into_owned();
-                let mut said = heard.lock().unwrap_or_else(PoisonError::into_inner);
-                said.progress.take(&line);
-                if said.last.len() == LAST_LINES {
-                    said.last.remove(0);
+                let mut output = shared.lock().unwrap_or_else(PoisonError::into_inner);
+                output.progress.take(&line);
+                if output.last.len() == LAST_LINES {
+                    output.last.remove(0);
                 }
-                said.last.push(line);
+                output.last.push(line);
             }
         });
         Ok(Self {
             child,
-            said,
-            listener,
+            output,
+            reader,
         })
     }
 
     fn progress(&self) -> Progress {
-        self.said
+        self.output
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .progress
@@ -90,10 +90,10 @@ impl Process {
 }
 
 impl Engine {
-    /// With a program that was built.
+    /// Copies the built program.
     pub fn new(built: &Path) -> Result<Self> {
         let program = folder().join("fuzz");
-        // A run that goes on keeps its own.
+        // A program that still runs keeps its file.
         let _ = std::fs::remove_file(&program);
         std::fs::copy(built, &program)
             .with_context(|| format!("{}: cannot be copied", built.display()))?;
@@ -116,7 +116,7 @@ impl Engine {
 
     /// Fuzzes one target.
     ///
-    /// Fails if an input crashes, hangs, or leads to what must not be.
+    /// Fails if an input crashes, hangs, or violates an assertion of the target.
     pub fn fuzz(&self, target: Target, effort: Effort, jobs: u64) -> Result<Reached> {
         let name = target.name();
         let start = Instant::now();
@@ -124,7 +124,7 @@ impl Engine {
         for _ in 0..jobs {
             let mut command = self.command(target);
             command.args(["-print_final_stats=1", "-reload=5"]);
-            // A replay has it.
+            // A replay prints the backtrace.
             command.env("RUST_BACKTRACE", "0");
             command.arg(match effort {
                 Effort::Time(time) => format!("-max_total_time={}", time.as_secs()),
@@ -136,7 +136,7 @@ impl Engine {
             command.arg(found(target)?).args(target.seeds());
             processes.push(Process::start(command)?);
         }
-        let mut told = Instant::now();
+        let mut reported = Instant::now();
         let mut failed = None;
         loop {
             let mut runs_on = false;
@@ -150,8 +150,8 @@ impl Engine {
             if failed.is_some() || !runs_on {
                 break;
             }
-            if told.elapsed() >= TELL {
-                told = Instant::now();
+            if reported.elapsed() >= REPORT_INTERVAL {
+                reported = Instant::now();
                 let Progress {
                     executions,
                     edges,
@@ -166,33 +166,32 @@ impl Engine {
             thread::sleep(POLL);
         }
         for process in &mut processes {
-            // Those of the others that go on.
+            // After a failure the others still run.
             let _ = process.child.kill();
             process.child.wait()?;
         }
         let time = start.elapsed();
         let mut all = Vec::new();
         for (i, process) in processes.into_iter().enumerate() {
-            let _ = process.listener.join();
-            let said = process.said.lock().unwrap_or_else(PoisonError::into_inner);
-            all.push(said.progress);
+            let _ = process.reader.join();
+            let output = process
+                .output
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            all.push(output.progress);
             if failed == Some(i) {
                 bail!(
                     "{name}:\n{}\n{}",
-                    said.last.join("\n"),
-                    how_to_replay(target, &said.last)
+                    output.last.join("\n"),
+                    how_to_replay(target, &output.last)
                 );
             }
         }
         let progress = Progress::together(&all);
-        Ok(Reached {
-            executions: progress.executions,
-            progress,
-            time,
-        })
+        Ok(Reached { progress, time })
     }
 
-    /// Runs one input, and prints what it means.
+    /// Runs one input and prints its decoded form.
     pub fn replay(&self, target: Target, input: &Path) -> Result<()> {
         let input =
             std::path::absolute(input).with_context(|| format!("--replay {}", input.display()))?;
@@ -205,16 +204,16 @@ impl Engine {
         if !status.success() {
             bail!("{} fails ({status})", input.display());
         }
-        println!("{} holds", input.display());
+        println!("{} passes", input.display());
         Ok(())
     }
 
-    /// Puts the fewest inputs that cover what all cover into the repository's corpus.
+    /// Replaces the repository's corpus by the smallest set of inputs with the same coverage.
     pub fn keep(&self, target: Target) -> Result<()> {
         let fewest = folder().join("fewest").join(target.name());
         let _ = std::fs::remove_dir_all(&fewest);
         create(&fewest)?;
-        // Of those that are there now: a run that goes on replaces some by shorter ones.
+        // A copy, because a fuzzer that still runs replaces inputs by shorter ones.
         let now = folder().join("now").join(target.name());
         let _ = std::fs::remove_dir_all(&now);
         create(&now)?;
@@ -254,7 +253,7 @@ fn together(processes: &[Process]) -> Progress {
     Progress::together(&all)
 }
 
-/// From libFuzzer's `Test unit written to FILE`.
+/// The command that replays the input that libFuzzer says it has written.
 fn how_to_replay(target: Target, lines: &[String]) -> String {
     let written = lines
         .iter()

@@ -1,9 +1,8 @@
-//! The fuzzers with the product's own crates instrumented, and nothing else.
+//! Builds the fuzzers with only the product's own crates instrumented.
 //!
-//! Cargo's `RUSTC_WORKSPACE_WRAPPER` is a program that is called in place of the compiler for members of the workspace, whose
-//! results are kept apart from all others by the path of that program. Here it is this program under another name, which
-//! calls the compiler with more flags. So one folder holds both kinds, nothing else is compiled a second time (least of all
-//! the emulator, which takes minutes), and a stable compiler does.
+//! Cargo's `RUSTC_WORKSPACE_WRAPPER` is a program that is called in place of the compiler for members of the workspace, and the
+//! artifacts get other names for each path of that program. Here it is this program under another name, which calls the
+//! compiler with additional flags. So dependencies are compiled once for both kinds of build, and a stable compiler suffices.
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -13,7 +12,7 @@ use anyhow::{Context, Result};
 use super::{create, folder};
 use crate::process::{Invocation, workspace};
 
-/// What the compiler is told beside what cargo tells it.
+/// Kind of instrumentation that is added to cargo's flags.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instrumented {
     /// Counters on the edges of the control flow, for libFuzzer, and every check that a debug build has.
@@ -22,8 +21,8 @@ pub enum Instrumented {
     Coverage,
 }
 
-/// The crates that are instrumented, and whether their comparisons are, too: those help with the words of a scene, and
-/// would take half of the time of a tick.
+/// The instrumented crates, and whether comparisons are instrumented, too: that helps to find the keywords of a scene, and
+/// would double the time of a tick.
 const CRATES: [(&str, bool); 3] = [
     ("contact_model", false),
     ("thermal_display", false),
@@ -46,12 +45,12 @@ const COVERAGE: &str = "-Cinstrument-coverage";
 impl Instrumented {
     const ALL: [Self; 2] = [Self::Fuzzing, Self::Coverage];
 
-    /// More flags for a crate; none if it is not one of ours.
+    /// Additional flags for a crate; none if it is not instrumented.
     fn flags(self, name: &str) -> Vec<&'static str> {
         let ours = CRATES.iter().find(|(known, _)| *known == name);
         match (self, ours) {
             (Self::Coverage, Some(_)) => vec![COVERAGE],
-            // What is linked in the end brings what writes the counts.
+            // The linked program contains the run-time library that writes the counts.
             (Self::Coverage, None) if name == FUZZERS => vec![COVERAGE],
             (Self::Fuzzing, Some((_, compares))) => {
                 let mut flags = [EDGES.as_slice(), &CHECKS].concat();
@@ -64,7 +63,8 @@ impl Instrumented {
         }
     }
 
-    /// The name under which this program is such a compiler. It changes with the flags, or cargo would not notice.
+    /// The name under which this program acts as the compiler. It contains a hash of the flags, so that cargo rebuilds when
+    /// they change.
     fn program(self) -> String {
         let mut hasher = DefaultHasher::new();
         for name in CRATES.map(|(name, _)| name).into_iter().chain([FUZZERS]) {
@@ -77,7 +77,7 @@ impl Instrumented {
         format!("rustc-for-{word}-{:08x}", hasher.finish() as u32)
     }
 
-    /// Builds the fuzzers so; returns the program.
+    /// Builds the fuzzers and returns the path of the program.
     pub fn build(self) -> Result<PathBuf> {
         let wrapper = folder().join(self.program());
         create(&folder())?;
@@ -94,7 +94,7 @@ impl Instrumented {
     }
 }
 
-/// If this program was called as the compiler, is it, and returns its status.
+/// Calls the compiler and returns its status, if this program was started under the name of an instrumenting compiler.
 pub fn compile_if_called_as_compiler() -> Option<ExitCode> {
     let mut args = std::env::args_os();
     let name = PathBuf::from(args.next()?);

@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz`: libFuzzer on everything that takes input from outside.
+//! `cargo xtask fuzz`: libFuzzer on every interface that takes external input.
 mod coverage;
 mod engine;
 mod instrument;
@@ -7,7 +7,7 @@ mod progress;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 
 pub use instrument::compile_if_called_as_compiler;
@@ -17,18 +17,18 @@ use crate::setup::{self, Needs, Permission};
 use engine::{Effort, Engine};
 use instrument::Instrumented;
 
-/// What is fuzzed.
+/// Fuzz targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Target {
-    /// Bytes from the host, with ticks between
+    /// Bytes from the host, and ticks
     Wire,
-    /// Samples of any kind, with lines between
+    /// Samples and command lines
     Station,
-    /// Any settings that lines can set, and what is read by them
+    /// Settings that command lines can set, and readings corrected by them
     Settings,
-    /// Damage, records and saves in the flash that settings are in
+    /// Damage, records and saves in the settings' flash
     Flash,
-    /// The text of a scene
+    /// The text of a scene file
     Scene,
 }
 
@@ -43,12 +43,12 @@ impl Target {
         }
     }
 
-    /// The inputs that the repository has for it.
+    /// Folder of the repository's inputs for the target.
     fn corpus(self) -> PathBuf {
         workspace().join("tests/fuzz/corpus").join(self.name())
     }
 
-    /// Folders of inputs to begin with.
+    /// Folders of initial inputs.
     fn seeds(self) -> Vec<PathBuf> {
         let mut seeds = vec![self.corpus()];
         if self == Self::Scene {
@@ -57,7 +57,7 @@ impl Target {
         seeds
     }
 
-    /// Words that inputs are made of.
+    /// Dictionary of words for inputs.
     fn dictionary(self) -> Option<PathBuf> {
         let path = workspace().join(format!("tests/fuzz/{}.dict", self.name()));
         path.is_file().then_some(path)
@@ -67,35 +67,35 @@ impl Target {
 /// Options of `cargo xtask fuzz`.
 #[derive(Args)]
 pub struct Options {
-    /// What to fuzz, may be repeated [default: all, one after another]
+    /// What to fuzz, may be repeated [default: all]
     #[arg(long, value_enum)]
     target: Vec<Target>,
-    /// Time for each target, s, after the inputs that are known
+    /// Time for each target, s
     #[arg(long, default_value_t = 60, conflicts_with = "runs")]
     seconds: u64,
-    /// Executions for each target, in place of a time
+    /// Executions for each target instead of a time
     #[arg(long)]
     runs: Option<u64>,
-    /// Processes at a time, which share what they find
+    /// Processes for each target, which share what they find; as many targets run side by side as the cores allow
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=64))]
     jobs: u64,
-    /// Run this one input of the one target, and print what it means
+    /// Run this one input of the one target and print its decoded form
     #[arg(long, value_name = "FILE", requires = "target", group = "other")]
     replay: Option<PathBuf>,
-    /// Put what was found in earlier runs into the repository's corpus, no more than what covers all of it
+    /// Replace the repository's corpus by the smallest set of known inputs with the same coverage
     #[arg(long, group = "other")]
     keep: bool,
-    /// Print which part of each source file the inputs reach, in lines and regions (needs llvm-tools)
+    /// Print the coverage of each source file by all inputs (needs llvm-tools)
     #[arg(long, group = "other")]
     coverage: bool,
 }
 
-/// Where builds and runs leave their files.
+/// Folder for files of builds and runs.
 fn folder() -> PathBuf {
     workspace().join("target/fuzz")
 }
 
-/// What was found for a target in runs on this machine.
+/// Folder of the inputs found for a target in runs on this machine.
 fn found(target: Target) -> Result<PathBuf> {
     let path = folder().join("corpus").join(target.name());
     create(&path)?;
@@ -135,12 +135,22 @@ pub fn run(permission: Permission, options: &Options) -> Result<()> {
         Some(runs) => Effort::Runs(runs),
         None => Effort::Time(Duration::from_secs(options.seconds)),
     };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let at_once = cores.div_ceil(usize::try_from(options.jobs)?);
     let mut lines = Vec::new();
     let mut total = 0;
-    for target in targets {
-        let reached = engine.fuzz(*target, effort, options.jobs)?;
-        total += reached.executions;
-        lines.push(format!("{:<10}{reached}", target.name()));
+    for group in targets.chunks(at_once) {
+        let fuzz = |target: &Target| engine.fuzz(*target, effort, options.jobs);
+        let results: Vec<_> = std::thread::scope(|scope| {
+            let running = group.iter().map(|target| scope.spawn(|| fuzz(target)));
+            let running: Vec<_> = running.collect();
+            running.into_iter().map(|thread| thread.join()).collect()
+        });
+        for (target, result) in group.iter().zip(results) {
+            let reached = result.map_err(|_| anyhow!("{}: panicked", target.name()))??;
+            total += reached.progress.executions;
+            lines.push(format!("{:<10}{reached}", target.name()));
+        }
     }
     println!(
         "{:<10}{:>14}{:>10}{:>8}{:>10}{:>8}",

@@ -1,23 +1,23 @@
-//! What libFuzzer says of its progress.
+//! Progress of libFuzzer, parsed from its output.
 use std::fmt;
 use std::time::Duration;
 
-/// What a run has reached.
+/// Progress of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// Inputs that were run.
+    /// Executed inputs.
     pub executions: u64,
-    /// Edges of the control flow that were taken.
+    /// Covered edges of the control flow.
     pub edges: u64,
-    /// The same, told apart by how often.
+    /// Covered edges, counted separately by ranges of their execution count.
     pub features: u64,
-    /// Inputs that are kept.
+    /// Inputs in the corpus.
     pub inputs: u64,
 }
 
 impl Progress {
-    /// Takes a line such as `#4096 NEW cov: 660 ft: 858 corp: 8/3685b lim: 4096 exec/s: 2048 rss: 29Mb …` or
-    /// `stat::number_of_executed_units: 4096`; others say nothing.
+    /// Updates from a line such as `#4096 NEW cov: 660 ft: 858 corp: 8/3685b lim: 4096 exec/s: 2048 rss: 29Mb …` or
+    /// `stat::number_of_executed_units: 4096`; ignores other lines.
     pub fn take(&mut self, line: &str) {
         if let Some(count) = line.strip_prefix("stat::number_of_executed_units:") {
             self.executions = count.trim().parse().unwrap_or(self.executions);
@@ -43,7 +43,7 @@ impl Progress {
         }
     }
 
-    /// Of processes that share what they find.
+    /// Sum for processes that share their corpus.
     pub fn together(all: &[Self]) -> Self {
         all.iter().fold(Self::default(), |sum, one| Self {
             executions: sum.executions + one.executions,
@@ -54,18 +54,16 @@ impl Progress {
     }
 }
 
-/// What a target has reached, and in which time.
+/// Result of fuzzing one target.
 #[derive(Clone, Copy, Debug)]
 pub struct Reached {
-    /// Inputs that were run.
-    pub executions: u64,
-    /// All of it.
+    /// Final progress.
     pub progress: Progress,
-    /// How long that took.
+    /// Elapsed time.
     pub time: Duration,
 }
 
-/// A row of the table.
+/// Formats a row of the table.
 impl fmt::Display for Reached {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Progress {
@@ -88,7 +86,7 @@ mod tests {
 
     /// Lines of libFuzzer, as LLVM's documentation has them.
     #[test]
-    fn lines_are_read() {
+    fn progress_is_parsed_from_the_lines_of_libfuzzer() {
         let mut progress = Progress::default();
         progress.take("INFO: Seed: 1523017872");
         assert_eq!(progress, Progress::default());

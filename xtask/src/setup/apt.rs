@@ -1,4 +1,4 @@
-//! Packages of the distribution: asked for first, installed by apt, or named for the user to install.
+//! Installs packages of the distribution by apt after asking, or names them for the user to install.
 use std::io::{IsTerminal, Write};
 
 use anyhow::{Result, bail};
@@ -6,10 +6,10 @@ use anyhow::{Result, bail};
 use super::Missing;
 use crate::process::{Invocation, on_path};
 
-/// The longest that one run of apt-get may take, in seconds; its children are its own, so `timeout` ends it.
+/// Time limit of one run of apt-get, s, kept by `timeout`, which also ends its children.
 const APT_LIMIT_S: &str = "900";
 
-/// Who may install, and whether anybody can be asked.
+/// Whether the user may install packages, and whether a person can be asked.
 #[derive(Clone, Copy, Debug)]
 struct Situation {
     apt: bool,
@@ -44,7 +44,7 @@ fn consent(situation: &Situation) -> Consent {
     }
 }
 
-/// Installs what is missing, after asking if need be; an error names the commands that would.
+/// Installs the missing packages, after asking if necessary; an error names the commands to run.
 pub fn install(missing: &[Missing], yes: bool) -> Result<()> {
     let root = Invocation::new("id", ["-u"])
         .answer()
@@ -79,7 +79,7 @@ pub fn install(missing: &[Missing], yes: bool) -> Result<()> {
     }
     eprintln!("{update}");
     if let Err(error) = update.run_to_stderr() {
-        // The lists of an earlier update may do; if not, the installation says so.
+        // The lists of an earlier update may suffice; if not, the installation fails with its own message.
         eprintln!("{error}; going on with the package lists at hand");
     }
     eprintln!("{install}");
@@ -88,13 +88,13 @@ pub fn install(missing: &[Missing], yes: bool) -> Result<()> {
         .map_err(|error| error.context(format!("could not install:\n{}", advice(missing))))
 }
 
-/// What is missing and the commands that provide it, indented for the end of a message.
+/// The missing tools and the commands that install them, indented for the end of a message.
 pub fn advice(missing: &[Missing]) -> String {
     let mut lines: Vec<String> = missing
         .iter()
         .map(|missing| format!("  {}", missing.what))
         .collect();
-    // One line for each command, in the order they first appear.
+    // One line for each command, in the order of first use.
     let apt = "apt-get update && apt-get install -y --no-install-recommends";
     let mut ways: Vec<(&str, Vec<&str>)> = vec![(apt, packages(missing))];
     for &(command, operand) in missing.iter().flat_map(|missing| missing.elsewhere) {
@@ -129,7 +129,7 @@ fn packages(missing: &[Missing]) -> Vec<&'static str> {
         .collect()
 }
 
-/// Updating the lists and installing, each within its time.
+/// The commands that update the package lists and install, each with a time limit.
 fn commands(packages: &[&str], root: bool) -> [Invocation; 2] {
     let bounded = [
         "env",
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn root_is_used_only_with_leave() {
+    fn packages_are_installed_as_root_only_with_consent() {
         let user = Situation {
             apt: true,
             root: false,
@@ -233,7 +233,7 @@ mod tests {
     }
 
     #[test]
-    fn sudo_comes_before_what_others_than_root_run() {
+    fn sudo_is_used_unless_the_user_is_root() {
         let install = |root| commands(&["cmake"], root)[1].to_string();
         assert!(
             install(false).starts_with("sudo env "),
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn advice_names_the_thing_and_every_way_once() {
+    fn advice_names_the_tool_and_each_command_once() {
         let one = Missing {
             what: "a",
             apt: &["a-dev", "b"],

@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 use super::target::RUSTUP_LIMIT;
 use crate::process::{Invocation, on_path};
 
-/// Which of the checking tools can be run.
+/// The available linting tools.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lints {
     /// `cargo fmt`
@@ -31,7 +31,7 @@ impl Lints {
             .collect()
     }
 
-    /// Whether to go on: a developer's machine may lack them, continuous integration may not.
+    /// An error if a tool is missing in continuous integration; a developer's machine may lack it.
     fn accept(self, ci: bool) -> Result<Self> {
         let missing = self.missing();
         if ci && !missing.is_empty() {
@@ -44,7 +44,7 @@ impl Lints {
     }
 }
 
-/// Has rustup add what is missing; what cannot be had is left out, except in continuous integration.
+/// Adds missing tools by rustup. Without them their checks are skipped, except in continuous integration.
 pub fn prepare(ci: bool) -> Result<Lints> {
     let found = Lints::probe();
     let missing = found.missing();
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_continuous_integration_insists() {
+    fn a_missing_tool_is_an_error_in_continuous_integration_only() {
         let (all, no_clippy) = (
             Lints {
                 rustfmt: true,

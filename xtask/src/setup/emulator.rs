@@ -1,4 +1,4 @@
-//! What compiling the emulator's CPU takes: cmake with make or ninja, a C compiler, libclang; the fuzzers' engine a C++ one.
+//! Tools that compile the emulator's CPU (cmake with make or ninja, a C compiler, libclang) and libFuzzer (a C++ compiler).
 use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::Missing;
 use crate::process::{Invocation, on_path};
 
-/// What was found on the machine.
+/// Tools found on the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Found {
     cmake: bool,
@@ -15,7 +15,7 @@ pub struct Found {
     libclang: bool,
 }
 
-/// What is lacking, with the packages that provide it.
+/// The missing tools.
 pub fn missing(found: &Found) -> Vec<Missing> {
     let tools = [
         (
@@ -74,7 +74,7 @@ pub fn missing(found: &Found) -> Vec<Missing> {
         .collect()
 }
 
-/// Looks at the machine.
+/// Looks for the tools.
 pub fn probe() -> Found {
     let runs = |program: &str| Invocation::new(program, ["--version"]).answer().is_some();
     Found {
@@ -85,7 +85,7 @@ pub fn probe() -> Found {
     }
 }
 
-/// What the fuzzers' engine lacks.
+/// The C++ compiler, if it is missing.
 pub fn missing_for_fuzzer() -> Option<Missing> {
     let program = env::var("CXX").unwrap_or_else(|_| "c++".into());
     let there = Invocation::new(&program, ["--version"]).answer().is_some();
@@ -100,7 +100,7 @@ pub fn missing_for_fuzzer() -> Option<Missing> {
     })
 }
 
-/// Whether the generator of bindings will find libclang and the compiler's own headers beside it.
+/// Whether bindgen will find libclang and the compiler's own headers.
 fn has_libclang() -> bool {
     if let Some(path) = env::var_os("LIBCLANG_PATH").map(PathBuf::from) {
         return holds_libclang(&path)
@@ -113,7 +113,7 @@ fn has_libclang() -> bool {
         && folders.iter().any(|folder| holds_headers(folder))
 }
 
-/// Where libraries of LLVM are kept: as its own `llvm-config` says, else the usual places.
+/// Folders of LLVM's libraries: that of `llvm-config`, and the usual ones.
 fn library_folders() -> Vec<PathBuf> {
     let llvm_config = env::var("LLVM_CONFIG_PATH").unwrap_or_else(|_| "llvm-config".into());
     let mut folders: Vec<PathBuf> = Invocation::new(&llvm_config, ["--libdir"])
@@ -167,7 +167,7 @@ fn holds_libclang(folder: &Path) -> bool {
     })
 }
 
-/// Whether `folder/clang/VERSION/include` has the compiler's headers; libclang alone cannot read any C without.
+/// Whether `folder/clang/VERSION/include` has the compiler's headers, without which libclang cannot parse C.
 fn holds_headers(folder: &Path) -> bool {
     entries(&folder.join("clang")).any(|version| version.join("include/stddef.h").is_file())
 }
@@ -190,7 +190,7 @@ mod tests {
 
     /// Names as the packages of Debian 12, Fedora and macOS have them.
     #[test]
-    fn only_the_c_interface_counts_as_libclang() {
+    fn only_the_shared_library_of_the_c_interface_is_libclang() {
         let cases = [
             ("libclang.so", true),
             ("libclang-14.so.1", true),
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_is_missing_is_installed() {
+    fn only_missing_tools_are_installed() {
         let all = Found {
             cmake: true,
             make: true,

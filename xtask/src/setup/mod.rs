@@ -1,4 +1,4 @@
-//! What a fresh machine needs, looked for and, where allowed, installed.
+//! Finds the tools that a command needs, and installs missing ones where that is allowed.
 mod apt;
 mod components;
 mod emulator;
@@ -10,11 +10,11 @@ use anyhow::{Result, bail};
 pub use components::Lints;
 pub use toolchain::{Choice, TARGET, Toolchain};
 
-/// The environment variable that says which cross toolchain to use; the emulator's own calls of
-/// `cargo xtask firmware` follow it.
+/// The environment variable with the choice of the cross toolchain, inherited by calls of `cargo xtask firmware` from
+/// other programs.
 pub const CHOICE_VARIABLE: &str = "THERMAL_DISPLAY_TOOLCHAIN";
 
-/// What the user lets set-up do.
+/// What the user allows the set-up to do.
 #[derive(Clone, Copy, Debug)]
 pub struct Permission {
     /// Install system packages without asking (`--yes`, or continuous integration).
@@ -23,35 +23,35 @@ pub struct Permission {
     pub choice: Choice,
 }
 
-/// What a command needs beside the cross target.
+/// Tools that a command needs besides the cross target.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Needs {
     /// cmake, a C compiler and libclang, to compile the emulator.
     pub emulator: bool,
-    /// A C++ compiler, for the fuzzers' engine.
+    /// A C++ compiler, for libFuzzer.
     pub fuzzer: bool,
-    /// clippy for the cross target, too.
+    /// clippy for the cross target.
     pub lints: bool,
 }
 
-/// Something missing and what provides it with the common package managers.
+/// A missing tool, and the packages that provide it in common package managers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Missing {
     what: &'static str,
     apt: &'static [&'static str],
-    /// Other commands that provide it, each with what it is to be told.
+    /// Other commands that install it, each with its argument.
     elsewhere: &'static [(&'static str, &'static str)],
 }
 
-/// Whether this is a run of continuous integration, where nobody can be asked.
+/// Whether this is continuous integration, where nobody can be asked.
 pub fn in_ci() -> bool {
     std::env::var("CI").is_ok_and(|value| !matches!(value.as_str(), "" | "0" | "false"))
 }
 
-/// Provides the cross target and what else is needed, or says what is missing and how to install it.
+/// Provides the cross target and the other tools, or fails with what is missing and how to install it.
 ///
-/// Every installation is tried once at most: rustup without asking (it needs no root), then all missing packages of
-/// the distribution together.
+/// Each installation is tried at most once: rustup without asking, because it needs no root; then all missing packages of the
+/// distribution together.
 pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
     let mut rustup_tried = false;
     let mut packages_tried = false;

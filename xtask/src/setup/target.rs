@@ -1,4 +1,4 @@
-//! Which compiler builds for the microcontroller: the active toolchain with rustup's target, else the distribution's.
+//! Chooses the compiler for the microcontroller: the active toolchain with rustup's target, else the distribution's.
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -8,10 +8,10 @@ use super::Missing;
 use super::toolchain::{CARGO, CARGO_CLIPPY, Choice, Distribution, RUSTC, TARGET, Toolchain};
 use crate::process::{Invocation, on_path};
 
-/// The longest that rustup may take to fetch a target or component; it can hang for ever where the net is filtered.
+/// Time limit for rustup to fetch a target or component; it can hang where the network is filtered.
 pub const RUSTUP_LIMIT: Duration = Duration::from_secs(60);
 
-/// What was found on the machine.
+/// Compilers and tools found on the machine.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Found {
     /// The active toolchain has the target's core library.
@@ -29,7 +29,7 @@ pub struct Found {
     linker: Option<PathBuf>,
 }
 
-/// What follows from what was found.
+/// The next step of the set-up.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Decision {
     Use(Toolchain),
@@ -62,8 +62,8 @@ const CLIPPY: Missing = Missing {
     elsewhere: &[("rustup target add", TARGET)],
 };
 
-/// The next move. A complete toolchain of the distribution comes before rustup's download, so that a machine that
-/// cannot download waits for it once and not at every build.
+/// The next step. A complete toolchain of the distribution comes before rustup's download, so that a machine that
+/// cannot download waits once and not at every build.
 pub fn decide(choice: Choice, found: &Found, lints: bool, rustup_tried: bool) -> Decision {
     if choice != Choice::Distribution && found.active_has_target {
         return Decision::Use(Toolchain::Active);
@@ -101,7 +101,7 @@ pub fn decide(choice: Choice, found: &Found, lints: bool, rustup_tried: bool) ->
     }
 }
 
-/// Looks at the machine.
+/// Looks for compilers and tools.
 pub fn probe() -> Found {
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".into());
     let print =
@@ -178,7 +178,7 @@ mod tests {
 
     /// The names of the packages of each case are those of Debian 12.
     #[test]
-    fn what_is_found_decides_the_next_move() {
+    fn the_tools_found_decide_the_next_step() {
         use Choice::{Auto, Distribution, Rustup};
         let nothing = Found::default();
         let bare = Found {
@@ -276,7 +276,7 @@ mod tests {
     }
 
     #[test]
-    fn clippy_is_asked_for_only_where_lints_run() {
+    fn clippy_is_required_only_for_lints() {
         let found = Found {
             clippy: false,
             ..complete()
@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn versions_are_read_from_what_the_tools_print() {
+    fn versions_are_parsed_from_the_tools_output() {
         let cases = [
             (
                 "rustc 1.96.0 (ac68faa20 2026-05-25) (built from a source tarball)",

@@ -1,4 +1,4 @@
-//! The cross toolchains there are, and how their cargo is called.
+//! The cross toolchains, and how their cargo is called.
 use std::fmt;
 use std::path::PathBuf;
 
@@ -8,17 +8,17 @@ use crate::process::Invocation;
 /// The microcontroller's target: Cortex-M4 with FPU.
 pub const TARGET: &str = "thumbv7em-none-eabihf";
 
-/// Where the distribution's packages put the compiler.
+/// The compiler of the distribution's packages.
 pub const RUSTC: &str = "/usr/bin/rustc";
-/// Its cargo.
+/// The distribution's cargo.
 pub const CARGO: &str = "/usr/bin/cargo";
-/// Its clippy, a package of its own.
+/// The distribution's clippy, a package of its own.
 pub const CARGO_CLIPPY: &str = "/usr/bin/cargo-clippy";
 
 /// Which cross toolchain to use.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
 pub enum Choice {
-    /// The active toolchain if it has or can be given the target, else the distribution's.
+    /// The active toolchain if it has the target or rustup can add it, else the distribution's.
     #[default]
     Auto,
     /// The active toolchain only, its target added by rustup if need be.
@@ -28,7 +28,7 @@ pub enum Choice {
 }
 
 impl Choice {
-    /// Has `invocation` make the same choice in its own calls of `cargo xtask firmware`.
+    /// Passes the choice on to the calls of `cargo xtask firmware` that `invocation` makes.
     pub fn handed_to(self, invocation: Invocation) -> Invocation {
         let inherited = std::env::var(CHOICE_VARIABLE).unwrap_or(Self::Auto.to_string());
         if inherited == self.to_string() {
@@ -50,7 +50,7 @@ impl fmt::Display for Choice {
     }
 }
 
-/// A cross toolchain that can be used as it is.
+/// An installed cross toolchain.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Toolchain {
     /// The toolchain that runs this program has the target installed.
@@ -69,7 +69,7 @@ impl Toolchain {
     }
 }
 
-/// The distribution's compiler with what its own packages lack.
+/// The distribution's compiler, and a linker, which its packages lack.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Distribution {
     /// A linker for the target: the host toolchain's `rust-lld`, or `ld.lld`.
@@ -80,7 +80,7 @@ impl Distribution {
     /// The distribution's `cargo SUBCOMMAND` for the target, undisturbed by the toolchain that runs this program.
     pub fn cargo(&self, subcommand: &str) -> Invocation {
         let (program, args) = match subcommand {
-            // Not by way of cargo: it would prefer the clippy in the user's own folder of cargo programs.
+            // Called directly: cargo would prefer a clippy in the user's own folder of cargo programs.
             "clippy" => (
                 CARGO_CLIPPY,
                 ["clippy", "-Zbuild-std=core,compiler_builtins"],
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_distribution_is_called_by_its_own_paths() {
+    fn the_distributions_tools_are_called_by_absolute_paths() {
         let line = Distribution {
             linker: "/lib/rust-lld".into(),
         }

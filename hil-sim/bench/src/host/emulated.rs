@@ -1,9 +1,9 @@
 //! Instructions and cycles on the emulated microcontroller.
 use anyhow::{Context, bail, ensure};
-use hil_sim::machine::{FLASH_BASE, Firmware, Machine, Stats, Wiring};
 use model_bench::job::{Checksum, Job};
 use model_bench::kernels::{Call, KERNELS, ONLY_RETURN};
 use serde::Serialize;
+use stm32_emulator::{FLASH_BASE, Firmware, Machine, Stats, Wiring};
 
 use super::image::{Image, build};
 

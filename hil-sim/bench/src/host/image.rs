@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, ensure};
-use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
+use object::{Object, ObjectSymbol, SymbolKind};
 
 /// Builds the image; cargo decides what is stale.
 ///
@@ -60,7 +60,7 @@ impl Image {
         });
         Ok(Self {
             symbols: symbols.collect(),
-            compiler: compiler(&file)?,
+            compiler: image_proof::compiler::of_elf(elf)?,
         })
     }
 
@@ -90,16 +90,4 @@ impl Image {
     pub fn compiler(&self) -> &str {
         &self.compiler
     }
-}
-
-/// Name and version of the compiler, as it leaves them in the image.
-fn compiler(file: &object::File<'_>) -> anyhow::Result<String> {
-    let section = file
-        .section_by_name(".comment")
-        .context("the image names no compiler")?;
-    let comments = String::from_utf8_lossy(section.data()?);
-    let name = comments
-        .split('\0')
-        .find(|comment| comment.starts_with("rustc"));
-    Ok(name.context("the image was not compiled by rustc")?.into())
 }

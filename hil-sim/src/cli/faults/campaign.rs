@@ -1,8 +1,9 @@
 //! `--campaign` and `--replay`: random campaigns.
 
 use anyhow::{Context, anyhow};
-use hil_sim::faults::{Campaign, Device, Ran, summary};
 use serde::Serialize;
+use thermal_campaigns::faults::{Campaign, Ran, summary};
+use thermal_sim::Device;
 
 use super::{Arguments, Failure, each, tell, write};
 
@@ -18,12 +19,11 @@ struct Report<'a> {
 /// Runs the campaigns of these numbers; a violation is a failure.
 pub fn run(
     arguments: &Arguments,
-    device: Device<'_>,
+    device: &dyn Device,
     numbers: std::ops::Range<u64>,
 ) -> Result<(), Failure> {
-    let has_processor = matches!(device, Device::Image(_));
     let campaigns: Vec<_> = numbers
-        .map(|number| Campaign::new(arguments.seed, number, has_processor))
+        .map(|number| Campaign::new(arguments.seed, number, device.has_processor()))
         .collect();
     if let (Some(folder), Some(_), [campaign]) =
         (&arguments.out, arguments.replay, campaigns.as_slice())

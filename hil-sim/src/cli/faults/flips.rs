@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use anyhow::{Context, anyhow};
-use hil_sim::faults::{Class, Device, Flip, Flipped, Memory, Reference, flip_table};
 use serde::Serialize;
+use thermal_campaigns::faults::{Class, Flip, Flipped, Memory, Reference, flip_table};
+use thermal_sim::Device;
 
 use super::{Arguments, Failure, each, tell, write};
 
@@ -17,13 +18,13 @@ struct Report<'a> {
 }
 
 /// Runs the flips of these numbers; a limit that is broken is a failure, and its scene goes to `--out`.
-pub fn run(arguments: &Arguments, device: Device<'_>, numbers: Range<u64>) -> Result<(), Failure> {
-    let Device::Image(firmware) = device else {
+pub fn run(arguments: &Arguments, device: &dyn Device, numbers: Range<u64>) -> Result<(), Failure> {
+    if !device.has_processor() {
         let problem =
             anyhow!("--flips with --engine native, which has no bits to flip; image is allowed");
         return Err(Failure::input(problem));
-    };
-    let of_place = |place: &_| Reference::new(firmware, *place);
+    }
+    let of_place = |place: &_| Reference::new(device, *place);
     let references = each(
         arguments,
         "references",
@@ -33,13 +34,13 @@ pub fn run(arguments: &Arguments, device: Device<'_>, numbers: Range<u64>) -> Re
     )
     .map_err(Failure::run)?;
     let stack_bytes = references.iter().filter_map(Reference::stack_bytes).max();
-    let memory = Memory::of(firmware, stack_bytes.unwrap_or(0)).map_err(Failure::run)?;
+    let memory = Memory::of(device, stack_bytes.unwrap_or(0)).map_err(Failure::run)?;
     let seed = arguments.seed;
     let flips: Vec<_> = numbers
         .map(|number| Flip::new(seed, number, &memory))
         .collect();
     let work = |flip: &Flip| {
-        let flipped = flip.run(firmware, &references);
+        let flipped = flip.run(device, &references);
         let flipped = flipped.with_context(|| format!("number {} of seed {seed}", flip.number))?;
         if let (Some(folder), true) = (
             &arguments.out,

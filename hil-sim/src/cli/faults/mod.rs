@@ -11,10 +11,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use hil_sim::faults::{self, Device, Entry, Outline, Place, Plan, Trial};
-use hil_sim::fidelity;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
+use thermal_campaigns::faults::{self, Entry, Outline, Place, Plan, Trial};
+use thermal_campaigns::map;
+use thermal_sim::Device;
 
 use super::device::{self, Kind};
 use super::{Failure, output};
@@ -34,7 +35,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
     /// What runs the device's logic
-    #[arg(long, value_enum, default_value_t = Kind::Image)]
+    #[arg(long, value_enum, default_value_t = Kind::USUAL)]
     engine: Kind,
     /// Image to run instead of the one of the current sources
     #[arg(long)]
@@ -96,11 +97,8 @@ struct Report<'a> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::create(arguments.out.as_deref())?;
     let elf = arguments.elf.as_deref();
-    let firmware = match arguments.engine {
-        Kind::Native => device::no_image(elf).map(|()| None)?,
-        Kind::Image => Some(device::image(elf, 1)?.0),
-    };
-    let device = firmware.as_ref().map_or(Device::Native, Device::Image);
+    let device = device::device(arguments.engine, elf)?;
+    let device = device.as_ref();
     match arguments.modes {
         Modes {
             campaign: Some(count),
@@ -135,7 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Runs the matrix, prints it, writes its page; a fault that does not hold is a failure.
-fn matrix(arguments: &Arguments, device: Device<'_>) -> Result<(), Failure> {
+fn matrix(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
     let plan = Plan {
         entries: entries(&arguments.only)?,
         places: match arguments.scene.as_slice() {
@@ -195,7 +193,7 @@ fn entries(only: &[String]) -> Result<Vec<Entry>, Failure> {
 fn outlines(
     arguments: &Arguments,
     plan: &Plan,
-    device: Device<'_>,
+    device: &dyn Device,
 ) -> anyhow::Result<Vec<Outline>> {
     let trials = each(
         arguments,
@@ -242,7 +240,7 @@ fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
 fn each<T: Sync, R: Send>(
     arguments: &Arguments,
     what: &str,
-    device: Device<'_>,
+    device: &dyn Device,
     items: &[T],
     work: impl Fn(&T) -> anyhow::Result<R> + Sync,
 ) -> anyhow::Result<Vec<R>> {
@@ -254,7 +252,7 @@ fn each<T: Sync, R: Send>(
     let threads = arguments.threads.map_or_else(cores, usize::from);
     let twentieth = |count: usize| count * 20 / items.len().max(1);
     let done = AtomicUsize::new(0);
-    let results = fidelity::map(items, threads, work, || {
+    let results = map(items, threads, work, || {
         bar.inc(1);
         let before = done.fetch_add(1, Ordering::Relaxed);
         if bar.is_hidden() && twentieth(before) != twentieth(before + 1) {

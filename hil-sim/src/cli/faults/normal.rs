@@ -1,8 +1,9 @@
 //! `--normal`: use without a fault.
 
 use anyhow::anyhow;
-use hil_sim::faults::{Device, Session, Used, use_table};
 use serde::Serialize;
+use thermal_campaigns::faults::{Session, Used, use_table};
+use thermal_sim::Device;
 
 use super::{Arguments, Failure, each, tell, write};
 
@@ -16,7 +17,7 @@ struct Report<'a> {
 }
 
 /// Runs so many hours; a session in which something trips is a failure, and its scene goes to `--out`.
-pub fn run(arguments: &Arguments, device: Device<'_>, hours: u64) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, device: &dyn Device, hours: u64) -> Result<(), Failure> {
     let seed = arguments.seed;
     let numbers: Vec<u64> = (0..Session::in_hours(hours)).collect();
     let work = |number: &u64| {

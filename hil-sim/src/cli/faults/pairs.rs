@@ -1,8 +1,9 @@
 //! `--pairs`: an unnoticed fault, then another one.
 
 use anyhow::anyhow;
-use hil_sim::faults::{Device, Pair, RanPair, pair_table, pairs};
 use serde::Serialize;
+use thermal_campaigns::faults::{Pair, RanPair, pair_table, pairs};
+use thermal_sim::Device;
 
 use super::{Arguments, Failure, each, tell, write};
 
@@ -16,7 +17,7 @@ struct Report<'a> {
 }
 
 /// Runs all pairs; one that breaks the claim is a failure, and its scene goes to `--out`.
-pub fn run(arguments: &Arguments, device: Device<'_>) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
     let seed = arguments.seed;
     let work = |pair: &Pair| {
         let ran = pair.run(device, seed)?;

@@ -3,12 +3,12 @@ use anyhow::Context;
 use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, find};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
-use hil_sim::plant::object::ObjectConfig;
-use hil_sim::plant::slab::{Back, Grading, Layer, Medium, Slab};
-use hil_sim::plant::touch::Touch;
-use hil_sim::plant::truth::Truth;
-use hil_sim::plant::{RECEPTORS_M, STEP_S};
 use serde::Serialize;
+use thermal_plant::object::ObjectConfig;
+use thermal_plant::slab::{Back, Grading, Layer, Medium, Slab};
+use thermal_plant::touch::Touch;
+use thermal_plant::truth::Truth;
+use thermal_plant::{RECEPTORS_M, STEP_S};
 
 /// Objects and forces of the contacts whose errors are taken.
 pub const OBJECTS: [&str; 4] = ["copper", "granite", "abs", "foam"];

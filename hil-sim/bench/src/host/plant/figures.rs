@@ -1,6 +1,6 @@
 //! All figures of the plant, timed side by side.
-use hil_sim::plant::slab::Grading;
 use serde::Serialize;
+use thermal_plant::slab::Grading;
 
 use super::super::figures::host;
 use super::super::timing::{Time, side_by_side};

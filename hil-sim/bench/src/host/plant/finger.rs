@@ -3,12 +3,12 @@ use std::hint::black_box;
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use hil_sim::World;
-use hil_sim::engine::{Engine, Native};
-use hil_sim::plant::Plant;
-use hil_sim::plant::bridge::Legs;
-use hil_sim::scene::Scene;
-use hil_sim::telemetry::Telemetry;
+use thermal_plant::Plant;
+use thermal_plant::bridge::Legs;
+use thermal_sim::World;
+use thermal_sim::engine::{Engine, Native};
+use thermal_sim::scene::Scene;
+use thermal_sim::telemetry::Telemetry;
 
 /// What is presented.
 pub const OBJECT: &str = "granite";

@@ -2,13 +2,13 @@
 use std::hint::black_box;
 
 use anyhow::bail;
-use hil_sim::plant::Plant;
-use hil_sim::plant::sensors::Channel;
 use thermal_display::Station;
 use thermal_display::drive::Drive;
 use thermal_display::protocol::Command;
 use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_display::settings::Settings;
+use thermal_plant::Plant;
+use thermal_plant::sensors::Channel;
 
 use super::finger::{Finger, LINES, READY_MS, force_n};
 

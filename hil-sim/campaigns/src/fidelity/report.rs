@@ -1,0 +1,39 @@
+//! The page.
+
+use std::fmt::Write;
+
+use thermal_charts::{document, element, escape};
+
+use super::{Boxed, Row, box_table, table};
+
+/// Name of the page.
+pub const HTML: &str = "fidelity.html";
+/// Name of the picture by itself.
+pub const SVG: &str = "fidelity.svg";
+
+/// A page that needs no other file.
+#[must_use]
+pub fn page(rows: &[Row], boxed: Option<&Boxed>, svg: Option<&str>) -> String {
+    let mut body =
+        "<p>Everything here is simulated; instructions are emulated, cycles estimated.</p>"
+            .to_owned();
+    if let Some(svg) = svg {
+        body += element(svg);
+    }
+    for text in [
+        (!rows.is_empty()).then(|| table(rows, true)),
+        boxed.map(box_table),
+    ]
+    .into_iter()
+    .flatten()
+    {
+        // Writing to a String cannot fail.
+        let _ = write!(body, "<pre>{}</pre>", escape(&text));
+    }
+    let style = "pre{font-size:12px;line-height:1.35;overflow-x:auto}body{max-width:80rem}";
+    document(
+        "Skin on the display against skin on the material",
+        style,
+        &body,
+    )
+}

@@ -1,0 +1,4 @@
+//! Campaigns on the native engine.
+
+mod matrix;
+mod survey;

@@ -1,0 +1,7 @@
+#![doc = include_str!("../README.md")]
+
+mod page;
+mod panel;
+
+pub use page::{document, element, escape, write};
+pub use panel::{Area, Curve, Legend, Panel, Stroke};

@@ -1,0 +1,42 @@
+//! HTML pages that need no other file.
+
+use std::path::Path;
+
+use anyhow::Context;
+
+const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:62rem;margin:2rem auto;padding:0 1rem;color:#222}\
+table{border-collapse:collapse}td,th{padding:.2rem .8rem;border-bottom:1px solid #ddd;text-align:left}\
+svg{max-width:100%;height:auto}code{background:#f3f3f3}";
+
+/// A page that needs no other file: `title` is text, `style` is CSS that is added to the style of all pages, `body` is HTML.
+#[must_use]
+pub fn document(title: &str, style: &str, body: &str) -> String {
+    let title = escape(title);
+    format!(
+        "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>{title}</title>\
+         <style>{STYLE}{style}</style><h1>{title}</h1>{body}</html>\n"
+    )
+}
+
+/// The `<svg>` element of an SVG document, to be put into a page; empty if the text has none.
+#[must_use]
+pub fn element(svg: &str) -> &str {
+    svg.find("<svg").map_or("", |start| &svg[start..])
+}
+
+/// Text as HTML.
+#[must_use]
+pub fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+}
+
+/// Writes a file of a report into a folder, which exists.
+///
+/// # Errors
+/// The file cannot be written; the error names its path.
+pub fn write(folder: &Path, name: &str, bytes: impl AsRef<[u8]>) -> anyhow::Result<()> {
+    let path = folder.join(name);
+    std::fs::write(&path, bytes).with_context(|| path.display().to_string())
+}

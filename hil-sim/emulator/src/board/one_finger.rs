@@ -1,0 +1,270 @@
+//! The release image in the emulated microcontroller, wired as the NUCLEO-F446RE board is.
+
+use anyhow::Context;
+use thermal_plant::bridge::{Leg, Legs};
+use thermal_plant::sensors::Channel;
+use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine};
+use thermal_sim::metrics::Figures;
+use thermal_sim::processor::{MachineFault, NotInjected};
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
+use thermal_sim::{Device, RamLayout, World, run_on};
+
+use super::meter::{Meter, TICK};
+use crate::{Firmware, InjectError, LegState, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
+
+/// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2.
+pub const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12];
+/// Fault line of the bridge, low is a fault: PA6.
+const FAULT_PIN: (u8, u8) = (0, 6);
+/// Enable input of the bridge: PB10.
+const ENABLE_PIN: (u8, u8) = (1, 10);
+/// Line that tests the comparator, pulled low: PC3.
+const TEST_PIN: (u8, u8) = (2, 3);
+
+/// From the first conversion to the first boundary, and between boundaries, picoseconds.
+const FIRST_BOUNDARY_PS: u64 = 230_000_000;
+const HALF_MS_PS: u64 = 500_000_000;
+const MICROSECOND_PS: u64 = 1_000_000;
+/// Longest time from power-up to the first conversion.
+const BOOT_S: u64 = 1;
+/// Cycles of one search step for the first conversion.
+const SEARCH_CYCLES: u64 = 200;
+
+/// Why the image does not run, or stopped.
+#[derive(Debug, thiserror::Error)]
+pub enum StartError {
+    /// The emulated machine stopped.
+    #[error(transparent)]
+    Stop(#[from] Stop),
+    /// The image runs, but samples nothing.
+    #[error("the image started no conversion within {BOOT_S} s of power-up")]
+    NoConversion,
+}
+
+/// The emulated microcontroller on the plant.
+pub struct Image {
+    machine: Machine<Pins>,
+    /// Time of the first boundary, ps since power-up.
+    first_boundary_ps: u64,
+    halves: u64,
+    meter: Meter,
+}
+
+/// Runs to the first conversion; its end in cycles since power-up.
+///
+/// # Errors
+/// The image cannot run, or does not start its converter.
+pub fn power_up<W: Wiring>(
+    machine: &mut Machine<W>,
+    first_conversion: impl Fn(&W) -> Option<u64>,
+) -> Result<u64, StartError> {
+    loop {
+        if let Some(at) = first_conversion(machine.wiring()) {
+            return Ok(at);
+        }
+        let now = machine.now();
+        if now > BOOT_S * u64::from(machine.clocks().hclk_hz) {
+            return Err(StartError::NoConversion);
+        }
+        machine.run_until(now + SEARCH_CYCLES)?;
+    }
+}
+
+/// Resets after power-up, their times counted from the first boundary.
+pub fn resets<W: Wiring>(machine: &Machine<W>, first_boundary_ps: u64) -> Vec<DeviceReset> {
+    let after_power_up = machine.resets().iter().skip(1);
+    after_power_up
+        .map(|reset| DeviceReset {
+            t_s: (reset.at_ps as f64 - first_boundary_ps as f64) * 1e-12,
+            cause: reset.cause,
+        })
+        .collect()
+}
+
+impl From<LegState> for Leg {
+    fn from(state: LegState) -> Self {
+        state.duty().map_or(Self::Off, Self::Duty)
+    }
+}
+
+impl Image {
+    /// Powers the device up and runs it to the first boundary after its first conversion.
+    ///
+    /// # Errors
+    /// The image cannot run, or does not start its converter.
+    pub fn new(firmware: &Firmware, world: World) -> Result<Self, StartError> {
+        let mut machine = Machine::new(firmware, Pins::new(world))?;
+        machine.set_host_baud(BAUD as u32);
+        let started = power_up(&mut machine, |pins| pins.first_conversion)?;
+        let first_boundary_ps = machine.ps_at(started) + FIRST_BOUNDARY_PS;
+        machine.run_until_ps(first_boundary_ps)?;
+        let meter = Meter::new(&mut machine);
+        Ok(Self {
+            machine,
+            first_boundary_ps,
+            halves: 0,
+            meter,
+        })
+    }
+}
+
+impl Image {
+    /// Notes the way of the control tick through the code from now on.
+    pub fn watch_tick(&mut self) {
+        self.machine.watch(TICK);
+    }
+
+    /// The machine, to read.
+    #[must_use]
+    pub fn machine(&self) -> &Machine<impl Wiring + use<>> {
+        &self.machine
+    }
+}
+
+impl Engine for Image {
+    type Stop = Stop;
+
+    const NAME: &'static str = "image";
+
+    fn world(&mut self) -> &mut World {
+        &mut self.machine.wiring_mut().world
+    }
+
+    fn legs(&mut self) -> Legs {
+        let (a, b) = (self.machine.pwm(0, 8), self.machine.pwm(0, 9));
+        Legs {
+            a: a.into(),
+            b: b.into(),
+            enabled: self.machine.gpio_output(ENABLE_PIN.0, ENABLE_PIN.1) == Some(true),
+        }
+    }
+
+    fn run_half_ms(&mut self) -> Result<(), Stop> {
+        self.halves += 1;
+        self.machine
+            .run_until_ps(self.first_boundary_ps + self.halves * HALF_MS_PS)?;
+        let test = self.machine.gpio_output(TEST_PIN.0, TEST_PIN.1) == Some(true);
+        self.world().comparator_test(test);
+        Ok(())
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        self.machine.uart_send(bytes);
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        into.append(&mut self.machine.wiring_mut().received);
+    }
+
+    fn inject(&mut self, fault: &MachineFault, after_us: u32) -> Result<(), NotInjected> {
+        let refused = |reason: InjectError| NotInjected::Refused {
+            fault: *fault,
+            reason: reason.to_string(),
+        };
+        let begin_ps = self.first_boundary_ps + self.halves * HALF_MS_PS;
+        let machine = &mut self.machine;
+        if after_us > 0 {
+            let reached = machine.run_until_ps(begin_ps + u64::from(after_us) * MICROSECOND_PS);
+            reached.map_err(|stop| refused(stop.into()))?;
+        }
+        let injected = match *fault {
+            MachineFault::RamBit { address, bit } => machine.flip_ram_bit(address, bit),
+            MachineFault::CoreBit { register, bit } => machine.flip_core_bit(register, bit),
+            MachineFault::RegisterBit { address, bit } => machine.flip_register_bit(address, bit),
+            MachineFault::HungCore => {
+                machine.hang_core();
+                Ok(())
+            }
+            MachineFault::HseStopped => machine.stop_hse(),
+            MachineFault::AdcStopped => {
+                machine.stop_adc();
+                Ok(())
+            }
+            MachineFault::DmaStopped { controller, stream } => machine.stop_dma(controller, stream),
+            MachineFault::BrownOut => machine.brown_out().map_err(InjectError::from),
+            MachineFault::PowerCycle { seed } => {
+                machine.power_cycle(seed).map_err(InjectError::from)
+            }
+            MachineFault::ResetPin => machine.pull_reset_pin().map_err(InjectError::from),
+            MachineFault::SoftwareReset => machine.ask_for_reset().map_err(InjectError::from),
+            MachineFault::StackOverflow => machine.exhaust_stack(),
+        };
+        injected.map_err(refused)
+    }
+
+    fn resets(&self) -> Vec<DeviceReset> {
+        resets(&self.machine, self.first_boundary_ps)
+    }
+
+    fn reset_cost(&mut self) {
+        self.meter = Meter::new(&mut self.machine);
+    }
+
+    fn cost(&self) -> Option<Cost> {
+        self.meter.cost(&self.machine)
+    }
+}
+
+/// The image on the board; each scene is run from power-up.
+impl Device for Firmware {
+    fn name(&self) -> &'static str {
+        Image::NAME
+    }
+
+    fn run(&self, scene: &Scene) -> anyhow::Result<(Outcome, Figures)> {
+        run_on(scene, |world| Ok(Image::new(self, world)?))
+    }
+
+    fn has_processor(&self) -> bool {
+        true
+    }
+
+    fn ram_layout(&self) -> anyhow::Result<RamLayout> {
+        let symbol = |name| {
+            let at = self.symbol(name);
+            at.with_context(|| {
+                format!("the image has no symbol {name}, so its static data cannot be found")
+            })
+        };
+        Ok(RamLayout {
+            ram: RAM_BASE..RAM_BASE + RAM_SIZE,
+            statics: symbol("__sdata")?..symbol("__sheap")?,
+            stack_top: self.initial_sp(),
+        })
+    }
+}
+
+/// What the pins of the microcontroller are soldered to.
+struct Pins {
+    world: World,
+    first_conversion: Option<u64>,
+    received: Vec<u8>,
+}
+
+impl Pins {
+    const fn new(world: World) -> Self {
+        Self {
+            world,
+            first_conversion: None,
+            received: Vec::new(),
+        }
+    }
+}
+
+impl Wiring for Pins {
+    fn adc(&mut self, channel: u8, now: u64) -> u16 {
+        self.first_conversion.get_or_insert(now);
+        // An input that nothing is wired to floats; it reads as the middle of the range.
+        let input = ADC_INPUTS.iter().position(|input| *input == channel);
+        input.map_or(0x800, |index| self.world.convert(Channel::ALL[index]))
+    }
+
+    fn pin(&self, port: u8, bit: u8) -> Option<bool> {
+        ((port, bit) == FAULT_PIN).then(|| !self.world.bridge_fault())
+    }
+
+    fn uart_tx(&mut self, byte: u8, _at: u64, _baud: u32) {
+        self.received.push(byte);
+    }
+}

@@ -1,0 +1,403 @@
+//! Everything of the chip that is not the CPU: the peripherals, how they are wired to each other, and their events
+//! in order of time. It knows nothing of the CPU emulation; register accesses enter through `chip/bus.rs`.
+use super::adc::{Adc, Trigger};
+use super::dma::{self, Dma, Route, Served};
+use super::exti::Exti;
+use super::flash::Flash;
+use super::gpio::{Mode, PORTS, Port};
+use super::iwdg::Iwdg;
+use super::nvic::{Nvic, exception};
+use super::ppb::Ppb;
+use super::ram::Memory;
+use super::rcc::{Clocks, HSI_HZ, Rcc};
+use super::tim::{self, Output, Tim};
+use super::timebase::Timebase;
+use super::usart::Usart;
+use super::wwdg::Wwdg;
+use super::{LegState, Wiring};
+use thermal_sim::processor::ResetCause;
+
+mod bus;
+mod failures;
+
+/// The timers' places: TIM1 to TIM7 first.
+const TIMERS: usize = 10;
+const TIM1: usize = 0;
+const TIM8: usize = 7;
+const TIM10: usize = 8;
+const TIM11: usize = 9;
+/// Pins that are outputs of the modelled timers (DS10693, table 11): port, bit, alternate function, timer, channel.
+const TIMER_PINS: [(u8, u8, u8, usize, usize); 10] = [
+    (0, 8, 1, TIM1, 0),
+    (0, 9, 1, TIM1, 1),
+    (0, 10, 1, TIM1, 2),
+    (0, 11, 1, TIM1, 3),
+    (2, 6, 3, TIM8, 0),
+    (2, 7, 3, TIM8, 1),
+    (2, 8, 3, TIM8, 2),
+    (2, 9, 3, TIM8, 3),
+    (1, 8, 3, TIM10, 0),
+    (1, 9, 3, TIM11, 0),
+];
+/// Break inputs (same table): timer, port, bit, alternate function.
+const BREAK_PINS: [(usize, u8, u8, u8); 3] = [(TIM1, 0, 6, 1), (TIM1, 1, 12, 1), (TIM8, 0, 6, 3)];
+const WWDG_IRQ: usize = 0;
+const ADC_IRQ: usize = 18;
+const USART2_IRQ: usize = 38;
+/// Bit rate of the host until told otherwise.
+const HOST_BAUD: u32 = 1_000_000;
+/// Codes of the internal channels at 3.3 V and 25 degC: VREFINT 1.21 V, temperature sensor 0.76 V (DS10693 6.3.22
+/// and 6.3.24).
+const INTERNAL_REFERENCE: u16 = 1502;
+const INTERNAL_TEMPERATURE: u16 = 943;
+
+pub(crate) struct Chip<W> {
+    pub wiring: W,
+    pub nvic: Nvic,
+    pub ppb: Ppb,
+    rcc: Rcc,
+    pub flash: Flash,
+    ports: [Port; PORTS],
+    exti: Exti,
+    dma: [Dma; 2],
+    adc: Adc,
+    tims: [Tim; TIMERS],
+    usart: Usart,
+    iwdg: Iwdg,
+    wwdg: Wwdg,
+    pub time: Timebase,
+    /// When the last clock of the chip stopped, if it did: timers and pins are as they were then.
+    stopped_at: Option<u64>,
+    legs: [LegState; 2],
+    outputs: [(u32, u32); PORTS],
+    /// A store made a DMA request possible; served before the next block.
+    kick: bool,
+    /// Cycles asleep since power-up.
+    pub slept: u64,
+    pub reset: Option<ResetCause>,
+    /// Cycle of the next event of any device.
+    pub next: u64,
+}
+
+impl<W: Wiring> Chip<W> {
+    pub fn new(wiring: W, flash: Vec<u8>) -> Self {
+        let kinds = [
+            tim::ADVANCED,
+            tim::WIDE,
+            tim::GENERAL,
+            tim::GENERAL,
+            tim::WIDE,
+            tim::BASIC,
+            tim::BASIC,
+            tim::ADVANCED,
+            tim::SINGLE,
+            tim::SINGLE,
+        ];
+        Self {
+            wiring,
+            nvic: Nvic::new(),
+            ppb: Ppb::new(),
+            rcc: Rcc::new(ResetCause::PowerOn, 0),
+            flash: Flash::new(flash),
+            ports: std::array::from_fn(Port::new),
+            exti: Exti::default(),
+            dma: [Dma::new(1), Dma::new(2)],
+            adc: Adc::new(1, HSI_HZ),
+            tims: kinds.map(|kind| Tim::new(kind, 1)),
+            usart: Usart::new(1, HSI_HZ, HOST_BAUD),
+            iwdg: Iwdg::new(),
+            wwdg: Wwdg::new(),
+            time: Timebase::new(HSI_HZ),
+            stopped_at: None,
+            legs: [LegState::Off; 2],
+            outputs: [(0, 0); PORTS],
+            kick: false,
+            slept: 0,
+            reset: None,
+            next: u64::MAX,
+        }
+    }
+
+    pub fn clocks(&self) -> Clocks {
+        self.rcc.clocks()
+    }
+
+    /// How a pin is driven by a timer, or as an output.
+    pub fn pwm(&mut self, port: u8, bit: u8, now: u64) -> LegState {
+        if self.stopped_at.is_none() {
+            for timer in [TIM1, TIM8, TIM10, TIM11] {
+                self.tims[timer].sync(now);
+            }
+        }
+        self.driven(port, bit)
+    }
+
+    pub fn output(&self, port: u8, bit: u8) -> Option<bool> {
+        self.ports
+            .get(usize::from(port))
+            .filter(|_| bit < 16)
+            .and_then(|p| p.output(bit))
+    }
+
+    pub fn usart(&self) -> &Usart {
+        &self.usart
+    }
+
+    /// Counts time that the CPU slept.
+    pub fn count_sleep(&mut self, cycles: u64) {
+        self.slept += cycles;
+        if !self.ppb.counts_asleep() {
+            self.ppb.slept += cycles;
+        }
+    }
+
+    pub fn usart_mut(&mut self) -> &mut Usart {
+        &mut self.usart
+    }
+
+    pub fn refresh_next(&mut self, now: u64) {
+        if self.stopped_at.is_some() {
+            self.next = self.iwdg.due;
+            return;
+        }
+        let timers = self.tims.iter().fold(u64::MAX, |least, t| least.min(t.due));
+        self.next = timers
+            .min(self.ppb.systick_due)
+            .min(self.adc.due)
+            .min(self.usart.tx_due)
+            .min(self.usart.rx_due)
+            .min(self.iwdg.due)
+            .min(self.wwdg.due)
+            .min(if self.kick { now } else { u64::MAX });
+    }
+
+    /// Handles every device event up to `now`, in order of time.
+    pub fn service(&mut self, now: u64, memory: &mut impl Memory) {
+        while self.next <= now {
+            if self.stopped_at.is_some() {
+                self.service_without_clock(now);
+                break;
+            }
+            let at = self.next;
+            if self.ppb.systick_due <= at && self.ppb.systick_expire() {
+                self.nvic.pend(exception::SYSTICK, at);
+            }
+            for timer in 0..TIMERS {
+                if self.tims[timer].due <= at {
+                    self.tims[timer].sync(at);
+                    self.timer_changed(timer, at);
+                }
+            }
+            if self.adc.due <= at {
+                self.end_conversion(at, memory);
+            }
+            if self.usart.tx_due <= at {
+                let connected = self.ports[0].mode(2) == Mode::Alternate(7);
+                if let (Some(byte), true) = (self.usart.transmitted(), connected) {
+                    self.wiring.uart_tx(byte, at, self.usart.baud());
+                }
+                self.pump_usart(at, memory);
+            }
+            if self.usart.rx_due <= at {
+                self.usart
+                    .receive(self.ports[0].mode(3) == Mode::Alternate(7));
+                self.pump_usart(at, memory);
+            }
+            if self.kick {
+                self.kick = false;
+                self.pump_adc(at, memory);
+                self.pump_usart(at, memory);
+            }
+            if self.iwdg.due <= at {
+                self.iwdg.due = u64::MAX;
+                self.reset = Some(ResetCause::IndependentWatchdog);
+            }
+            if self.wwdg.due <= at {
+                if self.wwdg.sync(at) {
+                    self.reset = Some(ResetCause::WindowWatchdog);
+                }
+                self.nvic.set_line(WWDG_IRQ, self.wwdg.request(), at);
+            }
+            self.sample_inputs(at);
+            self.refresh_next(at);
+        }
+    }
+
+    fn end_conversion(&mut self, at: u64, memory: &mut impl Memory) {
+        let code = match self.adc.channel() {
+            17 => INTERNAL_REFERENCE,
+            18 => INTERNAL_TEMPERATURE,
+            channel => self.wiring.adc(channel, at),
+        };
+        self.adc.finish(code);
+        self.pump_adc(at, memory);
+    }
+
+    /// Moves a waiting ADC item if a stream listens.
+    fn pump_adc(&mut self, at: u64, memory: &mut impl Memory) {
+        if self.adc.wants_dma() {
+            for route in &dma::ADC1 {
+                if let Served::Item { last, .. } = self.serve(route, self.adc.data(), at, memory) {
+                    self.adc.dma_read(last);
+                    break;
+                }
+            }
+        }
+        self.nvic.set_line(ADC_IRQ, self.adc.request(), at);
+    }
+
+    fn pump_usart(&mut self, at: u64, memory: &mut impl Memory) {
+        while self.usart.wants_tx() {
+            let Served::Item { value, .. } = self.serve(&dma::USART2_TX[0], 0, at, memory) else {
+                break;
+            };
+            self.usart.write_data(value, at);
+        }
+        if self.usart.offers_rx() && self.dma[0].listens(&dma::USART2_RX[0]) {
+            let value = self.usart.read_data();
+            self.serve(&dma::USART2_RX[0], value, at, memory);
+        }
+        self.nvic.set_line(USART2_IRQ, self.usart.request(), at);
+    }
+
+    fn serve(&mut self, route: &Route, value: u32, at: u64, memory: &mut impl Memory) -> Served {
+        let controller = &mut self.dma[route.controller - 1];
+        let served = controller.serve(route, value, memory);
+        let (irq, level) = controller.request_line(route.stream);
+        self.nvic.set_line(irq, level, at);
+        served
+    }
+
+    fn timer_changed(&mut self, timer: usize, at: u64) {
+        let [brk, update, trigger, compare] = self.tims[timer].requests();
+        let mut advanced = |first: usize| {
+            for (irq, level) in [brk, update, trigger, compare].into_iter().enumerate() {
+                self.nvic.set_line(first + irq, level, at);
+            }
+        };
+        match timer {
+            TIM1 => advanced(24),
+            TIM8 => advanced(43),
+            // their interrupts are those of TIM1 and cannot be switched on
+            TIM10 | TIM11 => {}
+            _ => {
+                let irq = [28, 29, 30, 50, 54, 55][timer - 1];
+                self.nvic.set_line(irq, update || trigger || compare, at);
+            }
+        }
+        if timer == TIM1 {
+            self.bridge_changed(at);
+        }
+        if std::mem::take(&mut self.tims[timer].trigger) {
+            let source = match timer {
+                1 => Some(Trigger::Tim2),
+                2 => Some(Trigger::Tim3),
+                _ => None,
+            };
+            if source.is_some() && source == self.adc.trigger() {
+                self.adc.start(at);
+            }
+        }
+    }
+
+    /// Tells the wiring when the state of a bridge leg has changed.
+    fn bridge_changed(&mut self, at: u64) {
+        let legs = [self.driven(0, 8), self.driven(0, 9)];
+        if legs != self.legs {
+            self.legs = legs;
+            self.wiring.bridge(legs, at);
+        }
+    }
+
+    fn driven(&self, port: u8, bit: u8) -> LegState {
+        let Some(pins) = self.ports.get(usize::from(port)).filter(|_| bit < 16) else {
+            return LegState::Off;
+        };
+        match pins.mode(bit) {
+            Mode::Alternate(function) => {
+                let here = |pin: &&(u8, u8, u8, usize, usize)| {
+                    (pin.0, pin.1, pin.2) == (port, bit, function)
+                };
+                match TIMER_PINS.iter().find(here) {
+                    Some(&(.., timer, channel)) => match self.tims[timer].output(channel) {
+                        Output::High { high, period } => match self.stopped_at {
+                            None => LegState::Duty { high, period },
+                            Some(at) => LegState::Duty {
+                                high: self.tims[timer].is_high(channel, at).into(),
+                                period: 1,
+                            },
+                        },
+                        Output::Released => LegState::Off,
+                    },
+                    None => LegState::Off,
+                }
+            }
+            Mode::Output => match pins.output(bit) {
+                Some(level) => LegState::Duty {
+                    high: u32::from(level),
+                    period: 1,
+                },
+                None => LegState::Off,
+            },
+            Mode::Input | Mode::Analog => LegState::Off,
+        }
+    }
+
+    fn pin(&self, port: usize, bit: u8) -> bool {
+        self.ports[port].level(bit, self.wiring.pin(port as u8, bit))
+    }
+
+    /// Inputs that act without a register access: the break input and enabled EXTI lines.
+    pub fn sample_inputs(&mut self, at: u64) {
+        for (timer, port, bit, function) in BREAK_PINS {
+            let watched = self.tims[timer].watches_break();
+            if watched && self.ports[usize::from(port)].mode(bit) == Mode::Alternate(function) {
+                let level = self.pin(usize::from(port), bit);
+                if self.tims[timer].set_break(level) {
+                    self.timer_changed(timer, at);
+                }
+            }
+        }
+        if !self.exti.is_idle() {
+            self.sample_exti(at);
+        }
+    }
+
+    fn sample_exti(&mut self, at: u64) {
+        let mut levels = [None; 16];
+        for (line, port) in self.exti.watched() {
+            levels[usize::from(line)] = Some(self.pin(port, line));
+        }
+        for (line, level) in levels.iter().enumerate() {
+            if let Some(level) = level {
+                self.exti.set_level(line as u8, *level);
+            }
+        }
+        self.exti_changed(at);
+    }
+
+    fn exti_changed(&mut self, at: u64) {
+        for (irq, level) in self.exti.requests() {
+            self.nvic.set_line(irq, level, at);
+        }
+    }
+
+    fn outputs_changed(&mut self, port: usize, now: u64) {
+        let (old_driven, old_levels) = self.outputs[port];
+        let (driven, levels) = self.ports[port].outputs();
+        self.outputs[port] = (driven, levels);
+        let changed = (old_driven ^ driven) | (old_levels ^ levels);
+        for bit in (0..16).filter(|b| changed >> b & 1 != 0) {
+            let level = (driven >> bit & 1 != 0).then_some(levels >> bit & 1 != 0);
+            self.wiring.output(port as u8, bit, level, now);
+        }
+    }
+
+    fn after_change(&mut self, now: u64) {
+        for port in 0..PORTS {
+            self.outputs_changed(port, now);
+        }
+        self.bridge_changed(now);
+        self.refresh_next(now);
+    }
+}

@@ -1,0 +1,361 @@
+//! The address map: which device answers at an address, whether its clock runs, and what a store sets in motion.
+use super::{
+    ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ, WWDG_IRQ,
+};
+use crate::adc::Trigger;
+use crate::dma::Dma;
+use crate::gpio::Port;
+use crate::iwdg::Iwdg;
+use crate::nvic::exception;
+use crate::rcc::{Clocks, Enr, HSI_HZ};
+use crate::stop::{Answer, Refusal};
+use crate::{Wiring, names};
+use crate::{exti::Exti, nvic::Nvic, ppb::Ppb, wwdg::Wwdg};
+use thermal_sim::processor::ResetCause;
+
+/// Peripheral behind an address, with its clock enable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Device {
+    Gpio(usize),
+    Rcc,
+    Flash,
+    Pwr,
+    Dma(usize),
+    Tim(usize),
+    Adc,
+    Usart2,
+    Iwdg,
+    Wwdg,
+    Syscfg,
+    Exti,
+}
+
+/// Modelled device at an address, with its clock enable where it has one.
+fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
+    let page = address >> 10 & 0xff;
+    Some(match address & 0xffff_fc00 {
+        0x4002_0000..0x4002_2000 => (
+            Device::Gpio(page as usize & 7),
+            Some((Enr::Ahb1, page as u8 & 7)),
+        ),
+        0x4002_3800 => (Device::Rcc, None),
+        0x4002_3c00 => (Device::Flash, None),
+        0x4002_6000 => (Device::Dma(0), Some((Enr::Ahb1, 21))),
+        0x4002_6400 => (Device::Dma(1), Some((Enr::Ahb1, 22))),
+        0x4001_0000 => (Device::Tim(TIM1), Some((Enr::Apb2, 0))),
+        0x4001_0400 => (Device::Tim(TIM8), Some((Enr::Apb2, 1))),
+        0x4001_4400 => (Device::Tim(TIM10), Some((Enr::Apb2, 17))),
+        0x4001_4800 => (Device::Tim(TIM11), Some((Enr::Apb2, 18))),
+        0x4000_0000..0x4000_1800 => (
+            Device::Tim(page as usize + 1),
+            Some((Enr::Apb1, page as u8)),
+        ),
+        0x4001_2000 if !(0x100..0x300).contains(&(address & 0x3ff)) => {
+            (Device::Adc, Some((Enr::Apb2, 8)))
+        }
+        0x4000_4400 => (Device::Usart2, Some((Enr::Apb1, 17))),
+        0x4000_7000 => (Device::Pwr, Some((Enr::Apb1, 28))),
+        0x4000_3000 => (Device::Iwdg, None),
+        0x4000_2c00 => (Device::Wwdg, Some((Enr::Apb1, 11))),
+        0x4001_3800 => (Device::Syscfg, Some((Enr::Apb2, 14))),
+        0x4001_3c00 => (Device::Exti, None),
+        _ => return None,
+    })
+}
+
+/// Factory words of the system memory (RM0390 chapter 34, DS10693): unique identifier, flash size in KiB,
+/// calibration codes of the internal reference and of the temperature sensor at 30 and 110 degC, all nominal.
+fn signature(address: u32) -> Option<u32> {
+    Some(match address {
+        0x1fff_7a10 | 0x1fff_7a14 | 0x1fff_7a18 => 0x0046_0000 | address & 0xff,
+        0x1fff_7a20 => 512 << 16,
+        0x1fff_7a28 => u32::from(INTERNAL_REFERENCE) << 16,
+        0x1fff_7a2c => 1207 << 16 | 959,
+        _ => return None,
+    })
+}
+
+impl<W: Wiring> Chip<W> {
+    /// System reset: every register to its reset value, reset flags kept; the host goes on sending.
+    pub fn system_reset(&mut self, cause: ResetCause, now: u64) {
+        let slept = self.ppb.slept;
+        self.nvic = Nvic::new();
+        self.ppb = Ppb::new();
+        self.ppb.slept = slept;
+        if cause == ResetCause::PowerOn {
+            self.flash.cells.power_up();
+        }
+        self.rcc = self.rcc.after_reset(cause);
+        self.flash.reset();
+        self.ports = std::array::from_fn(Port::new);
+        self.exti = Exti::default();
+        self.dma = [Dma::new(1), Dma::new(2)];
+        for timer in 0..TIMERS {
+            self.reset_device(Device::Tim(timer), now);
+        }
+        self.reset_device(Device::Adc, now);
+        self.usart.set_clock(1, HSI_HZ);
+        self.usart.reset();
+        self.iwdg = Iwdg::new();
+        self.wwdg = Wwdg::new();
+        self.stopped_at = None;
+        self.reset = None;
+        self.clocks_changed(self.rcc.clocks(), now);
+        self.after_change(now);
+    }
+
+    /// Loads from a peripheral or core register. `ipsr`: the running exception.
+    pub fn read(&mut self, address: u32, now: u64, ipsr: u32) -> Answer<u32> {
+        if address >= 0xe000_0000 {
+            if names::peripheral(address).is_none() {
+                return Err(Refusal::BusError);
+            }
+            return self.ppb.read(&self.nvic, address, now, ipsr);
+        }
+        if let Some(word) = signature(address) {
+            return Ok(word);
+        }
+        let device = self.clocked(address)?;
+        let offset = address & 0x3ff;
+        match device {
+            Device::Gpio(port) => {
+                let wiring = &self.wiring;
+                self.ports[port].read(offset, |bit| wiring.pin(port as u8, bit))
+            }
+            Device::Rcc => self.rcc.read(offset, now),
+            Device::Flash if offset == 0 => Ok(self.rcc.acr()),
+            Device::Flash => self.flash.read(offset, now),
+            Device::Pwr => self.rcc.read_pwr(offset, now),
+            Device::Dma(i) => self.dma[i].read(offset),
+            Device::Tim(i) => {
+                let value = self.tims[i].read(offset, now)?;
+                self.timer_changed(i, now);
+                self.refresh_next(now);
+                Ok(value)
+            }
+            Device::Adc => {
+                let value = self.adc.read(offset)?;
+                self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
+                Ok(value)
+            }
+            Device::Usart2 => {
+                let value = self.usart.read(offset)?;
+                self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
+                Ok(value)
+            }
+            Device::Iwdg => self.iwdg.read(offset, now),
+            Device::Wwdg => self.wwdg.read(offset, now),
+            Device::Syscfg => self.exti.read_syscfg(offset),
+            Device::Exti => self.exti.read(offset),
+        }
+    }
+
+    /// The device at an address, if its clock is on.
+    fn clocked(&self, address: u32) -> Answer<Device> {
+        let Some((device, enable)) = device(address) else {
+            return Err(if names::peripheral(address).is_some() {
+                Refusal::Offset
+            } else {
+                Refusal::BusError
+            });
+        };
+        if let Some((enr, bit)) = enable {
+            self.rcc.check_clock(enr, bit)?;
+        }
+        Ok(device)
+    }
+
+    /// Stores to a peripheral or core register. Byte and half-word stores reach the registers that take them:
+    /// priorities, GPIO BSRR, USART DR; any register takes a half-word at its lower half, the rest written 0.
+    pub fn write(&mut self, address: u32, bytes: u8, value: u32, now: u64) -> Answer<()> {
+        if address >= 0xe000_0000 {
+            if names::peripheral(address).is_none() {
+                return Err(Refusal::BusError);
+            }
+            if self
+                .ppb
+                .write(&mut self.nvic, address, bytes, value, now)?
+                .is_some()
+            {
+                self.reset = Some(ResetCause::Software);
+            }
+            self.refresh_next(now);
+            return Ok(());
+        }
+        let device = self.clocked(address)?;
+        let (mut offset, mut value) = (address & 0x3ff, value);
+        match (device, bytes) {
+            (Device::Gpio(_), 2) if offset == 0x1a => (offset, value) = (0x18, value << 16),
+            (Device::Usart2, 1) if offset == 4 => {}
+            (_, 2) if offset & 3 == 0 => {}
+            (_, 4) => {}
+            _ => return Err(Refusal::Width),
+        }
+        self.write_device(device, offset, value, now)?;
+        self.refresh_next(now);
+        Ok(())
+    }
+
+    fn write_device(&mut self, device: Device, offset: u32, value: u32, now: u64) -> Answer<()> {
+        match device {
+            Device::Gpio(port) => {
+                self.ports[port].write(offset, value)?;
+                self.outputs_changed(port, now);
+                self.bridge_changed(now);
+            }
+            Device::Rcc => {
+                let old = self.rcc.clocks();
+                if self.rcc.write(offset, value, now)? {
+                    self.clocks_changed(old, now);
+                }
+                self.clock_wwdg(now);
+                self.apply_resets(now);
+                let security = self.rcc.security_interrupt();
+                self.nvic.set_exception_line(exception::NMI, security, now);
+            }
+            Device::Flash if offset == 0 => self.rcc.write_acr(value)?,
+            Device::Flash => {
+                self.flash
+                    .write(offset, value, now, self.rcc.clocks().hclk_hz)?;
+                self.power_may_fail();
+            }
+            Device::Pwr => self.rcc.write_pwr(offset, value, now)?,
+            Device::Dma(i) => {
+                self.dma[i].write(offset, value)?;
+                for stream in 0..8 {
+                    let (irq, level) = self.dma[i].request_line(stream);
+                    self.nvic.set_line(irq, level, now);
+                }
+                self.kick = true;
+            }
+            Device::Tim(TIM10 | TIM11) if offset == 0x0c && value != 0 => {
+                return Err(Refusal::NotModelled(
+                    "TIM10 or TIM11 DIER (interrupts shared with TIM1)",
+                ));
+            }
+            Device::Tim(i) => {
+                self.tims[i].write(offset, value, now)?;
+                self.timer_changed(i, now);
+            }
+            Device::Adc => {
+                self.adc.write(offset, value, now)?;
+                self.tims[1].listen(self.adc.trigger() == Some(Trigger::Tim2), now);
+                self.tims[2].listen(self.adc.trigger() == Some(Trigger::Tim3), now);
+                self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
+                self.kick = true;
+            }
+            Device::Usart2 => {
+                self.usart.write(offset, value, now)?;
+                self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
+                self.kick = true;
+            }
+            Device::Iwdg => self
+                .iwdg
+                .write(offset, value, now, self.rcc.clocks().hclk_hz)?,
+            Device::Wwdg => {
+                if self.wwdg.write(offset, value, now)? {
+                    self.reset = Some(ResetCause::WindowWatchdog);
+                }
+                self.nvic.set_line(WWDG_IRQ, self.wwdg.request(), now);
+            }
+            Device::Syscfg => self.exti.write_syscfg(offset, value)?,
+            Device::Exti => {
+                self.exti.write(offset, value)?;
+                self.sample_exti(now);
+                self.exti_changed(now);
+            }
+        }
+        Ok(())
+    }
+
+    /// The window watchdog counts PCLK1 while its own clock is enabled.
+    fn clock_wwdg(&mut self, now: u64) {
+        let Clocks {
+            hclk_hz, pclk1_hz, ..
+        } = self.rcc.clocks();
+        let on = self.rcc.check_clock(Enr::Apb1, 11).is_ok();
+        self.wwdg
+            .set_clock(on.then(|| u64::from(hclk_hz / pclk1_hz)), now);
+    }
+
+    /// Stores to the flash of the settings.
+    pub fn store_flash(&mut self, address: u32, bytes: u8, value: u32, now: u64) -> Answer<()> {
+        let hclk_hz = self.rcc.clocks().hclk_hz;
+        self.flash.store(address, bytes, value, now, hclk_hz)?;
+        self.power_may_fail();
+        Ok(())
+    }
+
+    fn power_may_fail(&mut self) {
+        if !self.flash.cells.is_powered() {
+            self.reset = Some(ResetCause::PowerOn);
+        }
+    }
+
+    pub(super) fn clocks_changed(&mut self, old: Clocks, now: u64) {
+        let clocks = self.rcc.clocks();
+        self.time.set_clock(clocks.hclk_hz, now);
+        self.clock_wwdg(now);
+        let ratio = |hz: u32| u64::from(clocks.hclk_hz / hz.max(1)).max(1);
+        for (i, timer) in self.tims.iter_mut().enumerate() {
+            timer.set_divider(
+                ratio(if matches!(i, TIM1 | TIM8 | TIM10 | TIM11) {
+                    clocks.timclk2_hz
+                } else {
+                    clocks.timclk1_hz
+                }),
+                now,
+            );
+        }
+        self.adc.set_clock(ratio(clocks.pclk2_hz), clocks.pclk2_hz);
+        self.usart.set_clock(ratio(clocks.pclk1_hz), clocks.hclk_hz);
+        self.iwdg.rescale(now, old.hclk_hz, clocks.hclk_hz);
+    }
+
+    /// Peripherals whose reset bit is set go back to their reset values.
+    fn apply_resets(&mut self, now: u64) {
+        const RESETS: [(Enr, u8, Device); 22] = [
+            (Enr::Apb2, 0, Device::Tim(TIM1)),
+            (Enr::Apb2, 1, Device::Tim(TIM8)),
+            (Enr::Apb2, 17, Device::Tim(TIM10)),
+            (Enr::Apb2, 18, Device::Tim(TIM11)),
+            (Enr::Apb1, 0, Device::Tim(1)),
+            (Enr::Apb1, 1, Device::Tim(2)),
+            (Enr::Apb1, 2, Device::Tim(3)),
+            (Enr::Apb1, 3, Device::Tim(4)),
+            (Enr::Apb1, 4, Device::Tim(5)),
+            (Enr::Apb1, 5, Device::Tim(6)),
+            (Enr::Apb2, 8, Device::Adc),
+            (Enr::Apb1, 11, Device::Wwdg),
+            (Enr::Apb1, 17, Device::Usart2),
+            (Enr::Apb2, 14, Device::Syscfg),
+            (Enr::Ahb1, 21, Device::Dma(0)),
+            (Enr::Ahb1, 22, Device::Dma(1)),
+            (Enr::Ahb1, 0, Device::Gpio(0)),
+            (Enr::Ahb1, 1, Device::Gpio(1)),
+            (Enr::Ahb1, 2, Device::Gpio(2)),
+            (Enr::Ahb1, 3, Device::Gpio(3)),
+            (Enr::Ahb1, 4, Device::Gpio(4)),
+            (Enr::Ahb1, 7, Device::Gpio(7)),
+        ];
+        for (enr, bit, device) in RESETS {
+            if self.rcc.in_reset(enr, bit) {
+                self.reset_device(device, now);
+                self.after_change(now);
+            }
+        }
+    }
+
+    fn reset_device(&mut self, device: Device, now: u64) {
+        match device {
+            Device::Gpio(port) => self.ports[port] = Port::new(port),
+            Device::Dma(i) => self.dma[i] = Dma::new(i + 1),
+            Device::Tim(i) => self.tims[i].reset(),
+            Device::Adc => self.adc.reset(),
+            Device::Usart2 => self.usart.reset(),
+            Device::Wwdg => self.wwdg.reset(now),
+            Device::Syscfg => self.exti.reset_syscfg(),
+            Device::Rcc | Device::Flash | Device::Pwr | Device::Iwdg | Device::Exti => {}
+        }
+    }
+}

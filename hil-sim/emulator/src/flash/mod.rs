@@ -1,0 +1,191 @@
+//! Programming and erasing of the flash (RM0390 chapter 3), for the settings' sectors 1 to 3, which hold no code. ACR, which the
+//! clocks depend on, is with them in `rcc`.
+
+use thermal_sim::Cells;
+
+use super::elf::FLASH_BASE;
+use super::stop::{Answer, Refusal, only};
+use std::ops::Range;
+
+/// Addresses of sectors 1 to 3 (RM0390 table 4): 16 KiB each.
+pub(super) const SETTINGS: Range<u32> = FLASH_BASE + 0x4000..FLASH_BASE + 0x1_0000;
+const SECTOR_BYTES: usize = 16 * 1024;
+
+const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
+const LOCK: u32 = 1 << 31;
+const STRT: u32 = 1 << 16;
+const MER: u32 = 1 << 2;
+const SER: u32 = 1 << 1;
+const PG: u32 = 1;
+const BSY: u32 = 1 << 16;
+const PGSERR: u32 = 1 << 7;
+const PGPERR: u32 = 1 << 6;
+const PGAERR: u32 = 1 << 5;
+const ERRORS: u32 = 0x1f2;
+
+/// Typical times (DS10693, flash memory programming): a unit of 8, 16 or 32 bits, and a sector of 16 KiB at that
+/// parallelism.
+const PROGRAM_US: u64 = 16;
+const ERASE_US: [u64; 3] = [400_000, 300_000, 250_000];
+
+/// How far the unlock sequence has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Lock {
+    Locked,
+    HalfWay,
+    Open,
+    /// A wrong key locks until reset.
+    Refused,
+}
+
+pub(crate) struct Flash {
+    pub cells: Cells,
+    lock: Lock,
+    control: u32,
+    status: u32,
+    busy_until: u64,
+}
+
+impl Flash {
+    pub fn new(contents: Vec<u8>) -> Self {
+        Self {
+            cells: Cells::new(contents),
+            lock: Lock::Locked,
+            control: 0,
+            status: 0,
+            busy_until: 0,
+        }
+    }
+
+    /// Registers as after a reset; the contents stay.
+    pub fn reset(&mut self) {
+        (self.lock, self.control, self.status, self.busy_until) = (Lock::Locked, 0, 0, 0);
+    }
+
+    /// Whether the settings' sectors are left blank by the image, so that they can be modelled as flash that changes.
+    pub fn has_settings(flash: &[u8]) -> bool {
+        let from = (SETTINGS.start - FLASH_BASE) as usize;
+        let to = (SETTINGS.end - FLASH_BASE) as usize;
+        flash
+            .get(from..to)
+            .is_some_and(|gap| gap.iter().all(|byte| *byte == 0xff))
+    }
+
+    /// Until when code in the flash stands still.
+    pub fn busy_until(&self) -> u64 {
+        self.busy_until
+    }
+
+    /// KEYR, SR and CR (3.8); option bytes are not modelled.
+    pub fn read(&self, offset: u32, now: u64) -> Answer<u32> {
+        match offset {
+            0x0c => Ok(self.status | if now < self.busy_until { BSY } else { 0 }),
+            0x10 => Ok(self.control | if self.lock == Lock::Open { 0 } else { LOCK }),
+            _ => Err(Refusal::Offset),
+        }
+    }
+
+    pub fn write(&mut self, offset: u32, value: u32, now: u64, hclk_hz: u32) -> Answer<()> {
+        match offset {
+            0x04 => {
+                self.lock = match self.lock {
+                    Lock::Locked if value == KEYS[0] => Lock::HalfWay,
+                    Lock::HalfWay if value == KEYS[1] => Lock::Open,
+                    _ => Lock::Refused,
+                };
+                Ok(())
+            }
+            0x0c => {
+                only(value, ERRORS | 1, "FLASH_SR beyond its flags")?;
+                self.status &= !value;
+                Ok(())
+            }
+            0x10 if self.lock != Lock::Open => {
+                Err(Refusal::NotModelled("FLASH_CR while it is locked"))
+            }
+            0x10 => {
+                if value & LOCK != 0 {
+                    (self.lock, self.control) = (Lock::Locked, value & !(LOCK | STRT));
+                    return Ok(());
+                }
+                only(
+                    value,
+                    STRT | 0x37b,
+                    "FLASH_CR beyond PG, SER, SNB, PSIZE, STRT and LOCK",
+                )?;
+                self.control = value & !STRT;
+                if value & STRT != 0 {
+                    self.start(now, hclk_hz)?;
+                }
+                Ok(())
+            }
+            _ => Err(Refusal::Offset),
+        }
+    }
+
+    /// Erases a sector.
+    fn start(&mut self, now: u64, hclk_hz: u32) -> Answer<()> {
+        if self.control & (SER | MER | PG) != SER {
+            return Err(Refusal::NotModelled("FLASH_CR.STRT without SER alone"));
+        }
+        let sector = (self.control >> 3 & 0xf) as usize;
+        let time = ERASE_US.get(self.parallelism());
+        let (1..=3, Some(time)) = (sector, time) else {
+            return Err(Refusal::NotModelled(
+                "erasing other sectors than 1 to 3, or 64 bits at a time",
+            ));
+        };
+        self.cells
+            .erase(sector * SECTOR_BYTES..(sector + 1) * SECTOR_BYTES);
+        self.occupy(now, *time, hclk_hz);
+        Ok(())
+    }
+
+    /// Logarithm of the bytes that are programmed at a time.
+    fn parallelism(&self) -> usize {
+        (self.control >> 8 & 3) as usize
+    }
+
+    /// A store to the settings' sectors.
+    pub fn store(
+        &mut self,
+        address: u32,
+        bytes: u8,
+        value: u32,
+        now: u64,
+        hclk_hz: u32,
+    ) -> Answer<()> {
+        let value = &value.to_le_bytes()[..usize::from(bytes.min(4))];
+        let error = if self.lock != Lock::Open || self.control & (PG | SER) != PG {
+            PGSERR
+        } else if value.len() != 1 << self.parallelism() {
+            PGPERR
+        } else if address % 16 + u32::from(bytes) > 16 {
+            PGAERR
+        } else {
+            self.cells.program((address - FLASH_BASE) as usize, value);
+            self.occupy(now, PROGRAM_US, hclk_hz);
+            return Ok(());
+        };
+        self.status |= error;
+        Ok(())
+    }
+
+    /// A load from the settings' sectors.
+    pub fn load(&self, address: u32, bytes: u8) -> u32 {
+        let from = (address - FLASH_BASE) as usize;
+        let read = self.cells.bytes().get(from..from + usize::from(bytes));
+        read.unwrap_or_default()
+            .iter()
+            .rev()
+            .fold(0, |word, byte| word << 8 | u32::from(*byte))
+    }
+
+    /// The next operation waits for the one before.
+    fn occupy(&mut self, now: u64, us: u64, hclk_hz: u32) {
+        self.busy_until = self.busy_until.max(now) + (us * u64::from(hclk_hz)).div_ceil(1_000_000);
+    }
+}
+
+#[cfg(test)]
+mod tests;

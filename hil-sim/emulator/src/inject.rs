@@ -1,0 +1,340 @@
+//! Faults put into the machine while it runs, each at its present cycle.
+//!
+//! A flip is one stored bit that changes, as radiation does it. What cannot be flipped faithfully is refused.
+use super::elf::{RAM_BASE, RAM_SIZE};
+use super::mcu::{Machine, emulator};
+use super::standstill::Standstill;
+use super::state::{Refused, get};
+use super::stop::{Access, Answer, Refusal, Stop};
+use super::{Wiring, exceptions};
+use rand::rngs::Xoshiro256PlusPlus;
+use rand::{Rng, SeedableRng};
+use std::fmt;
+use thermal_sim::processor::{CoreRegister, ResetCause};
+use unicorn_engine::RegisterARM as Reg;
+
+/// Why a fault was not injected; the machine is as before.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum InjectError {
+    /// Not a byte of the RAM.
+    #[error("{0:#010x} is not in the RAM, which is {RAM_BASE:#010x} to {last:#010x}", last = RAM_BASE + RAM_SIZE - 1)]
+    NotRam(u32),
+    /// The place has no such bit.
+    #[error("{place} has no bit {bit} to flip; its bits are {bits:#010x}")]
+    NoBit {
+        /// Register or address.
+        place: String,
+        /// Bit that was asked for.
+        bit: u8,
+        /// Mask of those that can flip.
+        bits: u32,
+    },
+    /// The register model does not take the flipped value, or has no such register.
+    #[error("the register does not take its flipped value: {0}")]
+    Refused(Stop),
+    /// No such DMA stream.
+    #[error(
+        "DMA{controller} stream {stream} does not exist: controllers are 1 and 2, streams 0 to 7"
+    )]
+    NoStream {
+        /// Controller.
+        controller: u8,
+        /// Stream.
+        stream: u8,
+    },
+    /// A stream that does not run cannot be stopped.
+    #[error("DMA{controller} stream {stream} is not enabled now")]
+    StreamOff {
+        /// Controller.
+        controller: u8,
+        /// Stream.
+        stream: u8,
+    },
+    /// Nobody knows where the stack ends.
+    #[error("the image has no symbol that tells where its stack ends")]
+    NoStackEnd,
+    /// The CPU emulation failed.
+    #[error(transparent)]
+    Stopped(#[from] Stop),
+}
+
+/// A mask of one bit of `bits`.
+fn one_bit(place: impl fmt::Display, bit: u8, bits: u32) -> Result<u32, InjectError> {
+    1u32.checked_shl(bit.into())
+        .filter(|mask| bits & mask != 0)
+        .ok_or_else(|| InjectError::NoBit {
+            place: place.to_string(),
+            bit,
+            bits,
+        })
+}
+
+/// The flipped value, unless it stops the clock of a device other than the window watchdog.
+fn stops_no_clock(address: u32, old: u32, mask: u32) -> Answer<u32> {
+    let enables = matches!(address, 0x4002_3830 | 0x4002_3840 | 0x4002_3844);
+    let modelled = (address, mask) == (0x4002_3840, 1 << 11);
+    if enables && !modelled && old & mask != 0 {
+        return Err(Refusal::NotModelled("a clock that stops under a device"));
+    }
+    Ok(old ^ mask)
+}
+
+impl<W: Wiring + 'static> Machine<W> {
+    /// Flips one bit (0 to 7) of the byte at an address of the RAM.
+    ///
+    /// # Errors
+    /// The address is not in the RAM, or the byte has no such bit.
+    pub fn flip_ram_bit(&mut self, address: u32, bit: u8) -> Result<(), InjectError> {
+        let index = address
+            .checked_sub(RAM_BASE)
+            .filter(|offset| *offset < RAM_SIZE)
+            .ok_or(InjectError::NotRam(address))? as usize;
+        let mask = one_bit(format_args!("the byte at {address:#010x}"), bit, 0xff)? as u8;
+        let mut byte = [0];
+        self.cpu
+            .mem_read(address.into(), &mut byte)
+            .map_err(emulator)?;
+        if byte[0] == self.fresh_ram[index] {
+            self.fresh_ram[index] ^= mask; // or the flip would count as use of the stack
+        }
+        self.cpu
+            .mem_write(address.into(), &[byte[0] ^ mask])
+            .map_err(emulator)?;
+        Ok(())
+    }
+
+    /// Flips one bit of a core register between two basic blocks, or in sleep.
+    ///
+    /// # Errors
+    /// The register does not exist, or has no such bit that can flip.
+    pub fn flip_core_bit(&mut self, register: CoreRegister, bit: u8) -> Result<(), InjectError> {
+        const R: [Reg; 13] = [
+            Reg::R0,
+            Reg::R1,
+            Reg::R2,
+            Reg::R3,
+            Reg::R4,
+            Reg::R5,
+            Reg::R6,
+            Reg::R7,
+            Reg::R8,
+            Reg::R9,
+            Reg::R10,
+            Reg::R11,
+            Reg::R12,
+        ];
+        const D: [Reg; 16] = [
+            Reg::D0,
+            Reg::D1,
+            Reg::D2,
+            Reg::D3,
+            Reg::D4,
+            Reg::D5,
+            Reg::D6,
+            Reg::D7,
+            Reg::D8,
+            Reg::D9,
+            Reg::D10,
+            Reg::D11,
+            Reg::D12,
+            Reg::D13,
+            Reg::D14,
+            Reg::D15,
+        ];
+        let mask = one_bit(register, bit, register.bits())?;
+        let cpu = &mut self.cpu;
+        let emulated = match register {
+            CoreRegister::R(n) => R[usize::from(n)],
+            CoreRegister::Sp => Reg::SP,
+            CoreRegister::Lr => Reg::LR,
+            CoreRegister::Fpscr => Reg::FPSCR,
+            CoreRegister::Pc => {
+                let pc = get(cpu, Reg::PC) ^ mask;
+                cpu.reg_write(Reg::PC, u64::from(pc | 1))
+                    .map_err(emulator)?;
+                return Ok(());
+            }
+            CoreRegister::Psr => {
+                let xpsr = get(cpu, Reg::XPSR) ^ mask;
+                exceptions::set_xpsr(cpu, xpsr).map_err(|e| Stop::Emulator(format!("{e:?}")))?;
+                return Ok(());
+            }
+            CoreRegister::S(n) => {
+                let pair = D[usize::from(n / 2)];
+                let old = cpu.reg_read(pair).map_err(emulator)?;
+                let new = old ^ u64::from(mask) << (32 * (n % 2));
+                cpu.reg_write(pair, new).map_err(emulator)?;
+                return Ok(());
+            }
+        };
+        let flipped = get(cpu, emulated) ^ mask;
+        cpu.reg_write(emulated, flipped.into()).map_err(emulator)?;
+        Ok(())
+    }
+
+    /// As after calls without end: the stack pointer in use stands at the stack's end, so that the next push leaves it.
+    /// What is below it stays; whoever runs now finds other things where it pops.
+    ///
+    /// # Errors
+    /// The image does not say where its stack ends.
+    pub fn exhaust_stack(&mut self) -> Result<(), InjectError> {
+        let end = self.stack_end().ok_or(InjectError::NoStackEnd)?;
+        let cpu = &mut self.cpu;
+        cpu.reg_write(Reg::SP, u64::from(end.next_multiple_of(8)))
+            .map_err(emulator)?;
+        Ok(())
+    }
+
+    /// Flips one bit of the device register at a word address, by a load and a store of the bus: what the device makes
+    /// of the two happens (a flag that is cleared by writing 0 can vanish, but not appear). An interrupt's enabled or
+    /// pending bit is flipped through either of its two registers.
+    ///
+    /// # Errors
+    /// [`InjectError::Refused`]: no model of that register, or of it with that value, or its clock is off; or the flip
+    /// would stop a device's clock (the window watchdog's is modelled, the others' not).
+    pub fn flip_register_bit(&mut self, address: u32, bit: u8) -> Result<(), InjectError> {
+        let mask = one_bit(
+            format_args!("the register at {address:#010x}"),
+            bit,
+            u32::MAX,
+        )?;
+        let now = self.now();
+        let chip = self.cpu.get_data_mut().chip();
+        let (load_at, store_at, value) = match address {
+            // set- and clear-enable, set- and clear-pending registers of the interrupts (ARMv7-M B3.4)
+            0xe000_e100..0xe000_e300 => {
+                let set = address & !0x80;
+                let is_set = chip.read(set, now, 0).map(|bits| bits & mask != 0);
+                (
+                    set,
+                    if is_set == Ok(true) { set | 0x80 } else { set },
+                    Ok(mask),
+                )
+            }
+            _ => {
+                let old = chip.read(address, now, 0);
+                (
+                    address,
+                    address,
+                    old.and_then(|old| stops_no_clock(address, old, mask)),
+                )
+            }
+        };
+        let value = self.accepted(value, load_at, Access::Read(4), 0)?;
+        let chip = self.cpu.get_data_mut().chip();
+        let stored = chip.write(store_at, 4, value, now);
+        self.accepted(stored, store_at, Access::Write(4), value)?;
+        Ok(())
+    }
+
+    fn accepted<T>(
+        &self,
+        answer: Answer<T>,
+        address: u32,
+        access: Access,
+        value: u32,
+    ) -> Result<T, InjectError> {
+        answer.map_err(|refusal: Refusal| {
+            InjectError::Refused(self.refusal(Refused {
+                refusal,
+                address,
+                access,
+                value,
+                pc: get(&self.cpu, Reg::PC),
+            }))
+        })
+    }
+
+    /// The CPU executes nothing from here on until a reset; all else goes on.
+    pub fn hang_core(&mut self) {
+        self.standstill = Some(Standstill::Hung);
+    }
+
+    /// The external oscillator stops for good, resets and power cycles included. With clock security on (RCC_CR.CSSON)
+    /// the system goes on with the internal one, the NMI is raised, and enabled breaks of TIM1 and TIM8 act. Without,
+    /// a system clock that came from it stops, be it through the PLL: CPU and timers stand, pins keep the level of the
+    /// moment, and only the independent watchdog counts.
+    ///
+    /// # Errors
+    /// [`InjectError::Refused`]: the bus prescalers suit no clock of the internal oscillator.
+    pub fn stop_hse(&mut self) -> Result<(), InjectError> {
+        let now = self.now();
+        let answer = self.cpu.get_data_mut().chip().stop_hse(now);
+        let clocked = self.accepted(answer, 0x4002_3800, Access::Write(4), 0)?;
+        if !clocked {
+            self.hang_core();
+        }
+        Ok(())
+    }
+
+    /// The converter never ends a conversion again until it is reset.
+    pub fn stop_adc(&mut self) {
+        let now = self.now();
+        self.cpu.get_data_mut().chip().stop_adc(now);
+    }
+
+    /// A bus error ends a DMA stream (controller 1 or 2, stream 0 to 7): disabled, transfer-error flag set.
+    ///
+    /// # Errors
+    /// There is no such stream, or it is not enabled.
+    pub fn stop_dma(&mut self, controller: u8, stream: u8) -> Result<(), InjectError> {
+        if !matches!((controller, stream), (1..=2, 0..=7)) {
+            return Err(InjectError::NoStream { controller, stream });
+        }
+        let now = self.now();
+        let chip = self.cpu.get_data_mut().chip();
+        if chip.stop_stream(usize::from(controller - 1), stream.into(), now) {
+            Ok(())
+        } else {
+            Err(InjectError::StreamOff { controller, stream })
+        }
+    }
+
+    /// The supply dips below the brown-out threshold (BORRSTF); the RAM keeps its contents.
+    ///
+    /// # Errors
+    /// The image cannot be started.
+    pub fn brown_out(&mut self) -> Result<(), Stop> {
+        self.system_reset(ResetCause::BrownOut)
+    }
+
+    /// The reset pin is pulled low and released (PINRSTF).
+    ///
+    /// # Errors
+    /// The image cannot be started.
+    pub fn pull_reset_pin(&mut self) -> Result<(), Stop> {
+        self.system_reset(ResetCause::Pin)
+    }
+
+    /// The program asks for a reset (SFTRSTF), as a lost one may.
+    ///
+    /// # Errors
+    /// The image cannot be started.
+    pub fn ask_for_reset(&mut self) -> Result<(), Stop> {
+        self.system_reset(ResetCause::Software)
+    }
+
+    /// A word is stored to the flash of the settings, as a lost program may do: what the flash makes of that happens.
+    ///
+    /// # Errors
+    /// [`InjectError::Refused`]: not modelled in the state that the flash is in.
+    pub fn stray_store(&mut self, address: u32, value: u32) -> Result<(), InjectError> {
+        let now = self.now();
+        let answer = self
+            .cpu
+            .get_data_mut()
+            .chip()
+            .store_flash(address, 4, value, now);
+        self.accepted(answer, address, Access::Write(4), value)
+    }
+
+    /// The supply goes, so long that the RAM forgets, and comes back: noise of `seed` in RAM, flash kept. No time passes
+    /// without supply.
+    ///
+    /// # Errors
+    /// The image cannot be started.
+    pub fn power_cycle(&mut self, seed: u64) -> Result<(), Stop> {
+        Xoshiro256PlusPlus::seed_from_u64(seed).fill_bytes(&mut self.fresh_ram);
+        self.system_reset(ResetCause::PowerOn)
+    }
+}

@@ -1,0 +1,223 @@
+//! The run loop: CPU emulation between events, sleep and resets.
+use super::cost::Last;
+use super::elf::{FLASH_BASE, RAM_BASE};
+use super::exceptions;
+use super::faults::{Fault, INVALID_STATE, NO_COPROCESSOR, NO_MEMORY, UNDEFINED};
+use super::mcu::{Machine, Reset, emulator};
+use super::nvic::exception;
+use super::rcc::HSI_HZ;
+use super::state::{self, Event, Refused, get, service, takeable};
+use super::stop::{Place, Refusal, Stop};
+use super::{Wiring, names};
+use thermal_sim::processor::ResetCause;
+use unicorn_engine::{RegisterARM as Reg, uc_error};
+
+/// A system reset holds the chip for about 20 us (DS10693: NRST pulse).
+const RESET_US: u64 = 20;
+
+/// How far a run goes.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Until {
+    /// To a cycle since power-up.
+    Cycle(u64),
+    /// To a time since power-up, ps, whatever the clock does on the way.
+    Ps(u64),
+}
+
+impl<W: Wiring + 'static> Machine<W> {
+    pub(super) fn run(&mut self, until: Until) -> Result<(), Stop> {
+        let now = self.now();
+        self.cpu.get_data_mut().chip().sample_inputs(now);
+        loop {
+            let now = self.now();
+            let state = self.cpu.get_data_mut();
+            let cycle = match until {
+                Until::Cycle(cycle) => cycle,
+                Until::Ps(ps) => state.chip_ref().time.cycle_at(ps),
+            };
+            state.limit = cycle;
+            service(&mut self.cpu, now);
+            if let Some(cause) = self.cpu.get_data_mut().chip().reset {
+                self.system_reset(cause)?;
+                continue;
+            }
+            self.pending_errors()?;
+            if now >= cycle {
+                return Ok(());
+            }
+            if let Some(standstill) = self.standstill {
+                self.stand_until(cycle, standstill);
+                continue;
+            }
+            if let Some(exception) = takeable(&self.cpu) {
+                let pc = get(&self.cpu, Reg::PC);
+                self.enter(exception, pc)?;
+            }
+            if self.is_back_in_lockup() {
+                let pc = get(&self.cpu, Reg::PC);
+                self.fault(NO_MEMORY, pc)?;
+                continue;
+            }
+            self.execute()?;
+        }
+    }
+
+    /// Register accesses that ended the last block badly.
+    fn pending_errors(&mut self) -> Result<(), Stop> {
+        let state = self.cpu.get_data_mut();
+        if !std::mem::take(&mut state.attention) {
+            return Ok(());
+        }
+        if let Some(refused) = state.refused.take() {
+            return Err(self.refusal(refused));
+        }
+        if state.bus_error.take().is_some() {
+            let pc = get(&self.cpu, Reg::PC);
+            let imprecise = 1 << 10;
+            let fault = Fault {
+                exception: exception::BUS_FAULT,
+                status: imprecise,
+                address: None,
+                cause: "access to a reserved peripheral address",
+            };
+            self.standstill = None;
+            return self.fault(fault, pc);
+        }
+        Ok(())
+    }
+
+    /// Lets the CPU run until something needs the loop.
+    fn execute(&mut self) -> Result<(), Stop> {
+        let pc = get(&self.cpu, Reg::PC);
+        self.cpu.get_data_mut().event = Event::None;
+        let result = self.cpu.emu_start(u64::from(pc) | 1, 0xffff_ffff, 0, 0);
+        let pc = get(&self.cpu, Reg::PC);
+        let state = self.cpu.get_data_mut();
+        match (state.event, result) {
+            (Event::Pause, _) => Ok(()),
+            (Event::FloatDenied, _) => self.fault(NO_COPROCESSOR, pc),
+            (Event::Raised(number), _) => self.raised(number, pc),
+            (Event::None, Ok(())) => self.asleep_or_stuck(pc),
+            (Event::None, Err(uc_error::INSN_INVALID)) => {
+                let after_block = pc.wrapping_sub(state.block_pc) >= u32::from(state.block.bytes);
+                match state.block.last {
+                    Last::Wfe if after_block => {
+                        self.wait_for_event();
+                        Ok(())
+                    }
+                    Last::Yield if after_block => Ok(()),
+                    _ => {
+                        state::refund(state, pc);
+                        self.fault(UNDEFINED, pc)
+                    }
+                }
+            }
+            (Event::None, Err(uc_error::EXCEPTION)) => {
+                state::refund(state, pc);
+                self.fault(INVALID_STATE, pc)
+            }
+            (Event::None, Err(error)) => match state.invalid.take() {
+                Some((address, value, to_flash)) => {
+                    state::refund(state, pc);
+                    self.bad_access(error, address, value, to_flash, pc)
+                }
+                None => Err(emulator(error)),
+            },
+        }
+    }
+
+    fn asleep_or_stuck(&mut self, pc: u32) -> Result<(), Stop> {
+        if self.cpu.get_data().block.last != Last::Wfi {
+            return Err(Stop::Emulator(format!(
+                "the CPU halted at {pc:#010x} without a sleep instruction"
+            )));
+        }
+        self.fall_asleep();
+        Ok(())
+    }
+
+    pub(super) fn system_reset(&mut self, cause: ResetCause) -> Result<(), Stop> {
+        let state = self.cpu.get_data_mut();
+        state.profile.abandon();
+        let at = state.cycles;
+        let held = RESET_US * u64::from(HSI_HZ) / 1_000_000;
+        state.chip().system_reset(cause, at);
+        let at_ps = state.chip().time.ps_at(at);
+        state.cycles += held;
+        if cause == ResetCause::PowerOn {
+            self.lose_memory()?;
+        }
+        let state = self.cpu.get_data_mut();
+        (
+            state.attention,
+            state.refused,
+            state.bus_error,
+            state.event_register,
+        ) = (false, None, None, false);
+        self.standstill = None;
+        self.resets.push(Reset { at, at_ps, cause });
+        exceptions::reset(&mut self.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))
+    }
+
+    pub(super) fn place(&self, pc: u32) -> Place {
+        let in_flash = if pc < RAM_BASE { FLASH_BASE | pc } else { pc };
+        Place {
+            function: self.firmware.function_at(in_flash).to_owned(),
+            pc: in_flash,
+        }
+    }
+
+    pub(super) fn refusal(&self, refused: Refused) -> Stop {
+        let Refused {
+            refusal,
+            address,
+            access,
+            value,
+            pc,
+        } = refused;
+        let place = self.place(pc);
+        let register = match refusal {
+            Refusal::NotModelled(detail) => format!("{} ({detail})", names::register(address)),
+            Refusal::Width => format!("{} (access width)", names::register(address)),
+            _ => names::register(address),
+        };
+        match refusal {
+            Refusal::ClockOff(enable, bit) => Stop::ClockOff {
+                peripheral: names::peripheral(address).unwrap_or("?").to_owned(),
+                enable: format!("{enable} bit {bit}"),
+                address,
+                access,
+                place,
+            },
+            Refusal::FlashLatency {
+                hclk_hz,
+                latency,
+                needed,
+            } => Stop::FlashLatency {
+                hclk_hz,
+                latency,
+                needed,
+                place,
+            },
+            Refusal::ClockRange {
+                clock,
+                hz,
+                min_hz,
+                max_hz,
+            } => Stop::ClockRange {
+                clock,
+                hz,
+                min_hz,
+                max_hz,
+                place,
+            },
+            _ => Stop::NotModelled {
+                register,
+                address,
+                access,
+                value,
+                place,
+            },
+        }
+    }
+}

@@ -1,0 +1,186 @@
+//! Register access of the timers (RM0390 16.4, 17.4, 19.4).
+use super::{AOE, BIF, BKE, BKP, MOE, OSSI, OSSR, Tim, UIF};
+use crate::stop::{Answer, Refusal, only};
+
+impl Tim {
+    /// Whether this kind of timer has a register (register maps 16.4.21, 17.4.21, 18.5.12, 19.4.9).
+    fn has(&self, offset: u32) -> bool {
+        match offset {
+            // CR2 and SMCR: a trigger out, and one in
+            0x04 => self.kind.channels != 1,
+            0x08 => self.kind.channels > 1,
+            // CCMR2 and CCR2 to CCR4
+            0x1c | 0x38..=0x40 => self.kind.channels > 1,
+            0x18 | 0x20 | 0x34 => self.kind.channels > 0,
+            _ => true,
+        }
+    }
+
+    pub fn read(&mut self, offset: u32, now: u64) -> Answer<u32> {
+        self.sync(now);
+        if !self.has(offset) {
+            return Err(Refusal::Offset);
+        }
+        Ok(match offset {
+            0x00 => self.cr1,
+            0x04 => self.cr2,
+            0x08 => 0,
+            0x0c => self.dier,
+            0x10 => self.sr,
+            0x14 => 0,
+            0x18 | 0x1c => self.ccmr[(offset as usize - 0x18) / 4],
+            0x20 => self.ccer,
+            0x24 => self.count(now),
+            0x28 => self.psc,
+            0x2c => self.arr,
+            0x30 if self.kind.advanced => self.rcr,
+            0x34..=0x40 => self.ccr[(offset as usize - 0x34) / 4],
+            0x44 if self.kind.advanced => self.bdtr,
+            0x50 if self.kind.counter_max == u32::MAX => 0,
+            _ => return Err(Refusal::Offset),
+        })
+    }
+
+    pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
+        self.sync(now);
+        let result = self.write_synced(offset, value, now);
+        self.schedule();
+        result
+    }
+
+    fn write_synced(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
+        if !self.has(offset) {
+            return Err(Refusal::Offset);
+        }
+        match offset {
+            0x00 => {
+                only(
+                    value,
+                    0x038f,
+                    "TIM CR1.DIR or CMS (down- or centre-aligned counting)",
+                )?;
+                let count = self.count(now);
+                self.cr1 = value;
+                if self.cr1 & 0x80 == 0 {
+                    self.arr_now = self.arr;
+                }
+                self.set_count(count, now);
+            }
+            0x04 => {
+                let allowed = if self.kind.advanced { 0x7f70 } else { 0x70 };
+                only(value, allowed, "TIM CR2.CCPC, CCUS, CCDS or TI1S")?;
+                if value >> 4 & 7 > 2 {
+                    return Err(Refusal::NotModelled(
+                        "TIM CR2.MMS (trigger output from a compare match)",
+                    ));
+                }
+                let protected = if self.lock >= 1 { 0x7f00 } else { 0 };
+                self.cr2 = value & !protected | self.cr2 & protected;
+            }
+            0x08 => only(value, 0, "TIM SMCR (slave modes)")?,
+            0x0c => {
+                let channels = ((1u32 << self.kind.channels) - 1) << 1;
+                let advanced = if self.kind.advanced { 0xa0 } else { 0 };
+                only(
+                    value,
+                    UIF | channels | 0x40 | advanced,
+                    "TIM DIER (DMA requests)",
+                )?;
+                self.dier = value;
+            }
+            0x10 => self.sr &= value,
+            0x14 => {
+                let channels = ((1u32 << self.kind.channels) - 1) << 1;
+                only(
+                    value,
+                    UIF | channels | if self.kind.advanced { BIF } else { 0 },
+                    "TIM EGR.TG or COMG",
+                )?;
+                if value & BIF != 0 {
+                    self.bdtr &= !MOE;
+                }
+                self.sr |= value & (channels | BIF);
+                if value & UIF != 0 {
+                    self.set_count(0, now);
+                    self.update(false);
+                    self.set_count(0, now);
+                    self.trigger |= self.cr2 >> 4 & 7 == 0;
+                }
+            }
+            0x18 | 0x1c => self.write_ccmr((offset as usize - 0x18) / 4, value)?,
+            0x20 => {
+                let mut allowed = 0x3333;
+                if self.kind.advanced {
+                    only(value & 0x0444, 0, "TIM CCER.CCxNE (complementary outputs)")?;
+                    allowed |= 0x0888;
+                }
+                only(value, allowed, "TIM CCER reserved bits")?;
+                let protected = if self.lock >= 2 { 0x2aaa } else { 0 };
+                self.ccer = value & !protected | self.ccer & protected;
+            }
+            0x24 => self.set_count(value & self.kind.counter_max, now),
+            0x28 => {
+                only(value, 0xffff, "TIM PSC reserved bits")?;
+                self.psc = value;
+            }
+            0x2c => {
+                self.arr = value & self.kind.counter_max;
+                if self.cr1 & 0x80 == 0 {
+                    let count = self.count(now);
+                    self.arr_now = self.arr;
+                    self.set_count(count, now);
+                }
+            }
+            0x30 if self.kind.advanced => {
+                only(value, 0xff, "TIM RCR reserved bits")?;
+                self.rcr = value;
+            }
+            0x34..=0x40 => {
+                let channel = (offset as usize - 0x34) / 4;
+                self.ccr[channel] = value & self.kind.counter_max;
+                if self.ccmr[channel / 2] >> (8 * (channel % 2) + 3) & 1 == 0 {
+                    self.ccr_now[channel] = self.ccr[channel];
+                }
+            }
+            0x44 if self.kind.advanced => self.write_bdtr(value)?,
+            0x50 if self.kind.counter_max == u32::MAX => only(value, 0, "TIM OR (trigger remap)")?,
+            _ => return Err(Refusal::Offset),
+        }
+        Ok(())
+    }
+
+    fn write_ccmr(&mut self, half: usize, value: u32) -> Answer<()> {
+        only(value & 0x0303, 0, "TIM CCMR.CCxS (input capture)")?;
+        only(value & 0x8080, 0, "TIM CCMR.OCxCE (clear by ETRF)")?;
+        for channel in 0..2 {
+            let mode = value >> (8 * channel + 4) & 7;
+            if matches!(mode, 1..=3) {
+                return Err(Refusal::NotModelled(
+                    "TIM CCMR.OCxM = active, inactive or toggle on match",
+                ));
+            }
+        }
+        let protected = if self.lock >= 3 { 0x7878 } else { 0 };
+        self.ccmr[half] = value & !protected | self.ccmr[half] & protected;
+        for channel in 2 * half..2 * half + 2 {
+            if self.ccmr[half] >> (8 * (channel % 2) + 3) & 1 == 0 {
+                self.ccr_now[channel] = self.ccr[channel];
+            }
+        }
+        Ok(())
+    }
+
+    /// Dead time concerns complementary outputs only, which are refused; LOCK can be written once (16.4.18).
+    fn write_bdtr(&mut self, value: u32) -> Answer<()> {
+        only(value, 0xffff, "TIM BDTR reserved bits")?;
+        let protected = match self.lock {
+            0 => 0,
+            1 => BKE | BKP | AOE | 0xff,
+            _ => BKE | BKP | AOE | 0xff | OSSR | OSSI,
+        };
+        let locked_bits = if self.lock > 0 { 0x300 } else { 0 };
+        self.bdtr = value & !(protected | locked_bits) | self.bdtr & (protected | locked_bits);
+        self.lock = self.bdtr >> 8 & 3;
+        Ok(())
+    }
+}

@@ -1,0 +1,133 @@
+//! The emulated core against the ARMv7-M Architecture Reference Manual.
+use stm32_emulator::Stop;
+use thermal_sim::processor::ResetCause;
+
+use crate::probe;
+
+const DONE: u32 = 0xd0e;
+/// What the handler of the middle interrupt logs: the high one preempts it, the low one follows it (B1.5.4).
+const MIDDLE: [u32; 5] = [0x116, 0x217, 0x101, 0x102, 0x318];
+
+#[test]
+fn exceptions_nest_chain_and_obey_the_masks() {
+    let (machine, log) = probe::run(0, 1_000_000);
+    let supervisor = [0x2000 | 11, 0x2100, 0x1000 | 14]; // PendSV waits for the more urgent SVCall
+    let mut wanted = vec![1];
+    wanted.extend(MIDDLE);
+    wanted.extend([2, 3]); // pended under PRIMASK: nothing until it is cleared
+    wanted.extend(MIDDLE);
+    wanted.extend([4, 0x217, 5]); // BASEPRI = 0x80 lets only the more urgent one through
+    wanted.extend(MIDDLE);
+    wanted.push(6);
+    wanted.extend(supervisor);
+    wanted.push(7);
+    wanted.extend(supervisor);
+    wanted.push(0x11 | 2 << 8); // kept register; SPSEL = 1 after the return to the process stack
+    wanted.extend([8, 0x318, 9]); // WFI wakes although PRIMASK is set; the handler runs after it is cleared
+    wanted.extend([8, 0, 6, DONE]); // (3+1)<<1; (3+2)^5; (0x80000000+1)<<1 = 2 is below
+    assert_eq!(log[..log.len() - 4], wanted[..wanted.len() - 4]);
+    assert_eq!(log[log.len() - 4..], [8, 0, 2, DONE]);
+    let stats = machine.stats();
+    let count = |name: &str| {
+        stats
+            .interrupts
+            .iter()
+            .find(|i| i.name == name)
+            .map(|i| i.count)
+    };
+    assert_eq!(
+        (count("EXTI0"), count("EXTI1"), count("EXTI2")),
+        (Some(3), Some(4), Some(4))
+    );
+    assert_eq!(stats.exceptions, 3 + 4 + 4 + 2 * 2);
+}
+
+#[test]
+fn floating_point_context_survives_interrupts() {
+    let (_, log) = probe::run(1, 3_000_000);
+    assert_eq!(log, [0, 1, DONE], "wrong results, more than 100 ticks");
+}
+
+#[test]
+fn a_load_from_nowhere_becomes_a_hard_fault() {
+    let (_, log) = probe::run(2, 100_000);
+    let precise_bus_fault_with_address = 1 << 9 | 1 << 15;
+    assert_eq!(log[..4], [1, 3, precise_bus_fault_with_address, 1 << 30]);
+    let function = probe::firmware().function_at(log[4]);
+    assert!(
+        function.contains("bad_load") || function.contains("main"),
+        "stacked PC in {function}"
+    );
+    assert_eq!(log[5], DONE);
+}
+
+#[test]
+fn an_undefined_instruction_becomes_a_hard_fault() {
+    let (_, log) = probe::run(3, 100_000);
+    assert_eq!(log[..4], [1, 3, 1 << 16, 1 << 30]);
+}
+
+#[test]
+fn a_fault_in_the_fault_handler_is_lockup_for_good_without_a_watchdog() {
+    match probe::machine(4).run_until(1_000_000).expect_err("stops") {
+        Stop::Lockup {
+            priority, place, ..
+        } => {
+            assert_eq!(priority, -1);
+            assert!(place.function.contains("hard_fault"), "{place}");
+        }
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn a_watchdog_ends_lockup() {
+    let (machine, log) = probe::run(21, 1_000_000);
+    assert_eq!(log[..2], [0x2e, 0x0010_cced], "flags, and RAM from before");
+    let [_, reset] = machine.resets() else {
+        panic!("{:?}", machine.resets())
+    };
+    assert_eq!(reset.cause, ResetCause::IndependentWatchdog);
+    let ten_milliseconds = 160_000;
+    assert!(
+        (ten_milliseconds..ten_milliseconds + 5_000).contains(&reset.at),
+        "10 ms after its start, soon after power-up: {reset:?}"
+    );
+}
+
+#[test]
+fn a_software_reset_sets_its_flag() {
+    let (machine, log) = probe::run(5, 100_000);
+    assert_eq!(
+        log,
+        [0x1e, 0, DONE],
+        "power-on, brown-out, pin and software flags; thread mode"
+    );
+    assert_eq!(
+        machine.resets().iter().map(|r| r.cause).collect::<Vec<_>>(),
+        [ResetCause::PowerOn, ResetCause::Software]
+    );
+}
+
+#[test]
+fn wfe_falls_through_once_after_sev() {
+    let (machine, log) = probe::run(6, 100_000);
+    assert_eq!(log, [0, 1, DONE]);
+    assert!(machine.now() >= 100_000);
+}
+
+#[test]
+fn a_condition_ends_with_its_block() {
+    let (_, log) = probe::run(17, 100_000);
+    assert_eq!(log, [1, 1, DONE]);
+}
+
+#[test]
+fn a_condition_survives_interrupts() {
+    let (_, log) = probe::run(18, 10_000_000);
+    assert_eq!(
+        log,
+        [0, 1, DONE],
+        "instructions that should have been skipped, more than 100 ticks"
+    );
+}

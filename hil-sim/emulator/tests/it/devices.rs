@@ -1,0 +1,322 @@
+//! The emulated peripherals under a real image: strictness, clocks, converters, serial port, watchdog, repeatability.
+use stm32_emulator::{Access, LegState, Stop};
+use thermal_sim::processor::ResetCause;
+
+use crate::probe;
+
+const SECOND: u64 = 180_000_000;
+
+/// Runs a case that must stop.
+fn stop(case: u8) -> Stop {
+    probe::machine(case)
+        .run_until(10_000_000)
+        .expect_err("the case stops")
+}
+
+#[test]
+fn an_unmodelled_register_stops_the_run_by_name() {
+    let Stop::NotModelled {
+        register,
+        address,
+        access,
+        place,
+        ..
+    } = stop(8)
+    else {
+        panic!()
+    };
+    assert_eq!(
+        (register.as_str(), address, access),
+        ("SPI1+0x0", 0x4001_3000, Access::Read(4))
+    );
+    assert_eq!(probe::firmware().function_at(place.pc), place.function);
+    assert!(place.function.starts_with("probe::"), "{place}");
+}
+
+#[test]
+fn a_peripheral_without_clock_stops_the_run() {
+    let Stop::ClockOff {
+        peripheral,
+        enable,
+        access,
+        ..
+    } = stop(9)
+    else {
+        panic!()
+    };
+    assert_eq!(
+        (peripheral.as_str(), enable.as_str(), access),
+        ("TIM2", "RCC_APB1ENR bit 0", Access::Write(4))
+    );
+}
+
+#[test]
+fn reading_without_clock_stops_too() {
+    let Stop::ClockOff {
+        peripheral, access, ..
+    } = stop(7)
+    else {
+        panic!()
+    };
+    assert_eq!((peripheral.as_str(), access), ("USART2", Access::Read(4)));
+}
+
+#[test]
+fn the_signature_tells_the_flash_size_and_other_memories_stop_the_run() {
+    let mut machine = probe::machine(15);
+    let stop = machine.run_until(100_000).expect_err("stops");
+    assert_eq!(probe::log(&machine), [512]);
+    assert!(
+        matches!(&stop, Stop::NotModelled { register, .. } if register == "QUADSPI+0x0"),
+        "{stop}"
+    );
+    assert_eq!(machine.run_until(200_000), Err(stop), "for good");
+}
+
+#[test]
+fn the_break_input_releases_both_legs() {
+    let (mut machine, _) = probe::run(13, SECOND / 100);
+    assert_ne!(machine.pwm(0, 8), LegState::Off);
+    machine.wiring_mut().break_pin = Some(true);
+    machine
+        .run_until(machine.now() + SECOND / 16_000)
+        .expect("runs");
+    assert_eq!([machine.pwm(0, 8), machine.pwm(0, 9)], [LegState::Off; 2]);
+    assert_eq!(
+        machine.wiring().bridge.last().map(|b| b.0),
+        Some([LegState::Off; 2])
+    );
+}
+
+#[test]
+fn too_few_wait_states_stop_the_run() {
+    let Stop::FlashLatency {
+        hclk_hz,
+        latency,
+        needed,
+        ..
+    } = stop(10)
+    else {
+        panic!()
+    };
+    assert_eq!((hclk_hz, latency, needed), (180_000_000, 4, 5));
+}
+
+#[test]
+fn an_unmodelled_mode_stops_the_run() {
+    for case in [11, 16] {
+        let Stop::NotModelled {
+            register, value, ..
+        } = stop(case)
+        else {
+            panic!()
+        };
+        assert_eq!(
+            (register.as_str(), value),
+            ("TIM3_SMCR (TIM SMCR (slave modes))", 3),
+            "case {case}"
+        );
+    }
+}
+
+#[test]
+fn the_watchdog_resets_ten_milliseconds_after_the_last_feed() {
+    let (machine, log) = probe::run(12, 1_000_000);
+    assert_eq!(
+        log,
+        [0x2e, 0, 0xd0e],
+        "flags after the reset (start-up has cleared the log), flags cleared"
+    );
+    let [_, reset] = machine.resets() else {
+        panic!("{:?}", machine.resets())
+    };
+    assert_eq!(reset.cause, ResetCause::IndependentWatchdog);
+    let feeds: Vec<u64> = machine
+        .wiring()
+        .outputs
+        .iter()
+        .filter(|o| o.1 == 5)
+        .map(|o| o.3)
+        .collect();
+    let [_low, first, second, third, _gone] = feeds[..] else {
+        panic!("{feeds:?}")
+    };
+    assert!(second - first > 30_000 && third - second > 30_000);
+    let ten_milliseconds = 160_000;
+    assert!(
+        (ten_milliseconds..ten_milliseconds + 100).contains(&(reset.at - third)),
+        "{reset:?}, fed at {third}"
+    );
+}
+
+#[test]
+fn the_window_watchdog_resets_when_it_is_no_longer_refreshed() {
+    let (machine, log) = probe::run(19, 1_600_000);
+    assert_eq!(
+        log,
+        [0x4e, 0x00fe_ed00, 1, 0xd0e],
+        "flags; RAM that start-up leaves alone has survived; one early interrupt"
+    );
+    let [_, reset] = machine.resets() else {
+        panic!("{:?}", machine.resets())
+    };
+    assert_eq!(reset.cause, ResetCause::WindowWatchdog);
+    let refreshes: Vec<u64> = machine
+        .wiring()
+        .outputs
+        .iter()
+        .filter(|output| output.2 == Some(true))
+        .map(|output| output.3)
+        .collect();
+    let [_first, third] = refreshes[..] else {
+        panic!("{refreshes:?}")
+    };
+    let periods = (reset.at - third) as f64 / 4096.0;
+    assert!(
+        (63.0..=64.0).contains(&periods),
+        "{periods} periods of 4096 cycles after the refresh; the prescaler runs freely"
+    );
+}
+
+#[test]
+fn a_refresh_outside_the_window_resets_at_once() {
+    let (machine, log) = probe::run(20, 20_000);
+    assert_eq!(log, [0x4e, 0x00fe_ed00, 0, 0xd0e]);
+    assert_eq!(machine.resets()[1].cause, ResetCause::WindowWatchdog);
+}
+
+#[test]
+fn the_products_load_keeps_its_rates() {
+    let (mut machine, log) = probe::run(13, SECOND / 10);
+    assert_eq!(log, [1, 0xd0e]);
+    let clocks = machine.clocks();
+    assert_eq!(
+        (clocks.hclk_hz, clocks.pclk1_hz, clocks.pclk2_hz),
+        (180_000_000, 45_000_000, 90_000_000)
+    );
+    assert_eq!(
+        machine.pwm(0, 8),
+        LegState::Duty {
+            high: 450,
+            period: 1800
+        }
+    );
+    assert_eq!(machine.pwm(0, 8).duty(), Some(0.25));
+    assert_eq!(machine.pwm(0, 9).duty(), Some(0.0));
+    let from = machine.now();
+    let (conversions, bytes) = (
+        machine.wiring().conversions.len(),
+        machine.wiring().sent.len(),
+    );
+    let ticks = |m: &stm32_emulator::Machine<probe::Bench>| {
+        m.stats()
+            .interrupts
+            .iter()
+            .find(|i| i.name == "SysTick")
+            .map_or(0, |i| i.count)
+    };
+    let ticks_before = ticks(&machine);
+    machine.run_until(from + SECOND).expect("runs");
+    let bench = machine.wiring();
+    assert!((bench.conversions.len() - conversions).abs_diff(112_000) <= 7);
+    assert!(
+        (bench.sent.len() - bytes).abs_diff(100_000) <= 1,
+        "10 bits a byte at 1 Mbit/s"
+    );
+    assert_eq!(bench.baud, 1_000_000);
+    assert_eq!((ticks(&machine) - ticks_before).abs_diff(1000), 0);
+    let starts: Vec<u64> = bench
+        .conversions
+        .iter()
+        .filter(|c| c.0 == 0)
+        .map(|c| c.1)
+        .collect();
+    assert!(
+        starts
+            .windows(2)
+            .all(|pair| pair[1] - pair[0] == SECOND / 16_000),
+        "sampling has no jitter"
+    );
+    let scan: Vec<_> = bench.conversions[..7]
+        .iter()
+        .map(|c| (c.0, c.1 - bench.conversions[0].1))
+        .collect();
+    let conversion = (56 + 12) * 8;
+    assert_eq!(
+        scan,
+        (0..7)
+            .map(|i| (i, u64::from(i) * conversion))
+            .collect::<Vec<_>>()
+    );
+    assert!(
+        bench
+            .sent
+            .windows(2)
+            .all(|pair| pair[1].1 - pair[0].1 == 1800)
+    );
+    let samples = probe::words(&machine, "SAMPLES", 7);
+    let wanted = [(0, 1), (2, 3), (4, 5), (6, 0), (1, 2), (3, 4), (5, 6)];
+    let code = |channel: u32| 100 * channel + 7;
+    assert_eq!(
+        samples,
+        wanted.map(|(low, high)| code(low) | code(high) << 16)
+    );
+}
+
+#[test]
+fn received_bytes_arrive_by_interrupt() {
+    let (mut machine, _) = probe::run(13, SECOND / 100);
+    machine.uart_send(b"ok?");
+    let from = machine.now();
+    machine.run_until(from + 3 * 1800 - 1).expect("runs");
+    assert_eq!(
+        probe::log(&machine)[2..],
+        [0x5a00_0020, b'o'.into(), 0x5a00_0020, b'k'.into()]
+    );
+    machine.run_until(from + 4 * 1800).expect("runs");
+    assert_eq!(probe::log(&machine)[6..], [0x5a00_0020, b'?'.into()]);
+}
+
+#[test]
+fn a_host_at_another_rate_breaks_frames() {
+    for (baud, framing_error) in [(1_029_000, 0), (972_000, 0), (1_040_000, 2), (500_000, 2)] {
+        let (mut machine, _) = probe::run(14, SECOND / 100);
+        machine.set_host_baud(baud);
+        machine.uart_send(b"U");
+        machine.run_until(machine.now() + 10_000).expect("runs");
+        assert_eq!(
+            probe::log(&machine)[1],
+            0x5a00_0020 | framing_error,
+            "host at {baud}"
+        );
+    }
+}
+
+#[test]
+fn two_runs_are_the_same_to_the_bit() {
+    let run = |steps: u64| {
+        let mut machine = probe::machine(13);
+        for step in 1..=steps {
+            machine.run_until(step * SECOND / steps / 5).expect("runs");
+        }
+        (
+            machine.stats(),
+            machine.stack_high_water(),
+            std::mem::take(machine.wiring_mut()),
+        )
+    };
+    let (stats, stack, bench) = run(1);
+    let (stats_again, stack_again, bench_again) = run(1);
+    assert_eq!((&stats, stack), (&stats_again, stack_again));
+    assert_eq!(bench.conversions, bench_again.conversions);
+    assert_eq!(bench.sent, bench_again.sent);
+    let (_, _, in_steps) = run(777);
+    assert_eq!(
+        bench.conversions, in_steps.conversions,
+        "nor does it matter where the run is cut"
+    );
+    assert!(
+        stack.is_some_and(|bytes| bytes > 0 && bytes < 4096),
+        "{stack:?}"
+    );
+}

@@ -1,0 +1,187 @@
+use std::collections::HashSet;
+
+use super::*;
+use crate::finger::FingerParams;
+
+fn layered() -> Params {
+    Params {
+        finger: FingerParams::layered(),
+        ..Params::nominal()
+    }
+}
+
+/// Numbers in a debug print: text that reads as one, between the marks that Rust puts around a field's value.
+fn numbers(params: &Params) -> Vec<f64> {
+    format!("{params:?}")
+        .split([' ', ',', '[', ']', '(', ')', '{', '}'])
+        .filter_map(|word| word.parse().ok())
+        .collect()
+}
+
+#[test]
+fn every_number_of_the_parts_is_in_the_box_once() {
+    for params in [Params::nominal(), layered()] {
+        let all = all(&params);
+        assert_eq!(numbers(&params).len(), all.len());
+        let keys: HashSet<_> = all.iter().map(|parameter| &parameter.key).collect();
+        assert_eq!(keys.len(), all.len(), "keys repeat");
+        // A mark set through each key comes out in one place, and in all places together.
+        let mut marked = params.clone();
+        for (i, slot) in slots(&mut marked).iter_mut().enumerate() {
+            *slot.value = 1e6 + i as f64;
+        }
+        let marks: HashSet<_> = numbers(&marked).into_iter().map(f64::to_bits).collect();
+        assert_eq!(marks.len(), all.len(), "two keys share a field");
+        assert!(marks.iter().all(|bits| f64::from_bits(*bits) >= 1e6));
+    }
+}
+
+#[test]
+fn keys_reach_the_fields_they_name() {
+    let params = layered();
+    for parameter in all(&params) {
+        let field = parameter.key.rsplit('.').next().expect("a name");
+        let mut changed = params.clone();
+        let value = if parameter.value.is_finite() && parameter.value * 1.5 <= parameter.most {
+            parameter.value * 1.5 + 1e-9
+        } else {
+            parameter.most * 0.5 + parameter.least * 0.5
+        };
+        if !value.is_finite() {
+            continue;
+        }
+        set(&mut changed, &parameter.key, value).unwrap_or_else(|error| panic!("{error}"));
+        let [before, after] = [&params, &changed].map(|params| format!("{params:#?}"));
+        let differing: Vec<_> = before
+            .lines()
+            .zip(after.lines())
+            .filter(|(before, after)| before != after)
+            .map(|(_, after)| after.trim().to_owned())
+            .collect();
+        let is_its_own =
+            |line: &String| line.starts_with(&format!("{field}: ")) || field == "core_w_m2k";
+        assert!(
+            differing.len() == 1 && differing.iter().all(is_its_own),
+            "{}: {differing:?}",
+            parameter.key
+        );
+    }
+}
+
+#[test]
+fn nominal_values_are_possible_and_within_their_tolerance() {
+    for params in [Params::nominal(), layered()] {
+        for p in all(&params) {
+            assert!(p.least <= p.low && p.low <= p.value, "{p:?}");
+            assert!(p.value <= p.high && p.high <= p.most, "{p:?}");
+            assert!(
+                p.distribution != Distribution::Fixed || p.low == p.high,
+                "{p:?}"
+            );
+            assert!(!p.unit.is_empty() && p.meaning.len() > 3, "{p:?}");
+        }
+    }
+}
+
+#[test]
+fn draws_stay_in_tolerance_and_fill_it() {
+    let nominal = layered();
+    let limits = all(&nominal);
+    const DRAWS: u64 = 2000;
+    let drawn: Vec<Vec<f64>> = (0..DRAWS)
+        .map(|seed| {
+            let mut params = nominal.clone();
+            draw(&mut params, seed);
+            check(&params).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+            all(&params).iter().map(|p| p.value).collect()
+        })
+        .collect();
+    for (i, p) in limits.iter().enumerate() {
+        let values = || drawn.iter().map(|draw| draw[i]);
+        assert!(
+            values().all(|value| (p.low..=p.high).contains(&value)),
+            "{p:?}"
+        );
+        if p.distribution == Distribution::Fixed || p.low == p.high {
+            assert!(values().all(|value| value == p.value), "{p:?}");
+            continue;
+        }
+        // Position between the limits: on the scale on which the draw is meant to be even.
+        let place = |value: f64| match p.distribution {
+            Distribution::LogUniform => (value / p.low).ln() / (p.high / p.low).ln(),
+            _ => (value - p.low) / (p.high - p.low),
+        };
+        let mean = values().map(place).sum::<f64>() / DRAWS as f64;
+        let variance = values().map(|v| (place(v) - mean).powi(2)).sum::<f64>() / DRAWS as f64;
+        // Uniform: 1/12. Normal cut at two standard deviations: 0.7737 / 16 (closed form of the cut variance).
+        let exact = match p.distribution {
+            Distribution::Normal => 0.773_741 / 16.0,
+            _ => 1.0 / 12.0,
+        };
+        // Five standard errors of the mean, and of the variance (which a uniform one's fourth moment bounds).
+        assert!(
+            (mean - 0.5).abs() < 5.0 * (exact / DRAWS as f64).sqrt(),
+            "{}: mean {mean}",
+            p.key
+        );
+        assert!(
+            (variance / exact - 1.0).abs() < 5.0 * (2.0 / DRAWS as f64).sqrt(),
+            "{}: {variance}",
+            p.key
+        );
+    }
+    // No two parameters, and no two seeds, share their draws.
+    let first = |draw: &Vec<f64>| {
+        let places = limits.iter().zip(draw);
+        let free =
+            places.filter(|(p, _)| p.distribution == Distribution::Uniform && p.low < p.high);
+        free.map(|(p, v)| ((v - p.low) / (p.high - p.low) * 1e9) as u64)
+            .collect::<Vec<_>>()
+    };
+    let seen: Vec<u64> = drawn.iter().take(10).flat_map(first).collect();
+    let different: HashSet<_> = seen.iter().collect();
+    assert_eq!(different.len(), seen.len());
+}
+
+#[test]
+fn a_seed_fixes_its_draw_whatever_else_is_in_the_box() {
+    let draw_of = |mut params: Params, seed| {
+        draw(&mut params, seed);
+        params
+    };
+    assert_eq!(draw_of(layered(), 7), draw_of(layered(), 7));
+    assert_ne!(draw_of(layered(), 7), draw_of(layered(), 8));
+    // A finger of more parts shifts nothing else.
+    let (few, many) = (draw_of(Params::nominal(), 7), draw_of(layered(), 7));
+    assert_eq!(
+        (few.tile, few.bridge, few.sensors),
+        (many.tile, many.bridge, many.sensors)
+    );
+    assert_eq!(
+        (few.display, few.finger.surface),
+        (many.display, many.finger.surface)
+    );
+    assert_eq!(few.finger.air_w_m2k, 0.0, "no air film appears");
+}
+
+#[test]
+fn unknown_keys_and_impossible_values_are_named_and_change_nothing() {
+    let mut params = Params::nominal();
+    let message = |error: ParameterError| error.to_string();
+    let typo = set(&mut params, "tile.imx_a", 5.0).map_err(message);
+    let typo = typo.expect_err("no such key");
+    assert!(
+        typo.starts_with("no parameter is called tile.imx_a; similar are tile.imax_a, "),
+        "{typo}"
+    );
+    for value in [0.0, f64::NAN, f64::INFINITY, -5.0] {
+        let refused = set(&mut params, "tile.imax_a", value).map_err(message);
+        assert_eq!(
+            refused,
+            Err(format!("tile.imax_a = {value} A; allowed is 0.5 to 30"))
+        );
+    }
+    assert_eq!(params, Params::nominal());
+    assert_eq!(set(&mut params, "tile.imax_a", 5.5), Ok(()));
+    assert_eq!(params.tile.imax_a, 5.5);
+}

@@ -1,0 +1,3 @@
+//! Parts of the plant against golden values.
+
+mod infrared;

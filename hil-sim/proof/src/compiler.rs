@@ -1,0 +1,44 @@
+//! Figures that depend on the compiler: instruction counts, sizes, names of functions in the machine code.
+//!
+//! They were recorded with one compiler. With another one a difference is a warning, because it need not be a change of the
+//! program.
+use std::fmt::Display;
+
+use anyhow::{Context, Result};
+use object::{Object, ObjectSection};
+
+/// Version of rustc that the figures in this repository were recorded with.
+pub const RECORDED_WITH: &str = "1.95.0";
+
+/// The compiler's name and version, as it leaves them in an ELF file: `rustc version 1.95.0 (…)`.
+///
+/// # Errors
+/// The file is no ELF file, or rustc did not compile it.
+pub fn of_elf(elf: &[u8]) -> Result<String> {
+    let file = object::File::parse(elf)?;
+    let section = file.section_by_name(".comment");
+    let section = section.context("the image names no compiler")?;
+    let comments = String::from_utf8_lossy(section.data()?).into_owned();
+    let mut names = comments.split('\0');
+    let name = names.find(|name| name.starts_with("rustc"));
+    Ok(name.context("rustc did not compile the image")?.into())
+}
+
+/// Whether differences from recorded figures are failures for an image of this compiler; else prints them as warnings.
+///
+/// ```
+/// use image_proof::compiler::recorded_with;
+/// assert!(recorded_with("rustc version 1.95.0 (59807616e 2026-04-14)", &["2 bytes more"]));
+/// assert!(!recorded_with("rustc version 1.96.0 (ac68faa20 2026-05-25)", &["2 bytes more"]));
+/// ```
+pub fn recorded_with(compiler: &str, differences: &[impl Display]) -> bool {
+    let same = compiler.split(' ').any(|word| word == RECORDED_WITH);
+    if !same {
+        for difference in differences {
+            eprintln!(
+                "warning: {difference}; recorded with rustc {RECORDED_WITH}, the image is of {compiler}"
+            );
+        }
+    }
+    same
+}

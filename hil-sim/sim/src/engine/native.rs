@@ -1,0 +1,295 @@
+//! The device's logic, called directly.
+
+use std::collections::VecDeque;
+use std::convert::Infallible;
+use std::fmt::Display;
+
+use thermal_display::Hand;
+use thermal_display::commission::{Desk, Order};
+use thermal_display::drive::{Drive, Outputs};
+use thermal_display::guard::{Cause, Dose, Fault};
+use thermal_display::protocol::{Addressed, Error, LineReader, Reply};
+use thermal_display::sense::{SCANS_PER_TICK, Samples, Scan};
+use thermal_display::settings::{Kept, Settings, decode};
+use thermal_plant::bridge::{Leg, Legs};
+use thermal_plant::sensors::Channel;
+
+use super::{BAUD, Cost, DeviceReset, Engine};
+use crate::World;
+use crate::processor::{MachineFault, NotInjected, ResetCause};
+
+/// Nanoseconds of one half millisecond, of one byte on the line, and of the tick after the whole-millisecond
+/// boundary that lies before it.
+const HALF_NS: u64 = 500_000;
+const BYTE_NS: u64 = 10 * 1_000_000_000 / BAUD;
+const TICK_NS: u64 = 730_000;
+
+/// Steps of the board's PWM period: 180 MHz / 96 kHz.
+const PWM_STEPS: u16 = 1875;
+
+/// What the window watchdog waits for a tick.
+const WINDOW_MS: u64 = 46;
+
+/// As after a reset.
+const OFF: Outputs = Outputs {
+    drive: Drive::Off,
+    comparator_test: false,
+};
+
+/// Scans between the boundaries: four end the first step's tick, eight and four follow.
+const SCANS_BEFORE_START: usize = 4;
+const SCANS_IN_FIRST_HALF: usize = 8;
+
+/// The logic of one finger without its microcontroller.
+#[derive(Debug)]
+pub struct Native {
+    world: World,
+    desk: Desk<1>,
+    hand: Hand<1>,
+    reader: LineReader,
+    /// Bytes on their way to the device, and when they arrive.
+    incoming: VecDeque<(u64, u8)>,
+    outgoing: Vec<u8>,
+    scans: [Scan; SCANS_PER_TICK],
+    filled: usize,
+    /// Scans before those of a tick that are made and left out, while multiplexers settle.
+    settling_scans: usize,
+    /// The bridge has pulled its fault pin since the last tick: the board's break flag keeps that.
+    fault: bool,
+    outputs: Outputs,
+    /// For how long no tick has run: the drive stays as it is.
+    hung_ms: Option<u64>,
+    resets: Vec<DeviceReset>,
+    /// Settings in what stands for the flash.
+    stored: Option<[Kept; 1]>,
+    /// Half milliseconds since the first boundary.
+    halves: u64,
+}
+
+impl Native {
+    /// A device that has just started its first tick.
+    #[must_use]
+    pub fn new(world: World) -> Self {
+        Self::with(world, 0, 0)
+    }
+
+    /// One of several fingers that take turns on multiplexers: before the scans of a tick one is made that is left out.
+    /// On the finger that power-up finds the multiplexers `settled` on it is two the first time, because there the first
+    /// scan after a switch does not see the finger before.
+    #[must_use]
+    pub fn in_turn(world: World, settled: bool) -> Self {
+        Self::with(world, 1, settled.into())
+    }
+
+    fn with(world: World, settling_scans: usize, more_at_first: usize) -> Self {
+        let settings = Settings::default();
+        let mut native = Self {
+            world,
+            desk: Desk::new(settings),
+            hand: Hand::new(&settings),
+            reader: LineReader::new(),
+            incoming: VecDeque::new(),
+            outgoing: Vec::new(),
+            scans: [Scan::default(); SCANS_PER_TICK],
+            filled: 0,
+            settling_scans,
+            fault: false,
+            outputs: OFF,
+            hung_ms: None,
+            resets: Vec::new(),
+            stored: None,
+            halves: 0,
+        };
+        native.settle(more_at_first);
+        native.begin();
+        native
+    }
+
+    /// Converts and leaves out.
+    fn settle(&mut self, scans: usize) {
+        for _ in 0..scans {
+            let _unsettled = Channel::ALL.map(|channel| self.world.convert(channel));
+        }
+    }
+
+    /// The first scans of a tick.
+    fn begin(&mut self) {
+        self.settle(self.settling_scans);
+        self.filled = 0;
+        self.scan(SCANS_BEFORE_START);
+    }
+
+    fn scan(&mut self, count: usize) {
+        for scan in &mut self.scans[self.filled..self.filled + count] {
+            *scan = Channel::ALL.map(|channel| self.world.convert(channel));
+        }
+        self.filled += count;
+    }
+
+    fn tick(&mut self) {
+        self.serve((self.halves - 1) * HALF_NS + TICK_NS);
+        let samples = Samples::from_scans(&self.scans, self.fault);
+        self.fault = self.world.bridge_fault();
+        self.outputs = self.hand.step(0, &samples);
+        self.world.comparator_test(self.outputs.comparator_test);
+        if let Some(telemetry) = self.hand.telemetry(0) {
+            self.answer(&telemetry);
+        }
+    }
+
+    /// The logic as after power-up, with the bridge off, and with what the board has kept of a fault and the dose. It starts at once:
+    /// what the board needs for that is not here.
+    fn restart(&mut self, cause: ResetCause) {
+        let tripped = self.hand.tripped().copied();
+        let kept = match cause {
+            ResetCause::PowerOn => None,
+            ResetCause::WindowWatchdog => tripped.or(Some(Cause::alone(Fault::TickLost))),
+            _ => tripped,
+        };
+        let dose = match cause {
+            ResetCause::PowerOn => Dose::default(),
+            _ => Dose::from_word(self.hand.dose(0).to_word()),
+        };
+        let settings = Settings::default();
+        self.hand = Hand::after(kept, &settings);
+        self.hand.resume(0, dose);
+        self.desk = match &self.stored {
+            Some(stored) => {
+                self.hand.restore(stored);
+                Desk::restored(stored)
+            }
+            None => Desk::new(settings),
+        };
+        self.reader = LineReader::new();
+        (self.fault, self.outputs, self.hung_ms) = (false, OFF, None);
+        self.resets.push(DeviceReset {
+            t_s: (self.halves * HALF_NS) as f64 * 1e-9,
+            cause,
+        });
+    }
+
+    fn answer(&mut self, line: &dyn Display) {
+        self.outgoing.extend(format!("{line}\n").into_bytes());
+    }
+
+    /// Starts anew, with what is stored by then; how long that takes is left out.
+    fn obey(&mut self, order: Order) {
+        self.stored = decode(&self.desk.record(order)).ok().flatten();
+        self.restart(ResetCause::Software);
+    }
+
+    /// Lines whose last byte has arrived before the tick.
+    fn serve(&mut self, now_ns: u64) {
+        while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
+            if LineReader::is_end(byte) {
+                self.hand.hear();
+            }
+            let Some(line) = self.reader.push(byte) else {
+                continue;
+            };
+            let executed = line
+                .map_err(|error| Addressed::device(Error::from(error)))
+                .and_then(|line| {
+                    self.desk
+                        .answer(&line, |request| self.hand.execute(request))
+                });
+            if let Ok(Addressed {
+                said: Reply::Restart(order),
+                ..
+            }) = &executed
+            {
+                self.obey(*order);
+            }
+            match executed {
+                Ok(reply) => self.answer(&reply),
+                Err(error) => self.answer(&error),
+            }
+        }
+    }
+}
+
+impl Engine for Native {
+    type Stop = Infallible;
+
+    const NAME: &'static str = "native";
+
+    fn world(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    fn legs(&mut self) -> Legs {
+        match self.outputs.drive {
+            Drive::Off => Legs::default(),
+            Drive::On(duty) => {
+                let (a, b) = duty.legs(PWM_STEPS);
+                let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(PWM_STEPS));
+                Legs {
+                    a: leg(a),
+                    b: leg(b),
+                    enabled: true,
+                }
+            }
+        }
+    }
+
+    fn run_half_ms(&mut self) -> Result<(), Infallible> {
+        self.fault |= self.world.bridge_fault();
+        if self.halves.is_multiple_of(2) {
+            self.scan(SCANS_IN_FIRST_HALF);
+        } else {
+            self.scan(SCANS_PER_TICK - self.filled);
+            match &mut self.hung_ms {
+                None => self.tick(),
+                Some(WINDOW_MS) => self.restart(ResetCause::WindowWatchdog),
+                Some(ms) => *ms += 1,
+            }
+            self.begin();
+        }
+        self.halves += 1;
+        Ok(())
+    }
+
+    fn send(&mut self, bytes: &[u8]) {
+        let mut at = self.halves * HALF_NS;
+        if let Some((last, _)) = self.incoming.back() {
+            at = at.max(*last);
+        }
+        for &byte in bytes {
+            at += BYTE_NS;
+            self.incoming.push_back((at, byte));
+        }
+    }
+
+    fn receive(&mut self, into: &mut Vec<u8>) {
+        into.append(&mut self.outgoing);
+    }
+
+    /// Without a processor a hung core, and samples that do not come, mean that no tick runs until the window watchdog
+    /// resets the device; a reset starts the logic anew. All else has no meaning here.
+    fn inject(&mut self, fault: &MachineFault, _after_us: u32) -> Result<(), NotInjected> {
+        match fault {
+            MachineFault::HungCore | MachineFault::AdcStopped => self.hung_ms = Some(0),
+            MachineFault::DmaStopped { controller: 2, .. } => self.hung_ms = Some(0),
+            MachineFault::BrownOut => self.restart(ResetCause::BrownOut),
+            MachineFault::PowerCycle { .. } => self.restart(ResetCause::PowerOn),
+            MachineFault::ResetPin => self.restart(ResetCause::Pin),
+            _ => {
+                return Err(NotInjected::NotApplicable {
+                    fault: *fault,
+                    engine: Self::NAME,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn resets(&self) -> Vec<DeviceReset> {
+        self.resets.clone()
+    }
+
+    fn reset_cost(&mut self) {}
+
+    fn cost(&self) -> Option<Cost> {
+        None
+    }
+}

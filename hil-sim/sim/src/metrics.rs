@@ -1,0 +1,251 @@
+//! Figures of a run.
+
+use serde::Serialize;
+use thermal_plant::STEP_S;
+
+use crate::dose::cem43_min;
+use crate::run::Outcome;
+use crate::scene::Scene;
+
+/// Time after landing from which the largest error counts, s.
+const AFTER_S: f64 = 0.05;
+
+/// Errors during contact, mK.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Errors {
+    /// Largest magnitude from 50 ms after each landing on; null if no contact lasted that long.
+    pub max_after_50ms: Option<f64>,
+    /// Root mean square over all contact time.
+    pub rms: f64,
+}
+
+/// Extremes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Range {
+    /// Smallest.
+    pub min: f64,
+    /// Largest.
+    pub max: f64,
+}
+
+/// Mean and largest value; null if the engine cannot know.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct PerTick {
+    /// Mean.
+    pub mean: Option<f64>,
+    /// Largest.
+    pub max: Option<u64>,
+}
+
+/// Current through the module, A.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Current {
+    /// Largest magnitude.
+    pub max_abs: f64,
+    /// Root mean square.
+    pub rms: f64,
+}
+
+/// A fault that the device reported.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Tripped {
+    /// When, s.
+    pub t_s: f64,
+    /// What.
+    pub fault: String,
+}
+
+/// A reset of the device after its power-up.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Restarted {
+    /// When, s; negative while the scene settles.
+    pub t_s: f64,
+    /// Why: software, independent-watchdog, window-watchdog, brown-out, reset-pin or power-on.
+    pub cause: String,
+}
+
+/// The figures of a run, as `--json` prints them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figures {
+    /// Engine.
+    pub engine: &'static str,
+    /// Material.
+    pub material: String,
+    /// Control ticks of the scene.
+    pub ticks: usize,
+    /// Skin on the display minus skin on the real object.
+    pub skin_error_mk: Option<Errors>,
+    /// Display minus the exact set-point for a nominal finger.
+    pub display_error_mk: Option<Errors>,
+    /// Skin on the display, °C.
+    pub skin_c: Range,
+    /// Thermal dose of the skin on the display, equivalent minutes at 43 °C ([`crate::dose`]).
+    pub cem43_min: f64,
+    /// Display's surface under the finger, °C.
+    pub display_c: Range,
+    /// Current through the module, over the whole scene.
+    pub current_a: Current,
+    /// Electrical work that the module has taken up in the scene, J.
+    pub energy_j: f64,
+    /// Evaluations of `erfcx`.
+    pub kernel_evaluations: Option<u64>,
+    /// Instructions of the control tick, emulated.
+    pub instructions_per_tick: PerTick,
+    /// Cycles of the control tick, estimated.
+    pub cycles_per_tick: PerTick,
+    /// Part of the time in which the CPU does not sleep, estimated.
+    pub cpu_load: Option<f64>,
+    /// Most of the stack that was used, emulated.
+    pub stack_bytes: Option<u32>,
+    /// Simulated seconds per second.
+    pub real_time_factor: f64,
+    /// Faults that the device reported.
+    pub faults: Vec<Tripped>,
+    /// Resets of the device after its power-up.
+    pub resets: Vec<Restarted>,
+}
+
+/// Time since the last landing on an object that is there, for each row; `None` without contact.
+#[must_use]
+pub fn contact_times(scene: &Scene, outcome: &Outcome) -> Vec<Option<f64>> {
+    let mut landed_s = None;
+    let rows = outcome.trace.rows().iter();
+    rows.map(|row| {
+        if row.force_n > 0.0 && row.t_s >= scene.object.appears_t_s {
+            Some(row.t_s - *landed_s.get_or_insert(row.t_s))
+        } else {
+            landed_s = None;
+            None
+        }
+    })
+    .collect()
+}
+
+/// Computes the figures.
+#[must_use]
+pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
+    let rows = outcome.trace.rows();
+    let contacts = contact_times(scene, outcome);
+    let touching = || {
+        rows.iter()
+            .zip(&contacts)
+            .filter_map(|(row, since)| Some((row, (*since)?)))
+    };
+    let display = touching().map(|(row, since_s)| {
+        (
+            since_s,
+            row.display_c - scene.exact_setpoint_c(since_s, row.force_n),
+        )
+    });
+    let evaluations = || {
+        rows.iter()
+            .filter_map(|row| row.device.as_ref())
+            .map(|device| device.evaluations)
+    };
+    let skins = || rows.iter().map(|row| row.skin_c);
+    Figures {
+        engine: outcome.engine,
+        material: scene.object.name.clone(),
+        ticks: rows.len().saturating_sub(1),
+        skin_error_mk: errors(skin_errors(scene, outcome)),
+        display_error_mk: errors(display),
+        skin_c: range(skins()),
+        // The last row begins no step.
+        cem43_min: cem43_min(skins().take(rows.len().saturating_sub(1)), STEP_S),
+        display_c: range(rows.iter().map(|row| row.display_c)),
+        current_a: current(outcome),
+        energy_j: outcome.electrical_j,
+        kernel_evaluations: evaluations()
+            .next()
+            .zip(evaluations().next_back())
+            .map(|(a, b)| b.saturating_sub(a)),
+        instructions_per_tick: PerTick {
+            mean: outcome.cost.map(|cost| cost.instructions_mean),
+            max: outcome.cost.map(|cost| cost.instructions_max),
+        },
+        cycles_per_tick: PerTick {
+            mean: outcome.cost.map(|cost| cost.cycles_mean),
+            max: outcome.cost.map(|cost| cost.cycles_max),
+        },
+        cpu_load: outcome.cost.map(|cost| cost.load),
+        stack_bytes: outcome.cost.and_then(|cost| cost.stack_bytes),
+        real_time_factor: outcome.real_time_factor,
+        faults: faults(outcome),
+        resets: resets(outcome),
+    }
+}
+
+/// Time since the last landing, s, and error of the skin, K, at every row in contact.
+pub fn skin_errors(scene: &Scene, outcome: &Outcome) -> impl Iterator<Item = (f64, f64)> {
+    let rows = outcome
+        .trace
+        .rows()
+        .iter()
+        .zip(contact_times(scene, outcome));
+    rows.filter_map(|(row, since_s)| Some((since_s?, row.skin_c - row.skin_real_c)))
+}
+
+fn range(values: impl Iterator<Item = f64>) -> Range {
+    let none = Range {
+        min: f64::INFINITY,
+        max: f64::NEG_INFINITY,
+    };
+    values.fold(none, |range, value| Range {
+        min: range.min.min(value),
+        max: range.max.max(value),
+    })
+}
+
+fn current(outcome: &Outcome) -> Current {
+    let amperes = || outcome.trace.rows().iter().map(|row| row.current_a);
+    let squares: f64 = amperes().map(|ampere| ampere * ampere).sum();
+    Current {
+        max_abs: amperes().fold(0.0, |most, ampere| ampere.abs().max(most)),
+        rms: (squares / outcome.trace.rows().len().max(1) as f64).sqrt(),
+    }
+}
+
+/// Errors in mK from time since landing in s and error in K; `None` without contact.
+fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<Errors> {
+    let (mut count, mut squares, mut max_k) = (0u32, 0.0, None::<f64>);
+    for (since_s, error_k) in samples {
+        count += 1;
+        squares += error_k * error_k;
+        if since_s >= AFTER_S {
+            max_k = Some(max_k.unwrap_or(0.0).max(error_k.abs()));
+        }
+    }
+    let rms = (squares / f64::from(count)).sqrt() * 1e3;
+    (count > 0).then_some(Errors {
+        max_after_50ms: max_k.map(|error_k| error_k * 1e3),
+        rms,
+    })
+}
+
+fn resets(outcome: &Outcome) -> Vec<Restarted> {
+    let resets = outcome.resets.iter();
+    resets
+        .map(|reset| Restarted {
+            t_s: reset.t_s,
+            cause: reset.cause.to_string(),
+        })
+        .collect()
+}
+
+/// Every change into a tripped state.
+fn faults(outcome: &Outcome) -> Vec<Tripped> {
+    let mut faults = Vec::new();
+    let mut tripped = false;
+    for row in outcome.trace.rows() {
+        let Some(device) = &row.device else { continue };
+        let now = device.state == "tripped";
+        if now && !tripped {
+            faults.push(Tripped {
+                t_s: row.t_s,
+                fault: device.remark.clone().unwrap_or_default(),
+            });
+        }
+        tripped = now;
+    }
+    faults
+}

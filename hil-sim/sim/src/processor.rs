@@ -1,0 +1,314 @@
+//! The microcontroller as scenes and runs speak of it: its faults, what resets it, its core registers. No engine is
+//! needed to name them.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// What reset the chip last (RCC_CSR).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ResetCause {
+    /// Supply came up.
+    PowerOn,
+    /// SYSRESETREQ written to AIRCR.
+    Software,
+    /// The independent watchdog ran out.
+    IndependentWatchdog,
+    /// The window watchdog ran out, or was refreshed outside of its window.
+    WindowWatchdog,
+    /// The supply fell below the brown-out threshold, but not so far that the RAM forgot.
+    BrownOut,
+    /// The reset pin was pulled low.
+    Pin,
+}
+
+impl fmt::Display for ResetCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            ResetCause::PowerOn => "power-on",
+            ResetCause::Software => "software",
+            ResetCause::IndependentWatchdog => "independent-watchdog",
+            ResetCause::WindowWatchdog => "window-watchdog",
+            ResetCause::BrownOut => "brown-out",
+            ResetCause::Pin => "reset-pin",
+        })
+    }
+}
+
+/// A register of the CPU or of its floating-point unit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CoreRegister {
+    /// R0 to R12.
+    R(u8),
+    /// The stack pointer in use.
+    Sp,
+    /// Link register.
+    Lr,
+    /// Address of the next instruction.
+    Pc,
+    /// Flags: N, Z, C, V, Q (31 to 27) and GE (19 to 16).
+    Psr,
+    /// S0 to S31.
+    S(u8),
+    /// Floating-point status and control.
+    Fpscr,
+}
+
+impl fmt::Display for CoreRegister {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::R(n) => write!(f, "r{n}"),
+            Self::Sp => f.write_str("sp"),
+            Self::Lr => f.write_str("lr"),
+            Self::Pc => f.write_str("pc"),
+            Self::Psr => f.write_str("psr"),
+            Self::S(n) => write!(f, "s{n}"),
+            Self::Fpscr => f.write_str("fpscr"),
+        }
+    }
+}
+
+impl CoreRegister {
+    /// Bits that exist and can flip: the two lowest of SP and the lowest of PC are always 0; a flip of the execution
+    /// state (T, IT) is not modelled.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        match self {
+            Self::Sp => !3,
+            Self::Pc => !1,
+            Self::Psr => 0xf80f_0000,
+            Self::Fpscr => 0xf7c0_009f,
+            Self::R(13..) | Self::S(32..) => 0,
+            _ => u32::MAX,
+        }
+    }
+}
+
+/// A fault of the microcontroller.
+///
+/// Its text, both ways: `ram-bit=0x20000010.3`, `core-bit=r4.7` (r0 to r12, sp, lr, pc, psr, s0 to s31, fpscr),
+/// `register-bit=0x40010044.15`, `hung-core`, `hse-stopped`, `adc-stopped`, `dma-stopped=2.0` (controller, stream),
+/// `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`, `software-reset`, `stack-overflow`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MachineFault {
+    /// A bit (0 to 7) of a byte of the RAM flips.
+    RamBit {
+        /// Address of the byte.
+        address: u32,
+        /// Bit.
+        bit: u8,
+    },
+    /// A bit of a core register flips.
+    CoreBit {
+        /// Register.
+        register: CoreRegister,
+        /// Bit.
+        bit: u8,
+    },
+    /// A bit of a device's register flips.
+    RegisterBit {
+        /// Address of the word.
+        address: u32,
+        /// Bit.
+        bit: u8,
+    },
+    /// The core executes nothing until a reset.
+    HungCore,
+    /// The external oscillator stops for good.
+    HseStopped,
+    /// The converter ends no conversion until a reset.
+    AdcStopped,
+    /// A bus error ends a DMA stream.
+    DmaStopped {
+        /// 1 or 2.
+        controller: u8,
+        /// 0 to 7.
+        stream: u8,
+    },
+    /// The supply dips; the RAM keeps its contents.
+    BrownOut,
+    /// The supply goes until the RAM has forgotten.
+    PowerCycle {
+        /// Of the noise that the RAM holds afterwards.
+        seed: u64,
+    },
+    /// The reset pin is pulled.
+    ResetPin,
+    /// The program asks for a reset.
+    SoftwareReset,
+    /// The stack is at its end: what is pushed next leaves it.
+    StackOverflow,
+}
+
+/// A fault of the processor at a time of a scene, to the microsecond; at a whole millisecond before the plant's step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Injection {
+    /// Time, s; negative while the scene settles.
+    pub t_s: f64,
+    /// What happens.
+    pub fault: MachineFault,
+}
+
+/// Why a fault was not injected.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum NotInjected {
+    /// The engine has no processor whose part this is.
+    #[error(
+        "{fault} means nothing to engine {engine}, which has no processor; engine image has one"
+    )]
+    NotApplicable {
+        /// Fault.
+        fault: MachineFault,
+        /// Name of the engine.
+        engine: &'static str,
+    },
+    /// The machine refused it.
+    #[error("{fault} was not injected: {reason}")]
+    Refused {
+        /// Fault.
+        fault: MachineFault,
+        /// Why, as the machine says it.
+        reason: String,
+    },
+}
+
+impl fmt::Display for MachineFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::RamBit { address, bit } => write!(f, "ram-bit={address:#010x}.{bit}"),
+            Self::CoreBit { register, bit } => write!(f, "core-bit={register}.{bit}"),
+            Self::RegisterBit { address, bit } => write!(f, "register-bit={address:#010x}.{bit}"),
+            Self::HungCore => f.write_str("hung-core"),
+            Self::HseStopped => f.write_str("hse-stopped"),
+            Self::AdcStopped => f.write_str("adc-stopped"),
+            Self::DmaStopped { controller, stream } => {
+                write!(f, "dma-stopped={controller}.{stream}")
+            }
+            Self::BrownOut => f.write_str("brown-out"),
+            Self::PowerCycle { seed } => write!(f, "power-cycle={seed}"),
+            Self::ResetPin => f.write_str("reset-pin"),
+            Self::SoftwareReset => f.write_str("software-reset"),
+            Self::StackOverflow => f.write_str("stack-overflow"),
+        }
+    }
+}
+
+/// Why a text is no fault of the machine.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "`{0}` is no fault of the machine; allowed are ram-bit=ADDRESS.BIT, core-bit=REGISTER.BIT, \
+     register-bit=ADDRESS.BIT, hung-core, hse-stopped, adc-stopped, dma-stopped=CONTROLLER.STREAM, brown-out, \
+     power-cycle=SEED, reset-pin, software-reset, stack-overflow"
+)]
+pub struct NoMachineFault(String);
+
+impl FromStr for MachineFault {
+    type Err = NoMachineFault;
+
+    fn from_str(text: &str) -> Result<Self, NoMachineFault> {
+        parse(text).ok_or_else(|| NoMachineFault(text.to_owned()))
+    }
+}
+
+fn parse(text: &str) -> Option<MachineFault> {
+    let (kind, value) = text.split_once('=').unwrap_or((text, ""));
+    let pair = || value.split_once('.');
+    let bit = || pair()?.1.parse().ok();
+    let address = || number(pair()?.0);
+    Some(match kind {
+        "ram-bit" => MachineFault::RamBit {
+            address: address()?,
+            bit: bit()?,
+        },
+        "register-bit" => MachineFault::RegisterBit {
+            address: address()?,
+            bit: bit()?,
+        },
+        "core-bit" => MachineFault::CoreBit {
+            register: register(pair()?.0)?,
+            bit: bit()?,
+        },
+        "dma-stopped" => MachineFault::DmaStopped {
+            controller: pair()?.0.parse().ok()?,
+            stream: bit()?,
+        },
+        "power-cycle" => MachineFault::PowerCycle {
+            seed: value.parse().ok()?,
+        },
+        _ if !value.is_empty() => return None,
+        "hung-core" => MachineFault::HungCore,
+        "hse-stopped" => MachineFault::HseStopped,
+        "adc-stopped" => MachineFault::AdcStopped,
+        "brown-out" => MachineFault::BrownOut,
+        "reset-pin" => MachineFault::ResetPin,
+        "software-reset" => MachineFault::SoftwareReset,
+        "stack-overflow" => MachineFault::StackOverflow,
+        _ => return None,
+    })
+}
+
+fn number(text: &str) -> Option<u32> {
+    match text.strip_prefix("0x") {
+        Some(hex) => u32::from_str_radix(hex, 16).ok(),
+        None => text.parse().ok(),
+    }
+}
+
+fn register(text: &str) -> Option<CoreRegister> {
+    let index = |prefix| text.strip_prefix(prefix)?.parse().ok();
+    Some(match text {
+        "sp" => CoreRegister::Sp,
+        "lr" => CoreRegister::Lr,
+        "pc" => CoreRegister::Pc,
+        "psr" => CoreRegister::Psr,
+        "fpscr" => CoreRegister::Fpscr,
+        _ => match (index('r'), index('s')) {
+            (Some(n), _) => CoreRegister::R(n),
+            (_, Some(n)) => CoreRegister::S(n),
+            _ => return None,
+        },
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_lead_back_to_their_faults() {
+        for text in [
+            "ram-bit=0x20000010.3",
+            "core-bit=r4.7",
+            "core-bit=s31.31",
+            "core-bit=psr.30",
+            "register-bit=0x40010044.15",
+            "hung-core",
+            "hse-stopped",
+            "adc-stopped",
+            "dma-stopped=2.0",
+            "brown-out",
+            "power-cycle=18446744073709551615",
+            "reset-pin",
+            "software-reset",
+            "stack-overflow",
+        ] {
+            let fault: MachineFault = text.parse().expect("a fault");
+            assert_eq!(fault.to_string(), text);
+        }
+    }
+
+    #[test]
+    fn other_texts_are_refused_with_what_is_allowed() {
+        for text in [
+            "",
+            "hung-core=1",
+            "ram-bit=3",
+            "core-bit=x1.2",
+            "dma-stopped=2",
+            "power-cycle",
+        ] {
+            let error = text.parse::<MachineFault>().expect_err("no fault");
+            assert!(error.to_string().contains(&format!("`{text}`")), "{error}");
+            assert!(error.to_string().contains("reset-pin"), "{error}");
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! What a person reads of a run: a table, plots, a page.
+
+mod plots;
+mod table;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use thermal_charts::{document, element, escape};
+
+use crate::metrics::Figures;
+use crate::run::Outcome;
+use crate::scene::Scene;
+
+pub use table::table;
+
+/// Name of the page.
+pub const HTML: &str = "report.html";
+/// Name of the plots by themselves.
+pub const SVG: &str = "plots.svg";
+
+/// Writes the page, which needs no other file, and the plots by themselves.
+///
+/// # Errors
+/// A file cannot be written.
+pub fn write(
+    folder: &Path,
+    scene: &Scene,
+    outcome: &Outcome,
+    figures: &Figures,
+) -> anyhow::Result<()> {
+    let plots = plots::draw(scene, outcome)?;
+    thermal_charts::write(folder, HTML, page(scene, outcome, figures, &plots))?;
+    thermal_charts::write(folder, SVG, plots)
+}
+
+fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> String {
+    let title = format!("{}, engine {}", figures.material, figures.engine);
+    let mut rows = String::new();
+    for (name, value) in table::rows(figures) {
+        // Writing to a String cannot fail.
+        let _ = write!(rows, "<tr><th>{name}</th><td>{}</td></tr>", escape(&value));
+    }
+    let mut answers = String::new();
+    for (t_s, line) in &outcome.answers {
+        let _ = write!(
+            answers,
+            "<tr><td>{t_s:.3}</td><td><code>{}</code></td></tr>",
+            escape(line)
+        );
+    }
+    let body = format!(
+        "<p>Skin {} °C, room {} °C, object {} °C. Everything here is simulated; costs are emulated, cycles \
+         estimated.</p>{}<h2>Figures</h2><table>{rows}</table><h2>Answers of the device</h2>\
+         <table><tr><th>t / s</th><th>line</th></tr>{answers}</table>",
+        scene.skin_c,
+        scene.room_c,
+        scene.object_c(),
+        element(plots),
+    );
+    document(&title, "", &body)
+}

@@ -1,0 +1,191 @@
+//! Scenes: what happens to the finger, the object and the device.
+
+mod check;
+mod depth;
+mod fault;
+mod file;
+mod infrared;
+mod node;
+mod object;
+mod plant;
+mod source;
+
+use std::path::Path;
+
+use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
+use contact_model::pressure::pressure_pa;
+use contact_model::reference::{Contact, interface_temperature};
+use thermal_display::control::Law;
+use thermal_display::render::Mode;
+use thermal_plant::object::ObjectConfig;
+use thermal_plant::slab::Back;
+use thermal_plant::{Params, PlantConfig};
+
+use crate::processor::Injection;
+
+pub use fault::{Broken, DRIFT_K_S, Fault, FaultKind, ProcessorKey, ProcessorKind, Sensor, Value};
+pub use infrared::Infrared;
+pub(crate) use object::custom_line;
+pub use source::SceneError;
+
+/// The names of the thesis's materials, for messages.
+#[must_use]
+pub fn known_materials() -> String {
+    MATERIALS.map(|(name, _)| name).join(", ")
+}
+
+/// A scene that has passed every check.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// Length, s.
+    pub duration_s: f64,
+    /// Time before zero in which the device is switched on, armed and settles, s.
+    pub settle_s: f64,
+    /// Skin before contact, °C.
+    pub skin_c: f64,
+    /// Room, °C.
+    pub room_c: f64,
+    /// Of every random draw.
+    pub seed: u64,
+    /// The device was calibrated and tuned before the scene.
+    pub commissioned: bool,
+    /// Model that the device is told to use.
+    pub mode: Mode,
+    /// Law that the device is told to use; its own choice if none.
+    pub law: Option<Law>,
+    /// What the finger should feel.
+    pub object: Object,
+    /// What finger, display and electronics are like.
+    pub params: Params,
+    /// The camera that watches the finger on the real object, if there is one.
+    pub infrared: Option<Infrared>,
+    /// Force over time, in order of time.
+    pub forces: Vec<Force>,
+    /// What breaks.
+    pub faults: Vec<Fault>,
+    /// What happens to the processor.
+    pub injections: Vec<Injection>,
+    /// Lines that the host sends.
+    pub host: Vec<HostLine>,
+}
+
+/// The real object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// Name of the material, or `custom`.
+    pub name: String,
+    /// Its properties.
+    pub material: Material,
+    /// Temperature before contact, °C, told to the device; the room's if absent.
+    pub start_c: Option<f64>,
+    /// Time from which it is there, s.
+    pub appears_t_s: f64,
+    /// Thickness, m; infinite for a half-space. The device does not know of it.
+    pub thickness_m: f64,
+    /// What lies behind it.
+    pub back: Back,
+}
+
+/// A force that is held from a time on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Force {
+    /// From when, s.
+    pub t_s: f64,
+    /// How much, N.
+    pub force_n: f64,
+    /// How long it takes to get there from the force before, linearly, s.
+    pub ramp_s: f64,
+}
+
+/// A line that the host sends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HostLine {
+    /// When, s.
+    pub t_s: f64,
+    /// The line, without its end.
+    pub line: String,
+}
+
+impl Scene {
+    /// Reads and checks a scene.
+    ///
+    /// # Errors
+    /// The first thing that is wrong, with file and line, and what is allowed.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let text =
+            std::fs::read_to_string(path).map_err(|error| SceneError::unreadable(path, &error))?;
+        Self::parse(&text, path)
+    }
+
+    /// Checks a scene's text; `path` is for messages.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn parse(text: &str, path: &Path) -> Result<Self, SceneError> {
+        check::scene(text, path)
+    }
+
+    /// Temperature of the object before contact, °C.
+    #[must_use]
+    pub fn object_c(&self) -> f64 {
+        self.object.start_c.unwrap_or(self.room_c)
+    }
+
+    /// The exact set-point for a nominal finger, °C: its temperature before contact known, `since_s` after it
+    /// landed with `force_n`. At landing, and so for the preset, the force does not matter.
+    #[must_use]
+    pub fn exact_setpoint_c(&self, since_s: f64, force_n: f64) -> f64 {
+        let object = &self.object.material;
+        match self.mode {
+            Mode::SemiInfinite => {
+                interface_temperature(&SKIN, self.skin_c, object, self.object_c())
+            }
+            Mode::ContactResistance => {
+                let (finger, object) = ((&SKIN, self.skin_c), (object, self.object_c()));
+                Contact::new(finger, object, &REFERENCE_DISPLAY, pressure_pa(force_n))
+                    .at(since_s)
+                    .display_c
+            }
+        }
+    }
+
+    /// The plant of the scene.
+    #[must_use]
+    pub fn plant_config(&self) -> PlantConfig {
+        PlantConfig {
+            skin_c: self.skin_c,
+            room_c: self.room_c,
+            object: ObjectConfig {
+                material: self.object.material,
+                start_c: self.object_c(),
+                thickness_m: self.object.thickness_m,
+                back: self.object.back,
+            },
+            start_s: -self.settle_s,
+            appears_s: self.object.appears_t_s,
+            duration_s: self.duration_s,
+            seed: self.seed,
+            params: self.params.clone(),
+        }
+    }
+
+    /// Milliseconds before time zero.
+    pub(crate) fn settle_ms(&self) -> u64 {
+        (self.settle_s * 1e3).round() as u64
+    }
+
+    /// Force at a time, N.
+    #[must_use]
+    pub fn force_n(&self, t_s: f64) -> f64 {
+        let mut held_n = 0.0;
+        for force in self.forces.iter().take_while(|force| force.t_s <= t_s) {
+            let since_s = t_s - force.t_s;
+            held_n = if since_s < force.ramp_s {
+                held_n + (force.force_n - held_n) * since_s / force.ramp_s
+            } else {
+                force.force_n
+            };
+        }
+        held_n
+    }
+}

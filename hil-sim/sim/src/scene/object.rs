@@ -1,0 +1,187 @@
+//! The object of a scene.
+
+use std::ops::Range;
+
+use contact_model::material::{Material, Surface, find};
+use thermal_display::protocol::Command;
+use thermal_display::settings::Settings;
+use thermal_plant::object::ObjectConfig;
+use thermal_plant::slab::Back;
+use toml::Spanned;
+
+use super::file::{self, Number};
+use super::source::{SceneError, Source};
+use super::{Object, known_materials};
+
+/// Checks the object's table.
+pub(super) fn object(
+    source: &Source<'_>,
+    file: &Spanned<file::Object>,
+    duration_s: f64,
+    room_c: f64,
+) -> Result<Object, SceneError> {
+    let (object, span) = (file.get_ref(), &file.span());
+    let properties = [
+        ("k_w_mk", &object.k_w_mk),
+        ("rho_kg_m3", &object.rho_kg_m3),
+        ("c_j_kgk", &object.c_j_kgk),
+        ("rq_um", &object.rq_um),
+        ("slope_rad", &object.slope_rad),
+    ];
+    let (name, material) = if let Some(name) = &object.material {
+        if let Some((key, number)) = properties
+            .iter()
+            .find_map(|(key, number)| Some((key, number.as_ref()?)))
+        {
+            let problem = format!(
+                "object.{key} beside object.material; allowed is either a name or properties"
+            );
+            return Err(source.error(Some(number.span()), problem));
+        }
+        let Some(material) = find(name.get_ref()) else {
+            let problem = format!(
+                "object.material = {:?}; known are {}",
+                name.get_ref(),
+                known_materials()
+            );
+            return Err(source.error(Some(name.span()), problem));
+        };
+        (name.get_ref().clone(), *material)
+    } else {
+        ("custom".into(), custom(source, properties, span)?)
+    };
+    let start_c = match &object.start_c {
+        Some(number) => Some(source.within("object.start_c", number, -20.0, 60.0)?),
+        None => None,
+    };
+    let appears_t_s = match &object.appears_t_s {
+        Some(number) => source.time("object.appears_t_s", number, duration_s)?,
+        None => 0.0,
+    };
+    let (thickness_m, back) = shape(source, object, room_c, start_c.unwrap_or(room_c))?;
+    Ok(Object {
+        name,
+        material,
+        start_c,
+        appears_t_s,
+        thickness_m,
+        back,
+    })
+}
+
+/// Thickness and back; a half-space has no back.
+fn shape(
+    source: &Source<'_>,
+    object: &file::Object,
+    room_c: f64,
+    start_c: f64,
+) -> Result<(f64, Back), SceneError> {
+    let needless = |key: &str, span, needed: &str| {
+        let problem = format!("object.{key} has no meaning here; allowed is {key} beside {needed}");
+        Err(source.error(Some(span), problem))
+    };
+    let thickness_m = match &object.thickness_m {
+        Some(number) => {
+            source.within("object.thickness_m", number, ObjectConfig::THINNEST_M, 10.0)?
+        }
+        None => f64::INFINITY,
+    };
+    if let (None, Some(back)) = (&object.thickness_m, &object.back) {
+        return needless("back", back.span(), "object.thickness_m");
+    }
+    let kind = object
+        .back
+        .as_ref()
+        .map_or(file::Back::Insulated, |back| *back.get_ref());
+    if let (file::Back::Insulated, Some(number)) = (kind, &object.back_c) {
+        return needless("back_c", number.span(), "back = \"held\" or \"film\"");
+    }
+    let back_c = |otherwise_c: f64| match &object.back_c {
+        Some(number) => source.within("object.back_c", number, -20.0, 60.0),
+        None => Ok(otherwise_c),
+    };
+    let film = match (kind, &object.back_film_w_m2k) {
+        (file::Back::Film, Some(number)) => {
+            Some(source.within("object.back_film_w_m2k", number, 0.1, 1e6)?)
+        }
+        (file::Back::Film, None) => {
+            let span = object.back.as_ref().map(Spanned::span);
+            let problem =
+                "object.back = \"film\" without object.back_film_w_m2k; allowed is 0.1 to 1000000";
+            return Err(source.error(span, problem));
+        }
+        (_, Some(number)) => return needless("back_film_w_m2k", number.span(), "back = \"film\""),
+        (_, None) => None,
+    };
+    let back = match (kind, film) {
+        (file::Back::Insulated, _) => Back::Insulated,
+        (_, Some(film_w_m2k)) => Back::Film {
+            film_w_m2k,
+            temperature_c: back_c(room_c)?,
+        },
+        (_, None) => Back::Film {
+            film_w_m2k: f64::INFINITY,
+            temperature_c: back_c(start_c)?,
+        },
+    };
+    Ok((thickness_m, back))
+}
+
+/// A material given by its properties; the ranges are those that the device itself accepts.
+fn custom(
+    source: &Source<'_>,
+    properties: [(&str, &Option<Number>); 5],
+    span: &Range<usize>,
+) -> Result<Material, SceneError> {
+    let mut values = [0.0; 5];
+    for (value, (key, number)) in values.iter_mut().zip(properties) {
+        let Some(number) = number else {
+            let problem = format!(
+                "object.{key} is missing; an object has a material or all of its properties"
+            );
+            return Err(source.error(Some(span.clone()), problem));
+        };
+        *value = *number.get_ref();
+    }
+    let [
+        conductivity_w_mk,
+        density_kg_m3,
+        specific_heat_j_kgk,
+        roughness_um,
+        slope_rad,
+    ] = values;
+    let surface = Surface {
+        conductivity_w_mk,
+        roughness_um,
+        slope_rad,
+    };
+    let material = Material {
+        surface,
+        density_kg_m3,
+        specific_heat_j_kgk,
+    };
+    match Command::parse(&custom_line(&material), &Settings::default()) {
+        Ok(_) => Ok(material),
+        Err(refused) => {
+            let problem = format!("object: the device would answer {:?}", refused.to_string());
+            Err(source.error(Some(span.clone()), problem))
+        }
+    }
+}
+
+/// The line that tells the device of a material by its properties.
+pub(crate) fn custom_line(material: &Material) -> String {
+    let Surface {
+        conductivity_w_mk,
+        roughness_um,
+        slope_rad,
+    } = material.surface;
+    let (density, heat) = (material.density_kg_m3, material.specific_heat_j_kgk);
+    // Nine decimals are more than the device keeps, and five such numbers fit its line.
+    let numbers = [conductivity_w_mk, density, heat, roughness_um, slope_rad]
+        .map(|number| format!("{number:.9}"));
+    let short = numbers
+        .each_ref()
+        .map(|number| number.trim_end_matches('0').trim_end_matches('.'));
+    format!("material custom {}", short.join(" "))
+}

@@ -1,0 +1,92 @@
+//! Where a message about a scene points.
+
+use std::fmt;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use thermal_plant::Params;
+use thermal_plant::parameters;
+
+use super::file::Number;
+
+/// What is wrong with a scene, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneError {
+    file: PathBuf,
+    line: Option<usize>,
+    problem: String,
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file.display())?;
+        if let Some(line) = self.line {
+            write!(f, ":{line}")?;
+        }
+        write!(f, ": {}", self.problem)
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+impl SceneError {
+    pub(super) fn unreadable(file: &Path, error: &std::io::Error) -> Self {
+        Self {
+            file: file.into(),
+            line: None,
+            problem: format!("cannot be read: {error}"),
+        }
+    }
+}
+
+/// A scene's text and the file that it is from.
+pub(super) struct Source<'a> {
+    pub file: &'a Path,
+    pub text: &'a str,
+}
+
+impl Source<'_> {
+    pub fn error(&self, span: Option<Range<usize>>, problem: impl Into<String>) -> SceneError {
+        let line = span.map(|span| {
+            let before = self.text.as_bytes().iter().take(span.start);
+            before.filter(|byte| **byte == b'\n').count() + 1
+        });
+        SceneError {
+            file: self.file.into(),
+            line,
+            problem: problem.into(),
+        }
+    }
+
+    /// The number, if it lies within the range.
+    pub fn within(
+        &self,
+        key: &str,
+        number: &Number,
+        least: f64,
+        most: f64,
+    ) -> Result<f64, SceneError> {
+        let value = *number.get_ref();
+        if (least..=most).contains(&value) {
+            return Ok(value);
+        }
+        let problem = format!("{key} = {value}; allowed is {least} to {most}");
+        Err(self.error(Some(number.span()), problem))
+    }
+
+    pub fn time(&self, key: &str, number: &Number, duration_s: f64) -> Result<f64, SceneError> {
+        self.within(key, number, 0.0, duration_s)
+    }
+
+    /// Sets a parameter of the box.
+    pub fn set(
+        &self,
+        params: &mut Params,
+        key: &str,
+        value: f64,
+        span: Range<usize>,
+    ) -> Result<(), SceneError> {
+        parameters::set(params, key, value)
+            .map_err(|error| self.error(Some(span), error.to_string()))
+    }
+}

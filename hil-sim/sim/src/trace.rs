@@ -1,0 +1,189 @@
+//! One row a millisecond.
+
+use std::collections::VecDeque;
+use std::io;
+use std::path::Path;
+
+use thermal_plant::infrared::Reading;
+use thermal_plant::sensors::Taken;
+use thermal_plant::{Finger, Plant, RECEPTORS_M};
+
+use crate::telemetry::Telemetry;
+
+/// Rows that wait for their telemetry, and telemetry that waits for its row.
+const WAITING: usize = 20;
+
+/// The state at one time: of the plant, and what the device says of its last tick.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// Time, s.
+    pub t_s: f64,
+    /// Force of the finger, N.
+    pub force_n: f64,
+    /// Surface of the display, °C.
+    pub display_c: f64,
+    /// Surface of the skin on it, °C.
+    pub skin_c: f64,
+    /// Surface of the same skin on the real object, °C.
+    pub skin_real_c: f64,
+    /// Surface of the real object, °C.
+    pub object_real_c: f64,
+    /// The skin on the display at the depths of [`RECEPTORS_M`], of cold and of warmth, °C; none where it is thinner.
+    pub receptors_c: [Option<f64>; RECEPTORS_M.len()],
+    /// The same on the real object, °C.
+    pub receptors_real_c: [Option<f64>; RECEPTORS_M.len()],
+    /// Sink, °C.
+    pub sink_c: f64,
+    /// Current through the module, A.
+    pub current_a: f64,
+    /// What the device's sensors show, before its converter.
+    pub taken: Taken,
+    /// The fault line is low.
+    pub fault_line: bool,
+    /// What the camera says of the skin on the real object, in its frames.
+    pub camera: Option<Reading>,
+    /// What the device said.
+    pub device: Option<Telemetry>,
+}
+
+impl Row {
+    /// The plant now; the device has not spoken yet.
+    #[must_use]
+    pub fn now(t_s: f64, plant: &Plant, camera: Option<Reading>) -> Self {
+        Self {
+            t_s,
+            force_n: plant.force_n(),
+            display_c: plant.display_c(),
+            skin_c: plant.skin_c(),
+            skin_real_c: plant.skin_real_c(),
+            object_real_c: plant.object_c(),
+            receptors_c: plant.receptors_c(Finger::OnDisplay),
+            receptors_real_c: plant.receptors_c(Finger::OnObject),
+            sink_c: plant.sink_c(),
+            current_a: plant.current_a(),
+            taken: plant.taken(),
+            fault_line: plant.bridge_fault(),
+            camera,
+            device: None,
+        }
+    }
+}
+
+/// Rows of a run, each joined with the telemetry of the tick before it.
+#[derive(Clone, Debug, Default)]
+pub struct Trace {
+    rows: Vec<Row>,
+    /// Tick before each of the last rows, and its index.
+    waiting: VecDeque<(u64, usize)>,
+    early: VecDeque<Telemetry>,
+}
+
+impl Trace {
+    /// Adds a row; `tick` is the number of the device's last tick before it.
+    pub fn push(&mut self, tick: u64, mut row: Row) {
+        if let Some(index) = self
+            .early
+            .iter()
+            .position(|telemetry| telemetry.tick == tick)
+        {
+            row.device = self.early.remove(index);
+        } else {
+            keep(&mut self.waiting, (tick, self.rows.len()));
+        }
+        self.rows.push(row);
+    }
+
+    /// Gives the telemetry to its row, which may be still to come.
+    pub fn join(&mut self, telemetry: Telemetry) {
+        match self
+            .waiting
+            .iter()
+            .find(|(tick, _)| *tick == telemetry.tick)
+        {
+            Some((_, index)) => self.rows[*index].device = Some(telemetry),
+            None => keep(&mut self.early, telemetry),
+        }
+    }
+
+    /// The rows.
+    #[must_use]
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Writes `trace.csv`; a cell is empty where the device said nothing, or the camera between its frames.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        let watched = self.rows.iter().any(|row| row.camera.is_some());
+        let columns = || {
+            COLUMNS
+                .iter()
+                .chain(CAMERA_COLUMNS.iter().filter(|_| watched))
+        };
+        let mut csv = csv::Writer::from_path(path)?;
+        csv.write_record(columns().map(|(name, _)| name))?;
+        for row in &self.rows {
+            csv.write_record(columns().map(|(_, cell)| cell(row)))?;
+        }
+        csv.flush()
+    }
+}
+
+fn keep<T>(last: &mut VecDeque<T>, new: T) {
+    if last.len() == WAITING {
+        last.pop_front();
+    }
+    last.push_back(new);
+}
+
+/// A column of the file: its name and the text of its cells.
+type Column = (&'static str, fn(&Row) -> String);
+
+const COLUMNS: [Column; 17] = [
+    ("t_s", |row| format!("{:.3}", row.t_s)),
+    ("force_n", |row| format!("{:.6}", row.force_n)),
+    ("setpoint_c", |row| said(row, |device| device.setpoint_c, 5)),
+    ("display_c", |row| format!("{:.6}", row.display_c)),
+    ("sensor_c", |row| said(row, |device| device.sensor_c, 4)),
+    ("skin_c", |row| format!("{:.6}", row.skin_c)),
+    ("skin_real_c", |row| format!("{:.6}", row.skin_real_c)),
+    ("sink_c", |row| format!("{:.6}", row.sink_c)),
+    ("current_a", |row| format!("{:.6}", row.current_a)),
+    ("state", |row| {
+        row.device
+            .as_ref()
+            .map_or("", |device| &device.state)
+            .into()
+    }),
+    ("demand_a", |row| said(row, |device| device.demand_a, 3)),
+    ("object_real_c", |row| format!("{:.6}", row.object_real_c)),
+    ("remark", |row| {
+        let device = row.device.as_ref();
+        let remark = device.and_then(|device| device.remark.as_deref());
+        remark.unwrap_or("").into()
+    }),
+    ("skin_cold_c", |row| known(row.receptors_c[0], 6)),
+    ("skin_warm_c", |row| known(row.receptors_c[1], 6)),
+    ("skin_real_cold_c", |row| known(row.receptors_real_c[0], 6)),
+    ("skin_real_warm_c", |row| known(row.receptors_real_c[1], 6)),
+];
+
+/// The columns of a run with a camera.
+const CAMERA_COLUMNS: [Column; 2] = [
+    ("camera_c", |row| {
+        known(row.camera.map(|reading| reading.apparent_c), 6)
+    }),
+    ("camera_skin_c", |row| {
+        known(row.camera.map(|reading| reading.recovered_c), 6)
+    }),
+];
+
+fn said(row: &Row, field: fn(&Telemetry) -> Option<f64>, digits: usize) -> String {
+    known(row.device.as_ref().and_then(field), digits)
+}
+
+fn known(value: Option<f64>, digits: usize) -> String {
+    value.map_or(String::new(), |value| format!("{value:.digits$}"))
+}

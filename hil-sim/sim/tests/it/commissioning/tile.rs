@@ -1,0 +1,51 @@
+//! What tuning finds with a mirror that is off, and how plants answer sines.
+
+use documented_figures::assert_figure;
+use thermal_plant::Params;
+use thermal_sim::commission::{Response, of_device};
+
+use super::{ROOM_C, device};
+
+/// What the mirror shows too much or too little of any current, to the ends of its class.
+#[test]
+fn the_mirrors_zero_is_not_taken_for_the_tiles_answer() {
+    let gain_k_s_a = |zero_a: f64| -> f64 {
+        let mut params = Params::nominal();
+        params.sensors.mirror.offset_a = zero_a;
+        let settings = of_device(&params, ROOM_C, 1).expect("a commissioned device");
+        let tile = settings
+            .iter()
+            .find_map(|line| line.strip_prefix("set tile "));
+        let gain = tile.and_then(|values| values.split(' ').next());
+        gain.and_then(|gain| gain.parse().ok()).expect("a gain")
+    };
+    let sound = gain_k_s_a(0.0);
+    let off = [-0.05, 0.05].map(|zero_a| (gain_k_s_a(zero_a) / sound - 1.0).abs());
+    assert_figure("tuning.mirror_gain", 100.0 * off[0].max(off[1]));
+}
+
+/// Well below the legs' own corner, 9 rad/s, a plate and a third of its legs integrate what is pumped: `a T / (C w)`,
+/// beside what leaks. The plant computes neither from these.
+#[test]
+fn plate_answers_sines_as_its_heat_capacity_says() {
+    let plants = device(None, 1);
+    let tile = &plants.params().tile;
+    let plate_j_k =
+        tile.plate_m2() * tile.ceramic_m * tile.ceramic_j_m3k + tile.tabs_j_k + tile.legs_j_k / 3.0;
+    let leak_1_s = (tile.conductance_w_k() + tile.film_w_m2k * tile.plate_m2()) / plate_j_k;
+    for w in [0.7, 1.5, 3.0] {
+        let response = Response::of(&plants, w).expect("a plant");
+        let expected =
+            tile.seebeck_v_k() * (24.0 + 273.15) / plate_j_k / response.w.hypot(leak_1_s);
+        println!("{response:?}, expected {expected:.4}");
+        assert!(
+            (response.k_a / expected - 1.0).abs() < 0.04,
+            "{response:?}, expected {expected}"
+        );
+        let trailing = response.w.atan2(leak_1_s);
+        assert!(
+            (response.behind_rad - trailing).abs() < 0.06,
+            "{response:?}, {trailing}"
+        );
+    }
+}

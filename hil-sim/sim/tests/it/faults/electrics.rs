@@ -1,0 +1,153 @@
+//! Bridge, supply and mirror, by Ohm's law on a tile without a temperature difference: switches, inductor and tile are
+//! some 1.25 ohm on 12 V.
+
+use thermal_sim::scene::FaultKind;
+
+use super::*;
+
+/// Current of the first step from rest, A: there is no Seebeck voltage yet.
+fn current_a(legs: Legs, all: &[Broken]) -> f64 {
+    let mut world = ideal();
+    run(&mut world, 1, legs, all);
+    world.plant().current_a()
+}
+
+const COOLING: (f64, f64) = (1.0, 0.6);
+const HEATING: (f64, f64) = (0.6, 1.0);
+
+fn legs((a, b): (f64, f64)) -> Legs {
+    driven(a, b)
+}
+
+#[test]
+fn current_is_in_proportion_to_the_supply() {
+    let full = driven(1.0, 0.0);
+    let nominal_a = current_a(full, &[]);
+    assert!((9.0..10.0).contains(&nominal_a), "{nominal_a} A");
+    for (kind, supply_v) in [
+        (FaultKind::SupplyLow, 6.0),
+        (FaultKind::SupplyLow, 4.5),
+        (FaultKind::SupplyHigh, 24.0),
+    ] {
+        let share = current_a(full, &[broken(kind, supply_v)]) / nominal_a;
+        assert!(
+            (share - supply_v / 12.0).abs() < 1e-6,
+            "{supply_v} V: {share}"
+        );
+    }
+}
+
+#[test]
+fn supply_comes_back() {
+    let mut world = ideal();
+    let full = driven(1.0, 0.0);
+    run(&mut world, 1, full, &[broken(FaultKind::SupplyLow, 6.0)]);
+    let low_a = world.plant().current_a();
+    run(&mut world, 1, full, &[]);
+    let share = world.plant().current_a() / low_a;
+    assert!((1.9..2.01).contains(&share), "{share}");
+}
+
+/// A driver of 10 A notices twice its supply.
+#[test]
+fn high_supply_overloads_the_driver() {
+    let mut world = World::new(&scene("")).expect("a plant");
+    run(
+        &mut world,
+        1,
+        driven(1.0, 0.0),
+        &[broken(FaultKind::SupplyHigh, 24.0)],
+    );
+    assert!(world.bridge_fault());
+    assert_eq!(world.plant().current_a(), 0.0);
+}
+
+#[test]
+fn stuck_leg_drives_against_the_other_one() {
+    // Each: what is asked for, and what 12 V times the difference of the legs' duties then drive.
+    for (kind, asked, difference) in [
+        (FaultKind::BridgeStuckHigh, COOLING, 0.4),
+        (FaultKind::BridgeStuckHigh, HEATING, 0.0),
+        (FaultKind::BridgeBStuckHigh, COOLING, 0.0),
+        (FaultKind::BridgeBStuckHigh, HEATING, -0.4),
+        (FaultKind::BridgeStuckLow, COOLING, -0.6),
+        (FaultKind::BridgeStuckLow, HEATING, -1.0),
+        (FaultKind::LegOpen, COOLING, 0.0),
+        (FaultKind::LegOpen, HEATING, 0.0),
+        (FaultKind::PolaritySwapped, COOLING, -0.4),
+        (FaultKind::PolaritySwapped, HEATING, 0.4),
+    ] {
+        let amperes = current_a(legs(asked), &[kind.into()]);
+        let expected_a = 12.0 * difference / 1.25;
+        // Dead time takes some 0.3 V.
+        assert!(
+            (amperes - expected_a).abs() < 0.4,
+            "{kind:?}, asked {asked:?}: {amperes} A instead of {expected_a}"
+        );
+    }
+}
+
+#[test]
+fn enable_ends_the_current_of_a_stuck_leg() {
+    for kind in [
+        FaultKind::BridgeStuckHigh,
+        FaultKind::BridgeBStuckHigh,
+        FaultKind::BridgeStuckLow,
+        FaultKind::PolaritySwapped,
+    ] {
+        let disabled = Legs {
+            enabled: false,
+            ..legs(COOLING)
+        };
+        assert_eq!(current_a(disabled, &[kind.into()]), 0.0, "{kind:?}");
+        assert_eq!(current_a(OFF, &[kind.into()]), 0.0, "{kind:?}");
+    }
+}
+
+#[test]
+fn stuck_enable_drives_for_as_long_as_pwm_does() {
+    let disabled = Legs {
+        enabled: false,
+        ..legs(COOLING)
+    };
+    let stuck = [FaultKind::BridgeEnableStuck.into()];
+    assert_eq!(current_a(disabled, &[]), 0.0);
+    assert_eq!(current_a(disabled, &stuck), current_a(legs(COOLING), &[]));
+    assert_eq!(current_a(OFF, &stuck), 0.0);
+}
+
+#[test]
+fn short_of_output_a_trips_the_driver_and_a_dead_pin_hides_it() {
+    let mut world = ideal();
+    run(
+        &mut world,
+        1,
+        legs(COOLING),
+        &[FaultKind::BridgeShorted.into()],
+    );
+    assert!(world.bridge_fault());
+    let hidden = [FaultKind::BridgeShorted, FaultKind::FaultPinDead].map(Broken::from);
+    run(&mut world, 1, legs(COOLING), &hidden);
+    assert!(!world.bridge_fault());
+    assert_eq!(
+        world.plant().current_a(),
+        0.0,
+        "the driver has tripped all the same"
+    );
+}
+
+#[test]
+fn mirror_shows_what_it_is_stuck_at() {
+    let mut world = ideal();
+    for (legs, amperes) in [(OFF, 3.0), (driven(1.0, 0.0), 0.0)] {
+        run(
+            &mut world,
+            1,
+            legs,
+            &[broken(FaultKind::MirrorStuck, amperes)],
+        );
+        // 400 counts/A.
+        let code = f64::from(codes(&mut world)[Channel::Current as usize]);
+        assert_eq!(code, 400.0 * amperes);
+    }
+}

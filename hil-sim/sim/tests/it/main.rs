@@ -1,0 +1,6 @@
+//! Scenes, their faults, and commissioning, on the native engine.
+
+mod commissioning;
+mod faults;
+mod no_allocation;
+mod scenes;

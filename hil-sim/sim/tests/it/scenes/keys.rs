@@ -1,0 +1,134 @@
+//! What keys of a scene come to.
+
+use thermal_plant::finger::{FingerParams, Vessels};
+use thermal_plant::{Params, parameters};
+use thermal_sim::processor::CoreRegister;
+use thermal_sim::processor::{Injection, MachineFault};
+
+use super::scene;
+
+const HEAD: &str = "duration_s = 1\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\n";
+
+fn params(tables: &str) -> Params {
+    scene(&format!("{HEAD}{tables}")).params
+}
+
+#[test]
+fn scene_without_them_has_the_nominal_plant() {
+    assert_eq!(params(""), Params::nominal());
+    assert_eq!(params("[plant]\n[finger]\n"), Params::nominal());
+}
+
+#[test]
+fn keys_of_the_box_may_be_dotted_or_nested() {
+    let mut expected = Params::nominal();
+    expected.tile.imax_a = 5.0;
+    expected.sensors.thermistors[0].lag_s = 0.05;
+    for tables in [
+        "[plant]\ntile.imax_a = 5\nsensors.display.lag_s = 0.05\n",
+        "[plant.tile]\nimax_a = 5\n[plant.sensors.display]\nlag_s = 0.05\n",
+        "[plant]\ntile = { imax_a = 5.0 }\nsensors = { display = { lag_s = 0.05 } }\n",
+    ] {
+        assert_eq!(params(tables), expected, "{tables}");
+    }
+}
+
+#[test]
+fn every_key_of_the_box_can_stand_in_a_scene() {
+    let finger = "[finger]\ntissue = \"layered\"\n";
+    let mut nominal = Params::nominal();
+    nominal.finger = FingerParams::layered();
+    let mut tables = format!("{finger}[plant]\n");
+    let mut expected = nominal.clone();
+    for parameter in parameters::all(&nominal) {
+        // An end of its tolerance: another value where it has one.
+        let value = parameter.high;
+        tables += &format!("{} = {value:?}\n", parameter.key);
+        parameters::set(&mut expected, &parameter.key, value).expect("a key");
+    }
+    assert_ne!(expected, nominal);
+    assert_eq!(params(&tables), expected);
+}
+
+#[test]
+fn own_values_override_a_draw_wherever_they_stand() {
+    let before = params("[plant]\ntile.imax_a = 5.0\ndraw = 3\n");
+    let after = params("[plant]\ndraw = 3\ntile.imax_a = 5.0\n");
+    assert_eq!(before, after);
+    assert_eq!(before.tile.imax_a, 5.0);
+    assert_ne!(before.tile.vmax_v, Params::nominal().tile.vmax_v);
+    let finger =
+        params("[finger]\ntissue = \"layered\"\nair_w_m2k = 7\n[plant]\ndraw = 3\n").finger;
+    assert_eq!(finger.air_w_m2k, 7.0);
+    assert_ne!(finger.layers, FingerParams::layered().layers);
+}
+
+#[test]
+fn layers_of_a_scene_are_those_of_the_nominal_fingers() {
+    let skin = "[[finger.layer]]\nk_w_mk = 0.37\nrho_kg_m3 = 1000\nc_j_kgk = 3700\n";
+    assert_eq!(params(skin).finger, FingerParams::homogeneous());
+    let layered = "[finger]\ncore_w_m2k = inf\nair_w_m2k = 10\nvessels = true\n\
+        [[finger.layer]]\nthickness_m = 0.65e-3\nk_w_mk = 0.21\nrho_kg_m3 = 1110\nc_j_kgk = 3600\n\
+        [[finger.layer]]\nthickness_m = 1.2e-3\nk_w_mk = 0.37\nrho_kg_m3 = 1116\nc_j_kgk = 3224\n\
+        perfusion_1_s = 5e-3\nmetabolism_w_m3 = 370\n\
+        [[finger.layer]]\nthickness_m = 4e-3\nk_w_mk = 0.16\nrho_kg_m3 = 970\nc_j_kgk = 2303\n\
+        perfusion_1_s = 1e-3\nmetabolism_w_m3 = 370\n";
+    assert_eq!(params(layered).finger, FingerParams::layered());
+    // Given layers are not drawn; what else the finger has is.
+    let drawn = params(&format!("{layered}[plant]\ndraw = 1\n")).finger;
+    assert_eq!(drawn.layers, FingerParams::layered().layers);
+    assert_ne!(drawn.vessels, Some(Vessels::THESIS));
+}
+
+/// By their kinds: the sampler's stream unless another is named, and noise of the scene's seed.
+#[test]
+fn faults_of_the_processor_are_injected_at_their_times() {
+    let fault =
+        |kind: &str, keys: &str| format!("[[fault]]\nkind = \"{kind}\"\nt_s = 0.5\n{keys}\n");
+    for (tables, expected) in [
+        (fault("hung-core", ""), MachineFault::HungCore),
+        (fault("software-reset", ""), MachineFault::SoftwareReset),
+        (
+            fault("power-cycle", ""),
+            MachineFault::PowerCycle { seed: 7 },
+        ),
+        (
+            fault("dma-stopped", ""),
+            MachineFault::DmaStopped {
+                controller: 2,
+                stream: 0,
+            },
+        ),
+        (
+            fault("dma-stopped", "controller = 1\nstream = 6"),
+            MachineFault::DmaStopped {
+                controller: 1,
+                stream: 6,
+            },
+        ),
+        (
+            fault("ram-bit", "address = 0x2000_0010\nbit = 3"),
+            MachineFault::RamBit {
+                address: 0x2000_0010,
+                bit: 3,
+            },
+        ),
+        (
+            fault("core-bit", "register = \"s31\"\nbit = 4"),
+            MachineFault::CoreBit {
+                register: CoreRegister::S(31),
+                bit: 4,
+            },
+        ),
+    ] {
+        let scene = scene(&format!("seed = 7\n{HEAD}{tables}"));
+        assert_eq!(
+            scene.injections,
+            [Injection {
+                t_s: 0.5,
+                fault: expected
+            }]
+        );
+        assert!(scene.faults.is_empty());
+    }
+}

@@ -1,0 +1,32 @@
+//! The release image in the emulated microcontroller, for commands that run it.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use stm32_emulator::{Firmware, Image, ImageHand, build};
+use thermal_sim::World;
+use thermal_sim::hand::FINGERS;
+
+use super::Failure;
+
+/// The image that `--elf` names, or that of the current sources for so many fingers; and where it lies.
+pub fn firmware(elf: Option<&Path>, fingers: usize) -> Result<(Firmware, PathBuf), Failure> {
+    let path = match elf {
+        Some(path) => path.to_owned(),
+        None => build(fingers).map_err(Failure::run)?,
+    };
+    let firmware = Firmware::from_file(&path)
+        .with_context(|| path.display().to_string())
+        .map_err(Failure::input)?;
+    Ok((firmware, path))
+}
+
+/// The image for one finger, powered up in a world.
+pub fn engine(elf: Option<&Path>, world: World) -> Result<Image, Failure> {
+    Image::new(&firmware(elf, 1)?.0, world).map_err(Failure::run)
+}
+
+/// The image for five fingers, powered up in their worlds.
+pub fn hand(elf: Option<&Path>, worlds: [World; FINGERS]) -> Result<ImageHand, Failure> {
+    ImageHand::new(&firmware(elf, FINGERS)?.0, worlds).map_err(Failure::run)
+}

@@ -1,0 +1,114 @@
+//! The native engine and the release image write identical traces, and the image engine runs the image that it is given.
+
+use std::path::Path;
+
+use image_tests::{image, on, on_image};
+use stm32_emulator::Firmware;
+use system_tests::{between, forces, host, natively, scene};
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
+
+fn csv(outcome: &Outcome, name: &str) -> String {
+    let path =
+        std::env::temp_dir().join(format!("thermal-display-{}-{name}.csv", std::process::id()));
+    outcome.trace.write(&path).expect("a trace");
+    let text = std::fs::read_to_string(&path).expect("a trace");
+    std::fs::remove_file(&path).expect("a trace");
+    text
+}
+
+#[test]
+fn native_and_image_write_the_same_trace_over_two_contacts() {
+    let two = forces(&[(2.0, 2.0), (20.0, 0.0), (30.0, 0.5), (55.0, 0.0)]);
+    let scene = scene("granite", 60.0, "", &two);
+    let (native, image) = (
+        csv(&natively(&scene), "native"),
+        csv(&on_image(&scene), "image"),
+    );
+    assert_eq!(native.lines().count(), 60_002);
+    let differ = native
+        .lines()
+        .zip(image.lines())
+        .position(|(native, image)| native != image);
+    assert_eq!(differ, None, "first line that differs");
+    assert_eq!(native.len(), image.len());
+    // Two traces of blank cells would be equal, too.
+    assert!(native.lines().all(|line| !line.contains(",,,")));
+}
+
+/// The shorted driver reports by its fault pin, which trips the device in the same tick of both engines; armed again, it trips
+/// again.
+#[test]
+fn a_shorted_bridge_trips_both_engines_in_the_same_tick() {
+    let fault = forces(&[(0.5, 2.0)]) + "[[fault]]\nkind = \"bridge-shorted\"\nt_s = 1.0\n";
+    let again = host(&[(1.5, "clear"), (1.6, "arm")]);
+    let scene = scene("copper", 3.0, "", &(fault + &again));
+    let (native, image) = (natively(&scene), on_image(&scene));
+    assert_eq!(csv(&native, "native-short"), csv(&image, "image-short"));
+    for row in between(&image, 1.001, 3.0) {
+        assert_eq!(row.current_a, 0.0, "at {} s", row.t_s);
+    }
+    for row in between(&image, 1.003, 1.5) {
+        let device = row.device.as_ref().expect("telemetry of every tick");
+        let reported = (device.state.as_str(), device.remark.as_deref());
+        assert_eq!(reported, ("tripped", Some("bridge")), "at {} s", row.t_s);
+    }
+    // Armed again, the self-test runs, which takes a second longer under a finger; then the bridge drives and trips again.
+    let state_at = |from_s: f64| {
+        let row = between(&image, from_s, 3.0).next().expect("a row");
+        row.device.as_ref().map(|device| device.state.clone())
+    };
+    assert_eq!(state_at(1.55).as_deref(), Some("off"));
+    assert_eq!(state_at(1.65).as_deref(), Some("self-test"));
+    assert_eq!(state_at(2.65).as_deref(), Some("self-test"));
+    assert_eq!(state_at(2.75).as_deref(), Some("tripped"));
+}
+
+/// A layered finger, repeated contacts, a plant of the parameter box, and random draws by an infrared camera.
+#[test]
+fn both_engines_write_the_same_trace_of_the_example_scenes() {
+    for name in ["layered-finger", "lift-and-replace", "worst-case-box"] {
+        let path = format!("{}/../../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let scene = Scene::read(Path::new(&path)).expect("a good scene");
+        let (native, image) = (natively(&scene), on_image(&scene));
+        let [native, image] = [(&native, "native"), (&image, "image")]
+            .map(|(outcome, engine)| csv(outcome, &format!("{engine}-{name}")));
+        assert!(native == image, "{name}");
+    }
+}
+
+#[test]
+fn a_run_repeats_bit_for_bit_and_another_seed_changes_it() {
+    let with_seed = |seed| {
+        let mut scene = scene("abs", 2.0, "", &forces(&[(0.5, 1.0)]));
+        scene.seed = seed;
+        csv(&on_image(&scene), &format!("seed-{seed}"))
+    };
+    let first = with_seed(1);
+    assert_eq!(first, with_seed(1));
+    assert_ne!(first, with_seed(2));
+}
+
+/// In a copy of the image a material has another name: the device does not know the old one.
+#[test]
+fn the_image_engine_runs_the_image_that_it_is_given() {
+    let mut bytes = std::fs::read(image()).expect("the image");
+    let name = b"copper";
+    let places: Vec<_> = (0..bytes.len() - name.len())
+        .filter(|&at| bytes[at..].starts_with(name))
+        .collect();
+    assert!(!places.is_empty());
+    for at in places {
+        bytes[at] = b'k';
+    }
+    let altered = Firmware::from_elf(&bytes).expect("still an image");
+    let contact = forces(&[(0.5, 2.0)]);
+    let refused = on(&altered, &scene("copper", 2.0, "", &contact))
+        .expect_err("copper is gone")
+        .to_string();
+    assert!(
+        refused.contains("err unknown material 'copper'; known: kopper"),
+        "{refused}"
+    );
+    on(&altered, &scene("abs", 1.0, "", &contact)).expect("the rest still works");
+}

@@ -1,0 +1,159 @@
+//! The image for five fingers on five simulated plants.
+
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use documented_figures::{assert_compiled, assert_figure};
+use image_proof::compiler::of_elf;
+use stm32_emulator::Firmware;
+use stm32_emulator::ImageHand;
+use system_tests::{forces, host, natively, scene};
+use thermal_sim::World;
+use thermal_sim::hand::{FINGERS, Hand, NativeHand, run};
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
+
+/// Cycles in a millisecond at 180 MHz.
+const MILLISECOND: f64 = 180_000.0;
+
+/// The ELF file of the image of the current sources for five fingers, built once.
+fn elf() -> &'static Path {
+    static ELF: OnceLock<PathBuf> = OnceLock::new();
+    ELF.get_or_init(|| stm32_emulator::build(FINGERS).expect("the image builds"))
+}
+
+fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
+    scenes
+        .each_ref()
+        .map(|scene| World::new(scene).expect("a plant for the scene"))
+}
+
+fn on_image(scenes: &[Scene; FINGERS]) -> ([Outcome; FINGERS], ImageHand) {
+    let image = Firmware::from_file(elf()).expect("an image for this chip");
+    let mut hand = ImageHand::new(&image, worlds(scenes)).expect("the image starts");
+    let outcomes = run(scenes, &mut hand, |_| ()).expect("the image runs to the end");
+    (outcomes, hand)
+}
+
+/// Scenes with different materials, forces, times of landing and noise.
+fn five_contacts() -> [Scene; FINGERS] {
+    let mut seed = 0;
+    [
+        ("copper", 2.0),
+        ("granite", 0.5),
+        ("abs", 1.0),
+        ("foam", 0.25),
+        ("stainless-steel", 0.1),
+    ]
+    .map(|(material, force_n)| {
+        seed += 1;
+        let landing_s = 0.5 + 0.1 * f64::from(seed as u32);
+        let mut scene = scene(
+            material,
+            3.0,
+            "",
+            &forces(&[(landing_s, force_n), (2.7, 0.0)]),
+        );
+        scene.seed = seed;
+        scene
+    })
+}
+
+/// The image writes the same traces, bit for bit, as five native devices that sample at the same times; up to the noise of the
+/// sensors, it also equals five devices for one finger.
+#[test]
+fn each_of_five_fingers_behaves_like_a_finger_alone() {
+    let scenes = five_contacts();
+    let (image, _) = on_image(&scenes);
+    let native = run(&scenes, &mut NativeHand::new(worlds(&scenes)), |_| ()).expect("runs");
+    let mut farthest_k = 0.0f64;
+    for (finger, scene) in scenes.iter().enumerate() {
+        let [image, native] = [&image[finger], &native[finger]].map(|outcome| outcome.trace.rows());
+        assert_eq!(image.len(), 3001);
+        assert!(
+            image.iter().filter(|row| row.device.is_some()).count() >= 300,
+            "telemetry"
+        );
+        let differ = image
+            .iter()
+            .zip(native)
+            .position(|(image, native)| image != native);
+        assert_eq!(
+            differ.map(|row| (&image[row], &native[row])),
+            None,
+            "finger {finger}"
+        );
+        let alone = natively(scene);
+        let mut largest_k = 0.0f64;
+        for (row, alone) in image.iter().zip(alone.trace.rows()) {
+            largest_k = largest_k.max((row.skin_c - alone.skin_c).abs());
+        }
+        println!(
+            "finger {finger}, {}: {:.2} mK from a finger alone",
+            scene.object.name,
+            largest_k * 1e3
+        );
+        farthest_k = farthest_k.max(largest_k);
+    }
+    assert_figure("five_fingers.skin_as_alone", 1e3 * farthest_k);
+}
+
+#[test]
+fn five_fingers_take_less_than_a_ninth_of_the_cpu() {
+    let (_, hand) = on_image(&five_contacts());
+    let cost = hand.cost().expect("figures");
+    let elf = std::fs::read(elf()).expect("the image");
+    let compiler = of_elf(&elf).expect("a compiler");
+    for (key, measured) in [
+        ("five_fingers.cpu_load", 100.0 * cost.load),
+        ("five_fingers.cycles_mean", cost.cycles_mean),
+        ("five_fingers.cycles_max", cost.cycles_max as f64),
+    ] {
+        assert_compiled(key, measured, &compiler);
+    }
+    // A tick ends before the next finger's samples come.
+    assert!(
+        (cost.cycles_max as f64) < MILLISECOND / FINGERS as f64,
+        "{cost:?}"
+    );
+}
+
+/// A tripped bridge driver and an `abort` each stop one finger; the others go on.
+#[test]
+fn a_fault_and_an_abort_stop_only_their_own_finger() {
+    let mut scenes = five_contacts();
+    let fault = "[[fault]]\nkind = \"bridge-shorted\"\nt_s = 1.5\n";
+    scenes[1] = scene("granite", 3.0, "", &(forces(&[(0.7, 2.0)]) + fault));
+    scenes[3] = scene(
+        "foam",
+        3.0,
+        "",
+        &(forces(&[(0.9, 2.0)]) + &host(&[(2.0, "abort")])),
+    );
+    let (outcomes, _) = on_image(&scenes);
+    let state_at = |finger: usize, t_s: f64| {
+        let outcome: &Outcome = &outcomes[finger];
+        let devices = outcome.trace.rows().iter().filter(|row| row.t_s >= t_s);
+        let device = devices.filter_map(|row| row.device.as_ref()).next();
+        device.expect("telemetry").state.clone()
+    };
+    for finger in 0..FINGERS {
+        let (early, late) = match finger {
+            1 => ("tripped", "tripped"),
+            3 => ("contact", "ready"),
+            _ => ("contact", "contact"),
+        };
+        assert_eq!(state_at(finger, 1.6), early, "finger {finger}");
+        assert_eq!(state_at(finger, 2.2), late, "finger {finger}");
+    }
+    for (finger, from_s) in [(1, 1.51), (3, 2.02)] {
+        for row in outcomes[finger]
+            .trace
+            .rows()
+            .iter()
+            .filter(|row| row.t_s > from_s)
+        {
+            assert_eq!(row.current_a, 0.0, "finger {finger} at {} s", row.t_s);
+        }
+    }
+}

@@ -1,0 +1,12 @@
+//! Tests of the release image on the emulated microcontroller.
+
+mod closed_loop;
+mod contact_transients;
+mod engine_equality;
+mod five_fingers;
+mod processor_faults;
+mod range_limits;
+mod safety;
+mod settings_storage;
+mod start_up;
+mod wire_protocol;

@@ -1,0 +1,119 @@
+//! The display held at an end of its range, or moved there by a host line, a correction or a finger: nothing trips.
+
+use system_tests::{between, forces, host, natively, scene};
+use thermal_sim::trace::Row;
+
+/// PI controllers with the slowest thermistors of the parameter box, from skin temperature to either end of the range.
+#[test]
+fn a_display_that_is_held_at_an_end_of_the_range_overshoots_by_less_than_0_8_k() {
+    let slow = "[plant]\nsensors.display.lag_s = 0.5\nsensors.check.lag_s = 0.5\n";
+    for law in ["pi", "pi-10hz"] {
+        for (held_c, beyond_k) in [(42.0, 1.0), (15.0, -1.0)] {
+            let tables = host(&[(0.1, &format!("hold {held_c}"))]) + slow;
+            let mut scene = scene("copper", 50.0, &format!("law = \"{law}\""), &tables);
+            scene.object.appears_t_s = scene.duration_s;
+            let outcome = natively(&scene);
+            let beyond = |row: &Row| (row.display_c - held_c) * beyond_k;
+            let farthest_k =
+                (outcome.trace.rows().iter().map(beyond)).fold(f64::NEG_INFINITY, f64::max);
+            println!("{law}, {held_c} C: {farthest_k:.2} K beyond");
+            assert!(farthest_k < 0.8, "{law}, {held_c} C: {farthest_k} K beyond");
+            let last = outcome.trace.rows().last().expect("a row");
+            assert!(
+                beyond(last).abs() < 0.05,
+                "{law}: {} C, {held_c}",
+                last.display_c
+            );
+        }
+    }
+}
+
+/// At 16 K/s the plate leads its thermistor by 1.6 to 6 K.
+#[test]
+fn a_host_line_during_a_ramp_trips_nothing() {
+    for (lag_s, law, line) in [
+        (0.1, "model", "set correction display 0 0 0"),
+        (0.4, "model", "set correction display 0 0 0"),
+        (0.1, "pi", "law model"),
+        (0.4, "pi-10hz", "law model"),
+    ] {
+        let slow =
+            format!("[plant]\nsensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n");
+        let tables = host(&[(3.0, "arm"), (3.5, line), (6.5, "state")]) + &slow;
+        let mut scene = scene("copper", 7.0, &format!("law = \"{law}\""), &tables);
+        scene.object.start_c = Some(15.0);
+        let outcome = natively(&scene);
+        let (_, state) = outcome.answers.last().expect("an answer");
+        assert!(
+            state.starts_with("ok state=armed fault=-"),
+            "{law}, {lag_s} s: {state}"
+        );
+        // The display was moving when the line came.
+        let at_c = |t_s: f64| {
+            between(&outcome, t_s, t_s + 0.002)
+                .next()
+                .expect("a row")
+                .display_c
+        };
+        assert!(at_c(3.6) - at_c(3.4) > 1.0, "{law}, {lag_s} s");
+    }
+}
+
+/// The largest corrections that a host may set, with fast thermistors, for which the controller's gain is high.
+#[test]
+fn a_correction_that_is_set_while_the_display_is_held_trips_nothing() {
+    let quick = "[plant]\nsensors.display.lag_s = 0.024\nsensors.check.lag_s = 0.024\n";
+    for line in [
+        "set correction display 1.2 0.03 0",
+        "set correction display -1.2 0.03 0",
+    ] {
+        let tables = host(&[(0.1, "hold 20"), (0.3, line), (1.5, "state")]) + quick;
+        let mut scene = scene("copper", 2.0, "", &tables);
+        scene.object.appears_t_s = scene.duration_s;
+        let outcome = natively(&scene);
+        let said = outcome.answers.iter().map(|(_, said)| said.as_str());
+        let [state] = said.filter(|said| *said != "ok").collect::<Vec<_>>()[..] else {
+            panic!("{line}: {:?}", outcome.answers);
+        };
+        assert!(
+            state.starts_with("ok state=armed fault=-"),
+            "{line}: {state}"
+        );
+    }
+}
+
+/// Modules at the ends of their tolerances on a warm sink, the coldest object that can be displayed, and a warm finger that
+/// presses hard: it warms the display against the full cooling current, which is not a fault.
+#[test]
+fn a_finger_that_warms_a_display_at_its_current_limit_trips_nothing() {
+    let weak = "tile.imax_a = 5.4\ntile.vmax_v = 7.38\ntile.dtmax_k = 60.3\ntile.ceramic_j_m3k = 3355000.0\n";
+    let strong = "tile.imax_a = 6.6\ntile.vmax_v = 9.02\ntile.dtmax_k = 73.7\ntile.ceramic_j_m3k = 2745000.0\n";
+    for (law, lag_s, module) in [
+        ("model", 0.1, weak),
+        ("pi", 0.5, strong),
+        ("pi-10hz", 0.5, strong),
+    ] {
+        let plant = format!(
+            "[device]\ncommissioned = true\n[plant]\n{module}tile.coolant_k = 16.0\n\
+             sensors.display.lag_s = {lag_s}\nsensors.check.lag_s = {lag_s}\n"
+        );
+        let tables = forces(&[(1.0, 5.0)]) + &host(&[(3.5, "state")]) + &plant;
+        let mut scene = scene("copper", 4.0, &format!("law = \"{law}\""), &tables);
+        (scene.skin_c, scene.object.start_c) = (36.0, Some(15.0));
+        let outcome = natively(&scene);
+        let (_, state) = outcome.answers.last().expect("an answer");
+        assert!(
+            state.starts_with("ok state=contact fault=-"),
+            "{law}: {state}"
+        );
+        let reading_c = |row: &Row| row.device.as_ref().and_then(|device| device.sensor_c);
+        let mut coldest_c = f64::INFINITY;
+        let mut back_k = 0.0f64;
+        for reading_c in between(&outcome, 1.0, 2.5).filter_map(reading_c) {
+            coldest_c = coldest_c.min(reading_c);
+            back_k = back_k.max(reading_c - coldest_c);
+        }
+        println!("{law}: {back_k:.2} K back");
+        assert!(back_k > 1.2, "{law}: {back_k} K");
+    }
+}

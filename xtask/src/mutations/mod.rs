@@ -1,0 +1,193 @@
+//! Mutation testing of the fault detectors: each is disabled in turn, and the fault matrix must then fail.
+//!
+//! `table.txt` lists the detectors. One replaced text disables a detector in a copy of the sources, which is built and runs the
+//! faults that the detector is for. A mutation that no fault reveals is a gap in the matrix.
+use std::ffi::OsString;
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::process::{Invocation, workspace};
+
+/// How one detector is disabled.
+#[derive(Debug, Default)]
+struct Mutation {
+    detector: &'static str,
+    /// Path of the source file in the workspace.
+    file: &'static str,
+    /// Text that occurs once in the file.
+    before: &'static str,
+    /// Its replacement.
+    after: &'static str,
+    /// Kinds of faults that the detector is for.
+    faults: Vec<&'static str>,
+    /// Engine that runs the faults; detectors in the board's code are in the image only.
+    engine: &'static str,
+}
+
+impl Mutation {
+    fn apply(&self, text: &str) -> Result<String> {
+        let Self {
+            detector,
+            file,
+            before,
+            after,
+            ..
+        } = self;
+        let count = text.matches(before).count();
+        ensure!(
+            count == 1,
+            "{detector}: `{before}` occurs {count} times in {file} and must occur once; see {TABLE}"
+        );
+        Ok(text.replacen(before, after, 1))
+    }
+}
+
+const TABLE: &str = "xtask/src/mutations/table.txt";
+/// Folder of the copied sources and of their builds.
+const FOLDER: &str = "target/mutations";
+/// Builds that are quick to link, as each runs a few faults only.
+const INCREMENTAL: &str = "profile.release.incremental = true";
+
+/// The mutations of the table.
+fn mutations() -> Result<Vec<Mutation>> {
+    let mut all = Vec::<Mutation>::new();
+    for line in include_str!("table.txt").lines() {
+        if line.is_empty() || line.starts_with('#') {
+            continue;
+        }
+        if let Some(name) = line.strip_prefix('[') {
+            all.push(Mutation {
+                detector: name.trim_end_matches(']'),
+                ..Mutation::default()
+            });
+            continue;
+        }
+        let last = all.last_mut().context("a line before the first detector")?;
+        let (key, value) = line.split_once(' ').context(line)?;
+        let value = value.trim();
+        match key {
+            "file" => last.file = value,
+            "before" => last.before = value,
+            "after" => last.after = value,
+            "faults" => last.faults = value.split(' ').collect(),
+            "engine" => last.engine = value,
+            _ => bail!("{TABLE}: unknown key in `{line}`"),
+        }
+    }
+    Ok(all)
+}
+
+/// `cargo xtask faults --mutations`; an error names the mutations that no fault reveals.
+pub fn run() -> Result<()> {
+    let mutations = mutations()?;
+    let copy = workspace().join(FOLDER).join("sources");
+    copy_sources(&copy)?;
+    for engine in ["native", "image"] {
+        let of_engine = mutations.iter().filter(|one| one.engine == engine);
+        let mut faults: Vec<_> = of_engine.flat_map(|one| &one.faults).copied().collect();
+        faults.sort_unstable();
+        faults.dedup();
+        matrix(&copy, engine, &faults)
+            .run_to_stderr()
+            .context("the unchanged sources must pass")?;
+    }
+    let mut unrevealed = Vec::new();
+    for (number, mutation) in mutations.iter().enumerate() {
+        eprintln!(
+            "mutation {} of {}: {}",
+            number + 1,
+            mutations.len(),
+            mutation.detector
+        );
+        let path = copy.join(mutation.file);
+        let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+        fs::write(&path, mutation.apply(&text)?)?;
+        // A mutation that does not compile would fail the matrix as well, and prove nothing.
+        Invocation::cargo(hil_sim(&copy, "build")).run_to_stderr()?;
+        if mutation.engine == "image" {
+            let manifest = copy.join("Cargo.toml").into();
+            let line = ["run", "--package", "xtask", "--manifest-path"].map(OsString::from);
+            let firmware = [manifest, "--".into(), "firmware".into()];
+            Invocation::cargo(line.into_iter().chain(firmware)).run_to_stderr()?;
+        }
+        let revealed = matrix(&copy, mutation.engine, &mutation.faults)
+            .run_to_stderr()
+            .is_err();
+        fs::write(&path, text)?;
+        println!(
+            "{:20} {}",
+            mutation.detector,
+            if revealed { "revealed" } else { "NOT revealed" }
+        );
+        if !revealed {
+            unrevealed.push(mutation.detector);
+        }
+    }
+    ensure!(
+        unrevealed.is_empty(),
+        "no fault reveals that these are disabled: {}",
+        unrevealed.join(", ")
+    );
+    println!("all {} mutations are revealed", mutations.len());
+    Ok(())
+}
+
+/// Copies all files that git tracks or would track, but for `.cargo`: cargo also reads the configuration of the folders above
+/// the copy, and would apply its flags twice.
+fn copy_sources(copy: &Path) -> Result<()> {
+    if copy.exists() {
+        fs::remove_dir_all(copy).with_context(|| copy.display().to_string())?;
+    }
+    let list = ["ls-files", "--cached", "--others", "--exclude-standard"];
+    let files = Invocation::new("git", list).answer();
+    for name in files.context("git cannot list the sources")?.lines() {
+        let (from, to) = (workspace().join(name), copy.join(name));
+        if name.starts_with(".cargo/") || !from.is_file() {
+            continue;
+        }
+        fs::create_dir_all(to.parent().context("a file has a folder")?)?;
+        fs::copy(&from, &to).with_context(|| name.to_owned())?;
+    }
+    Ok(())
+}
+
+/// `cargo COMMAND` for `hil-sim` of the copy.
+fn hil_sim(copy: &Path, command: &str) -> Vec<OsString> {
+    let options = ["--release", "--package", "hil-sim", "--config", INCREMENTAL];
+    let mut line = vec![OsString::from(command)];
+    line.extend(options.map(OsString::from));
+    line.extend(["--manifest-path".into(), copy.join("Cargo.toml").into()]);
+    let target = workspace().join(FOLDER).join("target");
+    line.extend(["--target-dir".into(), target.into()]);
+    line
+}
+
+/// `hil-sim faults` of the copy, with these kinds of faults.
+fn matrix(copy: &Path, engine: &str, faults: &[&str]) -> Invocation {
+    let mut line = hil_sim(copy, "run");
+    let options = ["--", "faults", "--engine", engine, "--moments", "4"];
+    line.extend(options.into_iter().map(OsString::from));
+    line.push("--only".into());
+    line.extend(faults.iter().map(OsString::from));
+    Invocation::cargo(line)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_text_of_every_mutation_occurs_once_in_its_file() {
+        let mutations = mutations().unwrap();
+        assert!(mutations.len() >= 33, "{}", mutations.len());
+        for mutation in mutations {
+            let text = fs::read_to_string(workspace().join(mutation.file)).expect(mutation.file);
+            let changed = mutation.apply(&text).unwrap();
+            assert_ne!(changed, text, "{}", mutation.detector);
+            assert!(["native", "image"].contains(&mutation.engine));
+            assert!(!mutation.faults.is_empty(), "{}", mutation.detector);
+        }
+    }
+}

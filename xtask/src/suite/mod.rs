@@ -1,0 +1,244 @@
+//! `cargo xtask test`: the whole test suite, or the part that is quick enough to run before each commit.
+mod lanes;
+
+use anyhow::{Context, Result, bail};
+
+use crate::firmware::{self, Fingers};
+use crate::process::Invocation;
+use crate::setup::{self, Choice, Lints, Needs, Permission, Toolchain};
+use crate::step::Steps;
+use crate::{bench, probe};
+use lanes::{Check, Lane};
+
+/// Packages that need no emulator, and so no cmake and no libclang. A build of the whole workspace would not notice if one
+/// of them came to depend on it.
+const NATIVE_PACKAGES: [&str; 2] = ["contact-model", "thermal-display"];
+/// The emulator's package.
+const EMULATOR: &str = "unicorn-engine";
+/// Packages that compile within seconds.
+const SMALL_PACKAGES: &str = "-p contact-model -p thermal-display -p xtask";
+/// Time for each target of the fuzzers, after all inputs of the repository, s.
+const FUZZ_S: &str = "4";
+
+const NO_CLIPPY: &str = "the active toolchain has no clippy";
+
+/// A check by command lines of cargo.
+fn check<const N: usize>(title: &'static str, lines: [&str; N]) -> Check {
+    Check {
+        title,
+        commands: Ok(lines.map(cargo).into()),
+    }
+}
+
+fn cargo(line: &str) -> Invocation {
+    Invocation::cargo(line.split(' '))
+}
+
+/// `check`, or why it is left out.
+fn only_if(there: bool, why: &'static str, check: Check) -> Check {
+    let commands = if there { check.commands } else { Err(why) };
+    Check { commands, ..check }
+}
+
+fn formatting(lints: Lints) -> Check {
+    let why = "the active toolchain has no rustfmt";
+    only_if(
+        lints.rustfmt,
+        why,
+        check("formatting", ["fmt --all --check"]),
+    )
+}
+
+/// Unit tests in the dev profile, where integer overflow panics.
+fn units() -> Check {
+    let line = format!("test --quiet {SMALL_PACKAGES} --lib --bins --tests");
+    check(
+        "units of model, firmware and xtask, with overflow checks",
+        [&line],
+    )
+}
+
+/// What a person runs before each commit.
+fn quick(lints: Lints) -> Vec<Vec<Lane>> {
+    let clippy = format!("clippy {SMALL_PACKAGES} --all-targets -- -Dwarnings");
+    let small = vec![
+        formatting(lints),
+        only_if(
+            lints.clippy,
+            NO_CLIPPY,
+            check("lints of model, firmware and xtask", [&clippy]),
+        ),
+        units(),
+    ];
+    // Stored settings take most of the time: a cut in every flash operation, every bit flipped.
+    let native =
+        "test --release --quiet --package system-tests --test native -- --skip settings_storage";
+    vec![vec![
+        small,
+        vec![check("native device on the simulated plant", [native])],
+    ]]
+}
+
+/// All checks: phases, in each of which lanes run side by side. Whatever compiles the emulator does so in the release
+/// profile, and so once.
+fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> {
+    let firmware_lints = lints.clippy || matches!(toolchain, Toolchain::Distribution(_));
+    let image = |title, build| Check {
+        title,
+        commands: Ok(vec![build]),
+    };
+    let images = vec![
+        image(
+            "image for one finger",
+            firmware::build(toolchain, Fingers::One),
+        ),
+        image(
+            "image for five fingers",
+            firmware::build(toolchain, Fingers::Five),
+        ),
+        image("test image of the emulator", probe::build(toolchain)),
+        image("image of the benchmark", bench::build(toolchain)),
+        only_if(
+            firmware_lints,
+            NO_CLIPPY,
+            Check {
+                title: "lints of the firmware",
+                commands: Ok([Fingers::One, Fingers::Five]
+                    .map(|fingers| firmware::clippy(toolchain, fingers))
+                    .into()),
+            },
+        ),
+        units(),
+    ];
+    let native = NATIVE_PACKAGES.map(|name| format!("-p {name}")).join(" ");
+    let without_emulator = format!("check --release --all-targets {native}");
+    let lints_of_all = "clippy --release --workspace --all-targets -- -Dwarnings";
+    let documentation = cargo("doc --release --workspace --no-deps");
+    let host = vec![
+        formatting(lints),
+        check("native packages without the emulator", [&without_emulator]),
+        only_if(
+            lints.clippy,
+            NO_CLIPPY,
+            check("lints of the host's code", [lints_of_all]),
+        ),
+        Check {
+            title: "documentation",
+            commands: Ok(vec![documentation.env("RUSTDOCFLAGS", "-Dwarnings")]),
+        },
+        check(
+            "test programs",
+            ["test --release --workspace --no-run --quiet"],
+        ),
+    ];
+    let tests = choice.handed_to(cargo("test --release --workspace --no-fail-fast"));
+    let fuzz = format!("xtask fuzz --seconds {FUZZ_S}");
+    vec![
+        vec![host, images],
+        vec![
+            vec![Check {
+                title: "whole system, native and on the emulated microcontroller",
+                commands: Ok(vec![tests]),
+            }],
+            vec![check(
+                "fuzzers: inputs of the repository, 4 s a target",
+                [&fuzz],
+            )],
+        ],
+    ]
+}
+
+/// An error names the packages of [`NATIVE_PACKAGES`] that depend on the emulator.
+fn no_emulator() -> Result<()> {
+    for package in NATIVE_PACKAGES {
+        let line = format!("tree --prefix none --edges normal,build,dev --package {package}");
+        let tree = cargo(&line).answer();
+        let tree = tree.with_context(|| format!("`cargo {line}` failed"))?;
+        if tree.lines().any(|line| line.starts_with(EMULATOR)) {
+            bail!("{package} must not depend on {EMULATOR}: cargo tree -p {package} -i {EMULATOR}");
+        }
+    }
+    Ok(())
+}
+
+/// `cargo xtask test`
+pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
+    let phases = |toolchain: &Toolchain, lints| {
+        if quick_only {
+            quick(lints)
+        } else {
+            whole(toolchain, permission.choice, lints)
+        }
+    };
+    let all = Lints {
+        rustfmt: true,
+        clippy: true,
+    };
+    let count = phases(&Toolchain::Active, all)
+        .into_iter()
+        .flatten()
+        .flatten();
+    let mut steps = Steps::new(2 + count.count());
+    let result = (|| {
+        let (toolchain, lints) = steps.run("set-up", "", || {
+            let needs = Needs {
+                emulator: !quick_only,
+                fuzzer: !quick_only,
+                lints: true,
+            };
+            Ok((setup::prepare(needs, permission)?, setup::lints()?))
+        })?;
+        steps.run("dependencies of native packages", "", no_emulator)?;
+        let mut phases = phases(&toolchain, lints).into_iter();
+        phases.try_for_each(|lanes| lanes::run(&lanes, &mut steps))
+    })();
+    println!("\n{steps}");
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn checks(lints: Lints) -> Vec<Check> {
+        let phases = whole(&Toolchain::Active, Choice::Auto, lints);
+        phases.into_iter().flatten().flatten().collect()
+    }
+
+    const ALL: Lints = Lints {
+        rustfmt: true,
+        clippy: true,
+    };
+
+    /// Compiling it takes more than a minute for each profile.
+    #[test]
+    fn the_emulator_is_compiled_in_the_release_profile_only() {
+        for check in checks(ALL) {
+            for line in check.commands.unwrap() {
+                let line = line.to_string();
+                assert!(!line.contains("--workspace") || line.contains("--release"));
+            }
+        }
+    }
+
+    #[test]
+    fn a_missing_tool_leaves_out_its_own_checks_only() {
+        let skipped = |lints| {
+            checks(lints)
+                .iter()
+                .filter(|check| check.commands.is_err())
+                .count()
+        };
+        assert_eq!(skipped(ALL), 0);
+        let no_rustfmt = Lints {
+            rustfmt: false,
+            ..ALL
+        };
+        assert_eq!(skipped(no_rustfmt), 1);
+        let no_clippy = Lints {
+            clippy: false,
+            ..ALL
+        };
+        assert_eq!(skipped(no_clippy), 2);
+    }
+}
