@@ -158,41 +158,33 @@ fn with_unit(number: String, unit: &str) -> String {
 /// The figures of a group as a table.
 fn table(group: &str) -> Result<String> {
     let mut text =
-        "\n| figure | value | tests allow | domain, and how it is checked |\n|---|---|---|---|\n"
-            .to_owned();
+        "\n| figure | value | tests allow | domain | command |\n|---|---|---|---|---|\n".to_owned();
+    let mut before = "";
     let of_group = |figure: &&Figure| figure.key.split('.').next() == Some(group);
     for figure in all().iter().filter(of_group) {
-        let Figure {
-            what,
-            domain,
-            command,
-            ..
-        } = figure;
         let allowed = match &figure.demand {
             Demand::AtMost(bound) => format!("at most {bound}"),
             Demand::AtLeast(least) => format!("at least {least}"),
             Demand::Between(least, bound) => format!("{least} to {bound}"),
             Demand::Exactly => "no other".to_owned(),
-            Demand::Recorded(commit) => format!("recorded at {commit}"),
+            Demand::Recorded(commit) => format!("(recorded at {commit})"),
         };
-        let why = figure
-            .why
-            .iter()
-            .map(|why| format!(": {why}"))
-            .collect::<String>();
-        let compiler = figure
-            .recorded_with
-            .iter()
-            .map(|name| format!(", {name}"))
-            .collect::<String>();
+        let notes = figure.why.iter().chain(&figure.recorded_with);
+        let notes: String = notes.map(|note| format!("; {note}")).collect();
+        let command = match figure.command.as_str() {
+            same if same == before => "as above".to_owned(),
+            command => format!("`{command}`"),
+        };
+        before = &figure.command;
         let value = with_unit(figure.shown(), &figure.unit);
+        let Figure { what, domain, .. } = figure;
         writeln!(
             text,
-            "| {what} | {value} | {allowed}{why} | {domain}{compiler}: `{command}` |"
+            "| {what} | {value} | {allowed}{notes} | {domain} | {command} |"
         )?;
     }
     ensure!(
-        text.lines().count() > 3,
+        !before.is_empty(),
         "docs/figures.toml has no figure {group}.*"
     );
     Ok(text)

@@ -130,7 +130,7 @@ fn windows_differ_little_from_every_tick() {
             worst_k = worst_k.max((body.left().to_num::<f64>() - exact.left(1.0)).abs());
         }
     }
-    assert_figure("half_order.windows", 1e3 * worst_k);
+    assert_figure("half_space.windows", 1e3 * worst_k);
     assert!(worst_k < STRAIGHT, "{worst_k}");
 }
 
@@ -242,8 +242,8 @@ fn contact_follows_equation_6_5() {
             }
         }
     }
-    assert_figure("half_order.skin_first_20_ms", 1e3 * early_k);
-    assert_figure("half_order.skin_later", 1e3 * worst_k);
+    assert_figure("half_space.skin_first_20_ms", 1e3 * early_k);
+    assert_figure("half_space.skin_later", 1e3 * worst_k);
 }
 
 /// A drive of one tick through a resistance is `in_front / (resistance + gain)`, and what is across it its share.
