@@ -38,7 +38,7 @@ pub fn build(toolchain: &Toolchain) -> Invocation {
             "--locked",
             "--release",
             "--manifest-path",
-            "hil-sim/probe/Cargo.toml",
+            "hil-sim/emulator/probe/Cargo.toml",
         ])
         .args(["--target", TARGET, "--target-dir", folder(toolchain)])
         .without(&["CARGO_ENCODED_RUSTFLAGS"])

@@ -9,6 +9,7 @@ pub mod hand;
 pub mod host;
 pub mod metrics;
 pub mod processor;
+mod recording;
 pub mod report;
 pub mod run;
 pub mod scene;

@@ -274,19 +274,15 @@ impl Campaign<'_> {
         drawn: &[Drawn],
         boxed: Option<&Boxed>,
     ) -> anyhow::Result<()> {
-        let write = |name: &str, bytes: &[u8]| {
-            let path = folder.join(name);
-            std::fs::write(&path, bytes).with_context(|| path.display().to_string())
-        };
         let svg = fidelity::plot(rows)?;
         let page = fidelity::page(rows, boxed, svg.as_deref());
-        write(fidelity::HTML, page.as_bytes())?;
+        output::write(folder, fidelity::HTML, page)?;
         if let Some(svg) = &svg {
-            write(fidelity::SVG, svg.as_bytes())?;
-            write("fidelity.csv", &fidelity::rows_csv(rows)?)?;
+            output::write(folder, fidelity::SVG, svg)?;
+            output::write(folder, "fidelity.csv", fidelity::rows_csv(rows)?)?;
         }
         if !drawn.is_empty() {
-            write("box.csv", &fidelity::box_csv(drawn)?)?;
+            output::write(folder, "box.csv", fidelity::box_csv(drawn)?)?;
         }
         if let Some(number) = self.arguments.replay {
             let Draw {
@@ -294,10 +290,8 @@ impl Campaign<'_> {
             } = Draw::new(self.arguments.seed, number);
             for law in &self.laws {
                 let text = case.text(*law, seed, &plant);
-                write(
-                    &format!("draw-{number}-{}.toml", law.name()),
-                    text.as_bytes(),
-                )?;
+                let name = format!("draw-{number}-{}.toml", law.name());
+                output::write(folder, &name, text)?;
             }
         }
         Ok(())

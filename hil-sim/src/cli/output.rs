@@ -5,6 +5,7 @@ use std::path::Path;
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
+pub use thermal_charts::write;
 
 use super::Failure;
 

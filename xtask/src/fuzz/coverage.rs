@@ -9,7 +9,7 @@ use super::{Target, create, folder, found};
 use crate::process::{Invocation, workspace};
 
 /// Folders of the sources under test.
-const SOURCES: [&str; 3] = ["src", "model/src", "hil-sim/src/scene"];
+const SOURCES: [&str; 3] = ["src", "model/src", "hil-sim/sim/src/scene"];
 
 /// Runs all inputs and prints the coverage of each source file.
 pub fn report(targets: &[Target]) -> Result<()> {

@@ -23,10 +23,11 @@ pub enum Instrumented {
 
 /// The instrumented crates, and whether comparisons are instrumented, too: that helps to find the keywords of a scene, and
 /// would double the time of a tick.
-const CRATES: [(&str, bool); 3] = [
+const CRATES: [(&str, bool); 4] = [
     ("contact_model", false),
     ("thermal_display", false),
-    ("hil_sim", true),
+    ("thermal_plant", true),
+    ("thermal_sim", true),
 ];
 
 /// The crate of the fuzzers themselves.

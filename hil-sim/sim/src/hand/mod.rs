@@ -18,11 +18,9 @@ pub use native::NativeHand;
 use crate::World;
 use crate::commission;
 use crate::engine::{Cost, DeviceReset};
-use crate::host::Host;
-use crate::run::{Outcome, RunError, broken, in_scene};
+use crate::recording::Recording;
+use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
-use crate::telemetry::Telemetry;
-use crate::trace::{Row, Trace};
 use thermal_plant::bridge::Legs;
 
 /// Fingers of the device.
@@ -87,11 +85,12 @@ pub fn run<H: Hand>(
         return Err(RunError::Shared(injection.fault));
     }
     let began = Instant::now();
-    let mut fingers =
-        [0, 1, 2, 3, 4].map(|finger| Finger::new(finger, &scenes[finger], &settings[finger]));
-    let last = |of: fn(&Finger<'_>) -> u64| fingers.iter().map(of).max().unwrap_or(0);
-    let (zero_ms, end_ms) = (last(|finger| finger.zero_ms), last(|finger| finger.end_ms));
-    for ms in 0..=end_ms + DRAIN_MS {
+    let mut fingers: [_; FINGERS] =
+        std::array::from_fn(|finger| Recording::new(&scenes[finger], &settings[finger], STREAM_MS));
+    let last = |of: fn(&Recording<'_>) -> u64| fingers.iter().map(of).max().unwrap_or(0);
+    let zero_ms = last(|finger| finger.zero_ms);
+    let last_ms = last(|finger| finger.end_ms) + DRAIN_MS;
+    for ms in 0..=last_ms {
         if ms == zero_ms {
             hand.reset_cost();
         }
@@ -102,96 +101,24 @@ pub fn run<H: Hand>(
                 Some(before) => (before, Some(ms)),
                 None => (FINGERS - 1, ms.checked_sub(1)),
             };
-            if let Some(line) = its_ms.and_then(|ms| fingers[before].line(ms)) {
-                hand.send(before, &line);
+            // To each finger a millisecond later than to the one before it.
+            let since_ms = its_ms.and_then(|ms| ms.checked_sub(before as u64));
+            if let Some(line) = since_ms.and_then(|ms| fingers[before].host.send(2 * ms + 1)) {
+                hand.send(before, line);
             }
-            fingers[index].boundary(ms, hand);
+            let legs = hand.legs(index);
+            let world = hand.world(index);
+            fingers[index].change(ms, world);
+            fingers[index].keep(ms, world);
+            world.step(legs);
         }
         for (index, line) in hand.receive() {
-            fingers[index].hear(ms, line).map_err(RunError::Refused)?;
+            (fingers[index].hear(ms, line))
+                .map_err(|line| RunError::Refused(format!("finger {index}: {line}")))?;
         }
-        progress(ms as f64 / (end_ms + DRAIN_MS) as f64);
+        progress(ms as f64 / last_ms as f64);
     }
-    let simulated_s = (end_ms + DRAIN_MS) as f64 * 1e-3;
-    let real_time_factor = simulated_s / began.elapsed().as_secs_f64();
-    let cost = hand.cost();
-    let resets = hand.resets();
-    Ok(fingers.map(|finger| Outcome {
-        engine: H::NAME,
-        resets: in_scene(&resets, finger.zero_ms),
-        trace: finger.trace,
-        answers: finger.answers,
-        electrical_j: finger.spent_j.1 - finger.spent_j.0,
-        cost,
-        real_time_factor,
-    }))
-}
-
-/// One finger's scene as it goes on.
-struct Finger<'a> {
-    index: usize,
-    scene: &'a Scene,
-    host: Host,
-    zero_ms: u64,
-    end_ms: u64,
-    trace: Trace,
-    answers: Vec<(f64, String)>,
-    /// What its tile has taken from the bridge before the scene, and with it.
-    spent_j: (f64, f64),
-}
-
-impl<'a> Finger<'a> {
-    fn new(index: usize, scene: &'a Scene, settings: &[String]) -> Self {
-        let zero_ms = scene.settle_ms();
-        Self {
-            index,
-            scene,
-            host: Host::new(scene, settings, STREAM_MS),
-            zero_ms,
-            end_ms: zero_ms + (scene.duration_s * 1e3).round() as u64,
-            trace: Trace::default(),
-            answers: Vec::new(),
-            spent_j: (0.0, 0.0),
-        }
-    }
-
-    fn t_s(&self, ms: u64) -> f64 {
-        (ms as f64 - self.zero_ms as f64) / 1e3
-    }
-
-    /// The line that leaves in a millisecond, if any.
-    fn line(&mut self, ms: u64) -> Option<Vec<u8>> {
-        let half_ms = 2 * ms.checked_sub(self.index as u64)? + 1;
-        self.host.send(half_ms).map(<[u8]>::to_vec)
-    }
-
-    /// What the scene changes at a boundary; then a step of the plant under the legs as they are.
-    fn boundary(&mut self, ms: u64, hand: &mut impl Hand) {
-        let t_s = self.t_s(ms);
-        let legs = hand.legs(self.index);
-        let world = hand.world(self.index);
-        world.set(self.scene.force_n(t_s), broken(self.scene, t_s));
-        if (self.zero_ms..=self.end_ms).contains(&ms) {
-            self.spent_j.1 = world.plant().energy().electrical_j;
-            if ms == self.zero_ms {
-                self.spent_j.0 = self.spent_j.1;
-            }
-            let camera = world.look(ms - self.zero_ms);
-            self.trace.push(ms, Row::now(t_s, world.plant(), camera));
-        }
-        world.step(legs);
-    }
-
-    /// Takes a line of the device; gives it back if it refuses the scene.
-    fn hear(&mut self, ms: u64, line: String) -> Result<(), String> {
-        match Telemetry::parse(&line) {
-            Some(telemetry) => self.trace.join(telemetry),
-            // Before time zero only set-up is sent.
-            None if ms < self.zero_ms && line.starts_with("err") => {
-                return Err(format!("finger {}: {line}", self.index));
-            }
-            None => self.answers.push((self.t_s(ms + 1), line)),
-        }
-        Ok(())
-    }
+    let real_time_factor = last_ms as f64 * 1e-3 / began.elapsed().as_secs_f64();
+    let (cost, resets) = (hand.cost(), hand.resets());
+    Ok(fingers.map(|finger| finger.outcome(H::NAME, &resets, cost, real_time_factor)))
 }

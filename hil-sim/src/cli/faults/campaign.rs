@@ -5,7 +5,7 @@ use serde::Serialize;
 use thermal_campaigns::faults::{Campaign, Ran, summary};
 use thermal_sim::Device;
 
-use super::{Arguments, Failure, each, tell, write};
+use super::{Arguments, Failure, each, output, tell};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -29,7 +29,7 @@ pub fn run(
         (&arguments.out, arguments.replay, campaigns.as_slice())
     {
         let name = format!("campaign-{}.toml", campaign.number);
-        write(folder, &name, &campaign.text()).map_err(Failure::run)?;
+        output::write(folder, &name, &campaign.text()).map_err(Failure::run)?;
     }
     let work = |campaign: &Campaign| {
         let ran = campaign.run(device);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use thermal_campaigns::faults::{Class, Flip, Flipped, Memory, Reference, flip_table};
 use thermal_sim::Device;
 
-use super::{Arguments, Failure, each, tell, write};
+use super::{Arguments, Failure, each, output, tell};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments, device: &dyn Device, numbers: Range<u64>) -> R
             &arguments.out,
             flips.len() == 1 || flipped.class == Class::Broken,
         ) {
-            write(folder, &format!("flip-{}.toml", flip.number), &flip.text())?;
+            output::write(folder, &format!("flip-{}.toml", flip.number), &flip.text())?;
         }
         Ok(flipped)
     };

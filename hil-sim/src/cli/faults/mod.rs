@@ -5,10 +5,10 @@ mod flips;
 mod normal;
 mod pairs;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use anyhow::{Context, anyhow};
+use anyhow::anyhow;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -157,12 +157,10 @@ fn matrix(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
         faults::table(&rows)
     };
     if let Some(folder) = &arguments.out {
-        let path = folder.join(faults::HTML);
-        std::fs::write(&path, faults::page(&rows, device.name()))
-            .with_context(|| path.display().to_string())
+        output::write(folder, faults::HTML, faults::page(&rows, device.name()))
             .map_err(Failure::run)?;
         if !arguments.json {
-            text += &format!("report: {}\n", path.display());
+            text += &format!("report: {}\n", folder.join(faults::HTML).display());
         }
     }
     output::print(&text)?;
@@ -227,12 +225,6 @@ fn tell(
         table()
     };
     output::print(&text)
-}
-
-/// Writes a scene into the folder of `--out`.
-fn write(folder: &Path, name: &str, text: &str) -> anyhow::Result<()> {
-    let path = folder.join(name);
-    std::fs::write(&path, text).with_context(|| path.display().to_string())
 }
 
 /// Does the work of every item on the threads that are asked for, and shows how far it is; where no terminal is, a line

@@ -5,7 +5,7 @@ use serde::Serialize;
 use thermal_campaigns::faults::{Session, Used, use_table};
 use thermal_sim::Device;
 
-use super::{Arguments, Failure, each, tell, write};
+use super::{Arguments, Failure, each, output, tell};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -24,7 +24,7 @@ pub fn run(arguments: &Arguments, device: &dyn Device, hours: u64) -> Result<(),
         let session = Session::new(seed, *number);
         let used = session.run(device);
         if let (Some(folder), Some(_)) = (&arguments.out, &used.failure) {
-            write(folder, &format!("session-{number}.toml"), &session.text)?;
+            output::write(folder, &format!("session-{number}.toml"), &session.text)?;
         }
         Ok(used)
     };

@@ -5,7 +5,7 @@ use serde::Serialize;
 use thermal_campaigns::faults::{Pair, RanPair, pair_table, pairs};
 use thermal_sim::Device;
 
-use super::{Arguments, Failure, each, tell, write};
+use super::{Arguments, Failure, each, output, tell};
 
 /// What `--json` prints.
 #[derive(Serialize)]
@@ -24,7 +24,7 @@ pub fn run(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
         if let (Some(folder), Some(false)) = (&arguments.out, ran.as_ref().map(RanPair::holds)) {
             let words = format!("{} then {}", pair.latent.fault, pair.active.fault);
             let name = words.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
-            write(folder, &(name + ".toml"), &pair.text(seed))?;
+            output::write(folder, &(name + ".toml"), &pair.text(seed))?;
         }
         Ok(ran)
     };
