@@ -32,27 +32,23 @@ pub fn run(permission: Permission, job: Job, json: bool, out: Option<PathBuf>) -
 /// `cargo xtask bench-image`: builds the image that the benchmark runs and prints its path.
 pub fn build_image(permission: Permission) -> Result<()> {
     let toolchain = setup::prepare(Needs::default(), permission)?;
-    build(&toolchain).run_to_stderr()?;
-    let folder = workspace().join(folder(&toolchain));
-    let elf = folder.join(TARGET).join(PROFILE).join("image");
+    let folder = match &toolchain {
+        Toolchain::Active => "target/bench-image",
+        Toolchain::Distribution(_) => "target/bench-image-distribution",
+    };
+    image(&toolchain, folder).run_to_stderr()?;
+    let folder = workspace().join(folder).join(TARGET);
+    let elf = folder.join(PROFILE).join("image");
     println!("{}", elf.display());
     Ok(())
 }
 
-fn folder(toolchain: &Toolchain) -> &'static str {
-    match toolchain {
-        Toolchain::Active => "target/bench-image",
-        Toolchain::Distribution(_) => "target/bench-image-distribution",
-    }
-}
-
-/// Builds that image.
-pub fn build(toolchain: &Toolchain) -> Invocation {
+fn image(toolchain: &Toolchain, folder: &'static str) -> Invocation {
     toolchain
         .cargo("build")
         .args(["--locked", "--package", "model-bench", "--bin", "image"])
         .args(["--features", "image", "--profile", PROFILE])
-        .args(["--target", TARGET, "--target-dir", folder(toolchain)])
+        .args(["--target", TARGET, "--target-dir", folder])
         .without(&["CARGO_ENCODED_RUSTFLAGS"])
         .env("RUSTFLAGS", probe::link_flags())
 }

@@ -21,7 +21,7 @@ pub fn run(permission: Permission) -> Result<()> {
     steps.run(
         "building the firmware",
         "about 1 min the first time",
-        || firmware::build(&toolchain, Fingers::One).run_to_stderr(),
+        || firmware::build(&toolchain, Fingers::One),
     )?;
     steps.run(
         "building the emulator",

@@ -1,4 +1,5 @@
 //! `cargo xtask firmware`: builds the image exactly as it is flashed.
+use std::fs::{self, File};
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
@@ -48,29 +49,26 @@ const FOREIGN_FLAGS: [&str; 5] = [
     "DEFMT_LOG",
 ];
 
-/// Target folder of an image. Compilers that share one rebuild each other's artifacts, and images that share one overwrite each
-/// other.
-fn target_folder(toolchain: &Toolchain, fingers: Fingers) -> &'static str {
-    match (toolchain, fingers) {
-        (Toolchain::Active, Fingers::One) => "target/firmware",
-        (Toolchain::Active, Fingers::Five) => "target/firmware-five",
-        (Toolchain::Distribution(_), Fingers::One) => "target/firmware-distribution",
-        (Toolchain::Distribution(_), Fingers::Five) => "target/firmware-five-distribution",
+/// Target folder of the images. Compilers that shared one would rebuild each other's artifacts.
+fn target_folder(toolchain: &Toolchain) -> &'static str {
+    match toolchain {
+        Toolchain::Active => "target/firmware",
+        Toolchain::Distribution(_) => "target/firmware-distribution",
     }
 }
 
 /// The ELF file that [`build`] writes.
 pub fn elf(toolchain: &Toolchain, fingers: Fingers) -> PathBuf {
-    workspace()
-        .join(target_folder(toolchain, fingers))
-        .join(TARGET)
-        .join(PROFILE)
-        .join(PACKAGE)
+    let name = match fingers {
+        Fingers::One => "thermal-display.elf",
+        Fingers::Five => "thermal-display-five-fingers.elf",
+    };
+    workspace().join(target_folder(toolchain)).join(name)
 }
 
 /// `cargo SUBCOMMAND` for the image in its own target folder.
 fn cargo(toolchain: &Toolchain, fingers: Fingers, subcommand: &str) -> Invocation {
-    let folder = target_folder(toolchain, fingers);
+    let folder = target_folder(toolchain);
     toolchain
         .cargo(subcommand)
         .args([
@@ -88,9 +86,24 @@ fn cargo(toolchain: &Toolchain, fingers: Fingers, subcommand: &str) -> Invocatio
         .without(&FOREIGN_FLAGS)
 }
 
-/// Builds the image.
-pub fn build(toolchain: &Toolchain, fingers: Fingers) -> Invocation {
-    cargo(toolchain, fingers, "build")
+/// Builds the image and copies it to [`elf`]. Images of one and of five fingers share a target folder, so that dependencies
+/// are compiled once. Cargo writes both to the same path: a lock keeps other calls from building between build and copy.
+pub fn build(toolchain: &Toolchain, fingers: Fingers) -> Result<()> {
+    let folder = workspace().join(target_folder(toolchain));
+    fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    let lock = File::create(folder.join("image.lock"))?;
+    lock.lock()?;
+    cargo(toolchain, fingers, "build").run_to_stderr()?;
+    let built = folder.join(TARGET).join(PROFILE).join(PACKAGE);
+    let built = fs::read(&built).with_context(|| built.display().to_string())?;
+    let elf = elf(toolchain, fingers);
+    // Other programs may be reading the file: an unchanged one stays, a new one replaces it at once.
+    if !fs::read(&elf).is_ok_and(|old| old == built) {
+        let new = elf.with_extension("new");
+        fs::write(&new, built).with_context(|| new.display().to_string())?;
+        fs::rename(&new, &elf).with_context(|| elf.display().to_string())?;
+    }
+    Ok(())
 }
 
 /// Lints the code that is compiled for the microcontroller only.
@@ -101,9 +114,8 @@ pub fn clippy(toolchain: &Toolchain, fingers: Fingers) -> Invocation {
 /// Path, flash and RAM use of the built image.
 pub fn describe(toolchain: &Toolchain, fingers: Fingers) -> Result<String> {
     let path = elf(toolchain, fingers);
-    let read = |path: &PathBuf| {
-        std::fs::read(path).with_context(|| format!("cannot read {}", path.display()))
-    };
+    let read =
+        |path: &PathBuf| fs::read(path).with_context(|| format!("cannot read {}", path.display()));
     let script = workspace().join("memory.x");
     let memory = Memory::parse(&String::from_utf8_lossy(&read(&script)?))
         .with_context(|| format!("in {}", script.display()))?;
@@ -119,7 +131,7 @@ pub fn describe(toolchain: &Toolchain, fingers: Fingers) -> Result<String> {
 /// `cargo xtask firmware`
 pub fn run(permission: Permission, fingers: Fingers, print_path: bool) -> Result<()> {
     let toolchain = setup::prepare(Needs::default(), permission)?;
-    build(&toolchain, fingers).run_to_stderr()?;
+    build(&toolchain, fingers)?;
     let description = describe(&toolchain, fingers)?;
     if print_path {
         eprintln!("{description}");

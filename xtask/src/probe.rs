@@ -7,9 +7,12 @@ use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 /// `cargo xtask probe`: builds the image and prints its path.
 pub fn run(permission: Permission) -> Result<()> {
     let toolchain = setup::prepare(Needs::default(), permission)?;
-    build(&toolchain).run_to_stderr()?;
-    let folder = workspace().join(folder(&toolchain));
-    let elf = folder.join(TARGET).join("release/probe");
+    let folder = match &toolchain {
+        Toolchain::Active => "target/probe",
+        Toolchain::Distribution(_) => "target/probe-distribution",
+    };
+    build(&toolchain, folder).run_to_stderr()?;
+    let elf = workspace().join(folder).join(TARGET).join("release/probe");
     println!("{}", elf.display());
     Ok(())
 }
@@ -23,15 +26,7 @@ pub fn link_flags() -> String {
     )
 }
 
-fn folder(toolchain: &Toolchain) -> &'static str {
-    match toolchain {
-        Toolchain::Active => "target/probe",
-        Toolchain::Distribution(_) => "target/probe-distribution",
-    }
-}
-
-/// Builds the test image.
-pub fn build(toolchain: &Toolchain) -> Invocation {
+fn build(toolchain: &Toolchain, folder: &'static str) -> Invocation {
     toolchain
         .cargo("build")
         .args([
@@ -40,7 +35,7 @@ pub fn build(toolchain: &Toolchain) -> Invocation {
             "--manifest-path",
             "hil-sim/emulator/probe/Cargo.toml",
         ])
-        .args(["--target", TARGET, "--target-dir", folder(toolchain)])
+        .args(["--target", TARGET, "--target-dir", folder])
         .without(&["CARGO_ENCODED_RUSTFLAGS"])
         .env("RUSTFLAGS", link_flags())
 }

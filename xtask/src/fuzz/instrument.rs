@@ -21,14 +21,14 @@ pub enum Instrumented {
     Coverage,
 }
 
-/// The instrumented crates, and whether comparisons are instrumented, too: that helps to find the keywords of a scene, and
-/// would double the time of a tick.
-const CRATES: [(&str, bool); 4] = [
-    ("contact_model", false),
-    ("thermal_display", false),
-    ("thermal_plant", true),
-    ("thermal_sim", true),
-];
+/// Whether a crate is one of the product's, which are instrumented.
+fn is_product(name: &str) -> bool {
+    name.starts_with("thermal_") || name == "contact_model"
+}
+
+/// Crates with the scene parser, whose comparisons are instrumented, too: that helps to find the keywords of a scene. In the
+/// device's crates it would double the time of a tick.
+const COMPARED: [&str; 2] = ["thermal_sim", "thermal_plant"];
 
 /// The crate of the fuzzers themselves.
 const FUZZERS: &str = "fuzz";
@@ -48,19 +48,17 @@ impl Instrumented {
 
     /// Additional flags for a crate; none if it is not instrumented.
     fn flags(self, name: &str) -> Vec<&'static str> {
-        let ours = CRATES.iter().find(|(known, _)| *known == name);
-        match (self, ours) {
-            (Self::Coverage, Some(_)) => vec![COVERAGE],
+        match self {
             // The linked program contains the run-time library that writes the counts.
-            (Self::Coverage, None) if name == FUZZERS => vec![COVERAGE],
-            (Self::Fuzzing, Some((_, compares))) => {
+            Self::Coverage if is_product(name) || name == FUZZERS => vec![COVERAGE],
+            Self::Fuzzing if is_product(name) => {
                 let mut flags = [EDGES.as_slice(), &CHECKS].concat();
-                if *compares {
+                if COMPARED.contains(&name) {
                     flags.push(COMPARISONS);
                 }
                 flags
             }
-            (_, None) => Vec::new(),
+            _ => Vec::new(),
         }
     }
 
@@ -68,8 +66,8 @@ impl Instrumented {
     /// they change.
     fn program(self) -> String {
         let mut hasher = DefaultHasher::new();
-        for name in CRATES.map(|(name, _)| name).into_iter().chain([FUZZERS]) {
-            (name, self.flags(name)).hash(&mut hasher);
+        for name in ["thermal_display", COMPARED[0], FUZZERS] {
+            self.flags(name).hash(&mut hasher);
         }
         let word = match self {
             Self::Fuzzing => "fuzzing",

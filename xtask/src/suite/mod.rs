@@ -1,22 +1,16 @@
 //! `cargo xtask test`: the whole test suite, or the part that is quick enough to run before each commit.
 mod lanes;
+mod members;
 
-use anyhow::{Context, Result, bail};
+use anyhow::Result;
 
 use crate::firmware::{self, Fingers};
 use crate::process::Invocation;
 use crate::setup::{self, Choice, Lints, Needs, Permission, Toolchain};
 use crate::step::Steps;
-use crate::{bench, probe};
 use lanes::{Check, Lane};
+use members::Member;
 
-/// Packages that need no emulator, and so no cmake and no libclang. A build of the whole workspace would not notice if one
-/// of them came to depend on it.
-const NATIVE_PACKAGES: [&str; 2] = ["contact-model", "thermal-display"];
-/// The emulator's package.
-const EMULATOR: &str = "unicorn-engine";
-/// Packages that compile within seconds.
-const SMALL_PACKAGES: &str = "-p contact-model -p thermal-display -p xtask";
 /// Time for each target of the fuzzers, after all inputs of the repository, s.
 const FUZZ_S: &str = "4";
 
@@ -50,8 +44,9 @@ fn formatting(lints: Lints) -> Check {
 }
 
 /// Unit tests in the dev profile, where integer overflow panics.
-fn units() -> Check {
-    let line = format!("test --quiet {SMALL_PACKAGES} --lib --bins --tests");
+fn units(members: &[Member]) -> Check {
+    let small = members::options(members, Member::is_small);
+    let line = format!("test --quiet {small} --lib --bins --tests");
     check(
         "units of model, firmware and xtask, with overflow checks",
         [&line],
@@ -59,8 +54,9 @@ fn units() -> Check {
 }
 
 /// What a person runs before each commit.
-fn quick(lints: Lints) -> Vec<Vec<Lane>> {
-    let clippy = format!("clippy {SMALL_PACKAGES} --all-targets -- -Dwarnings");
+fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
+    let small = members::options(members, Member::is_small);
+    let clippy = format!("clippy {small} --all-targets -- -Dwarnings");
     let small = vec![
         formatting(lints),
         only_if(
@@ -68,7 +64,7 @@ fn quick(lints: Lints) -> Vec<Vec<Lane>> {
             NO_CLIPPY,
             check("lints of model, firmware and xtask", [&clippy]),
         ),
-        units(),
+        units(members),
     ];
     // Stored settings take most of the time: a cut in every flash operation, every bit flipped.
     let native =
@@ -81,23 +77,22 @@ fn quick(lints: Lints) -> Vec<Vec<Lane>> {
 
 /// All checks: phases, in each of which lanes run side by side. Whatever compiles the emulator does so in the release
 /// profile, and so once.
-fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> {
+fn whole(
+    members: &[Member],
+    toolchain: &Toolchain,
+    choice: Choice,
+    lints: Lints,
+) -> Vec<Vec<Lane>> {
     let firmware_lints = lints.clippy || matches!(toolchain, Toolchain::Distribution(_));
-    let image = |title, build| Check {
+    let image = |title, line| Check {
         title,
-        commands: Ok(vec![build]),
+        commands: Ok(vec![choice.handed_to(cargo(line))]),
     };
     let images = vec![
-        image(
-            "image for one finger",
-            firmware::build(toolchain, Fingers::One),
-        ),
-        image(
-            "image for five fingers",
-            firmware::build(toolchain, Fingers::Five),
-        ),
-        image("test image of the emulator", probe::build(toolchain)),
-        image("image of the benchmark", bench::build(toolchain)),
+        image("image for one finger", "xtask firmware"),
+        image("image for five fingers", "xtask firmware --fingers 5"),
+        image("test image of the emulator", "xtask probe"),
+        image("image of the benchmark", "xtask bench-image"),
         only_if(
             firmware_lints,
             NO_CLIPPY,
@@ -108,15 +103,21 @@ fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> 
                     .into()),
             },
         ),
-        units(),
+        units(members),
     ];
-    let native = NATIVE_PACKAGES.map(|name| format!("-p {name}")).join(" ");
-    let without_emulator = format!("check --release --all-targets {native}");
+    let native = members::options(members, Member::is_native);
+    // clippy shares its artifacts with the lints of the whole workspace.
+    let checker = if lints.clippy { "clippy" } else { "check" };
+    let native_command = format!("{checker} --release -p hil-sim --no-default-features");
+    let without_emulator = format!("{checker} --release --all-targets {native}");
     let lints_of_all = "clippy --release --workspace --all-targets -- -Dwarnings";
     let documentation = cargo("doc --release --workspace --no-deps");
     let host = vec![
         formatting(lints),
-        check("native packages without the emulator", [&without_emulator]),
+        check(
+            "native packages without the emulator",
+            [&without_emulator, &native_command],
+        ),
         only_if(
             lints.clippy,
             NO_CLIPPY,
@@ -148,26 +149,14 @@ fn whole(toolchain: &Toolchain, choice: Choice, lints: Lints) -> Vec<Vec<Lane>> 
     ]
 }
 
-/// An error names the packages of [`NATIVE_PACKAGES`] that depend on the emulator.
-fn no_emulator() -> Result<()> {
-    for package in NATIVE_PACKAGES {
-        let line = format!("tree --prefix none --edges normal,build,dev --package {package}");
-        let tree = cargo(&line).answer();
-        let tree = tree.with_context(|| format!("`cargo {line}` failed"))?;
-        if tree.lines().any(|line| line.starts_with(EMULATOR)) {
-            bail!("{package} must not depend on {EMULATOR}: cargo tree -p {package} -i {EMULATOR}");
-        }
-    }
-    Ok(())
-}
-
 /// `cargo xtask test`
 pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
+    let members = members::all()?;
     let phases = |toolchain: &Toolchain, lints| {
         if quick_only {
-            quick(lints)
+            quick(&members, lints)
         } else {
-            whole(toolchain, permission.choice, lints)
+            whole(&members, toolchain, permission.choice, lints)
         }
     };
     let all = Lints {
@@ -188,7 +177,9 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
             };
             Ok((setup::prepare(needs, permission)?, setup::lints()?))
         })?;
-        steps.run("dependencies of native packages", "", no_emulator)?;
+        steps.run("dependencies of native packages", "", || {
+            members::check_dependencies(&members)
+        })?;
         let mut phases = phases(&toolchain, lints).into_iter();
         phases.try_for_each(|lanes| lanes::run(&lanes, &mut steps))
     })();
@@ -201,7 +192,8 @@ mod tests {
     use super::*;
 
     fn checks(lints: Lints) -> Vec<Check> {
-        let phases = whole(&Toolchain::Active, Choice::Auto, lints);
+        let members = members::all().unwrap();
+        let phases = whole(&members, &Toolchain::Active, Choice::Auto, lints);
         phases.into_iter().flatten().flatten().collect()
     }
 
