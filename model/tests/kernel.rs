@@ -5,10 +5,15 @@ mod verify;
 use contact_model::fixed_point::kernel::OCTAVES;
 use contact_model::fixed_point::{Fraction, Rate, Ticks, erfcx};
 use contact_model::reference;
-use documented_figures::{assert_figure, figure};
 use proptest::prelude::*;
-use std::f64::consts::PI;
 use verify::{INPUTS, LIVED_IN, TRUTH_ERROR, Tally, exact, exhaustive, kernel, proof};
+
+/// Stated: where scenes live, elsewhere, and what the cut of the product adds.
+const LIVED_IN_UNITS: f64 = 0.51;
+const ELSEWHERE_UNITS: f64 = 0.54;
+const CUT_UNITS: f64 = 0.07;
+/// Least share of results that are the nearest of all.
+const CORRECTLY_ROUNDED: f64 = 0.998;
 
 const UNIT: f64 = 1.0 / 4_294_967_296.0;
 
@@ -29,10 +34,10 @@ fn sampled_inputs_stay_within_the_stated_error_and_rise_by_one_unit_at_most() {
         }
     }
     println!("{all:?}");
+    assert!(all.worst + TRUTH_ERROR <= LIVED_IN_UNITS, "{all:?}");
+    assert!(all.largest_rise <= 1, "{all:?}");
     let share = all.correctly_rounded as f64 / all.inputs as f64;
-    assert_figure("kernel.error_sampled", all.worst + TRUTH_ERROR);
-    assert_figure("kernel.correctly_rounded_sampled", 100.0 * share);
-    assert_figure("kernel.largest_rise", all.largest_rise.into());
+    assert!(share > CORRECTLY_ROUNDED, "{share}");
 }
 
 #[test]
@@ -42,9 +47,12 @@ fn every_octave_is_proven_within_its_stated_error() {
         let lived_in = LIVED_IN.contains(&octave);
         let bound = proof::bound(octave);
         worst[usize::from(lived_in)] = worst[usize::from(lived_in)].max(bound);
+        assert!(bound <= ELSEWHERE_UNITS, "2^{octave}: {bound}");
     }
-    assert_figure("kernel.error_proven_anywhere", worst[0]);
-    assert_figure("kernel.error_proven", worst[1]);
+    println!(
+        "proven: {:.4} where scenes live, {:.4} elsewhere",
+        worst[1], worst[0]
+    );
 }
 
 /// The proof holds for the function as it is called, not only for the table that it reads.
@@ -81,14 +89,6 @@ fn kernel_saturates_outside_of_its_octaves() {
     }
 }
 
-/// The cut loses up to a part of 2^-33 of `u`.
-#[test]
-fn what_the_cut_of_the_product_adds_is_half_of_the_largest_slope() {
-    let slope = |z: f64| 0.5 * z * (2.0 / PI.sqrt() - 2.0 * z * reference::erfcx(z));
-    let largest = (1..10_000).map(|i| slope(1e-3 * f64::from(i)));
-    assert_figure("kernel.error_of_the_cut", 0.5 * largest.fold(0.0, f64::max));
-}
-
 proptest! {
     #[test]
     fn kernel_holds_for_any_elapsed_time_and_rate(
@@ -100,8 +100,6 @@ proptest! {
         let e = erfcx(Ticks::new(elapsed).expect("in range"), per_tick);
         let truth = reference::erfcx((f64::from(elapsed) * per_tick.to_f64()).sqrt()) / UNIT;
         let error = (f64::from(e.to_bits()) - truth).abs();
-        let [proven, cut] = ["kernel.error_proven_anywhere", "kernel.error_of_the_cut"];
-        let allowed = figure(proven).value() + figure(cut).value();
-        prop_assert!(error <= allowed, "{error} units");
+        prop_assert!(error <= ELSEWHERE_UNITS + CUT_UNITS, "{error} units");
     }
 }

@@ -5,7 +5,6 @@ extern crate std;
 use std::f64::consts::PI;
 use std::vec::Vec;
 
-use documented_figures::assert_figure;
 use proptest::prelude::*;
 
 use super::*;
@@ -130,7 +129,7 @@ fn windows_differ_little_from_every_tick() {
             worst_k = worst_k.max((body.left().to_num::<f64>() - exact.left(1.0)).abs());
         }
     }
-    assert_figure("half_space.windows", 1e3 * worst_k);
+    std::println!("windows: {:.3} mK", worst_k * 1e3);
     assert!(worst_k < STRAIGHT, "{worst_k}");
 }
 
@@ -216,7 +215,7 @@ fn pulse_of_flux_moves_the_surface_as_a_half_space() {
 #[test]
 fn contact_follows_equation_6_5() {
     let (mut worst_k, mut early_k) = (0f64, 0f64);
-    for (_, material) in MATERIALS {
+    for (name, material) in MATERIALS {
         let pairing =
             Pairing::new(&SKIN, &material, &REFERENCE_DISPLAY, TICK_S).expect("a material");
         for (force_n, _) in crate::pressure::STATED {
@@ -239,11 +238,19 @@ fn contact_follows_equation_6_5() {
                 } else {
                     early_k = early_k.max(error_k);
                 }
+                assert!(
+                    error_k < 0.05,
+                    "{name}, {force_n} N, {tick} ms: {error_k} K"
+                );
             }
         }
     }
-    assert_figure("half_space.skin_first_20_ms", 1e3 * early_k);
-    assert_figure("half_space.skin_later", 1e3 * worst_k);
+    std::println!(
+        "skin within {:.1} mK in 20 ms, {:.1} mK then, of 10 K",
+        early_k * 1e3,
+        worst_k * 1e3
+    );
+    assert!(worst_k < 0.02, "{worst_k}");
 }
 
 /// A drive of one tick through a resistance is `in_front / (resistance + gain)`, and what is across it its share.
