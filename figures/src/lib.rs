@@ -1,13 +1,4 @@
-//! Every figure that the documentation states: `docs/figures.toml`, read once.
-//!
-//! Tests assert a figure with [`assert_figure`], `cargo xtask docs` writes it into the documents. So a figure that is no
-//! longer true fails a test, and a document that states another one fails the check of the documents.
-//!
-//! ```
-//! use documented_figures::{assert_figure, figure};
-//! assert_eq!(figure("kernel.instructions").unit, "instructions");
-//! assert_figure("kernel.error_sampled", 0.5082);
-//! ```
+#![doc = include_str!("../README.md")]
 
 use std::fmt;
 use std::sync::LazyLock;
