@@ -1,11 +1,13 @@
 //! The device holds its display at a constant temperature without oscillation, with display thermistors of 0.02 to 0.5 s lag.
 
+use documented_figures::assert_figure;
 use system_tests::{between, natively, scene};
 
 /// Commissioning identifies the lag. The display is held at the preset of a warm and of a cool object; only the noise of the
 /// converter moves it.
 #[test]
-fn a_held_display_stays_within_5_mk_and_its_current_within_200_ma() {
+fn a_held_display_stays_within_4_mk_and_its_current_within_200_ma() {
+    let (mut moves_k, mut moves_a) = (0.0f64, 0.0f64);
     for lag_s in [0.02, 0.1, 0.5] {
         for start_c in [22.0, 40.0] {
             let plant =
@@ -29,8 +31,9 @@ fn a_held_display_stays_within_5_mk_and_its_current_within_200_ma() {
                 1e3 * (low_c - preset_c),
                 1e3 * (high_c - preset_c)
             );
-            assert!(high_c - low_c < 5e-3, "{lag_s} s: {low_c} to {high_c} C");
-            assert!(high_a - low_a < 0.2, "{lag_s} s: {low_a} to {high_a} A");
+            (moves_k, moves_a) = (moves_k.max(high_c - low_c), moves_a.max(high_a - low_a));
         }
     }
+    assert_figure("law.noisy_display", 1e3 * moves_k);
+    assert_figure("law.noisy_current", moves_a);
 }

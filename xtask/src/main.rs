@@ -4,6 +4,7 @@
 //! tool, 2 a wrong command line.
 mod bench;
 mod demo;
+mod docs;
 mod firmware;
 mod fuzz;
 mod image;
@@ -129,6 +130,12 @@ enum Task {
         #[command(flatten)]
         options: fuzz::Options,
     },
+    /// Write the figures of docs/figures.toml into the documents
+    Docs {
+        /// Write nothing; fail if a document differs, or if no test asserts a figure
+        #[arg(long)]
+        check: bool,
+    },
     /// Build the image that the benchmark runs in the emulator and print its path; called by the benchmark
     BenchImage(SetUp),
     /// Build the image for the emulator's own tests and print its path; called by those tests
@@ -205,6 +212,7 @@ fn main() -> ExitCode {
             code_only,
         } => proof::run(set_up.permission(), fingers, code_only),
         Task::Fuzz { set_up, options } => fuzz::run(set_up.permission(), &options),
+        Task::Docs { check } => docs::run(check),
         Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
         Task::Probe(set_up) => probe::run(set_up.permission()),
     };

@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use contact_model::reference::Contact;
+use documented_figures::{assert_compiled, assert_figure};
 use image_proof::compiler::recorded_with;
 use model_bench::scenes::{FINGERS, TICKS, kind};
 use serde_json::Value;
@@ -216,11 +217,18 @@ fn costs_are_those_of_a_call() {
     for cost in ["instructions", "cycles"] {
         let (min, max) = (format!("{cost}_min"), format!("{cost}_max"));
         assert_eq!(number(firmware, &min), number(firmware, &max), "{firmware}");
+        assert_compiled(&format!("kernel.{cost}"), number(firmware, &max), compiler);
     }
-    assert!(
-        number(firmware, "table_bytes") >= 1024.0,
-        "its table is found in the image"
-    );
+    assert_figure("kernel.table_bytes", number(firmware, "table_bytes"));
+    let constant = scene(kind::CONSTANT, INTEGERS);
+    let render = scene(kind::RENDER_CONSTANT, FIRMWARE);
+    for which in ["min", "max"] {
+        let count = |row| number(row, &format!("instructions_{which}"));
+        let key = format!("setpoint_cost.instructions_{which}");
+        assert_compiled(&key, count(constant), compiler);
+        let key = format!("render_cost.instructions_{which}");
+        assert_compiled(&key, count(render), compiler);
+    }
 }
 
 #[test]

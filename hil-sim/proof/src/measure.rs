@@ -2,6 +2,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
+use documented_figures::{Verdict, figure};
 use stm32_emulator::Firmware;
 use stm32_emulator::Image;
 use stm32_emulator::ImageHand;
@@ -16,12 +17,6 @@ use thermal_sim::scene::Scene;
 use crate::scenes::{faulty, touched};
 use crate::{Proof, Section, levels};
 
-/// Most instructions of a tick that are allowed: 3419 are the most that was seen, and a third more is for paths that the
-/// scenes do not take. Counts repeat exactly, so that what exceeds it is a change of the program.
-pub const INSTRUCTIONS: u64 = 4500;
-/// Most cycles of a tick that are allowed, estimated: the same, from 4566. A thirtieth of what one finger's tick has, a
-/// sixth of what each of five has.
-pub const CYCLES: u64 = 6000;
 /// Cycles of a millisecond at 180 MHz.
 const MILLISECOND: u64 = 180_000;
 
@@ -31,7 +26,7 @@ struct Measured {
     cost: Cost,
 }
 
-/// Every tick of the scenes is within the limits, and their stack within the bound.
+/// Ticks and stack of the scenes are as `docs/figures.toml` states, and the stack is within the proven bound.
 ///
 /// # Errors
 /// A scene does not run to its end.
@@ -67,16 +62,24 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
         differences,
         ..
     } = &mut section;
-    let mut limit = |list: &mut Vec<String>, what, (value, scene), limit: u64| {
-        lines.push(format!("{value} of {limit} {what} ({scene})"));
-        if value > limit {
-            list.push(format!("{value} {what} in {scene}, allowed are {limit}"));
+    let hand = if fingers == 1 { "one" } else { "five" };
+    for (what, (value, scene)) in [
+        ("instructions", instructions),
+        ("cycles", cycles),
+        ("stack", stack),
+    ] {
+        let figure = figure(&format!("proof.{what}_{hand}"));
+        lines.push(format!("{value} {} ({scene}), {figure}", figure.unit));
+        if let Verdict::Differs(why) = figure.judge(value as f64) {
+            differences.push(format!("{why} ({scene})"));
         }
-    };
-    let longest = "instructions of the longest tick";
-    limit(differences, longest, instructions, INSTRUCTIONS);
-    limit(differences, "cycles of it, estimated", cycles, CYCLES);
-    limit(violations, "bytes of stack", stack, bound.into());
+    }
+    if stack.0 > u64::from(bound) {
+        let (seen, scene) = stack;
+        violations.push(format!(
+            "{seen} bytes of stack in {scene}, proven are {bound}"
+        ));
+    }
     if cycles.0 > available {
         violations.push(format!("{} cycles in {}: late", cycles.0, cycles.1));
     }

@@ -1,5 +1,6 @@
 //! Responses to steps of the target and of the load.
 
+use documented_figures::assert_figure;
 use thermal_display::device::drive::Current;
 use thermal_plant::tile::TileParams;
 
@@ -7,12 +8,9 @@ use super::bench::{Bench, settings, settled, ticks};
 
 const LAGS_S: [f64; 3] = [0.02, 0.1, 0.5];
 
-/// Allowed overshoot: a fraction of the step, plus a constant in K.
-const OVERSHOOT: f64 = 0.01;
-const OVERSHOOT_K: f64 = 0.005;
-
 #[test]
-fn a_step_of_the_target_is_followed_without_overshoot() {
+fn a_step_of_the_target_is_followed_with_little_overshoot() {
+    let (mut most_k, mut small_k, mut most_part) = (0.0f64, 0.0f64, 0.0f64);
     for lag_s in LAGS_S {
         for (from_c, to_c) in [
             (30.0, 29.9),
@@ -31,20 +29,25 @@ fn a_step_of_the_target_is_followed_without_overshoot() {
                 "lag {lag_s} s, {from_c} to {to_c} C: overshoot {:.2} mK, within 10 mK after {settled_s:?} s",
                 1e3 * beyond_k
             );
-            let allowed_k = OVERSHOOT_K + OVERSHOOT * (to_c - from_c).abs();
-            assert!(
-                beyond_k < allowed_k,
-                "{lag_s} s, {from_c} to {to_c} C: {beyond_k} K"
-            );
+            most_k = most_k.max(beyond_k);
+            if f64::abs(to_c - from_c) < 1.0 {
+                small_k = small_k.max(beyond_k);
+            } else {
+                most_part = most_part.max(beyond_k / f64::abs(to_c - from_c));
+            }
         }
     }
+    assert_figure("law.overshoot", 1e3 * most_k);
+    assert_figure("law.overshoot_small", 1e3 * small_k);
+    assert_figure("law.overshoot_part", 100.0 * most_part);
 }
 
 /// After five seconds at the current limit towards an unreachable target the controller recovers as fast as one that starts
-/// afresh. On a tile with a parameter off by 10 % the disturbance observer has to adapt from cooling to heating: a quarter of
-/// its integral time is allowed for that.
+/// afresh. On a tile with a parameter off by 10 % the disturbance observer has to adapt from cooling to heating, which takes a
+/// little longer.
 #[test]
 fn the_current_limit_causes_no_windup() {
+    let mut longest_s = 0.0f64;
     let class = TileParams::CLASS;
     let weak = TileParams {
         vmax_v: 0.9 * class.vmax_v,
@@ -56,11 +59,7 @@ fn the_current_limit_causes_no_windup() {
     };
     let mut settings = settings(0.1);
     settings.module.current_limit_a = 0.3;
-    for (name, params, more_s) in [
-        ("class", class, 0.05),
-        ("weak", weak, 0.25),
-        ("heavy", heavy, 0.25),
-    ] {
+    for (name, params) in [("class", class), ("weak", weak), ("heavy", heavy)] {
         for (from_c, target_c, step_k) in [(30.0, 15.0, 0.5), (20.0, 42.0, -0.5)] {
             let mut bench = Bench::new(&settings, params);
             bench.run(from_c, 60.0);
@@ -86,12 +85,14 @@ fn the_current_limit_causes_no_windup() {
                 "{name}, towards {target_c} C: recovers in {recovered:?} s, afresh {fresh:?} s"
             );
             let (recovered, fresh) = (recovered.expect("recovers"), fresh.expect("settles"));
+            longest_s = longest_s.max(recovered - fresh);
             assert!(
-                recovered <= fresh + more_s,
-                "{name}, {target_c} C: {recovered} s, afresh {fresh} s"
+                name != "class" || recovered <= fresh,
+                "{target_c} C: {recovered} s, afresh {fresh} s"
             );
         }
     }
+    assert_figure("law.recovery", longest_s);
 }
 
 /// A finger's 1 W on the patch: the known load is compensated by feed-forward.
@@ -106,11 +107,7 @@ fn a_known_load_disturbs_a_tenth_of_an_unknown_one() {
             .fold(0.0, f64::max)
     };
     let (known_k, unknown_k) = (largest_k(1.0), largest_k(0.0));
-    println!(
-        "1 W, 50 ms later: {:.1} mK, unknown {:.1} mK",
-        1e3 * known_k,
-        1e3 * unknown_k
-    );
-    assert!(known_k < 0.02, "{known_k} K");
+    assert_figure("law.known_load", 1e3 * known_k);
+    assert_figure("law.unknown_load", 1e3 * unknown_k);
     assert!(unknown_k > 10.0 * known_k, "{unknown_k} K");
 }

@@ -1,5 +1,6 @@
 //! Tiles whose parameters differ from the controller's model.
 
+use documented_figures::assert_figure;
 use thermal_plant::tile::TileParams;
 
 use super::bench::{Bench, peak_to_peak, settings};
@@ -18,6 +19,7 @@ const CHANGES: [Change; 5] = [
 /// An unknown load of 1 W on a tile with one parameter off by 10 %: the disturbance observer removes the error.
 #[test]
 fn a_parameter_off_by_10_percent_leaves_no_steady_state_error() {
+    let mut most_left_k = 0.0f64;
     for (name, change) in CHANGES {
         for factor in [0.9, 1.1] {
             let mut params = TileParams::CLASS;
@@ -42,8 +44,9 @@ fn a_parameter_off_by_10_percent_leaves_no_steady_state_error() {
                 disturbed_k > 0.02,
                 "{name}: the load disturbs by {disturbed_k} K"
             );
-            assert!(left_k < 2e-3, "{name} x {factor}: {left_k} K");
+            most_left_k = most_left_k.max(left_k);
             assert!(current_a < 0.02, "{name} x {factor}: {current_a} A");
         }
     }
+    assert_figure("law.mismatch_left", 1e3 * most_left_k);
 }

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN, find};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
+use documented_figures::assert_figure;
 
 use super::{plant, run};
 use crate::bridge::Legs;
@@ -118,6 +119,7 @@ fn force_steps_lifting_and_landing_again_follow_the_integral_equation() {
         (2.1, 2.0),
         (3.0, 0.0),
     ];
+    let mut worst_mk = 0.0f64;
     for material in ["copper", "granite", "abs", "foam"] {
         let object: &Material = find(material).expect("known");
         let per_skin = 1.0 / (SKIN.effusivity() * PI.sqrt());
@@ -138,15 +140,13 @@ fn force_steps_lifting_and_landing_again_follow_the_integral_equation() {
                 to_here.advance(t_s, touch.map(|t| t.resistance_m2k_w), 250, kappa);
                 let skin_c = 34.0 - per_skin * to_here.memory(t_s);
                 let off_mk = 1e3 * (plant.skin_real_c() - skin_c).abs();
-                assert!(
-                    off_mk < 1.0,
-                    "{material}, {force_n} N, {after_s} s after its step: off by {off_mk} mK"
-                );
+                worst_mk = worst_mk.max(off_mk);
             }
             exact.advance(to_s, touch.map(|t| t.resistance_m2k_w), 250, kappa);
         }
         assert!((plant.time_s() - 3.0).abs() < STEP_S / 2.0);
     }
+    assert_figure("truth.force_steps", worst_mk);
 }
 
 #[test]
@@ -204,11 +204,8 @@ fn first_steps_after_landing_are_resolved() {
 /// Nine materials, five forces, 60 s, every step: the mesh and the steps of every run.
 #[test]
 fn every_material_at_every_force_follows_equations_6_5_to_6_7() {
-    println!(
-        "largest errors: skin and object of a contact of 10 K, mK; flux, of dT/R; from 20 ms on | before"
-    );
+    let mut worst = [[0.0f64; 3]; 2];
     for (name, material) in MATERIALS {
-        let mut worst = [[0.0f64; 3]; 2];
         for force_n in [0.1, 0.25, 0.5, 1.0, 2.0] {
             let (finger, object) = ((&SKIN, 34.0), (&material, 24.0));
             let exact = Contact::new(finger, object, &REFERENCE_DISPLAY, pressure_pa(force_n));
@@ -229,17 +226,14 @@ fn every_material_at_every_force_follows_equations_6_5_to_6_7() {
                 }
             }
         }
-        let [[skin, object, flux], [early_skin, early_object, early_flux]] = worst;
-        println!(
-            "{name:15} {skin:.3} {object:.3} {flux:.1e} | {early_skin:.3} {early_object:.3} {early_flux:.1e}"
-        );
-        assert!(
-            skin < 0.1 && object < 0.2 && flux < 2e-5,
-            "{name} from 20 ms on"
-        );
-        assert!(
-            early_skin < 0.5 && early_object < 1.0 && early_flux < 1e-4,
-            "{name} before"
-        );
+    }
+    let keys = ["truth.skin", "truth.object", "truth.flux"];
+    let early = [
+        "truth.skin_before",
+        "truth.object_before",
+        "truth.flux_before",
+    ];
+    for (key, worst) in keys.into_iter().chain(early).zip(worst.concat()) {
+        assert_figure(key, worst);
     }
 }

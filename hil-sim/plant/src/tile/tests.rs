@@ -2,6 +2,8 @@
 
 use std::f64::consts::PI;
 
+use documented_figures::{assert_figure, assert_row};
+
 use super::*;
 
 /// Long enough for rest in a few steps: the scheme is L-stable.
@@ -87,7 +89,8 @@ fn plate_c(sink_k_w: f64, current_a: f64) -> f64 {
 #[test]
 fn beyond_the_best_current_more_current_heats() {
     // From a study of this module with constant properties: sink, K/W, and best current at 1 W, A.
-    for (sink_k_w, best_a) in [(0.15, 5.6), (0.5, 4.7), (1.0, 3.7), (2.0, 2.6)] {
+    let mut best_a = Vec::new();
+    for sink_k_w in [0.15, 0.5, 1.0, 2.0] {
         let currents_a = || (1..=80).map(|i| 0.1 * f64::from(i));
         let coldest =
             currents_a().min_by(|a, b| plate_c(sink_k_w, *a).total_cmp(&plate_c(sink_k_w, *b)));
@@ -96,15 +99,11 @@ fn beyond_the_best_current_more_current_heats() {
             "{sink_k_w} K/W: coldest at {found_a:.1} A, {:.1} deg C",
             plate_c(sink_k_w, found_a)
         );
-        assert!(
-            (found_a - best_a).abs() < 0.15,
-            "{found_a} A at {sink_k_w} K/W"
-        );
+        best_a.push((10.0 * found_a).round() / 10.0);
         assert!(plate_c(sink_k_w, found_a + 1.0) > plate_c(sink_k_w, found_a) + 0.1);
     }
-    let runaway_c = plate_c(2.0, 6.0);
-    println!("6 A on 2 K/W: {runaway_c:.1} deg C");
-    assert!((runaway_c - 32.0).abs() < 3.0, "{runaway_c}");
+    assert_row("plant.best_current", &best_a);
+    assert_figure("plant.runaway", plate_c(2.0, 6.0));
 }
 
 #[test]
@@ -126,16 +125,9 @@ fn varying_properties_keep_the_data_sheet() {
         .map(|i| difference_k(0.1 * f64::from(i)))
         .fold(0.0, f64::max);
     let sheet = TileParams::CLASS;
-    println!(
-        "largest difference {most_k:.1} K, sheet {} K",
-        sheet.dtmax_k
-    );
+    assert_figure("plant.largest_difference", most_k);
     assert!((most_k / sheet.dtmax_k - 1.0).abs() < 0.1, "{most_k} K");
-    println!(
-        "heat implied {:.1} W, sheet {} W",
-        sheet.implied_qmax_w(),
-        sheet.qmax_w
-    );
+    assert_figure("plant.implied_heat", sheet.implied_qmax_w());
     assert!((sheet.implied_qmax_w() / sheet.qmax_w - 1.0).abs() < 0.06);
 }
 
@@ -200,6 +192,7 @@ fn three_zones_spread_the_heat_of_a_finger_as_a_plate_does() {
     let zones = Zones::new(&params);
     let sheet_w_k = params.ceramic_w_mk * params.ceramic_m;
     // From a back that only the legs cool to one that leaves no time to spread.
+    let mut off_percent = Vec::new();
     for back_w_m2k in [100.0, 316.0, 1000.0] {
         let mut stack = Stack::<1, ZONES>::new(0.0);
         for z in 0..ZONES {
@@ -221,6 +214,7 @@ fn three_zones_spread_the_heat_of_a_finger_as_a_plate_does() {
             "back {back_w_m2k} W/(m2 K): {exact_k:.3} K/W, zones off by {:.1} %",
             100.0 * off
         );
-        assert!(off.abs() < 0.06, "{off} at {back_w_m2k}");
+        off_percent.push((1000.0 * off).round() / 10.0);
     }
+    assert_row("plant.zones_off", &off_percent);
 }

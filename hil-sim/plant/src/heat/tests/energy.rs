@@ -1,6 +1,7 @@
 //! The books close.
 
 use contact_model::material::find;
+use documented_figures::assert_figure;
 
 use super::*;
 
@@ -61,8 +62,5 @@ fn energy_closes_over_ten_minutes_of_contacts() {
     assert!(electrical_j > 500.0 && from_finger_j.abs() > 10.0);
     let tile_open = (tile_j - (electrical_j + from_finger_j - to_room_j)) / scale_j;
     let finger_open = (given_j - from_finger_j) / scale_j;
-    println!(
-        "over 600 s and {scale_j:.0} J the tile opens by {tile_open:.1e}, the finger by {finger_open:.1e}"
-    );
-    assert!(tile_open.abs() < 1e-12 && finger_open.abs() < 1e-12);
+    assert_figure("plant.energy_open", tile_open.abs().max(finger_open.abs()));
 }

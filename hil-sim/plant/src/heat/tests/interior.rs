@@ -1,17 +1,15 @@
 //! Inside the skin, against the exact solution of two half-spaces with a contact resistance.
 
 use contact_model::material::find;
+use documented_figures::assert_figure;
 
 use super::*;
-
-/// Off by at most this at any depth and time, mK, of a contact of 10 K. It is what the mesh inside the skin costs.
-const ALLOWED_MK: f64 = 4.5;
 
 #[test]
 fn skin_at_depth_follows_the_golden_solution() {
     let golden = include_str!("../../../../../model/tests/data/contact_interior.csv");
     let mut running: Option<(&str, f64, f64, Bench)> = None;
-    let (mut seen, mut worst_mk) = (0, 0.0f64);
+    let (mut seen, mut worst_mk) = (0, [0.0f64; 3]);
     let mut rows: Vec<(&'static str, [f64; 6])> = golden
         .lines()
         .skip(1)
@@ -46,13 +44,16 @@ fn skin_at_depth_follows_the_golden_solution() {
         }
         let probe = Probe::at(&bench.finger, depth_m).expect("inside");
         let off_mk = 1e3 * (bench.heat.depth_c(Finger::OnObject, &probe) - wanted_c).abs();
-        assert!(
-            off_mk < ALLOWED_MK,
-            "{name} at {depth_m} m after {t_s} s: off by {off_mk} mK"
-        );
-        worst_mk = worst_mk.max(off_mk);
+        let place = if depth_m < 0.2e-3 {
+            0
+        } else {
+            usize::from(depth_m > 0.6e-3) + 1
+        };
+        worst_mk[place] = worst_mk[place].max(off_mk);
         seen += 1;
     }
     assert_eq!(seen, 347);
-    println!("inside the skin, {seen} points of the golden solution: worst {worst_mk:.3} mK");
+    // What the mesh inside the skin costs.
+    println!("{worst_mk:?} mK down to 0.2 mm, down to 0.6 mm, below");
+    assert_figure("truth.inside", worst_mk.into_iter().fold(0.0, f64::max));
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use documented_figures::assert_figure;
 use serde::Deserialize;
 use thermal_thesis::row::Verdict;
 
@@ -74,4 +75,15 @@ fn every_place_is_there_and_no_row_twice() {
     let names: BTreeSet<_> = rows.iter().map(|row| (row.place, &row.quantity)).collect();
     assert_eq!(names.len(), rows.len());
     assert!(rows.iter().all(|row| row.computed.is_finite()));
+}
+
+#[test]
+fn each_verdict_has_as_many_rows_as_documented() {
+    let rows = all_rows();
+    assert_figure("thesis.rows", rows.len() as f64);
+    for name in ["agrees", "cut", "damaged", "wrong", "differs"] {
+        let words = rows.iter().map(|row| row.verdict().word());
+        let count = words.filter(|word| *word == name).count();
+        assert_figure(&format!("thesis.{name}"), count as f64);
+    }
 }
