@@ -8,7 +8,8 @@ use contact_model::fixed_point::{
     Celsius, ChordInterpolation, ContactPair, ContactPairError, Force, log2_relative_pressure,
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
-use thermal_display::device::reference::{self, Mode, Render, TOLERANCE};
+use thermal_display::device::estimate::FingerEstimator;
+use thermal_display::device::reference::{self, Mode, ReferenceGenerator, TOLERANCE};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
 use floating::Finger as FloatingFinger;

@@ -1,7 +1,10 @@
 //! Test bench: a controller on the simulated tile, read through a thermistor that is a first-order lag.
 
 use contact_model::fixed_point::Celsius;
-use thermal_display::device::control::{Control, Watt};
+use thermal_display::device::control::{ControlParameters, Controller};
+use thermal_display::device::drive;
+use thermal_display::device::estimate::{PlateObserver, Watt};
+use thermal_display::device::reference::Reference;
 use thermal_display::device::safety::Setpoint;
 use thermal_display::settings::{self, Settings};
 use thermal_plant::STEP_S;
@@ -80,10 +83,44 @@ impl Sensor {
     }
 }
 
-/// Controller, tile and thermistor.
+/// The control laws with the observer that they need.
+#[derive(Clone, Debug)]
+pub struct ControlLoop {
+    pub controller: Controller,
+    pub observer: PlateObserver,
+}
+
+impl ControlLoop {
+    pub fn new(settings: &Settings) -> Self {
+        let parameters = ControlParameters::new(settings);
+        let limit = drive::Current::from_num(settings.module.current_limit_a);
+        Self {
+            controller: Controller::new(&parameters, limit),
+            observer: PlateObserver::new(&parameters.observer, limit),
+        }
+    }
+
+    pub fn set_parameters(&mut self, settings: &Settings) {
+        let parameters = ControlParameters::new(settings);
+        self.controller.set_parameters(&parameters);
+        self.observer.set_parameters(&parameters.observer);
+    }
+
+    /// The current, A, for a target, the readings of the display's and the sink's thermistors, and a known load, W.
+    pub fn step(&mut self, target_c: f64, (reading_c, sink_c): (f64, f64), load_w: f64) -> f64 {
+        let (display, sink) = (celsius(reading_c), celsius(sink_c));
+        self.observer.correct(display, sink, Watt::from_num(load_w));
+        let reference = Reference::at(setpoint(target_c).celsius());
+        let current = (self.controller).update(&reference, display, sink, &self.observer);
+        self.observer.advance(current);
+        current.to_num()
+    }
+}
+
+/// Control loop, tile and thermistor.
 #[derive(Clone, Debug)]
 pub struct Bench {
-    pub control: Control,
+    pub control: ControlLoop,
     pub tile: Tile,
     sensor: Sensor,
     /// Heat flow into the contact patch, W.
@@ -103,7 +140,7 @@ pub struct Tick {
 impl Bench {
     pub fn new(settings: &Settings, params: TileParams) -> Self {
         Self {
-            control: Control::new(settings),
+            control: ControlLoop::new(settings),
             tile: Tile::new(params, ROOM_C),
             sensor: Sensor::new(settings.tile.sensor_lag_s, ROOM_C),
             load_w: 0.0,
@@ -129,7 +166,7 @@ impl Bench {
         advance(&mut self.tile, self.current_a, self.load_w);
         self.sensor.update(self.display_c());
         let sensed_c = (self.sensor.reading_c, self.tile.sink_c());
-        self.current_a = step(&mut self.control, target_c, sensed_c, self.known_load_w);
+        self.current_a = (self.control).step(target_c, sensed_c, self.known_load_w);
         Tick {
             display_c: self.display_c(),
             current_a: self.current_a,
@@ -139,19 +176,6 @@ impl Bench {
     pub fn run(&mut self, target_c: f64, seconds: f64) -> Vec<Tick> {
         (0..ticks(seconds)).map(|_| self.tick(target_c)).collect()
     }
-}
-
-/// The controller's current, A, for a target, the readings of the display's and the sink's thermistors, and a known load, W.
-pub fn step(
-    control: &mut Control,
-    target_c: f64,
-    (reading_c, sink_c): (f64, f64),
-    load_w: f64,
-) -> f64 {
-    control.observe(celsius(reading_c), celsius(sink_c), Watt::from_num(load_w));
-    control
-        .update(setpoint(target_c), setpoint(target_c))
-        .to_num()
 }
 
 /// Advances the tile by one step with a current, A, and a heat flow into its patch, W.

@@ -3,12 +3,10 @@
 //! The model runs in open loop: an unreachable target keeps the current at its limit, which the test chooses, and a thermistor
 //! that reads what the model predicts leaves no innovation.
 
-use contact_model::fixed_point::Celsius;
 use documented_figures::assert_figure;
-use thermal_display::device::control::Control;
 use thermal_plant::tile::{Tile, TileParams, ZERO_C_K};
 
-use super::bench::{ROOM_C, Sensor, advance, settings, step, ticks};
+use super::bench::{ControlLoop, ROOM_C, Sensor, advance, settings, ticks};
 
 /// Times at which both are compared, s.
 const TIMES_S: [f64; 9] = [0.02, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0, 40.0, 100.0];
@@ -19,7 +17,7 @@ fn responses(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> 
     const LAG_S: f64 = 0.1;
     let mut settings = settings(LAG_S);
     settings.module.current_limit_a = current_a.abs();
-    let mut control = Control::new(&settings);
+    let mut control = ControlLoop::new(&settings);
     let mut tile = Tile::new(
         TileParams {
             // A sink that holds, as the model has it, and no air.
@@ -33,13 +31,13 @@ fn responses(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> 
     let target_c = if current_a > 0.0 { 15.0 } else { 42.0 };
     let mut answer = Vec::new();
     // The first tick sets the initial state.
-    let _none = step(&mut control, ROOM_C, (ROOM_C, ROOM_C), 0.0);
+    let _none = control.step(ROOM_C, (ROOM_C, ROOM_C), 0.0);
     for tick in 1..=ticks(seconds) {
         let sensed_c = (predicted.reading_c, tile.sink_c());
-        let given_a = step(&mut control, target_c, sensed_c, load_w);
+        let given_a = control.step(target_c, sensed_c, load_w);
         advance(&mut tile, given_a, load_w);
-        let none = Celsius::ZERO;
-        let model_c: f64 = control.legs(none, none).cold.to_num();
+        let legs = control.observer.legs().expect("after the first reading");
+        let model_c: f64 = legs.cold.to_num();
         predicted.update(model_c);
         let tile_c = tile.patch_c() + load_w * tile.patch_half_k_w();
         let t_s = 1e-3 * tick as f64;

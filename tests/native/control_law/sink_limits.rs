@@ -1,15 +1,14 @@
 //! The cooling current is limited by the temperature of the sink.
 
 use contact_model::fixed_point::Celsius;
-use thermal_display::device::control::Control;
 use thermal_display::settings::Settings;
 
-use super::bench::step;
+use super::bench::ControlLoop;
 
 /// Current of a controller whose target cannot be reached, A.
 fn saturated_current_a(target_c: f64, display_c: f64, sink_c: f64) -> f64 {
-    let mut control = Control::new(&Settings::default());
-    step(&mut control, target_c, (display_c, sink_c), 0.0)
+    let mut control = ControlLoop::new(&Settings::default());
+    control.step(target_c, (display_c, sink_c), 0.0)
 }
 
 /// All of 6 A up to 39.5 °C, none from 41.5 °C on, a straight line between: before the sink trips at 42 °C.

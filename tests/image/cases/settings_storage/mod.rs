@@ -6,7 +6,7 @@ use documented_figures::assert_figure;
 use image_tests::{Bare, START, image};
 use stm32_emulator::Firmware;
 use system_tests::flash::{append, changes_page, erased, numbered, saved};
-use thermal_display::commissioning::Desk;
+use thermal_display::protocol::CommandHandler;
 use thermal_display::settings::{RECORD_MAX_BYTES, StoredSettings, encode};
 use thermal_sim::Cells;
 use thermal_sim::processor::ResetCause;
