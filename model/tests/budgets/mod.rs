@@ -10,8 +10,11 @@ pub mod sweep;
 
 use documented_figures::assert_figure;
 
+/// Measures the largest error of one step.
+type Measure = fn() -> f64;
+
 /// A figure, and what measures the largest error.
-const BUDGETS: [(&str, fn() -> f64); 34] = [
+const BUDGETS: [(&str, Measure); 34] = [
     ("budget.float_erfcx_f64", float::erfcx_f64),
     ("budget.float_erfcx_f32", float::erfcx_f32),
     ("budget.float_resistance", float::resistance),

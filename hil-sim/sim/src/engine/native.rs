@@ -5,11 +5,11 @@ use std::convert::Infallible;
 use std::fmt::Display;
 
 use thermal_display::commissioning::StorageOrder;
-use thermal_display::device::{Device, Finger};
 use thermal_display::device::command::Addressed;
 use thermal_display::device::drive::{Drive, Outputs};
 use thermal_display::device::safety::{Fault, ThermalDose, TripCause};
 use thermal_display::device::sense::{SCANS_PER_TICK, Samples, Scan};
+use thermal_display::device::{Device, Finger};
 use thermal_display::protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
 use thermal_display::settings::{Settings, StoredSettings, decode};
 use thermal_plant::bridge::{Leg, Legs};
@@ -191,8 +191,9 @@ impl Native {
             let executed = line
                 .map_err(|error| Addressed::device(Error::from(error)))
                 .and_then(|line| {
-                    self.handler
-                        .answer(&line, |finger, command| self.device.execute(finger, command))
+                    self.handler.answer(&line, |finger, command| {
+                        self.device.execute(finger, command)
+                    })
                 });
             if let Ok(Addressed {
                 content: Reply::Restart(order),

@@ -36,6 +36,7 @@ pub struct Estimator {
 impl Estimator {
     /// Takes the readings of one tick. `touch` is the force of a finger that touches, `landed_ticks` how long ago a contact
     /// that begins has begun, `pair` the pair by which skin and display touch.
+    #[inline(always)]
     pub fn update(
         &mut self,
         readings: &ValidReadings,

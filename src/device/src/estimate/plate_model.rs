@@ -361,6 +361,7 @@ impl PlateModel {
     /// Inputs of a tick with this current, finger and sink. The pumped heat follows the legs' mean Seebeck coefficient, which
     /// includes Thomson's heat.
     #[must_use]
+    #[inline(always)]
     pub fn inputs(&self, current: Current, finger: Watt, sink: Celsius) -> PlateInputs {
         let above_data_sheet = self
             .legs()

@@ -160,6 +160,7 @@ impl Station {
     }
 
     /// Converts samples to readings.
+    #[inline(never)]
     fn sense(&mut self, samples: &Samples) -> Readings {
         // An object is never presented during a calibration.
         if !self.state.presents() {
@@ -169,6 +170,7 @@ impl Station {
     }
 
     /// Lets every detector see the tick; faults that one tick shows are named first.
+    #[inline(never)]
     fn detect(&mut self, samples: &Samples, readings: &Readings) -> Result<ValidReadings, Fault> {
         // The bridge's command of the tick before, to which this tick's readings respond.
         let previous = PreviousActuation {
@@ -322,6 +324,7 @@ impl Station {
     }
 
     /// Turns the demand into the bridge's command, and advances the plate's model under the current.
+    #[inline(always)]
     fn actuate(&mut self, demand: Demand) -> (Outputs, Current) {
         match demand {
             Demand::Drive {
