@@ -28,7 +28,7 @@ const EXTRA_PLACES: u32 = I10F54::FRAC_NBITS - Celsius::FRAC_NBITS;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LowPass {
     coefficient: Coefficient,
-    /// Output, K.
+    /// Output, K, with 32 binary places more than a temperature, so that no input is rounded away.
     state: I10F54,
 }
 

@@ -14,7 +14,7 @@ const EXTRA_PLACES: u32 = I12F52::FRAC_NBITS - Current::FRAC_NBITS;
 /// How often a controller samples its error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpdatePeriod {
-    /// At every control tick.
+    /// At every control tick, 1000 times a second.
     EveryTick,
     /// Ten times a second, as the thesis's display; the current is held in between.
     TenthOfASecond,
@@ -32,9 +32,9 @@ impl UpdatePeriod {
 /// A controller's gains in fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PiCoefficients {
-    /// A/K.
+    /// Proportional gain, A/K.
     proportional: I16F16,
-    /// A/K per update.
+    /// Integral gain, A/K per update.
     integral: I2F30,
     period: UpdatePeriod,
 }

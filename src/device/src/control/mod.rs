@@ -22,7 +22,7 @@ const REDUCTION_SHIFT: u32 = 1;
 pub enum Law {
     /// Proportional-integral, ten times a second, as the thesis's display.
     Pi10Hz,
-    /// Proportional-integral, every tick.
+    /// Proportional-integral, at every tick.
     Pi,
     /// Feed-forward by the internal model of plate and finger, with a disturbance observer.
     #[default]

@@ -37,7 +37,7 @@ pub struct VoltageFeedforward {
     per_ampere: I4F28,
     /// Rise of the resistance, 1/(A K).
     rise_per_k: I4F28,
-    /// Seebeck voltage, 1/K.
+    /// Seebeck voltage per temperature difference of the legs, as a part of the supply, 1/K.
     per_k: I0F32,
     /// Voltage lost in dead times.
     dead_time: SupplyPart,

@@ -27,9 +27,9 @@ const FLUX_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
 /// Temperatures from which a contact starts, filtered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PreContact {
-    /// Skin.
+    /// Temperature of the skin, °C.
     pub skin: Celsius,
-    /// Room.
+    /// Temperature of the room, °C.
     pub room: Celsius,
 }
 
@@ -42,9 +42,9 @@ fn filter(state: Celsius, input: Celsius) -> Celsius {
 pub struct ContactConductances {
     force: Force,
     contact: Contact,
-    /// Between skin and display.
+    /// Conductance between skin and display.
     pub display: ContactConductance,
-    /// Between skin and object.
+    /// Conductance between skin and object.
     pub object: ContactConductance,
 }
 
@@ -74,7 +74,7 @@ pub struct FingerContact {
     constant: bool,
     /// Mean force at the end of its rise.
     risen_force: Force,
-    /// Ticks since landing.
+    /// Ticks since the finger landed.
     elapsed: u64,
     conductances: Option<ContactConductances>,
 }

@@ -49,7 +49,7 @@ pub struct ForceMean {
 /// How a tick's force differs from those before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceChange {
-    /// By noise.
+    /// The force differs from its mean by no more than noise.
     Noise,
     /// The mean differs from the force in use: it is more accurate, or the force drifts.
     Drifted,

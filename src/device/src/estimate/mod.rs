@@ -27,9 +27,9 @@ pub struct Estimate {
 /// One estimator of plate and finger.
 #[derive(Clone, Debug)]
 pub struct Estimator {
-    /// The display plate.
+    /// Observer of the display plate and the legs.
     pub plate: PlateObserver,
-    /// The finger.
+    /// Estimator of the skin and the contact.
     pub finger: FingerEstimator,
 }
 

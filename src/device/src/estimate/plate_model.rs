@@ -146,7 +146,7 @@ impl Ratios {
 /// Fixed-point form of one [`Relaxation`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct RelaxationState {
-    /// Temperature, K.
+    /// Contribution of this relaxation to the surface temperature, K.
     state: I12F52,
     /// What the inputs add to the state in one tick.
     tick_gains: InputGains<I4F28>,
@@ -177,13 +177,13 @@ fn widened(temperature: Kelvin) -> I12F52 {
 /// What warms and cools the plate in one tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlateInputs {
-    /// Heat that the module pumps out of the plate.
+    /// Heat that the module pumps out of the plate (Peltier effect), W.
     pub pumped: Watt,
-    /// Joule heat in the legs.
+    /// Joule heat in the legs, W.
     pub joule: Watt,
-    /// Heat from the finger.
+    /// Heat flow from the finger into the plate, W.
     pub finger: Watt,
-    /// Temperature of the sink.
+    /// Temperature of the sink, °C.
     pub sink: Celsius,
 }
 
@@ -211,11 +211,11 @@ impl<Frac: LeEqU32> LegProperty<FixedI32<Frac>> {
 /// Temperatures of the module's legs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LegTemperatures {
-    /// Ends at the display.
+    /// Temperature of the ends at the display, °C.
     pub cold: Celsius,
-    /// Ends at the sink.
+    /// Temperature of the ends at the sink, °C.
     pub hot: Celsius,
-    /// Mean over the legs.
+    /// Mean temperature over the length of the legs, °C.
     pub mean: Celsius,
 }
 
@@ -242,9 +242,9 @@ pub struct PlateModel {
     leg_heating: LowPass,
     hot: Celsius,
     surface: Celsius,
-    /// V/K.
+    /// Seebeck coefficient of the module, V/K.
     seebeck: LegProperty<I1F31>,
-    /// Ohm.
+    /// Electrical resistance of the legs, ohm.
     resistance: LegProperty<I8F24>,
     /// Current per temperature difference at the horizon, at 300 K, A/K.
     current_per_kelvin: I20F12,

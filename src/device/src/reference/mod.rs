@@ -79,7 +79,7 @@ impl Reference {
 /// A contact with the presented object.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct ObjectContact {
-    /// Ticks since it began.
+    /// Ticks since the contact with the object began.
     elapsed: u64,
     /// Forces for which Eq. 6-12 need not be evaluated again.
     equivalent_forces: RangeInclusive<Force>,

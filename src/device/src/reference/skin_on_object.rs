@@ -12,7 +12,7 @@ use fixed::types::U16F16;
 pub struct PairFactors {
     /// `e_object / (e_object + e_skin)`, with effusivities `e`.
     weight: Fraction,
-    /// Its reciprocal.
+    /// Reciprocal of the weight, `(e_object + e_skin) / e_object`.
     inverse_weight: U16F16,
     /// `R_display / R_object`, with contact resistances `R`.
     ratio: Ratio,

@@ -46,7 +46,7 @@ pub struct Station {
     voltage: VoltageFeedforward,
     state: State,
     identified: IdentificationResult,
-    /// Ticks since reset.
+    /// Ticks since reset; wraps after 49 days.
     tick: u32,
     /// Ticks from one telemetry to the next; 0 for none.
     telemetry_ticks: u32,
