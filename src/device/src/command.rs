@@ -61,7 +61,7 @@ pub enum Command {
     Retune(ControlParameters),
 }
 
-/// What a station answers.
+/// The reply of a station to a command that it has executed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reply {
     /// The command was executed, and there is nothing to report.

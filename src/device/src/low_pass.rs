@@ -47,13 +47,13 @@ impl LowPass {
         self.coefficient = coefficient;
     }
 
-    /// The filter's output.
+    /// The filter's output, °C or K as its input.
     #[must_use]
     pub const fn output(&self) -> Celsius {
         Celsius::from_bits((self.state.to_bits() >> EXTRA_PLACES) as i32)
     }
 
-    /// Sets the filter's output.
+    /// Sets the filter's output, without a transient.
     pub fn set(&mut self, output: Celsius) {
         self.state = I10F54::from_bits(i64::from(output.to_bits()) << EXTRA_PLACES);
     }

@@ -76,7 +76,7 @@ impl Controller {
         self.pi_10hz.set_coefficients(parameters.pi_10hz);
     }
 
-    /// The law in use.
+    /// The law that chooses the current.
     #[must_use]
     pub const fn law(&self) -> Law {
         self.law

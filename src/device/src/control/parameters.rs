@@ -13,7 +13,7 @@ const RESIDUAL: Celsius = Celsius::lit("3.75");
 /// 0.5 s lag, reach 7.3 K.
 const CLASS_RESIDUAL: Celsius = Celsius::lit("8");
 
-/// The laws' constants.
+/// Gains and models of all laws, converted from settings so that the tick needs no floating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControlParameters {
     /// Gains of the law `pi`.

@@ -103,7 +103,7 @@ impl FingerContact {
         self.constant &= !drifted && !changed;
     }
 
-    /// Filtered force.
+    /// The force, averaged while it is constant, N.
     #[must_use]
     pub const fn force(&self) -> &ForceMean {
         &self.force
@@ -115,7 +115,7 @@ impl FingerContact {
         self.change
     }
 
-    /// Ticks since landing.
+    /// Ticks since the finger landed.
     #[must_use]
     pub const fn elapsed(&self) -> u64 {
         self.elapsed

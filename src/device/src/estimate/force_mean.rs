@@ -35,7 +35,7 @@ impl Threshold {
     }
 }
 
-/// The running mean.
+/// Running mean of a force, N, and the mean for which set-points are evaluated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForceMean {
     /// Mean of the recent ticks.
@@ -69,7 +69,7 @@ impl ForceMean {
         }
     }
 
-    /// The mean.
+    /// Mean force since it changed last, N.
     #[must_use]
     pub const fn mean(&self) -> Force {
         self.mean

@@ -20,7 +20,7 @@ use crate::bismuth_telluride::{DATA_SHEET_TEMPERATURE, RESISTIVITY_PER_K, SEEBEC
 use crate::drive::Current;
 use crate::low_pass::{Coefficient, LowPass};
 
-/// Power in W, ±128.
+/// A power or heat flow in W, ±128 W.
 pub type Watt = I8F24;
 
 /// A temperature or temperature difference within the model, ±2048 K.
@@ -231,7 +231,7 @@ impl LegTemperatures {
     }
 }
 
-/// The internal model.
+/// The internal model: parameters of the tile, and the present temperatures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlateModel {
     relaxations: [RelaxationState; RELAXATIONS],

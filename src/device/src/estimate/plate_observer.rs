@@ -18,7 +18,7 @@ const CORRECTION_SHIFT: u32 = 1;
 /// correction is negative, is still followed at the limit.
 const MODEL_CURRENT_SHIFT: u32 = 2;
 
-/// The observer's constants.
+/// The observer's constants, converted from the settings of a tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObserverParameters {
     /// Internal model of the plate.
@@ -31,7 +31,7 @@ pub struct ObserverParameters {
     pub largest_residual: Celsius,
 }
 
-/// The observer.
+/// The observer: internal model, filters, and the loop that corrects the model.
 #[derive(Clone, Debug)]
 pub struct PlateObserver {
     plate: PlateModel,

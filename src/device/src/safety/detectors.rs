@@ -57,7 +57,7 @@ impl FaultDetectors {
         self.host_silent_ticks = 0;
     }
 
-    /// Thermal dose so far.
+    /// Thermal dose that the display may have given to the skin so far.
     #[must_use]
     pub const fn dose(&self) -> &ThermalDose {
         &self.dose

@@ -68,7 +68,7 @@ pub enum SelfTestStep {
     Passed,
 }
 
-/// The self-test.
+/// Progress of the self-test, and the sums that it has measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelfTest {
     tick: u16,

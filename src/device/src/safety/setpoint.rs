@@ -21,7 +21,7 @@ impl Setpoint {
         (Self(allowed), allowed != demanded)
     }
 
-    /// The temperature.
+    /// The set-point in °C, within the safe range by construction.
     #[must_use]
     pub const fn celsius(self) -> Celsius {
         self.0

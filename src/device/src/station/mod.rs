@@ -31,7 +31,7 @@ use crate::sense::{
 use crate::{StateName, Telemetry};
 use object::PresentedObject;
 
-/// One finger's display.
+/// The control of one finger: state, estimates and controllers, without the hardware.
 #[derive(Clone, Debug)]
 pub struct Station {
     sensors: Sensors,
@@ -130,7 +130,7 @@ impl Station {
         self.estimator.plate.set_parameters(&parameters.observer);
     }
 
-    /// One control tick.
+    /// Runs one control tick: takes the tick's samples, and returns what the bridge must do until the next one.
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples) -> Outputs {
         self.tick = self.tick.wrapping_add(1);
@@ -159,7 +159,7 @@ impl Station {
         outputs
     }
 
-    /// Converts samples to readings.
+    /// Converts the tick's samples to °C, N and A, and averages them for a calibration.
     #[inline(never)]
     fn sense(&mut self, samples: &Samples) -> Readings {
         // An object is never presented during a calibration.
@@ -410,13 +410,13 @@ impl Station {
         self.state.fault().is_some()
     }
 
-    /// The fault latch.
+    /// The fault latch, with the cause of the present or the last trip.
     #[must_use]
     pub const fn latch(&self) -> &FaultLatch {
         &self.latch
     }
 
-    /// Thermal dose so far.
+    /// Thermal dose that the display may have given to this finger so far.
     #[must_use]
     pub const fn dose(&self) -> &ThermalDose {
         self.detectors.dose()
