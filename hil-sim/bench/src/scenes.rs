@@ -58,8 +58,8 @@ pub enum Arithmetic {
 /// A finger by the model's integers.
 #[derive(Clone)]
 struct Finger {
-    pairing: ContactPair,
-    course: ChordInterpolation,
+    pair: ContactPair,
+    chords: ChordInterpolation,
     /// Of five fingers, each is left here.
     set_point: Celsius,
 }
@@ -73,7 +73,8 @@ pub struct Station {
     object: Celsius,
     single: [FloatingFinger<f32>; 5],
     double: [FloatingFinger<f64>; 5],
-    render: Render,
+    estimator: FingerEstimator,
+    generator: ReferenceGenerator,
 }
 
 impl Station {
@@ -86,22 +87,23 @@ impl Station {
         let (skin, object_c) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
         let fixed = |finger: usize| {
             let object = &MATERIALS[FINGERS[finger]].1;
-            let pairing = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
-            let contact = pairing.at_pressure(log2_relative_pressure(force));
-            let (course, _) = ChordInterpolation::new(&contact, skin, object_c, 0, TOLERANCE);
+            let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
+            let contact = pair.at_pressure(log2_relative_pressure(force));
+            let (chords, _) = ChordInterpolation::new(&contact, skin, object_c, 0, TOLERANCE);
             Ok(Finger {
-                pairing,
-                course,
+                pair,
+                chords,
                 set_point: Celsius::ZERO,
             })
         };
         let fixed = [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?];
-        let mut render = Render::default();
-        render.observe(skin, object_c, None, 0);
+        let mut estimator = FingerEstimator::default();
+        estimator.observe(skin, object_c, None, 0);
         Ok(Self {
             skin,
             object: object_c,
-            render,
+            estimator,
+            generator: ReferenceGenerator::default(),
             fixed,
             single: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
             double: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
@@ -142,62 +144,60 @@ fn bits(set_point: Celsius) -> u32 {
 }
 
 fn idle(station: &mut Station, _: u32) -> u32 {
-    bits(
-        station.fixed[0]
-            .pairing
-            .preset(station.skin, station.object),
-    )
+    bits(station.fixed[0].pair.preset(station.skin, station.object))
 }
 
 fn semi_infinite(station: &mut Station, _: u32) -> u32 {
     let [finger, ..] = &station.fixed;
     bits(
         finger
-            .pairing
+            .pair
             .interface_temperature(station.skin, station.object),
     )
 }
 
 fn constant_force(station: &mut Station, _: u32) -> u32 {
-    bits(station.fixed[0].course.advance())
+    bits(station.fixed[0].chords.advance())
 }
 
 fn streaming_force(station: &mut Station, tick: u32) -> u32 {
     let contact = station.fixed[0]
-        .pairing
+        .pair
         .at_pressure(log2_relative_pressure(streaming_fixed(tick)));
     bits(contact.at(tick, station.skin, station.object).display())
 }
 
 fn five_fingers(station: &mut Station, _: u32) -> u32 {
     for finger in &mut station.fixed {
-        finger.set_point = finger.course.advance();
+        finger.set_point = finger.chords.advance();
     }
     bits(station.fixed[0].set_point)
 }
 
-/// The firmware's step under a force; in the first tick a finger has landed one tick before. The skin was observed: 0
-/// °C for none is never seen.
+/// The firmware's estimate and reference under a force; in the first tick a finger has landed one tick before. The skin
+/// was observed, so there always is a reference.
 #[inline]
-fn render_step(station: &mut Station, force: Force) -> u32 {
+fn reference_step(station: &mut Station, force: Force) -> u32 {
     station
-        .render
+        .estimator
         .observe(station.skin, station.object, Some(force), 1);
-    let scene = render::Scene {
-        pairing: &station.fixed[0].pairing,
+    let scene = reference::Scene {
+        pair: &station.fixed[0].pair,
         object: Some(station.object),
         mode: Mode::ContactResistance,
     };
-    let wanted = station.render.present(&scene, Celsius::ZERO, false);
-    wanted.map_or(0, |wanted| bits(wanted.setpoint))
+    let reference = station
+        .generator
+        .update(&scene, &mut station.estimator, Celsius::ZERO, false);
+    reference.map_or(0, |reference| bits(reference.setpoint.celsius()))
 }
 
-fn render_constant(station: &mut Station, _: u32) -> u32 {
-    render_step(station, const { Force::lit("2") })
+fn reference_constant(station: &mut Station, _: u32) -> u32 {
+    reference_step(station, const { Force::lit("2") })
 }
 
-fn render_streaming(station: &mut Station, tick: u32) -> u32 {
-    render_step(station, streaming_fixed(tick))
+fn reference_streaming(station: &mut Station, tick: u32) -> u32 {
+    reference_step(station, streaming_fixed(tick))
 }
 
 /// Only returns: what a call costs beside the callee's work.
@@ -219,9 +219,9 @@ pub mod kind {
     /// Five fingers under a constant force.
     pub const FIVE: &str = "five fingers";
     /// [`CONSTANT`] by the firmware, from landing on.
-    pub const RENDER_CONSTANT: &str = "render step, constant force";
+    pub const REFERENCE_CONSTANT: &str = "render step, constant force";
     /// [`STREAMING`] by the firmware, from landing on: R only where a mean of the force has moved.
-    pub const RENDER_STREAMING: &str = "render step, streaming force";
+    pub const REFERENCE_STREAMING: &str = "render step, streaming force";
 }
 
 const fn scene(
@@ -291,6 +291,6 @@ pub static SCENES: [Scene; 18] = [
         }
         0
     }),
-    scene(kind::RENDER_CONSTANT, Firmware, render_constant),
-    scene(kind::RENDER_STREAMING, Firmware, render_streaming),
+    scene(kind::REFERENCE_CONSTANT, Firmware, reference_constant),
+    scene(kind::REFERENCE_STREAMING, Firmware, reference_streaming),
 ];

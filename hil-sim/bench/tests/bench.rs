@@ -154,7 +154,7 @@ fn set_points_are_right() {
             || row["arithmetic"] == INTEGERS
                 && (row["kind"] == kind::CONSTANT || row["kind"] == kind::FIVE);
         let bound_mk = match chords {
-            _ if row["kind"] == kind::RENDER_STREAMING => lag_mk,
+            _ if row["kind"] == kind::REFERENCE_STREAMING => lag_mk,
             true => 1e3 * TOLERANCE.to_num::<f64>(),
             false => 0.01,
         };
@@ -221,7 +221,7 @@ fn costs_are_those_of_a_call() {
     }
     assert_figure("kernel.table_bytes", number(firmware, "table_bytes"));
     let constant = scene(kind::CONSTANT, INTEGERS);
-    let render = scene(kind::RENDER_CONSTANT, FIRMWARE);
+    let render = scene(kind::REFERENCE_CONSTANT, FIRMWARE);
     for which in ["min", "max"] {
         let count = |row| number(row, &format!("instructions_{which}"));
         let key = format!("setpoint_cost.instructions_{which}");

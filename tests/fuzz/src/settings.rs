@@ -2,12 +2,13 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use thermal_display::commissioning::SENSOR_WORDS;
+use thermal_display::device::Finger;
 
-use crate::device::{Device, READING_K};
-use crate::start::Starts;
+use crate::device::{CheckedDevice, READING_ERROR_MAX_K};
+use crate::start::StartDevices;
 use crate::tile::celsius_at;
 
-static STARTS: Starts<1> = Starts::new();
+static STARTS: StartDevices<1> = StartDevices::new();
 
 /// Values in parts of their ranges, and sums that are then read.
 #[derive(Arbitrary, Debug)]
@@ -58,7 +59,7 @@ impl Stored {
 }
 
 /// What the device says that it has.
-fn told(device: &mut Device<1>) -> Vec<String> {
+fn told(device: &mut CheckedDevice<1>) -> Vec<String> {
     let lines = 1..=8;
     let said = lines.map(|line| match device.line(&format!("settings {line}")) {
         Ok(said) => said.trim_start_matches("ok ").to_string(),
@@ -89,7 +90,7 @@ pub fn run(input: &[u8]) -> bool {
     let _ = device.line("margins");
     let _ = device.line("stream 1");
     for &sum in stored.sums.iter().take(256) {
-        device.tick_with(0, |samples| {
+        device.tick_with(Finger::FIRST, |samples| {
             (samples.display, samples.display_check) = (sum, sum);
         });
         look_at_reading(sum, device.display_c());
@@ -113,7 +114,7 @@ fn look_at_reading(sum: u16, reads_c: Option<f64>) {
     if (13.0..=45.0).contains(&is_c) {
         let off_k = reads_c - is_c;
         assert!(
-            off_k.abs() <= READING_K,
+            off_k.abs() <= READING_ERROR_MAX_K,
             "{reads_c} C read of {is_c} C (sum {sum})"
         );
     }

@@ -2,12 +2,15 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use thermal_display::commissioning::SENSOR_WORDS;
+use thermal_display::device::Finger;
+use thermal_display::device::drive::Drive;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Samples, Scan};
 
-use crate::start::Starts;
+use crate::start::StartDevices;
 
-static STARTS: Starts<1> = Starts::new();
+static STARTS: StartDevices<1> = StartDevices::new();
+const FINGER: Finger<1> = Finger::FIRST;
 
 /// Ticks of one input, at most.
 const TICKS: u32 = 2500;
@@ -192,11 +195,11 @@ pub fn run(input: &[u8]) -> bool {
     let mut limited = |ticks: u8| {
         let ticks = left.min(u32::from(ticks));
         left -= ticks;
-        ticks as i32
+        ticks
     };
     for event in &course.events {
         match *event {
-            Event::Run(ticks) => (0..limited(ticks)).for_each(|_| device.tick()),
+            Event::Run(ticks) => device.run(limited(ticks)),
             Event::Sums(
                 [display, display_check, sink, skin, room, force, current],
                 bridge_fault,
@@ -211,7 +214,7 @@ pub fn run(input: &[u8]) -> bool {
                     current,
                     bridge_fault,
                 };
-                device.step(0, &samples);
+                device.step(FINGER, &samples);
             }
             Event::Scans(counts, last) => {
                 let scan = |counts: [u16; CHANNELS]| -> Scan { counts.map(|count| count & 0x0fff) };
@@ -220,9 +223,9 @@ pub fn run(input: &[u8]) -> bool {
                 let broken = scan(last)[..5]
                     .iter()
                     .any(|count| matches!(count, 0 | 4095));
-                let outputs = device.step(0, &Samples::from_scans(&scans, false));
+                let outputs = device.step(FINGER, &Samples::from_scans(&scans, false));
                 assert!(
-                    !broken || outputs.drive == thermal_display::device::drive::Drive::Off,
+                    !broken || outputs.drive == Drive::Off,
                     "driven in the tick in which a wire broke"
                 );
             }
@@ -232,7 +235,7 @@ pub fn run(input: &[u8]) -> bool {
                 ticks,
             } => {
                 for _ in 0..limited(ticks) {
-                    device.tick_with(0, |samples| *channel(samples, which) = sum);
+                    device.tick_with(FINGER, |samples| *channel(samples, which) = sum);
                 }
             }
             Event::Off {
@@ -241,22 +244,22 @@ pub fn run(input: &[u8]) -> bool {
                 more,
                 ticks,
             } => {
-                for tick in 0..limited(ticks) {
+                for tick in 0..limited(ticks) as i32 {
                     let off = i32::from(by) + tick * i32::from(more);
-                    device.tick_with(0, |samples| {
+                    device.tick_with(FINGER, |samples| {
                         let place = channel(samples, which);
                         *place = (i32::from(*place) + off).clamp(0, 65_535) as u16;
                     });
                 }
             }
-            Event::BridgeFault => device.tick_with(0, |samples| samples.bridge_fault = true),
-            Event::Press(part) => device.tile(0).press(f64::from(part) / 16.0),
+            Event::BridgeFault => device.tick_with(FINGER, |samples| samples.bridge_fault = true),
+            Event::Press(part) => device.tile(FINGER).press(f64::from(part) / 16.0),
             Event::Surround(sink, skin, room) => {
                 let [sink, skin, room] = [sink, skin, room].map(|half| 0.5 * f64::from(half));
-                device.tile(0).surround(sink, skin, room);
+                device.tile(FINGER).surround(sink, skin, room);
             }
-            Event::Trip(which) => device.trip(of(Fault::ALL, which)),
-            Event::Hear => device.hear(),
+            Event::Trip(which) => device.trip_all(of(Fault::ALL, which)),
+            Event::Hear => device.note_host_activity(),
             Event::Say(ref line) => {
                 let _ = device.line(&line.text());
             }

@@ -20,7 +20,7 @@ pub struct Tile {
 }
 
 /// Largest sum of 16 conversions of 12 bits.
-pub const FULL: u16 = 16 * 4095;
+pub const FULL_SCALE: u16 = 16 * 4095;
 
 /// The sum of a 10 k thermistor of beta 3950 K under 10 k.
 pub fn sum_at(celsius: f64) -> u16 {
@@ -51,7 +51,7 @@ impl Default for Tile {
 
 impl Tile {
     fn force(newton: f64) -> u16 {
-        (16.0 * (410.0 + 300.0 * newton)).min(f64::from(FULL)) as u16
+        (16.0 * (410.0 + 300.0 * newton)).min(f64::from(FULL_SCALE)) as u16
     }
 
     /// A finger presses.
@@ -102,7 +102,7 @@ impl Tile {
             -2.91 * current_a * (1.0 - 0.0585 * current_a) - 0.103 * (self.plate_c - self.sink_c);
         self.plate_c = (self.plate_c + 1e-3 * slope_k_s).clamp(-20.0, 80.0);
         self.display_c += 1e-3 / 0.1 * (self.plate_c - self.display_c);
-        self.current = (6400.0 * current_a.abs()).min(f64::from(FULL)) as u16 & !3;
+        self.current = (6400.0 * current_a.abs()).min(f64::from(FULL_SCALE)) as u16 & !3;
         self.cut = outputs.comparator_test;
     }
 }

@@ -60,7 +60,7 @@ fn exact_c(kind: &str, tick: u32) -> f64 {
     match kind {
         kind::SEMI_INFINITE => interface_temperature(&SKIN, SKIN_C, object, OBJECT_C),
         kind::IDLE => display_c(FORCE_N, 0),
-        kind::STREAMING | kind::RENDER_STREAMING => display_c(streaming_n(tick), tick),
+        kind::STREAMING | kind::REFERENCE_STREAMING => display_c(streaming_n(tick), tick),
         _ => display_c(FORCE_N, tick),
     }
 }

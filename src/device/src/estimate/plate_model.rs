@@ -399,6 +399,7 @@ impl PlateModel {
     }
 
     /// Advances the temperatures by one tick.
+    #[inline(never)]
     pub fn step(&mut self, inputs: &PlateInputs) {
         let mut surface: Kelvin = product(inputs.finger, self.finger_feedthrough);
         let [slowest, ..] = &mut self.relaxations;

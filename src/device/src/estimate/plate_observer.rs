@@ -114,8 +114,6 @@ impl PlateObserver {
     }
 
     /// Corrects the model by a tick's reading, and takes the sink and the heat from the finger.
-    // Inlined at its one call on the tick's path, which saves 35 cycles a tick.
-    #[inline(always)]
     pub fn correct(&mut self, reading: Celsius, sink: Celsius, finger: Watt) {
         if !self.valid {
             self.inputs = self.plate.initialise(reading, Current::ZERO, finger, sink);
@@ -147,8 +145,6 @@ impl PlateObserver {
     }
 
     /// Advances the model by one tick under the current that is driven.
-    // Inlined at its one call on the tick's path, which saves 35 cycles a tick.
-    #[inline(always)]
     pub fn advance(&mut self, current: Current) {
         if !self.valid {
             return;
