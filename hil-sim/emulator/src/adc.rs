@@ -24,6 +24,7 @@ pub(crate) enum Trigger {
     Tim3,
 }
 
+#[derive(Default)]
 pub(crate) struct Adc {
     sr: u32,
     cr1: u32,
@@ -49,21 +50,11 @@ pub(crate) struct Adc {
 impl Adc {
     pub fn new(bus_divider: u64, pclk2_hz: u32) -> Self {
         Self {
-            sr: 0,
-            cr1: 0,
-            cr2: 0,
-            smpr: [0; 2],
-            sqr: [0; 3],
-            dr: 0,
-            ccr: 0,
             limits: [0xfff, 0],
             bus_divider,
             pclk2_hz,
-            position: 0,
-            dma_ended: false,
-            dma_waiting: false,
-            stuck: false,
             due: u64::MAX,
+            ..Self::default()
         }
     }
 
@@ -168,11 +159,7 @@ impl Adc {
         if last || self.cr2 & EOCS != 0 || uses_dma {
             self.sr |= EOC;
         }
-        if !last {
-            self.position += 1;
-        } else {
-            self.position = 0;
-        }
+        self.position = if last { 0 } else { self.position + 1 };
         self.due = if !last || self.cr2 & CONT != 0 {
             at + self.conversion_cycles(self.channel())
         } else {

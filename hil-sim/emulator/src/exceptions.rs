@@ -20,16 +20,11 @@ pub(crate) enum FrameError {
 }
 
 const CORE: [Reg; 6] = [Reg::R0, Reg::R1, Reg::R2, Reg::R3, Reg::R12, Reg::LR];
-const FLOAT: [Reg; 8] = [
-    Reg::D0,
-    Reg::D1,
-    Reg::D2,
-    Reg::D3,
-    Reg::D4,
-    Reg::D5,
-    Reg::D6,
-    Reg::D7,
-];
+/// D0 to D7, which the emulation numbers consecutively.
+fn float_registers() -> impl Iterator<Item = i32> {
+    (0..8).map(|n| Reg::D0 as i32 + n)
+}
+
 const NO_FLOAT: u32 = 0x10;
 const FRAME: u32 = 0x20;
 const FLOAT_FRAME: u32 = 0x68;
@@ -67,7 +62,7 @@ pub(crate) fn enter<W: Wiring>(
     put(6, return_pc);
     put(7, xpsr & !(1 << 9) | (sp >> 2 & 1) << 9);
     if float {
-        for (i, register) in FLOAT.into_iter().enumerate() {
+        for (i, register) in float_registers().enumerate() {
             let pair = cpu.reg_read(register).map_err(|_| FrameError::Emulator)?;
             put(8 + 2 * i, pair as u32);
             put(9 + 2 * i, (pair >> 32) as u32);
@@ -185,19 +180,13 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
     let mut bytes = [0; FLOAT_FRAME as usize];
     cpu.mem_read(u64::from(sp), &mut bytes[..size as usize])
         .map_err(|_| FrameError::Stack(sp))?;
-    let word = |at: usize| {
-        u32::from_le_bytes([
-            bytes[4 * at],
-            bytes[4 * at + 1],
-            bytes[4 * at + 2],
-            bytes[4 * at + 3],
-        ])
-    };
+    let (words, _) = bytes.as_chunks();
+    let word = |at: usize| u32::from_le_bytes(words[at]);
     for (i, register) in CORE.into_iter().enumerate() {
         set(cpu, register, word(i))?;
     }
     if float {
-        for (i, register) in FLOAT.into_iter().enumerate() {
+        for (i, register) in float_registers().enumerate() {
             let pair = u64::from(word(8 + 2 * i)) | u64::from(word(9 + 2 * i)) << 32;
             cpu.reg_write(register, pair)
                 .map_err(|_| FrameError::Emulator)?;
@@ -219,13 +208,8 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
 /// Registers as a reset leaves them (B1.5.5); the stack pointer and the PC come from the vector table.
 pub(crate) fn reset<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
     set_xpsr(cpu, 1 << 24)?;
-    for register in [
-        Reg::CONTROL,
-        Reg::PRIMASK,
-        Reg::BASEPRI,
-        Reg::FAULTMASK,
-        Reg::FPSCR,
-    ] {
+    let masks = [Reg::PRIMASK, Reg::BASEPRI, Reg::FAULTMASK];
+    for register in [Reg::CONTROL, Reg::FPSCR].into_iter().chain(masks) {
         set(cpu, register, 0)?;
     }
     let (sp, pc) = (vector(cpu, 0)?, vector(cpu, 4)?);

@@ -5,6 +5,7 @@ use super::stop::{Answer, Refusal, only};
 pub(crate) const PORTS: usize = 8;
 
 /// One port of 16 pins.
+#[derive(Default)]
 pub(crate) struct Port {
     moder: u32,
     otyper: u32,
@@ -33,11 +34,9 @@ impl Port {
         };
         Self {
             moder,
-            otyper: 0,
             ospeedr,
             pupdr,
-            odr: 0,
-            afr: [0; 2],
+            ..Self::default()
         }
     }
 

@@ -108,46 +108,14 @@ impl<W: Wiring + 'static> Machine<W> {
     /// # Errors
     /// The register does not exist, or has no such bit that can flip.
     pub fn flip_core_bit(&mut self, register: CoreRegister, bit: u8) -> Result<(), InjectError> {
-        const R: [Reg; 13] = [
-            Reg::R0,
-            Reg::R1,
-            Reg::R2,
-            Reg::R3,
-            Reg::R4,
-            Reg::R5,
-            Reg::R6,
-            Reg::R7,
-            Reg::R8,
-            Reg::R9,
-            Reg::R10,
-            Reg::R11,
-            Reg::R12,
-        ];
-        const D: [Reg; 16] = [
-            Reg::D0,
-            Reg::D1,
-            Reg::D2,
-            Reg::D3,
-            Reg::D4,
-            Reg::D5,
-            Reg::D6,
-            Reg::D7,
-            Reg::D8,
-            Reg::D9,
-            Reg::D10,
-            Reg::D11,
-            Reg::D12,
-            Reg::D13,
-            Reg::D14,
-            Reg::D15,
-        ];
         let mask = one_bit(register, bit, register.bits())?;
         let cpu = &mut self.cpu;
+        // The emulation numbers R0 to R12, and D0 to D15, consecutively.
         let emulated = match register {
-            CoreRegister::R(n) => R[usize::from(n)],
-            CoreRegister::Sp => Reg::SP,
-            CoreRegister::Lr => Reg::LR,
-            CoreRegister::Fpscr => Reg::FPSCR,
+            CoreRegister::R(n) => Reg::R0 as i32 + i32::from(n),
+            CoreRegister::Sp => Reg::SP as i32,
+            CoreRegister::Lr => Reg::LR as i32,
+            CoreRegister::Fpscr => Reg::FPSCR as i32,
             CoreRegister::Pc => {
                 let pc = get(cpu, Reg::PC) ^ mask;
                 cpu.reg_write(Reg::PC, u64::from(pc | 1))
@@ -160,15 +128,15 @@ impl<W: Wiring + 'static> Machine<W> {
                 return Ok(());
             }
             CoreRegister::S(n) => {
-                let pair = D[usize::from(n / 2)];
+                let pair = Reg::D0 as i32 + i32::from(n / 2);
                 let old = cpu.reg_read(pair).map_err(emulator)?;
                 let new = old ^ u64::from(mask) << (32 * (n % 2));
-                cpu.reg_write(pair, new).map_err(emulator)?;
-                return Ok(());
+                return cpu.reg_write(pair, new).map_err(|e| emulator(e).into());
             }
         };
-        let flipped = get(cpu, emulated) ^ mask;
-        cpu.reg_write(emulated, flipped.into()).map_err(emulator)?;
+        let old = cpu.reg_read(emulated).map_err(emulator)?;
+        cpu.reg_write(emulated, old ^ u64::from(mask))
+            .map_err(emulator)?;
         Ok(())
     }
 
@@ -199,7 +167,7 @@ impl<W: Wiring + 'static> Machine<W> {
             u32::MAX,
         )?;
         let now = self.now();
-        let chip = self.cpu.get_data_mut().chip();
+        let chip = self.chip_mut();
         let (load_at, store_at, value) = match address {
             // set- and clear-enable, set- and clear-pending registers of the interrupts (ARMv7-M B3.4)
             0xe000_e100..0xe000_e300 => {
@@ -221,7 +189,7 @@ impl<W: Wiring + 'static> Machine<W> {
             }
         };
         let value = self.accepted(value, load_at, Access::Read(4), 0)?;
-        let chip = self.cpu.get_data_mut().chip();
+        let chip = self.chip_mut();
         let stored = chip.write(store_at, 4, value, now);
         self.accepted(stored, store_at, Access::Write(4), value)?;
         Ok(())
@@ -259,7 +227,7 @@ impl<W: Wiring + 'static> Machine<W> {
     /// [`InjectError::Refused`]: the bus prescalers suit no clock of the internal oscillator.
     pub fn stop_hse(&mut self) -> Result<(), InjectError> {
         let now = self.now();
-        let answer = self.cpu.get_data_mut().chip().stop_hse(now);
+        let answer = self.chip_mut().stop_hse(now);
         let clocked = self.accepted(answer, 0x4002_3800, Access::Write(4), 0)?;
         if !clocked {
             self.hang_core();
@@ -270,7 +238,7 @@ impl<W: Wiring + 'static> Machine<W> {
     /// The converter never ends a conversion again until it is reset.
     pub fn stop_adc(&mut self) {
         let now = self.now();
-        self.cpu.get_data_mut().chip().stop_adc(now);
+        self.chip_mut().stop_adc(now);
     }
 
     /// A bus error ends a DMA stream (controller 1 or 2, stream 0 to 7): disabled, transfer-error flag set.
@@ -282,7 +250,7 @@ impl<W: Wiring + 'static> Machine<W> {
             return Err(InjectError::NoStream { controller, stream });
         }
         let now = self.now();
-        let chip = self.cpu.get_data_mut().chip();
+        let chip = self.chip_mut();
         if chip.stop_stream(usize::from(controller - 1), stream.into(), now) {
             Ok(())
         } else {
@@ -320,11 +288,7 @@ impl<W: Wiring + 'static> Machine<W> {
     /// [`InjectError::Refused`]: not modelled in the state that the flash is in.
     pub fn stray_store(&mut self, address: u32, value: u32) -> Result<(), InjectError> {
         let now = self.now();
-        let answer = self
-            .cpu
-            .get_data_mut()
-            .chip()
-            .store_flash(address, 4, value, now);
+        let answer = self.chip_mut().store_flash(address, 4, value, now);
         self.accepted(answer, address, Access::Write(4), value)
     }
 

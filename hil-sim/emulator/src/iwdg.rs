@@ -8,6 +8,7 @@ const KEY_START: u32 = 0xcccc;
 /// A new prescaler or reload value takes up to five LSI cycles to arrive.
 const UPDATE_LSI_CYCLES: u64 = 5;
 
+#[derive(Default)]
 pub(crate) struct Iwdg {
     unlocked: bool,
     running: bool,
@@ -21,12 +22,9 @@ pub(crate) struct Iwdg {
 impl Iwdg {
     pub fn new() -> Self {
         Self {
-            unlocked: false,
-            running: false,
-            prescaler: 0,
             reload: 0xfff,
-            updating_until: [0; 2],
             due: u64::MAX,
+            ..Self::default()
         }
     }
 

@@ -2,6 +2,7 @@
 use super::chip::Chip;
 use super::elf::{Firmware, RAM_BASE, RAM_SIZE};
 use super::exceptions;
+use super::nvic::{self, EXCEPTIONS};
 use super::profile::Stats;
 use super::rcc::Clocks;
 use super::run::Until;
@@ -85,6 +86,14 @@ impl<W: Wiring + 'static> Machine<W> {
         self.run_on(Until::Ps(ps))
     }
 
+    pub(super) fn chip(&self) -> &Chip<W> {
+        self.cpu.get_data().chip_ref()
+    }
+
+    pub(super) fn chip_mut(&mut self) -> &mut Chip<W> {
+        self.cpu.get_data_mut().chip()
+    }
+
     fn run_on(&mut self, until: Until) -> Result<(), Stop> {
         if let Some(stop) = &self.stopped {
             return Err(stop.clone());
@@ -99,12 +108,12 @@ impl<W: Wiring + 'static> Machine<W> {
     /// The cells of the flash. An image sees what changes of sectors 1 to 3, if it leaves them blank: the settings are
     /// there. When power fails in an operation, the machine powers up anew by itself, with other contents of the RAM.
     pub fn flash(&self) -> &Cells {
-        &self.cpu.get_data().chip_ref().flash.cells
+        &self.chip().flash.cells
     }
 
     /// The same, to be changed between two calls of [`run_until`](Self::run_until).
     pub fn flash_mut(&mut self) -> &mut Cells {
-        &mut self.cpu.get_data_mut().chip().flash.cells
+        &mut self.chip_mut().flash.cells
     }
 
     /// CPU cycles since power-up.
@@ -119,63 +128,57 @@ impl<W: Wiring + 'static> Machine<W> {
 
     /// Time of a cycle since the clock last changed, ps since power-up.
     pub fn ps_at(&self, cycle: u64) -> u64 {
-        self.cpu.get_data().chip_ref().time.ps_at(cycle)
+        self.chip().time.ps_at(cycle)
     }
 
     /// The clock tree as the image has set it.
     pub fn clocks(&self) -> Clocks {
-        self.cpu.get_data().chip_ref().clocks()
+        self.chip().clocks()
     }
 
     /// What is at the pins.
     pub fn wiring(&self) -> &W {
-        &self.cpu.get_data().chip_ref().wiring
+        &self.chip().wiring
     }
 
     /// What is at the pins, to be changed between two calls of [`run_until`](Self::run_until).
     pub fn wiring_mut(&mut self) -> &mut W {
-        &mut self.cpu.get_data_mut().chip().wiring
+        &mut self.chip_mut().wiring
     }
 
     /// The host starts to send `bytes` on USART2 now, or right after what it is still sending.
     pub fn uart_send(&mut self, bytes: &[u8]) {
         let now = self.now();
-        let chip = self.cpu.get_data_mut().chip();
+        let chip = self.chip_mut();
         chip.usart_mut().send(bytes, now);
         chip.refresh_next(now);
     }
 
     /// Bytes that the host has not finished sending.
     pub fn uart_sending(&self) -> usize {
-        self.cpu.get_data().chip_ref().usart().sending()
+        self.chip().usart().sending()
     }
 
     /// Bit rate of the host, both ways; 1 Mbit/s at the start.
     pub fn set_host_baud(&mut self, baud: u32) {
-        self.cpu
-            .get_data_mut()
-            .chip()
-            .usart_mut()
-            .set_host_baud(baud);
+        self.chip_mut().usart_mut().set_host_baud(baud);
     }
 
     /// How a timer drives a pin (port 0 is A), or its level as a general-purpose output.
     pub fn pwm(&mut self, port: u8, bit: u8) -> LegState {
         let now = self.now();
-        self.cpu.get_data_mut().chip().pwm(port, bit, now)
+        self.chip_mut().pwm(port, bit, now)
     }
 
     /// Level that a general-purpose output drives (port 0 is A); `None` when the pin is no driven output.
     pub fn gpio_output(&self, port: u8, bit: u8) -> Option<bool> {
-        self.cpu.get_data().chip_ref().output(port, bit)
+        self.chip().output(port, bit)
     }
 
     /// Notes which blocks an interrupt's handler runs, from its next activation on; `name` is that of
     /// [`InterruptStats`](super::InterruptStats).
     pub fn watch(&mut self, name: &str) {
-        if let Some(exception) =
-            (0..super::nvic::EXCEPTIONS).find(|n| super::nvic::name(*n) == name)
-        {
+        if let Some(exception) = (0..EXCEPTIONS).find(|n| nvic::name(*n) == name) {
             self.cpu.get_data_mut().profile.watch(exception);
         }
     }

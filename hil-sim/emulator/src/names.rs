@@ -1,134 +1,73 @@
 //! Names of registers for messages: address to `PERIPHERAL_REGISTER` (RM0390 memory map and register maps).
 
-/// Offset and name of registers.
-type Registers = &'static [(u32, &'static str)];
+/// Names of registers by runs of consecutive words: offset of the first, and names.
+type Registers = &'static [(u32, &'static [&'static str])];
 /// First address, name and registers of a peripheral.
 type Entry = (u32, &'static str, Registers);
 
-const TIM: Registers = &[
-    (0x00, "CR1"),
-    (0x04, "CR2"),
-    (0x08, "SMCR"),
-    (0x0c, "DIER"),
-    (0x10, "SR"),
-    (0x14, "EGR"),
-    (0x18, "CCMR1"),
-    (0x1c, "CCMR2"),
-    (0x20, "CCER"),
-    (0x24, "CNT"),
-    (0x28, "PSC"),
-    (0x2c, "ARR"),
-    (0x30, "RCR"),
-    (0x34, "CCR1"),
-    (0x38, "CCR2"),
-    (0x3c, "CCR3"),
-    (0x40, "CCR4"),
-    (0x44, "BDTR"),
-    (0x48, "DCR"),
-    (0x4c, "DMAR"),
-    (0x50, "OR"),
-];
-const USART: Registers = &[
-    (0x00, "SR"),
-    (0x04, "DR"),
-    (0x08, "BRR"),
-    (0x0c, "CR1"),
-    (0x10, "CR2"),
-    (0x14, "CR3"),
-    (0x18, "GTPR"),
-];
+const TIM: Registers = &[(
+    0x00,
+    &[
+        "CR1", "CR2", "SMCR", "DIER", "SR", "EGR", "CCMR1", "CCMR2", "CCER", "CNT", "PSC", "ARR",
+        "RCR", "CCR1", "CCR2", "CCR3", "CCR4", "BDTR", "DCR", "DMAR", "OR",
+    ],
+)];
+const USART: Registers = &[(0x00, &["SR", "DR", "BRR", "CR1", "CR2", "CR3", "GTPR"])];
 const ADC: Registers = &[
-    (0x00, "SR"),
-    (0x04, "CR1"),
-    (0x08, "CR2"),
-    (0x0c, "SMPR1"),
-    (0x10, "SMPR2"),
-    (0x14, "JOFR1"),
-    (0x18, "JOFR2"),
-    (0x1c, "JOFR3"),
-    (0x20, "JOFR4"),
-    (0x24, "HTR"),
-    (0x28, "LTR"),
-    (0x2c, "SQR1"),
-    (0x30, "SQR2"),
-    (0x34, "SQR3"),
-    (0x38, "JSQR"),
-    (0x3c, "JDR1"),
-    (0x4c, "DR"),
-    (0x300, "CSR"),
-    (0x304, "CCR"),
-    (0x308, "CDR"),
+    (
+        0x00,
+        &[
+            "SR", "CR1", "CR2", "SMPR1", "SMPR2", "JOFR1", "JOFR2", "JOFR3", "JOFR4", "HTR", "LTR",
+            "SQR1", "SQR2", "SQR3", "JSQR", "JDR1",
+        ],
+    ),
+    (0x4c, &["DR"]),
+    (0x300, &["CSR", "CCR", "CDR"]),
 ];
-const GPIO: Registers = &[
-    (0x00, "MODER"),
-    (0x04, "OTYPER"),
-    (0x08, "OSPEEDR"),
-    (0x0c, "PUPDR"),
-    (0x10, "IDR"),
-    (0x14, "ODR"),
-    (0x18, "BSRR"),
-    (0x1c, "LCKR"),
-    (0x20, "AFRL"),
-    (0x24, "AFRH"),
-];
+const GPIO: Registers = &[(
+    0x00,
+    &[
+        "MODER", "OTYPER", "OSPEEDR", "PUPDR", "IDR", "ODR", "BSRR", "LCKR", "AFRL", "AFRH",
+    ],
+)];
 const RCC: Registers = &[
-    (0x00, "CR"),
-    (0x04, "PLLCFGR"),
-    (0x08, "CFGR"),
-    (0x0c, "CIR"),
-    (0x10, "AHB1RSTR"),
-    (0x14, "AHB2RSTR"),
-    (0x18, "AHB3RSTR"),
-    (0x20, "APB1RSTR"),
-    (0x24, "APB2RSTR"),
-    (0x30, "AHB1ENR"),
-    (0x34, "AHB2ENR"),
-    (0x38, "AHB3ENR"),
-    (0x40, "APB1ENR"),
-    (0x44, "APB2ENR"),
-    (0x50, "AHB1LPENR"),
-    (0x54, "AHB2LPENR"),
-    (0x58, "AHB3LPENR"),
-    (0x60, "APB1LPENR"),
-    (0x64, "APB2LPENR"),
-    (0x70, "BDCR"),
-    (0x74, "CSR"),
-    (0x80, "SSCGR"),
-    (0x84, "PLLI2SCFGR"),
-    (0x88, "PLLSAICFGR"),
-    (0x8c, "DCKCFGR"),
-    (0x90, "CKGATENR"),
-    (0x94, "DCKCFGR2"),
+    (
+        0x00,
+        &[
+            "CR", "PLLCFGR", "CFGR", "CIR", "AHB1RSTR", "AHB2RSTR", "AHB3RSTR",
+        ],
+    ),
+    (0x20, &["APB1RSTR", "APB2RSTR"]),
+    (0x30, &["AHB1ENR", "AHB2ENR", "AHB3ENR"]),
+    (0x40, &["APB1ENR", "APB2ENR"]),
+    (0x50, &["AHB1LPENR", "AHB2LPENR", "AHB3LPENR"]),
+    (0x60, &["APB1LPENR", "APB2LPENR"]),
+    (0x70, &["BDCR", "CSR"]),
+    (
+        0x80,
+        &[
+            "SSCGR",
+            "PLLI2SCFGR",
+            "PLLSAICFGR",
+            "DCKCFGR",
+            "CKGATENR",
+            "DCKCFGR2",
+        ],
+    ),
 ];
-const FLASH: Registers = &[
-    (0x00, "ACR"),
-    (0x04, "KEYR"),
-    (0x08, "OPTKEYR"),
-    (0x0c, "SR"),
-    (0x10, "CR"),
-    (0x14, "OPTCR"),
-];
-const PWR: Registers = &[(0x00, "CR"), (0x04, "CSR")];
-const EXTI: Registers = &[
-    (0x00, "IMR"),
-    (0x04, "EMR"),
-    (0x08, "RTSR"),
-    (0x0c, "FTSR"),
-    (0x10, "SWIER"),
-    (0x14, "PR"),
-];
+const FLASH: Registers = &[(0x00, &["ACR", "KEYR", "OPTKEYR", "SR", "CR", "OPTCR"])];
+const PWR: Registers = &[(0x00, &["CR", "CSR"])];
+const EXTI: Registers = &[(0x00, &["IMR", "EMR", "RTSR", "FTSR", "SWIER", "PR"])];
 const SYSCFG: Registers = &[
-    (0x00, "MEMRMP"),
-    (0x04, "PMC"),
-    (0x08, "EXTICR1"),
-    (0x0c, "EXTICR2"),
-    (0x10, "EXTICR3"),
-    (0x14, "EXTICR4"),
-    (0x20, "CMPCR"),
-    (0x2c, "CFGR"),
+    (
+        0x00,
+        &["MEMRMP", "PMC", "EXTICR1", "EXTICR2", "EXTICR3", "EXTICR4"],
+    ),
+    (0x20, &["CMPCR"]),
+    (0x2c, &["CFGR"]),
 ];
-const IWDG: Registers = &[(0x00, "KR"), (0x04, "PR"), (0x08, "RLR"), (0x0c, "SR")];
-const WWDG: Registers = &[(0x00, "CR"), (0x04, "CFR"), (0x08, "SR")];
+const IWDG: Registers = &[(0x00, &["KR", "PR", "RLR", "SR"])];
+const WWDG: Registers = &[(0x00, &["CR", "CFR", "SR"])];
 const NONE: Registers = &[];
 
 /// First address, name and registers of every peripheral of the STM32F446, ascending. The next entry's address
@@ -182,11 +121,7 @@ const MAP: &[Entry] = &[
     (0x4001_2000, "ADC1", ADC),
     (0x4001_2100, "ADC2", ADC),
     (0x4001_2200, "ADC3", ADC),
-    (
-        0x4001_2300,
-        "ADC_COMMON",
-        &[(0x00, "CSR"), (0x04, "CCR"), (0x08, "CDR")],
-    ),
+    (0x4001_2300, "ADC_COMMON", &[(0x00, &["CSR", "CCR", "CDR"])]),
     (0x4001_2400, "", NONE),
     (0x4001_2c00, "SDIO", NONE),
     (0x4001_3000, "SPI1", NONE),
@@ -232,10 +167,9 @@ const MAP: &[Entry] = &[
         0xe000_1000,
         "DWT",
         &[
-            (0x00, "CTRL"),
-            (0x04, "CYCCNT"),
-            (0x20, "COMP0"),
-            (0xfb0, "LAR"),
+            (0x00, &["CTRL", "CYCCNT"]),
+            (0x20, &["COMP0"]),
+            (0xfb0, &["LAR"]),
         ],
     ),
     (0xe000_2000, "FPB", NONE),
@@ -244,32 +178,16 @@ const MAP: &[Entry] = &[
         0xe000_e000,
         "SCS",
         &[
-            (0x04, "ICTR"),
-            (0x08, "ACTLR"),
-            (0x10, "SYST_CSR"),
-            (0x14, "SYST_RVR"),
-            (0x18, "SYST_CVR"),
-            (0x1c, "SYST_CALIB"),
-            (0xd00, "CPUID"),
-            (0xd04, "ICSR"),
-            (0xd08, "VTOR"),
-            (0xd0c, "AIRCR"),
-            (0xd10, "SCR"),
-            (0xd14, "CCR"),
-            (0xd24, "SHCSR"),
-            (0xd28, "CFSR"),
-            (0xd2c, "HFSR"),
-            (0xd88, "CPACR"),
-            (0xd94, "MPU_CTRL"),
-            (0xd98, "MPU_RNR"),
-            (0xd9c, "MPU_RBAR"),
-            (0xda0, "MPU_RASR"),
-            (0xdf0, "DHCSR"),
-            (0xdfc, "DEMCR"),
-            (0xf00, "STIR"),
-            (0xf34, "FPCCR"),
-            (0xf38, "FPCAR"),
-            (0xf3c, "FPDSCR"),
+            (0x04, &["ICTR", "ACTLR"]),
+            (0x10, &["SYST_CSR", "SYST_RVR", "SYST_CVR", "SYST_CALIB"]),
+            (0xd00, &["CPUID", "ICSR", "VTOR", "AIRCR", "SCR", "CCR"]),
+            (0xd24, &["SHCSR", "CFSR", "HFSR"]),
+            (0xd88, &["CPACR"]),
+            (0xd94, &["MPU_CTRL", "MPU_RNR", "MPU_RBAR", "MPU_RASR"]),
+            (0xdf0, &["DHCSR"]),
+            (0xdfc, &["DEMCR"]),
+            (0xf00, &["STIR"]),
+            (0xf34, &["FPCCR", "FPCAR", "FPDSCR"]),
         ],
     ),
     (0xe000_f000, "", NONE),
@@ -278,12 +196,7 @@ const MAP: &[Entry] = &[
     (
         0xe004_2000,
         "DBGMCU",
-        &[
-            (0x00, "IDCODE"),
-            (0x04, "CR"),
-            (0x08, "APB1_FZ"),
-            (0x0c, "APB2_FZ"),
-        ],
+        &[(0x00, &["IDCODE", "CR", "APB1_FZ", "APB2_FZ"])],
     ),
     (0xe004_3000, "", NONE),
 ];
@@ -317,8 +230,12 @@ pub(crate) fn register(address: u32) -> String {
             None => format!("{name}+{offset:#x}"),
         };
     }
-    match registers.iter().find(|(at, _)| *at == offset) {
-        Some((_, register)) => format!("{name}_{register}"),
+    let in_run = |(first, names): &(u32, &'static [&'static str])| {
+        let index = offset.checked_sub(*first)? / 4;
+        names.get(index as usize).copied()
+    };
+    match registers.iter().find_map(in_run) {
+        Some(register) => format!("{name}_{register}"),
         None => format!("{name}+{offset:#x}"),
     }
 }

@@ -20,7 +20,7 @@ pub const LSI_HZ: u32 = 32_000;
 const LSI_START_US: u64 = 20;
 
 /// Frequencies in Hz as the RCC registers set them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Clocks {
     /// System clock before the AHB prescaler.
     pub sysclk_hz: u32,
@@ -64,6 +64,7 @@ const ENR_NAMES: [&str; 5] = [
     "RCC_APB2ENR",
 ];
 
+#[derive(Default)]
 pub(crate) struct Rcc {
     cr: u32,
     pllcfgr: u32,
@@ -97,18 +98,11 @@ impl Rcc {
         Self {
             cr: 0x81,
             pllcfgr: 0x2400_3010,
-            cfgr: 0,
             enr: [0x0010_0000, 0, 0, 0, 0],
-            rstr: [0; 5],
             lpenr: [0x7e67_91ff, 0xf1, 0x01, 0x36fe_c9ff, 0x0007_5f33],
             csr: reset_flags(cause) | old_flags & 0xfe00_0000,
-            dckcfgr: 0,
-            hse_failed: false,
-            security: false,
-            ready_at: [0; 4],
             pwr_cr: 0xc000,
             over_drive_at: [u64::MAX; 2],
-            acr: 0,
             clocks: Clocks {
                 sysclk_hz: hsi,
                 hclk_hz: hsi,
@@ -117,6 +111,7 @@ impl Rcc {
                 timclk1_hz: hsi,
                 timclk2_hz: hsi,
             },
+            ..Self::default()
         }
     }
 

@@ -27,7 +27,7 @@ pub(super) enum Until {
 impl<W: Wiring + 'static> Machine<W> {
     pub(super) fn run(&mut self, until: Until) -> Result<(), Stop> {
         let now = self.now();
-        self.cpu.get_data_mut().chip().sample_inputs(now);
+        self.chip_mut().sample_inputs(now);
         loop {
             let now = self.now();
             let state = self.cpu.get_data_mut();
@@ -37,7 +37,7 @@ impl<W: Wiring + 'static> Machine<W> {
             };
             state.limit = cycle;
             service(&mut self.cpu, now);
-            if let Some(cause) = self.cpu.get_data_mut().chip().reset {
+            if let Some(cause) = self.chip_mut().reset {
                 self.system_reset(cause)?;
                 continue;
             }
@@ -74,14 +74,9 @@ impl<W: Wiring + 'static> Machine<W> {
         if state.bus_error.take().is_some() {
             let pc = get(&self.cpu, Reg::PC);
             let imprecise = 1 << 10;
-            let fault = Fault {
-                exception: exception::BUS_FAULT,
-                status: imprecise,
-                address: None,
-                cause: "access to a reserved peripheral address",
-            };
+            let cause = "access to a reserved peripheral address";
             self.standstill = None;
-            return self.fault(fault, pc);
+            return self.fault(Fault::new(exception::BUS_FAULT, imprecise, cause), pc);
         }
         Ok(())
     }
@@ -148,12 +143,8 @@ impl<W: Wiring + 'static> Machine<W> {
             self.lose_memory()?;
         }
         let state = self.cpu.get_data_mut();
-        (
-            state.attention,
-            state.refused,
-            state.bus_error,
-            state.event_register,
-        ) = (false, None, None, false);
+        (state.attention, state.event_register) = (false, false);
+        (state.refused, state.bus_error) = (None, None);
         self.standstill = None;
         self.resets.push(Reset { at, at_ps, cause });
         exceptions::reset(&mut self.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))

@@ -34,7 +34,7 @@ impl Standstill {
 impl<W: Wiring + 'static> Machine<W> {
     pub(super) fn fall_asleep(&mut self) {
         let (_, basepri, faultmask) = masks(&self.cpu);
-        let nvic = &self.cpu.get_data().chip_ref().nvic;
+        let nvic = &self.chip().nvic;
         let threshold = nvic.execution_priority(0, basepri, faultmask);
         self.standstill = Some(Standstill::Asleep { threshold });
     }
@@ -47,7 +47,7 @@ impl<W: Wiring + 'static> Machine<W> {
 
     /// Locks the CPU up at `priority`; without a watchdog that could end it the run ends with `stop`.
     pub(super) fn lock_up(&mut self, priority: i32, stop: Stop) -> Result<(), Stop> {
-        if !self.cpu.get_data().chip_ref().is_watched() {
+        if !self.chip().is_watched() {
             return Err(stop);
         }
         if let Err(error) = self.cpu.reg_write(Reg::PC, LOCKUP_PC.into()) {

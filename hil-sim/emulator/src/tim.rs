@@ -6,43 +6,33 @@
 mod registers;
 
 /// What distinguishes one timer from another.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Kind {
     pub counter_max: u32,
     pub channels: usize,
     pub advanced: bool,
 }
 
+impl Kind {
+    const fn new(counter_max: u32, channels: usize, advanced: bool) -> Self {
+        Self {
+            counter_max,
+            channels,
+            advanced,
+        }
+    }
+}
+
 /// TIM1 and TIM8.
-pub(crate) const ADVANCED: Kind = Kind {
-    counter_max: 0xffff,
-    channels: 4,
-    advanced: true,
-};
+pub(crate) const ADVANCED: Kind = Kind::new(0xffff, 4, true);
 /// TIM2 and TIM5.
-pub(crate) const WIDE: Kind = Kind {
-    counter_max: u32::MAX,
-    channels: 4,
-    advanced: false,
-};
+pub(crate) const WIDE: Kind = Kind::new(u32::MAX, 4, false);
 /// TIM3 and TIM4.
-pub(crate) const GENERAL: Kind = Kind {
-    counter_max: 0xffff,
-    channels: 4,
-    advanced: false,
-};
+pub(crate) const GENERAL: Kind = Kind::new(0xffff, 4, false);
 /// TIM10 and TIM11.
-pub(crate) const SINGLE: Kind = Kind {
-    counter_max: 0xffff,
-    channels: 1,
-    advanced: false,
-};
+pub(crate) const SINGLE: Kind = Kind::new(0xffff, 1, false);
 /// TIM6 and TIM7.
-pub(crate) const BASIC: Kind = Kind {
-    counter_max: 0xffff,
-    channels: 0,
-    advanced: false,
-};
+pub(crate) const BASIC: Kind = Kind::new(0xffff, 0, false);
 
 const UIF: u32 = 1;
 const BIF: u32 = 1 << 7;
@@ -62,6 +52,7 @@ pub(crate) enum Output {
     High { high: u32, period: u32 },
 }
 
+#[derive(Default)]
 pub(crate) struct Tim {
     kind: Kind,
     /// CPU cycles per timer clock.
@@ -104,29 +95,11 @@ impl Tim {
         Self {
             kind,
             divider,
-            cr1: 0,
-            cr2: 0,
-            dier: 0,
-            sr: 0,
-            ccmr: [0; 2],
-            ccer: 0,
-            psc: 0,
             arr: kind.counter_max,
-            rcr: 0,
-            ccr: [0; 4],
-            bdtr: 0,
-            lock: 0,
-            psc_now: 0,
             arr_now: kind.counter_max,
             last: kind.counter_max,
-            ccr_now: [0; 4],
-            repeats_left: 0,
-            zero_at: 0,
-            stopped_at: 0,
-            seen: 0,
-            trigger: false,
-            trigger_used: false,
             due: u64::MAX,
+            ..Self::default()
         }
     }
 
@@ -341,26 +314,20 @@ impl Tim {
     /// What channel `channel` (0 is CH1) drives (16.4.9).
     pub fn output(&self, channel: usize) -> Output {
         let inverted = self.ccer >> (4 * channel + 1) & 1 != 0;
-        let constant = |high: bool| Output::High {
-            high: u32::from(high),
-            period: 1,
+        let constant_if = |driven: bool, high: bool| match driven {
+            true => Output::High {
+                high: u32::from(high),
+                period: 1,
+            },
+            false => Output::Released,
         };
+        let enabled = self.ccer >> (4 * channel) & 1 != 0;
         if self.kind.advanced && self.bdtr & MOE == 0 {
             let idle = self.cr2 >> (8 + 2 * channel) & 1 != 0;
-            let enabled = self.ccer >> (4 * channel) & 1 != 0;
-            return if self.bdtr & OSSI != 0 && enabled {
-                constant(idle)
-            } else {
-                Output::Released
-            };
+            return constant_if(self.bdtr & OSSI != 0 && enabled, idle);
         }
-        if self.ccer >> (4 * channel) & 1 == 0 {
-            let held = self.kind.advanced && self.bdtr & OSSR != 0;
-            return if held {
-                constant(inverted)
-            } else {
-                Output::Released
-            };
+        if !enabled {
+            return constant_if(self.kind.advanced && self.bdtr & OSSR != 0, inverted);
         }
         let period = self.arr_now.saturating_add(1);
         let below = self.ccr_now[channel].min(period);

@@ -14,14 +14,17 @@ const RE: u32 = 1 << 2;
 /// Bits of a frame: start, eight data, stop.
 const FRAME_BITS: u64 = 10;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Content of the transmitter's shift register.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Shift {
+    #[default]
     Nothing,
     /// The idle frame that TE sends first (25.4.2).
     Preamble,
     Byte(u8),
 }
 
+#[derive(Default)]
 pub(crate) struct Usart {
     sr: u32,
     /// Error and idle flags as software last read them; a read of DR then clears those (25.6.1).
@@ -48,22 +51,13 @@ impl Usart {
     pub fn new(bus_divider: u64, hclk_hz: u32, host_baud: u32) -> Self {
         Self {
             sr: TC | TXE,
-            sr_seen: 0,
-            received: 0,
-            waiting: 0,
-            shift: Shift::Nothing,
-            brr: 0,
-            cr1: 0,
-            cr2: 0,
-            cr3: 0,
             bus_divider,
             hclk_hz,
             host_baud,
-            incoming: VecDeque::new(),
-            arrival: 0,
             idle_at: u64::MAX,
             tx_due: u64::MAX,
             rx_due: u64::MAX,
+            ..Self::default()
         }
     }
 
@@ -71,18 +65,14 @@ impl Usart {
     pub fn reset(&mut self) {
         let fresh = Self::new(self.bus_divider, self.hclk_hz, self.host_baud);
         let incoming = std::mem::take(&mut self.incoming);
-        let (arrival, rx_due) = (
-            self.arrival,
-            if incoming.is_empty() {
+        *self = Self {
+            rx_due: if incoming.is_empty() {
                 u64::MAX
             } else {
                 self.rx_due
             },
-        );
-        *self = Self {
+            arrival: self.arrival,
             incoming,
-            arrival,
-            rx_due,
             ..fresh
         };
     }
@@ -173,10 +163,8 @@ impl Usart {
     /// What the receiver makes of a byte sent at the host's rate: it samples the middle of its own bits. The rates
     /// may differ by 3 % (25.4.5 allows 3.3 to 3.9 %); beyond that the frame counts as broken.
     fn sampled(&self, byte: u8) -> (u32, bool) {
-        let (own, host) = (
-            self.bit_cycles() * u64::from(self.host_baud),
-            u64::from(self.hclk_hz),
-        );
+        let own = self.bit_cycles() * u64::from(self.host_baud);
+        let host = u64::from(self.hclk_hz);
         let line = u32::from(byte) << 1 | 1 << 9;
         let level = |bit: u64| {
             let at = (2 * bit + 1) * own / (2 * host);

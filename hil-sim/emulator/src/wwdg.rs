@@ -13,6 +13,7 @@ const PRESCALER: u64 = 4096;
 /// Reset value of the counter and of the window.
 const TOP: u32 = 0x7f;
 
+#[derive(Default)]
 pub(crate) struct Wwdg {
     active: bool,
     /// The counter at `seen`, 0 to 0x7f.
@@ -29,16 +30,12 @@ pub(crate) struct Wwdg {
 }
 
 impl Wwdg {
-    pub const fn new() -> Self {
+    pub fn new() -> Self {
         Self {
-            active: false,
             count: TOP,
             cfr: TOP,
-            early: false,
-            divider: None,
-            zero_at: 0,
-            seen: 0,
             due: u64::MAX,
+            ..Self::default()
         }
     }
 

@@ -18,6 +18,11 @@ fn pwm(bdtr: u32) -> Tim {
     tim
 }
 
+/// High for so many of the 1800 ticks of a period.
+fn high(high: u32) -> Output {
+    Output::High { high, period: 1800 }
+}
+
 #[test]
 fn update_rate_is_clock_over_prescaler_and_reload() {
     let mut tim = Tim::new(WIDE, 2);
@@ -37,41 +42,16 @@ fn update_rate_is_clock_over_prescaler_and_reload() {
 #[test]
 fn preloaded_compare_values_wait_for_the_update() {
     let mut tim = pwm(MOE);
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 450,
-            period: 1800
-        }
-    );
+    assert_eq!(tim.output(0), high(450));
     tim.write(0x34, 900, 1000).unwrap();
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 450,
-            period: 1800
-        }
-    );
+    assert_eq!(tim.output(0), high(450));
     assert_eq!(tim.due, 1800);
     tim.sync(1800);
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 900,
-            period: 1800
-        }
-    );
+    assert_eq!(tim.output(0), high(900));
     assert_eq!(tim.due, u64::MAX, "nobody waits for the next update");
     tim.write(0x34, 5000, 1900).unwrap();
     tim.sync(3600);
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 1800,
-            period: 1800
-        },
-        "above ARR: always high"
-    );
+    assert_eq!(tim.output(0), high(1800), "above ARR: always high");
 }
 
 #[test]
@@ -105,13 +85,7 @@ fn break_switches_the_outputs_off_and_holds_them() {
     tim.write(0x10, 0, 200).unwrap();
     tim.write(0x44, MOE | BKE, 200).unwrap();
     assert!(!tim.set_break(true));
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 450,
-            period: 1800
-        }
-    );
+    assert_eq!(tim.output(0), high(450));
 }
 
 #[test]
