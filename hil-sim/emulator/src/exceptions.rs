@@ -1,6 +1,6 @@
 //! Exception entry and return on the emulated CPU (ARMv7-M Architecture Reference Manual B1.5.6 to B1.5.8).
 //!
-//! Floating-point state is stacked at entry, not lazily: what the program sees is the same, FPCAR is not kept.
+//! Floating-point state is stacked at entry and not lazily, which the program does not notice; FPCAR is not kept.
 use super::Wiring;
 use super::cost;
 use super::elf::{FLASH_BASE, RAM_BASE};
@@ -8,10 +8,10 @@ use super::nvic::exception;
 use super::state::{Cpu, get, masks, service};
 use unicorn_engine::RegisterARM as Reg;
 
-/// Why an entry or return went wrong.
+/// Why an exception entry or return failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FrameError {
-    /// The frame would lie, or lies, outside of memory.
+    /// The frame is outside of memory.
     Stack(u32),
     /// No valid EXC_RETURN, or return from an exception that is not active.
     Return(u32),
@@ -34,7 +34,7 @@ fn set<W: Wiring>(cpu: &mut Cpu<'_, W>, register: Reg, value: u32) -> Result<(),
         .map_err(|_| FrameError::Emulator)
 }
 
-/// Writes IPSR and the flags. The second write makes the emulation take over the new mode.
+/// Writes IPSR and the flags. The emulation adopts the new mode at the second write.
 pub(super) fn set_xpsr<W: Wiring>(cpu: &mut Cpu<'_, W>, xpsr: u32) -> Result<(), FrameError> {
     set(cpu, Reg::XPSR_NZCVQG, xpsr)?;
     set(cpu, Reg::APSR_NZCV, xpsr & 0xf000_0000)
@@ -117,7 +117,7 @@ fn start_handler<W: Wiring>(
     set(cpu, Reg::PC, vector | 1)
 }
 
-/// Handler address in the vector table, which mostly lies in flash.
+/// Word of the vector table, which is usually in flash.
 fn vector<W: Wiring>(cpu: &Cpu<'_, W>, address: u32) -> Result<u32, FrameError> {
     let offset = (address & !FLASH_BASE) as usize;
     let flash = &cpu.get_data().flash;
@@ -131,7 +131,7 @@ fn vector<W: Wiring>(cpu: &Cpu<'_, W>, address: u32) -> Result<u32, FrameError> 
     Ok(u32::from_le_bytes(word))
 }
 
-/// Returns from the running exception, or goes straight on to the next pending one (tail chaining).
+/// Returns from the running exception, or enters the next pending one directly (tail chaining).
 pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<(), FrameError> {
     let xpsr = get(cpu, Reg::XPSR);
     let running = (xpsr & 0x1ff) as usize;
@@ -170,7 +170,7 @@ pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<
 fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Result<(), FrameError> {
     let control = get(cpu, Reg::CONTROL);
     if exc_return & 8 != 0 {
-        // to thread mode: leave handler mode first, so that SP is the one that SPSEL names
+        // To thread mode: leave handler mode first, so that SP is the stack pointer that SPSEL selects.
         set_xpsr(cpu, xpsr & !0x1ff)?;
         set(cpu, Reg::CONTROL, control & !2 | (exc_return >> 2 & 1) << 1)?;
     }
@@ -205,7 +205,7 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
     set(cpu, Reg::PC, word(6) | 1)
 }
 
-/// Registers as a reset leaves them (B1.5.5); the stack pointer and the PC come from the vector table.
+/// Sets the registers to their reset values (B1.5.5); the stack pointer and the PC come from the vector table.
 pub(crate) fn reset<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
     set_xpsr(cpu, 1 << 24)?;
     let masks = [Reg::PRIMASK, Reg::BASEPRI, Reg::FAULTMASK];

@@ -7,7 +7,7 @@ use super::state::masks;
 use super::stop::{Access, Stop};
 use unicorn_engine::uc_error;
 
-/// A fault as the core reports it.
+/// A fault of the core.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fault {
     pub(super) exception: usize,
@@ -45,8 +45,8 @@ pub(super) const NO_COPROCESSOR: Fault =
 pub(super) const UNALIGNED: Fault = usage(1 << 24, "unaligned access");
 
 impl<W: Wiring + 'static> Machine<W> {
-    /// An exception that the CPU emulation raised by itself.
-    pub(super) fn raised(&mut self, number: u32, pc: u32) -> Result<(), Stop> {
+    /// Handles an exception that the CPU emulation raised, by its number there.
+    pub(super) fn cpu_exception(&mut self, number: u32, pc: u32) -> Result<(), Stop> {
         match number {
             2 => self.supervisor_call(pc),
             7 => {
@@ -56,7 +56,7 @@ impl<W: Wiring + 'static> Machine<W> {
             }
             8 => match exceptions::leave(&mut self.cpu, pc | 1) {
                 Err(FrameError::Return(_)) => self.fault(INVALID_RETURN, pc),
-                other => self.framed(other, "unstacking"),
+                other => self.checked_frame(other, "unstacking"),
             },
             17 => self.fault(NO_COPROCESSOR, pc),
             18 => self.fault(INVALID_STATE, pc),
@@ -82,8 +82,8 @@ impl<W: Wiring + 'static> Machine<W> {
         self.fault(Fault::new(exception::HARD_FAULT, 0, cause), pc)
     }
 
-    /// An access that no memory answered, as the CPU emulation reports it.
-    pub(super) fn bad_access(
+    /// Handles an access to an address without memory.
+    pub(super) fn access_fault(
         &mut self,
         error: uc_error,
         address: u32,
@@ -147,11 +147,11 @@ impl<W: Wiring + 'static> Machine<W> {
 
     pub(super) fn enter(&mut self, exception: usize, pc: u32) -> Result<(), Stop> {
         let result = exceptions::enter(&mut self.cpu, exception, pc);
-        self.framed(result, "stacking")
+        self.checked_frame(result, "stacking")
     }
 
-    /// A frame that does not fit into memory: silicon derives a fault whose handler has no stack either, nor has an NMI's.
-    fn framed(&mut self, result: Result<(), FrameError>, what: &str) -> Result<(), Stop> {
+    /// Locks the CPU up when a frame does not fit into memory: the handler of the derived fault has no stack either, nor has the NMI's.
+    fn checked_frame(&mut self, result: Result<(), FrameError>, what: &str) -> Result<(), Stop> {
         match result {
             Ok(()) => Ok(()),
             Err(FrameError::Stack(address)) => {

@@ -7,7 +7,7 @@ use super::stop::{Answer, Refusal, only};
 pub(crate) struct Ppb {
     systick_csr: u32,
     systick_load: u32,
-    /// What it counts down from in the running round.
+    /// Reload value of the present period.
     systick_from: u32,
     /// Cycle at which SysTick next reaches zero.
     pub systick_due: u64,
@@ -46,7 +46,7 @@ impl Ppb {
         }
     }
 
-    /// Full access to coprocessors 10 and 11.
+    /// Whether CPACR grants access to the floating-point unit.
     #[inline]
     pub fn float_enabled(&self) -> bool {
         self.cpacr & 0xf0_0000 == 0xf0_0000
@@ -60,7 +60,7 @@ impl Ppb {
         (u64::from(self.systick_load) + 1) * self.systick_step()
     }
 
-    /// SysTick reached zero. `true`: its exception is enabled.
+    /// Handles the end of a SysTick period. `true`: its exception is enabled.
     pub fn systick_expire(&mut self) -> bool {
         self.systick_csr |= 1 << 16;
         self.systick_from = self.systick_load;
@@ -280,7 +280,7 @@ mod tests {
 
     /// ARMv7-M B3.3: the counter takes the reload value when it has reached zero.
     #[test]
-    fn systick_takes_another_reload_value_at_its_next_round() {
+    fn systick_adopts_a_new_reload_value_at_its_next_period() {
         let (mut ppb, mut nvic) = (Ppb::new(), Nvic::new());
         ppb.write(&mut nvic, 0xe000_e014, 4, 999, 0).unwrap();
         ppb.write(&mut nvic, 0xe000_e010, 4, 5, 0).unwrap();

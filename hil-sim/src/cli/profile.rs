@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use addr2line::Loader;
 use anyhow::{Context, anyhow};
 use clap::Args;
-use stm32_emulator::{Image, Ran, cold_fetch_stalls};
+use stm32_emulator::{Image, ExecutedBlock, cold_fetch_stalls};
 use thermal_sim::run::run as run_scene;
 
 use super::{Failure, device, image, output};
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(Failure::run)?;
     let mut shares = BTreeMap::<String, Share>::new();
     let mut names = HashMap::new();
-    let mut charge = |block: Ran, add: &dyn Fn(&mut Share, u64)| {
+    let mut charge = |block: ExecutedBlock, add: &dyn Fn(&mut Share, u64)| {
         for (address, cycles) in machine.instructions(block) {
             let name = names
                 .entry(address)

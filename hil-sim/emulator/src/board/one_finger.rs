@@ -187,7 +187,7 @@ impl Engine for Image {
                 machine.power_cycle(seed).map_err(InjectError::from)
             }
             MachineFault::ResetPin => machine.pull_reset_pin().map_err(InjectError::from),
-            MachineFault::SoftwareReset => machine.ask_for_reset().map_err(InjectError::from),
+            MachineFault::SoftwareReset => machine.request_reset().map_err(InjectError::from),
             MachineFault::StackOverflow => machine.exhaust_stack(),
         };
         injected.map_err(refused)

@@ -1,4 +1,4 @@
-//! The address map: which device answers at an address, whether its clock runs, and what a store sets in motion.
+//! The address map: the device at an address, whether its clock runs, and the effects of a store on other devices.
 use super::{
     ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ, WWDG_IRQ,
 };
@@ -13,7 +13,7 @@ use crate::{Wiring, names};
 use crate::{exti::Exti, nvic::Nvic, ppb::Ppb, wwdg::Wwdg};
 use thermal_sim::processor::ResetCause;
 
-/// Peripheral behind an address, with its clock enable.
+/// A modelled peripheral.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Device {
     Gpio(usize),
@@ -30,8 +30,8 @@ enum Device {
     Exti,
 }
 
-/// A modelled peripheral: first address of its 1 KiB, device, and clock enable where it has one; the reset bit has the
-/// same place in the reset register of the same bus.
+/// First address of the 1 KiB of a peripheral, the peripheral, and its clock enable where it has one; the reset bit has the same
+/// place in the reset register of that bus.
 type Peripheral = (u32, Device, Option<(Enr, u8)>);
 
 const PERIPHERALS: [Peripheral; 29] = [
@@ -89,7 +89,7 @@ fn signature(address: u32) -> Option<u32> {
 }
 
 impl<W: Wiring> Chip<W> {
-    /// System reset: every register to its reset value, reset flags kept; the host goes on sending.
+    /// System reset: every register takes its reset value but for the reset flags; the host continues to send.
     pub fn system_reset(&mut self, cause: ResetCause, now: u64) {
         let slept = self.ppb.slept;
         self.nvic = Nvic::new();
@@ -117,7 +117,7 @@ impl<W: Wiring> Chip<W> {
         self.after_change(now);
     }
 
-    /// Loads from a peripheral or core register. `ipsr`: the running exception.
+    /// Reads a peripheral or core register; `ipsr` is the running exception.
     pub fn read(&mut self, address: u32, now: u64, ipsr: u32) -> Answer<u32> {
         if address >= 0xe000_0000 {
             if names::peripheral(address).is_none() {
@@ -178,8 +178,8 @@ impl<W: Wiring> Chip<W> {
         Ok(device)
     }
 
-    /// Stores to a peripheral or core register. Byte and half-word stores reach the registers that take them:
-    /// priorities, GPIO BSRR, USART DR; any register takes a half-word at its lower half, the rest written 0.
+    /// Writes a peripheral or core register. Bytes and upper half-words are accepted by priorities, GPIO BSRR and USART DR only;
+    /// every register accepts a half-word at its lower half, and the upper half is written 0.
     pub fn write(&mut self, address: u32, bytes: u8, value: u32, now: u64) -> Answer<()> {
         if address >= 0xe000_0000 {
             if names::peripheral(address).is_none() {
@@ -220,7 +220,7 @@ impl<W: Wiring> Chip<W> {
                 }
                 self.clock_wwdg(now);
                 self.apply_resets(now);
-                let security = self.rcc.security_interrupt();
+                let security = self.rcc.clock_failure_interrupt();
                 self.nvic.set_exception_line(exception::NMI, security, now);
             }
             Device::Flash if offset == 0 => self.rcc.write_acr(value)?,
@@ -236,7 +236,7 @@ impl<W: Wiring> Chip<W> {
                     let (irq, level) = self.dma[i].request_line(stream);
                     self.nvic.set_line(irq, level, now);
                 }
-                self.kick = true;
+                self.dma_request_possible = true;
             }
             Device::Tim(TIM10 | TIM11) if offset == 0x0c && value != 0 => {
                 return Err(Refusal::NotModelled(
@@ -249,15 +249,15 @@ impl<W: Wiring> Chip<W> {
             }
             Device::Adc => {
                 self.adc.write(offset, value, now)?;
-                self.tims[1].listen(self.adc.trigger() == Some(Trigger::Tim2), now);
-                self.tims[2].listen(self.adc.trigger() == Some(Trigger::Tim3), now);
+                self.tims[1].use_trigger(self.adc.trigger() == Some(Trigger::Tim2), now);
+                self.tims[2].use_trigger(self.adc.trigger() == Some(Trigger::Tim3), now);
                 self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
-                self.kick = true;
+                self.dma_request_possible = true;
             }
             Device::Usart2 => {
                 self.usart.write(offset, value, now)?;
                 self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
-                self.kick = true;
+                self.dma_request_possible = true;
             }
             Device::Iwdg => self
                 .iwdg
@@ -322,7 +322,7 @@ impl<W: Wiring> Chip<W> {
         self.iwdg.rescale(now, old.hclk_hz, clocks.hclk_hz);
     }
 
-    /// Peripherals whose reset bit is set go back to their reset values.
+    /// Resets the peripherals whose reset bit is set.
     fn apply_resets(&mut self, now: u64) {
         for (_, device, enable) in PERIPHERALS {
             let Some((enr, bit)) = enable else { continue };

@@ -1,4 +1,4 @@
-//! The timer against the manual.
+//! Timers against RM0390.
 use super::*;
 
 /// TIM1 as the bridge's PWM: 180 MHz / 1800 = 100 kHz, preload, CH1 in PWM mode 1.
@@ -48,7 +48,7 @@ fn preloaded_compare_values_wait_for_the_update() {
     assert_eq!(tim.due, 1800);
     tim.sync(1800);
     assert_eq!(tim.output(0), high(900));
-    assert_eq!(tim.due, u64::MAX, "nobody waits for the next update");
+    assert_eq!(tim.due, u64::MAX, "no event is due at the next update");
     tim.write(0x34, 5000, 1900).unwrap();
     tim.sync(3600);
     assert_eq!(tim.output(0), high(1800), "above ARR: always high");
@@ -124,7 +124,7 @@ fn one_pulse_mode_stops_at_the_update() {
 }
 
 #[test]
-fn other_modes_are_refused() {
+fn unmodelled_modes_are_refused() {
     let mut tim = Tim::new(GENERAL, 2);
     assert!(tim.write(0x08, 3, 0).is_err(), "encoder");
     assert!(tim.write(0x18, 1, 0).is_err(), "input capture");
@@ -133,7 +133,7 @@ fn other_modes_are_refused() {
 
 /// Register maps of 16.4.21, 17.4.21 and 18.5.12.
 #[test]
-fn a_timer_has_the_registers_of_its_kind_only() {
+fn each_kind_of_timer_has_only_its_own_registers() {
     for (kind, present, absent) in [
         (
             ADVANCED,
@@ -168,9 +168,8 @@ fn a_timer_has_the_registers_of_its_kind_only() {
     }
 }
 
-/// TIM10 drives one pin without a main output enable.
 #[test]
-fn a_single_channel_drives_at_once() {
+fn a_single_channel_timer_needs_no_main_output_enable() {
     let mut tim = Tim::new(SINGLE, 1);
     for (offset, value) in [
         (0x2c, 1874),
@@ -189,10 +188,9 @@ fn a_single_channel_drives_at_once() {
     assert_eq!(tim.output(0), third);
 }
 
-/// 17.3.2: the counter counts to the auto-reload value; a lower one that comes without preload, when the count is beyond it,
-/// is met only after the counter's end.
+/// 17.3.2: without preload, an auto-reload value below the present count matches only after the counter has wrapped.
 #[test]
-fn a_count_beyond_a_new_reload_value_goes_on_to_the_end() {
+fn a_count_beyond_a_new_reload_value_runs_to_the_counters_maximum() {
     let mut tim = Tim::new(GENERAL, 1);
     tim.write(0x2c, 5624, 0).unwrap();
     tim.write(0x14, 1, 0).unwrap();

@@ -78,16 +78,16 @@ fn every_reset_releases_the_legs_in_its_cycle() {
 #[test]
 fn time_goes_on_through_a_reset_at_the_clock_of_its_moment() {
     let (mut machine, _) = probe::run(13, 10 * MS);
-    let at_ps = machine.elapsed_ps();
+    let at_ps = machine.ps_at(machine.now());
     machine.pull_reset_pin().expect("resets");
     assert_eq!(
-        machine.elapsed_ps() - at_ps,
+        machine.ps_at(machine.now()) - at_ps,
         20_000_000,
         "the chip is held for 20 us"
     );
     machine.run_until_ps(at_ps + 2_000_000_000).expect("runs");
     assert!(
-        machine.elapsed_ps().abs_diff(at_ps + 2_000_000_000) < 1_000_000,
+        machine.ps_at(machine.now()).abs_diff(at_ps + 2_000_000_000) < 1_000_000,
         "within a basic block"
     );
     assert_eq!(
