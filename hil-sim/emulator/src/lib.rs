@@ -33,7 +33,7 @@ mod timebase;
 mod usart;
 mod wwdg;
 
-pub use board::{Image, ImageHand, StartError};
+pub use board::{FiveFingerBoard, OneFingerBoard, StartError};
 pub use build::build;
 pub use elf::{FLASH_BASE, FLASH_SIZE, Firmware, ImageError, RAM_BASE, RAM_SIZE};
 pub use execution_path::{ExecutedBlock, ExecutionPath};

@@ -4,8 +4,8 @@ use std::path::Path;
 use anyhow::{Context, Result, bail, ensure};
 use documented_figures::{Verdict, figure};
 use stm32_emulator::Firmware;
-use stm32_emulator::Image;
-use stm32_emulator::ImageHand;
+use stm32_emulator::FiveFingerBoard;
+use stm32_emulator::OneFingerBoard;
 use thermal_campaigns::map;
 use thermal_sim::World;
 use thermal_sim::commission::{Plants, commission};
@@ -96,7 +96,7 @@ fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
         let Some((what, scene)) = job else {
             return commissioned(firmware);
         };
-        let mut image = Image::new(firmware, World::new(scene)?)?;
+        let mut image = OneFingerBoard::new(firmware, World::new(scene)?)?;
         let outcome = run(scene, &mut image, |_| ()).with_context(|| what.clone())?;
         of_outcome(what, &outcome)
     };
@@ -116,7 +116,7 @@ fn commissioned(firmware: &Firmware) -> Result<Measured> {
     let what = "commissioning";
     let (_, scene) = touched()?.into_iter().next().context("no scene")?;
     let plants = Plants::new(&scene.params, scene.room_c, scene.seed);
-    let mut image = Image::new(firmware, plants.at_work()?)?;
+    let mut image = OneFingerBoard::new(firmware, plants.at_work()?)?;
     commission(&plants, &mut image, &mut |_| ())?;
     Ok(Measured {
         what: what.into(),
@@ -139,7 +139,7 @@ fn together(firmware: &Firmware) -> Result<Measured> {
         worlds.push(World::new(scene)?);
     }
     let worlds = worlds.try_into().map_err(|_| anyhow::anyhow!("worlds"))?;
-    let mut hand = ImageHand::new(firmware, worlds)?;
+    let mut hand = FiveFingerBoard::new(firmware, worlds)?;
     hand::run(&scenes, &mut hand, |_| ())?;
     Ok(Measured {
         what: names.join(", "),

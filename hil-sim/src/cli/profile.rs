@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use addr2line::Loader;
 use anyhow::{Context, anyhow};
 use clap::Args;
-use stm32_emulator::{Image, ExecutedBlock, cold_fetch_stalls};
+use stm32_emulator::{ExecutedBlock, OneFingerBoard, cold_fetch_stalls};
 use thermal_sim::run::run as run_scene;
 
 use super::{Failure, device, image, output};
@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (firmware, path) = image::firmware(arguments.elf.as_deref(), 1)?;
     let symbols = Loader::new(&path)
         .map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))?;
-    let mut engine = Image::new(&firmware, world).map_err(Failure::run)?;
+    let mut engine = OneFingerBoard::new(&firmware, world).map_err(Failure::run)?;
     engine.watch_tick();
     run_scene(&scene, &mut engine, |_| ()).map_err(Failure::run)?;
     let machine = engine.machine();
