@@ -313,32 +313,25 @@ impl<W: Wiring> Chip<W> {
         let Some(pins) = self.ports.get(usize::from(port)).filter(|_| bit < 16) else {
             return LegState::Off;
         };
+        let constant = |high: bool| LegState::Duty {
+            high: high.into(),
+            period: 1,
+        };
         match pins.mode(bit) {
             Mode::Alternate(function) => {
-                let here = |pin: &&(u8, u8, u8, usize, usize)| {
+                let of_pin = |pin: &&(u8, u8, u8, usize, usize)| {
                     (pin.0, pin.1, pin.2) == (port, bit, function)
                 };
-                match TIMER_PINS.iter().find(here) {
-                    Some(&(.., timer, channel)) => match self.tims[timer].output(channel) {
-                        Output::High { high, period } => match self.stopped_at {
-                            None => LegState::Duty { high, period },
-                            Some(at) => LegState::Duty {
-                                high: self.tims[timer].is_high(channel, at).into(),
-                                period: 1,
-                            },
-                        },
-                        Output::Released => LegState::Off,
-                    },
-                    None => LegState::Off,
+                let Some(&(.., timer, channel)) = TIMER_PINS.iter().find(of_pin) else {
+                    return LegState::Off;
+                };
+                match (self.tims[timer].output(channel), self.stopped_at) {
+                    (Output::Released, _) => LegState::Off,
+                    (Output::High { high, period }, None) => LegState::Duty { high, period },
+                    (_, Some(at)) => constant(self.tims[timer].is_high(channel, at)),
                 }
             }
-            Mode::Output => match pins.output(bit) {
-                Some(level) => LegState::Duty {
-                    high: u32::from(level),
-                    period: 1,
-                },
-                None => LegState::Off,
-            },
+            Mode::Output => pins.output(bit).map_or(LegState::Off, constant),
             Mode::Input | Mode::Analog => LegState::Off,
         }
     }

@@ -1,21 +1,20 @@
 //! Timers against RM0390.
 use super::*;
 
-/// TIM1 as the bridge's PWM: 180 MHz / 1800 = 100 kHz, preload, CH1 in PWM mode 1.
-fn pwm(bdtr: u32) -> Tim {
-    let mut tim = Tim::new(ADVANCED, 1);
-    for (offset, value) in [
-        (0x2c, 1799),
-        (0x34, 450),
-        (0x18, 0x6868),
-        (0x20, 0x11),
-        (0x14, 1),
-        (0x44, bdtr),
-        (0x00, 0x81),
-    ] {
-        tim.write(offset, value, 0).unwrap();
+/// A timer after these writes at cycle 0: offset and value.
+fn timer(kind: Kind, divider: u64, writes: &[(u32, u32)]) -> Tim {
+    let mut tim = Tim::new(kind, divider);
+    for (offset, value) in writes {
+        tim.write(*offset, *value, 0).unwrap();
     }
     tim
+}
+
+/// TIM1 as the bridge's PWM: 180 MHz / 1800 = 100 kHz, preload, CH1 in PWM mode 1.
+fn pwm(bdtr: u32) -> Tim {
+    let output = [(0x2c, 1799), (0x34, 450), (0x18, 0x6868), (0x20, 0x11)];
+    let start = [(0x14, 1), (0x44, bdtr), (0x00, 0x81)];
+    timer(ADVANCED, 1, &[output.as_slice(), &start].concat())
 }
 
 /// High for so many of the 1800 ticks of a period.
@@ -25,12 +24,8 @@ fn high(high: u32) -> Output {
 
 #[test]
 fn update_rate_is_clock_over_prescaler_and_reload() {
-    let mut tim = Tim::new(WIDE, 2);
-    tim.write(0x28, 8, 0).unwrap();
-    tim.write(0x2c, 624, 0).unwrap();
-    tim.write(0x14, 1, 0).unwrap();
-    tim.write(0x10, 0, 0).unwrap();
-    tim.write(0x0c, 1, 0).unwrap();
+    let writes = [(0x28, 8), (0x2c, 624), (0x14, 1), (0x10, 0), (0x0c, 1)];
+    let mut tim = timer(WIDE, 2, &writes);
     tim.write(0x00, 1, 100).unwrap();
     assert_eq!(tim.due, 100 + 2 * 9 * 625);
     assert_eq!(tim.read(0x24, 100 + 2 * 9 * 10).unwrap(), 10);
@@ -110,9 +105,7 @@ fn compare_flags_rise_at_the_match() {
 
 #[test]
 fn one_pulse_mode_stops_at_the_update() {
-    let mut tim = Tim::new(BASIC, 2);
-    tim.write(0x2c, 99, 0).unwrap();
-    tim.write(0x00, 9, 0).unwrap();
+    let mut tim = timer(BASIC, 2, &[(0x2c, 99), (0x00, 9)]);
     assert_eq!(tim.read(0x00, 199).unwrap() & 1, 1);
     assert_eq!(
         (
@@ -170,17 +163,9 @@ fn each_kind_of_timer_has_only_its_own_registers() {
 
 #[test]
 fn a_single_channel_timer_needs_no_main_output_enable() {
-    let mut tim = Tim::new(SINGLE, 1);
-    for (offset, value) in [
-        (0x2c, 1874),
-        (0x34, 625),
-        (0x18, 0x68),
-        (0x20, 0x1),
-        (0x14, 1),
-        (0x00, 0x81),
-    ] {
-        tim.write(offset, value, 0).unwrap();
-    }
+    let output = [(0x2c, 1874), (0x34, 625), (0x18, 0x68), (0x20, 0x1)];
+    let start = [(0x14, 1), (0x00, 0x81)];
+    let tim = timer(SINGLE, 1, &[output.as_slice(), &start].concat());
     let third = Output::High {
         high: 625,
         period: 1875,
@@ -191,12 +176,8 @@ fn a_single_channel_timer_needs_no_main_output_enable() {
 /// 17.3.2: without preload, an auto-reload value below the present count matches only after the counter has wrapped.
 #[test]
 fn a_count_beyond_a_new_reload_value_runs_to_the_counters_maximum() {
-    let mut tim = Tim::new(GENERAL, 1);
-    tim.write(0x2c, 5624, 0).unwrap();
-    tim.write(0x14, 1, 0).unwrap();
-    tim.write(0x10, 0, 0).unwrap();
-    tim.write(0x0c, 1, 0).unwrap();
-    tim.write(0x00, 1, 0).unwrap();
+    let writes = [(0x2c, 5624), (0x14, 1), (0x10, 0), (0x0c, 1), (0x00, 1)];
+    let mut tim = timer(GENERAL, 1, &writes);
     tim.write(0x2c, 1528, 1528).unwrap();
     assert_eq!(tim.due, 1529, "not beyond yet");
     tim.write(0x2c, 5624, 1528).unwrap();
