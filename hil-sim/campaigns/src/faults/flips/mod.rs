@@ -12,7 +12,6 @@
 mod class;
 mod draw;
 mod region;
-mod registers;
 mod table;
 
 use anyhow::Context;
