@@ -36,11 +36,11 @@ struct Cli {
 enum Task {
     /// Build the image and run it in the emulator: a finger lands on "copper"
     Demo(SetUp),
-    /// Run the test suite: formatting, lints, documentation, units, fuzzers, the image on the simulated plant
+    /// Run the test suite: formatting, lints, documentation and its figures, units, fuzzers, the image on the simulated plant
     Test {
         #[command(flatten)]
         set_up: SetUp,
-        /// Only what takes less than a minute: formatting, lints and units of the small packages, the native device
+        /// Only what takes less than a minute: formatting, documented figures, lints and units of the small packages, the native device
         #[arg(long)]
         quick: bool,
     },

@@ -43,6 +43,11 @@ fn formatting(lints: Lints) -> Check {
     )
 }
 
+/// Figures in the documents are those of `docs/figures.toml`, and tests assert them.
+fn figures() -> Check {
+    check("figures of the documentation", ["xtask docs --check"])
+}
+
 /// Unit tests in the dev profile, where integer overflow panics.
 fn units(members: &[Member]) -> Check {
     let small = members::options(members, Member::is_small);
@@ -59,6 +64,7 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
     let clippy = format!("clippy {small} --all-targets -- -Dwarnings");
     let small = vec![
         formatting(lints),
+        figures(),
         only_if(
             lints.clippy,
             NO_CLIPPY,
@@ -114,6 +120,7 @@ fn whole(
     let documentation = cargo("doc --release --workspace --no-deps");
     let host = vec![
         formatting(lints),
+        figures(),
         check(
             "native packages without the emulator",
             [&without_emulator, &native_command],
