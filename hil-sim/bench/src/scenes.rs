@@ -9,7 +9,7 @@ use contact_model::fixed_point::{
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use thermal_display::device::estimate::FingerEstimator;
-use thermal_display::device::reference::{self, Mode, ReferenceGenerator, TOLERANCE};
+use thermal_display::device::reference::{self, INTERPOLATION_TOLERANCE, Mode, ReferenceGenerator};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
 use floating::Finger as FloatingFinger;
@@ -89,7 +89,8 @@ impl Station {
             let object = &MATERIALS[FINGERS[finger]].1;
             let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
             let contact = pair.at_pressure(log2_relative_pressure(force));
-            let (chords, _) = ChordInterpolation::new(&contact, skin, object_c, 0, TOLERANCE);
+            let (chords, _) =
+                ChordInterpolation::new(&contact, skin, object_c, 0, INTERPOLATION_TOLERANCE);
             Ok(Finger {
                 pair,
                 chords,
@@ -186,9 +187,10 @@ fn reference_step(station: &mut Station, force: Force) -> u32 {
         object: Some(station.object),
         mode: Mode::ContactResistance,
     };
-    let reference = station
-        .generator
-        .update(&scene, &mut station.estimator, Celsius::ZERO, false);
+    let reference =
+        station
+            .generator
+            .next_reference(&scene, &mut station.estimator, Celsius::ZERO, false);
     reference.map_or(0, |reference| bits(reference.setpoint.celsius()))
 }
 

@@ -22,7 +22,7 @@ impl Coefficient {
 }
 
 /// Binary places of the filter's state below those of a temperature.
-const EXTRA_PLACES: u32 = I10F54::FRAC_NBITS - Celsius::FRAC_NBITS;
+const EXTRA_STATE_PLACES: u32 = I10F54::FRAC_NBITS - Celsius::FRAC_NBITS;
 
 /// A low-pass filter for a temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,17 +50,17 @@ impl LowPass {
     /// The filter's output, °C or K as its input.
     #[must_use]
     pub const fn output(&self) -> Celsius {
-        Celsius::from_bits((self.state.to_bits() >> EXTRA_PLACES) as i32)
+        Celsius::from_bits((self.state.to_bits() >> EXTRA_STATE_PLACES) as i32)
     }
 
     /// Sets the filter's output, without a transient.
-    pub fn set(&mut self, output: Celsius) {
-        self.state = I10F54::from_bits(i64::from(output.to_bits()) << EXTRA_PLACES);
+    pub fn set_output(&mut self, output: Celsius) {
+        self.state = I10F54::from_bits(i64::from(output.to_bits()) << EXTRA_STATE_PLACES);
     }
 
     /// Filters the input of one tick. The output stays between its old value and the input, so nothing overflows; it moves
     /// by at most 512 K a time constant.
-    pub fn update(&mut self, input: Celsius) {
+    pub fn filter(&mut self, input: Celsius) {
         let distance = input.saturating_sub(self.output());
         self.state += distance.wide_mul(self.coefficient.0);
     }

@@ -9,7 +9,7 @@ use crate::drive::Current;
 use crate::safety::Setpoint;
 
 /// Binary places of the integral below those of a current: a millikelvin for one tick still counts.
-const EXTRA_PLACES: u32 = I12F52::FRAC_NBITS - Current::FRAC_NBITS;
+const EXTRA_INTEGRAL_PLACES: u32 = I12F52::FRAC_NBITS - Current::FRAC_NBITS;
 
 /// How often a controller samples its error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub enum UpdatePeriod {
 }
 
 impl UpdatePeriod {
-    const fn ticks(self) -> u32 {
+    const fn period_ticks(self) -> u32 {
         match self {
             Self::EveryTick => 1,
             Self::TenthOfASecond => TICK_HZ / 10,
@@ -43,7 +43,7 @@ impl PiCoefficients {
     /// Converts gains, which saturate at 32768 A/K and 2 A/K per update. Computed in `f64`, for start-up.
     #[must_use]
     pub fn new(gains: &Gains, period: UpdatePeriod) -> Self {
-        let per_update = gains.proportional_a_k * f64::from(period.ticks())
+        let per_update = gains.proportional_a_k * f64::from(period.period_ticks())
             / (gains.integral_s * f64::from(TICK_HZ));
         let bits = |value: f64, places: u32| libm::ldexp(value, places as i32) as i32;
         Self {
@@ -87,22 +87,22 @@ impl Pi {
     }
 
     /// Bumpless transfer: the next update starts from the current that something else has driven until now.
-    pub fn track(&mut self, current: Current) {
+    pub fn track_current(&mut self, current: Current) {
         (self.ticks_to_update, self.output) = (0, current);
-        self.integral = I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_PLACES);
+        self.integral = I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_INTEGRAL_PLACES);
     }
 
     /// Largest magnitude of the output, A.
     #[must_use]
-    pub const fn limit(&self) -> Current {
+    pub const fn output_limit(&self) -> Current {
         self.limit
     }
 
     /// Current for one tick, A. Positive current cools, so it rises while the display is above its set-point.
-    pub fn update(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
+    pub fn update_output(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
         if self.ticks_to_update == 0 {
-            self.ticks_to_update = self.coefficients.period.ticks();
-            self.output = self.respond(display.saturating_sub(setpoint.celsius()));
+            self.ticks_to_update = self.coefficients.period.period_ticks();
+            self.output = self.current_for_error(display.saturating_sub(setpoint.celsius()));
         }
         self.ticks_to_update -= 1;
         self.output
@@ -112,7 +112,7 @@ impl Pi {
     ///
     /// No sum overflows: the integral stays within 128 A (59 bits), its step within 2^10 A, the proportional part within
     /// 2^24 A of 38 bits.
-    pub fn respond(&mut self, error: Celsius) -> Current {
+    pub fn current_for_error(&mut self, error: Celsius) -> Current {
         let PiCoefficients {
             proportional,
             integral,
@@ -122,11 +122,11 @@ impl Pi {
             >> (Celsius::FRAC_NBITS + I16F16::FRAC_NBITS - Current::FRAC_NBITS);
         let sum = self.integral.saturating_add(error.wide_mul(integral));
         let limit = i64::from(self.limit.to_bits());
-        let wanted = proportional + (sum.to_bits() >> EXTRA_PLACES);
+        let wanted = proportional + (sum.to_bits() >> EXTRA_INTEGRAL_PLACES);
         // Not `clamp`, which panics when its limits are the wrong way round.
         let output = wanted.min(limit).max(-limit);
         if output == wanted || (wanted > output) != (error > 0) {
-            let limit = I12F52::from_bits(limit << EXTRA_PLACES);
+            let limit = I12F52::from_bits(limit << EXTRA_INTEGRAL_PLACES);
             self.integral = sum.min(limit).max(-limit);
         }
         Current::from_bits(output as i32)
@@ -157,7 +157,7 @@ mod tests {
         let (setpoint, mut pi) = (Setpoint::limited(at(25.0)).0, pi());
         for tick in 1..=1000 {
             let expected = 2.0 * 0.5 * (1.0 + f64::from(tick) * 1e-3 / 0.5);
-            let output = pi.update(setpoint, at(25.5)).to_num::<f64>();
+            let output = pi.update_output(setpoint, at(25.5)).to_num::<f64>();
             assert!(
                 (output - expected).abs() < 1e-4,
                 "tick {tick}: {output}, expected {expected}"
@@ -169,10 +169,10 @@ mod tests {
     fn the_output_leaves_its_limit_as_soon_as_the_error_changes_sign() {
         let (setpoint, mut pi) = (Setpoint::limited(at(25.0)).0, pi());
         for _ in 0..10_000 {
-            assert_eq!(pi.update(setpoint, at(40.0)), Current::lit("6"));
+            assert_eq!(pi.update_output(setpoint, at(40.0)), Current::lit("6"));
         }
         // Without anti-windup the integral would hold 600 A by now.
-        let output = pi.update(setpoint, at(24.0));
+        let output = pi.update_output(setpoint, at(24.0));
         assert!(output <= Current::lit("4"), "{output}");
     }
 
@@ -181,8 +181,8 @@ mod tests {
         let (setpoint, mut up, mut down) = (Setpoint::limited(at(30.0)).0, pi(), pi());
         for _ in 0..100 {
             let (a, b) = (
-                up.update(setpoint, at(30.25)),
-                down.update(setpoint, at(29.75)),
+                up.update_output(setpoint, at(30.25)),
+                down.update_output(setpoint, at(29.75)),
             );
             assert!((a + b).abs() <= Current::from_bits(4));
         }

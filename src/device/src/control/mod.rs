@@ -15,7 +15,7 @@ use crate::reference::Reference;
 use crate::safety::limits::COOLING_REDUCED_FROM;
 
 /// Above that sink temperature cooling is reduced by this part of its limit per K, as a power of two.
-const REDUCTION_SHIFT: u32 = 1;
+const COOLING_REDUCTION_SHIFT: u32 = 1;
 
 /// Which law finds the current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -31,7 +31,7 @@ pub enum Law {
 
 impl Law {
     /// All laws with their words in the protocol.
-    pub const WORDS: [(&'static str, Self); 3] = [
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 3] = [
         ("pi-10hz", Self::Pi10Hz),
         ("pi", Self::Pi),
         ("model", Self::Model),
@@ -83,28 +83,28 @@ impl Controller {
     }
 
     /// Uses another law, which starts from the present current (bumpless transfer).
-    pub fn select(&mut self, law: Law) {
+    pub fn select_law(&mut self, law: Law) {
         if law != self.law {
             self.law = law;
-            self.track(self.current);
+            self.track_current(self.current);
         }
     }
 
-    /// Largest current that [`Self::update`] returns.
+    /// Largest current that [`Self::choose_current`] returns.
     #[must_use]
-    pub const fn limit(&self) -> Current {
-        self.pi.limit()
+    pub const fn current_limit(&self) -> Current {
+        self.pi.output_limit()
     }
 
     /// Takes the current of a tick in which something else has chosen it, so that the laws start from there.
-    pub fn track(&mut self, current: Current) {
+    pub fn track_current(&mut self, current: Current) {
         self.current = current;
-        self.pi_10hz.track(current);
-        self.pi.track(current);
+        self.pi_10hz.track_current(current);
+        self.pi.track_current(current);
     }
 
     /// Current of this tick, A; positive cools. `plate` has been corrected by this tick's readings.
-    pub fn update(
+    pub fn choose_current(
         &mut self,
         reference: &Reference,
         display: Celsius,
@@ -112,12 +112,12 @@ impl Controller {
         plate: &PlateObserver,
     ) -> Current {
         self.current = match self.law {
-            Law::Pi10Hz => self.pi_10hz.update(reference.setpoint, display),
-            Law::Pi => self.pi.update(reference.setpoint, display),
+            Law::Pi10Hz => self.pi_10hz.update_output(reference.setpoint, display),
+            Law::Pi => self.pi.update_output(reference.setpoint, display),
             Law::Model => plate
-                .current_to(reference.target.celsius())
+                .current_to_target(reference.target.celsius())
                 .min(self.cooling_limit(sink))
-                .max(-self.limit()),
+                .max(-self.current_limit()),
         };
         self.current
     }
@@ -126,8 +126,8 @@ impl Controller {
     /// than cool the display.
     fn cooling_limit(&self, sink: Celsius) -> Current {
         let excess =
-            sink.saturating_sub(COOLING_REDUCED_FROM).max(Celsius::ZERO) >> REDUCTION_SHIFT;
+            sink.saturating_sub(COOLING_REDUCED_FROM).max(Celsius::ZERO) >> COOLING_REDUCTION_SHIFT;
         let part = Celsius::ONE.saturating_sub(excess).max(Celsius::ZERO);
-        product(self.limit(), part)
+        product(self.current_limit(), part)
     }
 }

@@ -8,10 +8,10 @@ use crate::low_pass::Coefficient;
 use crate::pi::{PiCoefficients, UpdatePeriod};
 
 /// Largest residual of a sound tile that was identified, K.
-const RESIDUAL: Celsius = Celsius::lit("3.75");
+const IDENTIFIED_TILE_RESIDUAL_MAX: Celsius = Celsius::lit("3.75");
 /// The same of a tile of which only the class is known: slews of modules at the ends of their tolerances, on thermistors of
 /// 0.5 s lag, reach 7.3 K.
-const CLASS_RESIDUAL: Celsius = Celsius::lit("8");
+const CLASS_TILE_RESIDUAL_MAX: Celsius = Celsius::lit("8");
 
 /// Gains and models of all laws, converted from settings so that the tick needs no floating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,9 +37,9 @@ impl ControlParameters {
                 sensor: Coefficient::from_time_constant_s(settings.tile.sensor_lag_s),
                 correction: pi,
                 largest_residual: if settings.tile == Tile::CLASS {
-                    CLASS_RESIDUAL
+                    CLASS_TILE_RESIDUAL_MAX
                 } else {
-                    RESIDUAL
+                    IDENTIFIED_TILE_RESIDUAL_MAX
                 },
             },
         }

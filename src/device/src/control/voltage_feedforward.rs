@@ -4,7 +4,7 @@ use contact_model::fixed_point::{Celsius, product};
 use fixed::types::{I0F32, I1F15, I4F28, I8F24};
 use thermal_settings::Module;
 
-use crate::bismuth_telluride::{DATA_SHEET_TEMPERATURE, RESISTIVITY_PER_K};
+use crate::bismuth_telluride::{DATA_SHEET_TEMPERATURE, RESISTIVITY_RISE_PER_K};
 use crate::drive::{Current, Duty, SafeCurrent};
 use crate::estimate::LegTemperatures;
 
@@ -12,9 +12,9 @@ use crate::estimate::LegTemperatures;
 type SupplyPart = I8F24;
 
 /// Largest distance of the loss from its middle, on the line between none and all of it.
-const LARGEST_OFFSET: SupplyPart = SupplyPart::lit("0.0625");
+const LARGEST_OFFSET_FROM_HALF_LOSS: SupplyPart = SupplyPart::lit("0.0625");
 /// Binary places of the divisor in a quotient.
-const DIVISOR_PLACES: u32 = 10;
+const DIVISOR_BINARY_PLACES: u32 = 10;
 
 /// The module's electrical side: `V = R I + a (T_hot - T_cold) + V_dead`, where `V_dead` is what the bridge loses
 /// in its dead times.
@@ -58,7 +58,7 @@ impl VoltageFeedforward {
         let dead_time = module.dead_time_v / module.supply_v;
         Self {
             per_ampere: resistance(module.legs_ohm + module.leads_ohm),
-            rise_per_k: resistance(module.legs_ohm * RESISTIVITY_PER_K),
+            rise_per_k: resistance(module.legs_ohm * RESISTIVITY_RISE_PER_K),
             per_k: I0F32::from_bits(bits(
                 module.seebeck_v_k / module.supply_v,
                 I0F32::FRAC_NBITS,
@@ -72,7 +72,7 @@ impl VoltageFeedforward {
 
     /// Mean bridge voltage for a current.
     #[must_use]
-    pub fn duty(&self, current: SafeCurrent, legs: &LegTemperatures) -> Duty {
+    pub fn duty_for_current(&self, current: SafeCurrent, legs: &LegTemperatures) -> Duty {
         let current = current.ampere();
         let difference: Celsius = legs.hot.saturating_sub(legs.cold);
         let above_data_sheet = legs.mean.saturating_sub(DATA_SHEET_TEMPERATURE);
@@ -80,16 +80,18 @@ impl VoltageFeedforward {
         let resistive: SupplyPart = product(current, self.per_ampere.saturating_add(rise));
         let needed = resistive.saturating_add(product(difference, self.per_k));
         let voltage = if needed < 0 {
-            needed.saturating_sub(self.lost(needed.saturating_neg(), current.saturating_neg()))
+            needed.saturating_sub(
+                self.dead_time_loss(needed.saturating_neg(), current.saturating_neg()),
+            )
         } else {
-            needed.saturating_add(self.lost(needed, current))
+            needed.saturating_add(self.dead_time_loss(needed, current))
         };
         Duty::saturating(I1F15::saturating_from_num(voltage))
     }
 
     /// Loss of pulses that leave `needed` after it: where the line of the loss meets the width that the loss demands, to first
     /// order around half of the loss.
-    fn lost(&self, needed: SupplyPart, current: Current) -> SupplyPart {
+    fn dead_time_loss(&self, needed: SupplyPart, current: Current) -> SupplyPart {
         const ONE: SupplyPart = SupplyPart::ONE;
         let times = product::<SupplyPart, _>;
         let half = self.dead_time >> 1u32;
@@ -99,11 +101,13 @@ impl VoltageFeedforward {
         // A wider pulse has more ripple, which takes back a part of the loss.
         let ripple_per_width = times(self.ripple_a, ONE - 2 * middle);
         let feedback = times(ripple_per_width, self.dead_time_per_a).max(SupplyPart::ZERO);
-        let offset = line
-            .saturating_sub(half)
-            .clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
-        let divisor = ONE.saturating_add(feedback) >> (SupplyPart::FRAC_NBITS - DIVISOR_PLACES);
-        let quotient = (offset.to_bits() << DIVISOR_PLACES) / divisor.to_bits();
+        let offset = line.saturating_sub(half).clamp(
+            -LARGEST_OFFSET_FROM_HALF_LOSS,
+            LARGEST_OFFSET_FROM_HALF_LOSS,
+        );
+        let divisor =
+            ONE.saturating_add(feedback) >> (SupplyPart::FRAC_NBITS - DIVISOR_BINARY_PLACES);
+        let quotient = (offset.to_bits() << DIVISOR_BINARY_PLACES) / divisor.to_bits();
         (half + SupplyPart::from_bits(quotient))
             .min(self.dead_time)
             .max(SupplyPart::ZERO)
@@ -145,7 +149,8 @@ mod tests {
             let seebeck_v = 12.0 * width - lost_v - 1.251 * current_a;
             for sign in [1.0, -1.0] {
                 let current = Current::saturating_from_num(sign * current_a);
-                let duty = voltage.duty(SafeCurrent::saturating(current), &legs(sign * seebeck_v));
+                let duty = voltage
+                    .duty_for_current(SafeCurrent::saturating(current), &legs(sign * seebeck_v));
                 let error_v = 12.0 * (duty.fraction().to_num::<f64>() - sign * width);
                 assert!(error_v.abs() < 0.08, "{width}, {current_a} A: {error_v} V");
             }
@@ -162,7 +167,7 @@ mod tests {
         };
         let part = |legs| {
             voltage
-                .duty(SafeCurrent::saturating(Current::lit("4")), legs)
+                .duty_for_current(SafeCurrent::saturating(Current::lit("4")), legs)
                 .fraction()
                 .to_num::<f64>()
         };

@@ -10,31 +10,31 @@ use super::Watt;
 use super::force_mean::{ForceChange, ForceMean};
 
 /// Time constant of the filters before contact, as a power of two of ticks (0.26 s).
-const FILTER_SHIFT: u32 = 8;
+const BEFORE_CONTACT_FILTER_SHIFT: u32 = 8;
 /// Ticks after a contact until the skin's thermistor reads the skin again, and not what the contact has left.
-const RECOVERY_TICKS: u32 = 2000;
+const SKIN_RECOVERY_TICKS: u32 = 2000;
 /// Ticks after landing in which a rising force still counts as constant.
-const LANDING_TICKS: u64 = 16;
+const LANDING_RISE_TICKS: u64 = 16;
 /// Ticks after which the mean of a constant force no longer contains its rise; from then on it stays within this part of
 /// itself, as a power of two.
-const MEAN_TICKS: u64 = 64;
-const CONSTANT_SHIFT: u32 = 6;
+const RISEN_FORCE_TICKS: u64 = 64;
+const CONSTANT_FORCE_SHIFT: u32 = 6;
 /// Relative change of a force, as a power of two, below which the skin's temperature does not change noticeably.
-const SAME_FORCE_SHIFT: u32 = 10;
+const CONDUCTANCE_REUSE_SHIFT: u32 = 10;
 /// Heat flow per area and temperature difference of one tick, `e_skin / sqrt(dt)`, W/(K mm²).
-const FLUX_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
+const EFFUSIVITY_PER_ROOT_TICK_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
 
 /// Temperatures from which a contact starts, filtered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct PreContact {
+pub struct PreContactTemperatures {
     /// Temperature of the skin, °C.
     pub skin: Celsius,
     /// Temperature of the room, °C.
     pub room: Celsius,
 }
 
-fn filter(state: Celsius, input: Celsius) -> Celsius {
-    state.saturating_add(input.saturating_sub(state) >> FILTER_SHIFT)
+fn filtered_before_contact(state: Celsius, input: Celsius) -> Celsius {
+    state.saturating_add(input.saturating_sub(state) >> BEFORE_CONTACT_FILTER_SHIFT)
 }
 
 /// How well heat flows between skin and display, and between skin and object, under one force.
@@ -60,8 +60,8 @@ impl ContactConductances {
     }
 
     /// Whether they hold for a force, too: the skin's temperature would not differ noticeably.
-    fn hold_for(&self, force: Force) -> bool {
-        force.abs_diff(self.force) <= self.force >> SAME_FORCE_SHIFT
+    fn are_accurate_for(&self, force: Force) -> bool {
+        force.abs_diff(self.force) <= self.force >> CONDUCTANCE_REUSE_SHIFT
     }
 }
 
@@ -80,7 +80,7 @@ pub struct FingerContact {
 }
 
 impl FingerContact {
-    fn landed(force: Force, landed_ticks: u32, skin_recovered: bool) -> Self {
+    fn at_landing(force: Force, landed_ticks: u32, skin_recovered: bool) -> Self {
         Self {
             force: ForceMean::new(force),
             change: ForceChange::New,
@@ -91,40 +91,40 @@ impl FingerContact {
         }
     }
 
-    fn update(&mut self, force: Force) {
-        self.change = self.force.update(force);
+    fn update_force(&mut self, force: Force) {
+        self.change = self.force.add_tick(force);
         self.elapsed += 1;
         let mean = self.force.mean();
-        if self.elapsed < MEAN_TICKS {
+        if self.elapsed < RISEN_FORCE_TICKS {
             self.risen_force = mean;
         }
-        let drifted = mean.abs_diff(self.risen_force) > self.risen_force >> CONSTANT_SHIFT;
-        let changed = self.change == ForceChange::New && self.elapsed >= LANDING_TICKS;
+        let drifted = mean.abs_diff(self.risen_force) > self.risen_force >> CONSTANT_FORCE_SHIFT;
+        let changed = self.change == ForceChange::New && self.elapsed >= LANDING_RISE_TICKS;
         self.constant &= !drifted && !changed;
     }
 
     /// The force, averaged while it is constant, N.
     #[must_use]
-    pub const fn force(&self) -> &ForceMean {
+    pub const fn force_mean(&self) -> &ForceMean {
         &self.force
     }
 
     /// How this tick's force differs from those before.
     #[must_use]
-    pub const fn change(&self) -> ForceChange {
+    pub const fn force_change(&self) -> ForceChange {
         self.change
     }
 
     /// Ticks since the finger landed.
     #[must_use]
-    pub const fn elapsed(&self) -> u64 {
+    pub const fn ticks_since_landing(&self) -> u64 {
         self.elapsed
     }
 
     /// Whether the closed form of Eq. 6-12 describes the contact: it is the first of a recovered skin, under a force that
     /// has not changed.
     #[must_use]
-    pub const fn is_constant(&self) -> bool {
+    pub const fn has_closed_form(&self) -> bool {
         self.constant
     }
 
@@ -141,24 +141,24 @@ impl FingerContact {
 
     /// Evaluates set-points for the mean force from now on.
     pub fn use_mean_force(&mut self, pair: &ContactPair) {
-        self.force.use_mean();
-        if self.contact_in_use().is_none() {
-            self.conductances = Some(ContactConductances::new(pair, self.force.in_use()));
+        self.force.use_present_mean();
+        if self.contact_at_force_in_use().is_none() {
+            self.conductances = Some(ContactConductances::new(pair, self.force.mean_in_use()));
         }
     }
 
     /// The contact under exactly the force in use, if it is the one whose conductances are known.
     #[must_use]
-    pub fn contact_in_use(&self) -> Option<&Contact> {
+    pub fn contact_at_force_in_use(&self) -> Option<&Contact> {
         let conductances = self.conductances.as_ref()?;
-        (self.force.in_use() == conductances.force).then_some(&conductances.contact)
+        (self.force.mean_in_use() == conductances.force).then_some(&conductances.contact)
     }
 }
 
 /// Estimates skin and force from tick to tick, whatever the control law, which may change under a finger.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FingerEstimator {
-    before_contact: Option<PreContact>,
+    before_contact: Option<PreContactTemperatures>,
     /// Ticks since the last contact.
     lifted_ticks: u32,
     contact: Option<FingerContact>,
@@ -178,21 +178,21 @@ impl FingerEstimator {
         touch: Option<Force>,
         landed_ticks: u32,
     ) {
-        let recovered = self.lifted_ticks >= RECOVERY_TICKS;
+        let recovered = self.lifted_ticks >= SKIN_RECOVERY_TICKS;
         self.before_contact = Some(match self.before_contact {
-            None => PreContact { skin, room },
+            None => PreContactTemperatures { skin, room },
             Some(before) if touch.is_some() || !recovered => before,
-            Some(before) => PreContact {
-                skin: filter(before.skin, skin),
-                room: filter(before.room, room),
+            Some(before) => PreContactTemperatures {
+                skin: filtered_before_contact(before.skin, skin),
+                room: filtered_before_contact(before.room, room),
             },
         });
         match (touch, &mut self.contact) {
             (None, contact) => *contact = None,
             (Some(force), contact @ None) => {
-                *contact = Some(FingerContact::landed(force, landed_ticks, recovered));
+                *contact = Some(FingerContact::at_landing(force, landed_ticks, recovered));
             }
-            (Some(force), Some(contact)) => contact.update(force),
+            (Some(force), Some(contact)) => contact.update_force(force),
         }
         self.lifted_ticks = match touch {
             Some(_) => 0,
@@ -207,7 +207,7 @@ impl FingerEstimator {
 
     /// Skin and room before contact; `None` until they were observed.
     #[must_use]
-    pub const fn before_contact(&self) -> Option<PreContact> {
+    pub const fn temperatures_before_contact(&self) -> Option<PreContactTemperatures> {
         self.before_contact
     }
 
@@ -219,7 +219,9 @@ impl FingerEstimator {
 
     /// The contact, for the reference generator, which decides for which force it evaluates set-points; and how far the
     /// skin's surface has cooled on the display.
-    pub const fn contact_and_skin(&mut self) -> (Option<&mut FingerContact>, &HalfSpace) {
+    pub const fn contact_and_skin_on_display(
+        &mut self,
+    ) -> (Option<&mut FingerContact>, &HalfSpace) {
         (self.contact.as_mut(), &self.skin_on_display)
     }
 
@@ -239,7 +241,7 @@ impl FingerEstimator {
     /// Advances the skin by one tick on a display with this surface temperature; returns the heat that flows into the
     /// display, W. `pair` is that of the presented object, or of any object if none is presented.
     pub fn heat_into_display(&mut self, pair: &ContactPair, surface: Celsius) -> Watt {
-        let Some(PreContact { skin, .. }) = self.before_contact else {
+        let Some(PreContactTemperatures { skin, .. }) = self.before_contact else {
             return Watt::ZERO;
         };
         let Some(contact) = &mut self.contact else {
@@ -248,14 +250,14 @@ impl FingerEstimator {
         };
         let force = contact.force.mean();
         let conductances = match &mut contact.conductances {
-            Some(conductances) if conductances.hold_for(force) => conductances,
+            Some(conductances) if conductances.are_accurate_for(force) => conductances,
             outdated => outdated.insert(ContactConductances::new(pair, force)),
         };
         let scaled_flux = conductances
             .display
             .scaled_flux(skin.saturating_sub(surface), &self.skin_on_display);
         self.skin_on_display.step(scaled_flux);
-        let flux_w_mm2: I10F22 = product(scaled_flux, FLUX_W_K_MM2);
+        let flux_w_mm2: I10F22 = product(scaled_flux, EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
         saturating_product(flux_w_mm2, contact_area(force))
     }
 }

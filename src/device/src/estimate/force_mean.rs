@@ -5,31 +5,31 @@ use core::num::NonZeroU32;
 use contact_model::fixed_point::Force;
 
 /// A force that differs from the recent mean by more than this has changed; less is noise.
-const CHANGED: Threshold = Threshold {
+const NEW_FORCE_THRESHOLD: ForceThreshold = ForceThreshold {
     shift: 4,
     floor: Force::lit("0.01"),
 };
 /// A recent mean that differs from the force in use by more than this has drifted; its noise is smaller than a tick's.
-const DRIFTED: Threshold = Threshold {
+const DRIFT_THRESHOLD: ForceThreshold = ForceThreshold {
     shift: 11,
     floor: Force::lit("0.00025"),
 };
 /// Ticks of the recent mean.
-const RECENT_TICKS: u32 = 64;
+const RECENT_MEAN_TICKS: u32 = 64;
 /// The mean reaches back over this part, as a power of two, of the time since the force changed, and over
-/// `RECENT_TICKS` to `LONGEST_TICKS`. The set-point depends on the logarithm of time, so late noise may be averaged longer.
-const REACH_SHIFT: u32 = 2;
-const LONGEST_TICKS: u32 = 4096;
+/// `RECENT_MEAN_TICKS` to `LONGEST_MEAN_TICKS`. The set-point depends on the logarithm of time, so late noise may be averaged longer.
+const AVERAGED_PART_SHIFT: u32 = 2;
+const LONGEST_MEAN_TICKS: u32 = 4096;
 /// Ticks after a change until the mean is first more accurate than the force that it began with.
-const FIRST_MEAN_TICKS: u32 = 16;
+const FIRST_USEFUL_MEAN_TICKS: u32 = 16;
 
 /// The larger of a relative difference, as a power of two, and an absolute one.
-struct Threshold {
+struct ForceThreshold {
     shift: u32,
     floor: Force,
 }
 
-impl Threshold {
+impl ForceThreshold {
     fn is_exceeded(&self, force: Force, from: Force) -> bool {
         force.max(from) - force.min(from) > (from >> self.shift).max(self.floor)
     }
@@ -75,37 +75,38 @@ impl ForceMean {
         self.mean
     }
 
-    /// The mean at the last call of [`Self::use_mean`].
+    /// The mean at the last call of [`Self::use_present_mean`].
     #[must_use]
-    pub const fn in_use(&self) -> Force {
+    pub const fn mean_in_use(&self) -> Force {
         self.in_use
     }
 
     /// Takes the mean into use.
-    pub const fn use_mean(&mut self) {
+    pub const fn use_present_mean(&mut self) {
         self.in_use = self.mean;
     }
 
     /// Whether the mean covers twice as many ticks as when this was last true, or all that it reaches back over. In between
     /// it is hardly more accurate.
     #[must_use]
-    pub const fn is_more_accurate(&self) -> bool {
-        self.ticks >= FIRST_MEAN_TICKS && self.ticks.is_power_of_two()
+    pub const fn has_doubled_ticks(&self) -> bool {
+        self.ticks >= FIRST_USEFUL_MEAN_TICKS && self.ticks.is_power_of_two()
     }
 
     /// Takes the force of one tick.
-    pub fn update(&mut self, force: Force) -> ForceChange {
-        if CHANGED.is_exceeded(force, self.recent) {
+    pub fn add_tick(&mut self, force: Force) -> ForceChange {
+        if NEW_FORCE_THRESHOLD.is_exceeded(force, self.recent) {
             *self = Self::new(force);
             return ForceChange::New;
         }
-        self.ticks = (self.ticks + 1).min(LONGEST_TICKS << REACH_SHIFT);
-        let reach_ticks = RECENT_TICKS.max(self.ticks >> REACH_SHIFT);
-        self.recent = mean_with(self.recent, force, self.ticks.min(RECENT_TICKS));
-        self.mean = mean_with(self.mean, force, self.ticks.min(reach_ticks));
-        if self.ticks >= RECENT_TICKS && DRIFTED.is_exceeded(self.recent, self.in_use) {
+        self.ticks = (self.ticks + 1).min(LONGEST_MEAN_TICKS << AVERAGED_PART_SHIFT);
+        let reach_ticks = RECENT_MEAN_TICKS.max(self.ticks >> AVERAGED_PART_SHIFT);
+        self.recent = mean_including(self.recent, force, self.ticks.min(RECENT_MEAN_TICKS));
+        self.mean = mean_including(self.mean, force, self.ticks.min(reach_ticks));
+        if self.ticks >= RECENT_MEAN_TICKS && DRIFT_THRESHOLD.is_exceeded(self.recent, self.in_use)
+        {
             self.mean = self.recent;
-            self.ticks = RECENT_TICKS;
+            self.ticks = RECENT_MEAN_TICKS;
             return ForceChange::Drifted;
         }
         ForceChange::Noise
@@ -113,7 +114,7 @@ impl ForceMean {
 }
 
 /// The mean of `ticks` values (1 at least), the last of which is `force`.
-fn mean_with(mean: Force, force: Force, ticks: u32) -> Force {
+fn mean_including(mean: Force, force: Force, ticks: u32) -> Force {
     let ticks = NonZeroU32::new(ticks).unwrap_or(NonZeroU32::MIN);
     let part = Force::from_bits((force.max(mean) - force.min(mean)).to_bits() / ticks);
     if force >= mean {
@@ -136,12 +137,12 @@ mod tests {
             } else {
                 Force::lit("1.99")
             };
-            assert_eq!(mean.update(noisy), ForceChange::Noise);
+            assert_eq!(mean.add_tick(noisy), ForceChange::Noise);
         }
-        mean.update(Force::lit("2"));
+        mean.add_tick(Force::lit("2"));
         let error = mean.mean().to_num::<f64>() - 2.0;
         assert!(error.abs() < 5e-4, "{error}");
-        assert_eq!(mean.update(Force::lit("1")), ForceChange::New);
+        assert_eq!(mean.add_tick(Force::lit("1")), ForceChange::New);
         assert_eq!(mean.mean(), Force::lit("1"));
     }
 }

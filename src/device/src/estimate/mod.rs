@@ -5,7 +5,7 @@ mod force_mean;
 mod plate_model;
 mod plate_observer;
 
-pub use finger::{FingerContact, FingerEstimator, PreContact};
+pub use finger::{FingerContact, FingerEstimator, PreContactTemperatures};
 pub use force_mean::{ForceChange, ForceMean};
 pub use plate_model::{LegTemperatures, PlateModel, Watt};
 pub use plate_observer::{ObserverParameters, PlateObserver};
@@ -16,7 +16,7 @@ use crate::safety::ValidReadings;
 
 /// What the estimator knows of a tick before its current is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Estimate {
+pub struct UncorrectedEstimate {
     /// Surface of the display before this tick's reading corrects the observer: the finger's heat, the contact's start and
     /// the voltage are computed from it, because the correction itself needs the finger's heat.
     pub previous_surface: Celsius,
@@ -37,13 +37,13 @@ impl Estimator {
     /// Takes the readings of one tick. `touch` is the force of a finger that touches, `landed_ticks` how long ago a contact
     /// that begins has begun, `pair` the pair by which skin and display touch.
     #[inline(always)]
-    pub fn update(
+    pub fn update_estimates(
         &mut self,
         readings: &ValidReadings,
         touch: Option<Force>,
         landed_ticks: u32,
         pair: Option<&ContactPair>,
-    ) -> Estimate {
+    ) -> UncorrectedEstimate {
         let ValidReadings {
             display,
             sink,
@@ -51,16 +51,16 @@ impl Estimator {
             room,
             ..
         } = *readings;
-        let estimate = Estimate {
+        let estimate = UncorrectedEstimate {
             previous_surface: self.plate.surface().unwrap_or(display),
-            previous_legs: (self.plate.legs())
-                .unwrap_or_else(|| LegTemperatures::between(display, sink)),
+            previous_legs: (self.plate.leg_temperatures())
+                .unwrap_or_else(|| LegTemperatures::between_display_and_sink(display, sink)),
         };
         self.finger.observe(skin, room, touch, landed_ticks);
         let heat = pair.map_or(Watt::ZERO, |pair| {
             (self.finger).heat_into_display(pair, estimate.previous_surface)
         });
-        self.plate.correct(display, sink, heat);
+        self.plate.correct_by_reading(display, sink, heat);
         estimate
     }
 

@@ -13,10 +13,10 @@ use crate::pi::{Pi, PiCoefficients};
 const DISTURBANCE_TIME_CONSTANT_S: f64 = 0.02;
 /// The residual counts an ampere of the correcting current as half a kelvin: enough to detect a weak module while the
 /// current is at its limit, and little beside what a sound tile needs. As a power of two.
-const CORRECTION_SHIFT: u32 = 1;
+const RESIDUAL_PER_AMPERE_SHIFT: u32 = 1;
 /// The model's current may exceed the limit by a quarter, as a power of two: a tile that responds more than its model, whose
 /// correction is negative, is still followed at the limit.
-const MODEL_CURRENT_SHIFT: u32 = 2;
+const MODEL_CURRENT_MARGIN_SHIFT: u32 = 2;
 
 /// The observer's constants, converted from the settings of a tile.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -101,65 +101,73 @@ impl PlateObserver {
 
     /// Temperatures of the legs by the model; `None` before the first reading.
     #[must_use]
-    pub fn legs(&self) -> Option<LegTemperatures> {
-        self.valid.then(|| self.plate.legs())
+    pub fn leg_temperatures(&self) -> Option<LegTemperatures> {
+        self.valid.then(|| self.plate.leg_temperatures())
     }
 
     /// Whether the residual exceeds that of a sound tile; false before the first reading.
     #[must_use]
     pub fn residual_is_large(&self) -> bool {
-        let correction: Celsius = (self.correction >> CORRECTION_SHIFT).lossy_into();
+        let correction: Celsius = (self.correction >> RESIDUAL_PER_AMPERE_SHIFT).lossy_into();
         let residual = self.disturbance.output().saturating_add(correction);
         self.valid && residual.saturating_abs() > self.largest_residual
     }
 
     /// Corrects the model by a tick's reading, and takes the sink and the heat from the finger.
-    pub fn correct(&mut self, reading: Celsius, sink: Celsius, finger: Watt) {
+    pub fn correct_by_reading(&mut self, reading: Celsius, sink: Celsius, finger: Watt) {
         if !self.valid {
-            self.inputs = self.plate.initialise(reading, Current::ZERO, finger, sink);
+            self.inputs = self
+                .plate
+                .initialise_steady_state(reading, Current::ZERO, finger, sink);
             self.model_current = Current::ZERO;
-            self.sensor.set(reading);
-            self.disturbance.set(Celsius::ZERO);
-            self.correction_loop.track(Current::ZERO);
+            self.sensor.set_output(reading);
+            self.disturbance.set_output(Celsius::ZERO);
+            self.correction_loop.track_current(Current::ZERO);
             (self.valid, self.recalibrated) = (true, false);
         }
         (self.inputs.sink, self.inputs.finger) = (sink, finger);
         let mut innovation = reading.saturating_sub(self.sensor.output());
         if self.recalibrated {
             let offset = innovation.saturating_sub(self.disturbance.output());
-            self.plate.offset(offset);
-            self.sensor.set(self.sensor.output().saturating_add(offset));
+            self.plate.offset_temperatures(offset);
+            self.sensor
+                .set_output(self.sensor.output().saturating_add(offset));
             innovation = self.disturbance.output();
             self.recalibrated = false;
         }
-        self.disturbance.update(innovation);
-        self.correction = self.correction_loop.respond(innovation);
+        self.disturbance.filter(innovation);
+        self.correction = self.correction_loop.current_for_error(innovation);
     }
 
     /// Current that brings the surface to a target, correction included, A; positive cools.
     #[must_use]
-    pub fn current_to(&self, target: Celsius) -> Current {
+    pub fn current_to_target(&self, target: Celsius) -> Current {
         self.model_current
-            .saturating_add(self.plate.current_to(target, &self.inputs))
+            .saturating_add(
+                self.plate
+                    .additional_current_to_target(target, &self.inputs),
+            )
             .saturating_add(self.correction)
     }
 
     /// Advances the model by one tick under the current that is driven.
-    pub fn advance(&mut self, current: Current) {
+    pub fn advance_model(&mut self, current: Current) {
         if !self.valid {
             return;
         }
-        let limit = self.limit.saturating_add(self.limit >> MODEL_CURRENT_SHIFT);
+        let limit = self
+            .limit
+            .saturating_add(self.limit >> MODEL_CURRENT_MARGIN_SHIFT);
         self.model_current = current
             .saturating_sub(self.correction)
             .min(limit)
             .max(-limit);
         let PlateInputs { finger, sink, .. } = self.inputs;
-        self.inputs = self.plate.inputs(self.model_current, finger, sink);
+        self.inputs = self.plate.inputs_of_tick(self.model_current, finger, sink);
         let previous_surface = self.plate.surface();
         self.plate.step(&self.inputs);
         // The thermistor sees the mean of the surface over the tick.
         let surface = (previous_surface >> 1u32).saturating_add(self.plate.surface() >> 1u32);
-        self.sensor.update(surface);
+        self.sensor.filter(surface);
     }
 }

@@ -33,15 +33,15 @@ pub use normal_equations::{
 use thermal_settings::Gains;
 
 /// A demanded current below this may flow in either direction; it is taken instead of the measured magnitude.
-const DIRECTION_CERTAIN_FROM: Current = Current::lit("0.25");
+const CURRENT_DIRECTION_CERTAIN_FROM: Current = Current::lit("0.25");
 /// Demanded and measured current are compared above this: the smaller the current, the less the bridge's dead times take.
-const COMPARED_ABOVE: Current = Current::lit("1");
+const CURRENTS_COMPARED_ABOVE: Current = Current::lit("1");
 
-/// Excitation pulses: change of the current in eighths of [`AMPLITUDE`], and length in ticks. Both signs last equally
+/// Excitation pulses: change of the current in eighths of [`PULSE_AMPLITUDE`], and length in ticks. Both signs last equally
 /// long at each height, so that the display moves by 2.3 K at most; heights differ to tell Joule's heat from drift. There
 /// are no pauses, because near zero the bridge does not give the demanded current and the mirror does not show the one
 /// that flows; an error of the baseline current has the effect of a drift.
-const PULSES: [(i32, u32); 15] = [
+const EXCITATION_PULSES: [(i32, u32); 15] = [
     (8, 150),
     (-8, 300),
     (8, 150),
@@ -58,12 +58,12 @@ const PULSES: [(i32, u32); 15] = [
     (16, 240),
     (-16, 120),
 ];
-const AMPLITUDE: Current = Current::lit("1.5");
+const PULSE_AMPLITUDE: Current = Current::lit("1.5");
 /// Ticks of all pulses.
 const EXCITATION_TICKS: u32 = {
     let (mut ticks, mut pulse) = (0, 0);
-    while pulse < PULSES.len() {
-        ticks += PULSES[pulse].1;
+    while pulse < EXCITATION_PULSES.len() {
+        ticks += EXCITATION_PULSES[pulse].1;
         pulse += 1;
     }
     ticks
@@ -87,7 +87,7 @@ const BASELINE_TICKS: u32 = 512;
 const OPERATING_POINT_MIN: Celsius = Celsius::lit("22");
 const OPERATING_POINT_MAX: Celsius = Celsius::lit("35");
 /// Largest difference of the display from the operating point, K, from the baseline on.
-const MAX_EXCURSION: Celsius = Celsius::lit("7");
+const EXCURSION_MAX: Celsius = Celsius::lit("7");
 
 /// Why an identification ended early.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,7 +120,7 @@ impl AbortReason {
 
 /// Stages of the identification.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
+enum IdentificationPhase {
     /// The loop brings the display to the operating point; `near` is the number of ticks for which it has been near.
     Settling { ticks: u32, near: u32 },
     /// The baseline current is averaged, then the baseline reading at this current.
@@ -136,7 +136,7 @@ enum Phase {
 /// The course of an identification: settling, baseline, pulses.
 #[derive(Clone, Debug)]
 pub struct Identification {
-    phase: Phase,
+    phase: IdentificationPhase,
     operating_point: Setpoint,
     pi: Pi,
     /// Demanded current, reading and measured current before the pulses, in units of their resolution: totals over
@@ -155,7 +155,7 @@ impl Identification {
         let operating_point = sink.clamp(OPERATING_POINT_MIN, OPERATING_POINT_MAX);
         let coefficients = PiCoefficients::new(&SETTLING_GAINS, UpdatePeriod::EveryTick);
         Self {
-            phase: Phase::Settling { ticks: 0, near: 0 },
+            phase: IdentificationPhase::Settling { ticks: 0, near: 0 },
             operating_point: Setpoint::limited(operating_point).0,
             pi: Pi::new(coefficients, SETTLING_CURRENT_LIMIT),
             baseline_demand: 0,
@@ -174,7 +174,7 @@ impl Identification {
     /// Ends the identification early; no effect if it has already ended.
     fn abort(&mut self, reason: AbortReason) {
         if self.outcome().is_none() {
-            self.phase = Phase::Aborted(reason);
+            self.phase = IdentificationPhase::Aborted(reason);
         }
     }
 
@@ -185,14 +185,16 @@ impl Identification {
     #[must_use]
     pub const fn outcome(&self) -> Option<Result<(), AbortReason>> {
         match self.phase {
-            Phase::Done => Some(Ok(())),
-            Phase::Aborted(reason) => Some(Err(reason)),
-            Phase::Settling { .. } | Phase::Baseline { .. } | Phase::Pulses { .. } => None,
+            IdentificationPhase::Done => Some(Ok(())),
+            IdentificationPhase::Aborted(reason) => Some(Err(reason)),
+            IdentificationPhase::Settling { .. }
+            | IdentificationPhase::Baseline { .. }
+            | IdentificationPhase::Pulses { .. } => None,
         }
     }
 
     /// The current to demand in this tick; `None` if the identification has been aborted. The `equations` must be empty when the identification starts.
-    pub fn update(
+    pub fn choose_current(
         &mut self,
         equations: &mut NormalEquations,
         readings: &ValidReadings,
@@ -206,85 +208,93 @@ impl Identification {
             self.abort(AbortReason::SinkHot);
         }
         // While it settles, the display may come from any temperature.
-        if matches!(self.phase, Phase::Baseline { .. } | Phase::Pulses { .. })
-            && excursion.abs() > MAX_EXCURSION
+        if matches!(
+            self.phase,
+            IdentificationPhase::Baseline { .. } | IdentificationPhase::Pulses { .. }
+        ) && excursion.abs() > EXCURSION_MAX
         {
             self.abort(AbortReason::TooFar);
         }
         let reading = i64::from(readings.display.to_bits());
         match self.phase {
-            Phase::Aborted(_) => return None,
-            Phase::Done => {}
-            Phase::Settling { ticks, near } => {
+            IdentificationPhase::Aborted(_) => return None,
+            IdentificationPhase::Done => {}
+            IdentificationPhase::Settling { ticks, near } => {
                 let is_near = excursion.abs() < SETTLED_WITHIN;
                 let near = if is_near { near + 1 } else { 0 };
                 self.phase = if near == SETTLED_TICKS {
-                    Phase::Baseline { ticks: 0 }
+                    IdentificationPhase::Baseline { ticks: 0 }
                 } else if ticks == SETTLING_TIMEOUT_TICKS {
-                    Phase::Aborted(AbortReason::NotSettled)
+                    IdentificationPhase::Aborted(AbortReason::NotSettled)
                 } else {
-                    Phase::Settling {
+                    IdentificationPhase::Settling {
                         ticks: ticks + 1,
                         near,
                     }
                 };
             }
-            Phase::Baseline { ticks } if ticks < BASELINE_TICKS => {
-                let current = self.pi.update(self.operating_point, readings.display);
+            IdentificationPhase::Baseline { ticks } if ticks < BASELINE_TICKS => {
+                let current = self
+                    .pi
+                    .update_output(self.operating_point, readings.display);
                 self.baseline_demand += i64::from(current.to_bits());
-                self.phase = Phase::Baseline { ticks: ticks + 1 };
+                self.phase = IdentificationPhase::Baseline { ticks: ticks + 1 };
                 return Some(current);
             }
-            Phase::Baseline { ticks } if ticks < 2 * BASELINE_TICKS => {
+            IdentificationPhase::Baseline { ticks } if ticks < 2 * BASELINE_TICKS => {
                 self.baseline_reading += reading;
-                self.previous_demand = self.demand(0);
-                let measured = signed(readings.current, self.previous_demand);
+                self.previous_demand = self.pulse_demand(0);
+                let measured = signed_measurement(readings.current, self.previous_demand);
                 self.baseline_measured += i64::from(measured.to_bits());
-                self.phase = Phase::Baseline { ticks: ticks + 1 };
-                return Some(self.demand(0));
+                self.phase = IdentificationPhase::Baseline { ticks: ticks + 1 };
+                return Some(self.pulse_demand(0));
             }
-            Phase::Baseline { .. } => {
+            IdentificationPhase::Baseline { .. } => {
                 self.baseline_reading /= i64::from(BASELINE_TICKS);
                 self.baseline_measured /= i64::from(BASELINE_TICKS);
-                self.phase = Phase::Pulses { pulse: 0, ticks: 0 };
-                return Some(self.demand(0));
+                self.phase = IdentificationPhase::Pulses { pulse: 0, ticks: 0 };
+                return Some(self.pulse_demand(0));
             }
-            Phase::Pulses { pulse, ticks } => {
-                let Some((eighths, length)) = PULSES.get(pulse) else {
-                    self.phase = Phase::Done;
-                    return Some(self.demand(0));
+            IdentificationPhase::Pulses { pulse, ticks } => {
+                let Some((eighths, length)) = EXCITATION_PULSES.get(pulse) else {
+                    self.phase = IdentificationPhase::Done;
+                    return Some(self.pulse_demand(0));
                 };
-                let demand = self.demand(*eighths);
-                let measured = signed(readings.current, self.previous_demand);
-                if self.previous_demand.abs() > COMPARED_ABOVE {
-                    equations.compare(self.previous_demand, measured);
+                let demand = self.pulse_demand(*eighths);
+                let measured = signed_measurement(readings.current, self.previous_demand);
+                if self.previous_demand.abs() > CURRENTS_COMPARED_ABOVE {
+                    equations.add_current_comparison(self.previous_demand, measured);
                 }
                 let change = reading - self.baseline_reading;
-                let turned = direction(self.previous_demand) - direction(self.demand(0));
-                equations.add(change, measured, self.baseline_measured, turned);
+                let turned = certain_direction(self.previous_demand)
+                    - certain_direction(self.pulse_demand(0));
+                equations.add_tick(change, measured, self.baseline_measured, turned);
                 self.previous_demand = demand;
                 let (pulse, ticks) = if ticks + 1 < *length {
                     (pulse, ticks + 1)
                 } else {
                     (pulse + 1, 0)
                 };
-                self.phase = Phase::Pulses { pulse, ticks };
+                self.phase = IdentificationPhase::Pulses { pulse, ticks };
                 return Some(demand);
             }
         }
-        Some(self.pi.update(self.operating_point, readings.display))
+        Some(
+            self.pi
+                .update_output(self.operating_point, readings.display),
+        )
     }
 
     /// The baseline current and some eighths of the pulses' amplitude.
-    fn demand(&self, eighths: i32) -> Current {
+    fn pulse_demand(&self, eighths: i32) -> Current {
         let baseline = self.baseline_demand / i64::from(BASELINE_TICKS);
-        Current::from_bits(baseline as i32).saturating_add(AMPLITUDE * eighths / 8)
+        Current::from_bits(baseline as i32).saturating_add(PULSE_AMPLITUDE * eighths / 8)
     }
 }
 
 /// Direction in which a demanded current flows: 1 if it cools, -1 if it heats, 0 if that is not certain.
-fn direction(demanded: Current) -> i64 {
-    if demanded.abs() < DIRECTION_CERTAIN_FROM {
+fn certain_direction(demanded: Current) -> i64 {
+    if demanded.abs() < CURRENT_DIRECTION_CERTAIN_FROM {
         0
     } else {
         demanded.signum().to_num()
@@ -292,8 +302,8 @@ fn direction(demanded: Current) -> i64 {
 }
 
 /// The measured magnitude with the sign of the demanded current; the demanded current if its direction is not certain.
-fn signed(measured: Current, demanded: Current) -> Current {
-    match direction(demanded) {
+fn signed_measurement(measured: Current, demanded: Current) -> Current {
+    match certain_direction(demanded) {
         0 => demanded,
         1.. => measured,
         _ => -measured,

@@ -11,18 +11,18 @@ use core::ops::RangeInclusive;
 
 use contact_model::fixed_point::{Celsius, ChordInterpolation, ContactPair, Force};
 
-use crate::estimate::{FingerContact, FingerEstimator, ForceChange, PreContact};
+use crate::estimate::{FingerContact, FingerEstimator, ForceChange, PreContactTemperatures};
 use crate::safety::Setpoint;
 use equivalent_forces::equivalent_forces;
 use skin_on_object::{PairFactors, SkinOnObject};
 
 /// Largest error of the interpolated set-point against Eq. 6-12 at the force for which the contact resistance was computed,
 /// K. Noise of the force adds to it, 0.5 mK in all.
-pub const TOLERANCE: Celsius = Celsius::lit("0.0004");
+pub const INTERPOLATION_TOLERANCE: Celsius = Celsius::lit("0.0004");
 /// A display that is farther than this from its preset at landing was late.
-const LATE: Celsius = Celsius::lit("0.1");
+const LATE_DISPLAY_ERROR: Celsius = Celsius::lit("0.1");
 /// Part of the difference between skin and preset, as a power of two, by which a display waits below its preset.
-const LEAD_SHIFT: u32 = 7;
+const WAITING_LEAD_SHIFT: u32 = 7;
 
 /// Which model gives the set-point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -94,10 +94,14 @@ struct ObjectContact {
 
 impl ObjectContact {
     /// A contact begins. A finger that rests on the display when the object appears touches the object from now on.
-    fn begin(finger: &FingerContact) -> Self {
-        let has_just_landed = finger.change() == ForceChange::New;
+    fn begin_contact(finger: &FingerContact) -> Self {
+        let has_just_landed = finger.force_change() == ForceChange::New;
         Self {
-            elapsed: if has_just_landed { finger.elapsed() } else { 0 },
+            elapsed: if has_just_landed {
+                finger.ticks_since_landing()
+            } else {
+                0
+            },
             equivalent_forces: Force::ZERO..=Force::ZERO,
             interpolation: None,
             rebuild: false,
@@ -106,48 +110,55 @@ impl ObjectContact {
     }
 
     /// Decides whether the interpolation must be rebuilt, and takes the finger's mean force into use one tick before.
-    fn schedule(
+    fn schedule_rebuild(
         &mut self,
         finger: &mut FingerContact,
         pair: &ContactPair,
         closed_form: bool,
         follow_skin: bool,
     ) {
-        let is_new = finger.change() == ForceChange::New;
-        let force = finger.force();
+        let is_new = finger.force_change() == ForceChange::New;
+        let force = finger.force_mean();
         let is_equivalent =
-            !force.is_more_accurate() || self.equivalent_forces.contains(&force.mean());
+            !force.has_doubled_ticks() || self.equivalent_forces.contains(&force.mean());
         if !closed_form || (is_new && follow_skin) {
             self.interpolation = None;
         }
         let was_scheduled = self.rebuild && closed_form && !is_new;
         self.rebuild = closed_form
-            && (finger.change() != ForceChange::Noise
+            && (finger.force_change() != ForceChange::Noise
                 || !is_equivalent
                 || was_scheduled
                 || self.interpolation.is_none());
-        self.prepared = was_scheduled && finger.contact_in_use().is_some();
+        self.prepared = was_scheduled && finger.contact_at_force_in_use().is_some();
         if self.rebuild && !self.prepared {
             finger.use_mean_force(pair);
         }
     }
 
     /// The set-point by the interpolation of Eq. 6-12, which is rebuilt if that is due; `None` without one.
-    fn interpolate(
+    fn interpolated_setpoint(
         &mut self,
         finger: &FingerContact,
         (skin, object): (Celsius, Celsius),
         follow_skin: bool,
         evaluations: &mut u32,
     ) -> Option<Celsius> {
-        match finger.contact_in_use() {
+        match finger.contact_at_force_in_use() {
             // While the skin is followed, conductances and interpolation are not computed in the same tick.
             Some(contact) if self.rebuild && (self.prepared || !follow_skin) => {
-                let (interpolation, count) =
-                    ChordInterpolation::new(contact, skin, object, self.elapsed, TOLERANCE);
+                let (interpolation, count) = ChordInterpolation::new(
+                    contact,
+                    skin,
+                    object,
+                    self.elapsed,
+                    INTERPOLATION_TOLERANCE,
+                );
                 *evaluations = evaluations.wrapping_add(count);
-                self.equivalent_forces =
-                    equivalent_forces(finger.force().in_use(), interpolation.transient_amplitude());
+                self.equivalent_forces = equivalent_forces(
+                    finger.force_mean().mean_in_use(),
+                    interpolation.transient_amplitude(),
+                );
                 self.rebuild = false;
                 Some(self.interpolation.insert(interpolation).setpoint())
             }
@@ -177,8 +188,8 @@ pub struct ReferenceGenerator {
 /// In the first 10 ms of contact the finger brings heat that the bridge needs 50 ms to remove; removing half of it in advance
 /// halves the trace on the skin. That heat is proportional to the flux for every material, and so to the difference between
 /// skin and display.
-fn lead(skin: Celsius, preset: Celsius) -> Celsius {
-    skin.saturating_sub(preset) >> LEAD_SHIFT
+fn waiting_lead(skin: Celsius, preset: Celsius) -> Celsius {
+    skin.saturating_sub(preset) >> WAITING_LEAD_SHIFT
 }
 
 impl ReferenceGenerator {
@@ -192,14 +203,15 @@ impl ReferenceGenerator {
 
     /// Evaluations of `erfcx` since reset.
     #[must_use]
-    pub const fn evaluations(&self) -> u32 {
+    pub const fn erfcx_evaluations(&self) -> u32 {
         self.evaluations
     }
 
     /// Lets the next tick begin a new contact, because another object is presented.
     pub fn restart_contact(&mut self, finger: &mut FingerEstimator) {
         self.contact = None;
-        self.skin_on_object.restart(finger.skin_on_display());
+        self.skin_on_object
+            .restart_contact(finger.skin_on_display());
         finger.forget_conductances();
     }
 
@@ -207,14 +219,14 @@ impl ReferenceGenerator {
     ///
     /// `follow_skin`: the skin is followed as it is on the display, and the target corrects it. Otherwise the closed form
     /// of Eq. 6-12 holds, as if every contact were the first and its force had always been the present one.
-    pub fn update(
+    pub fn next_reference(
         &mut self,
         scene: &Scene<'_>,
         finger: &mut FingerEstimator,
         surface: Celsius,
         follow_skin: bool,
     ) -> Option<Reference> {
-        let PreContact { skin, room } = finger.before_contact()?;
+        let PreContactTemperatures { skin, room } = finger.temperatures_before_contact()?;
         let object = scene.object.unwrap_or(room);
         if scene.mode == Mode::SemiInfinite {
             self.contact = None;
@@ -223,11 +235,11 @@ impl ReferenceGenerator {
             ));
         }
         let skin_above_object = skin.saturating_sub(object);
-        if !self.factors.belong_to(scene.pair) {
+        if !self.factors.are_those_of(scene.pair) {
             self.factors = PairFactors::new(scene.pair);
         }
         let factors = &self.factors;
-        let (contact, skin_on_display) = finger.contact_and_skin();
+        let (contact, skin_on_display) = finger.contact_and_skin_on_display();
         let Some(finger) = contact else {
             self.contact = None;
             self.skin_on_object.step(None, factors, skin_above_object);
@@ -242,7 +254,7 @@ impl ReferenceGenerator {
             );
             return Some(Reference::new(
                 setpoint,
-                setpoint.saturating_sub(lead(skin, setpoint)),
+                setpoint.saturating_sub(waiting_lead(skin, setpoint)),
             ));
         };
         let contact = match &mut self.contact {
@@ -252,24 +264,28 @@ impl ReferenceGenerator {
             }
             none => {
                 let preset = scene.pair.preset(skin, object);
-                if is_late(surface, preset, lead(skin, preset)) {
+                if is_display_late(surface, preset, waiting_lead(skin, preset)) {
                     finger.note_late_display();
                 }
-                none.insert(ObjectContact::begin(finger))
+                none.insert(ObjectContact::begin_contact(finger))
             }
         };
         let conductance = finger.conductances().map(|both| &both.object);
         (self.skin_on_object).step(conductance, factors, skin_above_object);
-        let closed_form = finger.is_constant() || !follow_skin;
-        contact.schedule(finger, scene.pair, closed_form, follow_skin);
-        let interpolated =
-            contact.interpolate(finger, (skin, object), follow_skin, &mut self.evaluations);
+        let closed_form = finger.has_closed_form() || !follow_skin;
+        contact.schedule_rebuild(finger, scene.pair, closed_form, follow_skin);
+        let interpolated = contact.interpolated_setpoint(
+            finger,
+            (skin, object),
+            follow_skin,
+            &mut self.evaluations,
+        );
         let setpoint = interpolated.unwrap_or_else(|| {
             (self.skin_on_object).setpoint(factors, skin, skin_above_object, None)
         });
         let correction = match finger.conductances() {
             Some(both) if follow_skin => {
-                (self.skin_on_object).correction(skin_on_display, &both.display)
+                (self.skin_on_object).setpoint_correction(skin_on_display, &both.display)
             }
             _ => Celsius::ZERO,
         };
@@ -281,10 +297,10 @@ impl ReferenceGenerator {
 }
 
 /// Whether a display is not where it should be at landing: half way between its preset and where it waits for the finger.
-fn is_late(surface: Celsius, preset: Celsius, lead: Celsius) -> bool {
+fn is_display_late(surface: Celsius, preset: Celsius, lead: Celsius) -> bool {
     let half_lead = lead >> 1u32;
     let error = surface.saturating_sub(preset).saturating_add(half_lead);
-    error.abs() > LATE.saturating_add(half_lead.abs())
+    error.abs() > LATE_DISPLAY_ERROR.saturating_add(half_lead.abs())
 }
 
 #[cfg(test)]

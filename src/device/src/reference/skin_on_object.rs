@@ -33,7 +33,7 @@ impl PairFactors {
 
     /// Whether a pair has these factors.
     #[must_use]
-    pub fn belong_to(&self, pair: &ContactPair) -> bool {
+    pub fn are_those_of(&self, pair: &ContactPair) -> bool {
         self.weight == pair.weight() && self.ratio == pair.ratio()
     }
 }
@@ -49,7 +49,7 @@ pub struct SkinOnObject {
 
 impl SkinOnObject {
     /// Starts a contact with an object at its own temperature, by a skin as it is on the display.
-    pub fn restart(&mut self, skin_on_display: &HalfSpace) {
+    pub fn restart_contact(&mut self, skin_on_display: &HalfSpace) {
         self.cooling = skin_on_display.staggered();
         self.scaled_flux = Celsius::ZERO;
     }
@@ -82,12 +82,13 @@ impl SkinOnObject {
         let step_at_interface = (i64::from(cooling.to_bits())
             * i64::from(factors.inverse_weight.to_bits()))
             >> U16F16::FRAC_NBITS;
-        let step_at_object = limited(i64::from(skin_above_object.to_bits()) - step_at_interface);
+        let step_at_object =
+            saturating_celsius(i64::from(skin_above_object.to_bits()) - step_at_interface);
         let step_at_display = (i64::from(step_at_object.to_bits())
             * i64::from(factors.ratio.to_bits()))
             >> Ratio::FRAC_NBITS;
         let skin_cooling = skin_on_display.map_or(cooling, HalfSpace::free_response);
-        limited(
+        saturating_celsius(
             i64::from(skin_before_contact.to_bits())
                 - i64::from(skin_cooling.to_bits())
                 - step_at_display,
@@ -96,13 +97,17 @@ impl SkinOnObject {
 
     /// What must be added to the set-point for the skin on the display to reach the skin on the object.
     #[must_use]
-    pub fn correction(&self, skin_on_display: &HalfSpace, display: &ContactConductance) -> Celsius {
+    pub fn setpoint_correction(
+        &self,
+        skin_on_display: &HalfSpace,
+        display: &ContactConductance,
+    ) -> Celsius {
         let scaled_flux = skin_on_display.scaled_flux_to_match(&self.cooling);
         display.temperature_drop(scaled_flux).saturating_neg()
     }
 }
 
 /// A temperature in 2^-22 K, limited to the range of its type.
-fn limited(bits: i64) -> Celsius {
+fn saturating_celsius(bits: i64) -> Celsius {
     Celsius::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
 }

@@ -3,7 +3,7 @@
 use super::THERMISTORS;
 
 /// Ticks of one block.
-const BLOCK_TICKS: u32 = 256;
+const AVERAGED_BLOCK_TICKS: u32 = 256;
 
 /// Mean of one thermistor's sums over the last two complete blocks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,10 +16,10 @@ pub struct ThermistorAverage {
 
 impl ThermistorAverage {
     /// Ticks of both blocks.
-    pub const TICKS: u32 = 2 * BLOCK_TICKS;
+    pub const TICKS: u32 = 2 * AVERAGED_BLOCK_TICKS;
     /// Largest change of a steady reading: 0.12 counts (3 mK) in a quarter of a second, which is four
     /// standard deviations if the converter's noise is 1.2 counts.
-    const STEADY: u32 = BLOCK_TICKS * 16 * 12 / 100;
+    const STEADY_CHANGE_MAX: u32 = AVERAGED_BLOCK_TICKS * 16 * 12 / 100;
 
     /// The mean sum of 16 conversions, 0 to 65520.
     #[must_use]
@@ -30,7 +30,7 @@ impl ThermistorAverage {
     /// The two blocks differ by less than 3 mK.
     #[must_use]
     pub const fn is_steady(&self) -> bool {
-        self.change.unsigned_abs() <= Self::STEADY
+        self.change.unsigned_abs() <= Self::STEADY_CHANGE_MAX
     }
 }
 
@@ -48,12 +48,12 @@ pub struct ThermistorAverages {
 
 impl ThermistorAverages {
     /// Adds the thermistors' sums of one tick.
-    pub fn add(&mut self, sums: &[u16; THERMISTORS]) {
+    pub fn add_tick(&mut self, sums: &[u16; THERMISTORS]) {
         for (total, sum) in self.current.iter_mut().zip(sums) {
             *total += u32::from(*sum);
         }
         self.ticks += 1;
-        if self.ticks == BLOCK_TICKS {
+        if self.ticks == AVERAGED_BLOCK_TICKS {
             (self.second_last, self.last) = (self.last, self.current);
             (self.current, self.ticks) = ([0; THERMISTORS], 0);
             self.complete_blocks = self.complete_blocks.saturating_add(1);

@@ -13,15 +13,15 @@ use thermal_settings::{
 pub type CorrectedSum = U28F4;
 
 /// Width of a segment in sums, as a power of two.
-const SEGMENT_BITS: u32 = (SEGMENT_CODES * SCANS_PER_TICK as u32).ilog2();
-const SEGMENTS: usize = 1 << (u16::BITS - SEGMENT_BITS);
+const SEGMENT_SUMS_LOG2: u32 = (SEGMENT_CODES * SCANS_PER_TICK as u32).ilog2();
+const CONVERTER_SEGMENTS: usize = 1 << (u16::BITS - SEGMENT_SUMS_LOG2);
 /// Width in sums, as a power of two, over which noise spreads the step at a border: two codes on either side.
-const TRANSITION_BITS: u32 = 6;
-const HALF_TRANSITION: u32 = 1 << (TRANSITION_BITS - 1);
+const BORDER_TRANSITION_LOG2: u32 = 6;
+const HALF_BORDER_TRANSITION: u32 = 1 << (BORDER_TRANSITION_LOG2 - 1);
 
 /// Largest error of a converter of this class, counts. The host may set each step within its own range and all with
 /// one sign; without this limit they could hide more than a kelvin from the fault detectors.
-const MAX_ERROR_COUNTS: f64 = 8.0;
+const CONVERTER_ERROR_MAX_COUNTS: f64 = 8.0;
 
 /// The calibration of one finger's temperature readings, in the fixed point that a tick uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,7 +49,7 @@ impl CalibrationTables {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ConverterCorrection {
     /// Reading minus true value in each segment, in sixteenths of a sum.
-    errors: [i16; SEGMENTS],
+    errors: [i16; CONVERTER_SEGMENTS],
 }
 
 impl ConverterCorrection {
@@ -65,7 +65,7 @@ impl ConverterCorrection {
                 {
                     error += step;
                 }
-                let error = error.clamp(-MAX_ERROR_COUNTS, MAX_ERROR_COUNTS);
+                let error = error.clamp(-CONVERTER_ERROR_MAX_COUNTS, CONVERTER_ERROR_MAX_COUNTS);
                 libm::round(error * units_per_count) as i16
             }),
         }
@@ -74,15 +74,15 @@ impl ConverterCorrection {
     /// The sum without the converter's error, 0 to 2^16 - 1/16. Near a border the error is interpolated linearly
     /// over the codes into which noise spreads the step, because a sum does not tell on which side each conversion was.
     #[must_use]
-    pub fn correct(&self, sum: u16) -> CorrectedSum {
-        let shifted = u32::from(sum) + HALF_TRANSITION;
-        let segment = (shifted >> SEGMENT_BITS) as usize;
-        let from_transition = shifted & ((1 << SEGMENT_BITS) - 1);
-        let error_in = |segment: usize| i32::from(self.errors[segment % SEGMENTS]);
-        let mut error = error_in(segment.min(SEGMENTS - 1));
-        if from_transition < 1 << TRANSITION_BITS {
+    pub fn correct_sum(&self, sum: u16) -> CorrectedSum {
+        let shifted = u32::from(sum) + HALF_BORDER_TRANSITION;
+        let segment = (shifted >> SEGMENT_SUMS_LOG2) as usize;
+        let from_transition = shifted & ((1 << SEGMENT_SUMS_LOG2) - 1);
+        let error_in = |segment: usize| i32::from(self.errors[segment % CONVERTER_SEGMENTS]);
+        let mut error = error_in(segment.min(CONVERTER_SEGMENTS - 1));
+        if from_transition < 1 << BORDER_TRANSITION_LOG2 {
             let below = error_in(segment.saturating_sub(1));
-            error = below + (((error - below) * from_transition as i32) >> TRANSITION_BITS);
+            error = below + (((error - below) * from_transition as i32) >> BORDER_TRANSITION_LOG2);
         }
         let units = (u32::from(sum) << CorrectedSum::FRAC_NBITS).saturating_add_signed(-error);
         CorrectedSum::from_bits(units.min((1 << (u16::BITS + CorrectedSum::FRAC_NBITS)) - 1))
@@ -101,8 +101,8 @@ pub(super) struct ThermistorCorrection {
 }
 
 impl ThermistorCorrection {
-    const CENTRE: Celsius = Celsius::const_from_int(CORRECTION_CENTER_C as i32);
-    const HALF_RANGE: Celsius = Celsius::const_from_int(CORRECTION_HALF_SPAN_K as i32);
+    const POLYNOMIAL_CENTRE: Celsius = Celsius::const_from_int(CORRECTION_CENTER_C as i32);
+    const POLYNOMIAL_HALF_RANGE: Celsius = Celsius::const_from_int(CORRECTION_HALF_SPAN_K as i32);
 
     /// Subtracts the thermistor's self-heating, K, from the correction's offset.
     fn new(correction: &thermal_settings::Correction, self_heating_k: f64) -> Self {
@@ -116,10 +116,10 @@ impl ThermistorCorrection {
 
     /// The corrected temperature. No product overflows: of their 64 bits, `slope u` uses 57 and `curvature u²` 61.
     #[must_use]
-    pub fn apply(&self, uncorrected: Celsius) -> Celsius {
+    pub fn corrected_temperature(&self, uncorrected: Celsius) -> Celsius {
         let u = uncorrected
-            .saturating_sub(Self::CENTRE)
-            .clamp(-Self::HALF_RANGE, Self::HALF_RANGE);
+            .saturating_sub(Self::POLYNOMIAL_CENTRE)
+            .clamp(-Self::POLYNOMIAL_HALF_RANGE, Self::POLYNOMIAL_HALF_RANGE);
         let square: Celsius = product(u, u);
         let change = self.slope.wide_mul(u) + self.curvature.wide_mul(square);
         uncorrected
@@ -138,7 +138,7 @@ mod tests {
         for step in [-4.0, 4.0] {
             let correction = ConverterCorrection::new(&[step; BORDER_COUNT]);
             for sum in (0..=65_520).step_by(7) {
-                let change = i64::from(correction.correct(sum).to_bits())
+                let change = i64::from(correction.correct_sum(sum).to_bits())
                     - (i64::from(sum) << CorrectedSum::FRAC_NBITS);
                 assert!(
                     change.abs() <= (8 * 16) << CorrectedSum::FRAC_NBITS,

@@ -8,24 +8,24 @@ use thermal_settings::ForceSensor;
 /// From this force on the signal counts as off its zero. Noise of 0.7 to 1.2 counts a conversion is 0.6 to 1.1 mN here.
 const OFF_ZERO_FROM: Force = Force::lit("0.003");
 /// A contact begins from the first force on and ends below the second (hysteresis).
-const CONTACT_FROM: Force = Force::lit("0.02");
-const RELEASE_BELOW: Force = Force::lit("0.01");
+const CONTACT_BEGINS_FROM: Force = Force::lit("0.02");
+const CONTACT_ENDS_BELOW: Force = Force::lit("0.01");
 /// Sum beyond which the signal is at the end of the converter's range.
-const SATURATED_ABOVE: u16 = 4060 * 16;
+const SHORTED_WIRE_ABOVE: u16 = 4060 * 16;
 /// Ticks for which a change must last.
-const DEBOUNCE_TICKS: u32 = 2;
+const CONTACT_DEBOUNCE_TICKS: u32 = 2;
 /// A signal that has been off its zero for longer, ticks, rose too slowly to tell when the finger landed.
-const MAX_RISE_TICKS: u32 = 32;
+const DATED_RISE_MAX_TICKS: u32 = 32;
 
 /// Largest difference of the zero from that of the settings: 2 % of it, and 2 % of the reference. A smaller force that is
 /// there from switch-on is taken for zero.
-const MAX_ZERO_CHANGE_N: f64 = 0.06;
+const ZERO_CHANGE_MAX_N: f64 = 0.06;
 /// Ticks after switch-on whose mean is the first zero, whatever the signal.
 const INITIAL_ZERO_TICKS: i32 = 256;
 /// Time constants with which the zero then tracks a signal at its zero (1 s) and one off its zero (16 s), as powers of two
 /// of ticks.
-const AT_ZERO_SHIFT: u32 = 10;
-const OFF_ZERO_SHIFT: u32 = 14;
+const AT_ZERO_TRACKING_SHIFT: u32 = 10;
+const OFF_ZERO_TRACKING_SHIFT: u32 = 14;
 
 /// A sum of conversions, or its zero, at a resolution at which slow tracking does not stop; the largest sum fits.
 type FineSum = I18F14;
@@ -48,7 +48,7 @@ impl ForceChannel {
     #[must_use]
     pub fn new(settings: &ForceSensor) -> Self {
         let zero = settings.zero_counts * 16.0;
-        let max_change = MAX_ZERO_CHANGE_N * settings.counts_per_n * 16.0;
+        let max_change = ZERO_CHANGE_MAX_N * settings.counts_per_n * 16.0;
         let fine = |sum| FineSum::from_bits(libm::ldexp(sum, FineSum::FRAC_NBITS as i32) as i32);
         Self {
             broken_below: (zero / 2.0) as u16,
@@ -63,8 +63,8 @@ impl ForceChannel {
     /// Force for the sum of 16 conversions; 0 below the zero. `None`: the wire is broken or shorted, because the signal is
     /// below half of its live zero or at the end of the range.
     #[must_use]
-    pub fn force(&self, sum: u16) -> Option<Force> {
-        if sum < self.broken_below || sum > SATURATED_ABOVE {
+    pub fn force_of_sum(&self, sum: u16) -> Option<Force> {
+        if sum < self.broken_below || sum > SHORTED_WIRE_ABOVE {
             return None;
         }
         let change = FineSum::from(sum).saturating_sub(self.zero);
@@ -83,7 +83,7 @@ impl ForceChannel {
             self.initial_ticks += 1;
             error.checked_div_int(self.initial_ticks).unwrap_or(error)
         } else {
-            let shifts = [AT_ZERO_SHIFT, OFF_ZERO_SHIFT];
+            let shifts = [AT_ZERO_TRACKING_SHIFT, OFF_ZERO_TRACKING_SHIFT];
             error >> shifts[usize::from(is_off_zero)]
         };
     }
@@ -93,9 +93,9 @@ impl ForceChannel {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactDetector {
     touching: bool,
-    /// Ticks for which the force has been off its zero, up to [`MAX_RISE_TICKS`]; holds its value during a contact.
+    /// Ticks for which the force has been off its zero, up to [`DATED_RISE_MAX_TICKS`]; holds its value during a contact.
     off_zero_ticks: u32,
-    /// Ticks for which the force has been below [`RELEASE_BELOW`] during a contact.
+    /// Ticks for which the force has been below [`CONTACT_ENDS_BELOW`] during a contact.
     release_ticks: u32,
 }
 
@@ -103,20 +103,20 @@ impl ContactDetector {
     /// Updates the contact by the force of one tick.
     ///
     /// A contact begins in the second tick off zero at the earliest, so that one noisy tick does not begin one.
-    pub fn update(&mut self, force: Force) {
+    pub fn update_contact(&mut self, force: Force) {
         if self.touching {
-            let low = force < RELEASE_BELOW;
+            let low = force < CONTACT_ENDS_BELOW;
             self.release_ticks = if low { self.release_ticks + 1 } else { 0 };
-            if self.release_ticks == DEBOUNCE_TICKS {
+            if self.release_ticks == CONTACT_DEBOUNCE_TICKS {
                 *self = Self::default();
             }
         } else {
             self.off_zero_ticks = if force >= OFF_ZERO_FROM {
-                (self.off_zero_ticks + 1).min(MAX_RISE_TICKS)
+                (self.off_zero_ticks + 1).min(DATED_RISE_MAX_TICKS)
             } else {
                 0
             };
-            self.touching = self.may_be_landing() && force >= CONTACT_FROM;
+            self.touching = self.may_be_landing() && force >= CONTACT_BEGINS_FROM;
         }
     }
 
@@ -135,7 +135,7 @@ impl ContactDetector {
     /// The force has been off its zero for the debounce time, which noise seldom causes: a finger may be landing.
     #[must_use]
     pub const fn may_be_landing(&self) -> bool {
-        self.off_zero_ticks >= DEBOUNCE_TICKS
+        self.off_zero_ticks >= CONTACT_DEBOUNCE_TICKS
     }
 
     /// Ticks from a landing, when the force left its zero, to its detection: 2 to 32.
@@ -155,7 +155,7 @@ mod tests {
         let channel = ForceChannel::new(&Settings::default().force);
         for (counts, newton) in [(410.0, 0.0), (440.0, 0.1), (1010.0, 2.0), (3410.0, 10.0)] {
             let force = channel
-                .force((counts * 16.0) as u16)
+                .force_of_sum((counts * 16.0) as u16)
                 .expect("in range")
                 .to_num::<f64>();
             assert!(
@@ -163,9 +163,12 @@ mod tests {
                 "{newton}: {force}"
             );
         }
-        assert_eq!(channel.force(300 * 16).expect("in range"), Force::ZERO);
-        assert_eq!(channel.force(100 * 16), None);
-        assert_eq!(channel.force(4095 * 16), None);
+        assert_eq!(
+            channel.force_of_sum(300 * 16).expect("in range"),
+            Force::ZERO
+        );
+        assert_eq!(channel.force_of_sum(100 * 16), None);
+        assert_eq!(channel.force_of_sum(4095 * 16), None);
     }
 
     /// The sum of one tick for a steady signal.
@@ -179,7 +182,7 @@ mod tests {
         for _ in 0..INITIAL_ZERO_TICKS {
             channel.track_zero(sum(418.0), true);
         }
-        assert_eq!(channel.force(sum(418.0)), Some(Force::ZERO));
+        assert_eq!(channel.force_of_sum(sum(418.0)), Some(Force::ZERO));
         // 0.03 counts a second for ten minutes.
         for second in 0..600 {
             for _ in 0..1000 {
@@ -187,7 +190,7 @@ mod tests {
             }
         }
         let force = channel
-            .force(sum(400.0 + 30.0))
+            .force_of_sum(sum(400.0 + 30.0))
             .expect("in range")
             .to_num::<f64>();
         assert!((force - 0.1).abs() < 5e-4, "{force}");
@@ -203,7 +206,10 @@ mod tests {
         for _ in 0..2000 {
             channel.track_zero(sum(413.0), true);
         }
-        let force = channel.force(sum(413.0)).expect("in range").to_num::<f64>();
+        let force = channel
+            .force_of_sum(sum(413.0))
+            .expect("in range")
+            .to_num::<f64>();
         let expected = 0.01 * (-2000.0 / 16384.0f64).exp();
         assert!(
             (force - expected).abs() < 1e-4,
@@ -217,7 +223,10 @@ mod tests {
         for _ in 0..10_000 {
             channel.track_zero(sum(431.0), false);
         }
-        let force = channel.force(sum(431.0)).expect("in range").to_num::<f64>();
+        let force = channel
+            .force_of_sum(sum(431.0))
+            .expect("in range")
+            .to_num::<f64>();
         assert!((force - 0.07).abs() < 1e-5, "{force}");
     }
 
@@ -226,17 +235,17 @@ mod tests {
         let (mut detector, high, low) =
             (ContactDetector::default(), Force::lit("0.1"), Force::ZERO);
         for force in [high, low, high, low] {
-            detector.update(force);
+            detector.update_contact(force);
             assert!(!detector.touching());
         }
-        detector.update(high);
-        detector.update(high);
+        detector.update_contact(high);
+        detector.update_contact(high);
         assert!(detector.touching());
-        detector.update(low);
-        detector.update(high);
+        detector.update_contact(low);
+        detector.update_contact(high);
         assert!(detector.touching());
-        detector.update(low);
-        detector.update(low);
+        detector.update_contact(low);
+        detector.update_contact(low);
         assert!(!detector.touching());
     }
 
@@ -251,7 +260,7 @@ mod tests {
             let mut detector = ContactDetector::default();
             for (i, force) in rise.iter().enumerate() {
                 assert!(!detector.touching(), "{rise:?}, tick {i}");
-                detector.update(Force::from_str(force).expect("a force"));
+                detector.update_contact(Force::from_str(force).expect("a force"));
             }
             assert!(detector.touching(), "{rise:?}");
             assert_eq!(detector.detection_delay_ticks(), delay_ticks, "{rise:?}");

@@ -56,7 +56,7 @@ pub struct Samples {
 impl Samples {
     /// Sums of the thermistors, in the order of the channels.
     #[must_use]
-    pub const fn thermistors(&self) -> [u16; THERMISTORS] {
+    pub const fn thermistor_sums(&self) -> [u16; THERMISTORS] {
         [
             self.display,
             self.display_check,
@@ -72,10 +72,10 @@ impl Samples {
     /// a tick in which a wire breaks would pass for a temperature.
     #[must_use]
     pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], bridge_fault: bool) -> Self {
-        let mut sums = sums(scans);
+        let mut sums = channel_sums(scans);
         let [.., last] = scans;
         for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTORS) {
-            if thermistor::is_out_of_range(code) {
+            if thermistor::is_code_out_of_range(code) {
                 *sum = code.saturating_mul(SCANS_PER_TICK as u16);
             }
         }
@@ -95,7 +95,7 @@ impl Samples {
 
 /// The sum of every channel. One addition of words adds two codes, because sums of 8 codes, and of 16, stay within half a
 /// word.
-fn sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNELS] {
+fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNELS] {
     // A scan has an odd number of half-words: two scans are a whole number of words, as many as there are channels.
     let mut words = [0u32; CHANNELS];
     let (pairs, _) = scans.as_chunks::<2>();
@@ -132,7 +132,7 @@ pub struct Readings {
 
 impl Readings {
     /// Before the first tick every sensor counts as disconnected.
-    pub const NONE: Self = Self {
+    pub const ALL_OPEN: Self = Self {
         display: Err(SensorFault::Open),
         display_check: Err(SensorFault::Open),
         sink: Err(SensorFault::Open),
@@ -146,7 +146,7 @@ impl Readings {
 
 /// Number of the slow thermistors, skin and room. Their temperatures change by less than a millikelvin in two ticks and no
 /// limit depends on them, so a tick converts one of them only. Every tick checks the wires of both.
-const SLOW: usize = 2;
+const SLOW_THERMISTORS: usize = 2;
 
 /// Conversion of one finger's samples to readings.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -156,7 +156,7 @@ pub struct Sensors {
     force: ForceChannel,
     current_per_unit: Current,
     /// Last temperatures of skin and room; `None` before both are known.
-    slow_temperatures: Option<[Celsius; SLOW]>,
+    slow_temperatures: Option<[Celsius; SLOW_THERMISTORS]>,
     /// Index of the slow thermistor that the next tick converts.
     next_slow: usize,
 }
@@ -190,19 +190,19 @@ impl Sensors {
 
     /// Converts the samples of one tick.
     #[must_use]
-    pub fn read(&mut self, samples: &Samples) -> Readings {
+    pub fn read_samples(&mut self, samples: &Samples) -> Readings {
         let CalibrationTables {
             converter,
             thermistors: [display, display_check, sink, slow_corrections @ ..],
         } = &self.calibration;
         let thermistor = &self.thermistor;
         let temperature = |sum, correction: &ThermistorCorrection| {
-            let uncorrected = thermistor.temperature(sum, converter.correct(sum))?;
-            Ok(correction.apply(uncorrected))
+            let uncorrected = thermistor.temperature_of_sum(sum, converter.correct_sum(sum))?;
+            Ok(correction.corrected_temperature(uncorrected))
         };
         let slow_sums = [samples.skin, samples.room];
         let slow = if let Some(last) = &mut self.slow_temperatures {
-            let converted = self.next_slow % SLOW;
+            let converted = self.next_slow % SLOW_THERMISTORS;
             self.next_slow = converted + 1;
             if let Ok(now) = temperature(slow_sums[converted], &slow_corrections[converted]) {
                 last[converted] = now;
@@ -223,7 +223,7 @@ impl Sensors {
             sink: temperature(samples.sink, sink),
             skin,
             room,
-            force: self.force.force(samples.force),
+            force: self.force.force_of_sum(samples.force),
             // On the bits: `saturating_mul_int` takes more instructions.
             current: Current::from_bits(
                 (self.current_per_unit.to_bits()).saturating_mul(samples.current.into()),

@@ -12,7 +12,7 @@ const SHORT_BELOW: u16 = 40 * 16;
 const OPEN_ABOVE: u16 = 4060 * 16;
 
 /// Whether the code of one conversion is that of a shorted or open thermistor.
-pub(super) const fn is_out_of_range(code: u16) -> bool {
+pub(super) const fn is_code_out_of_range(code: u16) -> bool {
     code < SHORT_BELOW / 16 || code > OPEN_ABOVE / 16
 }
 
@@ -29,8 +29,8 @@ pub(super) const fn check_wiring(sum: u16) -> Result<(), SensorFault> {
 }
 
 /// Number of equal intervals of the range of sums, and its power of two.
-const INTERVALS_LOG2: u32 = 6;
-const INTERVALS: usize = 1 << INTERVALS_LOG2;
+const CURVE_INTERVALS_LOG2: u32 = 6;
+const CURVE_INTERVALS: usize = 1 << CURVE_INTERVALS_LOG2;
 
 /// Why a thermistor has no temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,19 +46,19 @@ pub enum SensorFault {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ThermistorTable {
     /// Coefficients, lowest power first, for the position in the interval from 0 to 1/2.
-    cubics: [[Celsius; 4]; INTERVALS],
+    cubics: [[Celsius; 4]; CURVE_INTERVALS],
 }
 
 impl ThermistorTable {
     /// Fits each cubic through four points of the curve, in `f64`: for set-up, not for the tick.
     #[must_use]
     pub fn new(settings: &settings::ThermistorDivider) -> Self {
-        let width = 65536.0 / INTERVALS as f64;
+        let width = 65536.0 / CURVE_INTERVALS as f64;
         Self {
             cubics: core::array::from_fn(|interval| {
                 let at =
                     |third: f64| settings.temperature_c((interval as f64 + third / 3.0) * width);
-                cubic([at(0.0), at(1.0), at(2.0), at(3.0)])
+                cubic_through([at(0.0), at(1.0), at(2.0), at(3.0)])
             }),
         }
     }
@@ -71,14 +71,19 @@ impl ThermistorTable {
     ///
     /// # Errors
     /// Open or shorted, by the uncorrected sum.
-    pub fn temperature(&self, sum: u16, corrected: CorrectedSum) -> Result<Celsius, SensorFault> {
+    pub fn temperature_of_sum(
+        &self,
+        sum: u16,
+        corrected: CorrectedSum,
+    ) -> Result<Celsius, SensorFault> {
         check_wiring(sum)?;
-        let position_bits = u16::BITS + CorrectedSum::FRAC_NBITS - INTERVALS_LOG2;
+        let position_bits = u16::BITS + CorrectedSum::FRAC_NBITS - CURVE_INTERVALS_LOG2;
         let units = corrected.to_bits();
         let within = units & ((1 << position_bits) - 1);
         // From 0 to 1/2.
         let position = I0F32::from_bits((within << (u32::BITS - 1 - position_bits)) as i32);
-        let [constant, others @ ..] = self.cubics[(units >> position_bits) as usize % INTERVALS];
+        let [constant, others @ ..] =
+            self.cubics[(units >> position_bits) as usize % CURVE_INTERVALS];
         let mut change = Celsius::ZERO;
         for &coefficient in others.iter().rev() {
             change = product(change.saturating_add(coefficient), position);
@@ -88,7 +93,7 @@ impl ThermistorTable {
 }
 
 /// Coefficients of the cubic through values in °C at 0, 1/6, 1/3 and 1/2.
-fn cubic([a, b, c, d]: [f64; 4]) -> [Celsius; 4] {
+fn cubic_through([a, b, c, d]: [f64; 4]) -> [Celsius; 4] {
     [
         a,
         -11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d,
@@ -105,7 +110,7 @@ mod tests {
 
     /// Temperature of a sum from a converter without error.
     fn temperature(table: &ThermistorTable, sum: u16) -> Result<Celsius, SensorFault> {
-        table.temperature(sum, CorrectedSum::from(sum))
+        table.temperature_of_sum(sum, CorrectedSum::from(sum))
     }
 
     /// The sum that the divider's ideal converter gives at a temperature, by the beta equation.

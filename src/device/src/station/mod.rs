@@ -21,7 +21,9 @@ pub use state::{Event, State, Task};
 
 use crate::control::{ControlParameters, Controller, Law, VoltageFeedforward};
 use crate::drive::{Current, Drive, Outputs, SafeCurrent};
-use crate::estimate::{Estimate, Estimator, FingerEstimator, LegTemperatures, PlateObserver};
+use crate::estimate::{
+    Estimator, FingerEstimator, LegTemperatures, PlateObserver, UncorrectedEstimate,
+};
 use crate::identification::{AbortReason, NormalEquations};
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
@@ -115,7 +117,7 @@ impl Station {
             tick: 0,
             telemetry_ticks: 0,
             last: LastTick {
-                readings: Readings::NONE,
+                readings: Readings::ALL_OPEN,
                 reference: None,
                 demanded: Current::ZERO,
             },
@@ -167,9 +169,9 @@ impl Station {
     fn sense(&mut self, samples: &Samples) -> Readings {
         // An object is never presented during a calibration.
         if !self.state.presents() {
-            self.averages.add(&samples.thermistors());
+            self.averages.add_tick(&samples.thermistor_sums());
         }
-        self.sensors.read(samples)
+        self.sensors.read_samples(samples)
     }
 
     /// Lets every detector see the tick; faults that one tick shows are named first.
@@ -183,7 +185,7 @@ impl Station {
         };
         let frozen = self.detectors.check_samples(samples);
         let dose = self.detectors.check_dose(readings);
-        let valid = safety::check(readings, self.controller.limit());
+        let valid = safety::check(readings, self.controller.current_limit());
         let over_ticks = match &valid {
             Ok(valid) => {
                 let streams = self.telemetry_ticks != 0;
@@ -218,9 +220,9 @@ impl Station {
     }
 
     /// Detects contact, and corrects the estimates of plate and finger.
-    fn estimate(&mut self, samples: &Samples, valid: &ValidReadings) -> Estimate {
+    fn estimate(&mut self, samples: &Samples, valid: &ValidReadings) -> UncorrectedEstimate {
         let previously_touching = self.contact.touching();
-        self.contact.update(valid.force);
+        self.contact.update_contact(valid.force);
         self.sensors.track_zero(samples, &self.contact);
         let touching = self.contact.touching();
         self.change_state(if touching { Event::Land } else { Event::Lift });
@@ -231,22 +233,25 @@ impl Station {
         };
         let force = touching.then_some(valid.force);
         let pair = self.object.pair_under_finger();
-        self.estimator.update(valid, force, landed_ticks, pair)
+        self.estimator
+            .update_estimates(valid, force, landed_ticks, pair)
     }
 
     /// Where the display should be; `None` while nothing is to be followed.
-    fn reference(&mut self, estimate: &Estimate) -> Option<Reference> {
+    fn reference(&mut self, estimate: &UncorrectedEstimate) -> Option<Reference> {
         let finger = &mut self.estimator.finger;
         let setpoint = match &mut self.state {
             State::Off | State::SelfTest(_) | State::Ready | State::Tripped(_) => return None,
-            State::Armed(Task::Neutral) => finger.before_contact()?.skin,
+            State::Armed(Task::Neutral) => finger.temperatures_before_contact()?.skin,
             State::Armed(Task::Hold(hold)) => hold.step().celsius(),
             State::Armed(Task::Identify(tile)) => tile.operating_point().celsius(),
             State::Preset | State::Contact => {
                 let scene = self.object.scene()?;
                 let surface = estimate.previous_surface;
                 let follow_skin = self.controller.law() == Law::Model;
-                return self.reference.update(&scene, finger, surface, follow_skin);
+                return self
+                    .reference
+                    .next_reference(&scene, finger, surface, follow_skin);
             }
         };
         Some(Reference::at(setpoint))
@@ -261,7 +266,7 @@ impl Station {
         &mut self,
         valid: &ValidReadings,
         bridge_fault: bool,
-        estimate: &Estimate,
+        estimate: &UncorrectedEstimate,
         reference: Option<&Reference>,
     ) -> Result<Demand, Fault> {
         let drive = |current| Demand::Drive {
@@ -273,7 +278,7 @@ impl Station {
             return Ok(match test.step(valid, bridge_fault, touched)? {
                 SelfTestStep::Off { comparator_test } => Demand::Off { comparator_test },
                 SelfTestStep::Drive(current) => {
-                    self.controller.track(current);
+                    self.controller.track_current(current);
                     drive(current)
                 }
                 SelfTestStep::Passed => {
@@ -287,12 +292,12 @@ impl Station {
         };
         let current = match self.identify(valid) {
             Some(current) => {
-                self.controller.track(current);
+                self.controller.track_current(current);
                 current
             }
             None => {
                 let plate = &self.estimator.plate;
-                (self.controller).update(reference, valid.display, valid.sink, plate)
+                (self.controller).choose_current(reference, valid.display, valid.sink, plate)
             }
         };
         Ok(drive(current))
@@ -304,7 +309,7 @@ impl Station {
             return None;
         };
         let touching = self.contact.touching();
-        let current = tile.update(&mut self.identified.equations, valid, touching);
+        let current = tile.choose_current(&mut self.identified.equations, valid, touching);
         self.identified.outcome = tile.outcome();
         if let Some(Err(_)) = self.identified.outcome {
             self.state = State::Armed(Task::Neutral);
@@ -335,18 +340,18 @@ impl Station {
                 current,
                 previous_legs,
             } => {
-                self.estimator.plate.advance(current);
+                self.estimator.plate.advance_model(current);
                 let current = SafeCurrent::saturating(current);
                 let outputs = Outputs {
-                    drive: Drive::On(self.voltage.duty(current, &previous_legs)),
+                    drive: Drive::On(self.voltage.duty_for_current(current, &previous_legs)),
                     comparator_test: false,
                 };
                 (outputs, current.ampere())
             }
             Demand::Off { comparator_test } => {
                 self.interrupt_identification();
-                self.controller.track(Current::ZERO);
-                self.estimator.plate.advance(Current::ZERO);
+                self.controller.track_current(Current::ZERO);
+                self.estimator.plate.advance_model(Current::ZERO);
                 let outputs = Outputs {
                     drive: Drive::Off,
                     comparator_test,
@@ -459,7 +464,7 @@ impl Station {
             force: readings.force,
             demand: *demanded,
             current: readings.current,
-            evaluations: self.reference.evaluations(),
+            evaluations: self.reference.erfcx_evaluations(),
         })
     }
 }
