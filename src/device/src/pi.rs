@@ -8,19 +8,21 @@ use crate::TICK_HZ;
 use crate::drive::Current;
 use crate::safety::Setpoint;
 
-/// Binary places of the integral below those of a current: a millikelvin for one tick still counts.
+/// Binary places that the integral has beyond those of a current, so that an error of 1 mK for one tick still counts.
 const EXTRA_INTEGRAL_PLACES: u32 = I12F52::FRAC_NBITS - Current::FRAC_NBITS;
 
-/// How often a controller samples its error.
+/// How often a proportional-integral controller takes the temperature error and changes its current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpdatePeriod {
-    /// At every control tick, 1000 times a second.
+    /// At every control tick, 1000 times a second: the law `pi`, the observer's correction, and the identification of
+    /// the tile.
     EveryTick,
-    /// Ten times a second, as the thesis's display; the current is held in between.
+    /// Ten times a second, as the display of the thesis: the law `pi-10hz`. The current is constant in between.
     TenthOfASecond,
 }
 
 impl UpdatePeriod {
+    /// The period in ticks of 1 ms.
     const fn period_ticks(self) -> u32 {
         match self {
             Self::EveryTick => 1,
@@ -29,18 +31,19 @@ impl UpdatePeriod {
     }
 }
 
-/// A controller's gains in fixed point.
+/// Gains of a proportional-integral controller in fixed point, and how often it takes the error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PiCoefficients {
     /// Proportional gain, A/K.
     proportional: I16F16,
-    /// Integral gain, A/K per update.
+    /// Integral gain for one update, A/K.
     integral: I2F30,
     period: UpdatePeriod,
 }
 
 impl PiCoefficients {
-    /// Converts gains, which saturate at 32768 A/K and 2 A/K per update. Computed in `f64`, for start-up.
+    /// Converts gains from settings: proportional gain, A/K, and integral time, s. They saturate at 32768 A/K and 2 A/K
+    /// per update. Computed in `f64`, so it is for start-up and the task that serves the host, not for the tick.
     #[must_use]
     pub fn new(gains: &Gains, period: UpdatePeriod) -> Self {
         let per_update = gains.proportional_a_k * f64::from(period.period_ticks())
@@ -54,22 +57,24 @@ impl PiCoefficients {
     }
 }
 
-/// The controller.
+/// A proportional-integral controller from temperature error, K, to current, A, with limited output.
 ///
 /// Anti-windup: the integral stops while the output is at its limit and the error would drive it further.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pi {
     coefficients: PiCoefficients,
+    /// Largest magnitude of the output, A.
     limit: Current,
-    /// Ticks until the next update.
+    /// Ticks of 1 ms until the next update; the output is constant until then.
     ticks_to_update: u32,
+    /// Output of the last update, A; positive cools.
     output: Current,
     /// Integral part of the output, A; its magnitude never exceeds the limit.
     integral: I12F52,
 }
 
 impl Pi {
-    /// A controller with output zero.
+    /// A controller with output and integral 0 A, whose output never exceeds `limit`, A, in magnitude.
     #[must_use]
     pub const fn new(coefficients: PiCoefficients, limit: Current) -> Self {
         Self {
@@ -81,12 +86,13 @@ impl Pi {
         }
     }
 
-    /// Changes the coefficients; the integral part of the output stays.
+    /// Changes the gains; the integral part of the output, A, stays.
     pub const fn set_coefficients(&mut self, coefficients: PiCoefficients) {
         self.coefficients = coefficients;
     }
 
-    /// Bumpless transfer: the next update starts from the current that something else has driven until now.
+    /// Bumpless transfer: sets output and integral to the current, A, that something else has driven in this tick. The
+    /// next update starts from there, whatever the error has been.
     pub fn track_current(&mut self, current: Current) {
         (self.ticks_to_update, self.output) = (0, current);
         self.integral = I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_INTEGRAL_PLACES);
@@ -98,7 +104,8 @@ impl Pi {
         self.limit
     }
 
-    /// Current for one tick, A. Positive current cools, so it rises while the display is above its set-point.
+    /// Current for one tick, A, positive cools: it rises while `display`, °C, is above the set-point. Between two
+    /// updates of a slower [`UpdatePeriod`] it is the output of the last one.
     pub fn update_output(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
         if self.ticks_to_update == 0 {
             self.ticks_to_update = self.coefficients.period.period_ticks();
@@ -108,10 +115,11 @@ impl Pi {
         self.output
     }
 
-    /// Output for an error, K, that is positive while the display is too warm; updates whatever the period.
+    /// Current, A (positive cools), for an `error`, K, that is positive while the display is too warm. Integrates the
+    /// error by one update, whatever the period.
     ///
-    /// No sum overflows: the integral stays within 128 A (59 bits), its step within 2^10 A, the proportional part within
-    /// 2^24 A of 38 bits.
+    /// No sum overflows: the integral stays within 128 A (59 bits), its step within 2^10 A, the proportional part
+    /// within 2^24 A of 38 bits.
     pub fn current_for_error(&mut self, error: Celsius) -> Current {
         let PiCoefficients {
             proportional,

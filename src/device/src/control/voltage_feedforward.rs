@@ -8,12 +8,13 @@ use crate::bismuth_telluride::{DATA_SHEET_TEMPERATURE, RESISTIVITY_RISE_PER_K};
 use crate::drive::{Current, Duty, SafeCurrent};
 use crate::estimate::LegTemperatures;
 
-/// A voltage as a part of the bridge supply.
+/// A voltage as a part of the bridge's supply voltage; 1 is all of it.
 type SupplyPart = I8F24;
 
-/// Largest distance of the loss from its middle, on the line between none and all of it.
+/// Limit of the dead-time loss's distance from half of its largest value, as a part of the supply, on the line between
+/// no loss and all of it; keeps the quotient in range.
 const LARGEST_OFFSET_FROM_HALF_LOSS: SupplyPart = SupplyPart::lit("0.0625");
-/// Binary places of the divisor in a quotient.
+/// Binary places to which the divisor is cut, so that a 32-bit division is enough.
 const DIVISOR_BINARY_PLACES: u32 = 10;
 
 /// The module's electrical side: `V = R I + a (T_hot - T_cold) + V_dead`, where `V_dead` is what the bridge loses
@@ -33,22 +34,24 @@ const DIVISOR_BINARY_PLACES: u32 = 10;
 /// ±128 A, temperatures within ±512 K, all else within the supply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VoltageFeedforward {
-    /// Resistance with the legs at the data sheet's temperature, 1/A.
+    /// Resistance of legs at 27 °C, leads and bridge, divided by the supply voltage, 1/A.
     per_ampere: I4F28,
-    /// Rise of the resistance, 1/(A K).
+    /// Rise of the resistance of the legs with their mean temperature, divided by the supply voltage, 1/(A K).
     rise_per_k: I4F28,
-    /// Seebeck voltage per temperature difference of the legs, as a part of the supply, 1/K.
+    /// Seebeck voltage per kelvin between the legs' hot and cold ends, as a part of the supply, 1/K.
     per_k: I0F32,
-    /// Voltage lost in dead times.
+    /// Largest voltage that the bridge loses in its dead times, `V_dead`, as a part of the supply.
     dead_time: SupplyPart,
+    /// Half of the inductor's ripple current, A, divided by `w (1 - w)` for pulses of a part `w` of the period.
     ripple_a: Current,
+    /// Change of the inductor's current during one dead time, A.
     dead_time_a: Current,
-    /// Rise of the loss between none and all of it, 1/A.
+    /// Slope of the loss between none and all of it, as a part of the supply per ampere, 1/A.
     dead_time_per_a: SupplyPart,
 }
 
 impl VoltageFeedforward {
-    /// Converts settings. Computed in `f64`, for start-up.
+    /// Converts the module's electrical settings. Computed in `f64`, so it is for start-up and not for the tick.
     #[must_use]
     pub fn new(module: &Module) -> Self {
         let bits = |value: f64, places: u32| libm::round(libm::ldexp(value, places as i32)) as i32;
@@ -70,7 +73,8 @@ impl VoltageFeedforward {
         }
     }
 
-    /// Mean bridge voltage for a current.
+    /// Duty cycle of the bridge that drives `current` through the module, whose `legs` have these temperatures:
+    /// resistive and Seebeck voltage plus what the dead times lose, limited to ±0.9. Positive cools.
     #[must_use]
     pub fn duty_for_current(&self, current: SafeCurrent, legs: &LegTemperatures) -> Duty {
         let current = current.ampere();
@@ -89,8 +93,9 @@ impl VoltageFeedforward {
         Duty::saturating(I1F15::saturating_from_num(voltage))
     }
 
-    /// Loss of pulses that leave `needed` after it: where the line of the loss meets the width that the loss demands, to first
-    /// order around half of the loss.
+    /// Voltage that the bridge loses in its dead times, as a part of the supply, while its pulses must leave `needed`
+    /// (0 or more) after the loss, at `current`, A, along the pulses. The loss widens the pulses, which changes ripple
+    /// and loss in turn: solved to first order around half of the largest loss.
     fn dead_time_loss(&self, needed: SupplyPart, current: Current) -> SupplyPart {
         const ONE: SupplyPart = SupplyPart::ONE;
         let times = product::<SupplyPart, _>;

@@ -4,10 +4,12 @@ use core::ops::RangeInclusive;
 
 use contact_model::fixed_point::{Celsius, Force};
 
-/// Largest change of the set-point that a new force may cause before Eq. 6-12 is evaluated again.
+/// Largest change of the set-point, K, that a new mean force may cause before Eq. 6-12 is evaluated again for it.
 const EQUIVALENT_FORCE_TOLERANCE: Celsius = Celsius::lit("0.0001");
 
-/// Forces around `force` for which the set-point stays within [`EQUIVALENT_FORCE_TOLERANCE`]; `amplitude` is the factor of `E` in Eq. 6-12.
+/// Forces, N, around `force` for which the set-point stays within 0.1 mK ([`EQUIVALENT_FORCE_TOLERANCE`]), so that Eq.
+/// 6-12 need not be evaluated again. `amplitude` is the factor of `E` in Eq. 6-12, K: by how much the set-point changes
+/// during the whole contact.
 ///
 /// R changes by 0.95 of the force's relative change (Eq. 6-8), `E` by at most 0.277 of R's, and the set-point by
 /// `amplitude` times as much: 0.264 in all, rounded up to 17/64.

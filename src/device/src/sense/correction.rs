@@ -9,29 +9,35 @@ use thermal_settings::{
     Settings,
 };
 
-/// A sum of conversions after the correction of the converter: below 2^16, in sixteenths.
+/// A sum of 16 conversions without the converter's error: 0 to 2^16, in sixteenths.
 pub type CorrectedSum = U28F4;
 
-/// Width of a segment in sums, as a power of two.
+/// Width of a segment of the converter's range in units of a sum, as a power of two: 128 codes.
 const SEGMENT_SUMS_LOG2: u32 = (SEGMENT_CODES * SCANS_PER_TICK as u32).ilog2();
+/// Number of segments of 128 codes in the converter's range.
 const CONVERTER_SEGMENTS: usize = 1 << (u16::BITS - SEGMENT_SUMS_LOG2);
-/// Width in sums, as a power of two, over which noise spreads the step at a border: two codes on either side.
+/// Width in units of a sum, as a power of two, over which noise spreads the converter's step at a border of two
+/// segments: two codes on either side.
 const BORDER_TRANSITION_LOG2: u32 = 6;
+/// Half of that width, in units of a sum: how far below a border the transition begins.
 const HALF_BORDER_TRANSITION: u32 = 1 << (BORDER_TRANSITION_LOG2 - 1);
 
-/// Largest error of a converter of this class, counts. The host may set each step within its own range and all with
+/// Limit of the converter's error in any segment, counts. The host may set each step within its own range and all with
 /// one sign; without this limit they could hide more than a kelvin from the fault detectors.
 const CONVERTER_ERROR_MAX_COUNTS: f64 = 8.0;
 
-/// The calibration of one finger's temperature readings, in the fixed point that a tick uses.
+/// Corrections of one finger's thermistor readings, without the thermistors' curve: the error of the converter, and for
+/// each thermistor a polynomial correction and its self-heating. In fixed point, because a tick has no time for `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CalibrationTables {
+    /// Error of the analogue-to-digital converter, which all thermistors share.
     pub(super) converter: ConverterCorrection,
+    /// Corrections of display, second display, sink, skin and room thermistor.
     pub(super) thermistors: [ThermistorCorrection; THERMISTORS],
 }
 
 impl CalibrationTables {
-    /// Converts the calibration from `f64`: for set-up, not for the tick.
+    /// Converts the calibration from `f64`, so it is for start-up and the task that serves the host, not for the tick.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let self_heating_k = &settings.self_heating_k;
@@ -45,15 +51,16 @@ impl CalibrationTables {
     }
 }
 
-/// The converter's error, constant within each segment of its range.
+/// Error of the analogue-to-digital converter, which is constant within each segment of 128 codes and has a step at
+/// each border.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ConverterCorrection {
-    /// Reading minus true value in each segment, in sixteenths of a sum.
+    /// Reading minus true value in each segment, in sixteenths of the unit of a sum.
     errors: [i16; CONVERTER_SEGMENTS],
 }
 
 impl ConverterCorrection {
-    /// From the steps at the segments' borders, counts.
+    /// Adds up the steps at the segments' borders, counts, into the error of each segment, limited to ±8 counts.
     fn new(steps_counts: &[f64; BORDER_COUNT]) -> Self {
         let units_per_count = libm::ldexp(SCANS_PER_TICK as f64, CorrectedSum::FRAC_NBITS as i32);
         let mut error = 0.0;
@@ -71,8 +78,9 @@ impl ConverterCorrection {
         }
     }
 
-    /// The sum without the converter's error, 0 to 2^16 - 1/16. Near a border the error is interpolated linearly
-    /// over the codes into which noise spreads the step, because a sum does not tell on which side each conversion was.
+    /// A sum of 16 conversions without the converter's error, 0 to 2^16 - 1/16. Within two codes of a border the error
+    /// is interpolated linearly, because noise spreads the conversions to both sides of the step and a sum does not
+    /// tell on which side each one was.
     #[must_use]
     pub fn correct_sum(&self, sum: u16) -> CorrectedSum {
         let shifted = u32::from(sum) + HALF_BORDER_TRANSITION;
@@ -89,22 +97,26 @@ impl ConverterCorrection {
     }
 }
 
-/// What is added to the temperature of one thermistor: `offset + slope u + curvature u²`, with `u` its difference from
-/// 29 °C, limited to ±16 K.
+/// What is added to the temperature of one thermistor, K: `offset + slope u + curvature u²`, with `u` its difference
+/// from 29 °C, limited to ±16 K.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ThermistorCorrection {
+    /// Constant term, K, less the thermistor's self-heating.
     offset: Celsius,
-    /// K/K.
+    /// Linear term, K/K.
     slope: I0F32,
-    /// 1/K.
+    /// Quadratic term, 1/K.
     curvature: I0F32,
 }
 
 impl ThermistorCorrection {
+    /// Temperature at which the polynomial's variable `u` is zero, 29 °C.
     const POLYNOMIAL_CENTRE: Celsius = Celsius::const_from_int(CORRECTION_CENTER_C as i32);
+    /// Largest magnitude of the polynomial's variable `u`, 16 K; beyond it the correction is constant.
     const POLYNOMIAL_HALF_RANGE: Celsius = Celsius::const_from_int(CORRECTION_HALF_SPAN_K as i32);
 
-    /// Subtracts the thermistor's self-heating, K, from the correction's offset.
+    /// Converts the correction of one thermistor. Its self-heating, K, is subtracted, so that the reading is that of
+    /// the surface and not of the warmer thermistor.
     fn new(correction: &thermal_settings::Correction, self_heating_k: f64) -> Self {
         let coefficient = |value| I0F32::from_bits(libm::ldexp(value, 32) as i32);
         Self {
@@ -114,7 +126,8 @@ impl ThermistorCorrection {
         }
     }
 
-    /// The corrected temperature. No product overflows: of their 64 bits, `slope u` uses 57 and `curvature u²` 61.
+    /// The temperature, °C, after the correction. No product overflows: of their 64 bits, `slope u` uses 57 and
+    /// `curvature u²` 61.
     #[must_use]
     pub fn corrected_temperature(&self, uncorrected: Celsius) -> Celsius {
         let u = uncorrected

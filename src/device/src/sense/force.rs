@@ -5,46 +5,59 @@ use fixed::types::I18F14;
 
 use thermal_settings::ForceSensor;
 
-/// From this force on the signal counts as off its zero. Noise of 0.7 to 1.2 counts a conversion is 0.6 to 1.1 mN here.
+/// Force, N, from which the signal counts as off its zero: a finger may be landing. Noise of 0.7 to 1.2 counts a
+/// conversion is 0.6 to 1.1 mN here.
 const OFF_ZERO_FROM: Force = Force::lit("0.003");
-/// A contact begins from the first force on and ends below the second (hysteresis).
+/// Force, N, from which a finger touches the display.
 const CONTACT_BEGINS_FROM: Force = Force::lit("0.02");
+/// Force, N, below which a finger that touches has lifted; half of that at which it begins (hysteresis), so that noise
+/// does not end a light contact.
 const CONTACT_ENDS_BELOW: Force = Force::lit("0.01");
-/// Sum beyond which the signal is at the end of the converter's range.
+/// Sum of 16 conversions above which the force sensor's wire counts as shorted to the supply: 4060 of 4095 counts,
+/// where the converter's range ends. The station then trips.
 const SHORTED_WIRE_ABOVE: u16 = 4060 * 16;
-/// Ticks for which a change must last.
+/// Ticks of 1 ms for which the force must be off its zero before a contact begins, or below its threshold before a
+/// contact ends.
 const CONTACT_DEBOUNCE_TICKS: u32 = 2;
-/// A signal that has been off its zero for longer, ticks, rose too slowly to tell when the finger landed.
+/// Largest time, ticks of 1 ms, by which the detection of a contact is dated back to when the force left its zero. A
+/// force that has been off its zero for longer rose too slowly to tell when the finger landed.
 const DATED_RISE_MAX_TICKS: u32 = 32;
 
-/// Largest difference of the zero from that of the settings: 2 % of it, and 2 % of the reference. A smaller force that is
-/// there from switch-on is taken for zero.
+/// Largest difference, N, of the tracked zero from that of the settings: 2 % of it, and 2 % of the reference. A smaller
+/// force that is there from switch-on is taken for zero.
 const ZERO_CHANGE_MAX_N: f64 = 0.06;
-/// Ticks after switch-on whose mean is the first zero, whatever the signal.
+/// Ticks after switch-on over which the zero is the plain mean of the signal. Only ticks count in which nothing touches
+/// and the signal is within 0.06 N of the stored zero.
 const INITIAL_ZERO_TICKS: i32 = 256;
-/// Time constants with which the zero then tracks a signal at its zero (1 s) and one off its zero (16 s), as powers of two
-/// of ticks.
+/// Time constant, as a power of two of ticks (1 s), with which the zero then tracks a signal within 3 mN of it.
 const AT_ZERO_TRACKING_SHIFT: u32 = 10;
+/// Time constant, as a power of two of ticks (16 s), with which the zero tracks a signal that is off it, yet below the
+/// force of a contact: slower, because it may be a finger.
 const OFF_ZERO_TRACKING_SHIFT: u32 = 14;
 
-/// A sum of conversions, or its zero, at a resolution at which slow tracking does not stop; the largest sum fits.
+/// A sum of 16 conversions, or its zero, with 14 binary places, at which slow tracking does not stop by rounding; the
+/// largest sum fits.
 type FineSum = I18F14;
 
-/// Converts the signal of a linear sensor with a live zero, which is tracked while nothing touches.
+/// Converts the signal of a linear force sensor with a live zero, which is tracked while nothing touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ForceChannel {
-    /// Sum below which the wire is broken.
+    /// Sum of 16 conversions below which the sensor's wire counts as broken: half of the zero.
     broken_below: u16,
+    /// Sum without force, which is tracked.
     zero: FineSum,
+    /// Smallest signal that is still tracked as zero: 0.06 N below that of the settings.
     min_zero: FineSum,
+    /// Largest signal that is still tracked as zero: 0.06 N above that of the settings.
     max_zero: FineSum,
-    /// Ticks of which the zero is the mean, until it is tracked.
+    /// Ticks since switch-on of which the zero is the mean, up to [`INITIAL_ZERO_TICKS`]; then the zero is tracked.
     initial_ticks: i32,
+    /// Force, N, per unit of the sum.
     n_per_unit: Fraction,
 }
 
 impl ForceChannel {
-    /// Converts the settings from `f64`: for set-up, not for the tick.
+    /// Converts zero and sensitivity from the settings in `f64`, so it is for start-up and not for the tick.
     #[must_use]
     pub fn new(settings: &ForceSensor) -> Self {
         let zero = settings.zero_counts * 16.0;
@@ -60,8 +73,8 @@ impl ForceChannel {
         }
     }
 
-    /// Force for the sum of 16 conversions; 0 below the zero. `None`: the wire is broken or shorted, because the signal is
-    /// below half of its live zero or at the end of the range.
+    /// Force, N, for the sum of 16 conversions; 0 below the zero. `None`: the wire is broken or shorted, because the
+    /// sum is below half of the settings' zero or at the end of the converter's range.
     #[must_use]
     pub fn force_of_sum(&self, sum: u16) -> Option<Force> {
         if sum < self.broken_below || sum > SHORTED_WIRE_ABOVE {
@@ -72,7 +85,8 @@ impl ForceChannel {
         Some(saturating_product(above_zero, self.n_per_unit))
     }
 
-    /// Tracks the zero by the sum of a tick in which nothing touches, slower if its force is off the zero.
+    /// Moves the zero towards the sum of a tick in which nothing touches, more slowly if the force is off the zero. A
+    /// sum more than 0.06 N from the settings' zero is ignored.
     pub fn track_zero(&mut self, sum: u16, is_off_zero: bool) {
         let sum = FineSum::from(sum);
         if !(self.min_zero..=self.max_zero).contains(&sum) {
@@ -89,20 +103,23 @@ impl ForceChannel {
     }
 }
 
-/// Debounced contact of a finger, with hysteresis.
+/// Detects from the force whether a finger touches the display, with debouncing and hysteresis, and since when.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactDetector {
+    /// Whether a finger touches.
     touching: bool,
-    /// Ticks for which the force has been off its zero, up to [`DATED_RISE_MAX_TICKS`]; holds its value during a contact.
+    /// Ticks of 1 ms for which the force has been off its zero, up to [`DATED_RISE_MAX_TICKS`]; holds its value during
+    /// a contact.
     off_zero_ticks: u32,
-    /// Ticks for which the force has been below [`CONTACT_ENDS_BELOW`] during a contact.
+    /// Ticks of 1 ms for which the force has been below [`CONTACT_ENDS_BELOW`] during a contact.
     release_ticks: u32,
 }
 
 impl ContactDetector {
-    /// Updates the contact by the force of one tick.
+    /// Takes the force of one tick, N, and decides whether a finger touches.
     ///
-    /// A contact begins in the second tick off zero at the earliest, so that one noisy tick does not begin one.
+    /// A contact begins at 20 mN and ends below 10 mN. It begins in the second tick off zero at the earliest, and ends
+    /// in the second tick below, so that one noisy tick does neither.
     pub fn update_contact(&mut self, force: Force) {
         if self.touching {
             let low = force < CONTACT_ENDS_BELOW;
@@ -120,25 +137,28 @@ impl ContactDetector {
         }
     }
 
-    /// A finger touches.
+    /// Whether a finger touches the display, since the force of the last tick.
     #[must_use]
     pub const fn touching(&self) -> bool {
         self.touching
     }
 
-    /// The force is off its zero.
+    /// Whether the force is 3 mN or more, in the last tick or, during a contact, when it began; the zero is then
+    /// tracked more slowly.
     #[must_use]
     pub const fn is_off_zero(&self) -> bool {
         self.off_zero_ticks > 0
     }
 
-    /// The force has been off its zero for the debounce time, which noise seldom causes: a finger may be landing.
+    /// Whether the force has been off its zero for two ticks, which noise seldom causes: a finger may be landing. The
+    /// self-test takes it for a touch.
     #[must_use]
     pub const fn may_be_landing(&self) -> bool {
         self.off_zero_ticks >= CONTACT_DEBOUNCE_TICKS
     }
 
-    /// Ticks from a landing, when the force left its zero, to its detection: 2 to 32.
+    /// Ticks of 1 ms from a landing, when the force left its zero, to its detection, 2 to 32; of use in the first tick
+    /// of a contact.
     #[must_use]
     pub const fn detection_delay_ticks(&self) -> u32 {
         self.off_zero_ticks
