@@ -85,7 +85,7 @@ pub static PANICS: [Entry; 10] = [
         why: "a log within a log: nothing that is logged logs while it is formatted",
     },
     Entry {
-        trees: &[RECEIVER],
+        trees: &[TICK, RECEIVER],
         names: &["heapless::spsc::QueueInner::increment"],
         why: "remainder by the length of a queue, a constant above zero",
     },
@@ -169,12 +169,12 @@ pub static LOOPS: [Entry; 7] = [
     },
     Entry {
         trees: &[TICK],
-        names: &["contact_model::fixed_point::course::lengths_per_octave"],
+        names: &["contact_model::fixed_point::chord_interpolation::lengths_per_octave"],
         why: "a constant range",
     },
     Entry {
         trees: &[TICK],
-        names: &["thermal_display::commissioning::sums::Sums::equation"],
+        names: &["thermal_device::identification::normal_equations::NormalEquations::add_equation"],
         why: "arrays of constant length",
     },
     Entry {
@@ -188,10 +188,11 @@ pub static LOOPS: [Entry; 7] = [
         why: "moves values, whose sizes are those of their types",
     },
     Entry {
-        trees: &[TICK],
+        trees: &[TICK, CONVERTER],
         names: &[
             "compiler_builtins::arm::__aeabi_memset4",
             "compiler_builtins::mem::impls::set_bytes::set_bytes_bytes",
+            "compiler_builtins::mem::impls::set_bytes::set_bytes_words",
         ],
         why: "clears values, whose sizes are those of their types",
     },

@@ -37,9 +37,9 @@ impl Frame {
             .any(|library| self.function.starts_with(library))
     }
 
-    /// It belongs to this project.
+    /// It belongs to one of this project's packages that the image contains.
     pub fn is_ours(&self) -> bool {
-        ["thermal_display::", "contact_model::"]
+        ["thermal_", "contact_model::"]
             .iter()
             .any(|ours| self.function.starts_with(ours))
     }

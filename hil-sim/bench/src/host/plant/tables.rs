@@ -7,7 +7,7 @@ use super::finger::{DURATION_S, FORCE_N, OBJECT};
 /// Name of the plot beside the page.
 const SVG: &str = "plant-benchmark.svg";
 
-/// All tables with what they mean.
+/// All tables with their explanations.
 #[must_use]
 pub fn tables(figures: &Figures) -> String {
     let fingers = grid(
