@@ -108,7 +108,7 @@ mod tests {
 
     /// 50-digit values of the model's test data.
     #[test]
-    fn truth_agrees_with_golden_values() {
+    fn the_exact_kernel_agrees_with_golden_values() {
         let path = concat!(
             env!("CARGO_MANIFEST_DIR"),
             "/../../model/tests/data/erfcx.csv"

@@ -43,7 +43,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_and_powers_are_found_again() {
+    fn lines_and_powers_are_recovered() {
         let found = line(&[(1.0, 5.0), (2.0, 7.0), (4.0, 11.0)]);
         assert!((found.start - 3.0).abs() < 1e-12 && (found.slope - 2.0).abs() < 1e-12);
         assert!(found.worst_off < 1e-12);
