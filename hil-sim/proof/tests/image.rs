@@ -81,7 +81,10 @@ fn the_checks_find_what_the_image_is_known_to_have() {
         .filter(|(tree, part)| !calls(tree, part))
         .map(|(tree, part)| format!("{tree} calls no {part}"))
         .collect();
-    assert!(inlined.is_empty() || !recorded_with(&proof.compiler, &inlined));
+    assert!(
+        inlined.is_empty() || !recorded_with(&proof.compiler, &inlined),
+        "{inlined:?}"
+    );
     // Panics are recognised as functions that never return; the functions named as panics are among them.
     let panicking =
         |name: &str| name.starts_with("core::panicking::") || name.ends_with("unwrap_failed");
