@@ -1,6 +1,6 @@
 //! The model's share of a control tick, in each kind of scene: set-points (Eq. 6-12, 3-1) from ticks, force and the
-//! temperatures before contact. By the model's integers, by the same formulas in floating point, and by the firmware's own
-//! step, which follows the force.
+//! temperatures before contact. Computed by the model in fixed point, by the same formulas in floating point, and by the
+//! firmware's reference generator, which filters the force.
 
 mod floating;
 
@@ -18,14 +18,14 @@ use floating::Finger as FloatingFinger;
 pub const TICK_S: f64 = 1e-3;
 /// Ticks of a scene: 10 s.
 pub const TICKS: u32 = 10_000;
-/// Temperatures before contact.
+/// Skin temperature before contact.
 pub const SKIN_C: f64 = 34.0;
-/// See [`SKIN_C`].
+/// Object temperature before contact.
 pub const OBJECT_C: f64 = 24.0;
 /// The constant force.
 pub const FORCE_N: f64 = 2.0;
-/// Materials of the five fingers, by their place in [`MATERIALS`]: granite, which is also that of scenes with one
-/// finger, copper, stainless steel, ABS, foam.
+/// Materials of the five fingers, as indices of [`MATERIALS`]: granite, copper, stainless steel, ABS, foam. Scenes with
+/// one finger use the first.
 pub const FINGERS: [usize; 5] = [3, 0, 2, 5, 6];
 
 /// A kind of scene, in one arithmetic.
@@ -33,19 +33,19 @@ pub const FINGERS: [usize; 5] = [3, 0, 2, 5, 6];
 pub struct Scene {
     /// Name of the kind.
     pub kind: &'static str,
-    /// How it is computed.
+    /// Arithmetic of the set-point.
     pub arithmetic: Arithmetic,
-    /// What is done in a tick since contact. Gives the bits of the first finger's set-point in integers; in floating
-    /// point 0, and leaves it in the station.
+    /// Computes one tick, given the number of ticks since contact. Returns the bits of the first finger's set-point; in
+    /// floating point returns 0 and leaves the set-point in the station.
     pub step: fn(&mut Station, u32) -> u32,
 }
 
-/// How a set-point is computed.
+/// Arithmetic of a set-point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arithmetic {
-    /// The model's.
+    /// The model's fixed point.
     Integers,
-    /// The firmware's whole step from force to set-point.
+    /// The firmware's step from force to set-point.
     Firmware,
     /// Single precision, erfcx after Shepherd and Laframboise.
     Shepherd,
@@ -55,18 +55,18 @@ pub enum Arithmetic {
     LibmF64,
 }
 
-/// A finger by the model's integers.
+/// A finger in the model's fixed point.
 #[derive(Clone)]
 struct Finger {
     pair: ContactPair,
     chords: ChordInterpolation,
-    /// Of five fingers, each is left here.
+    /// Set-point of the last tick, if there are five fingers.
     set_point: Celsius,
 }
 
-/// Everything that was set up before the first tick.
+/// State before the first tick.
 #[derive(Clone)]
-#[repr(C)] // The fingers first, where loads in pairs reach them.
+#[repr(C)] // The fingers come first, within the offset range of paired loads.
 pub struct Station {
     fixed: [Finger; 5],
     skin: Celsius,
@@ -124,17 +124,17 @@ impl Station {
     }
 }
 
-/// The force that streams: 1 to 2 N and again, different in every tick; in units of 2^-12 N above 1 N.
+/// Streaming force: a sawtooth from 1 to 2 N, in units of 2^-12 N above 1 N.
 fn streaming(tick: u32) -> u32 {
     tick & 0xfff
 }
 
-/// The force that streams, in integers.
+/// Streaming force in fixed point.
 fn streaming_fixed(tick: u32) -> Force {
     Force::from_bits((1 << 24) + (streaming(tick) << 12))
 }
 
-/// The force that streams, N.
+/// Streaming force, N.
 #[must_use]
 pub fn streaming_n(tick: u32) -> f64 {
     1.0 + f64::from(streaming(tick)) / 4096.0
@@ -202,7 +202,7 @@ fn reference_streaming(station: &mut Station, tick: u32) -> u32 {
     reference_step(station, streaming_fixed(tick))
 }
 
-/// Only returns: what a call costs beside the callee's work.
+/// Only returns, which costs the overhead of a call.
 #[inline(never)]
 pub fn only_return_scene(_: &mut Station, _: u32) -> u32 {
     0
@@ -210,11 +210,11 @@ pub fn only_return_scene(_: &mut Station, _: u32) -> u32 {
 
 /// Kinds of scenes, as [`Scene::kind`] names them.
 pub mod kind {
-    /// Nothing touches: the display is preset.
+    /// No contact: the display is preset.
     pub const IDLE: &str = "idle";
     /// A finger under a constant force.
     pub const CONSTANT: &str = "constant force";
-    /// A finger whose force changes in every tick: R and E in every tick.
+    /// A finger whose force changes in every tick, so that R and E are evaluated in every tick.
     pub const STREAMING: &str = "streaming force";
     /// Perfect contact (Eq. 3-1).
     pub const SEMI_INFINITE: &str = "semi-infinite";
@@ -222,7 +222,7 @@ pub mod kind {
     pub const FIVE: &str = "five fingers";
     /// [`CONSTANT`] by the firmware, from landing on.
     pub const REFERENCE_CONSTANT: &str = "render step, constant force";
-    /// [`STREAMING`] by the firmware, from landing on: R only where a mean of the force has moved.
+    /// [`STREAMING`] by the firmware, from landing on; R is evaluated when the mean of the force has changed.
     pub const REFERENCE_STREAMING: &str = "render step, streaming force";
 }
 
@@ -240,7 +240,7 @@ const fn scene(
 
 use Arithmetic::{Firmware, Integers, LibmF32, LibmF64, Shepherd};
 
-/// All kinds, in the arithmetics that each has.
+/// All kinds, each in the arithmetics that are compared.
 pub static SCENES: [Scene; 18] = [
     scene(kind::IDLE, Integers, idle),
     scene(kind::IDLE, LibmF32, |s, _| {

@@ -1,4 +1,4 @@
-//! What the emulated machine says: the longest tick, and the deepest stack, over scenes that have something of everything.
+//! Measurements in the emulator: the longest tick and the deepest stack over the scenes of [`scenes`](crate::scenes).
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
@@ -26,7 +26,7 @@ struct Measured {
     cost: Cost,
 }
 
-/// Ticks and stack of the scenes are as `docs/figures.toml` states, and the stack is within the proven bound.
+/// Checks that ticks and stack are as `docs/figures.toml` states, and that the stack is within its upper bound.
 ///
 /// # Errors
 /// A scene does not run to its end.
@@ -86,7 +86,7 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
     Ok(section.judged(&proof.compiler))
 }
 
-/// What a scene on one finger costs, without the eight seconds before it.
+/// Cost of all scenes with one finger, without the eight seconds before each.
 fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
     let scenes: Vec<(String, Scene)> = touched()?.into_iter().chain(faulty()?).collect();
     let jobs: Vec<Option<&(String, Scene)>> =
@@ -111,7 +111,7 @@ fn of_outcome(what: &str, outcome: &Outcome) -> Result<Measured> {
     })
 }
 
-/// The device calibrates its sensors and tunes itself.
+/// Cost of commissioning: calibration of the sensors and identification of the tile.
 fn commissioned(firmware: &Firmware) -> Result<Measured> {
     let what = "commissioning";
     let (_, scene) = touched()?.into_iter().next().context("no scene")?;

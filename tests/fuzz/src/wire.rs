@@ -38,12 +38,12 @@ pub fn show(input: &[u8]) -> String {
 
 fn play<const FINGERS: usize>(mut device: CheckedDevice<FINGERS>, bytes: &[u8]) -> bool {
     let mut reader = LineReader::new();
-    let mut left = TICKS / FINGERS as u32;
+    let mut remaining = TICKS / FINGERS as u32;
     for &byte in bytes {
         match byte {
             0x80..=0xbf => {
-                let ticks = left.min(u32::from(byte & 0x3f) + 1);
-                left -= ticks;
+                let ticks = remaining.min(u32::from(byte & 0x3f) + 1);
+                remaining -= ticks;
                 device.run(ticks);
             }
             0xc0..=0xcf => device.press_all(0.2 * f64::from(byte & 0x0f)),

@@ -7,13 +7,13 @@ use model_bench::scenes::{
     FINGERS, FORCE_N, OBJECT_C, SKIN_C, Scene, Station, TICK_S, TICKS, kind, streaming_n,
 };
 
-/// What a scene gave on this host.
+/// Results of a scene on this host.
 pub struct Judgement {
-    /// Largest error, mK; of the ticks with a number.
+    /// Largest error, mK, of the set-points that are numbers.
     pub worst_mk: f64,
-    /// Time of the first set-point that is no number, s.
+    /// Time of the first set-point that is not a number, s.
     pub breaks_at_s: Option<f64>,
-    /// Of the set-points as `f64`.
+    /// Checksum of the set-points as `f64`.
     pub checksum: Checksum,
 }
 

@@ -1,4 +1,4 @@
-//! The firmware's logic alone, on samples that were recorded.
+//! The firmware's logic alone, on recorded samples.
 use std::hint::black_box;
 
 use anyhow::bail;
