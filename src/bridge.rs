@@ -33,14 +33,14 @@ where
     In2: SetDutyCycle<Error = Infallible>,
     Enable: OutputPin<Error = Infallible>,
 {
-    /// A driver of the bridge with these inputs, which it turns off.
+    /// Takes the pins of a bridge and turns the bridge off.
     pub fn new(in1: In1, in2: In2, enable: Enable) -> Self {
         let mut bridge = Self { in1, in2, enable };
         bridge.off();
         bridge
     }
 
-    /// Makes both outputs high-impedance.
+    /// Turns the bridge off: makes both outputs high-impedance, so that no current flows through the module.
     pub fn off(&mut self) {
         let Ok(()) = self.enable.set_low();
         let Ok(()) = self.in1.set_duty_cycle_fully_off();

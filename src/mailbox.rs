@@ -10,7 +10,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 use heapless::spsc::{Consumer, Producer, Queue};
 use thermal_protocol::{Line, LineError};
 
-/// Lines that the queue holds.
+/// Number of received lines that can wait for their answers.
 pub const DEPTH: usize = 4;
 
 /// A received line, or why it could not be received.
@@ -37,7 +37,7 @@ pub struct Outlet<'a> {
 }
 
 impl Mailbox {
-    /// An empty mailbox.
+    /// A mailbox in which no line waits.
     pub const fn new() -> Self {
         Self {
             lines: Queue::new(),

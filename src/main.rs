@@ -38,7 +38,8 @@ mod app {
         #[lock_free]
         control_loop: ControlLoop,
         task_liveness: TaskLiveness,
-        /// The host has sent a line since the last tick.
+        /// Set when the host has sent a line or a blank one, cleared by the next tick: it restarts the time-out
+        /// of a silent host.
         host_is_active: AtomicBool,
     }
 

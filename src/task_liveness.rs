@@ -5,7 +5,7 @@ use core::sync::atomic::{AtomicU8, Ordering};
 /// A task that must run regularly, or the watchdog resets the device.
 #[derive(Clone, Copy, Debug)]
 pub enum Task {
-    /// The control tick.
+    /// The control tick, which samples the sensors and drives the bridges.
     Tick = 1 << 0,
     /// The task that answers the host.
     Host = 1 << 1,

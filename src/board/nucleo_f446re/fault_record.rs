@@ -25,7 +25,7 @@ pub fn checksum(words: &[u32]) -> u32 {
     })
 }
 
-/// The stored cause, if there is one.
+/// The trip cause that was stored before the reset; `None` if the checksum does not match.
 pub fn stored() -> Option<TripCause> {
     let words: [u32; LENGTH] = core::array::from_fn(|i| STORED[i].load(Ordering::Relaxed));
     let [cause @ .., sum] = words;
@@ -85,7 +85,7 @@ impl FaultRecord {
         Self { stored }
     }
 
-    /// Whether a cause is stored.
+    /// Whether a trip cause is stored, so that it must be erased once no finger is tripped any more.
     pub const fn is_stored(&self) -> bool {
         self.stored.is_some()
     }

@@ -14,7 +14,7 @@ use embedded_storage::nor_flash::{
 };
 use stm32f4xx_hal::pac::FLASH;
 
-/// Address of sector 1.
+/// Address of sector 1, the first of the three sectors that hold the settings.
 const BASE: usize = 0x0800_4000;
 /// Bytes of the three sectors together, of one sector, and of one word.
 const BYTES: usize = 3 * SECTOR;

@@ -4,7 +4,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use defmt_rtt as _;
 
-/// Milliseconds since sampling began.
+/// Time stamp of the log: milliseconds since the control tick began to run.
 static UPTIME_MS: AtomicU32 = AtomicU32::new(0);
 
 defmt::timestamp!("{=u32:ms}", UPTIME_MS.load(Ordering::Relaxed));

@@ -88,7 +88,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    /// Empty buffers and queues.
+    /// Memory with empty buffers and queues, as it is before [`Board::start`] uses it.
     pub const fn new() -> Self {
         Self {
             scans: [sampler::EMPTY; sampler::BLOCKS],
@@ -147,17 +147,17 @@ fn restore_device(
 /// The parts of the board, set up and ready to take samples, which are moved to the tasks that own
 /// them.
 pub struct Board {
-    /// Stations of all fingers.
+    /// The hardware-free device: the stations of all fingers.
     pub device: &'static mut Device<FINGERS>,
     /// Sampling, bridges and window watchdog, which is already running.
     pub control_loop: ControlLoop,
-    /// Starts the sampling.
+    /// The timer that the idle task starts, so that sampling begins once interrupts are enabled.
     pub trigger: SampleTrigger,
-    /// Receives bytes from the host.
+    /// Receives bytes from the host and assembles them to lines, in the interrupt of the serial port.
     pub receiver: Receiver,
-    /// Sends lines to the host.
+    /// Sends the lines to the host one after the other, in the interrupt of the sending DMA stream.
     pub transmitter: Transmitter,
-    /// Answers the host.
+    /// Answers the lines of the host and sends telemetry, in the host task.
     pub console: Console,
     /// The independent watchdog, already running.
     pub watchdog: Watchdog,

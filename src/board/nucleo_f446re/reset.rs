@@ -13,7 +13,7 @@ pub enum Reset {
     /// The independent watchdog: a task did not check in, or a handler of a fatal error waited for
     /// the reset.
     Watchdog,
-    /// The program requested it.
+    /// The program requested the reset, to store settings or after a fatal error.
     Software,
     /// The supply voltage was too low; the RAM has kept its content.
     BrownOut,
@@ -46,7 +46,7 @@ impl Reset {
         }
     }
 
-    /// Clears the reset flags.
+    /// Clears the reset flags, so that the next reset is told from this one.
     pub fn clear(rcc: &RCC) {
         rcc.csr().modify(|_, w| w.rmvf().clear());
     }

@@ -70,7 +70,7 @@ pub struct Sampler {
 pub struct SampleTrigger(CounterHz<TIM2>);
 
 impl SampleTrigger {
-    /// Starts the timer.
+    /// Starts the timer; from then on a scan of all channels is triggered 16 times a tick and finger.
     pub fn start(&mut self) {
         // This cannot fail, because the counter has 32 bits. 90 MHz is an exact multiple of both
         // scan rates, 16 and 90 kHz.

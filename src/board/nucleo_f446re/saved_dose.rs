@@ -8,11 +8,11 @@ use thermal_display::device::safety::ThermalDose;
 use super::FINGERS;
 use super::fault_record::checksum;
 
-/// ThermalDose and checksum of each finger. The start-up code does not initialise `.uninit`.
+/// Thermal dose of each finger and its checksum. The start-up code does not initialise `.uninit`.
 #[unsafe(link_section = ".uninit.dose")]
 static SAVED: [[AtomicU32; 2]; FINGERS] = [const { [const { AtomicU32::new(0) }; 2] }; FINGERS];
 
-/// The saved dose of a finger; zero if the checksum does not match.
+/// The thermal dose of a finger that was saved before the reset; zero if its checksum does not match.
 pub fn saved_dose(finger: Finger<FINGERS>) -> ThermalDose {
     let [dose, sum] = &SAVED[finger.index()];
     let word = dose.load(Ordering::Relaxed);
@@ -23,7 +23,7 @@ pub fn saved_dose(finger: Finger<FINGERS>) -> ThermalDose {
     }
 }
 
-/// Saves the dose of a finger.
+/// Saves the thermal dose of a finger in RAM that a reset does not clear; called in every tick.
 pub fn save_dose(finger: Finger<FINGERS>, dose: &ThermalDose) {
     let saved = &SAVED[finger.index()];
     // The dose changes every 256 ticks only; the comparison is faster than the checksum.

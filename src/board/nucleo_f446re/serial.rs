@@ -32,7 +32,7 @@ pub const FRAMES: usize = 4;
 /// Longest line to the host with its end, bytes.
 const FRAME_MAX: usize = "@0 ".len() + ANSWER_MAX_BYTES + 1;
 
-/// Memory of one frame.
+/// The bytes of one frame: one line to the host with its line ending.
 pub type FrameBuffer = Vec<u8, FRAME_MAX>;
 
 /// One line to the host.
@@ -67,7 +67,7 @@ pub struct FrameQueues {
 }
 
 impl FrameQueues {
-    /// Two empty queues.
+    /// Queues before [`start`] puts the empty frames into one of them.
     pub const fn new() -> Self {
         Self {
             full: Queue::new(),

@@ -3,13 +3,13 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-/// Words of the guard.
+/// Number of 32-bit words in the guard below the stack.
 const GUARD_WORDS: usize = 4;
-/// Value of each word while the stack has not reached it.
+/// Value of each word of the guard while the stack has not overwritten it.
 const UNTOUCHED: u32 = 0x57ac_0bad;
 
 unsafe extern "C" {
-    /// Placed below the stack by `memory.x`.
+    /// The guard: words that `memory.x` places directly below the stack, so that an overflow overwrites them.
     static _stack_guard: [AtomicU32; GUARD_WORDS];
 }
 
@@ -26,7 +26,7 @@ pub fn stack_is_overrun() -> bool {
         .any(|word| word.load(Ordering::Relaxed) != UNTOUCHED)
 }
 
-/// Writes the known value into the guard.
+/// Writes the known value into all words of the guard, at every start.
 pub fn init_guard() {
     guard()
         .iter()

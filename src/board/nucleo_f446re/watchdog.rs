@@ -41,7 +41,7 @@ impl Watchdog {
         watchdog
     }
 
-    /// Restarts the period.
+    /// Restarts the period of 68 to 188 ms, after which the watchdog resets the device.
     pub fn feed(&mut self) {
         self.0.kr().write(|w| w.key().feed());
     }

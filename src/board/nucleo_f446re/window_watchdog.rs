@@ -9,7 +9,8 @@ use stm32f4xx_hal::rcc::Rcc;
 /// The counter stops if its clock does; the independent watchdog then resets the device.
 const START_COUNT: u8 = 0x7f;
 
-/// The running window watchdog, which cannot be stopped.
+/// The started window watchdog (WWDG). It resets the device 46.6 ms after the last feeding; its window
+/// is always open, so an early feeding is allowed. Once started, only a reset stops it.
 pub struct WindowWatchdog(WWDG);
 
 impl WindowWatchdog {
@@ -26,7 +27,7 @@ impl WindowWatchdog {
         watchdog
     }
 
-    /// Restarts the countdown; the first call starts it.
+    /// Restarts the countdown of 46.6 ms; the first call, by the first control tick, starts it.
     pub fn feed(&mut self) {
         self.0.cr().write(|w| {
             w.t().set(START_COUNT);

@@ -25,7 +25,7 @@ pub fn skip(words: &mut Words<'_>, expected: &str) -> bool {
     is_next
 }
 
-/// Finds a word in a table.
+/// Finds the value of a word in a table of words and values.
 pub fn lookup<T: Copy>(table: &[(&'static str, T)], word: &str) -> Option<(&'static str, T)> {
     table.iter().find(|(known, _)| *known == word).copied()
 }

@@ -37,7 +37,7 @@ pub enum Request {
 /// once for the list of known commands in an error message.
 macro_rules! commands {
     (|$words:ident, $display:ident| { $($name:literal => $request:expr,)* }) => {
-        /// First words of all commands.
+        /// First words of all commands, which the answer to an unknown command lists.
         pub const WORDS: &[&str] = &[$($name),*];
 
         fn parse_arguments(
@@ -96,12 +96,12 @@ impl Request {
     }
 }
 
-/// Words of the modes.
+/// Words of the modes that give the set-point, as the command `mode` takes them.
 pub const MODES: [(&str, Mode); 2] = [
     ("contact", Mode::ContactResistance),
     ("semi-infinite", Mode::SemiInfinite),
 ];
-/// Word of a material that is given by its properties.
+/// Word of a material that is given by its properties: conductivity, density, specific heat, roughness and slope follow.
 pub const CUSTOM: &str = "custom";
 
 static STREAM: Range = Range {

@@ -9,7 +9,7 @@ use contact_model::fixed_point::{Celsius, Force};
 
 use thermal_device::drive::Current;
 
-/// Capacity of a buffer, bytes.
+/// Capacity of a buffer, bytes: that of the longest telemetry line.
 const CAPACITY_BYTES: usize = 128;
 
 /// A line that is being written. A word or number that does not fit is left out as a whole.
@@ -65,7 +65,7 @@ impl LineBuffer {
         self.push_decimal::<24, 3>(value.to_bits().into());
     }
 
-    /// Appends an integer.
+    /// Appends an integer in decimal.
     pub(super) fn push_integer(&mut self, value: u32) {
         self.push_digits::<0>(value);
     }

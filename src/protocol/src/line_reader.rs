@@ -32,7 +32,7 @@ pub struct LineReader {
 }
 
 impl LineReader {
-    /// An empty reader.
+    /// A reader that has received no byte of a line yet.
     #[must_use]
     pub const fn new() -> Self {
         Self {

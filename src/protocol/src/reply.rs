@@ -14,14 +14,14 @@ use crate::line_buffer::LineBuffer;
 /// An answer; `Display` writes it without its line ending, at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
-    /// Answer to `id`.
+    /// Answer to `id`: name and version of the firmware, number of fingers and rates.
     Identity {
         /// Number of fingers of the device.
         fingers: u8,
     },
-    /// Reply of a station.
+    /// Reply of the station that has executed the command.
     Station(command::Reply),
-    /// Reply of a commissioning session.
+    /// Reply of the commissioning session that has executed the request.
     Commissioning(SessionReply),
     /// `save` or `forget`: the device restarts to execute the order, and answers `ok` afterwards.
     Restart(StorageOrder),

@@ -49,9 +49,9 @@ pub struct Settings {
     pub gains: Gains,
     /// Gains of the temperature loop that is closed ten times a second.
     pub gains_10hz: Gains,
-    /// Surface finish of the display.
+    /// Thermal conductivity, roughness and slope of the display surface, which determine its contact resistance to the skin.
     pub display: Surface,
-    /// Calibration of the sensors.
+    /// Corrections of the converter and of the thermistors, found by calibration; zero before it.
     pub calibration: Calibration,
     /// Parameters of the tile, from which [`Self::set_tile`] derives the gains.
     pub tile: Tile,
@@ -71,7 +71,7 @@ impl Settings {
 pub struct ThermistorDivider {
     /// Pull-up resistor, ohm.
     pub pull_up_ohm: f64,
-    /// Characteristic of the thermistor.
+    /// Temperature as a function of the resistance.
     pub curve: Curve,
 }
 
@@ -95,16 +95,16 @@ pub enum Curve {
     Beta {
         /// Resistance at 25 °C, ohm.
         r25_ohm: f64,
-        /// Beta, K.
+        /// Beta constant of the thermistor, K.
         beta_k: f64,
     },
     /// Steinhart-Hart equation: `1/T = a + b ln R + c (ln R)^3`.
     SteinhartHart {
-        /// Constant coefficient, 1/K.
+        /// Coefficient `a`, 1/K.
         a: f64,
-        /// Linear coefficient, 1/K.
+        /// Coefficient `b` of `ln R`, 1/K.
         b: f64,
-        /// Cubic coefficient, 1/K.
+        /// Coefficient `c` of `(ln R)^3`, 1/K.
         c: f64,
     },
 }
@@ -129,7 +129,7 @@ impl Curve {
 pub struct ForceSensor {
     /// Output without force, counts (of 4096).
     pub zero_counts: f64,
-    /// Sensitivity, counts per newton.
+    /// Sensitivity of the force sensor, counts (of 4096) per newton.
     pub counts_per_n: f64,
 }
 
@@ -140,7 +140,7 @@ pub struct Module {
     pub legs_ohm: f64,
     /// Resistance of the bridge's switches, its filter and the leads, ohm.
     pub leads_ohm: f64,
-    /// Seebeck coefficient, V/K.
+    /// Seebeck coefficient of the whole module, V/K: open-circuit voltage per temperature difference of its faces.
     pub seebeck_v_k: f64,
     /// Voltage that the bridge loses in its dead times, V, 0 or more.
     pub dead_time_v: f64,
@@ -157,9 +157,9 @@ pub struct Module {
 /// Gains of a proportional-integral controller from temperature error to current.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gains {
-    /// Proportional gain, A/K.
+    /// Proportional gain: cooling current per kelvin above the set-point, A/K.
     pub proportional_a_k: f64,
-    /// Integral time, s.
+    /// Integral time of the controller, s.
     pub integral_s: f64,
 }
 

@@ -7,9 +7,9 @@ use super::{Calibration, Tile};
 /// The range of a quantity, with its name and unit for error messages; it is displayed as `15 to 42 C`.
 #[derive(Debug, PartialEq)]
 pub struct Range {
-    /// Name of the quantity.
+    /// Name of the quantity, as error messages to the host have it.
     pub name: &'static str,
-    /// Unit of the quantity.
+    /// Unit of the quantity in ASCII, as error messages to the host have it.
     pub unit: &'static str,
     /// Smallest allowed value.
     pub min: f64,
@@ -31,7 +31,7 @@ impl fmt::Display for Range {
     }
 }
 
-/// Range of a step of the converter.
+/// Range of one step of the converter at a border of its segments, counts.
 pub static STEP_RANGE: Range = Range {
     name: "step",
     unit: "counts",

@@ -28,18 +28,18 @@ const VALUES_PER_FINGER: usize = BORDER_COUNT + 3 * CORRECTIONS + 5;
 const FINGER_BYTES: usize = 4 * VALUES_PER_FINGER;
 /// Largest number of fingers of a device.
 const FINGERS_MAX: usize = 10;
-/// Bytes of the longest record.
+/// Length of the longest record, that of a device with ten fingers, bytes.
 pub const RECORD_MAX_BYTES: usize = HEADER_BYTES + FINGERS_MAX * FINGER_BYTES + CHECKSUM_BYTES;
 
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// The bytes of one record.
+/// The bytes of one record, as they are written to flash.
 pub type SettingsRecord = Vec<u8, RECORD_MAX_BYTES>;
 
 /// The part of a finger's settings that is stored: all that commissioning determines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSettings {
-    /// Calibration of the sensors.
+    /// Corrections of the converter and of the thermistors.
     pub calibration: Calibration,
     /// Identified parameters of the tile.
     pub tile: Tile,
@@ -119,7 +119,7 @@ pub enum RecordError {
     Fingers(u8),
     /// A value lies outside its range.
     OutOfRange {
-        /// Index of the finger.
+        /// Finger whose value in the record is out of range, counted from 0.
         finger: u8,
         /// Name and range of the value.
         allowed: &'static Range,

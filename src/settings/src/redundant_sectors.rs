@@ -23,7 +23,7 @@ use embedded_storage_async::nor_flash::{
 
 /// Bytes in a word, the unit of programming.
 const WORD_BYTES: usize = 4;
-/// Copies of each word.
+/// Number of copies in which each word is stored; a majority of them decides when it is read.
 const COPIES: usize = 3;
 /// Bytes of flash that one word occupies.
 const STORED_WORD_BYTES: usize = COPIES * WORD_BYTES;
@@ -71,7 +71,8 @@ impl<E: fmt::Debug> NorFlashError for SectorError<E> {
 }
 
 impl<F: BlockingNorFlash> RedundantSectors<F> {
-    /// Bytes of data that one sector holds.
+    /// Bytes of data in one sector: a third of its size, because each word is stored three times, less the seal that marks a
+    /// valid sector.
     pub const SECTOR_BYTES: usize = F::ERASE_SIZE / STORED_WORD_BYTES * WORD_BYTES - SEAL.len();
 
     /// Redundant sectors on all sectors of this flash.

@@ -39,7 +39,7 @@ pub struct SettingsStore<F: NorFlash, const FINGERS: usize> {
 /// Why settings could not be loaded or saved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StoreError<E> {
-    /// The flash failed.
+    /// The driver of the flash reported an error, or a sector could not be erased.
     Flash(SectorError<E>),
     /// The structure of the log is damaged.
     Corrupt,

@@ -56,7 +56,7 @@ use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1, TIM8};
 pub use multiplexer::Multiplexer;
 pub use power::{BridgePins, ControlLines, PowerStage};
 
-/// Number of fingers of this wiring.
+/// Number of fingers that this wiring controls.
 pub const FINGERS: usize = 5;
 
 /// Register value for a sampling time of 15 cycles, 0.67 us.

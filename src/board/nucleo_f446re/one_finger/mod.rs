@@ -20,7 +20,7 @@ use thermal_display::device::Finger;
 
 pub use power::PowerStage;
 
-/// Number of fingers of this wiring.
+/// Number of fingers that this wiring controls.
 pub const FINGERS: usize = 1;
 
 /// Register value for a sampling time of 56 cycles, 2.5 us.
@@ -38,7 +38,7 @@ impl Multiplexer {
     /// Scans after a switch that may still belong to the previous finger.
     pub const SETTLING_SCANS: usize = 0;
 
-    /// Does nothing.
+    /// Does nothing, because a single finger needs no multiplexer.
     pub fn select(&mut self, _finger: Finger<FINGERS>) {}
 }
 
