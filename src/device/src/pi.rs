@@ -34,9 +34,9 @@ impl UpdatePeriod {
 /// Gains of a proportional-integral controller in fixed point, and how often it takes the error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PiCoefficients {
-    /// Proportional gain, A/K.
+    /// Proportional gain: current per kelvin of error, A/K.
     proportional: I16F16,
-    /// Integral gain for one update, A/K.
+    /// Integral gain: change of the current by one update per kelvin of error, A/K.
     integral: I2F30,
     period: UpdatePeriod,
 }
@@ -63,7 +63,7 @@ impl PiCoefficients {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pi {
     coefficients: PiCoefficients,
-    /// Largest magnitude of the output, A.
+    /// Largest magnitude of the controller's output and of its integral part, A.
     limit: Current,
     /// Ticks of 1 ms until the next update; the output is constant until then.
     ticks_to_update: u32,
@@ -98,7 +98,8 @@ impl Pi {
         self.integral = I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_INTEGRAL_PLACES);
     }
 
-    /// Largest magnitude of the output, A.
+    /// Largest magnitude of the current that the controller gives, A; its output saturates there and the integral
+    /// stops.
     #[must_use]
     pub const fn output_limit(&self) -> Current {
         self.limit

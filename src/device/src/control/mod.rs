@@ -56,9 +56,9 @@ impl Law {
 #[derive(Clone, Debug)]
 pub struct Controller {
     law: Law,
-    /// The law `pi-10hz`.
+    /// Controller of the law `pi-10hz`, which updates its current ten times a second.
     pi_10hz: Pi,
-    /// The law `pi`.
+    /// Controller of the law `pi`, which updates its current at every tick.
     pi: Pi,
     /// Current of the last tick, A; positive cools.
     current: Current,
@@ -84,7 +84,7 @@ impl Controller {
         self.pi_10hz.set_coefficients(parameters.pi_10hz);
     }
 
-    /// The law that chooses the current.
+    /// The law that chooses the current now; the host's command `law` selects another.
     #[must_use]
     pub const fn law(&self) -> Law {
         self.law

@@ -190,7 +190,7 @@ impl FingerContact {
 /// touches.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FingerEstimator {
-    /// `None` before the first valid readings.
+    /// Filtered temperatures of skin and room from before the contact; `None` before the first valid readings.
     before_contact: Option<PreContactTemperatures>,
     /// Ticks of 1 ms since the last contact ended, or since the estimator started; 0 during contact.
     lifted_ticks: u32,

@@ -30,9 +30,9 @@ const FIRST_USEFUL_MEAN_TICKS: u32 = 16;
 
 /// A threshold for the difference of two forces: the larger of a part of the one that is compared with, and a constant.
 struct ForceThreshold {
-    /// The part, as a power of two: 4 stands for 1/16.
+    /// Part of the force that is compared with, as a power of two: 4 stands for 1/16.
     shift: u32,
-    /// The constant, N.
+    /// Smallest threshold, N, which holds for small forces.
     floor: Force,
 }
 
@@ -47,7 +47,7 @@ impl ForceThreshold {
 /// set-points are computed now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForceMean {
-    /// Mean of the last 64 ticks, or of fewer since the force changed, N.
+    /// Mean force of the last 64 ticks, or of fewer since the force changed, N; jumps and drift are detected by it.
     recent: Force,
     /// Mean of up to 4096 ticks since the force changed, N.
     mean: Force,

@@ -203,7 +203,7 @@ fn kelvin_to_state(temperature: Kelvin) -> I12F52 {
 pub struct PlateInputs {
     /// Heat that the Peltier effect pumps out of the plate, W; negative while it heats.
     pub pumped: Watt,
-    /// Joule heat in the legs, W.
+    /// Joule heat in the module's legs, W; warms the plate in either direction of the current.
     pub joule: Watt,
     /// Heat flow from the finger into the plate, W; negative if the display is warmer than the skin.
     pub finger: Watt,
@@ -239,7 +239,8 @@ impl<Frac: LeEqU32> LegProperty<FixedI32<Frac>> {
 pub struct LegTemperatures {
     /// Temperature of the leg ends at the display, °C; the model takes that of the display's surface.
     pub cold: Celsius,
-    /// Temperature of the leg ends at the sink, °C.
+    /// Temperature of the leg ends at the sink, °C: the sink's, plus the rise by the heat that flows through the hot
+    /// side.
     pub hot: Celsius,
     /// Mean temperature over the length of the legs, °C.
     pub mean: Celsius,
@@ -270,7 +271,7 @@ pub struct PlateModel {
     finger_feedthrough: I4F28,
     /// Rise of the legs' mean temperature above the mean of their ends, K, behind the legs' time constant.
     leg_heating: LowPass,
-    /// Temperature of the legs' hot ends, °C.
+    /// Temperature of the leg ends at the sink, °C.
     hot: Celsius,
     /// Temperature of the display's surface under the finger, °C.
     surface: Celsius,

@@ -93,7 +93,7 @@ const BASELINE_TICKS: u32 = 512;
 /// Coldest operating point, °C. The operating point is the sink's temperature, which needs no current, unless that is
 /// colder.
 const OPERATING_POINT_MIN: Celsius = Celsius::lit("22");
-/// Hottest operating point, °C, for a sink that is hotter.
+/// Hottest operating point, °C; taken if the sink is hotter.
 const OPERATING_POINT_MAX: Celsius = Celsius::lit("35");
 /// Largest difference of the display from the operating point, K, during baseline and pulses; beyond it the
 /// identification ends early.
@@ -110,7 +110,7 @@ pub enum AbortReason {
     TooFar,
     /// The sink is hotter than 41.5 °C, half a kelvin below the temperature at which the station trips.
     SinkHot,
-    /// Another command ended it, or a fault did.
+    /// Another command of the host changed the station's state or calibration, or a fault tripped the station.
     Interrupted,
 }
 

@@ -6,7 +6,8 @@
 use super::EXCITATION_TICKS;
 use crate::drive::Current;
 
-/// Number of unknowns of the tile's model, one for each regressor.
+/// Number of unknowns that the least squares solve for: eight coefficients of the tile's integrated model, one for each
+/// regressor.
 pub const UNKNOWNS: usize = 8;
 /// Columns of the normal equations: one for each unknown, and one for the regressand.
 pub const COLUMNS: usize = UNKNOWNS + 1;

@@ -192,13 +192,13 @@ impl ObjectContact {
 /// the object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReferenceGenerator {
-    /// The skin as it would be on the presented object.
+    /// Simulated cooling of the skin as it would be on the presented object.
     skin_on_object: SkinOnObject,
     /// Factors of Eq. 6-12 for the object that was presented last.
     factors: PairFactors,
     /// The present contact with the object; `None` while no finger touches, and in the semi-infinite model.
     contact: Option<ObjectContact>,
-    /// Evaluations of `erfcx` since reset; wraps.
+    /// Evaluations of `erfcx`, the costly function in Eq. 6-12, since reset; wraps.
     evaluations: u32,
 }
 

@@ -47,9 +47,9 @@ pub struct ThermistorAverages {
     complete_blocks: u32,
     /// Totals of each thermistor over the block in progress; 256 sums of 16 bits fit.
     current: [u32; THERMISTORS],
-    /// Totals over the last complete block.
+    /// Totals of each thermistor's sums over the last complete block of 256 ticks.
     last: [u32; THERMISTORS],
-    /// Totals over the complete block before that.
+    /// Totals of each thermistor's sums over the complete block of 256 ticks before the last one.
     second_last: [u32; THERMISTORS],
 }
 

@@ -101,11 +101,11 @@ impl ConverterCorrection {
 /// from 29 °C, limited to ±16 K.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ThermistorCorrection {
-    /// Constant term, K, less the thermistor's self-heating.
+    /// Constant term of the correction, K, less the thermistor's self-heating, K.
     offset: Celsius,
-    /// Linear term, K/K.
+    /// Linear term of the correction, K per kelvin from 29 °C.
     slope: I0F32,
-    /// Quadratic term, 1/K.
+    /// Quadratic term of the correction, K per squared kelvin from 29 °C.
     curvature: I0F32,
 }
 

@@ -8,7 +8,7 @@ use thermal_settings::ForceSensor;
 /// Force, N, from which the signal counts as off its zero: a finger may be landing. Noise of 0.7 to 1.2 counts a
 /// conversion is 0.6 to 1.1 mN here.
 const OFF_ZERO_FROM: Force = Force::lit("0.003");
-/// Force, N, from which a finger touches the display.
+/// Force, 20 mN, from which a finger touches the display, if it has been off its zero for two ticks.
 const CONTACT_BEGINS_FROM: Force = Force::lit("0.02");
 /// Force, N, below which a finger that touches has lifted; half of that at which it begins (hysteresis), so that noise
 /// does not end a light contact.
@@ -44,7 +44,7 @@ type FineSum = I18F14;
 pub(super) struct ForceChannel {
     /// Sum of 16 conversions below which the sensor's wire counts as broken: half of the zero.
     broken_below: u16,
-    /// Sum without force, which is tracked.
+    /// Sum of 16 conversions without force; follows the signal slowly while nothing touches.
     zero: FineSum,
     /// Smallest signal that is still tracked as zero: 0.06 N below that of the settings.
     min_zero: FineSum,
@@ -52,7 +52,7 @@ pub(super) struct ForceChannel {
     max_zero: FineSum,
     /// Ticks since switch-on of which the zero is the mean, up to [`INITIAL_ZERO_TICKS`]; then the zero is tracked.
     initial_ticks: i32,
-    /// Force, N, per unit of the sum.
+    /// Force, N, that one unit of the sensor's sum of 16 conversions stands for.
     n_per_unit: Fraction,
 }
 
@@ -106,7 +106,7 @@ impl ForceChannel {
 /// Detects from the force whether a finger touches the display, with debouncing and hysteresis, and since when.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactDetector {
-    /// Whether a finger touches.
+    /// Whether a finger touches the display, after debouncing.
     touching: bool,
     /// Ticks of 1 ms for which the force has been off its zero, up to [`DATED_RISE_MAX_TICKS`]; holds its value during
     /// a contact.

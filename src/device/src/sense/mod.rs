@@ -41,13 +41,14 @@ pub struct Samples {
     pub display: u16,
     /// Second display thermistor, which checks the first, and which the independent comparator reads, too.
     pub display_check: u16,
-    /// Thermistor on the heat sink of the Peltier module.
+    /// Sum of the thermistor on the Peltier module's heat sink, 0 to 65520.
     pub sink: u16,
-    /// Thermistor on the skin, at the edge of the contact.
+    /// Sum of the thermistor on the skin at the edge of the contact, 0 to 65520; it reads the skin while no finger
+    /// touches.
     pub skin: u16,
-    /// Thermistor in the air of the room.
+    /// Sum of the thermistor in the air of the room, 0 to 65520.
     pub room: u16,
-    /// Force sensor under the display.
+    /// Sum of the force sensor under the display, 0 to 65520; well above 0 without force, so that a broken wire shows.
     pub force: u16,
     /// Current mirror of the bridge, which shows the magnitude of the module's current.
     pub current: u16,
@@ -115,15 +116,17 @@ fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNELS] {
 /// One control tick's samples in physical units, not yet checked against any limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Readings {
-    /// Temperature, °C, of the display's thermistor in the contact patch.
+    /// Temperature, °C, of the display's thermistor in the contact patch, to which the display is controlled; `Err` if
+    /// its wire is open or shorted.
     pub display: Result<Celsius, SensorFault>,
-    /// Temperature, °C, of the display's second thermistor.
+    /// Temperature, °C, of the display's second thermistor, which checks the first; `Err` if its wire is open or
+    /// shorted.
     pub display_check: Result<Celsius, SensorFault>,
-    /// Temperature of the sink, °C.
+    /// Temperature of the Peltier module's heat sink, °C; `Err` if the thermistor's wire is open or shorted.
     pub sink: Result<Celsius, SensorFault>,
-    /// Temperature of the skin at the edge of the contact, °C.
+    /// Temperature of the skin at the edge of the contact, °C; `Err` if the thermistor's wire is open or shorted.
     pub skin: Result<Celsius, SensorFault>,
-    /// Temperature of the room, °C.
+    /// Temperature of the room's air, °C; `Err` if the thermistor's wire is open or shorted.
     pub room: Result<Celsius, SensorFault>,
     /// Force on the display, N, 0 below the tracked zero; `None` if the sensor's wire is broken or shorted.
     pub force: Option<Force>,
@@ -158,7 +161,7 @@ pub struct Sensors {
     thermistor: ThermistorTable,
     calibration: CalibrationTables,
     force: ForceChannel,
-    /// Current, A, per unit of the sum of 16 conversions.
+    /// Module current, A, that one unit of the current mirror's sum of 16 conversions stands for.
     current_per_unit: Current,
     /// Last temperatures of skin and room, °C; `None` before a first tick has had both.
     slow_temperatures: Option<[Celsius; SLOW_THERMISTORS]>,
