@@ -60,8 +60,8 @@ impl Reference {
     /// Limits both temperatures to the safe range.
     #[must_use]
     pub fn new(setpoint: Celsius, target: Celsius) -> Self {
-        let (setpoint, limited) = Setpoint::limited(setpoint);
-        let (target, _) = Setpoint::limited(target);
+        let (setpoint, limited) = Setpoint::saturating_celsius(setpoint);
+        let (target, _) = Setpoint::saturating_celsius(target);
         Self {
             setpoint,
             limited,
