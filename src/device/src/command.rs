@@ -160,7 +160,7 @@ pub struct Addressed<T> {
 
 impl<T> Addressed<T> {
     /// Content that comes from the device as a whole, so its line names no finger.
-    pub const fn whole_device(content: T) -> Self {
+    pub const fn from_whole_device(content: T) -> Self {
         Self {
             finger: None,
             content,

@@ -120,7 +120,9 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
                 if finger.is_none() && FINGERS > 1 =>
             {
-                return Err(Addressed::from_whole_device(Error::Missing("finger (as @0)")));
+                return Err(Addressed::from_whole_device(Error::Missing(
+                    "finger (as @0)",
+                )));
             }
             _ => finger,
         };

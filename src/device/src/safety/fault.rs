@@ -92,8 +92,8 @@ faults! {
     UnlikeModel = "unlike-model",
     /// The measured current is more than 3 A above the controller's limit of 6 A in one tick.
     OverCurrent = "over-current",
-    /// The measured current has exceeded the demanded one by more than 1 A plus a quarter of it for 30 ms, or 2 A in a
-    /// pulse of the self-test.
+    /// The measured current has exceeded the demanded one by more than 1 A plus a quarter of it for 30 ms, or
+    /// its mean has exceeded 2 A in a pulse of 1 A of the self-test.
     CurrentHigh = "current-high",
     /// The measured current has been less than the demanded one by more than 1 A plus a quarter of it for 30 ms, or
     /// below 0.4 A in a pulse of the self-test: a leg of the bridge, a wire or the supply has failed.

@@ -66,7 +66,7 @@ impl Station {
             }
             Command::Retune(parameters) => {
                 self.require_not_presenting()?;
-                self.set_parameters(&parameters);
+                self.set_control_parameters(&parameters);
                 self.interrupt_identification();
                 // The result has been used, so the display is neutral again.
                 if let State::Armed(task @ ArmedTask::Identify(_)) = &mut self.state {

@@ -133,10 +133,10 @@ impl Station {
     /// have it. Called at the start, with the finger's stored settings.
     pub(crate) fn apply_settings(&mut self, settings: &Settings) {
         self.sensors.recalibrate(&CalibrationTables::new(settings));
-        self.set_parameters(&ControlParameters::new(settings));
+        self.set_control_parameters(&ControlParameters::new(settings));
     }
 
-    fn set_parameters(&mut self, parameters: &ControlParameters) {
+    fn set_control_parameters(&mut self, parameters: &ControlParameters) {
         self.controller.set_parameters(parameters);
         self.estimator.plate.set_parameters(&parameters.observer);
     }
