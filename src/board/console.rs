@@ -44,7 +44,7 @@ impl Console {
                 }
             } else if let Some(line) = self.lines.take() {
                 let answer = line
-                    .map_err(|error| Addressed::device(Error::from(error)))
+                    .map_err(|error| Addressed::from_whole_device(Error::from(error)))
                     .and_then(|line| self.handler.answer(&line, &mut execute));
                 match answer {
                     Ok(Addressed {

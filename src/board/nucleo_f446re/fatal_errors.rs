@@ -18,7 +18,7 @@ use super::{fault_record, watchdog, wiring};
 fn shut_down(fault: Fault) {
     cortex_m::interrupt::disable();
     wiring::disable_bridges();
-    fault_record::store_if_empty(&TripCause::alone(fault));
+    fault_record::store_if_empty(&TripCause::without_readings(fault));
 }
 
 /// Whether no handler has logged yet. Only the first error is logged, because logging may be what

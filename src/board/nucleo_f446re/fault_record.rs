@@ -8,8 +8,8 @@ use super::reset::Reset;
 
 /// Initial value of the checksum. It differs between versions of the firmware whose records have
 /// different layouts, so that none takes the record of another for its own.
-const CHECKSUM_START: u32 = 0x5afe_d15b ^ TripCause::LAYOUT;
-const LENGTH: usize = TripCause::WORDS + 1;
+const CHECKSUM_START: u32 = 0x5afe_d15b ^ TripCause::LAYOUT_HASH;
+const LENGTH: usize = TripCause::WORD_COUNT + 1;
 
 /// The words of the cause and their checksum. Neither the loader nor the start-up code writes to
 /// `.uninit`; its content is lost only with the power.
@@ -68,7 +68,7 @@ pub fn cause_at_start(reset: Reset, restart_is_planned: bool) -> Option<TripCaus
         erase();
     }
     if let Some(fault) = reset.fault(restart_is_planned) {
-        store_if_empty(&TripCause::alone(fault));
+        store_if_empty(&TripCause::without_readings(fault));
     }
     stored()
 }

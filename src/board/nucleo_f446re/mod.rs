@@ -117,7 +117,7 @@ fn cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
     let is_consequence = |cause: TripCause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
     if stack_was_overrun && cause.is_some_and(is_consequence) {
         fault_record::erase();
-        fault_record::store_if_empty(&TripCause::alone(Fault::Stack));
+        fault_record::store_if_empty(&TripCause::without_readings(Fault::Stack));
         cause = fault_record::stored();
     }
     // The flags are cleared last: if a reset intervenes, the next start still finds them.
@@ -132,7 +132,7 @@ fn restore_device(
     cause: Option<TripCause>,
     storage: &StartupStorage,
 ) -> &'static mut Device<FINGERS> {
-    let device = place.insert(Device::with_cause(cause, &Settings::default()));
+    let device = place.insert(Device::with_trip_cause(cause, &Settings::default()));
     match &storage.settings {
         Ok(Some(settings)) => device.restore_settings(settings),
         Ok(None) => {}

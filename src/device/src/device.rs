@@ -10,25 +10,26 @@ use crate::telemetry::Telemetry;
 use crate::{Finger, Station};
 use thermal_settings::{Settings, StoredSettings};
 
-/// One [`Station`] for each finger; the stations share no state.
+/// The whole device without its hardware: one [`Station`] for each of its `FINGERS` fingers. The stations
+/// share no state, so a fault of one finger leaves the others running.
 #[derive(Clone, Debug)]
 pub struct Device<const FINGERS: usize> {
     stations: [Station; FINGERS],
 }
 
 impl<const FINGERS: usize> Device<FINGERS> {
-    /// A device whose bridges are off and that no fault has tripped. Evaluates `f64` in software,
-    /// once for all fingers.
+    /// A device whose stations are all off and not tripped, with the same settings for every finger.
+    /// Converts the settings from `f64`, about a millisecond, so it is for the start only.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
-        Self::with_cause(None, settings)
+        Self::with_trip_cause(None, settings)
     }
 
-    /// A device as [`new`](Self::new) makes it, whose fingers are all tripped by `cause`, if there
-    /// is one: the fault that ended the previous run of the program.
+    /// A device with the same settings for every finger, all of whose stations are tripped by `cause`,
+    /// the fault that has ended the previous run of the program, or off if that is `None`.
     #[must_use]
     #[inline(never)]
-    pub fn with_cause(cause: Option<TripCause>, settings: &Settings) -> Self {
+    pub fn with_trip_cause(cause: Option<TripCause>, settings: &Settings) -> Self {
         let mut station = Station::new(settings);
         if let Some(cause) = cause {
             station.trip(cause);
@@ -38,67 +39,73 @@ impl<const FINGERS: usize> Device<FINGERS> {
         }
     }
 
-    /// Applies the stored settings of each finger. Evaluates `f64` in software, once for each
-    /// finger.
+    /// Applies to each finger's station its own stored calibration and tile. Converts them from `f64`,
+    /// so it is called at the start only, before the first tick.
     #[inline(never)]
     pub fn restore_settings(&mut self, stored: &[StoredSettings; FINGERS]) {
         for (station, stored) in self.stations.iter_mut().zip(stored) {
-            station.apply(&stored.settings());
+            station.apply_settings(&stored.settings());
         }
     }
 
-    /// Thermal dose of a finger so far.
+    /// Thermal dose that a finger's display could have given to skin so far; the board stores it after
+    /// every tick, to keep it through a reset.
     #[must_use]
     pub const fn dose(&self, finger: Finger<FINGERS>) -> &ThermalDose {
         self.stations[finger.index()].dose()
     }
 
-    /// Sets the thermal dose that a finger had accumulated before a restart.
+    /// Continues a finger's thermal dose from `dose`, stored before a reset. Called once, at the start.
     pub const fn restore_dose(&mut self, finger: Finger<FINGERS>, dose: ThermalDose) {
         self.stations[finger.index()].restore_dose(dose);
     }
 
-    /// Runs one control tick of a finger.
+    /// Runs one control tick of a finger's station with the samples of the last millisecond; returns what
+    /// its bridge must do until the next tick.
     pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> Outputs {
         self.stations[finger.index()].step(samples)
     }
 
-    /// Trips all fingers by a fault that is detected outside of the stations.
+    /// Trips the stations of all fingers by a fault that the board has found outside of a tick. A station
+    /// that is tripped by another fault keeps it, and answers `clear` with this one.
     pub fn trip_all(&mut self, fault: Fault) {
         self.stations
             .iter_mut()
-            .for_each(|station| station.raise(fault));
+            .for_each(|station| station.raise_external_fault(fault));
     }
 
-    /// Whether a fault is latched at this finger.
+    /// Whether this finger's station is tripped, so that its bridge stays off until `clear`.
     #[must_use]
     pub const fn is_tripped(&self, finger: Finger<FINGERS>) -> bool {
         self.stations[finger.index()].is_tripped()
     }
 
-    /// Cause of the earliest trip that is still latched, of all fingers.
+    /// Cause of the trip that came first of those fingers that are still tripped, which the board stores
+    /// through a reset; `None` if no finger is tripped.
     #[must_use]
     pub fn earliest_cause(&self) -> Option<&TripCause> {
         let tripped = self.stations.iter().filter(|station| station.is_tripped());
         tripped
-            .min_by_key(|station| station.latch().tripped_at())?
+            .min_by_key(|station| station.latch().tripped_at_tick())?
             .latch()
             .cause()
     }
 
-    /// Restarts the time-out that trips a finger when the host falls silent.
+    /// Restarts, for all fingers, the 2 s after which a silent host trips a finger whose telemetry
+    /// streams. To be called for each line from the host.
     pub fn note_host_activity(&mut self) {
         self.stations
             .iter_mut()
             .for_each(Station::note_host_activity);
     }
 
-    /// Telemetry of a finger's last tick, if the interval of its stream has elapsed.
+    /// Telemetry of a finger's last tick; `None` unless the host has asked for telemetry and the interval
+    /// has elapsed in this tick. To be called once after each tick.
     #[must_use]
     pub fn telemetry(&self, finger: Finger<FINGERS>) -> Option<Addressed<Telemetry>> {
         let content = self.stations[finger.index()].telemetry()?;
         Some(Addressed {
-            finger: finger.address(),
+            finger: finger.reply_address(),
             content,
         })
     }
@@ -106,12 +113,11 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// Executes a command, in bounded and short time, on one finger, or on all if `finger` is
     /// `None`.
     ///
-    /// A query to all is answered by the first finger. `clear` to all succeeds if a fault was
-    /// cleared at one finger at least.
+    /// A query to all is answered by the first finger that does not refuse it. `clear` to all succeeds
+    /// if it has cleared one finger at least, and all others had nothing to clear.
     ///
     /// # Errors
-    /// The first refusal, if the state of a finger does not permit the command; the other fingers
-    /// have executed it.
+    /// The first refusal, with its finger; those fingers whose state permits the command have executed it.
     pub fn execute(
         &mut self,
         finger: Option<Finger<FINGERS>>,
@@ -126,7 +132,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
         }
         let (mut refused, mut nothing_to_clear, mut executed) = (None, None, false);
         for (finger, station) in Finger::<FINGERS>::all().zip(&mut self.stations) {
-            let finger = finger.address();
+            let finger = finger.reply_address();
             match station.execute(command) {
                 Ok(Reply::Done) => executed = true,
                 Ok(content) => return Ok(Addressed { finger, content }),
@@ -137,6 +143,6 @@ impl<const FINGERS: usize> Device<FINGERS> {
             }
         }
         let refused = refused.or(nothing_to_clear.filter(|_| !executed));
-        refused.map_or(Ok(Addressed::device(Reply::Done)), Err)
+        refused.map_or(Ok(Addressed::from_whole_device(Reply::Done)), Err)
     }
 }

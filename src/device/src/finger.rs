@@ -1,6 +1,6 @@
 //! The index of a finger, as a type.
 
-/// One of the `FINGERS` fingers of a device, counted from 0.
+/// Selects one of the `FINGERS` fingers of a device, by an index that is counted from 0.
 ///
 /// Its index is below `FINGERS` by construction, so an index that is out of range cannot select
 /// another finger's station or bridge.
@@ -8,7 +8,7 @@
 pub struct Finger<const FINGERS: usize>(u8);
 
 impl<const FINGERS: usize> Finger<FINGERS> {
-    /// The finger with index 0.
+    /// The finger with index 0, which every device has. Compiling fails for no finger and for more than ten.
     pub const FIRST: Self = {
         assert!(
             0 < FINGERS && FINGERS <= 10,
@@ -17,7 +17,7 @@ impl<const FINGERS: usize> Finger<FINGERS> {
         Self(0)
     };
 
-    /// The finger with this index, if the device has it.
+    /// The finger with this index, counted from 0; `None` if the device has fewer fingers.
     #[must_use]
     pub const fn new(index: usize) -> Option<Self> {
         if index < FINGERS {
@@ -27,12 +27,13 @@ impl<const FINGERS: usize> Finger<FINGERS> {
         }
     }
 
-    /// All fingers, in the order of their indices.
+    /// All fingers of the device, from index 0 upwards.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..FINGERS).filter_map(Self::new)
     }
 
-    /// The finger with the next index; the first one after the last.
+    /// The finger with the next higher index, and finger 0 after the last one: the order in which their
+    /// ticks take turns.
     #[must_use]
     pub const fn next_cyclic(self) -> Self {
         match Self::new(self.index() + 1) {
@@ -41,7 +42,7 @@ impl<const FINGERS: usize> Finger<FINGERS> {
         }
     }
 
-    /// Index of the finger, below `FINGERS`.
+    /// Index of the finger, 0 to `FINGERS` - 1, for arrays with an element per finger.
     #[must_use]
     pub const fn index(self) -> usize {
         // The remainder changes nothing. It tells the compiler that an array of `FINGERS` elements
@@ -49,16 +50,16 @@ impl<const FINGERS: usize> Finger<FINGERS> {
         self.number() as usize % FINGERS
     }
 
-    /// Number of the finger on the line to the host: its index.
+    /// Index of the finger as a byte, 0 to 9: the digit after `@` in lines to and from the host.
     #[must_use]
     pub const fn number(self) -> u8 {
         self.0
     }
 
-    /// Number that the finger's lines begin with if the host has named no finger: omitted on a
-    /// device with a single finger.
+    /// Index with which the finger's replies and telemetry begin when the host has named no finger;
+    /// `None` on a device with a single finger, whose lines name none.
     #[must_use]
-    pub const fn address(self) -> Option<u8> {
+    pub const fn reply_address(self) -> Option<u8> {
         if FINGERS > 1 { Some(self.0) } else { None }
     }
 }

@@ -5,32 +5,37 @@ use contact_model::fixed_point::Celsius;
 use crate::TICK_HZ;
 use crate::safety::Setpoint;
 
-/// Slew rate of the set-point, K/s. A proportional-integral loop on the slowest thermistors overshoots by 0.7 K at this rate, to
-/// 42.7 °C; a step from skin temperature would reach 44 °C and trip. Thermistors of different lags stay together, too.
+/// Rate at which the set-point of the command `hold` moves to its target, K/s. A proportional-integral loop on the
+/// slowest thermistors overshoots by 0.7 K at this rate, to 42.7 °C; a step from skin temperature would reach 44 °C and
+/// trip. Thermistors of different lags stay together, too.
 const SLEW_RATE_K_S: u32 = 1;
-/// Largest change of the set-point in one tick, K.
-const STEP: Celsius = Celsius::from_bits(((SLEW_RATE_K_S << Celsius::FRAC_NBITS) / TICK_HZ) as i32);
+/// Largest change of the held set-point in one tick of 1 ms: 1 mK.
+const SLEW_PER_TICK: Celsius =
+    Celsius::from_bits(((SLEW_RATE_K_S << Celsius::FRAC_NBITS) / TICK_HZ) as i32);
 
-/// The temperature at which a display is held, and the present set-point on the way there.
+/// A running `hold` command: the temperature that the host has asked for, and the set-point that moves there by 1 K/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hold {
+pub struct TemperatureHold {
     target: Setpoint,
     setpoint: Setpoint,
 }
 
-impl Hold {
-    /// Starts at the set-point that is nearest to the display's reading.
+impl TemperatureHold {
+    /// A hold whose set-point starts at the display's `reading`, °C, clamped to 15 to 42 °C, and moves to `target`.
+    /// Created when the host sends `hold`.
     #[must_use]
     pub fn new(target: Setpoint, reading: Celsius) -> Self {
-        let (setpoint, _) = Setpoint::limited(reading);
+        let (setpoint, _) = Setpoint::saturating_celsius(reading);
         Self { target, setpoint }
     }
 
-    /// The set-point of the next tick.
-    pub fn step(&mut self) -> Setpoint {
+    /// Moves the set-point by up to 1 mK toward the target, and returns it. To be called once in each tick of 1 ms.
+    pub fn next_setpoint(&mut self) -> Setpoint {
         let now = self.setpoint.celsius();
         let distance = self.target.celsius().saturating_sub(now);
-        (self.setpoint, _) = Setpoint::limited(now.saturating_add(distance.clamp(-STEP, STEP)));
+        (self.setpoint, _) = Setpoint::saturating_celsius(
+            now.saturating_add(distance.clamp(-SLEW_PER_TICK, SLEW_PER_TICK)),
+        );
         self.setpoint
     }
 }
@@ -42,12 +47,12 @@ mod tests {
     #[test]
     fn the_set_point_moves_to_the_target_by_1_k_per_second_and_stays() {
         for (from_c, target_c) in [(30.0, 42.0), (42.0, 15.0), (20.0, 20.0)] {
-            let (target, _) = Setpoint::limited(Celsius::from_num(target_c));
-            let mut hold = Hold::new(target, Celsius::from_num(from_c));
+            let (target, _) = Setpoint::saturating_celsius(Celsius::from_num(target_c));
+            let mut hold = TemperatureHold::new(target, Celsius::from_num(from_c));
             let way_k: f64 = target_c - from_c;
             for tick in 1..60_000 {
                 let gone_k = (f64::from(tick) * 1e-3).min(way_k.abs()) * way_k.signum();
-                let setpoint_c = hold.step().celsius().to_num::<f64>();
+                let setpoint_c = hold.next_setpoint().celsius().to_num::<f64>();
                 // The step is cut to 2^-22 K.
                 let cut_k = f64::from(tick) * 2.4e-7;
                 assert!(
@@ -55,15 +60,15 @@ mod tests {
                     "{setpoint_c} {tick}"
                 );
             }
-            assert_eq!(hold.step(), target);
+            assert_eq!(hold.next_setpoint(), target);
         }
     }
 
     #[test]
     fn a_reading_outside_the_range_starts_at_the_nearest_set_point() {
-        let mut hold = Hold::new(Setpoint::MAX, Celsius::lit("42.6"));
-        assert_eq!(hold.step(), Setpoint::MAX);
-        let mut hold = Hold::new(Setpoint::MAX, Celsius::lit("-20"));
-        assert!(hold.step() < Setpoint::limited(Celsius::lit("15.01")).0);
+        let mut hold = TemperatureHold::new(Setpoint::MAX, Celsius::lit("42.6"));
+        assert_eq!(hold.next_setpoint(), Setpoint::MAX);
+        let mut hold = TemperatureHold::new(Setpoint::MAX, Celsius::lit("-20"));
+        assert!(hold.next_setpoint() < Setpoint::saturating_celsius(Celsius::lit("15.01")).0);
     }
 }

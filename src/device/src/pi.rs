@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn a_constant_error_gives_kp_e_times_1_plus_t_over_ti() {
-        let (setpoint, mut pi) = (Setpoint::limited(at(25.0)).0, pi());
+        let (setpoint, mut pi) = (Setpoint::saturating_celsius(at(25.0)).0, pi());
         for tick in 1..=1000 {
             let expected = 2.0 * 0.5 * (1.0 + f64::from(tick) * 1e-3 / 0.5);
             let output = pi.update_output(setpoint, at(25.5)).to_num::<f64>();
@@ -176,7 +176,7 @@ mod tests {
 
     #[test]
     fn the_output_leaves_its_limit_as_soon_as_the_error_changes_sign() {
-        let (setpoint, mut pi) = (Setpoint::limited(at(25.0)).0, pi());
+        let (setpoint, mut pi) = (Setpoint::saturating_celsius(at(25.0)).0, pi());
         for _ in 0..10_000 {
             assert_eq!(pi.update_output(setpoint, at(40.0)), Current::lit("6"));
         }
@@ -187,7 +187,7 @@ mod tests {
 
     #[test]
     fn opposite_errors_give_opposite_currents() {
-        let (setpoint, mut up, mut down) = (Setpoint::limited(at(30.0)).0, pi(), pi());
+        let (setpoint, mut up, mut down) = (Setpoint::saturating_celsius(at(30.0)).0, pi(), pi());
         for _ in 0..100 {
             let (a, b) = (
                 up.update_output(setpoint, at(30.25)),

@@ -2,27 +2,29 @@
 
 use crate::safety::Fault;
 
-/// The state of a station, without the data that belongs to it.
+/// The state of one finger's station as status and telemetry report it, without what only the station itself needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StateName {
-    /// The bridge is off, and nothing is tested.
+    /// The bridge is off after power-up, after `clear`, or after `abort` of the self-test; `arm` starts the self-test.
     Off,
-    /// The comparator is tested, then small currents are driven.
+    /// The self-test runs, 0.7 s without a finger: the comparator is tested with the bridge off, then 1 A cools and
+    /// warms.
     SelfTest,
-    /// The bridge is off; the self-test has passed.
+    /// The bridge is off after `abort`; the self-test has passed before, so `arm` drives at once.
     Ready,
-    /// The display is driven, and no object is presented.
+    /// The display is kept at skin temperature or held at a temperature, or the tile is identified; no object is
+    /// presented.
     Armed,
-    /// An object is presented, and no finger touches it.
+    /// An object is presented, and the display waits at its preset temperature for a finger.
     Preset,
-    /// An object is presented to the finger that touches it.
+    /// An object is presented, and a finger touches the display.
     Contact,
-    /// The bridge is off until the host clears the fault.
+    /// The bridge is off because of this fault, until the host sends `clear` and the fault is gone.
     Tripped(Fault),
 }
 
 impl StateName {
-    /// The state's word in the protocol.
+    /// The word by which lines to the host name the state, such as `self-test`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -36,7 +38,7 @@ impl StateName {
         }
     }
 
-    /// The fault that is latched, if the station has tripped.
+    /// The fault that has tripped the station; `None` in every state other than tripped.
     #[must_use]
     pub const fn fault(self) -> Option<Fault> {
         match self {

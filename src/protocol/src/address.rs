@@ -26,7 +26,7 @@ pub fn address<const FINGERS: usize>(
     };
     match known {
         Some(finger) => Ok((Some(finger), rest)),
-        None => Err(Addressed::device(Error::UnknownFinger(
+        None => Err(Addressed::from_whole_device(Error::UnknownFinger(
             number.into(),
             FINGERS,
         ))),

@@ -184,7 +184,7 @@ fn law(name: &str) -> Result<Law, Error> {
 
 fn hold(words: &mut Words<'_>) -> Result<Setpoint, Error> {
     let celsius = number(words, &HOLD)?.to_num();
-    Ok(Setpoint::limited(celsius).0)
+    Ok(Setpoint::saturating_celsius(celsius).0)
 }
 
 fn material(words: &mut Words<'_>, display: &Surface) -> Result<Command, Error> {

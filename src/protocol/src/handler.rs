@@ -90,8 +90,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 fingers: FINGERS as u8,
             })),
             Request::Station(command) => match execute(finger, command) {
-                Ok(reply) => Ok(reply.map(Reply::Station)),
-                Err(refused) => Err(refused.map(Error::from)),
+                Ok(reply) => Ok(reply.map_content(Reply::Station)),
+                Err(refused) => Err(refused.map_content(Error::from)),
             },
             Request::Commissioning(request) => self.commission(request, finger, execute),
             Request::Storage(order) => match Self::reject_storage(order, finger, execute) {
@@ -120,7 +120,9 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
                 if finger.is_none() && FINGERS > 1 =>
             {
-                return Err(Addressed::device(Error::Missing("finger (as @0)")));
+                return Err(Addressed::from_whole_device(Error::Missing(
+                    "finger (as @0)",
+                )));
             }
             _ => finger,
         };
@@ -140,7 +142,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 Ok(answer) => reply = answer,
                 Err(error) => {
                     first_error.get_or_insert(Addressed {
-                        finger: finger.map(Finger::number).or(one.address()),
+                        finger: finger.map(Finger::number).or(one.reply_address()),
                         content: Error::from(error),
                     });
                 }
@@ -165,7 +167,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
         for one in Finger::all() {
             match execute(Some(one), Command::Status) {
-                Err(refused) => return Some(refused.map(Error::from)),
+                Err(refused) => return Some(refused.map_content(Error::from)),
                 Ok(Addressed {
                     content: command::Reply::Status(status),
                     ..
@@ -175,7 +177,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 ) => {}
                 Ok(_) => {
                     return Some(Addressed {
-                        finger: one.address().or(finger.map(Finger::number)),
+                        finger: one.reply_address().or(finger.map(Finger::number)),
                         content: Error::NeedsOff(order.name()),
                     });
                 }

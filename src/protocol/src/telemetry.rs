@@ -18,7 +18,7 @@ pub struct TelemetryLine(pub Telemetry);
 /// The telemetry line of one finger, with its address.
 #[must_use]
 pub fn telemetry_line(telemetry: Addressed<Telemetry>) -> Addressed<TelemetryLine> {
-    telemetry.map(TelemetryLine)
+    telemetry.map_content(TelemetryLine)
 }
 
 impl fmt::Display for TelemetryLine {

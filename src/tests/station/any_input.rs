@@ -154,11 +154,11 @@ impl TickCount {
         prop_assert!(telemetry.demand.abs() <= 6);
         prop_assert!(!(on && outputs.comparator_test));
         if let Drive::On(duty) = outputs.drive {
-            prop_assert!(duty.fraction().abs() <= Duty::LIMIT);
+            prop_assert!(duty.fraction().abs() <= Duty::DUTY_LIMIT);
         }
         if let Some(setpoint) = telemetry.setpoint {
             prop_assert!((15.0..=42.0).contains(&setpoint.to_num::<f64>()));
-            prop_assert_eq!(Setpoint::limited(setpoint).1, false);
+            prop_assert_eq!(Setpoint::saturating_celsius(setpoint).1, false);
         }
         // The display responds to the self-test.
         if telemetry.state == StateName::SelfTest {

@@ -80,8 +80,11 @@ impl TestBench {
     /// Sends a line, and returns the answer.
     fn send(&mut self, line: &str) -> String {
         let answer = self.handler.answer(line, |_, command| {
-            let content = self.station.execute(command).map_err(Addressed::device)?;
-            Ok(Addressed::device(content))
+            let content = self
+                .station
+                .execute(command)
+                .map_err(Addressed::from_whole_device)?;
+            Ok(Addressed::from_whole_device(content))
         });
         answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }

@@ -153,7 +153,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
         match reader.push(byte) {
             None => {}
             Some(Err(error)) => {
-                let error = Addressed::device(Error::from(error));
+                let error = Addressed::from_whole_device(Error::from(error));
                 check_answer(&error.to_string(), false);
             }
             Some(Ok(line)) => {

@@ -24,7 +24,7 @@ pub fn celsius(t_c: f64) -> Celsius {
 }
 
 pub fn setpoint(t_c: f64) -> Setpoint {
-    let (setpoint, limited) = Setpoint::limited(celsius(t_c));
+    let (setpoint, limited) = Setpoint::saturating_celsius(celsius(t_c));
     assert!(!limited, "{t_c} C is not allowed");
     setpoint
 }

@@ -144,7 +144,9 @@ impl Native {
         let tripped = self.device.earliest_cause().copied();
         let kept = match cause {
             ResetCause::PowerOn => None,
-            ResetCause::WindowWatchdog => tripped.or(Some(TripCause::alone(Fault::TickLost))),
+            ResetCause::WindowWatchdog => {
+                tripped.or(Some(TripCause::without_readings(Fault::TickLost)))
+            }
             _ => tripped,
         };
         let dose = match cause {
@@ -152,7 +154,7 @@ impl Native {
             _ => ThermalDose::from_word(self.device.dose(Finger::FIRST).to_word()),
         };
         let settings = Settings::default();
-        self.device = Device::with_cause(kept, &settings);
+        self.device = Device::with_trip_cause(kept, &settings);
         self.device.restore_dose(Finger::FIRST, dose);
         self.handler = match &self.stored {
             Some(stored) => {
@@ -189,7 +191,7 @@ impl Native {
                 continue;
             };
             let executed = line
-                .map_err(|error| Addressed::device(Error::from(error)))
+                .map_err(|error| Addressed::from_whole_device(Error::from(error)))
                 .and_then(|line| {
                     self.handler.answer(&line, |finger, command| {
                         self.device.execute(finger, command)

@@ -176,7 +176,7 @@ impl Identification {
         let coefficients = PiCoefficients::new(&SETTLING_GAINS, UpdatePeriod::EveryTick);
         Self {
             phase: IdentificationPhase::Settling { ticks: 0, near: 0 },
-            operating_point: Setpoint::limited(operating_point).0,
+            operating_point: Setpoint::saturating_celsius(operating_point).0,
             pi: Pi::new(coefficients, SETTLING_CURRENT_LIMIT),
             baseline_demand: 0,
             baseline_reading: 0,

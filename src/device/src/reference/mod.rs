@@ -66,8 +66,8 @@ impl Reference {
     /// A reference from a set-point and a target, °C, each limited to the safe range of 15 to 42 °C.
     #[must_use]
     pub fn new(setpoint: Celsius, target: Celsius) -> Self {
-        let (setpoint, limited) = Setpoint::limited(setpoint);
-        let (target, _) = Setpoint::limited(target);
+        let (setpoint, limited) = Setpoint::saturating_celsius(setpoint);
+        let (target, _) = Setpoint::saturating_celsius(target);
         Self {
             setpoint,
             limited,

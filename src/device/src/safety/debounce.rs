@@ -1,12 +1,14 @@
 //! A debounce counter.
 
-/// Counts the ticks in which a condition has held, less those in which it has not, so that an intermittent condition counts.
+/// Counts up by one in each tick in which a condition holds, and down by one, to zero at least, in each in which it
+/// does not. So a condition that comes and goes is detected too, if it holds in more than half of the ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DebounceCounter(i32);
 
 impl DebounceCounter {
-    /// Takes the condition of one tick; returns whether it has held for `ticks` more ticks than not.
-    pub fn update(&mut self, condition: bool, ticks: u8) -> bool {
+    /// Counts one tick of 1 ms, up if `condition` holds in it and down if not. Returns whether the count has reached
+    /// `ticks`, where it stops.
+    pub fn count_tick(&mut self, condition: bool, ticks: u8) -> bool {
         let ticks = i32::from(ticks);
         self.0 = if condition {
             (self.0 + 1).min(ticks)

@@ -18,7 +18,7 @@
 //!
 //! | detector                     | faults                                 | trips when                                    |
 //! |------------------------------|----------------------------------------|-----------------------------------------------|
-//! | [`check`]                    | open, short, excitation, force sensor  | the last conversion of a tick is at an end    |
+//! | [`validate_readings`]        | open, short, excitation, force sensor  | the last conversion of a tick is at an end    |
 //! |                              | display hot, display cold              | 43 °C, 13.5 °C by either thermistor           |
 //! |                              | sink hot                               | 42 °C                                         |
 //! |                              | over-current                           | 3 A above the largest demand                  |
@@ -63,4 +63,4 @@ pub use setpoint::Setpoint;
 pub use thermal_dose::ThermalDose;
 pub use tick_rate::TickRateMonitor;
 pub use trip_cause::TripCause;
-pub use validity::{ValidReadings, check};
+pub use validity::{ValidReadings, validate_readings};

@@ -7,59 +7,67 @@
 use contact_model::fixed_point::{Celsius, exp2};
 
 use super::Fault;
-use super::limits::{DOSE_MIN, DOSE_REFERENCE};
+use super::limits::{DOSE_COUNTED_FROM, DOSE_REFERENCE_TEMPERATURE};
 
-/// Ticks between two evaluations of the temperature.
-const INTERVAL_TICKS: u16 = 256;
-/// Dose that trips: half a minute at 43 °C, in ticks. Skin burns after hundreds of minutes, and may hurt after some.
-const LIMIT_TICKS: u32 = 30_000;
-/// The sum saturates at twice the limit, so that any sum is forgotten within an hour.
-const SUM_MAX: u32 = (2 * LIMIT_TICKS) << 8;
-/// Below 39 °C an hour takes about a minute from the dose; as a power of two of the time.
-const FORGETTING_SHIFT: u32 = 6;
+/// Ticks of 1 ms from one evaluation of the display's temperature to the next; the dose of the whole interval is
+/// computed from the temperature at its end.
+const EVALUATION_INTERVAL_TICKS: u16 = 256;
+/// Dose from which on the station trips, in ticks of 1 ms at 43 °C: half a minute. Skin burns after hundreds of minutes
+/// at 43 °C, and may hurt after some.
+const DOSE_LIMIT_TICKS: u32 = 30_000;
+/// Largest sum, in 2^-8 ticks at 43 °C: twice the limit. So even after a long time above the limit, or after a bit has
+/// flipped, 32 minutes below 39 °C bring the sum back to the limit.
+const DOSE_SUM_MAX: u32 = (2 * DOSE_LIMIT_TICKS) << 8;
+/// Decay of the dose below 39 °C, as a shift to the right of the elapsed time: 6 takes 1/64 of the time, about a minute
+/// an hour.
+const DOSE_DECAY_SHIFT: u32 = 6;
 
-/// Accumulated thermal dose, which decays while the display is cool.
+/// Thermal dose (CEM43) that skin would have received if it had always touched the display. It grows with the time at
+/// 39 °C and above, decays below, and trips the station at half a minute.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ThermalDose {
-    /// In 2^-8 ticks at 43 °C.
+    /// The dose, in 2^-8 ticks of 1 ms at 43 °C, up to [`DOSE_SUM_MAX`] after each evaluation.
     sum: u32,
-    /// Ticks since the last evaluation.
+    /// Ticks since the last evaluation of the temperature, below [`EVALUATION_INTERVAL_TICKS`].
     ticks: u16,
 }
 
 impl ThermalDose {
-    /// The sum, to be kept through a reset.
+    /// The dose in 2^-8 ms at 43 °C, as the word that the board keeps in RAM through a reset.
     #[must_use]
     pub const fn to_word(&self) -> u32 {
         self.sum
     }
 
-    /// The dose of a sum that was kept.
+    /// The dose from the word that [`to_word`](Self::to_word) gave before a reset; every word is accepted.
     #[must_use]
     pub const fn from_word(sum: u32) -> Self {
         Self { sum, ticks: 0 }
     }
 
-    /// Takes one tick; `warmest` gives the warmer of the display's readings, if any is valid.
+    /// Counts one tick of 1 ms. Every 256th tick calls `warmest` for the higher of both display readings, °C, and adds
+    /// the dose of the interval; `None`, if no reading is valid, leaves the dose as it is.
     ///
     /// # Errors
-    /// The dose has reached half a minute at 43 °C.
-    pub fn check(&mut self, warmest: impl FnOnce() -> Option<Celsius>) -> Result<(), Fault> {
-        const FORGOTTEN: u32 = (INTERVAL_TICKS as u32) << 8 >> FORGETTING_SHIFT;
+    /// [`Fault::Dose`]: the dose is half a minute at 43 °C or more.
+    pub fn add_tick(&mut self, warmest: impl FnOnce() -> Option<Celsius>) -> Result<(), Fault> {
+        const DECAY_PER_INTERVAL: u32 = (EVALUATION_INTERVAL_TICKS as u32) << 8 >> DOSE_DECAY_SHIFT;
         self.ticks += 1;
-        if self.ticks >= INTERVAL_TICKS {
+        if self.ticks >= EVALUATION_INTERVAL_TICKS {
             self.ticks = 0;
             self.sum = match warmest() {
                 None => self.sum,
-                Some(warmest) if warmest < DOSE_MIN => self.sum.saturating_sub(FORGOTTEN),
+                Some(warmest) if warmest < DOSE_COUNTED_FROM => {
+                    self.sum.saturating_sub(DECAY_PER_INTERVAL)
+                }
                 Some(warmest) => {
-                    let dose = rate(warmest).saturating_mul(INTERVAL_TICKS.into());
+                    let dose = dose_rate(warmest).saturating_mul(EVALUATION_INTERVAL_TICKS.into());
                     self.sum.saturating_add(dose)
                 }
             }
-            .min(SUM_MAX);
+            .min(DOSE_SUM_MAX);
         }
-        if self.sum >> 8 >= LIMIT_TICKS {
+        if self.sum >> 8 >= DOSE_LIMIT_TICKS {
             Err(Fault::Dose)
         } else {
             Ok(())
@@ -67,9 +75,10 @@ impl ThermalDose {
     }
 }
 
-/// Equivalent minutes at 43 °C per minute, in 2^-8; 256 at most.
-fn rate(t: Celsius) -> u32 {
-    let above = t.saturating_sub(DOSE_REFERENCE);
+/// Minutes at 43 °C that one minute at the temperature `t`, °C, is equivalent to, in units of 2^-8: 1 at 39 °C, 256 at
+/// 43 °C, doubled by every kelvin above, and below 2^17 for any temperature.
+fn dose_rate(t: Celsius) -> u32 {
+    let above = t.saturating_sub(DOSE_REFERENCE_TEMPERATURE);
     // Exponent of two with 32 binary places: once or twice the difference.
     let exponent = i64::from(above.to_bits()) << (33 - Celsius::FRAC_NBITS - u32::from(above > 0));
     let whole = (exponent >> 32).clamp(-8, 8);
@@ -91,7 +100,7 @@ mod tests {
             (41.5, 0.125),
             (40.0, 0.015_625),
         ] {
-            let rate = f64::from(rate(Celsius::from_num(t_c))) / 256.0;
+            let rate = f64::from(dose_rate(Celsius::from_num(t_c))) / 256.0;
             assert!((rate - worth).abs() < 1.0 / 256.0, "{t_c} C: {rate}");
         }
     }
@@ -103,7 +112,7 @@ mod tests {
             let mut dose = ThermalDose::default();
             let display = Celsius::from_num(t_c);
             let ticks = (1..)
-                .find(|_| dose.check(|| Some(display)).is_err())
+                .find(|_| dose.add_tick(|| Some(display)).is_err())
                 .expect("a tick");
             assert!(
                 (f64::from(ticks) - 1e3 * seconds).abs() < 300.0,
@@ -112,7 +121,7 @@ mod tests {
         }
         let mut dose = ThermalDose::default();
         let cool = Celsius::lit("38.9");
-        assert!((0..1_000_000).all(|_| dose.check(|| Some(cool)).is_ok()));
+        assert!((0..1_000_000).all(|_| dose.add_tick(|| Some(cool)).is_ok()));
     }
 
     /// The same holds for a sum in which a bit has flipped.
@@ -122,13 +131,13 @@ mod tests {
         let hot = Celsius::lit("60");
         assert!(
             (0..600_000)
-                .filter(|_| dose.check(|| Some(hot)).is_err())
+                .filter(|_| dose.add_tick(|| Some(hot)).is_err())
                 .count()
                 > 0
         );
         for mut dose in [dose, ThermalDose::from_word(u32::MAX)] {
             let cool = Celsius::lit("38.9");
-            let forgotten = (0..3_600_000).position(|_| dose.check(|| Some(cool)).is_ok());
+            let forgotten = (0..3_600_000).position(|_| dose.add_tick(|| Some(cool)).is_ok());
             assert!(forgotten.is_some());
         }
     }

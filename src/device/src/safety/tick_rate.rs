@@ -1,40 +1,47 @@
 //! Monitors the rate of the control ticks by a second counter.
 
-/// Bits of the counter: SysTick's.
-const BITS: u32 = 24;
-/// Part of a period by which a tick may be early or late.
-const PART: u32 = 4;
+/// Width of the counter that ticks are compared with, bits: that of SysTick, the core's timer.
+const COUNTER_BITS: u32 = 24;
+/// Divisor of the tick's period that gives how early or late a tick may be: 4 allows a quarter of a period.
+const TOLERANCE_DIVISOR: u32 = 4;
 
-/// Predicts when ticks are due, by a counter that counts down without end.
+/// Predicts when each control tick is due, by a hardware counter that counts down and wraps, and that shares no timer
+/// with the ticks. A tick that is not on time stops the sampling and trips all fingers by
+/// [`Fault::Sampling`](super::Fault::Sampling).
 ///
-/// Counter and ticks derive from one oscillator, so the jitter of single ticks never adds up, but a wrong rate does: half a
-/// percent becomes a quarter of a period after 50 ticks, and a rate that is wrong by a factor of ten is detected at once.
+/// Counter and ticks derive from one oscillator, so the jitter of single ticks never adds up, but a wrong rate does:
+/// half a percent becomes a quarter of a period after 50 ticks, and a rate that is wrong by a factor of ten is detected
+/// at once.
 #[derive(Clone, Copy, Debug)]
 pub struct TickRateMonitor {
-    /// Counts per tick, in the upper bits, so that times wrap where the counter does.
+    /// Counts from tick to tick, in the upper 24 bits of the word, so that sums wrap where the counter does.
     period: u32,
-    /// When the last tick was due; `None` before the first, which is due when it comes.
+    /// Value of the counter at which the last tick was due, negated and in the upper 24 bits; `None` before the first
+    /// tick, which is due when it comes.
     due: Option<u32>,
 }
 
 impl TickRateMonitor {
-    /// Monitors ticks that are `period` counts apart, of the counter's 2^24.
+    /// A monitor of ticks that are `period` counts of the counter apart, below 2^24; created at the start, before the
+    /// first tick.
     #[must_use]
     pub const fn new(period: u32) -> Self {
         Self {
-            period: period << (u32::BITS - BITS),
+            period: period << (u32::BITS - COUNTER_BITS),
             due: None,
         }
     }
 
-    /// Takes one tick with the counter's value; returns whether the tick came when it was due.
+    /// Compares a tick with its due time, by `count`, the counter's value when the tick came; returns whether the tick
+    /// was early or late by a quarter of a period at most. To be called once in each tick.
     ///
-    /// A tick that is off by half a turn of the counter or more may be taken for another one; the watchdogs detect that.
+    /// A tick that is off by half a turn of the counter or more may be taken for another one; the watchdogs detect
+    /// that.
     pub fn tick_is_due(&mut self, count: u32) -> bool {
-        let now = (count << (u32::BITS - BITS)).wrapping_neg();
+        let now = (count << (u32::BITS - COUNTER_BITS)).wrapping_neg();
         let due = self.due.map_or(now, |due| due.wrapping_add(self.period));
         self.due = Some(due);
-        now.wrapping_sub(due).cast_signed().unsigned_abs() <= self.period / PART
+        now.wrapping_sub(due).cast_signed().unsigned_abs() <= self.period / TOLERANCE_DIVISOR
     }
 }
 

@@ -6,38 +6,41 @@ use super::Fault;
 use crate::drive::Current;
 use crate::sense::Readings;
 
-/// What is known of the tick in which a station tripped.
+/// Why and when a station tripped: the fault, the number of the tick, and the temperatures and currents of that tick.
+/// It is kept in RAM through a reset, and the command `cause` reports it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TripCause {
     /// The fault that tripped the station.
     pub fault: Fault,
-    /// Ticks since the reset before it; 0 if no tick has seen the fault.
+    /// Number of the tick, of 1 ms since the last reset before the trip; 0 if the trip came before the first tick, or
+    /// was found by the start-up code or an exception handler.
     pub tick: u32,
-    /// Reading of the display, °C; `None` if it was invalid.
+    /// Reading of the first display thermistor, °C; `None` if it was invalid or no tick saw the fault.
     pub display: Option<Celsius>,
-    /// Reading of the second display thermistor, °C; `None` if it was invalid.
+    /// Reading of the second display thermistor, °C; `None` if it was invalid or no tick saw the fault.
     pub check: Option<Celsius>,
-    /// Reading of the sink, °C; `None` if it was invalid.
+    /// Reading of the sink's thermistor, °C; `None` if it was invalid or no tick saw the fault.
     pub sink: Option<Celsius>,
-    /// Magnitude of the measured current, A.
+    /// Magnitude of the measured module current in that tick, A; zero if no tick saw the fault.
     pub current: Current,
-    /// Current demanded in the tick before, A.
+    /// Current that the tick before had demanded of the bridge, A; positive cools; zero if no tick saw the fault.
     pub demanded: Current,
 }
 
 impl TripCause {
-    /// Number of words of [`Self::to_words`].
-    pub const WORDS: usize = 7;
+    /// Number of 32-bit words in which a trip cause is stored in RAM through a reset.
+    pub const WORD_COUNT: usize = 7;
 
-    /// Identifies the meaning of the words: their number, their order, and the numbers of the faults. A record that was kept by
-    /// another firmware is recognised by it.
-    pub const LAYOUT: u32 = layout(
+    /// Hash of the meaning of the stored words: their number, their order, and the numbers and names of the faults. It
+    /// is part of the record's checksum, so that a record stored by a firmware with another layout counts as invalid.
+    pub const LAYOUT_HASH: u32 = layout_hash(
         "fault tick display check sink current asked",
-        Self::WORDS,
+        Self::WORD_COUNT,
         Fault::ALL,
     );
 
-    /// The cause in a tick.
+    /// The cause of a trip by a fault that was detected in tick number `tick` with these readings; `demanded` is the
+    /// current that the tick before demanded, A.
     #[must_use]
     pub fn new(fault: Fault, tick: u32, readings: &Readings, demanded: Current) -> Self {
         Self {
@@ -51,9 +54,10 @@ impl TripCause {
         }
     }
 
-    /// The cause for a fault that no tick has seen.
+    /// The cause of a trip by a fault that no tick has detected, such as a reset by a watchdog: tick number and
+    /// currents are zero, and all temperatures are `None`.
     #[must_use]
-    pub const fn alone(fault: Fault) -> Self {
+    pub const fn without_readings(fault: Fault) -> Self {
         Self {
             fault,
             tick: 0,
@@ -65,9 +69,10 @@ impl TripCause {
         }
     }
 
-    /// Words to be kept through a reset. A change here must change [`Self::LAYOUT`].
+    /// Converts the cause to the words in which the board keeps it in RAM through a reset. A change here must change
+    /// [`Self::LAYOUT_HASH`].
     #[must_use]
-    pub fn to_words(&self) -> [u32; Self::WORDS] {
+    pub fn to_words(&self) -> [u32; Self::WORD_COUNT] {
         // Stands for an invalid reading: no thermistor reads the lowest representable temperature.
         let word = |t: Option<Celsius>| t.unwrap_or(Celsius::MIN).to_bits().cast_unsigned();
         [
@@ -81,10 +86,11 @@ impl TripCause {
         ]
     }
 
-    /// The cause from words that were kept; `None` if there is no such fault.
+    /// The cause from the words of [`to_words`](Self::to_words) that were kept through a reset; `None` if the first
+    /// word is not the number of a fault.
     #[must_use]
     pub fn from_words(
-        [fault, tick, display, check, sink, measured, demanded]: [u32; Self::WORDS],
+        [fault, tick, display, check, sink, measured, demanded]: [u32; Self::WORD_COUNT],
     ) -> Option<Self> {
         let celsius = |word: u32| {
             let t = Celsius::from_bits(word.cast_signed());
@@ -103,19 +109,20 @@ impl TripCause {
     }
 }
 
-/// FNV-1a hash over what a record consists of.
-const fn layout(order: &str, words: usize, faults: &[Fault]) -> u32 {
-    let mut sum = hash_word(0x811c_9dc5 ^ words as u32, order);
+/// FNV-1a hash over the number of words of a stored cause, their `order`, and the names of all faults in the order of
+/// their numbers.
+const fn layout_hash(order: &str, words: usize, faults: &[Fault]) -> u32 {
+    let mut sum = continue_hash(0x811c_9dc5 ^ words as u32, order);
     let mut number = 0;
     while number < faults.len() {
-        sum = hash_word(sum, faults[number].name());
+        sum = continue_hash(sum, faults[number].name());
         number += 1;
     }
     sum
 }
 
-/// Continues the hash with a word and its end.
-const fn hash_word(mut sum: u32, word: &str) -> u32 {
+/// Continues an FNV-1a hash, `sum`, with the bytes of `word` and then with 0xff, so that "a b" and "ab" differ.
+const fn continue_hash(mut sum: u32, word: &str) -> u32 {
     let bytes = word.as_bytes();
     let mut at = 0;
     while at < bytes.len() {
@@ -132,22 +139,22 @@ mod tests {
     #[test]
     fn other_faults_or_other_words_have_another_layout() {
         let order = "fault tick";
-        let of = |faults: &[Fault]| layout(order, 2, faults);
+        let of = |faults: &[Fault]| layout_hash(order, 2, faults);
         let (stack, panic) = (Fault::Stack, Fault::Panic);
         let all = [
             of(&[stack, panic]),
             of(&[panic, stack]),
             of(&[stack]),
             of(&[stack, panic, Fault::Clock]),
-            layout("tick fault", 2, &[stack, panic]),
-            layout(order, 3, &[stack, panic]),
+            layout_hash("tick fault", 2, &[stack, panic]),
+            layout_hash(order, 3, &[stack, panic]),
         ];
         for (i, one) in all.iter().enumerate() {
             assert!(!all[..i].contains(one), "{i}");
         }
         // FNV-1a of "a", as its authors give it; a word's end is one more byte.
         assert_eq!(
-            hash_word(0x811c_9dc5, "a"),
+            continue_hash(0x811c_9dc5, "a"),
             (0xe40c_292c_u32 ^ 0xff).wrapping_mul(0x0100_0193)
         );
     }

@@ -7,30 +7,36 @@ use super::{Fault, ThermistorId};
 use crate::drive::Current;
 use crate::sense::{Readings, SensorFault};
 
-/// Readings of sensors that work, within their limits.
+/// The readings of one tick after [`validate_readings`]: no sensor is open or shorted, and temperatures and current are
+/// within the limits that trip the station.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ValidReadings {
-    /// Display, by its first thermistor, °C.
+    /// Display surface by its first thermistor, which the control uses, 13.5 to 43 °C.
     pub display: Celsius,
-    /// Display, by its second thermistor, °C.
+    /// Display surface by its second thermistor, which only the detectors and the thermal dose use, 13.5 to 43 °C.
     pub check: Celsius,
-    /// Sink, °C.
+    /// Sink, up to 42 °C.
     pub sink: Celsius,
-    /// Skin at the edge of the contact, °C.
+    /// Thermistor on the skin at the edge of the contact, °C; reads the room if no finger is there.
     pub skin: Celsius,
-    /// Room air, °C.
+    /// Thermistor in the room's air, °C.
     pub room: Celsius,
-    /// Force of the finger on the display, N.
+    /// Force of the finger on the display, N; zero if the signal is below its zero.
     pub force: Force,
-    /// Magnitude of the measured module current, A.
+    /// Magnitude of the measured module current, A; up to 3 A above the controller's limit.
     pub current: Current,
 }
 
-/// Checks the readings of one tick; `current_limit` is the largest current that is ever demanded.
+/// Checks the readings of one tick by what a single tick can show. `current_limit` is the largest current that the
+/// controller ever demands, A.
 ///
 /// # Errors
-/// The first fault; sensors come before what they measure.
-pub fn check(readings: &Readings, current_limit: Current) -> Result<ValidReadings, Fault> {
+/// The first fault in this order: all thermistors shorted, one open or shorted, force sensor, display hot, display
+/// cold, sink hot, over-current. So a broken sensor is not named as the temperature that it pretends.
+pub fn validate_readings(
+    readings: &Readings,
+    current_limit: Current,
+) -> Result<ValidReadings, Fault> {
     let thermistors = [
         readings.display,
         readings.display_check,
@@ -89,7 +95,9 @@ mod tests {
     fn fault_of(change: impl Fn(&mut Readings)) -> Option<&'static str> {
         let mut readings = valid();
         change(&mut readings);
-        check(&readings, Current::lit("6")).err().map(Fault::name)
+        validate_readings(&readings, Current::lit("6"))
+            .err()
+            .map(Fault::name)
     }
 
     #[test]

@@ -11,32 +11,42 @@ use contact_model::fixed_point::Celsius;
 use super::Fault;
 use crate::drive::Current;
 
-/// Return from the best reading that trips.
-const RETURN_MAX: Celsius = Celsius::lit("2.5");
-/// Mean current from which on its sign is certain.
-const CERTAIN_SIGN: Current = Current::lit("1");
-/// Time constant of the mean, as a power of two of ticks: after the current changes sign, the thermistor's reading continues
-/// for its lag of up to 0.5 s.
-const MEAN_SHIFT: u32 = 8;
-/// Ticks since the best reading that separate a quick return from a slow one.
-const SLOW_TICKS: u16 = 2000;
+/// Rise of the display's reading above the lowest one so far while cooling, or fall below the highest one while
+/// warming, K, that trips the station. A finger that lands while the current is at its limit causes 2 K.
+const TRIP_REVERSAL: Celsius = Celsius::lit("2.5");
+/// Magnitude of the mean demanded current, A, from which on the direction of the reading is tested; while the mean is
+/// smaller, its sign may not be that of the current that flows, and the best reading is forgotten.
+const MIN_TESTED_CURRENT: Current = Current::lit("1");
+/// Time constant of the mean demanded current, as a power of two of ticks of 1 ms: 8 gives 0.26 s. The mean is used
+/// because the reading goes on in its old direction for the thermistor's lag of up to 0.5 s after the current has
+/// changed sign.
+const MEAN_CURRENT_SHIFT: u32 = 8;
+/// Ticks of 1 ms since the best reading from which on a reversal is named [`Fault::Runaway`]; a quicker one is named
+/// [`Fault::Polarity`].
+const RUNAWAY_FROM_TICKS: u16 = 2000;
 
-/// The mean current, and the best reading since its sign is certain.
+/// Detects a display that warms while it is cooled above its set-point, or cools while it is warmed below it: keeps the
+/// mean demanded current, and the lowest (while warming highest) reading since the test began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WrongWayDetector {
+    /// Mean of the demanded current, A; positive cools.
     mean_current: Current,
+    /// Lowest reading while cooling, or highest while warming, with its sign inverted, °C; `None` while nothing is
+    /// tested.
     best: Option<Celsius>,
-    /// Ticks since the best reading.
-    ticks: u16,
+    /// Ticks of 1 ms since the best reading.
+    ticks_since_best: u16,
 }
 
 impl WrongWayDetector {
-    /// Takes one tick: the current demanded in the tick before, positive if it cools, the reading, and by how much it is
-    /// above the set-point; current and difference are zero while the bridge is off.
+    /// Tests one tick: `demanded` is the current demanded in the tick before, A, positive if it cools and zero if the
+    /// bridge was off; `display` is the reading, °C; `above_setpoint` is the reading less the set-point, K, and zero,
+    /// which ends the test, if no set-point is followed.
     ///
     /// # Errors
-    /// The display has moved against the current.
-    pub fn check(
+    /// The reading has moved against the mean current by 2.5 K from its best value: [`Fault::Polarity`] within 2 s,
+    /// later [`Fault::Runaway`].
+    pub fn check_direction(
         &mut self,
         demanded: Current,
         display: Celsius,
@@ -44,23 +54,23 @@ impl WrongWayDetector {
     ) -> Result<(), Fault> {
         self.mean_current = self
             .mean_current
-            .saturating_add(demanded.saturating_sub(self.mean_current) >> MEAN_SHIFT);
+            .saturating_add(demanded.saturating_sub(self.mean_current) >> MEAN_CURRENT_SHIFT);
         // Warming is mirrored, so that a lower reading is better for both signs.
         let (display, above_setpoint) = if self.mean_current < 0 {
             (display.saturating_neg(), above_setpoint.saturating_neg())
         } else {
             (display, above_setpoint)
         };
-        if self.mean_current.saturating_abs() < CERTAIN_SIGN || above_setpoint <= 0 {
+        if self.mean_current.saturating_abs() < MIN_TESTED_CURRENT || above_setpoint <= 0 {
             self.best = None;
             return Ok(());
         }
         match self.best {
             Some(best) if display >= best => {
-                self.ticks = self.ticks.saturating_add(1);
-                if display.saturating_sub(best) < RETURN_MAX {
+                self.ticks_since_best = self.ticks_since_best.saturating_add(1);
+                if display.saturating_sub(best) < TRIP_REVERSAL {
                     Ok(())
-                } else if self.ticks < SLOW_TICKS {
+                } else if self.ticks_since_best < RUNAWAY_FROM_TICKS {
                     Err(Fault::Polarity)
                 } else {
                     Err(Fault::Runaway)
@@ -68,7 +78,7 @@ impl WrongWayDetector {
             }
             _ => {
                 self.best = Some(display);
-                self.ticks = 0;
+                self.ticks_since_best = 0;
                 Ok(())
             }
         }

@@ -1,24 +1,26 @@
 //! Commands of the host.
 
-use super::{Event, State, Station, Task};
+use super::{ArmedTask, Event, State, Station};
 use crate::TICK_HZ;
 use crate::command::{Command, Refused, Reply, Status};
-use crate::hold::Hold;
+use crate::hold::TemperatureHold;
 use crate::identification::Identification;
 use crate::sense::ThermistorAverages;
 
 impl Station {
-    /// Executes a command of the host, in bounded and short time.
+    /// Executes a command of the host between two ticks, in bounded and short time; what it changes takes effect in the
+    /// next tick.
     ///
     /// # Errors
-    /// The command does not fit the state; nothing has changed.
+    /// The station's state does not permit the command, and nothing has changed. One exception: if the board has raised
+    /// a second fault, `clear` clears the first, trips the station by the second, and answers with it.
     pub fn execute(&mut self, command: Command) -> Result<Reply, Refused> {
         match command {
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Cause => return Ok(Reply::Cause(self.latch.cause().copied())),
             Command::Law(None) => return Ok(Reply::Law(self.controller.law())),
-            Command::Average(thermistor) => return self.average(thermistor),
-            Command::NormalEquation(row) => return self.normal_equation(row),
+            Command::Average(thermistor) => return self.thermistor_average(thermistor),
+            Command::NormalEquation(row) => return self.normal_equation_row(row),
             Command::Law(Some(law)) => self.controller.select_law(law),
             Command::Stream { interval_ms } => {
                 self.telemetry_ticks = interval_ms * (TICK_HZ / 1000);
@@ -39,11 +41,11 @@ impl Station {
             }
             Command::Arm => self.arm()?,
             Command::Hold(setpoint) => {
-                self.needs_armed("hold")?;
+                self.require_armed("hold")?;
                 self.identified.outcome = None;
                 self.state = State::Armed(match self.last.readings.display {
-                    Ok(reading) => Task::Hold(Hold::new(setpoint, reading)),
-                    Err(_) => Task::Neutral,
+                    Ok(reading) => ArmedTask::Hold(TemperatureHold::new(setpoint, reading)),
+                    Err(_) => ArmedTask::Neutral,
                 });
             }
             Command::Start => self.start()?,
@@ -54,7 +56,7 @@ impl Station {
             Command::Clear => self.clear()?,
             Command::Tune => self.tune()?,
             Command::Calibrate(tables) => {
-                self.may_calibrate()?;
+                self.require_calibration_allowed()?;
                 // The reading changes with the calibration, which neither the identification nor the detectors may take
                 // for a movement of the display.
                 self.interrupt_identification();
@@ -63,12 +65,12 @@ impl Station {
                 self.detectors.forget_motion();
             }
             Command::Retune(parameters) => {
-                self.may_change_parameters()?;
-                self.set_parameters(&parameters);
+                self.require_not_presenting()?;
+                self.set_control_parameters(&parameters);
                 self.interrupt_identification();
                 // The result has been used, so the display is neutral again.
-                if let State::Armed(task @ Task::Identify(_)) = &mut self.state {
-                    *task = Task::Neutral;
+                if let State::Armed(task @ ArmedTask::Identify(_)) = &mut self.state {
+                    *task = ArmedTask::Neutral;
                 }
             }
         }
@@ -87,23 +89,25 @@ impl Station {
         }
     }
 
-    /// Another object, under whatever finger rests there, begins a new contact.
+    /// Lets a finger that touches begin a new contact in the next tick, because another object or model was chosen, or
+    /// is presented from now on.
     fn restart_contact(&mut self) {
         self.reference.restart_contact(&mut self.estimator.finger);
     }
 
-    /// What the finger feels must not change by a new calibration or tile.
-    fn may_change_parameters(&self) -> Result<(), Refused> {
-        if self.state.presents() {
+    /// Refuses new parameters and calibrations while an object is presented, because the finger would feel the change.
+    fn require_not_presenting(&self) -> Result<(), Refused> {
+        if self.state.is_presenting() {
             Err(Refused::Presenting)
         } else {
             Ok(())
         }
     }
 
-    /// A calibration changes the reading, which the self-test would take for the display's response.
-    fn may_calibrate(&self) -> Result<(), Refused> {
-        self.may_change_parameters()?;
+    /// Refuses calibrations while an object is presented, and in the self-test, which would take the change of the
+    /// readings for the display's response to its current.
+    fn require_calibration_allowed(&self) -> Result<(), Refused> {
+        self.require_not_presenting()?;
         if matches!(self.state, State::SelfTest(_)) {
             Err(Refused::Testing)
         } else {
@@ -111,18 +115,18 @@ impl Station {
         }
     }
 
-    fn average(&self, thermistor: usize) -> Result<Reply, Refused> {
-        self.may_calibrate()?;
+    fn thermistor_average(&self, thermistor: usize) -> Result<Reply, Refused> {
+        self.require_calibration_allowed()?;
         let average = self.averages.of(thermistor).ok_or(Refused::TooEarly)?;
         Ok(Reply::Average(average))
     }
 
-    fn normal_equation(&self, row: usize) -> Result<Reply, Refused> {
+    fn normal_equation_row(&self, row: usize) -> Result<Reply, Refused> {
         if let State::Tripped(fault) = self.state {
             return Err(Refused::Tripped(fault));
         }
         match (&self.state, self.identified.outcome) {
-            (State::Armed(Task::Identify(_)), None) => Err(Refused::Tuning),
+            (State::Armed(ArmedTask::Identify(_)), None) => Err(Refused::Tuning),
             (_, None) => Err(Refused::NotTuned),
             (_, Some(Err(reason))) => Err(Refused::TuneAborted(reason)),
             (_, Some(Ok(()))) => {
@@ -137,7 +141,10 @@ impl Station {
         match self.state {
             State::Tripped(fault) => return Err(Refused::Tripped(fault)),
             State::SelfTest(_) => return Ok(()),
-            // The display may have changed since the plate was last observed.
+            // In off the observer runs, but nobody acts on its residual: what no current explains (heat that no sensor
+            // measures, thermistors that disagree, the cleared fault) adds up in its disturbance and correction. That
+            // must not count against the tile that is armed now, so the model starts from the next reading with both at
+            // zero; the self-test gives it 0.7 s before a set-point is followed and the residual can trip.
             State::Off => self.estimator.plate.invalidate(),
             _ => {}
         }
@@ -165,11 +172,11 @@ impl Station {
         if !self.is_tripped() {
             return Err(Refused::NothingToClear);
         }
-        if let Some(fault) = self.latch.present() {
+        if let Some(fault) = self.latch.present_fault() {
             return Err(Refused::StillFaulty(fault));
         }
         self.change_state(Event::Clear);
-        match self.latch.take_pending() {
+        match self.latch.take_pending_fault() {
             None => Ok(()),
             Some(fault) => {
                 self.trip_without_readings(fault);
@@ -178,7 +185,7 @@ impl Station {
         }
     }
 
-    fn needs_armed(&self, command: &'static str) -> Result<(), Refused> {
+    fn require_armed(&self, command: &'static str) -> Result<(), Refused> {
         match self.state {
             State::Tripped(fault) => Err(Refused::Tripped(fault)),
             State::Armed(_) => Ok(()),
@@ -187,7 +194,7 @@ impl Station {
     }
 
     fn tune(&mut self) -> Result<(), Refused> {
-        self.needs_armed("tune")?;
+        self.require_armed("tune")?;
         if self.contact.touching() {
             return Err(Refused::Touched);
         }
@@ -197,7 +204,7 @@ impl Station {
             .sink
             .map_err(|_| Refused::NeedsArmed("tune"))?;
         self.identified = super::IdentificationResult::default();
-        self.state = State::Armed(Task::Identify(Identification::new(sink)));
+        self.state = State::Armed(ArmedTask::Identify(Identification::new(sink)));
         Ok(())
     }
 }

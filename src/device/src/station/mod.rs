@@ -17,7 +17,7 @@ mod state;
 
 use thermal_settings::Settings;
 
-pub use state::{Event, State, Task};
+pub use state::{ArmedTask, Event, State};
 
 use crate::control::{ControlParameters, Controller, Law, VoltageFeedforward};
 use crate::drive::{Current, Drive, Outputs, SafeCurrent};
@@ -36,7 +36,8 @@ use crate::sense::{
 use crate::{StateName, Telemetry};
 use object::PresentedObject;
 
-/// The control of one finger: state, estimates and controllers, without the hardware.
+/// The control of one finger without its hardware: takes the samples of each tick of 1 ms and returns what the bridge
+/// must do, and executes the host's commands between ticks. Independent of the stations of other fingers.
 #[derive(Clone, Debug)]
 pub struct Station {
     sensors: Sensors,
@@ -51,22 +52,25 @@ pub struct Station {
     voltage: VoltageFeedforward,
     state: State,
     identified: IdentificationResult,
-    /// Ticks since reset; wraps after 49 days.
+    /// Number of the last tick, of 1 ms since the start of the program; wraps after 49 days.
     tick: u32,
-    /// Ticks from one telemetry to the next; 0 for none.
+    /// Ticks of 1 ms from one telemetry to the next; 0 while the host wants none.
     telemetry_ticks: u32,
     last: LastTick,
 }
 
-/// The sums of the last identification of the tile, which outlive its state.
+/// Normal equations and outcome of the last identification of the tile. They stay when the station leaves that task,
+/// until the host has read them or starts another.
 #[derive(Clone, Debug, Default)]
 struct IdentificationResult {
     equations: NormalEquations,
-    /// `None` while it runs, and before the first one since `arm`.
+    /// Whether the normal equations are complete, or why the identification has ended early; `None` while it runs, and
+    /// if none was started since the last `arm` or `hold`.
     outcome: Option<Result<(), AbortReason>>,
 }
 
-/// What the last tick has read, and what the bridge was told.
+/// Readings, reference and demanded current of the last tick: for telemetry and `status`, and for the detectors of the
+/// next tick, whose readings respond to that current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct LastTick {
     readings: Readings,
@@ -74,26 +78,29 @@ struct LastTick {
     demanded: Current,
 }
 
-/// What a tick demands of the bridge.
+/// What a tick demands of the bridge before the current is clamped and converted to a voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Demand {
-    /// The bridge is off; the line that tests the comparator has this level.
+enum BridgeDemand {
+    /// Both half-bridges high-impedance; `comparator_test` is the level of the line that makes the comparator cut the
+    /// supply.
     Off { comparator_test: bool },
-    /// A current through legs that had these temperatures in the tick before.
+    /// Drive `current`, A, positive cools. The voltage for it is computed from the temperatures of the module's legs as
+    /// the model predicted them before this tick's reading corrected it.
     Drive {
         current: Current,
         previous_legs: LegTemperatures,
     },
 }
 
-impl Demand {
-    const OFF: Self = Self::Off {
+impl BridgeDemand {
+    const BRIDGE_OFF: Self = Self::Off {
         comparator_test: false,
     };
 }
 
 impl Station {
-    /// A station that is off.
+    /// A station in the state off, with these settings, without material, and before its first tick. Converts the
+    /// settings from `f64`, so it is for the start only.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let parameters = ControlParameters::new(settings);
@@ -124,29 +131,36 @@ impl Station {
         }
     }
 
-    /// Uses the calibration and the tile of other settings of the same class.
-    pub(crate) fn apply(&mut self, settings: &Settings) {
+    /// Takes calibration and tile from `settings`, converted from `f64`; the rest stays as the settings given to `new`
+    /// have it. Called at the start, with the finger's stored settings.
+    pub(crate) fn apply_settings(&mut self, settings: &Settings) {
         self.sensors.recalibrate(&CalibrationTables::new(settings));
-        self.set_parameters(&ControlParameters::new(settings));
+        self.set_control_parameters(&ControlParameters::new(settings));
     }
 
-    fn set_parameters(&mut self, parameters: &ControlParameters) {
+    fn set_control_parameters(&mut self, parameters: &ControlParameters) {
         self.controller.set_parameters(parameters);
         self.estimator.plate.set_parameters(&parameters.observer);
     }
 
-    /// Runs one control tick: takes the tick's samples, and returns what the bridge must do until the next one.
+    /// Runs one control tick, to be called every millisecond: takes the sums of the 16 scans since the last tick, and
+    /// returns what bridge and comparator's test line must do until the next one. In a tick that detects a fault the
+    /// bridge is off.
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples) -> Outputs {
         self.tick = self.tick.wrapping_add(1);
         let readings = self.sense(samples);
-        let valid = self.detect(samples, &readings);
+        let valid = self.detect_faults(samples, &readings);
         let (demand, reference) = match valid {
             Ok(valid) => {
                 let estimate = self.estimate(samples, &valid);
-                let reference = self.reference(&estimate);
-                let demand =
-                    self.control(&valid, readings.bridge_fault, &estimate, reference.as_ref());
+                let reference = self.generate_reference(&estimate);
+                let demand = self.choose_demand(
+                    &valid,
+                    readings.bridge_fault,
+                    &estimate,
+                    reference.as_ref(),
+                );
                 (demand, reference)
             }
             Err(fault) => {
@@ -164,19 +178,28 @@ impl Station {
         outputs
     }
 
-    /// Converts the tick's samples to °C, N and A, and averages them for a calibration.
+    /// Converts the tick's samples to °C, N and A. Also adds those of the thermistors to the half-second means that a
+    /// calibration uses, unless an object is presented.
     #[inline(never)]
     fn sense(&mut self, samples: &Samples) -> Readings {
         // An object is never presented during a calibration.
-        if !self.state.presents() {
+        if !self.state.is_presenting() {
             self.averages.add_tick(&samples.thermistor_sums());
         }
         self.sensors.read_samples(samples)
     }
 
-    /// Lets every detector see the tick; faults that one tick shows are named first.
+    /// Shows the tick to every detector, and returns the valid readings.
+    ///
+    /// # Errors
+    /// The first fault in this order: what this tick's readings show alone, bridge fault line, what shows over several
+    /// ticks, thermal dose, frozen samples.
     #[inline(never)]
-    fn detect(&mut self, samples: &Samples, readings: &Readings) -> Result<ValidReadings, Fault> {
+    fn detect_faults(
+        &mut self,
+        samples: &Samples,
+        readings: &Readings,
+    ) -> Result<ValidReadings, Fault> {
         // The bridge's command of the tick before, to which this tick's readings respond.
         let previous = PreviousActuation {
             demanded: self.last.demanded,
@@ -184,12 +207,12 @@ impl Station {
             residual_is_large: self.estimator.plate.residual_is_large(),
         };
         let frozen = self.detectors.check_samples(samples);
-        let dose = self.detectors.check_dose(readings);
-        let valid = safety::check(readings, self.controller.current_limit());
+        let dose = self.detectors.add_to_dose(readings);
+        let valid = safety::validate_readings(readings, self.controller.current_limit());
         let over_ticks = match &valid {
             Ok(valid) => {
                 let streams = self.telemetry_ticks != 0;
-                self.detectors.check(valid, &previous, streams)
+                self.detectors.check_readings(valid, &previous, streams)
             }
             Err(_) => {
                 self.detectors.forget_motion();
@@ -197,16 +220,20 @@ impl Station {
             }
         };
         let valid = valid?;
-        self.check_bridge(readings)
+        self.check_bridge_fault_line(readings)
             .and(over_ticks)
             .and(dose)
             .and(frozen)?;
         Ok(valid)
     }
 
-    /// Checks the bridge's fault line. A comparator that has cut the supply pulls it until the next self-test, and is expected
-    /// to pull it at that test's beginning.
-    fn check_bridge(&self, readings: &Readings) -> Result<(), Fault> {
+    /// Checks the bridge's fault line. It is ignored in off and tripped, because a comparator that has cut the supply
+    /// pulls it until the next self-test, and in the first 40 ticks of the self-test, which makes the comparator pull
+    /// it.
+    ///
+    /// # Errors
+    /// [`Fault::Bridge`]: the line is pulled in another state.
+    fn check_bridge_fault_line(&self, readings: &Readings) -> Result<(), Fault> {
         let ignored = match &self.state {
             State::Off | State::Tripped(_) => true,
             State::SelfTest(test) => test.expects_bridge_fault(),
@@ -219,7 +246,8 @@ impl Station {
         }
     }
 
-    /// Detects contact, and corrects the estimates of plate and finger.
+    /// Detects whether a finger touches, tracks the force sensor's zero, reports contact to the state, and corrects the
+    /// estimates of plate and finger by this tick's readings. Returns the estimates from before the correction.
     fn estimate(&mut self, samples: &Samples, valid: &ValidReadings) -> UncorrectedEstimate {
         let previously_touching = self.contact.touching();
         self.contact.update_contact(valid.force);
@@ -232,19 +260,20 @@ impl Station {
             self.contact.detection_delay_ticks()
         };
         let force = touching.then_some(valid.force);
-        let pair = self.object.pair_under_finger();
+        let pair = self.object.contact_pair();
         self.estimator
             .update_estimates(valid, force, landed_ticks, pair)
     }
 
-    /// Where the display should be; `None` while nothing is to be followed.
-    fn reference(&mut self, estimate: &UncorrectedEstimate) -> Option<Reference> {
+    /// Temperature that the display is to have in this tick; `None`, which leads to the bridge off, in the states off,
+    /// self-test (which chooses its own current), ready and tripped, and before skin and room were read.
+    fn generate_reference(&mut self, estimate: &UncorrectedEstimate) -> Option<Reference> {
         let finger = &mut self.estimator.finger;
         let setpoint = match &mut self.state {
             State::Off | State::SelfTest(_) | State::Ready | State::Tripped(_) => return None,
-            State::Armed(Task::Neutral) => finger.temperatures_before_contact()?.skin,
-            State::Armed(Task::Hold(hold)) => hold.step().celsius(),
-            State::Armed(Task::Identify(tile)) => tile.operating_point().celsius(),
+            State::Armed(ArmedTask::Neutral) => finger.temperatures_before_contact()?.skin,
+            State::Armed(ArmedTask::Hold(hold)) => hold.next_setpoint().celsius(),
+            State::Armed(ArmedTask::Identify(tile)) => tile.operating_point().celsius(),
             State::Preset | State::Contact => {
                 let scene = self.object.scene()?;
                 let surface = estimate.previous_surface;
@@ -257,40 +286,40 @@ impl Station {
         Some(Reference::at(setpoint))
     }
 
-    /// Chooses the current of this tick.
+    /// Chooses what the bridge must do in this tick: what the self-test or the identification demands while one runs,
+    /// else the current of the control law; off without a reference.
     ///
     /// # Errors
-    /// A fault that the self-test has found.
     #[inline(always)]
-    fn control(
+    fn choose_demand(
         &mut self,
         valid: &ValidReadings,
         bridge_fault: bool,
         estimate: &UncorrectedEstimate,
         reference: Option<&Reference>,
-    ) -> Result<Demand, Fault> {
-        let drive = |current| Demand::Drive {
+    ) -> Result<BridgeDemand, Fault> {
+        let drive = |current| BridgeDemand::Drive {
             current,
             previous_legs: estimate.previous_legs,
         };
         if let State::SelfTest(test) = &mut self.state {
             let touched = self.contact.may_be_landing() || self.contact.touching();
             return Ok(match test.step(valid, bridge_fault, touched)? {
-                SelfTestStep::Off { comparator_test } => Demand::Off { comparator_test },
+                SelfTestStep::Off { comparator_test } => BridgeDemand::Off { comparator_test },
                 SelfTestStep::Drive(current) => {
                     self.controller.track_current(current);
                     drive(current)
                 }
                 SelfTestStep::Passed => {
                     self.change_state(Event::Pass);
-                    Demand::OFF
+                    BridgeDemand::BRIDGE_OFF
                 }
             });
         }
         let Some(reference) = reference else {
-            return Ok(Demand::OFF);
+            return Ok(BridgeDemand::BRIDGE_OFF);
         };
-        let current = match self.identify(valid) {
+        let current = match self.identification_current(valid) {
             Some(current) => {
                 self.controller.track_current(current);
                 current
@@ -303,23 +332,29 @@ impl Station {
         Ok(drive(current))
     }
 
-    /// Current of the identification, if one runs.
-    fn identify(&mut self, valid: &ValidReadings) -> Option<Current> {
-        let State::Armed(Task::Identify(tile)) = &mut self.state else {
+    /// Current that the identification of the tile demands in this tick, A; `None` if none runs, or if it ends early in
+    /// this tick: then the task becomes neutral, and the control law chooses the current.
+    fn identification_current(&mut self, valid: &ValidReadings) -> Option<Current> {
+        let State::Armed(ArmedTask::Identify(tile)) = &mut self.state else {
             return None;
         };
         let touching = self.contact.touching();
         let current = tile.choose_current(&mut self.identified.equations, valid, touching);
         self.identified.outcome = tile.outcome();
         if let Some(Err(_)) = self.identified.outcome {
-            self.state = State::Armed(Task::Neutral);
+            self.state = State::Armed(ArmedTask::Neutral);
         }
         current
     }
 
-    /// Latches the fault of a tick, which switches the bridge off.
-    fn trip_on_fault(&mut self, demand: Result<Demand, Fault>, readings: &Readings) -> Demand {
-        self.latch.end_tick(demand.err());
+    /// If the tick has found a fault, trips the station with the tick's readings as its cause, and demands the bridge
+    /// off; otherwise passes the demand on. In both cases tells the latch which fault is present now.
+    fn trip_on_fault(
+        &mut self,
+        demand: Result<BridgeDemand, Fault>,
+        readings: &Readings,
+    ) -> BridgeDemand {
+        self.latch.set_present_fault(demand.err());
         demand.unwrap_or_else(|fault| {
             let previously_demanded = self.last.demanded;
             self.trip(TripCause::new(
@@ -328,15 +363,17 @@ impl Station {
                 readings,
                 previously_demanded,
             ));
-            Demand::OFF
+            BridgeDemand::BRIDGE_OFF
         })
     }
 
-    /// Turns the demand into the bridge's command, and advances the plate's model under the current.
+    /// Converts the demand to the outputs, and advances the plate's model by one tick under the demanded current. Also
+    /// returns the current clamped to -6 to 6 A, zero if the bridge is off. Off interrupts an identification, and lets
+    /// the control laws start from zero current.
     #[inline(always)]
-    fn actuate(&mut self, demand: Demand) -> (Outputs, Current) {
+    fn actuate(&mut self, demand: BridgeDemand) -> (Outputs, Current) {
         match demand {
-            Demand::Drive {
+            BridgeDemand::Drive {
                 current,
                 previous_legs,
             } => {
@@ -348,7 +385,7 @@ impl Station {
                 };
                 (outputs, current.ampere())
             }
-            Demand::Off { comparator_test } => {
+            BridgeDemand::Off { comparator_test } => {
                 self.interrupt_identification();
                 self.controller.track_current(Current::ZERO);
                 self.estimator.plate.advance_model(Current::ZERO);
@@ -361,25 +398,28 @@ impl Station {
         }
     }
 
-    /// Starts the estimates again with the next valid readings.
+    /// Lets the estimates of plate, skin and contact start again with the next valid readings, because this tick's
+    /// readings are invalid or a detector has found a fault.
     fn invalidate_estimates(&mut self) {
         self.estimator.invalidate();
         self.reference.invalidate();
     }
 
-    /// Ends a running identification; the sums of one that is complete stay.
+    /// Ends an identification that is still running with the outcome "interrupted", and makes the task neutral. The
+    /// normal equations of one that is complete stay, and so does its task.
     fn interrupt_identification(&mut self) {
-        if let State::Armed(task @ Task::Identify(_)) = &mut self.state
+        if let State::Armed(task @ ArmedTask::Identify(_)) = &mut self.state
             && self.identified.outcome.is_none()
         {
             self.identified.outcome = Some(Err(AbortReason::Interrupted));
-            *task = Task::Neutral;
+            *task = ArmedTask::Neutral;
         }
     }
 
-    /// Changes the state by the transition table; returns whether it has one for this event.
+    /// Changes the state by the transition table, and interrupts a running identification if it does; returns whether
+    /// the event has changed the state.
     fn change_state(&mut self, event: Event) -> bool {
-        let Some(state) = self.state.after(event) else {
+        let Some(state) = self.state.state_after(event) else {
             return false;
         };
         self.interrupt_identification();
@@ -387,61 +427,67 @@ impl Station {
         true
     }
 
-    /// Trips for a fault that samples do not show. If the station has tripped before, `clear` reports the fault.
-    pub fn raise(&mut self, fault: Fault) {
-        self.latch.raise(fault, self.state.fault());
+    /// Trips the station by a fault that the board has found outside of the tick. If another fault is latched, that one
+    /// stays, and `clear` then trips the station by this one.
+    pub fn raise_external_fault(&mut self, fault: Fault) {
+        self.latch
+            .raise_external_fault(fault, self.state.latched_fault());
         self.trip_without_readings(fault);
     }
 
     fn trip_without_readings(&mut self, fault: Fault) {
         self.trip(TripCause {
             tick: self.tick,
-            ..TripCause::alone(fault)
+            ..TripCause::without_readings(fault)
         });
     }
 
-    /// Trips; the cause of an earlier trip stays.
+    /// Trips the station with this cause, which switches the bridge off in the next tick. Has no effect on a station
+    /// that is tripped, so that the first cause stays.
     pub fn trip(&mut self, cause: TripCause) {
         if self.change_state(Event::Trip(cause.fault)) {
-            self.latch.latch(cause, self.tick);
+            self.latch.latch_cause(cause, self.tick);
         }
     }
 
-    /// What the station is doing.
+    /// Name of the station's present state, with the fault if it is tripped.
     #[must_use]
     pub const fn state(&self) -> StateName {
         self.state.name()
     }
 
-    /// Whether a fault is latched.
+    /// Whether the station is tripped, so that its bridge stays off until `clear`.
     #[must_use]
     pub const fn is_tripped(&self) -> bool {
-        self.state.fault().is_some()
+        self.state.latched_fault().is_some()
     }
 
-    /// The fault latch, with the cause of the present or the last trip.
+    /// The fault latch, from which the device reads cause and tick of the present or the last trip.
     #[must_use]
     pub const fn latch(&self) -> &FaultLatch {
         &self.latch
     }
 
-    /// Thermal dose that the display may have given to this finger so far.
+    /// Thermal dose that the display would have given to skin that always touched it, so far; the board stores it after
+    /// every tick.
     #[must_use]
     pub const fn dose(&self) -> &ThermalDose {
         self.detectors.dose()
     }
 
-    /// Continues from the thermal dose before a reset.
+    /// Continues from the thermal dose that was stored before a reset. Called once, at the start.
     pub const fn restore_dose(&mut self, dose: ThermalDose) {
         self.detectors.restore_dose(dose);
     }
 
-    /// Notes that the host has sent something.
+    /// Restarts the 2 s after which a host that has asked for telemetry counts as silent; called for each line from the
+    /// host.
     pub const fn note_host_activity(&mut self) {
         self.detectors.note_host_activity();
     }
 
-    /// Telemetry of the last tick, if it is due.
+    /// Telemetry of the last tick; `None` unless the host has asked for telemetry and this tick's number is a multiple
+    /// of the interval.
     #[must_use]
     pub fn telemetry(&self) -> Option<Telemetry> {
         if self.telemetry_ticks == 0 || !self.tick.is_multiple_of(self.telemetry_ticks) {

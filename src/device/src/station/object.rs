@@ -6,21 +6,24 @@ use contact_model::material::{MATERIALS, SKIN, Surface};
 use crate::TICK_HZ;
 use crate::reference::{Mode, Scene};
 
-/// Material, temperature and model of the object.
+/// What the host has chosen to present: the object's material and temperature, and the model that gives the set-point.
+/// It is kept in every state, and `start` presents it.
 #[derive(Clone, Debug)]
 pub struct PresentedObject {
-    /// Name of the material, and its pair with the finger.
+    /// Name of the chosen material, and the constants of its contact with the finger; `None` before the first choice.
     pub material: Option<(&'static str, ContactPair)>,
-    /// Temperature before contact; `None` takes that of the room.
+    /// Temperature of the object before contact, °C; `None` takes that of the room.
     pub temperature: Option<Celsius>,
-    /// Model that gives the set-point.
+    /// Model that gives the set-point: with contact resistance, or semi-infinite with perfect contact.
     pub mode: Mode,
-    /// Pair of the finger with any material: contact of skin and display does not depend on it.
+    /// Constants of the contact of the finger with the first material of the list, used before a material is chosen:
+    /// their part for skin and display is the same for every material. `None` if the display's settings give none.
     default_pair: Option<ContactPair>,
 }
 
 impl PresentedObject {
-    /// No material is chosen yet. Computed in `f64`, for start-up.
+    /// Nothing chosen yet: no material, the object at the room's temperature, the model with contact resistance.
+    /// Computed in `f64` for this `display` surface, so it is for the start only.
     #[must_use]
     pub fn new(display: &Surface) -> Self {
         let [(_, any), ..] = &MATERIALS;
@@ -32,14 +35,16 @@ impl PresentedObject {
         }
     }
 
-    /// The pair by which skin and display touch: that of the chosen material, or of any.
+    /// Constants by which the estimator computes the heat between skin and display: those of the chosen material, or
+    /// before the choice of the first in the list, which are equal for skin and display. `None` only if the settings
+    /// give none.
     #[must_use]
-    pub fn pair_under_finger(&self) -> Option<&ContactPair> {
+    pub fn contact_pair(&self) -> Option<&ContactPair> {
         let chosen = self.material.as_ref().map(|(_, pair)| pair);
         chosen.or(self.default_pair.as_ref())
     }
 
-    /// What is presented; `None` before a material is chosen.
+    /// What the reference generator presents in the states preset and contact; `None` before a material is chosen.
     #[must_use]
     pub fn scene(&self) -> Option<Scene<'_>> {
         let (_, pair) = self.material.as_ref()?;

@@ -1,63 +1,65 @@
 //! The states of a station and the transitions between them.
 
 use crate::StateName;
-use crate::hold::Hold;
+use crate::hold::TemperatureHold;
 use crate::identification::Identification;
 use crate::safety::{Fault, SelfTest};
 
-/// A state with the data that only it has.
+/// State of one finger's station, with the data that the station has in this state only.
 #[derive(Clone, Debug)]
 pub enum State {
-    /// The bridge is off, and nothing is tested.
+    /// The bridge is off after power-up, after `clear`, or after `abort` of the self-test; `arm` starts the self-test.
     Off,
-    /// The comparator is tested, then small currents are driven.
+    /// The self-test runs: the comparator is tested with the bridge off, then 1 A cools and warms; leads to armed if it
+    /// passes.
     SelfTest(SelfTest),
-    /// The bridge is off; the self-test has passed.
+    /// The bridge is off after `abort`. The self-test has passed before, so `arm` leads to armed at once.
     Ready,
-    /// The display is driven, and no object is presented.
-    Armed(Task),
-    /// An object is presented, and no finger touches it.
+    /// The bridge drives the display for this task, and no object is presented.
+    Armed(ArmedTask),
+    /// An object is presented: the display waits at its preset temperature, and no finger touches it.
     Preset,
-    /// An object is presented to the finger that touches it.
+    /// An object is presented, and a finger touches the display, whose temperature follows the contact model.
     Contact,
-    /// The bridge is off until the host clears the fault.
+    /// The bridge is off because of this fault, the first since the last `clear`, until the host sends `clear` and the
+    /// fault is gone.
     Tripped(Fault),
 }
 
-/// What an armed display does.
+/// What the display does while the station is armed, with the data of that task.
 #[derive(Clone, Debug)]
-pub enum Task {
-    /// Stay at skin temperature, touched or not.
+pub enum ArmedTask {
+    /// Stay at the temperature that the finger's skin had before contact, whether a finger touches or not.
     Neutral,
-    /// Stay at a temperature that the host has chosen.
-    Hold(Hold),
-    /// Drive current pulses that identify the tile.
+    /// Move to a temperature that the host has chosen, by 1 K/s, and stay there.
+    Hold(TemperatureHold),
+    /// Identify the tile by current pulses about an operating point, and stay there until the result is used.
     Identify(Identification),
 }
 
-/// What moves a station from one state to another.
+/// What may move a station from one state to another; [`State::state_after`] says where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The host sends `arm`.
+    /// The host has sent `arm`: from off to the self-test, from ready, preset and contact to armed.
     Arm,
-    /// The self-test has passed.
+    /// The self-test has passed, and leads to armed.
     Pass,
-    /// The host sends `start`.
+    /// The host has sent `start` in the state armed, and a material is chosen: leads to preset.
     Start,
-    /// A finger lands on the display.
+    /// A finger touches the display, reported in every tick of a contact: leads from preset to contact.
     Land,
-    /// The finger lifts from the display.
+    /// No finger touches the display, reported in every such tick: leads from contact to preset.
     Lift,
-    /// The host sends `abort`.
+    /// The host has sent `abort`, which switches the bridge off: from the self-test to off, else to ready.
     Abort,
-    /// The host sends `clear`, and no fault is present.
+    /// The host has sent `clear`, and no fault is present any more: leads from tripped to off.
     Clear,
-    /// A fault is detected, or raised by the board.
+    /// This fault is detected in a tick, or raised by the board: leads to tripped from every other state.
     Trip(Fault),
 }
 
 impl State {
-    /// The state without its data, as it is reported to the host.
+    /// Name of the state as status and telemetry report it; with the fault if it is tripped.
     #[must_use]
     pub const fn name(&self) -> StateName {
         match self {
@@ -71,19 +73,20 @@ impl State {
         }
     }
 
-    /// The transition table: the state that an event leads to; `None` if the event changes nothing.
+    /// The transition table: the state that `event` leads to from this one, at the beginning of its data; `None` if the
+    /// event changes nothing. docs/safety.md has the same table, and a unit test compares both.
     #[must_use]
-    pub fn after(&self, event: Event) -> Option<Self> {
+    pub fn state_after(&self, event: Event) -> Option<Self> {
         Some(match (self, event) {
             (Self::Tripped(_), Event::Clear) => Self::Off,
             // The first fault stays latched.
             (Self::Tripped(_), _) => return None,
             (_, Event::Trip(fault)) => Self::Tripped(fault),
             (Self::Off, Event::Arm) => Self::SelfTest(SelfTest::default()),
-            (Self::SelfTest(_), Event::Pass) => Self::Armed(Task::Neutral),
+            (Self::SelfTest(_), Event::Pass) => Self::Armed(ArmedTask::Neutral),
             (Self::SelfTest(_), Event::Abort) => Self::Off,
             (Self::Ready | Self::Armed(_) | Self::Preset | Self::Contact, Event::Arm) => {
-                Self::Armed(Task::Neutral)
+                Self::Armed(ArmedTask::Neutral)
             }
             (Self::Armed(_), Event::Start) | (Self::Contact, Event::Lift) => Self::Preset,
             (Self::Preset, Event::Land) => Self::Contact,
@@ -92,15 +95,16 @@ impl State {
         })
     }
 
-    /// Whether an object is presented, or would be to a finger that lands.
+    /// Whether an object is presented, with or without a finger: in preset and contact. Calibration and new parameters
+    /// are refused then, because the finger would feel them.
     #[must_use]
-    pub const fn presents(&self) -> bool {
+    pub const fn is_presenting(&self) -> bool {
         matches!(self, Self::Preset | Self::Contact)
     }
 
-    /// The fault that is latched.
+    /// The fault by which the station is tripped; `None` in every other state.
     #[must_use]
-    pub const fn fault(&self) -> Option<Fault> {
+    pub const fn latched_fault(&self) -> Option<Fault> {
         match self {
             Self::Tripped(fault) => Some(*fault),
             _ => None,

@@ -11,7 +11,7 @@ fn the_documented_transitions_are_those_of_the_code() {
         State::Off,
         State::SelfTest(SelfTest::default()),
         State::Ready,
-        State::Armed(Task::Neutral),
+        State::Armed(ArmedTask::Neutral),
         State::Preset,
         State::Contact,
         State::Tripped(fault),
@@ -34,7 +34,7 @@ fn the_documented_transitions_are_those_of_the_code() {
     for state in states {
         table += &format!("| `{}` |", state.name().name());
         for (_, event) in events {
-            match state.after(event) {
+            match state.state_after(event) {
                 Some(next) => table += &format!(" `{}` |", next.name().name()),
                 None => table += " |",
             }
