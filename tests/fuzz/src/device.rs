@@ -208,7 +208,7 @@ fn check_outputs(outputs: Outputs, state: StateName, samples: &Samples) {
         "driven while the bridge reports a fault: {samples:?}"
     );
     let at_rail = samples
-        .thermistors()
+        .thermistor_sums()
         .map(|sum| sum == 0 || sum >= FULL_SCALE);
     assert_eq!(
         at_rail, [false; 5],

@@ -36,7 +36,10 @@ fn responses(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> 
         let sensed_c = (predicted.reading_c, tile.sink_c());
         let given_a = control.step(target_c, sensed_c, load_w);
         advance(&mut tile, given_a, load_w);
-        let legs = control.observer.legs().expect("after the first reading");
+        let legs = control
+            .observer
+            .leg_temperatures()
+            .expect("after the first reading");
         let model_c: f64 = legs.cold.to_num();
         predicted.update(model_c);
         let tile_c = tile.patch_c() + load_w * tile.patch_half_k_w();
