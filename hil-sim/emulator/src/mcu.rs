@@ -11,7 +11,7 @@ use super::state::{Cpu, State};
 use super::stop::Stop;
 use super::{LegState, Wiring};
 use std::sync::Arc;
-use thermal_sim::Cells;
+use thermal_sim::FlashCells;
 use thermal_sim::processor::ResetCause;
 use unicorn_engine::uc_error;
 
@@ -98,12 +98,12 @@ impl<W: Wiring + 'static> Machine<W> {
 
     /// The cells of the flash. An image sees what changes of sectors 1 to 3, if it leaves them blank: the settings are
     /// there. When power fails in an operation, the machine powers up anew by itself, with other contents of the RAM.
-    pub fn flash(&self) -> &Cells {
+    pub fn flash(&self) -> &FlashCells {
         &self.cpu.get_data().chip_ref().flash.cells
     }
 
     /// The same, to be changed between two calls of [`run_until`](Self::run_until).
-    pub fn flash_mut(&mut self) -> &mut Cells {
+    pub fn flash_mut(&mut self) -> &mut FlashCells {
         &mut self.cpu.get_data_mut().chip().flash.cells
     }
 

@@ -1,18 +1,18 @@
 //! Thermal dose of the skin.
 
 /// Temperature at which a minute of dose is a minute, deg C.
-const EVEN_C: f64 = 43.0;
+const REFERENCE_C: f64 = 43.0;
 /// Temperature below which there is no dose, deg C.
-const NONE_BELOW_C: f64 = 39.0;
+const THRESHOLD_C: f64 = 39.0;
 
 /// Minutes at 43 deg C that hurt as much as a minute at a temperature, deg C, does: `R^(43 - T)` with `R` = 0.5 above
 /// 43 deg C, 0.25 below, and nothing below 39 deg C (Sapareto and Dewey, 1984: CEM43).
 #[must_use]
-pub fn rate(temperature_c: f64) -> f64 {
-    let colder_k = EVEN_C - temperature_c;
-    if temperature_c > EVEN_C {
+pub fn cem43_rate(temperature_c: f64) -> f64 {
+    let colder_k = REFERENCE_C - temperature_c;
+    if temperature_c > REFERENCE_C {
         0.5f64.powf(colder_k)
-    } else if temperature_c >= NONE_BELOW_C {
+    } else if temperature_c >= THRESHOLD_C {
         0.25f64.powf(colder_k)
     } else {
         0.0
@@ -21,7 +21,7 @@ pub fn rate(temperature_c: f64) -> f64 {
 
 /// Dose in minutes of temperatures, deg C, that each last `step_s`.
 pub fn cem43_min(temperatures_c: impl Iterator<Item = f64>, step_s: f64) -> f64 {
-    temperatures_c.map(rate).sum::<f64>() * step_s / 60.0
+    temperatures_c.map(cem43_rate).sum::<f64>() * step_s / 60.0
 }
 
 #[cfg(test)]

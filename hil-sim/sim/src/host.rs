@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use thermal_display::device::reference::Mode;
-use thermal_display::protocol::LINE_MAX_BYTES;
+use thermal_device::reference::Mode;
+use thermal_protocol::LINE_MAX_BYTES;
 
 use crate::scene::{FaultKind, Scene, custom_line};
 

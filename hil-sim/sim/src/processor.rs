@@ -199,13 +199,13 @@ impl fmt::Display for MachineFault {
      register-bit=ADDRESS.BIT, hung-core, hse-stopped, adc-stopped, dma-stopped=CONTROLLER.STREAM, brown-out, \
      power-cycle=SEED, reset-pin, software-reset, stack-overflow"
 )]
-pub struct NoMachineFault(String);
+pub struct ParseMachineFaultError(String);
 
 impl FromStr for MachineFault {
-    type Err = NoMachineFault;
+    type Err = ParseMachineFaultError;
 
-    fn from_str(text: &str) -> Result<Self, NoMachineFault> {
-        parse(text).ok_or_else(|| NoMachineFault(text.to_owned()))
+    fn from_str(text: &str) -> Result<Self, ParseMachineFaultError> {
+        parse(text).ok_or_else(|| ParseMachineFaultError(text.to_owned()))
     }
 }
 

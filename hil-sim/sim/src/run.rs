@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-use crate::commission::{self, CommissionError};
-use crate::engine::{Engine, Lines};
+use crate::commissioning::{self, CommissionError};
+use crate::engine::{Engine, LineSplitter};
 use crate::processor::{Injection, MachineFault, NotInjected};
-use crate::recording::Recording;
 use crate::scene::Scene;
+use crate::scene_recording::SceneRecording;
 
-pub use crate::recording::Outcome;
+pub use crate::scene_recording::Outcome;
 
 /// Time after the last row in which its telemetry arrives, ms.
 const DRAIN_MS: u64 = 5;
@@ -43,7 +43,7 @@ pub enum RunError<S: std::error::Error + 'static> {
     #[error(
         "{0} is a fault of the processor that five fingers share; such a scene is for one finger"
     )]
-    Shared(MachineFault),
+    SharedProcessor(MachineFault),
     /// The device refused a line that sets the scene up.
     #[error("the device refused to be set up for the scene: {0}")]
     Refused(String),
@@ -71,9 +71,9 @@ pub fn run_with<E: Engine>(
     engine: &mut E,
     mut progress: impl FnMut(f64),
 ) -> Result<Outcome, RunError<E::Stop>> {
-    let settings = commission::of_scene(scene).map_err(RunError::Commission)?;
+    let settings = commissioning::settings_for_scene(scene).map_err(RunError::Commission)?;
     let began = Instant::now();
-    let recording = Recording::new(scene, &settings, 1);
+    let recording = SceneRecording::new(scene, &settings, 1);
     let (zero_ms, last_ms) = (recording.zero_ms, recording.end_ms + DRAIN_MS);
     let time_s = |ms: f64| (ms - zero_ms as f64) / 1e3;
     let (from_s, to_s) = (time_s(0.0), time_s(recording.end_ms as f64));
@@ -92,7 +92,7 @@ pub fn run_with<E: Engine>(
         recording,
         injections,
         engine,
-        received: Lines::default(),
+        received: LineSplitter::default(),
     };
     for ms in 0..=last_ms {
         if ms == zero_ms {
@@ -121,10 +121,10 @@ pub fn run_with<E: Engine>(
 }
 
 struct Session<'a, E> {
-    recording: Recording<'a>,
+    recording: SceneRecording<'a>,
     injections: Vec<&'a Injection>,
     engine: &'a mut E,
-    received: Lines,
+    received: LineSplitter,
 }
 
 impl<E: Engine> Session<'_, E> {

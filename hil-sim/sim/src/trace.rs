@@ -15,7 +15,7 @@ const WAITING: usize = 20;
 
 /// The state at one time: of the plant, and what the device says of its last tick.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct TraceRow {
     /// Time, s.
     pub t_s: f64,
     /// Force of the finger, N.
@@ -46,10 +46,10 @@ pub struct Row {
     pub device: Option<Telemetry>,
 }
 
-impl Row {
+impl TraceRow {
     /// The plant now; the device has not spoken yet.
     #[must_use]
-    pub fn now(t_s: f64, plant: &Plant, camera: Option<Reading>) -> Self {
+    pub fn capture(t_s: f64, plant: &Plant, camera: Option<Reading>) -> Self {
         Self {
             t_s,
             force_n: plant.force_n(),
@@ -72,7 +72,7 @@ impl Row {
 /// Rows of a run, each joined with the telemetry of the tick before it.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    rows: Vec<Row>,
+    rows: Vec<TraceRow>,
     /// Tick before each of the last rows, and its index.
     waiting: VecDeque<(u64, usize)>,
     early: VecDeque<Telemetry>,
@@ -80,7 +80,7 @@ pub struct Trace {
 
 impl Trace {
     /// Adds a row; `tick` is the number of the device's last tick before it.
-    pub fn push(&mut self, tick: u64, mut row: Row) {
+    pub fn push(&mut self, tick: u64, mut row: TraceRow) {
         if let Some(index) = self
             .early
             .iter()
@@ -107,7 +107,7 @@ impl Trace {
 
     /// The rows.
     #[must_use]
-    pub fn rows(&self) -> &[Row] {
+    pub fn rows(&self) -> &[TraceRow] {
         &self.rows
     }
 
@@ -139,7 +139,7 @@ fn keep<T>(last: &mut VecDeque<T>, new: T) {
 }
 
 /// A column of the file: its name and the text of its cells.
-type Column = (&'static str, fn(&Row) -> String);
+type Column = (&'static str, fn(&TraceRow) -> String);
 
 const COLUMNS: [Column; 17] = [
     ("t_s", |row| format!("{:.3}", row.t_s)),
@@ -180,7 +180,7 @@ const CAMERA_COLUMNS: [Column; 2] = [
     }),
 ];
 
-fn said(row: &Row, field: fn(&Telemetry) -> Option<f64>, digits: usize) -> String {
+fn said(row: &TraceRow, field: fn(&Telemetry) -> Option<f64>, digits: usize) -> String {
     known(row.device.as_ref().and_then(field), digits)
 }
 

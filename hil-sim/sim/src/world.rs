@@ -1,20 +1,20 @@
 //! What surrounds the device: the plant, what breaks in it, and who watches.
 
-mod defects;
+mod active_defects;
 
 use thermal_plant::bridge::Legs;
 use thermal_plant::infrared::{Camera, ParameterError, Reading};
 use thermal_plant::sensors::Channel;
 use thermal_plant::{ConfigError, Plant, PlantConfig};
 
-use crate::scene::{Broken, Infrared, Scene};
-use defects::Damage;
+use crate::scene::{ActiveFault, Infrared, Scene};
+use active_defects::ActiveDefects;
 
 /// The plant behind the device's pins.
 #[derive(Clone, Debug)]
 pub struct World {
     plant: Plant,
-    damage: Damage,
+    damage: ActiveDefects,
     camera: Option<(Infrared, Camera)>,
     /// Last code of every channel.
     codes: [u16; Channel::ALL.len()],
@@ -43,7 +43,7 @@ impl World {
         };
         Ok(Self {
             plant: Plant::new(&scene.plant_config())?,
-            damage: Damage::default(),
+            damage: ActiveDefects::default(),
             camera,
             codes: [0; Channel::ALL.len()],
         })
@@ -53,12 +53,12 @@ impl World {
     ///
     /// # Errors
     /// A value that the plant cannot take.
-    pub fn of_plant(config: &PlantConfig, noise_seed: u64) -> Result<Self, ConfigError> {
+    pub fn from_plant(config: &PlantConfig, noise_seed: u64) -> Result<Self, ConfigError> {
         let mut plant = Plant::new(config)?;
         plant.reseed_noise(noise_seed);
         Ok(Self {
             plant,
-            damage: Damage::default(),
+            damage: ActiveDefects::default(),
             camera: None,
             codes: [0; Channel::ALL.len()],
         })
@@ -66,7 +66,7 @@ impl World {
 
     /// What the camera says of the skin on the real object, a number of milliseconds after time zero; none between its
     /// frames.
-    pub fn look(&mut self, ms: u64) -> Option<Reading> {
+    pub fn camera_reading(&mut self, ms: u64) -> Option<Reading> {
         let (infrared, camera) = self.camera.as_mut()?;
         let skin_c = self.plant.skin_real_c();
         infrared.has_frame(ms).then(|| camera.read(skin_c))
@@ -79,9 +79,9 @@ impl World {
     }
 
     /// What the finger does, and what is broken, from now on.
-    pub fn set(&mut self, force_n: f64, broken: impl Iterator<Item = Broken>) {
+    pub fn set(&mut self, force_n: f64, broken: impl Iterator<Item = ActiveFault>) {
         self.plant.set_force(force_n);
-        self.damage = Damage::default();
+        self.damage = ActiveDefects::default();
         for broken in broken {
             self.damage.add(&broken);
         }

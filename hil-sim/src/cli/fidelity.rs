@@ -7,12 +7,14 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use thermal_campaigns::fidelity::{self, Boxed, Case, Draw, Drawn, Row, Scenario, Without};
-use thermal_campaigns::map;
-use thermal_display::device::control::Law;
-use thermal_sim::{Device, NativeDevice};
+use thermal_campaigns::fidelity::{
+    self, BoxReport, DrawResult, FidelityCase, FidelityRow, PlantDraw, RemovedLimit, Scenario,
+};
+use thermal_campaigns::parallel_map;
+use thermal_device::control::Law;
+use thermal_sim::{NativeRunner, SceneRunner};
 
-use super::device::{self, Kind};
+use super::engine::{self, EngineKind};
 use super::{Failure, output};
 
 #[derive(Args)]
@@ -43,7 +45,7 @@ pub struct Arguments {
     seed: u64,
     /// What runs the device's logic [default: image for scenarios, native for the box]
     #[arg(long, value_enum)]
-    engine: Option<Kind>,
+    engine: Option<EngineKind>,
     /// Image to run instead of the one of the current sources
     #[arg(long)]
     elf: Option<PathBuf>,
@@ -63,7 +65,7 @@ pub struct Arguments {
 
 /// A choice of which there is an `all`.
 type Chosen = Option<Scenario>;
-type Removed = Option<Without>;
+type Removed = Option<RemovedLimit>;
 
 fn choice<T: Copy + Send + Sync + 'static>(
     all: &'static [T],
@@ -79,7 +81,7 @@ fn scenarios() -> impl TypedValueParser<Value = Chosen> {
 }
 
 fn removals() -> impl TypedValueParser<Value = Removed> {
-    choice(&Without::ALL, Without::name)
+    choice(&RemovedLimit::ALL, RemovedLimit::name)
 }
 
 fn laws() -> impl TypedValueParser<Value = Law> {
@@ -102,9 +104,9 @@ fn expand<T: Copy>(chosen: &[Option<T>], all: &[T]) -> Vec<T> {
 struct Report<'a> {
     seed: u64,
     laws: Vec<&'static str>,
-    rows: &'a [Row],
+    rows: &'a [FidelityRow],
     #[serde(rename = "box")]
-    boxed: Option<&'a Boxed>,
+    boxed: Option<&'a BoxReport>,
 }
 
 /// Runs, prints, writes.
@@ -116,23 +118,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cases = cases(arguments)?;
     output::create(arguments.out.as_deref())?;
     let usual = if cases.is_empty() {
-        Kind::Native
+        EngineKind::Native
     } else {
-        Kind::USUAL
+        EngineKind::DEFAULT
     };
     let kind = arguments.engine.unwrap_or(usual);
     let campaign = Campaign {
         arguments,
-        device: device::device(kind, arguments.elf.as_deref())?,
+        device: engine::runner(kind, arguments.elf.as_deref())?,
         laws,
     };
     let rows = campaign.rows(&cases).map_err(Failure::run)?;
     let drawn = campaign.draws().map_err(Failure::run)?;
-    let boxed = (!drawn.is_empty()).then(|| Boxed {
+    let boxed = (!drawn.is_empty()).then(|| BoxReport {
         engine: campaign.device_of_draws().name(),
         draws: drawn.len() as u64 / campaign.laws.len().max(1) as u64,
         seed: arguments.seed,
-        laws: fidelity::summarise(&drawn),
+        laws: fidelity::statistics_by_law(&drawn),
     });
     if let Some(folder) = &arguments.out {
         campaign
@@ -158,7 +160,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// The cases that are asked for.
-fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
+fn cases(arguments: &Arguments) -> Result<Vec<FidelityCase>, Failure> {
     let boxed = arguments.draws.is_some() || arguments.replay.is_some();
     let scenarios = match arguments.scenario.as_slice() {
         [] if boxed => Vec::new(),
@@ -196,16 +198,16 @@ fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
 struct Campaign<'a> {
     arguments: &'a Arguments,
     /// What runs the scenarios.
-    device: Box<dyn Device>,
+    device: Box<dyn SceneRunner>,
     laws: Vec<Law>,
 }
 
 impl Campaign<'_> {
     /// What runs the draws of the box: the native engine unless the command line names one.
-    fn device_of_draws(&self) -> &dyn Device {
+    fn device_of_draws(&self) -> &dyn SceneRunner {
         match self.arguments.engine {
             Some(_) => self.device.as_ref(),
-            None => &NativeDevice,
+            None => &NativeRunner,
         }
     }
 
@@ -215,8 +217,8 @@ impl Campaign<'_> {
     }
 
     /// Every case under every law, with and without bounds.
-    fn rows(&self, cases: &[Case]) -> anyhow::Result<Vec<Row>> {
-        let bounds = expand(&self.arguments.without, &Without::ALL);
+    fn rows(&self, cases: &[FidelityCase]) -> anyhow::Result<Vec<FidelityRow>> {
+        let bounds = expand(&self.arguments.without, &RemovedLimit::ALL);
         let plants: Vec<_> = std::iter::once(None)
             .chain(bounds.into_iter().map(Some))
             .collect();
@@ -228,14 +230,14 @@ impl Campaign<'_> {
         }
         let device = self.device.as_ref();
         self.map("scenarios", &jobs, |(case, law, without)| {
-            Row::run(device, case, *law, *without, self.arguments.seed).with_context(|| {
+            FidelityRow::run(device, case, *law, *without, self.arguments.seed).with_context(|| {
                 format!("{} {} {} N", case.scenario.name(), case.name, case.force_n)
             })
         })
     }
 
     /// The draws of the box, or the one to replay, under every law.
-    fn draws(&self) -> anyhow::Result<Vec<Drawn>> {
+    fn draws(&self) -> anyhow::Result<Vec<DrawResult>> {
         let numbers = match (self.arguments.replay, self.arguments.draws) {
             (Some(number), _) => number..number.saturating_add(1),
             (None, draws) => 0..draws.unwrap_or(0),
@@ -246,7 +248,7 @@ impl Campaign<'_> {
         }
         let device = self.device_of_draws();
         self.map("box", &jobs, |(number, law)| {
-            Draw::new(self.arguments.seed, *number)
+            PlantDraw::new(self.arguments.seed, *number)
                 .run(device, *law)
                 .with_context(|| format!("draw {number} of seed {}", self.arguments.seed))
         })
@@ -262,7 +264,7 @@ impl Campaign<'_> {
             ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
         let bar = ProgressBar::new(jobs.len() as u64).with_style(style);
         bar.set_message(name);
-        let results = map(jobs, self.threads(), work, || bar.inc(1));
+        let results = parallel_map(jobs, self.threads(), work, || bar.inc(1));
         bar.finish_and_clear();
         results
     }
@@ -270,9 +272,9 @@ impl Campaign<'_> {
     fn write(
         &self,
         folder: &Path,
-        rows: &[Row],
-        drawn: &[Drawn],
-        boxed: Option<&Boxed>,
+        rows: &[FidelityRow],
+        drawn: &[DrawResult],
+        boxed: Option<&BoxReport>,
     ) -> anyhow::Result<()> {
         let svg = fidelity::plot(rows)?;
         let page = fidelity::page(rows, boxed, svg.as_deref());
@@ -285,9 +287,9 @@ impl Campaign<'_> {
             output::write(folder, "box.csv", fidelity::box_csv(drawn)?)?;
         }
         if let Some(number) = self.arguments.replay {
-            let Draw {
+            let PlantDraw {
                 case, seed, plant, ..
-            } = Draw::new(self.arguments.seed, number);
+            } = PlantDraw::new(self.arguments.seed, number);
             for law in &self.laws {
                 let text = case.text(*law, seed, &plant);
                 let name = format!("draw-{number}-{}.toml", law.name());

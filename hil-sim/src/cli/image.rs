@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use stm32_emulator::{Firmware, Image, ImageHand, build};
 use thermal_sim::World;
-use thermal_sim::hand::FINGERS;
+use thermal_sim::five_fingers::FINGERS;
 
 use super::Failure;
 
@@ -27,6 +27,6 @@ pub fn engine(elf: Option<&Path>, world: World) -> Result<Image, Failure> {
 }
 
 /// The image for five fingers, powered up in their worlds.
-pub fn hand(elf: Option<&Path>, worlds: [World; FINGERS]) -> Result<ImageHand, Failure> {
+pub fn five_fingers(elf: Option<&Path>, worlds: [World; FINGERS]) -> Result<ImageHand, Failure> {
     ImageHand::new(&firmware(elf, FINGERS)?.0, worlds).map_err(Failure::run)
 }

@@ -9,7 +9,7 @@ use clap::Args;
 use stm32_emulator::{Image, Ran, cold_fetch_stalls};
 use thermal_sim::run::run as run_scene;
 
-use super::{Failure, device, image, output};
+use super::{Failure, engine, image, output};
 
 #[derive(Args)]
 pub struct Arguments {
@@ -32,7 +32,7 @@ struct Share {
 
 /// Runs the scene and prints a line for each function.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (scene, world) = device::scene(&arguments.scene)?;
+    let (scene, world) = engine::scene(&arguments.scene)?;
     let (firmware, path) = image::firmware(arguments.elf.as_deref(), 1)?;
     let symbols = Loader::new(&path)
         .map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))?;

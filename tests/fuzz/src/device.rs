@@ -4,10 +4,10 @@
 //! curve, so that a wrong constant or a wrong conversion does not vouch for itself.
 
 use thermal_display::commissioning::Desk;
-use thermal_display::device::{Device, Finger};
 use thermal_display::device::drive::{Drive, Outputs};
 use thermal_display::device::safety::{Fault, State};
 use thermal_display::device::sense::Samples;
+use thermal_display::device::{Device, Finger};
 use thermal_display::protocol::{Addressed, Command, Error, LineReader, Reply, Status};
 use thermal_display::settings::Settings;
 

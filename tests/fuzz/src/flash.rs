@@ -7,7 +7,7 @@ use system_tests::flash::{BYTES, Flash, append, numbered};
 use thermal_display::settings::{
     Calibration, Correction, SettingsStore, StoreError, StoredSettings, Tile,
 };
-use thermal_sim::Cells;
+use thermal_sim::FlashCells;
 
 /// Saves that an input begins after: none, few, all that fit into a sector, and turns to another.
 const SAVES: [u32; 8] = [0, 1, 2, 3, 20, 37, 38, 80];
@@ -55,10 +55,10 @@ enum Event {
     Save { number: u8, cut: Option<(u8, u8)> },
 }
 
-/// Cells, and all that was ever written to them.
+/// FlashCells, and all that was ever written to them.
 #[derive(Clone)]
 struct Kit<const FINGERS: usize> {
-    cells: Cells,
+    cells: FlashCells,
     written: Vec<Option<[StoredSettings; FINGERS]>>,
 }
 
@@ -103,7 +103,7 @@ fn play<const FINGERS: usize>(kits: &OnceLock<Vec<Kit<FINGERS>>>, course: &Cours
 impl<const FINGERS: usize> Kit<FINGERS> {
     fn new() -> Self {
         Self {
-            cells: Cells::new(vec![0xff; BYTES]),
+            cells: FlashCells::new(vec![0xff; BYTES]),
             written: vec![None],
         }
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use thermal_charts::{document, escape};
 
 use super::table::{broken, cells, outcome};
-use super::{Breach, Outline};
+use super::{Breach, FaultSummary};
 
 /// Name of the page.
 pub const HTML: &str = "faults.html";
@@ -27,7 +27,7 @@ const HEADS: [&str; 9] = [
 
 /// A page that needs no other file.
 #[must_use]
-pub fn page(rows: &[Outline], engine: &str) -> String {
+pub fn page(rows: &[FaultSummary], engine: &str) -> String {
     let mut body = format!(
         "<p>Engine {}; everything here is simulated, nobody has run it on hardware. Worst case of each fault over its \
          runs. Held to: skin within 13 to 45 °C, CEM43 below one minute, no current from 50 ms after the fault is \
@@ -49,7 +49,7 @@ pub fn page(rows: &[Outline], engine: &str) -> String {
         for trial in row
             .trials
             .iter()
-            .filter(|trial| !trial.verdict.breaches.is_empty())
+            .filter(|trial| !trial.assessment.breaches.is_empty())
         {
             let _ = write!(
                 list,
@@ -65,9 +65,9 @@ pub fn page(rows: &[Outline], engine: &str) -> String {
     document("Single faults", STYLE, &body)
 }
 
-fn line(row: &Outline) -> String {
+fn line(row: &FaultSummary) -> String {
     let is = |breach: Breach| {
-        let has = |trial: &super::Trial| trial.verdict.breaches.contains(&breach);
+        let has = |trial: &super::FaultRun| trial.assessment.breaches.contains(&breach);
         row.trials.iter().any(has)
     };
     let class = |bad: bool| match (row.trials.is_empty(), bad) {

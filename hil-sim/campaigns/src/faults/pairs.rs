@@ -4,55 +4,58 @@ use std::fmt::Write;
 
 use serde::Serialize;
 use thermal_plant::parameters::stream;
-use thermal_sim::Device;
+use thermal_sim::SceneRunner;
 use thermal_sim::scene::FaultKind;
 
 use super::table::broken;
-use super::{Breach, Entry, Injected, Moment, Place, Right, Trial, entries, trial};
+use super::{
+    Breach, ExpectedReaction, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint,
+    fault_cases, fault_run,
+};
 
 /// When the first fault comes, s: after the self-test that settling begins with, before every moment of a place.
 const LATENT_S: f64 = 0.05;
 
 /// A fault that may have been there for long before another one comes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pair {
+pub struct FaultPair {
     /// Comes first.
-    pub latent: Entry,
+    pub latent: FaultCase,
     /// Comes at the moment.
-    pub active: Entry,
+    pub active: FaultCase,
     /// Where and when.
-    pub moment: Moment,
+    pub moment: InjectionPoint,
 }
 
 /// Whether a fault may go unnoticed: it is harmless alone and lasts, or shows at the next self-test or drive only.
-fn is_latent(entry: &Entry) -> bool {
-    let Injected::Broken(broken) = entry.fault else {
+fn is_latent(fault_case: &FaultCase) -> bool {
+    let InjectedFault::Hardware(broken) = fault_case.fault else {
         return false;
     };
     match broken.kind {
         FaultKind::HostFlood => false,
         FaultKind::MirrorStuck => broken.value == 0.0,
-        kind => entry.latent || entry.signs.is_empty() && kind.lasts(),
+        kind => fault_case.latent || fault_case.symptoms.is_empty() && kind.has_duration(),
     }
 }
 
 /// Every latent fault before every other one of the list, each at one moment of the seed: in the first place where the
 /// second is worst, of those in which no self-test follows.
 #[must_use]
-pub fn pairs(seed: u64) -> Vec<Pair> {
-    let (latent, active): (Vec<_>, Vec<_>) = entries().into_iter().partition(is_latent);
+pub fn pairs(seed: u64) -> Vec<FaultPair> {
+    let (latent, active): (Vec<_>, Vec<_>) = fault_cases().into_iter().partition(is_latent);
     let mut pairs = Vec::with_capacity(latent.len() * active.len());
     for latent in &latent {
         for active in &active {
             let name = format!("{} {}", latent.fault, active.fault);
-            let means = |place: &&Place| {
+            let means = |place: &&FaultScene| {
                 let never = [latent.never_at, active.never_at];
                 place.has_tripped_before().is_none() && !never.concat().contains(place)
             };
-            let mut rest: Vec<_> = Place::ALL.iter().collect();
+            let mut rest: Vec<_> = FaultScene::ALL.iter().collect();
             rest.sort_by_key(|place| stream(seed, &format!("{name} {}", place.name())));
-            let place = active.places.iter().chain(rest).find(means);
-            pairs.extend(place.map(|place| Pair {
+            let place = active.scenes.iter().chain(rest).find(means);
+            pairs.extend(place.map(|place| FaultPair {
                 latent: *latent,
                 active: *active,
                 moment: place.moment(stream(seed, &name), false),
@@ -62,7 +65,7 @@ pub fn pairs(seed: u64) -> Vec<Pair> {
     pairs
 }
 
-impl Pair {
+impl FaultPair {
     /// Its scene as a file has it.
     #[must_use]
     pub fn text(&self, seed: u64) -> String {
@@ -72,7 +75,7 @@ impl Pair {
             moment,
         } = self;
         let faults = [(latent.fault, LATENT_S), (active.fault, moment.t_s)];
-        trial::text(
+        fault_run::scene_text(
             &faults,
             *moment,
             latent.after_s.max(active.after_s),
@@ -85,20 +88,23 @@ impl Pair {
     ///
     /// # Errors
     /// The scene cannot be.
-    pub fn run(&self, device: &dyn Device, seed: u64) -> anyhow::Result<Option<RanPair>> {
-        let trial = Trial::of_text(device, &self.active, self.moment, &self.text(seed))?;
+    pub fn run(&self, device: &dyn SceneRunner, seed: u64) -> anyhow::Result<Option<PairResult>> {
+        let trial = FaultRun::of_text(device, &self.active, self.moment, &self.text(seed))?;
         Ok(trial.map(|mut trial| {
-            let verdict = &mut trial.verdict;
-            let named = match self.latent.right {
-                Right::Trip(faults) => faults.iter().any(|fault| fault.name() == verdict.reason),
-                Right::Restart => false,
+            let assessment = &mut trial.assessment;
+            let named = match self.latent.expected {
+                ExpectedReaction::Trip(faults) => {
+                    faults.iter().any(|fault| fault.name() == assessment.reason)
+                }
+                ExpectedReaction::Restart => false,
             };
             // What has no sign, and has not been named before the second fault, is no excuse for its reason.
-            let first = !self.latent.signs.is_empty() || verdict.breaches.contains(&Breach::Early);
-            (verdict.breaches).retain(|breach| {
+            let first =
+                !self.latent.symptoms.is_empty() || assessment.breaches.contains(&Breach::Early);
+            (assessment.breaches).retain(|breach| {
                 !(named && first && matches!(breach, Breach::Reason | Breach::Early))
             });
-            RanPair {
+            PairResult {
                 latent: self.latent.fault.to_string(),
                 active: self.active.fault.to_string(),
                 trial,
@@ -109,27 +115,27 @@ impl Pair {
 
 /// What came of a pair.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RanPair {
+pub struct PairResult {
     /// The first fault.
     pub latent: String,
     /// The second.
     pub active: String,
-    /// Scene, moment of the second, and verdict.
+    /// Scene, moment of the second, and assessment.
     #[serde(flatten)]
-    pub trial: Trial,
+    pub trial: FaultRun,
 }
 
-impl RanPair {
+impl PairResult {
     /// Nothing was broken that is claimed.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.trial.verdict.breaches.is_empty()
+        self.trial.assessment.breaches.is_empty()
     }
 }
 
 /// A line for every latent fault; then every pair that breaks the claim.
 #[must_use]
-pub fn pair_table(runs: &[RanPair]) -> String {
+pub fn pair_table(runs: &[PairResult]) -> String {
     let width = runs
         .iter()
         .map(|run| run.latent.len())
@@ -142,15 +148,15 @@ pub fn pair_table(runs: &[RanPair]) -> String {
     );
     // The runs stand in the order of their latent faults.
     for of_one in runs.chunk_by(|a, b| a.latent == b.latent) {
-        let verdicts = || of_one.iter().map(|run| &run.trial.verdict);
+        let verdicts = || of_one.iter().map(|run| &run.trial.assessment);
         let broken = of_one.iter().filter(|run| !run.holds()).count();
         let coldest = verdicts()
-            .map(|verdict| verdict.skin_c.min)
+            .map(|assessment| assessment.skin_c.min)
             .fold(f64::INFINITY, f64::min);
         let warmest =
-            (verdicts().map(|verdict| verdict.skin_c.max)).fold(f64::NEG_INFINITY, f64::max);
+            (verdicts().map(|assessment| assessment.skin_c.max)).fold(f64::NEG_INFINITY, f64::max);
         let slowest = verdicts()
-            .filter_map(|verdict| verdict.took_ms)
+            .filter_map(|assessment| assessment.took_ms)
             .fold(0.0, f64::max);
         // Writing to a String cannot fail.
         let _ = writeln!(

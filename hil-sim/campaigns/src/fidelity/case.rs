@@ -4,10 +4,10 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use contact_model::material::Surface;
-use thermal_display::device::control::Law;
+use thermal_device::control::Law;
 use thermal_sim::scene::{Scene, SceneError};
 
-use super::{Measure, Scenario, Thing};
+use super::{Measure, Scenario, TouchedObject};
 
 /// A force that is held from a time on: [`thermal_sim::scene::Force`] as a case has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,13 +22,13 @@ pub struct Press {
 
 /// One scene, for any law and plant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Case {
+pub struct FidelityCase {
     /// The scenario that it belongs to.
     pub scenario: Scenario,
     /// What it is: the material, and what is unusual.
     pub name: String,
     /// What the finger feels.
-    pub thing: Thing,
+    pub object: TouchedObject,
     /// Largest force, N.
     pub force_n: f64,
     /// Skin before contact, °C.
@@ -51,7 +51,7 @@ pub const ROOM_C: f64 = 24.0;
 /// Warmest object that a scene file may name under a finger of 34 °C: the device's safe range.
 const WARMEST_C: f64 = 42.0;
 
-impl Case {
+impl FidelityCase {
     /// The scene as a file has it; `plant` are keys of the parameter box.
     #[must_use]
     pub fn text(&self, law: Law, seed: u64, plant: &[(String, f64)]) -> String {
@@ -62,8 +62,8 @@ impl Case {
             law.name()
         );
         // Writing to a String cannot fail.
-        let _ = match self.thing.properties {
-            None => writeln!(text, "material = \"{}\"", self.thing.name),
+        let _ = match self.object.properties {
+            None => writeln!(text, "material = \"{}\"", self.object.name),
             Some(material) => {
                 let Surface {
                     conductivity_w_mk,

@@ -5,7 +5,7 @@ use std::ops::Range;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{Row, Scenario};
+use super::{FidelityRow, Scenario};
 
 const SIZE: (u32, u32) = (1100, 1060);
 const TITLE: i32 = 34;
@@ -36,7 +36,7 @@ type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 ///
 /// # Errors
 /// The plot cannot be drawn.
-pub fn draw(rows: &[Row]) -> anyhow::Result<Option<String>> {
+pub fn draw(rows: &[FidelityRow]) -> anyhow::Result<Option<String>> {
     let Some(first) = rows.first() else {
         return Ok(None);
     };
@@ -72,7 +72,10 @@ pub fn draw(rows: &[Row]) -> anyhow::Result<Option<String>> {
 }
 
 /// Values in the order in which they first occur.
-fn distinct<'a, T: PartialEq + 'a>(rows: &[&'a Row], value: impl Fn(&'a Row) -> T) -> Vec<T> {
+fn distinct<'a, T: PartialEq + 'a>(
+    rows: &[&'a FidelityRow],
+    value: impl Fn(&'a FidelityRow) -> T,
+) -> Vec<T> {
     let mut values = Vec::new();
     for row in rows {
         let value = value(row);
@@ -84,7 +87,12 @@ fn distinct<'a, T: PartialEq + 'a>(rows: &[&'a Row], value: impl Fn(&'a Row) -> 
 }
 
 /// Magnitude of the error of each law over time, with the largest force that was run.
-fn over_time(area: &Area<'_>, name: &str, rows: &[&Row], laws: &[&str]) -> anyhow::Result<()> {
+fn over_time(
+    area: &Area<'_>,
+    name: &str,
+    rows: &[&FidelityRow],
+    laws: &[&str],
+) -> anyhow::Result<()> {
     let own = || rows.iter().filter(|row| row.case == name);
     let force_n = own().map(|row| row.force_n).fold(0.0, f64::max);
     let mut chart = ChartBuilder::on(area)
@@ -104,7 +112,7 @@ fn over_time(area: &Area<'_>, name: &str, rows: &[&Row], laws: &[&str]) -> anyho
         .draw()?;
     for row in own().filter(|row| row.force_n == force_n) {
         let color = color(laws, row.law);
-        let points = row.course.iter();
+        let points = row.error_over_time.iter();
         let points = points.map(|(t_s, mk)| (*t_s, mk.abs().clamp(ERRORS_MK.start, ERRORS_MK.end)));
         chart
             .draw_series(LineSeries::new(points, color.stroke_width(2)))?
@@ -129,7 +137,7 @@ fn over_time(area: &Area<'_>, name: &str, rows: &[&Row], laws: &[&str]) -> anyho
 fn largest(
     area: &Area<'_>,
     scenario: Scenario,
-    rows: &[&Row],
+    rows: &[&FidelityRow],
     laws: &[&str],
     cases: &[&str],
 ) -> anyhow::Result<()> {
@@ -200,7 +208,7 @@ fn names(area: &Area<'_>, cases: &[&str], place: impl Fn(f64) -> i32) -> anyhow:
     Ok(())
 }
 
-fn bound_mk(row: &Row) -> Option<f64> {
+fn bound_mk(row: &FidelityRow) -> Option<f64> {
     row.judged.bound.filter(|_| row.judged.unit == "mK")
 }
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use thermal_charts::{document, element, escape};
 
-use super::{Boxed, Row, box_table, table};
+use super::{BoxReport, FidelityRow, box_table, table};
 
 /// Name of the page.
 pub const HTML: &str = "fidelity.html";
@@ -13,7 +13,7 @@ pub const SVG: &str = "fidelity.svg";
 
 /// A page that needs no other file.
 #[must_use]
-pub fn page(rows: &[Row], boxed: Option<&Boxed>, svg: Option<&str>) -> String {
+pub fn page(rows: &[FidelityRow], boxed: Option<&BoxReport>, svg: Option<&str>) -> String {
     let mut body =
         "<p>Everything here is simulated; instructions are emulated, cycles estimated.</p>"
             .to_owned();

@@ -3,17 +3,17 @@
 use std::cmp::Ordering;
 
 use serde::Serialize;
-use thermal_display::device::control::Law;
-use thermal_sim::Device;
+use thermal_device::control::Law;
+use thermal_sim::SceneRunner;
 use thermal_sim::metrics::{Figures, skin_errors};
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
-use super::{Case, Judged, Scenario, Without};
+use super::{FidelityCase, JudgedFigure, RemovedLimit, Scenario};
 
 /// A run's figures and what it was a run of.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct FidelityRow {
     /// Scenario.
     pub scenario: Scenario,
     /// What of it.
@@ -27,30 +27,30 @@ pub struct Row {
     /// Name of the law.
     pub law: &'static str,
     /// The bound that the plant does not have.
-    pub without: Option<Without>,
+    pub without: Option<RemovedLimit>,
     /// What is held against a bound.
-    pub judged: Judged,
+    pub judged: JudgedFigure,
     /// All figures.
     #[serde(flatten)]
     pub figures: Figures,
     /// Time since the first landing, s, and error of the skin, mK, at even steps of the logarithm of time.
     #[serde(skip)]
-    pub course: Vec<(f64, f64)>,
+    pub error_over_time: Vec<(f64, f64)>,
 }
 
-impl Row {
+impl FidelityRow {
     /// Runs a case.
     ///
     /// # Errors
     /// The plant cannot be so, the device stopped, or it refused the scene.
     pub fn run(
-        device: &dyn Device,
-        case: &Case,
+        device: &dyn SceneRunner,
+        case: &FidelityCase,
         law: Law,
-        without: Option<Without>,
+        without: Option<RemovedLimit>,
         seed: u64,
     ) -> anyhow::Result<Self> {
-        let plant = without.map_or(Vec::new(), Without::plant);
+        let plant = without.map_or(Vec::new(), RemovedLimit::plant);
         let scene = case.scene(law, seed, &plant)?;
         let (outcome, figures) = device.run(&scene)?;
         Ok(Self {
@@ -61,8 +61,8 @@ impl Row {
             object_c: case.object_c,
             law: law.name(),
             without,
-            judged: case.measure.judge(&scene, &outcome),
-            course: course(&scene, &outcome),
+            judged: case.measure.evaluate(&scene, &outcome),
+            error_over_time: error_over_time(&scene, &outcome),
             figures,
         })
     }
@@ -82,11 +82,11 @@ impl Row {
     }
 }
 
-/// Points of a course for each factor of ten of time.
+/// Points of an error curve for each factor of ten of time.
 const POINTS: f64 = 40.0;
 
 /// Errors of the first contact, thinned out.
-fn course(scene: &Scene, outcome: &Outcome) -> Vec<(f64, f64)> {
+fn error_over_time(scene: &Scene, outcome: &Outcome) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = Vec::new();
     for (since_s, error_k) in skin_errors(scene, outcome) {
         let last_s = points.last().map_or(0.0, |(last_s, _)| *last_s);

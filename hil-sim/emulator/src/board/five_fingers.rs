@@ -3,8 +3,8 @@
 use thermal_plant::bridge::Legs;
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
-use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _, Lines};
-use thermal_sim::hand::{FINGERS, Hand};
+use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _, LineSplitter};
+use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine};
 
 use super::meter::Meter;
 use super::one_finger::{ADC_INPUTS, Image, StartError, power_up, resets};
@@ -62,7 +62,7 @@ pub struct ImageHand {
     first_boundary_ps: u64,
     /// Boundaries that have been reached.
     boundaries: u64,
-    lines: Lines,
+    lines: LineSplitter,
     meter: Meter,
 }
 
@@ -83,13 +83,13 @@ impl ImageHand {
             machine,
             first_boundary_ps,
             boundaries: 0,
-            lines: Lines::default(),
+            lines: LineSplitter::default(),
             meter,
         })
     }
 }
 
-impl Hand for ImageHand {
+impl FiveFingerEngine for ImageHand {
     type Stop = Stop;
 
     const NAME: &'static str = Image::NAME;

@@ -14,11 +14,11 @@
 //! So a duty acts 0.27 ms after its tick; an image whose tick takes longer is off by one step, which the comparison
 //! of both engines would show.
 
-mod lines;
+mod line_splitter;
 mod native;
 
-pub use lines::Lines;
-pub use native::Native;
+pub use line_splitter::LineSplitter;
+pub use native::NativeEngine;
 
 use thermal_plant::bridge::Legs;
 

@@ -4,16 +4,16 @@ use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::fmt::Display;
 
-use thermal_display::commissioning::StorageOrder;
-use thermal_display::device::{Device, Finger};
-use thermal_display::device::command::Addressed;
-use thermal_display::device::drive::{Drive, Outputs};
-use thermal_display::device::safety::{Fault, ThermalDose, TripCause};
-use thermal_display::device::sense::{SCANS_PER_TICK, Samples, Scan};
-use thermal_display::protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
-use thermal_display::settings::{Settings, StoredSettings, decode};
+use thermal_commissioning::StorageOrder;
+use thermal_device::command::Addressed;
+use thermal_device::drive::{Drive, Outputs};
+use thermal_device::safety::{Fault, ThermalDose, TripCause};
+use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
+use thermal_device::{Device, Finger};
 use thermal_plant::bridge::{Leg, Legs};
 use thermal_plant::sensors::Channel;
+use thermal_protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
+use thermal_settings::{Settings, StoredSettings, decode};
 
 use super::{BAUD, Cost, DeviceReset, Engine};
 use crate::World;
@@ -43,7 +43,7 @@ const SCANS_IN_FIRST_HALF: usize = 8;
 
 /// The logic of one finger without its microcontroller.
 #[derive(Debug)]
-pub struct Native {
+pub struct NativeEngine {
     world: World,
     handler: CommandHandler<1>,
     device: Device<1>,
@@ -67,7 +67,7 @@ pub struct Native {
     halves: u64,
 }
 
-impl Native {
+impl NativeEngine {
     /// A device that has just started its first tick.
     #[must_use]
     pub fn new(world: World) -> Self {
@@ -191,8 +191,9 @@ impl Native {
             let executed = line
                 .map_err(|error| Addressed::device(Error::from(error)))
                 .and_then(|line| {
-                    self.handler
-                        .answer(&line, |finger, command| self.device.execute(finger, command))
+                    self.handler.answer(&line, |finger, command| {
+                        self.device.execute(finger, command)
+                    })
                 });
             if let Ok(Addressed {
                 content: Reply::Restart(order),
@@ -209,7 +210,7 @@ impl Native {
     }
 }
 
-impl Engine for Native {
+impl Engine for NativeEngine {
     type Stop = Infallible;
 
     const NAME: &'static str = "native";

@@ -6,7 +6,7 @@ use thermal_charts::{Curve, Legend, Panel, Stroke};
 use crate::metrics::contact_times;
 use crate::run::Outcome;
 use crate::scene::Scene;
-use crate::trace::Row;
+use crate::trace::TraceRow;
 
 const SIZE: (u32, u32) = (1000, 1050);
 /// Points of a curve; more cannot be told apart.
@@ -22,8 +22,8 @@ const CURRENT: RGBColor = RGBColor(0x94, 0x67, 0xbd);
 fn curve(
     name: &str,
     color: RGBColor,
-    rows: &[Row],
-    value: impl Fn(usize, &Row) -> Option<f64>,
+    rows: &[TraceRow],
+    value: impl Fn(usize, &TraceRow) -> Option<f64>,
 ) -> Curve {
     let every = rows.len().div_ceil(POINTS).max(1);
     let points = rows.iter().enumerate().step_by(every);
@@ -39,7 +39,7 @@ fn curve(
 }
 
 /// What the camera makes of the skin on the real object. It has rows of its own: most have no frame.
-fn camera(rows: &[Row]) -> Curve {
+fn camera(rows: &[TraceRow]) -> Curve {
     let frames: Vec<_> = rows
         .iter()
         .filter_map(|row| Some((row.t_s, row.camera?.recovered_c)))

@@ -1,12 +1,12 @@
 //! Scenes: what happens to the finger, the object and the device.
 
-mod check;
-mod depth;
 mod fault;
 mod file;
 mod infrared;
-mod node;
+mod nesting;
 mod object;
+mod parameter_node;
+mod parse;
 mod plant;
 mod source;
 
@@ -15,15 +15,17 @@ use std::path::Path;
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
-use thermal_display::device::control::Law;
-use thermal_display::device::reference::Mode;
+use thermal_device::control::Law;
+use thermal_device::reference::Mode;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::Back;
 use thermal_plant::{Params, PlantConfig};
 
 use crate::processor::Injection;
 
-pub use fault::{Broken, DRIFT_K_S, Fault, FaultKind, ProcessorKey, ProcessorKind, Sensor, Value};
+pub use fault::{
+    ActiveFault, DRIFT_K_S, Fault, FaultKind, ProcessorKey, ProcessorKind, Sensor, Value,
+};
 pub use infrared::Infrared;
 pub(crate) use object::custom_line;
 pub use source::SceneError;
@@ -122,7 +124,7 @@ impl Scene {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, SceneError> {
-        check::scene(text, path)
+        parse::scene(text, path)
     }
 
     /// Temperature of the object before contact, °C.

@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use contact_model::material::{Material, Surface, find};
-use thermal_display::protocol::Request;
-use thermal_display::settings::Settings;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::Back;
+use thermal_protocol::Request;
+use thermal_settings::Settings;
 use toml::Spanned;
 
 use super::file::{self, Number};

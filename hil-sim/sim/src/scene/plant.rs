@@ -8,14 +8,14 @@ use thermal_plant::slab::{Layer, Medium};
 use thermal_plant::{Params, parameters};
 use toml::Spanned;
 
-use super::file::{self, Node};
+use super::file::{self, ParameterNode};
 use super::source::{SceneError, Source};
 
 /// The parameters: nominal ones, drawn if the scene asks for it, then what the scene itself says.
 pub(super) fn params(
     source: &Source<'_>,
     finger: Option<&Spanned<file::Finger>>,
-    plant: Option<&Spanned<Node>>,
+    plant: Option<&Spanned<ParameterNode>>,
 ) -> Result<Params, SceneError> {
     let mut params = Params::nominal();
     if let Some(finger) = finger {
@@ -25,7 +25,7 @@ pub(super) fn params(
     let Some(plant) = plant else {
         return Ok(params);
     };
-    let Node::Table(entries) = plant.get_ref() else {
+    let ParameterNode::Table(entries) = plant.get_ref() else {
         return Err(source.error(
             Some(plant.span()),
             "plant is a number; allowed is a table of parameters",
@@ -45,9 +45,9 @@ pub(super) fn params(
     Ok(params)
 }
 
-fn seed_of(source: &Source<'_>, seed: &Spanned<Node>) -> Result<u64, SceneError> {
+fn seed_of(source: &Source<'_>, seed: &Spanned<ParameterNode>) -> Result<u64, SceneError> {
     match seed.get_ref() {
-        Node::Whole(seed) if *seed >= 0 => Ok(seed.unsigned_abs()),
+        ParameterNode::Whole(seed) if *seed >= 0 => Ok(seed.unsigned_abs()),
         _ => {
             let problem = format!(
                 "plant.draw is the seed of a draw; allowed is a whole number, 0 to {}",
@@ -63,12 +63,12 @@ fn set(
     source: &Source<'_>,
     params: &mut Params,
     key: String,
-    node: &Spanned<Node>,
+    node: &Spanned<ParameterNode>,
 ) -> Result<(), SceneError> {
     match node.get_ref() {
-        Node::Number(value) => source.set(params, &key, *value, node.span()),
-        Node::Whole(value) => source.set(params, &key, *value as f64, node.span()),
-        Node::Table(entries) => entries.iter().try_for_each(|(name, node)| {
+        ParameterNode::Number(value) => source.set(params, &key, *value, node.span()),
+        ParameterNode::Whole(value) => source.set(params, &key, *value as f64, node.span()),
+        ParameterNode::Table(entries) => entries.iter().try_for_each(|(name, node)| {
             set(source, params, format!("{key}.{}", name.get_ref()), node)
         }),
     }

@@ -2,8 +2,8 @@
 
 use anyhow::{Context, anyhow};
 use serde::Serialize;
-use thermal_campaigns::faults::{Campaign, Ran, summary};
-use thermal_sim::Device;
+use thermal_campaigns::faults::{CampaignResult, RandomCampaign, campaign_summary};
+use thermal_sim::SceneRunner;
 
 use super::{Arguments, Failure, each, output, tell};
 
@@ -13,17 +13,17 @@ struct Report<'a> {
     engine: &'static str,
     seed: u64,
     holds: bool,
-    campaigns: &'a [Ran],
+    campaigns: &'a [CampaignResult],
 }
 
 /// Runs the campaigns of these numbers; a violation is a failure.
 pub fn run(
     arguments: &Arguments,
-    device: &dyn Device,
+    device: &dyn SceneRunner,
     numbers: std::ops::Range<u64>,
 ) -> Result<(), Failure> {
     let campaigns: Vec<_> = numbers
-        .map(|number| Campaign::new(arguments.seed, number, device.has_processor()))
+        .map(|number| RandomCampaign::new(arguments.seed, number, device.has_processor()))
         .collect();
     if let (Some(folder), Some(_), [campaign]) =
         (&arguments.out, arguments.replay, campaigns.as_slice())
@@ -31,12 +31,12 @@ pub fn run(
         let name = format!("campaign-{}.toml", campaign.number);
         output::write(folder, &name, campaign.text()).map_err(Failure::run)?;
     }
-    let work = |campaign: &Campaign| {
+    let work = |campaign: &RandomCampaign| {
         let ran = campaign.run(device);
         ran.with_context(|| format!("number {} of seed {}", campaign.number, arguments.seed))
     };
     let ran = each(arguments, "campaigns", device, &campaigns, work).map_err(Failure::run)?;
-    let ran: Vec<Ran> = ran.into_iter().flatten().collect();
+    let ran: Vec<CampaignResult> = ran.into_iter().flatten().collect();
     let failing = ran.iter().filter(|ran| !ran.holds()).count();
     let report = Report {
         engine: device.name(),
@@ -44,7 +44,7 @@ pub fn run(
         holds: failing == 0,
         campaigns: &ran,
     };
-    tell(arguments, &report, || summary(&ran))?;
+    tell(arguments, &report, || campaign_summary(&ran))?;
     if failing == 0 {
         return Ok(());
     }

@@ -13,11 +13,11 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use thermal_campaigns::faults::{self, Entry, Outline, Place, Plan, Trial};
-use thermal_campaigns::map;
-use thermal_sim::Device;
+use thermal_campaigns::faults::{self, FaultCase, FaultRun, FaultScene, FaultSummary, MatrixPlan};
+use thermal_campaigns::parallel_map;
+use thermal_sim::SceneRunner;
 
-use super::device::{self, Kind};
+use super::engine::{self, EngineKind};
 use super::{Failure, output};
 
 #[derive(Args)]
@@ -26,8 +26,8 @@ pub struct Arguments {
     #[arg(long, num_args = 1.., value_name = "KIND")]
     only: Vec<String>,
     /// In these scenes only
-    #[arg(long, num_args = 1.., value_parser = places())]
-    scene: Vec<Place>,
+    #[arg(long, num_args = 1.., value_parser = scenes())]
+    scene: Vec<FaultScene>,
     /// Moments of each fault, spread over the scenes
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..))]
     moments: u16,
@@ -35,8 +35,8 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
     /// What runs the device's logic
-    #[arg(long, value_enum, default_value_t = Kind::USUAL)]
-    engine: Kind,
+    #[arg(long, value_enum, default_value_t = EngineKind::DEFAULT)]
+    engine: EngineKind,
     /// Image to run instead of the one of the current sources
     #[arg(long)]
     elf: Option<PathBuf>,
@@ -76,10 +76,12 @@ struct Modes {
     normal: Option<u64>,
 }
 
-fn places() -> impl TypedValueParser<Value = Place> {
-    PossibleValuesParser::new(Place::ALL.map(Place::name)).map(|word| {
-        let known = Place::ALL.into_iter().find(|place| place.name() == word);
-        known.unwrap_or(Place::Copper)
+fn scenes() -> impl TypedValueParser<Value = FaultScene> {
+    PossibleValuesParser::new(FaultScene::ALL.map(FaultScene::name)).map(|word| {
+        let known = FaultScene::ALL
+            .into_iter()
+            .find(|place| place.name() == word);
+        known.unwrap_or(FaultScene::Copper)
     })
 }
 
@@ -90,14 +92,14 @@ struct Report<'a> {
     seed: u64,
     moments: u16,
     holds: bool,
-    faults: &'a [Outline],
+    faults: &'a [FaultSummary],
 }
 
 /// Runs what is asked for.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::create(arguments.out.as_deref())?;
     let elf = arguments.elf.as_deref();
-    let device = device::device(arguments.engine, elf)?;
+    let device = engine::runner(arguments.engine, elf)?;
     let device = device.as_ref();
     match arguments.modes {
         Modes {
@@ -133,11 +135,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Runs the matrix, prints it, writes its page; a fault that does not hold is a failure.
-fn matrix(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
-    let plan = Plan {
-        entries: entries(&arguments.only)?,
-        places: match arguments.scene.as_slice() {
-            [] => Place::ALL.to_vec(),
+fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure> {
+    let plan = MatrixPlan {
+        fault_cases: fault_cases(&arguments.only)?,
+        scenes: match arguments.scene.as_slice() {
+            [] => FaultScene::ALL.to_vec(),
             chosen => chosen.to_vec(),
         },
         moments: arguments.moments.into(),
@@ -174,42 +176,49 @@ fn matrix(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
 }
 
 /// The rows of the chosen kinds.
-fn entries(only: &[String]) -> Result<Vec<Entry>, Failure> {
-    let all = faults::entries();
+fn fault_cases(only: &[String]) -> Result<Vec<FaultCase>, Failure> {
+    let all = faults::fault_cases();
     for kind in only {
-        if !all.iter().any(|entry| entry.fault.kind() == *kind) {
-            let mut known: Vec<_> = all.iter().map(|entry| entry.fault.kind()).collect();
+        if !all
+            .iter()
+            .any(|fault_case| fault_case.fault.kind() == *kind)
+        {
+            let mut known: Vec<_> = all
+                .iter()
+                .map(|fault_case| fault_case.fault.kind())
+                .collect();
             known.dedup();
             let problem = anyhow!("--only {kind}; known are {}", known.join(", "));
             return Err(Failure::input(problem));
         }
     }
-    let chosen = |entry: &Entry| only.is_empty() || only.contains(&entry.fault.kind());
+    let chosen =
+        |fault_case: &FaultCase| only.is_empty() || only.contains(&fault_case.fault.kind());
     Ok(all.into_iter().filter(chosen).collect())
 }
 
 fn outlines(
     arguments: &Arguments,
-    plan: &Plan,
-    device: &dyn Device,
-) -> anyhow::Result<Vec<Outline>> {
+    plan: &MatrixPlan,
+    device: &dyn SceneRunner,
+) -> anyhow::Result<Vec<FaultSummary>> {
     let trials = each(
         arguments,
         "faults",
         device,
         &plan.runs(),
         |(row, moment)| {
-            let entry = &plan.entries[*row];
-            Ok((*row, Trial::run(device, entry, *moment, plan.seed)?))
+            let fault_case = &plan.fault_cases[*row];
+            Ok((*row, FaultRun::run(device, fault_case, *moment, plan.seed)?))
         },
     );
-    let mut by_row: Vec<Vec<Trial>> = plan.entries.iter().map(|_| Vec::new()).collect();
+    let mut by_row: Vec<Vec<FaultRun>> = plan.fault_cases.iter().map(|_| Vec::new()).collect();
     for (row, trial) in trials? {
         by_row[row].extend(trial);
     }
-    let rows = plan.entries.iter().zip(by_row);
+    let rows = plan.fault_cases.iter().zip(by_row);
     Ok(rows
-        .map(|(entry, trials)| Outline::new(entry, trials))
+        .map(|(fault_case, trials)| FaultSummary::new(fault_case, trials))
         .collect())
 }
 
@@ -232,7 +241,7 @@ fn tell(
 fn each<T: Sync, R: Send>(
     arguments: &Arguments,
     what: &str,
-    device: &dyn Device,
+    device: &dyn SceneRunner,
     items: &[T],
     work: impl Fn(&T) -> anyhow::Result<R> + Sync,
 ) -> anyhow::Result<Vec<R>> {
@@ -244,7 +253,7 @@ fn each<T: Sync, R: Send>(
     let threads = arguments.threads.map_or_else(cores, usize::from);
     let twentieth = |count: usize| count * 20 / items.len().max(1);
     let done = AtomicUsize::new(0);
-    let results = map(items, threads, work, || {
+    let results = parallel_map(items, threads, work, || {
         bar.inc(1);
         let before = done.fetch_add(1, Ordering::Relaxed);
         if bar.is_hidden() && twentieth(before) != twentieth(before + 1) {

@@ -2,8 +2,8 @@
 
 use anyhow::anyhow;
 use serde::Serialize;
-use thermal_campaigns::faults::{Session, Used, use_table};
-use thermal_sim::Device;
+use thermal_campaigns::faults::{SessionResult, UseSession, session_table};
+use thermal_sim::SceneRunner;
 
 use super::{Arguments, Failure, each, output, tell};
 
@@ -13,15 +13,15 @@ struct Report<'a> {
     engine: &'static str,
     seed: u64,
     holds: bool,
-    sessions: &'a [Used],
+    sessions: &'a [SessionResult],
 }
 
 /// Runs so many hours; a session in which something trips is a failure, and its scene goes to `--out`.
-pub fn run(arguments: &Arguments, device: &dyn Device, hours: u64) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, device: &dyn SceneRunner, hours: u64) -> Result<(), Failure> {
     let seed = arguments.seed;
-    let numbers: Vec<u64> = (0..Session::in_hours(hours)).collect();
+    let numbers: Vec<u64> = (0..UseSession::in_hours(hours)).collect();
     let work = |number: &u64| {
-        let session = Session::new(seed, *number);
+        let session = UseSession::new(seed, *number);
         let used = session.run(device);
         if let (Some(folder), Some(_)) = (&arguments.out, &used.failure) {
             output::write(folder, &format!("session-{number}.toml"), &session.text)?;
@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments, device: &dyn Device, hours: u64) -> Result<(),
         holds: failed == 0,
         sessions: &used,
     };
-    tell(arguments, &report, || use_table(&used))?;
+    tell(arguments, &report, || session_table(&used))?;
     if failed == 0 {
         return Ok(());
     }

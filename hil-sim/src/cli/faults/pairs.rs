@@ -2,8 +2,8 @@
 
 use anyhow::anyhow;
 use serde::Serialize;
-use thermal_campaigns::faults::{Pair, RanPair, pair_table, pairs};
-use thermal_sim::Device;
+use thermal_campaigns::faults::{FaultPair, PairResult, pair_table, pairs};
+use thermal_sim::SceneRunner;
 
 use super::{Arguments, Failure, each, output, tell};
 
@@ -13,15 +13,15 @@ struct Report<'a> {
     engine: &'static str,
     seed: u64,
     holds: bool,
-    pairs: &'a [RanPair],
+    pairs: &'a [PairResult],
 }
 
 /// Runs all pairs; one that breaks the claim is a failure, and its scene goes to `--out`.
-pub fn run(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
+pub fn run(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure> {
     let seed = arguments.seed;
-    let work = |pair: &Pair| {
+    let work = |pair: &FaultPair| {
         let ran = pair.run(device, seed)?;
-        if let (Some(folder), Some(false)) = (&arguments.out, ran.as_ref().map(RanPair::holds)) {
+        if let (Some(folder), Some(false)) = (&arguments.out, ran.as_ref().map(PairResult::holds)) {
             let words = format!("{} then {}", pair.latent.fault, pair.active.fault);
             let name = words.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
             output::write(folder, &(name + ".toml"), pair.text(seed))?;

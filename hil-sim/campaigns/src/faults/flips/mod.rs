@@ -3,14 +3,14 @@
 //! ```text
 //! every place once without a flip -> reference (trace, stack that is used)
 //! number -> region -> byte of RAM or register -> bit, at a microsecond of a place
-//!        -> scene with the flip in it -> image -> verdict and trace against the reference -> class
+//!        -> scene with the flip in it -> image -> assessment and trace against the reference -> class
 //! ```
 //!
 //! A flip has no sign of its own, so what counts is what no flip may do: the skin's range, the dose, and current from
 //! 50 ms after a deviation that any device must notice.
 
-mod class;
-mod draw;
+mod bit_flip;
+mod effect;
 mod region;
 mod registers;
 mod table;
@@ -18,29 +18,31 @@ mod table;
 use anyhow::Context;
 use serde::Serialize;
 
-pub use class::Class;
-pub use draw::Flip;
-pub use region::{Memory, Region};
+pub use bit_flip::BitFlip;
+pub use effect::FlipEffect;
+pub use region::{FlipRegion, FlippableMemory};
 pub use table::flip_table;
 
-use super::{Breach, Entry, Injected, Moment, Place, Sign, Verdict, trial};
-use thermal_sim::Device;
+use super::{
+    Breach, FaultCase, FaultScene, InjectedFault, InjectionPoint, RunAssessment, Symptom, fault_run,
+};
+use thermal_sim::SceneRunner;
 use thermal_sim::processor::NotInjected;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
 /// Where flips happen: the finger is on the display early, or the self-test drives it.
-const PLACES: [Place; 10] = [
-    Place::Slew,
-    Place::Copper,
-    Place::Granite,
-    Place::Foam,
-    Place::Warm,
-    Place::Cold,
-    Place::Touched,
-    Place::Replace,
-    Place::SelfTest,
-    Place::Off,
+const PLACES: [FaultScene; 10] = [
+    FaultScene::Slew,
+    FaultScene::Copper,
+    FaultScene::Granite,
+    FaultScene::Foam,
+    FaultScene::Warm,
+    FaultScene::Cold,
+    FaultScene::Touched,
+    FaultScene::Replace,
+    FaultScene::SelfTest,
+    FaultScene::Off,
 ];
 /// Flips come in the first part of a place's time, s, and are watched for so long, s, from its end on.
 const WITHIN_S: f64 = 2.0;
@@ -49,36 +51,36 @@ const WATCHED_S: f64 = 3.0;
 const CONVERTER: u64 = 1;
 
 /// What any device must notice, whatever the cause.
-const SIGNS: &[Sign] = &[
-    Sign::OverCurrent,
-    Sign::CurrentOff,
-    Sign::WrongWay,
-    Sign::DisplayLimit,
-    Sign::FaultLine,
+const SIGNS: &[Symptom] = &[
+    Symptom::OverCurrent,
+    Symptom::CurrentOff,
+    Symptom::WrongWay,
+    Symptom::DisplayLimit,
+    Symptom::FaultLine,
 ];
 
-fn text(place: Place, flip: &[(Injected, f64)]) -> String {
-    let (_, to_s) = draw::span(place);
-    let end = Moment { place, t_s: to_s };
-    trial::text(flip, end, WATCHED_S, CONVERTER, &[])
+fn text(place: FaultScene, flip: &[(InjectedFault, f64)]) -> String {
+    let (_, to_s) = bit_flip::span(place);
+    let end = InjectionPoint { place, t_s: to_s };
+    fault_run::scene_text(flip, end, WATCHED_S, CONVERTER, &[])
 }
 
 /// A place without a flip.
 #[derive(Debug)]
-pub struct Reference {
-    place: Place,
+pub struct ReferenceRun {
+    place: FaultScene,
     outcome: Outcome,
 }
 
-impl Reference {
+impl ReferenceRun {
     /// Every place where flips happen.
-    pub const PLACES: [Place; PLACES.len()] = PLACES;
+    pub const PLACES: [FaultScene; PLACES.len()] = PLACES;
 
     /// Runs a place on an image.
     ///
     /// # Errors
     /// The image does not run.
-    pub fn new(device: &dyn Device, place: Place) -> anyhow::Result<Self> {
+    pub fn new(device: &dyn SceneRunner, place: FaultScene) -> anyhow::Result<Self> {
         let scene = Scene::parse(&text(place, &[]), place.name().as_ref())?;
         let (outcome, _) = device.run(&scene)?;
         Ok(Self { place, outcome })
@@ -91,7 +93,7 @@ impl Reference {
     }
 }
 
-impl Flip {
+impl BitFlip {
     /// Its scene as a file has it.
     #[must_use]
     pub fn text(&self) -> String {
@@ -102,33 +104,40 @@ impl Flip {
     ///
     /// # Errors
     /// The scene cannot be, or none of the references is of its place.
-    pub fn run(&self, device: &dyn Device, references: &[Reference]) -> anyhow::Result<Flipped> {
+    pub fn run(
+        &self,
+        device: &dyn SceneRunner,
+        references: &[ReferenceRun],
+    ) -> anyhow::Result<FlipResult> {
         let place = self.moment.place;
         let reference = (references.iter().find(|reference| reference.place == place))
             .with_context(|| format!("no reference of {}", place.name()))?;
         let scene = Scene::parse(&self.text(), place.name().as_ref())?;
-        let entry = Entry::trips(self.injected(), SIGNS, &[]);
-        let (class, verdict, deviation_k) = match device.run(&scene) {
+        let fault_case = FaultCase::trips(self.injected(), SIGNS, &[]);
+        let (class, assessment, deviation_k) = match device.run(&scene) {
             Ok((outcome, figures)) => {
-                let mut verdict = Verdict::of(&entry, self.moment, &outcome, &figures, &[]);
+                let mut assessment =
+                    RunAssessment::of(&fault_case, self.moment, &outcome, &figures, &[]);
                 // Any word is right.
-                verdict.breaches.retain(|breach| *breach != Breach::Reason);
-                let class = Class::of(&verdict, &outcome, &reference.outcome);
+                assessment
+                    .breaches
+                    .retain(|breach| *breach != Breach::Reason);
+                let class = FlipEffect::of(&assessment, &outcome, &reference.outcome);
                 (
                     class,
-                    verdict,
-                    Some(class::deviation_k(&outcome, &reference.outcome)),
+                    assessment,
+                    Some(effect::deviation_k(&outcome, &reference.outcome)),
                 )
             }
             Err(error) => {
                 let class = match error.downcast_ref() {
-                    Some(NotInjected::Refused { .. }) => Class::Refused,
-                    _ => Class::Ended,
+                    Some(NotInjected::Refused { .. }) => FlipEffect::Refused,
+                    _ => FlipEffect::Ended,
                 };
-                (class, Verdict::ended(&error), None)
+                (class, RunAssessment::ended(&error), None)
             }
         };
-        Ok(Flipped {
+        Ok(FlipResult {
             number: self.number,
             region: self.region,
             flip: self.fault.to_string(),
@@ -136,22 +145,22 @@ impl Flip {
             deviation_k,
             place: place.name(),
             t_s: self.moment.t_s,
-            verdict,
+            assessment,
         })
     }
 }
 
 /// What came of a flip.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Flipped {
+pub struct FlipResult {
     /// Its number.
     pub number: u64,
     /// Where it was.
-    pub region: Region,
+    pub region: FlipRegion,
     /// The bit.
     pub flip: String,
     /// What it was for the finger.
-    pub class: Class,
+    pub class: FlipEffect,
     /// Most that the display was off its reference, K; none if the run has none.
     pub deviation_k: Option<f64>,
     /// The scene.
@@ -160,5 +169,5 @@ pub struct Flipped {
     pub t_s: f64,
     /// In figures.
     #[serde(flatten)]
-    pub verdict: Verdict,
+    pub assessment: RunAssessment,
 }

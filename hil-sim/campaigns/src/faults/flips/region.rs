@@ -6,14 +6,14 @@ use rand::{Rng, RngExt};
 use serde::Serialize;
 use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::MachineFault;
-use thermal_sim::{Device, RamLayout};
+use thermal_sim::{RamLayout, SceneRunner};
 
 use super::registers::REGISTERS;
 
 /// A part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Region {
+pub enum FlipRegion {
     /// Static data, what resets keep included.
     Statics,
     /// The part of the stack that is used.
@@ -28,7 +28,7 @@ pub enum Region {
     Device,
 }
 
-impl Region {
+impl FlipRegion {
     /// All of them, with how many of a hundred flips each gets.
     pub const ALL: [(Self, u32); 6] = [
         (Self::Statics, 35),
@@ -65,7 +65,7 @@ impl Region {
     }
 
     /// Draws a bit of it.
-    pub(super) fn bit(self, memory: &Memory, draw: &mut impl Rng) -> MachineFault {
+    pub(super) fn bit(self, memory: &FlippableMemory, draw: &mut impl Rng) -> MachineFault {
         let byte = |draw: &mut _, range: &Range<u32>| MachineFault::RamBit {
             address: RngExt::random_range(draw, range.clone()),
             bit: RngExt::random_range(draw, 0..8),
@@ -115,21 +115,21 @@ fn one_of(bits: u32, draw: &mut impl Rng) -> u8 {
 
 /// Where an image keeps what: addresses of RAM.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Memory {
+pub struct FlippableMemory {
     /// All of it.
     pub ram: Range<u32>,
     /// Static data.
     pub statics: Range<u32>,
-    /// Used stack.
+    /// SessionResult stack.
     pub stack: Range<u32>,
 }
 
-impl Memory {
+impl FlippableMemory {
     /// That of a device whose image uses so much of its stack, bytes.
     ///
     /// # Errors
     /// It has no RAM, its image does not say where its static data are, or there are none, or it uses no stack.
-    pub fn of(device: &dyn Device, stack_bytes: u32) -> anyhow::Result<Self> {
+    pub fn of(device: &dyn SceneRunner, stack_bytes: u32) -> anyhow::Result<Self> {
         let RamLayout {
             ram,
             statics,
@@ -156,7 +156,10 @@ mod tests {
 
     #[test]
     fn shares_are_of_a_hundred() {
-        assert_eq!(Region::ALL.iter().map(|(_, share)| share).sum::<u32>(), 100);
+        assert_eq!(
+            FlipRegion::ALL.iter().map(|(_, share)| share).sum::<u32>(),
+            100
+        );
     }
 
     #[test]

@@ -1,19 +1,19 @@
 //! Bridge, supply, mirror, comparator.
 
-use thermal_display::device::safety::Fault;
+use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
-use crate::faults::entry::{broken, valued};
-use crate::faults::{Entry, Place, Sign};
+use crate::faults::fault_case::{broken, valued};
+use crate::faults::{FaultCase, FaultScene, Symptom};
 
 /// A leg that does not do what it is told shows in the current, the display's way, or the self-test.
-const LEG: &[Sign] = &[
-    Sign::CurrentOff,
-    Sign::OverCurrent,
-    Sign::WrongWay,
-    Sign::DisplayLimit,
-    Sign::FaultLine,
-    Sign::SelfTest(0.704),
+const LEG: &[Symptom] = &[
+    Symptom::CurrentOff,
+    Symptom::OverCurrent,
+    Symptom::WrongWay,
+    Symptom::DisplayLimit,
+    Symptom::FaultLine,
+    Symptom::SelfTest(0.704),
 ];
 pub(super) const LEG_REASONS: &[Fault] = &[
     Fault::CurrentHigh,
@@ -24,9 +24,17 @@ pub(super) const LEG_REASONS: &[Fault] = &[
     Fault::NoResponse,
     Fault::Bridge,
 ];
-const CURRENT: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::SelfTest(0.304)];
+const CURRENT: &[Symptom] = &[
+    Symptom::CurrentOff,
+    Symptom::OverCurrent,
+    Symptom::SelfTest(0.304),
+];
 /// A supply that drives the self-test's ampere well enough.
-const SUPPLY: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::FaultLine];
+const SUPPLY: &[Symptom] = &[
+    Symptom::CurrentOff,
+    Symptom::OverCurrent,
+    Symptom::FaultLine,
+];
 const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
 /// Current that is less, or more, by too little to be told from a sound one still moves the display less, or more; or leaves it to
 /// what finger and sink do.
@@ -42,11 +50,11 @@ const MUCH_CURRENT: &[Fault] = &[
     Fault::Bridge,
     Fault::UnlikeModel,
 ];
-const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
+const WORST: &[FaultScene] = &[FaultScene::Slew, FaultScene::Warm, FaultScene::Off];
 /// Where no tuned model helps, too.
-const PLAIN: &[Place] = &[Place::Untuned, Place::Slew, Place::Off];
+const PLAIN: &[FaultScene] = &[FaultScene::Untuned, FaultScene::Slew, FaultScene::Off];
 /// The module does less than it should.
-const WEAK: &[Sign] = &[Sign::Astray, Sign::WrongWay];
+const WEAK: &[Symptom] = &[Symptom::DisplayDeviates, Symptom::WrongWay];
 const WEAK_REASONS: &[Fault] = &[
     Fault::NoResponse,
     Fault::Polarity,
@@ -55,24 +63,24 @@ const WEAK_REASONS: &[Fault] = &[
 ];
 
 /// What drives the tile, and what watches that.
-pub const ENTRIES: &[Entry] = &[
-    Entry::trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
-    Entry::trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
-    Entry::trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
-    Entry::trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(PLAIN),
-    Entry::trips(
+pub const FAULT_CASES: &[FaultCase] = &[
+    FaultCase::trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
+    FaultCase::trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
+    FaultCase::trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
+    FaultCase::trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(PLAIN),
+    FaultCase::trips(
         broken(Kind::BridgeShorted),
-        &[Sign::FaultLine],
+        &[Symptom::FaultLine],
         &[Fault::Bridge],
     )
     .at(WORST),
-    Entry::trips(
+    FaultCase::trips(
         broken(Kind::PolaritySwapped),
         &[
-            Sign::WrongWay,
-            Sign::DisplayLimit,
-            Sign::CurrentOff,
-            Sign::SelfTest(0.504),
+            Symptom::WrongWay,
+            Symptom::DisplayLimit,
+            Symptom::CurrentOff,
+            Symptom::SelfTest(0.504),
         ],
         // A module that is warmer on one side drives a current of its own, now the other way.
         &[
@@ -86,53 +94,58 @@ pub const ENTRIES: &[Entry] = &[
     .at(PLAIN),
     // What is left answers to the self-test's ampere by more than it asks for, or by about that. So what tells is what comes then:
     // for a module that has little to do the loop makes up.
-    Entry::trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS).at(&[
-        Place::Slew,
-        Place::Cold,
-        Place::Replace,
+    FaultCase::trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS).at(&[
+        FaultScene::Slew,
+        FaultScene::Cold,
+        FaultScene::Replace,
     ]),
-    Entry::trips(valued(Kind::ModuleWeak, 0.1), WEAK, WEAK_REASONS).at(&[Place::Slew, Place::Off]),
+    FaultCase::trips(valued(Kind::ModuleWeak, 0.1), WEAK, WEAK_REASONS)
+        .at(&[FaultScene::Slew, FaultScene::Off]),
     // The self-test must tell.
-    Entry::trips(
+    FaultCase::trips(
         valued(Kind::ModuleWeak, 0.0),
-        &[Sign::Astray, Sign::WrongWay, Sign::SelfTest(0.504)],
+        &[
+            Symptom::DisplayDeviates,
+            Symptom::WrongWay,
+            Symptom::SelfTest(0.504),
+        ],
         WEAK_REASONS,
     )
-    .at(Place::TESTED),
-    Entry::harmless(broken(Kind::BridgeEnableStuck)).latent(),
-    Entry::trips(
+    .at(FaultScene::TESTED),
+    FaultCase::harmless(broken(Kind::BridgeEnableStuck)).latent(),
+    FaultCase::trips(
         broken(Kind::FaultPinDead),
-        &[Sign::SelfTest(0.02)],
+        &[Symptom::SelfTest(0.02)],
         &[Fault::Comparator],
     )
     .latent()
-    .at(&[Place::Off]),
-    Entry::trips(
+    .at(&[FaultScene::Off]),
+    FaultCase::trips(
         broken(Kind::ComparatorDead),
-        &[Sign::SelfTest(0.02)],
+        &[Symptom::SelfTest(0.02)],
         &[Fault::Comparator],
     )
     .latent()
-    .at(&[Place::Off]),
-    Entry::trips(
+    .at(&[FaultScene::Off]),
+    FaultCase::trips(
         broken(Kind::ComparatorStuck),
-        &[Sign::FaultLine, Sign::SelfTest(0.04)],
+        &[Symptom::FaultLine, Symptom::SelfTest(0.04)],
         &[Fault::Bridge, Fault::Comparator],
     )
     .at(WORST),
-    Entry::trips(valued(Kind::MirrorStuck, 0.0), CURRENT, CURRENT_LOW).at(WORST),
-    Entry::trips(
+    FaultCase::trips(valued(Kind::MirrorStuck, 0.0), CURRENT, CURRENT_LOW).at(WORST),
+    FaultCase::trips(
         valued(Kind::MirrorStuck, 3.0),
         CURRENT,
         &[Fault::CurrentHigh, Fault::CurrentLow],
     ),
-    Entry::trips(
+    FaultCase::trips(
         valued(Kind::MirrorStuck, 10.0),
-        &[Sign::OverCurrent],
+        &[Symptom::OverCurrent],
         &[Fault::OverCurrent],
     ),
-    Entry::trips(valued(Kind::SupplyLow, 9.0), SUPPLY, NO_CURRENT).at(WORST),
-    Entry::trips(valued(Kind::SupplyLow, 4.5), CURRENT, NO_CURRENT).at(WORST),
-    Entry::trips(valued(Kind::SupplyHigh, 16.0), SUPPLY, MUCH_CURRENT).at(WORST),
-    Entry::trips(valued(Kind::SupplyHigh, 24.0), SUPPLY, MUCH_CURRENT).at(WORST),
+    FaultCase::trips(valued(Kind::SupplyLow, 9.0), SUPPLY, NO_CURRENT).at(WORST),
+    FaultCase::trips(valued(Kind::SupplyLow, 4.5), CURRENT, NO_CURRENT).at(WORST),
+    FaultCase::trips(valued(Kind::SupplyHigh, 16.0), SUPPLY, MUCH_CURRENT).at(WORST),
+    FaultCase::trips(valued(Kind::SupplyHigh, 24.0), SUPPLY, MUCH_CURRENT).at(WORST),
 ];

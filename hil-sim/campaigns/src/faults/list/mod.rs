@@ -8,20 +8,20 @@ mod host;
 mod processor;
 mod sensors;
 
-use super::Entry;
+use super::FaultCase;
 
 /// All of them, in the order of the table.
 #[must_use]
-pub fn entries() -> Vec<Entry> {
+pub fn fault_cases() -> Vec<FaultCase> {
     [
         sensors::WIRES,
         sensors::READINGS,
         sensors::SWAPPED,
         sensors::OTHERS,
-        electrics::ENTRIES,
-        cooling::ENTRIES,
-        host::ENTRIES,
-        processor::ENTRIES,
+        electrics::FAULT_CASES,
+        cooling::FAULT_CASES,
+        host::FAULT_CASES,
+        processor::FAULT_CASES,
     ]
     .concat()
 }

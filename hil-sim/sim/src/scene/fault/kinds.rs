@@ -76,30 +76,30 @@ pub struct Value {
     /// Its unit; 1 is a pure number.
     pub unit: &'static str,
     /// Least that is allowed.
-    pub least: f64,
+    pub min: f64,
     /// Most that is allowed.
-    pub most: f64,
+    pub max: f64,
     /// What a scene means that gives none; it must give one if this is none.
-    pub unless_given: Option<f64>,
+    pub default: Option<f64>,
 }
 
 /// A value that a scene must give.
-const fn given(unit: &'static str, least: f64, most: f64) -> Option<Value> {
+const fn given(unit: &'static str, min: f64, max: f64) -> Option<Value> {
     Some(Value {
         unit,
-        least,
-        most,
-        unless_given: None,
+        min,
+        max,
+        default: None,
     })
 }
 
 /// A pure factor of 1 to 1000.
-const fn factor(unless_given: f64) -> Option<Value> {
+const fn factor(default: f64) -> Option<Value> {
     Some(Value {
         unit: "1",
-        least: 1.0,
-        most: 1000.0,
-        unless_given: Some(unless_given),
+        min: 1.0,
+        max: 1000.0,
+        default: Some(default),
     })
 }
 
@@ -214,13 +214,13 @@ impl FaultKind {
 
     /// It confuses two thermistors, of which a scene must name the second.
     #[must_use]
-    pub const fn has_other(self) -> bool {
+    pub const fn needs_second_sensor(self) -> bool {
         matches!(self, Self::SensorsSwapped)
     }
 
     /// It lasts, so that it can pass.
     #[must_use]
-    pub const fn lasts(self) -> bool {
+    pub const fn has_duration(self) -> bool {
         !matches!(self, Self::HostGarbage)
     }
 }

@@ -1,14 +1,14 @@
 //! What breaks in a scene, when, and for how long.
 
 mod kinds;
+mod parse;
 mod processor;
-mod read;
 
 use serde::Deserialize;
 
 pub use kinds::{FaultKind, Value};
+pub(super) use parse::faults;
 pub use processor::{ProcessorKey, ProcessorKind};
-pub(super) use read::faults;
 
 /// Rate at which a thermistor drifts, K/s.
 pub const DRIFT_K_S: f64 = 1.0;
@@ -32,7 +32,7 @@ pub enum Sensor {
 
 /// Something that is broken now.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Broken {
+pub struct ActiveFault {
     /// What.
     pub kind: FaultKind,
     /// Which thermistor, of kinds that break one.
@@ -43,10 +43,10 @@ pub struct Broken {
     pub value: f64,
 }
 
-impl From<FaultKind> for Broken {
+impl From<FaultKind> for ActiveFault {
     /// As a scene has it that says no more: of the display's thermistor, with the value that such a scene means.
     fn from(kind: FaultKind) -> Self {
-        let value = kind.value().and_then(|value| value.unless_given);
+        let value = kind.value().and_then(|value| value.default);
         Self {
             kind,
             sensor: Sensor::Display,
@@ -60,7 +60,7 @@ impl From<FaultKind> for Broken {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fault {
     /// What; its value is what it comes to.
-    pub broken: Broken,
+    pub broken: ActiveFault,
     /// From when on, s.
     pub t_s: f64,
     /// Until when, s; infinite if it stays.
@@ -70,7 +70,7 @@ pub struct Fault {
 impl Fault {
     /// What is broken at a time, s; a drift is on its way.
     #[must_use]
-    pub fn at(&self, t_s: f64) -> Option<Broken> {
+    pub fn at(&self, t_s: f64) -> Option<ActiveFault> {
         if !(self.t_s..self.until_s).contains(&t_s) {
             return None;
         }

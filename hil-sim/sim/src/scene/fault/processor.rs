@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
-use crate::processor::{Injection, NoMachineFault};
+use crate::processor::{Injection, ParseMachineFaultError};
 use crate::scene::file;
 use crate::scene::source::{SceneError, Source};
 
@@ -46,7 +46,7 @@ impl ProcessorKey {
     }
 
     /// What a scene means that does not say.
-    const fn unless_given(self) -> Option<&'static str> {
+    const fn default(self) -> Option<&'static str> {
         match self {
             Self::Controller => Some("2"),
             Self::Stream => Some("0"),
@@ -146,14 +146,10 @@ pub(super) fn injection(
     let mut at = Vec::new();
     for key in kind.keys {
         let said = key.said(row.get_ref()).map(|(_, said)| said);
-        at.push(
-            said.or(key.unless_given().map(str::to_owned))
-                .ok_or_else(|| {
-                    let problem =
-                        format!("fault.{} is missing; {} needs it", key.name(), kind.name);
-                    source.error(Some(row.span()), problem)
-                })?,
-        );
+        at.push(said.or(key.default().map(str::to_owned)).ok_or_else(|| {
+            let problem = format!("fault.{} is missing; {} needs it", key.name(), kind.name);
+            source.error(Some(row.span()), problem)
+        })?);
     }
     if kind.name == "power-cycle" {
         at.push(seed.to_string());
@@ -163,8 +159,9 @@ pub(super) fn injection(
     } else {
         format!("{}={}", kind.name, at.join("."))
     };
-    let fault = (text.parse())
-        .map_err(|error: NoMachineFault| source.error(Some(row.span()), error.to_string()))?;
+    let fault = (text.parse()).map_err(|error: ParseMachineFaultError| {
+        source.error(Some(row.span()), error.to_string())
+    })?;
     let t_s = source.time("fault.t_s", t_s, duration_s)?;
     Ok(Injection { t_s, fault })
 }

@@ -12,9 +12,9 @@ fn names_tell_all_kinds_apart() {
 fn what_a_scene_means_that_gives_no_value_is_allowed() {
     for kind in FaultKind::ALL {
         let Some(value) = kind.value() else { continue };
-        assert!(value.least < value.most, "{kind:?}");
-        let meant = value.unless_given.unwrap_or(value.least);
-        assert!((value.least..=value.most).contains(&meant), "{kind:?}");
+        assert!(value.min < value.max, "{kind:?}");
+        let meant = value.default.unwrap_or(value.min);
+        assert!((value.min..=value.max).contains(&meant), "{kind:?}");
     }
 }
 
@@ -39,7 +39,7 @@ fn fault_begins_and_ends_at_its_times() {
 #[test]
 fn drift_goes_a_kelvin_a_second() {
     for value in [5.0, -5.0] {
-        let broken = Broken {
+        let broken = ActiveFault {
             value,
             ..FaultKind::ThermistorDrift.into()
         };

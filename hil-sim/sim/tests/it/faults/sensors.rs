@@ -22,7 +22,7 @@ const ALL: [Sensor; 5] = [
 /// What they read at rest; force and current after them.
 const REST: [u16; 7] = [AT_24_C, AT_24_C, AT_24_C, AT_34_C, AT_24_C, 410, 0];
 
-fn after(all: &[Broken]) -> [u16; 7] {
+fn after(all: &[ActiveFault]) -> [u16; 7] {
     let mut world = ideal();
     run(&mut world, 1, OFF, all);
     codes(&mut world)
@@ -131,7 +131,7 @@ fn swapped_thermistors_read_each_other() {
     assert!(sound[2].abs_diff(AT_60_C) <= 1, "{sound:?}");
     assert!(sound[0] > AT_60_C + 250, "{sound:?}");
     for sensor in [Sensor::Display, Sensor::Check] {
-        let swapped = Broken {
+        let swapped = ActiveFault {
             with: Sensor::Sink,
             ..of(FaultKind::SensorsSwapped, sensor, 0.0)
         };
@@ -163,7 +163,7 @@ fn dividers_without_reference_all_read_short() {
 #[test]
 fn force_sensor_breaks_off_sticks_and_shifts() {
     let mut world = ideal();
-    let pressed = |world: &mut World, all: &[Broken]| {
+    let pressed = |world: &mut World, all: &[ActiveFault]| {
         world.set(2.0, all.iter().copied());
         for _ in 0..20 {
             world.step(OFF);

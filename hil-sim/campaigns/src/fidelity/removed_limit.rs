@@ -1,0 +1,101 @@
+//! Bounds that are removed in the plant, to show what limits.
+
+use thermal_plant::sensors::ConverterParams;
+
+/// What is removed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RemovedLimit {
+    /// The converter's noise.
+    SensorNoise,
+    /// The converter's integral non-linearity.
+    Inl,
+    /// The lag of both thermistors on the display.
+    SensorLag,
+    /// Room air in the leads of the thermistors, and the contact in what the skin's thermistor sees.
+    SensorSite,
+    /// Lag of the force sensor.
+    ForceLag,
+    /// A quarter of the heat that the plates hold, so that the same power moves them faster.
+    Power,
+    /// Change of the module's properties with temperature, which a linear model does not identify.
+    Identification,
+}
+
+const LEADS: [&str; 5] = ["display", "check", "sink", "skin", "room"];
+
+impl RemovedLimit {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::SensorNoise,
+        Self::Inl,
+        Self::SensorLag,
+        Self::SensorSite,
+        Self::ForceLag,
+        Self::Power,
+        Self::Identification,
+    ];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::SensorNoise => "sensor-noise",
+            Self::Inl => "inl",
+            Self::SensorLag => "sensor-lag",
+            Self::SensorSite => "sensor-site",
+            Self::ForceLag => "force-lag",
+            Self::Power => "power",
+            Self::Identification => "identification",
+        }
+    }
+
+    /// The plant keys that remove it, with their values.
+    #[must_use]
+    pub fn plant(self) -> Vec<(String, f64)> {
+        let keys = |keys: &[(&str, f64)]| {
+            keys.iter()
+                .map(|(key, value)| ((*key).into(), *value))
+                .collect()
+        };
+        match self {
+            Self::SensorNoise => keys(&[("sensors.converter.noise_counts", DITHER_COUNTS)]),
+            Self::Inl => keys(&[("sensors.converter.inl_counts", 0.0)]),
+            Self::SensorLag => keys(&[
+                ("sensors.display.lag_s", 1e-3),
+                ("sensors.check.lag_s", 1e-3),
+            ]),
+            Self::SensorSite => {
+                let leads = LEADS.map(|name| (format!("sensors.{name}.lead_share"), 0.0));
+                leads
+                    .into_iter()
+                    .chain(keys(&[("sensors.skin_sees_contact", 0.0)]))
+                    .collect()
+            }
+            Self::ForceLag => keys(&[("sensors.force.lag_s", 1e-5)]),
+            Self::Power => keys(&[("tile.ceramic_j_m3k", 2.3e6)]),
+            Self::Identification => keys(&[("tile.variation", 0.0)]),
+        }
+    }
+}
+
+/// RemovedLimit any noise a converter of 12 bits repeats its codes, which the device takes for a converter that stands still
+/// and averaging cannot resolve; this much is left.
+const DITHER_COUNTS: f64 = ConverterParams::NOMINAL.noise_counts / 2.0;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use thermal_plant::{Params, parameters};
+
+    #[test]
+    fn every_bound_is_removed_by_possible_values_that_are_not_nominal() {
+        for without in RemovedLimit::ALL {
+            let mut params = Params::nominal();
+            for (key, value) in without.plant() {
+                parameters::set(&mut params, &key, value).expect("a key and a possible value");
+            }
+            assert_ne!(params, Params::nominal(), "{}", without.name());
+        }
+    }
+}
