@@ -4,33 +4,28 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// What reset the chip last (RCC_CSR).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ResetCause {
-    /// Supply came up.
-    PowerOn,
-    /// SYSRESETREQ written to AIRCR.
-    Software,
-    /// The independent watchdog ran out.
-    IndependentWatchdog,
-    /// The window watchdog ran out, or was refreshed outside of its window.
-    WindowWatchdog,
-    /// The supply fell below the brown-out threshold, but not so far that the RAM forgot.
-    BrownOut,
-    /// The reset pin was pulled low.
-    Pin,
+named_enum! {
+    /// Cause of the last reset of the microcontroller (RCC_CSR).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum ResetCause {
+        /// The supply came up.
+        PowerOn = "power-on",
+        /// SYSRESETREQ was written to AIRCR.
+        Software = "software",
+        /// The independent watchdog ran out.
+        IndependentWatchdog = "independent-watchdog",
+        /// The window watchdog ran out, or was refreshed outside its window.
+        WindowWatchdog = "window-watchdog",
+        /// The supply fell below the brown-out threshold, but the RAM kept its contents.
+        BrownOut = "brown-out",
+        /// The reset pin was pulled low.
+        Pin = "reset-pin",
+    }
 }
 
 impl fmt::Display for ResetCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            ResetCause::PowerOn => "power-on",
-            ResetCause::Software => "software",
-            ResetCause::IndependentWatchdog => "independent-watchdog",
-            ResetCause::WindowWatchdog => "window-watchdog",
-            ResetCause::BrownOut => "brown-out",
-            ResetCause::Pin => "reset-pin",
-        })
+        f.write_str(self.name())
     }
 }
 

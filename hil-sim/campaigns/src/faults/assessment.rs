@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use thermal_sim::metrics::{Extremes, Figures};
+use thermal_sim::named_enum;
 use thermal_sim::run::Outcome;
 use thermal_sim::trace::TraceRow;
 
@@ -19,46 +20,23 @@ pub(super) const MICROSECONDS: (usize, usize) = (6, 1);
 /// Current that is none, A.
 const NONE_A: f64 = 1e-6;
 
-/// What a run did that it must not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Breach {
-    /// The run ended with something that is not modelled.
-    Ended,
-    /// It tripped before the fault.
-    Early,
-    /// The skin left 13 to 45 °C.
-    Skin,
-    /// A minute of CEM43 or more.
-    Dose,
-    /// Detectable, but current flowed later than 50 ms after that.
-    Late,
-    /// Another reason than a right one, or none.
-    Reason,
-}
-
-impl Breach {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Ended,
-        Self::Early,
-        Self::Skin,
-        Self::Dose,
-        Self::Late,
-        Self::Reason,
-    ];
-
-    /// A word for it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Ended => "ended",
-            Self::Early => "early",
-            Self::Skin => "skin",
-            Self::Dose => "dose",
-            Self::Late => "late",
-            Self::Reason => "reason",
-        }
+named_enum! {
+    /// What a run did that it must not.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Breach {
+        /// The run ended with something that is not modelled.
+        Ended = "ended",
+        /// It tripped before the fault.
+        Early = "early",
+        /// The skin left 13 to 45 °C.
+        Skin = "skin",
+        /// A minute of CEM43 or more.
+        Dose = "dose",
+        /// Detectable, but current flowed later than 50 ms after that.
+        Late = "late",
+        /// Another reason than a right one, or none.
+        Reason = "reason",
     }
 }
 

@@ -35,17 +35,6 @@ impl InjectedFault {
     }
 }
 
-/// Its name in a scene.
-pub(super) const fn sensor(sensor: Sensor) -> &'static str {
-    match sensor {
-        Sensor::Display => "display",
-        Sensor::Check => "check",
-        Sensor::Sink => "sink",
-        Sensor::Skin => "skin",
-        Sensor::Room => "room",
-    }
-}
-
 impl fmt::Display for InjectedFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -54,10 +43,10 @@ impl fmt::Display for InjectedFault {
             Self::Hardware(active) => {
                 f.write_str(active.kind.name())?;
                 if active.kind.has_sensor() {
-                    write!(f, " {}", sensor(active.sensor))?;
+                    write!(f, " {}", active.sensor.name())?;
                 }
                 if active.kind.needs_second_sensor() {
-                    write!(f, " {}", sensor(active.with))?;
+                    write!(f, " {}", active.with.name())?;
                 }
                 match active.kind.value() {
                     Some(takes) if takes.unit == "1" => write!(f, " x{}", active.value),

@@ -5,51 +5,54 @@ use rand::{RngExt, SeedableRng};
 use serde::Serialize;
 use thermal_device::control::Law;
 use thermal_device::safety::Fault;
+use thermal_sim::named_enum;
 
 use super::scene_text;
 
-/// A scene, and what goes on in it when the fault comes. In every one the finger rests on the display in the end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum FaultScene {
-    /// The object appears under a resting finger: as much current as there is, copper.
-    Slew,
-    /// The same, with the plain loop.
-    Pi,
-    /// With that of the thesis's display.
-    Pi10Hz,
-    /// With a model of the class, of a device that was never commissioned.
-    Untuned,
-    /// A finger lands on copper.
-    Copper,
-    /// On granite.
-    Granite,
-    /// On foam.
-    Foam,
-    /// On copper of 41 °C.
-    Warm,
-    /// On copper of 15 °C.
-    Cold,
-    /// Armed, the finger on the neutral display.
-    Touched,
-    /// Held at 42 °C under a finger.
-    HeldWarm,
-    /// At 15 °C.
-    HeldCold,
-    /// Tuned; the finger comes later.
-    Tuning,
-    /// A finger lands on copper of a constant temperature, as on the thesis's first display.
-    SemiInfinite,
-    /// Armed, the finger comes later.
-    Neutral,
-    /// The object is presented, the finger comes later.
-    Preset,
-    /// Lifted and replaced, a second each.
-    Replace,
-    /// The self-test, under a finger: for its sake it waits for a second after the comparator's part.
-    SelfTest,
-    /// Off, after a fault that was cleared; the self-test follows.
-    Off,
+named_enum! {
+    /// A scene, and what goes on in it when the fault comes. In every one the finger rests on the display in the end.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum FaultScene {
+        /// The object appears under a resting finger: as much current as there is, copper.
+        Slew = "slew",
+        /// The same, with the plain loop.
+        Pi = "pi",
+        /// With that of the thesis's display.
+        Pi10Hz = "pi-10hz",
+        /// With a model of the class, of a device that was never commissioned.
+        Untuned = "untuned",
+        /// A finger lands on copper.
+        Copper = "copper",
+        /// On granite.
+        Granite = "granite",
+        /// On foam.
+        Foam = "foam",
+        /// On copper of 41 °C.
+        Warm = "warm",
+        /// On copper of 15 °C.
+        Cold = "cold",
+        /// Armed, the finger on the neutral display.
+        Touched = "touched",
+        /// Held at 42 °C under a finger.
+        HeldWarm = "held-warm",
+        /// At 15 °C.
+        HeldCold = "held-cold",
+        /// Tuned; the finger comes later.
+        Tuning = "tuning",
+        /// A finger lands on copper of a constant temperature, as on the thesis's first display.
+        SemiInfinite = "semi-infinite",
+        /// Armed, the finger comes later.
+        Neutral = "neutral",
+        /// The object is presented, the finger comes later.
+        Preset = "preset",
+        /// Lifted and replaced, a second each.
+        Replace = "replace",
+        /// The self-test, under a finger: for its sake it waits for a second after the comparator's part.
+        SelfTest = "self-test",
+        /// Off, after a fault that was cleared; the self-test follows.
+        Off = "off",
+    }
 }
 
 /// Forces: time in s, N.
@@ -90,56 +93,8 @@ pub struct InjectionPoint {
 }
 
 impl FaultScene {
-    /// All of them.
-    pub const ALL: [Self; 19] = [
-        Self::Slew,
-        Self::Pi,
-        Self::Pi10Hz,
-        Self::Untuned,
-        Self::Copper,
-        Self::Granite,
-        Self::Foam,
-        Self::Warm,
-        Self::Cold,
-        Self::Touched,
-        Self::HeldWarm,
-        Self::HeldCold,
-        Self::Tuning,
-        Self::SemiInfinite,
-        Self::Neutral,
-        Self::Preset,
-        Self::Replace,
-        Self::SelfTest,
-        Self::Off,
-    ];
-
     /// Where a self-test is, or follows.
     pub(super) const TESTED: &'static [Self] = &[Self::SelfTest, Self::Off];
-
-    /// Its name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Slew => "slew",
-            Self::Pi | Self::Pi10Hz => self.law().name(),
-            Self::Untuned => "untuned",
-            Self::Copper => "copper",
-            Self::Granite => "granite",
-            Self::Foam => "foam",
-            Self::Warm => "warm",
-            Self::Cold => "cold",
-            Self::Touched => "touched",
-            Self::HeldWarm => "held-warm",
-            Self::HeldCold => "held-cold",
-            Self::Tuning => "tuning",
-            Self::SemiInfinite => "semi-infinite",
-            Self::Neutral => "neutral",
-            Self::Preset => "preset",
-            Self::Replace => "replace",
-            Self::SelfTest => "self-test",
-            Self::Off => "off",
-        }
-    }
 
     const fn forces(self) -> Forces {
         match self {

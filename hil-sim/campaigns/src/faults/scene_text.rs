@@ -6,7 +6,6 @@ use thermal_sim::processor::MachineFault;
 use thermal_sim::scene::FaultKind;
 
 use super::InjectedFault;
-use super::fault_case::sensor;
 
 /// A host that fell silent comes back after so long, s, to ask.
 const SILENT_S: f64 = 6.0;
@@ -24,10 +23,10 @@ pub(super) fn fault_text(fault: &InjectedFault, t_s: f64) -> String {
                 text += &format!("until_s = {:?}\n", t_s + SILENT_S);
             }
             if broken.kind.has_sensor() {
-                text += &format!("sensor = \"{}\"\n", sensor(broken.sensor));
+                text += &format!("sensor = \"{}\"\n", broken.sensor.name());
             }
             if broken.kind.needs_second_sensor() {
-                text += &format!("with = \"{}\"\n", sensor(broken.with));
+                text += &format!("with = \"{}\"\n", broken.with.name());
             }
             match broken.kind.value() {
                 Some(_) => writeln!(text, "value = {:?}", broken.value),

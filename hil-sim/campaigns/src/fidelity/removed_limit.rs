@@ -1,55 +1,32 @@
 //! Bounds that are removed in the plant, to show what limits.
 
 use thermal_plant::sensors::ConverterParams;
+use thermal_sim::named_enum;
+use thermal_sim::scene::Sensor;
 
-/// What is removed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum RemovedLimit {
-    /// The converter's noise.
-    SensorNoise,
-    /// The converter's integral non-linearity.
-    Inl,
-    /// The lag of both thermistors on the display.
-    SensorLag,
-    /// Room air in the leads of the thermistors, and the contact in what the skin's thermistor sees.
-    SensorSite,
-    /// Lag of the force sensor.
-    ForceLag,
-    /// A quarter of the heat that the plates hold, so that the same power moves them faster.
-    Power,
-    /// Change of the module's properties with temperature, which a linear model does not identify.
-    Identification,
+named_enum! {
+    /// What is removed.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum RemovedLimit {
+        /// The converter's noise.
+        SensorNoise = "sensor-noise",
+        /// The converter's integral non-linearity.
+        Inl = "inl",
+        /// The lag of both thermistors on the display.
+        SensorLag = "sensor-lag",
+        /// Room air in the leads of the thermistors, and the contact in what the skin's thermistor sees.
+        SensorSite = "sensor-site",
+        /// Lag of the force sensor.
+        ForceLag = "force-lag",
+        /// A quarter of the heat that the plates hold, so that the same power moves them faster.
+        Power = "power",
+        /// Change of the module's properties with temperature, which a linear model does not identify.
+        Identification = "identification",
+    }
 }
 
-const LEADS: [&str; 5] = ["display", "check", "sink", "skin", "room"];
-
 impl RemovedLimit {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::SensorNoise,
-        Self::Inl,
-        Self::SensorLag,
-        Self::SensorSite,
-        Self::ForceLag,
-        Self::Power,
-        Self::Identification,
-    ];
-
-    /// Its name on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::SensorNoise => "sensor-noise",
-            Self::Inl => "inl",
-            Self::SensorLag => "sensor-lag",
-            Self::SensorSite => "sensor-site",
-            Self::ForceLag => "force-lag",
-            Self::Power => "power",
-            Self::Identification => "identification",
-        }
-    }
-
     /// The plant keys that remove it, with their values.
     #[must_use]
     pub fn plant(self) -> Vec<(String, f64)> {
@@ -66,7 +43,8 @@ impl RemovedLimit {
                 ("sensors.check.lag_s", 1e-3),
             ]),
             Self::SensorSite => {
-                let leads = LEADS.map(|name| (format!("sensors.{name}.lead_share"), 0.0));
+                let leads = Sensor::ALL
+                    .map(|sensor| (format!("sensors.{}.lead_share", sensor.name()), 0.0));
                 leads
                     .into_iter()
                     .chain(keys(&[("sensors.skin_sees_contact", 0.0)]))

@@ -1,29 +1,28 @@
 //! The scenarios.
 
 use contact_model::pressure::THESIS_PRESSURES;
+use thermal_sim::named_enum;
 
 use super::case::ROOM_C;
 use super::touched_object::UNKNOWN_MATERIALS;
 use super::{FidelityCase, Measure, Press, TouchedObject};
 
-/// What a finger does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Scenario {
-    /// A finger lands on the preset display and stays for 10 s.
-    #[serde(rename = "A")]
-    A,
-    /// An object appears under a finger that rests on the neutral display.
-    #[serde(rename = "B")]
-    B,
-    /// Lift and replace: 1 s on, 1 s off, ten times.
-    #[serde(rename = "C")]
-    C,
-    /// The force rises and falls during contact.
-    #[serde(rename = "D")]
-    D,
-    /// Materials by their properties, warm objects, other skin; one object too warm to be shown.
-    Unseen,
+named_enum! {
+    /// What a finger does.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+    pub enum Scenario {
+        /// A finger lands on the preset display and stays for 10 s.
+        A = "A",
+        /// An object appears under a finger that rests on the neutral display.
+        B = "B",
+        /// Lift and replace: 1 s on, 1 s off, ten times.
+        C = "C",
+        /// The force rises and falls during contact.
+        D = "D",
+        /// Materials by their properties, warm objects, other skin; one object too warm to be shown.
+        #[serde(rename = "unseen")]
+        Unseen = "unseen",
+    }
 }
 
 /// The usual skin, °C.
@@ -34,21 +33,6 @@ const FOUR: [&str; 4] = ["copper", "granite", "abs", "foam"];
 const PRESSED_N: f64 = 2.0;
 
 impl Scenario {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::A, Self::B, Self::C, Self::D, Self::Unseen];
-
-    /// Its name on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::A => "A",
-            Self::B => "B",
-            Self::C => "C",
-            Self::D => "D",
-            Self::Unseen => "unseen",
-        }
-    }
-
     /// What happens in it.
     #[must_use]
     pub const fn title(self) -> &'static str {

@@ -43,7 +43,7 @@ pub fn run(
         .iter()
         .filter_map(ReferenceRun::stack_bytes)
         .max();
-    let memory = FlippableMemory::of(device, stack_bytes.unwrap_or(0)).map_err(Failure::run)?;
+    let memory = FlippableMemory::new(device, stack_bytes.unwrap_or(0)).map_err(Failure::run)?;
     let seed = arguments.seed;
     let flips: Vec<_> = numbers
         .map(|number| BitFlip::new(seed, number, &memory))

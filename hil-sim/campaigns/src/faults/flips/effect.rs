@@ -1,61 +1,37 @@
-//! What a flip was for the finger.
+//! The effect of a bit flip.
 
 use serde::Serialize;
+use thermal_sim::named_enum;
 use thermal_sim::run::Outcome;
 
 use crate::faults::RunAssessment;
 
-/// The first that is so.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum FlipEffect {
-    /// The emulated machine has no such bit, or does not model its flip: nothing has run.
-    Refused,
-    /// The run ended with something that is not modelled.
-    Ended,
-    /// A limit was broken: skin, dose, or current later than 50 ms after a sign.
-    Broken,
-    /// The device tripped, by itself or after a reset.
-    Tripped,
-    /// It was reset, and is off without a fault.
-    Reset,
-    /// The host hears nothing any more, no limit is broken.
-    Silent,
-    /// Something in the trace differs, no limit is broken.
-    Differs,
-    /// Trace and answers are those without the flip.
-    Nothing,
+named_enum! {
+    /// Effect of a bit flip on the finger and the device.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum FlipEffect {
+        /// Trace and answers equal those of the run without the flip.
+        Nothing = "no effect",
+        /// Something in the trace or the answers differs, and no limit is broken.
+        Differs = "differs, safe",
+        /// The device no longer answers the host, and no limit is broken.
+        Silent = "silent",
+        /// The device tripped, by itself or after a reset.
+        Tripped = "tripped",
+        /// The device was reset and is off without a fault.
+        Reset = "reset",
+        /// The run ended because something happened that the emulator does not model.
+        Ended = "ended",
+        /// Not injected: the emulator has no such bit or does not model its flip.
+        Refused = "not injected",
+        /// A limit was broken: skin temperature, dose, or current more than 50 ms after a symptom.
+        Broken = "limit broken",
+    }
 }
 
 impl FlipEffect {
-    /// All, in the order of the table.
-    pub const ALL: [Self; 8] = [
-        Self::Nothing,
-        Self::Differs,
-        Self::Silent,
-        Self::Tripped,
-        Self::Reset,
-        Self::Ended,
-        Self::Refused,
-        Self::Broken,
-    ];
-
-    /// A few words for it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Refused => "not injected",
-            Self::Ended => "ended",
-            Self::Broken => "limit broken",
-            Self::Tripped => "tripped",
-            Self::Reset => "reset",
-            Self::Silent => "silent",
-            Self::Differs => "differs, safe",
-            Self::Nothing => "no effect",
-        }
-    }
-
-    /// Of a run that came to its end.
+    /// Classifies a run that reached its end, by comparison with the run without the flip.
     pub(super) fn of(assessment: &RunAssessment, outcome: &Outcome, reference: &Outcome) -> Self {
         let same =
             outcome.trace.rows() == reference.trace.rows() && outcome.answers == reference.answers;
@@ -70,7 +46,7 @@ impl FlipEffect {
     }
 }
 
-/// Most that the display was off its reference, K.
+/// Largest difference of the display temperature from the run without the flip, K.
 pub(super) fn deviation_k(outcome: &Outcome, reference: &Outcome) -> f64 {
     let rows = outcome.trace.rows().iter().zip(reference.trace.rows());
     rows.map(|(row, reference)| (row.display_c - reference.display_c).abs())

@@ -10,7 +10,7 @@ use crate::faults::assessment::MICROSECONDS;
 #[must_use]
 pub fn flip_table(runs: &[FlipResult]) -> String {
     let mut text = format!("{:<24}", "");
-    for (region, _) in FlipRegion::ALL {
+    for region in FlipRegion::ALL {
         text += &format!("{:>9}", region.name());
     }
     text += "      all\n";
@@ -77,7 +77,7 @@ pub fn flip_table(runs: &[FlipResult]) -> String {
 
 fn line(text: &mut String, name: &str, runs: &[FlipResult], is_so: impl Fn(&FlipResult) -> bool) {
     *text += &format!("{name:<24}");
-    for (region, _) in FlipRegion::ALL {
+    for region in FlipRegion::ALL {
         let count = runs
             .iter()
             .filter(|run| run.region == region && is_so(run))

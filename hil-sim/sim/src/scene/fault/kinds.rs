@@ -1,73 +1,75 @@
 //! The kinds of faults, and what a scene says of each.
 
-/// What can break.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FaultKind {
-    /// A thermistor's wire is open: its pin is at the reference and reads cold.
-    ThermistorOpen,
-    /// A thermistor is shorted: its pin is at ground and reads hot.
-    ThermistorShort,
-    /// A thermistor reads more and more too much, by [`DRIFT_K_S`](super::DRIFT_K_S) up to the value.
-    ThermistorDrift,
-    /// A thermistor reads too much by the value at once.
-    ThermistorOffset,
-    /// A thermistor hangs by its leads: the value is by how much it lags more, sees more of the room and warms itself
-    /// more.
-    ThermistorDetached,
-    /// The converter repeats its last code of a thermistor's channel. The pin is sound, so the comparator is too.
-    ThermistorStuck,
-    /// Two thermistors are plugged in where the other one should be.
-    SensorsSwapped,
-    /// Nothing feeds the thermistors' dividers: all five read as shorted.
-    ReferenceOff,
-    /// Every channel repeats its last code.
-    AdcStuck,
-    /// The force sensor's wire is open: its pin is at ground.
-    ForceOpen,
-    /// The force sensor no longer moves; the converter's noise stays.
-    ForceStuck,
-    /// The force sensor reads too much by the value.
-    ForceOffset,
-    /// Leg a of the bridge stays at the supply; the enable line still takes both legs off.
-    BridgeStuckHigh,
-    /// Leg b stays at the supply; the enable line still takes both legs off.
-    BridgeBStuckHigh,
-    /// Leg a stays at ground, so what should cool heats; the enable line still takes both legs off.
-    BridgeStuckLow,
-    /// Leg a is high-impedance.
-    LegOpen,
-    /// Output a is shorted to ground: the driver trips when it is driven high.
-    BridgeShorted,
-    /// The driver stays enabled: it drives whatever its PWM says. Latent, as PWM ends with enable.
-    BridgeEnableStuck,
-    /// The module's wires are swapped.
-    PolaritySwapped,
-    /// The module keeps the value's share of its Seebeck effect: legs that have aged, or that solder bridges.
-    ModuleWeak,
-    /// nFAULT never goes low. Latent; the comparator's test shows it.
-    FaultPinDead,
-    /// The current mirror always reads the value.
-    MirrorStuck,
-    /// The comparator never cuts the supply. Latent; its test shows it.
-    ComparatorDead,
-    /// The comparator has cut the supply and stays so.
-    ComparatorStuck,
-    /// The bridge supply falls to the value.
-    SupplyLow,
-    /// The bridge supply rises to the value.
-    SupplyHigh,
-    /// The sink gives less heat to what cools it, by a factor.
-    FanOff,
-    /// What cools the sink has the value for its temperature.
-    ChillerOff,
-    /// Something strong holds the sink at the value.
-    SinkHot,
-    /// The host sends bytes that are no line, once.
-    HostGarbage,
-    /// The host sends nothing.
-    HostSilent,
-    /// The host sends as many lines as fit.
-    HostFlood,
+named_enum! {
+    /// What can break.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum FaultKind {
+        /// A thermistor's wire is open: its pin is at the reference and reads cold.
+        ThermistorOpen = "thermistor-open",
+        /// A thermistor is shorted: its pin is at ground and reads hot.
+        ThermistorShort = "thermistor-short",
+        /// A thermistor reads more and more too much, by [`DRIFT_K_S`](super::DRIFT_K_S) up to the value.
+        ThermistorDrift = "thermistor-drift",
+        /// A thermistor reads too much by the value at once.
+        ThermistorOffset = "thermistor-offset",
+        /// A thermistor hangs by its leads: the value is by how much it lags more, sees more of the room and warms itself
+        /// more.
+        ThermistorDetached = "thermistor-detached",
+        /// The converter repeats its last code of a thermistor's channel. The pin is sound, so the comparator is too.
+        ThermistorStuck = "thermistor-stuck",
+        /// Two thermistors are plugged in where the other one should be.
+        SensorsSwapped = "sensors-swapped",
+        /// Nothing feeds the thermistors' dividers: all five read as shorted.
+        ReferenceOff = "reference-off",
+        /// Every channel repeats its last code.
+        AdcStuck = "adc-stuck",
+        /// The force sensor's wire is open: its pin is at ground.
+        ForceOpen = "force-open",
+        /// The force sensor no longer moves; the converter's noise stays.
+        ForceStuck = "force-stuck",
+        /// The force sensor reads too much by the value.
+        ForceOffset = "force-offset",
+        /// Leg a of the bridge stays at the supply; the enable line still takes both legs off.
+        BridgeStuckHigh = "bridge-stuck-high",
+        /// Leg b stays at the supply; the enable line still takes both legs off.
+        BridgeBStuckHigh = "bridge-b-stuck-high",
+        /// Leg a stays at ground, so what should cool heats; the enable line still takes both legs off.
+        BridgeStuckLow = "bridge-stuck-low",
+        /// Leg a is high-impedance.
+        LegOpen = "leg-open",
+        /// Output a is shorted to ground: the driver trips when it is driven high.
+        BridgeShorted = "bridge-shorted",
+        /// The driver stays enabled: it drives whatever its PWM says. Latent, as PWM ends with enable.
+        BridgeEnableStuck = "bridge-enable-stuck",
+        /// The module's wires are swapped.
+        PolaritySwapped = "polarity-swapped",
+        /// The module keeps the value's share of its Seebeck effect: legs that have aged, or that solder bridges.
+        ModuleWeak = "module-weak",
+        /// nFAULT never goes low. Latent; the comparator's test shows it.
+        FaultPinDead = "fault-pin-dead",
+        /// The current mirror always reads the value.
+        MirrorStuck = "mirror-stuck",
+        /// The comparator never cuts the supply. Latent; its test shows it.
+        ComparatorDead = "comparator-dead",
+        /// The comparator has cut the supply and stays so.
+        ComparatorStuck = "comparator-stuck",
+        /// The bridge supply falls to the value.
+        SupplyLow = "supply-low",
+        /// The bridge supply rises to the value.
+        SupplyHigh = "supply-high",
+        /// The sink gives less heat to what cools it, by a factor.
+        FanOff = "fan-off",
+        /// What cools the sink has the value for its temperature.
+        ChillerOff = "chiller-off",
+        /// Something strong holds the sink at the value.
+        SinkHot = "sink-hot",
+        /// The host sends bytes that are no line, once.
+        HostGarbage = "host-garbage",
+        /// The host sends nothing.
+        HostSilent = "host-silent",
+        /// The host sends as many lines as fit.
+        HostFlood = "host-flood",
+    }
 }
 
 /// The number that a kind takes.
@@ -104,81 +106,6 @@ const fn factor(default: f64) -> Option<Value> {
 }
 
 impl FaultKind {
-    /// All of them.
-    pub const ALL: [Self; 32] = [
-        Self::ThermistorOpen,
-        Self::ThermistorShort,
-        Self::ThermistorDrift,
-        Self::ThermistorOffset,
-        Self::ThermistorDetached,
-        Self::ThermistorStuck,
-        Self::SensorsSwapped,
-        Self::ReferenceOff,
-        Self::AdcStuck,
-        Self::ForceOpen,
-        Self::ForceStuck,
-        Self::ForceOffset,
-        Self::BridgeStuckHigh,
-        Self::BridgeBStuckHigh,
-        Self::BridgeStuckLow,
-        Self::LegOpen,
-        Self::BridgeShorted,
-        Self::BridgeEnableStuck,
-        Self::PolaritySwapped,
-        Self::ModuleWeak,
-        Self::FaultPinDead,
-        Self::MirrorStuck,
-        Self::ComparatorDead,
-        Self::ComparatorStuck,
-        Self::SupplyLow,
-        Self::SupplyHigh,
-        Self::FanOff,
-        Self::ChillerOff,
-        Self::SinkHot,
-        Self::HostGarbage,
-        Self::HostSilent,
-        Self::HostFlood,
-    ];
-
-    /// Its name in a scene.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ThermistorOpen => "thermistor-open",
-            Self::ThermistorShort => "thermistor-short",
-            Self::ThermistorDrift => "thermistor-drift",
-            Self::ThermistorOffset => "thermistor-offset",
-            Self::ThermistorDetached => "thermistor-detached",
-            Self::ThermistorStuck => "thermistor-stuck",
-            Self::SensorsSwapped => "sensors-swapped",
-            Self::ReferenceOff => "reference-off",
-            Self::AdcStuck => "adc-stuck",
-            Self::ForceOpen => "force-open",
-            Self::ForceStuck => "force-stuck",
-            Self::ForceOffset => "force-offset",
-            Self::BridgeStuckHigh => "bridge-stuck-high",
-            Self::BridgeBStuckHigh => "bridge-b-stuck-high",
-            Self::BridgeStuckLow => "bridge-stuck-low",
-            Self::LegOpen => "leg-open",
-            Self::BridgeShorted => "bridge-shorted",
-            Self::BridgeEnableStuck => "bridge-enable-stuck",
-            Self::PolaritySwapped => "polarity-swapped",
-            Self::ModuleWeak => "module-weak",
-            Self::FaultPinDead => "fault-pin-dead",
-            Self::MirrorStuck => "mirror-stuck",
-            Self::ComparatorDead => "comparator-dead",
-            Self::ComparatorStuck => "comparator-stuck",
-            Self::SupplyLow => "supply-low",
-            Self::SupplyHigh => "supply-high",
-            Self::FanOff => "fan-off",
-            Self::ChillerOff => "chiller-off",
-            Self::SinkHot => "sink-hot",
-            Self::HostGarbage => "host-garbage",
-            Self::HostSilent => "host-silent",
-            Self::HostFlood => "host-flood",
-        }
-    }
-
     /// The value that it takes, if any. Supplies are those that the class of driver works on, 4.5 to 38 V.
     #[must_use]
     pub const fn value(self) -> Option<Value> {

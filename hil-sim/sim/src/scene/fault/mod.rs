@@ -13,21 +13,23 @@ pub use processor::{ProcessorKey, ProcessorKind};
 /// Rate at which a thermistor drifts, K/s.
 pub const DRIFT_K_S: f64 = 1.0;
 
-/// A thermistor of one finger; its number is that of its place in the converter's scan.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Sensor {
-    /// In the display's face, which the loop goes by.
-    #[default]
-    Display,
-    /// Beside it, which the comparator watches.
-    Check,
-    /// On the sink.
-    Sink,
-    /// On the skin.
-    Skin,
-    /// In the room.
-    Room,
+named_enum! {
+    /// A thermistor of one finger, numbered as its channel in the converter's scan.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Sensor {
+        /// In the face of the display; the control loop uses it.
+        #[default]
+        Display = "display",
+        /// Beside it; the comparator watches it.
+        Check = "check",
+        /// On the sink.
+        Sink = "sink",
+        /// On the skin.
+        Skin = "skin",
+        /// In the room.
+        Room = "room",
+    }
 }
 
 /// Something that is broken now.

@@ -8,43 +8,24 @@ use crate::processor::{Injection, ParseMachineFaultError};
 use crate::scene::file;
 use crate::scene::source::{SceneError, Source};
 
-/// A key that tells where the processor breaks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ProcessorKey {
-    /// Address of a byte of the RAM, or of a device's register.
-    Address,
-    /// Name of a core register.
-    Register,
-    /// Bit of it.
-    Bit,
-    /// DMA controller; 2, the sampler's, unless given.
-    Controller,
-    /// Its stream; 0, the sampler's, unless given.
-    Stream,
+named_enum! {
+    /// A key that tells where the processor breaks.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum ProcessorKey {
+        /// Address of a byte of the RAM, or of a device's register.
+        Address = "address",
+        /// Name of a core register.
+        Register = "register",
+        /// Bit of it.
+        Bit = "bit",
+        /// DMA controller; 2, the sampler's, unless given.
+        Controller = "controller",
+        /// Its stream; 0, the sampler's, unless given.
+        Stream = "stream",
+    }
 }
 
 impl ProcessorKey {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Address,
-        Self::Register,
-        Self::Bit,
-        Self::Controller,
-        Self::Stream,
-    ];
-
-    /// Its name in a scene.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Address => "address",
-            Self::Register => "register",
-            Self::Bit => "bit",
-            Self::Controller => "controller",
-            Self::Stream => "stream",
-        }
-    }
-
     /// What a scene means that does not say.
     const fn default(self) -> Option<&'static str> {
         match self {

@@ -12,13 +12,6 @@ const AT_14_C: u16 = 2557;
 const AT_34_C: u16 = 1655;
 const AT_60_C: u16 = 816;
 
-const ALL: [Sensor; 5] = [
-    Sensor::Display,
-    Sensor::Check,
-    Sensor::Sink,
-    Sensor::Skin,
-    Sensor::Room,
-];
 /// What they read at rest; force and current after them.
 const REST: [u16; 7] = [AT_24_C, AT_24_C, AT_24_C, AT_34_C, AT_24_C, 410, 0];
 
@@ -35,7 +28,7 @@ fn sound_sensors_read_what_is_there() {
 
 #[test]
 fn each_thermistor_breaks_by_itself() {
-    for sensor in ALL {
+    for sensor in Sensor::ALL {
         for (kind, value, code) in [
             (FaultKind::ThermistorOpen, 0.0, Some(4095)),
             (FaultKind::ThermistorShort, 0.0, Some(0)),
