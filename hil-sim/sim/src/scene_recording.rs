@@ -64,7 +64,7 @@ impl<'a> SceneRecording<'a> {
     pub fn change(&self, ms: u64, world: &mut World) {
         let t_s = self.t_s(ms);
         let broken = self.scene.faults.iter().filter_map(|fault| fault.at(t_s));
-        world.set(self.scene.force_n(t_s), broken);
+        world.set_force_and_faults(self.scene.force_n(t_s), broken);
     }
 
     /// Keeps the state at a boundary within the scene.

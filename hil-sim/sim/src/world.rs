@@ -14,7 +14,7 @@ use active_defects::ActiveDefects;
 #[derive(Clone, Debug)]
 pub struct World {
     plant: Plant,
-    damage: ActiveDefects,
+    defects: ActiveDefects,
     camera: Option<(Infrared, Camera)>,
     /// Last code of every channel.
     codes: [u16; Channel::ALL.len()],
@@ -37,16 +37,12 @@ impl World {
     /// # Errors
     /// A value that the plant or the camera cannot take.
     pub fn new(scene: &Scene) -> Result<Self, WorldError> {
-        let camera = match scene.infrared {
-            Some(infrared) => Some((infrared, infrared.camera(scene.seed)?)),
-            None => None,
-        };
-        Ok(Self {
-            plant: Plant::new(&scene.plant_config())?,
-            damage: ActiveDefects::default(),
-            camera,
-            codes: [0; Channel::ALL.len()],
-        })
+        let plant = Plant::new(&scene.plant_config())?;
+        let camera = scene.infrared.map(|infrared| {
+            let camera = infrared.camera(scene.seed)?;
+            Ok::<_, ParameterError>((infrared, camera))
+        });
+        Ok(Self::with(plant, camera.transpose()?))
     }
 
     /// The world of a plant that nobody watches, with the converter's noise of its own seed.
@@ -56,12 +52,16 @@ impl World {
     pub fn from_plant(config: &PlantConfig, noise_seed: u64) -> Result<Self, ConfigError> {
         let mut plant = Plant::new(config)?;
         plant.reseed_noise(noise_seed);
-        Ok(Self {
+        Ok(Self::with(plant, None))
+    }
+
+    fn with(plant: Plant, camera: Option<(Infrared, Camera)>) -> Self {
+        Self {
             plant,
-            damage: ActiveDefects::default(),
-            camera: None,
+            defects: ActiveDefects::default(),
+            camera,
             codes: [0; Channel::ALL.len()],
-        })
+        }
     }
 
     /// What the camera says of the skin on the real object, a number of milliseconds after time zero; none between its
@@ -79,13 +79,17 @@ impl World {
     }
 
     /// What the finger does, and what is broken, from now on.
-    pub fn set(&mut self, force_n: f64, broken: impl Iterator<Item = ActiveFault>) {
+    pub fn set_force_and_faults(
+        &mut self,
+        force_n: f64,
+        broken: impl Iterator<Item = ActiveFault>,
+    ) {
         self.plant.set_force(force_n);
-        self.damage = ActiveDefects::default();
+        self.defects = ActiveDefects::default();
         for broken in broken {
-            self.damage.add(&broken);
+            self.defects.add(&broken);
         }
-        self.plant.set_defects(&self.damage.plant);
+        self.plant.set_defects(&self.defects.plant);
     }
 
     /// Sets the level of the line by which the device tests the comparator. Whoever runs the device says so after each
@@ -109,7 +113,7 @@ impl World {
     pub fn convert(&mut self, channel: Channel) -> u16 {
         let code = self.plant.convert(channel);
         let index = channel as usize;
-        if !self.damage.frozen[index] {
+        if !self.defects.frozen[index] {
             self.codes[index] = code;
         }
         self.codes[index]

@@ -163,7 +163,7 @@ fn told(tile: &IdentifiedTile) -> String {
 
 fn result(devices: u64, json: bool) -> Result<(), Failure> {
     let draws: Vec<u64> = (1..=devices).collect();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = output::threads(None);
     let work = |draw: &u64| Ok((*draw, survey_device(*draw)));
     let (mut found, mut failed) = (Vec::new(), Vec::new());
     for (draw, one) in parallel_map(&draws, threads, work, || ()).map_err(Failure::run)? {

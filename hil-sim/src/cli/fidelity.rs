@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
 use thermal_campaigns::fidelity::{
     self, BoxReport, DrawResult, FidelityCase, FidelityRow, PlantDraw, RemovedLimit, Scenario,
@@ -141,22 +140,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             .write(folder, &rows, &drawn, boxed.as_ref())
             .map_err(Failure::run)?;
     }
-    let mut text = if arguments.json {
-        let report = Report {
-            seed: arguments.seed,
-            laws: campaign.laws.iter().map(|law| law.name()).collect(),
-            rows: &rows,
-            boxed: boxed.as_ref(),
-        };
-        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
-    } else {
+    let report = Report {
+        seed: arguments.seed,
+        laws: campaign.laws.iter().map(|law| law.name()).collect(),
+        rows: &rows,
+        boxed: boxed.as_ref(),
+    };
+    let table = || {
         fidelity::table(&rows, arguments.all)
             + &boxed.as_ref().map_or(String::new(), fidelity::box_table)
     };
-    if let (Some(folder), false) = (&arguments.out, arguments.json) {
-        text += &format!("report: {}\n", folder.join(fidelity::HTML).display());
-    }
-    output::print(&text)
+    let page = arguments.out.as_ref();
+    output::print_report(
+        arguments.json,
+        &report,
+        table,
+        page.map(|folder| folder.join(fidelity::HTML)),
+    )
 }
 
 /// The cases that are asked for.
@@ -211,11 +211,6 @@ impl Campaign<'_> {
         }
     }
 
-    fn threads(&self) -> usize {
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        self.arguments.threads.map_or_else(cores, usize::from)
-    }
-
     /// Every case under every law, with and without bounds.
     fn rows(&self, cases: &[FidelityCase]) -> anyhow::Result<Vec<FidelityRow>> {
         let bounds = expand(&self.arguments.without, &RemovedLimit::ALL);
@@ -260,11 +255,9 @@ impl Campaign<'_> {
         jobs: &[T],
         work: impl Fn(&T) -> anyhow::Result<R> + Sync,
     ) -> anyhow::Result<Vec<R>> {
-        let style =
-            ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
-        let bar = ProgressBar::new(jobs.len() as u64).with_style(style);
-        bar.set_message(name);
-        let results = parallel_map(jobs, self.threads(), work, || bar.inc(1));
+        let bar = output::run_counter(name.into(), jobs.len())?;
+        let threads = output::threads(self.arguments.threads);
+        let results = parallel_map(jobs, threads, work, || bar.inc(1));
         bar.finish_and_clear();
         results
     }

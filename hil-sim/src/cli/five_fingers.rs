@@ -60,16 +60,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         #[cfg(feature = "emulator")]
         EngineKind::Image => measure(&scenes, &mut super::image::five_fingers(elf, worlds)?),
     }?;
-    let text = if arguments.json {
-        let report = Report {
-            fingers: figures,
-            latency_cycles_max: cost.map(|cost| cost.latency_max),
-        };
-        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
-    } else {
-        table(&figures, cost)
+    let report = Report {
+        latency_cycles_max: cost.map(|cost| cost.latency_max),
+        fingers: figures,
     };
-    output::print(&text)
+    let table = || table(&report.fingers, cost);
+    output::print_report(arguments.json, &report, table, None)
 }
 
 fn measure<H: FiveFingerEngine>(

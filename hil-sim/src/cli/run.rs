@@ -54,15 +54,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.out {
         write(folder, &scene, &outcome, &figures).map_err(Failure::run)?;
     }
-    let mut text = if arguments.json {
-        serde_json::to_string(&figures).map_err(Failure::run)? + "\n"
-    } else {
-        report::table(&figures)
-    };
-    if let (Some(folder), false) = (&arguments.out, arguments.json) {
-        text += &format!("report: {}\n", folder.join(report::HTML).display());
-    }
-    output::print(&text)
+    let page = arguments.out.as_ref();
+    output::print_report(
+        arguments.json,
+        &figures,
+        || report::table(&figures),
+        page.map(|folder| folder.join(report::HTML)),
+    )
 }
 
 /// Time and fault of `T_S:FAULT`.

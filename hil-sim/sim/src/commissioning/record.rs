@@ -1,5 +1,7 @@
 //! What the operator writes down.
 
+use std::str::FromStr;
+
 use serde::Serialize;
 
 use super::CommissionError;
@@ -65,79 +67,51 @@ pub enum CommissioningEvent {
     TileIdentified(IdentifiedTile),
 }
 
-/// Numbers behind the names of an answer, in the order of the names; what is there twice counts once.
-fn numbers<const N: usize>(
-    line: &str,
-    answer: &str,
-    names: [&str; N],
-) -> Result<[f64; N], CommissionError> {
-    let mut values = [0.0; N];
-    for (value, name) in values.iter_mut().zip(names) {
-        let found = answer
-            .split(' ')
-            .filter_map(|word| word.split_once('='))
-            .find_map(|(word, number)| (word == name).then(|| number.parse().ok())?);
-        *value = found.ok_or_else(|| CommissionError::Refused {
-            line: line.into(),
-            answer: answer.into(),
-        })?;
-    }
-    Ok(values)
+/// The number behind `name=` in an answer; the first one if the name occurs twice.
+fn number<T: FromStr>(line: &str, answer: &str, name: &str) -> Result<T, CommissionError> {
+    let mut words = answer.split(' ').filter_map(|word| word.split_once('='));
+    let value = words.find_map(|(word, number)| (word == name).then(|| number.parse().ok())?);
+    value.ok_or_else(|| CommissionError::Refused {
+        line: line.into(),
+        answer: answer.into(),
+    })
 }
 
 impl IdentifiedTile {
-    /// From what the device answers to `tune result` or `margins`.
+    /// Parses the device's answer to `tune result` or `margins`.
     ///
     /// # Errors
-    /// It is no such answer.
+    /// A number is missing from the answer.
     pub fn parse(line: &str, answer: &str) -> Result<Self, CommissionError> {
-        let names = [
-            "gain",
-            "joule",
-            "leak",
-            "lag_s",
-            "dead_s",
-            "phase_deg",
-            "margin",
-        ];
-        let [
-            gain_k_s_a,
-            joule_per_a,
-            leak_1_s,
-            lag_s,
-            dead_s,
-            phase_deg,
-            gain_margin,
-        ] = numbers(line, answer, names)?;
+        let number = |name| number(line, answer, name);
         Ok(Self {
-            gain_k_s_a,
-            joule_per_a,
-            leak_1_s,
-            lag_s,
-            dead_s,
-            phase_deg,
-            gain_margin,
+            gain_k_s_a: number("gain")?,
+            joule_per_a: number("joule")?,
+            leak_1_s: number("leak")?,
+            lag_s: number("lag_s")?,
+            dead_s: number("dead_s")?,
+            phase_deg: number("phase_deg")?,
+            gain_margin: number("margin")?,
         })
     }
 }
 
 impl CalibrationPoint {
-    /// From what the device answers to a point.
+    /// Parses the device's answer to a calibration point.
     ///
     /// # Errors
-    /// It is no such answer.
+    /// A number is missing from the answer.
     pub fn parse(
         sensor: &'static str,
         reference_c: f64,
         line: &str,
         answer: &str,
     ) -> Result<Self, CommissionError> {
-        let [points, worst_mk] = numbers(line, answer, ["points", "worst_mk"])?;
         Ok(Self {
             sensor,
             reference_c,
-            points: points as u32,
-            worst_mk,
+            points: number(line, answer, "points")?,
+            worst_mk: number(line, answer, "worst_mk")?,
         })
     }
 }

@@ -4,7 +4,6 @@ use contact_model::material::MATERIALS;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::parameters::stream;
-use thermal_plant::slab::Back;
 use thermal_plant::{ConfigError, Params, PlantConfig};
 
 use crate::World;
@@ -104,12 +103,7 @@ impl CommissioningSetup {
         let config = PlantConfig {
             skin_c,
             room_c,
-            object: ObjectConfig {
-                material,
-                start_c: room_c,
-                thickness_m: f64::INFINITY,
-                back: Back::Insulated,
-            },
+            object: ObjectConfig::half_space(material, room_c),
             start_s: 0.0,
             appears_s: LONGEST_S,
             duration_s: LONGEST_S,

@@ -64,11 +64,13 @@ pub trait Engine {
     /// Resets of the device after its power-up, the oldest first.
     fn resets(&self) -> Vec<DeviceReset>;
 
-    /// Starts the measurement of [`Self::cost`] anew.
-    fn reset_cost(&mut self);
+    /// Restarts the measurement of [`Self::cost`].
+    fn reset_cost(&mut self) {}
 
-    /// What the device's program costs, if the engine knows.
-    fn cost(&self) -> Option<Cost>;
+    /// Cost of the device's program; `None` for an engine that does not measure it.
+    fn cost(&self) -> Option<Cost> {
+        None
+    }
 }
 
 /// A reset of the device.

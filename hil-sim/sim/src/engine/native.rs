@@ -15,7 +15,7 @@ use thermal_plant::sensors::Channel;
 use thermal_protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
 use thermal_settings::{Settings, StoredSettings, decode};
 
-use super::{BAUD, Cost, DeviceReset, Engine};
+use super::{BAUD, DeviceReset, Engine};
 use crate::World;
 use crate::processor::{MachineFault, NotInjected, ResetCause};
 
@@ -287,11 +287,5 @@ impl Engine for NativeEngine {
 
     fn resets(&self) -> Vec<DeviceReset> {
         self.resets.clone()
-    }
-
-    fn reset_cost(&mut self) {}
-
-    fn cost(&self) -> Option<Cost> {
-        None
     }
 }

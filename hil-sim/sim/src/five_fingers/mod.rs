@@ -60,11 +60,13 @@ pub trait FiveFingerEngine {
     /// Resets of the device after its power-up; time counts from the first finger's first boundary.
     fn resets(&self) -> Vec<DeviceReset>;
 
-    /// Starts the measurement of [`Self::cost`] anew.
-    fn reset_cost(&mut self);
+    /// Restarts the measurement of [`Self::cost`].
+    fn reset_cost(&mut self) {}
 
-    /// What a tick of one finger costs, and the load of all, if the engine knows.
-    fn cost(&self) -> Option<Cost>;
+    /// Cost of one finger's tick and CPU load of all fingers; `None` for an engine that does not measure it.
+    fn cost(&self) -> Option<Cost> {
+        None
+    }
 }
 
 /// Runs a scene on each finger; `progress` is told the part that is done. Returns what each finger has given.

@@ -6,7 +6,7 @@ use thermal_plant::bridge::Legs;
 
 use super::{FINGERS, FiveFingerEngine};
 use crate::World;
-use crate::engine::{Cost, DeviceReset, Engine, LineSplitter, NativeEngine};
+use crate::engine::{DeviceReset, Engine, LineSplitter, NativeEngine};
 
 /// Five native devices of one finger.
 #[derive(Debug)]
@@ -75,11 +75,5 @@ impl FiveFingerEngine for NativeFiveFingers {
 
     fn resets(&self) -> Vec<DeviceReset> {
         self.fingers.iter().flat_map(Engine::resets).collect()
-    }
-
-    fn reset_cost(&mut self) {}
-
-    fn cost(&self) -> Option<Cost> {
-        None
     }
 }

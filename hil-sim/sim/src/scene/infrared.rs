@@ -92,10 +92,7 @@ pub(super) fn infrared(
             window_c: or(&table.window_c, room_c),
             splitter_c: or(&table.splitter_c, room_c),
         },
-        rate_hz: match &table.rate_hz {
-            Some(number) => source.within("infrared.rate_hz", number, 0.001, 1000.0)?,
-            None => RATE_HZ,
-        },
+        rate_hz: source.within_or(RATE_HZ, "infrared.rate_hz", &table.rate_hz, 0.001, 1000.0)?,
     };
     match infrared.camera(0) {
         Ok(_) => Ok(infrared),

@@ -50,14 +50,18 @@ pub(super) fn object(
     } else {
         ("custom".into(), custom(source, properties, span)?)
     };
-    let start_c = match &object.start_c {
-        Some(number) => Some(source.within("object.start_c", number, -20.0, 60.0)?),
-        None => None,
-    };
-    let appears_t_s = match &object.appears_t_s {
-        Some(number) => source.time("object.appears_t_s", number, duration_s)?,
-        None => 0.0,
-    };
+    let start_c = object
+        .start_c
+        .as_ref()
+        .map(|start_c| source.within("object.start_c", start_c, -20.0, 60.0))
+        .transpose()?;
+    let appears_t_s = source.within_or(
+        0.0,
+        "object.appears_t_s",
+        &object.appears_t_s,
+        0.0,
+        duration_s,
+    )?;
     let (thickness_m, back) = shape(source, object, room_c, start_c.unwrap_or(room_c))?;
     Ok(Object {
         name,
@@ -80,12 +84,13 @@ fn shape(
         let problem = format!("object.{key} has no meaning here; allowed is {key} beside {needed}");
         Err(source.error(Some(span), problem))
     };
-    let thickness_m = match &object.thickness_m {
-        Some(number) => {
-            source.within("object.thickness_m", number, ObjectConfig::THINNEST_M, 10.0)?
-        }
-        None => f64::INFINITY,
-    };
+    let thickness_m = source.within_or(
+        f64::INFINITY,
+        "object.thickness_m",
+        &object.thickness_m,
+        ObjectConfig::THINNEST_M,
+        10.0,
+    )?;
     if let (None, Some(back)) = (&object.thickness_m, &object.back) {
         return needless("back", back.span(), "object.thickness_m");
     }
@@ -96,10 +101,8 @@ fn shape(
     if let (file::Back::Insulated, Some(number)) = (kind, &object.back_c) {
         return needless("back_c", number.span(), "back = \"held\" or \"film\"");
     }
-    let back_c = |otherwise_c: f64| match &object.back_c {
-        Some(number) => source.within("object.back_c", number, -20.0, 60.0),
-        None => Ok(otherwise_c),
-    };
+    let back_c =
+        |default_c| source.within_or(default_c, "object.back_c", &object.back_c, -20.0, 60.0);
     let film = match (kind, &object.back_film_w_m2k) {
         (file::Back::Film, Some(number)) => {
             Some(source.within("object.back_film_w_m2k", number, 0.1, 1e6)?)

@@ -27,10 +27,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let file: File =
         toml::from_str(text).map_err(|error| source.error(error.span(), error.message()))?;
     let duration_s = source.within("duration_s", &file.duration_s, 0.001, 86_400.0)?;
-    let settle_s = match &file.settle_s {
-        Some(number) => source.within("settle_s", number, SETTLE_S, 3600.0)?,
-        None => SETTLE_S,
-    };
+    let settle_s = source.within_or(SETTLE_S, "settle_s", &file.settle_s, SETTLE_S, 3600.0)?;
     let (skin_c, room_c) = (
         source.within("skin_c", &file.skin_c, 15.0, 42.0)?,
         source.within("room_c", &file.room_c, 5.0, 40.0)?,
@@ -111,10 +108,7 @@ fn forces(
         let force = Force {
             t_s: source.time("force.t_s", &row.t_s, duration_s)?,
             force_n: source.within("force.force_n", &row.force_n, 0.0, 10.0)?,
-            ramp_s: match &row.ramp_s {
-                Some(number) => source.time("force.ramp_s", number, duration_s)?,
-                None => 0.0,
-            },
+            ramp_s: source.within_or(0.0, "force.ramp_s", &row.ramp_s, 0.0, duration_s)?,
         };
         if let Some(before) = forces.last() {
             let free_s = before.t_s + before.ramp_s;

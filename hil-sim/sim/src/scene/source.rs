@@ -74,6 +74,21 @@ impl Source<'_> {
         Err(self.error(Some(number.span()), problem))
     }
 
+    /// The number, if it lies within the range; `default` if the scene gives none.
+    pub fn within_or(
+        &self,
+        default: f64,
+        key: &str,
+        number: &Option<Number>,
+        min: f64,
+        max: f64,
+    ) -> Result<f64, SceneError> {
+        match number {
+            Some(number) => self.within(key, number, min, max),
+            None => Ok(default),
+        }
+    }
+
     pub fn time(&self, key: &str, number: &Number, duration_s: f64) -> Result<f64, SceneError> {
         self.within(key, number, 0.0, duration_s)
     }

@@ -133,7 +133,9 @@ fn native_engine_does_not_allocate_without_a_stream() {
     let scene = Scene::parse(text, Path::new("scene.toml")).expect("a sound scene");
     let mut native = NativeEngine::new(World::new(&scene).expect("a sound world"));
     let step = |native: &mut NativeEngine, force_n: f64| {
-        native.world().set(force_n, std::iter::empty());
+        native
+            .world()
+            .set_force_and_faults(force_n, std::iter::empty());
         let legs = native.legs();
         native.world().step(legs);
         let Ok(()) = native.run_half_ms();

@@ -1,20 +1,10 @@
 //! `--campaign` and `--replay`: random campaigns.
 
-use anyhow::{Context, anyhow};
-use serde::Serialize;
+use anyhow::Context;
 use thermal_campaigns::faults::{CampaignResult, RandomCampaign, campaign_summary};
 use thermal_sim::SceneRunner;
 
-use super::{Arguments, Failure, each, output, tell};
-
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Report<'a> {
-    engine: &'static str,
-    seed: u64,
-    holds: bool,
-    campaigns: &'a [CampaignResult],
-}
+use super::{Arguments, Failure, RunsReport, each, output};
 
 /// Runs the campaigns of these numbers; a violation is a failure.
 pub fn run(
@@ -38,20 +28,17 @@ pub fn run(
     let ran = each(arguments, "campaigns", device, &campaigns, work).map_err(Failure::run)?;
     let ran: Vec<CampaignResult> = ran.into_iter().flatten().collect();
     let failing = ran.iter().filter(|ran| !ran.holds()).count();
-    let report = Report {
-        engine: device.name(),
+    let report = RunsReport {
+        engine: Some(device.name()),
         seed: arguments.seed,
-        holds: failing == 0,
-        campaigns: &ran,
+        failing: failing,
+        key: "campaigns",
+        runs: &ran,
     };
-    tell(arguments, &report, || campaign_summary(&ran))?;
-    if failing == 0 {
-        return Ok(());
-    }
-    Err(Failure::run(anyhow!(
-        "{failing} of {} campaigns do not hold; --replay NUMBER --seed {} --engine {} repeats one",
-        ran.len(),
+    let problem = format!(
+        "campaigns do not hold; --replay NUMBER --seed {} --engine {} repeats one",
         arguments.seed,
         device.name()
-    )))
+    );
+    report.print(arguments, campaign_summary, problem)
 }

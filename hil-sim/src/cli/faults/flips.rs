@@ -3,21 +3,10 @@
 use std::ops::Range;
 
 use anyhow::{Context, anyhow};
-use serde::Serialize;
-use thermal_campaigns::faults::{
-    BitFlip, FlipEffect, FlipResult, FlippableMemory, ReferenceRun, flip_table,
-};
+use thermal_campaigns::faults::{BitFlip, FlipEffect, FlippableMemory, ReferenceRun, flip_table};
 use thermal_sim::SceneRunner;
 
-use super::{Arguments, Failure, each, output, tell};
-
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Report<'a> {
-    seed: u64,
-    holds: bool,
-    flips: &'a [FlipResult],
-}
+use super::{Arguments, Failure, RunsReport, each, output};
 
 /// Runs the flips of these numbers; a limit that is broken is a failure, and its scene goes to `--out`.
 pub fn run(
@@ -64,17 +53,15 @@ pub fn run(
         .iter()
         .filter(|run| run.class == FlipEffect::Broken)
         .count();
-    let report = Report {
-        seed,
-        holds: failing == 0,
-        flips: &ran,
+    let report = RunsReport {
+        engine: None,
+        seed: arguments.seed,
+        failing: failing,
+        key: "flips",
+        runs: &ran,
     };
-    tell(arguments, &report, || flip_table(&ran))?;
-    if failing == 0 {
-        return Ok(());
-    }
-    Err(Failure::run(anyhow!(
-        "{failing} of {} flips break a limit; --replay NUMBER with the same --flips and --seed repeats one",
-        ran.len()
-    )))
+    let problem =
+        "flips break a limit; --replay NUMBER with the same --flips and --seed repeats one"
+            .to_owned();
+    report.print(arguments, flip_table, problem)
 }

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::anyhow;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use indicatif::{ProgressBar, ProgressStyle};
-use serde::Serialize;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
 use thermal_campaigns::faults::{self, FaultCase, FaultRun, FaultScene, FaultSummary, MatrixPlan};
 use thermal_campaigns::parallel_map;
 use thermal_sim::SceneRunner;
@@ -85,14 +85,58 @@ fn scenes() -> impl TypedValueParser<Value = FaultScene> {
     })
 }
 
-/// What `--json` prints.
+/// What `--json` prints of the matrix.
 #[derive(Serialize)]
-struct Report<'a> {
+struct MatrixReport<'a> {
     engine: &'static str,
     seed: u64,
     moments: u16,
     holds: bool,
     faults: &'a [FaultSummary],
+}
+
+/// What `--json` prints of the other modes.
+struct RunsReport<'a, R> {
+    /// Name of the engine, unless the mode has only one.
+    engine: Option<&'static str>,
+    seed: u64,
+    /// Number of runs that broke a limit.
+    failing: usize,
+    /// Key of the list of runs.
+    key: &'static str,
+    runs: &'a [R],
+}
+
+impl<R: Serialize> Serialize for RunsReport<'_, R> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        if let Some(engine) = self.engine {
+            map.serialize_entry("engine", engine)?;
+        }
+        map.serialize_entry("seed", &self.seed)?;
+        map.serialize_entry("holds", &(self.failing == 0))?;
+        map.serialize_entry(self.key, self.runs)?;
+        map.end()
+    }
+}
+
+impl<R: Serialize> RunsReport<'_, R> {
+    /// Prints the runs; runs that broke a limit make the command fail with the text of `problem`.
+    fn print(
+        &self,
+        arguments: &Arguments,
+        table: fn(&[R]) -> String,
+        problem: String,
+    ) -> Result<(), Failure> {
+        output::print_report(arguments.json, self, || table(self.runs), None)?;
+        match self.failing {
+            0 => Ok(()),
+            failing => Err(Failure::run(anyhow!(
+                "{failing} of {} {problem}",
+                self.runs.len()
+            ))),
+        }
+    }
 }
 
 /// Runs what is asked for.
@@ -146,26 +190,24 @@ fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure
         seed: arguments.seed,
     };
     let rows = outlines(arguments, &plan, device).map_err(Failure::run)?;
-    let mut text = if arguments.json {
-        let report = Report {
-            engine: device.name(),
-            seed: arguments.seed,
-            moments: arguments.moments,
-            holds: rows.iter().all(|row| row.holds),
-            faults: &rows,
-        };
-        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
-    } else {
-        faults::table(&rows)
+    let report = MatrixReport {
+        engine: device.name(),
+        seed: arguments.seed,
+        moments: arguments.moments,
+        holds: rows.iter().all(|row| row.holds),
+        faults: &rows,
     };
-    if let Some(folder) = &arguments.out {
+    let page = arguments.out.as_ref();
+    if let Some(folder) = page {
         output::write(folder, faults::HTML, faults::page(&rows, device.name()))
             .map_err(Failure::run)?;
-        if !arguments.json {
-            text += &format!("report: {}\n", folder.join(faults::HTML).display());
-        }
     }
-    output::print(&text)?;
+    output::print_report(
+        arguments.json,
+        &report,
+        || faults::table(&rows),
+        page.map(|folder| folder.join(faults::HTML)),
+    )?;
     match rows.iter().filter(|row| !row.holds).count() {
         0 => Ok(()),
         failing => Err(Failure::run(anyhow!(
@@ -222,20 +264,6 @@ fn outlines(
         .collect())
 }
 
-/// Prints a report as one object if that is asked for, else as its table.
-fn tell(
-    arguments: &Arguments,
-    report: &impl Serialize,
-    table: impl FnOnce() -> String,
-) -> Result<(), Failure> {
-    let text = if arguments.json {
-        serde_json::to_string(report).map_err(Failure::run)? + "\n"
-    } else {
-        table()
-    };
-    output::print(&text)
-}
-
 /// Does the work of every item on the threads that are asked for, and shows how far it is; where no terminal is, a line
 /// for every twentieth.
 fn each<T: Sync, R: Send>(
@@ -245,12 +273,8 @@ fn each<T: Sync, R: Send>(
     items: &[T],
     work: impl Fn(&T) -> anyhow::Result<R> + Sync,
 ) -> anyhow::Result<Vec<R>> {
-    let style =
-        ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
-    let bar = ProgressBar::new(items.len() as u64).with_style(style);
-    bar.set_message(format!("{what} on engine {}", device.name()));
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = arguments.threads.map_or_else(cores, usize::from);
+    let bar = output::run_counter(format!("{what} on engine {}", device.name()), items.len())?;
+    let threads = output::threads(arguments.threads);
     let twentieth = |count: usize| count * 20 / items.len().max(1);
     let done = AtomicUsize::new(0);
     let results = parallel_map(items, threads, work, || {

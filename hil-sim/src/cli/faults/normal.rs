@@ -1,20 +1,9 @@
 //! `--normal`: use without a fault.
 
-use anyhow::anyhow;
-use serde::Serialize;
-use thermal_campaigns::faults::{SessionResult, UseSession, session_table};
+use thermal_campaigns::faults::{UseSession, session_table};
 use thermal_sim::SceneRunner;
 
-use super::{Arguments, Failure, each, output, tell};
-
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Report<'a> {
-    engine: &'static str,
-    seed: u64,
-    holds: bool,
-    sessions: &'a [SessionResult],
-}
+use super::{Arguments, Failure, RunsReport, each, output};
 
 /// Runs so many hours; a session in which something trips is a failure, and its scene goes to `--out`.
 pub fn run(arguments: &Arguments, device: &dyn SceneRunner, hours: u64) -> Result<(), Failure> {
@@ -30,18 +19,13 @@ pub fn run(arguments: &Arguments, device: &dyn SceneRunner, hours: u64) -> Resul
     };
     let used = each(arguments, "sessions", device, &numbers, work).map_err(Failure::run)?;
     let failed = used.iter().filter(|used| used.failure.is_some()).count();
-    let report = Report {
-        engine: device.name(),
-        seed,
-        holds: failed == 0,
-        sessions: &used,
+    let report = RunsReport {
+        engine: Some(device.name()),
+        seed: arguments.seed,
+        failing: failed,
+        key: "sessions",
+        runs: &used,
     };
-    tell(arguments, &report, || session_table(&used))?;
-    if failed == 0 {
-        return Ok(());
-    }
-    Err(Failure::run(anyhow!(
-        "{failed} of {} sessions of seed {seed} failed without a fault",
-        used.len()
-    )))
+    let problem = format!("sessions of seed {seed} failed without a fault");
+    report.print(arguments, session_table, problem)
 }

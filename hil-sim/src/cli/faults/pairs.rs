@@ -1,20 +1,9 @@
 //! `--pairs`: an unnoticed fault, then another one.
 
-use anyhow::anyhow;
-use serde::Serialize;
 use thermal_campaigns::faults::{FaultPair, PairResult, pair_table, pairs};
 use thermal_sim::SceneRunner;
 
-use super::{Arguments, Failure, each, output, tell};
-
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Report<'a> {
-    engine: &'static str,
-    seed: u64,
-    holds: bool,
-    pairs: &'a [PairResult],
-}
+use super::{Arguments, Failure, RunsReport, each, output};
 
 /// Runs all pairs; one that breaks the claim is a failure, and its scene goes to `--out`.
 pub fn run(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure> {
@@ -31,18 +20,13 @@ pub fn run(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failur
     let ran = each(arguments, "pairs", device, &pairs(seed), work).map_err(Failure::run)?;
     let ran: Vec<_> = ran.into_iter().flatten().collect();
     let failing = ran.iter().filter(|pair| !pair.holds()).count();
-    let report = Report {
-        engine: device.name(),
-        seed,
-        holds: failing == 0,
-        pairs: &ran,
+    let report = RunsReport {
+        engine: Some(device.name()),
+        seed: arguments.seed,
+        failing: failing,
+        key: "pairs",
+        runs: &ran,
     };
-    tell(arguments, &report, || pair_table(&ran))?;
-    if failing == 0 {
-        return Ok(());
-    }
-    Err(Failure::run(anyhow!(
-        "{failing} of {} pairs break the claim",
-        ran.len()
-    )))
+    let problem = "pairs break the claim".to_owned();
+    report.print(arguments, pair_table, problem)
 }

@@ -38,7 +38,7 @@ fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
                 "err tuning goes on; ask again in a second",
                 "after {after_ms} ms"
             );
-            bench.world().set(0.5, std::iter::empty());
+            bench.world().set_force_and_faults(0.5, std::iter::empty());
             bench.wait(50).expect("it runs");
             assert_eq!(
                 ask(bench, "tune result"),
@@ -63,7 +63,7 @@ fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
         bench.wait(4000).expect("it runs");
         bench
             .world()
-            .set(0.0, std::iter::once(FaultKind::ThermistorOpen.into()));
+            .set_force_and_faults(0.0, std::iter::once(FaultKind::ThermistorOpen.into()));
         bench.wait(5).expect("it runs");
         assert_eq!(bench.world().plant().current_a(), 0.0);
         assert_eq!(
@@ -71,7 +71,7 @@ fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
             "err tripped by display-open; clear it first"
         );
         // Even when the fault is gone, nothing of the experiment is used.
-        bench.world().set(0.0, std::iter::empty());
+        bench.world().set_force_and_faults(0.0, std::iter::empty());
         bench.wait(5).expect("it runs");
         bench.tell("clear").expect("cleared");
         assert_eq!(

@@ -60,7 +60,7 @@ fn of(kind: FaultKind, sensor: Sensor, value: f64) -> ActiveFault {
 
 /// Lets time pass in milliseconds with the finger lifted, things broken, and the legs held.
 fn run(world: &mut World, ms: u32, legs: Legs, all: &[ActiveFault]) {
-    world.set(0.0, all.iter().copied());
+    world.set_force_and_faults(0.0, all.iter().copied());
     for _ in 0..ms {
         world.step(legs);
         codes(world);

@@ -70,10 +70,10 @@ fn each_thermistor_breaks_by_itself() {
 fn broken_wire_is_seen_at_once() {
     let mut world = ideal();
     run(&mut world, 5, OFF, &[]);
-    world.set(0.0, [FaultKind::ThermistorOpen.into()].into_iter());
+    world.set_force_and_faults(0.0, [FaultKind::ThermistorOpen.into()].into_iter());
     world.step(OFF);
     assert_eq!(world.convert(Channel::Display), 4095);
-    world.set(0.0, std::iter::empty());
+    world.set_force_and_faults(0.0, std::iter::empty());
     world.step(OFF);
     assert_eq!(world.convert(Channel::Display), AT_24_C);
 }
@@ -83,7 +83,7 @@ fn stuck_channel_repeats_itself_while_the_others_go_on() {
     let mut world = World::new(&scene("")).expect("a plant with noise");
     run(&mut world, 5, OFF, &[]);
     let stuck = codes(&mut world)[Sensor::Check as usize];
-    world.set(
+    world.set_force_and_faults(
         0.0,
         [of(FaultKind::ThermistorStuck, Sensor::Check, 0.0)].into_iter(),
     );
@@ -128,7 +128,7 @@ fn swapped_thermistors_read_each_other() {
             with: Sensor::Sink,
             ..of(FaultKind::SensorsSwapped, sensor, 0.0)
         };
-        world.set(0.0, [hot, swapped].into_iter());
+        world.set_force_and_faults(0.0, [hot, swapped].into_iter());
         world.step(OFF);
         let [before, after] = [sound, codes(&mut world)];
         for (index, expected) in before.into_iter().enumerate() {
@@ -157,7 +157,7 @@ fn dividers_without_reference_all_read_short() {
 fn force_sensor_breaks_off_sticks_and_shifts() {
     let mut world = ideal();
     let pressed = |world: &mut World, all: &[ActiveFault]| {
-        world.set(2.0, all.iter().copied());
+        world.set_force_and_faults(2.0, all.iter().copied());
         for _ in 0..20 {
             world.step(OFF);
         }
