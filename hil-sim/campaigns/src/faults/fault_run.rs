@@ -86,6 +86,12 @@ impl FaultRun {
         Self::of_text(device, fault_case, moment, &text)
     }
 
+    /// Whether the run broke no limit.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.assessment.breaches.is_empty()
+    }
+
     /// The same in a scene that is given as a file has it.
     pub(super) fn of_text(
         device: &dyn SceneRunner,

@@ -64,11 +64,14 @@ impl FaultSummary {
         Self {
             fault: fault_case.fault.to_string(),
             latent: fault_case.latent,
-            holds: trials
-                .iter()
-                .all(|trial| trial.assessment.breaches.is_empty()),
+            holds: trials.iter().all(FaultRun::holds),
             trials,
         }
+    }
+
+    /// The runs that broke a limit.
+    pub fn failing_runs(&self) -> impl Iterator<Item = &FaultRun> {
+        self.trials.iter().filter(|run| !run.holds())
     }
 
     /// Largest of a figure over the runs.

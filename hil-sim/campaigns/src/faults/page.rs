@@ -46,11 +46,7 @@ pub fn page(rows: &[FaultSummary], engine: &str) -> String {
     let failing = rows.iter().filter(|row| !row.holds);
     let mut list = String::new();
     for row in failing {
-        for trial in row
-            .trials
-            .iter()
-            .filter(|trial| !trial.assessment.breaches.is_empty())
-        {
+        for trial in row.failing_runs() {
             let _ = write!(
                 list,
                 "<li>{}: {}</li>",

@@ -125,14 +125,6 @@ pub struct PairResult {
     pub trial: FaultRun,
 }
 
-impl PairResult {
-    /// Nothing was broken that is claimed.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        self.trial.assessment.breaches.is_empty()
-    }
-}
-
 /// A line for every latent fault; then every pair that breaks the claim.
 #[must_use]
 pub fn pair_table(runs: &[PairResult]) -> String {
@@ -149,7 +141,7 @@ pub fn pair_table(runs: &[PairResult]) -> String {
     // The runs stand in the order of their latent faults.
     for of_one in runs.chunk_by(|a, b| a.latent == b.latent) {
         let verdicts = || of_one.iter().map(|run| &run.trial.assessment);
-        let broken = of_one.iter().filter(|run| !run.holds()).count();
+        let broken = of_one.iter().filter(|run| !run.trial.holds()).count();
         let coldest = verdicts()
             .map(|assessment| assessment.skin_c.min)
             .fold(f64::INFINITY, f64::min);
@@ -166,7 +158,7 @@ pub fn pair_table(runs: &[PairResult]) -> String {
             of_one.len(),
         );
     }
-    for run in runs.iter().filter(|run| !run.holds()) {
+    for run in runs.iter().filter(|run| !run.trial.holds()) {
         let _ = writeln!(
             text,
             "{}, then {}: {}",

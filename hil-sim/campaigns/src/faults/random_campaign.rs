@@ -87,30 +87,46 @@ pub struct CampaignResult {
     pub trial: FaultRun,
 }
 
-impl CampaignResult {
-    /// Nothing was broken that is claimed.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        self.trial.assessment.breaches.is_empty()
-    }
-}
+/// A figure whose worst value is printed: name, unit, 1 if the largest is the worst and -1 if the smallest is, and value.
+type WorstFigure = (
+    &'static str,
+    &'static str,
+    f64,
+    fn(&FaultRun) -> Option<f64>,
+);
+
+const WORST_FIGURES: [WorstFigure; 4] = [
+    ("coldest skin", "C", -1.0, |run| {
+        Some(run.assessment.skin_c.min)
+    }),
+    ("warmest skin", "C", 1.0, |run| {
+        Some(run.assessment.skin_c.max)
+    }),
+    ("largest CEM43", "min", 1.0, |run| {
+        Some(run.assessment.cem43_min)
+    }),
+    ("slowest to safe", "ms", 1.0, |run| run.assessment.took_ms),
+];
 
 /// Runs, violations of each kind, the worst figures with the numbers of their campaigns; then every violation.
 #[must_use]
 pub fn campaign_summary(runs: &[CampaignResult]) -> String {
-    let worst = |name: &str, unit: &str, of: fn(&FaultRun) -> Option<f64>, sign: f64| {
-        let values = runs.iter().filter_map(|run| Some((of(&run.trial)?, run)));
+    let worst = |(name, unit, sign, figure): WorstFigure| {
+        let values = runs
+            .iter()
+            .filter_map(|run| Some((figure(&run.trial)?, run)));
         let most = values
             .filter(|(value, _)| value.is_finite())
             .max_by(|(a, _), (b, _)| (sign * a).total_cmp(&(sign * b)));
         most.map_or(String::new(), |(value, run)| {
             format!(
-                "{name:<16}{value:>9.3} {unit:<4} number {}, {} in {}\n",
+                "{name:<16}{value:>9.3} {unit:<4} number {}, {} in {}
+",
                 run.number, run.fault, run.trial.place
             )
         })
     };
-    let failing = runs.iter().filter(|run| !run.holds());
+    let failing = runs.iter().filter(|run| !run.trial.holds());
     let mut text = format!(
         "{:<16}{:>9}\n{:<16}{:>9}\n",
         "runs",
@@ -127,30 +143,7 @@ pub fn campaign_summary(runs: &[CampaignResult]) -> String {
             let _ = writeln!(text, "  {:<14}{count:>9}", breach.name());
         }
     }
-    text += &worst(
-        "coldest skin",
-        "C",
-        |trial| Some(trial.assessment.skin_c.min),
-        -1.0,
-    );
-    text += &worst(
-        "warmest skin",
-        "C",
-        |trial| Some(trial.assessment.skin_c.max),
-        1.0,
-    );
-    text += &worst(
-        "largest CEM43",
-        "min",
-        |trial| Some(trial.assessment.cem43_min),
-        1.0,
-    );
-    text += &worst(
-        "slowest to safe",
-        "ms",
-        |trial| trial.assessment.took_ms,
-        1.0,
-    );
+    text.extend(WORST_FIGURES.map(worst));
     for run in failing {
         let _ = writeln!(
             text,

@@ -34,11 +34,7 @@ pub fn table(rows: &[FaultSummary]) -> String {
         }
     );
     for row in rows {
-        for trial in row
-            .trials
-            .iter()
-            .filter(|trial| !trial.assessment.breaches.is_empty())
-        {
+        for trial in row.failing_runs() {
             let _ = writeln!(text, "{}: {}", row.fault, broken(trial));
         }
     }

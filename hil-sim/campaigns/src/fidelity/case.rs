@@ -5,20 +5,9 @@ use std::path::PathBuf;
 
 use contact_model::material::Surface;
 use thermal_device::control::Law;
-use thermal_sim::scene::{Scene, SceneError};
+use thermal_sim::scene::{Force, Scene, SceneError};
 
 use super::{Measure, Scenario, TouchedObject};
-
-/// A force that is held from a time on: [`thermal_sim::scene::Force`] as a case has it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Press {
-    /// From when, s.
-    pub t_s: f64,
-    /// How much, N.
-    pub force_n: f64,
-    /// How long it takes to get there, s.
-    pub ramp_s: f64,
-}
 
 /// One scene, for any law and plant.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,7 +27,7 @@ pub struct FidelityCase {
     /// When it appears, s.
     pub appears_t_s: f64,
     /// The finger.
-    pub presses: Vec<Press>,
+    pub presses: Vec<Force>,
     /// Length, s.
     pub duration_s: f64,
     /// What is judged.
@@ -84,7 +73,7 @@ impl FidelityCase {
             "start_c = {start_c:?}\nappears_t_s = {:?}",
             self.appears_t_s
         );
-        for Press {
+        for Force {
             t_s,
             force_n,
             ramp_s,

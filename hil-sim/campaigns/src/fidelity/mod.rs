@@ -20,7 +20,7 @@ mod scenario;
 mod table;
 mod touched_object;
 
-pub use case::{FidelityCase, Press};
+pub use case::FidelityCase;
 pub use csv::{box_csv, rows_csv};
 pub use measure::{JudgedFigure, Measure};
 pub use plant_draws::{

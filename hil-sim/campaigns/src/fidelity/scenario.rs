@@ -2,10 +2,11 @@
 
 use contact_model::pressure::THESIS_PRESSURES;
 use thermal_sim::named_enum;
+use thermal_sim::scene::Force;
 
 use super::case::ROOM_C;
 use super::touched_object::UNKNOWN_MATERIALS;
-use super::{FidelityCase, Measure, Press, TouchedObject};
+use super::{FidelityCase, Measure, TouchedObject};
 
 named_enum! {
     /// What a finger does.
@@ -75,7 +76,7 @@ impl Scenario {
             object_c: ROOM_C,
             appears_t_s: 0.0,
             presses: (presses.iter())
-                .map(|&(t_s, force_n, ramp_s)| Press {
+                .map(|&(t_s, force_n, ramp_s)| Force {
                     t_s,
                     force_n,
                     ramp_s,

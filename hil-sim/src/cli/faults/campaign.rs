@@ -27,7 +27,7 @@ pub fn run(
     };
     let ran = each(arguments, "campaigns", device, &campaigns, work).map_err(Failure::run)?;
     let ran: Vec<CampaignResult> = ran.into_iter().flatten().collect();
-    let failing = ran.iter().filter(|ran| !ran.holds()).count();
+    let failing = ran.iter().filter(|ran| !ran.trial.holds()).count();
     let report = RunsReport {
         engine: Some(device.name()),
         seed: arguments.seed,

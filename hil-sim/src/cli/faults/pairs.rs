@@ -1,6 +1,6 @@
 //! `--pairs`: an unnoticed fault, then another one.
 
-use thermal_campaigns::faults::{FaultPair, PairResult, pair_table, pairs};
+use thermal_campaigns::faults::{FaultPair, pair_table, pairs};
 use thermal_sim::SceneRunner;
 
 use super::{Arguments, Failure, RunsReport, each, output};
@@ -10,7 +10,9 @@ pub fn run(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failur
     let seed = arguments.seed;
     let work = |pair: &FaultPair| {
         let ran = pair.run(device, seed)?;
-        if let (Some(folder), Some(false)) = (&arguments.out, ran.as_ref().map(PairResult::holds)) {
+        if let (Some(folder), Some(false)) =
+            (&arguments.out, ran.as_ref().map(|ran| ran.trial.holds()))
+        {
             let words = format!("{} then {}", pair.latent.fault, pair.active.fault);
             let name = words.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
             output::write(folder, &(name + ".toml"), pair.text(seed))?;
@@ -19,7 +21,7 @@ pub fn run(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failur
     };
     let ran = each(arguments, "pairs", device, &pairs(seed), work).map_err(Failure::run)?;
     let ran: Vec<_> = ran.into_iter().flatten().collect();
-    let failing = ran.iter().filter(|pair| !pair.holds()).count();
+    let failing = ran.iter().filter(|pair| !pair.trial.holds()).count();
     let report = RunsReport {
         engine: Some(device.name()),
         seed: arguments.seed,
