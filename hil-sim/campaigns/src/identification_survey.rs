@@ -71,13 +71,13 @@ pub fn survey_device(draw: u64) -> Result<IdentificationResult, CommissionError>
     let true_c = true_constants(&params, &plants)?;
     // Where the loop's gain is one, by the rule that its gains follow.
     let crossover = 0.5 / (tile.lag_s + tile.dead_s);
-    let plant = FrequencyResponse::of(&plants, crossover)?;
+    let plant = FrequencyResponse::measure(&plants, crossover)?;
     let w = plant.w;
     let found_k_a = tile.gain_k_s_a / w.hypot(tile.leak_1_s) / (tile.lag_s * w).hypot(1.0);
     let plant_k_a = plant.k_a * flows / (lag_s * w).hypot(1.0);
     let found_rad = w.atan2(tile.leak_1_s) + (tile.lag_s * w).atan() + tile.dead_s * w;
     let plant_rad = plant.phase_lag_rad + (lag_s * w).atan() + FLOWS_S * w;
-    let quick = FrequencyResponse::of(&plants, QUICK)?;
+    let quick = FrequencyResponse::measure(&plants, QUICK)?;
     let dead_s = (quick.phase_lag_rad - quick.w.atan2(true_c.leak_1_s)) / quick.w + FLOWS_S;
     let percent = |found: f64, truth: f64| 100.0 * (found / truth - 1.0);
     let phase_deg = (plant_rad - found_rad).to_degrees();
@@ -133,17 +133,17 @@ fn tune(
     let mut bench = CommissioningBench::new(&mut engine, plants.params().host, 0);
     bench.wait(ZERO_MS)?;
     for line in settings {
-        bench.tell(line)?;
+        bench.command(line)?;
     }
     bench.arm()?;
     for line in ["tune", "stream 1"] {
-        bench.tell(line)?;
+        bench.command(line)?;
     }
     let line = "tune result";
     let (mut asked_a, mut pairs) = (0.0f64, Vec::new());
     for ms in 1..TUNE_MS {
         let question = (ms % 1000 == 0).then_some(&b"tune result\n"[..]);
-        for answer in bench.millisecond(question)? {
+        for answer in bench.run_1_ms(question)? {
             if answer.starts_with("ok") {
                 return Ok((IdentifiedTile::parse(line, &answer)?, part_at_large(&pairs)));
             }

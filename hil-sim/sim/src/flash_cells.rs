@@ -1,24 +1,24 @@
-//! The cells of the flash: what programming, erasing, and power that fails meanwhile do to them.
+//! Flash memory cells under programming, erasing and power failures.
 use std::ops::Range;
 
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 
-/// Bits of a flash. Programming clears bits, erasing sets all of a range.
+/// Bits of a flash memory. Programming clears bits, erasing sets all bits of a range.
 ///
-/// When power fails in an operation, an unknown part of its work is done. Of a word, some of the bits that it clears
+/// If power fails during an operation, a random part of it is done. Of a programmed word, some of the bits to be cleared
 /// are cleared. Erasing programs all bits to 0 first: a range is left with some bits cleared, or with some of all zeros set,
 /// or with some of what it had. Cells that read differently from time to time are not modelled.
 #[derive(Debug, Clone)]
 pub struct FlashCells {
     bytes: Vec<u8>,
     operations: u64,
-    /// Operation that fails, and the seed of what it leaves.
+    /// Number of the operation that fails, and the seed of the bits that it leaves.
     cut: Option<(u64, u64)>,
     powered: bool,
 }
 
-/// What an interrupted erasure leaves.
+/// The bit that an interrupted erasure leaves, in the three ways that it can be interrupted.
 const ERASURES: [fn(old: bool, drawn: bool) -> bool; 3] = [
     |old, drawn| old && drawn,
     |_, drawn| drawn,
@@ -26,7 +26,7 @@ const ERASURES: [fn(old: bool, drawn: bool) -> bool; 3] = [
 ];
 
 impl FlashCells {
-    /// With these contents, powered.
+    /// Powered cells with these contents.
     #[must_use]
     pub fn new(bytes: Vec<u8>) -> Self {
         Self {
@@ -37,13 +37,13 @@ impl FlashCells {
         }
     }
 
-    /// What they hold.
+    /// Contents of the cells.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Other contents, from an offset on; false if there are not that many cells.
+    /// Overwrites the contents from an offset on; returns false if there are not that many cells.
     pub fn load(&mut self, offset: usize, contents: &[u8]) -> bool {
         let place = offset
             .checked_add(contents.len())
@@ -51,24 +51,24 @@ impl FlashCells {
         place.map(|place| place.copy_from_slice(contents)).is_some()
     }
 
-    /// Operations that were begun: words programmed and ranges erased.
+    /// Number of operations started: words programmed and ranges erased.
     #[must_use]
     pub fn operations(&self) -> u64 {
         self.operations
     }
 
-    /// Lets power fail in the `nth` operation from now on, 1 is the next; `seed` draws what is left.
+    /// Makes power fail in the `nth` operation from now on (1 is the next); `seed` draws the bits that it leaves.
     pub fn cut_power_at(&mut self, nth: u64, seed: u64) {
         self.cut = Some((self.operations + nth, seed));
     }
 
-    /// Whether power has not failed.
+    /// Whether the cells have power.
     #[must_use]
     pub fn is_powered(&self) -> bool {
         self.powered
     }
 
-    /// Power comes back.
+    /// Restores power.
     pub fn power_up(&mut self) {
         self.powered = true;
         self.cut = None;
@@ -76,11 +76,11 @@ impl FlashCells {
 
     /// Clears the bits at `offset` that are 0 in `value`; without power nothing happens.
     pub fn program(&mut self, offset: usize, value: &[u8]) {
-        let partly = self.begin();
+        let completion = self.start_operation();
         let cells = self.bytes.iter_mut().skip(offset);
-        match partly {
-            Some(Part::All) => cells.zip(value).for_each(|(cell, value)| *cell &= value),
-            Some(Part::Some(mut draw, _)) => cells
+        match completion {
+            Some(Completion::Full) => cells.zip(value).for_each(|(cell, value)| *cell &= value),
+            Some(Completion::Partial(mut draw, _)) => cells
                 .zip(value)
                 .for_each(|(cell, value)| *cell &= value | draw.byte()),
             None => {}
@@ -89,11 +89,11 @@ impl FlashCells {
 
     /// Sets all bits of a range; without power nothing happens.
     pub fn erase(&mut self, range: Range<usize>) {
-        let partly = self.begin();
+        let completion = self.start_operation();
         let cells = self.bytes.iter_mut().take(range.end).skip(range.start);
-        match partly {
-            Some(Part::All) => cells.for_each(|cell| *cell = 0xff),
-            Some(Part::Some(mut draw, way)) => cells.for_each(|cell| {
+        match completion {
+            Some(Completion::Full) => cells.for_each(|cell| *cell = 0xff),
+            Some(Completion::Partial(mut draw, way)) => cells.for_each(|cell| {
                 let (old, drawn) = (*cell, draw.byte());
                 *cell = (0..8).fold(0, |byte, bit| {
                     let set = way(old >> bit & 1 != 0, drawn >> bit & 1 != 0);
@@ -104,36 +104,36 @@ impl FlashCells {
         }
     }
 
-    /// How much of the next operation is done; none without power.
-    fn begin(&mut self) -> Option<Part> {
+    /// Starts an operation: how much of it is done, `None` without power.
+    fn start_operation(&mut self) -> Option<Completion> {
         if !self.powered {
             return None;
         }
         self.operations += 1;
         let Some((_, seed)) = self.cut.filter(|(at, _)| *at == self.operations) else {
-            return Some(Part::All);
+            return Some(Completion::Full);
         };
         self.powered = false;
         let mut random = Xoshiro256PlusPlus::seed_from_u64(seed);
         let way = ERASURES[random.random_range(0..ERASURES.len())];
         let share = random.random::<f64>();
-        Some(Part::Some(Draw { random, share }, way))
+        Some(Completion::Partial(RandomBits { random, share }, way))
     }
 }
 
-/// How much of an operation is done.
-enum Part {
-    All,
-    Some(Draw, fn(bool, bool) -> bool),
+/// Part of an operation that is done.
+enum Completion {
+    Full,
+    Partial(RandomBits, fn(bool, bool) -> bool),
 }
 
-/// Random bits, of which a share is 1.
-struct Draw {
+/// Random bits, each 1 with the probability `share`.
+struct RandomBits {
     random: Xoshiro256PlusPlus,
     share: f64,
 }
 
-impl Draw {
+impl RandomBits {
     fn byte(&mut self) -> u8 {
         (0..8).fold(0, |byte, bit| {
             byte | u8::from(self.random.random_bool(self.share)) << bit
@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn programming_only_clears_and_erasing_sets() {
+    fn programming_clears_bits_and_erasing_sets_them() {
         let mut cells = FlashCells::new(vec![0xff; 64]);
         cells.program(8, &[0xf0, 0x0f, 0, 0xff]);
         cells.program(8, &[0x3c; 4]);
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cut_does_some_of_an_operation_and_none_of_the_next() {
+    fn a_power_failure_interrupts_its_operation_and_prevents_the_next() {
         let mut programmed = Vec::new();
         let mut erased = Vec::new();
         for seed in 0..50 {

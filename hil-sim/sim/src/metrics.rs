@@ -19,7 +19,7 @@ pub struct ErrorFigures {
     pub rms: f64,
 }
 
-/// Extremes.
+/// Smallest and largest value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Extremes {
     /// Smallest.
@@ -28,7 +28,7 @@ pub struct Extremes {
     pub max: f64,
 }
 
-/// Mean and largest value; null if the engine cannot know.
+/// Mean and largest cost of a tick; null if the engine does not measure it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct CostPerTick {
     /// Mean.
@@ -46,30 +46,30 @@ pub struct CurrentFigures {
     pub rms: f64,
 }
 
-/// A fault that the device reported.
+/// A trip reported by the device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TripRecord {
-    /// When, s.
+    /// Time, s.
     pub t_s: f64,
-    /// What.
+    /// Name of the fault.
     pub fault: String,
 }
 
 /// A reset of the device after its power-up.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ResetRecord {
-    /// When, s; negative while the scene settles.
+    /// Time, s; negative while the scene settles.
     pub t_s: f64,
-    /// Why: software, independent-watchdog, window-watchdog, brown-out, reset-pin or power-on.
+    /// Cause: software, independent-watchdog, window-watchdog, brown-out, reset-pin or power-on.
     pub cause: String,
 }
 
 /// The figures of a run, as `--json` prints them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// Engine.
+    /// Name of the engine.
     pub engine: &'static str,
-    /// Material.
+    /// Name of the material.
     pub material: String,
     /// Control ticks of the scene.
     pub ticks: usize,
@@ -85,7 +85,7 @@ pub struct Figures {
     pub display_c: Extremes,
     /// Current through the module, over the whole scene.
     pub current_a: CurrentFigures,
-    /// Electrical work that the module has taken up in the scene, J.
+    /// Electrical energy taken up by the module during the scene, J.
     pub energy_j: f64,
     /// Evaluations of `erfcx`.
     pub kernel_evaluations: Option<u64>,
@@ -93,11 +93,11 @@ pub struct Figures {
     pub instructions_per_tick: CostPerTick,
     /// Cycles of the control tick, estimated.
     pub cycles_per_tick: CostPerTick,
-    /// Part of the time in which the CPU does not sleep, estimated.
+    /// Fraction of the time in which the CPU is not asleep, estimated.
     pub cpu_load: Option<f64>,
-    /// Most of the stack that was used, emulated.
+    /// Largest stack use, emulated, bytes.
     pub stack_bytes: Option<u32>,
-    /// Simulated seconds per second.
+    /// Simulated time divided by run time.
     pub real_time_factor: f64,
     /// Faults that the device reported.
     pub faults: Vec<TripRecord>,
@@ -105,7 +105,21 @@ pub struct Figures {
     pub resets: Vec<ResetRecord>,
 }
 
-/// Time since the last landing on an object that is there, for each row; `None` without contact.
+impl Figures {
+    /// Largest skin error from 50 ms after each landing on, mK.
+    #[must_use]
+    pub fn skin_max_mk(&self) -> Option<f64> {
+        self.skin_error_mk?.max_after_50ms
+    }
+
+    /// RMS skin error, mK.
+    #[must_use]
+    pub fn skin_rms_mk(&self) -> Option<f64> {
+        Some(self.skin_error_mk?.rms)
+    }
+}
+
+/// Time since the last landing on a present object, s, for each row; `None` without contact.
 #[must_use]
 pub fn contact_times(scene: &Scene, outcome: &Outcome) -> Vec<Option<f64>> {
     let mut landed_s = None;
@@ -232,7 +246,7 @@ fn resets(outcome: &Outcome) -> Vec<ResetRecord> {
         .collect()
 }
 
-/// Every change into a tripped state.
+/// The trips: every change into the state `tripped`.
 fn faults(outcome: &Outcome) -> Vec<TripRecord> {
     let mut faults = Vec::new();
     let mut tripped = false;

@@ -1,5 +1,4 @@
-//! The microcontroller as scenes and runs speak of it: its faults, what resets it, its core registers. No engine is
-//! needed to name them.
+//! Faults, reset causes and core registers of the microcontroller, independent of an engine.
 
 use std::fmt;
 use std::str::FromStr;
@@ -63,8 +62,8 @@ impl fmt::Display for CoreRegister {
 }
 
 impl CoreRegister {
-    /// Bits that exist and can flip: the two lowest of SP and the lowest of PC are always 0; a flip of the execution
-    /// state (T, IT) is not modelled.
+    /// Mask of the bits that can flip: the two lowest of SP and the lowest of PC are always 0, and flips of the execution
+    /// state (T, IT) are not modelled.
     #[must_use]
     pub const fn bits(self) -> u32 {
         match self {
@@ -99,18 +98,18 @@ pub enum MachineFault {
         /// Bit.
         bit: u8,
     },
-    /// A bit of a device's register flips.
+    /// A bit of a peripheral register flips.
     RegisterBit {
         /// Address of the word.
         address: u32,
         /// Bit.
         bit: u8,
     },
-    /// The core executes nothing until a reset.
+    /// The core executes no instruction until a reset.
     HungCore,
-    /// The external oscillator stops for good.
+    /// The external oscillator stops permanently.
     HseStopped,
-    /// The converter ends no conversion until a reset.
+    /// The converter completes no conversion until a reset.
     AdcStopped,
     /// A bus error ends a DMA stream.
     DmaStopped {
@@ -121,25 +120,26 @@ pub enum MachineFault {
     },
     /// The supply dips; the RAM keeps its contents.
     BrownOut,
-    /// The supply goes until the RAM has forgotten.
+    /// The supply is off until the RAM has lost its contents.
     PowerCycle {
-        /// Of the noise that the RAM holds afterwards.
+        /// Seed of the noise that the RAM contains afterwards.
         seed: u64,
     },
     /// The reset pin is pulled.
     ResetPin,
     /// The program asks for a reset.
     SoftwareReset,
-    /// The stack is at its end: what is pushed next leaves it.
+    /// The stack pointer is set to the end of the stack, so that the next push overflows.
     StackOverflow,
 }
 
-/// A fault of the processor at a time of a scene, to the microsecond; at a whole millisecond before the plant's step.
+/// A fault of the processor at a time of a scene, with microsecond resolution; at a whole millisecond it comes before the
+/// step of the plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Injection {
     /// Time, s; negative while the scene settles.
     pub t_s: f64,
-    /// What happens.
+    /// The fault.
     pub fault: MachineFault,
 }
 
@@ -161,7 +161,7 @@ pub enum NotInjected {
     Refused {
         /// Fault.
         fault: MachineFault,
-        /// Why, as the machine says it.
+        /// Reason given by the machine.
         reason: String,
     },
 }
@@ -187,7 +187,7 @@ impl fmt::Display for MachineFault {
     }
 }
 
-/// Why a text is no fault of the machine.
+/// A text that is not a fault of the machine.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is no fault of the machine; allowed are ram-bit=ADDRESS.BIT, core-bit=REGISTER.BIT, \
@@ -269,7 +269,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_lead_back_to_their_faults() {
+    fn every_fault_is_parsed_from_its_own_text() {
         for text in [
             "ram-bit=0x20000010.3",
             "core-bit=r4.7",
@@ -292,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn other_texts_are_refused_with_what_is_allowed() {
+    fn other_texts_are_refused_with_a_list_of_what_is_allowed() {
         for text in [
             "",
             "hung-core=1",

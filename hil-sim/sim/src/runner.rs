@@ -1,4 +1,4 @@
-//! Devices on which campaigns run one scene after the other.
+//! Runs of whole scenes on a device, for campaigns.
 
 use std::ops::Range;
 
@@ -10,9 +10,9 @@ use crate::metrics::{Figures, figures};
 use crate::run::{Outcome, RunError, run};
 use crate::scene::Scene;
 
-/// A kind of device; each scene is run on a new one.
+/// Runs scenes, each on a new device.
 pub trait SceneRunner: Sync {
-    /// Name of its engine, as the command line has it.
+    /// Name of the engine on the command line.
     fn name(&self) -> &'static str;
 
     /// Runs a scene from power-up to its end.
@@ -22,32 +22,32 @@ pub trait SceneRunner: Sync {
     /// injected is a [`NotInjected`](crate::processor::NotInjected).
     fn run(&self, scene: &Scene) -> anyhow::Result<(Outcome, Figures)>;
 
-    /// Whether it has a processor, whose parts can fail.
+    /// Whether the engine has a processor, in which faults can be injected.
     fn has_processor(&self) -> bool {
         false
     }
 
-    /// Where its program keeps what in the RAM.
+    /// Layout of the program's data in the RAM.
     ///
     /// # Errors
-    /// It has no RAM, or the image does not say.
+    /// The engine has no RAM, or the image does not define the layout.
     fn ram_layout(&self) -> anyhow::Result<RamLayout> {
         anyhow::bail!("engine {} has no RAM", self.name())
     }
 }
 
-/// Where an image keeps what: addresses of bytes.
+/// Address ranges of an image's data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RamLayout {
-    /// All of the RAM.
+    /// The whole RAM.
     pub ram: Range<u32>,
-    /// Static data, what resets keep included.
+    /// Static data, including what survives a reset.
     pub statics: Range<u32>,
-    /// Where the stack begins, which grows down.
+    /// Initial stack pointer; the stack grows down.
     pub stack_top: u32,
 }
 
-/// The device's logic, called directly.
+/// Runs scenes on the native engine.
 #[derive(Clone, Copy, Debug)]
 pub struct NativeRunner;
 
@@ -61,7 +61,7 @@ impl SceneRunner for NativeRunner {
     }
 }
 
-/// Runs a scene on the engine that is started in its world, as [`SceneRunner::run`] does.
+/// Runs a scene on the engine that `start` creates in the scene's world, for implementations of [`SceneRunner::run`].
 ///
 /// # Errors
 /// As [`SceneRunner::run`].

@@ -1,4 +1,4 @@
-//! What surrounds the device: the plant, what breaks in it, and who watches.
+//! The surroundings of the device: plant, defects and infrared camera.
 
 mod active_defects;
 
@@ -10,7 +10,7 @@ use thermal_plant::{ConfigError, Plant, PlantConfig};
 use crate::scene::{ActiveFault, Infrared, Scene};
 use active_defects::ActiveDefects;
 
-/// The plant behind the device's pins.
+/// The plant at the pins of the device, its present defects, and the camera.
 #[derive(Clone, Debug)]
 pub struct World {
     plant: Plant,
@@ -20,13 +20,13 @@ pub struct World {
     codes: [u16; Channel::ALL.len()],
 }
 
-/// What no world can be built from.
+/// Why a world cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WorldError {
-    /// The plant's.
+    /// A value that the plant does not accept.
     #[error(transparent)]
     Plant(#[from] ConfigError),
-    /// The camera's.
+    /// A value that the camera does not accept.
     #[error("infrared camera: {0}")]
     Camera(#[from] ParameterError),
 }
@@ -45,7 +45,7 @@ impl World {
         Ok(Self::with(plant, camera.transpose()?))
     }
 
-    /// The world of a plant that nobody watches, with the converter's noise of its own seed.
+    /// The world of a plant without a camera, with its own seed for the converter's noise.
     ///
     /// # Errors
     /// A value that the plant cannot take.
@@ -64,52 +64,51 @@ impl World {
         }
     }
 
-    /// What the camera says of the skin on the real object, a number of milliseconds after time zero; none between its
-    /// frames.
+    /// Camera reading of the skin on the real object, `ms` milliseconds after time zero; `None` between frames.
     pub fn camera_reading(&mut self, ms: u64) -> Option<Reading> {
         let (infrared, camera) = self.camera.as_mut()?;
         let skin_c = self.plant.skin_real_c();
         infrared.has_frame(ms).then(|| camera.read(skin_c))
     }
 
-    /// The plant, to read.
+    /// The plant, read-only.
     #[must_use]
     pub const fn plant(&self) -> &Plant {
         &self.plant
     }
 
-    /// What the finger does, and what is broken, from now on.
+    /// Sets the force of the finger and replaces the active faults.
     pub fn set_force_and_faults(
         &mut self,
         force_n: f64,
-        broken: impl Iterator<Item = ActiveFault>,
+        faults: impl Iterator<Item = ActiveFault>,
     ) {
         self.plant.set_force(force_n);
         self.defects = ActiveDefects::default();
-        for broken in broken {
-            self.defects.add(&broken);
+        for fault in faults {
+            self.defects.add(&fault);
         }
         self.plant.set_defects(&self.defects.plant);
     }
 
-    /// Sets the level of the line by which the device tests the comparator. Whoever runs the device says so after each
-    /// of its ticks; a line that nobody drives is pulled low.
+    /// Sets the level of the line by which the device tests the comparator. The engine sets it after each tick; an
+    /// undriven line is pulled low.
     pub fn comparator_test(&mut self, level: bool) {
         self.plant.comparator_test(level);
     }
 
-    /// Advances the plant by one step under the bridge's legs.
+    /// Advances the plant by one step with the bridge legs driven as given.
     pub fn step(&mut self, legs: Legs) {
         self.plant.step(&legs);
     }
 
-    /// nFAULT is low: the bridge's driver or the comparator pulls it.
+    /// Whether nFAULT is low, pulled by the bridge driver or the comparator.
     #[must_use]
     pub fn bridge_fault(&self) -> bool {
         self.plant.bridge_fault()
     }
 
-    /// Code of a channel now.
+    /// Converts a channel; a frozen channel repeats its last code.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         let code = self.plant.convert(channel);
         let index = channel as usize;

@@ -87,8 +87,6 @@ fn table(figures: &[Figures], cost: Option<Cost>) -> String {
         "finger", "material", "skin after 50 ms mK", "RMS mK", "faults"
     );
     for (finger, of) in figures.iter().enumerate() {
-        let errors = of.skin_error_mk;
-        let max = errors.and_then(|errors| errors.max_after_50ms);
         let number = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.1}"));
         let faults: Vec<_> = of.faults.iter().map(|fault| fault.fault.as_str()).collect();
         let faults = if faults.is_empty() {
@@ -99,8 +97,8 @@ fn table(figures: &[Figures], cost: Option<Cost>) -> String {
         text += &format!(
             "{finger:<7}{:<18}{:>20}{:>12}  {faults}\n",
             of.material,
-            number(max),
-            number(errors.map(|errors| errors.rms)),
+            number(of.skin_max_mk()),
+            number(of.skin_rms_mk()),
         );
     }
     if let Some(cost) = cost {

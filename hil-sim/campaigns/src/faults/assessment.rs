@@ -166,7 +166,7 @@ impl RunAssessment {
         let right = match fault_case.expected {
             ExpectedReaction::Trip(faults) => {
                 let named = faults.iter().any(|fault| fault.name() == said);
-                named || !reached && State::is_one(said)
+                named || !reached && WORKING_STATES.contains(&said)
             }
             ExpectedReaction::Restart => said == OFF,
         };
@@ -189,17 +189,8 @@ impl RunAssessment {
 
 const OFF: &str = "off";
 
-/// The states that no fault has part in.
-struct State;
-
-impl State {
-    const SOUND: [&str; 6] = ["off", "self-test", "ready", "armed", "preset", "contact"];
-
-    /// Whether a reason is none but a state in which the device goes on.
-    fn is_one(said: &str) -> bool {
-        said != OFF && Self::SOUND.contains(&said)
-    }
-}
+/// The states in which the device continues to work without a fault.
+pub(super) const WORKING_STATES: [&str; 5] = ["self-test", "ready", "armed", "preset", "contact"];
 
 /// First trip from a row on that is not the one before, or first reset.
 fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> Option<f64> {

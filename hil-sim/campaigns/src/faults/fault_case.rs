@@ -93,41 +93,11 @@ pub struct FaultCase {
 const AFTER_S: f64 = 24.0;
 
 impl FaultCase {
-    /// A fault that is detectable by these symptoms and must be named by one of these reasons.
-    pub(super) const fn trips(
-        fault: InjectedFault,
-        symptoms: &'static [Symptom],
-        reasons: &'static [Fault],
-    ) -> Self {
-        Self {
-            fault,
-            symptoms,
-            expected: ExpectedReaction::Trip(reasons),
-            latent: false,
-            scenes: &[],
-            never_at: &[],
-            after_s: AFTER_S,
-        }
-    }
-
-    /// A fault that hurts nobody, so that the device must go on, unless there are [reasons](Self::or_trips).
-    pub(super) const fn harmless(fault: InjectedFault) -> Self {
-        Self::trips(fault, &[], &[])
-    }
-
     /// It may trip for one of these, too.
     pub(super) const fn or_trips(self, reasons: &'static [Fault]) -> Self {
         Self {
             expected: ExpectedReaction::Trip(reasons),
             ..self
-        }
-    }
-
-    /// A fault from which the device starts anew, without anything to report.
-    pub(super) const fn restarts(fault: InjectedFault) -> Self {
-        Self {
-            expected: ExpectedReaction::Restart,
-            ..Self::trips(fault, &[Symptom::Injection], &[])
         }
     }
 
@@ -155,6 +125,36 @@ impl FaultCase {
     /// How long is watched after it, s.
     pub(super) const fn watched(self, after_s: f64) -> Self {
         Self { after_s, ..self }
+    }
+}
+
+/// A fault that is detectable by these symptoms and must be named by one of these reasons.
+pub(super) const fn trips(
+    fault: InjectedFault,
+    symptoms: &'static [Symptom],
+    reasons: &'static [Fault],
+) -> FaultCase {
+    FaultCase {
+        fault,
+        symptoms,
+        expected: ExpectedReaction::Trip(reasons),
+        latent: false,
+        scenes: &[],
+        never_at: &[],
+        after_s: AFTER_S,
+    }
+}
+
+/// A fault that hurts nobody, so that the device must go on, unless there are [reasons](Self::or_trips).
+pub(super) const fn harmless(fault: InjectedFault) -> FaultCase {
+    trips(fault, &[], &[])
+}
+
+/// A fault from which the device starts anew, without anything to report.
+pub(super) const fn restarts(fault: InjectedFault) -> FaultCase {
+    FaultCase {
+        expected: ExpectedReaction::Restart,
+        ..trips(fault, &[Symptom::Injection], &[])
     }
 }
 

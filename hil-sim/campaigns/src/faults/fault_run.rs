@@ -43,9 +43,7 @@ fn sound(
             .any(|sign| sign.needs_fault_free_run());
     match fault_case.fault {
         InjectedFault::Hardware(broken) if needed => {
-            sound
-                .faults
-                .retain(|fault| fault.broken.kind != broken.kind);
+            sound.faults.retain(|fault| fault.fault.kind != broken.kind);
         }
         _ => return Ok(None),
     }

@@ -96,29 +96,6 @@ impl FaultScene {
     /// Where a self-test is, or follows.
     pub(super) const TESTED: &'static [Self] = &[Self::SelfTest, Self::Off];
 
-    const fn forces(self) -> Forces {
-        match self {
-            Self::Slew
-            | Self::Pi
-            | Self::Pi10Hz
-            | Self::Untuned
-            | Self::Touched
-            | Self::HeldWarm
-            | Self::HeldCold
-            | Self::SelfTest
-            | Self::Off => RESTING,
-            Self::Copper
-            | Self::Granite
-            | Self::Foam
-            | Self::Warm
-            | Self::Cold
-            | Self::SemiInfinite => LANDING,
-            Self::Neutral | Self::Preset => LATE,
-            Self::Tuning => LATER,
-            Self::Replace => REPLACING,
-        }
-    }
-
     const fn object(self) -> (&'static str, f64) {
         match self {
             Self::Granite => ("granite", 24.0),
@@ -129,25 +106,29 @@ impl FaultScene {
         }
     }
 
-    /// From when to when faults come, s, and edges around which they do.
-    const fn moments(self) -> ((f64, f64), &'static [f64]) {
+    /// Forces, the time range of the faults, s, and the times, s, around which every other fault comes.
+    const fn timing(self) -> (Forces, (f64, f64), &'static [f64]) {
         match self {
-            Self::Slew | Self::Pi | Self::Pi10Hz | Self::Untuned => ((0.5, 4.0), &[1.0]),
+            Self::Slew | Self::Pi | Self::Pi10Hz | Self::Untuned => (RESTING, (0.5, 4.0), &[1.0]),
             Self::Copper
             | Self::Granite
             | Self::Foam
             | Self::Warm
             | Self::Cold
-            | Self::SemiInfinite => ((0.3, 4.0), &[1.0]),
-            Self::Touched => ((0.1, 4.0), &[0.2]),
-            // A kelvin a second.
-            Self::HeldWarm => ((0.3, 12.0), &[8.1]),
-            Self::HeldCold => ((0.3, 22.0), &[19.1]),
-            Self::Tuning => ((0.3, 15.5), &[15.0]),
-            Self::Neutral | Self::Preset => ((0.1, 6.5), &[6.0]),
-            Self::Replace => ((0.3, 7.0), &[1.5, 2.5, 3.5, 4.5]),
-            Self::SelfTest => ((4.0, 5.75), &[4.0, 4.02, 5.04, 5.104, 5.304, 5.504]),
-            Self::Off => ((2.9, 3.99), &[]),
+            | Self::SemiInfinite => (LANDING, (0.3, 4.0), &[1.0]),
+            Self::Touched => (RESTING, (0.1, 4.0), &[0.2]),
+            // The set-point moves by 1 K/s.
+            Self::HeldWarm => (RESTING, (0.3, 12.0), &[8.1]),
+            Self::HeldCold => (RESTING, (0.3, 22.0), &[19.1]),
+            Self::Tuning => (LATER, (0.3, 15.5), &[15.0]),
+            Self::Neutral | Self::Preset => (LATE, (0.1, 6.5), &[6.0]),
+            Self::Replace => (REPLACING, (0.3, 7.0), &[1.5, 2.5, 3.5, 4.5]),
+            Self::SelfTest => (
+                RESTING,
+                (4.0, 5.75),
+                &[4.0, 4.02, 5.04, 5.104, 5.304, 5.504],
+            ),
+            Self::Off => (RESTING, (2.9, 3.99), &[]),
         }
     }
 
@@ -192,7 +173,7 @@ impl FaultScene {
 
     /// From when to when faults come, s.
     pub(super) const fn span(self) -> (f64, f64) {
-        self.moments().0
+        self.timing().1
     }
 
     /// The host falls silent for two seconds at the beginning, and the device trips; the host clears that, arms and
@@ -209,7 +190,7 @@ impl FaultScene {
     #[must_use]
     pub fn moment(self, seed: u64, at_edge: bool) -> InjectionPoint {
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
-        let ((from_s, to_s), edges) = self.moments();
+        let (_, (from_s, to_s), edges) = self.timing();
         let ms = |t_s: f64| (t_s * 1e3).round() as i32;
         let t_ms = if at_edge && !edges.is_empty() {
             let edge_s = edges[draw.random_range(0..edges.len())];
@@ -243,7 +224,7 @@ impl FaultScene {
             self.mode(),
             self.is_commissioned(),
         );
-        for (t_s, force_n) in self.forces() {
+        for (t_s, force_n) in self.timing().0 {
             text += &format!("[[force]]\nt_s = {t_s:?}\nforce_n = {force_n:?}\n");
         }
         if self.has_tripped_before().is_some() {

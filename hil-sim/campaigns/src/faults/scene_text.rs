@@ -81,17 +81,13 @@ mod tests {
             match fault_case.fault {
                 InjectedFault::Hardware(broken) => {
                     let fault = scene.faults.last().expect("a fault");
-                    assert_eq!(
-                        (fault.broken.kind, fault.t_s),
-                        (broken.kind, 1.25),
-                        "{text}"
-                    );
-                    assert_eq!(fault.broken.value, broken.value, "{text}");
+                    assert_eq!((fault.fault.kind, fault.t_s), (broken.kind, 1.25), "{text}");
+                    assert_eq!(fault.fault.value, broken.value, "{text}");
                     if broken.kind.has_sensor() {
-                        assert_eq!(fault.broken.sensor, broken.sensor, "{text}");
+                        assert_eq!(fault.fault.sensor, broken.sensor, "{text}");
                     }
                     if broken.kind.needs_second_sensor() {
-                        assert_eq!(fault.broken.with, broken.with, "{text}");
+                        assert_eq!(fault.fault.with, broken.with, "{text}");
                     }
                 }
                 InjectedFault::Processor(fault) => {

@@ -21,15 +21,9 @@ const ROWS: [Column<FidelityRow>; 24] = [
     ("bound", |row| some(row.judged.bound)),
     ("within", |row| some(row.judged.within)),
     ("skin_max_after_50ms_mk", |row| {
-        some(
-            row.figures
-                .skin_error_mk
-                .and_then(|errors| errors.max_after_50ms),
-        )
+        some(row.figures.skin_max_mk())
     }),
-    ("skin_rms_mk", |row| {
-        some(row.figures.skin_error_mk.map(|errors| errors.rms))
-    }),
+    ("skin_rms_mk", |row| some(row.figures.skin_rms_mk())),
     ("display_max_after_50ms_mk", |row| {
         some(
             row.figures

@@ -76,7 +76,7 @@ impl FidelityRow {
             Some(value) if row.judged.figure == "limited" => -value,
             Some(value) => value,
         };
-        let rms = |row: &Self| row.figures.skin_error_mk.map_or(0.0, |errors| errors.rms);
+        let rms = |row: &Self| row.figures.skin_rms_mk().unwrap_or(0.0);
         let by = |value: fn(&Self) -> f64| value(self).total_cmp(&value(other));
         by(judged).then(by(rms))
     }

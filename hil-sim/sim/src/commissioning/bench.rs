@@ -1,4 +1,4 @@
-//! A device on the operator's bench: time goes on, lines go back and forth, and there is a reference thermometer.
+//! A device on the operator's bench, with its serial line and a reference thermometer.
 
 use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;
@@ -8,17 +8,17 @@ use thermal_plant::HostParams;
 use super::CommissionError;
 use crate::World;
 use crate::engine::{Engine, LineSplitter};
-use crate::host::leaves_at_half;
+use crate::host::sending_half;
 
-/// Longest wait for an answer, ms.
-const PATIENCE_MS: u64 = 500;
-/// Longest wait for a self-test, and how often its end is looked for, ms.
+/// Timeout of an answer, ms.
+const ANSWER_TIMEOUT_MS: u64 = 500;
+/// Timeout of a self-test, and the interval at which its end is polled, ms.
 const SELF_TEST_MS: u64 = 1000;
 const POLL_MS: u64 = 50;
 /// Resolution of the reference thermometer, K.
 const RESOLUTION_K: f64 = 1e-3;
 
-/// A device, and what the operator needs.
+/// A device with its serial line and the operator's reference thermometer.
 pub struct CommissioningBench<'a, E> {
     engine: &'a mut E,
     received: LineSplitter,
@@ -27,7 +27,7 @@ pub struct CommissioningBench<'a, E> {
 }
 
 impl<'a, E: Engine> CommissioningBench<'a, E> {
-    /// With a reference thermometer, and the seed of its noise.
+    /// Puts a device on the bench; `seed` draws the noise of the reference thermometer.
     pub fn new(engine: &'a mut E, thermometer: HostParams, seed: u64) -> Self {
         Self {
             engine,
@@ -37,17 +37,17 @@ impl<'a, E: Engine> CommissioningBench<'a, E> {
         }
     }
 
-    /// Where the device is.
+    /// The world around the device.
     pub fn world(&mut self) -> &mut World {
         self.engine.world()
     }
 
-    /// Puts the device into another place.
+    /// Moves the device to another world.
     pub fn move_to(&mut self, world: World) {
         *self.engine.world() = world;
     }
 
-    /// What the reference thermometer shows of a temperature, deg C.
+    /// Reading of the reference thermometer at a true temperature, deg C.
     pub fn reference_c(&mut self, truth: impl Fn(&World) -> f64) -> f64 {
         let normal: f64 = StandardNormal.sample(&mut self.random);
         let shown_c = truth(self.engine.world())
@@ -56,13 +56,13 @@ impl<'a, E: Engine> CommissioningBench<'a, E> {
         (shown_c / RESOLUTION_K).round() * RESOLUTION_K
     }
 
-    /// Lets milliseconds pass.
+    /// Runs the device for some milliseconds.
     ///
     /// # Errors
     /// The engine stopped.
     pub fn wait(&mut self, ms: u64) -> Result<(), CommissionError> {
         for _ in 0..ms {
-            self.millisecond(None)?;
+            self.run_1_ms(None)?;
         }
         Ok(())
     }
@@ -71,24 +71,24 @@ impl<'a, E: Engine> CommissioningBench<'a, E> {
     ///
     /// # Errors
     /// The engine stopped, or there is no answer.
-    pub fn ask(&mut self, line: &str) -> Result<String, CommissionError> {
+    pub fn query(&mut self, line: &str) -> Result<String, CommissionError> {
         let bytes = [line.as_bytes(), b"\n"].concat();
-        let mut answer = self.millisecond(Some(&bytes))?;
-        for _ in 0..PATIENCE_MS {
+        let mut answer = self.run_1_ms(Some(&bytes))?;
+        for _ in 0..ANSWER_TIMEOUT_MS {
             if let Some(answer) = answer.into_iter().find(|answer| !answer.starts_with("T ")) {
                 return Ok(answer);
             }
-            answer = self.millisecond(None)?;
+            answer = self.run_1_ms(None)?;
         }
         Err(CommissionError::Silent(line.into()))
     }
 
-    /// Sends a line that must be obeyed; gives what follows "ok".
+    /// Sends a line that must be accepted; returns the answer after "ok".
     ///
     /// # Errors
     /// The engine stopped, there is no answer, or the line is refused.
-    pub fn tell(&mut self, line: &str) -> Result<String, CommissionError> {
-        let answer = self.ask(line)?;
+    pub fn command(&mut self, line: &str) -> Result<String, CommissionError> {
+        let answer = self.query(line)?;
         match answer.strip_prefix("ok") {
             Some(rest) => Ok(rest.trim().into()),
             None => Err(CommissionError::Refused {
@@ -98,15 +98,15 @@ impl<'a, E: Engine> CommissioningBench<'a, E> {
         }
     }
 
-    /// Arms the device, which tests itself first if it has not yet.
+    /// Arms the device, which runs its self-test first if it has not yet.
     ///
     /// # Errors
     /// The engine stopped, or the device is not armed within a second.
     pub fn arm(&mut self) -> Result<(), CommissionError> {
-        self.tell("arm")?;
+        self.command("arm")?;
         let line = "state";
         for _ in 0..SELF_TEST_MS / POLL_MS {
-            let answer = self.tell(line)?;
+            let answer = self.command(line)?;
             if answer.starts_with("state=armed ") {
                 return Ok(());
             }
@@ -119,13 +119,13 @@ impl<'a, E: Engine> CommissioningBench<'a, E> {
         Err(CommissionError::Silent("arm".into()))
     }
 
-    /// The device's settings, line by line.
+    /// The device's settings as lines.
     ///
     /// # Errors
-    /// The engine stopped, or the device does not answer as it should.
+    /// The engine stopped, or the device's answer is not a list of settings.
     pub fn settings(&mut self) -> Result<Vec<String>, CommissionError> {
         let line = "settings";
-        let answer = self.tell(line)?;
+        let answer = self.command(line)?;
         let lines = answer
             .strip_prefix("lines=")
             .and_then(|lines| lines.parse().ok());
@@ -134,19 +134,19 @@ impl<'a, E: Engine> CommissioningBench<'a, E> {
             answer,
         })?;
         (1..=lines)
-            .map(|number| self.tell(&format!("{line} {number}")))
+            .map(|number| self.command(&format!("{line} {number}")))
             .collect()
     }
 
-    /// One millisecond, in which bytes may leave; lines that have arrived.
+    /// Runs one millisecond, in which `bytes` are sent; returns the lines that have arrived.
     ///
     /// # Errors
     /// The engine stopped.
-    pub fn millisecond(&mut self, bytes: Option<&[u8]>) -> Result<Vec<String>, CommissionError> {
+    pub fn run_1_ms(&mut self, bytes: Option<&[u8]>) -> Result<Vec<String>, CommissionError> {
         let stop = |stop: E::Stop| CommissionError::Stop(stop.to_string());
         let legs = self.engine.legs();
         for half in 0..2 {
-            if let Some(bytes) = bytes.filter(|bytes| leaves_at_half(bytes) == half) {
+            if let Some(bytes) = bytes.filter(|bytes| sending_half(bytes) == half) {
                 self.engine.send(bytes);
             }
             if half == 0 {

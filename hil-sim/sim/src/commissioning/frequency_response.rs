@@ -1,8 +1,8 @@
-//! How a plant answers its current, found from the plant alone: no device, no sensor, no noise.
+//! Frequency response of a plant to its current, from the plant alone: without device, sensor and noise.
 //!
-//! Its bridge is driven with a sine, and the fundamentals of the plate's surface and of the current that flows are
-//! compared. Both are freed of drift first: half of what a signal differs from the mean of half a period before and
-//! after leaves its fundamental as it is, and of a parabola only a constant.
+//! The bridge is driven with a sine, and the fundamentals of the plate's surface temperature and of the current are
+//! compared. Drift is removed from both first: half of the difference between a signal and the mean of its values half
+//! a period before and after keeps the fundamental and turns a parabola into a constant.
 
 use std::f64::consts::TAU;
 
@@ -11,35 +11,35 @@ use thermal_plant::{ConfigError, STEP_S};
 
 use super::CommissioningSetup;
 
-/// Duty around one half: about 1.5 A.
-const DUTY: f64 = 0.08;
-/// Periods that are left out at first, and that are compared.
-const BEFORE: usize = 3;
-const COMPARED: usize = 4;
+/// Amplitude of the duty cycle around one half: about 1.5 A.
+const DUTY_AMPLITUDE: f64 = 0.08;
+/// Settling periods, which are ignored, and analysed periods.
+const SETTLING_PERIODS: usize = 3;
+const ANALYSED_PERIODS: usize = 4;
 
-/// The surface of a plate per current, at one frequency; a current that cools counts as positive.
+/// Frequency response of the plate's surface to the current, at one frequency; a cooling current is positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrequencyResponse {
-    /// rad/s.
+    /// Angular frequency, rad/s.
     pub w: f64,
     /// Amplitude of the surface per that of the current, K/A.
     pub k_a: f64,
-    /// By how much its cooling trails the current, rad; a quarter turn for an integrator.
+    /// Phase by which the cooling lags the current, rad; a quarter turn for an integrator.
     pub phase_lag_rad: f64,
 }
 
 impl FrequencyResponse {
-    /// At about an angular frequency, rad/s, of which a half period is a whole number of steps.
+    /// Measures the response near an angular frequency, rad/s: half a period is rounded to whole steps.
     ///
     /// # Errors
-    /// A value that the plant cannot take.
-    pub fn of(plants: &CommissioningSetup, w: f64) -> Result<Self, ConfigError> {
+    /// The plant does not accept a value.
+    pub fn measure(setup: &CommissioningSetup, w: f64) -> Result<Self, ConfigError> {
         let half = ((0.5 * TAU / (w * STEP_S)).round() as usize).max(2);
         let period = 2 * half;
-        let mut world = plants.in_use()?;
+        let mut world = setup.in_use()?;
         let (mut surface_c, mut current_a) = (Vec::new(), Vec::new());
-        for step in 0..(BEFORE + COMPARED + 1) * period {
-            let duty = DUTY * (TAU * step as f64 / period as f64).sin();
+        for step in 0..(SETTLING_PERIODS + ANALYSED_PERIODS + 1) * period {
+            let duty = DUTY_AMPLITUDE * (TAU * step as f64 / period as f64).sin();
             world.step(Legs {
                 a: Leg::Duty(0.5 + duty),
                 b: Leg::Duty(0.5 - duty),
@@ -48,9 +48,9 @@ impl FrequencyResponse {
             surface_c.push(world.plant().display_c());
             current_a.push(world.plant().current_a());
         }
-        let from = BEFORE * period;
+        let from = SETTLING_PERIODS * period;
         let fundamental = |signal: &[f64]| {
-            let compared = from..from + COMPARED * period;
+            let compared = from..from + ANALYSED_PERIODS * period;
             compared.fold((0.0, 0.0), |(re, im), i| {
                 let around = 0.5 * (signal[i - half] + signal[i + half]);
                 let swing = 0.5 * (signal[i] - around);

@@ -1,7 +1,7 @@
-//! The operator who commissions a device: holds a reference thermometer to its sensors, has it find out about its tile,
-//! and keeps its settings as lines.
+//! Commissioning of a device by a simulated operator: calibration of its sensors with a reference thermometer,
+//! identification of its tile, and storage of its settings as lines.
 //!
-//! The device is the one of a scene: same parts, same converter; the noise is another.
+//! The device has the parts and the converter of a scene's device, with other noise.
 
 mod bench;
 mod frequency_response;
@@ -36,36 +36,36 @@ pub enum CommissionError {
     /// The device refused a line.
     #[error("commissioning: the device answers '{line}' with '{answer}'")]
     Refused {
-        /// What it was told.
+        /// The line.
         line: String,
-        /// What it said.
+        /// The answer.
         answer: String,
     },
     /// The device did not answer a line.
     #[error("commissioning: the device does not answer '{0}'")]
     Silent(String),
-    /// The device does not have a setting that it was given.
+    /// The device does not report a setting that it accepted.
     #[error("commissioning: the device took '{0}', but has other settings")]
     NotRestored(String),
-    /// The display could not be held at enough temperatures.
+    /// The display reached a steady state at too few temperatures.
     #[error(
         "commissioning: the display came to rest at {points} temperatures; needed are {needed} (the last: {why})"
     )]
     FewPoints {
-        /// Points that were taken.
+        /// Points that were accepted.
         points: usize,
-        /// Least number that must be.
+        /// Required number of points.
         needed: usize,
-        /// Why the last one was not.
+        /// Why the last one was not accepted.
         why: String,
     },
 }
 
-/// Lines of settings, or why there are none.
-type Lines = Arc<OnceLock<Result<Vec<String>, CommissionError>>>;
+/// Lines of settings, or why commissioning failed; computed once.
+type SharedSettings = Arc<OnceLock<Result<Vec<String>, CommissionError>>>;
 
-/// The settings of the device of a scene as lines; none if it is not commissioned. Found natively, once for each device
-/// of the process.
+/// The settings of a scene's device as lines; none if it is not commissioned. Computed by the native engine, once per
+/// process for each device.
 ///
 /// # Errors
 /// The device cannot be commissioned.
@@ -76,7 +76,7 @@ pub fn settings_for_scene(scene: &Scene) -> Result<Vec<String>, CommissionError>
     settings_for_device(&scene.params, scene.room_c, scene.seed)
 }
 
-/// The same for a device of these parts and this seed of its converter, in a room, deg C.
+/// The settings of a device with these parameters and this seed of its converter, in a room, deg C.
 ///
 /// # Errors
 /// The device cannot be commissioned.
@@ -85,7 +85,7 @@ pub fn settings_for_device(
     room_c: f64,
     seed: u64,
 ) -> Result<Vec<String>, CommissionError> {
-    static KNOWN: LazyLock<Mutex<HashMap<String, Lines>>> = LazyLock::new(Mutex::default);
+    static KNOWN: LazyLock<Mutex<HashMap<String, SharedSettings>>> = LazyLock::new(Mutex::default);
     let plants = CommissioningSetup::new(params, room_c, seed);
     let lines = {
         // A thread that panicked has at most left an entry without lines.

@@ -1,4 +1,4 @@
-//! What the operator writes down.
+//! The operator's record.
 
 use std::str::FromStr;
 
@@ -6,64 +6,64 @@ use serde::Serialize;
 
 use super::CommissionError;
 
-/// A point that the device took.
+/// A calibration point that the device accepted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CalibrationPoint {
-    /// Which thermistor.
+    /// Name of the thermistor.
     pub sensor: &'static str,
-    /// What the reference thermometer showed, deg C.
+    /// Reading of the reference thermometer, deg C.
     pub reference_c: f64,
-    /// Points of this thermistor so far.
+    /// Number of points of this thermistor so far.
     pub points: u32,
-    /// Largest difference of the device from the reference in them, mK.
+    /// Largest difference between device and reference at these points, mK.
     pub worst_mk: f64,
 }
 
-/// The tile that the device found, and the margins of its loop.
+/// The tile as identified by the device, and the stability margins of its control loop.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct IdentifiedTile {
-    /// Slope of the plate's temperature per current asked for, K/s per A.
+    /// Rate of change of the plate temperature per demanded current, K/s per A.
     pub gain_k_s_a: f64,
-    /// Loss of that per current, 1/A.
+    /// Relative loss of this gain by Joule heat per current, 1/A.
     pub joule_per_a: f64,
     /// Rate at which the plate relaxes, 1/s.
     pub leak_1_s: f64,
     /// Lag of the display's thermistor, s.
     pub lag_s: f64,
-    /// From a current that is asked for to the plate's surface, s.
+    /// Dead time from the demanded current to the surface of the plate, s.
     pub dead_s: f64,
-    /// Phase that is left where the loop's gain is one, degrees.
+    /// Phase margin, degrees.
     pub phase_deg: f64,
-    /// Factor by which the loop's gain could grow.
+    /// Gain margin, as a factor.
     pub gain_margin: f64,
 }
 
-/// What the operator goes home with.
+/// Result of commissioning a device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CommissioningRecord {
-    /// The points, in the order in which they were taken.
+    /// The calibration points in their order.
     pub points: Vec<CalibrationPoint>,
-    /// What was found of the tile.
+    /// The identified tile.
     pub tile: IdentifiedTile,
     /// The settings as lines; sent to the device, they restore it.
     pub settings: Vec<String>,
 }
 
-/// What happens at the bench.
+/// An event during commissioning.
 #[derive(Clone, Debug, PartialEq)]
 pub enum CommissioningEvent {
-    /// The operator begins with something.
+    /// The operator starts a step.
     StepStarted(&'static str),
-    /// The device took a point.
+    /// The device accepted a calibration point.
     PointAccepted(CalibrationPoint),
-    /// The device did not take a point yet, or will not, and says why.
+    /// The device refused a calibration point.
     PointRefused {
-        /// Which thermistor.
+        /// Name of the thermistor.
         sensor: &'static str,
         /// The device's answer.
         answer: String,
     },
-    /// The device found its tile.
+    /// The device identified its tile.
     TileIdentified(IdentifiedTile),
 }
 

@@ -1,4 +1,4 @@
-//! The places that a device is put in to be commissioned.
+//! The environments in which a device is commissioned.
 
 use contact_model::material::MATERIALS;
 use thermal_plant::finger::FingerParams;
@@ -8,12 +8,12 @@ use thermal_plant::{ConfigError, Params, PlantConfig};
 
 use crate::World;
 
-/// Skin thermistor on a hand, deg C, while the display is calibrated.
+/// Temperature of the skin thermistor while the display is calibrated, deg C.
 const SKIN_C: f64 = 33.0;
-/// Longest time in one place, s.
-const LONGEST_S: f64 = 3600.0;
+/// Longest time in one environment, s.
+const STAY_MAX_S: f64 = 3600.0;
 
-/// One device, and the places it can be in.
+/// A device and the environments in which it is commissioned.
 #[derive(Clone, Debug)]
 pub struct CommissioningSetup {
     params: Params,
@@ -22,7 +22,7 @@ pub struct CommissioningSetup {
 }
 
 impl CommissioningSetup {
-    /// A device of these parts, the seed of its converter, and the room, deg C, it is used in. No finger is near.
+    /// A device with these parameters and this seed of its converter, used in a room, deg C, without a finger.
     #[must_use]
     pub fn new(params: &Params, room_c: f64, seed: u64) -> Self {
         Self {
@@ -35,34 +35,34 @@ impl CommissioningSetup {
         }
     }
 
-    /// Tells devices apart.
+    /// A key that is unique to the device.
     pub(super) fn key(&self) -> String {
         format!("{self:?}")
     }
 
-    /// The host's reference thermometer's.
+    /// Parameters of the device and of the reference thermometer.
     #[must_use]
     pub const fn params(&self) -> &Params {
         &self.params
     }
 
-    /// The seed of the operator's own draws.
+    /// Seed of the reference thermometer's noise.
     pub(super) fn operator_seed(&self) -> u64 {
         stream(self.seed, "reference thermometer")
     }
 
-    /// Where it is used.
+    /// The place of use.
     ///
     /// # Errors
-    /// A value that the plant cannot take.
+    /// The plant does not accept a value.
     pub fn in_use(&self) -> Result<World, ConfigError> {
         self.world(self.params.clone(), SKIN_C, self.room_c, "at work")
     }
 
-    /// The skin's thermistor in a bath, deg C.
+    /// The skin thermistor in a bath, deg C.
     ///
     /// # Errors
-    /// A value that the plant cannot take.
+    /// The plant does not accept a value.
     pub fn skin_in_bath(&self, bath_c: f64) -> Result<World, ConfigError> {
         self.world(
             self.params.clone(),
@@ -72,20 +72,20 @@ impl CommissioningSetup {
         )
     }
 
-    /// The room's thermistor in a bath, deg C.
+    /// The room thermistor in a bath, deg C.
     ///
     /// # Errors
-    /// A value that the plant cannot take.
+    /// The plant does not accept a value.
     pub fn room_in_bath(&self, bath_c: f64) -> Result<World, ConfigError> {
         let mut params = self.params.clone();
         params.tile.coolant_k = 0.0;
         self.world(params, SKIN_C, bath_c, &format!("room {bath_c}"))
     }
 
-    /// The sink, and with it the display, on a coolant of a temperature, deg C.
+    /// The sink, and with it the display, at the temperature of a coolant, deg C.
     ///
     /// # Errors
-    /// A value that the plant cannot take.
+    /// The plant does not accept a value.
     pub fn sink_on_coolant(&self, coolant_c: f64) -> Result<World, ConfigError> {
         let mut params = self.params.clone();
         params.tile.coolant_k = coolant_c - self.room_c;
@@ -105,8 +105,8 @@ impl CommissioningSetup {
             room_c,
             object: ObjectConfig::half_space(material, room_c),
             start_s: 0.0,
-            appears_s: LONGEST_S,
-            duration_s: LONGEST_S,
+            appears_s: STAY_MAX_S,
+            duration_s: STAY_MAX_S,
             seed: self.seed,
             params,
         };

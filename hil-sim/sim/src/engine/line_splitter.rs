@@ -1,16 +1,16 @@
-//! Bytes of the device to lines.
+//! Splits received bytes into lines.
 
-/// What has come of lines that are not complete yet.
+/// Received bytes of incomplete lines.
 #[derive(Clone, Debug, Default)]
 pub struct LineSplitter(Vec<u8>);
 
 impl LineSplitter {
-    /// Where bytes that have come are appended.
+    /// The buffer to which received bytes are appended.
     pub const fn received(&mut self) -> &mut Vec<u8> {
         &mut self.0
     }
 
-    /// Takes the lines that are complete, without their ends.
+    /// Removes and returns the complete lines, without line ends.
     pub fn complete(&mut self) -> Vec<String> {
         let Some(end) = self.0.iter().rposition(|byte| *byte == b'\n') else {
             return Vec::new();

@@ -1,4 +1,4 @@
-//! Five fingers on one device: a plant each, a scene each.
+//! Five fingers on one device, each with its own plant and scene.
 //!
 //! # Time
 //! The device serves its fingers in turn, 0.2 ms apart, so each finger has millisecond boundaries of its own: between
@@ -6,8 +6,8 @@
 //! sixteenth of a millisecond's change from scan to scan, though the scans of a finger take 0.18 ms only: a plant sees
 //! the same as on the one-finger board, and the device its sensors 0.4 ms older than they would be.
 //!
-//! A line to a finger leaves right after that finger's tick, and those to later fingers so many milliseconds later: at
-//! 1 Mbaud they would be in each other's way.
+//! A line to a finger is sent right after that finger's tick. Lines to later fingers follow one millisecond each later,
+//! because at 1 Mbaud they would delay each other.
 
 mod native;
 
@@ -23,41 +23,41 @@ use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
 use thermal_plant::bridge::Legs;
 
-/// Fingers of the device.
+/// Number of fingers of the device.
 pub const FINGERS: usize = 5;
 
 /// Interval of each finger's telemetry, ms: five lines of 100 bytes every millisecond would not fit 1 Mbaud.
 const STREAM_MS: u32 = 10;
-/// Time after the last row in which its telemetry arrives, ms.
+/// Time for the telemetry of the last row to arrive, ms.
 const DRAIN_MS: u64 = 10;
 
-/// A device for five fingers and the worlds around it.
+/// A device for five fingers with their worlds.
 pub trait FiveFingerEngine {
-    /// Why it can stop before its time.
+    /// Why the engine can stop early.
     type Stop: std::error::Error + Send + Sync + 'static;
 
-    /// Name of the engine, as the command line has it.
+    /// Name of the engine on the command line.
     const NAME: &'static str;
 
-    /// Runs the device to a finger's next boundary. The fingers follow each other in turn.
+    /// Runs the device to the next boundary of a finger; the fingers take turns.
     ///
     /// # Errors
-    /// The device cannot go on.
+    /// The device did something that is not modelled.
     fn run_to(&mut self, finger: usize) -> Result<(), Self::Stop>;
 
     /// A finger's world.
     fn world(&mut self, finger: usize) -> &mut World;
 
-    /// The legs of a finger's bridge, as the device drives them now.
+    /// The legs of a finger's bridge as the device drives them now.
     fn legs(&mut self, finger: usize) -> Legs;
 
-    /// A line to a finger leaves the host, after its tick.
+    /// Sends a line to a finger, after its tick.
     fn send(&mut self, finger: usize, line: &[u8]);
 
-    /// The complete lines that have come since the last call, and whose they are.
+    /// The complete lines received since the last call, with the fingers that sent them.
     fn receive(&mut self) -> Vec<(usize, String)>;
 
-    /// Resets of the device after its power-up; time counts from the first finger's first boundary.
+    /// Resets of the device after power-up; time counts from the first finger's first boundary.
     fn resets(&self) -> Vec<DeviceReset>;
 
     /// Restarts the measurement of [`Self::cost`].
@@ -69,13 +69,13 @@ pub trait FiveFingerEngine {
     }
 }
 
-/// Runs a scene on each finger; `progress` is told the part that is done. Returns what each finger has given.
+/// Runs a scene on each finger and returns their results; `progress` is called with the fraction done.
 ///
 /// # Errors
 /// The engine stopped, or the device refused a scene.
 pub fn run<H: FiveFingerEngine>(
     scenes: &[Scene; FINGERS],
-    hand: &mut H,
+    engine: &mut H,
     mut progress: impl FnMut(f64),
 ) -> Result<[Outcome; FINGERS], RunError<H::Stop>> {
     let settings: Vec<_> = (scenes
@@ -95,33 +95,33 @@ pub fn run<H: FiveFingerEngine>(
     let last_ms = last(|finger| finger.end_ms) + DRAIN_MS;
     for ms in 0..=last_ms {
         if ms == zero_ms {
-            hand.reset_cost();
+            engine.reset_cost();
         }
         for index in 0..FINGERS {
-            hand.run_to(index).map_err(RunError::Stop)?;
-            // The tick of the finger before is over.
-            let (before, its_ms) = match index.checked_sub(1) {
-                Some(before) => (before, Some(ms)),
+            engine.run_to(index).map_err(RunError::Stop)?;
+            // The tick of the previous finger has ended.
+            let (previous, previous_ms) = match index.checked_sub(1) {
+                Some(previous) => (previous, Some(ms)),
                 None => (FINGERS - 1, ms.checked_sub(1)),
             };
-            // To each finger a millisecond later than to the one before it.
-            let since_ms = its_ms.and_then(|ms| ms.checked_sub(before as u64));
-            if let Some(line) = since_ms.and_then(|ms| fingers[before].host.send(2 * ms + 1)) {
-                hand.send(before, line);
+            // Each finger is sent its lines a millisecond later than the previous one.
+            let finger_ms = previous_ms.and_then(|ms| ms.checked_sub(previous as u64));
+            if let Some(line) = finger_ms.and_then(|ms| fingers[previous].host.send(2 * ms + 1)) {
+                engine.send(previous, line);
             }
-            let legs = hand.legs(index);
-            let world = hand.world(index);
-            fingers[index].change(ms, world);
-            fingers[index].keep(ms, world);
+            let legs = engine.legs(index);
+            let world = engine.world(index);
+            fingers[index].apply_scene(ms, world);
+            fingers[index].record(ms, world);
             world.step(legs);
         }
-        for (index, line) in hand.receive() {
-            (fingers[index].hear(ms, line))
+        for (index, line) in engine.receive() {
+            (fingers[index].receive(ms, line))
                 .map_err(|line| RunError::Refused(format!("finger {index}: {line}")))?;
         }
         progress(ms as f64 / last_ms as f64);
     }
     let real_time_factor = last_ms as f64 * 1e-3 / began.elapsed().as_secs_f64();
-    let (cost, resets) = (hand.cost(), hand.resets());
+    let (cost, resets) = (engine.cost(), engine.resets());
     Ok(fingers.map(|finger| finger.outcome(H::NAME, &resets, cost, real_time_factor)))
 }

@@ -1,4 +1,4 @@
-//! Five times the logic of one finger, each with a line to the host of its own.
+//! Five native engines of one finger, each with its own line to the host.
 
 use std::convert::Infallible;
 
@@ -8,28 +8,29 @@ use super::{FINGERS, FiveFingerEngine};
 use crate::World;
 use crate::engine::{DeviceReset, Engine, LineSplitter, NativeEngine};
 
-/// Five native devices of one finger.
+/// Five native engines of one finger.
 #[derive(Debug)]
 pub struct NativeFiveFingers {
     fingers: [NativeEngine; FINGERS],
     lines: [LineSplitter; FINGERS],
-    /// Lines that leave when the tick that runs is over.
-    leaving: [Vec<u8>; FINGERS],
-    /// Fingers that have reached their first boundary.
+    /// Lines sent at the end of the present tick.
+    pending_lines: [Vec<u8>; FINGERS],
+    /// Number of fingers that have reached their first boundary.
     started: usize,
 }
 
 impl NativeFiveFingers {
-    /// Devices that are about to reach their first boundaries.
+    /// Devices just before their first boundaries.
     #[must_use]
     pub fn new(worlds: [World; FINGERS]) -> Self {
-        // Power-up finds the multiplexers settled on the first finger.
+        // The multiplexers select the first finger at power-up.
         let mut settled = true;
         Self {
-            fingers: worlds
-                .map(|world| NativeEngine::in_turn(world, std::mem::replace(&mut settled, false))),
+            fingers: worlds.map(|world| {
+                NativeEngine::multiplexed(world, std::mem::replace(&mut settled, false))
+            }),
             lines: Default::default(),
-            leaving: Default::default(),
+            pending_lines: Default::default(),
             started: 0,
         }
     }
@@ -48,7 +49,7 @@ impl FiveFingerEngine for NativeFiveFingers {
         let device = &mut self.fingers[finger];
         device.run_half_ms()?;
         device.run_half_ms()?;
-        device.send(&std::mem::take(&mut self.leaving[finger]));
+        device.send(&std::mem::take(&mut self.pending_lines[finger]));
         Ok(())
     }
 
@@ -61,7 +62,7 @@ impl FiveFingerEngine for NativeFiveFingers {
     }
 
     fn send(&mut self, finger: usize, line: &[u8]) {
-        self.leaving[finger].extend_from_slice(line);
+        self.pending_lines[finger].extend_from_slice(line);
     }
 
     fn receive(&mut self) -> Vec<(usize, String)> {

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::metrics::{CostPerTick, ErrorFigures, Figures};
 
-/// Names and values with units, in the order in which they are read.
+/// Names and values with units, in the order of the table.
 pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
     let errors = |errors: Option<ErrorFigures>| {
         errors.map_or("no contact".into(), |errors| {
@@ -80,7 +80,7 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// The figures, one a line.
+/// The figures, one per line.
 #[must_use]
 pub fn table(figures: &Figures) -> String {
     rows(figures)

@@ -6,7 +6,7 @@ use toml::Spanned;
 use super::Sensor;
 pub(super) use super::parameter_node::ParameterNode;
 
-/// A number with its place in the file; whole numbers are accepted.
+/// A number with its position in the file; whole numbers are accepted.
 pub(super) type Number = Spanned<f64>;
 
 #[derive(Deserialize)]

@@ -1,5 +1,5 @@
-//! How deep a scene's text nests, before it is read: reading takes stack for every level, and dotted keys multiply with
-//! brackets.
+//! Limits the nesting of a scene's text before it is parsed: the parser uses stack for every level, and each dotted key
+//! inside a bracket adds its levels.
 
 use std::ops::Range;
 
@@ -7,12 +7,12 @@ use toml_parser::lexer::TokenKind;
 
 use super::source::{SceneError, Source};
 
-/// Words of a dotted key, at most; `plant.finger.layer.0.thickness_m` has five.
+/// Largest number of words of a dotted key; `plant.finger.layer.0.thickness_m` has five.
 const WORDS: usize = 8;
-/// Brackets in each other, at most.
+/// Largest number of nested brackets.
 const BRACKETS: usize = 8;
 
-/// Refuses the first place that is too deep.
+/// Reports the first key or bracket that nests too deeply.
 pub(super) fn check(source: &Source<'_>) -> Result<(), SceneError> {
     let (mut key, mut words) = (0..0, 1);
     let mut brackets = 0_usize;

@@ -13,7 +13,7 @@ use super::file::{self, Number};
 use super::source::{SceneError, Source};
 use super::{Object, known_materials};
 
-/// Checks the object's table.
+/// Reads and checks the object's table.
 pub(super) fn object(
     source: &Source<'_>,
     file: &Spanned<file::Object>,
@@ -73,14 +73,14 @@ pub(super) fn object(
     })
 }
 
-/// Thickness and back; a half-space has no back.
+/// Thickness and boundary condition at the back; a half-space has none.
 fn shape(
     source: &Source<'_>,
     object: &file::Object,
     room_c: f64,
     start_c: f64,
 ) -> Result<(f64, Back), SceneError> {
-    let needless = |key: &str, span, needed: &str| {
+    let meaningless = |key: &str, span, needed: &str| {
         let problem = format!("object.{key} has no meaning here; allowed is {key} beside {needed}");
         Err(source.error(Some(span), problem))
     };
@@ -92,14 +92,14 @@ fn shape(
         10.0,
     )?;
     if let (None, Some(back)) = (&object.thickness_m, &object.back) {
-        return needless("back", back.span(), "object.thickness_m");
+        return meaningless("back", back.span(), "object.thickness_m");
     }
     let kind = object
         .back
         .as_ref()
         .map_or(file::Back::Insulated, |back| *back.get_ref());
     if let (file::Back::Insulated, Some(number)) = (kind, &object.back_c) {
-        return needless("back_c", number.span(), "back = \"held\" or \"film\"");
+        return meaningless("back_c", number.span(), "back = \"held\" or \"film\"");
     }
     let back_c =
         |default_c| source.within_or(default_c, "object.back_c", &object.back_c, -20.0, 60.0);
@@ -113,7 +113,9 @@ fn shape(
                 "object.back = \"film\" without object.back_film_w_m2k; allowed is 0.1 to 1000000";
             return Err(source.error(span, problem));
         }
-        (_, Some(number)) => return needless("back_film_w_m2k", number.span(), "back = \"film\""),
+        (_, Some(number)) => {
+            return meaningless("back_film_w_m2k", number.span(), "back = \"film\"");
+        }
         (_, None) => None,
     };
     let back = match (kind, film) {
@@ -130,7 +132,7 @@ fn shape(
     Ok((thickness_m, back))
 }
 
-/// A material given by its properties; the ranges are those that the device itself accepts.
+/// A material given by its properties; they must be within the ranges that the device accepts.
 fn custom(
     source: &Source<'_>,
     properties: [(&str, &Option<Number>); 5],
@@ -172,7 +174,7 @@ fn custom(
     }
 }
 
-/// The line that tells the device of a material by its properties.
+/// The line that sends a material's properties to the device.
 pub(crate) fn custom_line(material: &Material) -> String {
     let Surface {
         conductivity_w_mk,

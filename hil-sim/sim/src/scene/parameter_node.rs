@@ -1,13 +1,13 @@
-//! A table of numbers and of tables of numbers, each with its place in the file.
+//! A tree of numbers, each with its position in the file.
 
 use std::fmt;
 
 use serde::de::{self, Deserialize, Deserializer, MapAccess, Visitor};
 use toml::Spanned;
 
-/// A number, or a table of more.
+/// A number, or a table of nodes.
 pub(super) enum ParameterNode {
-    /// A whole number: an exact seed, or a number like any other.
+    /// A whole number, kept exact because it may be a seed.
     Whole(i64),
     Number(f64),
     Table(Vec<(Spanned<String>, Spanned<ParameterNode>)>),

@@ -1,4 +1,4 @@
-//! From the text of a scene to a scene, or to what is wrong with it.
+//! Reads and checks the text of a scene.
 
 use std::ops::Range;
 use std::path::Path;
@@ -74,7 +74,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         None => file.object.span(),
     };
     setpoint(&source, &scene, object_at)?;
-    // What is left: parameters that do not suit each other, which building the plant shows.
+    // Building the plant shows parameters that contradict each other.
     Plant::new(&scene.plant_config()).map_err(|error| {
         let finger = file.finger.as_ref().map(|finger| finger.span());
         let plant = file.plant.as_ref().map(|plant| plant.span());
@@ -82,13 +82,13 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             ConfigError::ColdFinger { .. } => finger.or(plant),
             _ => plant.or(finger),
         };
-        // The class's own plant is at odds with the temperatures only.
+        // The nominal plant can contradict the temperatures only.
         source.error(span.or(Some(file.skin_c.span())), error.to_string())
     })?;
     Ok(scene)
 }
 
-/// The law of a name, as the device has it.
+/// The control law of a name, as the device knows it.
 fn law(source: &Source<'_>, name: &Spanned<String>) -> Result<Law, SceneError> {
     let known = Law::WORDS.iter().find(|(word, _)| word == name.get_ref());
     known.map(|(_, law)| *law).ok_or_else(|| {
@@ -125,7 +125,7 @@ fn forces(
     Ok(forces)
 }
 
-/// The display's first set-point must be one that it may take.
+/// The first set-point must be within the range of the display.
 fn setpoint(source: &Source<'_>, scene: &Scene, span: Range<usize>) -> Result<(), SceneError> {
     let preset_c = scene.exact_setpoint_c(0.0, 1.0);
     let [least, most] = [Setpoint::MIN, Setpoint::MAX].map(|limit| limit.celsius().to_num::<f64>());

@@ -1,4 +1,4 @@
-//! Where a message about a scene points.
+//! The text of a scene, and errors that point into it.
 
 use std::fmt;
 use std::ops::Range;
@@ -9,7 +9,7 @@ use thermal_plant::parameters;
 
 use super::file::Number;
 
-/// What is wrong with a scene, and where.
+/// An error in a scene: file, line and problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
     file: PathBuf,
@@ -39,7 +39,7 @@ impl SceneError {
     }
 }
 
-/// A scene's text and the file that it is from.
+/// The text of a scene and its file.
 pub(super) struct Source<'a> {
     pub file: &'a Path,
     pub text: &'a str,
@@ -93,7 +93,7 @@ impl Source<'_> {
         self.within(key, number, 0.0, duration_s)
     }
 
-    /// Sets a parameter of the box.
+    /// Sets a plant parameter.
     pub fn set(
         &self,
         params: &mut Params,

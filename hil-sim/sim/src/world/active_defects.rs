@@ -1,4 +1,4 @@
-//! From what is broken to where it acts: in the plant, or behind the pins of the converter.
+//! Maps active faults to defects of the plant and of the converter.
 
 use thermal_plant::Defects;
 use thermal_plant::bridge::LegDefect;
@@ -7,18 +7,18 @@ use thermal_plant::sensors::{Channel, Circuit};
 
 use crate::scene::{ActiveFault, FaultKind};
 
-/// What is broken in plant and converter.
+/// Present defects of plant and converter.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ActiveDefects {
-    /// The plant's.
+    /// Defects of the plant.
     pub plant: Defects,
-    /// Channels whose code stays.
+    /// Channels whose code is frozen.
     pub frozen: [bool; Channel::ALL.len()],
 }
 
 impl ActiveDefects {
-    /// Adds what is broken beside the rest.
-    pub fn add(&mut self, broken: &ActiveFault) {
+    /// Adds a fault to the present ones.
+    pub fn add(&mut self, fault: &ActiveFault) {
         let Defects {
             sensors,
             bridge,
@@ -26,9 +26,9 @@ impl ActiveDefects {
             cooling,
             module,
         } = &mut self.plant;
-        let (index, value) = (broken.sensor as usize, broken.value);
+        let (index, value) = (fault.sensor as usize, fault.value);
         let thermistor = &mut sensors.thermistors[index];
-        match broken.kind {
+        match fault.kind {
             FaultKind::ThermistorOpen => thermistor.circuit = Circuit::Open,
             FaultKind::ThermistorShort => thermistor.circuit = Circuit::Short,
             FaultKind::ThermistorDrift | FaultKind::ThermistorOffset => {
@@ -36,7 +36,7 @@ impl ActiveDefects {
             }
             FaultKind::ThermistorDetached => thermistor.loose *= value,
             FaultKind::ThermistorStuck => self.frozen[index] = true,
-            FaultKind::SensorsSwapped => sensors.plugged.swap(index, broken.with as usize),
+            FaultKind::SensorsSwapped => sensors.plugged.swap(index, fault.with as usize),
             FaultKind::ReferenceOff => {
                 for thermistor in &mut sensors.thermistors {
                     thermistor.circuit = Circuit::Short;
@@ -62,7 +62,7 @@ impl ActiveDefects {
             FaultKind::FanOff => cooling.resistance *= value,
             FaultKind::ChillerOff => cooling.coolant_c = Some(value),
             FaultKind::SinkHot => cooling.held_c = Some(value),
-            // The host's own.
+            // These act in the host.
             FaultKind::HostGarbage | FaultKind::HostSilent | FaultKind::HostFlood => {}
         }
     }

@@ -5,6 +5,7 @@ use thermal_sim::named_enum;
 use thermal_sim::run::Outcome;
 
 use crate::faults::RunAssessment;
+use crate::faults::assessment::WORKING_STATES;
 
 named_enum! {
     /// Effect of a bit flip on the finger and the device.
@@ -40,7 +41,7 @@ impl FlipEffect {
             _ if same && outcome.resets == reference.resets => Self::Nothing,
             "silent" => Self::Silent,
             "off" => Self::Reset,
-            "self-test" | "ready" | "armed" | "preset" | "contact" => Self::Differs,
+            state if WORKING_STATES.contains(&state) => Self::Differs,
             _ => Self::Tripped,
         }
     }

@@ -24,7 +24,8 @@ pub use region::{FlipRegion, FlippableMemory};
 pub use table::flip_table;
 
 use super::{
-    Breach, FaultCase, FaultScene, InjectedFault, InjectionPoint, RunAssessment, Symptom, fault_run,
+    Breach, FaultScene, InjectedFault, InjectionPoint, RunAssessment, Symptom, fault_case,
+    fault_run,
 };
 use thermal_sim::SceneRunner;
 use thermal_sim::processor::NotInjected;
@@ -113,7 +114,7 @@ impl BitFlip {
         let reference = (references.iter().find(|reference| reference.place == place))
             .with_context(|| format!("no reference of {}", place.name()))?;
         let scene = Scene::parse(&self.text(), place.name().as_ref())?;
-        let fault_case = FaultCase::trips(self.injected(), SIGNS, &[]);
+        let fault_case = fault_case::trips(self.injected(), SIGNS, &[]);
         let (class, assessment, deviation_k) = match device.run(&scene) {
             Ok((outcome, figures)) => {
                 let mut assessment =

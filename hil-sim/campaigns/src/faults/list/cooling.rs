@@ -3,7 +3,7 @@
 use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
-use crate::faults::fault_case::valued;
+use crate::faults::fault_case::{trips, valued};
 use crate::faults::{FaultCase, FaultScene, Symptom};
 
 const HOT: &[Symptom] = &[Symptom::SinkLimit, Symptom::WrongWay, Symptom::DisplayLimit];
@@ -11,19 +11,19 @@ const HOT_REASONS: &[Fault] = &[Fault::SinkHot, Fault::Runaway, Fault::DisplayHo
 
 /// The fan stops; what the sink is cooled by stops and takes the temperature of a hot room; something warm touches it.
 pub const FAULT_CASES: &[FaultCase] = &[
-    FaultCase::trips(valued(Kind::FanOff, 10.0), HOT, HOT_REASONS)
+    trips(valued(Kind::FanOff, 10.0), HOT, HOT_REASONS)
         .at(&[FaultScene::Cold])
         .watched(90.0),
-    FaultCase::trips(valued(Kind::FanOff, 1000.0), HOT, HOT_REASONS)
+    trips(valued(Kind::FanOff, 1000.0), HOT, HOT_REASONS)
         .at(&[FaultScene::Cold])
         .watched(90.0),
-    FaultCase::trips(valued(Kind::ChillerOff, 40.0), HOT, HOT_REASONS)
+    trips(valued(Kind::ChillerOff, 40.0), HOT, HOT_REASONS)
         .at(&[FaultScene::Cold])
         .watched(90.0),
-    FaultCase::trips(valued(Kind::ChillerOff, 45.0), HOT, HOT_REASONS)
+    trips(valued(Kind::ChillerOff, 45.0), HOT, HOT_REASONS)
         .at(&[FaultScene::Cold])
         .watched(80.0),
-    FaultCase::trips(
+    trips(
         valued(Kind::SinkHot, 45.0),
         &[Symptom::ReadingJump, Symptom::SinkLimit],
         // In the self-test its heat hides the answer; a cold display may warm by a kelvin before the sink's thermistor is there.

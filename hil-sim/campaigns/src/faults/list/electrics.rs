@@ -3,7 +3,7 @@
 use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
-use crate::faults::fault_case::{broken, valued};
+use crate::faults::fault_case::{broken, harmless, trips, valued};
 use crate::faults::{FaultCase, FaultScene, Symptom};
 
 /// A leg that does not do what it is told shows in the current, the display's way, or the self-test.
@@ -64,17 +64,17 @@ const WEAK_REASONS: &[Fault] = &[
 
 /// What drives the tile, and what watches that.
 pub const FAULT_CASES: &[FaultCase] = &[
-    FaultCase::trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
-    FaultCase::trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
-    FaultCase::trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
-    FaultCase::trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(PLAIN),
-    FaultCase::trips(
+    trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
+    trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
+    trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
+    trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(PLAIN),
+    trips(
         broken(Kind::BridgeShorted),
         &[Symptom::FaultLine],
         &[Fault::Bridge],
     )
     .at(WORST),
-    FaultCase::trips(
+    trips(
         broken(Kind::PolaritySwapped),
         &[
             Symptom::WrongWay,
@@ -94,15 +94,15 @@ pub const FAULT_CASES: &[FaultCase] = &[
     .at(PLAIN),
     // What is left answers to the self-test's ampere by more than it asks for, or by about that. So what tells is what comes then:
     // for a module that has little to do the loop makes up.
-    FaultCase::trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS).at(&[
+    trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS).at(&[
         FaultScene::Slew,
         FaultScene::Cold,
         FaultScene::Replace,
     ]),
-    FaultCase::trips(valued(Kind::ModuleWeak, 0.1), WEAK, WEAK_REASONS)
+    trips(valued(Kind::ModuleWeak, 0.1), WEAK, WEAK_REASONS)
         .at(&[FaultScene::Slew, FaultScene::Off]),
     // The self-test must tell.
-    FaultCase::trips(
+    trips(
         valued(Kind::ModuleWeak, 0.0),
         &[
             Symptom::DisplayDeviates,
@@ -112,40 +112,40 @@ pub const FAULT_CASES: &[FaultCase] = &[
         WEAK_REASONS,
     )
     .at(FaultScene::TESTED),
-    FaultCase::harmless(broken(Kind::BridgeEnableStuck)).latent(),
-    FaultCase::trips(
+    harmless(broken(Kind::BridgeEnableStuck)).latent(),
+    trips(
         broken(Kind::FaultPinDead),
         &[Symptom::SelfTest(0.02)],
         &[Fault::Comparator],
     )
     .latent()
     .at(&[FaultScene::Off]),
-    FaultCase::trips(
+    trips(
         broken(Kind::ComparatorDead),
         &[Symptom::SelfTest(0.02)],
         &[Fault::Comparator],
     )
     .latent()
     .at(&[FaultScene::Off]),
-    FaultCase::trips(
+    trips(
         broken(Kind::ComparatorStuck),
         &[Symptom::FaultLine, Symptom::SelfTest(0.04)],
         &[Fault::Bridge, Fault::Comparator],
     )
     .at(WORST),
-    FaultCase::trips(valued(Kind::MirrorStuck, 0.0), CURRENT, CURRENT_LOW).at(WORST),
-    FaultCase::trips(
+    trips(valued(Kind::MirrorStuck, 0.0), CURRENT, CURRENT_LOW).at(WORST),
+    trips(
         valued(Kind::MirrorStuck, 3.0),
         CURRENT,
         &[Fault::CurrentHigh, Fault::CurrentLow],
     ),
-    FaultCase::trips(
+    trips(
         valued(Kind::MirrorStuck, 10.0),
         &[Symptom::OverCurrent],
         &[Fault::OverCurrent],
     ),
-    FaultCase::trips(valued(Kind::SupplyLow, 9.0), SUPPLY, NO_CURRENT).at(WORST),
-    FaultCase::trips(valued(Kind::SupplyLow, 4.5), CURRENT, NO_CURRENT).at(WORST),
-    FaultCase::trips(valued(Kind::SupplyHigh, 16.0), SUPPLY, MUCH_CURRENT).at(WORST),
-    FaultCase::trips(valued(Kind::SupplyHigh, 24.0), SUPPLY, MUCH_CURRENT).at(WORST),
+    trips(valued(Kind::SupplyLow, 9.0), SUPPLY, NO_CURRENT).at(WORST),
+    trips(valued(Kind::SupplyLow, 4.5), CURRENT, NO_CURRENT).at(WORST),
+    trips(valued(Kind::SupplyHigh, 16.0), SUPPLY, MUCH_CURRENT).at(WORST),
+    trips(valued(Kind::SupplyHigh, 24.0), SUPPLY, MUCH_CURRENT).at(WORST),
 ];

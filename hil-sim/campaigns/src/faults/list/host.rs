@@ -3,28 +3,28 @@
 use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
-use crate::faults::fault_case::broken;
+use crate::faults::fault_case::{broken, harmless, trips};
 use crate::faults::{FaultCase, FaultScene, InjectedFault, Symptom};
 
 /// Silence, noise, and wrong or unwise lines.
 pub const FAULT_CASES: &[FaultCase] = &[
-    FaultCase::trips(
+    trips(
         broken(Kind::HostSilent),
         &[Symptom::After(2.0)],
         &[Fault::HostSilent],
     )
     .never_at(FaultScene::TESTED),
-    FaultCase::harmless(broken(Kind::HostGarbage)),
+    harmless(broken(Kind::HostGarbage)),
     // Off, a flood drowns the line that arms.
-    FaultCase::harmless(broken(Kind::HostFlood)).never_at(&[FaultScene::Off]),
-    FaultCase::harmless(InjectedFault::HostLine("hold 60")).at(&[FaultScene::Touched]),
-    FaultCase::harmless(InjectedFault::HostLine("object 900")),
-    FaultCase::harmless(InjectedFault::HostLine("stream 0")),
+    harmless(broken(Kind::HostFlood)).never_at(&[FaultScene::Off]),
+    harmless(InjectedFault::HostLine("hold 60")).at(&[FaultScene::Touched]),
+    harmless(InjectedFault::HostLine("object 900")),
+    harmless(InjectedFault::HostLine("stream 0")),
     // RemovedLimit a tuned model the display overshoots the limit of its set-point.
-    FaultCase::harmless(InjectedFault::HostLine("object -20"))
+    harmless(InjectedFault::HostLine("object -20"))
         .or_trips(&[Fault::DisplayCold])
         .at(&[FaultScene::Slew, FaultScene::Touched]),
-    FaultCase::trips(
+    trips(
         InjectedFault::HostLine("object 60"),
         &[Symptom::Dose],
         &[Fault::Dose, Fault::DisplayHot, Fault::UnlikeModel],
@@ -32,7 +32,7 @@ pub const FAULT_CASES: &[FaultCase] = &[
     .at(&[FaultScene::Slew])
     .watched(180.0),
     // By a tile that it is not, a display that is held goes beyond.
-    FaultCase::trips(
+    trips(
         InjectedFault::HostLine("set tile 0.5 0.02 0.3 0.5 0.02"),
         &[Symptom::WrongWay, Symptom::DisplayLimit],
         &[

@@ -5,6 +5,7 @@ use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::MachineFault as Fails;
 
 use super::electrics::LEG_REASONS;
+use crate::faults::fault_case::{harmless, restarts, trips};
 use crate::faults::{FaultCase, FaultScene, InjectedFault, Symptom};
 
 const fn processor(fault: Fails) -> InjectedFault {
@@ -65,15 +66,15 @@ const STACK_GUARD: u32 = 0x2000_0000;
 
 /// What the processor can do to a bridge.
 pub const FAULT_CASES: &[FaultCase] = &[
-    FaultCase::trips(processor(Fails::HungCore), NOW, &[Fault::TickLost]).at(&[FaultScene::Slew]),
-    FaultCase::trips(processor(Fails::HseStopped), NOW, &[Fault::Clock]).at(&[FaultScene::Slew]),
-    FaultCase::trips(
+    trips(processor(Fails::HungCore), NOW, &[Fault::TickLost]).at(&[FaultScene::Slew]),
+    trips(processor(Fails::HseStopped), NOW, &[Fault::Clock]).at(&[FaultScene::Slew]),
+    trips(
         processor(Fails::AdcStopped),
         NOW,
         &[Fault::TickLost, Fault::Sampling],
     )
     .at(&[FaultScene::Slew]),
-    FaultCase::trips(
+    trips(
         processor(Fails::DmaStopped {
             controller: 2,
             stream: 0,
@@ -83,19 +84,18 @@ pub const FAULT_CASES: &[FaultCase] = &[
     )
     .at(&[FaultScene::Slew]),
     // Off, the host arms soon after, which a device that has started anew obeys.
-    FaultCase::restarts(processor(Fails::BrownOut))
+    restarts(processor(Fails::BrownOut))
         .at(&[FaultScene::Slew])
         .never_at(&[FaultScene::Off]),
-    FaultCase::restarts(processor(Fails::PowerCycle { seed: 1 }))
+    restarts(processor(Fails::PowerCycle { seed: 1 }))
         .at(&[FaultScene::Slew])
         .never_at(&[FaultScene::Off]),
-    FaultCase::restarts(processor(Fails::ResetPin))
+    restarts(processor(Fails::ResetPin))
         .at(&[FaultScene::Slew])
         .never_at(&[FaultScene::Off]),
-    FaultCase::trips(processor(Fails::SoftwareReset), NOW, &[Fault::UnaskedReset])
-        .at(&[FaultScene::Slew]),
-    FaultCase::trips(processor(Fails::StackOverflow), NOW, LOST).at(&[FaultScene::Slew]),
-    FaultCase::trips(
+    trips(processor(Fails::SoftwareReset), NOW, &[Fault::UnaskedReset]).at(&[FaultScene::Slew]),
+    trips(processor(Fails::StackOverflow), NOW, LOST).at(&[FaultScene::Slew]),
+    trips(
         processor(Fails::RamBit {
             address: STACK_GUARD,
             bit: 0,
@@ -103,58 +103,58 @@ pub const FAULT_CASES: &[FaultCase] = &[
         NOW,
         &[Fault::Stack],
     ),
-    FaultCase::trips(core(CoreRegister::Pc, 20), NOW, LOST).at(&[FaultScene::Slew]),
-    FaultCase::trips(core(CoreRegister::Sp, 28), NOW, LOST),
-    FaultCase::harmless(core(CoreRegister::S(0), 30)),
+    trips(core(CoreRegister::Pc, 20), NOW, LOST).at(&[FaultScene::Slew]),
+    trips(core(CoreRegister::Sp, 28), NOW, LOST),
+    harmless(core(CoreRegister::S(0), 30)),
     // Main output off; output of leg A off; period; prescaler; enable line; comparison of leg A.
     // Main output and enable line are switched on anew, whatever they were, with the first current.
-    FaultCase::trips(flipped(TIM1 + 0x44, 15), DUTY, LEG_REASONS)
+    trips(flipped(TIM1 + 0x44, 15), DUTY, LEG_REASONS)
         .at(&[FaultScene::Slew])
         .never_at(&[FaultScene::Off]),
-    FaultCase::trips(flipped(TIM1 + 0x20, 0), DUTY, LEG_REASONS).at(&[FaultScene::Slew]),
-    FaultCase::trips(flipped(TIM1 + 0x2c, 10), SHARE, LEG_REASONS).at(&[FaultScene::Slew]),
-    FaultCase::harmless(flipped(TIM1 + 0x28, 0)),
-    FaultCase::trips(flipped(GPIOB_ODR, 10), DUTY, LEG_REASONS)
+    trips(flipped(TIM1 + 0x20, 0), DUTY, LEG_REASONS).at(&[FaultScene::Slew]),
+    trips(flipped(TIM1 + 0x2c, 10), SHARE, LEG_REASONS).at(&[FaultScene::Slew]),
+    harmless(flipped(TIM1 + 0x28, 0)),
+    trips(flipped(GPIOB_ODR, 10), DUTY, LEG_REASONS)
         .at(&[FaultScene::Slew])
         .never_at(&[FaultScene::Off]),
-    FaultCase::harmless(flipped(TIM1 + 0x34, 10)),
+    harmless(flipped(TIM1 + 0x34, 10)),
     // Scans that are no longer started, converted, stored or taken.
-    FaultCase::trips(flipped(TIM2, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
-    FaultCase::trips(
+    trips(flipped(TIM2, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
+    trips(
         flipped(ADC1 + 0x08, 0),
         NOW,
         &[Fault::TickLost, Fault::Sampling],
     ),
-    FaultCase::trips(
+    trips(
         flipped(DMA2_S0CR, 0),
         NOW,
         &[Fault::TickLost, Fault::Sampling],
     ),
-    FaultCase::trips(
+    trips(
         flipped(NVIC_ISER1, 24),
         NOW,
         &[Fault::TickLost, Fault::Sampling],
     ),
     // The host's task is no longer called.
-    FaultCase::trips(flipped(NVIC_ISER0, 6), ROLL_CALL, &[Fault::Watchdog]),
+    trips(flipped(NVIC_ISER0, 6), ROLL_CALL, &[Fault::Watchdog]),
     // Scans at another rate: 0.6 % slower and faster, 9 %, 3.7 times faster, 6.8, 24 and 48 times slower; half of it and less.
-    FaultCase::trips(flipped(TIM2_ARR, 5), NOW, RATE),
-    FaultCase::trips(flipped(TIM2_ARR, 2), SLOW_RATE, RATE),
-    FaultCase::trips(flipped(TIM2_ARR, 9), NOW, RATE).at(&[FaultScene::Warm]),
-    FaultCase::trips(flipped(TIM2_ARR, 12), NOW, RATE),
-    FaultCase::trips(flipped(TIM2_ARR, 15), NOW, RATE).at(&[FaultScene::Warm]),
-    FaultCase::trips(flipped(TIM2_ARR, 17), NOW, RATE),
-    FaultCase::trips(flipped(TIM2_ARR, 18), NOW, RATE),
-    FaultCase::trips(flipped(TIM2 + 0x28, 0), NOW, RATE).at(&[FaultScene::Warm]),
-    FaultCase::trips(flipped(TIM2 + 0x28, 4), NOW, RATE),
-    FaultCase::trips(flipped(TIM2 + 0x28, 15), NOW, RATE),
+    trips(flipped(TIM2_ARR, 5), NOW, RATE),
+    trips(flipped(TIM2_ARR, 2), SLOW_RATE, RATE),
+    trips(flipped(TIM2_ARR, 9), NOW, RATE).at(&[FaultScene::Warm]),
+    trips(flipped(TIM2_ARR, 12), NOW, RATE),
+    trips(flipped(TIM2_ARR, 15), NOW, RATE).at(&[FaultScene::Warm]),
+    trips(flipped(TIM2_ARR, 17), NOW, RATE),
+    trips(flipped(TIM2_ARR, 18), NOW, RATE),
+    trips(flipped(TIM2 + 0x28, 0), NOW, RATE).at(&[FaultScene::Warm]),
+    trips(flipped(TIM2 + 0x28, 4), NOW, RATE),
+    trips(flipped(TIM2 + 0x28, 15), NOW, RATE),
     // What it is measured against: stopped, at an eighth, in shorter rounds.
-    FaultCase::trips(flipped(SYST_CSR, 0), NOW, RATE),
-    FaultCase::trips(flipped(SYST_CSR, 2), NOW, RATE),
-    FaultCase::trips(flipped(SYST_CSR + 4, 20), NEXT_ROUND, RATE),
+    trips(flipped(SYST_CSR, 0), NOW, RATE),
+    trips(flipped(SYST_CSR, 2), NOW, RATE),
+    trips(flipped(SYST_CSR + 4, 20), NEXT_ROUND, RATE),
     // Clocks of both, and of all else: half, the internal oscillator, timers at a quarter and at twice their rate.
-    FaultCase::trips(flipped(RCC_CFGR, 7), NOW, CLOCK).at(&[FaultScene::Warm]),
-    FaultCase::trips(flipped(RCC_CFGR, 1), NOW, CLOCK),
-    FaultCase::trips(flipped(RCC_CFGR, 11), NOW, CLOCK).at(&[FaultScene::Warm]),
-    FaultCase::trips(flipped(RCC_DCKCFGR, 24), NOW, RATE).at(&[FaultScene::Warm]),
+    trips(flipped(RCC_CFGR, 7), NOW, CLOCK).at(&[FaultScene::Warm]),
+    trips(flipped(RCC_CFGR, 1), NOW, CLOCK),
+    trips(flipped(RCC_CFGR, 11), NOW, CLOCK).at(&[FaultScene::Warm]),
+    trips(flipped(RCC_DCKCFGR, 24), NOW, RATE).at(&[FaultScene::Warm]),
 ];

@@ -4,13 +4,13 @@ use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 use thermal_sim::scene::Sensor::{Check, Display, Room, Sink, Skin};
 
-use crate::faults::fault_case::{broken, swapped, thermistor, valued};
+use crate::faults::fault_case::{broken, harmless, swapped, thermistor, trips, valued};
 use crate::faults::{FaultCase, FaultScene, InjectedFault, Symptom};
 
 const NOW: &[Symptom] = &[Symptom::Injection];
 
 const fn wire(kind: Kind, of: thermal_sim::scene::Sensor, reasons: &'static [Fault]) -> FaultCase {
-    FaultCase::trips(thermistor(kind, of, 0.0), NOW, reasons)
+    trips(thermistor(kind, of, 0.0), NOW, reasons)
 }
 
 /// Open, shorted, and stuck in the converter: a reading that repeats itself.
@@ -89,37 +89,37 @@ const fn loose(of: thermal_sim::scene::Sensor) -> InjectedFault {
 /// Readings that are wrong but possible. A drift of less than 3 K, or of skin and room by less than what tells them
 /// apart, cannot be told from another finger or another room, and moves the display by no more than itself.
 pub const READINGS: &[FaultCase] = &[
-    FaultCase::trips(drift(Display, 5.0), APART, DRIFTED),
-    FaultCase::trips(drift(Display, -5.0), APART, DRIFTED).at(&[FaultScene::Warm]),
-    FaultCase::trips(drift(Check, 5.0), APART, CHECK_DRIFTED),
-    FaultCase::trips(drift(Check, -5.0), APART, CHECK_DRIFTED),
-    FaultCase::trips(drift(Display, 2.9), LIMIT, BEYOND).at(&[FaultScene::Cold]),
-    FaultCase::trips(drift(Display, -2.9), LIMIT, BEYOND).at(&[FaultScene::Warm]),
-    FaultCase::trips(drift(Sink, 5.0), &[Symptom::SinkLimit], &[Fault::SinkHot]),
-    FaultCase::harmless(drift(Sink, -5.0)),
-    FaultCase::harmless(drift(Skin, 5.0)),
-    FaultCase::harmless(drift(Skin, -3.0)),
-    FaultCase::trips(drift(Skin, -20.0), ROOM, ROOM_ABOVE),
-    FaultCase::harmless(drift(Room, 5.0)),
-    FaultCase::harmless(drift(Room, -5.0)),
-    FaultCase::trips(drift(Room, 20.0), ROOM, ROOM_ABOVE),
-    FaultCase::trips(offset(Display, 5.0), STEP, DISPLAY_STEP),
-    FaultCase::trips(offset(Display, -5.0), STEP, DISPLAY_STEP).at(&[FaultScene::Warm]),
-    FaultCase::trips(offset(Display, 1.0), STEP, DISPLAY_STEP),
-    FaultCase::trips(offset(Check, 5.0), STEP, CHECK_STEP),
-    FaultCase::trips(offset(Check, -5.0), STEP, CHECK_STEP),
-    FaultCase::trips(offset(Sink, 5.0), STEP, &[Fault::SinkJump, Fault::SinkHot]),
-    FaultCase::trips(offset(Sink, -5.0), STEP, &[Fault::SinkJump]),
+    trips(drift(Display, 5.0), APART, DRIFTED),
+    trips(drift(Display, -5.0), APART, DRIFTED).at(&[FaultScene::Warm]),
+    trips(drift(Check, 5.0), APART, CHECK_DRIFTED),
+    trips(drift(Check, -5.0), APART, CHECK_DRIFTED),
+    trips(drift(Display, 2.9), LIMIT, BEYOND).at(&[FaultScene::Cold]),
+    trips(drift(Display, -2.9), LIMIT, BEYOND).at(&[FaultScene::Warm]),
+    trips(drift(Sink, 5.0), &[Symptom::SinkLimit], &[Fault::SinkHot]),
+    harmless(drift(Sink, -5.0)),
+    harmless(drift(Skin, 5.0)),
+    harmless(drift(Skin, -3.0)),
+    trips(drift(Skin, -20.0), ROOM, ROOM_ABOVE),
+    harmless(drift(Room, 5.0)),
+    harmless(drift(Room, -5.0)),
+    trips(drift(Room, 20.0), ROOM, ROOM_ABOVE),
+    trips(offset(Display, 5.0), STEP, DISPLAY_STEP),
+    trips(offset(Display, -5.0), STEP, DISPLAY_STEP).at(&[FaultScene::Warm]),
+    trips(offset(Display, 1.0), STEP, DISPLAY_STEP),
+    trips(offset(Check, 5.0), STEP, CHECK_STEP),
+    trips(offset(Check, -5.0), STEP, CHECK_STEP),
+    trips(offset(Sink, 5.0), STEP, &[Fault::SinkJump, Fault::SinkHot]),
+    trips(offset(Sink, -5.0), STEP, &[Fault::SinkJump]),
     // The heat of a finger of 54 °C is none that the display sees.
-    FaultCase::trips(
+    trips(
         offset(Skin, 20.0),
         &[Symptom::Dose],
         &[Fault::Dose, Fault::UnlikeModel],
     )
     .at(&[FaultScene::Touched])
     .watched(180.0),
-    FaultCase::trips(offset(Skin, -20.0), ROOM, ROOM_ABOVE),
-    FaultCase::trips(
+    trips(offset(Skin, -20.0), ROOM, ROOM_ABOVE),
+    trips(
         loose(Display),
         &[
             Symptom::DisplaySensorsDiffer,
@@ -129,10 +129,10 @@ pub const READINGS: &[FaultCase] = &[
         DRIFTED,
     )
     .at(&[FaultScene::Slew, FaultScene::Replace]),
-    FaultCase::trips(loose(Check), APART, LOOSE).at(&[FaultScene::Slew, FaultScene::Replace]),
-    FaultCase::harmless(loose(Sink)).at(&[FaultScene::Cold]),
-    FaultCase::harmless(loose(Skin)),
-    FaultCase::harmless(loose(Room)),
+    trips(loose(Check), APART, LOOSE).at(&[FaultScene::Slew, FaultScene::Replace]),
+    harmless(loose(Sink)).at(&[FaultScene::Cold]),
+    harmless(loose(Skin)),
+    harmless(loose(Room)),
 ];
 
 /// What a swap shows depends on how far apart both are when it happens, and on what the display does then.
@@ -167,47 +167,44 @@ const NO_STEP: &[Symptom] = &[Symptom::ReadingJump, Symptom::RoomAboveSkin];
 
 /// Two thermistors in each other's place.
 pub const SWAPPED: &[FaultCase] = &[
-    FaultCase::harmless(swapped(Display, Check)),
-    FaultCase::trips(swapped(Display, Sink), SWAP, ON_SINK)
-        .at(&[FaultScene::Off, FaultScene::Slew]),
-    FaultCase::trips(swapped(Display, Skin), SWAP, ELSEWHERE)
-        .at(&[FaultScene::Off, FaultScene::Touched]),
-    FaultCase::trips(swapped(Display, Room), SWAP, ELSEWHERE)
-        .at(&[FaultScene::Off, FaultScene::Slew]),
-    FaultCase::trips(swapped(Check, Sink), SWAP, ON_SINK).at(&[FaultScene::Off]),
-    FaultCase::trips(swapped(Check, Skin), SWAP, ELSEWHERE).at(&[FaultScene::Off]),
-    FaultCase::trips(swapped(Check, Room), SWAP, ELSEWHERE).at(&[FaultScene::Off]),
-    FaultCase::trips(
+    harmless(swapped(Display, Check)),
+    trips(swapped(Display, Sink), SWAP, ON_SINK).at(&[FaultScene::Off, FaultScene::Slew]),
+    trips(swapped(Display, Skin), SWAP, ELSEWHERE).at(&[FaultScene::Off, FaultScene::Touched]),
+    trips(swapped(Display, Room), SWAP, ELSEWHERE).at(&[FaultScene::Off, FaultScene::Slew]),
+    trips(swapped(Check, Sink), SWAP, ON_SINK).at(&[FaultScene::Off]),
+    trips(swapped(Check, Skin), SWAP, ELSEWHERE).at(&[FaultScene::Off]),
+    trips(swapped(Check, Room), SWAP, ELSEWHERE).at(&[FaultScene::Off]),
+    trips(
         swapped(Sink, Skin),
         NO_STEP,
         &[Fault::SinkJump, Fault::RoomAboveSkin],
     ),
-    FaultCase::trips(
+    trips(
         swapped(Sink, Room),
         NO_STEP,
         &[Fault::SinkJump, Fault::RoomAboveSkin],
     ),
-    FaultCase::trips(swapped(Skin, Room), NO_STEP, &[Fault::RoomAboveSkin]),
+    trips(swapped(Skin, Room), NO_STEP, &[Fault::RoomAboveSkin]),
 ];
 
 /// The rest of what is converted.
 pub const OTHERS: &[FaultCase] = &[
-    FaultCase::trips(broken(Kind::ReferenceOff), NOW, &[Fault::Excitation]),
+    trips(broken(Kind::ReferenceOff), NOW, &[Fault::Excitation]),
     // The current's reading stands still, too.
-    FaultCase::trips(
+    trips(
         broken(Kind::AdcStuck),
         NOW,
         &[Fault::SamplesFrozen, Fault::CurrentHigh, Fault::CurrentLow],
     )
     .at(&[FaultScene::Slew]),
-    FaultCase::trips(broken(Kind::ForceOpen), NOW, &[Fault::ForceSensor]),
+    trips(broken(Kind::ForceOpen), NOW, &[Fault::ForceSensor]),
     // A finger that is not there gives no heat; nearly all of the range, more with a sensor of much gain.
-    FaultCase::harmless(valued(Kind::ForceOffset, 10.0))
+    harmless(valued(Kind::ForceOffset, 10.0))
         .or_trips(&[Fault::UnlikeModel, Fault::ForceSensor])
         .at(&[FaultScene::Cold, FaultScene::Preset, FaultScene::Warm]),
-    FaultCase::trips(valued(Kind::ForceOffset, -10.0), NOW, &[Fault::ForceSensor]),
-    FaultCase::harmless(valued(Kind::ForceOffset, 1.0)).at(&[FaultScene::Preset]),
-    FaultCase::harmless(valued(Kind::ForceOffset, -0.05)),
+    trips(valued(Kind::ForceOffset, -10.0), NOW, &[Fault::ForceSensor]),
+    harmless(valued(Kind::ForceOffset, 1.0)).at(&[FaultScene::Preset]),
+    harmless(valued(Kind::ForceOffset, -0.05)),
     // A finger that it hides warms a display whose current is at its limit.
-    FaultCase::harmless(broken(Kind::ForceStuck)).or_trips(&[Fault::Polarity]),
+    harmless(broken(Kind::ForceStuck)).or_trips(&[Fault::Polarity]),
 ];

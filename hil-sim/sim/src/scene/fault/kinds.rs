@@ -1,25 +1,24 @@
-//! The kinds of faults, and what a scene says of each.
+//! Kinds of faults and the keys that a scene may give for each.
 
 named_enum! {
-    /// What can break.
+    /// Kind of a fault of plant, converter or host.
     #[derive(Clone, Copy, Debug, PartialEq, Eq)]
     pub enum FaultKind {
         /// A thermistor's wire is open: its pin is at the reference and reads cold.
         ThermistorOpen = "thermistor-open",
         /// A thermistor is shorted: its pin is at ground and reads hot.
         ThermistorShort = "thermistor-short",
-        /// A thermistor reads more and more too much, by [`DRIFT_K_S`](super::DRIFT_K_S) up to the value.
+        /// The reading of a thermistor drifts by [`DRIFT_K_S`](super::DRIFT_K_S) up to the value.
         ThermistorDrift = "thermistor-drift",
-        /// A thermistor reads too much by the value at once.
+        /// The reading of a thermistor is too high by the value, at once.
         ThermistorOffset = "thermistor-offset",
-        /// A thermistor hangs by its leads: the value is by how much it lags more, sees more of the room and warms itself
-        /// more.
+        /// A thermistor hangs by its leads: its lag, its coupling to the room and its self-heating grow by the value.
         ThermistorDetached = "thermistor-detached",
-        /// The converter repeats its last code of a thermistor's channel. The pin is sound, so the comparator is too.
+        /// The converter repeats its last code of a thermistor's channel. The pin itself is unaffected, and so is the comparator.
         ThermistorStuck = "thermistor-stuck",
-        /// Two thermistors are plugged in where the other one should be.
+        /// Two thermistors are exchanged.
         SensorsSwapped = "sensors-swapped",
-        /// Nothing feeds the thermistors' dividers: all five read as shorted.
+        /// The dividers of the thermistors have no supply: all five read as shorted.
         ReferenceOff = "reference-off",
         /// Every channel repeats its last code.
         AdcStuck = "adc-stuck",
@@ -27,7 +26,7 @@ named_enum! {
         ForceOpen = "force-open",
         /// The force sensor no longer moves; the converter's noise stays.
         ForceStuck = "force-stuck",
-        /// The force sensor reads too much by the value.
+        /// The reading of the force sensor is too high by the value.
         ForceOffset = "force-offset",
         /// Leg a of the bridge stays at the supply; the enable line still takes both legs off.
         BridgeStuckHigh = "bridge-stuck-high",
@@ -39,11 +38,11 @@ named_enum! {
         LegOpen = "leg-open",
         /// Output a is shorted to ground: the driver trips when it is driven high.
         BridgeShorted = "bridge-shorted",
-        /// The driver stays enabled: it drives whatever its PWM says. Latent, as PWM ends with enable.
+        /// The driver stays enabled and follows its PWM inputs. Latent, as PWM ends with enable.
         BridgeEnableStuck = "bridge-enable-stuck",
         /// The module's wires are swapped.
         PolaritySwapped = "polarity-swapped",
-        /// The module keeps the value's share of its Seebeck effect: legs that have aged, or that solder bridges.
+        /// The Seebeck coefficient of the module falls to the value times the nominal one: legs aged or bridged by solder.
         ModuleWeak = "module-weak",
         /// nFAULT never goes low. Latent; the comparator's test shows it.
         FaultPinDead = "fault-pin-dead",
@@ -57,37 +56,37 @@ named_enum! {
         SupplyLow = "supply-low",
         /// The bridge supply rises to the value.
         SupplyHigh = "supply-high",
-        /// The sink gives less heat to what cools it, by a factor.
+        /// The thermal resistance between sink and coolant rises by the factor.
         FanOff = "fan-off",
-        /// What cools the sink has the value for its temperature.
+        /// The coolant of the sink has the temperature of the value.
         ChillerOff = "chiller-off",
-        /// Something strong holds the sink at the value.
+        /// The sink is held at the value.
         SinkHot = "sink-hot",
-        /// The host sends bytes that are no line, once.
+        /// The host sends invalid bytes once.
         HostGarbage = "host-garbage",
         /// The host sends nothing.
         HostSilent = "host-silent",
-        /// The host sends as many lines as fit.
+        /// The host sends as many lines as the serial line carries.
         HostFlood = "host-flood",
     }
 }
 
-/// The number that a kind takes.
+/// Unit, range and default of a kind's value.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Value {
-    /// Its unit; 1 is a pure number.
+pub struct ValueRange {
+    /// Unit; 1 for a pure number.
     pub unit: &'static str,
-    /// Least that is allowed.
+    /// Smallest allowed value.
     pub min: f64,
-    /// Most that is allowed.
+    /// Largest allowed value.
     pub max: f64,
-    /// What a scene means that gives none; it must give one if this is none.
+    /// Default; without one, the scene must give a value.
     pub default: Option<f64>,
 }
 
-/// A value that a scene must give.
-const fn given(unit: &'static str, min: f64, max: f64) -> Option<Value> {
-    Some(Value {
+/// A value that the scene must give.
+const fn required(unit: &'static str, min: f64, max: f64) -> Option<ValueRange> {
+    Some(ValueRange {
         unit,
         min,
         max,
@@ -95,9 +94,9 @@ const fn given(unit: &'static str, min: f64, max: f64) -> Option<Value> {
     })
 }
 
-/// A pure factor of 1 to 1000.
-const fn factor(default: f64) -> Option<Value> {
-    Some(Value {
+/// A factor from 1 to 1000 with a default.
+const fn factor(default: f64) -> Option<ValueRange> {
+    Some(ValueRange {
         unit: "1",
         min: 1.0,
         max: 1000.0,
@@ -106,25 +105,25 @@ const fn factor(default: f64) -> Option<Value> {
 }
 
 impl FaultKind {
-    /// The value that it takes, if any. Supplies are those that the class of driver works on, 4.5 to 38 V.
+    /// The value of the kind, if it has one. The supply range is that of this class of drivers, 4.5 to 38 V.
     #[must_use]
-    pub const fn value(self) -> Option<Value> {
+    pub const fn value(self) -> Option<ValueRange> {
         match self {
-            Self::ThermistorDrift | Self::ThermistorOffset => given("K", -60.0, 60.0),
+            Self::ThermistorDrift | Self::ThermistorOffset => required("K", -60.0, 60.0),
             Self::ThermistorDetached => factor(20.0),
-            Self::ModuleWeak => given("1", 0.0, 1.0),
-            Self::ForceOffset => given("N", -10.0, 10.0),
-            Self::MirrorStuck => given("A", 0.0, 10.0),
-            Self::SupplyLow => given("V", 4.5, 12.0),
-            Self::SupplyHigh => given("V", 12.0, 38.0),
+            Self::ModuleWeak => required("1", 0.0, 1.0),
+            Self::ForceOffset => required("N", -10.0, 10.0),
+            Self::MirrorStuck => required("A", 0.0, 10.0),
+            Self::SupplyLow => required("V", 4.5, 12.0),
+            Self::SupplyHigh => required("V", 12.0, 38.0),
             Self::FanOff => factor(10.0),
-            Self::ChillerOff => given("°C", 5.0, 60.0),
-            Self::SinkHot => given("°C", 0.0, 90.0),
+            Self::ChillerOff => required("°C", 5.0, 60.0),
+            Self::SinkHot => required("°C", 0.0, 90.0),
             _ => None,
         }
     }
 
-    /// It breaks one thermistor, which a scene may name.
+    /// Whether it affects one thermistor, which the scene may name.
     #[must_use]
     pub const fn has_sensor(self) -> bool {
         matches!(
@@ -139,13 +138,13 @@ impl FaultKind {
         )
     }
 
-    /// It confuses two thermistors, of which a scene must name the second.
+    /// Whether it exchanges two thermistors, of which the scene must name the second.
     #[must_use]
     pub const fn needs_second_sensor(self) -> bool {
         matches!(self, Self::SensorsSwapped)
     }
 
-    /// It lasts, so that it can pass.
+    /// Whether it has a duration, so that the scene may give its end.
     #[must_use]
     pub const fn has_duration(self) -> bool {
         !matches!(self, Self::HostGarbage)

@@ -1,26 +1,26 @@
-//! From the tables of a scene to its faults, or to what is wrong with them.
+//! Reads the faults of a scene, or reports what is wrong with them.
 
 use toml::Spanned;
 
 use super::processor::{self, ProcessorKind};
-use super::{ActiveFault, Fault, FaultKind, Sensor};
+use super::{ActiveFault, FaultKind, ScheduledFault, Sensor};
 use crate::processor::Injection;
 use crate::scene::file;
 use crate::scene::source::{SceneError, Source};
 
-/// Shortest time for which something is broken, s: a step of the plant.
+/// Shortest duration of a fault, s: one step of the plant.
 const SHORTEST_S: f64 = 1e-3;
 
-/// The faults of a scene, and those of its processor; `seed` is the scene's.
+/// The faults of a scene and of its processor; `seed` is that of the scene.
 pub(in crate::scene) fn faults(
     source: &Source<'_>,
     rows: &[Spanned<file::Fault>],
     duration_s: f64,
     seed: u64,
-) -> Result<(Vec<Fault>, Vec<Injection>), SceneError> {
+) -> Result<(Vec<ScheduledFault>, Vec<Injection>), SceneError> {
     let (mut faults, mut injections) = (Vec::new(), Vec::new());
     for row in rows {
-        match ProcessorKind::of(row.get_ref().kind.get_ref()) {
+        match ProcessorKind::from_name(row.get_ref().kind.get_ref()) {
             Some(kind) => {
                 injections.push(processor::injection(source, row, kind, duration_s, seed)?)
             }
@@ -37,7 +37,7 @@ fn fault(
     source: &Source<'_>,
     row: &Spanned<file::Fault>,
     duration_s: f64,
-) -> Result<Fault, SceneError> {
+) -> Result<ScheduledFault, SceneError> {
     let file::Fault {
         kind: word,
         t_s,
@@ -51,7 +51,7 @@ fn fault(
     let t_s = source.time("fault.t_s", t_s, duration_s)?;
     let until_s = match until_s {
         Some(until_s) if !kind.has_duration() => {
-            return Err(foreign(source, "until_s", until_s, kind, |kind| {
+            return Err(meaningless_key(source, "until_s", until_s, kind, |kind| {
                 kind.has_duration()
             }));
         }
@@ -59,12 +59,12 @@ fn fault(
         None => f64::INFINITY,
     };
     if let Some(sensor) = sensor.as_ref().filter(|_| !kind.has_sensor()) {
-        return Err(foreign(source, "sensor", sensor, kind, |kind| {
+        return Err(meaningless_key(source, "sensor", sensor, kind, |kind| {
             kind.has_sensor()
         }));
     }
     if let Some(with) = with.as_ref().filter(|_| !kind.needs_second_sensor()) {
-        return Err(foreign(source, "with", with, kind, |kind| {
+        return Err(meaningless_key(source, "with", with, kind, |kind| {
             kind.needs_second_sensor()
         }));
     }
@@ -87,14 +87,14 @@ fn fault(
         }
         None => sensor,
     };
-    let broken = ActiveFault {
+    let fault = ActiveFault {
         kind,
         sensor,
         with,
-        value: amount(source, row, kind, value.as_ref())?,
+        value: fault_value(source, row, kind, value.as_ref())?,
     };
-    Ok(Fault {
-        broken,
+    Ok(ScheduledFault {
+        fault,
         t_s,
         until_s,
     })
@@ -119,8 +119,8 @@ fn kind(source: &Source<'_>, word: &Spanned<String>) -> Result<FaultKind, SceneE
     })
 }
 
-/// The value, in the range of its kind. A kind without one takes 0 for none.
-fn amount(
+/// The value, within the range of its kind. For a kind without a value, 0 counts as none.
+fn fault_value(
     source: &Source<'_>,
     row: &Spanned<file::Fault>,
     kind: FaultKind,
@@ -157,8 +157,8 @@ fn amount(
     }
 }
 
-/// A key that has no meaning for a kind.
-fn foreign<T>(
+/// The error for a key that has no meaning for a kind; it lists the kinds for which `has_it` is true.
+fn meaningless_key<T>(
     source: &Source<'_>,
     key: &str,
     place: &Spanned<T>,

@@ -15,7 +15,7 @@ fn tuning(world: World, then: impl FnOnce(&mut CommissioningBench<'_, NativeEngi
     let mut bench = bench(&mut engine, &[]);
     bench.wait(5).expect("it runs");
     bench.arm().expect("armed");
-    bench.tell("tune").expect("tuning");
+    bench.command("tune").expect("tuning");
     then(&mut bench);
 }
 
@@ -24,7 +24,7 @@ fn in_use() -> World {
 }
 
 fn ask(bench: &mut CommissioningBench<'_, NativeEngine>, line: &str) -> String {
-    bench.ask(line).expect("an answer")
+    bench.query(line).expect("an answer")
 }
 
 /// Ten times, from settling to the last pulse.
@@ -73,7 +73,7 @@ fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
         // Even when the fault is gone, nothing of the experiment is used.
         bench.world().set_force_and_faults(0.0, std::iter::empty());
         bench.wait(5).expect("it runs");
-        bench.tell("clear").expect("cleared");
+        bench.command("clear").expect("cleared");
         assert_eq!(
             ask(bench, "tune result"),
             "err tune was ended: another command or a fault ended it"
@@ -104,7 +104,7 @@ fn other_commands_end_tuning() {
     ] {
         tuning(in_use(), |bench| {
             bench.wait(3000).expect("it runs");
-            bench.tell(line).expect("obeyed");
+            bench.command(line).expect("obeyed");
             bench.wait(5).expect("it runs");
             let answer = ask(bench, "tune result");
             assert!(
@@ -183,7 +183,7 @@ fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
     tuning(in_use(), |bench| {
         bench.wait(40_000).expect("it runs");
         for line in ["material copper", "object 24", "start"] {
-            bench.tell(line).expect("obeyed");
+            bench.command(line).expect("obeyed");
         }
         bench.wait(3000).expect("it runs");
         let told = ask(bench, "state");
@@ -205,13 +205,13 @@ fn corrections_cannot_hide_a_hot_display() {
     bench.wait(5).expect("it runs");
     for sensor in ["display", "check"] {
         let worst = format!("set correction {sensor} -1.2 -0.05 -0.002");
-        bench.tell(&worst).expect("within limits");
+        bench.command(&worst).expect("within limits");
         assert!(
             ask(&mut bench, &format!("set correction {sensor} -1.3 0 0")).starts_with("err offset")
         );
     }
     bench.arm().expect("armed");
-    bench.tell("hold 42").expect("held");
+    bench.command("hold 42").expect("held");
     bench.wait(30_000).expect("it runs");
     assert!(ask(&mut bench, "state").starts_with("ok state=armed"));
     let display_c = bench.world().plant().display_c();

@@ -29,14 +29,14 @@ fn moves(
     let gain: f64 = gain.parse().expect("a gain");
     // The law's gain is the reciprocal of the tile's.
     let line = format!("{set} {tile} {:.6} {}", gain / times, rest.join(" "));
-    bench.tell("law pi").expect("obeyed");
+    bench.command("law pi").expect("obeyed");
     bench.arm().expect("armed");
-    bench.tell("hold 26").expect("obeyed");
+    bench.command("hold 26").expect("obeyed");
     bench.wait(14_000).expect("it runs");
-    bench.tell(&line).expect("obeyed");
+    bench.command(&line).expect("obeyed");
     bench.wait(3000).expect("it runs");
     // So wild an oscillation that both thermistors part is one.
-    let answer = bench.ask("hold 26.2").expect("an answer");
+    let answer = bench.query("hold 26.2").expect("an answer");
     if answer.starts_with("err tripped by displays-apart") {
         return f64::INFINITY;
     }
@@ -59,7 +59,9 @@ fn the_loop_oscillates_beyond_its_gain_margin_and_not_within() {
         let settings = settings_for_device(plants.params(), ROOM_C, draw).expect("settings");
         let mut engine = NativeEngine::new(plants.in_use().expect("a plant"));
         let line = "margins";
-        let answer = bench(&mut engine, &settings).ask(line).expect("an answer");
+        let answer = bench(&mut engine, &settings)
+            .query(line)
+            .expect("an answer");
         let IdentifiedTile { gain_margin, .. } =
             IdentifiedTile::parse(line, &answer).expect("margins");
         let within = moves(&plants, &settings, WITHIN * gain_margin);

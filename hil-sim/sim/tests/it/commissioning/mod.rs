@@ -37,7 +37,7 @@ fn bench<'a>(
 ) -> CommissioningBench<'a, NativeEngine> {
     let mut bench = CommissioningBench::new(engine, PERFECT, 1);
     for line in settings {
-        bench.tell(line).expect("its own settings");
+        bench.command(line).expect("its own settings");
     }
     bench
 }
@@ -49,17 +49,17 @@ fn mean(
     ms: u64,
     truth: impl Fn(&World) -> f64,
 ) -> (f64, f64) {
-    bench.tell("stream 1").expect("telemetry");
+    bench.command("stream 1").expect("telemetry");
     let (mut read, mut true_c) = (Vec::new(), 0.0);
     for _ in 0..ms {
-        let lines = bench.millisecond(None).expect("the device runs");
+        let lines = bench.run_1_ms(None).expect("the device runs");
         true_c += truth(bench.world());
         read.extend(lines.iter().filter_map(|line| {
             let word = line.strip_prefix("T ")?.split(' ').nth(field - 1)?;
             word.parse::<f64>().ok()
         }));
     }
-    bench.tell("stream 0").expect("no telemetry");
+    bench.command("stream 0").expect("no telemetry");
     assert!(read.len() as u64 > ms / 2, "telemetry of every tick");
     (
         read.iter().sum::<f64>() / read.len() as f64,

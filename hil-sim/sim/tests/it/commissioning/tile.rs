@@ -34,7 +34,7 @@ fn plate_answers_sines_as_its_heat_capacity_says() {
         tile.plate_m2() * tile.ceramic_m * tile.ceramic_j_m3k + tile.tabs_j_k + tile.legs_j_k / 3.0;
     let leak_1_s = (tile.conductance_w_k() + tile.film_w_m2k * tile.plate_m2()) / plate_j_k;
     for w in [0.7, 1.5, 3.0] {
-        let response = FrequencyResponse::of(&plants, w).expect("a plant");
+        let response = FrequencyResponse::measure(&plants, w).expect("a plant");
         let expected =
             tile.seebeck_v_k() * (24.0 + 273.15) / plate_j_k / response.w.hypot(leak_1_s);
         println!("{response:?}, expected {expected:.4}");
