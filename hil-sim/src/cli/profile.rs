@@ -88,7 +88,7 @@ fn owner(symbols: &Loader, address: u32) -> String {
                 continue;
             };
             let name = format!("{:#}", rustc_demangle::demangle(&name));
-            if name.contains("thermal_display::") || name.contains("contact_model::") {
+            if name.contains("thermal_") || name.contains("contact_model::") {
                 return name;
             }
             innermost.get_or_insert(name);

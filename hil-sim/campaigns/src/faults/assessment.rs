@@ -1,4 +1,4 @@
-//! What came of a run, against what must be.
+//! Assessment of a run against the limits.
 
 use serde::Serialize;
 use thermal_sim::metrics::{Extremes, Figures};
@@ -8,50 +8,50 @@ use thermal_sim::trace::TraceRow;
 
 use super::{ExpectedReaction, FaultCase, InjectionPoint};
 
-/// Range of the skin, °C: pain begins at its ends.
+/// Allowed skin temperature, °C: between the thresholds of pain.
 const SKIN_C: std::ops::RangeInclusive<f64> = 13.0..=45.0;
-/// Most of the dose, CEM43 in minutes.
+/// Limit of the dose, CEM43 in minutes.
 const DOSE_MIN: f64 = 1.0;
-/// Longest time from detectable to safe, ms.
+/// Longest allowed time from the first symptom to zero current, ms.
 const SAFE_MS: f64 = 50.0;
-/// Decimals of a moment in s, and of times from it on in ms: of faults, which come at a tick, and of those that do not.
+/// Decimals of the time of a fault in s and of times after it in ms, for faults at a tick and for bit flips between ticks.
 pub(super) const MILLISECONDS: (usize, usize) = (3, 0);
 pub(super) const MICROSECONDS: (usize, usize) = (6, 1);
-/// Current that is none, A.
+/// Magnitude up to which a current counts as zero, A.
 const NONE_A: f64 = 1e-6;
 
 named_enum! {
-    /// What a run did that it must not.
+    /// A limit that a run broke.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum Breach {
         /// The run ended with something that is not modelled.
         Ended = "ended",
-        /// It tripped before the fault.
+        /// The device tripped before the fault.
         Early = "early",
-        /// The skin left 13 to 45 °C.
+        /// The skin temperature left the range of 13 to 45 °C.
         Skin = "skin",
-        /// A minute of CEM43 or more.
+        /// The dose reached one minute of CEM43.
         Dose = "dose",
-        /// Detectable, but current flowed later than 50 ms after that.
+        /// Current flowed more than 50 ms after the first symptom.
         Late = "late",
-        /// Another reason than a right one, or none.
+        /// The device reported a wrong trip cause, or none.
         Reason = "reason",
     }
 }
 
-/// What came of a run. Times count from the fault on, ms.
+/// Result of a run. Times count from the fault, ms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RunAssessment {
-    /// When the first sign was reached.
+    /// Time of the first symptom.
     pub detectable_ms: Option<f64>,
-    /// When the device first said that it is tripped, or was reset.
+    /// Time of the first trip or reset.
     pub detected_ms: Option<f64>,
-    /// From when on no current flowed, if it stayed so.
+    /// Time after which no current flowed.
     pub safe_ms: Option<f64>,
-    /// From the first sign to that.
+    /// Time from the first symptom to zero current.
     pub took_ms: Option<f64>,
-    /// What the device says in the end: its fault, `off` if it has restarted without one, or its state.
+    /// State of the device at the end: its trip cause, `off` after a restart without a fault, or its state.
     pub reason: String,
     /// Skin on the display, °C.
     pub skin_c: Extremes,
@@ -59,14 +59,14 @@ pub struct RunAssessment {
     pub cem43_min: f64,
     /// Display, °C.
     pub display_c: Extremes,
-    /// What must not be.
+    /// Limits that the run broke.
     pub breaches: Vec<Breach>,
     /// Why the run ended early.
     pub ended: Option<String>,
 }
 
 impl RunAssessment {
-    /// A run that did not come to its end.
+    /// The assessment of a run that ended early.
     pub(super) fn ended(error: &anyhow::Error) -> Self {
         let unknown = Extremes {
             min: f64::NAN,
@@ -86,13 +86,13 @@ impl RunAssessment {
         }
     }
 
-    /// What it did that it must not, in words.
+    /// Names of the broken limits.
     pub(super) fn names(&self) -> String {
         let names: Vec<_> = self.breaches.iter().map(|breach| breach.name()).collect();
         names.join(", ")
     }
 
-    /// The figures of a run to its end, of a fault at a place and a time, s.
+    /// The figures of a completed run as text, with the scene and the time of the fault, s.
     pub(super) fn line(&self, place: &str, t_s: f64, (of_s, of_ms): (usize, usize)) -> String {
         let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.of_ms$} ms"));
         format!(
@@ -111,34 +111,36 @@ impl RunAssessment {
         )
     }
 
-    /// Judges a run; `sound` are the rows of the same without the fault, if a sign needs them.
-    pub(super) fn of(
+    /// Assesses a run; `fault_free` are the rows of the same scene without the fault, if a symptom needs them.
+    pub(super) fn new(
         fault_case: &FaultCase,
-        moment: InjectionPoint,
+        point: InjectionPoint,
         outcome: &Outcome,
         figures: &Figures,
-        sound: &[TraceRow],
+        fault_free: &[TraceRow],
     ) -> Self {
         let rows = outcome.trace.rows();
-        let t_s = moment.t_s;
-        // The fault is there from the first boundary at or after its time on.
+        let t_s = point.t_s;
+        // The fault is present from the first boundary at or after its time.
         let from = rows.partition_point(|row| row.t_s < t_s - 1e-9);
         let symptoms = fault_case.symptoms.iter();
         let detectable_s = symptoms
-            .filter_map(|sign| sign.reached_s(rows, sound, from, moment.place.tested_from_s()))
+            .filter_map(|symptom| {
+                symptom.onset_s(rows, fault_free, from, point.scene.tested_from_s())
+            })
             .min_by(f64::total_cmp);
-        let before = moment.place.has_tripped_before().map(|fault| fault.name());
+        let before = point.scene.has_tripped_before().map(|fault| fault.name());
         let detected_s = detected(outcome, from, t_s, before);
         let safe_s = safe(rows);
         let ms = |at_s: f64| (at_s - t_s) * 1e3;
-        let end = End::of(outcome, t_s);
+        let end = FinalAnswers::new(outcome, t_s);
         let mut assessment = Self {
             detectable_ms: detectable_s.map(ms),
             detected_ms: detected_s.map(ms),
             safe_ms: safe_s.map(ms),
             took_ms: detectable_s
                 .zip(safe_s)
-                .map(|(sign_s, safe_s)| (safe_s - sign_s).max(0.0) * 1e3),
+                .map(|(onset_s, safe_s)| (safe_s - onset_s).max(0.0) * 1e3),
             reason: end.reason(before),
             skin_c: figures.skin_c,
             cem43_min: figures.cem43_min,
@@ -192,7 +194,7 @@ const OFF: &str = "off";
 /// The states in which the device continues to work without a fault.
 pub(super) const WORKING_STATES: [&str; 5] = ["self-test", "ready", "armed", "preset", "contact"];
 
-/// First trip from a row on that is not the one before, or first reset.
+/// Time of the first reset or of the first trip from row `from` on, except the trip before the fault.
 fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> Option<f64> {
     let tripped = outcome.trace.rows()[from..].iter().find(|row| {
         let device = row.device.as_ref();
@@ -203,22 +205,22 @@ fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> O
     times.into_iter().flatten().min_by(f64::total_cmp)
 }
 
-/// From when on no current flows till the end; none if some does at the end.
+/// Time after which no current flows; `None` if current flows at the end.
 fn safe(rows: &[TraceRow]) -> Option<f64> {
     let last = rows.iter().rposition(|row| row.current_a.abs() > NONE_A);
     rows.get(last.map_or(0, |last| last + 1)).map(|row| row.t_s)
 }
 
-/// What the device answers in the end.
-struct End<'a> {
-    /// State and fault.
+/// Answers of the device at the end of a run.
+struct FinalAnswers<'a> {
+    /// State and fault of the last `state` answer.
     state: Option<(&'a str, &'a str)>,
-    /// A fault that kept `clear` from being obeyed.
-    still: Option<&'a str>,
+    /// The present fault for which the device refused `clear`.
+    refused_clear: Option<&'a str>,
 }
 
-impl<'a> End<'a> {
-    fn of(outcome: &'a Outcome, t_s: f64) -> Self {
+impl<'a> FinalAnswers<'a> {
+    fn new(outcome: &'a Outcome, t_s: f64) -> Self {
         let lines = || outcome.answers.iter().filter(|(at_s, _)| *at_s >= t_s);
         let word =
             |line: &'a str, key: &str| line.split(' ').find_map(|word| word.strip_prefix(key));
@@ -226,18 +228,23 @@ impl<'a> End<'a> {
             let line = line.strip_prefix("ok ")?;
             Some((word(line, "state=")?, word(line, "fault=")?))
         });
-        let still = lines().find_map(|(_, line)| {
+        let refused_clear = lines().find_map(|(_, line)| {
             let rest = line.strip_prefix("err fault ")?;
             rest.strip_suffix(" is still present")
         });
-        Self { state, still }
+        Self {
+            state,
+            refused_clear,
+        }
     }
 
-    /// The fault, or the state if there is none; a fault of before stands for what keeps it from being cleared.
+    /// The fault, or the state if there is none. If a trip before the injection was not cleared, the fault that prevented it.
     fn reason(&self, before: Option<&str>) -> String {
-        match (self.state, self.still) {
+        match (self.state, self.refused_clear) {
             (None, _) => "silent".into(),
-            (Some(("tripped", fault)), Some(still)) if Some(fault) == before => still.into(),
+            (Some(("tripped", fault)), Some(refused_clear)) if Some(fault) == before => {
+                refused_clear.into()
+            }
             (Some(("tripped", fault)), _) => fault.into(),
             (Some((state, _)), _) => state.into(),
         }

@@ -1,4 +1,4 @@
-//! One fault, and what is right about it.
+//! Fault cases: an injected fault, its symptoms and the expected reaction.
 
 use std::fmt;
 
@@ -8,19 +8,19 @@ use thermal_sim::scene::{ActiveFault, FaultKind, Sensor};
 
 use super::{FaultScene, Symptom};
 
-/// What happens.
+/// A fault to inject.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum InjectedFault {
-    /// Something of plant, converter or host breaks.
+    /// A fault of plant, converter or host.
     Hardware(ActiveFault),
-    /// Something of the processor does.
+    /// A fault of the processor.
     Processor(MachineFault),
     /// The host sends a line.
     HostLine(&'static str),
 }
 
 impl InjectedFault {
-    /// The kind, as a scene has it.
+    /// Name of the kind in a scene.
     #[must_use]
     pub fn kind(&self) -> String {
         match self {
@@ -61,39 +61,39 @@ impl fmt::Display for InjectedFault {
     }
 }
 
-/// What the device may say in the end.
+/// Expected state of the device at the end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ExpectedReaction {
-    /// Once a sign is reached it is tripped by one of these, and never by another. Before, and without symptoms, it may go on.
+    /// After a symptom the device is tripped by one of these causes and by no other. Without a symptom it may continue.
     Trip(&'static [Fault]),
-    /// It is off, as after power-up, and has no fault to report.
+    /// The device is off, as after power-up, and reports no fault.
     Restart,
 }
 
 /// One row of the matrix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FaultCase {
-    /// What happens.
+    /// A fault to inject.
     pub fault: InjectedFault,
-    /// Deviations of the plant that make it detectable; the first that is reached counts.
+    /// Deviations of the plant that make the fault detectable; the first to occur counts.
     pub symptoms: &'static [Symptom],
-    /// What the device may then say.
+    /// Expected reaction of the device.
     pub expected: ExpectedReaction,
-    /// It does nothing until another fault comes, or until the next self-test.
+    /// Whether it has no effect until another fault or the next self-test.
     pub latent: bool,
-    /// Where it is worst; taken before the others.
+    /// Scenes in which it is worst; they are run before the others.
     pub scenes: &'static [FaultScene],
-    /// Where it means nothing.
+    /// Scenes in which it is meaningless.
     pub never_at: &'static [FaultScene],
-    /// How long is watched after it, s.
+    /// Duration of the scene after the fault, s.
     pub after_s: f64,
 }
 
-/// How long is watched after a fault unless its fault case says otherwise, s: long enough for the sink's heat to come back.
+/// Default duration of the scene after a fault, s: long enough for the heat of the sink to return.
 const AFTER_S: f64 = 24.0;
 
 impl FaultCase {
-    /// It may trip for one of these, too.
+    /// Allows these trip causes, too.
     pub(super) const fn or_trips(self, reasons: &'static [Fault]) -> Self {
         Self {
             expected: ExpectedReaction::Trip(reasons),
@@ -101,7 +101,7 @@ impl FaultCase {
         }
     }
 
-    /// It shows at the next self-test only.
+    /// Marks it as latent.
     pub(super) const fn latent(self) -> Self {
         Self {
             latent: true,
@@ -109,12 +109,12 @@ impl FaultCase {
         }
     }
 
-    /// Where it is worst.
+    /// Sets the scenes in which it is worst.
     pub(super) const fn at(self, scenes: &'static [FaultScene]) -> Self {
         Self { scenes, ..self }
     }
 
-    /// Where it means nothing.
+    /// Sets the scenes in which it is meaningless.
     pub(super) const fn never_at(self, scenes: &'static [FaultScene]) -> Self {
         Self {
             never_at: scenes,
@@ -122,13 +122,13 @@ impl FaultCase {
         }
     }
 
-    /// How long is watched after it, s.
+    /// Sets the duration of the scene after the fault, s.
     pub(super) const fn watched(self, after_s: f64) -> Self {
         Self { after_s, ..self }
     }
 }
 
-/// A fault that is detectable by these symptoms and must be named by one of these reasons.
+/// A fault with these symptoms, after which the device must trip with one of these causes.
 pub(super) const fn trips(
     fault: InjectedFault,
     symptoms: &'static [Symptom],
@@ -145,12 +145,12 @@ pub(super) const fn trips(
     }
 }
 
-/// A fault that hurts nobody, so that the device must go on, unless there are [reasons](Self::or_trips).
+/// A harmless fault, after which the device must continue unless [causes](FaultCase::or_trips) are allowed.
 pub(super) const fn harmless(fault: InjectedFault) -> FaultCase {
     trips(fault, &[], &[])
 }
 
-/// A fault from which the device starts anew, without anything to report.
+/// A fault after which the device restarts without a fault.
 pub(super) const fn restarts(fault: InjectedFault) -> FaultCase {
     FaultCase {
         expected: ExpectedReaction::Restart,
@@ -158,17 +158,17 @@ pub(super) const fn restarts(fault: InjectedFault) -> FaultCase {
     }
 }
 
-/// Of the display's thermistor unless another is named.
+/// A fault without a value.
 pub(super) const fn broken(kind: FaultKind) -> InjectedFault {
     thermistor(kind, Sensor::Display, 0.0)
 }
 
-/// With a value.
+/// A fault with a value.
 pub(super) const fn valued(kind: FaultKind, value: f64) -> InjectedFault {
     thermistor(kind, Sensor::Display, value)
 }
 
-/// Of one thermistor.
+/// A fault of one thermistor.
 pub(super) const fn thermistor(kind: FaultKind, sensor: Sensor, value: f64) -> InjectedFault {
     InjectedFault::Hardware(ActiveFault {
         kind,
@@ -178,7 +178,7 @@ pub(super) const fn thermistor(kind: FaultKind, sensor: Sensor, value: f64) -> I
     })
 }
 
-/// Two thermistors in each other's place.
+/// Two exchanged thermistors.
 pub(super) const fn swapped(sensor: Sensor, with: Sensor) -> InjectedFault {
     InjectedFault::Hardware(ActiveFault {
         kind: FaultKind::SensorsSwapped,

@@ -1,4 +1,4 @@
-//! One run of one fault.
+//! A run of one fault case.
 
 use std::path::Path;
 
@@ -12,30 +12,32 @@ use thermal_sim::scene::Scene;
 use super::assessment::RunAssessment;
 use super::{FaultCase, FaultScene, InjectedFault, InjectionPoint, scene_text};
 
-/// What is asked at the end, and how long before it, s. Twice: a reset tears a line of telemetry, which the first answer
-/// then ends.
+/// Questions at the end and their times before it, s. The state is asked twice because a reset can truncate a line of
+/// telemetry, which then merges with the first answer.
 const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "state")];
 
-/// Runs a scene; none if the engine has no part that could fail so.
-fn ran(device: &dyn SceneRunner, scene: &Scene) -> anyhow::Result<Option<(Outcome, Figures)>> {
+/// Runs a scene; `None` if the fault does not apply to the engine.
+fn run_if_applicable(
+    device: &dyn SceneRunner,
+    scene: &Scene,
+) -> anyhow::Result<Option<(Outcome, Figures)>> {
     match device.run(scene) {
-        // Only the native engine has no processor.
         Err(error) => match error.downcast_ref() {
             Some(NotInjected::NotApplicable { .. }) => Ok(None),
             _ => Err(error),
         },
-        Ok(ran) => Ok(Some(ran)),
+        Ok(result) => Ok(Some(result)),
     }
 }
 
-/// A scene without the fault, if a sign of it needs that, and can be there.
-fn sound(
+/// The run of the scene without the fault, if a symptom needs it.
+fn fault_free_run(
     device: &dyn SceneRunner,
     fault_case: &FaultCase,
     place: FaultScene,
     scene: &Scene,
 ) -> anyhow::Result<Option<Outcome>> {
-    let mut sound = scene.clone();
+    let mut fault_free = scene.clone();
     let needed = place.has_tuned_model()
         && fault_case
             .symptoms
@@ -43,45 +45,47 @@ fn sound(
             .any(|sign| sign.needs_fault_free_run());
     match fault_case.fault {
         InjectedFault::Hardware(broken) if needed => {
-            sound.faults.retain(|fault| fault.fault.kind != broken.kind);
+            fault_free
+                .faults
+                .retain(|fault| fault.fault.kind != broken.kind);
         }
         _ => return Ok(None),
     }
-    let (outcome, _) = device.run(&sound)?;
+    let (outcome, _) = device.run(&fault_free)?;
     Ok(Some(outcome))
 }
 
-/// One run of one fault.
+/// Result of a run of one fault case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FaultRun {
-    /// The scene.
+    /// Name of the scene.
     pub place: &'static str,
-    /// When the fault came, s.
+    /// Time of the fault, s.
     pub t_s: f64,
-    /// What came of it.
+    /// Assessment of the run.
     #[serde(flatten)]
     pub assessment: RunAssessment,
 }
 
 impl FaultRun {
-    /// Runs a fault case at a moment; none if the engine has no part that could fail so.
+    /// Runs a fault case; `None` if the fault does not apply to the engine.
     ///
     /// # Errors
-    /// The scene cannot be.
+    /// The scene is not valid.
     pub fn run(
         device: &dyn SceneRunner,
         fault_case: &FaultCase,
-        moment: InjectionPoint,
+        point: InjectionPoint,
         seed: u64,
     ) -> anyhow::Result<Option<Self>> {
         let text = scene_text(
-            &[(fault_case.fault, moment.t_s)],
-            moment,
+            &[(fault_case.fault, point.t_s)],
+            point,
             fault_case.after_s,
             seed,
             &[],
         );
-        Self::of_text(device, fault_case, moment, &text)
+        Self::run_text(device, fault_case, point, &text)
     }
 
     /// Whether the run broke no limit.
@@ -90,42 +94,44 @@ impl FaultRun {
         self.assessment.breaches.is_empty()
     }
 
-    /// The same in a scene that is given as a file has it.
-    pub(super) fn of_text(
+    /// Runs a fault case with the text of its scene.
+    pub(super) fn run_text(
         device: &dyn SceneRunner,
         fault_case: &FaultCase,
-        moment: InjectionPoint,
+        point: InjectionPoint,
         text: &str,
     ) -> anyhow::Result<Option<Self>> {
-        let scene = Scene::parse(text, Path::new(moment.place.name()))?;
-        let assessment = match ran(device, &scene) {
+        let scene = Scene::parse(text, Path::new(point.scene.name()))?;
+        let assessment = match run_if_applicable(device, &scene) {
             Ok(None) => return Ok(None),
             Ok(Some((outcome, figures))) => {
-                let sound = sound(device, fault_case, moment.place, &scene)?;
-                let sound: &[_] = sound.as_ref().map_or(&[], |sound| sound.trace.rows());
-                RunAssessment::of(fault_case, moment, &outcome, &figures, sound)
+                let fault_free = fault_free_run(device, fault_case, point.scene, &scene)?;
+                let fault_free: &[_] = fault_free
+                    .as_ref()
+                    .map_or(&[], |outcome| outcome.trace.rows());
+                RunAssessment::new(fault_case, point, &outcome, &figures, fault_free)
             }
-            // Nobody knows what silicon would do then: that proves nothing, so it counts as a breach.
+            // The behaviour of the hardware is unknown then, so the run counts as a breach.
             Err(error) => RunAssessment::ended(&error),
         };
         Ok(Some(Self {
-            place: moment.place.name(),
-            t_s: moment.t_s,
+            place: point.scene.name(),
+            t_s: point.t_s,
             assessment,
         }))
     }
 }
 
-/// The place's scene as a file has it, with faults at their times, s, and with what the host asks in the end; `plant` are
-/// keys of the parameter box. The seed is that of the converter.
+/// The text of the scene with faults at their times, s, and with the questions at the end. `plant` has plant parameters
+/// that are not nominal; the seed is that of the converter.
 pub(super) fn scene_text(
     faults: &[(InjectedFault, f64)],
-    moment: InjectionPoint,
+    point: InjectionPoint,
     after_s: f64,
     seed: u64,
     plant: &[(String, f64)],
 ) -> String {
-    let (mut text, end_s) = moment.place.text(seed, moment.t_s, after_s);
+    let (mut text, end_s) = point.scene.text(seed, point.t_s, after_s);
     for (fault, t_s) in faults {
         text += &scene_text::fault_text(fault, *t_s);
     }

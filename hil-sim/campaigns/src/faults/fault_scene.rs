@@ -1,4 +1,4 @@
-//! Where and when a fault happens: scenes, and moments in them.
+//! Scenes into which faults are injected, and injection times.
 
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
@@ -10,45 +10,45 @@ use thermal_sim::named_enum;
 use super::scene_text;
 
 named_enum! {
-    /// A scene, and what goes on in it when the fault comes. In every one the finger rests on the display in the end.
+    /// A scene, named after its state when the fault comes. At the end of each, the finger rests on the display.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum FaultScene {
-        /// The object appears under a resting finger: as much current as there is, copper.
+        /// Copper appears under a resting finger, which takes the full current.
         Slew = "slew",
-        /// The same, with the plain loop.
+        /// As `Slew`, with the PI law.
         Pi = "pi",
-        /// With that of the thesis's display.
+        /// As `Slew`, with the PI law of the thesis's display.
         Pi10Hz = "pi-10hz",
-        /// With a model of the class, of a device that was never commissioned.
+        /// As `Slew`, with a device that was never commissioned and uses the nominal model.
         Untuned = "untuned",
         /// A finger lands on copper.
         Copper = "copper",
-        /// On granite.
+        /// A finger lands on granite.
         Granite = "granite",
-        /// On foam.
+        /// A finger lands on foam.
         Foam = "foam",
-        /// On copper of 41 °C.
+        /// A finger lands on copper of 41 °C.
         Warm = "warm",
-        /// On copper of 15 °C.
+        /// A finger lands on copper of 15 °C.
         Cold = "cold",
         /// Armed, the finger on the neutral display.
         Touched = "touched",
         /// Held at 42 °C under a finger.
         HeldWarm = "held-warm",
-        /// At 15 °C.
+        /// Held at 15 °C under a finger.
         HeldCold = "held-cold",
-        /// Tuned; the finger comes later.
+        /// Tuning; the finger lands later.
         Tuning = "tuning",
         /// A finger lands on copper of a constant temperature, as on the thesis's first display.
         SemiInfinite = "semi-infinite",
-        /// Armed, the finger comes later.
+        /// Armed; the finger lands later.
         Neutral = "neutral",
-        /// The object is presented, the finger comes later.
+        /// The object is presented; the finger lands later.
         Preset = "preset",
-        /// Lifted and replaced, a second each.
+        /// The finger lifts and lands in turn, one second each.
         Replace = "replace",
-        /// The self-test, under a finger: for its sake it waits for a second after the comparator's part.
+        /// The self-test under a finger, which makes it wait for a second after the test of the comparator.
         SelfTest = "self-test",
         /// Off, after a fault that was cleared; the self-test follows.
         Off = "off",
@@ -72,28 +72,28 @@ const REPLACING: Forces = &[
     (6.5, 2.0),
 ];
 
-/// Milliseconds from an edge at which faults come.
+/// Times of faults relative to an edge, ms.
 const AROUND_MS: [i32; 12] = [-20, -3, -2, -1, 0, 1, 2, 3, 5, 10, 25, 60];
-/// Time of a scene after its last edge, s: the finger rests for some 20 s after a trip.
+/// Shortest duration of a scene, s.
 const SHORTEST_S: f64 = 7.0;
-/// When the device is armed again where it has tripped before, s.
+/// Time at which a device that has tripped is armed again, s.
 const TESTED_FROM_S: f64 = 4.0;
-/// When the host gives an order, s.
-const ORDERED_S: f64 = 0.05;
-/// What tripped before.
-const BEFORE: Fault = Fault::HostSilent;
+/// Time of the host's command, s.
+const COMMAND_S: f64 = 0.05;
+/// Cause of the trip before the fault.
+const EARLIER_TRIP: Fault = Fault::HostSilent;
 
-/// A scene with the time at which the fault comes.
+/// A scene and the time of the fault in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InjectionPoint {
-    /// Where.
-    pub place: FaultScene,
-    /// When, s.
+    /// The scene.
+    pub scene: FaultScene,
+    /// Time of the fault, s.
     pub t_s: f64,
 }
 
 impl FaultScene {
-    /// Where a self-test is, or follows.
+    /// Scenes with a self-test after time zero.
     pub(super) const TESTED: &'static [Self] = &[Self::SelfTest, Self::Off];
 
     const fn object(self) -> (&'static str, f64) {
@@ -151,8 +151,8 @@ impl FaultScene {
         !matches!(self, Self::Untuned)
     }
 
-    /// What the host has the armed device do, from the beginning on.
-    const fn order(self) -> Option<&'static str> {
+    /// Command that the host sends to the armed device.
+    const fn command(self) -> Option<&'static str> {
         match self {
             Self::HeldWarm => Some("hold 42"),
             Self::HeldCold => Some("hold 15"),
@@ -161,34 +161,34 @@ impl FaultScene {
         }
     }
 
-    /// The law goes by a model of the tile, which was tuned: what a display should do is known, and done as far as can be.
+    /// Whether the control law uses a tuned model of the tile, so that the display follows a fault-free run closely.
     pub(super) const fn has_tuned_model(self) -> bool {
         matches!(self.law(), Law::Model) && self.is_commissioned() && !matches!(self, Self::Tuning)
     }
 
-    /// When the device is told to test itself, s.
+    /// Time at which the self-test is requested, s.
     pub(super) fn tested_from_s(self) -> Option<f64> {
         self.has_tripped_before().map(|_| TESTED_FROM_S)
     }
 
-    /// From when to when faults come, s.
+    /// Time range of the faults, s.
     pub(super) const fn span(self) -> (f64, f64) {
         self.timing().1
     }
 
-    /// The host falls silent for two seconds at the beginning, and the device trips; the host clears that, arms and
-    /// starts anew.
+    /// Cause of a trip before the fault: the host is silent for two seconds at the beginning, then clears the trip, arms and
+    /// starts again.
     #[must_use]
     pub const fn has_tripped_before(self) -> Option<Fault> {
         match self {
-            Self::SelfTest | Self::Off => Some(BEFORE),
+            Self::SelfTest | Self::Off => Some(EARLIER_TRIP),
             _ => None,
         }
     }
 
-    /// Draws a moment; every other one is at an edge.
+    /// Draws the time of a fault, near an edge of the scene if `at_edge`.
     #[must_use]
-    pub fn moment(self, seed: u64, at_edge: bool) -> InjectionPoint {
+    pub fn injection_point(self, seed: u64, at_edge: bool) -> InjectionPoint {
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(seed);
         let (_, (from_s, to_s), edges) = self.timing();
         let ms = |t_s: f64| (t_s * 1e3).round() as i32;
@@ -199,12 +199,12 @@ impl FaultScene {
             draw.random_range(ms(from_s)..=ms(to_s))
         };
         InjectionPoint {
-            place: self,
+            scene: self,
             t_s: f64::from(t_ms) / 1e3,
         }
     }
 
-    /// The scene as a file has it, in which a fault at a time is watched for so long, s; and its end, s.
+    /// The text of the scene that continues for `after_s` after a fault at `t_s`, and the end of the scene, s.
     #[must_use]
     pub fn text(self, seed: u64, t_s: f64, after_s: f64) -> (String, f64) {
         let duration_s = (t_s + after_s).max(SHORTEST_S);
@@ -233,8 +233,8 @@ impl FaultScene {
                 text += &format!("[[host]]\nt_s = {t_s:?}\nline = \"{line}\"\n");
             }
         }
-        if let Some(line) = self.order() {
-            text += &scene_text::host_line(line, ORDERED_S);
+        if let Some(line) = self.command() {
+            text += &scene_text::host_line(line, COMMAND_S);
         }
         (text, duration_s)
     }

@@ -1,26 +1,26 @@
-//! What of the matrix is run, and what came of each row.
+//! The fault matrix: its runs, and a summary of each fault.
 
 use serde::Serialize;
 use thermal_plant::parameters::stream;
 
 use super::{FaultCase, FaultRun, FaultScene, InjectionPoint};
 
-/// A part of the matrix.
+/// The part of the matrix to run.
 #[derive(Clone, Debug)]
 pub struct MatrixPlan {
-    /// Rows.
+    /// Fault cases.
     pub fault_cases: Vec<FaultCase>,
-    /// Places.
+    /// Scenes.
     pub scenes: Vec<FaultScene>,
-    /// Moments of each row.
+    /// Number of runs of each fault case.
     pub moments: usize,
-    /// Of every draw, and of the device's converter.
+    /// Seed of every draw and of the device's converter.
     pub seed: u64,
 }
 
 impl MatrixPlan {
-    /// The runs: the row's number, and the moment. The scenes where a fault case is worst come first, the others in an order
-    /// that is drawn for it; if there are more moments than scenes they come again.
+    /// The runs: index of the fault case, and scene and time. The scenes in which a fault is worst come first, the others in
+    /// random order; with more runs than scenes they repeat.
     #[must_use]
     pub fn runs(&self) -> Vec<(usize, InjectionPoint)> {
         let mut runs = Vec::new();
@@ -37,28 +37,28 @@ impl MatrixPlan {
             });
             for (k, place) in scenes.iter().cycle().take(self.moments).enumerate() {
                 let seed = stream(self.seed, &format!("{name} {k}"));
-                runs.push((row, place.moment(seed, k % 2 == 0)));
+                runs.push((row, place.injection_point(seed, k % 2 == 0)));
             }
         }
         runs
     }
 }
 
-/// What came of a row.
+/// Result of all runs of a fault case.
 #[derive(Clone, Debug, Serialize)]
 pub struct FaultSummary {
     /// The fault.
     pub fault: String,
-    /// It shows at the next self-test only, or not at all.
+    /// Whether the fault is latent.
     pub latent: bool,
-    /// All runs; none if the engine has no part that could fail so.
+    /// All runs; empty if the fault does not apply to the engine.
     pub trials: Vec<FaultRun>,
-    /// No run has a breach.
+    /// Whether no run broke a limit.
     pub holds: bool,
 }
 
 impl FaultSummary {
-    /// Sums up the runs of a fault case.
+    /// Summarises the runs of a fault case.
     #[must_use]
     pub fn new(fault_case: &FaultCase, trials: Vec<FaultRun>) -> Self {
         Self {
@@ -74,13 +74,13 @@ impl FaultSummary {
         self.trials.iter().filter(|run| !run.holds())
     }
 
-    /// Largest of a figure over the runs.
+    /// Largest value of a figure over the runs.
     #[must_use]
     pub fn most(&self, of: impl Fn(&FaultRun) -> Option<f64>) -> Option<f64> {
         self.trials.iter().filter_map(of).max_by(f64::total_cmp)
     }
 
-    /// Reasons that were given, the most frequent first, and how often.
+    /// Reported causes with their numbers, most frequent first.
     #[must_use]
     pub fn reasons(&self) -> Vec<(&str, usize)> {
         let mut reasons: Vec<(&str, usize)> = Vec::new();

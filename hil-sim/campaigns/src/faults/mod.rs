@@ -1,15 +1,14 @@
-//! The fault-injection matrix: every single fault, in many scenes, at many moments.
+//! Fault injection: single faults in many scenes at many times, random campaigns, pairs of faults and bit flips.
 //!
 //! ```text
-//! list of fault_cases (fault, symptoms, reasons)  x  scenes (scene, moments)
+//! fault cases (fault, symptoms, expected reaction)  x  scenes and times
 //!        -> scene with the fault in it -> device (image or native) -> trace and answers
-//!        -> when a sign is reached in the plant's truth, when the current ends, what the device says  -> assessment
+//!        -> first symptom in the true state of the plant, end of the current, reported cause -> assessment
 //! ```
 //!
-//! What counts is laid down in [the list](fault_cases) before anything runs: which deviation of the plant makes a fault
-//! detectable, and which words of the device are then right. What every run is held to is in [`RunAssessment`]: the skin
-//! within 13 to 45 °C, less than a minute of CEM43, no current from 50 ms after the first sign on, a right reason, and no
-//! trip before the fault.
+//! [The list](fault_cases) states for each fault, before any run, which deviation of the plant makes it detectable and which
+//! trip causes are then correct. [`RunAssessment`] checks every run: skin between 13 and 45 °C, less than a minute of CEM43,
+//! no current later than 50 ms after the first symptom, a correct cause, and no trip before the fault.
 
 mod assessment;
 mod fault_case;

@@ -1,4 +1,4 @@
-//! Normal use: sessions over the box in which nothing is broken, so nothing may trip.
+//! Normal use: sessions without a fault on randomly drawn plants, in which the device must not trip.
 
 use std::fmt::Write;
 
@@ -17,34 +17,34 @@ use crate::fidelity::PlantDraw;
 
 /// Length of a session, s, after the time in which the device is armed and settles.
 const SESSION_S: f64 = 120.0;
-/// With that time, s.
+/// Length including that time, s.
 const WHOLE_S: f64 = 128.0;
-/// Sessions in a row on the same device, which is commissioned before the first.
+/// Consecutive sessions on one device, which is commissioned before the first.
 const ON_ONE_DEVICE: u64 = 8;
-/// Share of sessions in which the display is held at a temperature, as for calibration.
+/// Fraction of sessions in which the display is held at a temperature, as for calibration.
 const HELD: f64 = 0.125;
-/// Noise of a conversion, which is no part of the box: all that the parameter allows.
+/// Noise of a conversion, counts: the whole range of the parameter, which is not among the drawn ones.
 const NOISE_COUNTS: std::ops::RangeInclusive<f64> = 0.4..=1.2;
-/// Forces, N; drawn so that every ratio is alike.
+/// Range of the forces, N, drawn with a uniform logarithm.
 const FORCE_N: (f64, f64) = (0.1, 5.0);
 
-/// Somebody's use of a sound device.
+/// A session with a fault-free device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UseSession {
-    /// Its number, from 0.
+    /// Number of the session, from 0.
     pub number: u64,
-    /// Its scene as a file has it.
+    /// Text of its scene.
     pub text: String,
 }
 
 impl UseSession {
-    /// How many sessions are so many hours.
+    /// Number of sessions in some hours.
     #[must_use]
     pub fn in_hours(hours: u64) -> u64 {
         (hours as f64 * 3600.0 / WHOLE_S).ceil() as u64
     }
 
-    /// The session of a number and a seed; no other one is needed for it.
+    /// Draws a session; it depends only on seed and number.
     #[must_use]
     pub fn new(seed: u64, number: u64) -> Self {
         let mut draw =
@@ -91,7 +91,7 @@ impl UseSession {
         Self { number, text }
     }
 
-    /// Runs it.
+    /// Runs the session.
     #[must_use]
     pub fn run(&self, device: &dyn SceneRunner) -> SessionResult {
         let run = || -> anyhow::Result<_> {
@@ -126,20 +126,20 @@ fn press(t_s: f64, force_n: f64, ramp_s: f64) -> String {
     format!("[[force]]\nt_s = {t_s:?}\nforce_n = {force_n:?}\nramp_s = {ramp_s:?}\n")
 }
 
-/// What came of a session.
+/// Result of a session.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SessionResult {
-    /// Its number.
+    /// Number of the session.
     pub number: u64,
     /// Skin on the display, °C.
     pub skin_c: Option<Extremes>,
     /// Dose of the skin, CEM43 in minutes.
     pub cem43_min: Option<f64>,
-    /// What tripped or was reset, or why the session or the commissioning of its device ended.
+    /// Trips and resets, or why the session or the commissioning of its device failed.
     pub failure: Option<String>,
 }
 
-/// Time, failures, the range of the skin; then every session that failed.
+/// Table of time, failures and skin temperatures, followed by every failed session.
 #[must_use]
 pub fn session_table(used: &[SessionResult]) -> String {
     let skins = || used.iter().filter_map(|one| one.skin_c);
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_session_is_a_scene_in_which_nothing_is_broken() {
+    fn every_session_is_a_scene_without_faults() {
         for number in 0..300 {
             let session = UseSession::new(5, number);
             let scene = Scene::parse(&session.text, "session".as_ref()).expect("a scene");

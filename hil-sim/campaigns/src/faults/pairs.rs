@@ -1,4 +1,4 @@
-//! Pairs of faults: one that nobody has noticed, then one that acts.
+//! Pairs of faults: a latent fault, followed by another one.
 
 use std::fmt::Write;
 
@@ -13,21 +13,21 @@ use super::{
     fault_cases, fault_run,
 };
 
-/// When the first fault comes, s: after the self-test that settling begins with, before every moment of a place.
+/// Time of the latent fault, s: after the first self-test and before every injection time.
 const LATENT_S: f64 = 0.05;
 
-/// A fault that may have been there for long before another one comes.
+/// A latent fault and a second fault that follows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FaultPair {
-    /// Comes first.
+    /// The latent fault.
     pub latent: FaultCase,
-    /// Comes at the moment.
+    /// The second fault.
     pub active: FaultCase,
-    /// Where and when.
-    pub moment: InjectionPoint,
+    /// Scene and time of the second fault.
+    pub point: InjectionPoint,
 }
 
-/// Whether a fault may go unnoticed: it is harmless alone and lasts, or shows at the next self-test or drive only.
+/// Whether a fault can stay unnoticed: it lasts and is harmless alone, or is detectable only at the next self-test or drive.
 fn is_latent(fault_case: &FaultCase) -> bool {
     let InjectedFault::Hardware(broken) = fault_case.fault else {
         return false;
@@ -39,8 +39,8 @@ fn is_latent(fault_case: &FaultCase) -> bool {
     }
 }
 
-/// Every latent fault before every other one of the list, each at one moment of the seed: in the first place where the
-/// second is worst, of those in which no self-test follows.
+/// Every latent fault before every other fault of the list, each at one random time, in the first scene without a later
+/// self-test in which the second fault is worst.
 #[must_use]
 pub fn pairs(seed: u64) -> Vec<FaultPair> {
     let (latent, active): (Vec<_>, Vec<_>) = fault_cases().into_iter().partition(is_latent);
@@ -58,7 +58,7 @@ pub fn pairs(seed: u64) -> Vec<FaultPair> {
             pairs.extend(place.map(|place| FaultPair {
                 latent: *latent,
                 active: *active,
-                moment: place.moment(stream(seed, &name), false),
+                point: place.injection_point(stream(seed, &name), false),
             }));
         }
     }
@@ -66,30 +66,30 @@ pub fn pairs(seed: u64) -> Vec<FaultPair> {
 }
 
 impl FaultPair {
-    /// Its scene as a file has it.
+    /// Text of the scene.
     #[must_use]
     pub fn text(&self, seed: u64) -> String {
         let Self {
             latent,
             active,
-            moment,
+            point,
         } = self;
-        let faults = [(latent.fault, LATENT_S), (active.fault, moment.t_s)];
+        let faults = [(latent.fault, LATENT_S), (active.fault, point.t_s)];
         fault_run::scene_text(
             &faults,
-            *moment,
+            *point,
             latent.after_s.max(active.after_s),
             seed,
             &[],
         )
     }
 
-    /// Runs it; none if the engine has no part that could fail so. That the first fault is noticed, and named, is right.
+    /// Runs the pair; `None` if a fault does not apply to the engine. A trip caused by the latent fault is correct.
     ///
     /// # Errors
-    /// The scene cannot be.
+    /// The scene is not valid.
     pub fn run(&self, device: &dyn SceneRunner, seed: u64) -> anyhow::Result<Option<PairResult>> {
-        let trial = FaultRun::of_text(device, &self.active, self.moment, &self.text(seed))?;
+        let trial = FaultRun::run_text(device, &self.active, self.point, &self.text(seed))?;
         Ok(trial.map(|mut trial| {
             let assessment = &mut trial.assessment;
             let named = match self.latent.expected {
@@ -98,7 +98,7 @@ impl FaultPair {
                 }
                 ExpectedReaction::Restart => false,
             };
-            // What has no sign, and has not been named before the second fault, is no excuse for its reason.
+            // A latent fault without a symptom explains the trip cause only if it was reported before the second fault.
             let first =
                 !self.latent.symptoms.is_empty() || assessment.breaches.contains(&Breach::Early);
             (assessment.breaches).retain(|breach| {
@@ -113,7 +113,7 @@ impl FaultPair {
     }
 }
 
-/// What came of a pair.
+/// Result of a pair.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PairResult {
     /// The first fault.
@@ -203,6 +203,6 @@ mod tests {
                 );
             }
         }
-        assert!(pairs.iter().all(|pair| pair.moment.t_s > LATENT_S));
+        assert!(pairs.iter().all(|pair| pair.point.t_s > LATENT_S));
     }
 }

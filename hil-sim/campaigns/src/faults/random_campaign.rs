@@ -25,7 +25,7 @@ pub struct RandomCampaign {
     /// What happens.
     pub fault_case: FaultCase,
     /// Where and when.
-    pub moment: InjectionPoint,
+    pub point: InjectionPoint,
     /// The device, and its plant.
     pub device: PlantDraw,
 }
@@ -48,7 +48,7 @@ impl RandomCampaign {
         Self {
             number,
             fault_case,
-            moment: place.moment(draw.random(), draw.random()),
+            point: place.injection_point(draw.random(), draw.random()),
             device: PlantDraw::in_use(seed, number / ON_ONE_DEVICE),
         }
     }
@@ -56,9 +56,9 @@ impl RandomCampaign {
     /// Its scene as a file has it.
     #[must_use]
     pub fn text(&self) -> String {
-        let faults = [(self.fault_case.fault, self.moment.t_s)];
+        let faults = [(self.fault_case.fault, self.point.t_s)];
         let PlantDraw { seed, plant, .. } = &self.device;
-        fault_run::scene_text(&faults, self.moment, self.fault_case.after_s, *seed, plant)
+        fault_run::scene_text(&faults, self.point, self.fault_case.after_s, *seed, plant)
     }
 
     /// Runs it; none if the engine has no part that could fail so.
@@ -66,7 +66,7 @@ impl RandomCampaign {
     /// # Errors
     /// The scene cannot be.
     pub fn run(&self, device: &dyn SceneRunner) -> anyhow::Result<Option<CampaignResult>> {
-        let trial = FaultRun::of_text(device, &self.fault_case, self.moment, &self.text())?;
+        let trial = FaultRun::run_text(device, &self.fault_case, self.point, &self.text())?;
         Ok(trial.map(|trial| CampaignResult {
             number: self.number,
             fault: self.fault_case.fault.to_string(),
@@ -185,14 +185,9 @@ mod tests {
         let (mut faults, mut scenes) = (HashSet::new(), HashSet::new());
         for number in 0..2000 {
             let campaign = RandomCampaign::new(1, number, true);
-            assert!(
-                !campaign
-                    .fault_case
-                    .never_at
-                    .contains(&campaign.moment.place)
-            );
+            assert!(!campaign.fault_case.never_at.contains(&campaign.point.scene));
             faults.insert(campaign.fault_case.fault.to_string());
-            scenes.insert(campaign.moment.place.name());
+            scenes.insert(campaign.point.scene.name());
             if number % 50 == 0 {
                 let scene = Scene::parse(&campaign.text(), "campaign".as_ref()).expect("a scene");
                 assert_eq!(scene.seed, campaign.device.seed);

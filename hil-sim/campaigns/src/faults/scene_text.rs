@@ -65,13 +65,13 @@ mod tests {
     #[test]
     fn every_fault_of_the_list_can_be_written_as_a_scene() {
         for fault_case in fault_cases() {
-            let moment = InjectionPoint {
-                place: FaultScene::Slew,
+            let point = InjectionPoint {
+                scene: FaultScene::Slew,
                 t_s: 1.25,
             };
             let text = crate::faults::fault_run::scene_text(
                 &[(fault_case.fault, 1.25)],
-                moment,
+                point,
                 fault_case.after_s,
                 7,
                 &[],

@@ -99,7 +99,7 @@ impl Symptom {
     /// When it is reached first, s; `from` is the row at which the fault begins, `sound` the rows without it if
     /// [`Self::needs_fault_free_run`], and `tested_from_s` when the device is told to test itself, if it is.
     #[must_use]
-    pub fn reached_s(
+    pub fn onset_s(
         self,
         rows: &[TraceRow],
         sound: &[TraceRow],
@@ -291,11 +291,11 @@ mod tests {
         (0..4000).map(row).collect()
     }
 
-    fn about(reached_s: Option<f64>, expected_s: f64) {
-        let off_s = reached_s.map(|reached_s| (reached_s - expected_s).abs());
+    fn about(onset_s: Option<f64>, expected_s: f64) {
+        let off_s = onset_s.map(|onset_s| (onset_s - expected_s).abs());
         assert!(
             off_s.is_some_and(|off_s| off_s < 2e-3),
-            "{reached_s:?}, not {expected_s} s"
+            "{onset_s:?}, not {expected_s} s"
         );
     }
 
@@ -316,13 +316,13 @@ mod tests {
             (1.2, 0.304, 1.2 + 1.0 + 0.264),
         ] {
             about(
-                Symptom::SelfTest(age_s).reached_s(&with_finger_from(from_s), &[], 500, Some(1.0)),
+                Symptom::SelfTest(age_s).onset_s(&with_finger_from(from_s), &[], 500, Some(1.0)),
                 expected_s,
             );
         }
         let rows = with_finger_from(0.0);
         assert_eq!(
-            Symptom::SelfTest(0.02).reached_s(&rows, &[], 1100, Some(1.0)),
+            Symptom::SelfTest(0.02).onset_s(&rows, &[], 1100, Some(1.0)),
             None,
             "the fault came later"
         );
@@ -340,15 +340,15 @@ mod tests {
     #[test]
     fn a_display_goes_the_wrong_way_only_from_its_set_point_and_against_the_current() {
         about(
-            Symptom::WrongWay.reached_s(&rising(20.0, 9.0), &[], 500, None),
+            Symptom::WrongWay.onset_s(&rising(20.0, 9.0), &[], 500, None),
             2.0 + 2.6 / 2.0,
         );
         assert_eq!(
-            Symptom::WrongWay.reached_s(&rising(30.0, 9.0), &[], 500, None),
+            Symptom::WrongWay.onset_s(&rising(30.0, 9.0), &[], 500, None),
             None
         );
         assert_eq!(
-            Symptom::WrongWay.reached_s(&rising(20.0, 2.1), &[], 500, None),
+            Symptom::WrongWay.onset_s(&rising(20.0, 2.1), &[], 500, None),
             None
         );
     }
@@ -371,12 +371,12 @@ mod tests {
             })
         };
         assert_eq!(
-            Symptom::CurrentOff.reached_s(&until(9.0), &[], 500, None),
+            Symptom::CurrentOff.onset_s(&until(9.0), &[], 500, None),
             None
         );
         for from in [500, 2000] {
             assert_eq!(
-                Symptom::CurrentOff.reached_s(&until(2.0), &[], from, None),
+                Symptom::CurrentOff.onset_s(&until(2.0), &[], from, None),
                 Some(2.0)
             );
         }
@@ -388,6 +388,6 @@ mod tests {
         let warm = rows(|t_s, row, _| {
             row.taken.thermistors_c[DISPLAY] = Some(if t_s < 1.0 { 30.0 } else { 47.1 });
         });
-        about(Symptom::Dose.reached_s(&warm, &[], 500, None), 1.0 + 1.875);
+        about(Symptom::Dose.onset_s(&warm, &[], 500, None), 1.0 + 1.875);
     }
 }

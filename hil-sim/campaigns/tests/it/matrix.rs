@@ -19,8 +19,8 @@ fn fault_case(name: &str) -> FaultCase {
 }
 
 fn breaches(fault_case: &FaultCase, t_s: f64) -> Vec<Breach> {
-    let moment = thermal_campaigns::faults::InjectionPoint { place: FOAM, t_s };
-    let trial = FaultRun::run(&NativeRunner, fault_case, moment, 1).expect("runs");
+    let point = thermal_campaigns::faults::InjectionPoint { scene: FOAM, t_s };
+    let trial = FaultRun::run(&NativeRunner, fault_case, point, 1).expect("runs");
     trial.expect("means something natively").assessment.breaches
 }
 

@@ -21,7 +21,7 @@ pub struct BitFlip {
     /// The bit.
     pub fault: MachineFault,
     /// Where and when, to the microsecond.
-    pub moment: InjectionPoint,
+    pub point: InjectionPoint,
 }
 
 /// From when to when flips come in a place, s.
@@ -50,8 +50,8 @@ impl BitFlip {
             number,
             region,
             fault,
-            moment: InjectionPoint {
-                place,
+            point: InjectionPoint {
+                scene: place,
                 t_s: f64::from(whole_ms * 1000 + us) / 1e6,
             },
         }
@@ -92,10 +92,10 @@ mod tests {
         let (mut scenes, mut core) = (Vec::new(), Vec::new());
         for number in 0..3000 {
             let flip = BitFlip::new(1, number, &memory);
-            let (from_s, to_s) = span(flip.moment.place);
-            assert!((from_s..to_s).contains(&flip.moment.t_s), "{flip:?}");
-            if !scenes.contains(&flip.moment.place) {
-                scenes.push(flip.moment.place);
+            let (from_s, to_s) = span(flip.point.scene);
+            assert!((from_s..to_s).contains(&flip.point.t_s), "{flip:?}");
+            if !scenes.contains(&flip.point.scene) {
+                scenes.push(flip.point.scene);
             }
             match (flip.region, flip.fault) {
                 (FlipRegion::Statics, MachineFault::RamBit { address, .. }) => {
@@ -125,7 +125,7 @@ mod tests {
                 let injection = scene.injections.last().expect("an injection");
                 assert_eq!(
                     (injection.fault, injection.t_s),
-                    (flip.fault, flip.moment.t_s)
+                    (flip.fault, flip.point.t_s)
                 );
             }
         }

@@ -62,7 +62,10 @@ const SIGNS: &[Symptom] = &[
 
 fn text(place: FaultScene, flip: &[(InjectedFault, f64)]) -> String {
     let (_, to_s) = bit_flip::span(place);
-    let end = InjectionPoint { place, t_s: to_s };
+    let end = InjectionPoint {
+        scene: place,
+        t_s: to_s,
+    };
     fault_run::scene_text(flip, end, WATCHED_S, CONVERTER, &[])
 }
 
@@ -98,7 +101,7 @@ impl BitFlip {
     /// Its scene as a file has it.
     #[must_use]
     pub fn text(&self) -> String {
-        text(self.moment.place, &[(self.injected(), self.moment.t_s)])
+        text(self.point.scene, &[(self.injected(), self.point.t_s)])
     }
 
     /// Runs it on an image.
@@ -110,7 +113,7 @@ impl BitFlip {
         device: &dyn SceneRunner,
         references: &[ReferenceRun],
     ) -> anyhow::Result<FlipResult> {
-        let place = self.moment.place;
+        let place = self.point.scene;
         let reference = (references.iter().find(|reference| reference.place == place))
             .with_context(|| format!("no reference of {}", place.name()))?;
         let scene = Scene::parse(&self.text(), place.name().as_ref())?;
@@ -118,7 +121,7 @@ impl BitFlip {
         let (class, assessment, deviation_k) = match device.run(&scene) {
             Ok((outcome, figures)) => {
                 let mut assessment =
-                    RunAssessment::of(&fault_case, self.moment, &outcome, &figures, &[]);
+                    RunAssessment::new(&fault_case, self.point, &outcome, &figures, &[]);
                 // Any word is right.
                 assessment
                     .breaches
@@ -145,7 +148,7 @@ impl BitFlip {
             class,
             deviation_k,
             place: place.name(),
-            t_s: self.moment.t_s,
+            t_s: self.point.t_s,
             assessment,
         })
     }
