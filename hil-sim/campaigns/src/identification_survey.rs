@@ -1,4 +1,4 @@
-//! What devices of the parameter box find out about themselves, beside what their plants are.
+//! Survey of randomly drawn devices: the tile that each identifies, compared with its plant.
 
 use std::fmt::Write;
 
@@ -14,20 +14,20 @@ use thermal_sim::engine::NativeEngine;
 
 use crate::percentile;
 
-/// Room of the devices, deg C.
+/// Room temperature, deg C.
 const ROOM_C: f64 = 24.0;
-/// The longest that tuning takes, ms.
+/// Timeout of tuning, ms.
 const TUNE_MS: u64 = 70_000;
-/// Current for which a tile's gain counts, A, and from which on what flows is a line of what is asked for.
+/// Current at which the gains are compared, A, and current above which the actual current is linear in the demand, A.
 const LARGE_A: f64 = 4.5;
-const DIRECTED_A: f64 = 1.0;
-/// A current that is asked for flows a tick later.
-const FLOWS_S: f64 = 1e-3;
-/// Where what delays the plate is plain, rad/s.
-const QUICK: f64 = 20.0;
-/// Time for a force sensor that was just switched on to find its zero, ms.
+const LINEAR_A: f64 = 1.0;
+/// Delay from the demanded to the actual current, s: one tick.
+const CURRENT_DELAY_S: f64 = 1e-3;
+/// Angular frequency at which the dead time of the plate is compared, rad/s.
+const DEAD_TIME_RAD_S: f64 = 20.0;
+/// Time after power-up in which the device finds the zero of its force sensor, ms.
 const ZERO_MS: u64 = 500;
-/// Word of telemetry that is the current asked for.
+/// Index of the demanded current among the words of telemetry, from 1.
 const DEMAND: usize = 9;
 
 /// Names and units of [`IdentificationResult::values`].
@@ -44,20 +44,21 @@ pub const QUANTITIES: [(&str, &str); 10] = [
     ("phase margin reported, less the plant's", "deg"),
 ];
 
-/// One device of the box.
+/// Result of one device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct IdentificationResult {
-    /// The seed it was drawn by.
+    /// Seed of the draw.
     pub draw: u64,
-    /// What it found.
+    /// The identified tile.
     pub tile: IdentifiedTile,
-    /// Current that flowed for one asked for while it tuned itself.
+    /// Actual current per demanded current during tuning.
     pub flows: f64,
-    /// In the order of [`QUANTITIES`].
+    /// The quantities in the order of [`QUANTITIES`].
     pub values: [f64; QUANTITIES.len()],
 }
 
-/// Draws a device, commissions it with a reference thermometer of the box, has it tune itself once more, and compares.
+/// Draws a device, commissions it with a drawn reference thermometer, tunes it once more, and compares the result with the
+/// plant.
 ///
 /// # Errors
 /// The device cannot be commissioned.
@@ -69,16 +70,16 @@ pub fn survey_device(draw: u64) -> Result<IdentificationResult, CommissionError>
     let (tile, flows) = tune(&plants, &settings)?;
     let lag_s = params.sensors.thermistors[0].lag_s;
     let true_c = true_constants(&params, &plants)?;
-    // Where the loop's gain is one, by the rule that its gains follow.
+    // The crossover frequency of the control loop, as its gains are chosen.
     let crossover = 0.5 / (tile.lag_s + tile.dead_s);
     let plant = FrequencyResponse::measure(&plants, crossover)?;
     let w = plant.w;
     let found_k_a = tile.gain_k_s_a / w.hypot(tile.leak_1_s) / (tile.lag_s * w).hypot(1.0);
     let plant_k_a = plant.k_a * flows / (lag_s * w).hypot(1.0);
     let found_rad = w.atan2(tile.leak_1_s) + (tile.lag_s * w).atan() + tile.dead_s * w;
-    let plant_rad = plant.phase_lag_rad + (lag_s * w).atan() + FLOWS_S * w;
-    let quick = FrequencyResponse::measure(&plants, QUICK)?;
-    let dead_s = (quick.phase_lag_rad - quick.w.atan2(true_c.leak_1_s)) / quick.w + FLOWS_S;
+    let plant_rad = plant.phase_lag_rad + (lag_s * w).atan() + CURRENT_DELAY_S * w;
+    let fast = FrequencyResponse::measure(&plants, DEAD_TIME_RAD_S)?;
+    let dead_s = (fast.phase_lag_rad - fast.w.atan2(true_c.leak_1_s)) / fast.w + CURRENT_DELAY_S;
     let percent = |found: f64, truth: f64| 100.0 * (found / truth - 1.0);
     let phase_deg = (plant_rad - found_rad).to_degrees();
     Ok(IdentificationResult {
@@ -100,7 +101,7 @@ pub fn survey_device(draw: u64) -> Result<IdentificationResult, CommissionError>
     })
 }
 
-/// Constants of a lumped tile, from the plant's parameters.
+/// Constants of a lumped model of the tile, from the plant's parameters.
 struct Constants {
     gain_k_s_a: f64,
     joule_per_a: f64,
@@ -123,8 +124,8 @@ fn true_constants(
     })
 }
 
-/// Lets a device with settings tune itself, and watches which part of a large current that it asks for flows: by the line through
-/// what it asks for from [`DIRECTED_A`] on.
+/// Tunes a device with settings; returns the tile and the ratio of actual to demanded current at [`LARGE_A`], from a line
+/// fitted above [`LINEAR_A`].
 fn tune(
     plants: &CommissioningSetup,
     settings: &[String],
@@ -140,22 +141,25 @@ fn tune(
         bench.command(line)?;
     }
     let line = "tune result";
-    let (mut asked_a, mut pairs) = (0.0f64, Vec::new());
+    let (mut demand_a, mut pairs) = (0.0f64, Vec::new());
     for ms in 1..TUNE_MS {
         let question = (ms % 1000 == 0).then_some(&b"tune result\n"[..]);
         for answer in bench.run_1_ms(question)? {
             if answer.starts_with("ok") {
-                return Ok((IdentifiedTile::parse(line, &answer)?, part_at_large(&pairs)));
+                return Ok((
+                    IdentifiedTile::parse(line, &answer)?,
+                    ratio_at_large_current(&pairs),
+                ));
             }
             let current_a = bench.world().plant().current_a();
             let demand = answer
                 .strip_prefix("T ")
                 .and_then(|rest| rest.split(' ').nth(DEMAND - 1));
             if let Some(demand) = demand.and_then(|word| word.parse::<f64>().ok()) {
-                if asked_a.abs() > DIRECTED_A {
-                    pairs.push((asked_a.abs(), current_a * asked_a.signum()));
+                if demand_a.abs() > LINEAR_A {
+                    pairs.push((demand_a.abs(), current_a * demand_a.signum()));
                 }
-                asked_a = demand;
+                demand_a = demand;
             } else if !answer.starts_with("err tuning goes on") {
                 let line = line.into();
                 return Err(CommissionError::Refused { line, answer });
@@ -165,18 +169,18 @@ fn tune(
     Err(CommissionError::Silent(line.into()))
 }
 
-/// Part of [`LARGE_A`] that flows, by the line of least squares through pairs of what is asked for and what flows, A.
-fn part_at_large(pairs: &[(f64, f64)]) -> f64 {
+/// Ratio of actual to demanded current at [`LARGE_A`], by a least-squares line through pairs of both, A.
+fn ratio_at_large_current(pairs: &[(f64, f64)]) -> f64 {
     let count = pairs.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
-    let (asked_a, flows_a) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let (demand_a, flows_a) = (mean(|pair| pair.0), mean(|pair| pair.1));
     let off = pairs
         .iter()
-        .map(|pair| (pair.0 - asked_a, pair.1 - flows_a));
+        .map(|pair| (pair.0 - demand_a, pair.1 - flows_a));
     let (together, alone) = off.fold((0.0, 0.0), |(together, alone), (asked, flows)| {
         (together + asked * flows, alone + asked * asked)
     });
-    (flows_a + together / alone * (LARGE_A - asked_a)) / LARGE_A
+    (flows_a + together / alone * (LARGE_A - demand_a)) / LARGE_A
 }
 
 /// Percentiles of each quantity.

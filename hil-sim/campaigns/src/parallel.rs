@@ -1,12 +1,12 @@
-//! Work on several cores.
+//! A parallel map on several threads.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Maps the items on so many threads, in any order; results stand in the order of the items. `done` hears of each item.
+/// Maps the items on a number of threads; the results are in the order of the items. `done` is called after each item.
 ///
 /// # Errors
-/// The first error, in the order of the items; after an error no new item is begun.
+/// The first error, in the order of the items; after an error no new item is started.
 pub fn parallel_map<T: Sync, R: Send>(
     items: &[T],
     threads: usize,
@@ -24,7 +24,7 @@ pub fn parallel_map<T: Sync, R: Send>(
             if result.is_err() {
                 next.store(items.len(), Ordering::Relaxed);
             }
-            // A thread that panics ends the whole, so what it leaves behind is never read.
+            // A poisoned lock is ignored: the panic of the other thread ends the map.
             if let Ok(mut results) = results.lock() {
                 results.push((index, result));
             }
@@ -46,7 +46,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn results_stand_in_the_order_of_the_items() {
+    fn results_are_in_the_order_of_the_items() {
         let items: Vec<u64> = (0..100).collect();
         let slow_first = |item: &u64| {
             std::thread::sleep(std::time::Duration::from_micros(100 - item));

@@ -1,4 +1,4 @@
-//! `hil-sim commission`: what the operator does with a device, and the settings it then has.
+//! `hil-sim commission`: commissioning by the simulated operator, and restoring settings.
 
 use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ use thermal_sim::scene::Scene;
 use super::engine::{self, EngineKind};
 use super::{Failure, output};
 
-/// What follows the options in the help.
+/// Text after the options in the help.
 const USAGE: &str = "\
 The operator holds a reference thermometer to each sensor, types what it shows, and lets the device find out what its
 tile is like. It then has the device save that, which outlives switching off. What happens is told on standard error.
@@ -60,7 +60,7 @@ pub struct Arguments {
 /// Commissions or restores, and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(devices) = arguments.survey {
-        return result(devices, arguments.json);
+        return survey_devices(devices, arguments.json);
     }
     let plants = match (&arguments.scene, arguments.draw) {
         (Some(path), _) => {
@@ -78,14 +78,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     match arguments.engine {
         EngineKind::Native => {
             engine::refuse_elf(elf)?;
-            with(arguments, &plants, &mut NativeEngine::new(world))
+            commission_on(arguments, &plants, &mut NativeEngine::new(world))
         }
         #[cfg(feature = "emulator")]
-        EngineKind::Image => with(arguments, &plants, &mut super::image::engine(elf, world)?),
+        EngineKind::Image => {
+            commission_on(arguments, &plants, &mut super::image::engine(elf, world)?)
+        }
     }
 }
 
-fn with<E: Engine>(
+fn commission_on<E: Engine>(
     arguments: &Arguments,
     plants: &CommissioningSetup,
     engine: &mut E,
@@ -96,11 +98,11 @@ fn with<E: Engine>(
         let text = if arguments.json {
             serde_json::to_string(&tile).map_err(Failure::run)?
         } else {
-            format!("{} lines taken; {}", settings.len(), told(&tile))
+            format!("{} lines taken; {}", settings.len(), tile_text(&tile))
         };
         return print(&text);
     }
-    let done = commission(plants, engine, &mut tell).map_err(Failure::run)?;
+    let done = commission(plants, engine, &mut print_event).map_err(Failure::run)?;
     let CommissioningRecord { settings, .. } = &done;
     if arguments.json {
         print(&serde_json::to_string(&done).map_err(Failure::run)?)
@@ -131,8 +133,8 @@ fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
     Ok(lines)
 }
 
-/// Tells what happens.
-fn tell(event: &CommissioningEvent) {
+/// Prints an event on standard error.
+fn print_event(event: &CommissioningEvent) {
     let text = match event {
         CommissioningEvent::StepStarted(what) => format!("{what}\n"),
         CommissioningEvent::PointAccepted(point) => format!(
@@ -142,13 +144,13 @@ fn tell(event: &CommissioningEvent) {
         CommissioningEvent::PointRefused { sensor, answer } => {
             format!("  {sensor:8} not taken: {answer}\n")
         }
-        CommissioningEvent::TileIdentified(tile) => format!("  {}\n", told(tile)),
+        CommissioningEvent::TileIdentified(tile) => format!("  {}\n", tile_text(tile)),
     };
-    // Whoever closed it does not want to be told.
-    let _unheard = stderr().write_all(text.as_bytes());
+    // Standard error may be closed.
+    let _ignored = stderr().write_all(text.as_bytes());
 }
 
-fn told(tile: &IdentifiedTile) -> String {
+fn tile_text(tile: &IdentifiedTile) -> String {
     format!(
         "gain {:.3} K/s/A, Joule {:.4} 1/A, leak {:.3} 1/s, lag {:.1} ms, dead time {:.1} ms; margins {:.1} deg, {:.2} times",
         tile.gain_k_s_a,
@@ -161,7 +163,7 @@ fn told(tile: &IdentifiedTile) -> String {
     )
 }
 
-fn result(devices: u64, json: bool) -> Result<(), Failure> {
+fn survey_devices(devices: u64, json: bool) -> Result<(), Failure> {
     let draws: Vec<u64> = (1..=devices).collect();
     let threads = output::threads(None);
     let work = |draw: &u64| Ok((*draw, survey_device(*draw)));

@@ -1,4 +1,4 @@
-//! What a command runs: a scene, and the image or its logic.
+//! The engine and the scene of a command.
 
 use std::path::Path;
 
@@ -22,15 +22,15 @@ pub enum EngineKind {
 }
 
 impl EngineKind {
-    /// The engine of a command that names none: the image, if this build can run it.
+    /// Default engine: the image, if this build can run it.
     #[cfg(feature = "emulator")]
     pub const DEFAULT: Self = Self::Image;
-    /// The engine of a command that names none: the only one of this build.
+    /// Default engine: the only one of this build.
     #[cfg(not(feature = "emulator"))]
     pub const DEFAULT: Self = Self::Native;
 }
 
-/// The device of a campaign.
+/// The runner of a campaign.
 pub fn runner(kind: EngineKind, elf: Option<&Path>) -> Result<Box<dyn SceneRunner>, Failure> {
     match kind {
         #[cfg(feature = "emulator")]
@@ -42,7 +42,7 @@ pub fn runner(kind: EngineKind, elf: Option<&Path>) -> Result<Box<dyn SceneRunne
     }
 }
 
-/// A scene and what surrounds its device.
+/// Reads a scene and builds its world.
 pub fn scene(path: &Path) -> Result<(Scene, World), Failure> {
     let scene = Scene::read(path).map_err(Failure::input)?;
     let world = World::new(&scene)
@@ -51,7 +51,7 @@ pub fn scene(path: &Path) -> Result<(Scene, World), Failure> {
     Ok((scene, world))
 }
 
-/// `--elf` where no image runs is a mistake.
+/// Refuses `--elf` for the native engine.
 pub fn refuse_elf(elf: Option<&Path>) -> Result<(), Failure> {
     match elf {
         Some(_) => Err(Failure::input(anyhow!(

@@ -1,4 +1,4 @@
-//! `hil-sim fidelity`: how close the skin comes to that on the real material.
+//! `hil-sim fidelity`: skin temperature on the display compared with that on the real material.
 
 use std::path::{Path, PathBuf};
 
@@ -62,7 +62,7 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// A choice of which there is an `all`.
+/// A chosen scenario, or `None` for `all`.
 type Chosen = Option<Scenario>;
 type Removed = Option<RemovedLimit>;
 
@@ -90,7 +90,7 @@ fn laws() -> impl TypedValueParser<Value = Law> {
     })
 }
 
-/// What was chosen, all if `all` is among it.
+/// The chosen values, or all if `all` is among them.
 fn expand<T: Copy>(chosen: &[Option<T>], all: &[T]) -> Vec<T> {
     if chosen.iter().any(Option::is_none) {
         return all.to_vec();
@@ -159,7 +159,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )
 }
 
-/// The cases that are asked for.
+/// The chosen cases.
 fn cases(arguments: &Arguments) -> Result<Vec<FidelityCase>, Failure> {
     let boxed = arguments.draws.is_some() || arguments.replay.is_some();
     let scenarios = match arguments.scenario.as_slice() {
@@ -197,13 +197,13 @@ fn cases(arguments: &Arguments) -> Result<Vec<FidelityCase>, Failure> {
 
 struct Campaign<'a> {
     arguments: &'a Arguments,
-    /// What runs the scenarios.
+    /// Runs the scenarios.
     device: Box<dyn SceneRunner>,
     laws: Vec<Law>,
 }
 
 impl Campaign<'_> {
-    /// What runs the draws of the box: the native engine unless the command line names one.
+    /// Runs the draws: the native engine unless the command line names one.
     fn device_of_draws(&self) -> &dyn SceneRunner {
         match self.arguments.engine {
             Some(_) => self.device.as_ref(),
@@ -211,7 +211,7 @@ impl Campaign<'_> {
         }
     }
 
-    /// Every case under every law, with and without bounds.
+    /// Runs every case with every law, with and without the limits to be removed.
     fn rows(&self, cases: &[FidelityCase]) -> anyhow::Result<Vec<FidelityRow>> {
         let bounds = expand(&self.arguments.without, &RemovedLimit::ALL);
         let plants: Vec<_> = std::iter::once(None)
@@ -231,7 +231,7 @@ impl Campaign<'_> {
         })
     }
 
-    /// The draws of the box, or the one to replay, under every law.
+    /// Runs the draws, or the one to replay, with every law.
     fn draws(&self) -> anyhow::Result<Vec<DrawResult>> {
         let numbers = match (self.arguments.replay, self.arguments.draws) {
             (Some(number), _) => number..number.saturating_add(1),

@@ -7,7 +7,9 @@ use clap::Args;
 use serde::Serialize;
 use thermal_sim::World;
 use thermal_sim::engine::Cost;
-use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers, run as run_hand};
+use thermal_sim::five_fingers::{
+    FINGERS, FiveFingerEngine, NativeFiveFingers, run as run_five_fingers,
+};
 use thermal_sim::metrics::{Figures, figures as figures_of};
 use thermal_sim::scene::Scene;
 
@@ -33,7 +35,7 @@ pub struct Arguments {
 /// What `--json` prints.
 #[derive(Serialize)]
 struct Report {
-    /// Of each finger; costs are those of one finger's tick, the mean and the largest of all fingers.
+    /// Figures of each finger; costs are those of one finger's tick, the mean and the largest of all fingers.
     fingers: Vec<Figures>,
     /// From the request of a tick to its first instruction, cycles, estimated.
     latency_cycles_max: Option<u64>,
@@ -73,8 +75,9 @@ fn measure<H: FiveFingerEngine>(
     five_fingers: &mut H,
 ) -> Result<(Vec<Figures>, Option<Cost>), Failure> {
     let name = format!("five fingers on engine {}", H::NAME);
-    let outcomes =
-        output::with_progress(name, |progress| run_hand(scenes, five_fingers, progress))?;
+    let outcomes = output::with_progress(name, |progress| {
+        run_five_fingers(scenes, five_fingers, progress)
+    })?;
     let outcomes = outcomes.map_err(Failure::run)?;
     let figures = scenes.iter().zip(&outcomes);
     let figures = figures.map(|(scene, outcome)| figures_of(scene, outcome));

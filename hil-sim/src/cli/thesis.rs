@@ -1,4 +1,4 @@
-//! `hil-sim thesis`: the thesis's numbers beside the computed ones.
+//! `hil-sim thesis`: the numbers of the thesis compared with computed ones.
 
 use std::path::PathBuf;
 

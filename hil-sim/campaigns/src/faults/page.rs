@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use thermal_charts::{document, escape};
 
-use super::table::{broken, cells, outcome};
+use super::table::{cells, failing_run_text, outcome};
 use super::{Breach, FaultSummary};
 
 /// Name of the page.
@@ -51,7 +51,7 @@ pub fn page(rows: &[FaultSummary], engine: &str) -> String {
                 list,
                 "<li>{}: {}</li>",
                 escape(&row.fault),
-                escape(&broken(trial))
+                escape(&failing_run_text(trial))
             );
         }
     }

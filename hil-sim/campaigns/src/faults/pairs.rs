@@ -7,7 +7,7 @@ use thermal_plant::parameters::stream;
 use thermal_sim::SceneRunner;
 use thermal_sim::scene::FaultKind;
 
-use super::table::broken;
+use super::table::failing_run_text;
 use super::{
     Breach, ExpectedReaction, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint,
     fault_cases, fault_run,
@@ -164,7 +164,7 @@ pub fn pair_table(runs: &[PairResult]) -> String {
             "{}, then {}: {}",
             run.latent,
             run.active,
-            broken(&run.trial)
+            failing_run_text(&run.trial)
         );
     }
     text

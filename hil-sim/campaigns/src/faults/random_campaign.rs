@@ -1,4 +1,4 @@
-//! Random campaigns: fault, moment, scene and plant by seed and number.
+//! Random campaigns: fault, time, scene and plant drawn by seed and number.
 
 use std::fmt::Write;
 
@@ -8,30 +8,30 @@ use serde::Serialize;
 use thermal_plant::parameters::stream;
 use thermal_sim::SceneRunner;
 
-use super::table::broken;
+use super::table::failing_run_text;
 use super::{
     Breach, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint, fault_cases, fault_run,
 };
 use crate::fidelity::PlantDraw;
 
-/// Campaigns in a row on the same device of the box: commissioning one takes longer than a campaign.
+/// Consecutive campaigns on one device, because commissioning a device takes longer than a campaign.
 const ON_ONE_DEVICE: u64 = 8;
 
-/// One fault at one moment of one scene on one device of the box.
+/// One fault at one time of one scene on one drawn device.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RandomCampaign {
-    /// Its number, from 0.
+    /// Number of the campaign, from 0.
     pub number: u64,
-    /// What happens.
+    /// The fault case.
     pub fault_case: FaultCase,
-    /// Where and when.
+    /// Scene and time of the fault.
     pub point: InjectionPoint,
-    /// The device, and its plant.
+    /// The device and its plant.
     pub device: PlantDraw,
 }
 
 impl RandomCampaign {
-    /// The campaign of a number and a seed; no other one is needed for it. RemovedLimit a processor, its faults are not
+    /// Draws a campaign; it depends only on seed and number. Without a processor, its faults are not
     /// drawn, so the two engines' campaigns of a number differ.
     #[must_use]
     pub fn new(seed: u64, number: u64, has_processor: bool) -> Self {
@@ -53,7 +53,7 @@ impl RandomCampaign {
         }
     }
 
-    /// Its scene as a file has it.
+    /// Text of the scene.
     #[must_use]
     pub fn text(&self) -> String {
         let faults = [(self.fault_case.fault, self.point.t_s)];
@@ -61,10 +61,10 @@ impl RandomCampaign {
         fault_run::scene_text(&faults, self.point, self.fault_case.after_s, *seed, plant)
     }
 
-    /// Runs it; none if the engine has no part that could fail so.
+    /// Runs the campaign; `None` if the fault does not apply to the engine.
     ///
     /// # Errors
-    /// The scene cannot be.
+    /// The scene is not valid.
     pub fn run(&self, device: &dyn SceneRunner) -> anyhow::Result<Option<CampaignResult>> {
         let trial = FaultRun::run_text(device, &self.fault_case, self.point, &self.text())?;
         Ok(trial.map(|trial| CampaignResult {
@@ -75,14 +75,14 @@ impl RandomCampaign {
     }
 }
 
-/// What came of a campaign.
+/// Result of a campaign.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CampaignResult {
-    /// Its number.
+    /// Number of the campaign.
     pub number: u64,
-    /// Its fault.
+    /// The fault.
     pub fault: String,
-    /// Scene, moment and assessment.
+    /// Scene, time and assessment.
     #[serde(flatten)]
     pub trial: FaultRun,
 }
@@ -108,7 +108,7 @@ const WORST_FIGURES: [WorstFigure; 4] = [
     ("slowest to safe", "ms", 1.0, |run| run.assessment.took_ms),
 ];
 
-/// Runs, violations of each kind, the worst figures with the numbers of their campaigns; then every violation.
+/// Table of runs, violations of each kind and worst figures with their campaigns, followed by every violation.
 #[must_use]
 pub fn campaign_summary(runs: &[CampaignResult]) -> String {
     let worst = |(name, unit, sign, figure): WorstFigure| {
@@ -150,7 +150,7 @@ pub fn campaign_summary(runs: &[CampaignResult]) -> String {
             "number {}: {}: {}",
             run.number,
             run.fault,
-            broken(&run.trial)
+            failing_run_text(&run.trial)
         );
     }
     text
@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn no_processor_no_processor_faults() {
+    fn an_engine_without_a_processor_gets_no_processor_faults() {
         for number in 0..500 {
             let campaign = RandomCampaign::new(1, number, false);
             assert!(!matches!(

@@ -1,4 +1,4 @@
-//! A fault as a scene file has it.
+//! Writes faults and host lines as text of a scene.
 
 use std::fmt::Write;
 
@@ -7,10 +7,10 @@ use thermal_sim::scene::FaultKind;
 
 use super::InjectedFault;
 
-/// A host that fell silent comes back after so long, s, to ask.
+/// Duration of a silence of the host, s.
 const SILENT_S: f64 = 6.0;
 
-/// The table of a fault that comes at a time, s. Noise in RAM is drawn by the scene's seed.
+/// The table of a fault at a time, s. The scene's seed draws the noise in the RAM.
 pub(super) fn fault_text(fault: &InjectedFault, t_s: f64) -> String {
     let mut text = match fault {
         InjectedFault::HostLine(line) => return host_line(line, t_s),
@@ -61,9 +61,8 @@ mod tests {
     use crate::faults::{FaultScene, InjectionPoint};
     use thermal_sim::scene::Scene;
 
-    /// What the reader of scene files makes of it is the fault of the list, at its time.
     #[test]
-    fn every_fault_of_the_list_can_be_written_as_a_scene() {
+    fn every_fault_of_the_list_is_read_back_from_its_scene() {
         for fault_case in fault_cases() {
             let point = InjectionPoint {
                 scene: FaultScene::Slew,

@@ -1,69 +1,67 @@
-//! Deviations of the plant from which on a fault can be noticed.
+//! Symptoms: deviations of the plant that make a fault detectable.
 //!
-//! All are told from the plant's truth: what the thermistors read and the mirror shows before the converter, the level of
-//! the fault line, and the current that the device says it asks for.
+//! They are derived from the true state of the plant: sensor outputs before the converter, the level of the fault line, and
+//! the demanded current in the telemetry.
 //!
-//! What a device compares has been calibrated and has noise. So a temperature counts here from 0.1 K beyond the device's
-//! limit on, which is more than a calibrated thermistor is off: its thermometer is off by 0.02 K at most, the rest is
-//! converter and curve. A difference counts from what two sensors are apart when they are sound: 0.1 K of the display's,
-//! 0.5 K of skin and room, 0.2 K of two that are exchanged. A dose is one that the device has counted even if it reads 0.1 K
-//! too little: at 42 °C that is an eighth of it. A deviation that takes its time counts from its begin, if it lasts for as
-//! long as a device must wait to tell it from what a sound one does.
+//! The readings of a device are calibrated and noisy. Therefore the thresholds here exceed those of the device by the
+//! largest error of sound sensors. A temperature counts from 0.1 K beyond the device's limit, which is more than the error
+//! of a calibrated thermistor: 0.02 K from the reference thermometer, the rest from converter and curve. A difference has a
+//! margin of 0.1 K between the thermistors of the display, 0.5 K between skin and room, and 0.2 K between two exchanged
+//! ones. A dose is computed from readings reduced by 0.1 K, which is an eighth less at 42 °C. A deviation that must last to
+//! be detectable counts from its start, if it lasts as long as the device must wait.
 
 use thermal_plant::STEP_S;
 use thermal_sim::dose::cem43_rate;
 use thermal_sim::trace::TraceRow;
 
-/// A deviation that counts as detectable.
+/// A deviation that makes a fault detectable.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Symptom {
-    /// From the injection on.
+    /// The injection itself.
     Injection,
-    /// So long after it, s.
+    /// A time after the injection, s.
     After(f64),
-    /// The display's thermistors read 3.1 K apart.
+    /// The readings of the display's thermistors differ by more than 3.1 K.
     DisplaySensorsDiffer,
-    /// The display's thermistor reads 4 K more or less than in the same scene without the fault, for 40 ms; where the
-    /// tile was tuned.
+    /// The reading of the display differs by more than 4 K from that of the fault-free run, for 40 ms; only for a tuned tile.
     DisplayDeviates,
-    /// Display, its second thermistor or the sink reads 0.7 K more or less than 4 ms before.
+    /// The reading of a display thermistor or of the sink changes by more than 0.7 K within 4 ms.
     ReadingJump,
-    /// The room reads 8.5 K more than the skin.
+    /// The reading of the room exceeds that of the skin by more than 8.5 K.
     RoomAboveSkin,
-    /// The mirror shows a current that is off by more than 1.05 A and a quarter of what was asked for a tick before, for 32 ms
-    /// more than not; from 32 ms before that.
+    /// The measured current differs by more than 1.05 A plus a quarter from the demand of the previous tick. A counter of such
+    /// rows, decremented by other rows, reaches 32; the onset is 32 ms earlier.
     CurrentOff,
-    /// The mirror shows more than 9.2 A, for 2 ms: what is shorter may be half in one of the device's ticks and half in the next.
+    /// The measured current exceeds 9.2 A for 2 ms; a shorter excess could be split between two ticks of the device.
     OverCurrent,
-    /// The display's thermistor has gone back by 2.6 K, farther from the set-point, while a mean of 1 A drove it there, and the
-    /// current that is asked for still does. What follows a current that has turned, or goes to the set-point from the other
-    /// side as the current eases off, is no deviation.
+    /// The reading of the display has moved by 2.6 K against the direction of the current and away from the set-point, while
+    /// both the mean demand, at least 1 A, and the present demand drive it to the set-point.
     WrongWay,
-    /// A thermistor of the display reads less than 13.4 or more than 43.1 °C.
+    /// A reading of the display is below 13.4 °C or above 43.1 °C.
     DisplayLimit,
-    /// That of the sink reads more than 42.1 °C.
+    /// The reading of the sink is above 42.1 °C.
     SinkLimit,
-    /// The fault line gets low while current flows.
+    /// The fault line is low while current flows.
     FaultLine,
-    /// Half a minute of CEM43 by what the display's thermistor reads, less 0.1 K.
+    /// The dose of the display's reading less 0.1 K reaches half a minute of CEM43.
     Dose,
-    /// The self-test, which the host asks for with the fault there, is so old, s: the comparator's part is through at 0.02, the current's at
-    /// 0.304, the display's answer at 0.504, all at 0.704. What follows the comparator's part begins anew a second after a
-    /// finger lands or lifts, and a second later with one that rests.
+    /// The age of a self-test that started after the fault, s: its test of the comparator ends at 0.02, of the current at
+    /// 0.304, of the response of the display at 0.504, and the whole at 0.704. The part after the comparator restarts one
+    /// second after a finger lands or lifts, and is delayed by one second under a resting finger.
     SelfTest(f64),
 }
 
-const APART_K: f64 = 3.1;
-/// The device's limit is 3.75 K from a model that is up to a quarter of a kelvin off; for what its lag of 20 ms costs the feedback that it
-/// counts makes up.
-const ASTRAY_K: f64 = 4.0;
-const ASTRAY_ROWS: usize = 40;
+const DIFFERENCE_K: f64 = 3.1;
+/// The limit of the device is 3.75 K from its model, which is up to 0.25 K off. Its lag of 20 ms is compensated by the
+/// feedback that it includes.
+const DEVIATION_K: f64 = 4.0;
+const DEVIATION_ROWS: usize = 40;
 const JUMP_K: f64 = 0.7;
 const JUMP_ROWS: usize = 4;
 const ROOM_ABOVE_K: f64 = 8.5;
 const OFF_A: f64 = 1.05;
-const OFF_PART: f64 = 0.25;
-/// Two more than the device waits for, which samples all through a tick: what is just as long may be one less to it.
+const OFF_FRACTION: f64 = 0.25;
+/// Two more than the debounce of the device: it samples during the whole tick and may count one tick less.
 const OFF_ROWS: usize = 32;
 const OVER_A: f64 = 9.2;
 const OVER_ROWS: usize = 2;
@@ -74,11 +72,11 @@ const DISPLAY_C: std::ops::RangeInclusive<f64> = 13.4..=43.1;
 const SINK_C: f64 = 42.1;
 const DOSE_MIN: f64 = 0.5;
 const DOSE_BELOW_K: f64 = 0.1;
-/// End of the comparator's part of a self-test, and what it waits for after a finger, ms.
+/// End of the comparator's part of a self-test, and the wait after a change of contact, ms.
 const COMPARATOR_MS: u32 = 40;
 const UNTOUCHED_MS: u32 = 1000;
 
-/// Places among the thermistors.
+/// Indices of the thermistors.
 const DISPLAY: usize = 0;
 const CHECK: usize = 1;
 const SINK: usize = 2;
@@ -90,14 +88,14 @@ fn read(row: &TraceRow, which: usize) -> Option<f64> {
 }
 
 impl Symptom {
-    /// It is told from the same scene without the fault.
+    /// Whether it needs the run of the same scene without the fault.
     #[must_use]
     pub const fn needs_fault_free_run(self) -> bool {
         matches!(self, Self::DisplayDeviates)
     }
 
-    /// When it is reached first, s; `from` is the row at which the fault begins, `sound` the rows without it if
-    /// [`Self::needs_fault_free_run`], and `tested_from_s` when the device is told to test itself, if it is.
+    /// Time of its first occurrence, s. The fault starts at the row `from`; `sound` are the rows of the fault-free run if
+    /// [`Self::needs_fault_free_run`]; `tested_from_s` is the time at which a self-test is requested, if any.
     #[must_use]
     pub fn onset_s(
         self,
@@ -117,12 +115,12 @@ impl Symptom {
             Self::After(s) => Some(begin_s + s).filter(|t_s| *t_s <= end_s),
             Self::DisplaySensorsDiffer => {
                 first(&|row| match (read(row, DISPLAY), read(row, CHECK)) {
-                    (Some(display_c), Some(check_c)) => (display_c - check_c).abs() > APART_K,
+                    (Some(display_c), Some(check_c)) => (display_c - check_c).abs() > DIFFERENCE_K,
                     _ => false,
                 })
             }
-            Self::DisplayDeviates => astray(after, sound.get(from..)?),
-            Self::ReadingJump => jump(rows, from),
+            Self::DisplayDeviates => display_deviates(after, sound.get(from..)?),
+            Self::ReadingJump => reading_jump(rows, from),
             Self::RoomAboveSkin => first(&|row| match (read(row, ROOM), read(row, SKIN)) {
                 (Some(room_c), Some(skin_c)) => room_c - skin_c > ROOM_ABOVE_K,
                 _ => false,
@@ -138,7 +136,7 @@ impl Symptom {
                     .any(beyond)
             }),
             Self::SinkLimit => first(&|row| read(row, SINK).is_some_and(|sink_c| sink_c > SINK_C)),
-            // By the row's own tick the device may have seen it.
+            // The tick of the row itself may have seen it, so the current of the row before counts.
             Self::FaultLine => (from.max(1)..rows.len())
                 .find(|&i| rows[i].fault_line && rows[i - 1].current_a != 0.0)
                 .map(|i| rows[i].t_s),
@@ -148,23 +146,23 @@ impl Symptom {
     }
 }
 
-fn astray(rows: &[TraceRow], sound: &[TraceRow]) -> Option<f64> {
+fn display_deviates(rows: &[TraceRow], sound: &[TraceRow]) -> Option<f64> {
     let so_far =
         |(row, sound): (&TraceRow, &TraceRow)| match (read(row, DISPLAY), read(sound, DISPLAY)) {
-            (Some(display_c), Some(sound_c)) if (display_c - sound_c).abs() > ASTRAY_K => {
+            (Some(display_c), Some(sound_c)) if (display_c - sound_c).abs() > DEVIATION_K => {
                 Some(row.t_s)
             }
             _ => None,
         };
     let far: Vec<_> = rows.iter().zip(sound).map(so_far).collect();
     let lasts = far
-        .windows(ASTRAY_ROWS)
+        .windows(DEVIATION_ROWS)
         .find(|rows| rows.iter().all(Option::is_some))?;
     lasts[0]
 }
 
-/// Begin of the fault included: what it does to a reading at once is a jump.
-fn jump(rows: &[TraceRow], from: usize) -> Option<f64> {
+/// Includes the start of the fault: an immediate change of a reading is a jump.
+fn reading_jump(rows: &[TraceRow], from: usize) -> Option<f64> {
     (from..rows.len()).find_map(|i| {
         let before = rows.get(i.checked_sub(JUMP_ROWS)?)?;
         let jumped = [DISPLAY, CHECK, SINK].into_iter().any(|which| {
@@ -177,15 +175,15 @@ fn jump(rows: &[TraceRow], from: usize) -> Option<f64> {
     })
 }
 
-/// The device's own words tell what it asks for; while it says nothing nothing is told.
-/// What flows in a row was asked for in the one before.
+/// The demand is that of the telemetry; rows without telemetry count as correct. The current in a row follows the demand of
+/// the row before.
 fn current_off(rows: &[TraceRow]) -> Option<f64> {
     let mut wrong = 0;
     for (i, (asking, row)) in rows.iter().zip(rows.iter().skip(1)).enumerate() {
-        let asked_a = asking.device.as_ref().and_then(|device| device.demand_a);
-        let off = asked_a.is_some_and(|asked_a| {
-            let asked_a = asked_a.abs();
-            (row.taken.mirror_a - asked_a).abs() > OFF_A + OFF_PART * asked_a
+        let demand_a = asking.device.as_ref().and_then(|device| device.demand_a);
+        let off = demand_a.is_some_and(|demand_a| {
+            let demand_a = demand_a.abs();
+            (row.taken.mirror_a - demand_a).abs() > OFF_A + OFF_FRACTION * demand_a
         });
         wrong = if off {
             wrong + 1
@@ -202,20 +200,20 @@ fn current_off(rows: &[TraceRow]) -> Option<f64> {
 fn wrong_way(rows: &[TraceRow]) -> Option<f64> {
     let (mut mean_a, mut best_c) = (0.0f64, None::<f64>);
     for row in rows {
-        let asked_a = row.device.as_ref().and_then(|device| device.demand_a);
-        mean_a += (asked_a.unwrap_or(0.0) - mean_a) * STEP_S / MEAN_S;
+        let demand_a = row.device.as_ref().and_then(|device| device.demand_a);
+        mean_a += (demand_a.unwrap_or(0.0) - mean_a) * STEP_S / MEAN_S;
         let setpoint_c = row.device.as_ref().and_then(|device| device.setpoint_c);
         let driven = |display_c: &f64| {
             let from_setpoint_k = setpoint_c.map_or(0.0, |setpoint_c| display_c - setpoint_c);
             mean_a.abs() >= DIRECTED_A
-                && asked_a.unwrap_or(0.0) * mean_a > 0.0
+                && demand_a.unwrap_or(0.0) * mean_a > 0.0
                 && from_setpoint_k * mean_a > 0.0
         };
         let Some(display_c) = read(row, DISPLAY).filter(driven) else {
             best_c = None;
             continue;
         };
-        // Mirrored, so that lower is better.
+        // The sign makes lower values better for both directions.
         let display_c = display_c * mean_a.signum();
         let best = best_c.map_or(display_c, |best_c| best_c.min(display_c));
         if display_c - best > BACK_K {
@@ -245,7 +243,7 @@ fn dose(rows: &[TraceRow], from: usize) -> Option<f64> {
         .map(|(_, t_s, _)| t_s)
 }
 
-/// When the self-test is so old, s, landings and what they add left out, if it begins with the fault there.
+/// Time at which the self-test reaches an age, s, with restarts by a finger excluded; `None` if it started before the fault.
 fn self_test(rows: &[TraceRow], from: usize, tested_from_s: f64, age_s: f64) -> Option<f64> {
     let begin = rows.partition_point(|row| row.t_s < tested_from_s - 1e-9);
     if begin < from {
@@ -276,7 +274,7 @@ mod tests {
     use thermal_sim::scene::Scene;
     use thermal_sim::telemetry::Telemetry;
 
-    /// A row each millisecond for 4 s; `at` makes of it what it shall be.
+    /// One row per millisecond for 4 s, each changed by `at`.
     fn rows(at: impl Fn(f64, &mut TraceRow, &mut Telemetry)) -> Vec<TraceRow> {
         let text = "duration_s = 1\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\n";
         let scene = Scene::parse(text, "rows".as_ref()).expect("a scene");
@@ -299,9 +297,9 @@ mod tests {
         );
     }
 
-    /// Parts at 20, 304, 504 and 704 ms; a finger adds a second to what follows the first 40 ms.
+    /// A finger adds a second to the parts after the first 40 ms.
     #[test]
-    fn a_self_test_is_as_old_as_a_finger_lets_it_be() {
+    fn a_finger_delays_the_self_test() {
         let with_finger_from = |from_s: f64| {
             rows(move |t_s, row, device| {
                 row.force_n = if t_s >= from_s { 2.0 } else { 0.0 };
@@ -338,7 +336,7 @@ mod tests {
     }
 
     #[test]
-    fn a_display_goes_the_wrong_way_only_from_its_set_point_and_against_the_current() {
+    fn the_wrong_way_is_away_from_the_set_point_and_against_the_current() {
         about(
             Symptom::WrongWay.onset_s(&rising(20.0, 9.0), &[], 500, None),
             2.0 + 2.6 / 2.0,
@@ -353,9 +351,9 @@ mod tests {
         );
     }
 
-    /// A current that swings from tick to tick flows a tick after it was asked for.
+    /// The current alternates from tick to tick and follows the demand one tick later.
     #[test]
-    fn a_current_is_off_from_what_was_asked_for_in_the_tick_before() {
+    fn a_current_is_compared_with_the_demand_of_the_previous_tick() {
         let swings = |t_s: f64| {
             if (t_s * 1e3).round() % 2.0 < 1.0 {
                 6.0
@@ -365,8 +363,8 @@ mod tests {
         };
         let until = |end_s: f64| {
             rows(move |t_s, row, device| {
-                let asked_a: f64 = swings(t_s - 1e-3);
-                row.taken.mirror_a = if t_s < end_s { asked_a.abs() } else { 0.0 };
+                let demand_a: f64 = swings(t_s - 1e-3);
+                row.taken.mirror_a = if t_s < end_s { demand_a.abs() } else { 0.0 };
                 device.demand_a = Some(swings(t_s));
             })
         };
@@ -382,9 +380,9 @@ mod tests {
         }
     }
 
-    /// A second at 47 °C is worth 16 at 43 °C: half a minute takes 1.875 s.
+    /// One second at 47 °C equals 16 s at 43 °C, so half a minute takes 1.875 s.
     #[test]
-    fn a_dose_is_counted_from_a_tenth_of_a_kelvin_less() {
+    fn the_dose_is_that_of_the_reading_less_a_tenth_of_a_kelvin() {
         let warm = rows(|t_s, row, _| {
             row.taken.thermistors_c[DISPLAY] = Some(if t_s < 1.0 { 30.0 } else { 47.1 });
         });

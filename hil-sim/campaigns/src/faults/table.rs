@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::assessment::MILLISECONDS;
 use super::{Breach, FaultRun, FaultSummary};
 
-/// One line for each row, with its worst cases; then every run that has a breach.
+/// One line for each fault, with its worst figures, followed by every run that broke a limit.
 #[must_use]
 pub fn table(rows: &[FaultSummary]) -> String {
     let width = rows.iter().map(|row| row.fault.len()).max().unwrap_or(0);
@@ -35,13 +35,13 @@ pub fn table(rows: &[FaultSummary]) -> String {
     );
     for row in rows {
         for trial in row.failing_runs() {
-            let _ = writeln!(text, "{}: {}", row.fault, broken(trial));
+            let _ = writeln!(text, "{}: {}", row.fault, failing_run_text(trial));
         }
     }
     text
 }
 
-/// What a row is called: it holds, or what it breaks.
+/// `ok`, or the names of the broken limits.
 #[must_use]
 pub(super) fn outcome(row: &FaultSummary) -> String {
     if row.trials.is_empty() {
@@ -62,8 +62,8 @@ pub(super) fn outcome(row: &FaultSummary) -> String {
     }
 }
 
-/// The figures of a row as words, in the order of the columns: runs, how many were detectable, longest time from the
-/// first sign to safe, skin, dose, display, reasons.
+/// The cells of a row in the order of the columns: runs, detectable runs, longest time from the first symptom to zero
+/// current, skin, dose, display, causes.
 #[must_use]
 pub(super) fn cells(row: &FaultSummary) -> [String; 7] {
     let detectable = row
@@ -111,8 +111,8 @@ fn line(row: &FaultSummary, width: usize) -> String {
     )
 }
 
-/// A run that breaks something, so that it can be run again.
-pub(super) fn broken(trial: &FaultRun) -> String {
+/// A run that broke a limit, as text from which it can be repeated.
+pub(super) fn failing_run_text(trial: &FaultRun) -> String {
     let assessment = &trial.assessment;
     match &assessment.ended {
         Some(ended) => {

@@ -2,7 +2,7 @@
 
 use super::{DrawResult, FidelityRow};
 
-/// A row as a file has it: its name and the text of its cells.
+/// A column: its name and the text of its cells.
 type Column<T> = (&'static str, fn(&T) -> String);
 
 const ROWS: [Column<FidelityRow>; 24] = [
@@ -68,7 +68,7 @@ fn some<T: ToString>(value: Option<T>) -> String {
     value.map_or(String::new(), |value| value.to_string())
 }
 
-/// One line a run.
+/// One line per run.
 ///
 /// # Errors
 /// Out of memory.
@@ -76,7 +76,7 @@ pub fn rows_csv(rows: &[FidelityRow]) -> anyhow::Result<Vec<u8>> {
     write(&ROWS, rows, |_| Vec::new(), &[])
 }
 
-/// One line a draw and law, what was drawn last.
+/// One line per draw and law; the drawn parameters are the last columns.
 ///
 /// # Errors
 /// Out of memory.

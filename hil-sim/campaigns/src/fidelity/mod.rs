@@ -1,12 +1,12 @@
-//! How close the skin on the display comes to the skin on the real material: scenarios, laws, and the box of plants that
-//! a device may turn out to be.
+//! Fidelity: difference between the skin temperature on the display and on the real material, for scenarios, control laws
+//! and random plants.
 //!
 //! ```text
-//! scenario -> cases -> scene text -> device (image or native) -> figures of the run, and the figure that is judged
-//!                         ^ law, seed, plant keys: a bound removed, or a draw of the box
+//! scenario -> cases -> scene text -> device (image or native) -> figures of the run, one of them with a bound
+//!                         ^ law, seed, plant parameters: a limit removed, or a random draw
 //! ```
 //!
-//! Every run is a scene file: [`FidelityCase::text`] writes it, `hil-sim run` repeats it.
+//! Every run is a scene file: [`FidelityCase::text`] writes it, and `hil-sim run` can repeat it.
 
 mod case;
 mod csv;

@@ -1,4 +1,4 @@
-//! The box of plants that a device may turn out to be, drawn by seed.
+//! Plants drawn at random from the parameter box.
 
 use contact_model::material::MATERIALS;
 use contact_model::pressure::THESIS_PRESSURES;
@@ -12,11 +12,11 @@ use super::case::ROOM_C;
 use super::{FidelityCase, Scenario};
 use crate::percentile;
 
-/// What is drawn, and from what. Whatever is not here stays nominal.
+/// The drawn parameters and their distributions. All others stay nominal.
 ///
-/// Detection is late by the interface's dead time, up to 8 ms, and by what the amplifier's lag of up to 5 ms takes to
-/// bring 0.1 N over the device's threshold in its second tick, 2 ms: 10 ms in all. A lag alone that makes 0.1 N so late
-/// would hide 2 N for longer than the first 50 ms.
+/// Contact detection is delayed by the dead time of the interface, up to 8 ms, and by about 2 ms that an amplifier lag of up
+/// to 5 ms takes to bring 0.1 N above the threshold of the device: 10 ms in all. A lag that alone delayed 0.1 N as long
+/// would distort 2 N for longer than the first 50 ms.
 const BOX: [(&str, Tolerance); 12] = [
     ("tile.imax_a", relative(0.1)),
     ("tile.vmax_v", relative(0.1)),
@@ -29,16 +29,16 @@ const BOX: [(&str, Tolerance); 12] = [
     ("sensors.display.lag_s", between(0.02, 0.5).logarithmic()),
     ("sensors.force.lag_s", between(0.2e-3, 5e-3).logarithmic()),
     ("sensors.force.delay_s", between(0.0, 8e-3)),
-    // Error of the thermometer that the device is calibrated by, where there is one.
+    // Error of the reference thermometer of the calibration.
     ("host.reference_offset_k", absolute(0.02)),
 ];
 
-/// Both thermistors on the display are of one kind, and bonded alike.
+/// Two parameters with the same value: both thermistors of the display are of one type and bonded alike.
 const SAME_VALUE: (&str, &str) = ("sensors.display.lag_s", "sensors.check.lag_s");
 
-/// Parts, or single parameters, that are drawn for a device in use too, by their own tolerances: beside the box what a builder
-/// does not choose. The rest of a sensor goes with its calibration, the finger with the scene; dead time and filter of the bridge are
-/// the design's, as the device is told.
+/// Parameters, or prefixes of their keys, that are also drawn for a device in use, within their own tolerances: those that a
+/// builder cannot choose. Other sensor errors are calibrated, the finger belongs to the scene, and dead time and filter of
+/// the bridge are design values known to the device.
 const IN_USE: [&str; 11] = [
     "bridge.supply_v",
     "bridge.diode_v",
@@ -53,21 +53,21 @@ const IN_USE: [&str; 11] = [
     "tile.ceramic_w_mk",
 ];
 
-/// One plant of the box, and the finger on it.
+/// A drawn plant and the case that is run on it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlantDraw {
-    /// Its number, from 0.
+    /// Number of the draw, from 0.
     pub number: u64,
-    /// Of the converter's profile and noise.
+    /// Seed of the converter's profile and noise.
     pub seed: u64,
-    /// Keys of the plant and their values.
+    /// Drawn plant parameters with their values.
     pub plant: Vec<(String, f64)>,
-    /// Material and force, which the draws take in turn.
+    /// The case; consecutive draws take all materials and forces in turn.
     pub case: FidelityCase,
 }
 
 impl PlantDraw {
-    /// The draw of a number from the box of a seed; no other draw is needed for it.
+    /// Draws a plant; it depends only on seed and number.
     #[must_use]
     pub fn new(seed: u64, number: u64) -> Self {
         let own = stream(seed, &format!("draw {number}"));
@@ -87,14 +87,14 @@ impl PlantDraw {
         let mut cases = Scenario::A.cases();
         Self {
             number,
-            // What a scene file can hold.
+            // A scene file holds 63 bits.
             seed: own >> 1,
             plant,
             case: cases.swap_remove((number % pairs) as usize),
         }
     }
 
-    /// The same draw of the box as a device in use: its bridge and what measures are drawn as well.
+    /// The same draw for a device in use: its bridge and measuring circuits are drawn, too.
     #[must_use]
     pub fn in_use(seed: u64, number: u64) -> Self {
         let mut draw = Self::new(seed, number);
@@ -107,7 +107,7 @@ impl PlantDraw {
         draw
     }
 
-    /// Runs it.
+    /// Runs the case on the plant.
     ///
     /// # Errors
     /// The device stopped, or refused the scene.
@@ -132,10 +132,10 @@ impl PlantDraw {
     }
 }
 
-/// What a draw has given.
+/// Result of a draw.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DrawResult {
-    /// Its number, to replay it.
+    /// Number of the draw.
     pub number: u64,
     /// Material.
     pub material: String,
@@ -149,7 +149,7 @@ pub struct DrawResult {
     pub rms_mk: f64,
     /// Faults that the device reported.
     pub faults: Vec<String>,
-    /// What was drawn.
+    /// Drawn plant parameters.
     #[serde(serialize_with = "as_map")]
     pub plant: Vec<(String, f64)>,
 }
@@ -158,16 +158,16 @@ fn as_map<S: serde::Serializer>(plant: &[(String, f64)], serializer: S) -> Resul
     serializer.collect_map(plant.iter().map(|(key, value)| (key, value)))
 }
 
-/// Percentiles over draws.
+/// Percentiles over all draws.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Percentiles {
-    /// Half of the draws are within this.
+    /// 50 %.
     pub p50: f64,
     /// 95 %.
     pub p95: f64,
     /// 99 %.
     pub p99: f64,
-    /// All.
+    /// Largest value.
     pub max: f64,
 }
 
@@ -185,7 +185,7 @@ impl Percentiles {
     }
 }
 
-/// One law over the box.
+/// Statistics of one control law over all draws.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LawStatistics {
     /// Name of the law.
@@ -194,9 +194,9 @@ pub struct LawStatistics {
     pub max_after_50ms_mk: Percentiles,
     /// Its root mean square, mK.
     pub rms_mk: Percentiles,
-    /// What is allowed at the 95th percentile of the first, mK.
+    /// Bound of the 95th percentile of the largest skin error, mK.
     pub bound_mk: f64,
-    /// Whether it is.
+    /// Whether the bound holds.
     pub within: bool,
     /// Draws in which the device reported a fault.
     pub faulty: usize,
@@ -204,25 +204,25 @@ pub struct LawStatistics {
     pub worst: Vec<DrawResult>,
 }
 
-/// All laws over the box.
+/// Statistics of all control laws.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BoxReport {
-    /// Engine.
+    /// Name of the engine.
     pub engine: &'static str,
-    /// Draws.
+    /// Number of draws.
     pub draws: u64,
-    /// Their seed.
+    /// Seed of the draws.
     pub seed: u64,
-    /// Law by law.
+    /// Statistics by law.
     pub laws: Vec<LawStatistics>,
 }
 
-/// What the box may reach at its 95th percentile, mK.
+/// Bound of the 95th percentile, mK.
 const BOUND_MK: f64 = 50.0;
-/// Draws that are named.
+/// Number of worst draws that are listed.
 const WORST: usize = 5;
 
-/// Law by law, in the order in which laws first occur.
+/// Statistics by law, in the order of first occurrence.
 #[must_use]
 pub fn statistics_by_law(drawn: &[DrawResult]) -> Vec<LawStatistics> {
     let mut laws: Vec<&'static str> = Vec::new();
@@ -306,7 +306,7 @@ mod tests {
                 value(draw, "sensors.check.lag_s")
             );
         }
-        // Every ratio of lags alike: half of them below the geometric mean, 0.1 s.
+        // The logarithm is uniform: half of the lags are below the geometric mean, 0.1 s.
         let quick = draws
             .iter()
             .filter(|draw| value(draw, "sensors.display.lag_s") < 0.1)

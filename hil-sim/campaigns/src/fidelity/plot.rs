@@ -1,4 +1,4 @@
-//! The figures as a picture: errors over time, and the largest of them.
+//! Chart of the errors over time and of the largest errors.
 
 use std::ops::Range;
 
@@ -32,7 +32,7 @@ const OVER_TIME_OF: [&str; 4] = ["copper", "granite", "abs", "foam"];
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The picture of the first scenario of the rows, as an SVG document; `None` without rows.
+/// The chart of the first scenario of the rows, as an SVG document; `None` without rows.
 ///
 /// # Errors
 /// The plot cannot be drawn.
@@ -133,7 +133,7 @@ fn over_time(
     Ok(())
 }
 
-/// What is judged, the worst force of each material and law.
+/// The bounded figure at the worst force of each material and law.
 fn largest(
     area: &Area<'_>,
     scenario: Scenario,
@@ -149,7 +149,7 @@ fn largest(
         .fold((f64::INFINITY, f64::MIN_POSITIVE), |(l, m), value| {
             (l.min(value), m.max(value))
         });
-    // Half a row of the trace is as good as nothing.
+    // Values below half a row of the trace are drawn at that value.
     let least = least.clamp(0.5e-3, most);
     let mut chart = ChartBuilder::on(area)
         .margin(MARGIN)
@@ -217,7 +217,7 @@ fn color(laws: &[&str], law: &str) -> RGBColor {
     COLORS[place % COLORS.len()]
 }
 
-/// A power of ten as people write it.
+/// A power of ten in decimal notation.
 fn plain(value: f64) -> String {
     format!("{}", (value * 1e6).round() / 1e6)
 }

@@ -1,11 +1,11 @@
-//! Bounds that are removed in the plant, to show what limits.
+//! Limits of the plant that are removed to show their effect on fidelity.
 
 use thermal_plant::sensors::ConverterParams;
 use thermal_sim::named_enum;
 use thermal_sim::scene::Sensor;
 
 named_enum! {
-    /// What is removed.
+    /// A removed limit.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum RemovedLimit {
@@ -15,11 +15,11 @@ named_enum! {
         Inl = "inl",
         /// The lag of both thermistors on the display.
         SensorLag = "sensor-lag",
-        /// Room air in the leads of the thermistors, and the contact in what the skin's thermistor sees.
+        /// Coupling of the thermistors to room air through their leads, and of the skin's thermistor to the contact.
         SensorSite = "sensor-site",
         /// Lag of the force sensor.
         ForceLag = "force-lag",
-        /// A quarter of the heat that the plates hold, so that the same power moves them faster.
+        /// A quarter of the heat capacity of the plates, so that the same power changes their temperature faster.
         Power = "power",
         /// Change of the module's properties with temperature, which a linear model does not identify.
         Identification = "identification",
@@ -27,7 +27,7 @@ named_enum! {
 }
 
 impl RemovedLimit {
-    /// The plant keys that remove it, with their values.
+    /// The plant parameters, with values, that remove the limit.
     #[must_use]
     pub fn plant(self) -> Vec<(String, f64)> {
         let keys = |keys: &[(&str, f64)]| {
@@ -57,8 +57,8 @@ impl RemovedLimit {
     }
 }
 
-/// RemovedLimit any noise a converter of 12 bits repeats its codes, which the device takes for a converter that stands still
-/// and averaging cannot resolve; this much is left.
+/// Without any noise a converter of 12 bits repeats its codes, which the device takes for a frozen converter
+/// and averaging cannot resolve; this much noise is left.
 const DITHER_COUNTS: f64 = ConverterParams::NOMINAL.noise_counts / 2.0;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The page.
+//! The HTML page.
 
 use std::fmt::Write;
 
@@ -6,12 +6,12 @@ use thermal_charts::{document, element, escape};
 
 use super::{BoxReport, FidelityRow, box_table, table};
 
-/// Name of the page.
+/// File name of the page.
 pub const HTML: &str = "fidelity.html";
-/// Name of the picture by itself.
+/// File name of the separate chart.
 pub const SVG: &str = "fidelity.svg";
 
-/// A page that needs no other file.
+/// A self-contained page.
 #[must_use]
 pub fn page(rows: &[FidelityRow], boxed: Option<&BoxReport>, svg: Option<&str>) -> String {
     let mut body =

@@ -1,4 +1,4 @@
-//! One run, reduced to its figures.
+//! The figures of one run.
 
 use std::cmp::Ordering;
 
@@ -11,12 +11,12 @@ use thermal_sim::scene::Scene;
 
 use super::{FidelityCase, JudgedFigure, RemovedLimit, Scenario};
 
-/// A run's figures and what it was a run of.
+/// The figures of a run with its case, law and removed limit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FidelityRow {
     /// Scenario.
     pub scenario: Scenario,
-    /// What of it.
+    /// Name of the case.
     pub case: String,
     /// Largest force, N.
     pub force_n: f64,
@@ -26,14 +26,14 @@ pub struct FidelityRow {
     pub object_c: f64,
     /// Name of the law.
     pub law: &'static str,
-    /// The bound that the plant does not have.
+    /// The limit that is removed from the plant.
     pub without: Option<RemovedLimit>,
-    /// What is held against a bound.
+    /// The figure that is compared with a bound.
     pub judged: JudgedFigure,
     /// All figures.
     #[serde(flatten)]
     pub figures: Figures,
-    /// Time since the first landing, s, and error of the skin, mK, at even steps of the logarithm of time.
+    /// Time since the first landing, s, and skin error, mK, at logarithmically spaced times.
     #[serde(skip)]
     pub error_over_time: Vec<(f64, f64)>,
 }
@@ -42,7 +42,7 @@ impl FidelityRow {
     /// Runs a case.
     ///
     /// # Errors
-    /// The plant cannot be so, the device stopped, or it refused the scene.
+    /// The plant is not valid, the device stopped, or it refused the scene.
     pub fn run(
         device: &dyn SceneRunner,
         case: &FidelityCase,
@@ -67,8 +67,7 @@ impl FidelityRow {
         })
     }
 
-    /// Which of two is worse, the worse one greater: by what is judged, where no value is worst, then by the error's
-    /// root mean square.
+    /// Orders rows by the bounded figure, then by the RMS skin error; the worse one is greater, and no value is worst.
     #[must_use]
     pub fn compare(&self, other: &Self) -> Ordering {
         let judged = |row: &Self| match row.judged.value {
@@ -82,10 +81,10 @@ impl FidelityRow {
     }
 }
 
-/// Points of an error curve for each factor of ten of time.
+/// Points of an error curve per decade of time.
 const POINTS: f64 = 40.0;
 
-/// Errors of the first contact, thinned out.
+/// Errors of the first contact at logarithmically spaced times.
 fn error_over_time(scene: &Scene, outcome: &Outcome) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = Vec::new();
     for (since_s, error_k) in skin_errors(scene, outcome) {

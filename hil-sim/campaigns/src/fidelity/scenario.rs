@@ -1,4 +1,4 @@
-//! The scenarios.
+//! Scenarios: series of cases.
 
 use contact_model::pressure::THESIS_PRESSURES;
 use thermal_sim::named_enum;
@@ -9,7 +9,7 @@ use super::touched_object::UNKNOWN_MATERIALS;
 use super::{FidelityCase, Measure, TouchedObject};
 
 named_enum! {
-    /// What a finger does.
+    /// A scenario of contact.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
     pub enum Scenario {
         /// A finger lands on the preset display and stays for 10 s.
@@ -26,7 +26,7 @@ named_enum! {
     }
 }
 
-/// The usual skin, °C.
+/// Skin temperature of most cases, °C.
 const SKIN_C: f64 = 34.0;
 /// Four materials from good to bad conductor.
 const FOUR: [&str; 4] = ["copper", "granite", "abs", "foam"];
@@ -34,7 +34,7 @@ const FOUR: [&str; 4] = ["copper", "granite", "abs", "foam"];
 const PRESSED_N: f64 = 2.0;
 
 impl Scenario {
-    /// What happens in it.
+    /// Description of the scenario.
     #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
@@ -46,7 +46,7 @@ impl Scenario {
         }
     }
 
-    /// Its scenes.
+    /// The cases of the scenario.
     #[must_use]
     pub fn cases(self) -> Vec<FidelityCase> {
         match self {
@@ -65,7 +65,7 @@ impl Scenario {
         object: TouchedObject,
         force_n: f64,
         duration_s: f64,
-        presses: &[(f64, f64, f64)],
+        forces: &[(f64, f64, f64)],
     ) -> FidelityCase {
         FidelityCase {
             scenario: self,
@@ -75,7 +75,7 @@ impl Scenario {
             skin_c: SKIN_C,
             object_c: ROOM_C,
             appears_t_s: 0.0,
-            presses: (presses.iter())
+            forces: (forces.iter())
                 .map(|&(t_s, force_n, ramp_s)| Force {
                     t_s,
                     force_n,
@@ -114,18 +114,18 @@ impl Scenario {
             let t_s = f64::from(2 * i + 1);
             [(t_s, force_n, 0.0), (t_s + 1.0, 0.0, 0.0)]
         };
-        let presses: Vec<_> = (0..10).flat_map(on_and_off).collect();
+        let forces: Vec<_> = (0..10).flat_map(on_and_off).collect();
         FidelityCase {
             measure: Measure::CHANGING,
-            ..self.case(object, force_n, 21.0, &presses)
+            ..self.case(object, force_n, 21.0, &forces)
         }
     }
 
     fn ramped(self, object: TouchedObject) -> FidelityCase {
-        let presses = [(1.0, 0.1, 0.0), (2.0, PRESSED_N, 1.0), (5.0, 0.1, 1.0)];
+        let forces = [(1.0, 0.1, 0.0), (2.0, PRESSED_N, 1.0), (5.0, 0.1, 1.0)];
         FidelityCase {
             measure: Measure::CHANGING,
-            ..self.case(object, PRESSED_N, 8.0, &presses)
+            ..self.case(object, PRESSED_N, 8.0, &forces)
         }
     }
 

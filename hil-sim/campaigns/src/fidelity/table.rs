@@ -9,7 +9,7 @@ use super::{BoxReport, FidelityRow, Scenario};
 const HEAD: &str = "   N    judged            skin rms   display max/rms    A max/rms     J     E      instructions   cycles (est.)";
 const NAME: usize = 20;
 
-/// One line for each law and, unless `every` is set, for each case of a name, the force with which it is worst.
+/// One line for each case and law, at the worst force or, with `every`, at every force.
 #[must_use]
 pub fn table(rows: &[FidelityRow], every: bool) -> String {
     let mut text = String::new();
@@ -40,7 +40,7 @@ pub fn table(rows: &[FidelityRow], every: bool) -> String {
     text
 }
 
-/// For each name, law and removed bound the row with the worst force.
+/// The row with the worst force for each name, law and removed limit.
 fn worst<'a>(rows: &[&'a FidelityRow]) -> Vec<&'a FidelityRow> {
     let mut worst: Vec<&FidelityRow> = Vec::new();
     for row in rows {
@@ -56,7 +56,7 @@ fn worst<'a>(rows: &[&'a FidelityRow]) -> Vec<&'a FidelityRow> {
     worst
 }
 
-/// How many rows are within their bound, law by law.
+/// Number of rows within their bound, by law.
 fn verdicts(rows: &[&FidelityRow]) -> String {
     let mut laws: Vec<_> = rows.iter().map(|row| law(row)).collect();
     laws.sort();
@@ -80,7 +80,7 @@ fn verdicts(rows: &[&FidelityRow]) -> String {
     text
 }
 
-/// The law, and the bound that its plant does not have.
+/// The law and the removed limit.
 fn law(row: &FidelityRow) -> String {
     match row.without {
         Some(without) => format!("{} without {}", row.law, without.name()),
@@ -143,7 +143,7 @@ fn cost(cost: CostPerTick) -> String {
     }
 }
 
-/// The box: percentiles and the worst draws.
+/// Percentiles and worst draws by law.
 #[must_use]
 pub fn box_table(boxed: &BoxReport) -> String {
     let mut text = format!(

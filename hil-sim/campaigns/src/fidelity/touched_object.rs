@@ -1,13 +1,13 @@
-//! What the finger feels: the thesis's materials, and others by their properties.
+//! Touched objects: the materials of the thesis, and others given by their properties.
 
 use contact_model::material::{MATERIALS, Material, Surface};
 
 /// A material with its name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TouchedObject {
-    /// Its name.
+    /// Name of the material.
     pub name: &'static str,
-    /// Its properties, if the device does not know it by name.
+    /// Its properties, if the device does not know the material by name.
     pub properties: Option<Material>,
 }
 
@@ -17,7 +17,7 @@ impl TouchedObject {
         MATERIALS.iter().map(|(name, _)| Self::of_thesis(name))
     }
 
-    /// A material that the device knows.
+    /// A material of the thesis, which the device knows by name.
     #[must_use]
     pub const fn of_thesis(name: &'static str) -> Self {
         Self {
@@ -27,9 +27,9 @@ impl TouchedObject {
     }
 }
 
-/// Materials that neither thesis nor device knows. Conductivity, density and specific heat are handbook values at room
-/// temperature; roughness and slope are class values of such surfaces (float glass, ground metal, planed wood, cut
-/// cork), and nobody has measured them for this.
+/// Materials that are unknown to thesis and device. Conductivity, density and specific heat are handbook values at room
+/// temperature; roughness and slope are typical values of such surfaces (float glass, ground metal, planed wood, cut
+/// cork), and have not been measured for this.
 pub const UNKNOWN_MATERIALS: [TouchedObject; 4] = [
     unseen("glass", [1.0, 2500.0, 840.0, 0.05, 0.01]),
     unseen("aluminium", [237.0, 2700.0, 897.0, 0.4, 0.05]),

@@ -6,7 +6,7 @@ use thermal_sim::SceneRunner;
 
 use super::{Arguments, Failure, RunsReport, each, output};
 
-/// Runs the campaigns of these numbers; a violation is a failure.
+/// Runs the campaigns with these numbers; a violation is a failure.
 pub fn run(
     arguments: &Arguments,
     device: &dyn SceneRunner,

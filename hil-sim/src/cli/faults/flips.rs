@@ -8,7 +8,7 @@ use thermal_sim::SceneRunner;
 
 use super::{Arguments, Failure, RunsReport, each, output};
 
-/// Runs the flips of these numbers; a limit that is broken is a failure, and its scene goes to `--out`.
+/// Runs the flips with these numbers; a broken limit is a failure, and its scene is written to `--out`.
 pub fn run(
     arguments: &Arguments,
     device: &dyn SceneRunner,

@@ -1,4 +1,4 @@
-//! `hil-sim faults`: the fault-injection matrix, and what is built on it.
+//! `hil-sim faults`: the fault matrix, random campaigns, pairs, normal use and bit flips.
 
 mod campaign;
 mod flips;
@@ -57,7 +57,7 @@ pub struct Arguments {
     replay: Option<u64>,
 }
 
-/// What is run instead of the matrix; one of them.
+/// The mode that replaces the matrix; at most one.
 #[derive(Args)]
 #[group(multiple = false, conflicts_with_all = ["only", "scene", "moments"])]
 struct Modes {
@@ -139,7 +139,7 @@ impl<R: Serialize> RunsReport<'_, R> {
     }
 }
 
-/// Runs what is asked for.
+/// Runs the chosen mode.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::create(arguments.out.as_deref())?;
     let elf = arguments.elf.as_deref();
@@ -178,7 +178,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Runs the matrix, prints it, writes its page; a fault that does not hold is a failure.
+/// Runs the matrix, prints it and writes its page; a fault that does not hold is a failure.
 fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure> {
     let plan = MatrixPlan {
         fault_cases: fault_cases(&arguments.only)?,
@@ -217,7 +217,7 @@ fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure
     }
 }
 
-/// The rows of the chosen kinds.
+/// The fault cases of the chosen kinds.
 fn fault_cases(only: &[String]) -> Result<Vec<FaultCase>, Failure> {
     let all = faults::fault_cases();
     for kind in only {
@@ -258,8 +258,8 @@ fn outlines(
         .collect())
 }
 
-/// Does the work of every item on the threads that are asked for, and shows how far it is; where no terminal is, a line
-/// for every twentieth.
+/// Processes the items on the chosen number of threads with a progress bar; without a terminal, prints a line for every
+/// twentieth of the items.
 fn each<T: Sync, R: Send>(
     arguments: &Arguments,
     what: &str,

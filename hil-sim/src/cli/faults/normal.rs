@@ -1,11 +1,11 @@
-//! `--normal`: use without a fault.
+//! `--normal`: normal use without faults.
 
 use thermal_campaigns::faults::{UseSession, session_table};
 use thermal_sim::SceneRunner;
 
 use super::{Arguments, Failure, RunsReport, each, output};
 
-/// Runs so many hours; a session in which something trips is a failure, and its scene goes to `--out`.
+/// Runs sessions of some hours; a trip is a failure, and its scene is written to `--out`.
 pub fn run(arguments: &Arguments, device: &dyn SceneRunner, hours: u64) -> Result<(), Failure> {
     let seed = arguments.seed;
     let numbers: Vec<u64> = (0..UseSession::in_hours(hours)).collect();

@@ -1,11 +1,11 @@
-//! `--pairs`: an unnoticed fault, then another one.
+//! `--pairs`: a latent fault followed by another one.
 
 use thermal_campaigns::faults::{FaultPair, pair_table, pairs};
 use thermal_sim::SceneRunner;
 
 use super::{Arguments, Failure, RunsReport, each, output};
 
-/// Runs all pairs; one that breaks the claim is a failure, and its scene goes to `--out`.
+/// Runs all pairs; a broken limit is a failure, and its scene is written to `--out`.
 pub fn run(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure> {
     let seed = arguments.seed;
     let work = |pair: &FaultPair| {

@@ -1,4 +1,4 @@
-//! Which bit, where and when.
+//! Random bit flips: bit, scene and time.
 
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
@@ -8,30 +8,30 @@ use thermal_sim::processor::MachineFault;
 use super::{FlipRegion, FlippableMemory, PLACES, WITHIN_S};
 use crate::faults::{FaultScene, InjectedFault, InjectionPoint};
 
-/// When the control tick runs, µs of the millisecond: every other flip comes then, else the core would sleep in most.
+/// Time of the control tick within the millisecond, µs. Every other flip comes then, because the core sleeps most of the time.
 const TICK_US: std::ops::Range<u32> = 700..900;
 
-/// One flip at one moment of one place.
+/// One bit flip at one time of one scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BitFlip {
-    /// Its number, from 0.
+    /// Number of the flip, from 0.
     pub number: u64,
-    /// Where the bit is.
+    /// Region of the bit.
     pub region: FlipRegion,
     /// The bit.
     pub fault: MachineFault,
-    /// Where and when, to the microsecond.
+    /// Scene and time of the flip; the time has microsecond resolution.
     pub point: InjectionPoint,
 }
 
-/// From when to when flips come in a place, s.
+/// Time range of the flips in a scene, s.
 pub(super) fn span(place: FaultScene) -> (f64, f64) {
     let (from_s, to_s) = place.span();
     (from_s, to_s.min(from_s + WITHIN_S))
 }
 
 impl BitFlip {
-    /// The flip of a number and a seed in an image's memory; no other one is needed for it.
+    /// Draws a flip in an image's memory; it depends only on seed and number.
     #[must_use]
     pub fn new(seed: u64, number: u64, memory: &FlippableMemory) -> Self {
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(stream(seed, &format!("flip {number}")));
@@ -84,8 +84,8 @@ mod tests {
         assert_ne!(flip(3, 17).text(), flip(4, 17).text());
     }
 
-    /// 3000 draws miss a place with a probability below 1e-9, a register of a region of a twentieth with one below 1e-1;
-    /// so those of the core are looked for, of which 600 flips miss one of 17 with less than 1e-13.
+    /// 3000 draws miss a scene with a probability below 1e-9, and their 600 core flips miss one of the 17 core registers with
+    /// one below 1e-13. Registers of rarer regions are not counted.
     #[test]
     fn all_places_and_core_registers_are_drawn_within_their_regions_and_each_is_a_scene() {
         let memory = memory();

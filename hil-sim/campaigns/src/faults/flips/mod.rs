@@ -1,13 +1,13 @@
-//! Single bit flips of the running image: place, bit and moment by seed and number.
+//! Single bit flips of the running image: scene, bit and time drawn by seed and number.
 //!
 //! ```text
-//! every place once without a flip -> reference (trace, stack that is used)
-//! number -> region -> byte of RAM or register -> bit, at a microsecond of a place
-//!        -> scene with the flip in it -> image -> assessment and trace against the reference -> class
+//! every scene once without a flip -> reference (trace, stack use)
+//! number -> region -> byte of RAM or register -> bit, at a microsecond of a scene
+//!        -> scene with the flip in it -> image -> assessment, comparison with the reference -> effect
 //! ```
 //!
-//! A flip has no sign of its own, so what counts is what no flip may do: the skin's range, the dose, and current from
-//! 50 ms after a deviation that any device must notice.
+//! A flip has no symptom of its own. Every run is checked for the skin temperature, the dose, and current later than 50 ms
+//! after a symptom that any device must detect.
 
 mod bit_flip;
 mod effect;
@@ -32,7 +32,7 @@ use thermal_sim::processor::NotInjected;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
-/// Where flips happen: the finger is on the display early, or the self-test drives it.
+/// Scenes of the flips: the finger touches the display early, or the self-test drives the display.
 const PLACES: [FaultScene; 10] = [
     FaultScene::Slew,
     FaultScene::Copper,
@@ -45,13 +45,13 @@ const PLACES: [FaultScene; 10] = [
     FaultScene::SelfTest,
     FaultScene::Off,
 ];
-/// Flips come in the first part of a place's time, s, and are watched for so long, s, from its end on.
+/// Duration of the range of flips within a scene, s, and of the rest of the scene, s.
 const WITHIN_S: f64 = 2.0;
 const WATCHED_S: f64 = 3.0;
-/// Seed of the converter: the same everywhere, or no run could be compared with its reference.
+/// Seed of the converter, equal for all runs so that they can be compared with their references.
 const CONVERTER: u64 = 1;
 
-/// What any device must notice, whatever the cause.
+/// Symptoms that any device must detect, whatever their cause.
 const SIGNS: &[Symptom] = &[
     Symptom::OverCurrent,
     Symptom::CurrentOff,
@@ -69,7 +69,7 @@ fn text(place: FaultScene, flip: &[(InjectedFault, f64)]) -> String {
     fault_run::scene_text(flip, end, WATCHED_S, CONVERTER, &[])
 }
 
-/// A place without a flip.
+/// The run of a scene without a flip.
 #[derive(Debug)]
 pub struct ReferenceRun {
     place: FaultScene,
@@ -77,10 +77,10 @@ pub struct ReferenceRun {
 }
 
 impl ReferenceRun {
-    /// Every place where flips happen.
+    /// Every scene of the flips.
     pub const PLACES: [FaultScene; PLACES.len()] = PLACES;
 
-    /// Runs a place on an image.
+    /// Runs a scene on an image.
     ///
     /// # Errors
     /// The image does not run.
@@ -90,7 +90,7 @@ impl ReferenceRun {
         Ok(Self { place, outcome })
     }
 
-    /// Most of the stack that was used, bytes.
+    /// Largest stack use, bytes.
     #[must_use]
     pub fn stack_bytes(&self) -> Option<u32> {
         self.outcome.cost?.stack_bytes
@@ -98,16 +98,16 @@ impl ReferenceRun {
 }
 
 impl BitFlip {
-    /// Its scene as a file has it.
+    /// Text of the scene.
     #[must_use]
     pub fn text(&self) -> String {
         text(self.point.scene, &[(self.injected(), self.point.t_s)])
     }
 
-    /// Runs it on an image.
+    /// Runs the flip on an image.
     ///
     /// # Errors
-    /// The scene cannot be, or none of the references is of its place.
+    /// The scene is not valid, or there is no reference for it.
     pub fn run(
         &self,
         device: &dyn SceneRunner,
@@ -122,7 +122,7 @@ impl BitFlip {
             Ok((outcome, figures)) => {
                 let mut assessment =
                     RunAssessment::new(&fault_case, self.point, &outcome, &figures, &[]);
-                // Any word is right.
+                // Any trip cause is correct.
                 assessment
                     .breaches
                     .retain(|breach| *breach != Breach::Reason);
@@ -154,24 +154,24 @@ impl BitFlip {
     }
 }
 
-/// What came of a flip.
+/// Result of a flip.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FlipResult {
-    /// Its number.
+    /// Number of the flip.
     pub number: u64,
-    /// Where it was.
+    /// Region of the bit.
     pub region: FlipRegion,
     /// The bit.
     pub flip: String,
-    /// What it was for the finger.
+    /// Effect on the device and the finger.
     pub class: FlipEffect,
-    /// Most that the display was off its reference, K; none if the run has none.
+    /// Largest deviation of the display temperature from the reference, K; `None` if the run ended early.
     pub deviation_k: Option<f64>,
-    /// The scene.
+    /// Name of the scene.
     pub place: &'static str,
-    /// When, s.
+    /// Time of the flip, s.
     pub t_s: f64,
-    /// In figures.
+    /// Assessment of the run.
     #[serde(flatten)]
     pub assessment: RunAssessment,
 }

@@ -109,7 +109,7 @@ pub struct FlippableMemory {
     pub ram: Range<u32>,
     /// Static data.
     pub statics: Range<u32>,
-    /// SessionResult stack.
+    /// The part of the stack that is used.
     pub stack: Range<u32>,
 }
 

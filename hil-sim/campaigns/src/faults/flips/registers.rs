@@ -1,6 +1,6 @@
-//! Registers of devices that the image uses, with the bits that they have (RM0390, ARMv7-M).
+//! Registers of the peripherals that the image uses, with their implemented bits (RM0390, ARMv7-M).
 //!
-//! Left out: write-only registers, results (DR, IDR, counters of DMA streams), and what is locked by a key.
+//! Left out: write-only registers, results (DR, IDR, counters of DMA streams), and registers locked by a key.
 
 /// Word address and mask.
 type Register = (u32, u32);

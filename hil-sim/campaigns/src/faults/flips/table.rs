@@ -1,4 +1,4 @@
-//! Flips as text.
+//! The results of bit flips as text.
 
 use std::fmt::Write;
 
@@ -6,7 +6,7 @@ use super::{FlipEffect, FlipRegion, FlipResult};
 use crate::faults::Breach;
 use crate::faults::assessment::MICROSECONDS;
 
-/// Classes by region, reasons of trips below theirs; then every flip that broke a limit or ended its run.
+/// Table of effects by region, with the causes of trips, followed by every flip that broke a limit or ended its run.
 #[must_use]
 pub fn flip_table(runs: &[FlipResult]) -> String {
     let mut text = format!("{:<24}", "");

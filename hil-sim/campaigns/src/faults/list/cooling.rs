@@ -1,4 +1,4 @@
-//! What cools the sink. Nothing here holds the sink above what hurts: no device could keep a finger from that.
+//! Faults of the cooling. None holds the sink above the pain threshold, against which no device could protect a finger.
 
 use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
@@ -9,7 +9,7 @@ use crate::faults::{FaultCase, FaultScene, Symptom};
 const HOT: &[Symptom] = &[Symptom::SinkLimit, Symptom::WrongWay, Symptom::DisplayLimit];
 const HOT_REASONS: &[Fault] = &[Fault::SinkHot, Fault::Runaway, Fault::DisplayHot];
 
-/// The fan stops; what the sink is cooled by stops and takes the temperature of a hot room; something warm touches it.
+/// The fan fails, the coolant takes the temperature of a hot room, or the sink is held warm.
 pub const FAULT_CASES: &[FaultCase] = &[
     trips(valued(Kind::FanOff, 10.0), HOT, HOT_REASONS)
         .at(&[FaultScene::Cold])
@@ -26,7 +26,7 @@ pub const FAULT_CASES: &[FaultCase] = &[
     trips(
         valued(Kind::SinkHot, 45.0),
         &[Symptom::ReadingJump, Symptom::SinkLimit],
-        // In the self-test its heat hides the answer; a cold display may warm by a kelvin before the sink's thermistor is there.
+        // During the self-test the heat hides the response; a cold display may warm by 1 K before the sink's thermistor reacts.
         &[
             Fault::SinkHot,
             Fault::SinkJump,

@@ -6,7 +6,7 @@ use thermal_sim::scene::FaultKind as Kind;
 use crate::faults::fault_case::{broken, harmless, trips, valued};
 use crate::faults::{FaultCase, FaultScene, Symptom};
 
-/// A leg that does not do what it is told shows in the current, the display's way, or the self-test.
+/// A faulty leg is detectable by the current, the direction of the display temperature, or the self-test.
 const LEG: &[Symptom] = &[
     Symptom::CurrentOff,
     Symptom::OverCurrent,
@@ -29,15 +29,15 @@ const CURRENT: &[Symptom] = &[
     Symptom::OverCurrent,
     Symptom::SelfTest(0.304),
 ];
-/// A supply that drives the self-test's ampere well enough.
+/// A supply that still drives the 1 A of the self-test.
 const SUPPLY: &[Symptom] = &[
     Symptom::CurrentOff,
     Symptom::OverCurrent,
     Symptom::FaultLine,
 ];
 const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
-/// Current that is less, or more, by too little to be told from a sound one still moves the display less, or more; or leaves it to
-/// what finger and sink do.
+/// A current error too small to be detected by itself still changes the response of the display, or lets finger and sink
+/// determine its temperature.
 const NO_CURRENT: &[Fault] = &[
     Fault::CurrentLow,
     Fault::NoResponse,
@@ -51,9 +51,9 @@ const MUCH_CURRENT: &[Fault] = &[
     Fault::UnlikeModel,
 ];
 const WORST: &[FaultScene] = &[FaultScene::Slew, FaultScene::Warm, FaultScene::Off];
-/// Where no tuned model helps, too.
+/// Includes a scene without a tuned model.
 const PLAIN: &[FaultScene] = &[FaultScene::Untuned, FaultScene::Slew, FaultScene::Off];
-/// The module does less than it should.
+/// The module pumps less heat than it should.
 const WEAK: &[Symptom] = &[Symptom::DisplayDeviates, Symptom::WrongWay];
 const WEAK_REASONS: &[Fault] = &[
     Fault::NoResponse,
@@ -62,7 +62,7 @@ const WEAK_REASONS: &[Fault] = &[
     Fault::Runaway,
 ];
 
-/// What drives the tile, and what watches that.
+/// Faults of bridge, supply, mirror and comparator.
 pub const FAULT_CASES: &[FaultCase] = &[
     trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
     trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
@@ -82,7 +82,7 @@ pub const FAULT_CASES: &[FaultCase] = &[
             Symptom::CurrentOff,
             Symptom::SelfTest(0.504),
         ],
-        // A module that is warmer on one side drives a current of its own, now the other way.
+        // The Seebeck voltage of the module then drives a current in the wrong direction.
         &[
             Fault::Polarity,
             Fault::UnlikeModel,
@@ -92,8 +92,7 @@ pub const FAULT_CASES: &[FaultCase] = &[
         ],
     )
     .at(PLAIN),
-    // What is left answers to the self-test's ampere by more than it asks for, or by about that. So what tells is what comes then:
-    // for a module that has little to do the loop makes up.
+    // The weakened module can pass the self-test. It is detectable under load; at low load the control loop compensates it.
     trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS).at(&[
         FaultScene::Slew,
         FaultScene::Cold,
@@ -101,7 +100,7 @@ pub const FAULT_CASES: &[FaultCase] = &[
     ]),
     trips(valued(Kind::ModuleWeak, 0.1), WEAK, WEAK_REASONS)
         .at(&[FaultScene::Slew, FaultScene::Off]),
-    // The self-test must tell.
+    // The self-test must detect it.
     trips(
         valued(Kind::ModuleWeak, 0.0),
         &[

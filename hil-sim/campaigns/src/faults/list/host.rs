@@ -1,4 +1,4 @@
-//! The host, and what it says.
+//! Faults of the host and unusual lines.
 
 use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
@@ -6,7 +6,7 @@ use thermal_sim::scene::FaultKind as Kind;
 use crate::faults::fault_case::{broken, harmless, trips};
 use crate::faults::{FaultCase, FaultScene, InjectedFault, Symptom};
 
-/// Silence, noise, and wrong or unwise lines.
+/// Silence, invalid bytes, floods, and wrong or unwise lines.
 pub const FAULT_CASES: &[FaultCase] = &[
     trips(
         broken(Kind::HostSilent),
@@ -15,12 +15,12 @@ pub const FAULT_CASES: &[FaultCase] = &[
     )
     .never_at(FaultScene::TESTED),
     harmless(broken(Kind::HostGarbage)),
-    // Off, a flood drowns the line that arms.
+    // In `Off`, the flood would delay the line that arms the device.
     harmless(broken(Kind::HostFlood)).never_at(&[FaultScene::Off]),
     harmless(InjectedFault::HostLine("hold 60")).at(&[FaultScene::Touched]),
     harmless(InjectedFault::HostLine("object 900")),
     harmless(InjectedFault::HostLine("stream 0")),
-    // RemovedLimit a tuned model the display overshoots the limit of its set-point.
+    // Without a tuned model the display overshoots the limit of its set-point.
     harmless(InjectedFault::HostLine("object -20"))
         .or_trips(&[Fault::DisplayCold])
         .at(&[FaultScene::Slew, FaultScene::Touched]),
@@ -31,7 +31,7 @@ pub const FAULT_CASES: &[FaultCase] = &[
     )
     .at(&[FaultScene::Slew])
     .watched(180.0),
-    // By a tile that it is not, a display that is held goes beyond.
+    // With wrong tile parameters a held display overshoots.
     trips(
         InjectedFault::HostLine("set tile 0.5 0.02 0.3 0.5 0.02"),
         &[Symptom::WrongWay, Symptom::DisplayLimit],

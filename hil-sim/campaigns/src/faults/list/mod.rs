@@ -1,6 +1,4 @@
-//! The faults: those of a thermal display that a study lists, and more.
-//!
-//! What is detectable and which reason is right stands here before anything runs.
+//! The list of fault cases. Symptoms and correct trip causes are stated here, before any run.
 
 mod cooling;
 mod electrics;
@@ -10,7 +8,7 @@ mod sensors;
 
 use super::FaultCase;
 
-/// All of them, in the order of the table.
+/// All fault cases in the order of the table.
 #[must_use]
 pub fn fault_cases() -> Vec<FaultCase> {
     [

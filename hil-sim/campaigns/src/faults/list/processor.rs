@@ -1,4 +1,4 @@
-//! The microcontroller: core, clock, memory, peripherals, supply.
+//! Faults of the microcontroller: core, clock, memory, peripherals, supply.
 
 use thermal_device::safety::Fault;
 use thermal_sim::processor::CoreRegister;
@@ -21,16 +21,16 @@ const fn core(register: CoreRegister, bit: u8) -> InjectedFault {
 }
 
 const NOW: &[Symptom] = &[Symptom::Injection];
-/// A bridge that gets another duty than it is told.
+/// The bridge gets a wrong duty cycle.
 const DUTY: &[Symptom] = &[
     Symptom::CurrentOff,
     Symptom::OverCurrent,
     Symptom::WrongWay,
     Symptom::SelfTest(0.504),
 ];
-/// One that gets another share of it, which the self-test's ampere does not show.
+/// The duty cycle is scaled, which the 1 A of the self-test does not show.
 const SHARE: &[Symptom] = &[Symptom::CurrentOff, Symptom::OverCurrent, Symptom::WrongWay];
-/// The program is lost; who notices first depends on where.
+/// The program counter or stack is lost; which monitor detects it first depends on the address.
 const LOST: &[Fault] = &[
     Fault::HardFault,
     Fault::Panic,
@@ -40,15 +40,15 @@ const LOST: &[Fault] = &[
     Fault::Sampling,
 ];
 
-/// A tick that does not come when it is due; the window watchdog is first if it comes after 47 ms.
+/// Ticks at a wrong rate; the window watchdog is first if a tick is later than 47 ms.
 const RATE: &[Fault] = &[Fault::Sampling, Fault::TickLost];
 const CLOCK: &[Fault] = &[Fault::Clock, Fault::TickLost];
-/// By 4 of 5625 counts: a quarter of a tick is lost after 352 ticks.
+/// 4 of 5625 counts: a quarter of a tick is lost after 352 ticks.
 const SLOW_RATE: &[Symptom] = &[Symptom::After(0.352)];
-/// The independent watchdog at its slowest.
-const ROLL_CALL: &[Symptom] = &[Symptom::After(0.188)];
-/// SysTick's rounds are of 2^24 periods of 180 MHz: 93.2 ms.
-const NEXT_ROUND: &[Symptom] = &[Symptom::After(0.0933)];
+/// Longest timeout of the independent watchdog.
+const WATCHDOG_TIMEOUT: &[Symptom] = &[Symptom::After(0.188)];
+/// SysTick wraps every 2^24 periods of 180 MHz: 93.2 ms.
+const SYSTICK_WRAP: &[Symptom] = &[Symptom::After(0.0933)];
 
 const TIM1: u32 = 0x4001_0000;
 const ADC1: u32 = 0x4001_2000;
@@ -61,10 +61,10 @@ const GPIOB_ODR: u32 = 0x4002_0414;
 const DMA2_S0CR: u32 = 0x4002_6410;
 const NVIC_ISER0: u32 = 0xe000_e100;
 const NVIC_ISER1: u32 = 0xe000_e104;
-/// First word of the stack's guard.
+/// First word of the stack guard.
 const STACK_GUARD: u32 = 0x2000_0000;
 
-/// What the processor can do to a bridge.
+/// Faults of the processor.
 pub const FAULT_CASES: &[FaultCase] = &[
     trips(processor(Fails::HungCore), NOW, &[Fault::TickLost]).at(&[FaultScene::Slew]),
     trips(processor(Fails::HseStopped), NOW, &[Fault::Clock]).at(&[FaultScene::Slew]),
@@ -83,7 +83,7 @@ pub const FAULT_CASES: &[FaultCase] = &[
         &[Fault::Sampling, Fault::TickLost],
     )
     .at(&[FaultScene::Slew]),
-    // Off, the host arms soon after, which a device that has started anew obeys.
+    // In `Off`, the host arms the restarted device soon after.
     restarts(processor(Fails::BrownOut))
         .at(&[FaultScene::Slew])
         .never_at(&[FaultScene::Off]),
@@ -107,7 +107,7 @@ pub const FAULT_CASES: &[FaultCase] = &[
     trips(core(CoreRegister::Sp, 28), NOW, LOST),
     harmless(core(CoreRegister::S(0), 30)),
     // Main output off; output of leg A off; period; prescaler; enable line; comparison of leg A.
-    // Main output and enable line are switched on anew, whatever they were, with the first current.
+    // The first current sets main output and enable line again.
     trips(flipped(TIM1 + 0x44, 15), DUTY, LEG_REASONS)
         .at(&[FaultScene::Slew])
         .never_at(&[FaultScene::Off]),
@@ -135,8 +135,8 @@ pub const FAULT_CASES: &[FaultCase] = &[
         NOW,
         &[Fault::TickLost, Fault::Sampling],
     ),
-    // The host's task is no longer called.
-    trips(flipped(NVIC_ISER0, 6), ROLL_CALL, &[Fault::Watchdog]),
+    // The task of the serial line is no longer called.
+    trips(flipped(NVIC_ISER0, 6), WATCHDOG_TIMEOUT, &[Fault::Watchdog]),
     // Scans at another rate: 0.6 % slower and faster, 9 %, 3.7 times faster, 6.8, 24 and 48 times slower; half of it and less.
     trips(flipped(TIM2_ARR, 5), NOW, RATE),
     trips(flipped(TIM2_ARR, 2), SLOW_RATE, RATE),
@@ -148,10 +148,10 @@ pub const FAULT_CASES: &[FaultCase] = &[
     trips(flipped(TIM2 + 0x28, 0), NOW, RATE).at(&[FaultScene::Warm]),
     trips(flipped(TIM2 + 0x28, 4), NOW, RATE),
     trips(flipped(TIM2 + 0x28, 15), NOW, RATE),
-    // What it is measured against: stopped, at an eighth, in shorter rounds.
+    // The reference of the rate monitor (SysTick): stopped, at an eighth, with a shorter period.
     trips(flipped(SYST_CSR, 0), NOW, RATE),
     trips(flipped(SYST_CSR, 2), NOW, RATE),
-    trips(flipped(SYST_CSR + 4, 20), NEXT_ROUND, RATE),
+    trips(flipped(SYST_CSR + 4, 20), SYSTICK_WRAP, RATE),
     // Clocks of both, and of all else: half, the internal oscillator, timers at a quarter and at twice their rate.
     trips(flipped(RCC_CFGR, 7), NOW, CLOCK).at(&[FaultScene::Warm]),
     trips(flipped(RCC_CFGR, 1), NOW, CLOCK),

@@ -1,4 +1,4 @@
-//! Thermistors, force sensor, converter.
+//! Faults of thermistors, force sensor and converter.
 
 use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
@@ -13,7 +13,7 @@ const fn wire(kind: Kind, of: thermal_sim::scene::Sensor, reasons: &'static [Fau
     trips(thermistor(kind, of, 0.0), NOW, reasons)
 }
 
-/// Open, shorted, and stuck in the converter: a reading that repeats itself.
+/// Open and shorted thermistors, and frozen converter channels.
 pub const WIRES: &[FaultCase] = &[
     wire(Kind::ThermistorOpen, Display, &[Fault::DisplayOpen]),
     wire(Kind::ThermistorOpen, Check, &[Fault::CheckOpen]),
@@ -32,15 +32,16 @@ pub const WIRES: &[FaultCase] = &[
     wire(Kind::ThermistorStuck, Room, &[Fault::RoomFrozen]),
 ];
 
-/// One reading leads the display astray and the other one tells; near an end of the range its limit comes first.
+/// The control loop follows the wrong reading and the other thermistor shows it; near an end of the range the limit is
+/// reached first.
 const APART: &[Symptom] = &[Symptom::DisplaySensorsDiffer, Symptom::DisplayLimit];
 const LIMIT: &[Symptom] = &[Symptom::DisplayLimit];
-/// A step shows at once, the difference that it leaves later.
+/// A step is detectable at once.
 const STEP: &[Symptom] = &[Symptom::ReadingJump];
 const DISPLAY_STEP: &[Fault] = &[Fault::DisplayJump, Fault::DisplayHot, Fault::DisplayCold];
 const CHECK_STEP: &[Fault] = &[Fault::CheckJump, Fault::DisplayHot, Fault::DisplayCold];
-/// A drift that begins amid the self-test's pulse looks like too little of an answer, or the other way round; one that the
-/// tile just about follows, like another tile.
+/// A drift during the pulse of the self-test can look like a weak or reversed response. A drift that the tile can just
+/// follow can look like a model mismatch.
 const DRIFTED: &[Fault] = &[
     Fault::DisplaysApart,
     Fault::DisplayHot,
@@ -49,7 +50,7 @@ const DRIFTED: &[Fault] = &[
     Fault::Polarity,
     Fault::UnlikeModel,
 ];
-/// The model of the tile does not go by the second thermistor.
+/// The model of the tile does not use the second thermistor.
 const CHECK_DRIFTED: &[Fault] = &[
     Fault::DisplaysApart,
     Fault::DisplayHot,
@@ -57,7 +58,7 @@ const CHECK_DRIFTED: &[Fault] = &[
     Fault::NoResponse,
     Fault::Polarity,
 ];
-/// A slow thermistor may show too little of the self-test's pulse, or enough: how slow it was before is the device's.
+/// A slow thermistor may respond too weakly to the pulse of the self-test, depending on its lag before the fault.
 const LOOSE: &[Fault] = &[
     Fault::DisplaysApart,
     Fault::DisplayHot,
@@ -86,8 +87,8 @@ const fn loose(of: thermal_sim::scene::Sensor) -> InjectedFault {
     thermistor(Kind::ThermistorDetached, of, 20.0)
 }
 
-/// Readings that are wrong but possible. A drift of less than 3 K, or of skin and room by less than what tells them
-/// apart, cannot be told from another finger or another room, and moves the display by no more than itself.
+/// Wrong but plausible readings. A drift of less than 3 K, or of skin and room by less than the limit of their difference,
+/// cannot be distinguished from another finger or room, and moves the display by no more than the drift.
 pub const READINGS: &[FaultCase] = &[
     trips(drift(Display, 5.0), APART, DRIFTED),
     trips(drift(Display, -5.0), APART, DRIFTED).at(&[FaultScene::Warm]),
@@ -110,7 +111,7 @@ pub const READINGS: &[FaultCase] = &[
     trips(offset(Check, -5.0), STEP, CHECK_STEP),
     trips(offset(Sink, 5.0), STEP, &[Fault::SinkJump, Fault::SinkHot]),
     trips(offset(Sink, -5.0), STEP, &[Fault::SinkJump]),
-    // The heat of a finger of 54 °C is none that the display sees.
+    // The display does not receive the heat of a finger of 54 °C.
     trips(
         offset(Skin, 20.0),
         &[Symptom::Dose],
@@ -135,7 +136,7 @@ pub const READINGS: &[FaultCase] = &[
     harmless(loose(Room)),
 ];
 
-/// What a swap shows depends on how far apart both are when it happens, and on what the display does then.
+/// The symptom of an exchange depends on the difference of the two temperatures and on the state of the display.
 const SWAP: &[Symptom] = &[
     Symptom::ReadingJump,
     Symptom::DisplaySensorsDiffer,
@@ -152,7 +153,7 @@ const ELSEWHERE: &[Fault] = &[
     Fault::RoomAboveSkin,
     Fault::NoResponse,
 ];
-/// The sink's own reading steps too, and may be the only one that steps by enough.
+/// The reading of the sink steps too, and may be the only one to exceed its limit.
 const ON_SINK: &[Fault] = &[
     Fault::DisplayJump,
     Fault::CheckJump,
@@ -165,7 +166,7 @@ const ON_SINK: &[Fault] = &[
 ];
 const NO_STEP: &[Symptom] = &[Symptom::ReadingJump, Symptom::RoomAboveSkin];
 
-/// Two thermistors in each other's place.
+/// Exchanged thermistors.
 pub const SWAPPED: &[FaultCase] = &[
     harmless(swapped(Display, Check)),
     trips(swapped(Display, Sink), SWAP, ON_SINK).at(&[FaultScene::Off, FaultScene::Slew]),
@@ -187,10 +188,10 @@ pub const SWAPPED: &[FaultCase] = &[
     trips(swapped(Skin, Room), NO_STEP, &[Fault::RoomAboveSkin]),
 ];
 
-/// The rest of what is converted.
+/// Reference, converter and force sensor.
 pub const OTHERS: &[FaultCase] = &[
     trips(broken(Kind::ReferenceOff), NOW, &[Fault::Excitation]),
-    // The current's reading stands still, too.
+    // The reading of the current is frozen, too.
     trips(
         broken(Kind::AdcStuck),
         NOW,
@@ -198,13 +199,13 @@ pub const OTHERS: &[FaultCase] = &[
     )
     .at(&[FaultScene::Slew]),
     trips(broken(Kind::ForceOpen), NOW, &[Fault::ForceSensor]),
-    // A finger that is not there gives no heat; nearly all of the range, more with a sensor of much gain.
+    // The model expects heat of a finger that is absent; the offset is nearly the whole range of the sensor.
     harmless(valued(Kind::ForceOffset, 10.0))
         .or_trips(&[Fault::UnlikeModel, Fault::ForceSensor])
         .at(&[FaultScene::Cold, FaultScene::Preset, FaultScene::Warm]),
     trips(valued(Kind::ForceOffset, -10.0), NOW, &[Fault::ForceSensor]),
     harmless(valued(Kind::ForceOffset, 1.0)).at(&[FaultScene::Preset]),
     harmless(valued(Kind::ForceOffset, -0.05)),
-    // A finger that it hides warms a display whose current is at its limit.
+    // An undetected finger warms a display whose current is at its limit.
     harmless(broken(Kind::ForceStuck)).or_trips(&[Fault::Polarity]),
 ];
