@@ -10,8 +10,8 @@ use clap::Parser;
 #[cfg(feature = "emulator")]
 use cli::profile;
 use cli::{
-    Failure, commission, erfcx, faults, fidelity, hand, infrared, model, parameters, roughness,
-    run, thesis,
+    Failure, commission, erfcx, faults, fidelity, five_fingers, infrared, model, parameters,
+    roughness, run, thesis,
 };
 
 /// Simulated plant and emulated microcontroller of the thermal display.
@@ -23,7 +23,7 @@ enum Cli {
     /// Calibrate and tune a simulated device as an operator does, and print its settings as lines
     Commission(commission::Arguments),
     /// Run five scenes side by side, on the five fingers of one device
-    Hand(hand::Arguments),
+    Hand(five_fingers::Arguments),
     /// Run a scene on the image; say which functions a control tick spends its time in
     #[cfg(feature = "emulator")]
     Profile(profile::Arguments),
@@ -49,7 +49,7 @@ fn main() -> ExitCode {
     let done = match Cli::parse() {
         Cli::Run(arguments) => run::run(&arguments),
         Cli::Commission(arguments) => commission::run(&arguments),
-        Cli::Hand(arguments) => hand::run(&arguments),
+        Cli::Hand(arguments) => five_fingers::run(&arguments),
         #[cfg(feature = "emulator")]
         Cli::Profile(arguments) => profile::run(&arguments),
         Cli::Model(arguments) => model::run(&arguments),

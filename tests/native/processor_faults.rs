@@ -2,7 +2,7 @@
 
 use system_tests::{between, copper_contact};
 use thermal_sim::World;
-use thermal_sim::engine::Native;
+use thermal_sim::engine::NativeEngine;
 use thermal_sim::processor::Injection;
 use thermal_sim::processor::ResetCause;
 use thermal_sim::processor::{MachineFault, NotInjected};
@@ -11,7 +11,7 @@ use thermal_sim::run::{RunError, run, run_with};
 #[test]
 fn the_native_engine_refuses_or_models_each_processor_fault() {
     let scene = copper_contact();
-    let native = || Native::new(World::new(&scene).expect("a plant for the scene"));
+    let native = || NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
     let with = |fault, t_s| run_with(&scene, &[Injection { t_s, fault }], &mut native(), |_| ());
     assert!(matches!(
         with(MachineFault::HseStopped, 1.0),

@@ -1,7 +1,7 @@
 //! The display held at an end of its range, or moved there by a host line, a correction or a finger: nothing trips.
 
 use system_tests::{between, forces, host, natively, scene};
-use thermal_sim::trace::Row;
+use thermal_sim::trace::TraceRow;
 
 /// PI controllers with the slowest thermistors of the parameter box, from skin temperature to either end of the range.
 #[test]
@@ -13,7 +13,7 @@ fn a_display_that_is_held_at_an_end_of_the_range_overshoots_by_less_than_0_8_k()
             let mut scene = scene("copper", 50.0, &format!("law = \"{law}\""), &tables);
             scene.object.appears_t_s = scene.duration_s;
             let outcome = natively(&scene);
-            let beyond = |row: &Row| (row.display_c - held_c) * beyond_k;
+            let beyond = |row: &TraceRow| (row.display_c - held_c) * beyond_k;
             let farthest_k =
                 (outcome.trace.rows().iter().map(beyond)).fold(f64::NEG_INFINITY, f64::max);
             println!("{law}, {held_c} C: {farthest_k:.2} K beyond");
@@ -106,7 +106,7 @@ fn a_finger_that_warms_a_display_at_its_current_limit_trips_nothing() {
             state.starts_with("ok state=contact fault=-"),
             "{law}: {state}"
         );
-        let reading_c = |row: &Row| row.device.as_ref().and_then(|device| device.sensor_c);
+        let reading_c = |row: &TraceRow| row.device.as_ref().and_then(|device| device.sensor_c);
         let mut coldest_c = f64::INFINITY;
         let mut back_k = 0.0f64;
         for reading_c in between(&outcome, 1.0, 2.5).filter_map(reading_c) {

@@ -13,7 +13,7 @@ use thermal_display::settings::{
     Calibration, Correction, RECORD_MAX_BYTES, RedundantSectors, SettingsStore, StoredSettings,
     Tile,
 };
-use thermal_sim::Cells;
+use thermal_sim::FlashCells;
 
 /// Bytes of a sector.
 pub const SECTOR: usize = 16 * 1024;
@@ -22,7 +22,7 @@ pub const BYTES: usize = 3 * SECTOR;
 
 /// A flash driver over cells that outlive the store which uses it.
 #[derive(Clone, Debug)]
-pub struct Flash(Rc<RefCell<Cells>>);
+pub struct Flash(Rc<RefCell<FlashCells>>);
 
 /// The error of an operation without power.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,13 +37,13 @@ impl NorFlashError for Dead {
 impl Flash {
     /// A flash with these cells.
     #[must_use]
-    pub fn new(cells: Cells) -> Self {
+    pub fn new(cells: FlashCells) -> Self {
         Self(Rc::new(RefCell::new(cells)))
     }
 
     /// The cells as they are now.
     #[must_use]
-    pub fn cells(&self) -> Cells {
+    pub fn cells(&self) -> FlashCells {
         self.0.borrow().clone()
     }
 
@@ -129,7 +129,7 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FI
 }
 
 /// Appends any bytes as the newest record; whether that succeeded.
-pub fn append(cells: &mut Cells, record: &[u8]) -> bool {
+pub fn append(cells: &mut FlashCells, record: &[u8]) -> bool {
     let flash = Flash::new(cells.clone());
     let end = (3 * RedundantSectors::<Flash>::SECTOR_BYTES) as u32;
     let config = MapConfig::new(0..end);
@@ -145,11 +145,11 @@ pub fn append(cells: &mut Cells, record: &[u8]) -> bool {
 
 /// Three erased sectors.
 #[must_use]
-pub fn erased() -> Cells {
-    Cells::new(vec![0xff; BYTES])
+pub fn erased() -> FlashCells {
+    FlashCells::new(vec![0xff; BYTES])
 }
 
-fn store<const FINGERS: usize>(cells: Cells) -> (SettingsStore<Flash, FINGERS>, Flash) {
+fn store<const FINGERS: usize>(cells: FlashCells) -> (SettingsStore<Flash, FINGERS>, Flash) {
     let flash = Flash::new(cells);
     (SettingsStore::new(flash.clone()), flash)
 }
@@ -159,7 +159,7 @@ fn store<const FINGERS: usize>(cells: Cells) -> (SettingsStore<Flash, FINGERS>, 
 /// # Panics
 /// They are not valid.
 #[must_use]
-pub fn loaded<const FINGERS: usize>(cells: &Cells) -> Option<[StoredSettings; FINGERS]> {
+pub fn loaded<const FINGERS: usize>(cells: &FlashCells) -> Option<[StoredSettings; FINGERS]> {
     store(cells.clone()).0.load().expect("valid settings")
 }
 
@@ -169,10 +169,10 @@ pub fn loaded<const FINGERS: usize>(cells: &Cells) -> Option<[StoredSettings; FI
 /// The save fails with power, or succeeds without.
 #[must_use]
 pub fn saved<const FINGERS: usize>(
-    cells: &Cells,
+    cells: &FlashCells,
     settings: Option<&[StoredSettings; FINGERS]>,
     cut: Option<(u64, u64)>,
-) -> Cells {
+) -> FlashCells {
     let mut cells = cells.clone();
     if let Some((nth, seed)) = cut {
         cells.cut_power_at(nth, seed);
@@ -187,8 +187,9 @@ pub fn saved<const FINGERS: usize>(
 
 /// Whether a save began a new page: the header of its sector is written, that of the next one erased.
 #[must_use]
-pub fn changes_page(before: &Cells, after: &Cells) -> bool {
-    let headers =
-        |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * SECTOR..][..24].to_vec());
+pub fn changes_page(before: &FlashCells, after: &FlashCells) -> bool {
+    let headers = |cells: &FlashCells| {
+        [0, 1, 2].map(|sector| cells.bytes()[sector * SECTOR..][..24].to_vec())
+    };
     headers(before) != headers(after)
 }

@@ -7,11 +7,11 @@ pub mod flash;
 use std::path::Path;
 
 use thermal_sim::World;
-use thermal_sim::engine::Native;
+use thermal_sim::engine::NativeEngine;
 use thermal_sim::metrics::skin_errors;
 use thermal_sim::run::{Outcome, run};
 use thermal_sim::scene::Scene;
-use thermal_sim::trace::Row;
+use thermal_sim::trace::TraceRow;
 
 /// A scene with a finger of 34 °C on `material`, room and object at 24 °C; `keys` and `tables` are appended to the scene's text.
 ///
@@ -58,12 +58,12 @@ pub fn copper_contact() -> Scene {
 /// The plant refuses the scene.
 #[must_use]
 pub fn natively(scene: &Scene) -> Outcome {
-    let mut engine = Native::new(World::new(scene).expect("a plant for the scene"));
+    let mut engine = NativeEngine::new(World::new(scene).expect("a plant for the scene"));
     run(scene, &mut engine, |_| ()).expect("the device takes the scene")
 }
 
 /// Rows of a trace from one time up to another, s.
-pub fn between(outcome: &Outcome, from_s: f64, to_s: f64) -> impl Iterator<Item = &Row> {
+pub fn between(outcome: &Outcome, from_s: f64, to_s: f64) -> impl Iterator<Item = &TraceRow> {
     outcome
         .trace
         .rows()
@@ -84,7 +84,7 @@ pub fn worst_k(scene: &Scene, outcome: &Outcome, from_s: f64) -> f64 {
 }
 
 /// Mean of a value over rows.
-pub fn mean<'a>(rows: impl Iterator<Item = &'a Row>, value: impl Fn(&Row) -> f64) -> f64 {
+pub fn mean<'a>(rows: impl Iterator<Item = &'a TraceRow>, value: impl Fn(&TraceRow) -> f64) -> f64 {
     let (mut count, mut sum) = (0u32, 0.0);
     for row in rows {
         count += 1;

@@ -2,10 +2,12 @@
 
 pub mod faults;
 pub mod fidelity;
+mod identification_survey;
+mod parallel;
 mod percentile;
-mod survey;
-mod work;
 
+pub use identification_survey::{
+    IdentificationResult, QUANTITIES, survey_device, table as survey_table,
+};
+pub use parallel::parallel_map;
 pub use percentile::percentile;
-pub use survey::{QUANTITIES, Surveyed, survey, table as survey_table};
-pub use work::map;

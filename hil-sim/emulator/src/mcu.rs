@@ -12,7 +12,7 @@ use super::state::{Cpu, State};
 use super::stop::Stop;
 use super::{LegState, Wiring};
 use std::sync::Arc;
-use thermal_sim::Cells;
+use thermal_sim::FlashCells;
 use thermal_sim::processor::ResetCause;
 use unicorn_engine::uc_error;
 
@@ -107,12 +107,12 @@ impl<W: Wiring + 'static> Machine<W> {
 
     /// The cells of the flash. The image sees changes in sectors 1 to 3, which hold the settings, if it leaves them blank. After
     /// a power failure in an operation the machine powers up again by itself, with other contents of the RAM.
-    pub fn flash(&self) -> &Cells {
+    pub fn flash(&self) -> &FlashCells {
         &self.chip().flash.cells
     }
 
     /// The cells of the flash, for changes between two calls of [`run_until`](Self::run_until).
-    pub fn flash_mut(&mut self) -> &mut Cells {
+    pub fn flash_mut(&mut self) -> &mut FlashCells {
         &mut self.chip_mut().flash.cells
     }
 

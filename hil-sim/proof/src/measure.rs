@@ -6,11 +6,11 @@ use documented_figures::{Verdict, figure};
 use stm32_emulator::Firmware;
 use stm32_emulator::FiveFingerBoard;
 use stm32_emulator::OneFingerBoard;
-use thermal_campaigns::map;
+use thermal_campaigns::parallel_map;
 use thermal_sim::World;
-use thermal_sim::commission::{Plants, commission};
+use thermal_sim::commissioning::{CommissioningSetup, commission};
 use thermal_sim::engine::{Cost, Engine};
-use thermal_sim::hand::{self, FINGERS, Hand as _};
+use thermal_sim::five_fingers::{self, FINGERS, FiveFingerEngine as _};
 use thermal_sim::run::{Outcome, run};
 use thermal_sim::scene::Scene;
 
@@ -100,7 +100,7 @@ fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
         let outcome = run(scene, &mut image, |_| ()).with_context(|| what.clone())?;
         of_outcome(what, &outcome)
     };
-    map(&jobs, threads, measured, || ())
+    parallel_map(&jobs, threads, measured, || ())
 }
 
 fn of_outcome(what: &str, outcome: &Outcome) -> Result<Measured> {
@@ -115,8 +115,8 @@ fn of_outcome(what: &str, outcome: &Outcome) -> Result<Measured> {
 fn commissioned(firmware: &Firmware) -> Result<Measured> {
     let what = "commissioning";
     let (_, scene) = touched()?.into_iter().next().context("no scene")?;
-    let plants = Plants::new(&scene.params, scene.room_c, scene.seed);
-    let mut image = OneFingerBoard::new(firmware, plants.at_work()?)?;
+    let plants = CommissioningSetup::new(&scene.params, scene.room_c, scene.seed);
+    let mut image = OneFingerBoard::new(firmware, plants.in_use()?)?;
     commission(&plants, &mut image, &mut |_| ())?;
     Ok(Measured {
         what: what.into(),
@@ -140,7 +140,7 @@ fn together(firmware: &Firmware) -> Result<Measured> {
     }
     let worlds = worlds.try_into().map_err(|_| anyhow::anyhow!("worlds"))?;
     let mut hand = FiveFingerBoard::new(firmware, worlds)?;
-    hand::run(&scenes, &mut hand, |_| ())?;
+    five_fingers::run(&scenes, &mut hand, |_| ())?;
     Ok(Measured {
         what: names.join(", "),
         cost: hand.cost().context("no tick")?,

@@ -67,10 +67,10 @@ pub fn faulty() -> Result<Vec<(String, Scene)>> {
             writeln!(
                 text,
                 "value = {:?}",
-                value.least + (value.most - value.least) * 0.75
+                value.min + (value.max - value.min) * 0.75
             )?;
         }
-        if kind.has_other() {
+        if kind.needs_second_sensor() {
             writeln!(text, "with = \"sink\"")?;
         }
         parsed(kind.name(), &text)

@@ -1,34 +1,34 @@
 //! Thermal dose of the skin.
 
-/// Temperature at which a minute of dose is a minute, deg C.
-const EVEN_C: f64 = 43.0;
-/// Temperature below which there is no dose, deg C.
-const NONE_BELOW_C: f64 = 39.0;
+/// Reference temperature of CEM43, at which the dose of one minute is one minute, deg C.
+const REFERENCE_C: f64 = 43.0;
+/// Temperature below which the dose is zero, deg C.
+const THRESHOLD_C: f64 = 39.0;
 
-/// Minutes at 43 deg C that hurt as much as a minute at a temperature, deg C, does: `R^(43 - T)` with `R` = 0.5 above
-/// 43 deg C, 0.25 below, and nothing below 39 deg C (Sapareto and Dewey, 1984: CEM43).
+/// Dose rate at a temperature, equivalent minutes at 43 deg C per minute: `R^(43 - T)` with `R` = 0.5 above 43 deg C and
+/// 0.25 below, zero below 39 deg C (Sapareto and Dewey, 1984: CEM43).
 #[must_use]
-pub fn rate(temperature_c: f64) -> f64 {
-    let colder_k = EVEN_C - temperature_c;
-    if temperature_c > EVEN_C {
+pub fn cem43_rate(temperature_c: f64) -> f64 {
+    let colder_k = REFERENCE_C - temperature_c;
+    if temperature_c > REFERENCE_C {
         0.5f64.powf(colder_k)
-    } else if temperature_c >= NONE_BELOW_C {
+    } else if temperature_c >= THRESHOLD_C {
         0.25f64.powf(colder_k)
     } else {
         0.0
     }
 }
 
-/// Dose in minutes of temperatures, deg C, that each last `step_s`.
+/// Dose of temperatures, deg C, that last `step_s` each; equivalent minutes at 43 deg C.
 pub fn cem43_min(temperatures_c: impl Iterator<Item = f64>, step_s: f64) -> f64 {
-    temperatures_c.map(rate).sum::<f64>() * step_s / 60.0
+    temperatures_c.map(cem43_rate).sum::<f64>() * step_s / 60.0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// The definition's own marks, and a burn threshold of the skin: 43 deg C for 10 min is half of 44 deg C for it.
+    /// Values from the definition; each degree above 43 deg C doubles the dose.
     #[test]
     fn doses_are_those_of_the_definition() {
         for (temperature_c, minutes, expected_min) in [

@@ -2,44 +2,44 @@
 
 use std::ops::Range;
 
-use thermal_display::device::reference::Mode;
-use thermal_display::protocol::LINE_MAX_BYTES;
+use thermal_device::reference::Mode;
+use thermal_protocol::LINE_MAX_BYTES;
 
 use crate::scene::{FaultKind, Scene, custom_line};
 
 /// Milliseconds after the device's start at which it is armed, and between two lines.
 const ARM_MS: u64 = 10;
 const SPACING_MS: u64 = 3;
-/// How long the skin is watched before an object is presented, ms: ten time constants of the device's filter.
-const WATCH_MS: u64 = 2600;
-/// Milliseconds before time zero from which telemetry is streamed.
+/// Time for the skin temperature filter of the device to settle before an object is presented, ms: ten time constants.
+const SKIN_SETTLING_MS: u64 = 2600;
+/// Start of the telemetry stream before time zero, ms.
 const STREAM_MS: u64 = 20;
-/// Interval of the blank lines that say that the host is alive, from the stream's begin on, ms.
-const ALIVE_MS: usize = 500;
+/// Interval of the blank lines that serve as heartbeat from the start of the stream on, ms.
+const HEARTBEAT_MS: usize = 500;
 const BLANK: &[u8] = b"\n";
-/// What a host sends each half millisecond that wants to know everything: as much as the line carries.
+/// Sent every half millisecond by a flooding host: as much as the serial line carries.
 const FLOOD: &[u8] = b"state\nstate\nstate\nstate\nstate\nstate\nstate\nstate\n";
-/// What a host that has lost its mind sends.
+/// Bytes that are not valid lines.
 const GARBAGE: &[u8] = b"\x00\xff\xfe\x80arm\x01\n\xc3\x28 start\n";
 
-/// Lines in the order in which they are sent.
+/// The host: the lines of a scene in the order in which they are sent.
 #[derive(Clone, Debug)]
 pub struct Host {
-    /// Millisecond since the device's start, and the bytes.
+    /// Time since the start of the device, ms, and the bytes sent then.
     queue: Vec<(u64, Vec<u8>)>,
     next: usize,
-    /// Milliseconds since the device's start in which it floods the device, and in which it sends nothing.
+    /// Time ranges since the start of the device, ms, in which the host floods the line, and in which it is silent.
     floods: Vec<Range<u64>>,
     silences: Vec<Range<u64>>,
 }
 
 impl Host {
-    /// The lines that restore a device's settings, those that set a scene up, telemetry every `stream_ms` included,
-    /// those of the scene itself, and blank ones that say that it is alive.
+    /// Queues the lines that restore the settings of the device, set up the scene and request telemetry every
+    /// `stream_ms`, the lines of the scene itself, and blank lines as heartbeat.
     #[must_use]
     pub fn new(scene: &Scene, settings: &[String], stream_ms: u32) -> Self {
         let zero_ms = scene.settle_ms();
-        // What never comes is at the end of numbers.
+        // An infinite time saturates.
         let at = |t_s: f64| zero_ms.saturating_add((t_s * 1e3).round() as u64);
         let material = match scene.object.name.as_str() {
             "custom" => custom_line(&scene.object.material),
@@ -63,7 +63,7 @@ impl Host {
         let start_ms = if scene.object.appears_t_s > 0.0 {
             at(scene.object.appears_t_s)
         } else {
-            arm_ms + WATCH_MS
+            arm_ms + SKIN_SETTLING_MS
         };
         queue.push((start_ms, "start".into()));
         queue.push((zero_ms - STREAM_MS, format!("stream {stream_ms}")));
@@ -77,23 +77,20 @@ impl Host {
             .into_iter()
             .map(|(ms, line)| (ms, [line.as_bytes(), b"\n"].concat()));
         let times = |kind| -> Vec<Range<u64>> {
-            let faults = scene
-                .faults
-                .iter()
-                .filter(|fault| fault.broken.kind == kind);
+            let faults = scene.faults.iter().filter(|fault| fault.fault.kind == kind);
             faults
                 .map(|fault| at(fault.t_s)..at(fault.until_s))
                 .collect()
         };
         let garbage = times(FaultKind::HostGarbage).into_iter();
         let garbage = garbage.map(|times| (times.start, GARBAGE.to_vec()));
-        // Lines first: they shall not wait.
-        let alive = (zero_ms - STREAM_MS..at(scene.duration_s))
-            .step_by(ALIVE_MS)
+        // Lines come before heartbeats of the same time, so that they are not delayed.
+        let heartbeats = (zero_ms - STREAM_MS..at(scene.duration_s))
+            .step_by(HEARTBEAT_MS)
             .skip(1);
-        let alive = alive.map(|ms| (ms, BLANK.to_vec()));
+        let heartbeats = heartbeats.map(|ms| (ms, BLANK.to_vec()));
         let (floods, silences) = (times(FaultKind::HostFlood), times(FaultKind::HostSilent));
-        let mut queue: Vec<_> = (lines.chain(garbage).chain(alive))
+        let mut queue: Vec<_> = (lines.chain(garbage).chain(heartbeats))
             .filter(|(ms, _)| !within(&silences, *ms))
             .collect();
         queue.sort_by_key(|(ms, _)| *ms);
@@ -106,10 +103,10 @@ impl Host {
         }
     }
 
-    /// The bytes that leave at a half millisecond since the device's start, if any.
+    /// The bytes sent at a half millisecond since the start of the device, if any.
     pub fn send(&mut self, half_ms: u64) -> Option<&[u8]> {
         let next = self.queue.get(self.next);
-        let Some((_, bytes)) = next.filter(|(ms, bytes)| half_ms >= 2 * ms + leaves_at_half(bytes))
+        let Some((_, bytes)) = next.filter(|(ms, bytes)| half_ms >= 2 * ms + sending_half(bytes))
         else {
             let now_ms = half_ms / 2;
             let floods = within(&self.floods, now_ms) && !within(&self.silences, now_ms);
@@ -124,13 +121,13 @@ fn within(times: &[Range<u64>], ms: u64) -> bool {
     times.iter().any(|times| times.contains(&ms))
 }
 
-/// The half of a millisecond at whose boundary bytes leave: the one after which their last byte is far from a tick, so
-/// that both engines execute them in the same tick.
-pub(crate) fn leaves_at_half(bytes: &[u8]) -> u64 {
+/// The half of the millisecond at whose start bytes are sent: the one for which their last byte arrives far from a tick,
+/// so that both engines execute the line in the same tick.
+pub(crate) fn sending_half(bytes: &[u8]) -> u64 {
     (31..=80).contains(&bytes.len()).into()
 }
 
-/// Delays lines that would leave before the line ahead of them was answered.
+/// Delays lines that would be sent before the previous line has been answered.
 fn space_out(queue: &mut [(u64, Vec<u8>)]) {
     let mut free_ms = 0;
     for (ms, bytes) in queue {

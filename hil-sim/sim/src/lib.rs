@@ -1,22 +1,25 @@
 #![doc = include_str!("../README.md")]
 
-mod cells;
-pub mod commission;
-mod device;
+#[macro_use]
+mod named_enum;
+
+pub mod commissioning;
 pub mod dose;
 pub mod engine;
-pub mod hand;
+pub mod five_fingers;
+mod flash_cells;
 pub mod host;
 pub mod metrics;
 pub mod processor;
-mod recording;
 pub mod report;
 pub mod run;
+mod runner;
 pub mod scene;
+mod scene_recording;
 pub mod telemetry;
 pub mod trace;
 mod world;
 
-pub use cells::Cells;
-pub use device::{Device, NativeDevice, RamLayout, run_on};
+pub use flash_cells::FlashCells;
+pub use runner::{NativeRunner, RamLayout, SceneRunner, run_scene_on};
 pub use world::{World, WorldError};

@@ -12,25 +12,25 @@ const AFTER_S: f64 = 0.05;
 
 /// Errors during contact, mK.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Errors {
+pub struct ErrorFigures {
     /// Largest magnitude from 50 ms after each landing on; null if no contact lasted that long.
     pub max_after_50ms: Option<f64>,
     /// Root mean square over all contact time.
     pub rms: f64,
 }
 
-/// Extremes.
+/// Smallest and largest value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Range {
+pub struct Extremes {
     /// Smallest.
     pub min: f64,
     /// Largest.
     pub max: f64,
 }
 
-/// Mean and largest value; null if the engine cannot know.
+/// Mean and largest cost of a tick; null if the engine does not measure it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct PerTick {
+pub struct CostPerTick {
     /// Mean.
     pub mean: Option<f64>,
     /// Largest.
@@ -39,73 +39,87 @@ pub struct PerTick {
 
 /// Current through the module, A.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Current {
+pub struct CurrentFigures {
     /// Largest magnitude.
     pub max_abs: f64,
     /// Root mean square.
     pub rms: f64,
 }
 
-/// A fault that the device reported.
+/// A trip reported by the device.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Tripped {
-    /// When, s.
+pub struct TripRecord {
+    /// Time, s.
     pub t_s: f64,
-    /// What.
+    /// Name of the fault.
     pub fault: String,
 }
 
 /// A reset of the device after its power-up.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Restarted {
-    /// When, s; negative while the scene settles.
+pub struct ResetRecord {
+    /// Time, s; negative while the scene settles.
     pub t_s: f64,
-    /// Why: software, independent-watchdog, window-watchdog, brown-out, reset-pin or power-on.
+    /// Cause: software, independent-watchdog, window-watchdog, brown-out, reset-pin or power-on.
     pub cause: String,
 }
 
 /// The figures of a run, as `--json` prints them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
-    /// Engine.
+    /// Name of the engine.
     pub engine: &'static str,
-    /// Material.
+    /// Name of the material.
     pub material: String,
     /// Control ticks of the scene.
     pub ticks: usize,
     /// Skin on the display minus skin on the real object.
-    pub skin_error_mk: Option<Errors>,
+    pub skin_error_mk: Option<ErrorFigures>,
     /// Display minus the exact set-point for a nominal finger.
-    pub display_error_mk: Option<Errors>,
+    pub display_error_mk: Option<ErrorFigures>,
     /// Skin on the display, °C.
-    pub skin_c: Range,
+    pub skin_c: Extremes,
     /// Thermal dose of the skin on the display, equivalent minutes at 43 °C ([`crate::dose`]).
     pub cem43_min: f64,
     /// Display's surface under the finger, °C.
-    pub display_c: Range,
+    pub display_c: Extremes,
     /// Current through the module, over the whole scene.
-    pub current_a: Current,
-    /// Electrical work that the module has taken up in the scene, J.
+    pub current_a: CurrentFigures,
+    /// Electrical energy taken up by the module during the scene, J.
     pub energy_j: f64,
     /// Evaluations of `erfcx`.
     pub kernel_evaluations: Option<u64>,
     /// Instructions of the control tick, emulated.
-    pub instructions_per_tick: PerTick,
+    pub instructions_per_tick: CostPerTick,
     /// Cycles of the control tick, estimated.
-    pub cycles_per_tick: PerTick,
-    /// Part of the time in which the CPU does not sleep, estimated.
+    pub cycles_per_tick: CostPerTick,
+    /// Fraction of the time in which the CPU is not asleep, estimated.
     pub cpu_load: Option<f64>,
-    /// Most of the stack that was used, emulated.
+    /// Largest stack use, emulated, bytes.
     pub stack_bytes: Option<u32>,
-    /// Simulated seconds per second.
+    /// Simulated time divided by run time.
     pub real_time_factor: f64,
     /// Faults that the device reported.
-    pub faults: Vec<Tripped>,
+    pub faults: Vec<TripRecord>,
     /// Resets of the device after its power-up.
-    pub resets: Vec<Restarted>,
+    pub resets: Vec<ResetRecord>,
 }
 
-/// Time since the last landing on an object that is there, for each row; `None` without contact.
+impl Figures {
+    /// Largest skin error from 50 ms after each landing on, mK.
+    #[must_use]
+    pub fn skin_max_mk(&self) -> Option<f64> {
+        self.skin_error_mk?.max_after_50ms
+    }
+
+    /// RMS skin error, mK.
+    #[must_use]
+    pub fn skin_rms_mk(&self) -> Option<f64> {
+        Some(self.skin_error_mk?.rms)
+    }
+}
+
+/// Time since the last landing on a present object, s, for each row; `None` without contact.
 #[must_use]
 pub fn contact_times(scene: &Scene, outcome: &Outcome) -> Vec<Option<f64>> {
     let mut landed_s = None;
@@ -159,11 +173,11 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
             .next()
             .zip(evaluations().next_back())
             .map(|(a, b)| b.saturating_sub(a)),
-        instructions_per_tick: PerTick {
+        instructions_per_tick: CostPerTick {
             mean: outcome.cost.map(|cost| cost.instructions_mean),
             max: outcome.cost.map(|cost| cost.instructions_max),
         },
-        cycles_per_tick: PerTick {
+        cycles_per_tick: CostPerTick {
             mean: outcome.cost.map(|cost| cost.cycles_mean),
             max: outcome.cost.map(|cost| cost.cycles_max),
         },
@@ -185,28 +199,28 @@ pub fn skin_errors(scene: &Scene, outcome: &Outcome) -> impl Iterator<Item = (f6
     rows.filter_map(|(row, since_s)| Some((since_s?, row.skin_c - row.skin_real_c)))
 }
 
-fn range(values: impl Iterator<Item = f64>) -> Range {
-    let none = Range {
+fn range(values: impl Iterator<Item = f64>) -> Extremes {
+    let none = Extremes {
         min: f64::INFINITY,
         max: f64::NEG_INFINITY,
     };
-    values.fold(none, |range, value| Range {
+    values.fold(none, |range, value| Extremes {
         min: range.min.min(value),
         max: range.max.max(value),
     })
 }
 
-fn current(outcome: &Outcome) -> Current {
+fn current(outcome: &Outcome) -> CurrentFigures {
     let amperes = || outcome.trace.rows().iter().map(|row| row.current_a);
     let squares: f64 = amperes().map(|ampere| ampere * ampere).sum();
-    Current {
+    CurrentFigures {
         max_abs: amperes().fold(0.0, |most, ampere| ampere.abs().max(most)),
         rms: (squares / outcome.trace.rows().len().max(1) as f64).sqrt(),
     }
 }
 
 /// Errors in mK from time since landing in s and error in K; `None` without contact.
-fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<Errors> {
+fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<ErrorFigures> {
     let (mut count, mut squares, mut max_k) = (0u32, 0.0, None::<f64>);
     for (since_s, error_k) in samples {
         count += 1;
@@ -216,31 +230,31 @@ fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<Errors> {
         }
     }
     let rms = (squares / f64::from(count)).sqrt() * 1e3;
-    (count > 0).then_some(Errors {
+    (count > 0).then_some(ErrorFigures {
         max_after_50ms: max_k.map(|error_k| error_k * 1e3),
         rms,
     })
 }
 
-fn resets(outcome: &Outcome) -> Vec<Restarted> {
+fn resets(outcome: &Outcome) -> Vec<ResetRecord> {
     let resets = outcome.resets.iter();
     resets
-        .map(|reset| Restarted {
+        .map(|reset| ResetRecord {
             t_s: reset.t_s,
             cause: reset.cause.to_string(),
         })
         .collect()
 }
 
-/// Every change into a tripped state.
-fn faults(outcome: &Outcome) -> Vec<Tripped> {
+/// The trips: every change into the state `tripped`.
+fn faults(outcome: &Outcome) -> Vec<TripRecord> {
     let mut faults = Vec::new();
     let mut tripped = false;
     for row in outcome.trace.rows() {
         let Some(device) = &row.device else { continue };
         let now = device.state == "tripped";
         if now && !tripped {
-            faults.push(Tripped {
+            faults.push(TripRecord {
                 t_s: row.t_s,
                 fault: device.remark.clone().unwrap_or_default(),
             });

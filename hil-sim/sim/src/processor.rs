@@ -1,36 +1,30 @@
-//! The microcontroller as scenes and runs speak of it: its faults, what resets it, its core registers. No engine is
-//! needed to name them.
+//! Faults, reset causes and core registers of the microcontroller, independent of an engine.
 
 use std::fmt;
 use std::str::FromStr;
 
-/// What reset the chip last (RCC_CSR).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum ResetCause {
-    /// Supply came up.
-    PowerOn,
-    /// SYSRESETREQ written to AIRCR.
-    Software,
-    /// The independent watchdog ran out.
-    IndependentWatchdog,
-    /// The window watchdog ran out, or was refreshed outside of its window.
-    WindowWatchdog,
-    /// The supply fell below the brown-out threshold, but not so far that the RAM forgot.
-    BrownOut,
-    /// The reset pin was pulled low.
-    Pin,
+named_enum! {
+    /// Cause of the last reset of the microcontroller (RCC_CSR).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum ResetCause {
+        /// The supply came up.
+        PowerOn = "power-on",
+        /// SYSRESETREQ was written to AIRCR.
+        Software = "software",
+        /// The independent watchdog ran out.
+        IndependentWatchdog = "independent-watchdog",
+        /// The window watchdog ran out, or was refreshed outside its window.
+        WindowWatchdog = "window-watchdog",
+        /// The supply fell below the brown-out threshold, but the RAM kept its contents.
+        BrownOut = "brown-out",
+        /// The reset pin was pulled low.
+        Pin = "reset-pin",
+    }
 }
 
 impl fmt::Display for ResetCause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            ResetCause::PowerOn => "power-on",
-            ResetCause::Software => "software",
-            ResetCause::IndependentWatchdog => "independent-watchdog",
-            ResetCause::WindowWatchdog => "window-watchdog",
-            ResetCause::BrownOut => "brown-out",
-            ResetCause::Pin => "reset-pin",
-        })
+        f.write_str(self.name())
     }
 }
 
@@ -68,8 +62,8 @@ impl fmt::Display for CoreRegister {
 }
 
 impl CoreRegister {
-    /// Bits that exist and can flip: the two lowest of SP and the lowest of PC are always 0; a flip of the execution
-    /// state (T, IT) is not modelled.
+    /// Mask of the bits that can flip: the two lowest of SP and the lowest of PC are always 0, and flips of the execution
+    /// state (T, IT) are not modelled.
     #[must_use]
     pub const fn bits(self) -> u32 {
         match self {
@@ -104,18 +98,18 @@ pub enum MachineFault {
         /// Bit.
         bit: u8,
     },
-    /// A bit of a device's register flips.
+    /// A bit of a peripheral register flips.
     RegisterBit {
         /// Address of the word.
         address: u32,
         /// Bit.
         bit: u8,
     },
-    /// The core executes nothing until a reset.
+    /// The core executes no instruction until a reset.
     HungCore,
-    /// The external oscillator stops for good.
+    /// The external oscillator stops permanently.
     HseStopped,
-    /// The converter ends no conversion until a reset.
+    /// The converter completes no conversion until a reset.
     AdcStopped,
     /// A bus error ends a DMA stream.
     DmaStopped {
@@ -126,25 +120,26 @@ pub enum MachineFault {
     },
     /// The supply dips; the RAM keeps its contents.
     BrownOut,
-    /// The supply goes until the RAM has forgotten.
+    /// The supply is off until the RAM has lost its contents.
     PowerCycle {
-        /// Of the noise that the RAM holds afterwards.
+        /// Seed of the noise that the RAM contains afterwards.
         seed: u64,
     },
     /// The reset pin is pulled.
     ResetPin,
     /// The program asks for a reset.
     SoftwareReset,
-    /// The stack is at its end: what is pushed next leaves it.
+    /// The stack pointer is set to the end of the stack, so that the next push overflows.
     StackOverflow,
 }
 
-/// A fault of the processor at a time of a scene, to the microsecond; at a whole millisecond before the plant's step.
+/// A fault of the processor at a time of a scene, with microsecond resolution; at a whole millisecond it comes before the
+/// step of the plant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Injection {
     /// Time, s; negative while the scene settles.
     pub t_s: f64,
-    /// What happens.
+    /// The fault.
     pub fault: MachineFault,
 }
 
@@ -166,7 +161,7 @@ pub enum NotInjected {
     Refused {
         /// Fault.
         fault: MachineFault,
-        /// Why, as the machine says it.
+        /// Reason given by the machine.
         reason: String,
     },
 }
@@ -192,20 +187,20 @@ impl fmt::Display for MachineFault {
     }
 }
 
-/// Why a text is no fault of the machine.
+/// A text that is not a fault of the machine.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is no fault of the machine; allowed are ram-bit=ADDRESS.BIT, core-bit=REGISTER.BIT, \
      register-bit=ADDRESS.BIT, hung-core, hse-stopped, adc-stopped, dma-stopped=CONTROLLER.STREAM, brown-out, \
      power-cycle=SEED, reset-pin, software-reset, stack-overflow"
 )]
-pub struct NoMachineFault(String);
+pub struct ParseMachineFaultError(String);
 
 impl FromStr for MachineFault {
-    type Err = NoMachineFault;
+    type Err = ParseMachineFaultError;
 
-    fn from_str(text: &str) -> Result<Self, NoMachineFault> {
-        parse(text).ok_or_else(|| NoMachineFault(text.to_owned()))
+    fn from_str(text: &str) -> Result<Self, ParseMachineFaultError> {
+        parse(text).ok_or_else(|| ParseMachineFaultError(text.to_owned()))
     }
 }
 
@@ -274,7 +269,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_lead_back_to_their_faults() {
+    fn every_fault_is_parsed_from_its_own_text() {
         for text in [
             "ram-bit=0x20000010.3",
             "core-bit=r4.7",
@@ -297,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn other_texts_are_refused_with_what_is_allowed() {
+    fn other_texts_are_refused_with_a_list_of_what_is_allowed() {
         for text in [
             "",
             "hung-core=1",

@@ -1,55 +1,54 @@
-//! A scene on an engine, from switch-on to the last row.
+//! Runs a scene on an engine, from power-up to the last row.
 
 use std::time::Instant;
 
-use crate::commission::{self, CommissionError};
-use crate::engine::{Engine, Lines};
+use crate::commissioning::{self, CommissionError};
+use crate::engine::{Engine, LineSplitter};
 use crate::processor::{Injection, MachineFault, NotInjected};
-use crate::recording::Recording;
 use crate::scene::Scene;
+use crate::scene_recording::SceneRecording;
 
-pub use crate::recording::Outcome;
+pub use crate::scene_recording::Outcome;
 
-/// Time after the last row in which its telemetry arrives, ms.
+/// Time for the telemetry of the last row to arrive, ms.
 const DRAIN_MS: u64 = 5;
-/// Half a millisecond, µs.
 const HALF_MS_US: u64 = 500;
 
 /// Why a run ended early.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError<S: std::error::Error + 'static> {
-    /// The engine stopped: the device did something that is not modelled.
+    /// The engine stopped because the device did something that is not modelled.
     #[error(transparent)]
     Stop(S),
-    /// The device cannot be commissioned, so it never comes to the scene.
+    /// Commissioning of the device failed before the scene.
     #[error(transparent)]
     Commission(CommissionError),
-    /// A fault of the processor could not be injected.
+    /// A processor fault could not be injected.
     #[error(transparent)]
     NotInjected(#[from] NotInjected),
-    /// An injection outside of the run.
+    /// An injection time outside of the run.
     #[error("{fault} at {t_s} s is outside of the run, which goes from {from_s} s to {to_s} s")]
     InjectionTime {
-        /// What should have happened.
+        /// The fault.
         fault: MachineFault,
-        /// When, s.
+        /// Its time, s.
         t_s: f64,
-        /// Begin of the run: it settles first.
+        /// Start of the run, including settling, s.
         from_s: f64,
-        /// End of the scene.
+        /// End of the scene, s.
         to_s: f64,
     },
-    /// One finger's scene breaks what all share.
+    /// A scene of one of five fingers contains a fault of the processor, which all fingers share.
     #[error(
         "{0} is a fault of the processor that five fingers share; such a scene is for one finger"
     )]
-    Shared(MachineFault),
-    /// The device refused a line that sets the scene up.
+    SharedProcessor(MachineFault),
+    /// The device refused a set-up line of the scene.
     #[error("the device refused to be set up for the scene: {0}")]
     Refused(String),
 }
 
-/// Runs a scene; `progress` is told the part that is done.
+/// Runs a scene; `progress` is called with the fraction done.
 ///
 /// # Errors
 /// The engine stopped, or the device refused the scene.
@@ -61,19 +60,19 @@ pub fn run<E: Engine>(
     run_with(scene, &[], engine, progress)
 }
 
-/// Runs a scene in which the processor fails, beside what the scene itself has of that.
+/// Runs a scene with processor faults in addition to those of the scene.
 ///
 /// # Errors
-/// As [`run`]; or an injection that the engine refuses.
+/// As [`run`], or the engine refuses an injection.
 pub fn run_with<E: Engine>(
     scene: &Scene,
     injections: &[Injection],
     engine: &mut E,
     mut progress: impl FnMut(f64),
 ) -> Result<Outcome, RunError<E::Stop>> {
-    let settings = commission::of_scene(scene).map_err(RunError::Commission)?;
+    let settings = commissioning::settings_for_scene(scene).map_err(RunError::Commission)?;
     let began = Instant::now();
-    let recording = Recording::new(scene, &settings, 1);
+    let recording = SceneRecording::new(scene, &settings, 1);
     let (zero_ms, last_ms) = (recording.zero_ms, recording.end_ms + DRAIN_MS);
     let time_s = |ms: f64| (ms - zero_ms as f64) / 1e3;
     let (from_s, to_s) = (time_s(0.0), time_s(recording.end_ms as f64));
@@ -88,50 +87,52 @@ pub fn run_with<E: Engine>(
             });
         }
     }
-    let mut session = Session {
+    let mut scene_run = SceneRun {
         recording,
         injections,
         engine,
-        received: Lines::default(),
+        received: LineSplitter::default(),
     };
     for ms in 0..=last_ms {
         if ms == zero_ms {
-            session.engine.reset_cost();
+            scene_run.engine.reset_cost();
         }
-        session.recording.change(ms, session.engine.world());
-        session.send(2 * ms);
-        session.inject(2 * ms, |after_us| after_us == 0)?;
-        session.recording.keep(ms, session.engine.world());
-        session.step_plant();
-        session.inject(2 * ms, |after_us| after_us > 0)?;
-        session.engine.run_half_ms().map_err(RunError::Stop)?;
-        session.send(2 * ms + 1);
-        session.inject(2 * ms + 1, |_| true)?;
-        session.engine.run_half_ms().map_err(RunError::Stop)?;
-        for line in session.lines() {
-            (session.recording.hear(ms, line)).map_err(RunError::Refused)?;
+        scene_run
+            .recording
+            .apply_scene(ms, scene_run.engine.world());
+        scene_run.send(2 * ms);
+        scene_run.inject(2 * ms, |after_us| after_us == 0)?;
+        scene_run.recording.record(ms, scene_run.engine.world());
+        scene_run.step_plant();
+        scene_run.inject(2 * ms, |after_us| after_us > 0)?;
+        scene_run.engine.run_half_ms().map_err(RunError::Stop)?;
+        scene_run.send(2 * ms + 1);
+        scene_run.inject(2 * ms + 1, |_| true)?;
+        scene_run.engine.run_half_ms().map_err(RunError::Stop)?;
+        for line in scene_run.lines() {
+            (scene_run.recording.receive(ms, line)).map_err(RunError::Refused)?;
         }
         progress(ms as f64 / last_ms as f64);
     }
     let real_time_factor = last_ms as f64 * 1e-3 / began.elapsed().as_secs_f64();
-    let Session {
+    let SceneRun {
         recording, engine, ..
-    } = session;
+    } = scene_run;
     Ok(recording.outcome(E::NAME, &engine.resets(), engine.cost(), real_time_factor))
 }
 
-struct Session<'a, E> {
-    recording: Recording<'a>,
+struct SceneRun<'a, E> {
+    recording: SceneRecording<'a>,
     injections: Vec<&'a Injection>,
     engine: &'a mut E,
-    received: Lines,
+    received: LineSplitter,
 }
 
-impl<E: Engine> Session<'_, E> {
-    /// What fails of the processor in a half millisecond since the start, at those of its microseconds.
+impl<E: Engine> SceneRun<'_, E> {
+    /// Injects the processor faults of a half millisecond since the start whose offset in it, µs, is accepted by `at`.
     fn inject(&mut self, half_ms: u64, at: impl Fn(u32) -> bool) -> Result<(), NotInjected> {
         for injection in &self.injections {
-            // Not negative: the time has been checked to be in the run.
+            // Not negative: the time was checked to be within the run.
             let us = (injection.t_s * 1e6 + self.recording.zero_ms as f64 * 1e3).round() as u64;
             let after_us = (us % HALF_MS_US) as u32;
             if us / HALF_MS_US == half_ms && at(after_us) {
@@ -141,20 +142,20 @@ impl<E: Engine> Session<'_, E> {
         Ok(())
     }
 
-    /// What the host sends at a half millisecond since the start.
+    /// Sends the bytes of the host at a half millisecond since the start.
     fn send(&mut self, half_ms: u64) {
         if let Some(bytes) = self.recording.host.send(half_ms) {
             self.engine.send(bytes);
         }
     }
 
-    /// Advances the plant to the next boundary, under the legs as they are at this one.
+    /// Advances the plant to the next boundary with the bridge legs as they are at this one.
     fn step_plant(&mut self) {
         let legs = self.engine.legs();
         self.engine.world().step(legs);
     }
 
-    /// The lines that are complete.
+    /// The complete lines received since the last call.
     fn lines(&mut self) -> Vec<String> {
         self.engine.receive(self.received.received());
         self.received.complete()

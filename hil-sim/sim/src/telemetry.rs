@@ -1,21 +1,21 @@
-//! What the device says of itself.
+//! Telemetry lines of the device.
 
 /// The fields of a telemetry line that a run uses; see `docs/protocol.md` for all of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Telemetry {
     /// Ticks since the device's reset.
     pub tick: u64,
-    /// State.
+    /// State of the device.
     pub state: String,
     /// Set-point, °C.
     pub setpoint_c: Option<f64>,
     /// Display thermistor, °C.
     pub sensor_c: Option<f64>,
-    /// Current asked for, A.
+    /// Demanded current, A.
     pub demand_a: Option<f64>,
     /// Evaluations of `erfcx` since reset.
     pub evaluations: u64,
-    /// Fault, `limited` or nothing.
+    /// Name of a fault, or `limited`.
     pub remark: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! One row a millisecond.
+//! The trace of a run: one row per millisecond.
 
 use std::collections::VecDeque;
 use std::io;
@@ -10,12 +10,12 @@ use thermal_plant::{Finger, Plant, RECEPTORS_M};
 
 use crate::telemetry::Telemetry;
 
-/// Rows that wait for their telemetry, and telemetry that waits for its row.
-const WAITING: usize = 20;
+/// Number of rows without telemetry, and of telemetry lines without a row, that are kept for matching.
+const UNMATCHED_MAX: usize = 20;
 
-/// The state at one time: of the plant, and what the device says of its last tick.
+/// State of the plant at one time, with the telemetry of the device's last tick before it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct TraceRow {
     /// Time, s.
     pub t_s: f64,
     /// Force of the finger, N.
@@ -28,7 +28,8 @@ pub struct Row {
     pub skin_real_c: f64,
     /// Surface of the real object, °C.
     pub object_real_c: f64,
-    /// The skin on the display at the depths of [`RECEPTORS_M`], of cold and of warmth, °C; none where it is thinner.
+    /// Temperature of the finger on the display at the depths of the cold and warm receptors ([`RECEPTORS_M`]), °C; `None`
+    /// where the finger is thinner.
     pub receptors_c: [Option<f64>; RECEPTORS_M.len()],
     /// The same on the real object, °C.
     pub receptors_real_c: [Option<f64>; RECEPTORS_M.len()],
@@ -36,20 +37,20 @@ pub struct Row {
     pub sink_c: f64,
     /// Current through the module, A.
     pub current_a: f64,
-    /// What the device's sensors show, before its converter.
+    /// Sensor outputs before the converter.
     pub taken: Taken,
-    /// The fault line is low.
+    /// Whether the fault line is low.
     pub fault_line: bool,
-    /// What the camera says of the skin on the real object, in its frames.
+    /// Camera reading of the skin on the real object; `None` between frames.
     pub camera: Option<Reading>,
-    /// What the device said.
+    /// Telemetry of the device's last tick, if it was received.
     pub device: Option<Telemetry>,
 }
 
-impl Row {
-    /// The plant now; the device has not spoken yet.
+impl TraceRow {
+    /// The present state of the plant, without telemetry.
     #[must_use]
-    pub fn now(t_s: f64, plant: &Plant, camera: Option<Reading>) -> Self {
+    pub fn capture(t_s: f64, plant: &Plant, camera: Option<Reading>) -> Self {
         Self {
             t_s,
             force_n: plant.force_n(),
@@ -69,18 +70,19 @@ impl Row {
     }
 }
 
-/// Rows of a run, each joined with the telemetry of the tick before it.
+/// Rows of a run, each with the telemetry of the tick before it.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
-    rows: Vec<Row>,
-    /// Tick before each of the last rows, and its index.
+    rows: Vec<TraceRow>,
+    /// Tick number and index of the last rows without telemetry.
     waiting: VecDeque<(u64, usize)>,
+    /// Telemetry whose row has not been appended yet.
     early: VecDeque<Telemetry>,
 }
 
 impl Trace {
-    /// Adds a row; `tick` is the number of the device's last tick before it.
-    pub fn push(&mut self, tick: u64, mut row: Row) {
+    /// Appends a row; `tick` is the number of the device's last tick before it.
+    pub fn push(&mut self, tick: u64, mut row: TraceRow) {
         if let Some(index) = self
             .early
             .iter()
@@ -88,39 +90,39 @@ impl Trace {
         {
             row.device = self.early.remove(index);
         } else {
-            keep(&mut self.waiting, (tick, self.rows.len()));
+            push_bounded(&mut self.waiting, (tick, self.rows.len()));
         }
         self.rows.push(row);
     }
 
-    /// Gives the telemetry to its row, which may be still to come.
-    pub fn join(&mut self, telemetry: Telemetry) {
+    /// Attaches telemetry to its row, or keeps it until that row is appended.
+    pub fn attach_telemetry(&mut self, telemetry: Telemetry) {
         match self
             .waiting
             .iter()
             .find(|(tick, _)| *tick == telemetry.tick)
         {
             Some((_, index)) => self.rows[*index].device = Some(telemetry),
-            None => keep(&mut self.early, telemetry),
+            None => push_bounded(&mut self.early, telemetry),
         }
     }
 
-    /// The rows.
+    /// One row per millisecond of the scene.
     #[must_use]
-    pub fn rows(&self) -> &[Row] {
+    pub fn rows(&self) -> &[TraceRow] {
         &self.rows
     }
 
-    /// Writes `trace.csv`; a cell is empty where the device said nothing, or the camera between its frames.
+    /// Writes `trace.csv`. A cell is empty if there is no telemetry, or no camera frame, for its row.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
-        let watched = self.rows.iter().any(|row| row.camera.is_some());
+        let has_camera = self.rows.iter().any(|row| row.camera.is_some());
         let columns = || {
             COLUMNS
                 .iter()
-                .chain(CAMERA_COLUMNS.iter().filter(|_| watched))
+                .chain(CAMERA_COLUMNS.iter().filter(|_| has_camera))
         };
         let mut csv = csv::Writer::from_path(path)?;
         csv.write_record(columns().map(|(name, _)| name))?;
@@ -131,22 +133,26 @@ impl Trace {
     }
 }
 
-fn keep<T>(last: &mut VecDeque<T>, new: T) {
-    if last.len() == WAITING {
+fn push_bounded<T>(last: &mut VecDeque<T>, new: T) {
+    if last.len() == UNMATCHED_MAX {
         last.pop_front();
     }
     last.push_back(new);
 }
 
 /// A column of the file: its name and the text of its cells.
-type Column = (&'static str, fn(&Row) -> String);
+type Column = (&'static str, fn(&TraceRow) -> String);
 
 const COLUMNS: [Column; 17] = [
     ("t_s", |row| format!("{:.3}", row.t_s)),
     ("force_n", |row| format!("{:.6}", row.force_n)),
-    ("setpoint_c", |row| said(row, |device| device.setpoint_c, 5)),
+    ("setpoint_c", |row| {
+        telemetry_cell(row, |device| device.setpoint_c, 5)
+    }),
     ("display_c", |row| format!("{:.6}", row.display_c)),
-    ("sensor_c", |row| said(row, |device| device.sensor_c, 4)),
+    ("sensor_c", |row| {
+        telemetry_cell(row, |device| device.sensor_c, 4)
+    }),
     ("skin_c", |row| format!("{:.6}", row.skin_c)),
     ("skin_real_c", |row| format!("{:.6}", row.skin_real_c)),
     ("sink_c", |row| format!("{:.6}", row.sink_c)),
@@ -157,33 +163,39 @@ const COLUMNS: [Column; 17] = [
             .map_or("", |device| &device.state)
             .into()
     }),
-    ("demand_a", |row| said(row, |device| device.demand_a, 3)),
+    ("demand_a", |row| {
+        telemetry_cell(row, |device| device.demand_a, 3)
+    }),
     ("object_real_c", |row| format!("{:.6}", row.object_real_c)),
     ("remark", |row| {
         let device = row.device.as_ref();
         let remark = device.and_then(|device| device.remark.as_deref());
         remark.unwrap_or("").into()
     }),
-    ("skin_cold_c", |row| known(row.receptors_c[0], 6)),
-    ("skin_warm_c", |row| known(row.receptors_c[1], 6)),
-    ("skin_real_cold_c", |row| known(row.receptors_real_c[0], 6)),
-    ("skin_real_warm_c", |row| known(row.receptors_real_c[1], 6)),
+    ("skin_cold_c", |row| optional_cell(row.receptors_c[0], 6)),
+    ("skin_warm_c", |row| optional_cell(row.receptors_c[1], 6)),
+    ("skin_real_cold_c", |row| {
+        optional_cell(row.receptors_real_c[0], 6)
+    }),
+    ("skin_real_warm_c", |row| {
+        optional_cell(row.receptors_real_c[1], 6)
+    }),
 ];
 
-/// The columns of a run with a camera.
+/// Additional columns of a run with a camera.
 const CAMERA_COLUMNS: [Column; 2] = [
     ("camera_c", |row| {
-        known(row.camera.map(|reading| reading.apparent_c), 6)
+        optional_cell(row.camera.map(|reading| reading.apparent_c), 6)
     }),
     ("camera_skin_c", |row| {
-        known(row.camera.map(|reading| reading.recovered_c), 6)
+        optional_cell(row.camera.map(|reading| reading.recovered_c), 6)
     }),
 ];
 
-fn said(row: &Row, field: fn(&Telemetry) -> Option<f64>, digits: usize) -> String {
-    known(row.device.as_ref().and_then(field), digits)
+fn telemetry_cell(row: &TraceRow, field: fn(&Telemetry) -> Option<f64>, digits: usize) -> String {
+    optional_cell(row.device.as_ref().and_then(field), digits)
 }
 
-fn known(value: Option<f64>, digits: usize) -> String {
+fn optional_cell(value: Option<f64>, digits: usize) -> String {
     value.map_or(String::new(), |value| format!("{value:.digits$}"))
 }

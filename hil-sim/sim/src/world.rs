@@ -1,32 +1,32 @@
-//! What surrounds the device: the plant, what breaks in it, and who watches.
+//! The surroundings of the device: plant, defects and infrared camera.
 
-mod defects;
+mod active_defects;
 
 use thermal_plant::bridge::Legs;
 use thermal_plant::infrared::{Camera, ParameterError, Reading};
 use thermal_plant::sensors::Channel;
 use thermal_plant::{ConfigError, Plant, PlantConfig};
 
-use crate::scene::{Broken, Infrared, Scene};
-use defects::Damage;
+use crate::scene::{ActiveFault, Infrared, Scene};
+use active_defects::ActiveDefects;
 
-/// The plant behind the device's pins.
+/// The plant at the pins of the device, its present defects, and the camera.
 #[derive(Clone, Debug)]
 pub struct World {
     plant: Plant,
-    damage: Damage,
+    defects: ActiveDefects,
     camera: Option<(Infrared, Camera)>,
     /// Last code of every channel.
     codes: [u16; Channel::ALL.len()],
 }
 
-/// What no world can be built from.
+/// Why a world cannot be built.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WorldError {
-    /// The plant's.
+    /// A value that the plant does not accept.
     #[error(transparent)]
     Plant(#[from] ConfigError),
-    /// The camera's.
+    /// A value that the camera does not accept.
     #[error("infrared camera: {0}")]
     Camera(#[from] ParameterError),
 }
@@ -37,79 +37,82 @@ impl World {
     /// # Errors
     /// A value that the plant or the camera cannot take.
     pub fn new(scene: &Scene) -> Result<Self, WorldError> {
-        let camera = match scene.infrared {
-            Some(infrared) => Some((infrared, infrared.camera(scene.seed)?)),
-            None => None,
-        };
-        Ok(Self {
-            plant: Plant::new(&scene.plant_config())?,
-            damage: Damage::default(),
-            camera,
-            codes: [0; Channel::ALL.len()],
-        })
+        let plant = Plant::new(&scene.plant_config())?;
+        let camera = scene.infrared.map(|infrared| {
+            let camera = infrared.camera(scene.seed)?;
+            Ok::<_, ParameterError>((infrared, camera))
+        });
+        Ok(Self::with(plant, camera.transpose()?))
     }
 
-    /// The world of a plant that nobody watches, with the converter's noise of its own seed.
+    /// The world of a plant without a camera, with its own seed for the converter's noise.
     ///
     /// # Errors
     /// A value that the plant cannot take.
-    pub fn of_plant(config: &PlantConfig, noise_seed: u64) -> Result<Self, ConfigError> {
+    pub fn from_plant(config: &PlantConfig, noise_seed: u64) -> Result<Self, ConfigError> {
         let mut plant = Plant::new(config)?;
         plant.reseed_noise(noise_seed);
-        Ok(Self {
-            plant,
-            damage: Damage::default(),
-            camera: None,
-            codes: [0; Channel::ALL.len()],
-        })
+        Ok(Self::with(plant, None))
     }
 
-    /// What the camera says of the skin on the real object, a number of milliseconds after time zero; none between its
-    /// frames.
-    pub fn look(&mut self, ms: u64) -> Option<Reading> {
+    fn with(plant: Plant, camera: Option<(Infrared, Camera)>) -> Self {
+        Self {
+            plant,
+            defects: ActiveDefects::default(),
+            camera,
+            codes: [0; Channel::ALL.len()],
+        }
+    }
+
+    /// Camera reading of the skin on the real object, `ms` milliseconds after time zero; `None` between frames.
+    pub fn camera_reading(&mut self, ms: u64) -> Option<Reading> {
         let (infrared, camera) = self.camera.as_mut()?;
         let skin_c = self.plant.skin_real_c();
         infrared.has_frame(ms).then(|| camera.read(skin_c))
     }
 
-    /// The plant, to read.
+    /// The plant, read-only.
     #[must_use]
     pub const fn plant(&self) -> &Plant {
         &self.plant
     }
 
-    /// What the finger does, and what is broken, from now on.
-    pub fn set(&mut self, force_n: f64, broken: impl Iterator<Item = Broken>) {
+    /// Sets the force of the finger and replaces the active faults.
+    pub fn set_force_and_faults(
+        &mut self,
+        force_n: f64,
+        faults: impl Iterator<Item = ActiveFault>,
+    ) {
         self.plant.set_force(force_n);
-        self.damage = Damage::default();
-        for broken in broken {
-            self.damage.add(&broken);
+        self.defects = ActiveDefects::default();
+        for fault in faults {
+            self.defects.add(&fault);
         }
-        self.plant.set_defects(&self.damage.plant);
+        self.plant.set_defects(&self.defects.plant);
     }
 
-    /// Sets the level of the line by which the device tests the comparator. Whoever runs the device says so after each
-    /// of its ticks; a line that nobody drives is pulled low.
+    /// Sets the level of the line by which the device tests the comparator. The engine sets it after each tick; an
+    /// undriven line is pulled low.
     pub fn comparator_test(&mut self, level: bool) {
         self.plant.comparator_test(level);
     }
 
-    /// Advances the plant by one step under the bridge's legs.
+    /// Advances the plant by one step with the bridge legs driven as given.
     pub fn step(&mut self, legs: Legs) {
         self.plant.step(&legs);
     }
 
-    /// nFAULT is low: the bridge's driver or the comparator pulls it.
+    /// Whether nFAULT is low, pulled by the bridge driver or the comparator.
     #[must_use]
     pub fn bridge_fault(&self) -> bool {
         self.plant.bridge_fault()
     }
 
-    /// Code of a channel now.
+    /// Converts a channel; a frozen channel repeats its last code.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         let code = self.plant.convert(channel);
         let index = channel as usize;
-        if !self.damage.frozen[index] {
+        if !self.defects.frozen[index] {
             self.codes[index] = code;
         }
         self.codes[index]

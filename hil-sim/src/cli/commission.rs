@@ -1,4 +1,4 @@
-//! `hil-sim commission`: what the operator does with a device, and the settings it then has.
+//! `hil-sim commission`: commissioning by the simulated operator, and restoring settings.
 
 use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
@@ -6,16 +6,19 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, ensure};
 use clap::Args;
 use serde_json::json;
-use thermal_campaigns::{map, survey, survey_table};
+use thermal_campaigns::{parallel_map, survey_device, survey_table};
 use thermal_plant::{Params, parameters};
-use thermal_sim::commission::{Commissioned, Event, Plants, Tile, commission, restore};
-use thermal_sim::engine::{Engine, Native};
+use thermal_sim::commissioning::{
+    CommissioningEvent, CommissioningRecord, CommissioningSetup, IdentifiedTile, commission,
+    restore,
+};
+use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::scene::Scene;
 
-use super::device::{self, Kind};
+use super::engine::{self, EngineKind};
 use super::{Failure, output};
 
-/// What follows the options in the help.
+/// Text after the options in the help.
 const USAGE: &str = "\
 The operator holds a reference thermometer to each sensor, types what it shows, and lets the device find out what its
 tile is like. It then has the device save that, which outlives switching off. What happens is told on standard error.
@@ -44,8 +47,8 @@ pub struct Arguments {
     #[arg(long, default_value_t = 24.0, conflicts_with_all = ["scene", "survey"])]
     room_c: f64,
     /// What runs the device's logic
-    #[arg(long, value_enum, default_value_t = Kind::Native)]
-    engine: Kind,
+    #[arg(long, value_enum, default_value_t = EngineKind::Native)]
+    engine: EngineKind,
     /// Image to run instead of the one of the current sources
     #[arg(long)]
     elf: Option<PathBuf>,
@@ -57,44 +60,50 @@ pub struct Arguments {
 /// Commissions or restores, and prints.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(devices) = arguments.survey {
-        return surveyed(devices, arguments.json);
+        return survey_devices(devices, arguments.json);
     }
     let plants = match (&arguments.scene, arguments.draw) {
         (Some(path), _) => {
             let scene = Scene::read(path).map_err(Failure::input)?;
-            Plants::new(&scene.params, scene.room_c, scene.seed)
+            CommissioningSetup::new(&scene.params, scene.room_c, scene.seed)
         }
         (None, draw) => {
             let (mut params, seed) = (Params::nominal(), draw.unwrap_or_default());
             parameters::draw(&mut params, seed);
-            Plants::new(&params, arguments.room_c, seed)
+            CommissioningSetup::new(&params, arguments.room_c, seed)
         }
     };
-    let world = plants.at_work().map_err(Failure::input)?;
+    let world = plants.in_use().map_err(Failure::input)?;
     let elf = arguments.elf.as_deref();
     match arguments.engine {
-        Kind::Native => {
-            device::no_image(elf)?;
-            with(arguments, &plants, &mut Native::new(world))
+        EngineKind::Native => {
+            engine::refuse_elf(elf)?;
+            commission_on(arguments, &plants, &mut NativeEngine::new(world))
         }
         #[cfg(feature = "emulator")]
-        Kind::Image => with(arguments, &plants, &mut super::image::engine(elf, world)?),
+        EngineKind::Image => {
+            commission_on(arguments, &plants, &mut super::image::engine(elf, world)?)
+        }
     }
 }
 
-fn with<E: Engine>(arguments: &Arguments, plants: &Plants, engine: &mut E) -> Result<(), Failure> {
+fn commission_on<E: Engine>(
+    arguments: &Arguments,
+    plants: &CommissioningSetup,
+    engine: &mut E,
+) -> Result<(), Failure> {
     if let Some(path) = &arguments.restore {
         let settings = lines(path).map_err(Failure::input)?;
         let tile = restore(plants, engine, &settings).map_err(Failure::run)?;
         let text = if arguments.json {
             serde_json::to_string(&tile).map_err(Failure::run)?
         } else {
-            format!("{} lines taken; {}", settings.len(), told(&tile))
+            format!("{} lines taken; {}", settings.len(), tile_text(&tile))
         };
         return print(&text);
     }
-    let done = commission(plants, engine, &mut tell).map_err(Failure::run)?;
-    let Commissioned { settings, .. } = &done;
+    let done = commission(plants, engine, &mut print_event).map_err(Failure::run)?;
+    let CommissioningRecord { settings, .. } = &done;
     if arguments.json {
         print(&serde_json::to_string(&done).map_err(Failure::run)?)
     } else {
@@ -102,7 +111,7 @@ fn with<E: Engine>(arguments: &Arguments, plants: &Plants, engine: &mut E) -> Re
     }
 }
 
-/// Lines of a file, without empty ones.
+/// The lines of a file, without empty ones.
 fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
     let text =
         std::fs::read_to_string(path).with_context(|| format!("--restore {}", path.display()))?;
@@ -124,22 +133,24 @@ fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
     Ok(lines)
 }
 
-/// Tells what happens.
-fn tell(event: &Event) {
+/// Prints an event on standard error.
+fn print_event(event: &CommissioningEvent) {
     let text = match event {
-        Event::Begins(what) => format!("{what}\n"),
-        Event::Taken(point) => format!(
+        CommissioningEvent::StepStarted(what) => format!("{what}\n"),
+        CommissioningEvent::PointAccepted(point) => format!(
             "  {:8} {:7.3} C   point {:2}, fits to {:.2} mK\n",
             point.sensor, point.reference_c, point.points, point.worst_mk
         ),
-        Event::Refused { sensor, answer } => format!("  {sensor:8} not taken: {answer}\n"),
-        Event::Found(tile) => format!("  {}\n", told(tile)),
+        CommissioningEvent::PointRefused { sensor, answer } => {
+            format!("  {sensor:8} not taken: {answer}\n")
+        }
+        CommissioningEvent::TileIdentified(tile) => format!("  {}\n", tile_text(tile)),
     };
-    // Whoever closed it does not want to be told.
-    let _unheard = stderr().write_all(text.as_bytes());
+    // Standard error may be closed.
+    let _ignored = stderr().write_all(text.as_bytes());
 }
 
-fn told(tile: &Tile) -> String {
+fn tile_text(tile: &IdentifiedTile) -> String {
     format!(
         "gain {:.3} K/s/A, Joule {:.4} 1/A, leak {:.3} 1/s, lag {:.1} ms, dead time {:.1} ms; margins {:.1} deg, {:.2} times",
         tile.gain_k_s_a,
@@ -152,12 +163,12 @@ fn told(tile: &Tile) -> String {
     )
 }
 
-fn surveyed(devices: u64, json: bool) -> Result<(), Failure> {
+fn survey_devices(devices: u64, json: bool) -> Result<(), Failure> {
     let draws: Vec<u64> = (1..=devices).collect();
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let work = |draw: &u64| Ok((*draw, survey(*draw)));
+    let threads = output::threads(None);
+    let work = |draw: &u64| Ok((*draw, survey_device(*draw)));
     let (mut found, mut failed) = (Vec::new(), Vec::new());
-    for (draw, one) in map(&draws, threads, work, || ()).map_err(Failure::run)? {
+    for (draw, one) in parallel_map(&draws, threads, work, || ()).map_err(Failure::run)? {
         match one {
             Ok(one) => found.push(one),
             Err(why) => failed.push(json!({ "draw": draw, "why": why.to_string() })),

@@ -1,18 +1,19 @@
-//! `hil-sim fidelity`: how close the skin comes to that on the real material.
+//! `hil-sim fidelity`: skin temperature on the display compared with that on the real material.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use indicatif::{ProgressBar, ProgressStyle};
 use serde::Serialize;
-use thermal_campaigns::fidelity::{self, Boxed, Case, Draw, Drawn, Row, Scenario, Without};
-use thermal_campaigns::map;
-use thermal_display::device::control::Law;
-use thermal_sim::{Device, NativeDevice};
+use thermal_campaigns::fidelity::{
+    self, BoxReport, DrawResult, FidelityCase, FidelityRow, PlantDraw, RemovedLimit, Scenario,
+};
+use thermal_campaigns::parallel_map;
+use thermal_device::control::Law;
+use thermal_sim::{NativeRunner, SceneRunner};
 
-use super::device::{self, Kind};
+use super::engine::{self, EngineKind};
 use super::{Failure, output};
 
 #[derive(Args)]
@@ -43,7 +44,7 @@ pub struct Arguments {
     seed: u64,
     /// What runs the device's logic [default: image for scenarios, native for the box]
     #[arg(long, value_enum)]
-    engine: Option<Kind>,
+    engine: Option<EngineKind>,
     /// Image to run instead of the one of the current sources
     #[arg(long)]
     elf: Option<PathBuf>,
@@ -61,9 +62,9 @@ pub struct Arguments {
     out: Option<PathBuf>,
 }
 
-/// A choice of which there is an `all`.
+/// A chosen scenario, or `None` for `all`.
 type Chosen = Option<Scenario>;
-type Removed = Option<Without>;
+type Removed = Option<RemovedLimit>;
 
 fn choice<T: Copy + Send + Sync + 'static>(
     all: &'static [T],
@@ -79,7 +80,7 @@ fn scenarios() -> impl TypedValueParser<Value = Chosen> {
 }
 
 fn removals() -> impl TypedValueParser<Value = Removed> {
-    choice(&Without::ALL, Without::name)
+    choice(&RemovedLimit::ALL, RemovedLimit::name)
 }
 
 fn laws() -> impl TypedValueParser<Value = Law> {
@@ -89,7 +90,7 @@ fn laws() -> impl TypedValueParser<Value = Law> {
     })
 }
 
-/// What was chosen, all if `all` is among it.
+/// The chosen values, or all if `all` is among them.
 fn expand<T: Copy>(chosen: &[Option<T>], all: &[T]) -> Vec<T> {
     if chosen.iter().any(Option::is_none) {
         return all.to_vec();
@@ -102,9 +103,9 @@ fn expand<T: Copy>(chosen: &[Option<T>], all: &[T]) -> Vec<T> {
 struct Report<'a> {
     seed: u64,
     laws: Vec<&'static str>,
-    rows: &'a [Row],
+    rows: &'a [FidelityRow],
     #[serde(rename = "box")]
-    boxed: Option<&'a Boxed>,
+    boxed: Option<&'a BoxReport>,
 }
 
 /// Runs, prints, writes.
@@ -116,49 +117,50 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let cases = cases(arguments)?;
     output::create(arguments.out.as_deref())?;
     let usual = if cases.is_empty() {
-        Kind::Native
+        EngineKind::Native
     } else {
-        Kind::USUAL
+        EngineKind::DEFAULT
     };
     let kind = arguments.engine.unwrap_or(usual);
     let campaign = Campaign {
         arguments,
-        device: device::device(kind, arguments.elf.as_deref())?,
+        device: engine::runner(kind, arguments.elf.as_deref())?,
         laws,
     };
     let rows = campaign.rows(&cases).map_err(Failure::run)?;
     let drawn = campaign.draws().map_err(Failure::run)?;
-    let boxed = (!drawn.is_empty()).then(|| Boxed {
+    let boxed = (!drawn.is_empty()).then(|| BoxReport {
         engine: campaign.device_of_draws().name(),
         draws: drawn.len() as u64 / campaign.laws.len().max(1) as u64,
         seed: arguments.seed,
-        laws: fidelity::summarise(&drawn),
+        laws: fidelity::statistics_by_law(&drawn),
     });
     if let Some(folder) = &arguments.out {
         campaign
             .write(folder, &rows, &drawn, boxed.as_ref())
             .map_err(Failure::run)?;
     }
-    let mut text = if arguments.json {
-        let report = Report {
-            seed: arguments.seed,
-            laws: campaign.laws.iter().map(|law| law.name()).collect(),
-            rows: &rows,
-            boxed: boxed.as_ref(),
-        };
-        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
-    } else {
+    let report = Report {
+        seed: arguments.seed,
+        laws: campaign.laws.iter().map(|law| law.name()).collect(),
+        rows: &rows,
+        boxed: boxed.as_ref(),
+    };
+    let table = || {
         fidelity::table(&rows, arguments.all)
             + &boxed.as_ref().map_or(String::new(), fidelity::box_table)
     };
-    if let (Some(folder), false) = (&arguments.out, arguments.json) {
-        text += &format!("report: {}\n", folder.join(fidelity::HTML).display());
-    }
-    output::print(&text)
+    let page = arguments.out.as_ref();
+    output::print_report(
+        arguments.json,
+        &report,
+        table,
+        page.map(|folder| folder.join(fidelity::HTML)),
+    )
 }
 
-/// The cases that are asked for.
-fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
+/// The chosen cases.
+fn cases(arguments: &Arguments) -> Result<Vec<FidelityCase>, Failure> {
     let boxed = arguments.draws.is_some() || arguments.replay.is_some();
     let scenarios = match arguments.scenario.as_slice() {
         [] if boxed => Vec::new(),
@@ -195,28 +197,23 @@ fn cases(arguments: &Arguments) -> Result<Vec<Case>, Failure> {
 
 struct Campaign<'a> {
     arguments: &'a Arguments,
-    /// What runs the scenarios.
-    device: Box<dyn Device>,
+    /// Runs the scenarios.
+    device: Box<dyn SceneRunner>,
     laws: Vec<Law>,
 }
 
 impl Campaign<'_> {
-    /// What runs the draws of the box: the native engine unless the command line names one.
-    fn device_of_draws(&self) -> &dyn Device {
+    /// Runs the draws: the native engine unless the command line names one.
+    fn device_of_draws(&self) -> &dyn SceneRunner {
         match self.arguments.engine {
             Some(_) => self.device.as_ref(),
-            None => &NativeDevice,
+            None => &NativeRunner,
         }
     }
 
-    fn threads(&self) -> usize {
-        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-        self.arguments.threads.map_or_else(cores, usize::from)
-    }
-
-    /// Every case under every law, with and without bounds.
-    fn rows(&self, cases: &[Case]) -> anyhow::Result<Vec<Row>> {
-        let bounds = expand(&self.arguments.without, &Without::ALL);
+    /// Runs every case with every law, with and without the limits to be removed.
+    fn rows(&self, cases: &[FidelityCase]) -> anyhow::Result<Vec<FidelityRow>> {
+        let bounds = expand(&self.arguments.without, &RemovedLimit::ALL);
         let plants: Vec<_> = std::iter::once(None)
             .chain(bounds.into_iter().map(Some))
             .collect();
@@ -228,14 +225,14 @@ impl Campaign<'_> {
         }
         let device = self.device.as_ref();
         self.map("scenarios", &jobs, |(case, law, without)| {
-            Row::run(device, case, *law, *without, self.arguments.seed).with_context(|| {
+            FidelityRow::run(device, case, *law, *without, self.arguments.seed).with_context(|| {
                 format!("{} {} {} N", case.scenario.name(), case.name, case.force_n)
             })
         })
     }
 
-    /// The draws of the box, or the one to replay, under every law.
-    fn draws(&self) -> anyhow::Result<Vec<Drawn>> {
+    /// Runs the draws, or the one to replay, with every law.
+    fn draws(&self) -> anyhow::Result<Vec<DrawResult>> {
         let numbers = match (self.arguments.replay, self.arguments.draws) {
             (Some(number), _) => number..number.saturating_add(1),
             (None, draws) => 0..draws.unwrap_or(0),
@@ -246,7 +243,7 @@ impl Campaign<'_> {
         }
         let device = self.device_of_draws();
         self.map("box", &jobs, |(number, law)| {
-            Draw::new(self.arguments.seed, *number)
+            PlantDraw::new(self.arguments.seed, *number)
                 .run(device, *law)
                 .with_context(|| format!("draw {number} of seed {}", self.arguments.seed))
         })
@@ -258,11 +255,9 @@ impl Campaign<'_> {
         jobs: &[T],
         work: impl Fn(&T) -> anyhow::Result<R> + Sync,
     ) -> anyhow::Result<Vec<R>> {
-        let style =
-            ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
-        let bar = ProgressBar::new(jobs.len() as u64).with_style(style);
-        bar.set_message(name);
-        let results = map(jobs, self.threads(), work, || bar.inc(1));
+        let bar = output::run_counter(name.into(), jobs.len())?;
+        let threads = output::threads(self.arguments.threads);
+        let results = parallel_map(jobs, threads, work, || bar.inc(1));
         bar.finish_and_clear();
         results
     }
@@ -270,9 +265,9 @@ impl Campaign<'_> {
     fn write(
         &self,
         folder: &Path,
-        rows: &[Row],
-        drawn: &[Drawn],
-        boxed: Option<&Boxed>,
+        rows: &[FidelityRow],
+        drawn: &[DrawResult],
+        boxed: Option<&BoxReport>,
     ) -> anyhow::Result<()> {
         let svg = fidelity::plot(rows)?;
         let page = fidelity::page(rows, boxed, svg.as_deref());
@@ -285,9 +280,9 @@ impl Campaign<'_> {
             output::write(folder, "box.csv", fidelity::box_csv(drawn)?)?;
         }
         if let Some(number) = self.arguments.replay {
-            let Draw {
+            let PlantDraw {
                 case, seed, plant, ..
-            } = Draw::new(self.arguments.seed, number);
+            } = PlantDraw::new(self.arguments.seed, number);
             for law in &self.laws {
                 let text = case.text(*law, seed, &plant);
                 let name = format!("draw-{number}-{}.toml", law.name());

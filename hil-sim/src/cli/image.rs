@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use stm32_emulator::{Firmware, FiveFingerBoard, OneFingerBoard, build};
 use thermal_sim::World;
-use thermal_sim::hand::FINGERS;
+use thermal_sim::five_fingers::FINGERS;
 
 use super::Failure;
 
-/// The image that `--elf` names, or that of the current sources for so many fingers; and where it lies.
+/// The image that `--elf` names, or that of the current sources for a number of fingers, and its path.
 pub fn firmware(elf: Option<&Path>, fingers: usize) -> Result<(Firmware, PathBuf), Failure> {
     let path = match elf {
         Some(path) => path.to_owned(),
@@ -21,12 +21,15 @@ pub fn firmware(elf: Option<&Path>, fingers: usize) -> Result<(Firmware, PathBuf
     Ok((firmware, path))
 }
 
-/// The image for one finger, powered up in a world.
+/// The image for one finger in a world, powered up.
 pub fn engine(elf: Option<&Path>, world: World) -> Result<OneFingerBoard, Failure> {
     OneFingerBoard::new(&firmware(elf, 1)?.0, world).map_err(Failure::run)
 }
 
-/// The image for five fingers, powered up in their worlds.
-pub fn hand(elf: Option<&Path>, worlds: [World; FINGERS]) -> Result<FiveFingerBoard, Failure> {
+/// The image for five fingers in their worlds, powered up.
+pub fn five_fingers(
+    elf: Option<&Path>,
+    worlds: [World; FINGERS],
+) -> Result<FiveFingerBoard, Failure> {
     FiveFingerBoard::new(&firmware(elf, FINGERS)?.0, worlds).map_err(Failure::run)
 }

@@ -1,11 +1,11 @@
 //! The subcommands.
 
 pub mod commission;
-mod device;
+mod engine;
 pub mod erfcx;
 pub mod faults;
 pub mod fidelity;
-pub mod hand;
+pub mod five_fingers;
 #[cfg(feature = "emulator")]
 mod image;
 pub mod infrared;

@@ -75,7 +75,7 @@ enum Arithmetic {
 }
 
 /// A row of the output, as numbers.
-struct Row {
+struct ModelRow {
     z: f64,
     erfcx: f64,
     t_skin_c: f64,
@@ -89,7 +89,7 @@ struct Row {
 /// Prints the table.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (object, pressure_pa) = check(arguments).map_err(Failure::input)?;
-    let rows: Vec<Row> = (arguments.times.iter())
+    let rows: Vec<ModelRow> = (arguments.times.iter())
         .map(|&t_s| match arguments.arith {
             Arithmetic::Fixed => fixed(arguments, &object, pressure_pa, t_s),
             Arithmetic::F32 => Ok(float::<f32>(arguments, &object, pressure_pa, t_s)),
@@ -100,14 +100,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     print(&arguments.times, &rows).map_err(Failure::run)
 }
 
-fn print(times: &[f64], rows: &[Row]) -> io::Result<()> {
+fn print(times: &[f64], rows: &[ModelRow]) -> io::Result<()> {
     let mut out = io::stdout().lock();
     writeln!(
         out,
         "t_s,z,erfcx,t_skin_c,t_object_c,q_w_m2,t_display_c,r_m2k_w,ratio"
     )?;
     for (t_s, row) in times.iter().zip(rows) {
-        let Row {
+        let ModelRow {
             z,
             erfcx,
             t_skin_c,
@@ -193,13 +193,13 @@ fn check(arguments: &Arguments) -> anyhow::Result<(Material, f64)> {
     ))
 }
 
-/// The firmware's path: one tick of `b² t`.
+/// The fixed-point path of the firmware: one tick of `b² t`.
 fn fixed(
     arguments: &Arguments,
     object: &Material,
     pressure_pa: f64,
     t_s: f64,
-) -> anyhow::Result<Row> {
+) -> anyhow::Result<ModelRow> {
     let (elapsed, tick_s) = if t_s == 0.0 { (0, 1.0) } else { (1, t_s) };
     let relative = (pressure_pa / SKIN_MICROHARDNESS_PA).log2();
     let contact = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s)?
@@ -209,7 +209,7 @@ fn fixed(
         Celsius::from_num(arguments.object_c),
     );
     let at = contact.at(elapsed, skin, object);
-    Ok(Row {
+    Ok(ModelRow {
         z: if elapsed == 0 {
             0.0
         } else {
@@ -225,7 +225,12 @@ fn fixed(
     })
 }
 
-fn float<F: Real>(arguments: &Arguments, object: &Material, pressure_pa: f64, t_s: f64) -> Row {
+fn float<F: Real>(
+    arguments: &Arguments,
+    object: &Material,
+    pressure_pa: f64,
+    t_s: f64,
+) -> ModelRow {
     let f = F::from_f64;
     let finger = (&SKIN, f(arguments.skin_c));
     let contact = Contact::new(
@@ -239,7 +244,7 @@ fn float<F: Real>(arguments: &Arguments, object: &Material, pressure_pa: f64, t_
     let skin_c = depth_m.map_or(at.skin_c, |depth_m| {
         contact.skin_at_depth(&SKIN, depth_m, f(t_s))
     });
-    Row {
+    ModelRow {
         z: (contact.rate_per_s * f(t_s)).sqrt().to_f64(),
         erfcx: at.erfcx.to_f64(),
         t_skin_c: skin_c.to_f64(),

@@ -1,15 +1,16 @@
-//! Where results and progress go.
+//! Results on standard output, progress on standard error.
 
 use std::io::{Write, stdout};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde::Serialize;
 pub use thermal_charts::write;
 
 use super::Failure;
 
-/// Writes a text with its line ends to standard output.
+/// Writes text, including its line ends, to standard output.
 pub fn print(text: &str) -> Result<(), Failure> {
     stdout()
         .write_all(text.as_bytes())
@@ -17,7 +18,38 @@ pub fn print(text: &str) -> Result<(), Failure> {
         .map_err(Failure::run)
 }
 
-/// Makes the folder of `--out`, before what may take long.
+/// Prints a report: with `--json` as one object, otherwise as a table, with the path of its page if one was written.
+pub fn print_report(
+    json: bool,
+    report: &impl Serialize,
+    table: impl FnOnce() -> String,
+    page: Option<PathBuf>,
+) -> Result<(), Failure> {
+    if json {
+        return print(&(serde_json::to_string(report).map_err(Failure::run)? + "\n"));
+    }
+    let page = page.map_or(String::new(), |page| {
+        format!("report: {}\n", page.display())
+    });
+    print(&(table() + &page))
+}
+
+/// The number of threads of a campaign: one per core unless the user chose another.
+pub fn threads(chosen: Option<u16>) -> usize {
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    chosen.map_or_else(cores, usize::from)
+}
+
+/// A progress bar that counts the runs of a campaign.
+pub fn run_counter(message: String, runs: usize) -> anyhow::Result<ProgressBar> {
+    let style =
+        ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
+    Ok(ProgressBar::new(runs as u64)
+        .with_style(style)
+        .with_message(message))
+}
+
+/// Creates the folder of `--out` before a long run begins.
 pub fn create(folder: Option<&Path>) -> Result<(), Failure> {
     let Some(folder) = folder else { return Ok(()) };
     std::fs::create_dir_all(folder)
@@ -25,7 +57,7 @@ pub fn create(folder: Option<&Path>) -> Result<(), Failure> {
         .map_err(Failure::input)
 }
 
-/// Shows which part of `name` is done while `work` runs, which is handed where to tell it.
+/// Shows a progress bar while `work` runs; `work` reports the fraction done through its argument.
 pub fn with_progress<R>(name: String, work: impl FnOnce(&dyn Fn(f64)) -> R) -> Result<R, Failure> {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {percent:>3} %  {elapsed}");
     let bar = ProgressBar::new(1000).with_style(style.map_err(Failure::run)?);

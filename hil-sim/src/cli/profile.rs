@@ -1,4 +1,4 @@
-//! `hil-sim profile`: which functions a control tick spends its instructions and cycles in.
+//! `hil-sim profile`: instructions and cycles of a control tick by function.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
@@ -9,13 +9,13 @@ use clap::Args;
 use stm32_emulator::{ExecutedBlock, OneFingerBoard, cold_fetch_stalls};
 use thermal_sim::run::run as run_scene;
 
-use super::{Failure, device, image, output};
+use super::{Failure, engine, image, output};
 
 #[derive(Args)]
 pub struct Arguments {
     /// The scene, TOML
     scene: PathBuf,
-    /// Image to run instead of the one of the current sources; it must have its symbols
+    /// OneFingerBoard to run instead of the one of the current sources; it must have its symbols
     #[arg(long)]
     elf: Option<PathBuf>,
 }
@@ -25,14 +25,14 @@ const SMALL: u64 = 20;
 
 /// Instructions and cycles of all ticks, and of the longest.
 #[derive(Clone, Copy, Default)]
-struct Share {
+struct FunctionCost {
     all: (u64, u64),
     longest: (u64, u64),
 }
 
 /// Runs the scene and prints a line for each function.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (scene, world) = device::scene(&arguments.scene)?;
+    let (scene, world) = engine::scene(&arguments.scene)?;
     let (firmware, path) = image::firmware(arguments.elf.as_deref(), 1)?;
     let symbols = Loader::new(&path)
         .map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))?;
@@ -44,9 +44,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .path()
         .context("the image ran no tick")
         .map_err(Failure::run)?;
-    let mut shares = BTreeMap::<String, Share>::new();
+    let mut shares = BTreeMap::<String, FunctionCost>::new();
     let mut names = HashMap::new();
-    let mut charge = |block: ExecutedBlock, add: &dyn Fn(&mut Share, u64)| {
+    let mut charge = |block: ExecutedBlock, add: &dyn Fn(&mut FunctionCost, u64)| {
         for (address, cycles) in machine.instructions(block) {
             let name = names
                 .entry(address)
@@ -74,8 +74,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::print(&text)
 }
 
-/// The function of the firmware or its model that an instruction belongs to, with what the compiler has put into it of
-/// other libraries; a library's function where there is none.
+/// The function of the firmware or of the contact model that an instruction belongs to, including code inlined from other
+/// libraries; otherwise the function of the library.
 fn owner(symbols: &Loader, address: u32) -> String {
     let mut innermost = None;
     if let Ok(mut frames) = symbols.find_frames(u64::from(address)) {
@@ -88,7 +88,7 @@ fn owner(symbols: &Loader, address: u32) -> String {
                 continue;
             };
             let name = format!("{:#}", rustc_demangle::demangle(&name));
-            if name.contains("thermal_display::") || name.contains("contact_model::") {
+            if name.contains("thermal_") || name.contains("contact_model::") {
                 return name;
             }
             innermost.get_or_insert(name);
@@ -102,7 +102,7 @@ fn owner(symbols: &Loader, address: u32) -> String {
     })
 }
 
-fn table(shares: BTreeMap<String, Share>, ticks: u64) -> String {
+fn table(shares: BTreeMap<String, FunctionCost>, ticks: u64) -> String {
     let mut rows: Vec<_> = shares.into_iter().collect();
     rows.sort_by_key(|(_, share)| {
         std::cmp::Reverse(share.longest.1.max(share.all.1 / ticks.max(1)))
@@ -118,8 +118,8 @@ fn table(shares: BTreeMap<String, Share>, ticks: u64) -> String {
         "longest tick",
         "longest tick"
     );
-    let mut sum = Share::default();
-    let mut line = |share: &Share, name: &str| {
+    let mut sum = FunctionCost::default();
+    let mut line = |share: &FunctionCost, name: &str| {
         let mean = |total: u64| total as f64 / ticks as f64;
         text += &format!(
             "{:>12.1}{:>12.1}{:>14}{:>14}  {name}\n",
@@ -129,7 +129,7 @@ fn table(shares: BTreeMap<String, Share>, ticks: u64) -> String {
             share.longest.1
         );
     };
-    let mut rest = Share::default();
+    let mut rest = FunctionCost::default();
     for (name, share) in &rows {
         if share.longest.1 < SMALL && share.all.1 < SMALL * ticks {
             rest.all = (rest.all.0 + share.all.0, rest.all.1 + share.all.1);

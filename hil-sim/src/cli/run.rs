@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::Args;
-use thermal_sim::engine::{Engine, Native};
+use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::metrics::{Figures, figures};
-use thermal_sim::processor::{Injection, NoMachineFault};
+use thermal_sim::processor::{Injection, ParseMachineFaultError};
 use thermal_sim::report;
 use thermal_sim::run::{Outcome, run_with};
 use thermal_sim::scene::Scene;
 
-use super::device::{self, Kind};
+use super::engine::{self, EngineKind};
 use super::{Failure, output};
 
 #[derive(Args)]
@@ -19,8 +19,8 @@ pub struct Arguments {
     /// The scene, TOML
     scene: PathBuf,
     /// What runs the device's logic
-    #[arg(long, value_enum, default_value_t = Kind::USUAL)]
-    engine: Kind,
+    #[arg(long, value_enum, default_value_t = EngineKind::DEFAULT)]
+    engine: EngineKind,
     /// A fault of the processor at a time of the scene, such as 2.5:hung-core or 1:core-bit=r4.7; may be repeated
     #[arg(long, value_name = "T_S:FAULT", value_parser = injection)]
     inject: Vec<Injection>,
@@ -37,16 +37,16 @@ pub struct Arguments {
 
 /// Runs the scene; prints its figures and writes its report.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let (scene, world) = device::scene(&arguments.scene)?;
+    let (scene, world) = engine::scene(&arguments.scene)?;
     output::create(arguments.out.as_deref())?;
     let elf = arguments.elf.as_deref();
     let (outcome, figures) = match arguments.engine {
-        Kind::Native => {
-            device::no_image(elf)?;
-            measure(&scene, &arguments.inject, &mut Native::new(world))
+        EngineKind::Native => {
+            engine::refuse_elf(elf)?;
+            measure(&scene, &arguments.inject, &mut NativeEngine::new(world))
         }
         #[cfg(feature = "emulator")]
-        Kind::Image => {
+        EngineKind::Image => {
             let mut engine = super::image::engine(elf, world)?;
             measure(&scene, &arguments.inject, &mut engine)
         }
@@ -54,15 +54,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.out {
         write(folder, &scene, &outcome, &figures).map_err(Failure::run)?;
     }
-    let mut text = if arguments.json {
-        serde_json::to_string(&figures).map_err(Failure::run)? + "\n"
-    } else {
-        report::table(&figures)
-    };
-    if let (Some(folder), false) = (&arguments.out, arguments.json) {
-        text += &format!("report: {}\n", folder.join(report::HTML).display());
-    }
-    output::print(&text)
+    let page = arguments.out.as_ref();
+    output::print_report(
+        arguments.json,
+        &figures,
+        || report::table(&figures),
+        page.map(|folder| folder.join(report::HTML)),
+    )
 }
 
 /// Time and fault of `T_S:FAULT`.
@@ -74,7 +72,7 @@ fn injection(text: &str) -> Result<Injection, String> {
         .ok_or_else(|| format!("`{time}` is no time in seconds"))?;
     let fault = fault
         .parse()
-        .map_err(|error: NoMachineFault| error.to_string())?;
+        .map_err(|error: ParseMachineFaultError| error.to_string())?;
     Ok(Injection { t_s, fault })
 }
 

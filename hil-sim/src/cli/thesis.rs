@@ -1,4 +1,4 @@
-//! `hil-sim thesis`: the thesis's numbers beside the computed ones.
+//! `hil-sim thesis`: the numbers of the thesis compared with computed ones.
 
 use std::path::PathBuf;
 
@@ -27,14 +27,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(folder) = &arguments.out {
         thermal_thesis::write(folder, &chapters, &closed, &apart).map_err(Failure::run)?;
     }
-    let mut text = if arguments.json {
-        serde_json::to_string(&thermal_thesis::json(&chapters, &apart)).map_err(Failure::run)?
-            + "\n"
-    } else {
-        thermal_thesis::table(&chapters, &apart)
-    };
-    if let (Some(folder), false) = (&arguments.out, arguments.json) {
-        text += &format!("report: {}\n", folder.join(thermal_thesis::HTML).display());
-    }
-    output::print(&text)
+    let page = arguments.out.as_ref();
+    output::print_report(
+        arguments.json,
+        &thermal_thesis::json(&chapters, &apart),
+        || thermal_thesis::table(&chapters, &apart),
+        page.map(|folder| folder.join(thermal_thesis::HTML)),
+    )
 }

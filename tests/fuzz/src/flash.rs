@@ -7,7 +7,7 @@ use system_tests::flash::{BYTES, Flash, append, numbered};
 use thermal_display::settings::{
     Calibration, Correction, SettingsStore, StoreError, StoredSettings, Tile,
 };
-use thermal_sim::Cells;
+use thermal_sim::FlashCells;
 
 /// Saves before an input begins: none, a few, as many as fit into a sector, and enough to begin other sectors.
 const SAVES: [u32; 8] = [0, 1, 2, 3, 20, 37, 38, 80];
@@ -58,7 +58,7 @@ enum Event {
 /// Flash cells, and every value of the settings that was written to them.
 #[derive(Clone)]
 struct History<const FINGERS: usize> {
-    cells: Cells,
+    cells: FlashCells,
     written: Vec<Option<[StoredSettings; FINGERS]>>,
 }
 
@@ -103,7 +103,7 @@ fn play<const FINGERS: usize>(starts: &OnceLock<Vec<History<FINGERS>>>, input: &
 impl<const FINGERS: usize> History<FINGERS> {
     fn new() -> Self {
         Self {
-            cells: Cells::new(vec![0xff; BYTES]),
+            cells: FlashCells::new(vec![0xff; BYTES]),
             written: vec![None],
         }
     }

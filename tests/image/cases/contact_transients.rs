@@ -4,7 +4,7 @@
 use documented_figures::assert_figure;
 use image_tests::on_image;
 use system_tests::{between, worst_k};
-use thermal_campaigns::fidelity::{Case, Scenario};
+use thermal_campaigns::fidelity::{FidelityCase, Scenario};
 use thermal_display::device::control::Law;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
@@ -12,7 +12,7 @@ use thermal_sim::scene::Scene;
 /// Largest skin error after the time that the tile's power needs, K.
 const SETTLED_K: f64 = 0.05;
 
-fn case(scenario: Scenario, material: &str, force_n: f64) -> Case {
+fn case(scenario: Scenario, material: &str, force_n: f64) -> FidelityCase {
     let mut cases = scenario.cases().into_iter();
     let wanted = cases.find(|case| (case.name.as_str(), case.force_n) == (material, force_n));
     wanted.expect("a case of the scenario")

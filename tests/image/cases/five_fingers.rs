@@ -9,7 +9,7 @@ use stm32_emulator::Firmware;
 use stm32_emulator::FiveFingerBoard;
 use system_tests::{forces, host, natively, scene};
 use thermal_sim::World;
-use thermal_sim::hand::{FINGERS, Hand, NativeHand, run};
+use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers, run};
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
@@ -65,7 +65,12 @@ fn five_contacts() -> [Scene; FINGERS] {
 fn each_of_five_fingers_behaves_like_a_finger_alone() {
     let scenes = five_contacts();
     let (image, _) = on_image(&scenes);
-    let native = run(&scenes, &mut NativeHand::new(worlds(&scenes)), |_| ()).expect("runs");
+    let native = run(
+        &scenes,
+        &mut NativeFiveFingers::new(worlds(&scenes)),
+        |_| (),
+    )
+    .expect("runs");
     let mut farthest_k = 0.0f64;
     for (finger, scene) in scenes.iter().enumerate() {
         let [image, native] = [&image[finger], &native[finger]].map(|outcome| outcome.trace.rows());

@@ -2,7 +2,7 @@
 
 use image_tests::on_image;
 use system_tests::{between, forces, host, scene};
-use thermal_sim::trace::Row;
+use thermal_sim::trace::TraceRow;
 
 #[test]
 fn a_broken_display_thermistor_ends_the_current_and_is_reported() {
@@ -41,7 +41,7 @@ fn swapped_polarity_trips_before_the_skin_leaves_13_to_45_c() {
         .and_then(|row| row.device.as_ref())
         .expect("telemetry");
     assert_eq!(last.state, "tripped");
-    let tripped = |row: &&Row| {
+    let tripped = |row: &&TraceRow| {
         row.device
             .as_ref()
             .is_some_and(|device| device.state == "tripped")

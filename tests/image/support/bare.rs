@@ -2,7 +2,7 @@
 
 use stm32_emulator::{Firmware, Machine, Wiring};
 use system_tests::flash::{BYTES, SECTOR};
-use thermal_sim::Cells;
+use thermal_sim::FlashCells;
 
 /// Offset of the settings' sectors in the flash.
 const BEGIN: usize = SECTOR;
@@ -46,7 +46,7 @@ impl Bare {
     /// # Panics
     /// The emulation cannot be set up, or the cells have another size.
     #[must_use]
-    pub fn switched_on(firmware: &Firmware, settings: &Cells) -> Self {
+    pub fn switched_on(firmware: &Firmware, settings: &FlashCells) -> Self {
         let mut machine = Machine::new(firmware, Pins::default()).expect("a machine");
         assert!(machine.flash_mut().load(BEGIN, settings.bytes()));
         machine.set_host_baud(1_000_000);
@@ -58,7 +58,7 @@ impl Bare {
     /// # Panics
     /// The image stops.
     #[must_use]
-    pub fn new(firmware: &Firmware, settings: &Cells) -> Self {
+    pub fn new(firmware: &Firmware, settings: &FlashCells) -> Self {
         let mut device = Self::switched_on(firmware, settings);
         device.run(START);
         device
@@ -122,7 +122,7 @@ impl Bare {
 
     /// The settings' sectors.
     #[must_use]
-    pub fn cells(&self) -> Cells {
-        Cells::new(self.0.flash().bytes()[BEGIN..BEGIN + BYTES].to_vec())
+    pub fn cells(&self) -> FlashCells {
+        FlashCells::new(self.0.flash().bytes()[BEGIN..BEGIN + BYTES].to_vec())
     }
 }

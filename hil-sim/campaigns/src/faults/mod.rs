@@ -1,41 +1,42 @@
-//! The fault-injection matrix: every single fault, in many scenes, at many moments.
+//! Fault injection: single faults in many scenes at many times, random campaigns, pairs of faults and bit flips.
 //!
 //! ```text
-//! list of entries (fault, signs, reasons)  x  places (scene, moments)
+//! fault cases (fault, symptoms, expected reaction)  x  scenes and times
 //!        -> scene with the fault in it -> device (image or native) -> trace and answers
-//!        -> when a sign is reached in the plant's truth, when the current ends, what the device says  -> verdict
+//!        -> first symptom in the true state of the plant, end of the current, reported cause -> assessment
 //! ```
 //!
-//! What counts is laid down in [the list](entries) before anything runs: which deviation of the plant makes a fault
-//! detectable, and which words of the device are then right. What every run is held to is in [`Verdict`]: the skin
-//! within 13 to 45 °C, less than a minute of CEM43, no current from 50 ms after the first sign on, a right reason, and no
-//! trip before the fault.
+//! [The list](fault_cases) states for each fault, before any run, which deviation of the plant makes it detectable and which
+//! trip causes are then correct. [`RunAssessment`] checks every run: skin between 13 and 45 °C, less than a minute of CEM43,
+//! no current later than 50 ms after the first symptom, a correct cause, and no trip before the fault.
 
-mod campaign;
-mod entry;
+mod assessment;
+mod fault_case;
+mod fault_run;
+mod fault_scene;
 mod flips;
 mod list;
-mod normal;
+mod matrix;
+mod normal_use;
 mod page;
 mod pairs;
-mod place;
-mod random;
-mod script;
-mod sign;
+mod random_campaign;
+mod scene_text;
+mod symptom;
 mod table;
-mod trial;
-mod verdict;
 
-pub use campaign::{Outline, Plan};
-pub use entry::{Entry, Injected, Right};
-pub use flips::{Class, Flip, Flipped, Memory, Reference, Region, flip_table};
-pub use list::entries;
-pub use normal::{Session, Used, use_table};
+pub use assessment::{Breach, RunAssessment};
+pub use fault_case::{ExpectedReaction, FaultCase, InjectedFault};
+pub use fault_run::FaultRun;
+pub use fault_scene::{FaultScene, InjectionPoint};
+pub use flips::{
+    BitFlip, FlipEffect, FlipRegion, FlipResult, FlippableMemory, ReferenceRun, flip_table,
+};
+pub use list::fault_cases;
+pub use matrix::{FaultSummary, MatrixPlan};
+pub use normal_use::{SessionResult, UseSession, session_table};
 pub use page::{HTML, page};
-pub use pairs::{Pair, RanPair, pair_table, pairs};
-pub use place::{Moment, Place};
-pub use random::{Campaign, Ran, summary};
-pub use sign::Sign;
+pub use pairs::{FaultPair, PairResult, pair_table, pairs};
+pub use random_campaign::{CampaignResult, RandomCampaign, campaign_summary};
+pub use symptom::Symptom;
 pub use table::table;
-pub use trial::Trial;
-pub use verdict::{Breach, Verdict};

@@ -4,8 +4,8 @@ use std::fmt::Write;
 
 use thermal_charts::{document, escape};
 
-use super::table::{broken, cells, outcome};
-use super::{Breach, Outline};
+use super::table::{cells, failing_run_text, outcome};
+use super::{Breach, FaultSummary};
 
 /// Name of the page.
 pub const HTML: &str = "faults.html";
@@ -27,7 +27,7 @@ const HEADS: [&str; 9] = [
 
 /// A page that needs no other file.
 #[must_use]
-pub fn page(rows: &[Outline], engine: &str) -> String {
+pub fn page(rows: &[FaultSummary], engine: &str) -> String {
     let mut body = format!(
         "<p>Engine {}; everything here is simulated, nobody has run it on hardware. Worst case of each fault over its \
          runs. Held to: skin within 13 to 45 °C, CEM43 below one minute, no current from 50 ms after the fault is \
@@ -46,16 +46,12 @@ pub fn page(rows: &[Outline], engine: &str) -> String {
     let failing = rows.iter().filter(|row| !row.holds);
     let mut list = String::new();
     for row in failing {
-        for trial in row
-            .trials
-            .iter()
-            .filter(|trial| !trial.verdict.breaches.is_empty())
-        {
+        for trial in row.failing_runs() {
             let _ = write!(
                 list,
                 "<li>{}: {}</li>",
                 escape(&row.fault),
-                escape(&broken(trial))
+                escape(&failing_run_text(trial))
             );
         }
     }
@@ -65,9 +61,9 @@ pub fn page(rows: &[Outline], engine: &str) -> String {
     document("Single faults", STYLE, &body)
 }
 
-fn line(row: &Outline) -> String {
+fn line(row: &FaultSummary) -> String {
     let is = |breach: Breach| {
-        let has = |trial: &super::Trial| trial.verdict.breaches.contains(&breach);
+        let has = |trial: &super::FaultRun| trial.assessment.breaches.contains(&breach);
         row.trials.iter().any(has)
     };
     let class = |bad: bool| match (row.trials.is_empty(), bad) {

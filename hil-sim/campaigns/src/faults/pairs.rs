@@ -1,104 +1,110 @@
-//! Pairs of faults: one that nobody has noticed, then one that acts.
+//! Pairs of faults: a latent fault, followed by another one.
 
 use std::fmt::Write;
 
 use serde::Serialize;
 use thermal_plant::parameters::stream;
-use thermal_sim::Device;
+use thermal_sim::SceneRunner;
 use thermal_sim::scene::FaultKind;
 
-use super::table::broken;
-use super::{Breach, Entry, Injected, Moment, Place, Right, Trial, entries, trial};
+use super::table::failing_run_text;
+use super::{
+    Breach, ExpectedReaction, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint,
+    fault_cases, fault_run,
+};
 
-/// When the first fault comes, s: after the self-test that settling begins with, before every moment of a place.
+/// Time of the latent fault, s: after the first self-test and before every injection time.
 const LATENT_S: f64 = 0.05;
 
-/// A fault that may have been there for long before another one comes.
+/// A latent fault and a second fault that follows it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pair {
-    /// Comes first.
-    pub latent: Entry,
-    /// Comes at the moment.
-    pub active: Entry,
-    /// Where and when.
-    pub moment: Moment,
+pub struct FaultPair {
+    /// The latent fault.
+    pub latent: FaultCase,
+    /// The second fault.
+    pub active: FaultCase,
+    /// Scene and time of the second fault.
+    pub point: InjectionPoint,
 }
 
-/// Whether a fault may go unnoticed: it is harmless alone and lasts, or shows at the next self-test or drive only.
-fn is_latent(entry: &Entry) -> bool {
-    let Injected::Broken(broken) = entry.fault else {
+/// Whether a fault can stay unnoticed: it lasts and is harmless alone, or is detectable only at the next self-test or drive.
+fn is_latent(fault_case: &FaultCase) -> bool {
+    let InjectedFault::Hardware(broken) = fault_case.fault else {
         return false;
     };
     match broken.kind {
         FaultKind::HostFlood => false,
         FaultKind::MirrorStuck => broken.value == 0.0,
-        kind => entry.latent || entry.signs.is_empty() && kind.lasts(),
+        kind => fault_case.latent || fault_case.symptoms.is_empty() && kind.has_duration(),
     }
 }
 
-/// Every latent fault before every other one of the list, each at one moment of the seed: in the first place where the
-/// second is worst, of those in which no self-test follows.
+/// Every latent fault before every other fault of the list, each at one random time, in the first scene without a later
+/// self-test in which the second fault is worst.
 #[must_use]
-pub fn pairs(seed: u64) -> Vec<Pair> {
-    let (latent, active): (Vec<_>, Vec<_>) = entries().into_iter().partition(is_latent);
+pub fn pairs(seed: u64) -> Vec<FaultPair> {
+    let (latent, active): (Vec<_>, Vec<_>) = fault_cases().into_iter().partition(is_latent);
     let mut pairs = Vec::with_capacity(latent.len() * active.len());
     for latent in &latent {
         for active in &active {
             let name = format!("{} {}", latent.fault, active.fault);
-            let means = |place: &&Place| {
+            let means = |place: &&FaultScene| {
                 let never = [latent.never_at, active.never_at];
                 place.has_tripped_before().is_none() && !never.concat().contains(place)
             };
-            let mut rest: Vec<_> = Place::ALL.iter().collect();
+            let mut rest: Vec<_> = FaultScene::ALL.iter().collect();
             rest.sort_by_key(|place| stream(seed, &format!("{name} {}", place.name())));
-            let place = active.places.iter().chain(rest).find(means);
-            pairs.extend(place.map(|place| Pair {
+            let place = active.scenes.iter().chain(rest).find(means);
+            pairs.extend(place.map(|place| FaultPair {
                 latent: *latent,
                 active: *active,
-                moment: place.moment(stream(seed, &name), false),
+                point: place.injection_point(stream(seed, &name), false),
             }));
         }
     }
     pairs
 }
 
-impl Pair {
-    /// Its scene as a file has it.
+impl FaultPair {
+    /// Text of the scene.
     #[must_use]
     pub fn text(&self, seed: u64) -> String {
         let Self {
             latent,
             active,
-            moment,
+            point,
         } = self;
-        let faults = [(latent.fault, LATENT_S), (active.fault, moment.t_s)];
-        trial::text(
+        let faults = [(latent.fault, LATENT_S), (active.fault, point.t_s)];
+        fault_run::scene_text(
             &faults,
-            *moment,
+            *point,
             latent.after_s.max(active.after_s),
             seed,
             &[],
         )
     }
 
-    /// Runs it; none if the engine has no part that could fail so. That the first fault is noticed, and named, is right.
+    /// Runs the pair; `None` if a fault does not apply to the engine. A trip caused by the latent fault is correct.
     ///
     /// # Errors
-    /// The scene cannot be.
-    pub fn run(&self, device: &dyn Device, seed: u64) -> anyhow::Result<Option<RanPair>> {
-        let trial = Trial::of_text(device, &self.active, self.moment, &self.text(seed))?;
+    /// The scene is not valid.
+    pub fn run(&self, device: &dyn SceneRunner, seed: u64) -> anyhow::Result<Option<PairResult>> {
+        let trial = FaultRun::run_text(device, &self.active, self.point, &self.text(seed))?;
         Ok(trial.map(|mut trial| {
-            let verdict = &mut trial.verdict;
-            let named = match self.latent.right {
-                Right::Trip(faults) => faults.iter().any(|fault| fault.name() == verdict.reason),
-                Right::Restart => false,
+            let assessment = &mut trial.assessment;
+            let named = match self.latent.expected {
+                ExpectedReaction::Trip(faults) => {
+                    faults.iter().any(|fault| fault.name() == assessment.reason)
+                }
+                ExpectedReaction::Restart => false,
             };
-            // What has no sign, and has not been named before the second fault, is no excuse for its reason.
-            let first = !self.latent.signs.is_empty() || verdict.breaches.contains(&Breach::Early);
-            (verdict.breaches).retain(|breach| {
+            // A latent fault without a symptom explains the trip cause only if it was reported before the second fault.
+            let first =
+                !self.latent.symptoms.is_empty() || assessment.breaches.contains(&Breach::Early);
+            (assessment.breaches).retain(|breach| {
                 !(named && first && matches!(breach, Breach::Reason | Breach::Early))
             });
-            RanPair {
+            PairResult {
                 latent: self.latent.fault.to_string(),
                 active: self.active.fault.to_string(),
                 trial,
@@ -107,29 +113,21 @@ impl Pair {
     }
 }
 
-/// What came of a pair.
+/// Result of a pair.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct RanPair {
+pub struct PairResult {
     /// The first fault.
     pub latent: String,
     /// The second.
     pub active: String,
-    /// Scene, moment of the second, and verdict.
+    /// Scene, moment of the second, and assessment.
     #[serde(flatten)]
-    pub trial: Trial,
-}
-
-impl RanPair {
-    /// Nothing was broken that is claimed.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        self.trial.verdict.breaches.is_empty()
-    }
+    pub trial: FaultRun,
 }
 
 /// A line for every latent fault; then every pair that breaks the claim.
 #[must_use]
-pub fn pair_table(runs: &[RanPair]) -> String {
+pub fn pair_table(runs: &[PairResult]) -> String {
     let width = runs
         .iter()
         .map(|run| run.latent.len())
@@ -142,15 +140,15 @@ pub fn pair_table(runs: &[RanPair]) -> String {
     );
     // The runs stand in the order of their latent faults.
     for of_one in runs.chunk_by(|a, b| a.latent == b.latent) {
-        let verdicts = || of_one.iter().map(|run| &run.trial.verdict);
-        let broken = of_one.iter().filter(|run| !run.holds()).count();
+        let verdicts = || of_one.iter().map(|run| &run.trial.assessment);
+        let broken = of_one.iter().filter(|run| !run.trial.holds()).count();
         let coldest = verdicts()
-            .map(|verdict| verdict.skin_c.min)
+            .map(|assessment| assessment.skin_c.min)
             .fold(f64::INFINITY, f64::min);
         let warmest =
-            (verdicts().map(|verdict| verdict.skin_c.max)).fold(f64::NEG_INFINITY, f64::max);
+            (verdicts().map(|assessment| assessment.skin_c.max)).fold(f64::NEG_INFINITY, f64::max);
         let slowest = verdicts()
-            .filter_map(|verdict| verdict.took_ms)
+            .filter_map(|assessment| assessment.took_ms)
             .fold(0.0, f64::max);
         // Writing to a String cannot fail.
         let _ = writeln!(
@@ -160,13 +158,13 @@ pub fn pair_table(runs: &[RanPair]) -> String {
             of_one.len(),
         );
     }
-    for run in runs.iter().filter(|run| !run.holds()) {
+    for run in runs.iter().filter(|run| !run.trial.holds()) {
         let _ = writeln!(
             text,
             "{}, then {}: {}",
             run.latent,
             run.active,
-            broken(&run.trial)
+            failing_run_text(&run.trial)
         );
     }
     text
@@ -205,6 +203,6 @@ mod tests {
                 );
             }
         }
-        assert!(pairs.iter().all(|pair| pair.moment.t_s > LATENT_S));
+        assert!(pairs.iter().all(|pair| pair.point.t_s > LATENT_S));
     }
 }

@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use super::verdict::MILLISECONDS;
-use super::{Breach, Outline, Trial};
+use super::assessment::MILLISECONDS;
+use super::{Breach, FaultRun, FaultSummary};
 
-/// One line for each row, with its worst cases; then every run that has a breach.
+/// One line for each fault, with its worst figures, followed by every run that broke a limit.
 #[must_use]
-pub fn table(rows: &[Outline]) -> String {
+pub fn table(rows: &[FaultSummary]) -> String {
     let width = rows.iter().map(|row| row.fault.len()).max().unwrap_or(0);
     let mut text = format!(
         "{:width$}  runs  detectable   to safe ms  skin C         CEM43  display C      reasons\n",
@@ -34,27 +34,23 @@ pub fn table(rows: &[Outline]) -> String {
         }
     );
     for row in rows {
-        for trial in row
-            .trials
-            .iter()
-            .filter(|trial| !trial.verdict.breaches.is_empty())
-        {
-            let _ = writeln!(text, "{}: {}", row.fault, broken(trial));
+        for trial in row.failing_runs() {
+            let _ = writeln!(text, "{}: {}", row.fault, failing_run_text(trial));
         }
     }
     text
 }
 
-/// What a row is called: it holds, or what it breaks.
+/// `ok`, or the names of the broken limits.
 #[must_use]
-pub(super) fn outcome(row: &Outline) -> String {
+pub(super) fn outcome(row: &FaultSummary) -> String {
     if row.trials.is_empty() {
         return "-".into();
     }
     let mut breaches: Vec<Breach> = row
         .trials
         .iter()
-        .flat_map(|trial| trial.verdict.breaches.iter().copied())
+        .flat_map(|trial| trial.assessment.breaches.iter().copied())
         .collect();
     breaches.sort();
     breaches.dedup();
@@ -66,16 +62,16 @@ pub(super) fn outcome(row: &Outline) -> String {
     }
 }
 
-/// The figures of a row as words, in the order of the columns: runs, how many were detectable, longest time from the
-/// first sign to safe, skin, dose, display, reasons.
+/// The cells of a row in the order of the columns: runs, detectable runs, longest time from the first symptom to zero
+/// current, skin, dose, display, causes.
 #[must_use]
-pub(super) fn cells(row: &Outline) -> [String; 7] {
+pub(super) fn cells(row: &FaultSummary) -> [String; 7] {
     let detectable = row
         .trials
         .iter()
-        .filter(|trial| trial.verdict.detectable_ms.is_some())
+        .filter(|trial| trial.assessment.detectable_ms.is_some())
         .count();
-    let took = row.most(|trial| trial.verdict.took_ms);
+    let took = row.most(|trial| trial.assessment.took_ms);
     let reasons: Vec<_> = (row.reasons().iter())
         .map(|(reason, count)| format!("{reason} {count}"))
         .collect();
@@ -83,19 +79,19 @@ pub(super) fn cells(row: &Outline) -> [String; 7] {
         (Some(least), Some(most)) => format!("{:.2}..{most:.2}", -least),
         _ => "-".into(),
     };
-    let cem43 = row.most(|trial| finite(trial.verdict.cem43_min));
+    let cem43 = row.most(|trial| finite(trial.assessment.cem43_min));
     [
         row.trials.len().to_string(),
         detectable.to_string(),
         took.map_or("-".into(), |ms| format!("{ms:.0}")),
         range(
-            row.most(|trial| finite(-trial.verdict.skin_c.min)),
-            row.most(|trial| finite(trial.verdict.skin_c.max)),
+            row.most(|trial| finite(-trial.assessment.skin_c.min)),
+            row.most(|trial| finite(trial.assessment.skin_c.max)),
         ),
         cem43.map_or("-".into(), |minutes| format!("{minutes:.3}")),
         range(
-            row.most(|trial| finite(-trial.verdict.display_c.min)),
-            row.most(|trial| finite(trial.verdict.display_c.max)),
+            row.most(|trial| finite(-trial.assessment.display_c.min)),
+            row.most(|trial| finite(trial.assessment.display_c.max)),
         ),
         reasons.join(", "),
     ]
@@ -105,7 +101,7 @@ fn finite(value: f64) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-fn line(row: &Outline, width: usize) -> String {
+fn line(row: &FaultSummary, width: usize) -> String {
     let [runs, detectable, took, skin, cem43, display, reasons] = cells(row);
     format!(
         "{:width$}  {runs:>4}  {detectable:>10}  {took:>11}  {skin:<13}  {cem43:>5}  {display:<13}  {:<7} {reasons}{}\n",
@@ -115,14 +111,14 @@ fn line(row: &Outline, width: usize) -> String {
     )
 }
 
-/// A run that breaks something, so that it can be run again.
-pub(super) fn broken(trial: &Trial) -> String {
-    let verdict = &trial.verdict;
-    match &verdict.ended {
+/// A run that broke a limit, as text from which it can be repeated.
+pub(super) fn failing_run_text(trial: &FaultRun) -> String {
+    let assessment = &trial.assessment;
+    match &assessment.ended {
         Some(ended) => {
-            let names = verdict.names();
+            let names = assessment.names();
             format!("{names} in {} at {:.3} s: {ended}", trial.place, trial.t_s)
         }
-        None => verdict.line(trial.place, trial.t_s, MILLISECONDS),
+        None => assessment.line(trial.place, trial.t_s, MILLISECONDS),
     }
 }

@@ -1,58 +1,47 @@
-//! One scene of a scenario.
+//! Cases: the scenes of a scenario.
 
 use std::fmt::Write;
 use std::path::PathBuf;
 
 use contact_model::material::Surface;
-use thermal_display::device::control::Law;
-use thermal_sim::scene::{Scene, SceneError};
+use thermal_device::control::Law;
+use thermal_sim::scene::{Force, Scene, SceneError};
 
-use super::{Measure, Scenario, Thing};
+use super::{Measure, Scenario, TouchedObject};
 
-/// A force that is held from a time on: [`thermal_sim::scene::Force`] as a case has it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Press {
-    /// From when, s.
-    pub t_s: f64,
-    /// How much, N.
-    pub force_n: f64,
-    /// How long it takes to get there, s.
-    pub ramp_s: f64,
-}
-
-/// One scene, for any law and plant.
+/// A scene of a scenario, for any control law and plant.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Case {
+pub struct FidelityCase {
     /// The scenario that it belongs to.
     pub scenario: Scenario,
-    /// What it is: the material, and what is unusual.
+    /// Name: the material and what is special about the case.
     pub name: String,
-    /// What the finger feels.
-    pub thing: Thing,
+    /// The touched object.
+    pub object: TouchedObject,
     /// Largest force, N.
     pub force_n: f64,
-    /// Skin before contact, °C.
+    /// Skin temperature before contact, °C.
     pub skin_c: f64,
-    /// The object before contact, °C.
+    /// Object temperature before contact, °C.
     pub object_c: f64,
-    /// When it appears, s.
+    /// Time at which the object appears, s.
     pub appears_t_s: f64,
-    /// The finger.
-    pub presses: Vec<Press>,
-    /// Length, s.
+    /// Changes of the force.
+    pub forces: Vec<Force>,
+    /// Duration, s.
     pub duration_s: f64,
-    /// What is judged.
+    /// The figure that is compared with a bound.
     pub measure: Measure,
 }
 
-/// Room of all cases, °C.
+/// Room temperature of all cases, °C.
 pub const ROOM_C: f64 = 24.0;
 
 /// Warmest object that a scene file may name under a finger of 34 °C: the device's safe range.
 const WARMEST_C: f64 = 42.0;
 
-impl Case {
-    /// The scene as a file has it; `plant` are keys of the parameter box.
+impl FidelityCase {
+    /// The text of the scene; `plant` has plant parameters that are not nominal.
     #[must_use]
     pub fn text(&self, law: Law, seed: u64, plant: &[(String, f64)]) -> String {
         let mut text = format!(
@@ -62,8 +51,8 @@ impl Case {
             law.name()
         );
         // Writing to a String cannot fail.
-        let _ = match self.thing.properties {
-            None => writeln!(text, "material = \"{}\"", self.thing.name),
+        let _ = match self.object.properties {
+            None => writeln!(text, "material = \"{}\"", self.object.name),
             Some(material) => {
                 let Surface {
                     conductivity_w_mk,
@@ -84,11 +73,11 @@ impl Case {
             "start_c = {start_c:?}\nappears_t_s = {:?}",
             self.appears_t_s
         );
-        for Press {
+        for Force {
             t_s,
             force_n,
             ramp_s,
-        } in &self.presses
+        } in &self.forces
         {
             let _ = writeln!(
                 text,
@@ -104,10 +93,10 @@ impl Case {
         text
     }
 
-    /// The scene. An object outside of the safe range, which no scene file may name, is put in afterwards.
+    /// The scene. An object temperature beyond the safe range, which a scene file cannot have, is set afterwards.
     ///
     /// # Errors
-    /// A plant key or value that is not possible.
+    /// A plant parameter is unknown or out of range.
     pub fn scene(&self, law: Law, seed: u64, plant: &[(String, f64)]) -> Result<Scene, SceneError> {
         let name = format!("{} {} {} N", self.scenario.name(), self.name, self.force_n);
         let mut scene = Scene::parse(&self.text(law, seed, plant), &PathBuf::from(name))?;

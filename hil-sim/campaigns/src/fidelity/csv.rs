@@ -1,11 +1,11 @@
 //! The figures as CSV, for other programs.
 
-use super::{Drawn, Row};
+use super::{DrawResult, FidelityRow};
 
-/// A row as a file has it: its name and the text of its cells.
+/// A column: its name and the text of its cells.
 type Column<T> = (&'static str, fn(&T) -> String);
 
-const ROWS: [Column<Row>; 24] = [
+const ROWS: [Column<FidelityRow>; 24] = [
     ("scenario", |row| row.scenario.name().into()),
     ("case", |row| row.case.clone()),
     ("force_n", |row| row.force_n.to_string()),
@@ -21,15 +21,9 @@ const ROWS: [Column<Row>; 24] = [
     ("bound", |row| some(row.judged.bound)),
     ("within", |row| some(row.judged.within)),
     ("skin_max_after_50ms_mk", |row| {
-        some(
-            row.figures
-                .skin_error_mk
-                .and_then(|errors| errors.max_after_50ms),
-        )
+        some(row.figures.skin_max_mk())
     }),
-    ("skin_rms_mk", |row| {
-        some(row.figures.skin_error_mk.map(|errors| errors.rms))
-    }),
+    ("skin_rms_mk", |row| some(row.figures.skin_rms_mk())),
     ("display_max_after_50ms_mk", |row| {
         some(
             row.figures
@@ -58,7 +52,7 @@ const ROWS: [Column<Row>; 24] = [
     ("cycles_max", |row| some(row.figures.cycles_per_tick.max)),
 ];
 
-const DRAWS: [Column<Drawn>; 7] = [
+const DRAWS: [Column<DrawResult>; 7] = [
     ("draw", |one| one.number.to_string()),
     ("material", |one| one.material.clone()),
     ("force_n", |one| one.force_n.to_string()),
@@ -74,23 +68,23 @@ fn some<T: ToString>(value: Option<T>) -> String {
     value.map_or(String::new(), |value| value.to_string())
 }
 
-/// One line a run.
+/// One line per run.
 ///
 /// # Errors
-/// Memory.
-pub fn rows_csv(rows: &[Row]) -> anyhow::Result<Vec<u8>> {
+/// Out of memory.
+pub fn rows_csv(rows: &[FidelityRow]) -> anyhow::Result<Vec<u8>> {
     write(&ROWS, rows, |_| Vec::new(), &[])
 }
 
-/// One line a draw and law, what was drawn last.
+/// One line per draw and law; the drawn parameters are the last columns.
 ///
 /// # Errors
-/// Memory.
-pub fn box_csv(drawn: &[Drawn]) -> anyhow::Result<Vec<u8>> {
+/// Out of memory.
+pub fn box_csv(drawn: &[DrawResult]) -> anyhow::Result<Vec<u8>> {
     let keys: Vec<_> = drawn.first().map_or(Vec::new(), |one| {
         one.plant.iter().map(|(key, _)| key.as_str()).collect()
     });
-    let values = |one: &Drawn| {
+    let values = |one: &DrawResult| {
         one.plant
             .iter()
             .map(|(_, value)| value.to_string())

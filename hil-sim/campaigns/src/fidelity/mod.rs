@@ -1,33 +1,35 @@
-//! How close the skin on the display comes to the skin on the real material: scenarios, laws, and the box of plants that
-//! a device may turn out to be.
+//! Fidelity: difference between the skin temperature on the display and on the real material, for scenarios, control laws
+//! and random plants.
 //!
 //! ```text
-//! scenario -> cases -> scene text -> device (image or native) -> figures of the run, and the figure that is judged
-//!                         ^ law, seed, plant keys: a bound removed, or a draw of the box
+//! scenario -> cases -> scene text -> device (image or native) -> figures of the run, one of them with a bound
+//!                         ^ law, seed, plant parameters: a limit removed, or a random draw
 //! ```
 //!
-//! Every run is a scene file: [`Case::text`] writes it, `hil-sim run` repeats it.
+//! Every run is a scene file: [`FidelityCase::text`] writes it, and `hil-sim run` can repeat it.
 
 mod case;
 mod csv;
-mod draws;
-mod judge;
+mod measure;
+mod plant_draws;
 mod plot;
+mod removed_limit;
 mod report;
 mod row;
 mod scenario;
 mod table;
-mod things;
-mod without;
+mod touched_object;
 
-pub use case::{Case, Press};
+pub use case::FidelityCase;
 pub use csv::{box_csv, rows_csv};
-pub use draws::{Boxed, Draw, Drawn, LawBox, Percentiles, summarise};
-pub use judge::{Judged, Measure};
+pub use measure::{JudgedFigure, Measure};
+pub use plant_draws::{
+    BoxReport, DrawResult, LawStatistics, Percentiles, PlantDraw, statistics_by_law,
+};
 pub use plot::draw as plot;
+pub use removed_limit::RemovedLimit;
 pub use report::{HTML, SVG, page};
-pub use row::Row;
+pub use row::FidelityRow;
 pub use scenario::Scenario;
 pub use table::{box_table, table};
-pub use things::Thing;
-pub use without::Without;
+pub use touched_object::TouchedObject;

@@ -1,11 +1,11 @@
-//! The figures as a picture: errors over time, and the largest of them.
+//! Chart of the errors over time and of the largest errors.
 
 use std::ops::Range;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{Row, Scenario};
+use super::{FidelityRow, Scenario};
 
 const SIZE: (u32, u32) = (1100, 1060);
 const TITLE: i32 = 34;
@@ -32,11 +32,11 @@ const OVER_TIME_OF: [&str; 4] = ["copper", "granite", "abs", "foam"];
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The picture of the first scenario of the rows, as an SVG document; `None` without rows.
+/// The chart of the first scenario of the rows, as an SVG document; `None` without rows.
 ///
 /// # Errors
 /// The plot cannot be drawn.
-pub fn draw(rows: &[Row]) -> anyhow::Result<Option<String>> {
+pub fn draw(rows: &[FidelityRow]) -> anyhow::Result<Option<String>> {
     let Some(first) = rows.first() else {
         return Ok(None);
     };
@@ -72,7 +72,10 @@ pub fn draw(rows: &[Row]) -> anyhow::Result<Option<String>> {
 }
 
 /// Values in the order in which they first occur.
-fn distinct<'a, T: PartialEq + 'a>(rows: &[&'a Row], value: impl Fn(&'a Row) -> T) -> Vec<T> {
+fn distinct<'a, T: PartialEq + 'a>(
+    rows: &[&'a FidelityRow],
+    value: impl Fn(&'a FidelityRow) -> T,
+) -> Vec<T> {
     let mut values = Vec::new();
     for row in rows {
         let value = value(row);
@@ -84,7 +87,12 @@ fn distinct<'a, T: PartialEq + 'a>(rows: &[&'a Row], value: impl Fn(&'a Row) -> 
 }
 
 /// Magnitude of the error of each law over time, with the largest force that was run.
-fn over_time(area: &Area<'_>, name: &str, rows: &[&Row], laws: &[&str]) -> anyhow::Result<()> {
+fn over_time(
+    area: &Area<'_>,
+    name: &str,
+    rows: &[&FidelityRow],
+    laws: &[&str],
+) -> anyhow::Result<()> {
     let own = || rows.iter().filter(|row| row.case == name);
     let force_n = own().map(|row| row.force_n).fold(0.0, f64::max);
     let mut chart = ChartBuilder::on(area)
@@ -104,7 +112,7 @@ fn over_time(area: &Area<'_>, name: &str, rows: &[&Row], laws: &[&str]) -> anyho
         .draw()?;
     for row in own().filter(|row| row.force_n == force_n) {
         let color = color(laws, row.law);
-        let points = row.course.iter();
+        let points = row.error_over_time.iter();
         let points = points.map(|(t_s, mk)| (*t_s, mk.abs().clamp(ERRORS_MK.start, ERRORS_MK.end)));
         chart
             .draw_series(LineSeries::new(points, color.stroke_width(2)))?
@@ -125,11 +133,11 @@ fn over_time(area: &Area<'_>, name: &str, rows: &[&Row], laws: &[&str]) -> anyho
     Ok(())
 }
 
-/// What is judged, the worst force of each material and law.
+/// The bounded figure at the worst force of each material and law.
 fn largest(
     area: &Area<'_>,
     scenario: Scenario,
-    rows: &[&Row],
+    rows: &[&FidelityRow],
     laws: &[&str],
     cases: &[&str],
 ) -> anyhow::Result<()> {
@@ -141,7 +149,7 @@ fn largest(
         .fold((f64::INFINITY, f64::MIN_POSITIVE), |(l, m), value| {
             (l.min(value), m.max(value))
         });
-    // Half a row of the trace is as good as nothing.
+    // Values below half a row of the trace are drawn at that value.
     let least = least.clamp(0.5e-3, most);
     let mut chart = ChartBuilder::on(area)
         .margin(MARGIN)
@@ -200,7 +208,7 @@ fn names(area: &Area<'_>, cases: &[&str], place: impl Fn(f64) -> i32) -> anyhow:
     Ok(())
 }
 
-fn bound_mk(row: &Row) -> Option<f64> {
+fn bound_mk(row: &FidelityRow) -> Option<f64> {
     row.judged.bound.filter(|_| row.judged.unit == "mK")
 }
 
@@ -209,7 +217,7 @@ fn color(laws: &[&str], law: &str) -> RGBColor {
     COLORS[place % COLORS.len()]
 }
 
-/// A power of ten as people write it.
+/// A power of ten in decimal notation.
 fn plain(value: f64) -> String {
     format!("{}", (value * 1e6).round() / 1e6)
 }

@@ -1,19 +1,19 @@
-//! The page.
+//! The HTML page.
 
 use std::fmt::Write;
 
 use thermal_charts::{document, element, escape};
 
-use super::{Boxed, Row, box_table, table};
+use super::{BoxReport, FidelityRow, box_table, table};
 
-/// Name of the page.
+/// File name of the page.
 pub const HTML: &str = "fidelity.html";
-/// Name of the picture by itself.
+/// File name of the separate chart.
 pub const SVG: &str = "fidelity.svg";
 
-/// A page that needs no other file.
+/// A self-contained page.
 #[must_use]
-pub fn page(rows: &[Row], boxed: Option<&Boxed>, svg: Option<&str>) -> String {
+pub fn page(rows: &[FidelityRow], boxed: Option<&BoxReport>, svg: Option<&str>) -> String {
     let mut body =
         "<p>Everything here is simulated; instructions are emulated, cycles estimated.</p>"
             .to_owned();

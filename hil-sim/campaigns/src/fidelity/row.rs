@@ -1,22 +1,22 @@
-//! One run, reduced to its figures.
+//! The figures of one run.
 
 use std::cmp::Ordering;
 
 use serde::Serialize;
-use thermal_display::device::control::Law;
-use thermal_sim::Device;
+use thermal_device::control::Law;
+use thermal_sim::SceneRunner;
 use thermal_sim::metrics::{Figures, skin_errors};
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
-use super::{Case, Judged, Scenario, Without};
+use super::{FidelityCase, JudgedFigure, RemovedLimit, Scenario};
 
-/// A run's figures and what it was a run of.
+/// The figures of a run with its case, law and removed limit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Row {
+pub struct FidelityRow {
     /// Scenario.
     pub scenario: Scenario,
-    /// What of it.
+    /// Name of the case.
     pub case: String,
     /// Largest force, N.
     pub force_n: f64,
@@ -26,31 +26,31 @@ pub struct Row {
     pub object_c: f64,
     /// Name of the law.
     pub law: &'static str,
-    /// The bound that the plant does not have.
-    pub without: Option<Without>,
-    /// What is held against a bound.
-    pub judged: Judged,
+    /// The limit that is removed from the plant.
+    pub without: Option<RemovedLimit>,
+    /// The figure that is compared with a bound.
+    pub judged: JudgedFigure,
     /// All figures.
     #[serde(flatten)]
     pub figures: Figures,
-    /// Time since the first landing, s, and error of the skin, mK, at even steps of the logarithm of time.
+    /// Time since the first landing, s, and skin error, mK, at logarithmically spaced times.
     #[serde(skip)]
-    pub course: Vec<(f64, f64)>,
+    pub error_over_time: Vec<(f64, f64)>,
 }
 
-impl Row {
+impl FidelityRow {
     /// Runs a case.
     ///
     /// # Errors
-    /// The plant cannot be so, the device stopped, or it refused the scene.
+    /// The plant is not valid, the device stopped, or it refused the scene.
     pub fn run(
-        device: &dyn Device,
-        case: &Case,
+        device: &dyn SceneRunner,
+        case: &FidelityCase,
         law: Law,
-        without: Option<Without>,
+        without: Option<RemovedLimit>,
         seed: u64,
     ) -> anyhow::Result<Self> {
-        let plant = without.map_or(Vec::new(), Without::plant);
+        let plant = without.map_or(Vec::new(), RemovedLimit::plant);
         let scene = case.scene(law, seed, &plant)?;
         let (outcome, figures) = device.run(&scene)?;
         Ok(Self {
@@ -61,14 +61,13 @@ impl Row {
             object_c: case.object_c,
             law: law.name(),
             without,
-            judged: case.measure.judge(&scene, &outcome),
-            course: course(&scene, &outcome),
+            judged: case.measure.evaluate(&scene, &outcome),
+            error_over_time: error_over_time(&scene, &outcome),
             figures,
         })
     }
 
-    /// Which of two is worse, the worse one greater: by what is judged, where no value is worst, then by the error's
-    /// root mean square.
+    /// Orders rows by the bounded figure, then by the RMS skin error; the worse one is greater, and no value is worst.
     #[must_use]
     pub fn compare(&self, other: &Self) -> Ordering {
         let judged = |row: &Self| match row.judged.value {
@@ -76,17 +75,17 @@ impl Row {
             Some(value) if row.judged.figure == "limited" => -value,
             Some(value) => value,
         };
-        let rms = |row: &Self| row.figures.skin_error_mk.map_or(0.0, |errors| errors.rms);
+        let rms = |row: &Self| row.figures.skin_rms_mk().unwrap_or(0.0);
         let by = |value: fn(&Self) -> f64| value(self).total_cmp(&value(other));
         by(judged).then(by(rms))
     }
 }
 
-/// Points of a course for each factor of ten of time.
+/// Points of an error curve per decade of time.
 const POINTS: f64 = 40.0;
 
-/// Errors of the first contact, thinned out.
-fn course(scene: &Scene, outcome: &Outcome) -> Vec<(f64, f64)> {
+/// Errors of the first contact at logarithmically spaced times.
+fn error_over_time(scene: &Scene, outcome: &Outcome) -> Vec<(f64, f64)> {
     let mut points: Vec<(f64, f64)> = Vec::new();
     for (since_s, error_k) in skin_errors(scene, outcome) {
         let last_s = points.last().map_or(0.0, |(last_s, _)| *last_s);

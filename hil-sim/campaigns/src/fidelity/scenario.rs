@@ -1,32 +1,32 @@
-//! The scenarios.
+//! Scenarios: series of cases.
 
 use contact_model::pressure::THESIS_PRESSURES;
+use thermal_sim::named_enum;
+use thermal_sim::scene::Force;
 
 use super::case::ROOM_C;
-use super::things::UNSEEN;
-use super::{Case, Measure, Press, Thing};
+use super::touched_object::UNKNOWN_MATERIALS;
+use super::{FidelityCase, Measure, TouchedObject};
 
-/// What a finger does.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Scenario {
-    /// A finger lands on the preset display and stays for 10 s.
-    #[serde(rename = "A")]
-    A,
-    /// An object appears under a finger that rests on the neutral display.
-    #[serde(rename = "B")]
-    B,
-    /// Lift and replace: 1 s on, 1 s off, ten times.
-    #[serde(rename = "C")]
-    C,
-    /// The force rises and falls during contact.
-    #[serde(rename = "D")]
-    D,
-    /// Materials by their properties, warm objects, other skin; one object too warm to be shown.
-    Unseen,
+named_enum! {
+    /// A scenario of contact.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+    pub enum Scenario {
+        /// A finger lands on the preset display and stays for 10 s.
+        A = "A",
+        /// An object appears under a finger that rests on the neutral display.
+        B = "B",
+        /// Lift and replace: 1 s on, 1 s off, ten times.
+        C = "C",
+        /// The force rises and falls during contact.
+        D = "D",
+        /// Materials by their properties, warm objects, other skin; one object too warm to be shown.
+        #[serde(rename = "unseen")]
+        Unseen = "unseen",
+    }
 }
 
-/// The usual skin, °C.
+/// Skin temperature of most cases, °C.
 const SKIN_C: f64 = 34.0;
 /// Four materials from good to bad conductor.
 const FOUR: [&str; 4] = ["copper", "granite", "abs", "foam"];
@@ -34,22 +34,7 @@ const FOUR: [&str; 4] = ["copper", "granite", "abs", "foam"];
 const PRESSED_N: f64 = 2.0;
 
 impl Scenario {
-    /// All of them.
-    pub const ALL: [Self; 5] = [Self::A, Self::B, Self::C, Self::D, Self::Unseen];
-
-    /// Its name on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::A => "A",
-            Self::B => "B",
-            Self::C => "C",
-            Self::D => "D",
-            Self::Unseen => "unseen",
-        }
-    }
-
-    /// What happens in it.
+    /// Description of the scenario.
     #[must_use]
     pub const fn title(self) -> &'static str {
         match self {
@@ -61,35 +46,37 @@ impl Scenario {
         }
     }
 
-    /// Its scenes.
+    /// The cases of the scenario.
     #[must_use]
-    pub fn cases(self) -> Vec<Case> {
+    pub fn cases(self) -> Vec<FidelityCase> {
         match self {
-            Self::A => each_force(|thing, force_n| self.lands(thing, force_n)),
-            Self::B => each_force(|thing, force_n| self.appears(thing, force_n)),
-            Self::C => each_force(|thing, force_n| self.replaced(thing, force_n)),
-            Self::D => Thing::thesis().map(|thing| self.ramped(thing)).collect(),
+            Self::A => each_force(|object, force_n| self.lands(object, force_n)),
+            Self::B => each_force(|object, force_n| self.appears(object, force_n)),
+            Self::C => each_force(|object, force_n| self.replaced(object, force_n)),
+            Self::D => TouchedObject::thesis()
+                .map(|object| self.ramped(object))
+                .collect(),
             Self::Unseen => self.unseen(),
         }
     }
 
     fn case(
         self,
-        thing: Thing,
+        object: TouchedObject,
         force_n: f64,
         duration_s: f64,
-        presses: &[(f64, f64, f64)],
-    ) -> Case {
-        Case {
+        forces: &[(f64, f64, f64)],
+    ) -> FidelityCase {
+        FidelityCase {
             scenario: self,
-            name: thing.name.into(),
-            thing,
+            name: object.name.into(),
+            object,
             force_n,
             skin_c: SKIN_C,
             object_c: ROOM_C,
             appears_t_s: 0.0,
-            presses: (presses.iter())
-                .map(|&(t_s, force_n, ramp_s)| Press {
+            forces: (forces.iter())
+                .map(|&(t_s, force_n, ramp_s)| Force {
                     t_s,
                     force_n,
                     ramp_s,
@@ -100,82 +87,85 @@ impl Scenario {
         }
     }
 
-    fn lands(self, thing: Thing, force_n: f64) -> Case {
-        self.case(thing, force_n, 11.0, &[(1.0, force_n, 0.0)])
+    fn lands(self, object: TouchedObject, force_n: f64) -> FidelityCase {
+        self.case(object, force_n, 11.0, &[(1.0, force_n, 0.0)])
     }
 
     /// Bounds are stated for three of the materials.
-    fn appears(self, thing: Thing, force_n: f64) -> Case {
-        let bound_s = match thing.name {
+    fn appears(self, object: TouchedObject, force_n: f64) -> FidelityCase {
+        let bound_s = match object.name {
             "copper" => Some(1.25),
             "abs" => Some(0.35),
             "foam" => Some(0.1),
             _ => None,
         };
-        Case {
+        FidelityCase {
             appears_t_s: 2.0,
             measure: Measure::Settles {
                 below_mk: 50.0,
                 bound_s,
             },
-            ..self.case(thing, force_n, 12.0, &[(0.5, force_n, 0.0)])
+            ..self.case(object, force_n, 12.0, &[(0.5, force_n, 0.0)])
         }
     }
 
-    fn replaced(self, thing: Thing, force_n: f64) -> Case {
+    fn replaced(self, object: TouchedObject, force_n: f64) -> FidelityCase {
         let on_and_off = |i: u32| {
             let t_s = f64::from(2 * i + 1);
             [(t_s, force_n, 0.0), (t_s + 1.0, 0.0, 0.0)]
         };
-        let presses: Vec<_> = (0..10).flat_map(on_and_off).collect();
-        Case {
+        let forces: Vec<_> = (0..10).flat_map(on_and_off).collect();
+        FidelityCase {
             measure: Measure::CHANGING,
-            ..self.case(thing, force_n, 21.0, &presses)
+            ..self.case(object, force_n, 21.0, &forces)
         }
     }
 
-    fn ramped(self, thing: Thing) -> Case {
-        let presses = [(1.0, 0.1, 0.0), (2.0, PRESSED_N, 1.0), (5.0, 0.1, 1.0)];
-        Case {
+    fn ramped(self, object: TouchedObject) -> FidelityCase {
+        let forces = [(1.0, 0.1, 0.0), (2.0, PRESSED_N, 1.0), (5.0, 0.1, 1.0)];
+        FidelityCase {
             measure: Measure::CHANGING,
-            ..self.case(thing, PRESSED_N, 8.0, &presses)
+            ..self.case(object, PRESSED_N, 8.0, &forces)
         }
     }
 
-    fn unseen(self) -> Vec<Case> {
+    fn unseen(self) -> Vec<FidelityCase> {
         let mut cases = Vec::new();
-        for thing in UNSEEN {
-            cases.extend(THESIS_PRESSURES.map(|(force_n, _)| self.lands(thing, force_n)));
+        for object in UNKNOWN_MATERIALS {
+            cases.extend(THESIS_PRESSURES.map(|(force_n, _)| self.lands(object, force_n)));
         }
-        for thing in FOUR.map(Thing::known) {
-            cases.push(Case {
-                name: format!("{} of 41 C", thing.name),
+        for object in FOUR.map(TouchedObject::of_thesis) {
+            cases.push(FidelityCase {
+                name: format!("{} of 41 C", object.name),
                 object_c: 41.0,
-                ..self.lands(thing, PRESSED_N)
+                ..self.lands(object, PRESSED_N)
             });
         }
         for skin_c in [28.0, 31.0, 36.0] {
-            cases.extend(FOUR.map(Thing::known).map(|thing| Case {
-                name: format!("{}, skin {skin_c} C", thing.name),
-                skin_c,
-                ..self.lands(thing, PRESSED_N)
-            }));
+            cases.extend(
+                FOUR.map(TouchedObject::of_thesis)
+                    .map(|object| FidelityCase {
+                        name: format!("{}, skin {skin_c} C", object.name),
+                        skin_c,
+                        ..self.lands(object, PRESSED_N)
+                    }),
+            );
         }
-        cases.push(Case {
+        cases.push(FidelityCase {
             name: "copper of 44 C".into(),
             object_c: 44.0,
             measure: Measure::Limited,
-            ..self.lands(Thing::known("copper"), PRESSED_N)
+            ..self.lands(TouchedObject::of_thesis("copper"), PRESSED_N)
         });
         cases
     }
 }
 
 /// The thesis's materials at its five forces.
-fn each_force(case: impl Fn(Thing, f64) -> Case) -> Vec<Case> {
+fn each_force(case: impl Fn(TouchedObject, f64) -> FidelityCase) -> Vec<FidelityCase> {
     let case = &case;
-    Thing::thesis()
-        .flat_map(|thing| THESIS_PRESSURES.map(move |(force_n, _)| case(thing, force_n)))
+    TouchedObject::thesis()
+        .flat_map(|object| THESIS_PRESSURES.map(move |(force_n, _)| case(object, force_n)))
         .collect()
 }
 

@@ -2,16 +2,16 @@
 
 use std::fmt::Write;
 
-use thermal_sim::metrics::{Errors, PerTick};
+use thermal_sim::metrics::{CostPerTick, ErrorFigures};
 
-use super::{Boxed, Row, Scenario};
+use super::{BoxReport, FidelityRow, Scenario};
 
 const HEAD: &str = "   N    judged            skin rms   display max/rms    A max/rms     J     E      instructions   cycles (est.)";
 const NAME: usize = 20;
 
-/// One line for each law and, unless `every` is set, for each case of a name, the force with which it is worst.
+/// One line for each case and law, at the worst force or, with `every`, at every force.
 #[must_use]
-pub fn table(rows: &[Row], every: bool) -> String {
+pub fn table(rows: &[FidelityRow], every: bool) -> String {
     let mut text = String::new();
     for scenario in Scenario::ALL {
         let own: Vec<_> = rows.iter().filter(|row| row.scenario == scenario).collect();
@@ -40,11 +40,11 @@ pub fn table(rows: &[Row], every: bool) -> String {
     text
 }
 
-/// For each name, law and removed bound the row with the worst force.
-fn worst<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
-    let mut worst: Vec<&Row> = Vec::new();
+/// The row with the worst force for each name, law and removed limit.
+fn worst<'a>(rows: &[&'a FidelityRow]) -> Vec<&'a FidelityRow> {
+    let mut worst: Vec<&FidelityRow> = Vec::new();
     for row in rows {
-        let same = |other: &&mut &Row| {
+        let same = |other: &&mut &FidelityRow| {
             (&other.case, other.law, other.without) == (&row.case, row.law, row.without)
         };
         match worst.iter_mut().find(same) {
@@ -56,8 +56,8 @@ fn worst<'a>(rows: &[&'a Row]) -> Vec<&'a Row> {
     worst
 }
 
-/// How many rows are within their bound, law by law.
-fn verdicts(rows: &[&Row]) -> String {
+/// Number of rows within their bound, by law.
+fn verdicts(rows: &[&FidelityRow]) -> String {
     let mut laws: Vec<_> = rows.iter().map(|row| law(row)).collect();
     laws.sort();
     laws.dedup();
@@ -80,15 +80,15 @@ fn verdicts(rows: &[&Row]) -> String {
     text
 }
 
-/// The law, and the bound that its plant does not have.
-fn law(row: &Row) -> String {
+/// The law and the removed limit.
+fn law(row: &FidelityRow) -> String {
     match row.without {
         Some(without) => format!("{} without {}", row.law, without.name()),
         None => row.law.into(),
     }
 }
 
-fn line(row: &Row) -> String {
+fn line(row: &FidelityRow) -> String {
     let figures = &row.figures;
     let mut line = format!(
         "{:>4}  {:<16} {}  {}  {:>5.2}/{:<5.2} {:>6.1} {:>5}  {:<14} {:<14}",
@@ -113,7 +113,7 @@ fn line(row: &Row) -> String {
     line.trim_end().to_owned()
 }
 
-fn judged_text(row: &Row) -> String {
+fn judged_text(row: &FidelityRow) -> String {
     let judged = &row.judged;
     let value = judged
         .value
@@ -121,31 +121,31 @@ fn judged_text(row: &Row) -> String {
             "s" => format!("{value:.3} s"),
             unit => format!("{value:.1} {unit}"),
         });
-    let verdict = match judged.within {
+    let assessment = match judged.within {
         _ if judged.bound.is_none() => "",
         Some(true) => "ok",
         _ => "over",
     };
-    format!("{value} {verdict}").trim_end().to_owned()
+    format!("{value} {assessment}").trim_end().to_owned()
 }
 
-fn display(errors: Errors) -> String {
+fn display(errors: ErrorFigures) -> String {
     let max = errors
         .max_after_50ms
         .map_or("-".into(), |max| format!("{max:.1}"));
     format!("{max:>7} /{:>7.1}", errors.rms)
 }
 
-fn cost(cost: PerTick) -> String {
+fn cost(cost: CostPerTick) -> String {
     match (cost.mean, cost.max) {
         (Some(mean), Some(max)) => format!("{mean:.0}/{max}"),
         _ => "-".into(),
     }
 }
 
-/// The box: percentiles and the worst draws.
+/// Percentiles and worst draws by law.
 #[must_use]
-pub fn box_table(boxed: &Boxed) -> String {
+pub fn box_table(boxed: &BoxReport) -> String {
     let mut text = format!(
         "\nA over the box: {} draws, seed {}, engine {}; mK, skin error\n{:14}largest after 50 ms, 50/95/99 %, max     rms, 50/95/99 %, max          faulty\n",
         boxed.draws, boxed.seed, boxed.engine, "law"

@@ -1,4 +1,4 @@
 //! Campaigns on the native engine.
 
+mod identification_survey;
 mod matrix;
-mod survey;

@@ -3,8 +3,8 @@
 use thermal_plant::bridge::Legs;
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
-use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _, Lines};
-use thermal_sim::hand::{FINGERS, Hand};
+use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _, LineSplitter};
+use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine};
 
 use super::meter::Meter;
 use super::one_finger::{ADC_INPUTS, OneFingerBoard, StartError, power_up, resets};
@@ -37,7 +37,7 @@ pub struct FiveFingerBoard {
     first_boundary_ps: u64,
     /// Boundaries reached so far.
     boundaries: u64,
-    lines: Lines,
+    lines: LineSplitter,
     meter: Meter,
 }
 
@@ -58,13 +58,13 @@ impl FiveFingerBoard {
             machine,
             first_boundary_ps,
             boundaries: 0,
-            lines: Lines::default(),
+            lines: LineSplitter::default(),
             meter,
         })
     }
 }
 
-impl Hand for FiveFingerBoard {
+impl FiveFingerEngine for FiveFingerBoard {
     type Stop = Stop;
 
     const NAME: &'static str = OneFingerBoard::NAME;
@@ -105,7 +105,7 @@ impl Hand for FiveFingerBoard {
             .received()
             .append(&mut self.machine.wiring_mut().received);
         let lines = self.lines.complete().into_iter();
-        // Lines of the device as a whole are attributed to the first finger.
+        // LineSplitter of the device as a whole are attributed to the first finger.
         lines
             .map(|line| match line.split_at_checked(3) {
                 Some((prefix, rest)) => match prefix.as_bytes() {

@@ -8,7 +8,7 @@ use thermal_sim::metrics::Figures;
 use thermal_sim::processor::{MachineFault, NotInjected};
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
-use thermal_sim::{Device, RamLayout, World, run_on};
+use thermal_sim::{RamLayout, SceneRunner, World, run_scene_on};
 
 use super::meter::{Meter, TICK};
 use super::{FIRST_BRIDGE, is_high};
@@ -188,13 +188,13 @@ impl Engine for OneFingerBoard {
 }
 
 /// The image on the board; each scene is run from power-up.
-impl Device for Firmware {
+impl SceneRunner for Firmware {
     fn name(&self) -> &'static str {
         OneFingerBoard::NAME
     }
 
     fn run(&self, scene: &Scene) -> anyhow::Result<(Outcome, Figures)> {
-        run_on(scene, |world| Ok(OneFingerBoard::new(self, world)?))
+        run_scene_on(scene, |world| Ok(OneFingerBoard::new(self, world)?))
     }
 
     fn has_processor(&self) -> bool {

@@ -1,7 +1,7 @@
 //! Programming and erasing of the flash (RM0390 chapter 3) in sectors 1 to 3, which hold settings and no code. ACR, on which the
 //! clocks depend, is in `rcc`.
 
-use thermal_sim::Cells;
+use thermal_sim::FlashCells;
 
 use super::elf::FLASH_BASE;
 use super::stop::{Answer, Refusal, only};
@@ -39,7 +39,7 @@ enum Lock {
 }
 
 pub(crate) struct Flash {
-    pub cells: Cells,
+    pub cells: FlashCells,
     lock: Lock,
     control: u32,
     status: u32,
@@ -49,7 +49,7 @@ pub(crate) struct Flash {
 impl Flash {
     pub fn new(contents: Vec<u8>) -> Self {
         Self {
-            cells: Cells::new(contents),
+            cells: FlashCells::new(contents),
             lock: Lock::Locked,
             control: 0,
             status: 0,

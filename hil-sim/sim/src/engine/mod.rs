@@ -1,4 +1,4 @@
-//! What runs the device: the release image in the emulated microcontroller, or the same logic natively.
+//! Engines run the device: the release image in the emulated microcontroller, or the same logic natively.
 //!
 //! # Time
 //! Boundaries lie at 0.23 ms after the first conversion, modulo 1 ms. At each the plant advances by
@@ -14,11 +14,11 @@
 //! So a duty acts 0.27 ms after its tick; an image whose tick takes longer is off by one step, which the comparison
 //! of both engines would show.
 
-mod lines;
+mod line_splitter;
 mod native;
 
-pub use lines::Lines;
-pub use native::Native;
+pub use line_splitter::LineSplitter;
+pub use native::NativeEngine;
 
 use thermal_plant::bridge::Legs;
 
@@ -28,47 +28,49 @@ use crate::processor::{MachineFault, NotInjected, ResetCause};
 /// Baud rate of the host, as the board sets it.
 pub const BAUD: u64 = 1_000_000;
 
-/// A device and the world around it.
+/// A device with its world.
 pub trait Engine {
-    /// Why it can stop before its time.
+    /// Why the engine can stop early.
     type Stop: std::error::Error + Send + Sync + 'static;
 
-    /// Name, as the command line has it.
+    /// Name of the engine on the command line.
     const NAME: &'static str;
 
     /// The world.
     fn world(&mut self) -> &mut World;
 
-    /// The bridge's legs, as the device drives them now.
+    /// The bridge legs as the device drives them now.
     fn legs(&mut self) -> Legs;
 
     /// Runs the device by half a millisecond.
     ///
     /// # Errors
-    /// The device cannot go on.
+    /// The device did something that is not modelled.
     fn run_half_ms(&mut self) -> Result<(), Self::Stop>;
 
-    /// Bytes leave the host now, one after the other.
+    /// Sends bytes to the device, starting now.
     fn send(&mut self, bytes: &[u8]);
 
-    /// Appends what the host has received since it last asked.
+    /// Appends the bytes received from the device since the last call.
     fn receive(&mut self, into: &mut Vec<u8>);
 
-    /// A fault of the processor happens so long, µs (less than 500), after the present half millisecond's begin. An engine
-    /// without a processor has nothing in between: it happens at once.
+    /// Injects a fault of the processor `after_us` µs (less than 500) after the start of the present half millisecond. An
+    /// engine without a processor injects it at once.
     ///
     /// # Errors
     /// The engine has no such part, or refuses the fault.
     fn inject(&mut self, fault: &MachineFault, after_us: u32) -> Result<(), NotInjected>;
 
-    /// Resets of the device after its power-up, the oldest first.
+    /// Resets of the device after power-up, oldest first.
     fn resets(&self) -> Vec<DeviceReset>;
 
-    /// Starts the measurement of [`Self::cost`] anew.
-    fn reset_cost(&mut self);
+    /// Restarts the measurement of [`Self::cost`].
+    fn reset_cost(&mut self) {}
 
-    /// What the device's program costs, if the engine knows.
-    fn cost(&self) -> Option<Cost>;
+    /// Cost of the device's program; `None` for an engine that does not measure it.
+    fn cost(&self) -> Option<Cost> {
+        None
+    }
 }
 
 /// A reset of the device.
@@ -76,11 +78,11 @@ pub trait Engine {
 pub struct DeviceReset {
     /// Time since the first boundary, s.
     pub t_s: f64,
-    /// What caused it.
+    /// Its cause.
     pub cause: ResetCause,
 }
 
-/// What the program costs, emulated; cycles are estimates.
+/// Computing cost of the program, emulated; cycles are estimates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cost {
     /// Instructions of one control tick, mean.
@@ -93,8 +95,8 @@ pub struct Cost {
     pub cycles_max: u64,
     /// Longest time from the request of a control tick to its first instruction, cycles.
     pub latency_max: u64,
-    /// Part of the time in which the CPU does not sleep.
+    /// Fraction of the time in which the CPU is not asleep.
     pub load: f64,
-    /// Most of the stack that was ever used, bytes; none if the image does not say where its stack ends.
+    /// Largest stack use, bytes; `None` if the image does not define the end of its stack.
     pub stack_bytes: Option<u32>,
 }

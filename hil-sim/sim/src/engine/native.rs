@@ -1,21 +1,21 @@
-//! The device's logic, called directly.
+//! The native engine: calls the logic of the device directly.
 
 use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::fmt::Display;
 
-use thermal_display::commissioning::StorageOrder;
-use thermal_display::device::command::Addressed;
-use thermal_display::device::drive::{Drive, Outputs};
-use thermal_display::device::safety::{Fault, ThermalDose, TripCause};
-use thermal_display::device::sense::{SCANS_PER_TICK, Samples, Scan};
-use thermal_display::device::{Device, Finger};
-use thermal_display::protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
-use thermal_display::settings::{Settings, StoredSettings, decode};
+use thermal_commissioning::StorageOrder;
+use thermal_device::command::Addressed;
+use thermal_device::drive::{Drive, Outputs};
+use thermal_device::safety::{Fault, ThermalDose, TripCause};
+use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
+use thermal_device::{Device, Finger};
 use thermal_plant::bridge::{Leg, Legs};
 use thermal_plant::sensors::Channel;
+use thermal_protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
+use thermal_settings::{Settings, StoredSettings, decode};
 
-use super::{BAUD, Cost, DeviceReset, Engine};
+use super::{BAUD, DeviceReset, Engine};
 use crate::World;
 use crate::processor::{MachineFault, NotInjected, ResetCause};
 
@@ -28,10 +28,10 @@ const TICK_NS: u64 = 730_000;
 /// Steps of the board's PWM period: 180 MHz / 96 kHz.
 const PWM_STEPS: u16 = 1875;
 
-/// What the window watchdog waits for a tick.
+/// Timeout of the window watchdog, ms.
 const WINDOW_MS: u64 = 46;
 
-/// As after a reset.
+/// Outputs after a reset.
 const OFF: Outputs = Outputs {
     drive: Drive::Off,
     comparator_test: false,
@@ -41,48 +41,48 @@ const OFF: Outputs = Outputs {
 const SCANS_BEFORE_START: usize = 4;
 const SCANS_IN_FIRST_HALF: usize = 8;
 
-/// The logic of one finger without its microcontroller.
+/// The logic of one finger without the microcontroller.
 #[derive(Debug)]
-pub struct Native {
+pub struct NativeEngine {
     world: World,
     handler: CommandHandler<1>,
     device: Device<1>,
     reader: LineReader,
-    /// Bytes on their way to the device, and when they arrive.
+    /// Bytes on the line to the device with their arrival times, ns.
     incoming: VecDeque<(u64, u8)>,
     outgoing: Vec<u8>,
     scans: [Scan; SCANS_PER_TICK],
     filled: usize,
-    /// Scans before those of a tick that are made and left out, while multiplexers settle.
+    /// Number of scans discarded before those of each tick, while the multiplexers settle.
     settling_scans: usize,
-    /// The bridge has pulled its fault pin since the last tick: the board's break flag keeps that.
+    /// Whether the bridge has pulled its fault pin since the last tick, as the board's break flag records.
     fault: bool,
     outputs: Outputs,
-    /// For how long no tick has run: the drive stays as it is.
+    /// Time for which no tick has run, while the outputs keep their state.
     hung_ms: Option<u64>,
     resets: Vec<DeviceReset>,
-    /// Settings in what stands for the flash.
+    /// Settings in the simulated flash.
     stored: Option<[StoredSettings; 1]>,
     /// Half milliseconds since the first boundary.
     halves: u64,
 }
 
-impl Native {
+impl NativeEngine {
     /// A device that has just started its first tick.
     #[must_use]
     pub fn new(world: World) -> Self {
-        Self::with(world, 0, 0)
+        Self::with_discarded_scans(world, 0, 0)
     }
 
-    /// One of several fingers that take turns on multiplexers: before the scans of a tick one is made that is left out.
-    /// On the finger that power-up finds the multiplexers `settled` on it is two the first time, because there the first
-    /// scan after a switch does not see the finger before.
+    /// One of several fingers that share the converter through multiplexers: one scan is discarded before those of each
+    /// tick. For the finger that the multiplexers select at power-up (`settled`), two scans are discarded the first time,
+    /// because no switch precedes the first one.
     #[must_use]
-    pub fn in_turn(world: World, settled: bool) -> Self {
-        Self::with(world, 1, settled.into())
+    pub fn multiplexed(world: World, settled: bool) -> Self {
+        Self::with_discarded_scans(world, 1, settled.into())
     }
 
-    fn with(world: World, settling_scans: usize, more_at_first: usize) -> Self {
+    fn with_discarded_scans(world: World, settling_scans: usize, more_at_first: usize) -> Self {
         let settings = Settings::default();
         let mut native = Self {
             world,
@@ -101,21 +101,21 @@ impl Native {
             stored: None,
             halves: 0,
         };
-        native.settle(more_at_first);
-        native.begin();
+        native.discard_scans(more_at_first);
+        native.start_tick();
         native
     }
 
-    /// Converts and leaves out.
-    fn settle(&mut self, scans: usize) {
+    /// Converts all channels and discards the codes.
+    fn discard_scans(&mut self, scans: usize) {
         for _ in 0..scans {
             let _unsettled = Channel::ALL.map(|channel| self.world.convert(channel));
         }
     }
 
-    /// The first scans of a tick.
-    fn begin(&mut self) {
-        self.settle(self.settling_scans);
+    /// Takes the first scans of a tick.
+    fn start_tick(&mut self) {
+        self.discard_scans(self.settling_scans);
         self.filled = 0;
         self.scan(SCANS_BEFORE_START);
     }
@@ -128,21 +128,21 @@ impl Native {
     }
 
     fn tick(&mut self) {
-        self.serve((self.halves - 1) * HALF_NS + TICK_NS);
+        self.execute_received_lines((self.halves - 1) * HALF_NS + TICK_NS);
         let samples = Samples::from_scans(&self.scans, self.fault);
         self.fault = self.world.bridge_fault();
         self.outputs = self.device.step(Finger::FIRST, &samples);
         self.world.comparator_test(self.outputs.comparator_test);
         if let Some(telemetry) = self.device.telemetry(Finger::FIRST) {
-            self.answer(&telemetry_line(telemetry));
+            self.send_line(&telemetry_line(telemetry));
         }
     }
 
-    /// The logic as after power-up, with the bridge off, and with what the board has kept of a fault and the dose. It starts at once:
-    /// what the board needs for that is not here.
+    /// Restarts the logic with the bridge off and with the trip cause and dose that the board retains. The start-up time of
+    /// the board is not modelled.
     fn restart(&mut self, cause: ResetCause) {
         let tripped = self.device.earliest_cause().copied();
-        let kept = match cause {
+        let cause_retained = match cause {
             ResetCause::PowerOn => None,
             ResetCause::WindowWatchdog => {
                 tripped.or(Some(TripCause::without_readings(Fault::TickLost)))
@@ -154,7 +154,7 @@ impl Native {
             _ => ThermalDose::from_word(self.device.dose(Finger::FIRST).to_word()),
         };
         let settings = Settings::default();
-        self.device = Device::with_trip_cause(kept, &settings);
+        self.device = Device::with_trip_cause(cause_retained, &settings);
         self.device.restore_dose(Finger::FIRST, dose);
         self.handler = match &self.stored {
             Some(stored) => {
@@ -171,18 +171,18 @@ impl Native {
         });
     }
 
-    fn answer(&mut self, line: &dyn Display) {
+    fn send_line(&mut self, line: &dyn Display) {
         self.outgoing.extend(format!("{line}\n").into_bytes());
     }
 
-    /// Starts anew, with what is stored by then; how long that takes is left out.
-    fn obey(&mut self, order: StorageOrder) {
+    /// Writes the settings and restarts; the time that this takes is not modelled.
+    fn store_and_restart(&mut self, order: StorageOrder) {
         self.stored = decode(&self.handler.settings_record(order)).ok().flatten();
         self.restart(ResetCause::Software);
     }
 
-    /// Lines whose last byte has arrived before the tick.
-    fn serve(&mut self, now_ns: u64) {
+    /// Executes the lines whose last byte has arrived before the tick.
+    fn execute_received_lines(&mut self, now_ns: u64) {
         while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
             if LineReader::is_end(byte) {
                 self.device.note_host_activity();
@@ -202,17 +202,17 @@ impl Native {
                 ..
             }) = &executed
             {
-                self.obey(*order);
+                self.store_and_restart(*order);
             }
             match executed {
-                Ok(reply) => self.answer(&reply),
-                Err(error) => self.answer(&error),
+                Ok(reply) => self.send_line(&reply),
+                Err(error) => self.send_line(&error),
             }
         }
     }
 }
 
-impl Engine for Native {
+impl Engine for NativeEngine {
     type Stop = Infallible;
 
     const NAME: &'static str = "native";
@@ -247,7 +247,7 @@ impl Engine for Native {
                 Some(WINDOW_MS) => self.restart(ResetCause::WindowWatchdog),
                 Some(ms) => *ms += 1,
             }
-            self.begin();
+            self.start_tick();
         }
         self.halves += 1;
         Ok(())
@@ -268,8 +268,8 @@ impl Engine for Native {
         into.append(&mut self.outgoing);
     }
 
-    /// Without a processor a hung core, and samples that do not come, mean that no tick runs until the window watchdog
-    /// resets the device; a reset starts the logic anew. All else has no meaning here.
+    /// A hung core or missing samples stop the ticks until the window watchdog resets the device; a reset restarts the
+    /// logic. Other faults do not apply to an engine without a processor.
     fn inject(&mut self, fault: &MachineFault, _after_us: u32) -> Result<(), NotInjected> {
         match fault {
             MachineFault::HungCore | MachineFault::AdcStopped => self.hung_ms = Some(0),
@@ -289,11 +289,5 @@ impl Engine for Native {
 
     fn resets(&self) -> Vec<DeviceReset> {
         self.resets.clone()
-    }
-
-    fn reset_cost(&mut self) {}
-
-    fn cost(&self) -> Option<Cost> {
-        None
     }
 }

@@ -1,4 +1,4 @@
-//! What a person reads of a run: a table, plots, a page.
+//! Reports of a run for people: a table, plots and a page.
 
 mod plots;
 mod table;
@@ -14,12 +14,12 @@ use crate::scene::Scene;
 
 pub use table::table;
 
-/// Name of the page.
+/// File name of the page.
 pub const HTML: &str = "report.html";
-/// Name of the plots by themselves.
+/// File name of the separate plots.
 pub const SVG: &str = "plots.svg";
 
-/// Writes the page, which needs no other file, and the plots by themselves.
+/// Writes the page, which is self-contained, and the plots as a separate file.
 ///
 /// # Errors
 /// A file cannot be written.

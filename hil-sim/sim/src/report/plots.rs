@@ -6,10 +6,10 @@ use thermal_charts::{Curve, Legend, Panel, Stroke};
 use crate::metrics::contact_times;
 use crate::run::Outcome;
 use crate::scene::Scene;
-use crate::trace::Row;
+use crate::trace::TraceRow;
 
 const SIZE: (u32, u32) = (1000, 1050);
-/// Points of a curve; more cannot be told apart.
+/// Largest number of points of a curve; more could not be distinguished.
 const POINTS: usize = 1500;
 
 const SKIN: RGBColor = RGBColor(0xd6, 0x27, 0x28);
@@ -22,15 +22,15 @@ const CURRENT: RGBColor = RGBColor(0x94, 0x67, 0xbd);
 fn curve(
     name: &str,
     color: RGBColor,
-    rows: &[Row],
-    value: impl Fn(usize, &Row) -> Option<f64>,
+    rows: &[TraceRow],
+    value: impl Fn(usize, &TraceRow) -> Option<f64>,
 ) -> Curve {
     let every = rows.len().div_ceil(POINTS).max(1);
     let points = rows.iter().enumerate().step_by(every);
     Curve {
         name: name.into(),
         color,
-        // The real skin's curve lies on it.
+        // Wider, because the curve of the real skin lies on top of it.
         stroke: Stroke::Solid(if color == SKIN { 4 } else { 2 }),
         points: points
             .filter_map(|(i, row)| Some((row.t_s, value(i, row)?)))
@@ -38,8 +38,8 @@ fn curve(
     }
 }
 
-/// What the camera makes of the skin on the real object. It has rows of its own: most have no frame.
-fn camera(rows: &[Row]) -> Curve {
+/// Skin temperature recovered from the camera. It is sampled separately because most rows have no frame.
+fn camera(rows: &[TraceRow]) -> Curve {
     let frames: Vec<_> = rows
         .iter()
         .filter_map(|row| Some((row.t_s, row.camera?.recovered_c)))
@@ -71,7 +71,7 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
         }),
     ];
     if scene.infrared.is_some() {
-        // Below the others: it is noise around one of them.
+        // Drawn first, below the others, because it is one of them with noise.
         temperatures.insert(0, camera(rows));
     }
     let errors = [

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use crate::metrics::{Errors, Figures, PerTick};
+use crate::metrics::{CostPerTick, ErrorFigures, Figures};
 
-/// Names and values with units, in the order in which they are read.
+/// Names and values with units, in the order of the table.
 pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
-    let errors = |errors: Option<Errors>| {
+    let errors = |errors: Option<ErrorFigures>| {
         errors.map_or("no contact".into(), |errors| {
             let max = errors
                 .max_after_50ms
@@ -14,8 +14,8 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
             format!("{max} after 50 ms, {:.1} mK RMS", errors.rms)
         })
     };
-    let cost = |cost: PerTick| match cost {
-        PerTick {
+    let cost = |cost: CostPerTick| match cost {
+        CostPerTick {
             mean: Some(mean),
             max: Some(max),
         } => format!("{mean:.0} mean, {max} max"),
@@ -80,7 +80,7 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// The figures, one a line.
+/// The figures, one per line.
 #[must_use]
 pub fn table(figures: &Figures) -> String {
     rows(figures)

@@ -4,9 +4,9 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Sensor;
-pub(super) use super::node::Node;
+pub(super) use super::parameter_node::ParameterNode;
 
-/// A number with its place in the file; whole numbers are accepted.
+/// A number with its position in the file; whole numbers are accepted.
 pub(super) type Number = Spanned<f64>;
 
 #[derive(Deserialize)]
@@ -25,7 +25,7 @@ pub(super) struct File {
     pub device: Device,
     pub object: Spanned<Object>,
     pub finger: Option<Spanned<Finger>>,
-    pub plant: Option<Spanned<Node>>,
+    pub plant: Option<Spanned<ParameterNode>>,
     pub infrared: Option<Spanned<Infrared>>,
     #[serde(default)]
     pub force: Vec<Force>,

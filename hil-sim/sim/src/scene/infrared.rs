@@ -11,22 +11,22 @@ use toml::Spanned;
 use super::file::{self, Glass};
 use super::source::{SceneError, Source};
 
-/// Frames per second where a scene gives none: a class value of uncooled cameras.
+/// Default frame rate, Hz: typical of uncooled cameras.
 const RATE_HZ: f64 = 30.0;
 
-/// A camera that watches the skin on the real object.
+/// The infrared camera that observes the skin on the real object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Infrared {
-    /// What it is made of.
+    /// Parameters of the camera.
     pub params: CameraParams,
-    /// What it stands in.
+    /// Temperatures around the camera.
     pub surroundings: Surroundings,
-    /// Frames per second, above 0, at most 1000. The first is at time zero.
+    /// Frame rate, Hz, above 0 and at most 1000. The first frame is at time zero.
     pub rate_hz: f64,
 }
 
 impl Infrared {
-    /// The camera, its noise drawn from its own stream of a scene's seed.
+    /// The camera; its noise has its own random stream of the scene's seed.
     ///
     /// # Errors
     /// As [`Camera::new`].
@@ -34,7 +34,7 @@ impl Infrared {
         Camera::new(&self.params, &self.surroundings, stream(seed, "infrared"))
     }
 
-    /// Whether a frame falls into the millisecond that ends at this one since time zero.
+    /// Whether there is a frame in the millisecond that ends `ms` after time zero.
     #[must_use]
     pub fn has_frame(&self, ms: u64) -> bool {
         let frame = |ms: u64| (ms as f64 * self.rate_hz / 1e3 + SLACK).floor();
@@ -43,7 +43,7 @@ impl Infrared {
     }
 }
 
-/// Part of a frame that is rounding.
+/// Tolerance for rounding, frames.
 const SLACK: f64 = 1e-9;
 
 /// Checks the camera's table.
@@ -92,10 +92,7 @@ pub(super) fn infrared(
             window_c: or(&table.window_c, room_c),
             splitter_c: or(&table.splitter_c, room_c),
         },
-        rate_hz: match &table.rate_hz {
-            Some(number) => source.within("infrared.rate_hz", number, 0.001, 1000.0)?,
-            None => RATE_HZ,
-        },
+        rate_hz: source.within_or(RATE_HZ, "infrared.rate_hz", &table.rate_hz, 0.001, 1000.0)?,
     };
     match infrared.camera(0) {
         Ok(_) => Ok(infrared),
@@ -113,7 +110,7 @@ pub(super) fn infrared(
     }
 }
 
-/// Where the value of a name stands.
+/// Position of the value of a camera parameter.
 fn span(table: &file::Infrared, name: &str) -> Option<Range<usize>> {
     let number = match name {
         "pixels" => return table.pixels.as_ref().map(Spanned::span),

@@ -1,12 +1,12 @@
-//! Scenes: what happens to the finger, the object and the device.
+//! Scenes: the finger, the object, the plant and the device, and the events in a run.
 
-mod check;
-mod depth;
 mod fault;
 mod file;
 mod infrared;
-mod node;
+mod nesting;
 mod object;
+mod parameter_node;
+mod parse;
 mod plant;
 mod source;
 
@@ -15,15 +15,18 @@ use std::path::Path;
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
-use thermal_display::device::control::Law;
-use thermal_display::device::reference::Mode;
+use thermal_device::control::Law;
+use thermal_device::reference::Mode;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::Back;
 use thermal_plant::{Params, PlantConfig};
 
 use crate::processor::Injection;
 
-pub use fault::{Broken, DRIFT_K_S, Fault, FaultKind, ProcessorKey, ProcessorKind, Sensor, Value};
+pub use fault::{
+    ActiveFault, DRIFT_K_S, FaultKind, ProcessorKey, ProcessorKind, ScheduledFault, Sensor,
+    ValueRange,
+};
 pub use infrared::Infrared;
 pub(crate) use object::custom_line;
 pub use source::SceneError;
@@ -37,72 +40,72 @@ pub fn known_materials() -> String {
 /// A scene that has passed every check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Length, s.
+    /// Duration from time zero on, s.
     pub duration_s: f64,
-    /// Time before zero in which the device is switched on, armed and settles, s.
+    /// Time before zero in which the device is powered up, armed and settles, s.
     pub settle_s: f64,
-    /// Skin before contact, °C.
+    /// Skin temperature before contact, °C.
     pub skin_c: f64,
-    /// Room, °C.
+    /// Room temperature, °C.
     pub room_c: f64,
-    /// Of every random draw.
+    /// Seed of every random draw.
     pub seed: u64,
-    /// The device was calibrated and tuned before the scene.
+    /// Whether the device was calibrated and tuned before the scene.
     pub commissioned: bool,
-    /// Model that the device is told to use.
+    /// Contact model that the device uses.
     pub mode: Mode,
-    /// Law that the device is told to use; its own choice if none.
+    /// Control law; `None` for the default of the device.
     pub law: Option<Law>,
-    /// What the finger should feel.
+    /// The object that the display imitates.
     pub object: Object,
-    /// What finger, display and electronics are like.
+    /// Parameters of finger, display and electronics.
     pub params: Params,
-    /// The camera that watches the finger on the real object, if there is one.
+    /// The infrared camera that observes the finger on the real object, if any.
     pub infrared: Option<Infrared>,
-    /// Force over time, in order of time.
+    /// Changes of the force, in order of time.
     pub forces: Vec<Force>,
-    /// What breaks.
-    pub faults: Vec<Fault>,
-    /// What happens to the processor.
+    /// Faults of plant, converter and host.
+    pub faults: Vec<ScheduledFault>,
+    /// Faults of the processor.
     pub injections: Vec<Injection>,
     /// Lines that the host sends.
     pub host: Vec<HostLine>,
 }
 
-/// The real object.
+/// The object that the display imitates.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// Name of the material, or `custom`.
     pub name: String,
     /// Its properties.
     pub material: Material,
-    /// Temperature before contact, °C, told to the device; the room's if absent.
+    /// Temperature before contact, °C, which the device is given; the room's if absent.
     pub start_c: Option<f64>,
-    /// Time from which it is there, s.
+    /// Time at which it appears, s.
     pub appears_t_s: f64,
-    /// Thickness, m; infinite for a half-space. The device does not know of it.
+    /// Thickness, m; infinite for a half-space. The device is not given it.
     pub thickness_m: f64,
-    /// What lies behind it.
+    /// Boundary condition at its back.
     pub back: Back,
 }
 
-/// A force that is held from a time on.
+/// A change to a force that is then held.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Force {
-    /// From when, s.
+    /// Start, s.
     pub t_s: f64,
-    /// How much, N.
+    /// Force at the end of the ramp, N.
     pub force_n: f64,
-    /// How long it takes to get there from the force before, linearly, s.
+    /// Duration of the linear ramp from the previous force, s.
     pub ramp_s: f64,
 }
 
 /// A line that the host sends.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HostLine {
-    /// When, s.
+    /// Time, s.
     pub t_s: f64,
-    /// The line, without its end.
+    /// The line without its end.
     pub line: String,
 }
 
@@ -122,7 +125,7 @@ impl Scene {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(text: &str, path: &Path) -> Result<Self, SceneError> {
-        check::scene(text, path)
+        parse::scene(text, path)
     }
 
     /// Temperature of the object before contact, °C.
@@ -131,8 +134,8 @@ impl Scene {
         self.object.start_c.unwrap_or(self.room_c)
     }
 
-    /// The exact set-point for a nominal finger, °C: its temperature before contact known, `since_s` after it
-    /// landed with `force_n`. At landing, and so for the preset, the force does not matter.
+    /// The exact set-point for a nominal finger of known temperature before contact, °C, `since_s` after it landed with
+    /// `force_n`. At landing, and therefore for the preset, the force does not matter.
     #[must_use]
     pub fn exact_setpoint_c(&self, since_s: f64, force_n: f64) -> f64 {
         let object = &self.object.material;
@@ -149,7 +152,7 @@ impl Scene {
         }
     }
 
-    /// The plant of the scene.
+    /// Configuration of the plant.
     #[must_use]
     pub fn plant_config(&self) -> PlantConfig {
         PlantConfig {
@@ -169,7 +172,7 @@ impl Scene {
         }
     }
 
-    /// Milliseconds before time zero.
+    /// Settling time before time zero, ms.
     pub(crate) fn settle_ms(&self) -> u64 {
         (self.settle_s * 1e3).round() as u64
     }

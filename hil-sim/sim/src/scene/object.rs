@@ -3,17 +3,17 @@
 use std::ops::Range;
 
 use contact_model::material::{Material, Surface, find};
-use thermal_display::protocol::Request;
-use thermal_display::settings::Settings;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::Back;
+use thermal_protocol::Request;
+use thermal_settings::Settings;
 use toml::Spanned;
 
 use super::file::{self, Number};
 use super::source::{SceneError, Source};
 use super::{Object, known_materials};
 
-/// Checks the object's table.
+/// Reads and checks the object's table.
 pub(super) fn object(
     source: &Source<'_>,
     file: &Spanned<file::Object>,
@@ -50,14 +50,18 @@ pub(super) fn object(
     } else {
         ("custom".into(), custom(source, properties, span)?)
     };
-    let start_c = match &object.start_c {
-        Some(number) => Some(source.within("object.start_c", number, -20.0, 60.0)?),
-        None => None,
-    };
-    let appears_t_s = match &object.appears_t_s {
-        Some(number) => source.time("object.appears_t_s", number, duration_s)?,
-        None => 0.0,
-    };
+    let start_c = object
+        .start_c
+        .as_ref()
+        .map(|start_c| source.within("object.start_c", start_c, -20.0, 60.0))
+        .transpose()?;
+    let appears_t_s = source.within_or(
+        0.0,
+        "object.appears_t_s",
+        &object.appears_t_s,
+        0.0,
+        duration_s,
+    )?;
     let (thickness_m, back) = shape(source, object, room_c, start_c.unwrap_or(room_c))?;
     Ok(Object {
         name,
@@ -69,37 +73,36 @@ pub(super) fn object(
     })
 }
 
-/// Thickness and back; a half-space has no back.
+/// Thickness and boundary condition at the back; a half-space has none.
 fn shape(
     source: &Source<'_>,
     object: &file::Object,
     room_c: f64,
     start_c: f64,
 ) -> Result<(f64, Back), SceneError> {
-    let needless = |key: &str, span, needed: &str| {
+    let meaningless = |key: &str, span, needed: &str| {
         let problem = format!("object.{key} has no meaning here; allowed is {key} beside {needed}");
         Err(source.error(Some(span), problem))
     };
-    let thickness_m = match &object.thickness_m {
-        Some(number) => {
-            source.within("object.thickness_m", number, ObjectConfig::THINNEST_M, 10.0)?
-        }
-        None => f64::INFINITY,
-    };
+    let thickness_m = source.within_or(
+        f64::INFINITY,
+        "object.thickness_m",
+        &object.thickness_m,
+        ObjectConfig::THINNEST_M,
+        10.0,
+    )?;
     if let (None, Some(back)) = (&object.thickness_m, &object.back) {
-        return needless("back", back.span(), "object.thickness_m");
+        return meaningless("back", back.span(), "object.thickness_m");
     }
     let kind = object
         .back
         .as_ref()
         .map_or(file::Back::Insulated, |back| *back.get_ref());
     if let (file::Back::Insulated, Some(number)) = (kind, &object.back_c) {
-        return needless("back_c", number.span(), "back = \"held\" or \"film\"");
+        return meaningless("back_c", number.span(), "back = \"held\" or \"film\"");
     }
-    let back_c = |otherwise_c: f64| match &object.back_c {
-        Some(number) => source.within("object.back_c", number, -20.0, 60.0),
-        None => Ok(otherwise_c),
-    };
+    let back_c =
+        |default_c| source.within_or(default_c, "object.back_c", &object.back_c, -20.0, 60.0);
     let film = match (kind, &object.back_film_w_m2k) {
         (file::Back::Film, Some(number)) => {
             Some(source.within("object.back_film_w_m2k", number, 0.1, 1e6)?)
@@ -110,7 +113,9 @@ fn shape(
                 "object.back = \"film\" without object.back_film_w_m2k; allowed is 0.1 to 1000000";
             return Err(source.error(span, problem));
         }
-        (_, Some(number)) => return needless("back_film_w_m2k", number.span(), "back = \"film\""),
+        (_, Some(number)) => {
+            return meaningless("back_film_w_m2k", number.span(), "back = \"film\"");
+        }
         (_, None) => None,
     };
     let back = match (kind, film) {
@@ -127,7 +132,7 @@ fn shape(
     Ok((thickness_m, back))
 }
 
-/// A material given by its properties; the ranges are those that the device itself accepts.
+/// A material given by its properties; they must be within the ranges that the device accepts.
 fn custom(
     source: &Source<'_>,
     properties: [(&str, &Option<Number>); 5],
@@ -169,7 +174,7 @@ fn custom(
     }
 }
 
-/// The line that tells the device of a material by its properties.
+/// The line that sends a material's properties to the device.
 pub(crate) fn custom_line(material: &Material) -> String {
     let Surface {
         conductivity_w_mk,

@@ -1,4 +1,4 @@
-//! The parameters of a scene: its finger, a draw of the box, and single values.
+//! The plant parameters of a scene: its finger, a random draw, and single values.
 
 use std::ops::Range;
 
@@ -8,24 +8,24 @@ use thermal_plant::slab::{Layer, Medium};
 use thermal_plant::{Params, parameters};
 use toml::Spanned;
 
-use super::file::{self, Node};
+use super::file::{self, ParameterNode};
 use super::source::{SceneError, Source};
 
-/// The parameters: nominal ones, drawn if the scene asks for it, then what the scene itself says.
+/// The parameters: nominal or drawn, then overridden by the values of the scene.
 pub(super) fn params(
     source: &Source<'_>,
     finger: Option<&Spanned<file::Finger>>,
-    plant: Option<&Spanned<Node>>,
+    plant: Option<&Spanned<ParameterNode>>,
 ) -> Result<Params, SceneError> {
     let mut params = Params::nominal();
     if let Some(finger) = finger {
         tissue(source, finger.get_ref(), &mut params)?;
-        own(source, finger.get_ref(), &mut params)?;
+        finger_values(source, finger.get_ref(), &mut params)?;
     }
     let Some(plant) = plant else {
         return Ok(params);
     };
-    let Node::Table(entries) = plant.get_ref() else {
+    let ParameterNode::Table(entries) = plant.get_ref() else {
         return Err(source.error(
             Some(plant.span()),
             "plant is a number; allowed is a table of parameters",
@@ -36,7 +36,7 @@ pub(super) fn params(
     for (_, seed) in draws {
         parameters::draw(&mut params, seed_of(source, seed)?);
         if let Some(finger) = finger {
-            own(source, finger.get_ref(), &mut params)?;
+            finger_values(source, finger.get_ref(), &mut params)?;
         }
     }
     for (key, node) in values {
@@ -45,9 +45,9 @@ pub(super) fn params(
     Ok(params)
 }
 
-fn seed_of(source: &Source<'_>, seed: &Spanned<Node>) -> Result<u64, SceneError> {
+fn seed_of(source: &Source<'_>, seed: &Spanned<ParameterNode>) -> Result<u64, SceneError> {
     match seed.get_ref() {
-        Node::Whole(seed) if *seed >= 0 => Ok(seed.unsigned_abs()),
+        ParameterNode::Whole(seed) if *seed >= 0 => Ok(seed.unsigned_abs()),
         _ => {
             let problem = format!(
                 "plant.draw is the seed of a draw; allowed is a whole number, 0 to {}",
@@ -63,18 +63,18 @@ fn set(
     source: &Source<'_>,
     params: &mut Params,
     key: String,
-    node: &Spanned<Node>,
+    node: &Spanned<ParameterNode>,
 ) -> Result<(), SceneError> {
     match node.get_ref() {
-        Node::Number(value) => source.set(params, &key, *value, node.span()),
-        Node::Whole(value) => source.set(params, &key, *value as f64, node.span()),
-        Node::Table(entries) => entries.iter().try_for_each(|(name, node)| {
+        ParameterNode::Number(value) => source.set(params, &key, *value, node.span()),
+        ParameterNode::Whole(value) => source.set(params, &key, *value as f64, node.span()),
+        ParameterNode::Table(entries) => entries.iter().try_for_each(|(name, node)| {
             set(source, params, format!("{key}.{}", name.get_ref()), node)
         }),
     }
 }
 
-/// The parts that the finger has.
+/// The kind of tissue of the finger, and whether its vessels are modelled.
 fn tissue(
     source: &Source<'_>,
     finger: &file::Finger,
@@ -97,8 +97,12 @@ fn tissue(
     Ok(())
 }
 
-/// What the scene itself says of the finger.
-fn own(source: &Source<'_>, finger: &file::Finger, params: &mut Params) -> Result<(), SceneError> {
+/// Sets the finger's values that the scene gives.
+fn finger_values(
+    source: &Source<'_>,
+    finger: &file::Finger,
+    params: &mut Params,
+) -> Result<(), SceneError> {
     if !finger.layer.is_empty() {
         let unset = Layer {
             thickness_m: f64::INFINITY,
@@ -107,7 +111,7 @@ fn own(source: &Source<'_>, finger: &file::Finger, params: &mut Params) -> Resul
         params.finger.layers = vec![unset; finger.layer.len()];
         for (i, layer) in finger.layer.iter().enumerate() {
             let last = i + 1 == finger.layer.len();
-            one_layer(source, params, &format!("finger.layer.{i}"), layer, last)?;
+            layer_values(source, params, &format!("finger.layer.{i}"), layer, last)?;
         }
     }
     if let Some(core_w_m2k) = &finger.core_w_m2k {
@@ -129,7 +133,7 @@ fn number(
     source.set(params, key, *number.get_ref(), number.span())
 }
 
-fn one_layer(
+fn layer_values(
     source: &Source<'_>,
     params: &mut Params,
     key: &str,

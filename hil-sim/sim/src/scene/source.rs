@@ -1,4 +1,4 @@
-//! Where a message about a scene points.
+//! The text of a scene, and errors that point into it.
 
 use std::fmt;
 use std::ops::Range;
@@ -9,7 +9,7 @@ use thermal_plant::parameters;
 
 use super::file::Number;
 
-/// What is wrong with a scene, and where.
+/// An error in a scene: file, line and problem.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SceneError {
     file: PathBuf,
@@ -39,7 +39,7 @@ impl SceneError {
     }
 }
 
-/// A scene's text and the file that it is from.
+/// The text of a scene and its file.
 pub(super) struct Source<'a> {
     pub file: &'a Path,
     pub text: &'a str,
@@ -74,11 +74,26 @@ impl Source<'_> {
         Err(self.error(Some(number.span()), problem))
     }
 
+    /// The number, if it lies within the range; `default` if the scene gives none.
+    pub fn within_or(
+        &self,
+        default: f64,
+        key: &str,
+        number: &Option<Number>,
+        min: f64,
+        max: f64,
+    ) -> Result<f64, SceneError> {
+        match number {
+            Some(number) => self.within(key, number, min, max),
+            None => Ok(default),
+        }
+    }
+
     pub fn time(&self, key: &str, number: &Number, duration_s: f64) -> Result<f64, SceneError> {
         self.within(key, number, 0.0, duration_s)
     }
 
-    /// Sets a parameter of the box.
+    /// Sets a plant parameter.
     pub fn set(
         &self,
         params: &mut Params,

@@ -10,7 +10,7 @@ use thermal_plant::object::ObjectConfig;
 use thermal_plant::sensors::Channel;
 use thermal_plant::{Params, Plant, PlantConfig};
 use thermal_sim::World;
-use thermal_sim::engine::{Engine, Native};
+use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::scene::Scene;
 
 thread_local! {
@@ -131,9 +131,11 @@ fn plant_does_not_allocate() {
 fn native_engine_does_not_allocate_without_a_stream() {
     let text = "duration_s = 2.0\nskin_c = 34.0\nroom_c = 24.0\nseed = 1\n[object]\nmaterial = \"granite\"\n";
     let scene = Scene::parse(text, Path::new("scene.toml")).expect("a sound scene");
-    let mut native = Native::new(World::new(&scene).expect("a sound world"));
-    let step = |native: &mut Native, force_n: f64| {
-        native.world().set(force_n, std::iter::empty());
+    let mut native = NativeEngine::new(World::new(&scene).expect("a sound world"));
+    let step = |native: &mut NativeEngine, force_n: f64| {
+        native
+            .world()
+            .set_force_and_faults(force_n, std::iter::empty());
         let legs = native.legs();
         native.world().step(legs);
         let Ok(()) = native.run_half_ms();

@@ -1,29 +1,19 @@
 //! `--campaign` and `--replay`: random campaigns.
 
-use anyhow::{Context, anyhow};
-use serde::Serialize;
-use thermal_campaigns::faults::{Campaign, Ran, summary};
-use thermal_sim::Device;
+use anyhow::Context;
+use thermal_campaigns::faults::{CampaignResult, RandomCampaign, campaign_summary};
+use thermal_sim::SceneRunner;
 
-use super::{Arguments, Failure, each, output, tell};
+use super::{Arguments, Failure, RunsReport, each, output};
 
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Report<'a> {
-    engine: &'static str,
-    seed: u64,
-    holds: bool,
-    campaigns: &'a [Ran],
-}
-
-/// Runs the campaigns of these numbers; a violation is a failure.
+/// Runs the campaigns with these numbers; a violation is a failure.
 pub fn run(
     arguments: &Arguments,
-    device: &dyn Device,
+    device: &dyn SceneRunner,
     numbers: std::ops::Range<u64>,
 ) -> Result<(), Failure> {
     let campaigns: Vec<_> = numbers
-        .map(|number| Campaign::new(arguments.seed, number, device.has_processor()))
+        .map(|number| RandomCampaign::new(arguments.seed, number, device.has_processor()))
         .collect();
     if let (Some(folder), Some(_), [campaign]) =
         (&arguments.out, arguments.replay, campaigns.as_slice())
@@ -31,27 +21,24 @@ pub fn run(
         let name = format!("campaign-{}.toml", campaign.number);
         output::write(folder, &name, campaign.text()).map_err(Failure::run)?;
     }
-    let work = |campaign: &Campaign| {
+    let work = |campaign: &RandomCampaign| {
         let ran = campaign.run(device);
         ran.with_context(|| format!("number {} of seed {}", campaign.number, arguments.seed))
     };
     let ran = each(arguments, "campaigns", device, &campaigns, work).map_err(Failure::run)?;
-    let ran: Vec<Ran> = ran.into_iter().flatten().collect();
-    let failing = ran.iter().filter(|ran| !ran.holds()).count();
-    let report = Report {
-        engine: device.name(),
+    let ran: Vec<CampaignResult> = ran.into_iter().flatten().collect();
+    let failing = ran.iter().filter(|ran| !ran.trial.holds()).count();
+    let report = RunsReport {
+        engine: Some(device.name()),
         seed: arguments.seed,
-        holds: failing == 0,
-        campaigns: &ran,
+        failing: failing,
+        key: "campaigns",
+        runs: &ran,
     };
-    tell(arguments, &report, || summary(&ran))?;
-    if failing == 0 {
-        return Ok(());
-    }
-    Err(Failure::run(anyhow!(
-        "{failing} of {} campaigns do not hold; --replay NUMBER --seed {} --engine {} repeats one",
-        ran.len(),
+    let problem = format!(
+        "campaigns do not hold; --replay NUMBER --seed {} --engine {} repeats one",
         arguments.seed,
         device.name()
-    )))
+    );
+    report.print(arguments, campaign_summary, problem)
 }

@@ -1,4 +1,4 @@
-//! `hil-sim faults`: the fault-injection matrix, and what is built on it.
+//! `hil-sim faults`: the fault matrix, random campaigns, pairs, normal use and bit flips.
 
 mod campaign;
 mod flips;
@@ -11,13 +11,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use anyhow::anyhow;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use indicatif::{ProgressBar, ProgressStyle};
-use serde::Serialize;
-use thermal_campaigns::faults::{self, Entry, Outline, Place, Plan, Trial};
-use thermal_campaigns::map;
-use thermal_sim::Device;
+use serde::ser::SerializeMap;
+use serde::{Serialize, Serializer};
+use thermal_campaigns::faults::{self, FaultCase, FaultRun, FaultScene, FaultSummary, MatrixPlan};
+use thermal_campaigns::parallel_map;
+use thermal_sim::SceneRunner;
 
-use super::device::{self, Kind};
+use super::engine::{self, EngineKind};
 use super::{Failure, output};
 
 #[derive(Args)]
@@ -26,8 +26,8 @@ pub struct Arguments {
     #[arg(long, num_args = 1.., value_name = "KIND")]
     only: Vec<String>,
     /// In these scenes only
-    #[arg(long, num_args = 1.., value_parser = places())]
-    scene: Vec<Place>,
+    #[arg(long, num_args = 1.., value_parser = scenes())]
+    scene: Vec<FaultScene>,
     /// Moments of each fault, spread over the scenes
     #[arg(long, default_value_t = 2, value_parser = clap::value_parser!(u16).range(1..))]
     moments: u16,
@@ -35,8 +35,8 @@ pub struct Arguments {
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
     /// What runs the device's logic
-    #[arg(long, value_enum, default_value_t = Kind::USUAL)]
-    engine: Kind,
+    #[arg(long, value_enum, default_value_t = EngineKind::DEFAULT)]
+    engine: EngineKind,
     /// Image to run instead of the one of the current sources
     #[arg(long)]
     elf: Option<PathBuf>,
@@ -57,7 +57,7 @@ pub struct Arguments {
     replay: Option<u64>,
 }
 
-/// What is run instead of the matrix; one of them.
+/// The mode that replaces the matrix; at most one.
 #[derive(Args)]
 #[group(multiple = false, conflicts_with_all = ["only", "scene", "moments"])]
 struct Modes {
@@ -76,28 +76,74 @@ struct Modes {
     normal: Option<u64>,
 }
 
-fn places() -> impl TypedValueParser<Value = Place> {
-    PossibleValuesParser::new(Place::ALL.map(Place::name)).map(|word| {
-        let known = Place::ALL.into_iter().find(|place| place.name() == word);
-        known.unwrap_or(Place::Copper)
+fn scenes() -> impl TypedValueParser<Value = FaultScene> {
+    PossibleValuesParser::new(FaultScene::ALL.map(FaultScene::name)).map(|word| {
+        let known = FaultScene::ALL
+            .into_iter()
+            .find(|place| place.name() == word);
+        known.unwrap_or(FaultScene::Copper)
     })
 }
 
-/// What `--json` prints.
+/// What `--json` prints of the matrix.
 #[derive(Serialize)]
-struct Report<'a> {
+struct MatrixReport<'a> {
     engine: &'static str,
     seed: u64,
     moments: u16,
     holds: bool,
-    faults: &'a [Outline],
+    faults: &'a [FaultSummary],
 }
 
-/// Runs what is asked for.
+/// What `--json` prints of the other modes.
+struct RunsReport<'a, R> {
+    /// Name of the engine, unless the mode has only one.
+    engine: Option<&'static str>,
+    seed: u64,
+    /// Number of runs that broke a limit.
+    failing: usize,
+    /// Key of the list of runs.
+    key: &'static str,
+    runs: &'a [R],
+}
+
+impl<R: Serialize> Serialize for RunsReport<'_, R> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        if let Some(engine) = self.engine {
+            map.serialize_entry("engine", engine)?;
+        }
+        map.serialize_entry("seed", &self.seed)?;
+        map.serialize_entry("holds", &(self.failing == 0))?;
+        map.serialize_entry(self.key, self.runs)?;
+        map.end()
+    }
+}
+
+impl<R: Serialize> RunsReport<'_, R> {
+    /// Prints the runs; runs that broke a limit make the command fail with the text of `problem`.
+    fn print(
+        &self,
+        arguments: &Arguments,
+        table: fn(&[R]) -> String,
+        problem: String,
+    ) -> Result<(), Failure> {
+        output::print_report(arguments.json, self, || table(self.runs), None)?;
+        match self.failing {
+            0 => Ok(()),
+            failing => Err(Failure::run(anyhow!(
+                "{failing} of {} {problem}",
+                self.runs.len()
+            ))),
+        }
+    }
+}
+
+/// Runs the chosen mode.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::create(arguments.out.as_deref())?;
     let elf = arguments.elf.as_deref();
-    let device = device::device(arguments.engine, elf)?;
+    let device = engine::runner(arguments.engine, elf)?;
     let device = device.as_ref();
     match arguments.modes {
         Modes {
@@ -132,38 +178,36 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Runs the matrix, prints it, writes its page; a fault that does not hold is a failure.
-fn matrix(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
-    let plan = Plan {
-        entries: entries(&arguments.only)?,
-        places: match arguments.scene.as_slice() {
-            [] => Place::ALL.to_vec(),
+/// Runs the matrix, prints it and writes its page; a fault that does not hold is a failure.
+fn matrix(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure> {
+    let plan = MatrixPlan {
+        fault_cases: fault_cases(&arguments.only)?,
+        scenes: match arguments.scene.as_slice() {
+            [] => FaultScene::ALL.to_vec(),
             chosen => chosen.to_vec(),
         },
         moments: arguments.moments.into(),
         seed: arguments.seed,
     };
     let rows = outlines(arguments, &plan, device).map_err(Failure::run)?;
-    let mut text = if arguments.json {
-        let report = Report {
-            engine: device.name(),
-            seed: arguments.seed,
-            moments: arguments.moments,
-            holds: rows.iter().all(|row| row.holds),
-            faults: &rows,
-        };
-        serde_json::to_string(&report).map_err(Failure::run)? + "\n"
-    } else {
-        faults::table(&rows)
+    let report = MatrixReport {
+        engine: device.name(),
+        seed: arguments.seed,
+        moments: arguments.moments,
+        holds: rows.iter().all(|row| row.holds),
+        faults: &rows,
     };
-    if let Some(folder) = &arguments.out {
+    let page = arguments.out.as_ref();
+    if let Some(folder) = page {
         output::write(folder, faults::HTML, faults::page(&rows, device.name()))
             .map_err(Failure::run)?;
-        if !arguments.json {
-            text += &format!("report: {}\n", folder.join(faults::HTML).display());
-        }
     }
-    output::print(&text)?;
+    output::print_report(
+        arguments.json,
+        &report,
+        || faults::table(&rows),
+        page.map(|folder| folder.join(faults::HTML)),
+    )?;
     match rows.iter().filter(|row| !row.holds).count() {
         0 => Ok(()),
         failing => Err(Failure::run(anyhow!(
@@ -173,78 +217,61 @@ fn matrix(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
     }
 }
 
-/// The rows of the chosen kinds.
-fn entries(only: &[String]) -> Result<Vec<Entry>, Failure> {
-    let all = faults::entries();
+/// The fault cases of the chosen kinds.
+fn fault_cases(only: &[String]) -> Result<Vec<FaultCase>, Failure> {
+    let all = faults::fault_cases();
     for kind in only {
-        if !all.iter().any(|entry| entry.fault.kind() == *kind) {
-            let mut known: Vec<_> = all.iter().map(|entry| entry.fault.kind()).collect();
+        if !all
+            .iter()
+            .any(|fault_case| fault_case.fault.kind() == *kind)
+        {
+            let mut known: Vec<_> = all
+                .iter()
+                .map(|fault_case| fault_case.fault.kind())
+                .collect();
             known.dedup();
             let problem = anyhow!("--only {kind}; known are {}", known.join(", "));
             return Err(Failure::input(problem));
         }
     }
-    let chosen = |entry: &Entry| only.is_empty() || only.contains(&entry.fault.kind());
+    let chosen =
+        |fault_case: &FaultCase| only.is_empty() || only.contains(&fault_case.fault.kind());
     Ok(all.into_iter().filter(chosen).collect())
 }
 
 fn outlines(
     arguments: &Arguments,
-    plan: &Plan,
-    device: &dyn Device,
-) -> anyhow::Result<Vec<Outline>> {
-    let trials = each(
-        arguments,
-        "faults",
-        device,
-        &plan.runs(),
-        |(row, moment)| {
-            let entry = &plan.entries[*row];
-            Ok((*row, Trial::run(device, entry, *moment, plan.seed)?))
-        },
-    );
-    let mut by_row: Vec<Vec<Trial>> = plan.entries.iter().map(|_| Vec::new()).collect();
+    plan: &MatrixPlan,
+    device: &dyn SceneRunner,
+) -> anyhow::Result<Vec<FaultSummary>> {
+    let trials = each(arguments, "faults", device, &plan.runs(), |(row, point)| {
+        let fault_case = &plan.fault_cases[*row];
+        Ok((*row, FaultRun::run(device, fault_case, *point, plan.seed)?))
+    });
+    let mut by_row: Vec<Vec<FaultRun>> = plan.fault_cases.iter().map(|_| Vec::new()).collect();
     for (row, trial) in trials? {
         by_row[row].extend(trial);
     }
-    let rows = plan.entries.iter().zip(by_row);
+    let rows = plan.fault_cases.iter().zip(by_row);
     Ok(rows
-        .map(|(entry, trials)| Outline::new(entry, trials))
+        .map(|(fault_case, trials)| FaultSummary::new(fault_case, trials))
         .collect())
 }
 
-/// Prints a report as one object if that is asked for, else as its table.
-fn tell(
-    arguments: &Arguments,
-    report: &impl Serialize,
-    table: impl FnOnce() -> String,
-) -> Result<(), Failure> {
-    let text = if arguments.json {
-        serde_json::to_string(report).map_err(Failure::run)? + "\n"
-    } else {
-        table()
-    };
-    output::print(&text)
-}
-
-/// Does the work of every item on the threads that are asked for, and shows how far it is; where no terminal is, a line
-/// for every twentieth.
+/// Processes the items on the chosen number of threads with a progress bar; without a terminal, prints a line for every
+/// twentieth of the items.
 fn each<T: Sync, R: Send>(
     arguments: &Arguments,
     what: &str,
-    device: &dyn Device,
+    device: &dyn SceneRunner,
     items: &[T],
     work: impl Fn(&T) -> anyhow::Result<R> + Sync,
 ) -> anyhow::Result<Vec<R>> {
-    let style =
-        ProgressStyle::with_template("{msg} {wide_bar} {pos}/{len}  {elapsed} of {duration}")?;
-    let bar = ProgressBar::new(items.len() as u64).with_style(style);
-    bar.set_message(format!("{what} on engine {}", device.name()));
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = arguments.threads.map_or_else(cores, usize::from);
+    let bar = output::run_counter(format!("{what} on engine {}", device.name()), items.len())?;
+    let threads = output::threads(arguments.threads);
     let twentieth = |count: usize| count * 20 / items.len().max(1);
     let done = AtomicUsize::new(0);
-    let results = map(items, threads, work, || {
+    let results = parallel_map(items, threads, work, || {
         bar.inc(1);
         let before = done.fetch_add(1, Ordering::Relaxed);
         if bar.is_hidden() && twentieth(before) != twentieth(before + 1) {

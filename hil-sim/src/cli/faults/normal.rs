@@ -1,27 +1,16 @@
-//! `--normal`: use without a fault.
+//! `--normal`: normal use without faults.
 
-use anyhow::anyhow;
-use serde::Serialize;
-use thermal_campaigns::faults::{Session, Used, use_table};
-use thermal_sim::Device;
+use thermal_campaigns::faults::{UseSession, session_table};
+use thermal_sim::SceneRunner;
 
-use super::{Arguments, Failure, each, output, tell};
+use super::{Arguments, Failure, RunsReport, each, output};
 
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Report<'a> {
-    engine: &'static str,
-    seed: u64,
-    holds: bool,
-    sessions: &'a [Used],
-}
-
-/// Runs so many hours; a session in which something trips is a failure, and its scene goes to `--out`.
-pub fn run(arguments: &Arguments, device: &dyn Device, hours: u64) -> Result<(), Failure> {
+/// Runs sessions of some hours; a trip is a failure, and its scene is written to `--out`.
+pub fn run(arguments: &Arguments, device: &dyn SceneRunner, hours: u64) -> Result<(), Failure> {
     let seed = arguments.seed;
-    let numbers: Vec<u64> = (0..Session::in_hours(hours)).collect();
+    let numbers: Vec<u64> = (0..UseSession::in_hours(hours)).collect();
     let work = |number: &u64| {
-        let session = Session::new(seed, *number);
+        let session = UseSession::new(seed, *number);
         let used = session.run(device);
         if let (Some(folder), Some(_)) = (&arguments.out, &used.failure) {
             output::write(folder, &format!("session-{number}.toml"), &session.text)?;
@@ -30,18 +19,13 @@ pub fn run(arguments: &Arguments, device: &dyn Device, hours: u64) -> Result<(),
     };
     let used = each(arguments, "sessions", device, &numbers, work).map_err(Failure::run)?;
     let failed = used.iter().filter(|used| used.failure.is_some()).count();
-    let report = Report {
-        engine: device.name(),
-        seed,
-        holds: failed == 0,
-        sessions: &used,
+    let report = RunsReport {
+        engine: Some(device.name()),
+        seed: arguments.seed,
+        failing: failed,
+        key: "sessions",
+        runs: &used,
     };
-    tell(arguments, &report, || use_table(&used))?;
-    if failed == 0 {
-        return Ok(());
-    }
-    Err(Failure::run(anyhow!(
-        "{failed} of {} sessions of seed {seed} failed without a fault",
-        used.len()
-    )))
+    let problem = format!("sessions of seed {seed} failed without a fault");
+    report.print(arguments, session_table, problem)
 }

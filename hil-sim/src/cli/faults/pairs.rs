@@ -1,27 +1,18 @@
-//! `--pairs`: an unnoticed fault, then another one.
+//! `--pairs`: a latent fault followed by another one.
 
-use anyhow::anyhow;
-use serde::Serialize;
-use thermal_campaigns::faults::{Pair, RanPair, pair_table, pairs};
-use thermal_sim::Device;
+use thermal_campaigns::faults::{FaultPair, pair_table, pairs};
+use thermal_sim::SceneRunner;
 
-use super::{Arguments, Failure, each, output, tell};
+use super::{Arguments, Failure, RunsReport, each, output};
 
-/// What `--json` prints.
-#[derive(Serialize)]
-struct Report<'a> {
-    engine: &'static str,
-    seed: u64,
-    holds: bool,
-    pairs: &'a [RanPair],
-}
-
-/// Runs all pairs; one that breaks the claim is a failure, and its scene goes to `--out`.
-pub fn run(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
+/// Runs all pairs; a broken limit is a failure, and its scene is written to `--out`.
+pub fn run(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failure> {
     let seed = arguments.seed;
-    let work = |pair: &Pair| {
+    let work = |pair: &FaultPair| {
         let ran = pair.run(device, seed)?;
-        if let (Some(folder), Some(false)) = (&arguments.out, ran.as_ref().map(RanPair::holds)) {
+        if let (Some(folder), Some(false)) =
+            (&arguments.out, ran.as_ref().map(|ran| ran.trial.holds()))
+        {
             let words = format!("{} then {}", pair.latent.fault, pair.active.fault);
             let name = words.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
             output::write(folder, &(name + ".toml"), pair.text(seed))?;
@@ -30,19 +21,14 @@ pub fn run(arguments: &Arguments, device: &dyn Device) -> Result<(), Failure> {
     };
     let ran = each(arguments, "pairs", device, &pairs(seed), work).map_err(Failure::run)?;
     let ran: Vec<_> = ran.into_iter().flatten().collect();
-    let failing = ran.iter().filter(|pair| !pair.holds()).count();
-    let report = Report {
-        engine: device.name(),
-        seed,
-        holds: failing == 0,
-        pairs: &ran,
+    let failing = ran.iter().filter(|pair| !pair.trial.holds()).count();
+    let report = RunsReport {
+        engine: Some(device.name()),
+        seed: arguments.seed,
+        failing: failing,
+        key: "pairs",
+        runs: &ran,
     };
-    tell(arguments, &report, || pair_table(&ran))?;
-    if failing == 0 {
-        return Ok(());
-    }
-    Err(Failure::run(anyhow!(
-        "{failing} of {} pairs break the claim",
-        ran.len()
-    )))
+    let problem = "pairs break the claim".to_owned();
+    report.print(arguments, pair_table, problem)
 }

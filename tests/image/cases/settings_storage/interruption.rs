@@ -2,13 +2,13 @@
 
 use image_tests::{Bare, START};
 use system_tests::flash::numbered;
-use thermal_sim::Cells;
+use thermal_sim::FlashCells;
 use thermal_sim::processor::ResetCause;
 
 use super::{after, firmware, lines};
 
 /// A device with new settings, at the reset that follows `save`, and those settings.
-fn about_to_save(cells: &Cells) -> (Bare, Vec<String>) {
+fn about_to_save(cells: &FlashCells) -> (Bare, Vec<String>) {
     let mut device = Bare::new(&firmware(), cells);
     let new = lines(numbered(5).as_ref());
     for line in &new {

@@ -8,7 +8,7 @@ use stm32_emulator::Firmware;
 use system_tests::flash::{append, changes_page, erased, numbered, saved};
 use thermal_display::protocol::CommandHandler;
 use thermal_display::settings::{RECORD_MAX_BYTES, StoredSettings, encode};
-use thermal_sim::Cells;
+use thermal_sim::FlashCells;
 use thermal_sim::processor::ResetCause;
 
 /// The answers to `settings 1` to `settings 8` of a device with these settings.
@@ -32,7 +32,7 @@ pub fn firmware() -> Firmware {
 }
 
 /// The settings' sectors after a number of saves.
-pub fn after(saves: u32) -> Cells {
+pub fn after(saves: u32) -> FlashCells {
     (0..saves).fold(erased(), |cells, number| {
         saved::<1>(&cells, numbered(number).as_ref(), None)
     })
@@ -98,14 +98,14 @@ fn start_ms(cycles: u64) -> f64 {
 }
 
 /// Time from power-up to the first conversion, ms; the core runs at 16 MHz until then.
-fn first_conversion_ms(firmware: &Firmware, cells: &Cells) -> f64 {
+fn first_conversion_ms(firmware: &Firmware, cells: &FlashCells) -> f64 {
     let mut device = Bare::switched_on(firmware, cells);
     device.run_until(1000, |machine| machine.wiring().converted_at > 0);
     start_ms(device.0.wiring().converted_at)
 }
 
 /// Time from the reset that a save causes to its answer, ms.
-fn save_ms(firmware: &Firmware, cells: &Cells, number: u32) -> f64 {
+fn save_ms(firmware: &Firmware, cells: &FlashCells, number: u32) -> f64 {
     let mut device = Bare::new(firmware, cells);
     for line in lines(numbered(number).as_ref()) {
         assert_eq!(device.answer(line.trim_start_matches("ok ")), "ok");
@@ -137,7 +137,7 @@ fn stored_records_delay_a_start_by_less_than_100_ms_and_a_save_takes_less_than_a
 /// found afterwards.
 fn count_after_power_cuts(
     firmware: &Firmware,
-    cells: &Cells,
+    cells: &FlashCells,
     number: u32,
     operations: &[u64],
 ) -> (u32, u32) {

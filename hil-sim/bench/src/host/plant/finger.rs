@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 use thermal_plant::Plant;
 use thermal_plant::bridge::Legs;
 use thermal_sim::World;
-use thermal_sim::engine::{Engine, Native};
+use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::scene::Scene;
 use thermal_sim::telemetry::Telemetry;
 
@@ -37,7 +37,7 @@ const ANSWER_MS: u64 = 5;
 
 /// A finger on its display.
 pub struct Finger {
-    engine: Native,
+    engine: NativeEngine,
     received: Vec<u8>,
     /// Milliseconds since switch-on.
     ms: u64,
@@ -70,7 +70,7 @@ impl Finger {
         );
         let scene = Scene::parse(&text, Path::new("the benchmark's scene"))?;
         Ok(Self {
-            engine: Native::new(World::new(&scene)?),
+            engine: NativeEngine::new(World::new(&scene)?),
             received: Vec::new(),
             ms: 0,
         })
@@ -94,7 +94,9 @@ impl Finger {
             self.engine.send(b"\n");
         }
         self.ms += 1;
-        self.engine.world().set(force_n, std::iter::empty());
+        self.engine
+            .world()
+            .set_force_and_faults(force_n, std::iter::empty());
         let legs = self.engine.legs();
         self.engine.world().step(legs);
         let Ok(()) = self.engine.run_half_ms();

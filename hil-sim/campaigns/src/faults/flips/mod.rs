@@ -1,163 +1,176 @@
-//! Single bit flips of the running image: place, bit and moment by seed and number.
+//! Single bit flips of the running image: scene, bit and time drawn by seed and number.
 //!
 //! ```text
-//! every place once without a flip -> reference (trace, stack that is used)
-//! number -> region -> byte of RAM or register -> bit, at a microsecond of a place
-//!        -> scene with the flip in it -> image -> verdict and trace against the reference -> class
+//! every scene once without a flip -> reference (trace, stack use)
+//! number -> region -> byte of RAM or register -> bit, at a microsecond of a scene
+//!        -> scene with the flip in it -> image -> assessment, comparison with the reference -> effect
 //! ```
 //!
-//! A flip has no sign of its own, so what counts is what no flip may do: the skin's range, the dose, and current from
-//! 50 ms after a deviation that any device must notice.
+//! A flip has no symptom of its own. Every run is checked for the skin temperature, the dose, and current later than 50 ms
+//! after a symptom that any device must detect.
 
-mod class;
-mod draw;
+mod bit_flip;
+mod effect;
 mod region;
 mod table;
 
 use anyhow::Context;
 use serde::Serialize;
 
-pub use class::Class;
-pub use draw::Flip;
-pub use region::{Memory, Region};
+pub use bit_flip::BitFlip;
+pub use effect::FlipEffect;
+pub use region::{FlipRegion, FlippableMemory};
 pub use table::flip_table;
 
-use super::{Breach, Entry, Injected, Moment, Place, Sign, Verdict, trial};
-use thermal_sim::Device;
+use super::{
+    Breach, FaultScene, InjectedFault, InjectionPoint, RunAssessment, Symptom, fault_case,
+    fault_run,
+};
+use thermal_sim::SceneRunner;
 use thermal_sim::processor::NotInjected;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
-/// Where flips happen: the finger is on the display early, or the self-test drives it.
-const PLACES: [Place; 10] = [
-    Place::Slew,
-    Place::Copper,
-    Place::Granite,
-    Place::Foam,
-    Place::Warm,
-    Place::Cold,
-    Place::Touched,
-    Place::Replace,
-    Place::SelfTest,
-    Place::Off,
+/// Scenes of the flips: the finger touches the display early, or the self-test drives the display.
+const PLACES: [FaultScene; 10] = [
+    FaultScene::Slew,
+    FaultScene::Copper,
+    FaultScene::Granite,
+    FaultScene::Foam,
+    FaultScene::Warm,
+    FaultScene::Cold,
+    FaultScene::Touched,
+    FaultScene::Replace,
+    FaultScene::SelfTest,
+    FaultScene::Off,
 ];
-/// Flips come in the first part of a place's time, s, and are watched for so long, s, from its end on.
+/// Duration of the range of flips within a scene, s, and of the rest of the scene, s.
 const WITHIN_S: f64 = 2.0;
 const WATCHED_S: f64 = 3.0;
-/// Seed of the converter: the same everywhere, or no run could be compared with its reference.
+/// Seed of the converter, equal for all runs so that they can be compared with their references.
 const CONVERTER: u64 = 1;
 
-/// What any device must notice, whatever the cause.
-const SIGNS: &[Sign] = &[
-    Sign::OverCurrent,
-    Sign::CurrentOff,
-    Sign::WrongWay,
-    Sign::DisplayLimit,
-    Sign::FaultLine,
+/// Symptoms that any device must detect, whatever their cause.
+const SIGNS: &[Symptom] = &[
+    Symptom::OverCurrent,
+    Symptom::CurrentOff,
+    Symptom::WrongWay,
+    Symptom::DisplayLimit,
+    Symptom::FaultLine,
 ];
 
-fn text(place: Place, flip: &[(Injected, f64)]) -> String {
-    let (_, to_s) = draw::span(place);
-    let end = Moment { place, t_s: to_s };
-    trial::text(flip, end, WATCHED_S, CONVERTER, &[])
+fn text(place: FaultScene, flip: &[(InjectedFault, f64)]) -> String {
+    let (_, to_s) = bit_flip::span(place);
+    let end = InjectionPoint {
+        scene: place,
+        t_s: to_s,
+    };
+    fault_run::scene_text(flip, end, WATCHED_S, CONVERTER, &[])
 }
 
-/// A place without a flip.
+/// The run of a scene without a flip.
 #[derive(Debug)]
-pub struct Reference {
-    place: Place,
+pub struct ReferenceRun {
+    place: FaultScene,
     outcome: Outcome,
 }
 
-impl Reference {
-    /// Every place where flips happen.
-    pub const PLACES: [Place; PLACES.len()] = PLACES;
+impl ReferenceRun {
+    /// Every scene of the flips.
+    pub const PLACES: [FaultScene; PLACES.len()] = PLACES;
 
-    /// Runs a place on an image.
+    /// Runs a scene on an image.
     ///
     /// # Errors
     /// The image does not run.
-    pub fn new(device: &dyn Device, place: Place) -> anyhow::Result<Self> {
+    pub fn new(device: &dyn SceneRunner, place: FaultScene) -> anyhow::Result<Self> {
         let scene = Scene::parse(&text(place, &[]), place.name().as_ref())?;
         let (outcome, _) = device.run(&scene)?;
         Ok(Self { place, outcome })
     }
 
-    /// Most of the stack that was used, bytes.
+    /// Largest stack use, bytes.
     #[must_use]
     pub fn stack_bytes(&self) -> Option<u32> {
         self.outcome.cost?.stack_bytes
     }
 }
 
-impl Flip {
-    /// Its scene as a file has it.
+impl BitFlip {
+    /// Text of the scene.
     #[must_use]
     pub fn text(&self) -> String {
-        text(self.moment.place, &[(self.injected(), self.moment.t_s)])
+        text(self.point.scene, &[(self.injected(), self.point.t_s)])
     }
 
-    /// Runs it on an image.
+    /// Runs the flip on an image.
     ///
     /// # Errors
-    /// The scene cannot be, or none of the references is of its place.
-    pub fn run(&self, device: &dyn Device, references: &[Reference]) -> anyhow::Result<Flipped> {
-        let place = self.moment.place;
+    /// The scene is not valid, or there is no reference for it.
+    pub fn run(
+        &self,
+        device: &dyn SceneRunner,
+        references: &[ReferenceRun],
+    ) -> anyhow::Result<FlipResult> {
+        let place = self.point.scene;
         let reference = (references.iter().find(|reference| reference.place == place))
             .with_context(|| format!("no reference of {}", place.name()))?;
         let scene = Scene::parse(&self.text(), place.name().as_ref())?;
-        let entry = Entry::trips(self.injected(), SIGNS, &[]);
-        let (class, verdict, deviation_k) = match device.run(&scene) {
+        let fault_case = fault_case::trips(self.injected(), SIGNS, &[]);
+        let (class, assessment, deviation_k) = match device.run(&scene) {
             Ok((outcome, figures)) => {
-                let mut verdict = Verdict::of(&entry, self.moment, &outcome, &figures, &[]);
-                // Any word is right.
-                verdict.breaches.retain(|breach| *breach != Breach::Reason);
-                let class = Class::of(&verdict, &outcome, &reference.outcome);
+                let mut assessment =
+                    RunAssessment::new(&fault_case, self.point, &outcome, &figures, &[]);
+                // Any trip cause is correct.
+                assessment
+                    .breaches
+                    .retain(|breach| *breach != Breach::Reason);
+                let class = FlipEffect::of(&assessment, &outcome, &reference.outcome);
                 (
                     class,
-                    verdict,
-                    Some(class::deviation_k(&outcome, &reference.outcome)),
+                    assessment,
+                    Some(effect::deviation_k(&outcome, &reference.outcome)),
                 )
             }
             Err(error) => {
                 let class = match error.downcast_ref() {
-                    Some(NotInjected::Refused { .. }) => Class::Refused,
-                    _ => Class::Ended,
+                    Some(NotInjected::Refused { .. }) => FlipEffect::Refused,
+                    _ => FlipEffect::Ended,
                 };
-                (class, Verdict::ended(&error), None)
+                (class, RunAssessment::ended(&error), None)
             }
         };
-        Ok(Flipped {
+        Ok(FlipResult {
             number: self.number,
             region: self.region,
             flip: self.fault.to_string(),
             class,
             deviation_k,
             place: place.name(),
-            t_s: self.moment.t_s,
-            verdict,
+            t_s: self.point.t_s,
+            assessment,
         })
     }
 }
 
-/// What came of a flip.
+/// Result of a flip.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Flipped {
-    /// Its number.
+pub struct FlipResult {
+    /// Number of the flip.
     pub number: u64,
-    /// Where it was.
-    pub region: Region,
+    /// Region of the bit.
+    pub region: FlipRegion,
     /// The bit.
     pub flip: String,
-    /// What it was for the finger.
-    pub class: Class,
-    /// Most that the display was off its reference, K; none if the run has none.
+    /// Effect on the device and the finger.
+    pub class: FlipEffect,
+    /// Largest deviation of the display temperature from the reference, K; `None` if the run ended early.
     pub deviation_k: Option<f64>,
-    /// The scene.
+    /// Name of the scene.
     pub place: &'static str,
-    /// When, s.
+    /// Time of the flip, s.
     pub t_s: f64,
-    /// In figures.
+    /// Assessment of the run.
     #[serde(flatten)]
-    pub verdict: Verdict,
+    pub assessment: RunAssessment,
 }

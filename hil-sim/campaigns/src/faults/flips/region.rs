@@ -1,4 +1,4 @@
-//! Parts of the microcontroller whose bits flip.
+//! Regions of the microcontroller whose bits flip.
 
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -7,7 +7,7 @@ use rand::{Rng, RngExt};
 use serde::{Deserialize, Serialize};
 use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::MachineFault;
-use thermal_sim::{Device, RamLayout};
+use thermal_sim::{RamLayout, SceneRunner, named_enum};
 
 /// What `registers.toml` holds.
 #[derive(Deserialize)]
@@ -28,52 +28,41 @@ static REGISTERS: LazyLock<Vec<Register>> = LazyLock::new(|| {
     file.registers
 });
 
-/// A part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Region {
-    /// Static data, what resets keep included.
-    Statics,
-    /// The part of the stack that is used.
-    Stack,
-    /// Any byte of the RAM.
-    Ram,
-    /// R0 to R12, stack pointer, link register, program counter, flags.
-    Core,
-    /// S0 to S31 and FPSCR.
-    Float,
-    /// Registers of devices that the image uses, of interrupt controller and system control.
-    Device,
+named_enum! {
+    /// A part of the microcontroller whose bits flip.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum FlipRegion {
+        /// Static data, including what survives a reset.
+        Statics = "statics",
+        /// The part of the stack that is used.
+        Stack = "stack",
+        /// Any byte of the RAM.
+        Ram = "ram",
+        /// R0 to R12, stack pointer, link register, program counter, flags.
+        Core = "core",
+        /// S0 to S31 and FPSCR.
+        Float = "float",
+        /// Registers of the peripherals in use, the interrupt controller and the system control block.
+        Device = "device",
+    }
 }
 
-impl Region {
-    /// All of them, with how many of a hundred flips each gets.
-    pub const ALL: [(Self, u32); 6] = [
-        (Self::Statics, 35),
-        (Self::Stack, 15),
-        (Self::Ram, 5),
-        (Self::Core, 20),
-        (Self::Float, 5),
-        (Self::Device, 20),
-    ];
+/// Percentage of the flips that each region gets.
+const SHARES: [(FlipRegion, u32); 6] = [
+    (FlipRegion::Statics, 35),
+    (FlipRegion::Stack, 15),
+    (FlipRegion::Ram, 5),
+    (FlipRegion::Core, 20),
+    (FlipRegion::Float, 5),
+    (FlipRegion::Device, 20),
+];
 
-    /// Its name.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Statics => "statics",
-            Self::Stack => "stack",
-            Self::Ram => "ram",
-            Self::Core => "core",
-            Self::Float => "float",
-            Self::Device => "device",
-        }
-    }
-
-    /// Draws one by its share.
+impl FlipRegion {
+    /// Draws a region according to the shares.
     pub(super) fn draw(draw: &mut impl Rng) -> Self {
         let mut share = draw.random_range(0..100);
-        for (region, its) in Self::ALL {
+        for (region, its) in SHARES {
             if share < its {
                 return region;
             }
@@ -82,8 +71,8 @@ impl Region {
         Self::Device
     }
 
-    /// Draws a bit of it.
-    pub(super) fn bit(self, memory: &Memory, draw: &mut impl Rng) -> MachineFault {
+    /// Draws a bit of the region.
+    pub(super) fn bit(self, memory: &FlippableMemory, draw: &mut impl Rng) -> MachineFault {
         let byte = |draw: &mut _, range: &Range<u32>| MachineFault::RamBit {
             address: RngExt::random_range(draw, range.clone()),
             bit: RngExt::random_range(draw, 0..8),
@@ -131,23 +120,23 @@ fn one_of(bits: u32, draw: &mut impl Rng) -> u8 {
     set.nth(which as usize).unwrap_or_default()
 }
 
-/// Where an image keeps what: addresses of RAM.
+/// Address ranges of the RAM in which bits flip.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Memory {
-    /// All of it.
+pub struct FlippableMemory {
+    /// The whole RAM.
     pub ram: Range<u32>,
     /// Static data.
     pub statics: Range<u32>,
-    /// Used stack.
+    /// The part of the stack that is used.
     pub stack: Range<u32>,
 }
 
-impl Memory {
-    /// That of a device whose image uses so much of its stack, bytes.
+impl FlippableMemory {
+    /// The ranges for a device whose image uses `stack_bytes` of its stack.
     ///
     /// # Errors
-    /// It has no RAM, its image does not say where its static data are, or there are none, or it uses no stack.
-    pub fn of(device: &dyn Device, stack_bytes: u32) -> anyhow::Result<Self> {
+    /// The device has no RAM, or its image does not name its static data, has none, or uses no stack.
+    pub fn new(device: &dyn SceneRunner, stack_bytes: u32) -> anyhow::Result<Self> {
         let RamLayout {
             ram,
             statics,
@@ -175,8 +164,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn shares_are_of_a_hundred() {
-        assert_eq!(Region::ALL.iter().map(|(_, share)| share).sum::<u32>(), 100);
+    fn shares_sum_to_100_percent() {
+        assert_eq!(SHARES.iter().map(|(_, share)| share).sum::<u32>(), 100);
     }
 
     #[test]

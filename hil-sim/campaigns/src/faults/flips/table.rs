@@ -1,37 +1,38 @@
-//! Flips as text.
+//! The results of bit flips as text.
 
 use std::fmt::Write;
 
-use super::{Class, Flipped, Region};
+use super::{FlipEffect, FlipRegion, FlipResult};
 use crate::faults::Breach;
-use crate::faults::verdict::MICROSECONDS;
+use crate::faults::assessment::MICROSECONDS;
 
-/// Classes by region, reasons of trips below theirs; then every flip that broke a limit or ended its run.
+/// Table of effects by region, with the causes of trips, followed by every flip that broke a limit or ended its run.
 #[must_use]
-pub fn flip_table(runs: &[Flipped]) -> String {
+pub fn flip_table(runs: &[FlipResult]) -> String {
     let mut text = format!("{:<24}", "");
-    for (region, _) in Region::ALL {
+    for region in FlipRegion::ALL {
         text += &format!("{:>9}", region.name());
     }
     text += "      all\n";
-    for class in Class::ALL {
+    for class in FlipEffect::ALL {
         line(&mut text, class.name(), runs, |run| run.class == class);
-        if class == Class::Tripped {
+        if class == FlipEffect::Tripped {
             let mut reasons: Vec<_> = (runs.iter())
                 .filter(|run| run.class == class)
-                .map(|run| run.verdict.reason.as_str())
+                .map(|run| run.assessment.reason.as_str())
                 .collect();
             reasons.sort_unstable();
             reasons.dedup();
             for reason in reasons {
-                let by = |run: &Flipped| run.class == class && run.verdict.reason == reason;
+                let by = |run: &FlipResult| run.class == class && run.assessment.reason == reason;
                 line(&mut text, &format!("  {reason}"), runs, by);
             }
         }
-        if class == Class::Broken {
+        if class == FlipEffect::Broken {
             for breach in Breach::ALL {
-                let broke =
-                    |run: &Flipped| run.class == class && run.verdict.breaches.contains(&breach);
+                let broke = |run: &FlipResult| {
+                    run.class == class && run.assessment.breaches.contains(&breach)
+                };
                 if runs.iter().any(broke) {
                     line(&mut text, &format!("  {}", breach.name()), runs, broke);
                 }
@@ -40,7 +41,7 @@ pub fn flip_table(runs: &[Flipped]) -> String {
     }
     line(&mut text, "all", runs, |_| true);
     let most = (runs.iter())
-        .filter(|run| run.class == Class::Differs)
+        .filter(|run| run.class == FlipEffect::Differs)
         .filter_map(|run| Some((run.deviation_k?, run.number)))
         .max_by(|a, b| a.0.total_cmp(&b.0));
     // Writing to a String cannot fail.
@@ -57,13 +58,13 @@ pub fn flip_table(runs: &[Flipped]) -> String {
             run.flip,
             run.region.name()
         );
-        let _ = match (run.class, &run.verdict.ended) {
-            (Class::Broken, _) => writeln!(
+        let _ = match (run.class, &run.assessment.ended) {
+            (FlipEffect::Broken, _) => writeln!(
                 text,
                 "{what}: {}",
-                run.verdict.line(run.place, run.t_s, MICROSECONDS)
+                run.assessment.line(run.place, run.t_s, MICROSECONDS)
             ),
-            (Class::Ended, Some(ended)) => writeln!(
+            (FlipEffect::Ended, Some(ended)) => writeln!(
                 text,
                 "{what}: ended in {} at {:.6} s: {ended}",
                 run.place, run.t_s
@@ -74,9 +75,9 @@ pub fn flip_table(runs: &[Flipped]) -> String {
     text
 }
 
-fn line(text: &mut String, name: &str, runs: &[Flipped], is_so: impl Fn(&Flipped) -> bool) {
+fn line(text: &mut String, name: &str, runs: &[FlipResult], is_so: impl Fn(&FlipResult) -> bool) {
     *text += &format!("{name:<24}");
-    for (region, _) in Region::ALL {
+    for region in FlipRegion::ALL {
         let count = runs
             .iter()
             .filter(|run| run.region == region && is_so(run))

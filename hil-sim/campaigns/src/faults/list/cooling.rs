@@ -1,32 +1,32 @@
-//! What cools the sink. Nothing here holds the sink above what hurts: no device could keep a finger from that.
+//! Faults of the cooling. None holds the sink above the pain threshold, against which no device could protect a finger.
 
-use thermal_display::device::safety::Fault;
+use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
-use crate::faults::entry::valued;
-use crate::faults::{Entry, Place, Sign};
+use crate::faults::fault_case::{trips, valued};
+use crate::faults::{FaultCase, FaultScene, Symptom};
 
-const HOT: &[Sign] = &[Sign::SinkLimit, Sign::WrongWay, Sign::DisplayLimit];
+const HOT: &[Symptom] = &[Symptom::SinkLimit, Symptom::WrongWay, Symptom::DisplayLimit];
 const HOT_REASONS: &[Fault] = &[Fault::SinkHot, Fault::Runaway, Fault::DisplayHot];
 
-/// The fan stops; what the sink is cooled by stops and takes the temperature of a hot room; something warm touches it.
-pub const ENTRIES: &[Entry] = &[
-    Entry::trips(valued(Kind::FanOff, 10.0), HOT, HOT_REASONS)
-        .at(&[Place::Cold])
+/// The fan fails, the coolant takes the temperature of a hot room, or the sink is held warm.
+pub const FAULT_CASES: &[FaultCase] = &[
+    trips(valued(Kind::FanOff, 10.0), HOT, HOT_REASONS)
+        .at(&[FaultScene::Cold])
         .watched(90.0),
-    Entry::trips(valued(Kind::FanOff, 1000.0), HOT, HOT_REASONS)
-        .at(&[Place::Cold])
+    trips(valued(Kind::FanOff, 1000.0), HOT, HOT_REASONS)
+        .at(&[FaultScene::Cold])
         .watched(90.0),
-    Entry::trips(valued(Kind::ChillerOff, 40.0), HOT, HOT_REASONS)
-        .at(&[Place::Cold])
+    trips(valued(Kind::ChillerOff, 40.0), HOT, HOT_REASONS)
+        .at(&[FaultScene::Cold])
         .watched(90.0),
-    Entry::trips(valued(Kind::ChillerOff, 45.0), HOT, HOT_REASONS)
-        .at(&[Place::Cold])
+    trips(valued(Kind::ChillerOff, 45.0), HOT, HOT_REASONS)
+        .at(&[FaultScene::Cold])
         .watched(80.0),
-    Entry::trips(
+    trips(
         valued(Kind::SinkHot, 45.0),
-        &[Sign::Jump, Sign::SinkLimit],
-        // In the self-test its heat hides the answer; a cold display may warm by a kelvin before the sink's thermistor is there.
+        &[Symptom::ReadingJump, Symptom::SinkLimit],
+        // During the self-test the heat hides the response; a cold display may warm by 1 K before the sink's thermistor reacts.
         &[
             Fault::SinkHot,
             Fault::SinkJump,
@@ -34,5 +34,5 @@ pub const ENTRIES: &[Entry] = &[
             Fault::Polarity,
         ],
     )
-    .at(&[Place::Warm]),
+    .at(&[FaultScene::Warm]),
 ];

@@ -1,19 +1,19 @@
 //! Bridge, supply, mirror, comparator.
 
-use thermal_display::device::safety::Fault;
+use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
-use crate::faults::entry::{broken, valued};
-use crate::faults::{Entry, Place, Sign};
+use crate::faults::fault_case::{broken, harmless, trips, valued};
+use crate::faults::{FaultCase, FaultScene, Symptom};
 
-/// A leg that does not do what it is told shows in the current, the display's way, or the self-test.
-const LEG: &[Sign] = &[
-    Sign::CurrentOff,
-    Sign::OverCurrent,
-    Sign::WrongWay,
-    Sign::DisplayLimit,
-    Sign::FaultLine,
-    Sign::SelfTest(0.704),
+/// A faulty leg is detectable by the current, the direction of the display temperature, or the self-test.
+const LEG: &[Symptom] = &[
+    Symptom::CurrentOff,
+    Symptom::OverCurrent,
+    Symptom::WrongWay,
+    Symptom::DisplayLimit,
+    Symptom::FaultLine,
+    Symptom::SelfTest(0.704),
 ];
 pub(super) const LEG_REASONS: &[Fault] = &[
     Fault::CurrentHigh,
@@ -24,12 +24,20 @@ pub(super) const LEG_REASONS: &[Fault] = &[
     Fault::NoResponse,
     Fault::Bridge,
 ];
-const CURRENT: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::SelfTest(0.304)];
-/// A supply that drives the self-test's ampere well enough.
-const SUPPLY: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::FaultLine];
+const CURRENT: &[Symptom] = &[
+    Symptom::CurrentOff,
+    Symptom::OverCurrent,
+    Symptom::SelfTest(0.304),
+];
+/// A supply that still drives the 1 A of the self-test.
+const SUPPLY: &[Symptom] = &[
+    Symptom::CurrentOff,
+    Symptom::OverCurrent,
+    Symptom::FaultLine,
+];
 const CURRENT_LOW: &[Fault] = &[Fault::CurrentLow, Fault::NoResponse];
-/// Current that is less, or more, by too little to be told from a sound one still moves the display less, or more; or leaves it to
-/// what finger and sink do.
+/// A current error too small to be detected by itself still changes the response of the display, or lets finger and sink
+/// determine its temperature.
 const NO_CURRENT: &[Fault] = &[
     Fault::CurrentLow,
     Fault::NoResponse,
@@ -42,11 +50,11 @@ const MUCH_CURRENT: &[Fault] = &[
     Fault::Bridge,
     Fault::UnlikeModel,
 ];
-const WORST: &[Place] = &[Place::Slew, Place::Warm, Place::Off];
-/// Where no tuned model helps, too.
-const PLAIN: &[Place] = &[Place::Untuned, Place::Slew, Place::Off];
-/// The module does less than it should.
-const WEAK: &[Sign] = &[Sign::Astray, Sign::WrongWay];
+const WORST: &[FaultScene] = &[FaultScene::Slew, FaultScene::Warm, FaultScene::Off];
+/// Includes a scene without a tuned model.
+const PLAIN: &[FaultScene] = &[FaultScene::Untuned, FaultScene::Slew, FaultScene::Off];
+/// The module pumps less heat than it should.
+const WEAK: &[Symptom] = &[Symptom::DisplayDeviates, Symptom::WrongWay];
 const WEAK_REASONS: &[Fault] = &[
     Fault::NoResponse,
     Fault::Polarity,
@@ -54,27 +62,27 @@ const WEAK_REASONS: &[Fault] = &[
     Fault::Runaway,
 ];
 
-/// What drives the tile, and what watches that.
-pub const ENTRIES: &[Entry] = &[
-    Entry::trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
-    Entry::trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
-    Entry::trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
-    Entry::trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(PLAIN),
-    Entry::trips(
+/// Faults of bridge, supply, mirror and comparator.
+pub const FAULT_CASES: &[FaultCase] = &[
+    trips(broken(Kind::BridgeStuckHigh), LEG, LEG_REASONS).at(WORST),
+    trips(broken(Kind::BridgeBStuckHigh), LEG, LEG_REASONS).at(WORST),
+    trips(broken(Kind::BridgeStuckLow), LEG, LEG_REASONS).at(WORST),
+    trips(broken(Kind::LegOpen), CURRENT, NO_CURRENT).at(PLAIN),
+    trips(
         broken(Kind::BridgeShorted),
-        &[Sign::FaultLine],
+        &[Symptom::FaultLine],
         &[Fault::Bridge],
     )
     .at(WORST),
-    Entry::trips(
+    trips(
         broken(Kind::PolaritySwapped),
         &[
-            Sign::WrongWay,
-            Sign::DisplayLimit,
-            Sign::CurrentOff,
-            Sign::SelfTest(0.504),
+            Symptom::WrongWay,
+            Symptom::DisplayLimit,
+            Symptom::CurrentOff,
+            Symptom::SelfTest(0.504),
         ],
-        // A module that is warmer on one side drives a current of its own, now the other way.
+        // The Seebeck voltage of the module then drives a current in the wrong direction.
         &[
             Fault::Polarity,
             Fault::UnlikeModel,
@@ -84,55 +92,59 @@ pub const ENTRIES: &[Entry] = &[
         ],
     )
     .at(PLAIN),
-    // What is left answers to the self-test's ampere by more than it asks for, or by about that. So what tells is what comes then:
-    // for a module that has little to do the loop makes up.
-    Entry::trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS).at(&[
-        Place::Slew,
-        Place::Cold,
-        Place::Replace,
+    // The weakened module can pass the self-test. It is detectable under load; at low load the control loop compensates it.
+    trips(valued(Kind::ModuleWeak, 0.3), WEAK, WEAK_REASONS).at(&[
+        FaultScene::Slew,
+        FaultScene::Cold,
+        FaultScene::Replace,
     ]),
-    Entry::trips(valued(Kind::ModuleWeak, 0.1), WEAK, WEAK_REASONS).at(&[Place::Slew, Place::Off]),
-    // The self-test must tell.
-    Entry::trips(
+    trips(valued(Kind::ModuleWeak, 0.1), WEAK, WEAK_REASONS)
+        .at(&[FaultScene::Slew, FaultScene::Off]),
+    // The self-test must detect it.
+    trips(
         valued(Kind::ModuleWeak, 0.0),
-        &[Sign::Astray, Sign::WrongWay, Sign::SelfTest(0.504)],
+        &[
+            Symptom::DisplayDeviates,
+            Symptom::WrongWay,
+            Symptom::SelfTest(0.504),
+        ],
         WEAK_REASONS,
     )
-    .at(Place::TESTED),
-    Entry::harmless(broken(Kind::BridgeEnableStuck)).latent(),
-    Entry::trips(
+    .at(FaultScene::TESTED),
+    harmless(broken(Kind::BridgeEnableStuck)).latent(),
+    trips(
         broken(Kind::FaultPinDead),
-        &[Sign::SelfTest(0.02)],
+        &[Symptom::SelfTest(0.02)],
         &[Fault::Comparator],
     )
     .latent()
-    .at(&[Place::Off]),
-    Entry::trips(
+    .at(&[FaultScene::Off]),
+    trips(
         broken(Kind::ComparatorDead),
-        &[Sign::SelfTest(0.02)],
+        &[Symptom::SelfTest(0.02)],
         &[Fault::Comparator],
     )
     .latent()
-    .at(&[Place::Off]),
-    Entry::trips(
+    .at(&[FaultScene::Off]),
+    trips(
         broken(Kind::ComparatorStuck),
-        &[Sign::FaultLine, Sign::SelfTest(0.04)],
+        &[Symptom::FaultLine, Symptom::SelfTest(0.04)],
         &[Fault::Bridge, Fault::Comparator],
     )
     .at(WORST),
-    Entry::trips(valued(Kind::MirrorStuck, 0.0), CURRENT, CURRENT_LOW).at(WORST),
-    Entry::trips(
+    trips(valued(Kind::MirrorStuck, 0.0), CURRENT, CURRENT_LOW).at(WORST),
+    trips(
         valued(Kind::MirrorStuck, 3.0),
         CURRENT,
         &[Fault::CurrentHigh, Fault::CurrentLow],
     ),
-    Entry::trips(
+    trips(
         valued(Kind::MirrorStuck, 10.0),
-        &[Sign::OverCurrent],
+        &[Symptom::OverCurrent],
         &[Fault::OverCurrent],
     ),
-    Entry::trips(valued(Kind::SupplyLow, 9.0), SUPPLY, NO_CURRENT).at(WORST),
-    Entry::trips(valued(Kind::SupplyLow, 4.5), CURRENT, NO_CURRENT).at(WORST),
-    Entry::trips(valued(Kind::SupplyHigh, 16.0), SUPPLY, MUCH_CURRENT).at(WORST),
-    Entry::trips(valued(Kind::SupplyHigh, 24.0), SUPPLY, MUCH_CURRENT).at(WORST),
+    trips(valued(Kind::SupplyLow, 9.0), SUPPLY, NO_CURRENT).at(WORST),
+    trips(valued(Kind::SupplyLow, 4.5), CURRENT, NO_CURRENT).at(WORST),
+    trips(valued(Kind::SupplyHigh, 16.0), SUPPLY, MUCH_CURRENT).at(WORST),
+    trips(valued(Kind::SupplyHigh, 24.0), SUPPLY, MUCH_CURRENT).at(WORST),
 ];

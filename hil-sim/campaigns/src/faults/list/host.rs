@@ -1,40 +1,40 @@
-//! The host, and what it says.
+//! Faults of the host and unusual lines.
 
-use thermal_display::device::safety::Fault;
+use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 
-use crate::faults::entry::broken;
-use crate::faults::{Entry, Injected, Place, Sign};
+use crate::faults::fault_case::{broken, harmless, trips};
+use crate::faults::{FaultCase, FaultScene, InjectedFault, Symptom};
 
-/// Silence, noise, and wrong or unwise lines.
-pub const ENTRIES: &[Entry] = &[
-    Entry::trips(
+/// Silence, invalid bytes, floods, and wrong or unwise lines.
+pub const FAULT_CASES: &[FaultCase] = &[
+    trips(
         broken(Kind::HostSilent),
-        &[Sign::After(2.0)],
+        &[Symptom::After(2.0)],
         &[Fault::HostSilent],
     )
-    .never_at(Place::TESTED),
-    Entry::harmless(broken(Kind::HostGarbage)),
-    // Off, a flood drowns the line that arms.
-    Entry::harmless(broken(Kind::HostFlood)).never_at(&[Place::Off]),
-    Entry::harmless(Injected::Line("hold 60")).at(&[Place::Touched]),
-    Entry::harmless(Injected::Line("object 900")),
-    Entry::harmless(Injected::Line("stream 0")),
+    .never_at(FaultScene::TESTED),
+    harmless(broken(Kind::HostGarbage)),
+    // In `Off`, the flood would delay the line that arms the device.
+    harmless(broken(Kind::HostFlood)).never_at(&[FaultScene::Off]),
+    harmless(InjectedFault::HostLine("hold 60")).at(&[FaultScene::Touched]),
+    harmless(InjectedFault::HostLine("object 900")),
+    harmless(InjectedFault::HostLine("stream 0")),
     // Without a tuned model the display overshoots the limit of its set-point.
-    Entry::harmless(Injected::Line("object -20"))
+    harmless(InjectedFault::HostLine("object -20"))
         .or_trips(&[Fault::DisplayCold])
-        .at(&[Place::Slew, Place::Touched]),
-    Entry::trips(
-        Injected::Line("object 60"),
-        &[Sign::Dose],
+        .at(&[FaultScene::Slew, FaultScene::Touched]),
+    trips(
+        InjectedFault::HostLine("object 60"),
+        &[Symptom::Dose],
         &[Fault::Dose, Fault::DisplayHot, Fault::UnlikeModel],
     )
-    .at(&[Place::Slew])
+    .at(&[FaultScene::Slew])
     .watched(180.0),
-    // By a tile that it is not, a display that is held goes beyond.
-    Entry::trips(
-        Injected::Line("set tile 0.5 0.02 0.3 0.5 0.02"),
-        &[Sign::WrongWay, Sign::DisplayLimit],
+    // With wrong tile parameters a held display overshoots.
+    trips(
+        InjectedFault::HostLine("set tile 0.5 0.02 0.3 0.5 0.02"),
+        &[Symptom::WrongWay, Symptom::DisplayLimit],
         &[
             Fault::Polarity,
             Fault::UnlikeModel,

@@ -1,6 +1,4 @@
-//! The faults: those of a thermal display that a study lists, and more.
-//!
-//! What is detectable and which reason is right stands here before anything runs.
+//! The list of fault cases. Symptoms and correct trip causes are stated here, before any run.
 
 mod cooling;
 mod electrics;
@@ -8,20 +6,20 @@ mod host;
 mod processor;
 mod sensors;
 
-use super::Entry;
+use super::FaultCase;
 
-/// All of them, in the order of the table.
+/// All fault cases in the order of the table.
 #[must_use]
-pub fn entries() -> Vec<Entry> {
+pub fn fault_cases() -> Vec<FaultCase> {
     [
         sensors::WIRES,
         sensors::READINGS,
         sensors::SWAPPED,
         sensors::OTHERS,
-        electrics::ENTRIES,
-        cooling::ENTRIES,
-        host::ENTRIES,
-        processor::ENTRIES,
+        electrics::FAULT_CASES,
+        cooling::FAULT_CASES,
+        host::FAULT_CASES,
+        processor::FAULT_CASES,
     ]
     .concat()
 }

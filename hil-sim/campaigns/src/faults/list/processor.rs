@@ -1,35 +1,36 @@
-//! The microcontroller: core, clock, memory, peripherals, supply.
+//! Faults of the microcontroller: core, clock, memory, peripherals, supply.
 
-use thermal_display::device::safety::Fault;
+use thermal_device::safety::Fault;
 use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::MachineFault as Fails;
 
 use super::electrics::LEG_REASONS;
-use crate::faults::{Entry, Injected, Place, Sign};
+use crate::faults::fault_case::{harmless, restarts, trips};
+use crate::faults::{FaultCase, FaultScene, InjectedFault, Symptom};
 
-const fn processor(fault: Fails) -> Injected {
-    Injected::Processor(fault)
+const fn processor(fault: Fails) -> InjectedFault {
+    InjectedFault::Processor(fault)
 }
 
-const fn flipped(address: u32, bit: u8) -> Injected {
+const fn flipped(address: u32, bit: u8) -> InjectedFault {
     processor(Fails::RegisterBit { address, bit })
 }
 
-const fn core(register: CoreRegister, bit: u8) -> Injected {
+const fn core(register: CoreRegister, bit: u8) -> InjectedFault {
     processor(Fails::CoreBit { register, bit })
 }
 
-const NOW: &[Sign] = &[Sign::Injection];
-/// A bridge that gets another duty than it is told.
-const DUTY: &[Sign] = &[
-    Sign::CurrentOff,
-    Sign::OverCurrent,
-    Sign::WrongWay,
-    Sign::SelfTest(0.504),
+const NOW: &[Symptom] = &[Symptom::Injection];
+/// The bridge gets a wrong duty cycle.
+const DUTY: &[Symptom] = &[
+    Symptom::CurrentOff,
+    Symptom::OverCurrent,
+    Symptom::WrongWay,
+    Symptom::SelfTest(0.504),
 ];
-/// One that gets another share of it, which the self-test's ampere does not show.
-const SHARE: &[Sign] = &[Sign::CurrentOff, Sign::OverCurrent, Sign::WrongWay];
-/// The program is lost; who notices first depends on where.
+/// The duty cycle is scaled, which the 1 A of the self-test does not show.
+const SHARE: &[Symptom] = &[Symptom::CurrentOff, Symptom::OverCurrent, Symptom::WrongWay];
+/// The program counter or stack is lost; which monitor detects it first depends on the address.
 const LOST: &[Fault] = &[
     Fault::HardFault,
     Fault::Panic,
@@ -39,15 +40,15 @@ const LOST: &[Fault] = &[
     Fault::Sampling,
 ];
 
-/// A tick that does not come when it is due; the window watchdog is first if it comes after 47 ms.
+/// Ticks at a wrong rate; the window watchdog is first if a tick is later than 47 ms.
 const RATE: &[Fault] = &[Fault::Sampling, Fault::TickLost];
 const CLOCK: &[Fault] = &[Fault::Clock, Fault::TickLost];
-/// By 4 of 5625 counts: a quarter of a tick is lost after 352 ticks.
-const SLOW_RATE: &[Sign] = &[Sign::After(0.352)];
-/// The independent watchdog at its slowest.
-const ROLL_CALL: &[Sign] = &[Sign::After(0.188)];
-/// SysTick's rounds are of 2^24 periods of 180 MHz: 93.2 ms.
-const NEXT_ROUND: &[Sign] = &[Sign::After(0.0933)];
+/// 4 of 5625 counts: a quarter of a tick is lost after 352 ticks.
+const SLOW_RATE: &[Symptom] = &[Symptom::After(0.352)];
+/// Longest timeout of the independent watchdog.
+const WATCHDOG_TIMEOUT: &[Symptom] = &[Symptom::After(0.188)];
+/// SysTick wraps every 2^24 periods of 180 MHz: 93.2 ms.
+const SYSTICK_WRAP: &[Symptom] = &[Symptom::After(0.0933)];
 
 const TIM1: u32 = 0x4001_0000;
 const ADC1: u32 = 0x4001_2000;
@@ -60,20 +61,20 @@ const GPIOB_ODR: u32 = 0x4002_0414;
 const DMA2_S0CR: u32 = 0x4002_6410;
 const NVIC_ISER0: u32 = 0xe000_e100;
 const NVIC_ISER1: u32 = 0xe000_e104;
-/// First word of the stack's guard.
+/// First word of the stack guard.
 const STACK_GUARD: u32 = 0x2000_0000;
 
-/// What the processor can do to a bridge.
-pub const ENTRIES: &[Entry] = &[
-    Entry::trips(processor(Fails::HungCore), NOW, &[Fault::TickLost]).at(&[Place::Slew]),
-    Entry::trips(processor(Fails::HseStopped), NOW, &[Fault::Clock]).at(&[Place::Slew]),
-    Entry::trips(
+/// Faults of the processor.
+pub const FAULT_CASES: &[FaultCase] = &[
+    trips(processor(Fails::HungCore), NOW, &[Fault::TickLost]).at(&[FaultScene::Slew]),
+    trips(processor(Fails::HseStopped), NOW, &[Fault::Clock]).at(&[FaultScene::Slew]),
+    trips(
         processor(Fails::AdcStopped),
         NOW,
         &[Fault::TickLost, Fault::Sampling],
     )
-    .at(&[Place::Slew]),
-    Entry::trips(
+    .at(&[FaultScene::Slew]),
+    trips(
         processor(Fails::DmaStopped {
             controller: 2,
             stream: 0,
@@ -81,20 +82,20 @@ pub const ENTRIES: &[Entry] = &[
         NOW,
         &[Fault::Sampling, Fault::TickLost],
     )
-    .at(&[Place::Slew]),
-    // Off, the host arms soon after, which a device that has started anew obeys.
-    Entry::restarts(processor(Fails::BrownOut))
-        .at(&[Place::Slew])
-        .never_at(&[Place::Off]),
-    Entry::restarts(processor(Fails::PowerCycle { seed: 1 }))
-        .at(&[Place::Slew])
-        .never_at(&[Place::Off]),
-    Entry::restarts(processor(Fails::ResetPin))
-        .at(&[Place::Slew])
-        .never_at(&[Place::Off]),
-    Entry::trips(processor(Fails::SoftwareReset), NOW, &[Fault::UnaskedReset]).at(&[Place::Slew]),
-    Entry::trips(processor(Fails::StackOverflow), NOW, LOST).at(&[Place::Slew]),
-    Entry::trips(
+    .at(&[FaultScene::Slew]),
+    // In `Off`, the host arms the restarted device soon after.
+    restarts(processor(Fails::BrownOut))
+        .at(&[FaultScene::Slew])
+        .never_at(&[FaultScene::Off]),
+    restarts(processor(Fails::PowerCycle { seed: 1 }))
+        .at(&[FaultScene::Slew])
+        .never_at(&[FaultScene::Off]),
+    restarts(processor(Fails::ResetPin))
+        .at(&[FaultScene::Slew])
+        .never_at(&[FaultScene::Off]),
+    trips(processor(Fails::SoftwareReset), NOW, &[Fault::UnaskedReset]).at(&[FaultScene::Slew]),
+    trips(processor(Fails::StackOverflow), NOW, LOST).at(&[FaultScene::Slew]),
+    trips(
         processor(Fails::RamBit {
             address: STACK_GUARD,
             bit: 0,
@@ -102,58 +103,58 @@ pub const ENTRIES: &[Entry] = &[
         NOW,
         &[Fault::Stack],
     ),
-    Entry::trips(core(CoreRegister::Pc, 20), NOW, LOST).at(&[Place::Slew]),
-    Entry::trips(core(CoreRegister::Sp, 28), NOW, LOST),
-    Entry::harmless(core(CoreRegister::S(0), 30)),
+    trips(core(CoreRegister::Pc, 20), NOW, LOST).at(&[FaultScene::Slew]),
+    trips(core(CoreRegister::Sp, 28), NOW, LOST),
+    harmless(core(CoreRegister::S(0), 30)),
     // Main output off; output of leg A off; period; prescaler; enable line; comparison of leg A.
-    // Main output and enable line are switched on anew, whatever they were, with the first current.
-    Entry::trips(flipped(TIM1 + 0x44, 15), DUTY, LEG_REASONS)
-        .at(&[Place::Slew])
-        .never_at(&[Place::Off]),
-    Entry::trips(flipped(TIM1 + 0x20, 0), DUTY, LEG_REASONS).at(&[Place::Slew]),
-    Entry::trips(flipped(TIM1 + 0x2c, 10), SHARE, LEG_REASONS).at(&[Place::Slew]),
-    Entry::harmless(flipped(TIM1 + 0x28, 0)),
-    Entry::trips(flipped(GPIOB_ODR, 10), DUTY, LEG_REASONS)
-        .at(&[Place::Slew])
-        .never_at(&[Place::Off]),
-    Entry::harmless(flipped(TIM1 + 0x34, 10)),
+    // The first current sets main output and enable line again.
+    trips(flipped(TIM1 + 0x44, 15), DUTY, LEG_REASONS)
+        .at(&[FaultScene::Slew])
+        .never_at(&[FaultScene::Off]),
+    trips(flipped(TIM1 + 0x20, 0), DUTY, LEG_REASONS).at(&[FaultScene::Slew]),
+    trips(flipped(TIM1 + 0x2c, 10), SHARE, LEG_REASONS).at(&[FaultScene::Slew]),
+    harmless(flipped(TIM1 + 0x28, 0)),
+    trips(flipped(GPIOB_ODR, 10), DUTY, LEG_REASONS)
+        .at(&[FaultScene::Slew])
+        .never_at(&[FaultScene::Off]),
+    harmless(flipped(TIM1 + 0x34, 10)),
     // Scans that are no longer started, converted, stored or taken.
-    Entry::trips(flipped(TIM2, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
-    Entry::trips(
+    trips(flipped(TIM2, 0), NOW, &[Fault::TickLost, Fault::Sampling]),
+    trips(
         flipped(ADC1 + 0x08, 0),
         NOW,
         &[Fault::TickLost, Fault::Sampling],
     ),
-    Entry::trips(
+    trips(
         flipped(DMA2_S0CR, 0),
         NOW,
         &[Fault::TickLost, Fault::Sampling],
     ),
-    Entry::trips(
+    trips(
         flipped(NVIC_ISER1, 24),
         NOW,
         &[Fault::TickLost, Fault::Sampling],
     ),
-    // The host's task is no longer called.
-    Entry::trips(flipped(NVIC_ISER0, 6), ROLL_CALL, &[Fault::Watchdog]),
+    // The task of the serial line is no longer called.
+    trips(flipped(NVIC_ISER0, 6), WATCHDOG_TIMEOUT, &[Fault::Watchdog]),
     // Scans at another rate: 0.6 % slower and faster, 9 %, 3.7 times faster, 6.8, 24 and 48 times slower; half of it and less.
-    Entry::trips(flipped(TIM2_ARR, 5), NOW, RATE),
-    Entry::trips(flipped(TIM2_ARR, 2), SLOW_RATE, RATE),
-    Entry::trips(flipped(TIM2_ARR, 9), NOW, RATE).at(&[Place::Warm]),
-    Entry::trips(flipped(TIM2_ARR, 12), NOW, RATE),
-    Entry::trips(flipped(TIM2_ARR, 15), NOW, RATE).at(&[Place::Warm]),
-    Entry::trips(flipped(TIM2_ARR, 17), NOW, RATE),
-    Entry::trips(flipped(TIM2_ARR, 18), NOW, RATE),
-    Entry::trips(flipped(TIM2 + 0x28, 0), NOW, RATE).at(&[Place::Warm]),
-    Entry::trips(flipped(TIM2 + 0x28, 4), NOW, RATE),
-    Entry::trips(flipped(TIM2 + 0x28, 15), NOW, RATE),
-    // What it is measured against: stopped, at an eighth, in shorter rounds.
-    Entry::trips(flipped(SYST_CSR, 0), NOW, RATE),
-    Entry::trips(flipped(SYST_CSR, 2), NOW, RATE),
-    Entry::trips(flipped(SYST_CSR + 4, 20), NEXT_ROUND, RATE),
+    trips(flipped(TIM2_ARR, 5), NOW, RATE),
+    trips(flipped(TIM2_ARR, 2), SLOW_RATE, RATE),
+    trips(flipped(TIM2_ARR, 9), NOW, RATE).at(&[FaultScene::Warm]),
+    trips(flipped(TIM2_ARR, 12), NOW, RATE),
+    trips(flipped(TIM2_ARR, 15), NOW, RATE).at(&[FaultScene::Warm]),
+    trips(flipped(TIM2_ARR, 17), NOW, RATE),
+    trips(flipped(TIM2_ARR, 18), NOW, RATE),
+    trips(flipped(TIM2 + 0x28, 0), NOW, RATE).at(&[FaultScene::Warm]),
+    trips(flipped(TIM2 + 0x28, 4), NOW, RATE),
+    trips(flipped(TIM2 + 0x28, 15), NOW, RATE),
+    // The reference of the rate monitor (SysTick): stopped, at an eighth, with a shorter period.
+    trips(flipped(SYST_CSR, 0), NOW, RATE),
+    trips(flipped(SYST_CSR, 2), NOW, RATE),
+    trips(flipped(SYST_CSR + 4, 20), SYSTICK_WRAP, RATE),
     // Clocks of both, and of all else: half, the internal oscillator, timers at a quarter and at twice their rate.
-    Entry::trips(flipped(RCC_CFGR, 7), NOW, CLOCK).at(&[Place::Warm]),
-    Entry::trips(flipped(RCC_CFGR, 1), NOW, CLOCK),
-    Entry::trips(flipped(RCC_CFGR, 11), NOW, CLOCK).at(&[Place::Warm]),
-    Entry::trips(flipped(RCC_DCKCFGR, 24), NOW, RATE).at(&[Place::Warm]),
+    trips(flipped(RCC_CFGR, 7), NOW, CLOCK).at(&[FaultScene::Warm]),
+    trips(flipped(RCC_CFGR, 1), NOW, CLOCK),
+    trips(flipped(RCC_CFGR, 11), NOW, CLOCK).at(&[FaultScene::Warm]),
+    trips(flipped(RCC_DCKCFGR, 24), NOW, RATE).at(&[FaultScene::Warm]),
 ];

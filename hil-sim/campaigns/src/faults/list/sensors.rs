@@ -1,20 +1,20 @@
-//! Thermistors, force sensor, converter.
+//! Faults of thermistors, force sensor and converter.
 
-use thermal_display::device::safety::Fault;
+use thermal_device::safety::Fault;
 use thermal_sim::scene::FaultKind as Kind;
 use thermal_sim::scene::Sensor::{Check, Display, Room, Sink, Skin};
 
-use crate::faults::entry::{broken, swapped, thermistor, valued};
-use crate::faults::{Entry, Injected, Place, Sign};
+use crate::faults::fault_case::{broken, harmless, swapped, thermistor, trips, valued};
+use crate::faults::{FaultCase, FaultScene, InjectedFault, Symptom};
 
-const NOW: &[Sign] = &[Sign::Injection];
+const NOW: &[Symptom] = &[Symptom::Injection];
 
-const fn wire(kind: Kind, of: thermal_sim::scene::Sensor, reasons: &'static [Fault]) -> Entry {
-    Entry::trips(thermistor(kind, of, 0.0), NOW, reasons)
+const fn wire(kind: Kind, of: thermal_sim::scene::Sensor, reasons: &'static [Fault]) -> FaultCase {
+    trips(thermistor(kind, of, 0.0), NOW, reasons)
 }
 
-/// Open, shorted, and stuck in the converter: a reading that repeats itself.
-pub const WIRES: &[Entry] = &[
+/// Open and shorted thermistors, and frozen converter channels.
+pub const WIRES: &[FaultCase] = &[
     wire(Kind::ThermistorOpen, Display, &[Fault::DisplayOpen]),
     wire(Kind::ThermistorOpen, Check, &[Fault::CheckOpen]),
     wire(Kind::ThermistorOpen, Sink, &[Fault::SinkOpen]),
@@ -32,15 +32,16 @@ pub const WIRES: &[Entry] = &[
     wire(Kind::ThermistorStuck, Room, &[Fault::RoomFrozen]),
 ];
 
-/// One reading leads the display astray and the other one tells; near an end of the range its limit comes first.
-const APART: &[Sign] = &[Sign::Apart, Sign::DisplayLimit];
-const LIMIT: &[Sign] = &[Sign::DisplayLimit];
-/// A step shows at once, the difference that it leaves later.
-const STEP: &[Sign] = &[Sign::Jump];
+/// The control loop follows the wrong reading and the other thermistor shows it; near an end of the range the limit is
+/// reached first.
+const APART: &[Symptom] = &[Symptom::DisplaySensorsDiffer, Symptom::DisplayLimit];
+const LIMIT: &[Symptom] = &[Symptom::DisplayLimit];
+/// A step is detectable at once.
+const STEP: &[Symptom] = &[Symptom::ReadingJump];
 const DISPLAY_STEP: &[Fault] = &[Fault::DisplayJump, Fault::DisplayHot, Fault::DisplayCold];
 const CHECK_STEP: &[Fault] = &[Fault::CheckJump, Fault::DisplayHot, Fault::DisplayCold];
-/// A drift that begins amid the self-test's pulse looks like too little of an answer, or the other way round; one that the
-/// tile just about follows, like another tile.
+/// A drift during the pulse of the self-test can look like a weak or reversed response. A drift that the tile can just
+/// follow can look like a model mismatch.
 const DRIFTED: &[Fault] = &[
     Fault::DisplaysApart,
     Fault::DisplayHot,
@@ -49,7 +50,7 @@ const DRIFTED: &[Fault] = &[
     Fault::Polarity,
     Fault::UnlikeModel,
 ];
-/// The model of the tile does not go by the second thermistor.
+/// The model of the tile does not use the second thermistor.
 const CHECK_DRIFTED: &[Fault] = &[
     Fault::DisplaysApart,
     Fault::DisplayHot,
@@ -57,7 +58,7 @@ const CHECK_DRIFTED: &[Fault] = &[
     Fault::NoResponse,
     Fault::Polarity,
 ];
-/// A slow thermistor may show too little of the self-test's pulse, or enough: how slow it was before is the device's.
+/// A slow thermistor may respond too weakly to the pulse of the self-test, depending on its lag before the fault.
 const LOOSE: &[Fault] = &[
     Fault::DisplaysApart,
     Fault::DisplayHot,
@@ -71,73 +72,77 @@ const BEYOND: &[Fault] = &[
     Fault::Polarity,
     Fault::UnlikeModel,
 ];
-const ROOM: &[Sign] = &[Sign::RoomAboveSkin];
+const ROOM: &[Symptom] = &[Symptom::RoomAboveSkin];
 const ROOM_ABOVE: &[Fault] = &[Fault::RoomAboveSkin];
 
-const fn drift(of: thermal_sim::scene::Sensor, kelvin: f64) -> Injected {
+const fn drift(of: thermal_sim::scene::Sensor, kelvin: f64) -> InjectedFault {
     thermistor(Kind::ThermistorDrift, of, kelvin)
 }
 
-const fn offset(of: thermal_sim::scene::Sensor, kelvin: f64) -> Injected {
+const fn offset(of: thermal_sim::scene::Sensor, kelvin: f64) -> InjectedFault {
     thermistor(Kind::ThermistorOffset, of, kelvin)
 }
 
-const fn loose(of: thermal_sim::scene::Sensor) -> Injected {
+const fn loose(of: thermal_sim::scene::Sensor) -> InjectedFault {
     thermistor(Kind::ThermistorDetached, of, 20.0)
 }
 
-/// Readings that are wrong but possible. A drift of less than 3 K, or of skin and room by less than what tells them
-/// apart, cannot be told from another finger or another room, and moves the display by no more than itself.
-pub const READINGS: &[Entry] = &[
-    Entry::trips(drift(Display, 5.0), APART, DRIFTED),
-    Entry::trips(drift(Display, -5.0), APART, DRIFTED).at(&[Place::Warm]),
-    Entry::trips(drift(Check, 5.0), APART, CHECK_DRIFTED),
-    Entry::trips(drift(Check, -5.0), APART, CHECK_DRIFTED),
-    Entry::trips(drift(Display, 2.9), LIMIT, BEYOND).at(&[Place::Cold]),
-    Entry::trips(drift(Display, -2.9), LIMIT, BEYOND).at(&[Place::Warm]),
-    Entry::trips(drift(Sink, 5.0), &[Sign::SinkLimit], &[Fault::SinkHot]),
-    Entry::harmless(drift(Sink, -5.0)),
-    Entry::harmless(drift(Skin, 5.0)),
-    Entry::harmless(drift(Skin, -3.0)),
-    Entry::trips(drift(Skin, -20.0), ROOM, ROOM_ABOVE),
-    Entry::harmless(drift(Room, 5.0)),
-    Entry::harmless(drift(Room, -5.0)),
-    Entry::trips(drift(Room, 20.0), ROOM, ROOM_ABOVE),
-    Entry::trips(offset(Display, 5.0), STEP, DISPLAY_STEP),
-    Entry::trips(offset(Display, -5.0), STEP, DISPLAY_STEP).at(&[Place::Warm]),
-    Entry::trips(offset(Display, 1.0), STEP, DISPLAY_STEP),
-    Entry::trips(offset(Check, 5.0), STEP, CHECK_STEP),
-    Entry::trips(offset(Check, -5.0), STEP, CHECK_STEP),
-    Entry::trips(offset(Sink, 5.0), STEP, &[Fault::SinkJump, Fault::SinkHot]),
-    Entry::trips(offset(Sink, -5.0), STEP, &[Fault::SinkJump]),
-    // The heat of a finger of 54 °C is none that the display sees.
-    Entry::trips(
+/// Wrong but plausible readings. A drift of less than 3 K, or of skin and room by less than the limit of their difference,
+/// cannot be distinguished from another finger or room, and moves the display by no more than the drift.
+pub const READINGS: &[FaultCase] = &[
+    trips(drift(Display, 5.0), APART, DRIFTED),
+    trips(drift(Display, -5.0), APART, DRIFTED).at(&[FaultScene::Warm]),
+    trips(drift(Check, 5.0), APART, CHECK_DRIFTED),
+    trips(drift(Check, -5.0), APART, CHECK_DRIFTED),
+    trips(drift(Display, 2.9), LIMIT, BEYOND).at(&[FaultScene::Cold]),
+    trips(drift(Display, -2.9), LIMIT, BEYOND).at(&[FaultScene::Warm]),
+    trips(drift(Sink, 5.0), &[Symptom::SinkLimit], &[Fault::SinkHot]),
+    harmless(drift(Sink, -5.0)),
+    harmless(drift(Skin, 5.0)),
+    harmless(drift(Skin, -3.0)),
+    trips(drift(Skin, -20.0), ROOM, ROOM_ABOVE),
+    harmless(drift(Room, 5.0)),
+    harmless(drift(Room, -5.0)),
+    trips(drift(Room, 20.0), ROOM, ROOM_ABOVE),
+    trips(offset(Display, 5.0), STEP, DISPLAY_STEP),
+    trips(offset(Display, -5.0), STEP, DISPLAY_STEP).at(&[FaultScene::Warm]),
+    trips(offset(Display, 1.0), STEP, DISPLAY_STEP),
+    trips(offset(Check, 5.0), STEP, CHECK_STEP),
+    trips(offset(Check, -5.0), STEP, CHECK_STEP),
+    trips(offset(Sink, 5.0), STEP, &[Fault::SinkJump, Fault::SinkHot]),
+    trips(offset(Sink, -5.0), STEP, &[Fault::SinkJump]),
+    // The display does not receive the heat of a finger of 54 °C.
+    trips(
         offset(Skin, 20.0),
-        &[Sign::Dose],
+        &[Symptom::Dose],
         &[Fault::Dose, Fault::UnlikeModel],
     )
-    .at(&[Place::Touched])
+    .at(&[FaultScene::Touched])
     .watched(180.0),
-    Entry::trips(offset(Skin, -20.0), ROOM, ROOM_ABOVE),
-    Entry::trips(
+    trips(offset(Skin, -20.0), ROOM, ROOM_ABOVE),
+    trips(
         loose(Display),
-        &[Sign::Apart, Sign::DisplayLimit, Sign::WrongWay],
+        &[
+            Symptom::DisplaySensorsDiffer,
+            Symptom::DisplayLimit,
+            Symptom::WrongWay,
+        ],
         DRIFTED,
     )
-    .at(&[Place::Slew, Place::Replace]),
-    Entry::trips(loose(Check), APART, LOOSE).at(&[Place::Slew, Place::Replace]),
-    Entry::harmless(loose(Sink)).at(&[Place::Cold]),
-    Entry::harmless(loose(Skin)),
-    Entry::harmless(loose(Room)),
+    .at(&[FaultScene::Slew, FaultScene::Replace]),
+    trips(loose(Check), APART, LOOSE).at(&[FaultScene::Slew, FaultScene::Replace]),
+    harmless(loose(Sink)).at(&[FaultScene::Cold]),
+    harmless(loose(Skin)),
+    harmless(loose(Room)),
 ];
 
-/// What a swap shows depends on how far apart both are when it happens, and on what the display does then.
-const SWAP: &[Sign] = &[
-    Sign::Jump,
-    Sign::Apart,
-    Sign::WrongWay,
-    Sign::RoomAboveSkin,
-    Sign::SelfTest(0.504),
+/// The symptom of an exchange depends on the difference of the two temperatures and on the state of the display.
+const SWAP: &[Symptom] = &[
+    Symptom::ReadingJump,
+    Symptom::DisplaySensorsDiffer,
+    Symptom::WrongWay,
+    Symptom::RoomAboveSkin,
+    Symptom::SelfTest(0.504),
 ];
 const ELSEWHERE: &[Fault] = &[
     Fault::DisplayJump,
@@ -148,7 +153,7 @@ const ELSEWHERE: &[Fault] = &[
     Fault::RoomAboveSkin,
     Fault::NoResponse,
 ];
-/// The sink's own reading steps too, and may be the only one that steps by enough.
+/// The reading of the sink steps too, and may be the only one to exceed its limit.
 const ON_SINK: &[Fault] = &[
     Fault::DisplayJump,
     Fault::CheckJump,
@@ -159,48 +164,48 @@ const ON_SINK: &[Fault] = &[
     Fault::RoomAboveSkin,
     Fault::NoResponse,
 ];
-const NO_STEP: &[Sign] = &[Sign::Jump, Sign::RoomAboveSkin];
+const NO_STEP: &[Symptom] = &[Symptom::ReadingJump, Symptom::RoomAboveSkin];
 
-/// Two thermistors in each other's place.
-pub const SWAPPED: &[Entry] = &[
-    Entry::harmless(swapped(Display, Check)),
-    Entry::trips(swapped(Display, Sink), SWAP, ON_SINK).at(&[Place::Off, Place::Slew]),
-    Entry::trips(swapped(Display, Skin), SWAP, ELSEWHERE).at(&[Place::Off, Place::Touched]),
-    Entry::trips(swapped(Display, Room), SWAP, ELSEWHERE).at(&[Place::Off, Place::Slew]),
-    Entry::trips(swapped(Check, Sink), SWAP, ON_SINK).at(&[Place::Off]),
-    Entry::trips(swapped(Check, Skin), SWAP, ELSEWHERE).at(&[Place::Off]),
-    Entry::trips(swapped(Check, Room), SWAP, ELSEWHERE).at(&[Place::Off]),
-    Entry::trips(
+/// Exchanged thermistors.
+pub const SWAPPED: &[FaultCase] = &[
+    harmless(swapped(Display, Check)),
+    trips(swapped(Display, Sink), SWAP, ON_SINK).at(&[FaultScene::Off, FaultScene::Slew]),
+    trips(swapped(Display, Skin), SWAP, ELSEWHERE).at(&[FaultScene::Off, FaultScene::Touched]),
+    trips(swapped(Display, Room), SWAP, ELSEWHERE).at(&[FaultScene::Off, FaultScene::Slew]),
+    trips(swapped(Check, Sink), SWAP, ON_SINK).at(&[FaultScene::Off]),
+    trips(swapped(Check, Skin), SWAP, ELSEWHERE).at(&[FaultScene::Off]),
+    trips(swapped(Check, Room), SWAP, ELSEWHERE).at(&[FaultScene::Off]),
+    trips(
         swapped(Sink, Skin),
         NO_STEP,
         &[Fault::SinkJump, Fault::RoomAboveSkin],
     ),
-    Entry::trips(
+    trips(
         swapped(Sink, Room),
         NO_STEP,
         &[Fault::SinkJump, Fault::RoomAboveSkin],
     ),
-    Entry::trips(swapped(Skin, Room), NO_STEP, &[Fault::RoomAboveSkin]),
+    trips(swapped(Skin, Room), NO_STEP, &[Fault::RoomAboveSkin]),
 ];
 
-/// The rest of what is converted.
-pub const OTHERS: &[Entry] = &[
-    Entry::trips(broken(Kind::ReferenceOff), NOW, &[Fault::Excitation]),
-    // The current's reading stands still, too.
-    Entry::trips(
+/// Reference, converter and force sensor.
+pub const OTHERS: &[FaultCase] = &[
+    trips(broken(Kind::ReferenceOff), NOW, &[Fault::Excitation]),
+    // The reading of the current is frozen, too.
+    trips(
         broken(Kind::AdcStuck),
         NOW,
         &[Fault::SamplesFrozen, Fault::CurrentHigh, Fault::CurrentLow],
     )
-    .at(&[Place::Slew]),
-    Entry::trips(broken(Kind::ForceOpen), NOW, &[Fault::ForceSensor]),
-    // A finger that is not there gives no heat; nearly all of the range, more with a sensor of much gain.
-    Entry::harmless(valued(Kind::ForceOffset, 10.0))
+    .at(&[FaultScene::Slew]),
+    trips(broken(Kind::ForceOpen), NOW, &[Fault::ForceSensor]),
+    // The model expects heat of a finger that is absent; the offset is nearly the whole range of the sensor.
+    harmless(valued(Kind::ForceOffset, 10.0))
         .or_trips(&[Fault::UnlikeModel, Fault::ForceSensor])
-        .at(&[Place::Cold, Place::Preset, Place::Warm]),
-    Entry::trips(valued(Kind::ForceOffset, -10.0), NOW, &[Fault::ForceSensor]),
-    Entry::harmless(valued(Kind::ForceOffset, 1.0)).at(&[Place::Preset]),
-    Entry::harmless(valued(Kind::ForceOffset, -0.05)),
-    // A finger that it hides warms a display whose current is at its limit.
-    Entry::harmless(broken(Kind::ForceStuck)).or_trips(&[Fault::Polarity]),
+        .at(&[FaultScene::Cold, FaultScene::Preset, FaultScene::Warm]),
+    trips(valued(Kind::ForceOffset, -10.0), NOW, &[Fault::ForceSensor]),
+    harmless(valued(Kind::ForceOffset, 1.0)).at(&[FaultScene::Preset]),
+    harmless(valued(Kind::ForceOffset, -0.05)),
+    // An undetected finger warms a display whose current is at its limit.
+    harmless(broken(Kind::ForceStuck)).or_trips(&[Fault::Polarity]),
 ];

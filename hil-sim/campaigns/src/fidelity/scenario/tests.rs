@@ -1,16 +1,16 @@
 //! The scenes are those that the scenarios promise.
 
 use contact_model::material::MATERIALS;
-use thermal_display::device::control::Law;
+use thermal_device::control::Law;
 use thermal_sim::scene::Scene;
 
 use super::*;
 
-fn scene(case: &Case) -> Scene {
+fn scene(case: &FidelityCase) -> Scene {
     case.scene(Law::Pi10Hz, 5, &[]).expect("a scene")
 }
 
-fn find<'a>(cases: &'a [Case], name: &str, force_n: f64) -> &'a Case {
+fn find<'a>(cases: &'a [FidelityCase], name: &str, force_n: f64) -> &'a FidelityCase {
     cases
         .iter()
         .find(|case| case.name == name && case.force_n == force_n)
@@ -135,7 +135,7 @@ fn unseen_are_materials_warm_objects_other_skin_and_a_bar_that_is_too_warm() {
         ("cork", 117.0),
     ] {
         let material = find(&cases, name, 2.0)
-            .thing
+            .object
             .properties
             .expect("properties");
         let ratio = material.effusivity() / effusivity;

@@ -1,52 +1,54 @@
-//! What breaks in a scene, when, and for how long.
+//! Faults of a scene: kind, start and end.
 
 mod kinds;
+mod parse;
 mod processor;
-mod read;
 
 use serde::Deserialize;
 
-pub use kinds::{FaultKind, Value};
+pub use kinds::{FaultKind, ValueRange};
+pub(super) use parse::faults;
 pub use processor::{ProcessorKey, ProcessorKind};
-pub(super) use read::faults;
 
-/// Rate at which a thermistor drifts, K/s.
+/// Drift rate of a thermistor, K/s.
 pub const DRIFT_K_S: f64 = 1.0;
 
-/// A thermistor of one finger; its number is that of its place in the converter's scan.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Sensor {
-    /// In the display's face, which the loop goes by.
-    #[default]
-    Display,
-    /// Beside it, which the comparator watches.
-    Check,
-    /// On the sink.
-    Sink,
-    /// On the skin.
-    Skin,
-    /// In the room.
-    Room,
+named_enum! {
+    /// A thermistor of one finger, numbered as its channel in the converter's scan.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Sensor {
+        /// In the face of the display; the control loop uses it.
+        #[default]
+        Display = "display",
+        /// Beside it; the comparator watches it.
+        Check = "check",
+        /// On the sink.
+        Sink = "sink",
+        /// On the skin.
+        Skin = "skin",
+        /// In the room.
+        Room = "room",
+    }
 }
 
-/// Something that is broken now.
+/// A fault that is present now.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Broken {
-    /// What.
+pub struct ActiveFault {
+    /// Kind of the fault.
     pub kind: FaultKind,
-    /// Which thermistor, of kinds that break one.
+    /// The thermistor, for kinds that affect one.
     pub sensor: Sensor,
-    /// The other thermistor, of kinds that confuse two.
+    /// The second thermistor, for kinds that exchange two.
     pub with: Sensor,
-    /// How much now, in the unit of the [kind's value](FaultKind::value); 0 of kinds without.
+    /// Present magnitude in the unit of the [kind's value](FaultKind::value); 0 for kinds without a value.
     pub value: f64,
 }
 
-impl From<FaultKind> for Broken {
-    /// As a scene has it that says no more: of the display's thermistor, with the value that such a scene means.
+impl From<FaultKind> for ActiveFault {
+    /// The defaults of a scene: the display's thermistor and the default value of the kind.
     fn from(kind: FaultKind) -> Self {
-        let value = kind.value().and_then(|value| value.unless_given);
+        let value = kind.value().and_then(|value| value.default);
         Self {
             kind,
             sensor: Sensor::Display,
@@ -56,25 +58,25 @@ impl From<FaultKind> for Broken {
     }
 }
 
-/// Something that breaks in a scene.
+/// A fault of a scene with its start and end.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fault {
-    /// What; its value is what it comes to.
-    pub broken: Broken,
-    /// From when on, s.
+pub struct ScheduledFault {
+    /// The fault; a drift ends at its value.
+    pub fault: ActiveFault,
+    /// Start, s.
     pub t_s: f64,
-    /// Until when, s; infinite if it stays.
+    /// End, s; infinite for a permanent fault.
     pub until_s: f64,
 }
 
-impl Fault {
-    /// What is broken at a time, s; a drift is on its way.
+impl ScheduledFault {
+    /// The fault as it is at a time, s; `None` if it is not present. A drift grows from its start on.
     #[must_use]
-    pub fn at(&self, t_s: f64) -> Option<Broken> {
+    pub fn at(&self, t_s: f64) -> Option<ActiveFault> {
         if !(self.t_s..self.until_s).contains(&t_s) {
             return None;
         }
-        let mut now = self.broken;
+        let mut now = self.fault;
         if now.kind == FaultKind::ThermistorDrift {
             let most_k = DRIFT_K_S * (t_s - self.t_s);
             now.value = now.value.clamp(-most_k, most_k);

@@ -1,52 +1,33 @@
-//! Faults of the processor, and what a scene says of each.
+//! Faults of the processor and the keys that a scene gives for each.
 
 use std::ops::Range;
 
 use toml::Spanned;
 
-use crate::processor::{Injection, NoMachineFault};
+use crate::processor::{Injection, ParseMachineFaultError};
 use crate::scene::file;
 use crate::scene::source::{SceneError, Source};
 
-/// A key that tells where the processor breaks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ProcessorKey {
-    /// Address of a byte of the RAM, or of a device's register.
-    Address,
-    /// Name of a core register.
-    Register,
-    /// Bit of it.
-    Bit,
-    /// DMA controller; 2, the sampler's, unless given.
-    Controller,
-    /// Its stream; 0, the sampler's, unless given.
-    Stream,
+named_enum! {
+    /// A key that locates a fault of the processor.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+    pub enum ProcessorKey {
+        /// Address of a byte of the RAM or of a peripheral register.
+        Address = "address",
+        /// Name of a core register.
+        Register = "register",
+        /// Bit of the byte or register.
+        Bit = "bit",
+        /// DMA controller; by default 2, the sampler's.
+        Controller = "controller",
+        /// Stream of the controller; by default 0, the sampler's.
+        Stream = "stream",
+    }
 }
 
 impl ProcessorKey {
-    /// All of them.
-    pub const ALL: [Self; 5] = [
-        Self::Address,
-        Self::Register,
-        Self::Bit,
-        Self::Controller,
-        Self::Stream,
-    ];
-
-    /// Its name in a scene.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Address => "address",
-            Self::Register => "register",
-            Self::Bit => "bit",
-            Self::Controller => "controller",
-            Self::Stream => "stream",
-        }
-    }
-
-    /// What a scene means that does not say.
-    const fn unless_given(self) -> Option<&'static str> {
+    /// Default of the key, if it has one.
+    const fn default(self) -> Option<&'static str> {
         match self {
             Self::Controller => Some("2"),
             Self::Stream => Some("0"),
@@ -54,8 +35,8 @@ impl ProcessorKey {
         }
     }
 
-    /// Where it stands in a table, and what it says.
-    fn said(self, row: &file::Fault) -> Option<(Range<usize>, String)> {
+    /// Position and text of the key in a table, if it is there.
+    fn value(self, row: &file::Fault) -> Option<(Range<usize>, String)> {
         let number = |value: &Option<Spanned<i64>>| {
             let value = value.as_ref()?;
             Some((value.span(), value.get_ref().to_string()))
@@ -73,17 +54,17 @@ impl ProcessorKey {
     }
 }
 
-/// What can happen to the processor.
+/// Kind of a fault of the processor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ProcessorKind {
     /// Its name in a scene.
     pub name: &'static str,
-    /// Keys that tell where.
+    /// Keys that locate the fault.
     pub keys: &'static [ProcessorKey],
 }
 
 impl ProcessorKind {
-    /// All of them.
+    /// All kinds.
     pub const ALL: [Self; 12] = [
         Self::new("hung-core", &[]),
         Self::new("hse-stopped", &[]),
@@ -106,13 +87,13 @@ impl ProcessorKind {
         Self { name, keys }
     }
 
-    /// The kind of a name.
-    pub(super) fn of(name: &str) -> Option<Self> {
+    /// The kind with a name.
+    pub(super) fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.name == name)
     }
 }
 
-/// Reads a table; noise in RAM is drawn by the scene's seed.
+/// Reads the table of a processor fault; the scene's seed draws the noise in the RAM.
 pub(super) fn injection(
     source: &Source<'_>,
     row: &Spanned<file::Fault>,
@@ -137,23 +118,19 @@ pub(super) fn injection(
     let known = ProcessorKey::ALL
         .into_iter()
         .filter(|key| !kind.keys.contains(key));
-    let others = known.map(|key| (key.name(), key.said(row.get_ref()).map(|(span, _)| span)));
+    let others = known.map(|key| (key.name(), key.value(row.get_ref()).map(|(span, _)| span)));
     for (key, span) in spans.into_iter().chain(others) {
         if let Some(span) = span {
-            return Err(foreign(source, key, span, kind.name, kind.keys));
+            return Err(meaningless_key(source, key, span, kind.name, kind.keys));
         }
     }
     let mut at = Vec::new();
     for key in kind.keys {
-        let said = key.said(row.get_ref()).map(|(_, said)| said);
-        at.push(
-            said.or(key.unless_given().map(str::to_owned))
-                .ok_or_else(|| {
-                    let problem =
-                        format!("fault.{} is missing; {} needs it", key.name(), kind.name);
-                    source.error(Some(row.span()), problem)
-                })?,
-        );
+        let given = key.value(row.get_ref()).map(|(_, text)| text);
+        at.push(given.or(key.default().map(str::to_owned)).ok_or_else(|| {
+            let problem = format!("fault.{} is missing; {} needs it", key.name(), kind.name);
+            source.error(Some(row.span()), problem)
+        })?);
     }
     if kind.name == "power-cycle" {
         at.push(seed.to_string());
@@ -163,24 +140,31 @@ pub(super) fn injection(
     } else {
         format!("{}={}", kind.name, at.join("."))
     };
-    let fault = (text.parse())
-        .map_err(|error: NoMachineFault| source.error(Some(row.span()), error.to_string()))?;
+    let fault = (text.parse()).map_err(|error: ParseMachineFaultError| {
+        source.error(Some(row.span()), error.to_string())
+    })?;
     let t_s = source.time("fault.t_s", t_s, duration_s)?;
     Ok(Injection { t_s, fault })
 }
 
-/// A table of another kind has no key of the processor's.
+/// Checks that the table of another fault has no key of a processor fault.
 pub(super) fn no_keys(source: &Source<'_>, row: &Spanned<file::Fault>) -> Result<(), SceneError> {
     let row = row.get_ref();
     for key in ProcessorKey::ALL {
-        if let Some((span, _)) = key.said(row) {
-            return Err(foreign(source, key.name(), span, row.kind.get_ref(), &[]));
+        if let Some((span, _)) = key.value(row) {
+            return Err(meaningless_key(
+                source,
+                key.name(),
+                span,
+                row.kind.get_ref(),
+                &[],
+            ));
         }
     }
     Ok(())
 }
 
-fn foreign(
+fn meaningless_key(
     source: &Source<'_>,
     key: &str,
     span: Range<usize>,

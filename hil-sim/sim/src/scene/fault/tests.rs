@@ -3,53 +3,53 @@ use std::collections::HashSet;
 use super::*;
 
 #[test]
-fn names_tell_all_kinds_apart() {
+fn every_kind_has_its_own_name() {
     let names: HashSet<_> = FaultKind::ALL.map(FaultKind::name).into();
     assert_eq!(names.len(), FaultKind::ALL.len());
 }
 
 #[test]
-fn what_a_scene_means_that_gives_no_value_is_allowed() {
+fn default_values_are_within_their_ranges() {
     for kind in FaultKind::ALL {
         let Some(value) = kind.value() else { continue };
-        assert!(value.least < value.most, "{kind:?}");
-        let meant = value.unless_given.unwrap_or(value.least);
-        assert!((value.least..=value.most).contains(&meant), "{kind:?}");
+        assert!(value.min < value.max, "{kind:?}");
+        let default = value.default.unwrap_or(value.min);
+        assert!((value.min..=value.max).contains(&default), "{kind:?}");
     }
 }
 
 #[test]
-fn fault_begins_and_ends_at_its_times() {
-    let fault = Fault {
-        broken: FaultKind::ThermistorOpen.into(),
+fn fault_is_present_from_its_start_until_its_end() {
+    let fault = ScheduledFault {
+        fault: FaultKind::ThermistorOpen.into(),
         t_s: 1.0,
         until_s: 2.0,
     };
     for (t_s, expected) in [(0.999, false), (1.0, true), (1.999, true), (2.0, false)] {
         assert_eq!(fault.at(t_s).is_some(), expected, "{t_s} s");
     }
-    let stays = Fault {
+    let permanent = ScheduledFault {
         until_s: f64::INFINITY,
         ..fault
     };
-    assert!(stays.at(86_400.0).is_some());
+    assert!(permanent.at(86_400.0).is_some());
 }
 
-/// 1 K/s from its begin on, towards either side, up to its value.
+/// In both directions, from the start of the fault up to its value.
 #[test]
-fn drift_goes_a_kelvin_a_second() {
+fn drift_grows_by_1_kelvin_per_second() {
     for value in [5.0, -5.0] {
-        let broken = Broken {
+        let drift = ActiveFault {
             value,
             ..FaultKind::ThermistorDrift.into()
         };
-        let fault = Fault {
-            broken,
+        let fault = ScheduledFault {
+            fault: drift,
             t_s: 2.0,
             until_s: f64::INFINITY,
         };
         for (t_s, expected_k) in [(2.0, 0.0), (3.5, 1.5), (7.0, 5.0), (100.0, 5.0)] {
-            let drifted_k = fault.at(t_s).map(|broken| broken.value);
+            let drifted_k = fault.at(t_s).map(|fault| fault.value);
             assert_eq!(drifted_k, Some(value.signum() * expected_k), "{t_s} s");
         }
     }

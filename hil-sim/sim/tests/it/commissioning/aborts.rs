@@ -1,8 +1,8 @@
 //! What ends tuning early, and what is refused.
 
 use thermal_sim::World;
-use thermal_sim::commission::Bench;
-use thermal_sim::engine::Native;
+use thermal_sim::commissioning::CommissioningBench;
+use thermal_sim::engine::NativeEngine;
 use thermal_sim::scene::FaultKind;
 
 use super::{bench, device};
@@ -10,35 +10,35 @@ use super::{bench, device};
 const STATE_OFF: &str = "state=ready";
 
 /// A device that has just begun to tune in a world.
-fn tuning(world: World, then: impl FnOnce(&mut Bench<'_, Native>)) {
-    let mut engine = Native::new(world);
+fn tuning(world: World, then: impl FnOnce(&mut CommissioningBench<'_, NativeEngine>)) {
+    let mut engine = NativeEngine::new(world);
     let mut bench = bench(&mut engine, &[]);
     bench.wait(5).expect("it runs");
     bench.arm().expect("armed");
-    bench.tell("tune").expect("tuning");
+    bench.command("tune").expect("tuning");
     then(&mut bench);
 }
 
-fn at_work() -> World {
-    device(None, 1).at_work().expect("a plant")
+fn in_use() -> World {
+    device(None, 1).in_use().expect("a plant")
 }
 
-fn ask(bench: &mut Bench<'_, Native>, line: &str) -> String {
-    bench.ask(line).expect("an answer")
+fn ask(bench: &mut CommissioningBench<'_, NativeEngine>, line: &str) -> String {
+    bench.query(line).expect("an answer")
 }
 
 /// Ten times, from settling to the last pulse.
 #[test]
 fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
     for after_ms in (500..9500).step_by(1000) {
-        tuning(at_work(), |bench| {
+        tuning(in_use(), |bench| {
             bench.wait(after_ms).expect("it runs");
             assert_eq!(
                 ask(bench, "tune result"),
                 "err tuning goes on; ask again in a second",
                 "after {after_ms} ms"
             );
-            bench.world().set(0.5, std::iter::empty());
+            bench.world().set_force_and_faults(0.5, std::iter::empty());
             bench.wait(50).expect("it runs");
             assert_eq!(
                 ask(bench, "tune result"),
@@ -59,11 +59,11 @@ fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
 
 #[test]
 fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
-    tuning(at_work(), |bench| {
+    tuning(in_use(), |bench| {
         bench.wait(4000).expect("it runs");
         bench
             .world()
-            .set(0.0, std::iter::once(FaultKind::ThermistorOpen.into()));
+            .set_force_and_faults(0.0, std::iter::once(FaultKind::ThermistorOpen.into()));
         bench.wait(5).expect("it runs");
         assert_eq!(bench.world().plant().current_a(), 0.0);
         assert_eq!(
@@ -71,9 +71,9 @@ fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
             "err tripped by display-open; clear it first"
         );
         // Even when the fault is gone, nothing of the experiment is used.
-        bench.world().set(0.0, std::iter::empty());
+        bench.world().set_force_and_faults(0.0, std::iter::empty());
         bench.wait(5).expect("it runs");
-        bench.tell("clear").expect("cleared");
+        bench.command("clear").expect("cleared");
         assert_eq!(
             ask(bench, "tune result"),
             "err tune was ended: another command or a fault ended it"
@@ -102,9 +102,9 @@ fn other_commands_end_tuning() {
         ("set correction display 0.1 0 0", "state=armed"),
         ("set tile 2.9 0.06 0.1 0.1 0.01", "state=armed"),
     ] {
-        tuning(at_work(), |bench| {
+        tuning(in_use(), |bench| {
             bench.wait(3000).expect("it runs");
-            bench.tell(line).expect("obeyed");
+            bench.command(line).expect("obeyed");
             bench.wait(5).expect("it runs");
             let answer = ask(bench, "tune result");
             assert!(
@@ -121,7 +121,7 @@ fn other_commands_end_tuning() {
 /// An answer that was lost can be asked for again, and the display is let go with the first.
 #[test]
 fn what_tuning_has_found_can_be_asked_for_again() {
-    tuning(at_work(), |bench| {
+    tuning(in_use(), |bench| {
         let mut first = String::new();
         for _ in 0..70 {
             bench.wait(1000).expect("it runs");
@@ -148,7 +148,7 @@ fn what_tuning_has_found_can_be_asked_for_again() {
 
 #[test]
 fn what_does_not_fit_the_state_is_refused() {
-    let mut engine = Native::new(at_work());
+    let mut engine = NativeEngine::new(in_use());
     let mut bench = bench(&mut engine, &[]);
     bench.wait(5).expect("it runs");
     for (line, answer) in [
@@ -180,10 +180,10 @@ fn what_does_not_fit_the_state_is_refused() {
 /// A result that nobody has asked for does not hold the display when an object is presented.
 #[test]
 fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
-    tuning(at_work(), |bench| {
+    tuning(in_use(), |bench| {
         bench.wait(40_000).expect("it runs");
         for line in ["material copper", "object 24", "start"] {
-            bench.tell(line).expect("obeyed");
+            bench.command(line).expect("obeyed");
         }
         bench.wait(3000).expect("it runs");
         let told = ask(bench, "state");
@@ -200,18 +200,18 @@ fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
 /// No line makes the device read a display so cold that the guard lets it burn.
 #[test]
 fn corrections_cannot_hide_a_hot_display() {
-    let mut engine = Native::new(at_work());
+    let mut engine = NativeEngine::new(in_use());
     let mut bench = bench(&mut engine, &[]);
     bench.wait(5).expect("it runs");
     for sensor in ["display", "check"] {
         let worst = format!("set correction {sensor} -1.2 -0.05 -0.002");
-        bench.tell(&worst).expect("within limits");
+        bench.command(&worst).expect("within limits");
         assert!(
             ask(&mut bench, &format!("set correction {sensor} -1.3 0 0")).starts_with("err offset")
         );
     }
     bench.arm().expect("armed");
-    bench.tell("hold 42").expect("held");
+    bench.command("hold 42").expect("held");
     bench.wait(30_000).expect("it runs");
     assert!(ask(&mut bench, "state").starts_with("ok state=armed"));
     let display_c = bench.world().plant().display_c();

@@ -1,8 +1,8 @@
 //! What a calibrated device reads, against what is.
 
 use documented_figures::assert_figure;
-use thermal_sim::commission::{Plants, of_device};
-use thermal_sim::engine::Native;
+use thermal_sim::commissioning::{CommissioningSetup, settings_for_device};
+use thermal_sim::engine::NativeEngine;
 
 use super::{PERFECT, ROOM_C, bench, device, mean};
 
@@ -37,12 +37,12 @@ fn range(from_c: f64, to_c: f64) -> impl Iterator<Item = f64> {
 }
 
 /// Errors of display, skin, room and sink of a device with some settings.
-fn sweep(plants: &Plants, seed: u64, settings: &[String]) -> [Vec<f64>; 4] {
+fn sweep(plants: &CommissioningSetup, seed: u64, settings: &[String]) -> [Vec<f64>; 4] {
     // Without a film of air the display stays where its sink is, and its sensor does not trail behind it.
     let mut params = plants.params().clone();
     params.tile.film_w_m2k = 0.0;
-    let plants = &Plants::new(&params, ROOM_C, seed);
-    let mut engine = Native::new(plants.at_work().expect("a plant"));
+    let plants = &CommissioningSetup::new(&params, ROOM_C, seed);
+    let mut engine = NativeEngine::new(plants.in_use().expect("a plant"));
     let mut bench = bench(&mut engine, settings);
     let mut all: [Vec<f64>; 4] = Default::default();
     for t_c in range(15.0, 42.0) {
@@ -84,7 +84,7 @@ fn calibrated_readings_are_within_millikelvins() {
     for (draw, seed) in devices {
         let plants = device(draw, seed);
         assert_eq!(plants.params().host, PERFECT);
-        let settings = of_device(plants.params(), ROOM_C, seed).expect("settings");
+        let settings = settings_for_device(plants.params(), ROOM_C, seed).expect("settings");
         let (before, after) = (sweep(&plants, seed, &[]), sweep(&plants, seed, &settings));
         println!("draw {draw:?} seed {seed}");
         let sensors = ["display", "skin", "room", "sink"];
@@ -127,8 +127,8 @@ fn calibrated_readings_are_within_millikelvins() {
 fn what_the_reference_shows_too_much_the_device_reads_too_much() {
     let mut params = device(None, 1).params().clone();
     params.host.reference_offset_k = 0.05;
-    let plants = Plants::new(&params, ROOM_C, 1);
-    let settings = of_device(&params, ROOM_C, 1).expect("settings");
+    let plants = CommissioningSetup::new(&params, ROOM_C, 1);
+    let settings = settings_for_device(&params, ROOM_C, 1).expect("settings");
     for (sensor, all) in sweep(&plants, 1, &settings).iter().enumerate() {
         let mean = all.iter().sum::<f64>() / all.len() as f64;
         assert!((mean - 0.05).abs() < 4e-3, "{sensor}: {mean}");

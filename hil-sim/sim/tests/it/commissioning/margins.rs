@@ -1,7 +1,7 @@
 //! The margins that a device reports, against what its loop does when its gain is raised.
 
-use thermal_sim::commission::{Tile, of_device};
-use thermal_sim::engine::Native;
+use thermal_sim::commissioning::{IdentifiedTile, settings_for_device};
+use thermal_sim::engine::NativeEngine;
 
 use super::{ROOM_C, bench, device};
 
@@ -14,8 +14,12 @@ const STILL_K: f64 = 0.03;
 const OSCILLATES_K: f64 = 0.1;
 
 /// How far the plate moves in the last second after a little more of what it is held at, K, peak to peak.
-fn moves(plants: &thermal_sim::commission::Plants, settings: &[String], times: f64) -> f64 {
-    let mut engine = Native::new(plants.at_work().expect("a plant"));
+fn moves(
+    plants: &thermal_sim::commissioning::CommissioningSetup,
+    settings: &[String],
+    times: f64,
+) -> f64 {
+    let mut engine = NativeEngine::new(plants.in_use().expect("a plant"));
     let mut bench = bench(&mut engine, settings);
     bench.wait(10).expect("it runs");
     let words: Vec<&str> = settings.last().expect("a tile").split(' ').collect();
@@ -25,14 +29,14 @@ fn moves(plants: &thermal_sim::commission::Plants, settings: &[String], times: f
     let gain: f64 = gain.parse().expect("a gain");
     // The law's gain is the reciprocal of the tile's.
     let line = format!("{set} {tile} {:.6} {}", gain / times, rest.join(" "));
-    bench.tell("law pi").expect("obeyed");
+    bench.command("law pi").expect("obeyed");
     bench.arm().expect("armed");
-    bench.tell("hold 26").expect("obeyed");
+    bench.command("hold 26").expect("obeyed");
     bench.wait(14_000).expect("it runs");
-    bench.tell(&line).expect("obeyed");
+    bench.command(&line).expect("obeyed");
     bench.wait(3000).expect("it runs");
     // So wild an oscillation that both thermistors part is one.
-    let answer = bench.ask("hold 26.2").expect("an answer");
+    let answer = bench.query("hold 26.2").expect("an answer");
     if answer.starts_with("err tripped by displays-apart") {
         return f64::INFINITY;
     }
@@ -52,11 +56,14 @@ fn moves(plants: &thermal_sim::commission::Plants, settings: &[String], times: f
 fn the_loop_oscillates_beyond_its_gain_margin_and_not_within() {
     for draw in [0, 11, 12, 16] {
         let plants = device((draw > 0).then_some(draw), draw);
-        let settings = of_device(plants.params(), ROOM_C, draw).expect("settings");
-        let mut engine = Native::new(plants.at_work().expect("a plant"));
+        let settings = settings_for_device(plants.params(), ROOM_C, draw).expect("settings");
+        let mut engine = NativeEngine::new(plants.in_use().expect("a plant"));
         let line = "margins";
-        let answer = bench(&mut engine, &settings).ask(line).expect("an answer");
-        let Tile { gain_margin, .. } = Tile::parse(line, &answer).expect("margins");
+        let answer = bench(&mut engine, &settings)
+            .query(line)
+            .expect("an answer");
+        let IdentifiedTile { gain_margin, .. } =
+            IdentifiedTile::parse(line, &answer).expect("margins");
         let within = moves(&plants, &settings, WITHIN * gain_margin);
         let beyond = moves(&plants, &settings, BEYOND * gain_margin);
         println!(

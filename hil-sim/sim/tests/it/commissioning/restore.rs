@@ -1,15 +1,15 @@
 //! A device that was switched off, and gets its settings back.
 
-use thermal_sim::commission::{CommissionError, of_device, restore};
-use thermal_sim::engine::Native;
+use thermal_sim::commissioning::{CommissionError, restore, settings_for_device};
+use thermal_sim::engine::NativeEngine;
 
 use super::{ROOM_C, bench, device, mean};
 
 #[test]
 fn a_device_reads_and_controls_as_before_by_its_lines() {
     let plants = device(Some(4), 4);
-    let settings = of_device(plants.params(), ROOM_C, 4).expect("settings");
-    let mut engine = Native::new(plants.at_work().expect("a plant"));
+    let settings = settings_for_device(plants.params(), ROOM_C, 4).expect("settings");
+    let mut engine = NativeEngine::new(plants.in_use().expect("a plant"));
     let tile = restore(&plants, &mut engine, &settings).expect("restored");
     let words: Vec<f64> = (settings.last().expect("a tile").split(' '))
         .filter_map(|word| word.parse().ok())
@@ -35,7 +35,7 @@ fn a_device_reads_and_controls_as_before_by_its_lines() {
 #[test]
 fn lines_that_the_device_does_not_take_or_keep_are_named() {
     let plants = device(None, 1);
-    let mut engine = Native::new(plants.at_work().expect("a plant"));
+    let mut engine = NativeEngine::new(plants.in_use().expect("a plant"));
     let mut with = |line: &str| {
         restore(&plants, &mut engine, &[line.to_owned()]).expect_err("no device has it")
     };

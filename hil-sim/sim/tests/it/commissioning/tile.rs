@@ -2,7 +2,7 @@
 
 use documented_figures::assert_figure;
 use thermal_plant::Params;
-use thermal_sim::commission::{Response, of_device};
+use thermal_sim::commissioning::{FrequencyResponse, settings_for_device};
 
 use super::{ROOM_C, device};
 
@@ -12,7 +12,7 @@ fn the_mirrors_zero_is_not_taken_for_the_tiles_answer() {
     let gain_k_s_a = |zero_a: f64| -> f64 {
         let mut params = Params::nominal();
         params.sensors.mirror.offset_a = zero_a;
-        let settings = of_device(&params, ROOM_C, 1).expect("a commissioned device");
+        let settings = settings_for_device(&params, ROOM_C, 1).expect("a commissioned device");
         let tile = settings
             .iter()
             .find_map(|line| line.strip_prefix("set tile "));
@@ -34,7 +34,7 @@ fn plate_answers_sines_as_its_heat_capacity_says() {
         tile.plate_m2() * tile.ceramic_m * tile.ceramic_j_m3k + tile.tabs_j_k + tile.legs_j_k / 3.0;
     let leak_1_s = (tile.conductance_w_k() + tile.film_w_m2k * tile.plate_m2()) / plate_j_k;
     for w in [0.7, 1.5, 3.0] {
-        let response = Response::of(&plants, w).expect("a plant");
+        let response = FrequencyResponse::measure(&plants, w).expect("a plant");
         let expected =
             tile.seebeck_v_k() * (24.0 + 273.15) / plate_j_k / response.w.hypot(leak_1_s);
         println!("{response:?}, expected {expected:.4}");
@@ -44,7 +44,7 @@ fn plate_answers_sines_as_its_heat_capacity_says() {
         );
         let trailing = response.w.atan2(leak_1_s);
         assert!(
-            (response.behind_rad - trailing).abs() < 0.06,
+            (response.phase_lag_rad - trailing).abs() < 0.06,
             "{response:?}, {trailing}"
         );
     }

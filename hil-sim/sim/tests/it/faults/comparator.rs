@@ -7,7 +7,7 @@ use super::*;
 const HEATING: (f64, f64) = (0.6, 1.0);
 
 /// Heats until the supply is cut, at most 5 s, with things broken; the display's temperature then.
-fn heated(world: &mut World, all: &[Broken]) -> Option<f64> {
+fn heated(world: &mut World, all: &[ActiveFault]) -> Option<f64> {
     for _ in 0..5000 {
         run(world, 1, driven(HEATING.0, HEATING.1), all);
         if world.plant().supply_cut() {
@@ -84,7 +84,7 @@ fn stuck_comparator_keeps_the_supply_off() {
     run(&mut world, 2, driven(1.0, 0.6), &stuck);
     assert_eq!(world.plant().current_a(), 0.0);
     assert!(world.bridge_fault());
-    let unseen = [FaultKind::ComparatorStuck, FaultKind::FaultPinDead].map(Broken::from);
+    let unseen = [FaultKind::ComparatorStuck, FaultKind::FaultPinDead].map(ActiveFault::from);
     run(&mut world, 1, driven(1.0, 0.6), &unseen);
     assert!(!world.bridge_fault(), "the pin hides it");
     assert_eq!(world.plant().current_a(), 0.0);
@@ -93,7 +93,7 @@ fn stuck_comparator_keeps_the_supply_off() {
 /// It sees the check thermistor's pin: what breaks there, and nothing of the other four or of the converter.
 #[test]
 fn it_sees_the_second_thermistors_pin_alone() {
-    let swapped = Broken {
+    let swapped = ActiveFault {
         with: Sensor::Check,
         ..of(FaultKind::SensorsSwapped, Sensor::Room, 0.0)
     };

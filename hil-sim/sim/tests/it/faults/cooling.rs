@@ -13,7 +13,7 @@ fn hot() -> World {
 }
 
 /// What of 36 K over the room is gone after 10 s.
-fn lost(all: &[Broken]) -> f64 {
+fn lost(all: &[ActiveFault]) -> f64 {
     let mut world = hot();
     run(&mut world, 10_000, OFF, all);
     (60.0 - world.plant().sink_c()) / 36.0

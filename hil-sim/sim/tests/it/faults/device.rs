@@ -1,7 +1,7 @@
 //! Faults of a scene on the device, natively, and what a run is judged by.
 
 use thermal_sim::World;
-use thermal_sim::engine::Native;
+use thermal_sim::engine::NativeEngine;
 use thermal_sim::metrics::{Figures, figures};
 use thermal_sim::run::{Outcome, run};
 use thermal_sim::scene::Scene;
@@ -16,7 +16,7 @@ const TOUCH: &str = "[[force]]\nt_s = 0.5\nforce_n = 2\n";
 
 fn ran(tables: &str) -> (Scene, Outcome) {
     let scene = scene(&format!("{TOUCH}{tables}"));
-    let mut engine = Native::new(World::new(&scene).expect("a plant for the scene"));
+    let mut engine = NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
     let outcome = run(&scene, &mut engine, |_| ()).expect("the device takes the scene");
     (scene, outcome)
 }

@@ -6,7 +6,7 @@ use thermal_sim::scene::FaultKind;
 use super::*;
 
 /// Current of the first step from rest, A: there is no Seebeck voltage yet.
-fn current_a(legs: Legs, all: &[Broken]) -> f64 {
+fn current_a(legs: Legs, all: &[ActiveFault]) -> f64 {
     let mut world = ideal();
     run(&mut world, 1, legs, all);
     world.plant().current_a()
@@ -126,7 +126,7 @@ fn short_of_output_a_trips_the_driver_and_a_dead_pin_hides_it() {
         &[FaultKind::BridgeShorted.into()],
     );
     assert!(world.bridge_fault());
-    let hidden = [FaultKind::BridgeShorted, FaultKind::FaultPinDead].map(Broken::from);
+    let hidden = [FaultKind::BridgeShorted, FaultKind::FaultPinDead].map(ActiveFault::from);
     run(&mut world, 1, legs(COOLING), &hidden);
     assert!(!world.bridge_fault());
     assert_eq!(

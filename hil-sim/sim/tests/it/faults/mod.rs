@@ -12,7 +12,7 @@ use std::path::Path;
 use thermal_plant::bridge::{Leg, Legs};
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
-use thermal_sim::scene::{Broken, FaultKind, Scene, Sensor};
+use thermal_sim::scene::{ActiveFault, FaultKind, Scene, Sensor};
 
 const HEAD: &str = "duration_s = 20\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\n";
 /// Neither noise nor non-linearity, self-heating nor leads; a driver that does not trip where the tests drive it.
@@ -44,23 +44,23 @@ fn driven(a: f64, b: f64) -> Legs {
     }
 }
 
-fn broken(kind: FaultKind, value: f64) -> Broken {
-    Broken {
+fn broken(kind: FaultKind, value: f64) -> ActiveFault {
+    ActiveFault {
         value,
         ..kind.into()
     }
 }
 
-fn of(kind: FaultKind, sensor: Sensor, value: f64) -> Broken {
-    Broken {
+fn of(kind: FaultKind, sensor: Sensor, value: f64) -> ActiveFault {
+    ActiveFault {
         sensor,
         ..broken(kind, value)
     }
 }
 
 /// Lets time pass in milliseconds with the finger lifted, things broken, and the legs held.
-fn run(world: &mut World, ms: u32, legs: Legs, all: &[Broken]) {
-    world.set(0.0, all.iter().copied());
+fn run(world: &mut World, ms: u32, legs: Legs, all: &[ActiveFault]) {
+    world.set_force_and_faults(0.0, all.iter().copied());
     for _ in 0..ms {
         world.step(legs);
         codes(world);

@@ -12,17 +12,10 @@ const AT_14_C: u16 = 2557;
 const AT_34_C: u16 = 1655;
 const AT_60_C: u16 = 816;
 
-const ALL: [Sensor; 5] = [
-    Sensor::Display,
-    Sensor::Check,
-    Sensor::Sink,
-    Sensor::Skin,
-    Sensor::Room,
-];
 /// What they read at rest; force and current after them.
 const REST: [u16; 7] = [AT_24_C, AT_24_C, AT_24_C, AT_34_C, AT_24_C, 410, 0];
 
-fn after(all: &[Broken]) -> [u16; 7] {
+fn after(all: &[ActiveFault]) -> [u16; 7] {
     let mut world = ideal();
     run(&mut world, 1, OFF, all);
     codes(&mut world)
@@ -35,7 +28,7 @@ fn sound_sensors_read_what_is_there() {
 
 #[test]
 fn each_thermistor_breaks_by_itself() {
-    for sensor in ALL {
+    for sensor in Sensor::ALL {
         for (kind, value, code) in [
             (FaultKind::ThermistorOpen, 0.0, Some(4095)),
             (FaultKind::ThermistorShort, 0.0, Some(0)),
@@ -77,10 +70,10 @@ fn each_thermistor_breaks_by_itself() {
 fn broken_wire_is_seen_at_once() {
     let mut world = ideal();
     run(&mut world, 5, OFF, &[]);
-    world.set(0.0, [FaultKind::ThermistorOpen.into()].into_iter());
+    world.set_force_and_faults(0.0, [FaultKind::ThermistorOpen.into()].into_iter());
     world.step(OFF);
     assert_eq!(world.convert(Channel::Display), 4095);
-    world.set(0.0, std::iter::empty());
+    world.set_force_and_faults(0.0, std::iter::empty());
     world.step(OFF);
     assert_eq!(world.convert(Channel::Display), AT_24_C);
 }
@@ -90,7 +83,7 @@ fn stuck_channel_repeats_itself_while_the_others_go_on() {
     let mut world = World::new(&scene("")).expect("a plant with noise");
     run(&mut world, 5, OFF, &[]);
     let stuck = codes(&mut world)[Sensor::Check as usize];
-    world.set(
+    world.set_force_and_faults(
         0.0,
         [of(FaultKind::ThermistorStuck, Sensor::Check, 0.0)].into_iter(),
     );
@@ -131,11 +124,11 @@ fn swapped_thermistors_read_each_other() {
     assert!(sound[2].abs_diff(AT_60_C) <= 1, "{sound:?}");
     assert!(sound[0] > AT_60_C + 250, "{sound:?}");
     for sensor in [Sensor::Display, Sensor::Check] {
-        let swapped = Broken {
+        let swapped = ActiveFault {
             with: Sensor::Sink,
             ..of(FaultKind::SensorsSwapped, sensor, 0.0)
         };
-        world.set(0.0, [hot, swapped].into_iter());
+        world.set_force_and_faults(0.0, [hot, swapped].into_iter());
         world.step(OFF);
         let [before, after] = [sound, codes(&mut world)];
         for (index, expected) in before.into_iter().enumerate() {
@@ -163,8 +156,8 @@ fn dividers_without_reference_all_read_short() {
 #[test]
 fn force_sensor_breaks_off_sticks_and_shifts() {
     let mut world = ideal();
-    let pressed = |world: &mut World, all: &[Broken]| {
-        world.set(2.0, all.iter().copied());
+    let pressed = |world: &mut World, all: &[ActiveFault]| {
+        world.set_force_and_faults(2.0, all.iter().copied());
         for _ in 0..20 {
             world.step(OFF);
         }

@@ -10,9 +10,9 @@ fn table_has_every_kind_with_unit_and_range() {
             || format!("| `{}` | | | ", kind.name()),
             |value| {
                 let meant = value
-                    .unless_given
+                    .default
                     .map_or(String::new(), |meant| format!(", else {meant}"));
-                let range = format!("{} to {}{meant}", value.least, value.most);
+                let range = format!("{} to {}{meant}", value.min, value.max);
                 format!("| `{}` | {} | {range} | ", kind.name(), value.unit)
             },
         );

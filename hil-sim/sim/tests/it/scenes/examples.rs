@@ -129,7 +129,8 @@ fn camera_errors(changes: &[(&str, &str)]) -> Vec<f64> {
             row.t_s
         );
     }
-    let error = |row: &&thermal_sim::trace::Row| Some(row.camera?.recovered_c - row.skin_real_c);
+    let error =
+        |row: &&thermal_sim::trace::TraceRow| Some(row.camera?.recovered_c - row.skin_real_c);
     frames.iter().filter_map(error).collect()
 }
 

@@ -8,10 +8,10 @@ mod refused;
 use std::path::{Path, PathBuf};
 
 use thermal_sim::World;
-use thermal_sim::engine::Native;
+use thermal_sim::engine::NativeEngine;
 use thermal_sim::run::run;
 use thermal_sim::scene::Scene;
-use thermal_sim::trace::Row;
+use thermal_sim::trace::TraceRow;
 
 /// A scene's text as it is given.
 fn scene(text: &str) -> Scene {
@@ -32,15 +32,15 @@ fn example(name: &str, changes: &[(&str, &str)]) -> String {
     text
 }
 
-fn rows(text: &str) -> Vec<Row> {
+fn rows(text: &str) -> Vec<TraceRow> {
     let scene = scene(text);
-    let mut engine = Native::new(World::new(&scene).expect("a plant for the scene"));
+    let mut engine = NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
     let outcome = run(&scene, &mut engine, |_| ()).expect("the device takes the scene");
     outcome.trace.rows().to_vec()
 }
 
 /// The row at a time, s.
-fn at(rows: &[Row], t_s: f64) -> &Row {
+fn at(rows: &[TraceRow], t_s: f64) -> &TraceRow {
     let row = &rows[(t_s * 1e3).round() as usize];
     assert!((row.t_s - t_s).abs() < 1e-9, "{} instead of {t_s}", row.t_s);
     row

@@ -1,0 +1,252 @@
+//! Assessment of a run against the limits.
+
+use serde::Serialize;
+use thermal_sim::metrics::{Extremes, Figures};
+use thermal_sim::named_enum;
+use thermal_sim::run::Outcome;
+use thermal_sim::trace::TraceRow;
+
+use super::{ExpectedReaction, FaultCase, InjectionPoint};
+
+/// Allowed skin temperature, °C: between the thresholds of pain.
+const SKIN_C: std::ops::RangeInclusive<f64> = 13.0..=45.0;
+/// Limit of the dose, CEM43 in minutes.
+const DOSE_MIN: f64 = 1.0;
+/// Longest allowed time from the first symptom to zero current, ms.
+const SAFE_MS: f64 = 50.0;
+/// Decimals of the time of a fault in s and of times after it in ms, for faults at a tick and for bit flips between ticks.
+pub(super) const MILLISECONDS: (usize, usize) = (3, 0);
+pub(super) const MICROSECONDS: (usize, usize) = (6, 1);
+/// Magnitude up to which a current counts as zero, A.
+const NONE_A: f64 = 1e-6;
+
+named_enum! {
+    /// A limit that a run broke.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Breach {
+        /// The run ended with something that is not modelled.
+        Ended = "ended",
+        /// The device tripped before the fault.
+        Early = "early",
+        /// The skin temperature left the range of 13 to 45 °C.
+        Skin = "skin",
+        /// The dose reached one minute of CEM43.
+        Dose = "dose",
+        /// Current flowed more than 50 ms after the first symptom.
+        Late = "late",
+        /// The device reported a wrong trip cause, or none.
+        Reason = "reason",
+    }
+}
+
+/// Result of a run. Times count from the fault, ms.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunAssessment {
+    /// Time of the first symptom.
+    pub detectable_ms: Option<f64>,
+    /// Time of the first trip or reset.
+    pub detected_ms: Option<f64>,
+    /// Time after which no current flowed.
+    pub safe_ms: Option<f64>,
+    /// Time from the first symptom to zero current.
+    pub took_ms: Option<f64>,
+    /// State of the device at the end: its trip cause, `off` after a restart without a fault, or its state.
+    pub reason: String,
+    /// Skin on the display, °C.
+    pub skin_c: Extremes,
+    /// Dose of the skin, CEM43 in minutes.
+    pub cem43_min: f64,
+    /// Display, °C.
+    pub display_c: Extremes,
+    /// Limits that the run broke.
+    pub breaches: Vec<Breach>,
+    /// Why the run ended early.
+    pub ended: Option<String>,
+}
+
+impl RunAssessment {
+    /// The assessment of a run that ended early.
+    pub(super) fn ended(error: &anyhow::Error) -> Self {
+        let unknown = Extremes {
+            min: f64::NAN,
+            max: f64::NAN,
+        };
+        Self {
+            detectable_ms: None,
+            detected_ms: None,
+            safe_ms: None,
+            took_ms: None,
+            reason: "?".into(),
+            skin_c: unknown,
+            cem43_min: f64::NAN,
+            display_c: unknown,
+            breaches: vec![Breach::Ended],
+            ended: Some(format!("{error:#}")),
+        }
+    }
+
+    /// Names of the broken limits.
+    pub(super) fn names(&self) -> String {
+        let names: Vec<_> = self.breaches.iter().map(|breach| breach.name()).collect();
+        names.join(", ")
+    }
+
+    /// The figures of a completed run as text, with the scene and the time of the fault, s.
+    pub(super) fn line(&self, place: &str, t_s: f64, (of_s, of_ms): (usize, usize)) -> String {
+        let ms = |value: Option<f64>| value.map_or("-".into(), |ms| format!("{ms:.of_ms$} ms"));
+        format!(
+            "{} in {place} at {t_s:.of_s$} s: detectable {}, detected {}, safe {}, reason {}, skin {:.2} to {:.2} C, CEM43 \
+             {:.3} min, display {:.2} to {:.2} C",
+            self.names(),
+            ms(self.detectable_ms),
+            ms(self.detected_ms),
+            ms(self.safe_ms),
+            self.reason,
+            self.skin_c.min,
+            self.skin_c.max,
+            self.cem43_min,
+            self.display_c.min,
+            self.display_c.max,
+        )
+    }
+
+    /// Assesses a run; `fault_free` are the rows of the same scene without the fault, if a symptom needs them.
+    pub(super) fn new(
+        fault_case: &FaultCase,
+        point: InjectionPoint,
+        outcome: &Outcome,
+        figures: &Figures,
+        fault_free: &[TraceRow],
+    ) -> Self {
+        let rows = outcome.trace.rows();
+        let t_s = point.t_s;
+        // The fault is present from the first boundary at or after its time.
+        let from = rows.partition_point(|row| row.t_s < t_s - 1e-9);
+        let symptoms = fault_case.symptoms.iter();
+        let detectable_s = symptoms
+            .filter_map(|symptom| {
+                symptom.onset_s(rows, fault_free, from, point.scene.tested_from_s())
+            })
+            .min_by(f64::total_cmp);
+        let before = point.scene.has_tripped_before().map(|fault| fault.name());
+        let detected_s = detected(outcome, from, t_s, before);
+        let safe_s = safe(rows);
+        let ms = |at_s: f64| (at_s - t_s) * 1e3;
+        let end = FinalAnswers::new(outcome, t_s);
+        let mut assessment = Self {
+            detectable_ms: detectable_s.map(ms),
+            detected_ms: detected_s.map(ms),
+            safe_ms: safe_s.map(ms),
+            took_ms: detectable_s
+                .zip(safe_s)
+                .map(|(onset_s, safe_s)| (safe_s - onset_s).max(0.0) * 1e3),
+            reason: end.reason(before),
+            skin_c: figures.skin_c,
+            cem43_min: figures.cem43_min,
+            display_c: figures.display_c,
+            breaches: Vec::new(),
+            ended: None,
+        };
+        assessment.judge(fault_case, &rows[..from], before);
+        assessment
+    }
+
+    fn judge(&mut self, fault_case: &FaultCase, rows_before: &[TraceRow], before: Option<&str>) {
+        let early = rows_before.iter().any(|row| {
+            let device = row.device.as_ref();
+            device.is_some_and(|device| {
+                device.state == "tripped" && device.remark.as_deref() != before
+            })
+        });
+        let reached = self.detectable_ms.is_some();
+        let late = reached
+            && !self
+                .took_ms
+                .is_some_and(|took_ms| took_ms <= SAFE_MS + 1e-6);
+        let said = self.reason.as_str();
+        let right = match fault_case.expected {
+            ExpectedReaction::Trip(faults) => {
+                let named = faults.iter().any(|fault| fault.name() == said);
+                named || !reached && WORKING_STATES.contains(&said)
+            }
+            ExpectedReaction::Restart => said == OFF,
+        };
+        for (breach, is_so) in [
+            (Breach::Early, early),
+            (
+                Breach::Skin,
+                !SKIN_C.contains(&self.skin_c.min) || !SKIN_C.contains(&self.skin_c.max),
+            ),
+            (Breach::Dose, self.cem43_min >= DOSE_MIN),
+            (Breach::Late, late),
+            (Breach::Reason, !right),
+        ] {
+            if is_so {
+                self.breaches.push(breach);
+            }
+        }
+    }
+}
+
+const OFF: &str = "off";
+
+/// The states in which the device continues to work without a fault.
+pub(super) const WORKING_STATES: [&str; 5] = ["self-test", "ready", "armed", "preset", "contact"];
+
+/// Time of the first reset or of the first trip from row `from` on, except the trip before the fault.
+fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> Option<f64> {
+    let tripped = outcome.trace.rows()[from..].iter().find(|row| {
+        let device = row.device.as_ref();
+        device.is_some_and(|device| device.state == "tripped" && device.remark.as_deref() != before)
+    });
+    let reset = outcome.resets.iter().find(|reset| reset.t_s >= t_s - 1e-6);
+    let times = [tripped.map(|row| row.t_s), reset.map(|reset| reset.t_s)];
+    times.into_iter().flatten().min_by(f64::total_cmp)
+}
+
+/// Time after which no current flows; `None` if current flows at the end.
+fn safe(rows: &[TraceRow]) -> Option<f64> {
+    let last = rows.iter().rposition(|row| row.current_a.abs() > NONE_A);
+    rows.get(last.map_or(0, |last| last + 1)).map(|row| row.t_s)
+}
+
+/// Answers of the device at the end of a run.
+struct FinalAnswers<'a> {
+    /// State and fault of the last `state` answer.
+    state: Option<(&'a str, &'a str)>,
+    /// The present fault for which the device refused `clear`.
+    refused_clear: Option<&'a str>,
+}
+
+impl<'a> FinalAnswers<'a> {
+    fn new(outcome: &'a Outcome, t_s: f64) -> Self {
+        let lines = || outcome.answers.iter().filter(|(at_s, _)| *at_s >= t_s);
+        let word =
+            |line: &'a str, key: &str| line.split(' ').find_map(|word| word.strip_prefix(key));
+        let state = lines().rev().find_map(|(_, line)| {
+            let line = line.strip_prefix("ok ")?;
+            Some((word(line, "state=")?, word(line, "fault=")?))
+        });
+        let refused_clear = lines().find_map(|(_, line)| {
+            let rest = line.strip_prefix("err fault ")?;
+            rest.strip_suffix(" is still present")
+        });
+        Self {
+            state,
+            refused_clear,
+        }
+    }
+
+    /// The fault, or the state if there is none. If a trip before the injection was not cleared, the fault that prevented it.
+    fn reason(&self, before: Option<&str>) -> String {
+        match (self.state, self.refused_clear) {
+            (None, _) => "silent".into(),
+            (Some(("tripped", fault)), Some(refused_clear)) if Some(fault) == before => {
+                refused_clear.into()
+            }
+            (Some(("tripped", fault)), _) => fault.into(),
+            (Some((state, _)), _) => state.into(),
+        }
+    }
+}

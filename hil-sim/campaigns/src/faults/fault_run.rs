@@ -1,0 +1,148 @@
+//! A run of one fault case.
+
+use std::path::Path;
+
+use serde::Serialize;
+use thermal_sim::SceneRunner;
+use thermal_sim::metrics::Figures;
+use thermal_sim::processor::NotInjected;
+use thermal_sim::run::Outcome;
+use thermal_sim::scene::Scene;
+
+use super::assessment::RunAssessment;
+use super::{FaultCase, FaultScene, InjectedFault, InjectionPoint, scene_text};
+
+/// Questions at the end and their times before it, s. The state is asked twice because a reset can truncate a line of
+/// telemetry, which then merges with the first answer.
+const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "state")];
+
+/// Runs a scene; `None` if the fault does not apply to the engine.
+fn run_if_applicable(
+    device: &dyn SceneRunner,
+    scene: &Scene,
+) -> anyhow::Result<Option<(Outcome, Figures)>> {
+    match device.run(scene) {
+        Err(error) => match error.downcast_ref() {
+            Some(NotInjected::NotApplicable { .. }) => Ok(None),
+            _ => Err(error),
+        },
+        Ok(result) => Ok(Some(result)),
+    }
+}
+
+/// The run of the scene without the fault, if a symptom needs it.
+fn fault_free_run(
+    device: &dyn SceneRunner,
+    fault_case: &FaultCase,
+    place: FaultScene,
+    scene: &Scene,
+) -> anyhow::Result<Option<Outcome>> {
+    let mut fault_free = scene.clone();
+    let needed = place.has_tuned_model()
+        && fault_case
+            .symptoms
+            .iter()
+            .any(|sign| sign.needs_fault_free_run());
+    match fault_case.fault {
+        InjectedFault::Hardware(broken) if needed => {
+            fault_free
+                .faults
+                .retain(|fault| fault.fault.kind != broken.kind);
+        }
+        _ => return Ok(None),
+    }
+    let (outcome, _) = device.run(&fault_free)?;
+    Ok(Some(outcome))
+}
+
+/// Result of a run of one fault case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FaultRun {
+    /// Name of the scene.
+    pub place: &'static str,
+    /// Time of the fault, s.
+    pub t_s: f64,
+    /// Assessment of the run.
+    #[serde(flatten)]
+    pub assessment: RunAssessment,
+}
+
+impl FaultRun {
+    /// Runs a fault case; `None` if the fault does not apply to the engine.
+    ///
+    /// # Errors
+    /// The scene is not valid.
+    pub fn run(
+        device: &dyn SceneRunner,
+        fault_case: &FaultCase,
+        point: InjectionPoint,
+        seed: u64,
+    ) -> anyhow::Result<Option<Self>> {
+        let text = scene_text(
+            &[(fault_case.fault, point.t_s)],
+            point,
+            fault_case.after_s,
+            seed,
+            &[],
+        );
+        Self::run_text(device, fault_case, point, &text)
+    }
+
+    /// Whether the run broke no limit.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.assessment.breaches.is_empty()
+    }
+
+    /// Runs a fault case with the text of its scene.
+    pub(super) fn run_text(
+        device: &dyn SceneRunner,
+        fault_case: &FaultCase,
+        point: InjectionPoint,
+        text: &str,
+    ) -> anyhow::Result<Option<Self>> {
+        let scene = Scene::parse(text, Path::new(point.scene.name()))?;
+        let assessment = match run_if_applicable(device, &scene) {
+            Ok(None) => return Ok(None),
+            Ok(Some((outcome, figures))) => {
+                let fault_free = fault_free_run(device, fault_case, point.scene, &scene)?;
+                let fault_free: &[_] = fault_free
+                    .as_ref()
+                    .map_or(&[], |outcome| outcome.trace.rows());
+                RunAssessment::new(fault_case, point, &outcome, &figures, fault_free)
+            }
+            // The behaviour of the hardware is unknown then, so the run counts as a breach.
+            Err(error) => RunAssessment::ended(&error),
+        };
+        Ok(Some(Self {
+            place: point.scene.name(),
+            t_s: point.t_s,
+            assessment,
+        }))
+    }
+}
+
+/// The text of the scene with faults at their times, s, and with the questions at the end. `plant` has plant parameters
+/// that are not nominal; the seed is that of the converter.
+pub(super) fn scene_text(
+    faults: &[(InjectedFault, f64)],
+    point: InjectionPoint,
+    after_s: f64,
+    seed: u64,
+    plant: &[(String, f64)],
+) -> String {
+    let (mut text, end_s) = point.scene.text(seed, point.t_s, after_s);
+    for (fault, t_s) in faults {
+        text += &scene_text::fault_text(fault, *t_s);
+    }
+    for (before_s, line) in QUESTIONS {
+        text += &scene_text::host_line(line, end_s - before_s);
+    }
+    if !plant.is_empty() {
+        text += "[plant]\n";
+    }
+    for (key, value) in plant {
+        text += &format!("{key} = {value:?}\n");
+    }
+    text
+}

@@ -1,0 +1,127 @@
+//! Five fingers on one device, each with its own plant and scene.
+//!
+//! # Time
+//! The device serves its fingers in turn, 0.2 ms apart, so each finger has millisecond boundaries of its own: between
+//! the fourth and the fifth of its 16 scans, as those of the one-finger engines are. The simulated sensors move by a
+//! sixteenth of a millisecond's change from scan to scan, though the scans of a finger take 0.18 ms only: a plant sees
+//! the same as on the one-finger board, and the device its sensors 0.4 ms older than they would be.
+//!
+//! A line to a finger is sent right after that finger's tick. Lines to later fingers follow one millisecond each later,
+//! because at 1 Mbaud they would delay each other.
+
+mod native;
+
+use std::time::Instant;
+
+pub use native::NativeFiveFingers;
+
+use crate::World;
+use crate::commissioning;
+use crate::engine::{Cost, DeviceReset};
+use crate::run::{Outcome, RunError};
+use crate::scene::Scene;
+use crate::scene_recording::SceneRecording;
+use thermal_plant::bridge::Legs;
+
+/// Number of fingers of the device.
+pub const FINGERS: usize = 5;
+
+/// Interval of each finger's telemetry, ms: five lines of 100 bytes every millisecond would not fit 1 Mbaud.
+const STREAM_MS: u32 = 10;
+/// Time for the telemetry of the last row to arrive, ms.
+const DRAIN_MS: u64 = 10;
+
+/// A device for five fingers with their worlds.
+pub trait FiveFingerEngine {
+    /// Why the engine can stop early.
+    type Stop: std::error::Error + Send + Sync + 'static;
+
+    /// Name of the engine on the command line.
+    const NAME: &'static str;
+
+    /// Runs the device to the next boundary of a finger; the fingers take turns.
+    ///
+    /// # Errors
+    /// The device did something that is not modelled.
+    fn run_to(&mut self, finger: usize) -> Result<(), Self::Stop>;
+
+    /// A finger's world.
+    fn world(&mut self, finger: usize) -> &mut World;
+
+    /// The legs of a finger's bridge as the device drives them now.
+    fn legs(&mut self, finger: usize) -> Legs;
+
+    /// Sends a line to a finger, after its tick.
+    fn send(&mut self, finger: usize, line: &[u8]);
+
+    /// The complete lines received since the last call, with the fingers that sent them.
+    fn receive(&mut self) -> Vec<(usize, String)>;
+
+    /// Resets of the device after power-up; time counts from the first finger's first boundary.
+    fn resets(&self) -> Vec<DeviceReset>;
+
+    /// Restarts the measurement of [`Self::cost`].
+    fn reset_cost(&mut self) {}
+
+    /// Cost of one finger's tick and CPU load of all fingers; `None` for an engine that does not measure it.
+    fn cost(&self) -> Option<Cost> {
+        None
+    }
+}
+
+/// Runs a scene on each finger and returns their results; `progress` is called with the fraction done.
+///
+/// # Errors
+/// The engine stopped, or the device refused a scene.
+pub fn run<H: FiveFingerEngine>(
+    scenes: &[Scene; FINGERS],
+    engine: &mut H,
+    mut progress: impl FnMut(f64),
+) -> Result<[Outcome; FINGERS], RunError<H::Stop>> {
+    let settings: Vec<_> = (scenes
+        .iter()
+        .map(commissioning::settings_for_scene)
+        .collect::<Result<_, _>>())
+    .map_err(RunError::Commission)?;
+    if let Some(injection) = scenes.iter().find_map(|scene| scene.injections.first()) {
+        return Err(RunError::SharedProcessor(injection.fault));
+    }
+    let began = Instant::now();
+    let mut fingers: [_; FINGERS] = std::array::from_fn(|finger| {
+        SceneRecording::new(&scenes[finger], &settings[finger], STREAM_MS)
+    });
+    let last = |of: fn(&SceneRecording<'_>) -> u64| fingers.iter().map(of).max().unwrap_or(0);
+    let zero_ms = last(|finger| finger.zero_ms);
+    let last_ms = last(|finger| finger.end_ms) + DRAIN_MS;
+    for ms in 0..=last_ms {
+        if ms == zero_ms {
+            engine.reset_cost();
+        }
+        for index in 0..FINGERS {
+            engine.run_to(index).map_err(RunError::Stop)?;
+            // The tick of the previous finger has ended.
+            let (previous, previous_ms) = match index.checked_sub(1) {
+                Some(previous) => (previous, Some(ms)),
+                None => (FINGERS - 1, ms.checked_sub(1)),
+            };
+            // Each finger is sent its lines a millisecond later than the previous one.
+            let finger_ms = previous_ms.and_then(|ms| ms.checked_sub(previous as u64));
+            if let Some(line) = finger_ms.and_then(|ms| fingers[previous].host.send(2 * ms + 1)) {
+                engine.send(previous, line);
+            }
+            let legs = engine.legs(index);
+            let world = engine.world(index);
+            fingers[index].apply_scene(ms, world);
+            fingers[index].record(ms, world);
+            world.step(legs);
+        }
+        for (index, line) in engine.receive() {
+            (fingers[index].receive(ms, line))
+                .map_err(|line| RunError::Refused(format!("finger {index}: {line}")))?;
+        }
+        progress(ms as f64 / last_ms as f64);
+    }
+    let real_time_factor = last_ms as f64 * 1e-3 / began.elapsed().as_secs_f64();
+    let (cost, resets) = (engine.cost(), engine.resets());
+    Ok(fingers.map(|finger| finger.outcome(H::NAME, &resets, cost, real_time_factor)))
+}

@@ -1,0 +1,142 @@
+//! Reads and checks the text of a scene.
+
+use std::ops::Range;
+use std::path::Path;
+
+use thermal_device::control::Law;
+use thermal_device::reference::Mode;
+use thermal_device::safety::Setpoint;
+use thermal_plant::{ConfigError, Plant};
+use toml::Spanned;
+
+use super::fault::faults;
+use super::file::{self, File};
+use super::infrared::infrared;
+use super::nesting;
+use super::object::object;
+use super::plant::params;
+use super::source::{SceneError, Source};
+use super::{Force, HostLine, Scene};
+
+/// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
+const SETTLE_S: f64 = 8.0;
+
+pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
+    let source = Source { file: path, text };
+    nesting::check(&source)?;
+    let file: File =
+        toml::from_str(text).map_err(|error| source.error(error.span(), error.message()))?;
+    let duration_s = source.within("duration_s", &file.duration_s, 0.001, 86_400.0)?;
+    let settle_s = source.within_or(SETTLE_S, "settle_s", &file.settle_s, SETTLE_S, 3600.0)?;
+    let (skin_c, room_c) = (
+        source.within("skin_c", &file.skin_c, 15.0, 42.0)?,
+        source.within("room_c", &file.room_c, 5.0, 40.0)?,
+    );
+    let mode = match file.mode {
+        file::Mode::Contact => Mode::ContactResistance,
+        file::Mode::SemiInfinite => Mode::SemiInfinite,
+    };
+    let (faults, injections) = faults(&source, &file.fault, duration_s, file.seed)?;
+    let scene = Scene {
+        duration_s,
+        settle_s,
+        skin_c,
+        room_c,
+        seed: file.seed,
+        commissioned: file.device.commissioned,
+        mode,
+        law: file
+            .law
+            .as_ref()
+            .map(|name| law(&source, name))
+            .transpose()?,
+        object: object(&source, &file.object, duration_s, room_c)?,
+        params: params(&source, file.finger.as_ref(), file.plant.as_ref())?,
+        infrared: match &file.infrared {
+            Some(file) => Some(infrared(&source, file, room_c)?),
+            None => None,
+        },
+        forces: forces(&source, &file.force, duration_s)?,
+        faults,
+        injections,
+        host: (file.host.iter())
+            .map(|host| {
+                let t_s = source.time("host.t_s", &host.t_s, duration_s)?;
+                Ok(HostLine {
+                    t_s,
+                    line: host.line.get_ref().clone(),
+                })
+            })
+            .collect::<Result<_, _>>()?,
+    };
+    let object_at = match &file.object.get_ref().start_c {
+        Some(start_c) => start_c.span(),
+        None => file.object.span(),
+    };
+    setpoint(&source, &scene, object_at)?;
+    // Building the plant shows parameters that contradict each other.
+    Plant::new(&scene.plant_config()).map_err(|error| {
+        let finger = file.finger.as_ref().map(|finger| finger.span());
+        let plant = file.plant.as_ref().map(|plant| plant.span());
+        let span = match error {
+            ConfigError::ColdFinger { .. } => finger.or(plant),
+            _ => plant.or(finger),
+        };
+        // The nominal plant can contradict the temperatures only.
+        source.error(span.or(Some(file.skin_c.span())), error.to_string())
+    })?;
+    Ok(scene)
+}
+
+/// The control law of a name, as the device knows it.
+fn law(source: &Source<'_>, name: &Spanned<String>) -> Result<Law, SceneError> {
+    let known = Law::PROTOCOL_WORDS
+        .iter()
+        .find(|(word, _)| word == name.get_ref());
+    known.map(|(_, law)| *law).ok_or_else(|| {
+        let words: Vec<_> = Law::PROTOCOL_WORDS.iter().map(|(word, _)| *word).collect();
+        let problem = format!("law = {:?}; known are {}", name.get_ref(), words.join(", "));
+        source.error(Some(name.span()), problem)
+    })
+}
+
+fn forces(
+    source: &Source<'_>,
+    rows: &[file::Force],
+    duration_s: f64,
+) -> Result<Vec<Force>, SceneError> {
+    let mut forces: Vec<Force> = Vec::with_capacity(rows.len());
+    for row in rows {
+        let force = Force {
+            t_s: source.time("force.t_s", &row.t_s, duration_s)?,
+            force_n: source.within("force.force_n", &row.force_n, 0.0, 10.0)?,
+            ramp_s: source.within_or(0.0, "force.ramp_s", &row.ramp_s, 0.0, duration_s)?,
+        };
+        if let Some(before) = forces.last() {
+            let free_s = before.t_s + before.ramp_s;
+            if force.t_s <= before.t_s || force.t_s < free_s {
+                let problem = format!(
+                    "force.t_s = {}; allowed is after {free_s}, when the force before is reached",
+                    force.t_s
+                );
+                return Err(source.error(Some(row.t_s.span()), problem));
+            }
+        }
+        forces.push(force);
+    }
+    Ok(forces)
+}
+
+/// The first set-point must be within the range of the display.
+fn setpoint(source: &Source<'_>, scene: &Scene, span: Range<usize>) -> Result<(), SceneError> {
+    let preset_c = scene.exact_setpoint_c(0.0, 1.0);
+    let [least, most] = [Setpoint::MIN, Setpoint::MAX].map(|limit| limit.celsius().to_num::<f64>());
+    if (least..=most).contains(&preset_c) {
+        return Ok(());
+    }
+    let problem = format!(
+        "an object of {} C would set the display to {preset_c:.2} C; allowed is {least} to {most} C",
+        scene.object_c()
+    );
+    Err(source.error(Some(span), problem))
+}

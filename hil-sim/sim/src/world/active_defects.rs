@@ -1,0 +1,69 @@
+//! Maps active faults to defects of the plant and of the converter.
+
+use thermal_plant::Defects;
+use thermal_plant::bridge::LegDefect;
+use thermal_plant::comparator::ComparatorDefect;
+use thermal_plant::sensors::{Channel, Circuit};
+
+use crate::scene::{ActiveFault, FaultKind};
+
+/// Present defects of plant and converter.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ActiveDefects {
+    /// Defects of the plant.
+    pub plant: Defects,
+    /// Channels whose code is frozen.
+    pub frozen: [bool; Channel::ALL.len()],
+}
+
+impl ActiveDefects {
+    /// Adds a fault to the present ones.
+    pub fn add(&mut self, fault: &ActiveFault) {
+        let Defects {
+            sensors,
+            bridge,
+            comparator,
+            cooling,
+            module,
+        } = &mut self.plant;
+        let (index, value) = (fault.sensor as usize, fault.value);
+        let thermistor = &mut sensors.thermistors[index];
+        match fault.kind {
+            FaultKind::ThermistorOpen => thermistor.circuit = Circuit::Open,
+            FaultKind::ThermistorShort => thermistor.circuit = Circuit::Short,
+            FaultKind::ThermistorDrift | FaultKind::ThermistorOffset => {
+                thermistor.offset_k += value
+            }
+            FaultKind::ThermistorDetached => thermistor.loose *= value,
+            FaultKind::ThermistorStuck => self.frozen[index] = true,
+            FaultKind::SensorsSwapped => sensors.plugged.swap(index, fault.with as usize),
+            FaultKind::ReferenceOff => {
+                for thermistor in &mut sensors.thermistors {
+                    thermistor.circuit = Circuit::Short;
+                }
+            }
+            FaultKind::AdcStuck => self.frozen = [true; Channel::ALL.len()],
+            FaultKind::ForceOpen => sensors.force.open = true,
+            FaultKind::ForceStuck => sensors.force.stuck = true,
+            FaultKind::ForceOffset => sensors.force.offset_n += value,
+            FaultKind::BridgeStuckHigh => bridge.a = LegDefect::High,
+            FaultKind::BridgeBStuckHigh => bridge.b = LegDefect::High,
+            FaultKind::BridgeStuckLow => bridge.a = LegDefect::Low,
+            FaultKind::LegOpen => bridge.a = LegDefect::Open,
+            FaultKind::BridgeShorted => bridge.a = LegDefect::Shorted,
+            FaultKind::BridgeEnableStuck => bridge.enable_stuck = true,
+            FaultKind::PolaritySwapped => bridge.swapped = true,
+            FaultKind::FaultPinDead => bridge.fault_pin_dead = true,
+            FaultKind::MirrorStuck => sensors.mirror_stuck_a = Some(value),
+            FaultKind::ComparatorDead => *comparator = ComparatorDefect::Dead,
+            FaultKind::ComparatorStuck => *comparator = ComparatorDefect::Stuck,
+            FaultKind::SupplyLow | FaultKind::SupplyHigh => bridge.supply_v = Some(value),
+            FaultKind::ModuleWeak => module.seebeck = value,
+            FaultKind::FanOff => cooling.resistance *= value,
+            FaultKind::ChillerOff => cooling.coolant_c = Some(value),
+            FaultKind::SinkHot => cooling.held_c = Some(value),
+            // These act in the host.
+            FaultKind::HostGarbage | FaultKind::HostSilent | FaultKind::HostFlood => {}
+        }
+    }
+}

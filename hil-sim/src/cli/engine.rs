@@ -1,0 +1,62 @@
+//! The engine and the scene of a command.
+
+use std::path::Path;
+
+use anyhow::{Context, anyhow};
+use clap::ValueEnum;
+use thermal_sim::scene::Scene;
+use thermal_sim::{NativeRunner, SceneRunner, World};
+
+use super::Failure;
+#[cfg(feature = "emulator")]
+use super::image;
+
+/// What runs the device's logic.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EngineKind {
+    /// The release image in the emulated microcontroller
+    #[cfg(feature = "emulator")]
+    Image,
+    /// The same logic, called directly: faster, without cost figures
+    Native,
+}
+
+impl EngineKind {
+    /// Default engine: the image, if this build can run it.
+    #[cfg(feature = "emulator")]
+    pub const DEFAULT: Self = Self::Image;
+    /// Default engine: the only one of this build.
+    #[cfg(not(feature = "emulator"))]
+    pub const DEFAULT: Self = Self::Native;
+}
+
+/// The runner of a campaign.
+pub fn runner(kind: EngineKind, elf: Option<&Path>) -> Result<Box<dyn SceneRunner>, Failure> {
+    match kind {
+        #[cfg(feature = "emulator")]
+        EngineKind::Image => Ok(Box::new(image::firmware(elf, 1)?.0)),
+        EngineKind::Native => {
+            refuse_elf(elf)?;
+            Ok(Box::new(NativeRunner))
+        }
+    }
+}
+
+/// Reads a scene and builds its world.
+pub fn scene(path: &Path) -> Result<(Scene, World), Failure> {
+    let scene = Scene::read(path).map_err(Failure::input)?;
+    let world = World::new(&scene)
+        .with_context(|| path.display().to_string())
+        .map_err(Failure::input)?;
+    Ok((scene, world))
+}
+
+/// Refuses `--elf` for the native engine.
+pub fn refuse_elf(elf: Option<&Path>) -> Result<(), Failure> {
+    match elf {
+        Some(_) => Err(Failure::input(anyhow!(
+            "--elf is for --engine image; the native engine runs no image"
+        ))),
+        None => Ok(()),
+    }
+}
