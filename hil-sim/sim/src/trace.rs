@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use thermal_plant::infrared::Reading;
-use thermal_plant::sensors::Taken;
+use thermal_plant::sensors::SensorReadings;
 use thermal_plant::{Finger, Plant, RECEPTORS_M};
 
 use crate::telemetry::Telemetry;
@@ -37,7 +37,7 @@ pub struct Row {
     /// Current through the module, A.
     pub current_a: f64,
     /// What the device's sensors show, before its converter.
-    pub taken: Taken,
+    pub taken: SensorReadings,
     /// The fault line is low.
     pub fault_line: bool,
     /// What the camera says of the skin on the real object, in its frames.
@@ -61,7 +61,7 @@ impl Row {
             receptors_real_c: plant.receptors_c(Finger::OnObject),
             sink_c: plant.sink_c(),
             current_a: plant.current_a(),
-            taken: plant.taken(),
+            taken: plant.sensor_readings(),
             fault_line: plant.bridge_fault(),
             camera,
             device: None,

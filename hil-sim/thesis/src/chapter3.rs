@@ -4,9 +4,11 @@ use contact_model::material::{Material, SKIN};
 use contact_model::reference::{fourier_number, interface_temperature};
 use serde::Deserialize;
 
-use super::case::{SIMULATION_AREA_M2, SIMULATION_PRESSURE_PA, material, tabulated_effusivity};
+use super::contact_case::{
+    SIMULATION_AREA_M2, SIMULATION_PRESSURE_PA, material, tabulated_effusivity,
+};
 use super::sensitivity::d_prime;
-use super::stated::cut;
+use super::stated_value::cut;
 use super::statement::{STATEMENTS, Statement, read};
 
 /// Skin and material of Tables 3-1 and 3-4 before contact, °C.

@@ -1,11 +1,11 @@
 //! Chapter 5: the infrared windows, the skin on them, and the instrument.
 
 use thermal_plant::infrared::{
-    BAND_M, BEAMSPLITTER, Bandpass, LineOfSight, Optic, SKIN_EMISSIVITY, SelfReflection,
+    BAND_M, BEAMSPLITTER, Bandpass, Optic, OpticalPath, SKIN_EMISSIVITY, SelfReflection,
     Surroundings, radiance, temperature_c,
 };
 
-use super::case::Case;
+use super::contact_case::Case;
 use super::statement::Statement;
 
 /// Room and optics, °C (section 5.2.2).
@@ -68,11 +68,13 @@ fn window(name: &str) -> Option<Bandpass> {
 
 /// Slope through the origin of recovered over true temperature.
 fn slope(optic: Optic, targets_c: &[f64], camera: Option<SelfReflection>) -> f64 {
-    let assumed = LineOfSight::new(optic, SKIN_EMISSIVITY, &Surroundings::at(AMBIENT_C));
+    let assumed = OpticalPath::new(optic, SKIN_EMISSIVITY, &Surroundings::at(AMBIENT_C));
     let sight = camera.map_or(assumed, |camera| {
         assumed.with_self_reflection(optic, &camera, AMBIENT_C)
     });
-    let recovered = |target_c: f64| temperature_c(assumed.target(sight.total(radiance(target_c))));
+    let recovered = |target_c: f64| {
+        temperature_c(assumed.target_radiance(sight.total_radiance(radiance(target_c))))
+    };
     let products: f64 = targets_c
         .iter()
         .map(|&target_c| target_c * recovered(target_c))

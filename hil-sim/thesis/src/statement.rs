@@ -7,9 +7,9 @@ use contact_model::material::Material;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use super::case::{material, tabulated_effusivity};
+use super::contact_case::{material, tabulated_effusivity};
 use super::row::{Correction, Remark, Row};
-use super::stated::Stated;
+use super::stated_value::Stated;
 use super::{chapter3, chapter4, chapter5, chapter6};
 
 /// A line of the file.

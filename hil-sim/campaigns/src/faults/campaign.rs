@@ -1,7 +1,7 @@
 //! What of the matrix is run, and what came of each row.
 
 use serde::Serialize;
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 
 use super::{Entry, Moment, Place, Trial};
 
@@ -32,11 +32,11 @@ impl Plan {
                 let first = entry.places.iter().position(|worst| worst == place);
                 (
                     first.unwrap_or(usize::MAX),
-                    stream(self.seed, &format!("{name} {}", place.name())),
+                    stream_seed(self.seed, &format!("{name} {}", place.name())),
                 )
             });
             for (k, place) in places.iter().cycle().take(self.moments).enumerate() {
-                let seed = stream(self.seed, &format!("{name} {k}"));
+                let seed = stream_seed(self.seed, &format!("{name} {k}"));
                 runs.push((row, place.moment(seed, k % 2 == 0)));
             }
         }

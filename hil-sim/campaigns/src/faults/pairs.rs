@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 use thermal_sim::Device;
 use thermal_sim::scene::FaultKind;
 
@@ -50,12 +50,12 @@ pub fn pairs(seed: u64) -> Vec<Pair> {
                 place.has_tripped_before().is_none() && !never.concat().contains(place)
             };
             let mut rest: Vec<_> = Place::ALL.iter().collect();
-            rest.sort_by_key(|place| stream(seed, &format!("{name} {}", place.name())));
+            rest.sort_by_key(|place| stream_seed(seed, &format!("{name} {}", place.name())));
             let place = active.places.iter().chain(rest).find(means);
             pairs.extend(place.map(|place| Pair {
                 latent: *latent,
                 active: *active,
-                moment: place.moment(stream(seed, &name), false),
+                moment: place.moment(stream_seed(seed, &name), false),
             }));
         }
     }

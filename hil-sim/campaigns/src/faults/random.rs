@@ -5,7 +5,7 @@ use std::fmt::Write;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 use thermal_sim::Device;
 
 use super::table::broken;
@@ -33,7 +33,7 @@ impl Campaign {
     /// drawn, so the two engines' campaigns of a number differ.
     #[must_use]
     pub fn new(seed: u64, number: u64, has_processor: bool) -> Self {
-        let own = stream(seed, &format!("campaign {number}"));
+        let own = stream_seed(seed, &format!("campaign {number}"));
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(own);
         let mut all = entries();
         all.retain(|entry| has_processor || !matches!(entry.fault, Injected::Processor(_)));

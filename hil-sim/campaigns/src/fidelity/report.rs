@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use thermal_charts::{document, element, escape};
+use thermal_charts::{document, escape, svg_element};
 
 use super::{Boxed, Row, box_table, table};
 
@@ -18,7 +18,7 @@ pub fn page(rows: &[Row], boxed: Option<&Boxed>, svg: Option<&str>) -> String {
         "<p>Everything here is simulated; instructions are emulated, cycles estimated.</p>"
             .to_owned();
     if let Some(svg) = svg {
-        body += element(svg);
+        body += svg_element(svg);
     }
     for text in [
         (!rows.is_empty()).then(|| table(rows, true)),

@@ -3,8 +3,8 @@
 use contact_model::material::MATERIALS;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
-use thermal_plant::parameters::stream;
-use thermal_plant::slab::Back;
+use thermal_plant::parameters::stream_seed;
+use thermal_plant::slab::BackBoundary;
 use thermal_plant::{ConfigError, Params, PlantConfig};
 
 use crate::World;
@@ -49,7 +49,7 @@ impl Plants {
 
     /// The seed of the operator's own draws.
     pub(super) fn operator_seed(&self) -> u64 {
-        stream(self.seed, "reference thermometer")
+        stream_seed(self.seed, "reference thermometer")
     }
 
     /// Where it is used.
@@ -108,7 +108,7 @@ impl Plants {
                 material,
                 start_c: room_c,
                 thickness_m: f64::INFINITY,
-                back: Back::Insulated,
+                back: BackBoundary::Insulated,
             },
             start_s: 0.0,
             appears_s: LONGEST_S,
@@ -116,6 +116,6 @@ impl Plants {
             seed: self.seed,
             params,
         };
-        World::of_plant(&config, stream(self.seed, place))
+        World::of_plant(&config, stream_seed(self.seed, place))
     }
 }

@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 
-use thermal_plant::bridge::{Leg, Legs};
+use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::{ConfigError, STEP_S};
 
 use super::Plants;
@@ -40,7 +40,7 @@ impl Response {
         let (mut surface_c, mut current_a) = (Vec::new(), Vec::new());
         for step in 0..(BEFORE + COMPARED + 1) * period {
             let duty = DUTY * (TAU * step as f64 / period as f64).sin();
-            world.step(Legs {
+            world.step(BridgeOutputs {
                 a: Leg::Duty(0.5 + duty),
                 b: Leg::Duty(0.5 - duty),
                 enabled: true,

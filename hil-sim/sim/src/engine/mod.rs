@@ -20,7 +20,7 @@ mod native;
 pub use lines::Lines;
 pub use native::Native;
 
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 
 use crate::World;
 use crate::processor::{MachineFault, NotInjected, ResetCause};
@@ -40,7 +40,7 @@ pub trait Engine {
     fn world(&mut self) -> &mut World;
 
     /// The bridge's legs, as the device drives them now.
-    fn legs(&mut self) -> Legs;
+    fn legs(&mut self) -> BridgeOutputs;
 
     /// Runs the device by half a millisecond.
     ///

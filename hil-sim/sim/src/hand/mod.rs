@@ -21,7 +21,7 @@ use crate::engine::{Cost, DeviceReset};
 use crate::recording::Recording;
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 
 /// Fingers of the device.
 pub const FINGERS: usize = 5;
@@ -49,7 +49,7 @@ pub trait Hand {
     fn world(&mut self, finger: usize) -> &mut World;
 
     /// The legs of a finger's bridge, as the device drives them now.
-    fn legs(&mut self, finger: usize) -> Legs;
+    fn legs(&mut self, finger: usize) -> BridgeOutputs;
 
     /// A line to a finger leaves the host, after its tick.
     fn send(&mut self, finger: usize, line: &[u8]);

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 
 use super::{FINGERS, Hand};
 use crate::World;
@@ -56,7 +56,7 @@ impl Hand for NativeHand {
         self.fingers[finger].world()
     }
 
-    fn legs(&mut self, finger: usize) -> Legs {
+    fn legs(&mut self, finger: usize) -> BridgeOutputs {
         self.fingers[finger].legs()
     }
 

@@ -18,7 +18,7 @@ use contact_model::reference::{Contact, interface_temperature};
 use thermal_display::device::control::Law;
 use thermal_display::device::reference::Mode;
 use thermal_plant::object::ObjectConfig;
-use thermal_plant::slab::Back;
+use thermal_plant::slab::BackBoundary;
 use thermal_plant::{Params, PlantConfig};
 
 use crate::processor::Injection;
@@ -83,7 +83,7 @@ pub struct Object {
     /// Thickness, m; infinite for a half-space. The device does not know of it.
     pub thickness_m: f64,
     /// What lies behind it.
-    pub back: Back,
+    pub back: BackBoundary,
 }
 
 /// A force that is held from a time on.

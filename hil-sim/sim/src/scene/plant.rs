@@ -102,7 +102,7 @@ fn own(source: &Source<'_>, finger: &file::Finger, params: &mut Params) -> Resul
     if !finger.layer.is_empty() {
         let unset = Layer {
             thickness_m: f64::INFINITY,
-            medium: Medium::dead(&SKIN),
+            medium: Medium::without_blood(&SKIN),
         };
         params.finger.layers = vec![unset; finger.layer.len()];
         for (i, layer) in finger.layer.iter().enumerate() {

@@ -1,10 +1,10 @@
-//! Section 6.3: what the text says of the simulations and of figures 6-6 to 6-12.
+//! Section 6.3: statements of the text on the simulations and on figures 6-6 to 6-12.
 //!
 //! A temperature passes for steady if it moves by 0.1 K or less, which a figure over 10 K would not show.
 
 use contact_model::pressure::pressure_pa;
 
-use crate::case::{Case, SIMULATION_PRESSURE_PA, five, material};
+use crate::contact_case::{Case, SIMULATION_PRESSURE_PA, five_materials, material};
 use crate::statement::Statement;
 
 /// End of every simulation, s.
@@ -17,8 +17,9 @@ const SAWN_UM: f64 = 30.0;
 pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
     let case = || Case::simulation(statement.material());
     let at = |t_s| case().contact().at(t_s);
-    let five =
-        |value: fn(&Case) -> f64| five().map(|sample| value(&Case::simulation(sample.material)));
+    let five = |value: fn(&Case) -> f64| {
+        five_materials().map(|sample| value(&Case::simulation(sample.material)))
+    };
     let (smooth, milled, sawn) = (copper(), rough(MILLED_UM), rough(SAWN_UM));
     let (light, firm) = (pressed(0.5), pressed(2.0));
     let difference = |t_s| flux(&smooth, t_s) - flux(&sawn, t_s);
@@ -108,7 +109,7 @@ fn positive(values: &[f64]) -> f64 {
     values.iter().filter(|value| **value > 0.0).count() as f64
 }
 
-/// How many neighbours of a list fall.
+/// Number of neighbours in a list of which the second is smaller.
 fn falling(values: &[f64]) -> f64 {
     values.windows(2).filter(|pair| pair[0] > pair[1]).count() as f64
 }

@@ -2,7 +2,7 @@
 
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 use thermal_sim::processor::MachineFault;
 
 use super::{Memory, PLACES, Region, WITHIN_S};
@@ -34,7 +34,8 @@ impl Flip {
     /// The flip of a number and a seed in an image's memory; no other one is needed for it.
     #[must_use]
     pub fn new(seed: u64, number: u64, memory: &Memory) -> Self {
-        let mut draw = Xoshiro256PlusPlus::seed_from_u64(stream(seed, &format!("flip {number}")));
+        let mut draw =
+            Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("flip {number}")));
         let region = Region::draw(&mut draw);
         let fault = region.bit(memory, &mut draw);
         let place = PLACES[draw.random_range(0..PLACES.len())];
