@@ -1,6 +1,6 @@
 //! Section 6.4: pressures, drop of the skin temperature on BaF2 and ZnS, and time to the steady state.
 //!
-//! A temperature passes for steady if it has made all but 5 % of its fall.
+//! A temperature counts as steady if at most 5 % of its drop remain.
 
 use contact_model::pressure::{THESIS_PRESSURES, contact_area_m2};
 
@@ -49,7 +49,7 @@ pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
     })
 }
 
-/// Fall of the skin's temperature on a window within 10 s, K.
+/// Drop of the skin temperature on a window within 10 s, K.
 fn fall_k(window: &str, pressure_pa: f64) -> f64 {
     Case::validation(material(window), pressure_pa).drop_k(10.0)
 }
