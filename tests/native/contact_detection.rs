@@ -4,7 +4,7 @@
 use documented_figures::assert_figure;
 use thermal_display::device::sense::{ContactDetector, SCANS_PER_TICK, Samples, Sensors};
 use thermal_display::settings::Settings;
-use thermal_plant::sensors::{Channel, Sensed, SensorParams, Sensors as Plant};
+use thermal_plant::sensors::{Channel, SensorInputs, SensorParams, Sensors as Plant};
 
 /// Scans of a tick before the plant's step (see `thermal_sim::engine`).
 const SCANS_BEFORE: usize = 4;
@@ -66,8 +66,8 @@ impl Bench {
     }
 }
 
-fn state(force_n: f64) -> Sensed {
-    Sensed {
+fn state(force_n: f64) -> SensorInputs {
+    SensorInputs {
         display_c: 30.0,
         sink_c: 25.0,
         skin_before_c: 34.0,

@@ -3,5 +3,5 @@
 mod page;
 mod panel;
 
-pub use page::{document, element, escape, write};
+pub use page::{document, escape, svg_element, write};
 pub use panel::{Area, Curve, Legend, Panel, Stroke};

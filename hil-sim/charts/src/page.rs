@@ -1,4 +1,4 @@
-//! HTML pages that need no other file.
+//! Self-contained HTML pages.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:62rem;margin:2rem a
 table{border-collapse:collapse}td,th{padding:.2rem .8rem;border-bottom:1px solid #ddd;text-align:left}\
 svg{max-width:100%;height:auto}code{background:#f3f3f3}";
 
-/// A page that needs no other file: `title` is text, `style` is CSS that is added to the style of all pages, `body` is HTML.
+/// A self-contained page: `title` is text, `style` is CSS in addition to the common style, `body` is HTML.
 #[must_use]
 pub fn document(title: &str, style: &str, body: &str) -> String {
     let title = escape(title);
@@ -18,13 +18,13 @@ pub fn document(title: &str, style: &str, body: &str) -> String {
     )
 }
 
-/// The `<svg>` element of an SVG document, to be put into a page; empty if the text has none.
+/// The `<svg>` element of an SVG document for use in a page; empty if there is none.
 #[must_use]
-pub fn element(svg: &str) -> &str {
+pub fn svg_element(svg: &str) -> &str {
     svg.find("<svg").map_or("", |start| &svg[start..])
 }
 
-/// Text as HTML.
+/// Text with HTML's special characters escaped.
 #[must_use]
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;")
@@ -32,7 +32,7 @@ pub fn escape(text: &str) -> String {
         .replace('>', "&gt;")
 }
 
-/// Writes a file of a report into a folder, which exists.
+/// Writes a file of a report into an existing folder.
 ///
 /// # Errors
 /// The file cannot be written; the error names its path.

@@ -1,4 +1,4 @@
-//! A chart with curves, in the style of all reports.
+//! A line chart in the style of all reports.
 
 use std::ops::Range;
 
@@ -6,25 +6,25 @@ use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 
-/// Length and gap of the strokes of a dashed curve, pixels.
+/// Dash and gap length of a dashed curve, pixels.
 const DASH: (u32, u32) = (7, 5);
 /// Radius of a dot, pixels.
 const DOT: i32 = 4;
-/// The style of all words in a chart.
+/// Font and size of all text in a chart.
 const FONT: (&str, i32) = ("sans-serif", 15);
 /// Space around a chart, pixels.
 const MARGIN: i32 = 14;
-/// Space around the words of a legend, pixels.
-const SPACE: i32 = 8;
-/// Height of a line of a legend, pixels.
-const LINE: i32 = 20;
-/// Length of a curve's sample in a legend, pixels.
+/// Padding around the text of a legend, pixels.
+const PADDING: i32 = 8;
+/// Line height of a legend, pixels.
+const LINE_HEIGHT: i32 = 20;
+/// Length of the line sample of a curve in a legend, pixels.
 const SAMPLE: i32 = 22;
 
-/// Part of an SVG picture that charts are drawn on.
+/// Area of an SVG picture in which a chart is drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// How a curve is drawn.
+/// Style of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
     /// A line of this width, pixels.
@@ -41,35 +41,35 @@ pub struct Curve {
     pub name: String,
     /// Colour of the curve and of its sample in the legend.
     pub color: RGBColor,
-    /// How it is drawn.
+    /// Style of the curve.
     pub stroke: Stroke,
     /// Points `(x, y)` in the units of the axes, in drawing order.
     pub points: Vec<(f64, f64)>,
 }
 
-/// Where the legend stands.
+/// Position of the legend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Legend {
     /// In the upper right corner of the curves.
     Inside,
-    /// Right of the curves, in so many pixels.
+    /// Right of the curves, with this width in pixels.
     Beside(u32),
 }
 
-/// A chart: its range of x, what its axes are, and where its legend stands.
+/// A chart: axes and position of the legend.
 pub struct Panel<'a> {
-    /// Range of the horizontal axis; the vertical one follows the curves.
+    /// Range of the horizontal axis; that of the vertical axis is fitted to the curves.
     pub x: Range<f64>,
     /// Quantity and unit of the horizontal axis.
     pub x_name: &'a str,
     /// Quantity and unit of the vertical axis.
     pub y_name: &'a str,
-    /// Where the legend stands.
+    /// Position of the legend.
     pub legend: Legend,
 }
 
 impl Panel<'_> {
-    /// Draws the curves, on a scale of y that holds them all.
+    /// Draws the curves with a y range that contains all of them.
     ///
     /// # Errors
     /// The chart cannot be drawn.
@@ -86,17 +86,17 @@ impl Panel<'_> {
                     );
                 }
                 let (width, height) = (
-                    width as i32 + SAMPLE + 2 * SPACE,
-                    LINE * curves.len() as i32,
+                    width as i32 + SAMPLE + 2 * PADDING,
+                    LINE_HEIGHT * curves.len() as i32,
                 );
-                let left = all as i32 - MARGIN - SPACE - width;
+                let left = all as i32 - MARGIN - PADDING - width;
                 let corners = [
-                    (left, MARGIN + SPACE),
-                    (left + width, MARGIN + SPACE + height),
+                    (left, MARGIN + PADDING),
+                    (left + width, MARGIN + PADDING + height),
                 ];
                 area.draw(&Rectangle::new(corners, WHITE.mix(0.85).filled()))?;
                 area.draw(&Rectangle::new(corners, BLACK.mix(0.3)))?;
-                legend(area, (left + SPACE / 2, corners[0].1), curves)
+                legend(area, (left + PADDING / 2, corners[0].1), curves)
             }
             Legend::Beside(width) => {
                 let (left, right) = area.split_horizontally(all.saturating_sub(width));
@@ -127,7 +127,7 @@ impl Panel<'_> {
             .configure_mesh()
             .x_desc(self.x_name)
             .y_desc(self.y_name)
-            // Adding zero turns a negative zero into zero.
+            // Adding zero converts a negative zero into zero.
             .y_label_formatter(&|value| {
                 format!("{:.decimals$}", (value * 10.0).round() / 10.0 + 0.0)
             })
@@ -155,10 +155,10 @@ impl Panel<'_> {
     }
 }
 
-/// Names and samples, one below the other, with their upper left corner at `(x, y)`.
+/// Draws line samples and names as a list with its upper left corner at `(x, y)`.
 fn legend(area: &Area<'_>, (x, y): (i32, i32), curves: &[Curve]) -> anyhow::Result<()> {
     for (i, curve) in (0..).zip(curves) {
-        let middle = y + i * LINE + LINE / 2;
+        let middle = y + i * LINE_HEIGHT + LINE_HEIGHT / 2;
         let (color, ends) = (curve.color, [(x, middle), (x + SAMPLE, middle)]);
         match curve.stroke {
             Stroke::Solid(width) => {
@@ -172,7 +172,7 @@ fn legend(area: &Area<'_>, (x, y): (i32, i32), curves: &[Curve]) -> anyhow::Resu
                 area.draw(&Circle::new((x + SAMPLE / 2, middle), DOT, color.filled()))?
             }
         }
-        let at = (x + SAMPLE + SPACE, middle - FONT.1 / 2);
+        let at = (x + SAMPLE + PADDING, middle - FONT.1 / 2);
         area.draw(&Text::new(curve.name.as_str(), at, FONT))?;
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! The comparator that watches the display without the microcontroller, and cuts the bridge supply.
+//! Hardware window comparator that cuts the bridge supply independently of the microcontroller.
 //!
 //! ```text
 //! second display thermistor's divider -> window 10 to 45 C --+
@@ -6,49 +6,50 @@
 //!                     test line's falling edge, if inside -----> clear           nFAULT low
 //! ```
 //!
-//! The window is a ladder of resistors on the supply of the dividers, so it does not depend on that supply's voltage; nor
-//! does it know of the device's calibration: the thermistor's own tolerance adds to the ladder's. It answers within
-//! microseconds, which counts as at the end of the plant's step. Not modelled: hysteresis, noise, the supply's decay.
+//! A resistor ladder on the supply of the dividers sets the thresholds, so they are independent of that voltage. The
+//! comparator does not use the device's calibration: the tolerance of the thermistor adds to that of the ladder. It
+//! responds within microseconds, modelled as the end of the plant's step. Not modelled: hysteresis, noise, decay of the
+//! supply.
 
 use super::sensors::ThermistorParams;
 
-/// Where the window ends, in temperatures of a nominal thermistor behind a nominal divider.
+/// Thresholds, as temperatures of a nominal thermistor in a nominal divider.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ComparatorParams {
-    /// Below this the display counts as too cold, deg C.
+    /// Lower threshold, deg C.
     pub cold_c: f64,
-    /// Above this it counts as too hot, deg C.
+    /// Upper threshold, deg C.
     pub hot_c: f64,
 }
 
 impl ComparatorParams {
-    /// The reference design's.
+    /// Values of the reference design.
     pub const NOMINAL: Self = Self {
         cold_c: 10.0,
         hot_c: 45.0,
     };
 }
 
-/// What can be broken in it.
+/// Defect of the comparator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ComparatorDefect {
-    /// Nothing.
+    /// No defect.
     #[default]
-    Sound,
-    /// Its latch never sets: neither the window nor the test line cuts the supply.
-    Dead,
-    /// Its latch never clears, and is set.
-    Stuck,
+    None,
+    /// The latch is never set: neither the window nor the test line cuts the supply.
+    NeverTrips,
+    /// The latch is set and never cleared.
+    AlwaysTripped,
 }
 
 /// The comparator and its latch, cleared at power-on.
 #[derive(Clone, Copy, Debug)]
 pub struct Comparator {
-    /// Ends of the window, in fractions of the dividers' supply: falling as it warms.
+    /// Thresholds as divider ratios, which fall with temperature.
     cold_ratio: f64,
     hot_ratio: f64,
-    /// What it last saw, likewise.
-    seen_ratio: f64,
+    /// Last divider ratio of the thermistor.
+    input_ratio: f64,
     /// Level of the test line.
     test: bool,
     latched: bool,
@@ -56,51 +57,51 @@ pub struct Comparator {
 }
 
 impl Comparator {
-    /// Powered on in front of a divider's ratio, with the window's ends as a nominal thermistor has them.
+    /// State after power-on with a divider ratio at the input; `nominal` is the thermistor that the thresholds assume.
     #[must_use]
     pub fn new(params: &ComparatorParams, nominal: &ThermistorParams, ratio: f64) -> Self {
         let mut comparator = Self {
             cold_ratio: nominal.ratio(params.cold_c),
             hot_ratio: nominal.ratio(params.hot_c),
-            seen_ratio: ratio,
+            input_ratio: ratio,
             test: false,
             latched: false,
-            defect: ComparatorDefect::Sound,
+            defect: ComparatorDefect::None,
         };
-        comparator.watch(ratio);
+        comparator.set_input(ratio);
         comparator
     }
 
-    /// Sees the divider's ratio, 0 to 1: an open thermistor has 1 and reads cold, a shorted one 0 and reads hot.
-    pub fn watch(&mut self, ratio: f64) {
-        self.seen_ratio = ratio;
+    /// Sets the divider ratio at the input, 0 (shorted thermistor, reads hot) to 1 (open thermistor, reads cold).
+    pub fn set_input(&mut self, ratio: f64) {
+        self.input_ratio = ratio;
         self.latched |= self.outside();
     }
 
-    /// Sets the level of the test line. High sets the latch; its falling edge clears the latch inside of the window.
-    pub fn test(&mut self, level: bool) {
+    /// Sets the level of the test line. High sets the latch; the falling edge clears it if the input is in the window.
+    pub fn set_test_line(&mut self, level: bool) {
         let fell = self.test && !level;
         self.test = level;
         self.latched = level || self.outside() || (self.latched && !fell);
     }
 
-    /// Breaks or mends it.
+    /// Sets the defect.
     pub const fn set_defect(&mut self, defect: ComparatorDefect) {
         self.defect = defect;
     }
 
-    /// The supply is cut and nFAULT is pulled low.
+    /// Whether the supply is cut and nFAULT pulled low.
     #[must_use]
     pub const fn tripped(&self) -> bool {
         match self.defect {
-            ComparatorDefect::Sound => self.latched,
-            ComparatorDefect::Dead => false,
-            ComparatorDefect::Stuck => true,
+            ComparatorDefect::None => self.latched,
+            ComparatorDefect::NeverTrips => false,
+            ComparatorDefect::AlwaysTripped => true,
         }
     }
 
     fn outside(&self) -> bool {
-        !(self.hot_ratio..=self.cold_ratio).contains(&self.seen_ratio)
+        !(self.hot_ratio..=self.cold_ratio).contains(&self.input_ratio)
     }
 }
 

@@ -1,4 +1,4 @@
-//! What a plant is built from.
+//! Configuration of a plant.
 
 use contact_model::material::{Material, REFERENCE_DISPLAY, Surface};
 
@@ -8,7 +8,7 @@ use super::finger::{FingerParams, Vessels};
 use super::object::ObjectConfig;
 use super::parameters::{self, ParameterError};
 use super::sensors::SensorParams;
-use super::slab::Back;
+use super::slab::BackBoundary;
 use super::tile::TileParams;
 
 /// One finger, its display and the real object that the display stands for.
@@ -16,23 +16,23 @@ use super::tile::TileParams;
 pub struct PlantConfig {
     /// Skin before contact, deg C.
     pub skin_c: f64,
-    /// Room, and tile and sink at the start, deg C.
+    /// Room temperature, deg C; also that of tile and sink at the start, if the coolant has it.
     pub room_c: f64,
     /// The real object.
     pub object: ObjectConfig,
     /// Time of the first step, s; negative to let the device settle before zero.
     pub start_s: f64,
-    /// From this time on the real object is there to be touched, s.
+    /// Time from which the real object is present, s.
     pub appears_s: f64,
-    /// How long temperatures must stay right, s: fixes how deep half-spaces are cut.
+    /// Simulated time, s: it sets the depth to which half-spaces are meshed.
     pub duration_s: f64,
-    /// Of every random draw.
+    /// Seed of all random draws.
     pub seed: u64,
-    /// What the parts are like.
+    /// Parameters of the parts.
     pub params: Params,
 }
 
-/// Parameters of all parts.
+/// Parameters of one finger with its display, electronics and host.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     /// The finger.
@@ -45,23 +45,23 @@ pub struct Params {
     pub sensors: SensorParams,
     /// Power stage.
     pub bridge: BridgeParams,
-    /// Comparator that cuts its supply.
+    /// Comparator that cuts the supply of the power stage.
     pub comparator: ComparatorParams,
-    /// What the host commissions the device with.
+    /// Reference thermometer with which the host commissions the device.
     pub host: HostParams,
 }
 
-/// The reference thermometer at the host, with a resolution of 1 mK.
+/// Reference thermometer at the host, with a resolution of 1 mK.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HostParams {
-    /// What it shows too much, K.
+    /// Offset of its readings, K.
     pub reference_offset_k: f64,
     /// Standard deviation of one reading, K.
     pub reference_noise_k: f64,
 }
 
 impl HostParams {
-    /// A calibrated resistance thermometer's.
+    /// A calibrated resistance thermometer.
     pub const NOMINAL: Self = Self {
         reference_offset_k: 0.0,
         reference_noise_k: 0.3e-3,
@@ -69,13 +69,13 @@ impl HostParams {
 }
 
 impl Params {
-    /// The reference design under the thesis's finger.
+    /// The reference design with the thesis's finger.
     #[must_use]
     pub fn nominal() -> Self {
         Self {
             finger: FingerParams::homogeneous(),
             display: REFERENCE_DISPLAY,
-            tile: TileParams::CLASS,
+            tile: TileParams::NOMINAL,
             sensors: SensorParams::NOMINAL,
             bridge: BridgeParams::NOMINAL,
             comparator: ComparatorParams::NOMINAL,
@@ -91,29 +91,29 @@ const CORE_C: (f64, f64) = (0.0, 45.0);
 /// Longest duration, s.
 const LONGEST_S: f64 = 86_400.0;
 
-/// What no plant can be built from.
+/// Error of a configuration.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ConfigError {
     /// A value out of its range.
     #[error("{what} is {value}; allowed is {allowed}")]
     Value {
-        /// The value's name and unit.
+        /// Name and unit of the value.
         what: &'static str,
-        /// What it is.
+        /// The value.
         value: f64,
-        /// What it may be.
+        /// Allowed range, in words.
         allowed: String,
     },
-    /// A parameter of the box out of its range.
+    /// A parameter out of its range.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
-    /// A finger that would have to be kept warm, and has nothing that does.
+    /// A finger without a heat source that loses heat to the air, and so has no steady state.
     #[error(
         "a finger without blood or core has air_w_m2k {air_w_m2k} or heat of metabolism; allowed is 0 of both, or \
          a core, or perfusion"
     )]
     ColdFinger {
-        /// Film of air on its surface, W/(m2 K).
+        /// Film coefficient of the air on its surface, W/(m2 K).
         air_w_m2k: f64,
     },
 }
@@ -133,7 +133,7 @@ impl ConfigError {
 }
 
 impl PlantConfig {
-    /// Checks everything: each parameter by itself, and what must suit each other.
+    /// Checks each value, and the consistency of values that depend on each other.
     ///
     /// # Errors
     /// The first value that is not finite or outside of its range.
@@ -154,13 +154,13 @@ impl PlantConfig {
         )?;
         positive("duration in s", self.duration_s)?;
         within("duration in s", self.duration_s, 0.0, LONGEST_S)?;
-        object(&self.object)?;
+        check_object(&self.object)?;
         parameters::check(&self.params)?;
-        together(&self.params)
+        check_consistency(&self.params)
     }
 }
 
-fn object(object: &ObjectConfig) -> Result<(), ConfigError> {
+fn check_object(object: &ObjectConfig) -> Result<(), ConfigError> {
     let (coldest, warmest) = TEMPERATURE_C;
     let Material {
         surface,
@@ -188,7 +188,7 @@ fn object(object: &ObjectConfig) -> Result<(), ConfigError> {
         ObjectConfig::THINNEST_M,
         f64::INFINITY,
     )?;
-    if let Back::Film {
+    if let BackBoundary::Film {
         film_w_m2k,
         temperature_c,
     } = object.back
@@ -209,8 +209,8 @@ fn object(object: &ObjectConfig) -> Result<(), ConfigError> {
     Ok(())
 }
 
-/// Parameters that are possible by themselves must suit each other.
-fn together(params: &Params) -> Result<(), ConfigError> {
+/// Checks parameters that depend on each other.
+fn check_consistency(params: &Params) -> Result<(), ConfigError> {
     let Params {
         finger,
         tile,
@@ -257,22 +257,22 @@ fn together(params: &Params) -> Result<(), ConfigError> {
             "none, or a last layer of finite thickness",
         ));
     }
-    if !rests(finger) {
+    if !has_steady_state(finger) {
         return Err(ConfigError::cold_finger(finger.air_w_m2k));
     }
     Ok(())
 }
 
-/// Whether the finger can be in equilibrium with the room: something keeps its temperature, or nothing changes it.
-fn rests(finger: &FingerParams) -> bool {
+/// Whether the finger has a steady state: core or blood hold its temperature, or it exchanges and produces no heat.
+fn has_steady_state(finger: &FingerParams) -> bool {
     let mut media = finger.layers.iter().map(|layer| layer.medium);
     finger.core_w_m2k.is_some_and(|core_w_m2k| core_w_m2k > 0.0)
         || media.clone().any(|medium| medium.perfusion_w_m3k > 0.0)
         || (finger.air_w_m2k == 0.0 && media.all(|medium| medium.metabolism_w_m3 == 0.0))
 }
 
-/// A finger can be kept warm by a core of this temperature, deg C.
-pub(super) fn core(core_c: f64) -> Result<(), ConfigError> {
+/// Checks the core temperature, deg C, that the initial state of the finger implies.
+pub(super) fn check_core(core_c: f64) -> Result<(), ConfigError> {
     within(
         "temperature in deg C that the finger's core must have for its skin and the room",
         core_c,

@@ -1,14 +1,14 @@
-//! What is broken in a plant.
+//! Defects of a plant.
 
 use super::bridge::BridgeDefects;
 use super::comparator::ComparatorDefect;
 use super::sensors::SensorDefects;
 use super::tile::{CoolingDefects, ModuleDefect};
 
-/// What is broken in the plant of a finger; by default nothing.
+/// Simulated hardware defects of one finger's plant; none by default.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Defects {
-    /// Sensors, in front of the converter.
+    /// Sensors in front of the converter.
     pub sensors: SensorDefects,
     /// Power stage.
     pub bridge: BridgeDefects,

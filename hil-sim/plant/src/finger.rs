@@ -1,30 +1,30 @@
-//! The finger: its tissue and its blood.
+//! The finger: tissue, blood flow and surface.
 
 use contact_model::material::{SKIN, Surface};
 
-use super::slab::{Back, Layer, Medium};
+use super::slab::{BackBoundary, Layer, Medium};
 
-/// What a finger is made of.
+/// Parameters of a finger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FingerParams {
-    /// Its surface.
+    /// Contact properties of the skin.
     pub surface: Surface,
-    /// Its tissue, the outermost layer first.
+    /// Layers of tissue, the outermost first.
     pub layers: Vec<Layer>,
-    /// Conductance from the deepest layer to the core, W/(m2 K); none if nothing lies behind it.
+    /// Conductance from the deepest layer to the core, W/(m2 K); none if the back is insulated.
     pub core_w_m2k: Option<f64>,
-    /// Film of air on lifted surfaces, of finger and object, radiation included, W/(m2 K).
+    /// Film coefficient of air on surfaces without contact, of finger and object, radiation included, W/(m2 K).
     pub air_w_m2k: f64,
-    /// How force closes the vessels; none if it does not.
+    /// Reduction of blood flow by the contact force; none if the flow is constant.
     pub vessels: Option<Vessels>,
 }
 
-/// Blood flow under force, as section 6.4.3 has it: full up to one force, none from another on, linear between.
+/// Blood flow over contact force (section 6.4.3): full below `open_n`, none above `shut_n`, linear between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vessels {
-    /// Up to this force the flow is full, N.
+    /// Largest force with full flow, N.
     pub open_n: f64,
-    /// From this force on there is none, N.
+    /// Smallest force without flow, N.
     pub shut_n: f64,
 }
 
@@ -35,25 +35,25 @@ impl Vessels {
         shut_n: 1.0,
     };
 
-    /// Share of the full flow under a force, N.
+    /// Fraction of the full flow at a force, N.
     #[must_use]
     pub fn flow(&self, force_n: f64) -> f64 {
         ((self.shut_n - force_n) / (self.shut_n - self.open_n)).clamp(0.0, 1.0)
     }
 }
 
-/// Heat capacity of blood, J/(m3 K): density 1060 kg/m3 times 3770 J/(kg K), literature.
+/// Volumetric heat capacity of blood, J/(m3 K): 1060 kg/m3 times 3770 J/(kg K), literature.
 pub const BLOOD_J_M3K: f64 = 4.0e6;
 
 impl FingerParams {
-    /// The thesis's finger: one homogeneous half-space without blood, insulated where it touches nothing.
+    /// The thesis's finger: a homogeneous half-space without blood, adiabatic where it has no contact.
     #[must_use]
     pub fn homogeneous() -> Self {
         Self {
             surface: SKIN.surface,
             layers: vec![Layer {
                 thickness_m: f64::INFINITY,
-                medium: Medium::dead(&SKIN),
+                medium: Medium::without_blood(&SKIN),
             }],
             core_w_m2k: None,
             air_w_m2k: 0.0,
@@ -61,8 +61,8 @@ impl FingerParams {
         }
     }
 
-    /// A fingertip of epidermis, dermis and fat over a core, with blood and metabolism. Conductivities and heat
-    /// capacities are literature values; thicknesses, perfusion and the film are class values.
+    /// A fingertip of epidermis, dermis and fat over a core, with blood perfusion and metabolic heat. Conductivities and
+    /// heat capacities are literature values; thicknesses, perfusion and film coefficient are typical values.
     #[must_use]
     pub fn layered() -> Self {
         let layer =
@@ -90,11 +90,11 @@ impl FingerParams {
         }
     }
 
-    /// What lies behind the tissue; its temperature follows from the skin's.
+    /// Boundary condition behind the tissue; the core temperature is set later by the steady state.
     #[must_use]
-    pub fn back(&self) -> Back {
+    pub fn back(&self) -> BackBoundary {
         self.core_w_m2k
-            .map_or(Back::Insulated, |film_w_m2k| Back::Film {
+            .map_or(BackBoundary::Insulated, |film_w_m2k| BackBoundary::Film {
                 film_w_m2k,
                 temperature_c: 0.0,
             })

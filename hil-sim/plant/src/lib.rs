@@ -3,42 +3,42 @@
 pub mod bridge;
 pub mod comparator;
 mod config;
+pub mod contact;
 mod defects;
+pub mod energy;
 pub mod finger;
-pub mod heat;
 pub mod infrared;
-pub mod ledger;
 pub mod object;
 pub mod parameters;
-mod schedule;
-mod scheme;
+pub mod reference;
 pub mod sensors;
 pub mod slab;
+mod substeps;
+pub mod thermal;
 pub mod tile;
-pub mod touch;
-pub mod truth;
+mod tr_bdf2;
 
-use bridge::{Bridge, Legs};
+use bridge::{Bridge, BridgeOutputs};
 use comparator::Comparator;
 pub use config::{ConfigError, HostParams, Params, PlantConfig};
+use contact::SkinContact;
 use contact_model::material::Surface;
 pub use defects::Defects;
+use energy::Energy;
 use finger::Vessels;
-pub use heat::Finger;
-use heat::Heat;
-use ledger::Energy;
-use sensors::{BONDED, Channel, Sensed, Sensors, Taken};
-use slab::{Grading, Probe, Slab, equilibrium};
+use sensors::{BONDED, Channel, SensorInputs, SensorReadings, Sensors};
+use slab::{DepthProbe, Grading, Slab, steady_state};
+pub use thermal::Finger;
+use thermal::ThermalModel;
 use tile::Tile;
-use touch::Touch;
 
-/// One step of the plant, s; legs and force are held over it.
+/// Step of the plant, s; bridge outputs and force are constant within it.
 pub const STEP_S: f64 = 1e-3;
 
-/// Depths of the receptors of cold and of warmth, m (thesis, section 2.2: 0.15 to 0.17 mm, 0.3 to 0.6 mm).
+/// Depths of the cold and warm receptors, m (thesis, section 2.2: 0.15 to 0.17 mm, 0.3 to 0.6 mm).
 pub const RECEPTORS_M: [f64; 2] = [0.16e-3, 0.45e-3];
 
-/// The plant of one finger.
+/// Simulated hardware of one finger.
 #[derive(Clone, Debug)]
 pub struct Plant {
     start_s: f64,
@@ -49,25 +49,25 @@ pub struct Plant {
     surfaces: Surfaces,
     vessels: Option<Vessels>,
     bridge: Bridge,
-    /// Supply that the bridge should have, V.
+    /// Nominal supply of the bridge, V.
     supply_v: f64,
     comparator: Comparator,
     defects: Defects,
-    heat: Heat,
-    receptors: [Option<Probe>; RECEPTORS_M.len()],
+    heat: ThermalModel,
+    receptors: [Option<DepthProbe>; RECEPTORS_M.len()],
     sensors: Sensors,
-    /// Steps made.
+    /// Number of steps made.
     steps: u64,
     force_n: f64,
-    /// Force, and whether the object is there, for which the contacts stand.
-    settled: Option<(f64, bool)>,
-    on_display: Option<Touch>,
-    on_object: Option<Touch>,
-    /// Steps made since temperatures last changed abruptly.
-    age: u32,
+    /// Force, N, and presence of the object for which the contacts were last updated.
+    contact_state: Option<(f64, bool)>,
+    on_display: Option<SkinContact>,
+    on_object: Option<SkinContact>,
+    /// Number of steps since the last abrupt change of contact.
+    steps_since_change: u32,
 }
 
-/// What meets in the contacts.
+/// Surfaces in contact.
 #[derive(Clone, Copy, Debug)]
 struct Surfaces {
     skin: Surface,
@@ -76,34 +76,35 @@ struct Surfaces {
 }
 
 impl Plant {
-    /// A plant at rest: finger lifted, tile and sink at the temperature of the sink's coolant, no current.
+    /// A plant in steady state without current: finger without contact, tile and sink at the temperature of the coolant.
     ///
     /// # Errors
     /// If the configuration does not pass its [check](PlantConfig::check).
     pub fn new(config: &PlantConfig) -> Result<Self, ConfigError> {
         config.check()?;
         let params = &config.params;
-        let watched_s = config.duration_s - config.start_s;
-        let cut = |layers: &[slab::Layer], back| Slab::new(layers, back, watched_s, &Grading::RUN);
-        let finger = cut(&params.finger.layers, params.finger.back());
-        let object = cut(&[config.object.layer()], config.object.back);
+        let simulated_s = config.duration_s - config.start_s;
+        let mesh =
+            |layers: &[slab::Layer], back| Slab::new(layers, back, simulated_s, &Grading::STANDARD);
+        let finger = mesh(&params.finger.layers, params.finger.back());
+        let object = mesh(&[config.object.layer()], config.object.back);
         let air_w_m2k = params.finger.air_w_m2k;
-        let rest = equilibrium(
+        let steady = steady_state(
             &finger,
             config.skin_c,
             air_w_m2k * (config.skin_c - config.room_c),
         )
         .ok_or_else(|| ConfigError::cold_finger(air_w_m2k))?;
-        config::core(rest.core_c)?;
-        let mut heat = Heat::new(
+        config::check_core(steady.core_c)?;
+        let mut heat = ThermalModel::new(
             (&finger, config.skin_c),
             (&object, config.object.start_c),
             Tile::new(params.tile, config.room_c),
             (air_w_m2k, config.room_c),
             STEP_S,
         );
-        heat.rest_finger(&rest.node_c, rest.core_c);
-        let at_rest = Sensed {
+        heat.set_finger(&steady.node_c, steady.core_c);
+        let at_rest = SensorInputs {
             display_c: heat.display_c(),
             sink_c: heat.tile().sink_c(),
             skin_before_c: config.skin_c,
@@ -134,23 +135,23 @@ impl Plant {
             ),
             defects: Defects::default(),
             heat,
-            receptors: RECEPTORS_M.map(|depth_m| Probe::at(&finger, depth_m)),
+            receptors: RECEPTORS_M.map(|depth_m| DepthProbe::at(&finger, depth_m)),
             sensors,
             steps: 0,
             force_n: 0.0,
-            settled: None,
+            contact_state: None,
             on_display: None,
             on_object: None,
-            age: u32::MAX,
+            steps_since_change: u32::MAX,
         })
     }
 
-    /// Presses the finger with a force, N, from the next step on; none or less lifts it.
+    /// Sets the force of the finger, N, from the next step on; zero and negative forces lift it.
     pub fn set_force(&mut self, force_n: f64) {
         self.force_n = force_n.max(0.0);
     }
 
-    /// Breaks and mends parts, from the next step on.
+    /// Sets the hardware defects from the next step on.
     pub fn set_defects(&mut self, defects: &Defects) {
         if self.defects == *defects {
             return;
@@ -160,35 +161,35 @@ impl Plant {
         self.bridge
             .set_supply(defects.bridge.supply_v.unwrap_or(self.supply_v));
         self.comparator.set_defect(defects.comparator);
-        self.heat.cool(&defects.cooling);
+        self.heat.set_cooling(&defects.cooling);
         self.heat.set_module(defects.module);
     }
 
     /// Sets the level of the comparator's test line.
     pub fn comparator_test(&mut self, level: bool) {
-        self.comparator.test(level);
+        self.comparator.set_test_line(level);
     }
 
-    /// Draws the converter's noise of another seed from now on; its profile stays, as it is the device's own.
+    /// Reseeds the noise of the A/D converter; its non-linearity, which belongs to the device, stays.
     pub fn reseed_noise(&mut self, seed: u64) {
         self.sensors.reseed_noise(seed);
     }
 
-    /// Advances by [`STEP_S`] with the bridge's legs held.
-    pub fn step(&mut self, legs: &Legs) {
-        self.settle_contacts();
-        // Without supply nothing drives the tile, and its own voltage stays below that of two diodes.
+    /// Advances by [`STEP_S`] under constant bridge outputs.
+    pub fn step(&mut self, legs: &BridgeOutputs) {
+        self.update_contacts();
+        // Without supply there is no current: the Seebeck voltage stays below that of two diodes.
         let legs = if self.comparator.tripped() {
-            Legs::default()
+            BridgeOutputs::default()
         } else {
-            self.defects.bridge.legs(legs)
+            self.defects.bridge.apply(legs)
         };
-        for index in schedule::sub_steps(self.age) {
+        for index in substeps::of_step(self.steps_since_change) {
             self.heat.step(index, &mut self.bridge, &legs);
         }
         self.steps += 1;
-        self.age = self.age.saturating_add(1);
-        let state = Sensed {
+        self.steps_since_change = self.steps_since_change.saturating_add(1);
+        let state = SensorInputs {
             display_c: self.display_c(),
             sink_c: self.sink_c(),
             skin_before_c: self.skin_before_c,
@@ -199,113 +200,113 @@ impl Plant {
         };
         self.sensors.step(STEP_S, &state);
         self.comparator
-            .watch(self.sensors.pin_ratio(Channel::DisplayCheck as usize));
+            .set_input(self.sensors.pin_ratio(Channel::DisplayCheck as usize));
     }
 
-    /// Contacts as force and time have them in the coming step.
-    fn settle_contacts(&mut self) {
-        // Half a step of slack: the sum of steps is not exact.
-        let appeared = self.time_s() + 0.5 * STEP_S > self.appears_s.max(0.0);
-        let settled = Some((self.force_n, appeared));
-        if self.settled == settled {
+    /// Updates the contacts for the force and the time of the coming step.
+    fn update_contacts(&mut self) {
+        // Half a step of tolerance, since the sum of steps is rounded.
+        let present = self.time_s() + 0.5 * STEP_S > self.appears_s.max(0.0);
+        let contact_state = Some((self.force_n, present));
+        if self.contact_state == contact_state {
             return;
         }
-        if appeared && !self.settled.is_some_and(|(_, appeared)| appeared) {
-            // Until now nothing has happened to the object, whatever lies behind it.
-            self.heat.place_object(self.object_start_c);
-            self.age = 0;
+        if present && !self.contact_state.is_some_and(|(_, present)| present) {
+            // The object keeps its start temperature until it appears, whatever its back boundary is.
+            self.heat.set_object(self.object_start_c);
+            self.steps_since_change = 0;
         }
-        self.settled = settled;
+        self.contact_state = contact_state;
         let Surfaces {
             skin,
             display,
             object,
         } = &self.surfaces;
-        let on_display = Touch::under(self.force_n, skin, display);
-        let on_object = Touch::under(self.force_n, skin, object).filter(|_| appeared);
-        if touch::is_event(self.on_display, on_display)
-            || touch::is_event(self.on_object, on_object)
+        let on_display = SkinContact::at_force(self.force_n, skin, display);
+        let on_object = SkinContact::at_force(self.force_n, skin, object).filter(|_| present);
+        if contact::is_abrupt(self.on_display, on_display)
+            || contact::is_abrupt(self.on_object, on_object)
         {
-            self.age = 0;
+            self.steps_since_change = 0;
         }
-        self.heat.touch(on_display, on_object, appeared);
+        self.heat.set_contacts(on_display, on_object, present);
         (self.on_display, self.on_object) = (on_display, on_object);
         if let Some(vessels) = &self.vessels {
             self.heat.set_flow(vessels.flow(self.force_n));
         }
     }
 
-    /// Converts one channel as it was at the end of the last step; each conversion draws its own noise.
+    /// Converts one channel: the signal moves from its value at the start of the last step to that at its end.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         self.sensors.convert(channel)
     }
 
-    /// nFAULT is low: the bridge's driver or the comparator pulls it.
+    /// Whether driver or comparator pull nFAULT low.
     #[must_use]
     pub fn bridge_fault(&self) -> bool {
         (self.bridge.fault() || self.comparator.tripped()) && !self.defects.bridge.fault_pin_dead
     }
 
-    /// The comparator has cut the bridge supply.
+    /// Whether the comparator has cut the bridge supply.
     #[must_use]
     pub const fn supply_cut(&self) -> bool {
         self.comparator.tripped()
     }
 
-    /// Time, s.
+    /// Simulated time, s.
     #[must_use]
     pub fn time_s(&self) -> f64 {
         self.start_s + self.steps as f64 * STEP_S
     }
 
-    /// Force of the finger, N.
+    /// Contact force of the finger, N.
     #[must_use]
     pub const fn force_n(&self) -> f64 {
         self.force_n
     }
 
-    /// True surface of the display, deg C.
+    /// True surface temperature of the display, deg C.
     #[must_use]
     pub fn display_c(&self) -> f64 {
         self.heat.display_c()
     }
 
-    /// Surface of the skin on the display, deg C.
+    /// Surface temperature of the skin on the display, deg C.
     #[must_use]
     pub fn skin_c(&self) -> f64 {
         self.heat.skin_c(Finger::OnDisplay)
     }
 
-    /// Surface of the same skin on the real object, deg C.
+    /// Surface temperature of the same skin on the real object, deg C.
     #[must_use]
     pub fn skin_real_c(&self) -> f64 {
         self.heat.skin_c(Finger::OnObject)
     }
 
-    /// The skin at the depth of its receptors of cold and of warmth ([`RECEPTORS_M`]), deg C; none where the finger is
-    /// thinner than that.
+    /// Skin temperature at the depth of the cold and warm receptors ([`RECEPTORS_M`]), deg C; none if the finger is
+    /// thinner.
     #[must_use]
     pub fn receptors_c(&self, finger: Finger) -> [Option<f64>; RECEPTORS_M.len()] {
-        let read = |probe: Option<Probe>| probe.map(|probe| self.heat.depth_c(finger, &probe));
+        let read = |probe: Option<DepthProbe>| probe.map(|probe| self.heat.depth_c(finger, &probe));
         self.receptors.map(read)
     }
 
-    /// Surface of the real object, deg C.
+    /// Surface temperature of the real object, deg C.
     #[must_use]
     pub fn object_c(&self) -> f64 {
         self.heat.object_c()
     }
 
-    /// The sink, deg C.
+    /// Temperature of the sink, deg C.
     #[must_use]
     pub fn sink_c(&self) -> f64 {
         self.heat.tile().sink_c()
     }
 
-    /// What the sensors take in, before the converter.
+    /// Readings of the sensors before the A/D converter.
     #[must_use]
-    pub fn taken(&self) -> Taken {
-        self.sensors.taken()
+    pub fn sensor_readings(&self) -> SensorReadings {
+        self.sensors.sensor_readings()
     }
 
     /// Current through the tile, A; positive cools the display.
@@ -314,7 +315,7 @@ impl Plant {
         self.heat.tile().current().mean_a
     }
 
-    /// What has crossed the tile's borders since the start.
+    /// Energy that has crossed the boundaries of the tile since the start.
     #[must_use]
     pub fn energy(&self) -> Energy {
         self.heat.energy()

@@ -1,24 +1,24 @@
-//! The real object.
+//! The real object that the display reproduces.
 
 use contact_model::material::Material;
 
-use super::slab::{Back, Layer, Medium};
+use super::slab::{BackBoundary, Layer, Medium};
 
-/// The real object that the display stands for.
+/// Configuration of the real object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObjectConfig {
-    /// What it is made of.
+    /// Material.
     pub material: Material,
     /// Temperature before contact, deg C.
     pub start_c: f64,
     /// Thickness, m; infinite for the thesis's half-space.
     pub thickness_m: f64,
-    /// What lies behind it.
-    pub back: Back,
+    /// Boundary condition at the back.
+    pub back: BackBoundary,
 }
 
 impl ObjectConfig {
-    /// The thinnest object, m; thinner ones are surfaces of what lies behind them.
+    /// Least thickness, m; a thinner object is a coating of the body behind it.
     pub const THINNEST_M: f64 = 1e-5;
 
     /// The thesis's assumption: a half-space.
@@ -28,16 +28,16 @@ impl ObjectConfig {
             material,
             start_c,
             thickness_m: f64::INFINITY,
-            back: Back::Insulated,
+            back: BackBoundary::Insulated,
         }
     }
 
-    /// The object as a layer.
+    /// The object as one layer of a slab.
     #[must_use]
     pub fn layer(&self) -> Layer {
         Layer {
             thickness_m: self.thickness_m,
-            medium: Medium::dead(&self.material),
+            medium: Medium::without_blood(&self.material),
         }
     }
 }

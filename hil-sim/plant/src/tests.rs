@@ -1,12 +1,12 @@
-//! The plant as runs use it: its own mesh, steps and events.
+//! The whole plant with the mesh and the steps of every simulation.
 
-mod truth;
+mod reference;
 
 use contact_model::material::find;
 
 use super::bridge::Leg;
 use super::object::ObjectConfig;
-use super::slab::Back;
+use super::slab::BackBoundary;
 use super::*;
 
 fn config(material: &str) -> PlantConfig {
@@ -29,22 +29,22 @@ fn plant(material: &str) -> Plant {
     Plant::new(&config(material)).expect("a good configuration")
 }
 
-fn legs(a: f64, b: f64) -> Legs {
-    Legs {
+fn legs(a: f64, b: f64) -> BridgeOutputs {
+    BridgeOutputs {
         a: Leg::Duty(a),
         b: Leg::Duty(b),
         enabled: true,
     }
 }
 
-fn run(plant: &mut Plant, duration_s: f64, legs: &Legs) {
+fn run(plant: &mut Plant, duration_s: f64, legs: &BridgeOutputs) {
     for _ in 0..(duration_s / STEP_S).round() as usize {
         plant.step(legs);
     }
 }
 
 #[test]
-fn leg_a_above_leg_b_cools_and_the_other_way_heats() {
+fn leg_a_above_leg_b_cools_and_leg_b_above_leg_a_heats() {
     for (a, b, sign) in [(1.0, 0.6, -1.0), (0.6, 1.0, 1.0)] {
         let mut plant = plant("copper");
         run(&mut plant, 1.0, &legs(a, b));
@@ -64,12 +64,12 @@ fn leg_a_above_leg_b_cools_and_the_other_way_heats() {
 }
 
 #[test]
-fn disabled_bridge_leaves_the_tile_alone() {
+fn disabled_bridge_drives_no_current() {
     let mut plant = plant("copper");
     run(
         &mut plant,
         0.5,
-        &Legs {
+        &BridgeOutputs {
             enabled: false,
             ..legs(1.0, 0.0)
         },
@@ -86,14 +86,14 @@ fn object_that_has_not_appeared_takes_no_heat() {
     })
     .expect("good");
     plant.set_force(1.0);
-    run(&mut plant, 0.2, &Legs::default());
+    run(&mut plant, 0.2, &BridgeOutputs::default());
     assert_eq!(plant.skin_real_c(), 34.0);
     assert!(
         plant.skin_c() < 33.5,
         "the display is there: {}",
         plant.skin_c()
     );
-    run(&mut plant, 0.1, &Legs::default());
+    run(&mut plant, 0.1, &BridgeOutputs::default());
     assert!(plant.skin_real_c() < 32.5, "{}", plant.skin_real_c());
 }
 
@@ -104,7 +104,7 @@ fn time_counts_from_the_start() {
         ..config("abs")
     })
     .expect("good");
-    run(&mut plant, 1.5, &Legs::default());
+    run(&mut plant, 1.5, &BridgeOutputs::default());
     assert!((plant.time_s() - 0.5).abs() < 1e-12);
 }
 
@@ -151,41 +151,41 @@ fn bad_configuration_is_named() {
     assert!(Plant::new(&endless).is_err());
 }
 
-/// A slab of ABS on something warm, which must not matter before it is there, nor how long it is watched for.
+/// A slab of ABS on a warm back, which must not heat it before it appears; the simulated time must not matter either.
 #[test]
-fn object_is_what_it_starts_as_when_it_appears() {
+fn object_keeps_its_start_temperature_until_it_appears() {
     let after = |settle_s: f64, duration_s: f64| {
         let mut config = config("abs");
         config.object.thickness_m = 0.01;
-        config.object.back = Back::Film {
+        config.object.back = BackBoundary::Film {
             film_w_m2k: f64::INFINITY,
             temperature_c: 40.0,
         };
         (config.start_s, config.duration_s) = (-settle_s, duration_s);
         let mut plant = Plant::new(&config).expect("good");
-        run(&mut plant, settle_s, &Legs::default());
+        run(&mut plant, settle_s, &BridgeOutputs::default());
         assert!(
             (plant.object_c() - 24.0).abs() < 2.0,
             "{}",
             plant.object_c()
         );
         plant.set_force(2.0);
-        run(&mut plant, 12.0, &Legs::default());
+        run(&mut plant, 12.0, &BridgeOutputs::default());
         plant.skin_real_c()
     };
-    let wanted_c = after(8.0, 600.0);
+    let expected_c = after(8.0, 600.0);
     for (settle_s, duration_s) in [(8.0, 12.0), (60.0, 12.0)] {
-        let off_mk = 1e3 * (after(settle_s, duration_s) - wanted_c).abs();
+        let off_mk = 1e3 * (after(settle_s, duration_s) - expected_c).abs();
         assert!(
             off_mk < 1.0,
-            "{settle_s} s of settling, {duration_s} s watched: {off_mk} mK"
+            "{settle_s} s of settling, {duration_s} s simulated: {off_mk} mK"
         );
     }
 }
 
-/// A core that would have to boil to keep the skin warm behind a thick insulation.
+/// Behind a good insulation the core would have to be at 1000 deg C to keep the skin warm.
 #[test]
-fn core_that_no_finger_has_is_refused() {
+fn impossible_core_temperature_is_refused() {
     let mut config = config("abs");
     config.params.finger.core_w_m2k = Some(0.1);
     config.params.finger.air_w_m2k = 10.0;

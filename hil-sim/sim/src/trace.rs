@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use thermal_plant::infrared::Reading;
-use thermal_plant::sensors::Taken;
+use thermal_plant::sensors::SensorReadings;
 use thermal_plant::{Finger, Plant, RECEPTORS_M};
 
 use crate::telemetry::Telemetry;
@@ -38,7 +38,7 @@ pub struct TraceRow {
     /// Current through the module, A.
     pub current_a: f64,
     /// Sensor outputs before the converter.
-    pub taken: Taken,
+    pub taken: SensorReadings,
     /// Whether the fault line is low.
     pub fault_line: bool,
     /// Camera reading of the skin on the real object; `None` between frames.
@@ -62,7 +62,7 @@ impl TraceRow {
             receptors_real_c: plant.receptors_c(Finger::OnObject),
             sink_c: plant.sink_c(),
             current_a: plant.current_a(),
-            taken: plant.taken(),
+            taken: plant.sensor_readings(),
             fault_line: plant.bridge_fault(),
             camera,
             device: None,

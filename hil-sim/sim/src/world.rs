@@ -2,7 +2,7 @@
 
 mod active_defects;
 
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::infrared::{Camera, ParameterError, Reading};
 use thermal_plant::sensors::Channel;
 use thermal_plant::{ConfigError, Plant, PlantConfig};
@@ -98,7 +98,7 @@ impl World {
     }
 
     /// Advances the plant by one step with the bridge legs driven as given.
-    pub fn step(&mut self, legs: Legs) {
+    pub fn step(&mut self, legs: BridgeOutputs) {
         self.plant.step(&legs);
     }
 

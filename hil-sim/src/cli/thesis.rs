@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use thermal_thesis::figure::{apart, figures};
+use thermal_thesis::figure::{differences, figures};
 use thermal_thesis::{ClosedForm, FiniteVolumes};
 
 use super::{Failure, output};
@@ -23,7 +23,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let chapters = thermal_thesis::chapters();
     output::create(arguments.out.as_deref())?;
     let closed = figures(&ClosedForm).map_err(Failure::run)?;
-    let apart = apart(&closed, &figures(&FiniteVolumes).map_err(Failure::run)?);
+    let apart = differences(&closed, &figures(&FiniteVolumes).map_err(Failure::run)?);
     if let Some(folder) = &arguments.out {
         thermal_thesis::write(folder, &chapters, &closed, &apart).map_err(Failure::run)?;
     }

@@ -1,24 +1,26 @@
-//! Chapter 3: perfect contact of two half-spaces, and how well people tell materials apart.
+//! Chapter 3: perfect contact of two half-spaces, and discrimination of materials.
 
 use contact_model::material::{Material, SKIN};
 use contact_model::reference::{fourier_number, interface_temperature};
 use serde::Deserialize;
 
-use super::case::{SIMULATION_AREA_M2, SIMULATION_PRESSURE_PA, material, tabulated_effusivity};
+use super::contact_case::{
+    SIMULATION_AREA_M2, SIMULATION_PRESSURE_PA, material, tabulated_effusivity,
+};
 use super::sensitivity::d_prime;
-use super::stated::cut;
+use super::stated_value::cut;
 use super::statement::{STATEMENTS, Statement, read};
 
-/// Skin and material of Tables 3-1 and 3-4 before contact, °C.
+/// Temperatures of skin and material before contact in Tables 3-1 and 3-4, °C.
 const BEFORE_C: (f64, f64) = (33.0, 24.0);
-/// Characteristic length of Table 3-1, m. The thesis does not print it; all six numbers need 12.706 to 12.723 mm,
-/// which none of the stated dimensions is.
+/// Characteristic length of Table 3-1, m. The thesis does not state it; all six numbers require 12.706 to 12.723 mm,
+/// which is none of the stated dimensions.
 const LENGTH_3_1_M: f64 = 12.71e-3;
 /// Thickness of the samples of sections 3.3 and 4.3, m.
 const THICKNESS_M: f64 = 38e-3;
-/// What Table 3-4's numbers need instead of the stated thickness, m: 149.2 to 153.8 mm.
+/// Length that the numbers of Table 3-4 require instead of the stated thickness, m: 149.2 to 153.8 mm.
 const LENGTH_3_4_M: f64 = 151.4e-3;
-/// Young's moduli of the solids of Table 3-2, GPa; granite's is Table 4-1's.
+/// Young's moduli of the solids of Table 3-2, GPa; that of granite is from Table 4-1.
 const SOLIDS_GPA: [f64; 6] = [110.0, 93.0, 193.0, 2.3, 17.0, GRANITE_GPA];
 /// Young's modulus of granite, GPa (Table 4-1).
 const GRANITE_GPA: f64 = 53.0;
@@ -71,17 +73,17 @@ fn strain(modulus_gpa: f64) -> f64 {
     SIMULATION_PRESSURE_PA / (modulus_gpa * 1e9)
 }
 
-/// Ratio of the two contact coefficients of a pair, as `effusivity` has them.
+/// Ratio of the contact coefficients of two materials, computed by `effusivity`.
 fn ratio(pair: &str, effusivity: fn(&Material) -> f64) -> f64 {
     let (one, other) = pair.split_once(" / ").expect("a pair of materials");
     effusivity(&material(one)) / effusivity(&material(other))
 }
 
-/// Answers about a pair of materials.
+/// Discrimination of a pair of materials.
 #[derive(Clone, Deserialize)]
 struct Answers {
     pair: String,
-    /// Of them correct, %.
+    /// Percentage of correct answers.
     percent: f64,
 }
 
@@ -93,7 +95,7 @@ const HIGH_LOW: &str = "high / low, d' of {} %";
 const LOW_HIGH: &str = "low / high, d' of {} %";
 const TOTAL: &str = "total, d' of {} %";
 
-/// The percentages of which a column of Table 3-5 states d'.
+/// Percentages correct for which a column of Table 3-5 states d'.
 fn table_3_5(column: &str) -> Vec<Answers> {
     let statements = STATEMENTS.iter().filter(|row| row.quantity == column);
     let answers = statements.map(|row| Answers {
@@ -107,7 +109,7 @@ fn mean(answers: &[Answers]) -> f64 {
     answers.iter().map(|row| row.percent).sum::<f64>() / answers.len() as f64
 }
 
-/// Mean over the pairs of materials that both tables have.
+/// Mean over the pairs of materials that are in both tables.
 fn mean_of_shared(mut answers: Vec<Answers>) -> f64 {
     let both = ["copper", "stainless steel", "ABS", "foam"];
     answers.retain(|row| {
@@ -124,7 +126,7 @@ mod tests {
 
     #[test]
     fn section_3_2_2_has_exactly_the_pairs_that_are_not_told_apart() {
-        // Percentage from which on a pair counts as told apart.
+        // Percentage of correct answers above which a pair counts as discriminated.
         let failed = table_3_3().into_iter().filter(|row| row.percent < 72.0);
         let failed: Vec<_> = failed.map(|row| row.pair).collect();
         let section = STATEMENTS.iter().filter(|row| row.place == "Section 3.2.2");

@@ -5,11 +5,11 @@
 use contact_model::material::{Material, SKIN, Surface};
 use contact_model::reference::interface_temperature;
 
-use super::case::material;
-use super::root::bisect;
+use super::bisection::bisect;
+use super::contact_case::material;
 use super::statement::Statement;
 
-/// Skin and material that the display of chapter 4 starts from, °C (section 4.1).
+/// Initial temperatures of skin and material in chapter 4, °C (section 4.1).
 const BEFORE_C: (f64, f64) = (34.0, 23.5);
 
 pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
@@ -26,7 +26,7 @@ pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
     })
 }
 
-/// The effusivity with which Eq. 3-1 gives that interface temperature.
+/// Effusivity at which Eq. 3-1 gives the interface temperature, J/(m² s^½ K).
 fn effusivity_at(interface_c: f64) -> f64 {
     let (skin_c, object_c) = BEFORE_C;
     let fall = |effusivity: f64| {

@@ -1,16 +1,16 @@
-//! Chapter 5: the infrared windows, the skin on them, and the instrument.
+//! Chapter 5: infrared windows, skin on the windows, and the infrared instrument.
 
 use thermal_plant::infrared::{
-    BAND_M, BEAMSPLITTER, Bandpass, LineOfSight, Optic, SKIN_EMISSIVITY, SelfReflection,
+    BAND_M, BEAMSPLITTER, Bandpass, Optic, OpticalPath, SKIN_EMISSIVITY, SelfReflection,
     Surroundings, radiance, temperature_c,
 };
 
-use super::case::Case;
+use super::contact_case::Case;
 use super::statement::Statement;
 
-/// Room and optics, °C (section 5.2.2).
+/// Temperature of room and optics, °C (section 5.2.2).
 const AMBIENT_C: f64 = 24.0;
-/// The camera that sees itself in the window: "approximately 30 °C" (section 5.2.5).
+/// Temperature of the camera that is reflected in the window, "approximately 30 °C" (section 5.2.5).
 const CAMERA: SelfReflection = SelfReflection {
     camera_c: 30.0,
     share: 1.0,
@@ -18,7 +18,7 @@ const CAMERA: SelfReflection = SelfReflection {
 /// Targets of section 5.2.5 without optics and behind a window, °C.
 const CHECK_C: [f64; 5] = [28.0, 30.0, 32.0, 34.0, 36.0];
 const TARGETS_C: [f64; 6] = [27.0, 28.0, 29.0, 30.0, 31.0, 32.0];
-/// Sampling that the camera needs for the detail of section 5.2.4, 1/mm.
+/// Spatial sampling rate for the detail of section 5.2.4, 1/mm.
 const SAMPLING_PER_MM: f64 = 2.0 * 1.25;
 
 pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
@@ -66,13 +66,15 @@ fn window(name: &str) -> Option<Bandpass> {
     }
 }
 
-/// Slope through the origin of recovered over true temperature.
+/// Slope of the regression line through the origin of recovered over true temperature.
 fn slope(optic: Optic, targets_c: &[f64], camera: Option<SelfReflection>) -> f64 {
-    let assumed = LineOfSight::new(optic, SKIN_EMISSIVITY, &Surroundings::at(AMBIENT_C));
+    let assumed = OpticalPath::new(optic, SKIN_EMISSIVITY, &Surroundings::at(AMBIENT_C));
     let sight = camera.map_or(assumed, |camera| {
         assumed.with_self_reflection(optic, &camera, AMBIENT_C)
     });
-    let recovered = |target_c: f64| temperature_c(assumed.target(sight.total(radiance(target_c))));
+    let recovered = |target_c: f64| {
+        temperature_c(assumed.target_radiance(sight.total_radiance(radiance(target_c))))
+    };
     let products: f64 = targets_c
         .iter()
         .map(|&target_c| target_c * recovered(target_c))

@@ -1,17 +1,17 @@
-//! The rows for programs.
+//! The rows and figures as JSON.
 
 use serde::Serialize;
 
-use super::figure::Apart;
+use super::figure::FigureDifference;
 use super::{Chapter, Counts};
 
-/// Everything, as one object.
+/// The object that `--json` prints.
 #[derive(Serialize)]
 pub struct Json<'a> {
     counts: Counts,
     rows: Vec<JsonRow<'a>>,
-    /// Model figures by the plant's finite volumes against the closed forms.
-    figures: &'a [Apart],
+    /// Differences of the model figures between the plant's finite volumes and the closed forms.
+    figures: &'a [FigureDifference],
 }
 
 #[derive(Serialize)]
@@ -28,9 +28,9 @@ struct JsonRow<'a> {
     remark: Option<String>,
 }
 
-/// The object that `--json` prints.
+/// Collects the object that `--json` prints.
 #[must_use]
-pub fn json<'a>(chapters: &'a [Chapter], figures: &'a [Apart]) -> Json<'a> {
+pub fn json<'a>(chapters: &'a [Chapter], figures: &'a [FigureDifference]) -> Json<'a> {
     let rows = chapters.iter().flat_map(|chapter| {
         chapter.rows.iter().map(|row| JsonRow {
             chapter: chapter.number,

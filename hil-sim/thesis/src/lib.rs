@@ -1,44 +1,44 @@
 #![doc = include_str!("../README.md")]
 
-mod case;
+mod bisection;
 mod chapter3;
 mod chapter4;
 mod chapter5;
 mod chapter6;
+mod contact_case;
 pub mod figure;
+mod finite_volumes;
 mod json;
 mod page;
-mod root;
 pub mod roughness;
 pub mod row;
 mod sensitivity;
-mod stated;
+mod stated_value;
 mod statement;
 mod table;
-mod volumes;
 
-pub use case::{Case, ClosedForm, Source, Surfaces};
+pub use contact_case::{Case, ClosedForm, ContactSolver, Surfaces};
+pub use finite_volumes::FiniteVolumes;
 pub use json::{Json, json};
 pub use page::{CSV, HTML, write};
 pub use sensitivity::d_prime;
-pub use stated::Stated;
+pub use stated_value::Stated;
 pub use table::{Counts, table};
-pub use volumes::FiniteVolumes;
 
 use row::Row;
 
 /// The rows of one chapter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chapter {
-    /// Its number.
+    /// Number of the chapter.
     pub number: u8,
-    /// What it is about.
+    /// Title of the chapter.
     pub title: &'static str,
-    /// Its numbers, in the order of the thesis.
+    /// Recomputed numbers in the order of the thesis.
     pub rows: Vec<Row>,
 }
 
-/// Every number of the thesis that a program can recompute.
+/// All numbers of the thesis that can be recomputed.
 #[must_use]
 pub fn chapters() -> Vec<Chapter> {
     [

@@ -1,18 +1,18 @@
-//! The report: a page with tables and figures, and the rows as CSV.
+//! The report: an HTML page with tables and figures, and the rows as CSV.
 
 use std::fmt::Write;
 use std::path::Path;
 
 use plotters::prelude::*;
-use thermal_charts::{Curve, Legend, Panel, Stroke, document, element, escape};
+use thermal_charts::{Curve, Legend, Panel, Stroke, document, escape, svg_element};
 
-use super::figure::{Apart, Figure, Kind};
+use super::figure::{Figure, FigureDifference, Kind};
 use super::row::Row;
 use super::{Chapter, Counts};
 
-/// Name of the page.
+/// File name of the page.
 pub const HTML: &str = "thesis.html";
-/// Name of the rows as a table.
+/// File name of the rows as CSV.
 pub const CSV: &str = "thesis.csv";
 
 const SIZE: (u32, u32) = (1100, 460);
@@ -39,13 +39,17 @@ pub fn write(
     folder: &Path,
     chapters: &[Chapter],
     figures: &[Figure],
-    apart: &[Apart],
+    differences: &[FigureDifference],
 ) -> anyhow::Result<()> {
-    thermal_charts::write(folder, HTML, page(chapters, figures, apart)?)?;
+    thermal_charts::write(folder, HTML, page(chapters, figures, differences)?)?;
     thermal_charts::write(folder, CSV, csv(chapters)?)
 }
 
-fn page(chapters: &[Chapter], figures: &[Figure], apart: &[Apart]) -> anyhow::Result<String> {
+fn page(
+    chapters: &[Chapter],
+    figures: &[Figure],
+    differences: &[FigureDifference],
+) -> anyhow::Result<String> {
     let mut body = format!(
         "<p>Every number of H.-N. Ho's thesis (MIT, 2006) that a program can recompute, beside what the contact model \
          and the infrared instrument give. A tolerance (±), a range or a limit is how words of the text are read. {}.</p>",
@@ -70,11 +74,13 @@ fn page(chapters: &[Chapter], figures: &[Figure], apart: &[Apart]) -> anyhow::Re
             .filter(|figure| figure.number.starts_with(&prefix))
         {
             let svg = draw(figure)?;
-            let compared = apart.iter().find(|apart| apart.number == figure.number);
-            let compared = compared.map_or(String::new(), |apart| {
+            let compared = differences
+                .iter()
+                .find(|difference| difference.number == figure.number);
+            let compared = compared.map_or(String::new(), |difference| {
                 format!(
                     "<p>By the plant's finite volumes: {}.</p>",
-                    escape(&apart.text())
+                    escape(&difference.text())
                 )
             });
             let _ = write!(
@@ -82,7 +88,7 @@ fn page(chapters: &[Chapter], figures: &[Figure], apart: &[Apart]) -> anyhow::Re
                 "<figure><figcaption>Figure {}. {}</figcaption>{}{compared}</figure>",
                 figure.number,
                 escape(&figure.title),
-                element(&svg)
+                svg_element(&svg)
             );
         }
     }

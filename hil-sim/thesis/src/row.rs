@@ -1,66 +1,66 @@
-//! One number of the thesis beside the computed one.
+//! One number of the thesis and its recomputation.
 
 use std::fmt;
 
-use super::stated::Stated;
+use super::stated_value::Stated;
 
-/// A number of the thesis, recomputed.
+/// A number of the thesis and its recomputation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
-    /// Table, figure, equation or section.
+    /// Table, figure, equation or section of the thesis.
     pub place: &'static str,
-    /// What the number is, and of what.
+    /// Quantity and its object.
     pub quantity: String,
-    /// Its unit, empty for a pure number.
+    /// Unit, empty for a dimensionless number.
     pub unit: &'static str,
-    /// What the thesis says.
+    /// Value stated in the thesis.
     pub stated: Stated,
-    /// What the program computes.
+    /// Recomputed value.
     pub computed: f64,
-    /// What is known of this number.
+    /// Remark on the stated value.
     pub remark: Option<Remark>,
 }
 
-/// What is known of a number of the thesis.
+/// Remark on a number of the thesis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Remark {
-    /// How to read it; explains no difference.
+    /// An explanation that does not affect the verdict.
     Note(String),
-    /// Its column is cut, not rounded, to the digits printed.
+    /// The column is truncated, not rounded, to the printed digits.
     Cut,
-    /// Its characters have suffered.
+    /// The characters of the text are damaged.
     Damaged(String, Correction),
-    /// The thesis says it so, and is wrong or contradicts itself.
+    /// The thesis is wrong or contradicts itself.
     Wrong(String, Correction),
 }
 
-/// What would make statement and computation agree.
+/// Correction that makes the stated and the computed value agree.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Correction {
-    /// The thesis should say this.
+    /// The thesis should state this value.
     Reads(Stated),
-    /// The thesis says this other computed value.
+    /// The stated value is in fact this other computed value.
     Is(f64),
 }
 
-/// How a row comes out.
+/// Result of the comparison of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// The computed number is the stated one, as far as that is printed.
+    /// The computed value agrees with the printed digits.
     Agrees,
-    /// The same digits, cut where they should be rounded.
+    /// The printed digits are truncated instead of rounded.
     Cut,
-    /// Computed minus stated, if a number is stated; no explanation that holds.
+    /// Computed minus stated value, if a number is stated; no correction explains the difference.
     Differs(Option<f64>),
-    /// Damaged characters; the correction holds.
+    /// The characters are damaged, and the correction makes the values agree.
     Damaged,
-    /// A mistake of the thesis; the correction holds.
+    /// The thesis is wrong, and the correction makes the values agree.
     Wrong,
 }
 
 impl Row {
-    /// Lays stated and computed beside each other. A remark changes the verdict only if the numbers differ and
-    /// what it says makes them agree.
+    /// Compares the stated and the computed value. A remark changes the verdict only if the values differ and its
+    /// correction makes them agree.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         if self.stated.agrees(self.computed) {
@@ -78,17 +78,20 @@ impl Row {
         }
     }
 
-    /// The computed number with as many digits as can be laid beside the stated one.
+    /// The computed value with two digits more than the stated one.
     pub(super) fn computed_text(&self) -> String {
-        format!("{:.*}", self.stated.decimals_beside(), self.computed)
+        format!("{:.*}", self.stated.decimals_for_computed(), self.computed)
     }
 
-    /// The remark in words; empty without one, and where nothing has to be explained.
+    /// Text of the remark; empty without a remark, and if the values agree without it.
     pub(super) fn remark_text(&self) -> String {
         let corrected = |why: &str, correction: &Correction| match correction {
             Correction::Reads(stated) => format!("{why}; should read {stated}"),
             Correction::Is(value) => {
-                format!("{why}; that is {value:.*}", self.stated.decimals_beside())
+                format!(
+                    "{why}; that is {value:.*}",
+                    self.stated.decimals_for_computed()
+                )
             }
         };
         match &self.remark {
@@ -103,7 +106,7 @@ impl Row {
 }
 
 impl Verdict {
-    /// One word for counts, classes and the machine's eye.
+    /// One word for counts, CSS classes and JSON.
     #[must_use]
     pub const fn word(&self) -> &'static str {
         match self {
@@ -121,7 +124,7 @@ impl fmt::Display for Verdict {
         match self {
             Self::Agrees => f.write_str("agrees"),
             Self::Cut => f.write_str("cut, not rounded"),
-            Self::Differs(Some(by)) => write!(f, "differs by {}", short(*by)),
+            Self::Differs(Some(by)) => write!(f, "differs by {}", three_digits(*by)),
             Self::Differs(None) => f.write_str("differs"),
             Self::Damaged => f.write_str("damaged in the text"),
             Self::Wrong => f.write_str("wrong in the thesis"),
@@ -129,8 +132,8 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// Three significant digits with sign.
-fn short(value: f64) -> String {
+/// A value with sign and three significant digits.
+fn three_digits(value: f64) -> String {
     let magnitude = value.abs().log10().floor();
     let decimals = (2.0 - magnitude).clamp(0.0, 9.0) as usize;
     format!("{value:+.decimals$}")

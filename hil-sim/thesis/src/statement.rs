@@ -1,4 +1,4 @@
-//! The numbers that the thesis states, as `data/statements.csv` has them, in the order of the thesis.
+//! The numbers stated in the thesis, read from `data/statements.csv`, in the order of the thesis.
 
 use std::sync::LazyLock;
 
@@ -7,9 +7,9 @@ use contact_model::material::Material;
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
-use super::case::{material, tabulated_effusivity};
+use super::contact_case::{material, tabulated_effusivity};
 use super::row::{Correction, Remark, Row};
-use super::stated::Stated;
+use super::stated_value::Stated;
 use super::{chapter3, chapter4, chapter5, chapter6};
 
 /// A line of the file.
@@ -18,20 +18,20 @@ pub(super) struct Statement {
     chapter: u8,
     /// Table, figure, equation or section.
     pub place: String,
-    /// Whose the number is: a material, or two with a slash between them; empty if the quantity says it.
+    /// Material of the number, or two with a slash between them; empty if the quantity names it.
     pub of: String,
-    /// What it is. `{}` stands for `given`.
+    /// Name of the quantity, in which `{}` is replaced by `given`.
     pub quantity: String,
-    /// A number that the computation takes, as it is to be shown.
+    /// Input number of the computation, as it is printed in the report.
     given: String,
-    /// Empty for a pure number.
+    /// Empty for a dimensionless number.
     unit: String,
     stated: Stated,
     remark: Option<Kind>,
     why: String,
     /// What the thesis should say.
     reads: Option<Stated>,
-    /// The quantity that the stated number is in truth.
+    /// The quantity whose value the stated number actually is.
     is: String,
 }
 
@@ -52,7 +52,7 @@ pub(super) static STATEMENTS: LazyLock<Vec<Statement>> = LazyLock::new(|| {
 /// The lines of a table.
 ///
 /// # Errors
-/// A line is not as `T` needs it; the error names file, line and column.
+/// A line cannot be read as `T`; the error names file, line and column.
 pub(super) fn read<T: DeserializeOwned>(file: &'static str, text: &str) -> anyhow::Result<Vec<T>> {
     let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
     rows.collect::<Result<_, _>>().context(file)
@@ -65,12 +65,12 @@ pub(super) fn rows(chapter: u8) -> Vec<Row> {
 }
 
 impl Statement {
-    /// The material that it is about.
+    /// Material of the statement.
     pub(super) fn material(&self) -> Material {
         material(&self.of)
     }
 
-    /// The number that the computation takes.
+    /// Input number of the computation.
     pub(super) fn given(&self) -> f64 {
         let given = self.given.parse();
         given.unwrap_or_else(|_| panic!("{self}: given is no number"))
@@ -113,7 +113,7 @@ impl Statement {
         of_chapter.unwrap_or_else(|| self.in_any_chapter(quantity))
     }
 
-    /// Properties of a material, and what several chapters state.
+    /// Properties of a material, and quantities that several chapters state.
     fn in_any_chapter(&self, quantity: &str) -> f64 {
         let ellipse = |a: f64, b: f64| std::f64::consts::PI * a * b;
         let material = || self.material();

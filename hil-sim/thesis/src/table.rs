@@ -1,14 +1,14 @@
-//! The rows as text.
+//! The report as text.
 
 use std::fmt::Write;
 
 use serde::Serialize;
 
 use super::Chapter;
-use super::figure::Apart;
+use super::figure::FigureDifference;
 use super::row::{Row, Verdict};
 
-/// How many rows come out how.
+/// Number of rows by verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Counts {
     /// All rows.
@@ -43,7 +43,7 @@ impl Counts {
         counts
     }
 
-    /// The counts in words.
+    /// The counts as a sentence.
     pub(super) fn text(&self) -> String {
         let Self {
             rows,
@@ -60,9 +60,9 @@ impl Counts {
     }
 }
 
-/// One line a row, by chapter, one a figure, and the counts.
+/// The report: one line for each row and each figure, and the counts.
 #[must_use]
-pub fn table(chapters: &[Chapter], figures: &[Apart]) -> String {
+pub fn table(chapters: &[Chapter], figures: &[FigureDifference]) -> String {
     let rows = || chapters.iter().flat_map(|chapter| &chapter.rows);
     let width = |text: fn(&Row) -> String| {
         rows()

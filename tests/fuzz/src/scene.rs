@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use thermal_plant::Plant;
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 use thermal_sim::scene::Scene;
 
 const FILE: &str = "scene.toml";
@@ -75,7 +75,7 @@ fn check_scene(scene: &Scene) {
 fn check_plant(mut plant: Plant) {
     plant.set_force(2.0);
     for _ in 0..3 {
-        plant.step(&Legs::default());
+        plant.step(&BridgeOutputs::default());
     }
     for celsius in [
         plant.display_c(),

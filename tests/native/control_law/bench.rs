@@ -152,7 +152,7 @@ impl Bench {
 
     /// The nominal tile with a thermistor lag that the controller knows, after 60 s at a constant target.
     pub fn settled_at(sensor_lag_s: f64, t_c: f64) -> Self {
-        let mut bench = Self::new(&settings(sensor_lag_s), TileParams::CLASS);
+        let mut bench = Self::new(&settings(sensor_lag_s), TileParams::NOMINAL);
         bench.run(t_c, 60.0);
         bench
     }
@@ -186,8 +186,8 @@ pub fn advance(tile: &mut Tile, current_a: f64, load_w: f64) {
         mean_a: current_a,
         ..Current::default()
     });
-    tile.first(STEP_S, load_w, 0.0, 0.0);
-    tile.second(0.0);
+    tile.first_stage(STEP_S, load_w, 0.0, 0.0);
+    tile.second_stage(0.0);
 }
 
 /// Largest minus smallest value.

@@ -23,7 +23,7 @@ fn responses(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> 
             // A sink that holds, as the model has it, and no air.
             sink_j_k: 1e9,
             film_w_m2k: 0.0,
-            ..TileParams::CLASS
+            ..TileParams::NOMINAL
         },
         ROOM_C,
     );
@@ -100,7 +100,7 @@ fn the_model_follows_the_tile_under_a_finger() {
 /// The equation of a module without load, `a I Tc = I^2 R/2 + K (Th - Tc)`, with its hot side at the sink's temperature.
 #[test]
 fn the_models_steady_state_obeys_the_module_equation() {
-    let class = TileParams::CLASS;
+    let class = TileParams::NOMINAL;
     for current_a in [0.1, -0.1] {
         let (_, model_k, _) = *responses(current_a, 0.0, 100.0)
             .last()

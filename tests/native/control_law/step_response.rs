@@ -48,7 +48,7 @@ fn a_step_of_the_target_is_followed_with_little_overshoot() {
 #[test]
 fn the_current_limit_causes_no_windup() {
     let mut longest_s = 0.0f64;
-    let class = TileParams::CLASS;
+    let class = TileParams::NOMINAL;
     let weak = TileParams {
         vmax_v: 0.9 * class.vmax_v,
         ..class

@@ -22,7 +22,7 @@ fn a_parameter_off_by_10_percent_leaves_no_steady_state_error() {
     let mut most_left_k = 0.0f64;
     for (name, change) in CHANGES {
         for factor in [0.9, 1.1] {
-            let mut params = TileParams::CLASS;
+            let mut params = TileParams::NOMINAL;
             change(&mut params, factor);
             let mut bench = Bench::new(&settings(0.1), params);
             bench.run(28.0, 30.0);

@@ -1,7 +1,7 @@
 //! The fault matrix: its runs, and a summary of each fault.
 
 use serde::Serialize;
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 
 use super::{FaultCase, FaultRun, FaultScene, InjectionPoint};
 
@@ -32,11 +32,11 @@ impl MatrixPlan {
                 let first = fault_case.scenes.iter().position(|worst| worst == place);
                 (
                     first.unwrap_or(usize::MAX),
-                    stream(self.seed, &format!("{name} {}", place.name())),
+                    stream_seed(self.seed, &format!("{name} {}", place.name())),
                 )
             });
             for (k, place) in scenes.iter().cycle().take(self.moments).enumerate() {
-                let seed = stream(self.seed, &format!("{name} {k}"));
+                let seed = stream_seed(self.seed, &format!("{name} {k}"));
                 runs.push((row, place.injection_point(seed, k % 2 == 0)));
             }
         }

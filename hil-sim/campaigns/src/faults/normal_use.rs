@@ -7,7 +7,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
 use thermal_device::control::Law;
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 use thermal_sim::SceneRunner;
 use thermal_sim::metrics::Extremes;
 use thermal_sim::scene::Scene;
@@ -48,7 +48,7 @@ impl UseSession {
     #[must_use]
     pub fn new(seed: u64, number: u64) -> Self {
         let mut draw =
-            Xoshiro256PlusPlus::seed_from_u64(stream(seed, &format!("session {number}")));
+            Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("session {number}")));
         let device = PlantDraw::in_use(seed, number / ON_ONE_DEVICE);
         let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
         let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
@@ -82,7 +82,7 @@ impl UseSession {
         if let Some(held_c) = held_c {
             text += &scene_text::host_line(&format!("hold {held_c:.3}"), 0.1);
         }
-        let mut device_draw = Xoshiro256PlusPlus::seed_from_u64(stream(device.seed, "noise"));
+        let mut device_draw = Xoshiro256PlusPlus::seed_from_u64(stream_seed(device.seed, "noise"));
         let noise_counts = device_draw.random_range(NOISE_COUNTS);
         text += &format!("[plant]\nsensors.converter.noise_counts = {noise_counts:?}\n");
         for (key, value) in &device.plant {

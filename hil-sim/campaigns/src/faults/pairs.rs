@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use serde::Serialize;
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 use thermal_sim::SceneRunner;
 use thermal_sim::scene::FaultKind;
 
@@ -53,12 +53,12 @@ pub fn pairs(seed: u64) -> Vec<FaultPair> {
                 place.has_tripped_before().is_none() && !never.concat().contains(place)
             };
             let mut rest: Vec<_> = FaultScene::ALL.iter().collect();
-            rest.sort_by_key(|place| stream(seed, &format!("{name} {}", place.name())));
+            rest.sort_by_key(|place| stream_seed(seed, &format!("{name} {}", place.name())));
             let place = active.scenes.iter().chain(rest).find(means);
             pairs.extend(place.map(|place| FaultPair {
                 latent: *latent,
                 active: *active,
-                point: place.injection_point(stream(seed, &name), false),
+                point: place.injection_point(stream_seed(seed, &name), false),
             }));
         }
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
 use serde::Serialize;
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 use thermal_sim::SceneRunner;
 
 use super::table::failing_run_text;
@@ -35,7 +35,7 @@ impl RandomCampaign {
     /// drawn, so the two engines' campaigns of a number differ.
     #[must_use]
     pub fn new(seed: u64, number: u64, has_processor: bool) -> Self {
-        let own = stream(seed, &format!("campaign {number}"));
+        let own = stream_seed(seed, &format!("campaign {number}"));
         let mut draw = Xoshiro256PlusPlus::seed_from_u64(own);
         let mut all = fault_cases();
         all.retain(|fault_case| {

@@ -5,7 +5,7 @@ use contact_model::pressure::THESIS_PRESSURES;
 use serde::Serialize;
 use thermal_device::control::Law;
 use thermal_plant::Params;
-use thermal_plant::parameters::{self, Tolerance, absolute, all, between, relative, stream};
+use thermal_plant::parameters::{self, Tolerance, absolute, all, between, relative, stream_seed};
 use thermal_sim::SceneRunner;
 
 use super::case::ROOM_C;
@@ -70,7 +70,7 @@ impl PlantDraw {
     /// Draws a plant; it depends only on seed and number.
     #[must_use]
     pub fn new(seed: u64, number: u64) -> Self {
-        let own = stream(seed, &format!("draw {number}"));
+        let own = stream_seed(seed, &format!("draw {number}"));
         let nominal = all(&Params::nominal());
         let mut plant = Vec::with_capacity(BOX.len() + 1);
         for (key, tolerance) in BOX {

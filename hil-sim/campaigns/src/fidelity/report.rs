@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use thermal_charts::{document, element, escape};
+use thermal_charts::{document, escape, svg_element};
 
 use super::{BoxReport, FidelityRow, box_table, table};
 
@@ -18,7 +18,7 @@ pub fn page(rows: &[FidelityRow], boxed: Option<&BoxReport>, svg: Option<&str>) 
         "<p>Everything here is simulated; instructions are emulated, cycles estimated.</p>"
             .to_owned();
     if let Some(svg) = svg {
-        body += element(svg);
+        body += svg_element(svg);
     }
     for text in [
         (!rows.is_empty()).then(|| table(rows, true)),

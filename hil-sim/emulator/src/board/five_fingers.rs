@@ -1,6 +1,6 @@
 //! The release image for five fingers in the emulated microcontroller, wired as its board.
 
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
 use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _, LineSplitter};
@@ -86,7 +86,7 @@ impl FiveFingerEngine for FiveFingerBoard {
         &mut self.machine.wiring_mut().worlds[finger]
     }
 
-    fn legs(&mut self, finger: usize) -> Legs {
+    fn legs(&mut self, finger: usize) -> BridgeOutputs {
         BRIDGES[finger].legs(&mut self.machine)
     }
 

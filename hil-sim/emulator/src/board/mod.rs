@@ -1,6 +1,6 @@
 //! Boards around the machine: a NUCLEO-F446RE with one finger, and one with five on multiplexers; their engines.
 
-use thermal_plant::bridge::{Leg, Legs};
+use thermal_plant::bridge::{BridgeOutputs, Leg};
 
 use crate::{LegState, Machine, Wiring};
 
@@ -43,8 +43,8 @@ const fn bridge(in1: Pin, in2: Pin, enable: Pin, fault: Pin, test: Pin) -> Bridg
 }
 
 impl Bridge {
-    fn legs<W: Wiring>(&self, machine: &mut Machine<W>) -> Legs {
-        Legs {
+    fn legs<W: Wiring>(&self, machine: &mut Machine<W>) -> BridgeOutputs {
+        BridgeOutputs {
             a: machine.pwm(self.in1.0, self.in1.1).into(),
             b: machine.pwm(self.in2.0, self.in2.1).into(),
             enabled: is_high(machine, self.enable),

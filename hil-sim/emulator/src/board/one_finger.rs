@@ -1,7 +1,7 @@
 //! The release image in the emulated microcontroller, wired as the NUCLEO-F446RE board is.
 
 use anyhow::Context;
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::sensors::Channel;
 use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine};
 use thermal_sim::metrics::Figures;
@@ -117,7 +117,7 @@ impl Engine for OneFingerBoard {
         &mut self.machine.wiring_mut().world
     }
 
-    fn legs(&mut self) -> Legs {
+    fn legs(&mut self) -> BridgeOutputs {
         FIRST_BRIDGE.legs(&mut self.machine)
     }
 

@@ -1,9 +1,9 @@
-//! What the mean current loses in the dead times.
+//! Effect of the dead times on the mean current.
 //!
-//! At each edge of a switching leg both its switches are off for a moment, and a diode carries the inductor's
-//! current: where it flows with the pulses, they begin late and end on time; where it flows against them they begin
-//! on time and end late. So the mean voltage loses `(V + 2 Vf) td/T` or gains as much, and where the ripple takes
-//! the current through zero within each period, it does neither.
+//! At each edge of a switching leg both switches are off for the dead time `td`, and a body diode carries the inductor
+//! current. If the current has the sign of the pulses, the pulses begin late and end on time; with the opposite sign
+//! they begin on time and end late. The mean voltage falls or rises by `(V + 2 Vf) td/T`. If the ripple makes the
+//! current cross zero in each period, the mean voltage is unchanged.
 //!
 //! ```text
 //!           i > 0       crossing       i < 0
@@ -12,37 +12,36 @@
 //!          |_|      |_  |        |_    |        |--td late end
 //! ```
 //!
-//! An inductor current that reaches zero within a dead time stays there until a switch turns on: the leg then
-//! floats at the tile's voltage. Between the three cases the loss follows straight lines through the currents at
-//! which it does so for the whole of a dead time. That takes the inductor's current as made of straight lines: with
-//! the nominal filter the mean is exact while the current keeps its sign, and good to 0.03 A around zero.
+//! An inductor current that reaches zero within a dead time stays at zero until a switch turns on, and the leg floats
+//! at the tile voltage. Between the three cases the voltage loss is interpolated linearly between the currents at which
+//! the leg floats for a whole dead time. The inductor current is taken as piecewise linear: with the nominal filter the
+//! mean is exact while the current keeps its sign, and has an error of at most 0.03 A around zero.
 
 use super::BridgeParams;
 
-/// Pulses of one switching leg. Voltages and currents count along them.
+/// Pulses of one switching leg. Voltages and currents are positive in the direction that the pulses drive.
 #[derive(Clone, Copy, Debug)]
 pub struct Pulses {
-    /// Part of the period that the inputs ask for, above 0, below 1.
+    /// Commanded duty cycle, above 0, below 1.
     pub width: f64,
     /// The tile's Seebeck voltage, V.
     pub seebeck_v: f64,
-    /// Everything that the mean current passes, ohm.
+    /// Total resistance of the current path, ohm.
     pub ohm: f64,
 }
 
-/// The dead times of a bridge.
+/// Dead-time model of a bridge.
 #[derive(Clone, Copy, Debug)]
 pub struct DeadTime {
     supply_v: f64,
     diode_v: f64,
-    /// Part of the period that one takes.
+    /// Dead time as a fraction of the period.
     part: f64,
-    /// What a volt across the inductor adds to its current in a period, A.
+    /// Current change per volt across the inductor and period, A/V.
     per_v: f64,
 }
 
 impl DeadTime {
-    /// Of a bridge.
     pub fn new(params: &BridgeParams) -> Self {
         Self {
             supply_v: params.supply_v,
@@ -52,8 +51,8 @@ impl DeadTime {
         }
     }
 
-    /// Half the peak-to-peak ripple of the inductor's current, A, for pulses of a part of the period: a triangle,
-    /// since the filter keeps the tile's voltage nearly constant.
+    /// Half the peak-to-peak ripple of the inductor current, A, at a duty cycle. The ripple is triangular, since the
+    /// filter keeps the tile voltage nearly constant.
     pub fn half_ripple_a(&self, width: f64) -> f64 {
         0.5 * self.per_v * self.supply_v * width * (1.0 - width)
     }
@@ -71,11 +70,11 @@ impl DeadTime {
         if against_a <= to_a {
             return against_a;
         }
-        // What drives the current, less what it costs, falls along the corners, from above zero to below.
-        let left_v = |(at_a, lost_v): (f64, f64)| drive_v - lost_v - pulses.ohm * at_a;
-        let mut before = (to_a, left_v((to_a, against_v)));
+        // The residual of Ohm's law falls from corner to corner and changes its sign between two of them.
+        let residual_v = |(at_a, lost_v): (f64, f64)| drive_v - lost_v - pulses.ohm * at_a;
+        let mut before = (to_a, residual_v((to_a, against_v)));
         for corner in self.corners_between(pulses.width, to_a, (from_a, with_v)) {
-            let after = (corner.0, left_v(corner));
+            let after = (corner.0, residual_v(corner));
             if after.1 <= 0.0 {
                 return before.0 + before.1 / (before.1 - after.1) * (after.0 - before.0);
             }
@@ -84,18 +83,18 @@ impl DeadTime {
         before.0
     }
 
-    /// A pulse cannot lose more than itself, nor gain more than the pause.
+    /// Fractions of the period by which a dead time can shorten and lengthen a pulse.
     fn lost_and_gained(&self, width: f64) -> (f64, f64) {
         (self.part.min(width), self.part.min(1.0 - width))
     }
 
-    /// Mean current from which on it always flows with the pulses, A, and the voltage that it then loses, V.
+    /// Least mean current that keeps the sign of the pulses throughout a period, A, and its voltage loss, V.
     fn with(&self, width: f64) -> (f64, f64) {
         let (lost, _) = self.lost_and_gained(width);
         let lost_v = self.supply_v * lost + self.diode_v * (lost + self.part);
         let (pulse, pause) = self.rests(width);
         let tile_v = self.supply_v * width - lost_v;
-        // In the diode down to zero, up to `peak`, in the diode to `knee`, down.
+        // Freewheeling to zero, rising to `peak`, freewheeling to `knee`, falling.
         let falls = (self.diode_v + tile_v) * self.part * self.per_v;
         let peak = (self.supply_v - tile_v) * pulse * self.per_v;
         let knee = peak - falls;
@@ -104,7 +103,7 @@ impl DeadTime {
         (0.5 * mean_a, lost_v)
     }
 
-    /// Mean current up to which it always flows against the pulses, A, and the voltage that it then loses, V.
+    /// Largest mean current that opposes the pulses throughout a period, A, and its voltage loss, V.
     fn against(&self, width: f64) -> (f64, f64) {
         let (_, gained) = self.lost_and_gained(width);
         let lost_v = -self.supply_v * gained - self.diode_v * (gained + self.part);
@@ -118,7 +117,7 @@ impl DeadTime {
         (-0.5 * mean_a, lost_v)
     }
 
-    /// What a dead time leaves of a pulse and of a pause.
+    /// On and off times shortened by one dead time each, as fractions of the period.
     fn rests(&self, width: f64) -> (f64, f64) {
         (
             (width - self.part).max(0.0),
@@ -126,7 +125,7 @@ impl DeadTime {
         )
     }
 
-    /// Corners of the voltage lost, V, over the mean current, A, above a current; both rise to the last.
+    /// Corners of the characteristic of voltage loss, V, over mean current, A, above a current; both rise.
     fn corners_between(&self, width: f64, above_a: f64, last: (f64, f64)) -> [(f64, f64); 5] {
         let Self {
             supply_v,
@@ -138,8 +137,8 @@ impl DeadTime {
         let drop_v = diode_v * part;
         let (pulse, pause) = self.rests(width);
 
-        // With the pulses, and floating for a whole dead time before they begin: up to `peak`, in the diode to
-        // `knee`, down to zero. What the inductor takes and gives cancels, which tells the tile's voltage.
+        // Same sign as the pulses, floating for a whole dead time before they begin: rising to `peak`, freewheeling to
+        // `knee`, falling to zero. The volt-seconds of the inductor balance, which gives the tile voltage.
         let end_drop_v = drop_v.min(supply_v * pulse);
         let tile_v = (supply_v * pulse - end_drop_v) / (1.0 - part);
         let peak = (supply_v - tile_v) * pulse * per_v;
@@ -148,7 +147,7 @@ impl DeadTime {
             0.5 * (peak * pulse + (peak + knee) * part + knee * pause),
             (supply_v - tile_v) * lost + end_drop_v,
         );
-        // Against the pulses, and floating for a whole dead time after they end.
+        // Opposite sign, floating for a whole dead time after the pulses end.
         let tile_v = ((supply_v * width + drop_v) / (1.0 - part)).min(supply_v);
         let knee = (supply_v - tile_v) * pulse * per_v;
         let peak = tile_v * pause * per_v;
@@ -156,7 +155,7 @@ impl DeadTime {
             -0.5 * ((peak + knee) * part + knee * pulse + peak * pause),
             -tile_v * gained - drop_v,
         );
-        // Crossing zero within the pulses, and just reaching it at the end of the dead time after or before them.
+        // Zero crossing within the pulses, the current reaching zero at the end of the dead time after or before them.
         let tile_v = supply_v * width;
         let after = (diode_v + tile_v) * part * per_v;
         let before = (supply_v + diode_v - tile_v) * part * per_v;
@@ -174,7 +173,7 @@ impl DeadTime {
             floating_before,
             last,
         ];
-        // With ripple smaller than what a dead time changes, cases are passed over.
+        // If the ripple is smaller than the change in a dead time, some corners do not occur.
         let mut least_a = above_a;
         for (at_a, _) in &mut corners {
             *at_a = at_a.max(least_a);

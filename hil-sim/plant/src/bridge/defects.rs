@@ -1,16 +1,16 @@
-//! What can be broken in the power stage.
+//! Defects of the power stage.
 
-use super::{Leg, Legs};
+use super::{BridgeOutputs, Leg};
 
-/// What is broken in one leg.
+/// Defect of one leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LegDefect {
-    /// Nothing.
+    /// No defect.
     #[default]
-    Sound,
-    /// Stays at the supply.
+    None,
+    /// Output stuck at the supply.
     High,
-    /// Stays at ground.
+    /// Output stuck at ground.
     Low,
     /// High-impedance.
     Open,
@@ -19,44 +19,43 @@ pub enum LegDefect {
 }
 
 impl LegDefect {
-    fn of(self, leg: Leg) -> Leg {
+    fn apply(self, leg: Leg) -> Leg {
         match (self, leg) {
             (Self::High, _) => Leg::Duty(1.0),
             (Self::Low, _) => Leg::Duty(0.0),
             (Self::Open, _) => Leg::Off,
             (Self::Shorted, Leg::Duty(duty)) if duty > 0.0 => Leg::Shorted,
-            (Self::Shorted | Self::Sound, leg) => leg,
+            (Self::Shorted | Self::None, leg) => leg,
         }
     }
 }
 
-/// What is broken in a bridge and its wiring; by default nothing.
+/// Defects of a bridge and its wiring; none by default.
 ///
-/// A leg that is stuck needs the other one to drive a current, and that is high-impedance while the driver is not
-/// enabled: enable low ends the current whatever the legs do.
+/// A single stuck leg drives no current while the enable line is low, since the other leg is then high-impedance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BridgeDefects {
     /// Leg a.
     pub a: LegDefect,
     /// Leg b.
     pub b: LegDefect,
-    /// The driver is enabled whatever the enable line says; then legs drive as their PWM has them.
+    /// The driver ignores the enable line and follows the PWM.
     pub enable_stuck: bool,
     /// The tile's wires are swapped.
     pub swapped: bool,
-    /// Supply, V, instead of the one it should have.
+    /// Supply voltage instead of the nominal one, V.
     pub supply_v: Option<f64>,
-    /// nFAULT never goes low, whoever pulls it.
+    /// nFAULT stays high although driver or comparator pull it low.
     pub fault_pin_dead: bool,
 }
 
 impl BridgeDefects {
-    /// What becomes of the legs.
+    /// Outputs of the defective bridge for the commanded ones.
     #[must_use]
-    pub fn legs(&self, legs: &Legs) -> Legs {
-        let (a, b) = (self.a.of(legs.a), self.b.of(legs.b));
+    pub fn apply(&self, legs: &BridgeOutputs) -> BridgeOutputs {
+        let (a, b) = (self.a.apply(legs.a), self.b.apply(legs.b));
         let (a, b) = if self.swapped { (b, a) } else { (a, b) };
-        Legs {
+        BridgeOutputs {
             a,
             b,
             enabled: legs.enabled || self.enable_stuck,

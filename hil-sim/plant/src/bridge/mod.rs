@@ -1,4 +1,4 @@
-//! The bridge that drives the tile, behind its LC filter.
+//! H-bridge with LC filter that drives the tile.
 //!
 //! ```text
 //!  supply --+---------+
@@ -8,9 +8,9 @@
 //!                     C     across the tile
 //! ```
 //!
-//! Everything here settles within some 0.1 ms, so a step of the plant sees its periodic steady state: the mean
-//! current and the mean square of its ripple. Not modelled: slew of the edges, saturation of the inductor, warming
-//! of the switches.
+//! The circuit settles within about 0.1 ms, so each 1 ms step of the plant uses its periodic steady state: the mean
+//! current and the mean square of its ripple. Not modelled: finite slew rate, saturation of the inductor, heating of the
+//! switches.
 
 mod dead_time;
 mod defects;
@@ -23,70 +23,70 @@ pub use params::BridgeParams;
 use dead_time::{DeadTime, Pulses};
 use ripple::Ripple;
 
-/// One leg of the bridge over one step.
+/// State of one leg (half-bridge) during one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Leg {
     /// High-impedance.
     #[default]
     Off,
-    /// Switches between ground and supply; the fraction of time at the supply, 0 to 1 (taken as the nearer end
-    /// outside of it). The other leg's time at the supply begins together with it.
+    /// PWM with this duty cycle, the fraction of time at the supply, limited to 0 to 1. The pulses of both legs begin
+    /// at the same time.
     Duty(f64),
-    /// Switches, but its output is shorted to ground.
+    /// PWM into an output that is shorted to ground.
     Shorted,
 }
 
-/// The legs of one bridge; a current from leg `a` to leg `b` cools the display.
+/// Outputs of one bridge; a current from leg `a` to leg `b` cools the display.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Legs {
-    /// The tile's positive terminal.
+pub struct BridgeOutputs {
+    /// Leg at the positive terminal of the tile.
     pub a: Leg,
-    /// The tile's negative terminal.
+    /// Leg at the negative terminal of the tile.
     pub b: Leg,
-    /// The driver's enable pin; low makes both legs high-impedance.
+    /// Level of the driver's enable pin; low makes both legs high-impedance.
     pub enabled: bool,
 }
 
-/// The tile, as the bridge sees it in one step.
+/// Electrical load that the tile presents to the bridge in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Load {
-    /// Seebeck voltage against a current from leg `a` to leg `b`, V.
+    /// Seebeck voltage, V; positive opposes a current from leg `a` to leg `b`.
     pub seebeck_v: f64,
     /// Resistance, ohm, above 0.
     pub resistance_ohm: f64,
 }
 
-/// The current of one step.
+/// Tile current of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Current {
     /// Mean through the tile, A; positive cools the display.
     pub mean_a: f64,
-    /// Mean square of the ripple on it, A^2: the tile's resistance turns it into additional Joule heat.
+    /// Mean square of the ripple, A^2; it adds Joule heat in the tile.
     pub ripple_a2: f64,
-    /// What the driver's current mirror sees, A: the mean of what flows out of its high-side switches.
+    /// Mean current out of the high-side switches, which the driver's current mirror measures, A.
     pub mirror_a: f64,
 }
 
 /// The power stage.
 ///
-/// A driver whose current exceeds its trip, or whose output is shorted, turns both legs off, pulls its fault pin for
-/// the retry time and then tries again; that it notices within microseconds counts as at once.
+/// On overcurrent or a shorted output the driver turns both legs off, pulls its fault pin low for the retry time and
+/// then tries again. It reacts within microseconds, which is modelled as immediate.
 #[derive(Clone, Debug)]
 pub struct Bridge {
     params: BridgeParams,
     dead_time: DeadTime,
     ripple: Ripple,
-    /// About what the tile has, ohm.
+    /// Approximate resistance of the tile, ohm.
     load_ohm: f64,
-    /// Time until an overloaded driver tries again, s.
+    /// Time until the tripped driver retries, s.
     retry_in_s: f64,
 }
 
-/// Rest of a retry time that is rounding, s.
-const NO_TIME_S: f64 = 1e-9;
+/// A remaining retry time below this is rounding, s.
+const TIME_TOLERANCE_S: f64 = 1e-9;
 
 impl Bridge {
-    /// A bridge for a tile of about this resistance, ohm: 20 % more or less change the ripple by 1 %.
+    /// A bridge for a tile of about this resistance, ohm: a deviation of 20 % changes the ripple by 1 %.
     #[must_use]
     pub fn new(params: BridgeParams, load_ohm: f64) -> Self {
         Self {
@@ -98,7 +98,7 @@ impl Bridge {
         }
     }
 
-    /// Feeds it from another supply, V, above 0.
+    /// Changes the supply voltage, V, above 0.
     pub fn set_supply(&mut self, supply_v: f64) {
         if supply_v != self.params.supply_v {
             self.params.supply_v = supply_v;
@@ -107,15 +107,15 @@ impl Bridge {
         }
     }
 
-    /// The current over a step, s, with the legs and the tile as they are in it.
+    /// Tile current during a step, s.
     ///
-    /// With the legs high-impedance there is none: the tile's Seebeck voltage stays far below supply and two diodes.
-    /// So it is with both legs low throughout, which the driver takes as off. A period in part of which both legs
-    /// are low is taken as if they were grounded then; the device always holds one leg at the supply.
-    pub fn current(&mut self, step_s: f64, legs: &Legs, load: &Load) -> Current {
+    /// There is no current while the legs are high-impedance, since the Seebeck voltage of the tile stays far below the
+    /// supply plus two diode drops, nor with both inputs low throughout, which the driver takes as off. If both legs are
+    /// low for part of a period they are treated as grounded; the device always holds one leg at the supply.
+    pub fn current(&mut self, step_s: f64, legs: &BridgeOutputs, load: &Load) -> Current {
         if self.retry_in_s > 0.0 {
             self.retry_in_s -= step_s;
-            if self.retry_in_s > NO_TIME_S {
+            if self.retry_in_s > TIME_TOLERANCE_S {
                 return Current::default();
             }
             self.retry_in_s = 0.0;
@@ -138,7 +138,7 @@ impl Bridge {
         current
     }
 
-    /// The driver pulls its fault pin.
+    /// Whether the driver pulls its fault pin low.
     #[must_use]
     pub fn fault(&self) -> bool {
         self.retry_in_s > 0.0
@@ -163,7 +163,7 @@ impl Bridge {
         } else {
             (params.supply_v * (a - b) - load.seebeck_v) / ohm
         };
-        // The width that is left of the pulses, by the mean voltage across the legs.
+        // The ripple follows the effective duty cycle, given by the mean voltage across the legs.
         let applied_v = mean_a * ohm + load.seebeck_v;
         let ripple_v2 = self
             .ripple

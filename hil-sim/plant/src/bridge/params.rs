@@ -1,9 +1,8 @@
-//! What the power stage is made of.
+//! Parameters of the power stage.
 
-/// Driver, filter and supply of one bridge, class DRV8873 in IN/IN mode with its current regulation switched off.
+/// Driver, filter and supply of one bridge: a DRV8873 in IN/IN mode with current regulation off (data sheet SLVSDY7B).
 ///
-/// Tolerances and sources stand in [`parameters`](crate::parameters); the data sheet is SLVSDY7B. Nothing here
-/// was measured.
+/// Tolerances and sources are in [`parameters`](crate::parameters). No value was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BridgeParams {
     /// Supply, V.
@@ -14,24 +13,24 @@ pub struct BridgeParams {
     pub dead_time_s: f64,
     /// Forward voltage of the switches' body diodes, V.
     pub diode_v: f64,
-    /// Both switches that conduct (nominally 0.15 ohm, more as the driver warms), and the leads to the tile, ohm.
+    /// On resistance of two switches (nominally 0.15 ohm, more when warm) and of the leads to the tile, ohm.
     pub on_ohm: f64,
-    /// Filter inductor, H. It does not saturate.
+    /// Filter inductor, H.
     pub filter_h: f64,
     /// Resistance of the inductor, ohm.
     pub filter_ohm: f64,
-    /// Filter capacitor across the tile, F; a ceramic one has less under bias.
+    /// Filter capacitor across the tile, F; a ceramic capacitor loses capacitance under DC bias.
     pub filter_f: f64,
     /// Series resistance of the capacitor, ohm.
     pub filter_esr_ohm: f64,
-    /// Current at which a switch counts as overloaded, A.
+    /// Overcurrent trip level of a switch, A.
     pub trip_a: f64,
-    /// Time after which an overloaded driver tries again, s (data sheet, mode 01b: by itself).
+    /// Retry time after an overcurrent trip, s (data sheet, mode 01b: automatic retry).
     pub retry_s: f64,
 }
 
 impl BridgeParams {
-    /// The reference design's.
+    /// Values of the reference design.
     pub const NOMINAL: Self = Self {
         supply_v: 12.0,
         pwm_hz: 96e3,

@@ -1,50 +1,50 @@
-//! The ripple that the LC filter leaves in the tile's current.
+//! Ripple of the tile current behind the LC filter.
 //!
-//! In periodic steady state the voltage across the legs is a train of pulses. Its harmonics pass the filter each on
-//! its own, and since they are orthogonal their mean squares add:
+//! In periodic steady state the voltage across the legs is a pulse train. Each harmonic passes the linear filter
+//! independently, and the mean squares of orthogonal harmonics add:
 //!
 //! ```text
 //! v(t) = V (w + sum over n of 2 sin(pi n w)/(pi n) cos(2 pi n t/T))       pulses of width w T
 //! ripple_a2 = sum over n of (V 2 sin(pi n w)/(pi n) |Y(n)|)^2 / 2
 //! ```
 //!
-//! with `Y` the tile's current per volt across the legs: `Zp/(Zs + Zp)/R`, series branch `Zs = r + j w L`, parallel
-//! one `Zp` the tile beside `1/(j w C) + ESR`.
+//! with the transfer admittance `Y = Zp/(Zs + Zp)/R` from the legs to the tile current, series branch `Zs = r + j w L`,
+//! parallel branch `Zp` of the tile and `1/(j w C) + ESR`.
 
 use std::f64::consts::PI;
 
 use super::BridgeParams;
 
-/// Equal parts of the widths from none to half a period.
+/// Intervals of the table over duty cycles from 0 to 1/2.
 const PARTS: usize = 64;
-/// Harmonics of which all others are less than this part of the first one's power are left out.
+/// The series ends at the harmonic whose power is below this fraction of the first one's.
 const NEGLIGIBLE: f64 = 1e-9;
-/// Most harmonics; without a filter they fall with the square of their number only.
-const MOST: usize = 4096;
+/// Largest number of harmonics; without a filter their power falls only with the square of their number.
+const MAX_HARMONICS: usize = 4096;
 
-/// Mean square of the ripple of the tile's voltage, by width of the pulses. A table for one resistance of the tile
-/// serves others near it, since the capacitor takes most of the ripple: 20 % of the resistance change 1 % of it.
+/// Mean square of the ripple of the tile voltage over the duty cycle. A table for one tile resistance serves others near
+/// it, since the capacitor takes most of the ripple: a change of 20 % in resistance changes the ripple by 1 %.
 #[derive(Clone, Debug)]
 pub struct Ripple {
-    /// That mean square over `w (1 - w)`, at equal steps of `w` from 0 to 1/2, V^2. The
-    /// quotient is smooth with a filter and constant without.
+    /// Mean square divided by `w (1 - w)`, at equal steps of the duty cycle `w` from 0 to 1/2, V^2. The quotient is
+    /// smooth with a filter and constant without.
     shape_v2: [f64; PARTS + 1],
 }
 
 impl Ripple {
-    /// The table for a bridge whose tile has about this resistance, ohm.
+    /// The table for a bridge and a tile of about this resistance, ohm.
     pub fn new(params: &BridgeParams, load_ohm: f64) -> Self {
         let power_v2 = harmonics_v2(params, load_ohm);
         let mut shape_v2 = std::array::from_fn(|part| {
             let width = part as f64 / (2 * PARTS) as f64;
             mean_square_v2(&power_v2, width) / (width * (1.0 - width))
         });
-        // No pulses, no ripple; the quotient goes on in a straight line.
+        // At zero duty cycle the quotient is 0/0: linear extrapolation.
         shape_v2[0] = (2.0 * shape_v2[1] - shape_v2[2]).max(0.0);
         Self { shape_v2 }
     }
 
-    /// Mean square of the ripple of the voltage at the tile, V^2, for pulses of this part of the period, 0 to 1.
+    /// Mean square of the ripple of the tile voltage, V^2, at a duty cycle of 0 to 1.
     pub fn mean_square_v2(&self, width: f64) -> f64 {
         let narrow = width.min(1.0 - width).max(0.0);
         let position = narrow * (2 * PARTS) as f64;
@@ -54,13 +54,13 @@ impl Ripple {
     }
 }
 
-/// Half the squared amplitude of each harmonic of the tile's voltage, for `sin^2 = 1`.
+/// Mean square of each harmonic of the tile voltage, V^2, for `sin^2 = 1`.
 fn harmonics_v2(params: &BridgeParams, load_ohm: f64) -> Vec<f64> {
     let mut power_v2: Vec<f64> = Vec::new();
-    for n in 1..=MOST {
+    for n in 1..=MAX_HARMONICS {
         let pulse_v = 2.0 * params.supply_v / (PI * n as f64);
         let omega = 2.0 * PI * n as f64 * params.pwm_hz;
-        power_v2.push(pulse_v * pulse_v * passed(params, load_ohm, omega) / 2.0);
+        power_v2.push(pulse_v * pulse_v * power_gain(params, load_ohm, omega) / 2.0);
         if power_v2[n - 1] < NEGLIGIBLE * power_v2[0] {
             break;
         }
@@ -68,8 +68,8 @@ fn harmonics_v2(params: &BridgeParams, load_ohm: f64) -> Vec<f64> {
     power_v2
 }
 
-/// Squared magnitude of the tile's voltage over that across the legs, at an angular frequency, rad/s.
-fn passed(params: &BridgeParams, load_ohm: f64, omega: f64) -> f64 {
+/// Power gain of the filter, from the legs to the tile, at an angular frequency, rad/s.
+fn power_gain(params: &BridgeParams, load_ohm: f64, omega: f64) -> f64 {
     // Admittance of the parallel branch, Y = 1/R + jwC/(1 + jwC ESR); the ratio is 1/(1 + Zs Y).
     let susceptance = omega * params.filter_f;
     let esr_part = susceptance * params.filter_esr_ohm;
@@ -83,7 +83,7 @@ fn passed(params: &BridgeParams, load_ohm: f64, omega: f64) -> f64 {
     1.0 / (re * re + im * im)
 }
 
-/// Sum over the harmonics at one width.
+/// Mean square of all harmonics at a duty cycle.
 fn mean_square_v2(power_v2: &[f64], width: f64) -> f64 {
     let sines = (1..).map(|n| (PI * f64::from(n) * width).sin().powi(2));
     power_v2

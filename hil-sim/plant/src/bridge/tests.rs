@@ -1,4 +1,4 @@
-//! Against the circuit in time, the limits without a filter, and the driver's public behaviour.
+//! Bridge against a time-domain simulation of the circuit, analytical limits without filter, and the driver's data sheet.
 
 mod circuit;
 
@@ -10,8 +10,8 @@ const TILE: Load = Load {
     resistance_ohm: 1.061,
 };
 
-fn driven(a: f64, b: f64) -> Legs {
-    Legs {
+fn driven(a: f64, b: f64) -> BridgeOutputs {
+    BridgeOutputs {
         a: Leg::Duty(a),
         b: Leg::Duty(b),
         enabled: true,
@@ -22,11 +22,11 @@ fn bridge(params: BridgeParams) -> Bridge {
     Bridge::new(params, TILE.resistance_ohm)
 }
 
-fn current(params: BridgeParams, legs: &Legs, load: &Load) -> Current {
+fn current(params: BridgeParams, legs: &BridgeOutputs, load: &Load) -> Current {
     bridge(params).current(STEP_S, legs, load)
 }
 
-/// Ideal switches straight on the tile.
+/// Ideal switches without filter.
 fn unfiltered(supply_v: f64) -> BridgeParams {
     BridgeParams {
         supply_v,
@@ -42,7 +42,7 @@ fn unfiltered(supply_v: f64) -> BridgeParams {
 }
 
 #[test]
-fn mean_and_ripple_are_those_of_the_circuit() {
+fn mean_and_ripple_match_the_circuit_simulation() {
     let mut crossing = 0;
     for dead_time_s in [0.0, 0.3e-6, 0.6e-6] {
         let params = BridgeParams {
@@ -52,10 +52,11 @@ fn mean_and_ripple_are_those_of_the_circuit() {
         for seebeck_v in [-1.0, -0.2, 0.0, 0.5, 1.0] {
             for width in [0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7] {
                 let load = Load { seebeck_v, ..TILE };
-                let [mean_a, ripple_a2, least_a, most_a] = circuit::settled(&params, width, &load);
+                let [mean_a, ripple_a2, least_a, most_a] =
+                    circuit::steady_state(&params, width, &load);
                 let got = current(params, &driven(1.0, 1.0 - width), &load);
                 let at = format!("dead {dead_time_s} s, {seebeck_v} V, width {width}");
-                // While the current keeps its sign the mean is exact; around zero it is a good guess.
+                // The mean is exact while the current keeps its sign, and approximate around zero.
                 let clear = dead_time_s == 0.0 || least_a > 0.05 || most_a < -0.05;
                 crossing += u32::from(!clear);
                 let (allowed_a, allowed) = if clear { (1e-3, 0.04) } else { (0.03, 0.15) };
@@ -75,8 +76,8 @@ fn mean_and_ripple_are_those_of_the_circuit() {
     assert!((10..40).contains(&crossing), "{crossing} cases around zero");
 }
 
-/// Around zero the mean is only as good as the triangle that stands for the inductor's current; with the tile's
-/// voltage held by a large capacitor it is one.
+/// Around zero the error of the mean is that of the triangular approximation of the inductor current, which is exact if a
+/// large capacitor holds the tile voltage.
 #[test]
 fn mean_around_zero_is_exact_for_a_stiff_filter() {
     let params = BridgeParams {
@@ -85,11 +86,11 @@ fn mean_around_zero_is_exact_for_a_stiff_filter() {
         filter_ohm: 0.0,
         ..BridgeParams::NOMINAL
     };
-    // From pulses that the current flows with to pulses that it flows against.
+    // From a current with the sign of the pulses to one with the opposite sign.
     let width = 0.1;
     for seebeck_v in [0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.5, 1.7, 1.9, 2.1, 2.3] {
         let load = Load { seebeck_v, ..TILE };
-        let [mean_a, ..] = circuit::settled(&params, width, &load);
+        let [mean_a, ..] = circuit::steady_state(&params, width, &load);
         let off_a = current(params, &driven(1.0, 1.0 - width), &load).mean_a - mean_a;
         assert!(
             off_a.abs() < 2e-3,
@@ -98,15 +99,15 @@ fn mean_around_zero_is_exact_for_a_stiff_filter() {
     }
 }
 
-/// Narrower than the first part of the table.
+/// Duty cycles below the first interval of the table.
 #[test]
-fn ripple_of_narrow_pulses_is_that_of_the_circuit() {
+fn ripple_of_narrow_pulses_matches_the_circuit_simulation() {
     let params = BridgeParams {
         dead_time_s: 0.0,
         ..BridgeParams::NOMINAL
     };
     for width in [0.002, 0.006] {
-        let [_, ripple_a2, ..] = circuit::settled(&params, width, &TILE);
+        let [_, ripple_a2, ..] = circuit::steady_state(&params, width, &TILE);
         let got_a2 = current(params, &driven(1.0, 1.0 - width), &TILE).ripple_a2;
         assert!(
             (got_a2 / ripple_a2 - 1.0).abs() < 0.02,
@@ -116,7 +117,7 @@ fn ripple_of_narrow_pulses_is_that_of_the_circuit() {
 }
 
 #[test]
-fn unfiltered_pulses_multiply_the_heat_by_the_inverse_of_their_width() {
+fn without_filter_the_joule_heat_rises_by_the_inverse_duty_cycle() {
     for width in [0.1, 0.25, 0.5, 0.9] {
         let Current {
             mean_a, ripple_a2, ..
@@ -127,9 +128,8 @@ fn unfiltered_pulses_multiply_the_heat_by_the_inverse_of_their_width() {
 }
 
 #[test]
-fn unfiltered_antiphase_burns_what_the_supply_does_at_rest() {
-    // Both legs against each other at half width are pulses of twice the supply less the supply: no mean, and the
-    // ripple of the pulses.
+fn without_filter_the_ripple_heat_is_that_of_antiphase_drive() {
+    // Antiphase drive of 12 V at 50 % equals pulses of 24 V minus a mean of 12 V: the ripple is that of the pulses.
     let ripple_a2 = current(unfiltered(24.0), &driven(1.0, 0.5), &TILE).ripple_a2;
     assert!(
         (ripple_a2 * 1.061 / 136.0 - 1.0).abs() < 5e-3,
@@ -138,8 +138,8 @@ fn unfiltered_antiphase_burns_what_the_supply_does_at_rest() {
 }
 
 #[test]
-fn dead_time_costs_its_share_of_the_supply_either_way() {
-    // Well away from zero current: 12 V and two diodes for 0.3 us of each 10.4 us, over all the resistance.
+fn dead_time_reduces_the_current_equally_in_both_directions() {
+    // Far from zero current: 12 V plus two diode drops for 0.3 us of 10.4 us, divided by the total resistance.
     let params = BridgeParams::NOMINAL;
     let ideal = BridgeParams {
         dead_time_s: 0.0,
@@ -157,7 +157,7 @@ fn dead_time_costs_its_share_of_the_supply_either_way() {
 }
 
 #[test]
-fn current_has_no_jump_where_it_changes_sign() {
+fn current_is_continuous_through_zero() {
     let mut before_a: Option<f64> = None;
     for k in 0..4000 {
         let load = Load {
@@ -165,7 +165,7 @@ fn current_has_no_jump_where_it_changes_sign() {
             ..TILE
         };
         let now_a = current(BridgeParams::NOMINAL, &driven(1.0, 0.9), &load).mean_a;
-        // A millivolt over the resistance, or less of it where the loss gives way.
+        // One millivolt divided by the resistance, or less where the dead-time loss changes.
         if let Some(before_a) = before_a {
             assert!(
                 (-0.81e-3..=0.0).contains(&(now_a - before_a)),
@@ -178,7 +178,7 @@ fn current_has_no_jump_where_it_changes_sign() {
 }
 
 #[test]
-fn legs_that_stand_still_leave_the_seebeck_voltage() {
+fn without_pwm_edges_the_current_follows_ohms_law() {
     let load = Load {
         seebeck_v: 0.5,
         ..TILE
@@ -201,12 +201,12 @@ fn no_current_without_two_driven_legs() {
             Current::default()
         )
     };
-    open(Legs::default());
-    open(Legs {
+    open(BridgeOutputs::default());
+    open(BridgeOutputs {
         b: Leg::Off,
         ..driven(1.0, 0.0)
     });
-    open(Legs {
+    open(BridgeOutputs {
         enabled: false,
         ..driven(1.0, 0.0)
     });
@@ -214,14 +214,14 @@ fn no_current_without_two_driven_legs() {
 }
 
 #[test]
-fn mirror_sees_what_the_high_sides_give() {
+fn mirror_measures_the_high_side_current() {
     let got = |a, b| current(BridgeParams::NOMINAL, &driven(a, b), &TILE);
-    // The leg that gives the current stays at the supply: all of it, throughout.
+    // The leg that sources the current stays at the supply: the mirror measures all of it.
     for (a, b) in [(1.0, 0.6), (0.6, 1.0)] {
         let got = got(a, b);
         assert_eq!(got.mirror_a, got.mean_a.abs());
     }
-    // A current that the tile drives against the pulses comes out of the leg that switches.
+    // A current driven by the tile against the pulses flows out of the switching leg.
     let load = Load {
         seebeck_v: 4.0,
         ..TILE
@@ -231,7 +231,7 @@ fn mirror_sees_what_the_high_sides_give() {
 }
 
 #[test]
-fn overload_takes_the_legs_off_for_the_retry_time() {
+fn overcurrent_turns_the_legs_off_for_the_retry_time() {
     let mut bridge = bridge(BridgeParams::NOMINAL);
     let stalled = Load {
         resistance_ohm: 0.3,
@@ -242,11 +242,11 @@ fn overload_takes_the_legs_off_for_the_retry_time() {
         (current.mean_a > 0.0, bridge.fault())
     };
     assert_eq!(step(&TILE), (true, false));
-    // Overloaded and tried again every 4 ms.
+    // Trips again at every retry, each 4 ms.
     for _ in 0..8 {
         assert_eq!(step(&stalled), (false, true));
     }
-    // What is sound again is found so with the next try only.
+    // A normal load is detected only at the next retry.
     assert_eq!(step(&stalled), (false, true));
     for _ in 0..3 {
         assert_eq!(step(&TILE), (false, true));
@@ -257,7 +257,7 @@ fn overload_takes_the_legs_off_for_the_retry_time() {
 #[test]
 fn shorted_output_trips_when_it_is_driven() {
     let mut bridge = bridge(BridgeParams::NOMINAL);
-    let shorted = |enabled| Legs {
+    let shorted = |enabled| BridgeOutputs {
         a: Leg::Shorted,
         b: Leg::Duty(0.5),
         enabled,

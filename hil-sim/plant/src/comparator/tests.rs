@@ -1,9 +1,9 @@
-//! Thresholds against the thermistor's equation, worked out apart; the latch against its truth table.
+//! Thresholds against independently computed thermistor ratios; the latch against its truth table.
 
 use super::*;
 use crate::sensors::BONDED;
 
-/// Divider's ratios of 10 k and beta 3950 K over 10 k at 9.9, 10.1, 44.9 and 45.1 deg C.
+/// Divider ratios of a 10 kohm thermistor (beta 3950 K) under 10 kohm at 9.9, 10.1, 44.9 and 45.1 deg C.
 const COLD: (f64, f64) = (0.669_686, 0.667_503);
 const HOT: (f64, f64) = (0.303_871, 0.302_222);
 const INSIDE: f64 = 0.5;
@@ -14,7 +14,7 @@ fn comparator() -> Comparator {
 
 fn after(ratio: f64) -> bool {
     let mut comparator = comparator();
-    comparator.watch(ratio);
+    comparator.set_input(ratio);
     comparator.tripped()
 }
 
@@ -28,19 +28,19 @@ fn window_is_from_10_to_45_c_and_broken_wires_are_outside() {
 }
 
 #[test]
-fn thresholds_are_those_of_its_resistors() {
+fn thresholds_follow_the_parameters() {
     let params = ComparatorParams {
         cold_c: 9.8,
         hot_c: 45.2,
     };
     for ratio in [COLD.0, HOT.1] {
         let mut comparator = Comparator::new(&params, &BONDED, INSIDE);
-        comparator.watch(ratio);
+        comparator.set_input(ratio);
         assert!(!comparator.tripped(), "{ratio}");
     }
 }
 
-/// What happens to it, and whether the latch is set then.
+/// A change at the inputs.
 #[derive(Clone, Copy, Debug)]
 enum Event {
     Inside,
@@ -53,13 +53,13 @@ use Event::{High, Inside, Low, Outside};
 #[test]
 fn latch_has_its_truth_table() {
     let rows: [&[(Event, bool)]; 7] = [
-        // Power-on has cleared it; a low line that stays low changes nothing.
+        // Cleared at power-on; a test line that stays low changes nothing.
         &[(Inside, false), (Low, false)],
-        // What has left the window stays known when it is back.
+        // An excursion from the window stays latched.
         &[(Outside, true), (Inside, true)],
         // A test: set while high, cleared by the edge.
         &[(High, true), (Inside, true), (High, true), (Low, false)],
-        // Only the edge clears.
+        // Only the falling edge clears.
         &[
             (Outside, true),
             (Inside, true),
@@ -67,7 +67,7 @@ fn latch_has_its_truth_table() {
             (High, true),
             (Low, false),
         ],
-        // Not outside of the window.
+        // The falling edge does not clear outside of the window.
         &[
             (Outside, true),
             (High, true),
@@ -75,7 +75,7 @@ fn latch_has_its_truth_table() {
             (Inside, true),
             (Low, true),
         ],
-        // What leaves the window during a test, and is back before its end, is forgotten.
+        // An excursion during a test that ends before the test does is cleared.
         &[(High, true), (Outside, true), (Inside, true), (Low, false)],
         // It works again after a test.
         &[(High, true), (Low, false), (Outside, true), (Inside, true)],
@@ -84,10 +84,10 @@ fn latch_has_its_truth_table() {
         let mut comparator = comparator();
         for (event, expected) in row {
             match event {
-                Inside => comparator.watch(INSIDE),
-                Outside => comparator.watch(HOT.1),
-                High => comparator.test(true),
-                Low => comparator.test(false),
+                Inside => comparator.set_input(INSIDE),
+                Outside => comparator.set_input(HOT.1),
+                High => comparator.set_test_line(true),
+                Low => comparator.set_test_line(false),
             }
             assert_eq!(comparator.tripped(), *expected, "{event:?} of {row:?}");
         }
@@ -95,24 +95,24 @@ fn latch_has_its_truth_table() {
 }
 
 #[test]
-fn powered_on_outside_of_the_window_it_is_set() {
+fn latch_is_set_at_power_on_outside_of_the_window() {
     assert!(Comparator::new(&ComparatorParams::NOMINAL, &BONDED, COLD.0).tripped());
 }
 
 #[test]
-fn defects_hold_the_latch_and_leave_it_when_they_pass() {
+fn a_defect_forces_the_output_and_preserves_the_latch() {
     let mut comparator = comparator();
-    comparator.set_defect(ComparatorDefect::Dead);
-    comparator.test(true);
+    comparator.set_defect(ComparatorDefect::NeverTrips);
+    comparator.set_test_line(true);
     assert!(!comparator.tripped());
-    comparator.test(false);
-    comparator.set_defect(ComparatorDefect::Stuck);
-    comparator.test(true);
-    comparator.test(false);
+    comparator.set_test_line(false);
+    comparator.set_defect(ComparatorDefect::AlwaysTripped);
+    comparator.set_test_line(true);
+    comparator.set_test_line(false);
     assert!(comparator.tripped());
-    comparator.set_defect(ComparatorDefect::Sound);
+    comparator.set_defect(ComparatorDefect::None);
     assert!(!comparator.tripped());
-    comparator.watch(HOT.1);
-    comparator.set_defect(ComparatorDefect::Dead);
+    comparator.set_input(HOT.1);
+    comparator.set_defect(ComparatorDefect::NeverTrips);
     assert!(!comparator.tripped());
 }

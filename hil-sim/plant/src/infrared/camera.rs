@@ -1,4 +1,4 @@
-//! The camera: noise, and the temperatures it shows.
+//! Camera: noise, apparent temperature and recovered temperature.
 
 use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;
@@ -6,32 +6,32 @@ use rand_distr::{Distribution, StandardNormal};
 use thiserror::Error;
 
 use super::{
-    LineOfSight, Optic, RANGE_C, SKIN_EMISSIVITY, SelfReflection, Surroundings, radiance,
+    Optic, OpticalPath, RANGE_C, SKIN_EMISSIVITY, SelfReflection, Surroundings, radiance,
     radiance_per_k, temperature_c,
 };
 
-/// Black body at which cameras' noise is stated, deg C.
+/// Temperature of the black body at which the noise of a camera is specified, deg C.
 const NETD_AT_C: f64 = 30.0;
 
-/// What the instrument is made of.
+/// Parameters of the instrument.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CameraParams {
-    /// What the target is seen through.
+    /// Optics between target and camera.
     pub optic: Optic,
-    /// The target's emissivity, above 0 to 1; the way back assumes the same.
+    /// Emissivity of the target, above 0 to 1; the inversion assumes the same value.
     pub emissivity: f64,
-    /// Noise-equivalent temperature difference of one pixel in one frame: standard deviation of the apparent
-    /// temperature of a black body of 30 deg C, K. Noise is Gaussian in the signal and the same at every signal.
+    /// Noise-equivalent temperature difference (NETD) of one pixel in one frame: standard deviation of the apparent
+    /// temperature of a black body of 30 deg C, K. The noise of the signal is Gaussian and independent of its level.
     pub netd_k: f64,
-    /// Pixels that are averaged into a reading; their noise is independent.
+    /// Number of pixels averaged into a reading; their noise is independent.
     pub pixels: u32,
-    /// If the camera sees itself in the window. The way back does not know of it.
+    /// Reflection of the camera in the window, if any. The inversion neglects it.
     pub self_reflection: Option<SelfReflection>,
 }
 
 impl CameraParams {
-    /// The thesis's instrument: skin, one pixel, no self-reflection. The thesis gives no noise; 0.08 K is the
-    /// class of its camera, an uncooled bolometer of 2006.
+    /// The thesis's instrument: skin, one pixel, no self-reflection. The thesis states no noise; 0.08 K is typical of
+    /// its camera, an uncooled bolometer of 2006.
     #[must_use]
     pub fn thesis(optic: Optic) -> Self {
         Self {
@@ -52,35 +52,35 @@ pub struct ParameterError {
     pub name: &'static str,
     /// Its value.
     pub value: f64,
-    /// What is allowed, in words.
+    /// Allowed range, in words.
     pub allowed: &'static str,
 }
 
-/// What the instrument says of a target.
+/// One reading of a target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reading {
-    /// Radiance that arrives, noise included, W/(m² sr).
+    /// Radiance at the camera, noise included, W/(m² sr).
     pub u_tot: f64,
-    /// What the camera shows: the temperature of a black body of that radiance, deg C.
+    /// Apparent temperature: that of a black body of the same radiance, deg C.
     pub apparent_c: f64,
-    /// The target's temperature by the thesis's way back, deg C.
+    /// Temperature of the target recovered with the thesis's inversion, deg C.
     pub recovered_c: f64,
 }
 
-/// A camera that looks at one target. A reading allocates nothing.
+/// A camera that measures one target. A reading allocates no memory.
 #[derive(Clone, Debug)]
 pub struct Camera {
-    /// What happens.
-    sight: LineOfSight,
-    /// What the way back believes.
-    assumed: LineOfSight,
+    /// True optical path.
+    path: OpticalPath,
+    /// Optical path that the inversion assumes.
+    assumed: OpticalPath,
     /// Standard deviation of a reading's signal, W/(m² sr).
     noise: f64,
     random: Xoshiro256PlusPlus,
 }
 
 impl Camera {
-    /// A camera in fixed surroundings; the seed fixes every later draw of noise.
+    /// A camera in constant surroundings; the seed determines its noise.
     ///
     /// # Errors
     /// Emissivity not in (0, 1], NETD negative or not finite, no pixels, share not in 0 to 1, or a temperature
@@ -91,22 +91,22 @@ impl Camera {
         seed: u64,
     ) -> Result<Self, ParameterError> {
         check(params, surroundings)?;
-        let assumed = LineOfSight::new(params.optic, params.emissivity, surroundings);
-        let sight = params.self_reflection.map_or(assumed, |camera| {
+        let assumed = OpticalPath::new(params.optic, params.emissivity, surroundings);
+        let path = params.self_reflection.map_or(assumed, |camera| {
             assumed.with_self_reflection(params.optic, &camera, surroundings.ambient_c)
         });
         Ok(Self {
-            sight,
+            path,
             assumed,
             noise: params.netd_k * radiance_per_k(NETD_AT_C) / f64::from(params.pixels).sqrt(),
             random: Xoshiro256PlusPlus::seed_from_u64(seed),
         })
     }
 
-    /// Reads a target of a true temperature, deg C, within [`RANGE_C`]. Each reading draws noise.
+    /// Measures a target of a true temperature, deg C, within [`RANGE_C`]. Each reading has its own noise.
     pub fn read(&mut self, target_c: f64) -> Reading {
         let normal: f64 = StandardNormal.sample(&mut self.random);
-        let u_tot = self.sight.total(radiance(target_c)) + self.noise * normal;
+        let u_tot = self.path.total_radiance(radiance(target_c)) + self.noise * normal;
         let apparent_c = temperature_c(u_tot);
         Reading {
             u_tot,
@@ -115,11 +115,11 @@ impl Camera {
         }
     }
 
-    /// The target's temperature, deg C, from what the camera shows, deg C: Eq. 5-3 or 5-4 solved for the target.
-    /// Held at the nearest end of [`RANGE_C`] if no target of it would show that.
+    /// Temperature of the target, deg C, from the apparent temperature, deg C: Eq. 5-3 or 5-4 solved for the target.
+    /// Limited to [`RANGE_C`].
     #[must_use]
     pub fn recovered_c(&self, apparent_c: f64) -> f64 {
-        temperature_c(self.assumed.target(radiance(apparent_c)))
+        temperature_c(self.assumed.target_radiance(radiance(apparent_c)))
     }
 }
 

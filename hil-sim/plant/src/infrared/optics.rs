@@ -1,7 +1,7 @@
-//! What stands between finger and camera (Table 5-3).
+//! Window and beamsplitter between finger and camera (Table 5-3).
 
-/// Properties of an optic averaged over the camera's band; what is neither transmitted nor reflected is
-/// absorbed, and emitted.
+/// Properties of an optical element averaged over the camera's band; the part that is neither transmitted nor reflected
+/// is absorbed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bandpass {
     /// Transmissivity, 0 to 1 (Eq. 5-1).
@@ -11,7 +11,7 @@ pub struct Bandpass {
 }
 
 impl Bandpass {
-    /// Emissivity, 0 to 1: what is left (section 5.2.2).
+    /// Emissivity, 0 to 1, which equals the absorptivity (section 5.2.2).
     #[must_use]
     pub fn emissivity(&self) -> f64 {
         1.0 - self.transmissivity - self.reflectivity
@@ -24,14 +24,14 @@ pub const BEAMSPLITTER: Bandpass = Bandpass {
     reflectivity: 0.42,
 };
 
-/// What the finger is seen through.
+/// Optics between finger and camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Optic {
-    /// Nothing, neither window nor beamsplitter: the thesis's emissivity check (Eq. 5-4).
+    /// Neither window nor beamsplitter: the thesis's emissivity check (Eq. 5-4).
     None,
-    /// Barium fluoride and the beamsplitter.
+    /// Barium fluoride window and beamsplitter.
     Baf2,
-    /// Zinc sulphide and the beamsplitter.
+    /// Zinc sulphide window and beamsplitter.
     Zns,
 }
 

@@ -1,11 +1,11 @@
-//! The power stage's numbers.
+//! Parameters of the power stage.
 
 use super::Source::{ClassValue, DataSheet, Design, Recalled};
-use super::slot::{Slot, slot, under};
-use super::spread::{FIXED, absolute, between, relative};
+use super::entry::{Entry, entry, prefixed};
+use super::tolerance::{FIXED, absolute, between, relative};
 use crate::bridge::BridgeParams;
 
-pub fn slots(bridge: &mut BridgeParams) -> impl Iterator<Item = Slot<'_>> {
+pub fn entries(bridge: &mut BridgeParams) -> impl Iterator<Item = Entry<'_>> {
     let BridgeParams {
         supply_v,
         pwm_hz,
@@ -20,99 +20,74 @@ pub fn slots(bridge: &mut BridgeParams) -> impl Iterator<Item = Slot<'_>> {
         retry_s,
     } = bridge;
     let all = [
-        slot(
-            supply_v,
-            "supply_v",
-            "V",
-            "supply",
-            relative(0.05),
-            (1.0, 40.0),
-            Design,
-        ),
-        slot(
-            pwm_hz,
-            "pwm_hz",
-            "Hz",
-            "PWM frequency",
-            FIXED,
-            (1e3, 1e6),
-            Design,
-        ),
-        slot(
+        entry!(supply_v, "V", "supply", relative(0.05), (1.0, 40.0), Design,),
+        entry!(pwm_hz, "Hz", "PWM frequency", FIXED, (1e3, 1e6), Design,),
+        entry!(
             dead_time_s,
-            "dead_time_s",
             "s",
             "time for which both switches of a leg are off at an edge",
             between(0.1e-6, 0.6e-6),
             (0.0, 1e-5),
             Recalled,
         ),
-        slot(
+        entry!(
             diode_v,
-            "diode_v",
             "V",
             "forward voltage of the body diodes",
             absolute(0.2),
             (0.0, 2.0),
             Recalled,
         ),
-        slot(
+        entry!(
             on_ohm,
-            "on_ohm",
             "ohm",
             "both switches that conduct, and the leads to the tile",
             between(0.12, 0.30),
             (0.0, 10.0),
             Recalled,
         ),
-        slot(
+        entry!(
             filter_h,
-            "filter_h",
             "H",
             "filter inductor",
             relative(0.2),
             (1e-7, 1e-2),
             Design,
         ),
-        slot(
+        entry!(
             filter_ohm,
-            "filter_ohm",
             "ohm",
             "resistance of the inductor",
             relative(0.5),
             (0.0, 10.0),
             ClassValue,
         ),
-        slot(
+        entry!(
             filter_f,
-            "filter_f",
             "F",
             "filter capacitor; low under bias",
             between(5e-6, 12e-6),
             (0.0, 1e-2),
             Design,
         ),
-        slot(
+        entry!(
             filter_esr_ohm,
-            "filter_esr_ohm",
             "ohm",
             "series resistance of the capacitor",
             between(0.0, 0.02),
             (0.0, 10.0),
             ClassValue,
         ),
-        slot(
+        entry!(
             trip_a,
-            "trip_a",
             "A",
             "current at which a switch counts as overloaded",
             between(10.0, 16.0),
             (0.1, 100.0),
             DataSheet,
         ),
-        slot(
+        entry!(
             retry_s,
-            "retry_s",
             "s",
             "time after which an overloaded driver tries again",
             relative(0.5),
@@ -120,5 +95,5 @@ pub fn slots(bridge: &mut BridgeParams) -> impl Iterator<Item = Slot<'_>> {
             Recalled,
         ),
     ];
-    under("bridge", all)
+    prefixed("bridge", all)
 }

@@ -1,26 +1,24 @@
-//! The comparator's numbers.
+//! Parameters of the comparator.
 
 use super::Source::Design;
-use super::slot::{Slot, slot, under};
-use super::spread::absolute;
+use super::entry::{Entry, entry, prefixed};
+use super::tolerance::absolute;
 use crate::comparator::ComparatorParams;
 
-/// What resistors of 1 % make of a threshold.
-pub fn slots(comparator: &mut ComparatorParams) -> impl Iterator<Item = Slot<'_>> {
+/// The tolerances follow from resistors of 1 %.
+pub fn entries(comparator: &mut ComparatorParams) -> impl Iterator<Item = Entry<'_>> {
     let ComparatorParams { cold_c, hot_c } = comparator;
     let all = [
-        slot(
+        entry!(
             cold_c,
-            "cold_c",
             "C",
             "below this, by a nominal thermistor, the comparator cuts the bridge supply",
             absolute(0.3),
             (-40.0, 25.0),
             Design,
         ),
-        slot(
+        entry!(
             hot_c,
-            "hot_c",
             "C",
             "above this, by a nominal thermistor, it does so too",
             absolute(0.3),
@@ -28,5 +26,5 @@ pub fn slots(comparator: &mut ComparatorParams) -> impl Iterator<Item = Slot<'_>
             Design,
         ),
     ];
-    under("comparator", all)
+    prefixed("comparator", all)
 }

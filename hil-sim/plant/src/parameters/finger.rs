@@ -1,13 +1,13 @@
-//! The finger's numbers. `skin` is its surface, `finger` the rest.
+//! Parameters of the finger. `skin` is its surface, `finger` the rest.
 
 use super::Source::{ClassValue, Literature, Thesis};
-use super::slot::{Slot, slot, under};
-use super::spread::{FIXED, factor, relative};
+use super::entry::{Entry, entry, prefixed};
 use super::surface;
+use super::tolerance::{FIXED, factor, relative};
 use crate::finger::{FingerParams, Vessels};
 use crate::slab::{Layer, Medium};
 
-pub fn slots(finger: &mut FingerParams) -> Vec<Slot<'_>> {
+pub fn entries(finger: &mut FingerParams) -> Vec<Entry<'_>> {
     let FingerParams {
         surface,
         layers,
@@ -15,14 +15,13 @@ pub fn slots(finger: &mut FingerParams) -> Vec<Slot<'_>> {
         air_w_m2k,
         vessels,
     } = finger;
-    let mut all: Vec<_> = surface::slots("skin", surface, surface::SKIN).collect();
+    let mut all: Vec<_> = surface::entries("skin", surface, surface::SKIN).collect();
     for (i, one) in layers.iter_mut().enumerate() {
-        all.extend(under(&format!("finger.layer.{i}"), layer(one)));
+        all.extend(prefixed(&format!("finger.layer.{i}"), layer(one)));
     }
     let core = core_w_m2k.as_mut().map(|core_w_m2k| {
-        slot(
+        entry!(
             core_w_m2k,
-            "core_w_m2k",
             "W/(m2 K)",
             "conductance from the deepest layer to the core; inf: it has the core's temperature",
             FIXED,
@@ -30,39 +29,41 @@ pub fn slots(finger: &mut FingerParams) -> Vec<Slot<'_>> {
             ClassValue,
         )
     });
-    let air = slot(
+    let air = entry!(
         air_w_m2k,
-        "air_w_m2k",
         "W/(m2 K)",
         "film of air on lifted surfaces of finger and object, radiation included",
         relative(0.5),
         (0.0, 1000.0),
         ClassValue,
     );
-    all.extend(under("finger", core.into_iter().chain([air])));
+    all.extend(prefixed("finger", core.into_iter().chain([air])));
     if let Some(Vessels { open_n, shut_n }) = vessels {
-        let force = |value, name, meaning| {
-            slot(
-                value,
-                name,
+        let forces = [
+            entry!(
+                open_n,
                 "N",
-                meaning,
+                "force up to which blood flows in full",
                 relative(0.2),
                 (0.0, 100.0),
                 Thesis("6.4.3"),
-            )
-        };
-        let both = [
-            force(open_n, "open_n", "force up to which blood flows in full"),
-            force(shut_n, "shut_n", "force from which no blood flows"),
+            ),
+            entry!(
+                shut_n,
+                "N",
+                "force from which no blood flows",
+                relative(0.2),
+                (0.0, 100.0),
+                Thesis("6.4.3"),
+            ),
         ];
-        all.extend(under("finger.vessels", both));
+        all.extend(prefixed("finger.vessels", forces));
     }
     all
 }
 
-/// Tolerances suit tissue in general: those of the nominal layers, rounded.
-fn layer(layer: &mut Layer) -> [Slot<'_>; 5] {
+/// The tolerances are those of the nominal layers, rounded, and apply to any tissue.
+fn layer(layer: &mut Layer) -> [Entry<'_>; 5] {
     let Layer {
         thickness_m,
         medium:
@@ -74,46 +75,41 @@ fn layer(layer: &mut Layer) -> [Slot<'_>; 5] {
             },
     } = layer;
     [
-        slot(
+        entry!(
             thickness_m,
-            "thickness_m",
             "m",
             "thickness; inf: endless, for the last layer",
             relative(0.23),
             (1e-5, 10.0),
             ClassValue,
         )
-        .or_endless(),
-        slot(
+        .or_infinite(),
+        entry!(
             conductivity_w_mk,
-            "conductivity_w_mk",
             "W/(m K)",
             "conductivity",
             relative(0.1),
             (0.01, 500.0),
             Literature,
         ),
-        slot(
+        entry!(
             capacity_j_m3k,
-            "capacity_j_m3k",
             "J/(m3 K)",
             "heat capacity of a volume",
             relative(0.1),
             (1e4, 1e7),
             Literature,
         ),
-        slot(
+        entry!(
             perfusion_w_m3k,
-            "perfusion_w_m3k",
             "W/(m3 K)",
             "perfusion in 1/s times 4e6 J/(m3 K) of blood",
             factor(4.0),
             (0.0, 1e6),
             ClassValue,
         ),
-        slot(
+        entry!(
             metabolism_w_m3,
-            "metabolism_w_m3",
             "W/m3",
             "heat of metabolism",
             relative(0.5),

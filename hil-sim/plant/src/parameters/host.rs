@@ -1,29 +1,27 @@
-//! The host's numbers.
+//! Parameters of the host.
 
 use super::Source::ClassValue;
-use super::slot::{Slot, slot, under};
-use super::spread::{absolute, between};
+use super::entry::{Entry, entry, prefixed};
+use super::tolerance::{absolute, between};
 use crate::HostParams;
 
-/// A calibration within 20 mK; the noise of a good bridge.
-pub fn slots(host: &mut HostParams) -> impl Iterator<Item = Slot<'_>> {
+/// A calibration to 20 mK and the noise of a good resistance bridge.
+pub fn entries(host: &mut HostParams) -> impl Iterator<Item = Entry<'_>> {
     let HostParams {
         reference_offset_k,
         reference_noise_k,
     } = host;
     let all = [
-        slot(
+        entry!(
             reference_offset_k,
-            "reference_offset_k",
             "K",
             "what the host's reference thermometer shows too much",
             absolute(0.02),
             (-5.0, 5.0),
             ClassValue,
         ),
-        slot(
+        entry!(
             reference_noise_k,
-            "reference_noise_k",
             "K",
             "standard deviation of one of its readings",
             between(0.0, 1e-3),
@@ -31,5 +29,5 @@ pub fn slots(host: &mut HostParams) -> impl Iterator<Item = Slot<'_>> {
             ClassValue,
         ),
     ];
-    under("host", all)
+    prefixed("host", all)
 }

@@ -1,38 +1,37 @@
-//! The parameter box: every number that the plant's parts are made of, with its tolerance, what is possible, and
-//! where it comes from.
+//! All parameters of the plant by key, with tolerance, allowed range and source.
 //!
-//! The tables stand beside each other, one for each part; nominal values are those of [`Params`] and stand there only.
-//! What a part is drawn from are the tolerances here, each parameter by itself: what goes together in reality (the
-//! conductivity of the skin in the contact and below it) is drawn apart, so the box is somewhat too wide.
+//! There is one table for each part; the nominal values are only in [`Params`]. Parameters are drawn from their tolerances
+//! independently, also those that are correlated in reality (the conductivity of the skin in the contact and below it), so
+//! the drawn devices differ somewhat more than real ones.
 
 mod bridge;
 mod comparator;
+mod entry;
 mod finger;
 mod host;
 mod sensors;
-mod slot;
-mod spread;
 mod surface;
 mod tile;
+mod tolerance;
 
 use serde::Serialize;
 
 use super::Params;
-use slot::Slot;
-pub use spread::{Distribution, Tolerance, absolute, between, relative, stream};
+use entry::Entry;
+pub use tolerance::{Distribution, Tolerance, absolute, between, relative, stream_seed};
 
-/// Where a nominal value and its tolerance come from.
+/// Source of a nominal value and its tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The thesis, and where in it.
+    /// The thesis, at the named place.
     Thesis(&'static str),
     /// Published measurements.
     Literature,
-    /// A data sheet that was read.
+    /// Data sheet.
     DataSheet,
-    /// Typical of such parts, or estimated from their size.
+    /// Typical of the class of part, or estimated from its size.
     ClassValue,
-    /// Remembered of such parts and not looked up.
+    /// Stated from memory, not looked up.
     Recalled,
     /// Chosen for the reference design; the tolerance is that of the class of part.
     Design,
@@ -57,32 +56,32 @@ impl Serialize for Source {
     }
 }
 
-/// One number of the box.
+/// Description of one parameter.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Parameter {
-    /// Its name: part and field, joined by dots.
+    /// Key: part and field, joined by dots.
     pub key: String,
-    /// Its value in the parameters that were asked.
+    /// Value.
     pub value: f64,
-    /// Its unit; 1 for pure numbers.
+    /// Unit; 1 for dimensionless parameters.
     pub unit: &'static str,
     /// Least value that is drawn.
     pub low: f64,
     /// Largest value that is drawn.
     pub high: f64,
-    /// How it is drawn between them.
+    /// Distribution between them.
     pub distribution: Distribution,
-    /// Least value that is possible.
+    /// Least allowed value.
     pub least: f64,
-    /// Largest value that is possible.
+    /// Largest allowed value.
     pub most: f64,
-    /// Where value and tolerance come from.
+    /// Source of value and tolerance.
     pub source: Source,
-    /// What it is.
+    /// Meaning.
     pub meaning: &'static str,
 }
 
-/// A parameter that is not there, or that cannot be so.
+/// Error of a key or a value.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ParameterError {
     /// No parameter has this key.
@@ -93,7 +92,7 @@ pub enum ParameterError {
         /// The known keys nearest to it.
         near: Vec<String>,
     },
-    /// The value is not possible.
+    /// The value is outside of the allowed range.
     #[error("{key} = {value} {unit}; allowed is {least} to {most}")]
     OutOfRange {
         /// The key.
@@ -102,58 +101,58 @@ pub enum ParameterError {
         value: f64,
         /// Its unit.
         unit: &'static str,
-        /// Least that is possible.
+        /// Least allowed value.
         least: f64,
-        /// Most that is possible.
+        /// Largest allowed value.
         most: f64,
     },
 }
 
-/// Keys named where one is not known.
+/// Number of similar keys named in the error of an unknown key.
 const SIMILAR: usize = 3;
 
-/// All parameters, with tolerances around the given values.
+/// All parameters, with their tolerances around the given values.
 #[must_use]
 pub fn all(params: &Params) -> Vec<Parameter> {
     let mut params = params.clone();
-    slots(&mut params).iter().map(Slot::parameter).collect()
+    entries(&mut params).iter().map(Entry::parameter).collect()
 }
 
-/// Sets the parameter of a key. Parts that the finger does not have (layers, core, vessels) have no parameters.
+/// Sets the parameter of a key. Optional parts that the finger lacks (layers, core, vessels) have no keys.
 ///
 /// # Errors
-/// There is no such key, or the value is not possible: then nothing is changed.
+/// The key is unknown or the value out of range; nothing is changed then.
 pub fn set(params: &mut Params, key: &str, value: f64) -> Result<(), ParameterError> {
-    let mut slots = slots(params);
-    let Some(slot) = slots.iter_mut().find(|slot| slot.key == key) else {
+    let mut entries = entries(params);
+    let Some(entry) = entries.iter_mut().find(|entry| entry.key == key) else {
         return Err(ParameterError::Unknown {
             key: key.into(),
-            near: similar(&slots, key),
+            near: similar(&entries, key),
         });
     };
-    let before = std::mem::replace(slot.value, value);
-    slot.check().inspect_err(|_| *slot.value = before)
+    let before = std::mem::replace(entry.value, value);
+    entry.check().inspect_err(|_| *entry.value = before)
 }
 
-/// Draws every parameter within its tolerance around the given values. The seed fixes the draw; every parameter has a
-/// stream of its own, so more parameters change no other's draw.
+/// Draws every parameter within its tolerance around the given values. Each parameter has its own random stream, given by
+/// seed and key, so additional parameters do not change the draws of the others.
 pub fn draw(params: &mut Params, seed: u64) {
-    for slot in &mut slots(params) {
-        slot.draw(seed);
+    for entry in &mut entries(params) {
+        entry.draw(seed);
     }
 }
 
-/// Checks that every parameter is possible by itself.
+/// Checks that every parameter is within its allowed range.
 ///
 /// # Errors
-/// The first that is not.
+/// The first parameter that is not.
 pub fn check(params: &Params) -> Result<(), ParameterError> {
     let mut params = params.clone();
-    slots(&mut params).iter().try_for_each(Slot::check)
+    entries(&mut params).iter().try_for_each(Entry::check)
 }
 
-/// Every number of the parts. No part can be left out: they are taken apart field by field.
-fn slots(params: &mut Params) -> Vec<Slot<'_>> {
+/// Entries of all parameters. The structs are destructured, so the compiler reports a field without an entry.
+fn entries(params: &mut Params) -> Vec<Entry<'_>> {
     let Params {
         finger,
         display,
@@ -163,20 +162,20 @@ fn slots(params: &mut Params) -> Vec<Slot<'_>> {
         comparator,
         host,
     } = params;
-    let mut all = finger::slots(finger);
-    all.extend(surface::slots("display", display, surface::DISPLAY));
-    all.extend(tile::slots(tile));
-    all.extend(bridge::slots(bridge));
-    all.extend(comparator::slots(comparator));
-    all.extend(sensors::slots(sensors));
-    all.extend(host::slots(host));
+    let mut all = finger::entries(finger);
+    all.extend(surface::entries("display", display, surface::DISPLAY));
+    all.extend(tile::entries(tile));
+    all.extend(bridge::entries(bridge));
+    all.extend(comparator::entries(comparator));
+    all.extend(sensors::entries(sensors));
+    all.extend(host::entries(host));
     all
 }
 
-fn similar(slots: &[Slot<'_>], key: &str) -> Vec<String> {
-    let mut near: Vec<_> = slots
+fn similar(entries: &[Entry<'_>], key: &str) -> Vec<String> {
+    let mut near: Vec<_> = entries
         .iter()
-        .map(|slot| (strsim::damerau_levenshtein(&slot.key, key), &slot.key))
+        .map(|entry| (strsim::damerau_levenshtein(&entry.key, key), &entry.key))
         .collect();
     near.sort();
     near.into_iter()

@@ -1,19 +1,19 @@
-//! The sensors' and the converter's numbers.
+//! Parameters of sensors and converter.
 
 use super::Source::{ClassValue, DataSheet, Design, Literature, Recalled, Thesis};
-use super::slot::{Slot, slot, under};
-use super::spread::{FIXED, Tolerance, absolute, between, factor, relative};
+use super::entry::{Entry, entry, prefixed};
+use super::tolerance::{FIXED, Tolerance, absolute, between, factor, relative};
 use crate::sensors::{
     ConverterParams, Delay, ForceParams, MirrorParams, ReferenceParams, SensorParams,
     ThermistorParams,
 };
 
-/// Lag of a thermistor on the display: literature's range for the class.
+/// Time constant of a thermistor on the display: range in the literature for such thermistors.
 const DISPLAY_LAG: Tolerance = between(0.02, 0.5).logarithmic();
-/// Of the others.
+/// Time constant of the other thermistors.
 const LAG: Tolerance = factor(2.0);
 
-pub fn slots(sensors: &mut SensorParams) -> Vec<Slot<'_>> {
+pub fn entries(sensors: &mut SensorParams) -> Vec<Entry<'_>> {
     let SensorParams {
         thermistors,
         skin_sees_contact,
@@ -31,25 +31,24 @@ pub fn slots(sensors: &mut SensorParams) -> Vec<Slot<'_>> {
         ("skin", skin, LAG),
         ("room", room, LAG),
     ] {
-        all.extend(under(name, thermistor(one, lag)));
+        all.extend(prefixed(name, thermistor(one, lag)));
     }
-    all.push(slot(
+    all.push(entry!(
         skin_sees_contact,
-        "skin_sees_contact",
         "1",
         "share of the contact's skin in what the skin thermistor at its edge sees",
         between(0.0, 0.05),
         (0.0, 1.0),
         Thesis("6.4.3"),
     ));
-    all.extend(under("force", self::force(force)));
-    all.extend(under("mirror", self::mirror(mirror)));
-    all.extend(under("reference", self::reference(reference)));
-    all.extend(under("converter", self::converter(converter)));
-    under("sensors", all).collect()
+    all.extend(prefixed("force", self::force(force)));
+    all.extend(prefixed("mirror", self::mirror(mirror)));
+    all.extend(prefixed("reference", self::reference(reference)));
+    all.extend(prefixed("converter", self::converter(converter)));
+    prefixed("sensors", all).collect()
 }
 
-fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Slot<'_>; 6] {
+fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Entry<'_>; 6] {
     let ThermistorParams {
         at_25c_ohm,
         beta_k,
@@ -59,54 +58,48 @@ fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Slot<'_>; 6
         lead_share,
     } = thermistor;
     [
-        slot(
+        entry!(
             at_25c_ohm,
-            "at_25c_ohm",
             "ohm",
             "resistance at 25 C",
             relative(0.01).normal(),
             (100.0, 1e6),
             ClassValue,
         ),
-        slot(
+        entry!(
             beta_k,
-            "beta_k",
             "K",
             "beta",
             relative(0.01).normal(),
             (1000.0, 6000.0),
             Recalled,
         ),
-        slot(
+        entry!(
             pull_up_ohm,
-            "pull_up_ohm",
             "ohm",
             "resistor to the reference",
             relative(0.001).normal(),
             (100.0, 1e6),
             Design,
         ),
-        slot(
+        entry!(
             lag_s,
-            "lag_s",
             "s",
             "lag behind what it sits on",
             lag,
             (1e-3, 100.0),
             Literature,
         ),
-        slot(
+        entry!(
             dissipation_w_k,
-            "dissipation_w_k",
             "W/K",
             "heat that it gives to what it sits on, per kelvin",
             factor(2.0),
             (1e-5, 1.0),
             ClassValue,
         ),
-        slot(
+        entry!(
             lead_share,
-            "lead_share",
             "1",
             "share of the room that its leads let in",
             relative(1.0),
@@ -116,7 +109,7 @@ fn thermistor(thermistor: &mut ThermistorParams, lag: Tolerance) -> [Slot<'_>; 6
     ]
 }
 
-fn force(force: &mut ForceParams) -> [Slot<'_>; 4] {
+fn force(force: &mut ForceParams) -> [Entry<'_>; 4] {
     let ForceParams {
         zero_counts,
         counts_per_n,
@@ -124,73 +117,66 @@ fn force(force: &mut ForceParams) -> [Slot<'_>; 4] {
         delay_s,
     } = force;
     [
-        slot(
+        entry!(
             zero_counts,
-            "zero_counts",
             "counts",
             "level without force",
             relative(0.02),
             (0.0, 4095.0),
             Design,
         ),
-        slot(
+        entry!(
             counts_per_n,
-            "counts_per_n",
             "counts/N",
             "gain",
             relative(0.02),
             (1.0, 4095.0),
             Design,
         ),
-        slot(
+        entry!(
             lag_s,
-            "lag_s",
             "s",
             "lag of the amplifier",
             between(0.2e-3, 5e-3).logarithmic(),
             (1e-5, 10.0),
             ClassValue,
         ),
-        slot(
+        entry!(
             delay_s,
-            "delay_s",
             "s",
             "dead time of its interface",
             FIXED,
-            (0.0, Delay::LONGEST_S),
+            (0.0, Delay::MAX_S),
             Design,
         ),
     ]
 }
 
-fn mirror(mirror: &mut MirrorParams) -> [Slot<'_>; 3] {
+fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 3] {
     let MirrorParams {
         counts_per_a,
         gain_error,
         offset_a,
     } = mirror;
     [
-        slot(
+        entry!(
             counts_per_a,
-            "counts_per_a",
             "counts/A",
             "gain",
             relative(0.01),
             (1.0, 4095.0),
             Design,
         ),
-        slot(
+        entry!(
             gain_error,
-            "gain_error",
             "1",
             "error of the mirror's ratio",
             absolute(0.075),
             (-0.5, 0.5),
             Recalled,
         ),
-        slot(
+        entry!(
             offset_a,
-            "offset_a",
             "A",
             "current that it shows too much",
             absolute(0.05),
@@ -200,34 +186,31 @@ fn mirror(mirror: &mut MirrorParams) -> [Slot<'_>; 3] {
     ]
 }
 
-fn reference(reference: &mut ReferenceParams) -> [Slot<'_>; 3] {
+fn reference(reference: &mut ReferenceParams) -> [Entry<'_>; 3] {
     let ReferenceParams {
         volt,
         error,
         excitation_duty,
     } = reference;
     [
-        slot(
+        entry!(
             volt,
-            "volt",
             "V",
             "reference, which feeds the dividers",
             FIXED,
             (1.0, 5.0),
             Design,
         ),
-        slot(
+        entry!(
             error,
-            "error",
             "1",
             "error of the reference, seen by force and current only",
             absolute(0.02).normal(),
             (-0.5, 0.5),
             ClassValue,
         ),
-        slot(
+        entry!(
             excitation_duty,
-            "excitation_duty",
             "1",
             "part of the time for which the dividers are fed",
             FIXED,
@@ -237,8 +220,8 @@ fn reference(reference: &mut ReferenceParams) -> [Slot<'_>; 3] {
     ]
 }
 
-/// The data sheet's total error of 2 counts typical, 5 at most, shared out.
-fn converter(converter: &mut ConverterParams) -> [Slot<'_>; 4] {
+/// The total error of the data sheet, 2 counts typical and 5 at most, is divided among offset, gain and INL.
+fn converter(converter: &mut ConverterParams) -> [Entry<'_>; 4] {
     let ConverterParams {
         offset_counts,
         gain_error,
@@ -246,36 +229,32 @@ fn converter(converter: &mut ConverterParams) -> [Slot<'_>; 4] {
         noise_counts,
     } = converter;
     [
-        slot(
+        entry!(
             offset_counts,
-            "offset_counts",
             "counts",
             "offset",
             absolute(2.0).normal(),
             (-100.0, 100.0),
             DataSheet,
         ),
-        slot(
+        entry!(
             gain_error,
-            "gain_error",
             "1",
             "gain error",
             absolute(2.0 / 4096.0).normal(),
             (-0.1, 0.1),
             DataSheet,
         ),
-        slot(
+        entry!(
             inl_counts,
-            "inl_counts",
             "counts",
             "bound of the integral non-linearity",
             factor(2.0),
             (0.0, 3.0),
             DataSheet,
         ),
-        slot(
+        entry!(
             noise_counts,
-            "noise_counts",
             "counts",
             "standard deviation of one conversion",
             between(0.4, 1.2),

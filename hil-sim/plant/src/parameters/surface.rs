@@ -1,54 +1,51 @@
-//! What the contact resistance sees of a surface.
+//! Parameters of a surface that determine the contact resistance.
 
 use contact_model::material::Surface;
 
 use super::Source::{self, ClassValue, Thesis};
-use super::slot::{Slot, slot, under};
-use super::spread::{Tolerance, between, relative};
+use super::entry::{Entry, entry, prefixed};
+use super::tolerance::{Tolerance, between, relative};
 
-/// Tolerances of a surface's conductivity, roughness and slope, and their source.
-pub type Finish = ([Tolerance; 3], Source);
+/// Tolerances of conductivity, roughness and slope of a surface, and their source.
+pub type SurfaceTolerances = ([Tolerance; 3], Source);
 
-/// Skin: conductivity as its effusivity differs between people; roughness and slope from one sex to the other.
-pub const SKIN: Finish = (
+/// Skin: conductivity from the spread of its effusivity between people, roughness and slope between the sexes.
+pub const SKIN: SurfaceTolerances = (
     [relative(0.1), between(20.23, 23.15), between(0.28, 0.32)],
     Thesis("2.1 and Table 6-1"),
 );
-/// The display: only the ratio of the three is known, from section 6.3.
-pub const DISPLAY: Finish = ([relative(0.1), relative(0.1), relative(0.1)], ClassValue);
+/// The display: section 6.3 gives only a combination of the three values.
+pub const DISPLAY: SurfaceTolerances = ([relative(0.1), relative(0.1), relative(0.1)], ClassValue);
 
-pub fn slots<'a>(
+pub fn entries<'a>(
     part: &str,
     surface: &'a mut Surface,
-    ([k, rq, slope], source): Finish,
-) -> impl Iterator<Item = Slot<'a>> {
+    ([k, rq, slope], source): SurfaceTolerances,
+) -> impl Iterator<Item = Entry<'a>> {
     let Surface {
         conductivity_w_mk,
         roughness_um,
         slope_rad,
     } = surface;
     let all = [
-        slot(
+        entry!(
             conductivity_w_mk,
-            "conductivity_w_mk",
             "W/(m K)",
             "conductivity in the contact (Eq. 6-9)",
             k,
             (0.01, 3000.0),
             source,
         ),
-        slot(
+        entry!(
             roughness_um,
-            "roughness_um",
             "um",
             "RMS roughness",
             rq,
             (1e-3, 200.0),
             source,
         ),
-        slot(
+        entry!(
             slope_rad,
-            "slope_rad",
             "rad",
             "mean asperity slope",
             slope,
@@ -56,5 +53,5 @@ pub fn slots<'a>(
             source,
         ),
     ];
-    under(part, all)
+    prefixed(part, all)
 }

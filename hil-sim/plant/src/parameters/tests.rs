@@ -10,7 +10,7 @@ fn layered() -> Params {
     }
 }
 
-/// Numbers in a debug print: text that reads as one, between the marks that Rust puts around a field's value.
+/// All numbers in the debug output of the parameters.
 fn numbers(params: &Params) -> Vec<f64> {
     format!("{params:?}")
         .split([' ', ',', '[', ']', '(', ')', '{', '}'])
@@ -19,16 +19,16 @@ fn numbers(params: &Params) -> Vec<f64> {
 }
 
 #[test]
-fn every_number_of_the_parts_is_in_the_box_once() {
+fn every_field_has_exactly_one_parameter() {
     for params in [Params::nominal(), layered()] {
         let all = all(&params);
         assert_eq!(numbers(&params).len(), all.len());
         let keys: HashSet<_> = all.iter().map(|parameter| &parameter.key).collect();
         assert_eq!(keys.len(), all.len(), "keys repeat");
-        // A mark set through each key comes out in one place, and in all places together.
+        // A distinct value set through each key appears once, and no field keeps its value.
         let mut marked = params.clone();
-        for (i, slot) in slots(&mut marked).iter_mut().enumerate() {
-            *slot.value = 1e6 + i as f64;
+        for (i, entry) in entries(&mut marked).iter_mut().enumerate() {
+            *entry.value = 1e6 + i as f64;
         }
         let marks: HashSet<_> = numbers(&marked).into_iter().map(f64::to_bits).collect();
         assert_eq!(marks.len(), all.len(), "two keys share a field");
@@ -69,7 +69,7 @@ fn keys_reach_the_fields_they_name() {
 }
 
 #[test]
-fn nominal_values_are_possible_and_within_their_tolerance() {
+fn nominal_values_are_allowed_and_within_their_tolerance() {
     for params in [Params::nominal(), layered()] {
         for p in all(&params) {
             assert!(p.least <= p.low && p.low <= p.value, "{p:?}");
@@ -84,7 +84,7 @@ fn nominal_values_are_possible_and_within_their_tolerance() {
 }
 
 #[test]
-fn draws_stay_in_tolerance_and_fill_it() {
+fn draws_follow_their_distribution_within_the_tolerance() {
     let nominal = layered();
     let limits = all(&nominal);
     const DRAWS: u64 = 2000;
@@ -106,19 +106,19 @@ fn draws_stay_in_tolerance_and_fill_it() {
             assert!(values().all(|value| value == p.value), "{p:?}");
             continue;
         }
-        // Position between the limits: on the scale on which the draw is meant to be even.
+        // Relative position between the limits, on the scale of the distribution.
         let place = |value: f64| match p.distribution {
             Distribution::LogUniform => (value / p.low).ln() / (p.high / p.low).ln(),
             _ => (value - p.low) / (p.high - p.low),
         };
         let mean = values().map(place).sum::<f64>() / DRAWS as f64;
         let variance = values().map(|v| (place(v) - mean).powi(2)).sum::<f64>() / DRAWS as f64;
-        // Uniform: 1/12. Normal cut at two standard deviations: 0.7737 / 16 (closed form of the cut variance).
+        // Variance: uniform 1/12; normal truncated at two standard deviations 0.7737/16 (closed form).
         let exact = match p.distribution {
             Distribution::Normal => 0.773_741 / 16.0,
             _ => 1.0 / 12.0,
         };
-        // Five standard errors of the mean, and of the variance (which a uniform one's fourth moment bounds).
+        // Five standard errors of mean and variance (the latter bounded by the fourth moment of a uniform distribution).
         assert!(
             (mean - 0.5).abs() < 5.0 * (exact / DRAWS as f64).sqrt(),
             "{}: mean {mean}",
@@ -144,14 +144,14 @@ fn draws_stay_in_tolerance_and_fill_it() {
 }
 
 #[test]
-fn a_seed_fixes_its_draw_whatever_else_is_in_the_box() {
+fn draws_depend_on_seed_and_key_only() {
     let draw_of = |mut params: Params, seed| {
         draw(&mut params, seed);
         params
     };
     assert_eq!(draw_of(layered(), 7), draw_of(layered(), 7));
     assert_ne!(draw_of(layered(), 7), draw_of(layered(), 8));
-    // A finger of more parts shifts nothing else.
+    // A finger of more layers does not change the other draws.
     let (few, many) = (draw_of(Params::nominal(), 7), draw_of(layered(), 7));
     assert_eq!(
         (few.tile, few.bridge, few.sensors),
@@ -165,7 +165,7 @@ fn a_seed_fixes_its_draw_whatever_else_is_in_the_box() {
 }
 
 #[test]
-fn unknown_keys_and_impossible_values_are_named_and_change_nothing() {
+fn unknown_keys_and_values_out_of_range_are_refused_without_change() {
     let mut params = Params::nominal();
     let message = |error: ParameterError| error.to_string();
     let typo = set(&mut params, "tile.imx_a", 5.0).map_err(message);

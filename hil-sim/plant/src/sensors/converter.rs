@@ -1,27 +1,27 @@
-//! The converter: offset, gain, integral non-linearity, noise, quantisation.
+//! A/D converter: offset, gain, integral non-linearity, noise and quantisation.
 
 use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal, StandardUniform};
 
-/// Codes of the 12-bit converter.
+/// Number of codes of the 12-bit converter.
 pub const CODES: f64 = 4096.0;
 
-/// Errors of a converter, as its data sheet (STM32F446, 12 bit) has them before calibration.
+/// Errors of an A/D converter before calibration (STM32F446, 12 bit).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConverterParams {
     /// Offset, counts.
     pub offset_counts: f64,
     /// Gain error, fraction.
     pub gain_error: f64,
-    /// Bound of the integral non-linearity, counts. The largest error of a converter lies between half of it and all
-    /// of it.
+    /// Bound of the integral non-linearity (INL), counts. The largest INL of a simulated converter is between half the
+    /// bound and the bound.
     pub inl_counts: f64,
     /// Standard deviation of one conversion, counts.
     pub noise_counts: f64,
 }
 
 impl ConverterParams {
-    /// As the data sheet has it typically; offset and gain belong to a single device.
+    /// Typical values of the data sheet; offset and gain error differ from device to device.
     pub const NOMINAL: Self = Self {
         offset_counts: 0.0,
         gain_error: 0.0,
@@ -30,30 +30,30 @@ impl ConverterParams {
     };
 }
 
-/// Upper bits whose weights are wrong, each in its own way; between their steps the profile is smooth.
+/// Upper bits with independent weight errors; between their transitions the profile is smooth.
 const BITS: u32 = 5;
 const SEGMENTS: usize = 1 << BITS;
 const SEGMENT_COUNTS: usize = CODES as usize / SEGMENTS;
 
-/// Integral non-linearity of one converter: a bow, and a step at each transition of the upper bits, as capacitors of
-/// a successive-approximation converter that do not quite double make it. Both ends of the range are without error.
+/// Integral non-linearity of one converter: a bow, and steps at the transitions of the upper bits, caused by mismatch of
+/// the binary-weighted capacitors of a successive-approximation converter. Both ends of the range are without error.
 #[derive(Clone, Copy, Debug)]
 struct Profile {
     /// Height of the bow at mid-scale, counts, times 4/CODES^2.
     bow: f64,
-    /// Line of each segment: counts at code zero, and per code.
+    /// Straight line of each segment: counts extrapolated to code zero, and slope in counts per code.
     base: [f64; SEGMENTS],
     slope: f64,
 }
 
 impl Profile {
-    /// Drawn; its largest magnitude over all codes is between half the bound and the bound, counts.
+    /// Draws a profile whose largest magnitude over all codes is between half the bound and the bound, counts.
     fn draw(bound_counts: f64, random: &mut Xoshiro256PlusPlus) -> Self {
         let mut unit = || -> f64 { StandardUniform.sample(random) };
         let peak_counts = bound_counts * (0.5 + 0.5 * unit());
         let mut even = || 2.0 * unit() - 1.0;
         let bow = even();
-        // The error of a sum of unit capacitors grows with the root of their number.
+        // The mismatch of a sum of unit capacitors grows with the square root of their number.
         let weights: [f64; BITS as usize] =
             std::array::from_fn(|bit| even() * 2f64.powi(bit as i32).sqrt() * 0.25);
         let all: f64 = weights.iter().sum();
@@ -64,7 +64,7 @@ impl Profile {
         let shape = Self {
             bow: bow * 4.0 / (CODES * CODES),
             base: std::array::from_fn(steps),
-            // What the upper bits add up to over the range is gain, not non-linearity.
+            // The sum of the weight errors is a gain error, which is subtracted.
             slope: -all / CODES,
         };
         let largest = (0..CODES as u32).map(|code| shape.at(f64::from(code)).abs());
@@ -76,7 +76,7 @@ impl Profile {
         }
     }
 
-    /// Error at a level, counts, of 0 to 4095.
+    /// Error at a level of 0 to 4095 counts.
     #[inline]
     fn at(&self, counts: f64) -> f64 {
         let segment = nearest(counts) as usize / SEGMENT_COUNTS % SEGMENTS;
@@ -84,11 +84,11 @@ impl Profile {
     }
 }
 
-/// The nearest whole number to one of 0 to 2^32. A cast that rounds and minds its limits takes several times as
-/// long, and there are 112 conversions a millisecond.
+/// The nearest integer to a number of 0 to 2^32. A saturating cast after rounding takes several times as long, and there
+/// are 112 conversions in a millisecond.
 #[inline]
 fn nearest(counts: f64) -> u32 {
-    /// From here on a double's last bit counts one.
+    /// From this value on the last bit of an f64 has the weight 1.
     const ONES: f64 = (1u64 << 52) as f64;
     (counts + ONES).to_bits() as u32
 }
@@ -99,16 +99,16 @@ pub struct Converter {
     params: ConverterParams,
     profile: Profile,
     random: Xoshiro256PlusPlus,
-    /// Noise of the conversions to come, counts, from `next` on: drawn together, it costs half.
+    /// Noise of the coming conversions, counts, from `next` on; drawing it in batches halves its cost.
     noise: [f64; BATCH],
     next: usize,
 }
 
-/// Draws of noise at a time: the conversions of one tick.
+/// Noise values in a batch: one for each conversion of a tick.
 const BATCH: usize = 112;
 
 impl Converter {
-    /// A converter whose profile and noise are drawn from `random`.
+    /// A converter that draws its non-linearity and its noise from `random`.
     pub fn new(params: ConverterParams, mut random: Xoshiro256PlusPlus) -> Self {
         Self {
             params,
@@ -119,31 +119,31 @@ impl Converter {
         }
     }
 
-    /// Draws its noise from another source from now on.
+    /// Replaces the random source of the noise.
     pub fn reseed_noise(&mut self, random: Xoshiro256PlusPlus) {
         self.random = random;
         self.next = BATCH;
     }
 
-    /// The level at which it sees an ideal one, both in counts.
-    pub fn seen(&self, ideal_counts: f64) -> f64 {
+    /// Level with offset and gain error for an ideal level, both in counts.
+    pub fn with_offset_and_gain(&self, ideal_counts: f64) -> f64 {
         ideal_counts * (1.0 + self.params.gain_error) + self.params.offset_counts
     }
 
-    /// Converts a level that it [sees](Self::seen): the nearest code, within 0 to 4095. Draws noise.
-    pub fn convert(&mut self, seen_counts: f64) -> u16 {
+    /// Converts a level that includes [offset and gain](Self::with_offset_and_gain), counts: the nearest code, 0 to 4095.
+    pub fn convert(&mut self, level_counts: f64) -> u16 {
         if self.next == BATCH {
-            self.draw();
+            self.draw_noise();
         }
         let noise = self.noise[self.next];
         self.next += 1;
-        let level = (seen_counts + noise).clamp(0.0, CODES - 1.0);
+        let level = (level_counts + noise).clamp(0.0, CODES - 1.0);
         let level = level + self.profile.at(level);
         nearest(level.clamp(0.0, CODES - 1.0)) as u16
     }
 
     #[inline(never)]
-    fn draw(&mut self) {
+    fn draw_noise(&mut self) {
         let mut random = self.random.clone();
         for noise in &mut self.noise {
             let normal: f64 = StandardNormal.sample(&mut random);

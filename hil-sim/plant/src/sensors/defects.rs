@@ -1,69 +1,69 @@
-//! What can be broken in the sensors, in front of the converter.
+//! Defects of the sensors, in front of the A/D converter.
 
 use super::THERMISTORS;
 
-/// The wires of a thermistor.
+/// Circuit of a thermistor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Circuit {
-    /// Sound.
+    /// Intact.
     #[default]
     Closed,
-    /// Open: the pin is at the reference, as if it were very cold.
+    /// Open: the pin is at the reference voltage, which reads very cold.
     Open,
-    /// Shorted to ground, as if it were very hot; so is the pin when nothing feeds the divider.
+    /// Shorted to ground, which reads very hot; also the state of the pin when the divider has no supply.
     Short,
 }
 
-/// What is broken in one thermistor.
+/// Defects of one thermistor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ThermistorDefect {
-    /// Its wires.
+    /// Circuit.
     pub circuit: Circuit,
-    /// What it reads too much, K.
+    /// Offset of its reading, K.
     pub offset_k: f64,
-    /// By how much less heat goes between it and what it sits on and along its leads together, 1 or more; what goes
-    /// along its leads stays. So lag, share of the room and self-heating grow by this factor.
-    pub loose: f64,
+    /// Factor on the thermal resistance from the thermistor to its surroundings, 1 or more; the conductance of the leads
+    /// is unchanged. Time constant, lead error and self-heating increase by this factor.
+    pub resistance_factor: f64,
 }
 
 impl ThermistorDefect {
-    /// Nothing.
+    /// No defect.
     pub const NONE: Self = Self {
         circuit: Circuit::Closed,
         offset_k: 0.0,
-        loose: 1.0,
+        resistance_factor: 1.0,
     };
 }
 
-/// What is broken in the force sensor.
+/// Defects of the force sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ForceDefect {
     /// Its wire is open; the pin is at ground.
     pub open: bool,
-    /// It no longer moves; the converter's noise stays.
+    /// Its signal is frozen; the noise of the converter remains.
     pub stuck: bool,
-    /// What it reads too much, N.
+    /// Offset of its reading, N.
     pub offset_n: f64,
 }
 
-/// What is broken in the sensors of a finger.
+/// Defects of the sensors of a finger; none by default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorDefects {
-    /// Each thermistor.
+    /// Defects of each thermistor.
     pub thermistors: [ThermistorDefect; THERMISTORS],
-    /// Which thermistor, pull-up included, is plugged in where each should be.
-    pub plugged: [usize; THERMISTORS],
+    /// Index of the thermistor, with its pull-up, that is connected to each thermistor channel.
+    pub connected: [usize; THERMISTORS],
     /// Force sensor.
     pub force: ForceDefect,
-    /// What the current mirror always sees, A.
+    /// Current at which the output of the current mirror is frozen, A.
     pub mirror_stuck_a: Option<f64>,
 }
 
 impl SensorDefects {
-    /// Nothing.
+    /// No defect.
     pub const NONE: Self = Self {
         thermistors: [ThermistorDefect::NONE; THERMISTORS],
-        plugged: [0, 1, 2, 3, 4],
+        connected: [0, 1, 2, 3, 4],
         force: ForceDefect {
             open: false,
             stuck: false,

@@ -1,10 +1,10 @@
-//! What the converter sees: thermistors behind dividers, force sensor, current mirror, and the converter itself.
+//! Sensors of one finger: thermistors in dividers, force sensor, current mirror, and the A/D converter.
 //!
-//! The constants are the simulated parts' own. What the device believes of its sensors is in its settings.
+//! These are the true characteristics of the simulated parts; those that the device assumes are in its settings.
 
 mod converter;
 mod defects;
-mod follow;
+mod lag;
 mod params;
 mod thermistor;
 
@@ -18,15 +18,15 @@ pub use params::{ForceParams, MirrorParams, ReferenceParams, SensorParams};
 pub use thermistor::ThermistorParams;
 
 use converter::{CODES, Converter};
-pub(crate) use follow::Delay;
-use follow::Lag;
+pub(crate) use lag::Delay;
+use lag::FirstOrderLag;
 use thermistor::{Site, Thermistor};
 
-/// Signals of one finger that the converter scans.
+/// Number of signals of one finger that the converter scans.
 pub const CHANNELS: usize = 7;
-/// Scans of all channels in one step of the plant, [`STEP_S`](crate::STEP_S).
+/// Number of scans of all channels in one step of the plant, [`STEP_S`](crate::STEP_S).
 pub const SCANS_PER_STEP: usize = 16;
-/// Thermistors of one finger: the first of the channels.
+/// Number of thermistors of one finger; they are the first channels.
 pub const THERMISTORS: usize = 5;
 
 /// A signal of one finger, in the converter's scan order.
@@ -49,7 +49,7 @@ pub enum Channel {
 }
 
 impl Channel {
-    /// All of them in scan order.
+    /// All channels in scan order.
     pub const ALL: [Self; CHANNELS] = [
         Self::Display,
         Self::DisplayCheck,
@@ -61,9 +61,9 @@ impl Channel {
     ];
 }
 
-/// The physical state that the sensors follow.
+/// Physical quantities that the sensors measure.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sensed {
+pub struct SensorInputs {
     /// Display surface, deg C.
     pub display_c: f64,
     /// Sink, deg C.
@@ -76,16 +76,16 @@ pub struct Sensed {
     pub room_c: f64,
     /// Force of the finger, N.
     pub force_n: f64,
-    /// What the driver's current mirror sees, A.
+    /// Current through the driver's current mirror, A.
     pub mirror_a: f64,
 }
 
-/// What the sensors show, before divider and converter.
+/// Readings of the sensors before divider and converter.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Taken {
-    /// The thermistors at the five pins, in the order of [`Channel::ALL`], deg C; none where a wire is broken.
+pub struct SensorReadings {
+    /// Thermistors in the order of [`Channel::ALL`], deg C; none for one that is open or shorted.
     pub thermistors_c: [Option<f64>; THERMISTORS],
-    /// Current mirror, A by the nominal gain.
+    /// Current mirror, A, at the nominal gain.
     pub mirror_a: f64,
 }
 
@@ -95,26 +95,26 @@ pub struct Sensors {
     params: SensorParams,
     thermistors: [Thermistor; THERMISTORS],
     force_delay: Delay,
-    force_lag: Lag,
-    /// What the force sensor has reached, N.
+    force_lag: FirstOrderLag,
+    /// Output of the force sensor behind its lag, N.
     force_n: f64,
-    /// What the current mirror last saw, A.
+    /// Input of the current mirror in the last step, A.
     mirror_a: f64,
     defects: SensorDefects,
-    /// Noiseless level of each channel at the end of the last step, counts.
+    /// Noise-free level of each channel at the end of the last step, counts.
     counts: [f64; CHANNELS],
-    /// What its last conversion saw, and how far it moves from one conversion to the next.
-    seen: [f64; CHANNELS],
-    rise: [f64; CHANNELS],
-    /// Conversions until it has arrived.
-    left: [usize; CHANNELS],
+    /// Level of the last conversion and its change from one conversion to the next, counts.
+    level: [f64; CHANNELS],
+    increment: [f64; CHANNELS],
+    /// Conversions until the level has reached that of the end of the step.
+    remaining: [usize; CHANNELS],
     converter: Converter,
 }
 
 impl Sensors {
-    /// Sensors at rest in a state; the seed fixes the converter's profile and every later draw of noise.
+    /// Sensors in steady state; the seed determines non-linearity and noise of the converter.
     #[must_use]
-    pub fn new(params: SensorParams, state: &Sensed, seed: u64) -> Self {
+    pub fn new(params: SensorParams, state: &SensorInputs, seed: u64) -> Self {
         let excitation_v = params.reference.volt * params.reference.excitation_duty.sqrt();
         let sites = sites(&params, state);
         let mut sensors = Self {
@@ -123,48 +123,50 @@ impl Sensors {
                 Thermistor::new(params.thermistors[i], &sites[i], excitation_v)
             }),
             force_delay: Delay::new(params.force.delay_s, state.force_n),
-            force_lag: Lag::new(params.force.lag_s),
+            force_lag: FirstOrderLag::new(params.force.lag_s),
             force_n: state.force_n,
             mirror_a: state.mirror_a,
             defects: SensorDefects::NONE,
             counts: [0.0; CHANNELS],
-            seen: [0.0; CHANNELS],
-            rise: [0.0; CHANNELS],
-            left: [0; CHANNELS],
+            level: [0.0; CHANNELS],
+            increment: [0.0; CHANNELS],
+            remaining: [0; CHANNELS],
             converter: Converter::new(params.converter, Xoshiro256PlusPlus::seed_from_u64(seed)),
         };
-        sensors.read();
-        sensors.seen = sensors.counts;
+        sensors.update_counts();
+        sensors.level = sensors.counts;
         sensors
     }
 
-    /// Draws the converter's noise of another seed from now on.
+    /// Reseeds the noise of the converter.
     pub fn reseed_noise(&mut self, seed: u64) {
         self.converter
             .reseed_noise(Xoshiro256PlusPlus::seed_from_u64(seed));
     }
 
-    /// Follows the state over a step, s, at whose end it is `state`: temperatures have moved there evenly, the force
-    /// was what it is for the whole step. The conversions of a tick that follow see them on their way there.
-    pub fn step(&mut self, step_s: f64, state: &Sensed) {
+    /// Advances by a step, s, to the inputs `state` at its end: temperatures moved linearly, the force was constant. The
+    /// following conversions interpolate the levels between start and end of the step.
+    pub fn step(&mut self, step_s: f64, state: &SensorInputs) {
         let sites = sites(&self.params, state);
         for (thermistor, site) in self.thermistors.iter_mut().zip(&sites) {
             thermistor.step(step_s, site);
         }
-        let arrived_n = self.force_delay.push(state.force_n);
+        let delayed_n = self.force_delay.push(state.force_n);
         if !self.defects.force.stuck {
-            self.force_n = self.force_lag.towards(step_s, self.force_n, arrived_n);
+            self.force_n = self
+                .force_lag
+                .step_response(step_s, self.force_n, delayed_n);
         }
         self.mirror_a = state.mirror_a;
-        self.seen = self.counts;
-        self.read();
-        // The 16 scans of a tick, spread over the step.
-        self.left = [SCANS_PER_STEP; CHANNELS];
-        self.rise =
-            std::array::from_fn(|i| (self.counts[i] - self.seen[i]) / SCANS_PER_STEP as f64);
+        self.level = self.counts;
+        self.update_counts();
+        // The 16 scans of a tick are spread over the step.
+        self.remaining = [SCANS_PER_STEP; CHANNELS];
+        self.increment =
+            std::array::from_fn(|i| (self.counts[i] - self.level[i]) / SCANS_PER_STEP as f64);
     }
 
-    /// Breaks or mends the sensors. Levels jump: the conversions of the coming step begin where they are then.
+    /// Sets the defects. Levels change at once, and the conversions of the coming step start from the new ones.
     pub fn set_defects(&mut self, defects: &SensorDefects) {
         if self.defects == *defects {
             return;
@@ -173,51 +175,51 @@ impl Sensors {
         for (thermistor, defect) in self.thermistors.iter_mut().zip(defects.thermistors) {
             thermistor.set_defect(defect);
         }
-        self.read();
+        self.update_counts();
     }
 
-    /// Voltage at a thermistor's pin in fractions of the reference: between none, shorted, and all of it, open.
+    /// Divider ratio at a thermistor channel, from 0 (shorted) to 1 (open).
     ///
     /// # Panics
     /// `index` is not below [`THERMISTORS`].
     #[must_use]
     pub fn pin_ratio(&self, index: usize) -> f64 {
-        self.thermistors[self.defects.plugged[index]].ratio()
+        self.thermistors[self.defects.connected[index]].ratio()
     }
 
-    /// What they show.
+    /// Readings of the sensors.
     #[must_use]
-    pub fn taken(&self) -> Taken {
-        let plugged = self.defects.plugged;
-        Taken {
-            thermistors_c: plugged.map(|plugged| self.thermistors[plugged].reads_c()),
+    pub fn sensor_readings(&self) -> SensorReadings {
+        let connected = self.defects.connected;
+        SensorReadings {
+            thermistors_c: connected.map(|connected| self.thermistors[connected].reading_c()),
             mirror_a: self.mirror_counts() / SensorParams::NOMINAL.mirror.counts_per_a,
         }
     }
 
-    /// Level of the current mirror.
+    /// Output of the current mirror, counts.
     fn mirror_counts(&self) -> f64 {
         let current_a = self.defects.mirror_stuck_a.unwrap_or(self.mirror_a);
-        self.params.mirror.counts(current_a) * self.per_volt()
+        self.params.mirror.counts(current_a) * self.reference_scale()
     }
 
-    /// The reference carries the dividers with it, but not what has a scale of its own.
-    fn per_volt(&self) -> f64 {
+    /// Scale of force and current due to the error of the reference; the ratiometric dividers are unaffected.
+    fn reference_scale(&self) -> f64 {
         1.0 / (1.0 + self.params.reference.error)
     }
 
-    /// Converts one channel: the nearest code, within 0 to 4095. Each conversion draws noise: the order of calls is
-    /// part of the experiment.
+    /// Converts one channel to a code of 0 to 4095. All channels share one noise sequence, so results depend on the order
+    /// of calls.
     pub fn convert(&mut self, channel: Channel) -> u16 {
         let i = channel as usize;
-        if self.left[i] > 0 {
-            self.left[i] -= 1;
-            self.seen[i] += self.rise[i];
+        if self.remaining[i] > 0 {
+            self.remaining[i] -= 1;
+            self.level[i] += self.increment[i];
         }
-        self.converter.convert(self.seen[i])
+        self.converter.convert(self.level[i])
     }
 
-    fn read(&mut self) {
+    fn update_counts(&mut self) {
         let (p, force) = (&self.params, &self.defects.force);
         let mut ideal = [0.0; CHANNELS];
         for (index, counts) in ideal.iter_mut().enumerate().take(THERMISTORS) {
@@ -225,15 +227,15 @@ impl Sensors {
         }
         if !force.open {
             ideal[Channel::Force as usize] =
-                p.force.counts(self.force_n + force.offset_n) * self.per_volt();
+                p.force.counts(self.force_n + force.offset_n) * self.reference_scale();
         }
         ideal[Channel::Current as usize] = self.mirror_counts();
-        self.counts = ideal.map(|counts| self.converter.seen(counts));
+        self.counts = ideal.map(|counts| self.converter.with_offset_and_gain(counts));
     }
 }
 
-/// What each thermistor has around it.
-fn sites(params: &SensorParams, state: &Sensed) -> [Site; THERMISTORS] {
+/// Surroundings of each thermistor.
+fn sites(params: &SensorParams, state: &SensorInputs) -> [Site; THERMISTORS] {
     let edge_c =
         state.skin_before_c + params.skin_sees_contact * (state.skin_c - state.skin_before_c);
     let surfaces_c = [

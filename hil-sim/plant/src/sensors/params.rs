@@ -1,24 +1,24 @@
-//! What the sensors are made of.
+//! Parameters of the sensors.
 
 use super::THERMISTORS;
 use super::converter::ConverterParams;
 use super::thermistor::ThermistorParams;
 
-/// Force sensor: an amplified transducer with a live zero.
+/// Force sensor: transducer and amplifier with a live zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceParams {
-    /// Without force, counts.
+    /// Output without force, counts.
     pub zero_counts: f64,
     /// Gain, counts/N.
     pub counts_per_n: f64,
-    /// First-order lag of its amplifier, s.
+    /// Time constant of its amplifier, s.
     pub lag_s: f64,
-    /// Dead time of its interface, s; whole steps of the plant.
+    /// Dead time of its interface, s; rounded to steps of the plant.
     pub delay_s: f64,
 }
 
 impl ForceParams {
-    /// Level at a force, N.
+    /// Output at a force, N, in counts.
     #[must_use]
     pub fn counts(&self, force_n: f64) -> f64 {
         self.zero_counts + self.counts_per_n * force_n
@@ -28,42 +28,41 @@ impl ForceParams {
 /// Current mirror of the driver and its resistor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirrorParams {
-    /// Gain, counts/A: 354 ohm on 1/1100 of the current, the mirror's ratio recalled.
+    /// Gain, counts/A: 354 ohm and a mirror ratio of 1/1100, which was not looked up.
     pub counts_per_a: f64,
     /// Error of the mirror's ratio, fraction.
     pub gain_error: f64,
-    /// Current that it shows too much, A. It cannot show less than none.
+    /// Offset, A; the output is never negative.
     pub offset_a: f64,
 }
 
 impl MirrorParams {
-    /// Level at a current, A.
+    /// Output at a current, A, in counts.
     #[must_use]
     pub fn counts(&self, mirror_a: f64) -> f64 {
         (self.counts_per_a * (mirror_a * (1.0 + self.gain_error) + self.offset_a)).max(0.0)
     }
 }
 
-/// The converter's reference, from which the dividers are fed.
+/// Voltage reference of the converter, which also supplies the dividers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReferenceParams {
-    /// Voltage, V. Matters to self-heating.
+    /// Voltage, V; determines the self-heating of the thermistors.
     pub volt: f64,
-    /// Its error, fraction. Thermistors are read ratiometrically and do not see it; force and current do.
+    /// Relative error; it affects force and current, but not the thermistors, which are read ratiometrically.
     pub error: f64,
-    /// Part of the time for which the dividers are fed, 0 to 1; all of it, as the reference design has no pin to gate
-    /// them with.
+    /// Duty cycle of the dividers' supply, 0 to 1; 1 in the reference design, which has no pin to switch it.
     pub excitation_duty: f64,
 }
 
-/// Everything between the physical state and the codes.
+/// Parameters of all sensors of a finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SensorParams {
-    /// Display, second display, sink, skin, room: in the order of [`Channel`](super::Channel).
+    /// Thermistors in the order of [`Channel`](super::Channel): display, second display, sink, skin, room.
     pub thermistors: [ThermistorParams; THERMISTORS],
-    /// Share of the contact's skin surface in what the skin thermistor at its edge sees, 0 to 1; the rest is the
-    /// skin as it was before contact. Section 6.4.3 of the thesis saw 0.05 deg C of 3 to 5 deg C in 10 s, 2 to 3 mm from
-    /// the contact; one right on its edge sees more.
+    /// Weight of the skin under the contact in the temperature at the skin thermistor on its edge, 0 to 1; the remaining
+    /// weight has the skin temperature before contact. Section 6.4.3 of the thesis measured a change of 0.05 deg C, 2 to
+    /// 3 mm from a contact that changed by 3 to 5 deg C in 10 s; at the edge itself the weight is larger.
     pub skin_sees_contact: f64,
     /// Force sensor.
     pub force: ForceParams,
@@ -86,7 +85,7 @@ pub(crate) const BONDED: ThermistorParams = ThermistorParams {
 };
 
 impl SensorParams {
-    /// The reference design's.
+    /// Values of the reference design.
     pub const NOMINAL: Self = Self {
         thermistors: [
             BONDED,

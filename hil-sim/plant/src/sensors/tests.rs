@@ -1,8 +1,8 @@
-//! All channels together, and what belongs to none of the parts alone.
+//! All channels together.
 
 use super::*;
 
-const REST: Sensed = Sensed {
+const NOMINAL_INPUTS: SensorInputs = SensorInputs {
     display_c: 24.0,
     sink_c: 30.0,
     skin_before_c: 34.0,
@@ -12,7 +12,7 @@ const REST: Sensed = Sensed {
     mirror_a: 0.0,
 };
 
-/// Neither noise nor non-linearity, self-heating nor leads.
+/// Parameters without noise, non-linearity, self-heating and lead error.
 fn ideal() -> SensorParams {
     let mut params = SensorParams::NOMINAL;
     params.converter.noise_counts = 0.0;
@@ -24,14 +24,14 @@ fn ideal() -> SensorParams {
     params
 }
 
-fn counts(params: SensorParams, state: &Sensed) -> [u16; CHANNELS] {
+fn counts(params: SensorParams, state: &SensorInputs) -> [u16; CHANNELS] {
     let mut sensors = Sensors::new(params, state, 1);
     Channel::ALL.map(|channel| sensors.convert(channel))
 }
 
 #[test]
 fn channels_come_in_scan_order() {
-    let state = Sensed {
+    let state = SensorInputs {
         display_c: 10.0,
         sink_c: 20.0,
         skin_before_c: 30.0,
@@ -47,19 +47,19 @@ fn channels_come_in_scan_order() {
 
 #[test]
 fn counts_stay_within_twelve_bits() {
-    let low = Sensed {
+    let low = SensorInputs {
         display_c: -100.0,
         sink_c: 500.0,
         force_n: 13.0,
         mirror_a: 11.0,
-        ..REST
+        ..NOMINAL_INPUTS
     };
     let [display, _, sink, .., force, current] = counts(ideal(), &low);
     assert!(display > 4080 && sink < 8);
     assert_eq!((force, current), (4095, 4095));
     let mut noisy = ideal();
     noisy.converter.noise_counts = 50.0;
-    let mut sensors = Sensors::new(noisy, &REST, 3);
+    let mut sensors = Sensors::new(noisy, &NOMINAL_INPUTS, 3);
     assert!(
         (0..1000).all(|_| sensors.convert(Channel::Current) < 300),
         "noise at zero does not wrap"
@@ -67,11 +67,11 @@ fn counts_stay_within_twelve_bits() {
 }
 
 #[test]
-fn skin_thermistor_hardly_sees_the_contact() {
-    // The thesis: 0.05 deg C where the skin in the contact changed by 3 to 5.
-    let touched = Sensed {
+fn skin_thermistor_responds_weakly_to_the_contact() {
+    // Thesis: a change of 0.05 deg C while the skin under the contact changed by 3 to 5 deg C.
+    let touched = SensorInputs {
         skin_c: 30.0,
-        ..REST
+        ..NOMINAL_INPUTS
     };
     let sensors = Sensors::new(ideal(), &touched, 1);
     let slope = (ideal().thermistors[3].ratio(33.5) - ideal().thermistors[3].ratio(34.5)) * CODES;
@@ -82,12 +82,12 @@ fn skin_thermistor_hardly_sees_the_contact() {
 }
 
 #[test]
-fn each_thermistor_has_its_own_parts() {
-    let nominal = counts(ideal(), &REST);
+fn each_thermistor_has_its_own_parameters() {
+    let nominal = counts(ideal(), &NOMINAL_INPUTS);
     for changed in 0..THERMISTORS {
         let mut params = ideal();
         params.thermistors[changed].at_25c_ohm *= 1.01;
-        let codes = counts(params, &REST);
+        let codes = counts(params, &NOMINAL_INPUTS);
         for (channel, (a, b)) in codes.iter().zip(nominal).enumerate() {
             assert_eq!(*a == b, channel != changed, "channel {channel}");
         }
@@ -95,11 +95,11 @@ fn each_thermistor_has_its_own_parts() {
 }
 
 #[test]
-fn reference_moves_only_what_has_a_scale_of_its_own() {
-    let state = Sensed {
+fn reference_error_affects_force_and_current_only() {
+    let state = SensorInputs {
         force_n: 5.0,
         mirror_a: 4.0,
-        ..REST
+        ..NOMINAL_INPUTS
     };
     let mut params = ideal();
     params.reference.error = 0.01;
@@ -114,28 +114,36 @@ fn mirror_has_gain_error_and_offset_but_no_negative_current() {
     let mut params = ideal();
     params.mirror.gain_error = 0.05;
     params.mirror.offset_a = -0.1;
-    let at = |mirror_a| counts(params, &Sensed { mirror_a, ..REST })[Channel::Current as usize];
+    let at = |mirror_a| {
+        counts(
+            params,
+            &SensorInputs {
+                mirror_a,
+                ..NOMINAL_INPUTS
+            },
+        )[Channel::Current as usize]
+    };
     assert_eq!((at(0.0), at(0.05), at(2.0)), (0, 0, 800));
 }
 
 #[test]
-fn force_sensor_follows_with_its_lag() {
-    let mut sensors = Sensors::new(ideal(), &REST, 1);
-    let pressed = Sensed {
+fn force_sensor_has_a_first_order_lag() {
+    let mut sensors = Sensors::new(ideal(), &NOMINAL_INPUTS, 1);
+    let pressed = SensorInputs {
         force_n: 2.0,
-        ..REST
+        ..NOMINAL_INPUTS
     };
     for k in 1..=6 {
         sensors.step(0.5e-3, &pressed);
-        let wanted_n = 2.0 * (1.0 - (-0.5 * f64::from(k)).exp());
-        assert!((sensors.force_n - wanted_n).abs() < 1e-12);
+        let expected_n = 2.0 * (1.0 - (-0.5 * f64::from(k)).exp());
+        assert!((sensors.force_n - expected_n).abs() < 1e-12);
     }
 }
 
 #[test]
-fn seed_fixes_every_draw() {
+fn same_seed_gives_the_same_codes() {
     let run = |seed| {
-        let mut sensors = Sensors::new(SensorParams::NOMINAL, &REST, seed);
+        let mut sensors = Sensors::new(SensorParams::NOMINAL, &NOMINAL_INPUTS, seed);
         (0..500)
             .map(|k| sensors.convert(Channel::ALL[k % CHANNELS]))
             .collect::<Vec<_>>()
@@ -144,20 +152,19 @@ fn seed_fixes_every_draw() {
     assert_ne!(run(5), run(6));
 }
 
-/// A tick's conversions see the level on its way from the start of the step to its end.
 #[test]
-fn conversions_of_a_tick_move_evenly_to_the_end_of_the_step() {
+fn conversions_of_a_tick_interpolate_linearly_over_the_step() {
     let mut params = SensorParams::NOMINAL;
     params.force.lag_s = 1e-9;
     params.converter.noise_counts = 0.0;
     params.converter.inl_counts = 0.0;
-    let mut sensors = Sensors::new(params, &REST, 1);
-    // 2 N are 600 counts above the zero of 410: 37.5 a conversion.
+    let mut sensors = Sensors::new(params, &NOMINAL_INPUTS, 1);
+    // 2 N are 600 counts above the zero of 410: 37.5 counts per conversion.
     sensors.step(
         1e-3,
-        &Sensed {
+        &SensorInputs {
             force_n: 2.0,
-            ..REST
+            ..NOMINAL_INPUTS
         },
     );
     for k in 1..=16 {

@@ -1,45 +1,45 @@
-//! Where to cut a slab that heat enters through its surface.
+//! Graded finite-volume mesh of a slab that exchanges heat through its surface.
 //!
-//! What happens a time `t` after a contact happens within a few diffusion lengths `sqrt(a t)`: cells that grow by
-//! a constant factor resolve every time alike. Each cell's node lies at the geometric mean of its faces, seen from
-//! the point where the row of cells would shrink to nothing, so that nodes and faces are two rows of the same
-//! factor. Against nodes in the middle this costs nothing and makes the surface of a half-space follow the exact
-//! one but for a ripple that vanishes faster than any power of `growth - 1` (Ingerman, Druskin and Knizhnerman,
-//! 2000, on optimal grids): 2e-7 of its impedance at a factor of 1.2, where the middle is off by 2e-3. Inside, and
-//! in layers, the mesh is of second order as usual.
+//! A time `t` after a contact, temperatures have changed within a few diffusion lengths `sqrt(a t)`: cells that grow by a
+//! constant factor resolve all time scales equally. Each node is at the geometric mean of the faces of its cell, measured
+//! from the point at which the geometric series of faces ends, so that nodes and faces form two geometric series of the
+//! same factor. Compared with nodes in the middle of the cells this costs nothing, and the surface impedance of a
+//! half-space is exact except for a ripple that vanishes faster than any power of `growth - 1` (Ingerman, Druskin and
+//! Knizhnerman, 2000, on optimal grids): 2e-7 at a factor of 1.2, against 2e-3 with nodes in the middle. In the interior
+//! and across layers the mesh is of second order.
 
-/// How finely a slab is cut.
+/// Resolution of a graded mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grading {
     /// Width of the cell at the surface in diffusion lengths of one second, s^1/2.
     pub first: f64,
-    /// Each cell against the one before it, above 1.
+    /// Growth factor from cell to cell, above 1.
     pub growth: f64,
-    /// Depth of a half-space in diffusion lengths of the whole duration. The surface notices the insulated back by
-    /// way of twice that, as `erfc(4) = 1.5e-8` of a step.
+    /// Depth to which a half-space is meshed, in diffusion lengths of the simulated time. The adiabatic back affects the
+    /// surface after twice this length: by `erfc(4) = 1.5e-8` of a step.
     pub depth: f64,
 }
 
 impl Grading {
-    /// What every run uses. The surface cell is the diffusion length of 4 us: its error falls with `a t / width^2`.
-    pub const RUN: Self = Self {
+    /// The mesh of every simulation. The surface cell is the diffusion length of 4 us; its error falls with `a t / width^2`.
+    pub const STANDARD: Self = Self {
         first: 0.002,
         growth: 1.12,
         depth: 4.0,
     };
 }
 
-/// Width of a cell and the distance of its node from the face towards the surface, m.
+/// A cell of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell {
-    /// Width.
+    /// Width, m.
     pub width_m: f64,
-    /// From the face towards the surface to the node.
+    /// Distance of the node from the face nearer to the surface, m.
     pub node_m: f64,
 }
 
 impl Cell {
-    /// A cell in a row in which each is `growth` times as wide as the one before.
+    /// A cell of a series in which each is `growth` times as wide as the one before.
     #[must_use]
     pub fn graded(width_m: f64, growth: f64) -> Self {
         Self {
@@ -49,16 +49,16 @@ impl Cell {
     }
 }
 
-/// Cells that fill a thickness, the first at most `first_m` wide and each 1 to `growth` times the one before.
+/// Cells that fill a thickness, the first at most `first_m` wide, with a constant growth factor of 1 to `growth`.
 #[must_use]
 pub fn fill(thickness_m: f64, first_m: f64, growth: f64) -> Vec<Cell> {
-    // The geometric sum, read backwards; a hair less, so that a row that fits is not given one cell more.
+    // Number of terms of the geometric series, with a tolerance so that an exact fit gets no additional cell.
     let cells = ((thickness_m / first_m * (growth - 1.0)).ln_1p() / growth.ln() - 1e-9).ceil();
     if cells <= 1.0 {
         return vec![Cell::graded(thickness_m, 1.0)];
     }
     let sum = |g: f64| (0..cells as i32).map(|i| g.powi(i)).sum::<f64>();
-    // The factor with which they fill it: the sum rises with it.
+    // The factor at which this number of cells fills the thickness, by bisection.
     let (mut least, mut most) = (1.0, growth);
     while most - least > 1e-15 * most {
         let middle = 0.5 * (least + most);
@@ -76,7 +76,7 @@ pub fn fill(thickness_m: f64, first_m: f64, growth: f64) -> Vec<Cell> {
     } else {
         most
     };
-    // Even cells may have to be narrower; and what the factor's rounding leaves goes to all alike.
+    // Equal cells may have to be narrower; the rounding of the factor is distributed over all cells.
     let first_m = thickness_m / sum(g);
     (0..cells as i32)
         .map(|i| Cell::graded(first_m * g.powi(i), g))
@@ -106,14 +106,14 @@ mod tests {
     }
 
     #[test]
-    fn whole_rows_keep_first_width_and_factor() {
+    fn a_thickness_that_fits_keeps_first_width_and_growth() {
         let thickness_m: f64 = (0..30).map(|i| 2e-6 * 1.2f64.powi(i)).sum();
         let cells = fill(thickness_m, 2e-6, 1.2);
         assert_eq!(cells.len(), 30);
         assert!((cells[0].width_m / 2e-6 - 1.0).abs() < 1e-9);
     }
 
-    /// Impedance of a half-space of unit properties at a rate `s` of growth: exact is `1/sqrt(s)`.
+    /// Surface impedance of a meshed half-space of unit properties at the Laplace variable `s`; exact is `1/sqrt(s)`.
     fn impedance(growth: f64, s: f64, node: fn(&Cell) -> f64) -> f64 {
         let cells = fill(1e9, 1.0, growth);
         let mut admittance = 0.0;
@@ -128,7 +128,7 @@ mod tests {
 
     #[test]
     fn nodes_at_the_geometric_mean_follow_a_half_space() {
-        // Over one period of the row's self-similarity, far from both of its ends.
+        // Over one period of the self-similar mesh, far from both of its ends.
         let worst = |growth: f64, node| {
             (0..12)
                 .map(|k| 1e-8 * growth.powf(f64::from(k) / 6.0))

@@ -1,35 +1,35 @@
-//! A body that heat enters through one plane surface: layers of tissue or one material, per square metre.
+//! One-dimensional conduction in layers of tissue or in one material, per square metre of surface.
 
-mod equilibrium;
-mod lanes;
+mod batch;
+mod depth_probe;
 mod mesh;
-mod probe;
+mod steady_state;
 
-pub use equilibrium::{Equilibrium, equilibrium};
-pub use lanes::{Lanes, Row};
+pub use batch::{SlabBatch, SurfaceEquation};
+pub use depth_probe::DepthProbe;
 pub use mesh::{Cell, Grading};
-pub use probe::Probe;
+pub use steady_state::{SteadyState, steady_state};
 
 use contact_model::material::Material;
 
-/// What a layer consists of.
+/// Material of a layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Medium {
     /// Thermal conductivity, W/(m K).
     pub conductivity_w_mk: f64,
-    /// Heat capacity of a volume, J/(m3 K).
+    /// Volumetric heat capacity, J/(m3 K).
     pub capacity_j_m3k: f64,
-    /// Heat that blood brings for each kelvin by which it is warmer, W/(m3 K): perfusion times heat capacity of
-    /// the blood, of Pennes' equation (Eq. 1-1).
+    /// Perfusion times volumetric heat capacity of blood, W/(m3 K): the exchange coefficient of Pennes' equation
+    /// (Eq. 1-1).
     pub perfusion_w_m3k: f64,
-    /// Heat of metabolism, W/m3.
+    /// Metabolic heat, W/m3.
     pub metabolism_w_m3: f64,
 }
 
 impl Medium {
-    /// A material without blood.
+    /// A material without perfusion and metabolism.
     #[must_use]
-    pub fn dead(material: &Material) -> Self {
+    pub fn without_blood(material: &Material) -> Self {
         Self {
             conductivity_w_mk: material.surface.conductivity_w_mk,
             capacity_j_m3k: material.volumetric_heat_j_m3k(),
@@ -43,57 +43,57 @@ impl Medium {
     }
 }
 
-/// A layer; one that is endless must be the last.
+/// A layer; one of infinite thickness must be the last.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
-    /// Thickness, m; infinite for a half-space, which is cut where nothing is felt within the duration.
+    /// Thickness, m; infinite for a half-space, which is meshed as deep as heat diffuses in the simulated time.
     pub thickness_m: f64,
-    /// What it consists of.
+    /// Material.
     pub medium: Medium,
 }
 
-/// What lies behind the deepest layer.
+/// Boundary condition behind the deepest layer.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Back {
-    /// Nothing that takes heat.
+pub enum BackBoundary {
+    /// Adiabatic.
     Insulated,
-    /// Something of a fixed temperature, deg C, behind a film, W/(m2 K); infinite if the face itself has it.
+    /// Convective: a fixed temperature, deg C, behind a film coefficient, W/(m2 K); infinite for an isothermal back.
     Film {
-        /// Conductance of the film.
+        /// Film coefficient, W/(m2 K).
         film_w_m2k: f64,
-        /// Temperature behind it.
+        /// Temperature behind the film, deg C.
         temperature_c: f64,
     },
 }
 
-/// A slab cut into cells, the surface first; all per square metre.
+/// A meshed slab, cells ordered from the surface; all quantities per square metre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slab {
     /// Heat capacity of each cell, J/(m2 K).
     pub capacity_j_m2k: Vec<f64>,
-    /// From each node to the next deeper one, W/(m2 K).
+    /// Conductance from each node to the next deeper one, W/(m2 K).
     pub link_w_m2k: Vec<f64>,
-    /// From the surface to the first node, m2 K/W.
+    /// Resistance from the surface to the first node, m2 K/W.
     pub surface_m2k_w: f64,
-    /// From the last node to what lies behind it, W/(m2 K), and its temperature, deg C.
+    /// Conductance from the last node through the back, W/(m2 K), and temperature behind it, deg C.
     pub back: (f64, f64),
-    /// Exchange of each cell with blood at full flow, W/(m2 K).
+    /// Exchange coefficient of each cell with blood at full flow, W/(m2 K).
     pub blood_w_m2k: Vec<f64>,
-    /// Heat of metabolism in each cell, W/m2.
+    /// Metabolic heat of each cell, W/m2.
     pub metabolism_w_m2: Vec<f64>,
     /// Depth of each node, m.
     pub depth_m: Vec<f64>,
 }
 
-/// Half-spaces are cut for at least this duration, s: deep enough for the receptors.
+/// Half-spaces are meshed for at least this simulated time, s, so that they contain the receptors.
 const SHORTEST_S: f64 = 1.0;
-/// Depth of a half-space at rest in lengths over which blood evens temperatures out: `exp(-12)` is 6e-6.
-const FELT: f64 = 12.0;
+/// Depth of a perfused half-space in decay lengths of its steady state: `exp(-12)` is 6e-6.
+const STEADY_STATE_LENGTHS: f64 = 12.0;
 
 impl Slab {
-    /// Cuts layers, of which at least one is given, for a surface that is watched for `duration_s`.
+    /// Meshes one or more layers for a simulated time of `duration_s`.
     #[must_use]
-    pub fn new(layers: &[Layer], back: Back, duration_s: f64, grading: &Grading) -> Self {
+    pub fn new(layers: &[Layer], back: BackBoundary, duration_s: f64, grading: &Grading) -> Self {
         let mut slab = Self {
             capacity_j_m2k: Vec::new(),
             link_w_m2k: Vec::new(),
@@ -103,8 +103,7 @@ impl Slab {
             metabolism_w_m2: Vec::new(),
             depth_m: Vec::new(),
         };
-        // Width of the next cell in diffusion lengths, depth of its face, and what lies between that and the node
-        // before it.
+        // Width of the next cell in diffusion lengths, depth of its face, and resistance from the node before to it.
         let (mut next, mut face_m, mut behind_m2k_w) = (grading.first, 0.0, 0.0);
         for Layer {
             thickness_m,
@@ -116,14 +115,14 @@ impl Slab {
             let thickness_m = if thickness_m.is_finite() {
                 *thickness_m
             } else {
-                let moved_m = grading.depth * (a * duration_s.max(SHORTEST_S)).sqrt();
-                // At rest the surface is felt as deep as the blood lets it.
-                let felt_m = if medium.perfusion_w_m3k > 0.0 {
-                    FELT * (k / medium.perfusion_w_m3k).sqrt()
+                let diffusion_m = grading.depth * (a * duration_s.max(SHORTEST_S)).sqrt();
+                // The steady state decays with depth over the length sqrt(k/perfusion).
+                let steady_state_m = if medium.perfusion_w_m3k > 0.0 {
+                    STEADY_STATE_LENGTHS * (k / medium.perfusion_w_m3k).sqrt()
                 } else {
                     0.0
                 };
-                moved_m.max(felt_m)
+                diffusion_m.max(steady_state_m)
             };
             let cells = mesh::fill(thickness_m, next * a.sqrt(), grading.growth);
             for cell in &cells {
@@ -144,7 +143,7 @@ impl Slab {
                 next = cell.width_m * grading.growth / a.sqrt();
             }
         }
-        if let Back::Film {
+        if let BackBoundary::Film {
             film_w_m2k,
             temperature_c,
         } = back
@@ -154,7 +153,7 @@ impl Slab {
         slab
     }
 
-    /// Number of cells, at least one.
+    /// Number of cells, at least 1.
     #[must_use]
     pub fn cells(&self) -> usize {
         self.capacity_j_m2k.len()

@@ -1,4 +1,4 @@
-//! Slabs alone, against closed forms.
+//! Single slabs against closed-form solutions.
 
 use std::f64::consts::PI;
 
@@ -21,41 +21,43 @@ fn layer(thickness_m: f64, medium: Medium) -> Layer {
     }
 }
 
-/// Core at a temperature right at the deepest face.
-const CORE: Back = Back::Film {
+/// Isothermal core at the deepest face.
+const CORE: BackBoundary = BackBoundary::Film {
     film_w_m2k: f64::INFINITY,
     temperature_c: 0.0,
 };
 
-/// One lane whose surface is held at a temperature, or insulated.
-struct Held {
-    lanes: Lanes<1>,
+/// One slab whose surface is held at a temperature, or insulated.
+struct HeldSlab {
+    slab: SlabBatch<1>,
     surface_w_m2k: f64,
     surface_c: f64,
 }
 
-impl Held {
+impl HeldSlab {
     fn step(&mut self, index: usize) {
-        let flux = self.surface_w_m2k * (self.surface_c - self.lanes.surface_c(0));
-        let close = |row: Row, u: f64| [row.rhs / (row.pivot + u)];
-        let [row] = self.lanes.first(index, [flux]);
-        let [row] = self.lanes.second(index, close(row, self.surface_w_m2k));
-        self.lanes.finish(index, close(row, self.surface_w_m2k));
+        let flux = self.surface_w_m2k * (self.surface_c - self.slab.surface_c(0));
+        let close = |row: SurfaceEquation, u: f64| [row.rhs / (row.pivot + u)];
+        let [row] = self.slab.first_stage(index, [flux]);
+        let [row] = self
+            .slab
+            .second_stage(index, close(row, self.surface_w_m2k));
+        self.slab.finish_step(index, close(row, self.surface_w_m2k));
     }
 }
 
 #[test]
-fn half_space_answers_a_step_as_the_error_function() {
+fn temperature_step_of_a_half_space_follows_the_error_function() {
     let slab = Slab::new(
-        &[layer(f64::INFINITY, Medium::dead(&SKIN))],
-        Back::Insulated,
+        &[layer(f64::INFINITY, Medium::without_blood(&SKIN))],
+        BackBoundary::Insulated,
         10.0,
-        &Grading::RUN,
+        &Grading::STANDARD,
     );
     let step_s = 1e-3;
     let lengths_s: Vec<f64> = (0..13).map(|k| step_s / f64::from(1 << k)).collect();
-    let mut held = Held {
-        lanes: Lanes::new([&slab], [34.0], &lengths_s),
+    let mut held = HeldSlab {
+        slab: SlabBatch::new([&slab], [34.0], &lengths_s),
         surface_w_m2k: 1.0 / slab.surface_m2k_w,
         surface_c: 24.0,
     };
@@ -69,7 +71,7 @@ fn half_space_answers_a_step_as_the_error_function() {
     for k in 0..10_000 {
         for (at_s, allowed) in [(0.02, 2e-3), (0.2, 2e-4), (2.0, 1e-4), (9.0, 1e-4)] {
             if (t_s - at_s).abs() < 0.5 * step_s {
-                let flux = held.surface_w_m2k * (held.lanes.surface_c(0) - held.surface_c);
+                let flux = held.surface_w_m2k * (held.slab.surface_c(0) - held.surface_c);
                 let exact = SKIN.effusivity() * 10.0 / (PI * t_s).sqrt();
                 assert!(
                     (flux / exact - 1.0).abs() < allowed,
@@ -78,11 +80,11 @@ fn half_space_answers_a_step_as_the_error_function() {
                 for node in 0..slab.cells() {
                     let z = slab.depth_m[node] / (2.0 * (SKIN.diffusivity_m2_s() * t_s).sqrt());
                     let exact_c = 24.0 + 10.0 * libm::erf(z);
-                    // The insulated back is at z = 2.1 in the end.
+                    // At the end of the run the insulated back is at z = 2.1.
                     if z > 1.0 {
                         break;
                     }
-                    let off_c = held.lanes.node_c(0, node) - exact_c;
+                    let off_c = held.slab.node_c(0, node) - exact_c;
                     assert!(
                         off_c.abs() < 6e-3,
                         "off by {off_c} at z = {z} after {t_s} s"
@@ -96,7 +98,7 @@ fn half_space_answers_a_step_as_the_error_function() {
 }
 
 #[test]
-fn layers_at_rest_conduct_as_resistances_in_series() {
+fn layers_in_steady_state_conduct_as_resistances_in_series() {
     let layers = [(0.65e-3, 0.21), (1.2e-3, 0.37), (4e-3, 0.16)];
     let dead = |k| Medium {
         conductivity_w_mk: k,
@@ -107,24 +109,24 @@ fn layers_at_rest_conduct_as_resistances_in_series() {
     let film_w_m2k = 50.0;
     let slab = Slab::new(
         &layers.map(|(l, k)| layer(l, dead(k))),
-        Back::Film {
+        BackBoundary::Film {
             film_w_m2k,
             temperature_c: 0.0,
         },
         60.0,
-        &Grading::RUN,
+        &Grading::STANDARD,
     );
     let loss_w_m2 = 120.0;
-    let rest = equilibrium(&slab, 34.0, loss_w_m2).expect("a core");
+    let steady = steady_state(&slab, 34.0, loss_w_m2).expect("a core");
     let resistance: f64 = layers.iter().map(|(l, k)| l / k).sum::<f64>() + 1.0 / film_w_m2k;
     let core_c = 34.0 + loss_w_m2 * resistance;
     assert!(
-        (rest.core_c - core_c).abs() < 1e-11,
+        (steady.core_c - core_c).abs() < 1e-11,
         "{} is not {core_c}",
-        rest.core_c
+        steady.core_c
     );
     // At every node too.
-    for (node, t) in rest.node_c.iter().enumerate() {
+    for (node, t) in steady.node_c.iter().enumerate() {
         let (mut above, mut left) = (0.0, slab.depth_m[node]);
         for (l, k) in layers {
             above += left.min(l) / k;
@@ -138,7 +140,7 @@ fn layers_at_rest_conduct_as_resistances_in_series() {
 }
 
 #[test]
-fn blood_and_metabolism_at_rest_follow_the_hyperbolic_solution() {
+fn steady_state_with_blood_and_metabolism_follows_the_hyperbolic_solution() {
     let (thickness_m, surface_c, loss_w_m2) = (8e-3, 33.0, 90.0);
     let m = (TISSUE.perfusion_w_m3k / TISSUE.conductivity_w_mk).sqrt();
     let warmth_c = TISSUE.metabolism_w_m3 / TISSUE.perfusion_w_m3k;
@@ -152,37 +154,37 @@ fn blood_and_metabolism_at_rest_follow_the_hyperbolic_solution() {
     for (growth, name) in [(1.2, "coarse"), (1.0954, "middle"), (1.0466, "fine")] {
         let grading = Grading {
             growth,
-            ..Grading::RUN
+            ..Grading::STANDARD
         };
         let slab = Slab::new(&[layer(thickness_m, TISSUE)], CORE, 60.0, &grading);
-        let rest = equilibrium(&slab, surface_c, loss_w_m2).expect("a core");
+        let steady = steady_state(&slab, surface_c, loss_w_m2).expect("a core");
         let core_c = surface_c - above_c(0.0);
-        let mut worst_c = (rest.core_c - core_c).abs();
-        for (x, t) in slab.depth_m.iter().zip(&rest.node_c) {
+        let mut worst_c = (steady.core_c - core_c).abs();
+        for (x, t) in slab.depth_m.iter().zip(&steady.node_c) {
             worst_c = worst_c.max((t - core_c - above_c(*x)).abs());
         }
         assert_figure(&format!("plant.blood_at_rest_{name}"), 1e3 * worst_c);
         assert!(worst_c < last_c / 3.0, "{growth}: {worst_c}");
         last_c = worst_c;
 
-        // And it stays so.
-        let mut held = Held {
-            lanes: Lanes::new([&slab], [0.0], &[10.0]),
+        // The steady state does not drift.
+        let mut held = HeldSlab {
+            slab: SlabBatch::new([&slab], [0.0], &[10.0]),
             surface_w_m2k: 0.0,
             surface_c,
         };
-        held.lanes.set_core_c(0, rest.core_c);
-        for (node, t) in rest.node_c.iter().enumerate() {
-            held.lanes.set_node_c(0, node, *t);
+        held.slab.set_core_c(0, steady.core_c);
+        for (node, t) in steady.node_c.iter().enumerate() {
+            held.slab.set_node_c(0, node, *t);
         }
         for _ in 0..10 {
-            let [row] = held.lanes.first(0, [-loss_w_m2]);
-            let [row] = held.lanes.second(0, [row.rhs / row.pivot]);
-            held.lanes.finish(0, [row.rhs / row.pivot]);
+            let [row] = held.slab.first_stage(0, [-loss_w_m2]);
+            let [row] = held.slab.second_stage(0, [row.rhs / row.pivot]);
+            held.slab.finish_step(0, [row.rhs / row.pivot]);
         }
-        for (node, t) in rest.node_c.iter().enumerate() {
+        for (node, t) in steady.node_c.iter().enumerate() {
             assert!(
-                (held.lanes.node_c(0, node) - t).abs() < 1e-9,
+                (held.slab.node_c(0, node) - t).abs() < 1e-9,
                 "node {node} drifts"
             );
         }
@@ -190,35 +192,35 @@ fn blood_and_metabolism_at_rest_follow_the_hyperbolic_solution() {
 }
 
 #[test]
-fn what_nothing_keeps_warm_has_no_equilibrium_but_the_even_one() {
-    let dead = [layer(f64::INFINITY, Medium::dead(&SKIN))];
-    let slab = Slab::new(&dead, Back::Insulated, 60.0, &Grading::RUN);
-    assert_eq!(equilibrium(&slab, 34.0, 1.0), None);
-    let even = equilibrium(&slab, 34.0, 0.0).expect("even");
+fn slab_without_heat_source_has_only_the_uniform_steady_state() {
+    let dead = [layer(f64::INFINITY, Medium::without_blood(&SKIN))];
+    let slab = Slab::new(&dead, BackBoundary::Insulated, 60.0, &Grading::STANDARD);
+    assert_eq!(steady_state(&slab, 34.0, 1.0), None);
+    let even = steady_state(&slab, 34.0, 0.0).expect("even");
     assert!(even.core_c == 34.0 && even.node_c.iter().all(|t| *t == 34.0));
 }
 
-/// A mode of layered tissue under blood that decays without changing its shape: `exp(-rate t) cos(pi r/R)` above
-/// the blood, with `r` the thermal resistance from the surface and `R` that of all layers. With
-/// `perfusion = c rate - (pi/R)^2/k` in every layer it solves Pennes' equation, whatever the layers.
+/// Eigenmode of layered tissue with blood: `exp(-rate t) cos(pi r/R)` relative to the blood, with the thermal resistance
+/// `r` from the surface and `R` of all layers. It solves Pennes' equation if every layer has
+/// `perfusion = c rate - (pi/R)^2/k`.
 struct Mode {
     layers: Vec<Layer>,
     rate: f64,
     total_m2k_w: f64,
 }
 
-/// A mesh whose cells fill the layers of [`Mode`] exactly, and so do those that each is cut into.
+/// A mesh whose cells, and their subdivisions, fill the layers of [`Mode`] exactly.
 const COARSE: Grading = Grading {
     first: 0.0103,
     growth: 1.078,
     depth: 4.0,
 };
-/// Its cells in each layer.
+/// Number of cells in each layer.
 const CELLS: [i32; 3] = [32, 20, 16];
 
 impl Mode {
     fn new() -> Self {
-        // Conductivity and heat capacity of a volume; thickness in diffusion lengths, as a row of cells counts.
+        // Conductivity and volumetric heat capacity; thickness in diffusion lengths, the coordinate of the mesh.
         let reached =
             |cells: i32| COARSE.first * (COARSE.growth.powi(cells) - 1.0) / (COARSE.growth - 1.0);
         let mut above = 0;
@@ -265,22 +267,22 @@ impl Mode {
         (PI * above / self.total_m2k_w).cos()
     }
 
-    /// Number of cells and largest error of any node after one time constant, with a mesh and a number of steps.
+    /// Number of cells and largest error of a node after one time constant, for a mesh and a number of steps.
     fn error(&self, grading: &Grading, steps: u32) -> (usize, f64) {
-        let slab = Slab::new(&self.layers, Back::Insulated, 60.0, grading);
+        let slab = Slab::new(&self.layers, BackBoundary::Insulated, 60.0, grading);
         let step_s = 1.0 / (self.rate * f64::from(steps));
-        let mut lanes = Lanes::new([&slab], [0.0], &[step_s]);
+        let mut batch = SlabBatch::new([&slab], [0.0], &[step_s]);
         for (node, depth_m) in slab.depth_m.iter().enumerate() {
-            lanes.set_node_c(0, node, self.shape(*depth_m));
+            batch.set_node_c(0, node, self.shape(*depth_m));
         }
         for _ in 0..steps {
-            let [row] = lanes.first(0, [0.0]);
-            let [row] = lanes.second(0, [row.rhs / row.pivot]);
-            lanes.finish(0, [row.rhs / row.pivot]);
+            let [row] = batch.first_stage(0, [0.0]);
+            let [row] = batch.second_stage(0, [row.rhs / row.pivot]);
+            batch.finish_step(0, [row.rhs / row.pivot]);
         }
         let decayed = (-1.0f64).exp();
         let off = slab.depth_m.iter().enumerate();
-        let worst = off.map(|(node, x)| (lanes.node_c(0, node) - decayed * self.shape(*x)).abs());
+        let worst = off.map(|(node, x)| (batch.node_c(0, node) - decayed * self.shape(*x)).abs());
         (slab.cells(), worst.fold(0.0, f64::max))
     }
 }
@@ -288,7 +290,7 @@ impl Mode {
 #[test]
 fn space_converges_at_second_order_across_layers() {
     let mode = Mode::new();
-    // Every cell is cut in two: a row with the square root of the factor.
+    // Each cell is divided in two: the growth factor becomes its square root.
     let mut grading = COARSE;
     let (mut cells, mut error) = mode.error(&grading, 1000);
     assert_eq!(cells, CELLS.iter().sum::<i32>() as usize);

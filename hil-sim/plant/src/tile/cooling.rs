@@ -1,23 +1,23 @@
-//! What can be broken in the cooling of the sink.
+//! Defects of the sink's cooling.
 
-/// Conductance of a heater to a sink that it holds at its temperature, W/K.
-pub const HEATER_W_K: f64 = 1e4;
+/// Conductance from an external thermostat to the sink, W/K: large enough to hold the sink at its temperature.
+pub const THERMOSTAT_W_K: f64 = 1e4;
 
-/// What is broken in the cooling.
+/// Defects of the cooling; none by default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CoolingDefects {
-    /// By how much less heat the sink gives to its coolant, 1 or more.
-    pub resistance: f64,
-    /// Temperature of the coolant, deg C, instead of the one it should have.
+    /// Factor on the thermal resistance from sink to coolant, 1 or more.
+    pub resistance_factor: f64,
+    /// Temperature of the coolant instead of the nominal one, deg C.
     pub coolant_c: Option<f64>,
-    /// Something strong holds the sink at a temperature, deg C.
+    /// Temperature at which an external thermostat holds the sink, deg C.
     pub held_c: Option<f64>,
 }
 
 impl CoolingDefects {
-    /// Nothing.
+    /// No defect.
     pub const NONE: Self = Self {
-        resistance: 1.0,
+        resistance_factor: 1.0,
         coolant_c: None,
         held_c: None,
     };

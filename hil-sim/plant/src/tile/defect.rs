@@ -1,14 +1,14 @@
-//! What can be broken in the module.
+//! Defect of the thermoelectric module.
 
-/// What is broken in the legs.
+/// Defect of the legs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModuleDefect {
-    /// Share of the Seebeck effect that is left, 0 to 1: legs that have aged, or that solder bridges.
+    /// Remaining fraction of the Seebeck coefficient, 0 to 1: aged legs, or legs shorted by solder.
     pub seebeck: f64,
 }
 
 impl ModuleDefect {
-    /// Nothing.
+    /// No defect.
     pub const NONE: Self = Self { seebeck: 1.0 };
 }
 

@@ -1,25 +1,25 @@
-//! What a tile is made of.
+//! Parameters of the tile.
 
 /// Zero of the Celsius scale, K.
 pub const ZERO_C_K: f64 = 273.15;
 
-/// A thermoelectric module as its data sheet describes it, between two ceramic plates on a sink.
+/// A thermoelectric module, described by its data sheet, between two ceramic plates on a sink.
 ///
-/// No data sheet of the thesis's module (Marlow DT 6-6) was found: these are class values, and none was measured.
+/// No data sheet of the thesis's module (Marlow DT 6-6) was found: the values are typical of its class, and none was
+/// measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TileParams {
-    /// Current of the largest temperature difference, A.
+    /// Current at the largest temperature difference, A.
     pub imax_a: f64,
     /// Voltage at that current and difference, V.
     pub vmax_v: f64,
-    /// Largest temperature difference, without load, K.
+    /// Largest temperature difference, at zero heat load, K.
     pub dtmax_k: f64,
-    /// Largest heat pumped, without a temperature difference, W.
+    /// Largest heat pumped, at zero temperature difference, W.
     pub qmax_w: f64,
-    /// Temperature of the hot side in the data sheet, deg C.
+    /// Hot-side temperature to which the data sheet refers, deg C.
     pub sheet_hot_c: f64,
-    /// How much Seebeck coefficient, resistivity and conductivity vary with temperature: 1 as bismuth telluride
-    /// does, 0 not at all.
+    /// Temperature dependence of Seebeck coefficient, resistivity and conductivity: 1 that of bismuth telluride, 0 none.
     pub variation: f64,
     /// Heat capacity of the legs, J/K.
     pub legs_j_k: f64,
@@ -31,26 +31,26 @@ pub struct TileParams {
     pub ceramic_m: f64,
     /// Conductivity of the ceramic, W/(m K).
     pub ceramic_w_mk: f64,
-    /// Heat capacity of the ceramic, J/(m3 K).
+    /// Volumetric heat capacity of the ceramic, J/(m3 K).
     pub ceramic_j_m3k: f64,
-    /// Part of the display plate that a finger can touch, m2; the finger's heat spreads over it evenly.
+    /// Area of the display plate that a finger can touch, m2; the finger's heat is distributed uniformly over it.
     pub patch_m2: f64,
-    /// Film of air on the display plate, radiation included, W/(m2 K).
+    /// Film coefficient of air on the display plate, radiation included, W/(m2 K).
     pub film_w_m2k: f64,
-    /// From the hot plate to the sink, W/K.
+    /// Conductance of the thermal paste from the hot plate to the sink, W/K.
     pub paste_w_k: f64,
     /// Heat capacity of the sink, J/K.
     pub sink_j_k: f64,
-    /// From the sink to what cools it, K/W.
+    /// Thermal resistance from the sink to the coolant, K/W.
     pub sink_k_w: f64,
-    /// Coolant of the sink above the room, K: 0 for a fan, negative for a chiller.
+    /// Temperature of the coolant minus that of the room, K: 0 for a fan, negative for a chiller.
     pub coolant_k: f64,
 }
 
 impl TileParams {
-    /// Class values of a module of 71 couples, 30 mm x 30 mm with 0.8 mm alumina plates, rated 6 A, 8.2 V and 67 K,
+    /// Typical module of 71 couples, 30 mm x 30 mm with 0.8 mm alumina plates, rated 6 A, 8.2 V and 67 K,
     /// on a fan-cooled sink.
-    pub const CLASS: Self = Self {
+    pub const NOMINAL: Self = Self {
         imax_a: 6.0,
         vmax_v: 8.2,
         dtmax_k: 67.0,
@@ -95,7 +95,7 @@ impl TileParams {
         self.imax_a * self.vmax_v * (hot_k - self.dtmax_k) / (2.0 * hot_k * self.dtmax_k)
     }
 
-    /// The largest heat that the other three figures imply, W. The data sheet's own figure is a check on them.
+    /// Largest heat pumped that the other three data imply, W; a consistency check on the data sheet's own value.
     #[must_use]
     pub fn implied_qmax_w(&self) -> f64 {
         let hot_k = self.sheet_hot_k();

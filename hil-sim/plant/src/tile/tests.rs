@@ -1,4 +1,4 @@
-//! Against the closed form of a module at rest, its data sheet, and a plate that is cut finely.
+//! Tile against the closed-form steady state of a module, its data sheet, and a finely meshed plate.
 
 use std::f64::consts::PI;
 
@@ -6,24 +6,24 @@ use documented_figures::{assert_figure, assert_row};
 
 use super::*;
 
-/// Long enough for rest in a few steps: the scheme is L-stable.
+/// Long enough to reach the steady state in a few steps: the integration is L-stable.
 const REST_S: f64 = 1e12;
 const ROOM_C: f64 = 24.0;
 
-/// The class module with properties that do not vary and no air.
+/// The nominal module with constant properties and no exchange with the air.
 fn plain() -> TileParams {
     TileParams {
         variation: 0.0,
         film_w_m2k: 0.0,
-        ..TileParams::CLASS
+        ..TileParams::NOMINAL
     }
 }
 
-/// The tile after steps under a constant current and an even load on its plate, W.
+/// The tile after steps under a constant current and a uniform heat load on its plate, W.
 fn after(params: TileParams, current_a: f64, load_w: f64, step_s: f64, steps: usize) -> Tile {
     let mut tile = Tile::new(params, ROOM_C);
     for z in 0..ZONES {
-        tile.stack.source[0][z] += load_w * tile.share[z];
+        tile.network.source[0][z] += load_w * tile.share[z];
     }
     let current = Current {
         mean_a: current_a,
@@ -32,14 +32,14 @@ fn after(params: TileParams, current_a: f64, load_w: f64, step_s: f64, steps: us
     for _ in 0..steps {
         tile.prepare(step_s);
         tile.drive(current);
-        tile.first(step_s, 0.0, 0.0, 0.0);
-        tile.second(0.0);
+        tile.first_stage(step_s, 0.0, 0.0, 0.0);
+        tile.second_stage(0.0);
     }
     tile
 }
 
 #[test]
-fn at_rest_obeys_the_module_equations() {
+fn steady_state_follows_the_module_equations() {
     let params = plain();
     let (a, r, k) = (
         params.seebeck_v_k(),
@@ -50,13 +50,13 @@ fn at_rest_obeys_the_module_equations() {
         for load_w in [0.0, 1.0, 5.0] {
             let tile = after(params, current_a, load_w, REST_S, 6);
             for z in 0..ZONES {
-                let cold_k = tile.stack.node_c(COLD_TAB, z) + ZERO_C_K;
-                let hot_k = tile.stack.node_c(HOT_TAB, z) + ZERO_C_K;
+                let cold_k = tile.network.node_c(COLD_TAB, z) + ZERO_C_K;
+                let hot_k = tile.network.node_c(HOT_TAB, z) + ZERO_C_K;
                 let joule_w = current_a * current_a * r;
                 let taken_w = a * current_a * cold_k - joule_w / 2.0 - k * (hot_k - cold_k);
                 let given_w = a * current_a * hot_k + joule_w / 2.0 - k * (hot_k - cold_k);
                 let to_room_w = (tile.sink_c() - ROOM_C) / params.sink_k_w;
-                let electrical_w = tile.crossed(1.0).electrical_j;
+                let electrical_w = tile.step_energy(1.0).electrical_j;
                 let volts = a * (hot_k - cold_k) + current_a * r;
                 let scale_w = 1.0 + joule_w + load_w;
                 for (what, got_w, want_w) in [
@@ -74,9 +74,9 @@ fn at_rest_obeys_the_module_equations() {
     }
 }
 
-/// Display plate at rest with a load of 1 W, deg C.
+/// Steady-state temperature of the display plate with a load of 1 W, deg C.
 fn plate_c(sink_k_w: f64, current_a: f64) -> f64 {
-    // The study had neither plates nor paste.
+    // The study neglected plates and paste.
     let params = TileParams {
         sink_k_w,
         ceramic_w_mk: 1e6,
@@ -87,8 +87,8 @@ fn plate_c(sink_k_w: f64, current_a: f64) -> f64 {
 }
 
 #[test]
-fn beyond_the_best_current_more_current_heats() {
-    // From a study of this module with constant properties: sink, K/W, and best current at 1 W, A.
+fn current_above_the_optimum_heats_the_plate() {
+    // From a study of this module with constant properties: sink, K/W, and optimal current at 1 W, A.
     let mut best_a = Vec::new();
     for sink_k_w in [0.15, 0.5, 1.0, 2.0] {
         let currents_a = || (1..=80).map(|i| 0.1 * f64::from(i));
@@ -108,23 +108,23 @@ fn beyond_the_best_current_more_current_heats() {
 
 #[test]
 fn varying_properties_keep_the_data_sheet() {
-    // Hot side held at the sheet's temperature; no load.
+    // Hot side held at the temperature of the data sheet; no load.
     let params = TileParams {
         film_w_m2k: 0.0,
         sink_k_w: 1e-6,
         paste_w_k: 1e6,
         ceramic_w_mk: 1e6,
-        coolant_k: TileParams::CLASS.sheet_hot_c - ROOM_C,
-        ..TileParams::CLASS
+        coolant_k: TileParams::NOMINAL.sheet_hot_c - ROOM_C,
+        ..TileParams::NOMINAL
     };
     let difference_k = |current_a| {
         let tile = after(params, current_a, 0.0, REST_S, 60);
-        tile.stack.node_c(HOT_TAB, 0) - tile.stack.node_c(COLD_TAB, 0)
+        tile.network.node_c(HOT_TAB, 0) - tile.network.node_c(COLD_TAB, 0)
     };
     let most_k = (40..80)
         .map(|i| difference_k(0.1 * f64::from(i)))
         .fold(0.0, f64::max);
-    let sheet = TileParams::CLASS;
+    let sheet = TileParams::NOMINAL;
     assert_figure("plant.largest_difference", most_k);
     assert!((most_k / sheet.dtmax_k - 1.0).abs() < 0.1, "{most_k} K");
     assert_figure("plant.implied_heat", sheet.implied_qmax_w());
@@ -132,8 +132,8 @@ fn varying_properties_keep_the_data_sheet() {
 }
 
 #[test]
-fn responds_like_its_class() {
-    // 2.7 K/s per A at its fastest, within 15 %.
+fn initial_slope_of_the_plate_is_typical_of_its_class() {
+    // Largest slope 2.7 K/s per A, within 15 %.
     let (step_s, window) = (0.5e-3, 20);
     for current_a in [1.0, 3.0, 6.0] {
         let plate_c: Vec<f64> = (0..20)
@@ -148,7 +148,7 @@ fn responds_like_its_class() {
     }
 }
 
-/// A disc that conducts sideways and to its back, cut into very many rings, as dense as needed to be the truth.
+/// Reference solution: mean temperature rise of the patch, K/W, on a disc with a convective back, meshed in 4000 rings.
 fn patch_rise_k(params: &TileParams, sheet_w_k: f64, back_w_m2k: f64) -> f64 {
     let n = 4000;
     let (patch_m, edge_m) = (
@@ -161,7 +161,7 @@ fn patch_rise_k(params: &TileParams, sheet_w_k: f64, back_w_m2k: f64) -> f64 {
         let part = (patch_m - i as f64 * ring_m) * (patch_m + i as f64 * ring_m) * PI;
         part.clamp(0.0, area(i))
     };
-    // One watt, even over the patch; elimination outwards.
+    // One watt, uniform over the patch; elimination outwards.
     let link = |i: usize| sheet_w_k * 2.0 * PI * (i + 1) as f64;
     let (mut pivots, mut loads) = (vec![0.0; n], vec![0.0; n]);
     for i in 0..n {
@@ -187,29 +187,29 @@ fn patch_rise_k(params: &TileParams, sheet_w_k: f64, back_w_m2k: f64) -> f64 {
 }
 
 #[test]
-fn three_zones_spread_the_heat_of_a_finger_as_a_plate_does() {
-    let params = TileParams::CLASS;
+fn three_zones_approximate_the_heat_spreading_of_a_plate() {
+    let params = TileParams::NOMINAL;
     let zones = Zones::new(&params);
     let sheet_w_k = params.ceramic_w_mk * params.ceramic_m;
-    // From a back that only the legs cool to one that leaves no time to spread.
+    // From a back cooled by the legs only to one that prevents spreading.
     let mut off_percent = Vec::new();
     for back_w_m2k in [100.0, 316.0, 1000.0] {
-        let mut stack = Stack::<1, ZONES>::new(0.0);
+        let mut network = ThermalNetwork::<1, ZONES>::new(0.0);
         for z in 0..ZONES {
-            stack.lateral[0][z] = sheet_w_k * zones.shape[z];
-            stack.feedback[0][z] = -back_w_m2k * zones.area_m2[z];
+            network.lateral[0][z] = sheet_w_k * zones.shape[z];
+            network.feedback[0][z] = -back_w_m2k * zones.area_m2[z];
         }
         for _ in 0..6 {
-            stack.first(
+            network.first_stage(
                 REST_S,
-                if stack.sink_c() == 0.0 { 1.0 } else { 0.0 },
+                if network.sink_c() == 0.0 { 1.0 } else { 0.0 },
                 0.0,
                 0.0,
             );
-            stack.second(0.0);
+            network.second_stage(0.0);
         }
         let exact_k = patch_rise_k(&params, sheet_w_k, back_w_m2k);
-        let off = stack.node_c(0, PATCH) / exact_k - 1.0;
+        let off = network.node_c(0, PATCH) / exact_k - 1.0;
         println!(
             "back {back_w_m2k} W/(m2 K): {exact_k:.3} K/W, zones off by {:.1} %",
             100.0 * off

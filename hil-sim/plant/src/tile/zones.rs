@@ -1,4 +1,4 @@
-//! How a plate is cut across: the patch under the finger in the middle of a disc of the plate's area, and rings
+//! Lateral zones of a plate, approximated by a disc of equal area: the patch under the finger in the middle, and rings
 //! around it.
 
 use std::f64::consts::PI;
@@ -8,13 +8,13 @@ use super::params::TileParams;
 /// The patch and two rings.
 pub const ZONES: usize = 3;
 
-/// Areas of the zones and how well a plate conducts between them.
+/// Areas of the zones and shape factors of the conduction between them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zones {
-    /// Area of each, m2.
+    /// Area of each zone, m2.
     pub area_m2: [f64; ZONES],
-    /// Between the mean temperatures of each zone and the next in a sheet that conducts 1 W/K (conductivity times
-    /// thickness), W/K; the last is open.
+    /// Conductance between the mean temperatures of each zone and the next, divided by conductivity and thickness of the
+    /// sheet; 0 for the last zone.
     pub shape: [f64; ZONES],
 }
 
@@ -24,11 +24,11 @@ impl Zones {
     pub fn new(params: &TileParams) -> Self {
         let radius_m = |m2: f64| (m2 / PI).sqrt();
         let (inner_m, outer_m) = (radius_m(params.patch_m2), radius_m(params.plate_m2()));
-        // Rings of one shape: their radii grow by a constant factor.
+        // The radii grow by a constant factor.
         let factor = (outer_m / inner_m).powf(1.0 / (ZONES - 1) as f64);
         let edge_m: [f64; ZONES] = std::array::from_fn(|z| inner_m * factor.powi(z as i32));
-        // A ring's mean temperature is about that at the radius which halves its area. Of a disc with an even load
-        // it lies 1/(8 pi) above the edge's.
+        // The mean temperature of a ring is about that at the radius which halves its area. That of a disc with a uniform
+        // load differs from that of its edge by 1/(8 pi) times power over sheet conductance.
         let inward = |z: usize| match z {
             0 => 1.0 / (8.0 * PI),
             _ => (edge_m[z] / middle_m(edge_m[z - 1], edge_m[z])).ln() / (2.0 * PI),
@@ -51,7 +51,7 @@ impl Zones {
     }
 }
 
-/// Radius that halves a ring's area.
+/// Radius that halves the area of a ring.
 fn middle_m(inner_m: f64, outer_m: f64) -> f64 {
     (0.5 * (inner_m.powi(2) + outer_m.powi(2))).sqrt()
 }

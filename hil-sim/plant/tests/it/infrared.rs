@@ -1,5 +1,5 @@
-//! The infrared instrument against golden radiances and round trips, against a quadrature of Planck's law with
-//! constants of its own, and against what must hold of any such instrument.
+//! The infrared instrument against golden radiances and round trips, against an independent quadrature of Planck's law,
+//! and against physical invariants.
 
 use std::collections::HashMap;
 
@@ -27,7 +27,7 @@ fn number(row: &Row, column: &str) -> f64 {
         .unwrap_or_else(|_| panic!("{column} of {row:?}"))
 }
 
-/// The optic of a golden row and what surrounds it.
+/// Optics and surroundings of a golden row.
 fn conditions(row: &Row) -> (Optic, Surroundings) {
     let optic = match row["optic"].as_str() {
         "none" => Optic::None,
@@ -43,7 +43,7 @@ fn conditions(row: &Row) -> (Optic, Surroundings) {
     (optic, surroundings)
 }
 
-fn silent(optic: Optic) -> CameraParams {
+fn noiseless(optic: Optic) -> CameraParams {
     CameraParams {
         netd_k: 0.0,
         ..CameraParams::thesis(optic)
@@ -124,7 +124,7 @@ fn slope_is_the_derivative() {
 }
 
 #[test]
-fn inverse_goes_back_and_holds_the_ends() {
+fn temperature_inverts_radiance_and_is_limited_to_the_range() {
     let (mut before, mut most_k) = (0.0, 0.0f64);
     for t_c in range() {
         let here = radiance(t_c);
@@ -164,8 +164,8 @@ fn camera_meets_golden_round_trips() {
     let mut most_k = 0.0f64;
     for row in rows {
         let (optic, surroundings) = conditions(&row);
-        assert_eq!(number(&row, "eps_obj"), silent(optic).emissivity);
-        let mut camera = camera(&silent(optic), &surroundings, 1);
+        assert_eq!(number(&row, "eps_obj"), noiseless(optic).emissivity);
+        let mut camera = camera(&noiseless(optic), &surroundings, 1);
         let reading = camera.read(number(&row, "T_obj_C"));
         let (total, apparent_c) = (number(&row, "U_tot"), number(&row, "T_apparent_C"));
         assert!((reading.u_tot / total - 1.0).abs() <= 1e-14, "{row:?}");
@@ -178,7 +178,7 @@ fn camera_meets_golden_round_trips() {
 }
 
 #[test]
-fn way_back_recovers_any_target() {
+fn inversion_recovers_any_target() {
     let mut most_k = 0.0f64;
     for optic in OPTICS {
         for emissivity in [0.3, 0.95, 1.0] {
@@ -187,7 +187,7 @@ fn way_back_recovers_any_target() {
             {
                 let params = CameraParams {
                     emissivity,
-                    ..silent(optic)
+                    ..noiseless(optic)
                 };
                 let surroundings = Surroundings {
                     ambient_c,
@@ -209,7 +209,7 @@ fn way_back_recovers_any_target() {
 }
 
 #[test]
-fn in_equilibrium_every_optic_is_invisible() {
+fn optics_have_no_effect_in_thermal_equilibrium() {
     for optic in OPTICS {
         for t_c in [-40.0, 0.0, 24.0, 34.0, 120.0] {
             let reflection = SelfReflection {
@@ -218,7 +218,7 @@ fn in_equilibrium_every_optic_is_invisible() {
             };
             let params = CameraParams {
                 self_reflection: Some(reflection),
-                ..silent(optic)
+                ..noiseless(optic)
             };
             let reading = camera(&params, &Surroundings::at(t_c), 1).read(t_c);
             assert!(
@@ -230,9 +230,9 @@ fn in_equilibrium_every_optic_is_invisible() {
 }
 
 #[test]
-fn self_reflection_overestimates_and_zns_most() {
-    // 27 deg C seen by a camera of 30 deg C in a room of 24 deg C, from golden radiances: the window mirrors
-    // what has passed the beamsplitter, which it passes again.
+fn self_reflection_of_a_warm_camera_raises_the_reading() {
+    // A target of 27 deg C, a camera of 30 deg C and a room of 24 deg C, from golden radiances: the reflected radiation
+    // passes the beamsplitter twice.
     let radiances: HashMap<String, f64> = golden("planck_band")
         .iter()
         .map(|row| (row["T_C"].clone(), number(row, "U_7.5_13um_W_m2_sr")))
@@ -248,7 +248,7 @@ fn self_reflection_overestimates_and_zns_most() {
             };
             let params = CameraParams {
                 self_reflection: Some(reflection),
-                ..silent(optic)
+                ..noiseless(optic)
             };
             let reading = camera(&params, &Surroundings::at(24.0), 1).read(27.0);
             let expected =
@@ -259,7 +259,7 @@ fn self_reflection_overestimates_and_zns_most() {
     }
 }
 
-/// Mean and standard deviation of the recovered minus the true, and of the apparent, temperature.
+/// Mean and standard deviation of the error of the recovered temperature, and of the noise of the apparent one.
 fn statistics(params: &CameraParams, target_c: f64, seed: u64) -> ([f64; 2], [f64; 2]) {
     const COUNT: u32 = 40_000;
     let mut camera = camera(params, &Surroundings::at(24.0), seed);
@@ -286,14 +286,14 @@ fn statistics(params: &CameraParams, target_c: f64, seed: u64) -> ([f64; 2], [f6
 }
 
 #[test]
-fn noise_is_the_netd_without_bias_and_optics_magnify_it() {
+fn noise_equals_the_netd_without_bias_and_is_amplified_by_optics() {
     for (seed, optic) in OPTICS.into_iter().enumerate() {
         let black = CameraParams {
             emissivity: 1.0,
             ..CameraParams::thesis(optic)
         };
-        // An apparent 30 deg C is where the NETD is stated.
-        let target_c = camera(&silent(optic), &Surroundings::at(24.0), 1).recovered_c(30.0);
+        // The NETD is specified at an apparent temperature of 30 deg C.
+        let target_c = camera(&noiseless(optic), &Surroundings::at(24.0), 1).recovered_c(30.0);
         let params = CameraParams::thesis(optic);
         let ([bias_k, recovered_k], [apparent_bias_k, apparent_k]) =
             statistics(&params, target_c, seed as u64);
@@ -310,7 +310,7 @@ fn noise_is_the_netd_without_bias_and_optics_magnify_it() {
             bias_k.abs() < 4.0 * recovered_k / 200.0,
             "{optic:?} {bias_k}"
         );
-        // Less of the target arrives, and at another steepness of Planck's law.
+        // Losses of the optics and the slope of Planck's law at the target amplify the noise.
         let window = optic
             .window()
             .map_or(1.0, |window| window.transmissivity * 0.54);
@@ -333,7 +333,7 @@ fn noise_is_the_netd_without_bias_and_optics_magnify_it() {
 }
 
 #[test]
-fn readings_follow_from_the_seed() {
+fn same_seed_gives_the_same_readings() {
     let readings = |seed| {
         let mut camera = camera(
             &CameraParams::thesis(Optic::Baf2),

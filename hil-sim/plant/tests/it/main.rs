@@ -1,3 +1,3 @@
-//! Parts of the plant against golden values.
+//! The infrared instrument against golden values.
 
 mod infrared;

@@ -6,7 +6,7 @@
 
 use std::f64::consts::TAU;
 
-use thermal_plant::bridge::{Leg, Legs};
+use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::{ConfigError, STEP_S};
 
 use super::CommissioningSetup;
@@ -40,7 +40,7 @@ impl FrequencyResponse {
         let (mut surface_c, mut current_a) = (Vec::new(), Vec::new());
         for step in 0..(SETTLING_PERIODS + ANALYSED_PERIODS + 1) * period {
             let duty = DUTY_AMPLITUDE * (TAU * step as f64 / period as f64).sin();
-            world.step(Legs {
+            world.step(BridgeOutputs {
                 a: Leg::Duty(0.5 + duty),
                 b: Leg::Duty(0.5 - duty),
                 enabled: true,

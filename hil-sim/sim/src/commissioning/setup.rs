@@ -3,7 +3,7 @@
 use contact_model::material::MATERIALS;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 use thermal_plant::{ConfigError, Params, PlantConfig};
 
 use crate::World;
@@ -48,7 +48,7 @@ impl CommissioningSetup {
 
     /// Seed of the reference thermometer's noise.
     pub(super) fn operator_seed(&self) -> u64 {
-        stream(self.seed, "reference thermometer")
+        stream_seed(self.seed, "reference thermometer")
     }
 
     /// The place of use.
@@ -110,6 +110,6 @@ impl CommissioningSetup {
             seed: self.seed,
             params,
         };
-        World::from_plant(&config, stream(self.seed, place))
+        World::from_plant(&config, stream_seed(self.seed, place))
     }
 }

@@ -20,7 +20,7 @@ mod native;
 pub use line_splitter::LineSplitter;
 pub use native::NativeEngine;
 
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 
 use crate::World;
 use crate::processor::{MachineFault, NotInjected, ResetCause};
@@ -40,7 +40,7 @@ pub trait Engine {
     fn world(&mut self) -> &mut World;
 
     /// The bridge legs as the device drives them now.
-    fn legs(&mut self) -> Legs;
+    fn legs(&mut self) -> BridgeOutputs;
 
     /// Runs the device by half a millisecond.
     ///

@@ -10,7 +10,7 @@ use thermal_device::drive::{Drive, Outputs};
 use thermal_device::safety::{Fault, ThermalDose, TripCause};
 use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_device::{Device, Finger};
-use thermal_plant::bridge::{Leg, Legs};
+use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::sensors::Channel;
 use thermal_protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
 use thermal_settings::{Settings, StoredSettings, decode};
@@ -221,13 +221,13 @@ impl Engine for NativeEngine {
         &mut self.world
     }
 
-    fn legs(&mut self) -> Legs {
+    fn legs(&mut self) -> BridgeOutputs {
         match self.outputs.drive {
-            Drive::Off => Legs::default(),
+            Drive::Off => BridgeOutputs::default(),
             Drive::On(duty) => {
                 let (a, b) = duty.half_bridge_on_times(PWM_STEPS);
                 let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(PWM_STEPS));
-                Legs {
+                BridgeOutputs {
                     a: leg(a),
                     b: leg(b),
                     enabled: true,

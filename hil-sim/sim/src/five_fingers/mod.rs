@@ -21,7 +21,7 @@ use crate::engine::{Cost, DeviceReset};
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 
 /// Number of fingers of the device.
 pub const FINGERS: usize = 5;
@@ -49,7 +49,7 @@ pub trait FiveFingerEngine {
     fn world(&mut self, finger: usize) -> &mut World;
 
     /// The legs of a finger's bridge as the device drives them now.
-    fn legs(&mut self, finger: usize) -> Legs;
+    fn legs(&mut self, finger: usize) -> BridgeOutputs;
 
     /// Sends a line to a finger, after its tick.
     fn send(&mut self, finger: usize, line: &[u8]);

@@ -2,7 +2,7 @@
 
 use std::convert::Infallible;
 
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 
 use super::{FINGERS, FiveFingerEngine};
 use crate::World;
@@ -57,7 +57,7 @@ impl FiveFingerEngine for NativeFiveFingers {
         self.fingers[finger].world()
     }
 
-    fn legs(&mut self, finger: usize) -> Legs {
+    fn legs(&mut self, finger: usize) -> BridgeOutputs {
         self.fingers[finger].legs()
     }
 

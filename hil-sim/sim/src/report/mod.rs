@@ -6,7 +6,7 @@ mod table;
 use std::fmt::Write;
 use std::path::Path;
 
-use thermal_charts::{document, element, escape};
+use thermal_charts::{document, escape, svg_element};
 
 use crate::metrics::Figures;
 use crate::run::Outcome;
@@ -56,7 +56,7 @@ fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> Str
         scene.skin_c,
         scene.room_c,
         scene.object_c(),
-        element(plots),
+        svg_element(plots),
     );
     document(&title, "", &body)
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use thermal_plant::infrared::{
     Camera, CameraParams, Optic, ParameterError, SelfReflection, Surroundings,
 };
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 use toml::Spanned;
 
 use super::file::{self, Glass};
@@ -31,7 +31,11 @@ impl Infrared {
     /// # Errors
     /// As [`Camera::new`].
     pub fn camera(&self, seed: u64) -> Result<Camera, ParameterError> {
-        Camera::new(&self.params, &self.surroundings, stream(seed, "infrared"))
+        Camera::new(
+            &self.params,
+            &self.surroundings,
+            stream_seed(seed, "infrared"),
+        )
     }
 
     /// Whether there is a frame in the millisecond that ends `ms` after time zero.

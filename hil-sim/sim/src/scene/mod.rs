@@ -18,7 +18,7 @@ use contact_model::reference::{Contact, interface_temperature};
 use thermal_device::control::Law;
 use thermal_device::reference::Mode;
 use thermal_plant::object::ObjectConfig;
-use thermal_plant::slab::Back;
+use thermal_plant::slab::BackBoundary;
 use thermal_plant::{Params, PlantConfig};
 
 use crate::processor::Injection;
@@ -86,7 +86,7 @@ pub struct Object {
     /// Thickness, m; infinite for a half-space. The device is not given it.
     pub thickness_m: f64,
     /// Boundary condition at its back.
-    pub back: Back,
+    pub back: BackBoundary,
 }
 
 /// A change to a force that is then held.

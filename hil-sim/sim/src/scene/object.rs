@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use contact_model::material::{Material, Surface, find};
 use thermal_plant::object::ObjectConfig;
-use thermal_plant::slab::Back;
+use thermal_plant::slab::BackBoundary;
 use thermal_protocol::Request;
 use thermal_settings::Settings;
 use toml::Spanned;
@@ -79,7 +79,7 @@ fn shape(
     object: &file::Object,
     room_c: f64,
     start_c: f64,
-) -> Result<(f64, Back), SceneError> {
+) -> Result<(f64, BackBoundary), SceneError> {
     let meaningless = |key: &str, span, needed: &str| {
         let problem = format!("object.{key} has no meaning here; allowed is {key} beside {needed}");
         Err(source.error(Some(span), problem))
@@ -119,12 +119,12 @@ fn shape(
         (_, None) => None,
     };
     let back = match (kind, film) {
-        (file::Back::Insulated, _) => Back::Insulated,
-        (_, Some(film_w_m2k)) => Back::Film {
+        (file::Back::Insulated, _) => BackBoundary::Insulated,
+        (_, Some(film_w_m2k)) => BackBoundary::Film {
             film_w_m2k,
             temperature_c: back_c(room_c)?,
         },
-        (_, None) => Back::Film {
+        (_, None) => BackBoundary::Film {
             film_w_m2k: f64::INFINITY,
             temperature_c: back_c(start_c)?,
         },

@@ -106,7 +106,7 @@ fn finger_values(
     if !finger.layer.is_empty() {
         let unset = Layer {
             thickness_m: f64::INFINITY,
-            medium: Medium::dead(&SKIN),
+            medium: Medium::without_blood(&SKIN),
         };
         params.finger.layers = vec![unset; finger.layer.len()];
         for (i, layer) in finger.layer.iter().enumerate() {

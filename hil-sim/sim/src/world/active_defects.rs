@@ -34,9 +34,9 @@ impl ActiveDefects {
             FaultKind::ThermistorDrift | FaultKind::ThermistorOffset => {
                 thermistor.offset_k += value
             }
-            FaultKind::ThermistorDetached => thermistor.loose *= value,
+            FaultKind::ThermistorDetached => thermistor.resistance_factor *= value,
             FaultKind::ThermistorStuck => self.frozen[index] = true,
-            FaultKind::SensorsSwapped => sensors.plugged.swap(index, fault.with as usize),
+            FaultKind::SensorsSwapped => sensors.connected.swap(index, fault.with as usize),
             FaultKind::ReferenceOff => {
                 for thermistor in &mut sensors.thermistors {
                     thermistor.circuit = Circuit::Short;
@@ -55,11 +55,11 @@ impl ActiveDefects {
             FaultKind::PolaritySwapped => bridge.swapped = true,
             FaultKind::FaultPinDead => bridge.fault_pin_dead = true,
             FaultKind::MirrorStuck => sensors.mirror_stuck_a = Some(value),
-            FaultKind::ComparatorDead => *comparator = ComparatorDefect::Dead,
-            FaultKind::ComparatorStuck => *comparator = ComparatorDefect::Stuck,
+            FaultKind::ComparatorDead => *comparator = ComparatorDefect::NeverTrips,
+            FaultKind::ComparatorStuck => *comparator = ComparatorDefect::AlwaysTripped,
             FaultKind::SupplyLow | FaultKind::SupplyHigh => bridge.supply_v = Some(value),
             FaultKind::ModuleWeak => module.seebeck = value,
-            FaultKind::FanOff => cooling.resistance *= value,
+            FaultKind::FanOff => cooling.resistance_factor *= value,
             FaultKind::ChillerOff => cooling.coolant_c = Some(value),
             FaultKind::SinkHot => cooling.held_c = Some(value),
             // These act in the host.

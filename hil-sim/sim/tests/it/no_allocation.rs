@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::path::Path;
 
 use contact_model::material::find;
-use thermal_plant::bridge::{Leg, Legs};
+use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::sensors::Channel;
@@ -107,7 +107,7 @@ fn plant_does_not_allocate() {
         let layers = finger.layers.len();
         let mut plant = plant(finger);
         let skin_c = plant.skin_c();
-        let legs = Legs {
+        let legs = BridgeOutputs {
             a: Leg::Duty(0.7),
             b: Leg::Duty(0.3),
             enabled: true,

@@ -1,10 +1,10 @@
-//! Section 6.3: what the text says of the simulations and of figures 6-6 to 6-12.
+//! Section 6.3: statements of the text on the simulations and on figures 6-6 to 6-12.
 //!
-//! A temperature passes for steady if it moves by 0.1 K or less, which a figure over 10 K would not show.
+//! A temperature counts as steady if it changes by 0.1 K or less, which is not visible in a figure of 10 K.
 
 use contact_model::pressure::pressure_pa;
 
-use crate::case::{Case, SIMULATION_PRESSURE_PA, five, material};
+use crate::contact_case::{Case, SIMULATION_PRESSURE_PA, five_materials, material};
 use crate::statement::Statement;
 
 /// End of every simulation, s.
@@ -17,8 +17,9 @@ const SAWN_UM: f64 = 30.0;
 pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
     let case = || Case::simulation(statement.material());
     let at = |t_s| case().contact().at(t_s);
-    let five =
-        |value: fn(&Case) -> f64| five().map(|sample| value(&Case::simulation(sample.material)));
+    let five = |value: fn(&Case) -> f64| {
+        five_materials().map(|sample| value(&Case::simulation(sample.material)))
+    };
     let (smooth, milled, sawn) = (copper(), rough(MILLED_UM), rough(SAWN_UM));
     let (light, firm) = (pressed(0.5), pressed(2.0));
     let difference = |t_s| flux(&smooth, t_s) - flux(&sawn, t_s);
@@ -94,12 +95,12 @@ fn flux(case: &Case, t_s: f64) -> f64 {
     case.contact().at(t_s).flux_w_m2
 }
 
-/// How much warmer the skin is than at perfect contact, K.
+/// Skin temperature minus that at perfect contact, K.
 fn skin_above_perfect(case: &Case) -> f64 {
     case.contact().at(END_S).skin_c - case.perfect().interface_c
 }
 
-/// How much colder the object's surface is than at perfect contact, K.
+/// Object surface temperature at perfect contact minus that with contact resistance, K.
 fn surface_below_perfect(case: &Case) -> f64 {
     case.perfect().interface_c - case.contact().at(END_S).object_c
 }
@@ -108,12 +109,12 @@ fn positive(values: &[f64]) -> f64 {
     values.iter().filter(|value| **value > 0.0).count() as f64
 }
 
-/// How many neighbours of a list fall.
+/// Number of neighbours in a list of which the second is smaller.
 fn falling(values: &[f64]) -> f64 {
     values.windows(2).filter(|pair| pair[0] > pair[1]).count() as f64
 }
 
-/// In how many of the seconds 0 to 10 each case has less flux than the one before it.
+/// Number of the seconds 0 to 10 at which each case has less flux than the one before it.
 fn seconds_in_order(cases: &[Case; 3]) -> f64 {
     let in_order = |t_s: &f64| falling(&cases.map(|case| flux(&case, *t_s))) == 2.0;
     (0..=10u8).map(f64::from).filter(in_order).count() as f64

@@ -1,10 +1,10 @@
-//! Section 6.4: pressures, the fall of the skin's temperature on BaF2 and ZnS, and how soon it is steady.
+//! Section 6.4: pressures, drop of the skin temperature on BaF2 and ZnS, and time to the steady state.
 //!
-//! A temperature passes for steady if it has made all but 5 % of its fall.
+//! A temperature counts as steady if at most 5 % of its drop remain.
 
 use contact_model::pressure::{THESIS_PRESSURES, contact_area_m2};
 
-use crate::case::{Case, material};
+use crate::contact_case::{Case, material};
 use crate::statement::Statement;
 
 pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
@@ -49,7 +49,7 @@ pub(super) fn compute(statement: &Statement, quantity: &str) -> Option<f64> {
     })
 }
 
-/// Fall of the skin's temperature on a window within 10 s, K.
+/// Drop of the skin temperature on a window within 10 s, K.
 fn fall_k(window: &str, pressure_pa: f64) -> f64 {
     Case::validation(material(window), pressure_pa).drop_k(10.0)
 }
@@ -57,7 +57,7 @@ fn fall_k(window: &str, pressure_pa: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stated::{Stated, cut};
+    use crate::stated_value::{Stated, cut};
     use crate::statement::rows;
 
     #[test]

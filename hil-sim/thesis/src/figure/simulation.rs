@@ -3,10 +3,10 @@
 use contact_model::pressure::{THESIS_PRESSURES, pressure_pa};
 
 use super::{Curve, END_S, FLUX, Figure, Kind, TEMPERATURE, TIME, over_time, times_s};
-use crate::case::{Case, Source, Surfaces, five, material, sample};
+use crate::contact_case::{Case, ContactSolver, Surfaces, five_materials, material, sample};
 
 const SIMULATION: &str = "34 and 24 °C, 14.81 kPa";
-/// First time of figure 3-2 (B), s; Eq. 3-3 is singular at landing.
+/// First time of figure 3-2 (B), s; Eq. 3-3 is singular at time zero.
 const FIRST_FLUX_S: f64 = 0.05;
 
 /// Perfect contact, Eq. 3-1 and 3-3.
@@ -52,7 +52,7 @@ pub(super) fn figure_3_2() -> Vec<Figure> {
         }),
         figure("3-2 B", FLUX, "Heat flux from 0.05 s on", &|case, t_s| {
             let late = t_s >= FIRST_FLUX_S;
-            // Eq. 3-3 counts it into the skin.
+            // Eq. 3-3 gives the flux into the skin.
             case.perfect()
                 .flux_w_m2(t_s)
                 .filter(|_| late)
@@ -61,7 +61,7 @@ pub(super) fn figure_3_2() -> Vec<Figure> {
     ]
 }
 
-pub(super) fn figures_6_6_to_6_9(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
+pub(super) fn figures_6_6_to_6_9(solver: &dyn ContactSolver) -> anyhow::Result<Vec<Figure>> {
     type Value = fn(&Surfaces) -> f64;
     let parts: [(_, _, _, Value); 4] = [
         ("6-6", "Skin surface", TEMPERATURE, |at| at.skin_c),
@@ -75,15 +75,18 @@ pub(super) fn figures_6_6_to_6_9(source: &dyn Source) -> anyhow::Result<Vec<Figu
         ),
     ];
     let figure = |(number, title, y, value): (_, &str, _, _)| {
-        let curves = five().into_iter().enumerate().map(|(group, sample)| {
-            let case = Case::simulation(sample.material);
-            over_time(
-                source,
-                &case,
-                value,
-                (sample.name.into(), Kind::Line, group),
-            )
-        });
+        let curves = five_materials()
+            .into_iter()
+            .enumerate()
+            .map(|(group, sample)| {
+                let case = Case::simulation(sample.material);
+                over_time(
+                    solver,
+                    &case,
+                    value,
+                    (sample.name.into(), Kind::Line, group),
+                )
+            });
         Ok(Figure {
             number,
             title: format!("{title}, {SIMULATION}"),
@@ -95,22 +98,22 @@ pub(super) fn figures_6_6_to_6_9(source: &dyn Source) -> anyhow::Result<Vec<Figu
     parts.into_iter().map(figure).collect()
 }
 
-/// The revised model beside the interface temperature of perfect contact.
-pub(super) fn figure_6_10(source: &dyn Source) -> anyhow::Result<Figure> {
+/// The model with contact resistance and the interface temperature of perfect contact.
+pub(super) fn figure_6_10(solver: &dyn ContactSolver) -> anyhow::Result<Figure> {
     let mut curves = Vec::new();
-    for (group, sample) in five().into_iter().enumerate() {
+    for (group, sample) in five_materials().into_iter().enumerate() {
         let case = Case::simulation(sample.material);
         let label = |what| format!("{}, {what}", sample.name);
         let interface_c = case.perfect().interface_c;
         curves.extend([
             over_time(
-                source,
+                solver,
                 &case,
                 |at| at.skin_c,
                 (label("skin"), Kind::Line, group),
             )?,
             over_time(
-                source,
+                solver,
                 &case,
                 |at| at.object_c,
                 (label("surface"), Kind::Dashed, group),
@@ -134,11 +137,11 @@ pub(super) fn figure_6_10(source: &dyn Source) -> anyhow::Result<Figure> {
     })
 }
 
-/// Coldness of copper over roughness and over pressure.
-pub(super) fn figures_6_11_and_6_12(source: &dyn Source) -> anyhow::Result<[Figure; 2]> {
+/// Heat flux into copper for three roughnesses and three pressures.
+pub(super) fn figures_6_11_and_6_12(solver: &dyn ContactSolver) -> anyhow::Result<[Figure; 2]> {
     let copper = Case::simulation(material("copper"));
     let flux = |case: &Case, label: String, group| {
-        over_time(source, case, |at| at.flux_w_m2, (label, Kind::Line, group))
+        over_time(solver, case, |at| at.flux_w_m2, (label, Kind::Line, group))
     };
     let finishes = [
         (copper.object.surface.roughness_um, "as in Table 4-1"),

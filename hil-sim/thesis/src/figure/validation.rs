@@ -1,18 +1,18 @@
-//! BaF2 and ZnS, section 6.4.
+//! Figures of the validation with BaF2 and ZnS windows (section 6.4).
 
 use contact_model::pressure::THESIS_PRESSURES;
 
 use super::{Curve, END_S, FLUX, Figure, Kind, TEMPERATURE, TIME, over_time};
-use crate::case::{Case, Sample, Source, sample};
+use crate::contact_case::{Case, ContactSolver, Sample, sample};
 
-/// The two windows with the part of figures 6-19 and 6-20 that shows them.
+/// The two windows and their parts of figures 6-19 and 6-20.
 const WINDOWS: [(&str, &str, &str); 2] =
     [("BaF2", "6-19 A", "6-20 A"), ("ZnS", "6-19 B", "6-20 B")];
-/// Steps of pressure of the curve in figure 6-19, and the highest, Pa.
+/// Number of pressures of the curve in figure 6-19, and the largest, Pa.
 const PRESSURES: (u32, f64) = (60, 12e3);
 
-/// Under 2 N; the thesis does not say at which pressure it drew it.
-pub(super) fn figure_6_13(source: &dyn Source) -> anyhow::Result<[Figure; 2]> {
+/// At 2 N; the thesis does not state the pressure of this figure.
+pub(super) fn figure_6_13(solver: &dyn ContactSolver) -> anyhow::Result<[Figure; 2]> {
     let (mut temperatures, mut fluxes) = (Vec::new(), Vec::new());
     let pressure_pa = THESIS_PRESSURES[4].1;
     for (group, (key, ..)) in WINDOWS.iter().enumerate() {
@@ -20,19 +20,19 @@ pub(super) fn figure_6_13(source: &dyn Source) -> anyhow::Result<[Figure; 2]> {
         let case = Case::validation(window.material, pressure_pa);
         let label = |what| format!("{}, {what}", window.name);
         temperatures.push(over_time(
-            source,
+            solver,
             &case,
             |at| at.skin_c,
             (label("skin"), Kind::Line, group),
         )?);
         temperatures.push(over_time(
-            source,
+            solver,
             &case,
             |at| at.object_c,
             (label("surface"), Kind::Dashed, group),
         )?);
         fluxes.push(over_time(
-            source,
+            solver,
             &case,
             |at| at.flux_w_m2,
             (window.name.into(), Kind::Line, group),
@@ -56,8 +56,8 @@ pub(super) fn figure_6_13(source: &dyn Source) -> anyhow::Result<[Figure; 2]> {
     ])
 }
 
-/// Fall of the skin's temperature within 10 s over pressure.
-pub(super) fn figure_6_19(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
+/// Drop of the skin temperature within 10 s over pressure.
+pub(super) fn figure_6_19(solver: &dyn ContactSolver) -> anyhow::Result<Vec<Figure>> {
     let figure = |(key, number, _): (&'static str, _, _)| {
         let window = sample(key);
         let (steps, highest_pa) = PRESSURES;
@@ -72,9 +72,9 @@ pub(super) fn figure_6_19(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
             x: "contact pressure / kPa",
             y: "fall / K",
             curves: vec![
-                falls(source, &window, any, "model", Kind::Dashed)?,
+                falls(solver, &window, any, "model", Kind::Dashed)?,
                 falls(
-                    source,
+                    solver,
                     &window,
                     measured,
                     "at the five pressures",
@@ -87,7 +87,7 @@ pub(super) fn figure_6_19(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
 }
 
 fn falls(
-    source: &dyn Source,
+    solver: &dyn ContactSolver,
     window: &Sample,
     pressures_pa: impl IntoIterator<Item = f64>,
     label: &str,
@@ -95,8 +95,8 @@ fn falls(
 ) -> anyhow::Result<Curve> {
     let fall = |pressure_pa: f64| {
         let case = Case::validation(window.material, pressure_pa);
-        let course = source.course(&case, &[0.0, END_S])?;
-        Ok((pressure_pa * 1e-3, course[0].skin_c - course[1].skin_c))
+        let surfaces = solver.solve(&case, &[0.0, END_S])?;
+        Ok((pressure_pa * 1e-3, surfaces[0].skin_c - surfaces[1].skin_c))
     };
     Ok(Curve {
         label: label.into(),
@@ -109,7 +109,7 @@ fn falls(
     })
 }
 
-pub(super) fn figure_6_20(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
+pub(super) fn figure_6_20(solver: &dyn ContactSolver) -> anyhow::Result<Vec<Figure>> {
     let figure = |(key, _, number): (&'static str, _, _)| {
         let window = sample(key);
         let curves = THESIS_PRESSURES
@@ -118,7 +118,7 @@ pub(super) fn figure_6_20(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
             .map(|(group, (force_n, pressure_pa))| {
                 let label = format!("{:.2} kPa ({force_n} N)", pressure_pa * 1e-3);
                 let case = Case::validation(window.material, *pressure_pa);
-                over_time(source, &case, |at| at.skin_c, (label, Kind::Line, group))
+                over_time(solver, &case, |at| at.skin_c, (label, Kind::Line, group))
             });
         Ok(Figure {
             number,

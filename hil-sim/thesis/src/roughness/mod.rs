@@ -1,38 +1,37 @@
-//! Roughness of a measured profile (the thesis's Appendix A, after ISO 4287): what a user's own material needs
-//! to enter a scene besides its thermal constants.
+//! Roughness of a measured profile (the thesis's Appendix A, after ISO 4287), which a scene with a user-defined material
+//! needs besides its thermal properties.
 //!
-//! All parameters are of the levelled profile: its least-squares line is removed. Nothing else is: waviness and
-//! noise count as roughness unless the instrument has filtered them (the thesis: `lambda_c` 2.5 mm, `lambda_s`
-//! 25 µm, section 6.2.1).
+//! All parameters refer to the levelled profile, from which the least-squares line is removed. Waviness and noise count as
+//! roughness unless the instrument has filtered them (thesis, section 6.2.1: `lambda_c` 2.5 mm, `lambda_s` 25 µm).
 //!
-//! Points may lie unevenly, the longest step at most [`MOST_UNEVEN`] times the shortest. Means are over length:
-//! a point weighs half of the two steps beside it, so a sine over whole periods has its exact `Rq` wherever the
-//! points lie. With even steps this is the mean over points of Eq. but for the two end points.
+//! The spacing of the points may vary, the longest step up to [`MOST_UNEVEN`] times the shortest. Means are integrals over
+//! the length by the trapezoidal rule. With equal steps they are the means over points of Eq. except for the
+//! weights of the two end points.
 
 mod parameters;
-mod read;
+mod profile_csv;
 mod spacing;
 
-pub use read::{LEAST_POINTS, MOST_UNEVEN, ProfileError};
+pub use profile_csv::{LEAST_POINTS, MOST_UNEVEN, ProfileError};
 
-/// A profile as measured: points along a straight line on the surface.
+/// A measured profile: points along a straight line on the surface.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// Places, m; rising.
+    /// Positions, m, increasing.
     x_m: Vec<f64>,
-    /// Heights, m; as many.
+    /// Heights, m, one for each position.
     z_m: Vec<f64>,
 }
 
-/// What the contact model and its user want to know of a profile.
+/// Roughness parameters of a profile.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roughness {
-    /// RMS roughness `Rq`, m (Eq. A-1). [`contact_model::material::Surface`] wants µm.
+    /// RMS roughness `Rq`, m (Eq. A-1); in µm it is the `roughness_um` of a [`contact_model::material::Surface`].
     pub rq_m: f64,
-    /// RMS slope `RΔq`, m/m (Eq. A-2). The local slope is that of the polynomial through a point, the three
-    /// before and the three behind it; with even steps `s` that is ISO 4287's
-    /// `(z[i+3] - 9 z[i+2] + 45 z[i+1] - 45 z[i-1] + 9 z[i-2] - z[i-3]) / 60 s`. Towards the ends it is two and
-    /// one on either side, and at the ends the step's own slope.
+    /// RMS slope `RΔq`, m/m (Eq. A-2). The local slope is that of the polynomial through the point, the three
+    /// before and the three after it; with equal steps `s` this is the formula of ISO 4287,
+    /// `(z[i+3] - 9 z[i+2] + 45 z[i+1] - 45 z[i-1] + 9 z[i-2] - z[i-3]) / 60 s`. Near the ends two points or
+    /// one point on either side are used, and at the ends the slope of the step.
     pub rdq: f64,
     /// Mean slope `Δa`, rad (Eq. A-3): mean of `atan |Δz / Δx|` over the steps of the profile. This is the
     /// `slope_rad` of a [`contact_model::material::Surface`]. Where only `RΔq` is known, Eq. 6-13
@@ -40,17 +39,17 @@ pub struct Roughness {
     pub slope_rad: f64,
     /// Mean spacing of profile elements `RSm`, m (Eq. A-4); none if the profile holds no complete element.
     ///
-    /// A peak counts if it rises above the mean line by 10 % of `Rz` (the mean over five equal lengths of
-    /// highest minus lowest point), a valley if it falls below as much, and either if it is at least 1 % of a
-    /// sampling length wide. That length is taken as five spacings as counted without this rule: ISO 4288
-    /// chooses two to six. An element is a peak and the valley behind it, or a valley and the peak; each ends
-    /// where the profile last crosses the mean line. What is cut off at the ends of the profile is no element
-    /// (ISO 4287 would count it, and shorten the mean).
+    /// A peak counts if its height above the mean line is at least 10 % of `Rz` (the mean over five equal lengths of
+    /// highest minus lowest point) and its width at least 1 % of a sampling length; likewise the depth and width of a
+    /// valley. The sampling length is taken as five spacings without the width criterion (ISO 4288 chooses two to six).
+    /// An element is a peak and the next valley, or a valley and the next peak; each ends where the profile last crosses
+    /// the mean line. Incomplete elements at the ends of the profile are excluded (ISO 4287 includes them, which reduces
+    /// the mean).
     pub rsm_m: Option<f64>,
 }
 
 impl Profile {
-    /// The parameters.
+    /// Computes the roughness parameters.
     #[must_use]
     pub fn roughness(&self) -> Roughness {
         let x_m = &self.x_m;

@@ -1,11 +1,11 @@
-//! Heights and slopes of a profile.
+//! Levelling, RMS roughness and slopes of a profile.
 
-/// Points on each side of the one whose slope is sought; fewer at the profile's ends.
-const REACH: usize = 3;
+/// Points on each side that determine a local slope; fewer at the ends of the profile.
+const NEIGHBOURS: usize = 3;
 
 /// Heights above the least-squares line, m.
 pub(super) fn levelled(x_m: &[f64], z_m: &[f64]) -> Vec<f64> {
-    // From the first point on, so that a flat profile is flat to the last digit.
+    // Relative to the first point, so that a flat profile gives exact zeros.
     let z_m: Vec<f64> = z_m.iter().map(|z| z - z_m[0]).collect();
     let (middle, level) = (mean(x_m, x_m), mean(x_m, &z_m));
     let from_middle: Vec<f64> = x_m.iter().map(|x| x - middle).collect();
@@ -19,16 +19,16 @@ pub(super) fn levelled(x_m: &[f64], z_m: &[f64]) -> Vec<f64> {
     above.collect()
 }
 
-/// Root of the mean square over length.
+/// RMS value over the length.
 pub(super) fn rms(x_m: &[f64], values: &[f64]) -> f64 {
     let squares: Vec<f64> = values.iter().map(|value| value * value).collect();
     mean(x_m, &squares).sqrt()
 }
 
-/// Root of the mean square of the local slopes, m/m.
+/// RMS value of the local slopes, m/m.
 pub(super) fn rms_slope(x_m: &[f64], y_m: &[f64]) -> f64 {
     let last = x_m.len() - 1;
-    let slope = |i: usize| match i.min(last - i).min(REACH) {
+    let slope = |i: usize| match i.min(last - i).min(NEIGHBOURS) {
         0 => {
             let step = if i == 0 { [0, 1] } else { [last - 1, last] };
             (y_m[step[1]] - y_m[step[0]]) / (x_m[step[1]] - x_m[step[0]])
@@ -38,7 +38,7 @@ pub(super) fn rms_slope(x_m: &[f64], y_m: &[f64]) -> f64 {
     rms(x_m, &(0..=last).map(slope).collect::<Vec<_>>())
 }
 
-/// Mean over length of the inclination of each step, rad.
+/// Mean over the length of the absolute inclination, rad.
 pub(super) fn mean_slope_rad(x_m: &[f64], y_m: &[f64]) -> f64 {
     let steps = x_m.windows(2).zip(y_m.windows(2));
     let inclined = steps.map(|(x, y)| {
@@ -48,7 +48,7 @@ pub(super) fn mean_slope_rad(x_m: &[f64], y_m: &[f64]) -> f64 {
     inclined.sum::<f64>() / (x_m[x_m.len() - 1] - x_m[0])
 }
 
-/// Mean over length of what is known at points and straight between them.
+/// Mean over the length of a piecewise linear function.
 fn mean(x_m: &[f64], values: &[f64]) -> f64 {
     let steps = x_m.windows(2).zip(values.windows(2));
     let area: f64 = steps

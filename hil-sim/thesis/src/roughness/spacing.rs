@@ -1,10 +1,10 @@
 //! Profile elements and their mean spacing.
 
-/// Least height of a peak or depth of a valley, in parts of `Rz` (ISO 4287).
+/// Least height of a peak or depth of a valley, as a fraction of `Rz` (ISO 4287).
 const LEAST_HEIGHT: f64 = 0.1;
-/// Lengths over which `Rz` is averaged (ISO 4288: five sampling lengths).
+/// Number of lengths over which `Rz` is averaged (ISO 4288: five sampling lengths).
 const LENGTHS: usize = 5;
-/// Least width of a peak or valley, in parts of the mean spacing: 1 % of a sampling length (ISO 4287) of five
+/// Least width of a peak or valley, as a fraction of the mean spacing: 1 % of a sampling length (ISO 4287) of five
 /// spacings.
 const LEAST_WIDTH: f64 = 0.05;
 
@@ -13,7 +13,7 @@ pub(super) fn mean_m(x_m: &[f64], y_m: &[f64]) -> Option<f64> {
     let mut crossings = crossings(x_m, y_m, LEAST_HEIGHT * mean_height_m(x_m, y_m));
     let least_m = LEAST_WIDTH * spacing_m(&crossings)?;
     while let Some(narrow) = narrowest(&crossings, least_m) {
-        // It joins the portions on both sides of it, which lie on one side of the mean line.
+        // Removing it merges the portions beside it, which are on the same side of the mean line.
         crossings.drain(narrow..narrow + 2);
     }
     spacing_m(&crossings)
@@ -34,8 +34,8 @@ fn mean_height_m(x_m: &[f64], y_m: &[f64]) -> f64 {
     heights.sum::<f64>() / LENGTHS as f64
 }
 
-/// Where the profile crosses its mean line, m, between points beyond `least_m` on either side of it; by turns
-/// upward and downward.
+/// Crossings of the mean line, m, alternately upward and downward: the last one between two points of opposite sign that
+/// exceed `least_m`.
 fn crossings(x_m: &[f64], y_m: &[f64], least_m: f64) -> Vec<f64> {
     let mut found = Vec::new();
     let mut last = x_m[0];
@@ -55,7 +55,7 @@ fn crossings(x_m: &[f64], y_m: &[f64], least_m: f64) -> Vec<f64> {
     found
 }
 
-/// Mean distance of crossings in the same direction, m.
+/// Mean distance of successive crossings in the same direction, m.
 fn spacing_m(crossings: &[f64]) -> Option<f64> {
     let elements = crossings.windows(3).map(|element| element[2] - element[0]);
     let count = elements.len();

@@ -1,4 +1,4 @@
-//! Roughness parameters against golden sines, shapes with known answers, and what must not change them.
+//! Roughness parameters against golden sines, profiles with known parameters, and invariances.
 
 use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -12,7 +12,7 @@ use rand::rngs::Xoshiro256PlusPlus;
 use rand_distr::{Distribution, StandardNormal, StandardUniform};
 use thermal_thesis::roughness::{LEAST_POINTS, Profile, Roughness};
 
-/// Text of a profile.
+/// A profile as CSV.
 fn text(points: impl IntoIterator<Item = (f64, f64)>) -> String {
     let mut text = String::from("x_m,z_m\n");
     for (x_m, z_m) in points {
@@ -27,12 +27,12 @@ fn measure(points: impl IntoIterator<Item = (f64, f64)>) -> Roughness {
         .roughness()
 }
 
-/// `steps + 1` even places from 0 to a length, m.
+/// `steps + 1` equidistant positions from 0 to a length, m.
 fn even(length_m: f64, steps: u32) -> impl Iterator<Item = f64> {
     (0..=steps).map(move |i| length_m * f64::from(i) / f64::from(steps))
 }
 
-/// A sine: amplitude, m, period, m, and phase, rad.
+/// A sine profile: amplitude, m, period, m, and phase, rad.
 #[derive(Clone, Copy)]
 struct Sine(f64, f64, f64);
 
@@ -118,7 +118,7 @@ fn slopes_converge_with_the_sampling() {
 }
 
 #[test]
-fn cut_periods_cost_their_share_of_the_length() {
+fn incomplete_periods_cause_an_error_proportional_to_their_length() {
     // What part of a period does to means over n periods is at most of order 1/n; spacing sees whole elements.
     let mut worst = 0.0_f64;
     for (amplitude_m, period_m) in [(10e-6, 0.65e-3), (100e-6, 0.5e-3)] {
@@ -140,7 +140,7 @@ fn cut_periods_cost_their_share_of_the_length() {
 }
 
 #[test]
-fn tilt_height_and_place_change_nothing() {
+fn roughness_is_invariant_under_tilt_and_translation() {
     for (sine, _) in golden() {
         let level = measure(sine.sampled(7.3, 1460));
         for tilt in [-0.2, 0.01, 1.0] {
@@ -157,7 +157,7 @@ fn tilt_height_and_place_change_nothing() {
 }
 
 #[test]
-fn uneven_points_give_the_same_surface() {
+fn unequal_steps_give_the_same_roughness() {
     let mut random = Xoshiro256PlusPlus::seed_from_u64(1);
     for (sine, expected) in golden() {
         // Steps from 1 to 9 times the shortest, crest to crest.
@@ -188,7 +188,7 @@ fn uneven_points_give_the_same_surface() {
 }
 
 #[test]
-fn slopes_of_a_sextic_are_exact_in_the_middle() {
+fn slopes_of_a_polynomial_of_sixth_degree_are_exact_in_the_middle() {
     // The seven-point formula is exact for it; with uneven points that is what tells it from the even one. The
     // ends' lower orders are outvoted by a steep middle: heights vanish to fourth order at both ends.
     let bump = |x: f64| (x * (1.0 - x)).powi(3) * 64.0;
@@ -214,7 +214,7 @@ fn slopes_of_a_sextic_are_exact_in_the_middle() {
 }
 
 #[test]
-fn triangles_and_steps_have_known_slopes() {
+fn triangles_and_steps_have_their_analytical_slopes() {
     // A sawtooth of 1 in 10: slope atan 0.1 everywhere, spacing 2 mm, Rq a / sqrt 3.
     let triangle = |x_m: f64| {
         let phase = (x_m / 2e-3 + 0.5).rem_euclid(1.0);
@@ -233,7 +233,7 @@ fn triangles_and_steps_have_known_slopes() {
 }
 
 #[test]
-fn spacing_ignores_what_is_low_and_what_is_narrow() {
+fn spacing_ignores_low_and_narrow_peaks() {
     // In each millimetre a full wave of 10 µm, then ripples that are wide enough to count. 1 µm is 5 % of Rz,
     // below the threshold of 10 %; 3 µm are 15 %, and each wave and each ripple is an element.
     let rippled = |height_m: f64| {
@@ -271,7 +271,7 @@ fn spacing_ignores_what_is_low_and_what_is_narrow() {
 }
 
 #[test]
-fn noise_adds_to_roughness_and_not_to_spacing() {
+fn noise_increases_roughness_but_not_spacing() {
     let sine = Sine(10e-6, 0.65e-3, 1.0);
     let mut random = Xoshiro256PlusPlus::seed_from_u64(2);
     let noise_m = 0.3e-6;
@@ -323,7 +323,7 @@ fn gaussian_profiles_follow_eq_6_13() {
 }
 
 #[test]
-fn flat_and_unfinished_profiles_have_no_spacing() {
+fn flat_profiles_and_profiles_without_complete_element_have_no_spacing() {
     let flat = measure(even(1e-3, 50).map(|x_m| (x_m, 3e-6)));
     assert_eq!(
         (flat.rq_m, flat.rdq, flat.slope_rad, flat.rsm_m),
@@ -335,7 +335,7 @@ fn flat_and_unfinished_profiles_have_no_spacing() {
 }
 
 #[test]
-fn wrong_profiles_are_refused_with_their_line() {
+fn invalid_profiles_are_refused_with_their_line() {
     let fine: Vec<String> = text((0..=40).map(|i| (f64::from(i), f64::from(i % 7))))
         .lines()
         .map(str::to_owned)
@@ -410,7 +410,7 @@ fn files_may_have_comments_spaces_and_other_columns() {
 }
 
 #[test]
-fn example_profile_is_what_its_first_line_says() {
+fn example_profile_has_the_roughness_stated_in_its_first_line() {
     let path = format!("{}/../../scenes/profile.csv", env!("CARGO_MANIFEST_DIR"));
     let found = Profile::read(Path::new(&path))
         .expect("the example")

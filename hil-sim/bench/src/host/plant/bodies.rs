@@ -4,10 +4,10 @@ use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, find};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
 use serde::Serialize;
+use thermal_plant::contact::SkinContact;
 use thermal_plant::object::ObjectConfig;
-use thermal_plant::slab::{Back, Grading, Layer, Medium, Slab};
-use thermal_plant::touch::Touch;
-use thermal_plant::truth::Truth;
+use thermal_plant::reference::ReferenceSolution;
+use thermal_plant::slab::{BackBoundary, Grading, Layer, Medium, Slab};
 use thermal_plant::{RECEPTORS_M, STEP_S};
 
 /// Objects of the contacts whose errors are evaluated.
@@ -35,7 +35,7 @@ pub struct Cut {
 impl Cut {
     /// The discretization of a simulated run.
     pub const RUN: Self = Self {
-        grading: Grading::RUN,
+        grading: Grading::STANDARD,
         step_s: STEP_S,
     };
 
@@ -44,16 +44,16 @@ impl Cut {
     pub fn cells(&self) -> usize {
         let skin = Layer {
             thickness_m: f64::INFINITY,
-            medium: Medium::dead(&SKIN),
+            medium: Medium::without_blood(&SKIN),
         };
-        Slab::new(&[skin], Back::Insulated, CONTACT_S, &self.grading).cells()
+        Slab::new(&[skin], BackBoundary::Insulated, CONTACT_S, &self.grading).cells()
     }
 
     /// A finger at the moment of landing on an object.
-    fn landing(&self, object: &Material, touch: Touch) -> Truth {
+    fn landing(&self, object: &Material, touch: SkinContact) -> ReferenceSolution {
         let (skin_c, object_c) = START_C;
         let object = ObjectConfig::half_space(*object, object_c);
-        Truth::cut(
+        ReferenceSolution::on_mesh(
             skin_c,
             &object,
             touch,
@@ -66,7 +66,7 @@ impl Cut {
     ///
     /// # Errors
     /// None for these materials.
-    pub fn in_contact(&self, object: &str, force_n: f64) -> anyhow::Result<Truth> {
+    pub fn in_contact(&self, object: &str, force_n: f64) -> anyhow::Result<ReferenceSolution> {
         let (object, touch) = touch(object, force_n)?;
         let mut truth = self.landing(object, touch);
         while truth.time_s() < 50.0 * self.step_s {
@@ -126,9 +126,9 @@ impl Cut {
     }
 }
 
-fn touch(object: &str, force_n: f64) -> anyhow::Result<(&'static Material, Touch)> {
+fn touch(object: &str, force_n: f64) -> anyhow::Result<(&'static Material, SkinContact)> {
     let object: &Material = find(object).with_context(|| format!("no material {object}"))?;
-    let touch = Touch::under(force_n, &SKIN.surface, &object.surface)
+    let touch = SkinContact::at_force(force_n, &SKIN.surface, &object.surface)
         .with_context(|| format!("{force_n} N is no contact"))?;
     Ok((object, touch))
 }

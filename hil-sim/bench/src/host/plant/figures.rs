@@ -14,7 +14,7 @@ const WORK: usize = 400;
 /// Numbers of fingers that are timed on one core; each divides [`WORK`].
 const FINGERS: [usize; 6] = [1, 2, 5, 10, 20, 40];
 /// Ratios of successive cells of a mesh.
-const GROWTHS: [f64; 5] = [1.30, 1.20, Grading::RUN.growth, 1.06, 1.03];
+const GROWTHS: [f64; 5] = [1.30, 1.20, Grading::STANDARD.growth, 1.06, 1.03];
 /// Time steps, ms.
 const STEPS_MS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 /// Nanoseconds of a millisecond.
@@ -214,7 +214,7 @@ fn cuts() -> Vec<Cut> {
     let meshes = GROWTHS.map(|growth| Cut {
         grading: Grading {
             growth,
-            ..Grading::RUN
+            ..Grading::STANDARD
         },
         ..Cut::RUN
     });

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, bail};
 use thermal_plant::Plant;
-use thermal_plant::bridge::Legs;
+use thermal_plant::bridge::BridgeOutputs;
 use thermal_sim::World;
 use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::scene::Scene;
@@ -114,7 +114,7 @@ impl Finger {
     }
 
     /// The present state of the bridge's legs.
-    pub fn legs(&mut self) -> Legs {
+    pub fn legs(&mut self) -> BridgeOutputs {
         self.engine.legs()
     }
 

@@ -2,7 +2,7 @@
 
 use rand::rngs::Xoshiro256PlusPlus;
 use rand::{RngExt, SeedableRng};
-use thermal_plant::parameters::stream;
+use thermal_plant::parameters::stream_seed;
 use thermal_sim::processor::MachineFault;
 
 use super::{FlipRegion, FlippableMemory, PLACES, WITHIN_S};
@@ -34,7 +34,8 @@ impl BitFlip {
     /// Draws a flip in an image's memory; it depends only on seed and number.
     #[must_use]
     pub fn new(seed: u64, number: u64, memory: &FlippableMemory) -> Self {
-        let mut draw = Xoshiro256PlusPlus::seed_from_u64(stream(seed, &format!("flip {number}")));
+        let mut draw =
+            Xoshiro256PlusPlus::seed_from_u64(stream_seed(seed, &format!("flip {number}")));
         let region = FlipRegion::draw(&mut draw);
         let fault = region.bit(memory, &mut draw);
         let place = PLACES[draw.random_range(0..PLACES.len())];

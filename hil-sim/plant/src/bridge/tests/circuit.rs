@@ -1,14 +1,14 @@
-//! The circuit in time: inductor, capacitor, switches and diodes, integrated until periods repeat.
+//! Time-domain simulation of inductor, capacitor, switches and diodes until the periodic steady state.
 
 use super::super::{BridgeParams, Load};
 
-/// Steps in a PWM period, and periods: the slowest of the circuit's time constants is some 20 us.
+/// Steps in a PWM period, and number of periods: the slowest time constant of the circuit is about 20 us.
 const STEPS: u32 = 10_000;
 const PERIODS: u32 = 120;
 
-/// Mean and mean square ripple of the tile's current, and the inductor's current's extremes, with leg `a` at the
-/// supply and leg `b` at ground for a part of each period.
-pub fn settled(params: &BridgeParams, width: f64, load: &Load) -> [f64; 4] {
+/// Mean, A, and mean square ripple, A^2, of the tile current, and extremes of the inductor current, A, with leg `a` at the
+/// supply and leg `b` at ground for a fraction of each period.
+pub fn steady_state(params: &BridgeParams, width: f64, load: &Load) -> [f64; 4] {
     let period_s = params.pwm_hz.recip();
     let step_s = period_s / f64::from(STEPS);
     let series_ohm = params.on_ohm + params.filter_ohm;

@@ -1,4 +1,4 @@
-//! Against the data sheet's bound, and the statistics asked for.
+//! Converter against the bound of its non-linearity and the specified noise statistics.
 
 use rand::SeedableRng;
 
@@ -15,7 +15,7 @@ fn converter(params: ConverterParams, seed: u64) -> Converter {
 }
 
 #[test]
-fn non_linearity_stays_within_its_bound_and_is_never_zero() {
+fn largest_non_linearity_is_between_half_the_bound_and_the_bound() {
     let (mut least, mut most) = (f64::INFINITY, 0.0f64);
     let mut positive = 0;
     for seed in 0..1000 {
@@ -45,7 +45,7 @@ fn non_linearity_stays_within_its_bound_and_is_never_zero() {
 }
 
 #[test]
-fn steps_stand_at_the_transitions_of_the_upper_bits_only() {
+fn non_linearity_steps_only_at_the_transitions_of_the_upper_bits() {
     let mut largest = [0.0f64; 4096];
     for seed in 0..200 {
         let profile = converter(ConverterParams::NOMINAL, seed).profile;
@@ -61,13 +61,13 @@ fn steps_stand_at_the_transitions_of_the_upper_bits_only() {
             "a step of {step} at code {code}"
         );
     }
-    // The largest capacitor's is the largest error.
+    // The step of the largest capacitor is the largest.
     let others = (1..32).filter(|k| *k != 16).map(|k| largest[128 * k]);
     assert!(largest[2048] > others.fold(0.0, f64::max));
 }
 
 #[test]
-fn codes_are_the_profile_of_the_level() {
+fn code_is_the_level_plus_its_non_linearity() {
     let mut converter = converter(
         ConverterParams {
             noise_counts: 0.0,
@@ -77,17 +77,17 @@ fn codes_are_the_profile_of_the_level() {
     );
     for level in 0..4096 {
         let level = f64::from(level) + 0.3;
-        let wanted = level.min(4095.0) + converter.profile.at(level.min(4095.0));
+        let expected = level.min(4095.0) + converter.profile.at(level.min(4095.0));
         let code = f64::from(converter.convert(level));
         assert!(
-            (code - wanted.clamp(0.0, 4095.0)).abs() <= 0.5,
-            "{code} for {wanted}"
+            (code - expected.clamp(0.0, 4095.0)).abs() <= 0.5,
+            "{code} for {expected}"
         );
     }
 }
 
 #[test]
-fn offset_and_gain_are_taken_before_the_codes() {
+fn offset_and_gain_apply_before_quantisation() {
     let params = ConverterParams {
         offset_counts: 2.0,
         gain_error: 1e-3,
@@ -101,12 +101,15 @@ fn offset_and_gain_are_taken_before_the_codes() {
         (4095.0, 4095),
         (-9.0, 0),
     ] {
-        assert_eq!(converter.convert(converter.seen(ideal)), code);
+        assert_eq!(
+            converter.convert(converter.with_offset_and_gain(ideal)),
+            code
+        );
     }
 }
 
 #[test]
-fn noise_has_the_width_asked_for_no_bias_and_no_memory() {
+fn noise_is_white_and_unbiased_with_the_specified_deviation() {
     let mut converter = converter(
         ConverterParams {
             noise_counts: 0.7,
@@ -136,7 +139,7 @@ fn noise_has_the_width_asked_for_no_bias_and_no_memory() {
         beside.abs() < 5.0 / root_n,
         "neighbours correlate by {beside}"
     );
-    // It has a normal's tails: at least 1e-4 of 2.7e-3 beyond three deviations and half a code.
+    // Gaussian tails: 1e-4 to 2.7e-3 of the draws are beyond three standard deviations plus half a code.
     assert!(
         (1e-4..2.7e-3).contains(&beyond),
         "{beyond} beyond three deviations"

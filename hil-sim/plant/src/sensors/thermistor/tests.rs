@@ -1,4 +1,4 @@
-//! Against the divider's published figures and the equation of a body that heats itself.
+//! Thermistor against published slopes of the divider and the balance of self-heating and dissipation.
 
 use super::super::SensorParams;
 use super::*;
@@ -13,7 +13,7 @@ fn site(surface_c: f64) -> Site {
 }
 
 #[test]
-fn divider_has_the_slopes_of_its_class() {
+fn divider_has_the_published_slopes() {
     assert!((DISPLAY.ratio(25.0) - 0.5).abs() < 1e-15);
     for (at_c, counts_per_k) in [(24.0, 46.0), (34.0, 41.0), (45.0, 34.0)] {
         let slope = (DISPLAY.ratio(at_c - 0.5) - DISPLAY.ratio(at_c + 0.5)) * 4096.0;
@@ -25,8 +25,8 @@ fn divider_has_the_slopes_of_its_class() {
 }
 
 #[test]
-fn tolerances_shift_the_reading_as_the_beta_equation_has_it() {
-    // At 25 deg C: 1 % of resistance is 1 % / (beta/T^2) = 0.225 K; beta counts away from it only.
+fn tolerances_shift_the_reading_by_the_beta_equation() {
+    // At 25 deg C 1 % of resistance is 1 % / (beta/T^2) = 0.225 K; the error of beta is zero there.
     let kelvin = |params: ThermistorParams, at_c: f64| {
         (DISPLAY.ratio(at_c) - params.ratio(at_c))
             / (DISPLAY.ratio(at_c - 0.5) - DISPLAY.ratio(at_c + 0.5))
@@ -51,23 +51,23 @@ fn tolerances_shift_the_reading_as_the_beta_equation_has_it() {
     assert!((kelvin(pulled, 25.0) - 0.225).abs() < 0.003);
     assert!(kelvin(steep, 25.0).abs() < 1e-12);
     // d ln R = d beta (1/T - 1/T25), over beta/T^2.
-    let wanted = -0.01 * (307.15f64.recip() - 298.15f64.recip()) * 307.15 * 307.15;
+    let expected = -0.01 * (307.15f64.recip() - 298.15f64.recip()) * 307.15 * 307.15;
     assert!(
-        (kelvin(steep, 34.0) - wanted).abs() < 0.005,
-        "{} for {wanted}",
+        (kelvin(steep, 34.0) - expected).abs() < 0.005,
+        "{} for {expected}",
         kelvin(steep, 34.0)
     );
 }
 
 #[test]
-fn divider_heats_its_thermistor_by_a_quarter_milliwatt() {
+fn self_heating_power_is_0_26_mw_at_34_c() {
     let ratio = DISPLAY.ratio(34.0);
     let heat_mw = 1e3 * DISPLAY.heat_scale_w(3.3) * ratio * (1.0 - ratio);
     assert!((heat_mw - 0.26).abs() < 0.005, "{heat_mw} mW");
 }
 
 #[test]
-fn heated_thermistor_rests_where_power_and_loss_balance() {
+fn self_heating_and_dissipation_balance_in_steady_state() {
     for (dissipation_w_k, surface_c) in [(8e-3, 24.0), (1e-3, 24.0), (3e-3, 34.0)] {
         let params = ThermistorParams {
             dissipation_w_k,
@@ -83,7 +83,7 @@ fn heated_thermistor_rests_where_power_and_loss_balance() {
             (above_c * dissipation_w_k / power_w - 1.0).abs() < 1e-9,
             "{above_c} K above"
         );
-        // It gets there from cold as well.
+        // A transient from 0 deg C converges to the same state.
         let mut cold = Thermistor::new(params, &site(0.0), 3.3);
         for _ in 0..2000 {
             cold.step(1e-3, &site(surface_c));
@@ -93,7 +93,7 @@ fn heated_thermistor_rests_where_power_and_loss_balance() {
 }
 
 #[test]
-fn leads_let_their_share_of_the_room_in() {
+fn leads_shift_the_reading_towards_the_room() {
     let params = ThermistorParams {
         lead_share: 0.02,
         ..DISPLAY
@@ -107,15 +107,15 @@ fn leads_let_their_share_of_the_room_in() {
 }
 
 #[test]
-fn thermistor_trails_by_its_lag() {
+fn thermistor_lags_a_ramp_by_its_time_constant() {
     let step_s = 0.5e-3;
     let mut thermistor = Thermistor::new(DISPLAY, &site(24.0), 0.0);
-    // A ramp of 10 K/s: after many lags the reading trails by lag times rate.
+    // A ramp of 10 K/s: after many time constants the error is time constant times rate.
     for k in 1..=4000 {
         thermistor.step(step_s, &site(24.0 + 10.0 * step_s * f64::from(k)));
     }
     assert!((thermistor.reached_c - (44.0 - 10.0 * 0.1)).abs() < 1e-6);
-    // Then at rest: the rest of it decays exponentially.
+    // At constant temperature the error decays exponentially.
     for _ in 0..200 {
         thermistor.step(step_s, &site(44.0));
     }
@@ -126,16 +126,16 @@ fn thermistor_trails_by_its_lag() {
     );
 }
 
-/// A twentieth of 8 mW/K is left, of which its leads take what they took before, 16 uW/K: 4 %.
+/// One twentieth of 8 mW/K remains, of which the unchanged 16 uW/K of the leads are 4 %.
 #[test]
-fn loose_thermistor_lags_sees_the_room_and_warms_itself() {
+fn detached_thermistor_has_more_lag_lead_error_and_self_heating() {
     let here = Site {
         surface_c: 34.0,
         room_c: 24.0,
     };
     let mut loose = Thermistor::new(DISPLAY, &here, 0.0);
     loose.set_defect(ThermistorDefect {
-        loose: 20.0,
+        resistance_factor: 20.0,
         ..ThermistorDefect::NONE
     });
     // From 33.98 to 33.6 deg C with 2 s.
@@ -155,7 +155,7 @@ fn loose_thermistor_lags_sees_the_room_and_warms_itself() {
 }
 
 #[test]
-fn broken_wires_do_not_heat_and_mended_ones_read_as_before() {
+fn open_or_shorted_thermistor_has_no_self_heating_and_recovers() {
     let here = site(34.0);
     let mut thermistor = Thermistor::new(DISPLAY, &here, 3.3);
     let sound = thermistor.ratio();

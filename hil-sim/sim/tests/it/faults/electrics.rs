@@ -6,7 +6,7 @@ use thermal_sim::scene::FaultKind;
 use super::*;
 
 /// Current of the first step from rest, A: there is no Seebeck voltage yet.
-fn current_a(legs: Legs, all: &[ActiveFault]) -> f64 {
+fn current_a(legs: BridgeOutputs, all: &[ActiveFault]) -> f64 {
     let mut world = ideal();
     run(&mut world, 1, legs, all);
     world.plant().current_a()
@@ -15,7 +15,7 @@ fn current_a(legs: Legs, all: &[ActiveFault]) -> f64 {
 const COOLING: (f64, f64) = (1.0, 0.6);
 const HEATING: (f64, f64) = (0.6, 1.0);
 
-fn legs((a, b): (f64, f64)) -> Legs {
+fn legs((a, b): (f64, f64)) -> BridgeOutputs {
     driven(a, b)
 }
 
@@ -95,7 +95,7 @@ fn enable_ends_the_current_of_a_stuck_leg() {
         FaultKind::BridgeStuckLow,
         FaultKind::PolaritySwapped,
     ] {
-        let disabled = Legs {
+        let disabled = BridgeOutputs {
             enabled: false,
             ..legs(COOLING)
         };
@@ -106,7 +106,7 @@ fn enable_ends_the_current_of_a_stuck_leg() {
 
 #[test]
 fn stuck_enable_drives_for_as_long_as_pwm_does() {
-    let disabled = Legs {
+    let disabled = BridgeOutputs {
         enabled: false,
         ..legs(COOLING)
     };

@@ -9,7 +9,7 @@ mod sensors;
 
 use std::path::Path;
 
-use thermal_plant::bridge::{Leg, Legs};
+use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
 use thermal_sim::scene::{ActiveFault, FaultKind, Scene, Sensor};
@@ -20,7 +20,7 @@ const IDEAL: &str = "[plant]\nsensors.converter.noise_counts = 0\nsensors.conver
     sensors.reference.excitation_duty = 0\nsensors.display.lead_share = 0\nsensors.check.lead_share = 0\n\
     sensors.sink.lead_share = 0\nsensors.skin.lead_share = 0\nbridge.trip_a = 40\n";
 
-const OFF: Legs = Legs {
+const OFF: BridgeOutputs = BridgeOutputs {
     a: Leg::Off,
     b: Leg::Off,
     enabled: false,
@@ -36,8 +36,8 @@ fn ideal() -> World {
     World::new(&scene(IDEAL)).expect("a plant for the scene")
 }
 
-fn driven(a: f64, b: f64) -> Legs {
-    Legs {
+fn driven(a: f64, b: f64) -> BridgeOutputs {
+    BridgeOutputs {
         a: Leg::Duty(a),
         b: Leg::Duty(b),
         enabled: true,
@@ -59,7 +59,7 @@ fn of(kind: FaultKind, sensor: Sensor, value: f64) -> ActiveFault {
 }
 
 /// Lets time pass in milliseconds with the finger lifted, things broken, and the legs held.
-fn run(world: &mut World, ms: u32, legs: Legs, all: &[ActiveFault]) {
+fn run(world: &mut World, ms: u32, legs: BridgeOutputs, all: &[ActiveFault]) {
     world.set_force_and_faults(0.0, all.iter().copied());
     for _ in 0..ms {
         world.step(legs);

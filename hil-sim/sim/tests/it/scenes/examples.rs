@@ -1,6 +1,6 @@
 //! Physics that must hold in the examples.
 
-use thermal_plant::infrared::{LineOfSight, Optic, Surroundings, radiance, temperature_c};
+use thermal_plant::infrared::{Optic, OpticalPath, Surroundings, radiance, temperature_c};
 
 use super::{at, example, rows, scene};
 
@@ -152,9 +152,10 @@ fn camera_recovers_the_true_skin_within_its_noise() {
 #[test]
 fn camera_that_sees_itself_takes_the_skin_for_warmer() {
     // The camera of 30 C takes the place of a room of 26 C in what the window mirrors, past the beamsplitter twice.
-    let through = LineOfSight::new(Optic::Zns, 0.95, &Surroundings::at(26.0));
+    let through = OpticalPath::new(Optic::Zns, 0.95, &Surroundings::at(26.0));
     let more = 0.22 * 0.54 * 0.54 * (radiance(30.0) - radiance(26.0));
-    let taken_c = temperature_c(through.target(through.total(radiance(29.0)) + more));
+    let taken_c =
+        temperature_c(through.target_radiance(through.total_radiance(radiance(29.0)) + more));
     let errors = camera_errors(&[("rate_hz = 25", "rate_hz = 25\nnetd_k = 0")]);
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;
     assert!(

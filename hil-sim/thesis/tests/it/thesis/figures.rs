@@ -1,8 +1,8 @@
-//! The curves against golden values, and where they come from.
+//! The curves of the figures against golden values, and the solver behind them.
 
 use serde::Deserialize;
-use thermal_thesis::figure::{Figure, Kind, apart, figures};
-use thermal_thesis::{Case, ClosedForm, FiniteVolumes, Source, Surfaces};
+use thermal_thesis::figure::{Figure, Kind, differences, figures};
+use thermal_thesis::{Case, ClosedForm, ContactSolver, FiniteVolumes, Surfaces};
 
 use super::{computed, name, table};
 
@@ -151,13 +151,13 @@ fn curves_and_rows_of_the_validation_meet_golden_values() {
 }
 
 #[test]
-fn every_curve_over_time_comes_from_the_source() {
-    /// Everything one higher than the closed form.
+fn every_curve_over_time_is_computed_by_the_solver() {
+    /// The closed form with all values increased by one.
     struct Raised;
-    impl Source for Raised {
-        fn course(&self, case: &Case, times_s: &[f64]) -> anyhow::Result<Vec<Surfaces>> {
-            let course = ClosedForm.course(case, times_s)?.into_iter();
-            Ok(course
+    impl ContactSolver for Raised {
+        fn solve(&self, case: &Case, times_s: &[f64]) -> anyhow::Result<Vec<Surfaces>> {
+            let surfaces = ClosedForm.solve(case, times_s)?.into_iter();
+            Ok(surfaces
                 .map(|at| Surfaces {
                     skin_c: at.skin_c + 1.0,
                     object_c: at.object_c + 1.0,
@@ -170,7 +170,7 @@ fn every_curve_over_time_comes_from_the_source() {
     let raised = figures(&Raised).expect("the source");
     for (figure, other) in closed_form().iter().zip(&raised) {
         for (curve, other) in figure.curves.iter().zip(&other.curves) {
-            // Perfect contact has no source, and a fall is a difference.
+            // Perfect contact has no solver, and a fall is a difference.
             let perfect =
                 figure.number.starts_with("3-2") || curve.label.ends_with("perfect contact");
             let expected = if perfect || figure.number.starts_with("6-19") {
@@ -199,10 +199,10 @@ fn every_curve_over_time_comes_from_the_source() {
 }
 
 #[test]
-fn a_source_that_fails_fails_the_figures() {
+fn error_of_the_solver_is_returned_by_figures() {
     struct Broken;
-    impl Source for Broken {
-        fn course(&self, _: &Case, _: &[f64]) -> anyhow::Result<Vec<Surfaces>> {
+    impl ContactSolver for Broken {
+        fn solve(&self, _: &Case, _: &[f64]) -> anyhow::Result<Vec<Surfaces>> {
             anyhow::bail!("no plant")
         }
     }
@@ -213,7 +213,7 @@ fn a_source_that_fails_fails_the_figures() {
 }
 
 #[test]
-fn dashed_and_dotted_curves_are_where_the_legend_says() {
+fn line_style_of_every_curve_follows_from_its_label() {
     for figure in closed_form() {
         for curve in figure.curves {
             let expected = match curve.label.rsplit(", ").next() {
@@ -227,12 +227,12 @@ fn dashed_and_dotted_curves_are_where_the_legend_says() {
     }
 }
 
-/// The plant's mesh and steps, on every contact that the thesis draws.
+/// Mesh and steps of the plant in every contact of the thesis's figures.
 #[test]
-fn finite_volumes_draw_the_same_figures() {
-    let apart = apart(&closed_form(), &figures(&FiniteVolumes).expect("the plant"));
-    assert_eq!(apart.len(), 13);
-    for figure in &apart {
+fn finite_volumes_agree_with_the_closed_form_in_every_figure() {
+    let differences = differences(&closed_form(), &figures(&FiniteVolumes).expect("the plant"));
+    assert_eq!(differences.len(), 13);
+    for figure in &differences {
         // 1 mK; of a flux 1e-4 of what it begins with.
         let allowed = if figure.y.contains("flux") {
             1e-4 * figure.range

@@ -1,4 +1,4 @@
-//! Which rows there are, and which of them do not agree.
+//! Completeness of the rows, and the known rows that do not agree.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use thermal_thesis::row::Verdict;
 use super::{all_rows, table};
 
 #[test]
-fn what_does_not_agree_is_exactly_what_is_known() {
+fn exactly_the_known_rows_do_not_agree() {
     #[derive(Deserialize)]
     struct Known {
         verdict: String,
@@ -40,7 +40,7 @@ fn what_does_not_agree_is_exactly_what_is_known() {
 }
 
 #[test]
-fn every_place_is_there_and_no_row_twice() {
+fn every_place_has_rows_and_no_row_is_repeated() {
     let rows = all_rows();
     let places: BTreeSet<_> = rows.iter().map(|row| row.place).collect();
     for place in [

@@ -1,4 +1,4 @@
-//! `hil-sim thesis`: verdicts, the list of what is known to be wrong, golden values, and the forms of the output.
+//! The recomputed thesis: verdicts, known errors of the thesis, and golden values.
 
 mod figures;
 mod known;

@@ -1,4 +1,4 @@
-//! Computed numbers against golden values.
+//! Computed values of the rows against golden values.
 
 use contact_model::material::{average_slope_rad, find};
 use contact_model::reference::fourier_number;
@@ -103,7 +103,7 @@ fn display_ratios_meet_golden_values() {
     assert_eq!(checked, 5);
 }
 
-/// Eq. 6-13's factor belongs to Gaussian surfaces: on sines it misses the mean slope by the ratio of the two rows.
+/// The factor of Eq. 6-13 is valid for Gaussian surfaces; for sines its error is the ratio of the two rows.
 #[test]
 fn slope_factors_meet_golden_sines() {
     #[derive(Deserialize)]
@@ -123,7 +123,7 @@ fn slope_factors_meet_golden_sines() {
     }
 }
 
-/// The lengths that the Fourier numbers need: within these ends every row of a table agrees, beyond not.
+/// Characteristic lengths that the Fourier numbers require: every row of a table agrees within these limits only.
 #[test]
 fn fourier_numbers_bound_the_characteristic_lengths() {
     let agree = |place: &str, t_s: f64, length_m: f64| {

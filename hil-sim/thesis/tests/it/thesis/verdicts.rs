@@ -1,4 +1,4 @@
-//! When a row agrees, and what a remark is worth.
+//! Agreement of a row, and effect of a remark on its verdict.
 
 use thermal_thesis::Stated;
 use thermal_thesis::row::{Correction, Remark, Row, Verdict};
@@ -19,7 +19,7 @@ fn row(stated: Stated, computed: f64, remark: Option<Remark>) -> Row {
 }
 
 #[test]
-fn a_printed_number_is_met_by_all_that_round_to_it() {
+fn a_printed_number_agrees_with_all_values_that_round_to_it() {
     for (stated, agreeing, differing) in [
         (printed(24.3, 1), [24.251, 24.349], [24.249, 24.351]),
         // Trailing zeros are digits.
@@ -43,7 +43,7 @@ fn a_printed_number_is_met_by_all_that_round_to_it() {
 }
 
 #[test]
-fn other_statements_hold_within_their_limits() {
+fn ranges_and_limits_agree_within_their_bounds() {
     let about = Stated::About {
         value: 27.0,
         within: 0.5,
