@@ -30,12 +30,12 @@ pub enum SessionRequest {
     CountSettingsLines,
     /// `settings N`: reports one line of the settings, by its index from 0.
     SettingsLine(usize),
-    /// `set ...`: replaces a part of the settings.
-    Set(Setting),
     /// `tune result`: identifies the tile from the recorded response, and uses it.
     TuneResult,
     /// `margins`: reports the tile and the stability margins of its loop.
     Margins,
+    /// `set ...`: replaces a part of the settings.
+    Set(Setting),
 }
 
 /// The reply of a commissioning session.
