@@ -66,8 +66,8 @@ fn figure(key: String, entry: Entry) -> Result<Figure, String> {
     };
     let value = match values[..] {
         [value] => value.get(),
-        _ if demand == Demand::Exactly => 1.0,
-        _ => return Err(format!("{key}: several values are exact")),
+        _ if matches!(demand, Demand::Exactly | Demand::Recorded(_)) => 1.0,
+        _ => return Err(format!("{key}: several values are exact or recorded")),
     };
     let above = |bound: &Number| bound.get() / value;
     let below = |least: &Number| value / least.get();

@@ -8,7 +8,6 @@ fn main() -> std::io::Result<()> {
     for (name, text) in [
         ("kernel_table.rs", fit::kernel::table()),
         ("log_table.rs", fit::log_table()),
-        ("erf_table.rs", fit::erf_table()),
     ] {
         std::fs::write(format!("{folder}/{name}"), text)?;
         println!("wrote model/src/fixed_point/{name}");

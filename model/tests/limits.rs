@@ -1,8 +1,7 @@
 //! Limits of the fixed-point path: time zero, no contact, no resistance, extreme ticks.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, ContactPair, Depth, Flux, Force, FourierNumber, Log2, MantissaExponent,
-    SemiInfinite, Ticks, fourier_number, log2_relative_pressure,
+    Celsius, Contact, ContactPair, Flux, Force, Log2, Ticks, log2_relative_pressure,
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 
@@ -89,39 +88,4 @@ fn response_is_constant_after_the_largest_tick_count() {
         let last = contact.at(Ticks::MAX.get(), SKIN_C, OBJECT_C);
         assert_eq!(contact.at(u32::MAX, SKIN_C, OBJECT_C), last);
     }
-}
-
-#[test]
-fn perfect_contact_scales_with_depth_over_the_root_of_time() {
-    for (_, object) in &MATERIALS {
-        let perfect = SemiInfinite::new(&SKIN, object, 1e-3).expect("ordinary");
-        let at = |depth, ticks| {
-            let ticks = Ticks::new(ticks).expect("in range");
-            perfect.skin_at_depth(depth, ticks, SKIN_C, OBJECT_C)
-        };
-        let interface = perfect.interface_temperature(SKIN_C, OBJECT_C);
-        assert_eq!(at(Depth::ZERO, 1), interface);
-        assert_eq!(at(Depth::MAX, 1), SKIN_C);
-        // 400 times the time, 20 times the depth.
-        let one = at(Depth::lit("20"), 1000);
-        let other = at(Depth::lit("400"), 400_000);
-        assert!(interface < one && one < SKIN_C && agree(one, other, 1));
-        // The flux is inversely proportional to the root of time.
-        let flux =
-            |ticks| perfect.flux_w_m2(Ticks::new(ticks).expect("in range"), SKIN_C, OBJECT_C);
-        let ratio = flux(7).to_num::<f64>() / flux(700).to_num::<f64>();
-        assert!(flux(7) < 0 && (ratio - 10.0).abs() < 1e-7, "{ratio}");
-    }
-}
-
-#[test]
-fn fourier_number_saturates() {
-    let huge = MantissaExponent::from_f64(1e300).expect("normal");
-    let tiny = MantissaExponent::from_f64(1e-300).expect("normal");
-    assert_eq!(fourier_number(huge, Ticks::ONE), FourierNumber::MAX);
-    assert_eq!(fourier_number(tiny, Ticks::MAX), FourierNumber::ZERO);
-    assert_eq!(
-        fourier_number(MantissaExponent::ONE, Ticks::MAX),
-        FourierNumber::from_num(Ticks::MAX.get())
-    );
 }

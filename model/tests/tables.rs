@@ -13,8 +13,4 @@ fn committed_tables_are_those_that_the_generator_writes() {
         include_str!("../src/fixed_point/log_table.rs") == fit::log_table(),
         "{again}"
     );
-    assert!(
-        include_str!("../src/fixed_point/erf_table.rs") == fit::erf_table(),
-        "{again}"
-    );
 }

@@ -43,8 +43,12 @@ impl Bench {
             force: self.sum,
             ..Samples::default()
         };
-        let force = self.sensors.read(&samples).force.expect("a sound sensor");
-        self.touch.update(force);
+        let force = self
+            .sensors
+            .read_samples(&samples)
+            .force
+            .expect("a sound sensor");
+        self.touch.update_contact(force);
         self.sensors.track_zero(&samples, &self.touch);
         self.sum = 0;
         self.scan(SCANS_BEFORE);

@@ -12,12 +12,7 @@ const OUT: &str = "target/demo";
 /// `cargo xtask demo`
 pub fn run(permission: Permission) -> Result<()> {
     let mut steps = Steps::new(4);
-    let needs = Needs {
-        emulator: true,
-        fuzzer: false,
-        lints: false,
-    };
-    let toolchain = steps.run("set-up", "", || setup::prepare(needs, permission))?;
+    let toolchain = steps.run("set-up", "", || setup::prepare(Needs::EMULATOR, permission))?;
     steps.run(
         "building the firmware",
         "about 1 min the first time",
@@ -32,18 +27,8 @@ pub fn run(permission: Permission) -> Result<()> {
         "running the image: a finger lands on \"copper\"",
         "",
         || {
-            let run = [
-                "run",
-                "--release",
-                "-p",
-                "hil-sim",
-                "--",
-                "run",
-                SCENE,
-                "--out",
-                OUT,
-            ];
-            permission.choice.handed_to(Invocation::cargo(run)).run()
+            let run = Invocation::run_package("hil-sim", ["run", SCENE, "--out", OUT]);
+            permission.choice.handed_to(run).run()
         },
     )?;
     println!("\n{}", firmware::describe(&toolchain, Fingers::One)?);

@@ -176,7 +176,8 @@ fn table(group: &str) -> Result<String> {
             command => format!("`{command}`"),
         };
         before = &figure.command;
-        let value = with_unit(figure.shown(), &figure.unit);
+        // Several values would be cells of the table.
+        let value = with_unit(figure.shown().replace(" | ", ", "), &figure.unit);
         let Figure { what, domain, .. } = figure;
         writeln!(
             text,

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, Result};
 
-use crate::image::{Memory, Usage};
+use crate::memory_usage::{Memory, Usage};
 use crate::process::{Invocation, workspace};
 use crate::setup::{self, Needs, Permission, TARGET, Toolchain};
 
@@ -71,18 +71,9 @@ fn cargo(toolchain: &Toolchain, fingers: Fingers, subcommand: &str) -> Invocatio
     let folder = target_folder(toolchain);
     toolchain
         .cargo(subcommand)
-        .args([
-            "--locked",
-            "--package",
-            PACKAGE,
-            "--profile",
-            PROFILE,
-            "--target",
-            TARGET,
-            "--features",
-            fingers.feature(),
-        ])
-        .args(["--target-dir", folder])
+        .args(["--locked", "--package", PACKAGE, "--profile", PROFILE])
+        .args(["--features", fingers.feature()])
+        .args(["--target", TARGET, "--target-dir", folder])
         .without(&FOREIGN_FLAGS)
 }
 

@@ -2,14 +2,14 @@
 //!
 //! Headings and the output of tools go to standard error, results to standard output. Exit status 1 is a failure or a missing
 //! tool, 2 a wrong command line.
+mod auxiliary_image;
 mod bench;
 mod demo;
 mod docs;
 mod firmware;
 mod fuzz;
-mod image;
+mod memory_usage;
 mod mutations;
-mod probe;
 mod process;
 mod proof;
 mod report;
@@ -19,7 +19,6 @@ mod step;
 mod suite;
 
 use std::ffi::OsString;
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
@@ -37,11 +36,11 @@ struct Cli {
 enum Task {
     /// Build the image and run it in the emulator: a finger lands on "copper"
     Demo(SetUp),
-    /// Run the test suite: formatting, lints, documentation, units, fuzzers, the image on the simulated plant
+    /// Run the test suite: formatting, lints, documentation and its figures, units, fuzzers, the image on the simulated plant
     Test {
         #[command(flatten)]
         set_up: SetUp,
-        /// Only what takes less than a minute: formatting, lints and units of the small packages, the native device
+        /// Only what takes less than a minute: formatting, documented figures, lints and units of the small packages, the native device
         #[arg(long)]
         quick: bool,
     },
@@ -67,30 +66,23 @@ enum Task {
         #[arg(long)]
         print_path: bool,
     },
-    /// Print and plot run time against error of the contact model and alternatives, or of the simulated plant
+    /// Print and plot run time against error of the contact model and alternatives, or of the simulated plant; writes to
+    /// target/bench unless --out names a folder
     Bench {
         #[command(flatten)]
         set_up: SetUp,
         /// What to measure
         #[arg(value_enum, default_value = "model")]
         job: bench::Job,
-        /// Print one JSON object instead of the tables
-        #[arg(long)]
-        json: bool,
-        /// Folder for the page and its picture: benchmark.md and .svg, or plant-benchmark.md and .svg [default: target/bench]
-        #[arg(long)]
-        out: Option<PathBuf>,
+        #[command(flatten)]
+        report: report::Options,
     },
     /// Print how close the skin on the display comes to the skin on the real material, law by law
     Fidelity {
         #[command(flatten)]
         set_up: SetUp,
-        /// Print one JSON object instead of the tables
-        #[arg(long)]
-        json: bool,
-        /// Folder for the page, its picture and CSV
-        #[arg(long)]
-        out: Option<PathBuf>,
+        #[command(flatten)]
+        report: report::Options,
         /// Options of `hil-sim fidelity`: --scenario, --law, --box and others, see its --help
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
@@ -99,12 +91,8 @@ enum Task {
     Faults {
         #[command(flatten)]
         set_up: SetUp,
-        /// Print one JSON object in place of the table
-        #[arg(long)]
-        json: bool,
-        /// Folder for the page
-        #[arg(long)]
-        out: Option<PathBuf>,
+        #[command(flatten)]
+        report: report::Options,
         /// Disable each fault detector in turn in a copy of the sources; the fault matrix must reveal it; takes an hour
         #[arg(long, exclusive = true)]
         mutations: bool,
@@ -181,31 +169,22 @@ fn main() -> ExitCode {
         Task::Bench {
             set_up,
             job,
-            json,
-            out,
-        } => bench::run(set_up.permission(), job, json, out),
+            report,
+        } => bench::run(set_up.permission(), job, report),
         Task::Fidelity {
             set_up,
-            json,
-            out,
+            report,
             rest,
-        } => report::run(
-            set_up.permission(),
-            ("hil-sim", "fidelity"),
-            json,
-            out,
-            rest,
-        ),
+        } => report::run(set_up.permission(), ("hil-sim", "fidelity"), report, rest),
         Task::Faults {
             mutations: true, ..
         } => mutations::run(),
         Task::Faults {
             set_up,
-            mutations: false,
-            json,
-            out,
+            report,
             rest,
-        } => report::run(set_up.permission(), ("hil-sim", "faults"), json, out, rest),
+            ..
+        } => report::run(set_up.permission(), ("hil-sim", "faults"), report, rest),
         Task::Proof {
             set_up,
             fingers,
@@ -213,8 +192,8 @@ fn main() -> ExitCode {
         } => proof::run(set_up.permission(), fingers, code_only),
         Task::Fuzz { set_up, options } => fuzz::run(set_up.permission(), &options),
         Task::Docs { check } => docs::run(check),
-        Task::BenchImage(set_up) => bench::build_image(set_up.permission()),
-        Task::Probe(set_up) => probe::run(set_up.permission()),
+        Task::BenchImage(set_up) => auxiliary_image::benchmark(set_up.permission()),
+        Task::Probe(set_up) => auxiliary_image::probe(set_up.permission()),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

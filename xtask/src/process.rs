@@ -54,8 +54,16 @@ impl Invocation {
         }
     }
 
+    /// The program of a package of the workspace with `args`, compiled for release.
+    pub fn run_package<A: Into<OsString>>(
+        package: &'static str,
+        args: impl IntoIterator<Item = A>,
+    ) -> Self {
+        Self::cargo(["run", "--release", "--package", package, "--"]).args(args)
+    }
+
     /// Appends to the command line.
-    pub fn args(mut self, args: impl IntoIterator<Item = &'static str>) -> Self {
+    pub fn args<A: Into<OsString>>(mut self, args: impl IntoIterator<Item = A>) -> Self {
         self.args.extend(args.into_iter().map(Into::into));
         self
     }
@@ -136,10 +144,8 @@ impl Invocation {
     /// Standard output of a short query; `None` if it does not start, fails or exceeds the time limit.
     pub fn answer(&self) -> Option<String> {
         let mut command = self.command();
-        command
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null());
+        command.stdin(Stdio::null()).stderr(Stdio::null());
+        command.stdout(Stdio::piped());
         let mut child = command.spawn().ok()?;
         let stdout = child.stdout.take()?;
         // Read in a thread: a full pipe would block the command.

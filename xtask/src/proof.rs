@@ -7,22 +7,10 @@ use crate::setup::{self, Needs, Permission};
 
 /// `cargo xtask proof`
 pub fn run(permission: Permission, fingers: Fingers, code_only: bool) -> Result<()> {
-    let needs = Needs {
-        emulator: true,
-        ..Needs::default()
-    };
-    setup::prepare(needs, permission)?;
-    let mut line = vec![
-        "run",
-        "--release",
-        "--package",
-        "image-proof",
-        "--",
-        "--fingers",
-        fingers.name(),
-    ];
+    setup::prepare(Needs::EMULATOR, permission)?;
+    let mut proof = Invocation::run_package("image-proof", ["--fingers", fingers.name()]);
     if code_only {
-        line.push("--code-only");
+        proof = proof.args(["--code-only"]);
     }
-    permission.choice.handed_to(Invocation::cargo(line)).run()
+    permission.choice.handed_to(proof).run()
 }

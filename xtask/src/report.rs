@@ -7,34 +7,34 @@ use anyhow::{Context, Result};
 use crate::process::Invocation;
 use crate::setup::{self, Needs, Permission};
 
-/// Runs a command of a package; a relative `out` is relative to the caller's folder.
+/// Options of a report.
+#[derive(clap::Args)]
+pub struct Options {
+    /// Print one JSON object instead of the tables
+    #[arg(long)]
+    json: bool,
+    /// Folder for the page, its picture and data
+    #[arg(long)]
+    out: Option<PathBuf>,
+}
+
+/// Runs a command of a package; a relative `--out` is relative to the caller's folder.
 pub fn run(
     permission: Permission,
-    (package, command): (&str, &str),
-    json: bool,
-    out: Option<PathBuf>,
+    (package, command): (&'static str, &str),
+    options: Options,
     rest: Vec<OsString>,
 ) -> Result<()> {
-    let out = out.map(|folder| {
+    setup::prepare(Needs::EMULATOR, permission)?;
+    let mut report = Invocation::run_package(package, [command]);
+    if options.json {
+        report = report.args(["--json"]);
+    }
+    if let Some(folder) = options.out {
         // Commands run in the workspace's root.
-        std::path::absolute(&folder).with_context(|| format!("--out {}", folder.display()))
-    });
-    let out = out.transpose()?;
-    let needs = Needs {
-        emulator: true,
-        fuzzer: false,
-        lints: false,
-    };
-    setup::prepare(needs, permission)?;
-    let mut line: Vec<OsString> = ["run", "--release", "--package", package, "--", command]
-        .map(OsString::from)
-        .into();
-    if json {
-        line.push("--json".into());
+        let absolute = std::path::absolute(&folder);
+        let folder = absolute.with_context(|| format!("--out {}", folder.display()))?;
+        report = report.args([OsString::from("--out"), folder.into()]);
     }
-    if let Some(folder) = out {
-        line.extend(["--out".into(), folder.into()]);
-    }
-    line.extend(rest);
-    permission.choice.handed_to(Invocation::cargo(line)).run()
+    permission.choice.handed_to(report.args(rest)).run()
 }

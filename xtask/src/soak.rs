@@ -42,9 +42,8 @@ pub fn run(permission: Permission, only: &[String]) -> Result<()> {
     }
     chosen.retain(|job| only.is_empty() || only.iter().any(|name| name == job.name));
     let needs = Needs {
-        emulator: true,
         fuzzer: true,
-        lints: false,
+        ..Needs::EMULATOR
     };
     setup::prepare(needs, permission)?;
     let folder = workspace().join("target/soak");

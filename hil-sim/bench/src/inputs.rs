@@ -1,15 +1,15 @@
-//! The inputs of the kernels: the same numbers everywhere.
+//! Inputs of the kernels, the same on the host and on the microcontroller.
 use contact_model::fixed_point::{MantissaExponent, Ticks};
 
 /// Octaves of the product of the leading powers of two of `n` and `K`; with both mantissas below 2, `u = n K` lies
-/// from 2^-24 to 2^16, where scenes live.
+/// from 2^-24 to 2^16, the range that occurs in scenes.
 const OCTAVES: core::ops::Range<i32> = -24..15;
-/// Most bits of `n`: 4.6 hours at 1 kHz.
+/// Largest number of bits of `n`: 4.6 hours at 1 kHz.
 const TICK_BITS: u32 = 24;
-/// 2^32 over the golden ratio: steps of this size modulo 2^32 fill the range evenly, however many are taken.
+/// 2^32 over the golden ratio: steps of this size modulo 2^32 fill the range evenly, whatever their number.
 const GOLDEN: u32 = 0x9e37_79b9;
 
-/// One input in the natural type of every kernel; `K` is rounded to each.
+/// One input, with `K` rounded to the type of each kernel.
 #[derive(Clone, Copy, Debug)]
 pub struct Input {
     /// Ticks since contact.
@@ -36,7 +36,7 @@ impl Input {
         })
     }
 
-    /// The input number `index`: octaves evenly, mantissas evenly within them.
+    /// The input with this index: uniform over octaves, and uniform over mantissas within an octave.
     #[must_use]
     pub fn nth(index: u32) -> Option<Self> {
         let place = index.wrapping_mul(GOLDEN);
@@ -53,12 +53,12 @@ impl Input {
     }
 }
 
-/// `place / 2^32` of `count`, rounded down.
+/// `count * place / 2^32`, rounded down.
 fn below(place: u32, count: u32) -> u32 {
     ((u64::from(place) * u64::from(count)) >> 32) as u32
 }
 
-/// Another number for each number, without visible order.
+/// A bijective hash.
 fn scramble(x: u32) -> u32 {
     let x = (x ^ x >> 16).wrapping_mul(0x045d_9f3b);
     let x = (x ^ x >> 16).wrapping_mul(0x045d_9f3b);

@@ -1,11 +1,11 @@
-//! What the image is asked to do, by the level of port C's pins.
+//! Jobs of the image, selected by the levels of port C's pins.
 use crate::kernels::{Call, KERNELS};
 use crate::scenes::{SCENES, Scene, only_return_scene};
 
-/// Inputs that a kernel gets on the microcontroller.
+/// Number of inputs of a kernel on the microcontroller.
 pub const ON_TARGET: u32 = 1000;
 
-/// Pin 7: only return from each call.
+/// Pin 7: calls functions that only return.
 const ONLY_RETURN: u32 = 1 << 7;
 /// Pin 6: scenes instead of kernels.
 const SCENE: u32 = 1 << 6;
@@ -43,26 +43,26 @@ impl Job {
         })
     }
 
-    /// Pins for the kernel of that place in [`KERNELS`].
+    /// Pins that select a kernel by its index in [`KERNELS`].
     #[must_use]
     pub fn kernel_pins(index: usize) -> u32 {
         index as u32
     }
 
-    /// Pins for the scene of that place in [`SCENES`].
+    /// Pins that select a scene by its index in [`SCENES`].
     #[must_use]
     pub fn scene_pins(index: usize) -> u32 {
         index as u32 | SCENE
     }
 
-    /// The same calls of an empty function.
+    /// Pins that select the same number of calls of a function that only returns.
     #[must_use]
     pub fn only_return(pins: u32) -> u32 {
         pins | ONLY_RETURN
     }
 }
 
-/// Tells series of values apart (FNV-1a, 64 bits at a time).
+/// Checksum of a series of values (FNV-1a, 64 bits at a time).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Checksum(pub u64);
 

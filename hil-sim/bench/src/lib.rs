@@ -1,4 +1,4 @@
-//! What the benchmark measures, for the host and the emulated microcontroller alike: [`kernels`] that compute
+//! The code that the benchmark measures on the host and on the emulated microcontroller: [`kernels`] that compute
 //! `E = erfcx(sqrt(n K))`, [`scenes`] for the whole model, and their [`inputs`].
 //!
 //! The peers are written after the cited formulas; their coefficients are derived by `build.rs`.

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use anyhow::Context;
 use clap::{Parser, ValueEnum};
 
-/// What is measured.
+/// Subject of the benchmark.
 #[derive(Clone, Copy, ValueEnum)]
 enum Job {
     /// The contact model and its peers
@@ -22,7 +22,7 @@ enum Job {
 #[derive(Parser)]
 #[command(name = "model-bench", max_term_width = 100)]
 struct Arguments {
-    /// What to measure
+    /// Subject of the benchmark
     #[arg(value_enum, default_value = "model")]
     job: Job,
     /// Print one JSON object in place of the tables
@@ -39,12 +39,12 @@ struct Arguments {
     rounds: u16,
 }
 
-/// What a job gives.
+/// Results of a benchmark.
 struct Results {
-    /// One object.
+    /// One JSON object.
     json: String,
     tables: String,
-    /// Names and contents.
+    /// Names and contents of files.
     files: [(&'static str, String); 2],
 }
 
@@ -77,7 +77,7 @@ fn plant(arguments: &Arguments, progress: impl Fn(&str)) -> anyhow::Result<Resul
 }
 
 fn run(arguments: &Arguments) -> anyhow::Result<()> {
-    // Before time is spent on what cannot be written.
+    // Fails before the measurements if the folder cannot be written.
     let folder = &arguments.out;
     std::fs::create_dir_all(folder).with_context(|| format!("--out {}", folder.display()))?;
     let progress = |what: &str| eprintln!("{what}");

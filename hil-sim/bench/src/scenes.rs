@@ -1,6 +1,6 @@
 //! The model's share of a control tick, in each kind of scene: set-points (Eq. 6-12, 3-1) from ticks, force and the
-//! temperatures before contact. By the model's integers, by the same formulas in floating point, and by the firmware's own
-//! step, which follows the force.
+//! temperatures before contact. Computed by the model in fixed point, by the same formulas in floating point, and by the
+//! firmware's reference generator, which filters the force.
 
 mod floating;
 
@@ -9,7 +9,7 @@ use contact_model::fixed_point::{
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use thermal_display::device::estimate::FingerEstimator;
-use thermal_display::device::reference::{self, Mode, ReferenceGenerator, TOLERANCE};
+use thermal_display::device::reference::{self, INTERPOLATION_TOLERANCE, Mode, ReferenceGenerator};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
 use floating::Finger as FloatingFinger;
@@ -18,14 +18,14 @@ use floating::Finger as FloatingFinger;
 pub const TICK_S: f64 = 1e-3;
 /// Ticks of a scene: 10 s.
 pub const TICKS: u32 = 10_000;
-/// Temperatures before contact.
+/// Skin temperature before contact.
 pub const SKIN_C: f64 = 34.0;
-/// See [`SKIN_C`].
+/// Object temperature before contact.
 pub const OBJECT_C: f64 = 24.0;
 /// The constant force.
 pub const FORCE_N: f64 = 2.0;
-/// Materials of the five fingers, by their place in [`MATERIALS`]: granite, which is also that of scenes with one
-/// finger, copper, stainless steel, ABS, foam.
+/// Materials of the five fingers, as indices of [`MATERIALS`]: granite, copper, stainless steel, ABS, foam. Scenes with
+/// one finger use the first.
 pub const FINGERS: [usize; 5] = [3, 0, 2, 5, 6];
 
 /// A kind of scene, in one arithmetic.
@@ -33,19 +33,19 @@ pub const FINGERS: [usize; 5] = [3, 0, 2, 5, 6];
 pub struct Scene {
     /// Name of the kind.
     pub kind: &'static str,
-    /// How it is computed.
+    /// Arithmetic of the set-point.
     pub arithmetic: Arithmetic,
-    /// What is done in a tick since contact. Gives the bits of the first finger's set-point in integers; in floating
-    /// point 0, and leaves it in the station.
+    /// Computes one tick, given the number of ticks since contact. Returns the bits of the first finger's set-point; in
+    /// floating point returns 0 and leaves the set-point in the station.
     pub step: fn(&mut Station, u32) -> u32,
 }
 
-/// How a set-point is computed.
+/// Arithmetic of a set-point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Arithmetic {
-    /// The model's.
+    /// The model's fixed point.
     Integers,
-    /// The firmware's whole step from force to set-point.
+    /// The firmware's step from force to set-point.
     Firmware,
     /// Single precision, erfcx after Shepherd and Laframboise.
     Shepherd,
@@ -55,25 +55,26 @@ pub enum Arithmetic {
     LibmF64,
 }
 
-/// A finger by the model's integers.
+/// A finger in the model's fixed point.
 #[derive(Clone)]
 struct Finger {
-    pairing: ContactPair,
-    course: ChordInterpolation,
-    /// Of five fingers, each is left here.
+    pair: ContactPair,
+    chords: ChordInterpolation,
+    /// Set-point of the last tick, if there are five fingers.
     set_point: Celsius,
 }
 
-/// Everything that was set up before the first tick.
+/// State before the first tick.
 #[derive(Clone)]
-#[repr(C)] // The fingers first, where loads in pairs reach them.
+#[repr(C)] // The fingers come first, within the offset range of paired loads.
 pub struct Station {
     fixed: [Finger; 5],
     skin: Celsius,
     object: Celsius,
     single: [FloatingFinger<f32>; 5],
     double: [FloatingFinger<f64>; 5],
-    render: Render,
+    estimator: FingerEstimator,
+    generator: ReferenceGenerator,
 }
 
 impl Station {
@@ -86,22 +87,24 @@ impl Station {
         let (skin, object_c) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
         let fixed = |finger: usize| {
             let object = &MATERIALS[FINGERS[finger]].1;
-            let pairing = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
-            let contact = pairing.at_pressure(log2_relative_pressure(force));
-            let (course, _) = ChordInterpolation::new(&contact, skin, object_c, 0, TOLERANCE);
+            let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
+            let contact = pair.at_pressure(log2_relative_pressure(force));
+            let (chords, _) =
+                ChordInterpolation::new(&contact, skin, object_c, 0, INTERPOLATION_TOLERANCE);
             Ok(Finger {
-                pairing,
-                course,
+                pair,
+                chords,
                 set_point: Celsius::ZERO,
             })
         };
         let fixed = [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?];
-        let mut render = Render::default();
-        render.observe(skin, object_c, None, 0);
+        let mut estimator = FingerEstimator::default();
+        estimator.observe(skin, object_c, None, 0);
         Ok(Self {
             skin,
             object: object_c,
-            render,
+            estimator,
+            generator: ReferenceGenerator::default(),
             fixed,
             single: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
             double: FINGERS.map(|index| FloatingFinger::new(&MATERIALS[index].1)),
@@ -121,17 +124,17 @@ impl Station {
     }
 }
 
-/// The force that streams: 1 to 2 N and again, different in every tick; in units of 2^-12 N above 1 N.
+/// Streaming force: a sawtooth from 1 to 2 N, in units of 2^-12 N above 1 N.
 fn streaming(tick: u32) -> u32 {
     tick & 0xfff
 }
 
-/// The force that streams, in integers.
+/// Streaming force in fixed point.
 fn streaming_fixed(tick: u32) -> Force {
     Force::from_bits((1 << 24) + (streaming(tick) << 12))
 }
 
-/// The force that streams, N.
+/// Streaming force, N.
 #[must_use]
 pub fn streaming_n(tick: u32) -> f64 {
     1.0 + f64::from(streaming(tick)) / 4096.0
@@ -142,65 +145,64 @@ fn bits(set_point: Celsius) -> u32 {
 }
 
 fn idle(station: &mut Station, _: u32) -> u32 {
-    bits(
-        station.fixed[0]
-            .pairing
-            .preset(station.skin, station.object),
-    )
+    bits(station.fixed[0].pair.preset(station.skin, station.object))
 }
 
 fn semi_infinite(station: &mut Station, _: u32) -> u32 {
     let [finger, ..] = &station.fixed;
     bits(
         finger
-            .pairing
+            .pair
             .interface_temperature(station.skin, station.object),
     )
 }
 
 fn constant_force(station: &mut Station, _: u32) -> u32 {
-    bits(station.fixed[0].course.advance())
+    bits(station.fixed[0].chords.advance())
 }
 
 fn streaming_force(station: &mut Station, tick: u32) -> u32 {
     let contact = station.fixed[0]
-        .pairing
+        .pair
         .at_pressure(log2_relative_pressure(streaming_fixed(tick)));
     bits(contact.at(tick, station.skin, station.object).display())
 }
 
 fn five_fingers(station: &mut Station, _: u32) -> u32 {
     for finger in &mut station.fixed {
-        finger.set_point = finger.course.advance();
+        finger.set_point = finger.chords.advance();
     }
     bits(station.fixed[0].set_point)
 }
 
-/// The firmware's step under a force; in the first tick a finger has landed one tick before. The skin was observed: 0
-/// °C for none is never seen.
+/// The firmware's estimate and reference under a force; in the first tick a finger has landed one tick before. The skin
+/// was observed, so there always is a reference.
 #[inline]
-fn render_step(station: &mut Station, force: Force) -> u32 {
+fn reference_step(station: &mut Station, force: Force) -> u32 {
     station
-        .render
+        .estimator
         .observe(station.skin, station.object, Some(force), 1);
-    let scene = render::Scene {
-        pairing: &station.fixed[0].pairing,
+    let scene = reference::Scene {
+        pair: &station.fixed[0].pair,
         object: Some(station.object),
         mode: Mode::ContactResistance,
     };
-    let wanted = station.render.present(&scene, Celsius::ZERO, false);
-    wanted.map_or(0, |wanted| bits(wanted.setpoint))
+    let reference =
+        station
+            .generator
+            .next_reference(&scene, &mut station.estimator, Celsius::ZERO, false);
+    reference.map_or(0, |reference| bits(reference.setpoint.celsius()))
 }
 
-fn render_constant(station: &mut Station, _: u32) -> u32 {
-    render_step(station, const { Force::lit("2") })
+fn reference_constant(station: &mut Station, _: u32) -> u32 {
+    reference_step(station, const { Force::lit("2") })
 }
 
-fn render_streaming(station: &mut Station, tick: u32) -> u32 {
-    render_step(station, streaming_fixed(tick))
+fn reference_streaming(station: &mut Station, tick: u32) -> u32 {
+    reference_step(station, streaming_fixed(tick))
 }
 
-/// Only returns: what a call costs beside the callee's work.
+/// Only returns, which costs the overhead of a call.
 #[inline(never)]
 pub fn only_return_scene(_: &mut Station, _: u32) -> u32 {
     0
@@ -208,20 +210,20 @@ pub fn only_return_scene(_: &mut Station, _: u32) -> u32 {
 
 /// Kinds of scenes, as [`Scene::kind`] names them.
 pub mod kind {
-    /// Nothing touches: the display is preset.
+    /// No contact: the display is preset.
     pub const IDLE: &str = "idle";
     /// A finger under a constant force.
     pub const CONSTANT: &str = "constant force";
-    /// A finger whose force changes in every tick: R and E in every tick.
+    /// A finger whose force changes in every tick, so that R and E are evaluated in every tick.
     pub const STREAMING: &str = "streaming force";
     /// Perfect contact (Eq. 3-1).
     pub const SEMI_INFINITE: &str = "semi-infinite";
     /// Five fingers under a constant force.
     pub const FIVE: &str = "five fingers";
     /// [`CONSTANT`] by the firmware, from landing on.
-    pub const RENDER_CONSTANT: &str = "render step, constant force";
-    /// [`STREAMING`] by the firmware, from landing on: R only where a mean of the force has moved.
-    pub const RENDER_STREAMING: &str = "render step, streaming force";
+    pub const REFERENCE_CONSTANT: &str = "render step, constant force";
+    /// [`STREAMING`] by the firmware, from landing on; R is evaluated when the mean of the force has changed.
+    pub const REFERENCE_STREAMING: &str = "render step, streaming force";
 }
 
 const fn scene(
@@ -238,7 +240,7 @@ const fn scene(
 
 use Arithmetic::{Firmware, Integers, LibmF32, LibmF64, Shepherd};
 
-/// All kinds, in the arithmetics that each has.
+/// All kinds, each in the arithmetics that are compared.
 pub static SCENES: [Scene; 18] = [
     scene(kind::IDLE, Integers, idle),
     scene(kind::IDLE, LibmF32, |s, _| {
@@ -291,6 +293,6 @@ pub static SCENES: [Scene; 18] = [
         }
         0
     }),
-    scene(kind::RENDER_CONSTANT, Firmware, render_constant),
-    scene(kind::RENDER_STREAMING, Firmware, render_streaming),
+    scene(kind::REFERENCE_CONSTANT, Firmware, reference_constant),
+    scene(kind::REFERENCE_STREAMING, Firmware, reference_streaming),
 ];

@@ -9,14 +9,14 @@ use documented_figures::{assert_compiled, assert_figure};
 use image_proof::compiler::recorded_with;
 use model_bench::scenes::{FINGERS, TICKS, kind};
 use serde_json::Value;
-use thermal_display::device::reference::TOLERANCE;
+use thermal_display::device::reference::INTERPOLATION_TOLERANCE;
 
 /// 2^32: errors are in units of the fixed-point result.
 const UNITS: f64 = 4_294_967_296.0;
 
-/// The model's arithmetic, as the figures name it.
+/// Name of the model's arithmetic in the figures.
 const INTEGERS: &str = "integers";
-/// The firmware's step, as the figures name it.
+/// Name of the firmware's step in the figures.
 const FIRMWARE: &str = "firmware";
 
 /// Two runs.
@@ -65,15 +65,15 @@ fn number(row: &Value, name: &str) -> f64 {
         .unwrap_or_else(|| panic!("{name} of {row} is a number"))
 }
 
-/// The factor between `value` and `expected`, whichever way round, is below `1 + share`.
+/// Asserts that the ratio of `value` and `expected`, or its inverse, is below `1 + share`.
 fn assert_near(what: &str, value: f64, expected: f64, share: f64) {
     let factor = (value / expected).max(expected / value);
     assert!(factor < 1.0 + share, "{what}: {value} for {expected}");
 }
 
-/// `exp` of libm overflows where the type does.
+/// `exp` of libm overflows at the largest number of its type.
 #[test]
-fn products_break_where_exp_overflows() {
+fn products_fail_where_exp_overflows() {
     let single = f64::from(f32::MAX).ln().sqrt();
     let double = f64::MAX.ln().sqrt();
     for (id, z) in [("libm-f32", single), ("libm-f64", double)] {
@@ -95,7 +95,7 @@ fn products_break_where_exp_overflows() {
 /// `h³/16 |E'''|` with `E''' = -8/sqrt(pi)` between a node and the middle; Abramowitz and Stegun's error by that
 /// of their polynomial, 3.48793e-3 at z = 21.6 (found with 50 digits).
 #[test]
-fn errors_are_those_of_the_formulas() {
+fn interpolation_errors_equal_their_formulas() {
     for (id, nodes) in [("linear-4", 1024.0), ("linear-16", 4096.0)] {
         let h: f64 = 16.0 / nodes;
         assert_near(
@@ -122,10 +122,10 @@ fn errors_are_those_of_the_formulas() {
     );
 }
 
-/// Of the firmware's kernel what it states: 0.51 for its input and 0.07 for what is cut off before; of the others the
-/// last bits of their type.
+/// The firmware's kernel has its documented error: 0.51 units for its input and 0.07 for truncation. The others err in the
+/// last bits of their types.
 #[test]
-fn errors_stay_within_what_the_types_allow() {
+fn errors_are_a_few_last_bits_of_the_type() {
     for (id, bound) in [
         ("firmware", 0.58),
         ("one-polynomial", 8.0),
@@ -136,16 +136,17 @@ fn errors_stay_within_what_the_types_allow() {
     ] {
         let worst = number(kernel(id), "worst_units");
         assert!(worst <= bound, "{id}: {worst} for {bound}");
-        // Half a unit cannot be beaten by what returns whole ones.
+        // The error of a result in whole units reaches half a unit.
         assert!(id != "firmware" || worst > 0.49, "{id}: {worst}");
     }
 }
 
-/// The set-points of all arithmetics are those of Eq. 6-12 and 3-1; chords keep the firmware's tolerance. Where the
-/// firmware follows a mean of the force, that lags by 32 ms of a rise of 1 N in 4.1 s, 0.8 %, and by as much again until it is
-/// told from noise: R is by Eq. 6-8 off by less, `E` by at most 0.277 of that, and the set-point by that of `dT (w - r)`.
+/// The set-points of all arithmetics are those of Eq. 6-12 and 3-1; chords keep the firmware's tolerance. The
+/// firmware's mean of a force that rises by 1 N in 4.1 s lags by 32 ms, 0.8 %, and by as much again until the change is
+/// distinguished from noise. By Eq. 6-8 the relative error of R is smaller; that of `E` is at most 0.277 of it, and the
+/// set-point errs by that part of `dT (w - r)`.
 #[test]
-fn set_points_are_right() {
+fn set_points_obey_equations_6_12_and_3_1() {
     let granite = &MATERIALS[FINGERS[0]].1;
     let contact = Contact::<f64>::new((&SKIN, 34.0), (granite, 24.0), &REFERENCE_DISPLAY, 1.0);
     let lag_mk = 0.016 * 0.277 * 10e3 * (contact.weight - contact.ratio).abs();
@@ -154,8 +155,8 @@ fn set_points_are_right() {
             || row["arithmetic"] == INTEGERS
                 && (row["kind"] == kind::CONSTANT || row["kind"] == kind::FIVE);
         let bound_mk = match chords {
-            _ if row["kind"] == kind::RENDER_STREAMING => lag_mk,
-            true => 1e3 * TOLERANCE.to_num::<f64>(),
+            _ if row["kind"] == kind::REFERENCE_STREAMING => lag_mk,
+            true => 1e3 * INTERPOLATION_TOLERANCE.to_num::<f64>(),
             false => 0.01,
         };
         assert!(number(row, "worst_mk") < bound_mk, "{row} below {bound_mk}");
@@ -163,9 +164,9 @@ fn set_points_are_right() {
     }
 }
 
-/// At most 100 evaluations in 10 s: so many ticks at most cost more than the fewest instructions.
+/// At most 100 evaluations in 10 s: no more ticks cost more than the smallest number of instructions.
 #[test]
-fn few_ticks_evaluate() {
+fn at_most_one_tick_in_a_hundred_evaluates_the_kernel() {
     let row = scene(kind::CONSTANT, INTEGERS);
     let [fewest, mean, most] =
         ["min", "mean", "max"].map(|which| number(row, &format!("instructions_{which}")));
@@ -176,7 +177,7 @@ fn few_ticks_evaluate() {
     );
 }
 
-/// Both processors compute the same, so the costs are those of the results whose errors are shown.
+/// Both processors compute the same bits, so that errors measured on the host hold for the costs on the microcontroller.
 #[test]
 fn host_and_microcontroller_agree_to_the_bit() {
     for table in ["kernels", "scenes"] {
@@ -206,7 +207,7 @@ fn costs_repeat_exactly() {
 /// returned, and a frame of three around it; with the call eleven instructions. The firmware's kernel takes the same
 /// time for every input.
 #[test]
-fn costs_are_those_of_a_call() {
+fn costs_equal_the_instructions_of_the_call() {
     let row = scene("semi-infinite", "f32, libm");
     let names = ["instructions_min", "instructions_mean", "instructions_max"];
     let counts = names.map(|name| number(row, name));
@@ -221,7 +222,7 @@ fn costs_are_those_of_a_call() {
     }
     assert_figure("kernel.table_bytes", number(firmware, "table_bytes"));
     let constant = scene(kind::CONSTANT, INTEGERS);
-    let render = scene(kind::RENDER_CONSTANT, FIRMWARE);
+    let render = scene(kind::REFERENCE_CONSTANT, FIRMWARE);
     for which in ["min", "max"] {
         let count = |row| number(row, &format!("instructions_{which}"));
         let key = format!("setpoint_cost.instructions_{which}");
@@ -258,9 +259,9 @@ fn too_few_inputs_are_refused() {
     );
 }
 
-/// A folder that cannot be is named at once, before anything is measured.
+/// The error names the folder, before anything is measured.
 #[test]
-fn a_folder_that_cannot_be_is_refused() {
+fn a_folder_that_cannot_be_created_is_refused() {
     let file = out("a-file");
     std::fs::create_dir_all(out("")).expect("a folder of the tests");
     std::fs::write(&file, "").expect("a file of the tests");

@@ -35,9 +35,9 @@ fn column(table: &str, pointer: &str) -> Vec<f64> {
     rows(table).iter().map(|row| number(row, pointer)).collect()
 }
 
-/// The mesh and the step of every run keep what is asked of the plant against the contact equations.
+/// Mesh and time step of a simulated run keep the plant's required accuracy against the contact equations.
 #[test]
-fn what_runs_use_is_accurate() {
+fn the_discretization_of_a_run_is_accurate() {
     let of_runs: Vec<_> = (rows("meshes").iter().chain(rows("steps")))
         .filter(|row| row["growth"] == 1.12 && row["step_ms"] == 1.0)
         .collect();
@@ -50,7 +50,7 @@ fn what_runs_use_is_accurate() {
     }
 }
 
-/// Finer meshes have more cells, and errors inside that fall with the square of what a cell grows by.
+/// Errors inside a body fall with the square of the growth of its cells.
 #[test]
 fn finer_meshes_are_more_accurate_inside() {
     let growth = column("meshes", "/growth");
@@ -76,7 +76,7 @@ fn shorter_steps_are_more_accurate_at_the_surface() {
     }
 }
 
-/// Times are those of the host, but hang together.
+/// Times depend on the host, but are consistent with each other.
 #[test]
 fn costs_are_consistent() {
     let fingers = column("fingers", "/fingers");

@@ -24,6 +24,7 @@ pub(crate) enum Trigger {
     Tim3,
 }
 
+#[derive(Default)]
 pub(crate) struct Adc {
     sr: u32,
     cr1: u32,
@@ -40,7 +41,7 @@ pub(crate) struct Adc {
     position: u32,
     dma_ended: bool,
     dma_waiting: bool,
-    /// Conversions begin and never end.
+    /// Conversions start and never end (injected fault).
     stuck: bool,
     /// End of the running conversion.
     pub due: u64,
@@ -49,21 +50,11 @@ pub(crate) struct Adc {
 impl Adc {
     pub fn new(bus_divider: u64, pclk2_hz: u32) -> Self {
         Self {
-            sr: 0,
-            cr1: 0,
-            cr2: 0,
-            smpr: [0; 2],
-            sqr: [0; 3],
-            dr: 0,
-            ccr: 0,
             limits: [0xfff, 0],
             bus_divider,
             pclk2_hz,
-            position: 0,
-            dma_ended: false,
-            dma_waiting: false,
-            stuck: false,
             due: u64::MAX,
+            ..Self::default()
         }
     }
 
@@ -108,7 +99,7 @@ impl Adc {
         (sample + bits) * self.adc_clock()
     }
 
-    /// Trigger that a rising edge of would start a sequence.
+    /// Trigger whose rising edge starts a sequence.
     pub fn trigger(&self) -> Option<Trigger> {
         match (self.cr2 >> 28 & 3, self.cr2 >> 24 & 0xf) {
             (0, _) => None,
@@ -117,8 +108,8 @@ impl Adc {
         }
     }
 
-    /// An edge of the selected trigger, or SWSTART. Ignored during a sequence, when off, and after an overrun
-    /// with DMA until OVR is cleared (13.8.1).
+    /// Starts a sequence, at an edge of the selected trigger or by SWSTART. Ignored during a sequence, when off, and after an
+    /// overrun with DMA until OVR is cleared (13.8.1).
     pub fn start(&mut self, now: u64) {
         let overrun = self.sr & OVR != 0 && self.cr2 & DMA != 0;
         if self.cr2 & ADON != 0 && self.due == u64::MAX && !overrun {
@@ -131,18 +122,18 @@ impl Adc {
         }
     }
 
-    /// The running conversion and all later ones never end; only a reset helps.
+    /// No conversion ends until the converter is reset.
     pub fn stop_converting(&mut self) {
         self.stuck = true;
         self.due = u64::MAX;
     }
 
-    /// An item waits for its DMA transfer.
+    /// Whether an item waits for its DMA transfer.
     pub fn wants_dma(&self) -> bool {
         self.dma_waiting
     }
 
-    /// End of the running conversion with this 12-bit code.
+    /// Ends the running conversion with this 12-bit code.
     pub fn finish(&mut self, code: u16) {
         let bits = 12 - 2 * (self.cr1 >> 24 & 3);
         let code = u32::from(code & 0xfff) >> (12 - bits);
@@ -164,15 +155,11 @@ impl Adc {
                 code
             };
         }
-        // with DMA each item must raise EOC, or a transfer that does not happen could not overrun
+        // With DMA each item raises EOC, so that a missed transfer is detected as an overrun.
         if last || self.cr2 & EOCS != 0 || uses_dma {
             self.sr |= EOC;
         }
-        if !last {
-            self.position += 1;
-        } else {
-            self.position = 0;
-        }
+        self.position = if last { 0 } else { self.position + 1 };
         self.due = if !last || self.cr2 & CONT != 0 {
             at + self.conversion_cycles(self.channel())
         } else {
@@ -181,7 +168,7 @@ impl Adc {
         self.dma_waiting = uses_dma && !self.dma_ended;
     }
 
-    /// The DMA read the data register; `last` when its stream's count ran out.
+    /// A DMA transfer has read the data register; `last` if it was the last of its stream.
     pub fn dma_read(&mut self, last: bool) {
         self.sr &= !EOC;
         self.dma_waiting = false;
@@ -332,7 +319,7 @@ mod tests {
         adc.finish(1);
         assert!(adc.wants_dma());
         adc.finish(2);
-        assert!(!adc.wants_dma(), "nobody read the first");
+        assert!(!adc.wants_dma(), "the first was not read");
         assert_eq!(adc.read(0).unwrap() & OVR, OVR);
         assert_eq!(adc.data(), 1, "the old item stays");
         adc.start(5000);

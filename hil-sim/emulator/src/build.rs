@@ -1,11 +1,11 @@
-//! The image under test.
+//! Builds the image of the current sources.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use anyhow::{Context, bail};
 
-/// Builds the image for that many fingers (1 or 5) of the current sources, exactly as it is flashed; cargo decides what is stale.
+/// Builds the image for 1 or 5 fingers from the current sources, exactly as it is flashed; its path.
 ///
 /// # Errors
 /// The build failed, or the cross compiler cannot be had; what to do is on standard error.

@@ -1,5 +1,5 @@
-//! Everything of the chip that is not the CPU: the peripherals, how they are wired to each other, and their events
-//! in order of time. It knows nothing of the CPU emulation; register accesses enter through `chip/bus.rs`.
+//! The peripherals, their connections inside the chip, and their events in order of time. Independent of the CPU emulation;
+//! register accesses enter through `chip/bus.rs`.
 use super::adc::{Adc, Trigger};
 use super::dma::{self, Dma, Route, Served};
 use super::exti::Exti;
@@ -20,7 +20,7 @@ use thermal_sim::processor::ResetCause;
 mod bus;
 mod failures;
 
-/// The timers' places: TIM1 to TIM7 first.
+/// Modelled timers, and the indices of those that the chip names: TIM1 to TIM7, TIM8, TIM10, TIM11.
 const TIMERS: usize = 10;
 const TIM1: usize = 0;
 const TIM8: usize = 7;
@@ -44,7 +44,7 @@ const BREAK_PINS: [(usize, u8, u8, u8); 3] = [(TIM1, 0, 6, 1), (TIM1, 1, 12, 1),
 const WWDG_IRQ: usize = 0;
 const ADC_IRQ: usize = 18;
 const USART2_IRQ: usize = 38;
-/// Bit rate of the host until told otherwise.
+/// Initial bit rate of the host, bit/s.
 const HOST_BAUD: u32 = 1_000_000;
 /// Codes of the internal channels at 3.3 V and 25 degC: VREFINT 1.21 V, temperature sensor 0.76 V (DS10693 6.3.22
 /// and 6.3.24).
@@ -66,12 +66,12 @@ pub(crate) struct Chip<W> {
     iwdg: Iwdg,
     wwdg: Wwdg,
     pub time: Timebase,
-    /// When the last clock of the chip stopped, if it did: timers and pins are as they were then.
+    /// Cycle at which the last clock of the chip stopped; timers and pins keep the state of that cycle.
     stopped_at: Option<u64>,
     legs: [LegState; 2],
     outputs: [(u32, u32); PORTS],
-    /// A store made a DMA request possible; served before the next block.
-    kick: bool,
+    /// A store may have made a DMA request possible; it is served before the next block.
+    dma_request_possible: bool,
     /// Cycles asleep since power-up.
     pub slept: u64,
     pub reset: Option<ResetCause>,
@@ -111,7 +111,7 @@ impl<W: Wiring> Chip<W> {
             stopped_at: None,
             legs: [LegState::Off; 2],
             outputs: [(0, 0); PORTS],
-            kick: false,
+            dma_request_possible: false,
             slept: 0,
             reset: None,
             next: u64::MAX,
@@ -122,14 +122,14 @@ impl<W: Wiring> Chip<W> {
         self.rcc.clocks()
     }
 
-    /// How a pin is driven by a timer, or as an output.
+    /// Brings the timers up to `now`; how a pin is driven, by a timer or as an output.
     pub fn pwm(&mut self, port: u8, bit: u8, now: u64) -> LegState {
         if self.stopped_at.is_none() {
             for timer in [TIM1, TIM8, TIM10, TIM11] {
                 self.tims[timer].sync(now);
             }
         }
-        self.driven(port, bit)
+        self.pin_drive(port, bit)
     }
 
     pub fn output(&self, port: u8, bit: u8) -> Option<bool> {
@@ -139,11 +139,7 @@ impl<W: Wiring> Chip<W> {
             .and_then(|p| p.output(bit))
     }
 
-    pub fn usart(&self) -> &Usart {
-        &self.usart
-    }
-
-    /// Counts time that the CPU slept.
+    /// Adds cycles that the CPU slept.
     pub fn count_sleep(&mut self, cycles: u64) {
         self.slept += cycles;
         if !self.ppb.counts_asleep() {
@@ -168,7 +164,11 @@ impl<W: Wiring> Chip<W> {
             .min(self.usart.rx_due)
             .min(self.iwdg.due)
             .min(self.wwdg.due)
-            .min(if self.kick { now } else { u64::MAX });
+            .min(if self.dma_request_possible {
+                now
+            } else {
+                u64::MAX
+            });
     }
 
     /// Handles every device event up to `now`, in order of time.
@@ -196,17 +196,17 @@ impl<W: Wiring> Chip<W> {
                 if let (Some(byte), true) = (self.usart.transmitted(), connected) {
                     self.wiring.uart_tx(byte, at, self.usart.baud());
                 }
-                self.pump_usart(at, memory);
+                self.serve_usart_dma(at, memory);
             }
             if self.usart.rx_due <= at {
                 self.usart
                     .receive(self.ports[0].mode(3) == Mode::Alternate(7));
-                self.pump_usart(at, memory);
+                self.serve_usart_dma(at, memory);
             }
-            if self.kick {
-                self.kick = false;
-                self.pump_adc(at, memory);
-                self.pump_usart(at, memory);
+            if self.dma_request_possible {
+                self.dma_request_possible = false;
+                self.serve_adc_dma(at, memory);
+                self.serve_usart_dma(at, memory);
             }
             if self.iwdg.due <= at {
                 self.iwdg.due = u64::MAX;
@@ -230,11 +230,11 @@ impl<W: Wiring> Chip<W> {
             channel => self.wiring.adc(channel, at),
         };
         self.adc.finish(code);
-        self.pump_adc(at, memory);
+        self.serve_adc_dma(at, memory);
     }
 
-    /// Moves a waiting ADC item if a stream listens.
-    fn pump_adc(&mut self, at: u64, memory: &mut impl Memory) {
+    /// Transfers a waiting ADC item if a stream is enabled for it.
+    fn serve_adc_dma(&mut self, at: u64, memory: &mut impl Memory) {
         if self.adc.wants_dma() {
             for route in &dma::ADC1 {
                 if let Served::Item { last, .. } = self.serve(route, self.adc.data(), at, memory) {
@@ -246,7 +246,7 @@ impl<W: Wiring> Chip<W> {
         self.nvic.set_line(ADC_IRQ, self.adc.request(), at);
     }
 
-    fn pump_usart(&mut self, at: u64, memory: &mut impl Memory) {
+    fn serve_usart_dma(&mut self, at: u64, memory: &mut impl Memory) {
         while self.usart.wants_tx() {
             let Served::Item { value, .. } = self.serve(&dma::USART2_TX[0], 0, at, memory) else {
                 break;
@@ -278,7 +278,7 @@ impl<W: Wiring> Chip<W> {
         match timer {
             TIM1 => advanced(24),
             TIM8 => advanced(43),
-            // their interrupts are those of TIM1 and cannot be switched on
+            // Their interrupts are shared with TIM1 and cannot be enabled.
             TIM10 | TIM11 => {}
             _ => {
                 let irq = [28, 29, 30, 50, 54, 55][timer - 1];
@@ -300,45 +300,38 @@ impl<W: Wiring> Chip<W> {
         }
     }
 
-    /// Tells the wiring when the state of a bridge leg has changed.
+    /// Reports a changed bridge leg to the wiring.
     fn bridge_changed(&mut self, at: u64) {
-        let legs = [self.driven(0, 8), self.driven(0, 9)];
+        let legs = [self.pin_drive(0, 8), self.pin_drive(0, 9)];
         if legs != self.legs {
             self.legs = legs;
             self.wiring.bridge(legs, at);
         }
     }
 
-    fn driven(&self, port: u8, bit: u8) -> LegState {
+    fn pin_drive(&self, port: u8, bit: u8) -> LegState {
         let Some(pins) = self.ports.get(usize::from(port)).filter(|_| bit < 16) else {
             return LegState::Off;
         };
+        let constant = |high: bool| LegState::Duty {
+            high: high.into(),
+            period: 1,
+        };
         match pins.mode(bit) {
             Mode::Alternate(function) => {
-                let here = |pin: &&(u8, u8, u8, usize, usize)| {
+                let of_pin = |pin: &&(u8, u8, u8, usize, usize)| {
                     (pin.0, pin.1, pin.2) == (port, bit, function)
                 };
-                match TIMER_PINS.iter().find(here) {
-                    Some(&(.., timer, channel)) => match self.tims[timer].output(channel) {
-                        Output::High { high, period } => match self.stopped_at {
-                            None => LegState::Duty { high, period },
-                            Some(at) => LegState::Duty {
-                                high: self.tims[timer].is_high(channel, at).into(),
-                                period: 1,
-                            },
-                        },
-                        Output::Released => LegState::Off,
-                    },
-                    None => LegState::Off,
+                let Some(&(.., timer, channel)) = TIMER_PINS.iter().find(of_pin) else {
+                    return LegState::Off;
+                };
+                match (self.tims[timer].output(channel), self.stopped_at) {
+                    (Output::Released, _) => LegState::Off,
+                    (Output::High { high, period }, None) => LegState::Duty { high, period },
+                    (_, Some(at)) => constant(self.tims[timer].is_high(channel, at)),
                 }
             }
-            Mode::Output => match pins.output(bit) {
-                Some(level) => LegState::Duty {
-                    high: u32::from(level),
-                    period: 1,
-                },
-                None => LegState::Off,
-            },
+            Mode::Output => pins.output(bit).map_or(LegState::Off, constant),
             Mode::Input | Mode::Analog => LegState::Off,
         }
     }
@@ -347,7 +340,7 @@ impl<W: Wiring> Chip<W> {
         self.ports[port].level(bit, self.wiring.pin(port as u8, bit))
     }
 
-    /// Inputs that act without a register access: the break input and enabled EXTI lines.
+    /// Samples the inputs that act without a register access: break inputs and enabled EXTI lines.
     pub fn sample_inputs(&mut self, at: u64) {
         for (timer, port, bit, function) in BREAK_PINS {
             let watched = self.tims[timer].watches_break();

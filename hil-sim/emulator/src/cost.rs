@@ -15,7 +15,7 @@ pub(crate) const EXCEPTION_RETURN: u64 = 10;
 /// Cycles between two tail-chained exceptions.
 pub(crate) const TAIL_CHAIN: u64 = 6;
 
-/// What a block holds beyond its cost.
+/// Size and cost of a basic block, and the properties that matter to the run loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(align(4))]
 pub(crate) struct Block {
@@ -29,7 +29,7 @@ pub(crate) struct Block {
     pub last: Last,
 }
 
-/// Last instruction of a block, as far as it matters to the run loop.
+/// Last instruction of a block; the run loop distinguishes these.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Last {
     #[default]
@@ -39,7 +39,7 @@ pub(crate) enum Last {
     Yield,
 }
 
-/// Costs of all blocks met so far, by address; the flash does not change while the machine runs.
+/// Costs of all blocks executed so far, by address; code in the flash does not change while the machine runs.
 pub(crate) struct CostTable {
     blocks: Vec<Block>,
 }
@@ -51,7 +51,7 @@ impl CostTable {
         }
     }
 
-    /// The block last met at an address in the flash.
+    /// The block last executed at an address in the flash.
     #[inline]
     pub fn known(&self, address: u32) -> Option<Block> {
         self.blocks
@@ -104,7 +104,7 @@ pub(crate) fn decode(code: &[u8]) -> Block {
     block
 }
 
-/// Each instruction of straight-line code: its offset, and its estimated cycles.
+/// Offset and estimated cycles of each instruction of straight-line code.
 pub(crate) fn instructions(code: &[u8]) -> impl Iterator<Item = (u32, u16)> {
     let mut at = 0;
     std::iter::from_fn(move || {
@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn costs_are_those_of_the_reference_manual() {
+    fn costs_are_those_of_the_technical_reference_manual() {
         let cycles = |halves: &[u16]| block(halves).cycles;
         assert_eq!(cycles(&[0x1840]), 1, "adds r0, r0, r1");
         assert_eq!(cycles(&[0x6808]), 2, "ldr r0, [r1]");
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn a_block_counts_its_instructions_and_its_last_one() {
+    fn a_decoded_block_has_its_instruction_count_and_last_instruction() {
         let b = block(&[0xbf40, 0xee30, 0x0a20, 0xbf30]);
         assert_eq!((b.instructions, b.bytes, b.last), (3, 8, Last::Wfi));
         assert!(b.float && b.sev);

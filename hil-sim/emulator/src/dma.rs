@@ -1,8 +1,8 @@
 //! DMA controllers (RM0390 chapter 9): peripheral streams in direct or FIFO mode without packing, circular and
 //! double-buffer mode, half- and full-transfer, transfer-error interrupts.
 //!
-//! A request is served at once: arbitration and FIFO delays (some ten cycles on silicon) are not modelled, so a
-//! FIFO threshold changes nothing that software can see except through FS.
+//! A request is served immediately: arbitration and FIFO delays (some ten cycles on silicon) are not modelled, so software sees
+//! a FIFO threshold in FS only.
 use super::ram::Memory;
 use super::stop::{Answer, Refusal, only};
 
@@ -56,12 +56,12 @@ pub(crate) const ADC1: [Route; 2] = [
 pub(crate) const USART2_TX: [Route; 1] = [route(1, 6, 4, 0x4000_4404, false)];
 pub(crate) const USART2_RX: [Route; 1] = [route(1, 5, 4, 0x4000_4404, true)];
 
-/// What became of a request.
+/// Result of a request.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Served {
-    /// No stream listens.
+    /// No stream is enabled for it, or its transfer failed.
     No,
-    /// One item moved (`value` of it, as read from memory or handed in).
+    /// One item was transferred; `last` of the stream's count.
     Item { value: u32, last: bool },
 }
 
@@ -101,13 +101,13 @@ impl Dma {
         (IRQ[self.number - 1][stream], raised)
     }
 
-    /// Whether an enabled stream listens to this route.
+    /// Whether a stream is enabled for this request.
     pub fn listens(&self, route: &Route) -> bool {
         let s = &self.streams[route.stream];
         s.cr & EN != 0 && s.cr >> 25 & 7 == route.channel
     }
 
-    /// Serves a request: moves `value` (peripheral to memory) or an item from memory.
+    /// Serves a request: stores `value` in memory, or loads an item from memory.
     pub fn serve(&mut self, route: &Route, value: u32, memory: &mut impl Memory) -> Served {
         if !self.listens(route) {
             return Served::No;
@@ -148,7 +148,7 @@ impl Dma {
         Served::Item { value, last }
     }
 
-    /// A bus error ends a stream. `false`: it was not enabled, so nothing happens.
+    /// Ends a stream by a bus error. `false`: it was not enabled, and nothing changes.
     pub fn fail(&mut self, stream: usize) -> bool {
         let was_enabled = self.streams[stream].cr & EN != 0;
         if was_enabled {
@@ -236,7 +236,7 @@ impl Dma {
 }
 
 impl Stream {
-    /// Disabled by the hardware, with the transfer-error flag.
+    /// Disables the stream and sets the transfer-error flag.
     fn fail(&mut self) {
         self.flags |= TEIF;
         self.cr &= !EN;
@@ -404,7 +404,7 @@ mod tests {
     }
 
     #[test]
-    fn foreign_requests_are_refused() {
+    fn requests_of_unmodelled_peripherals_are_refused() {
         let mut dma = Dma::new(2);
         dma.write(0x14, 1).unwrap();
         assert!(

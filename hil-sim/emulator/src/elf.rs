@@ -18,7 +18,7 @@ pub enum ImageError {
     /// The file could not be read.
     #[error("cannot be read: {0}")]
     Unreadable(std::io::Error),
-    /// No ELF at all, or cut short.
+    /// Not an ELF file, or a truncated one.
     #[error("not a complete 32-bit little-endian ELF file: {0}")]
     NotElf(String),
     /// Compiled for another processor.
@@ -81,7 +81,7 @@ impl Firmware {
     /// Parses the contents of an ELF file.
     ///
     /// # Errors
-    /// Truncated or foreign file, or contents that do not fit the chip's memories.
+    /// The file is truncated or for another processor, or its contents do not fit the chip's memories.
     pub fn from_elf(bytes: &[u8]) -> Result<Self, ImageError> {
         check_header(bytes)?;
         let not_elf = |e: object::Error| ImageError::NotElf(e.to_string());
@@ -153,7 +153,7 @@ impl Firmware {
         })
     }
 
-    /// The whole flash; 0xff where the image puts nothing.
+    /// The whole flash; 0xff outside the image's contents.
     pub fn flash(&self) -> &[u8] {
         &self.flash
     }
@@ -172,7 +172,7 @@ impl Firmware {
         self.symbols.get(at).map(|(_, address)| *address)
     }
 
-    /// Name of the function that holds the instruction at `pc`, `?` where no symbol covers it.
+    /// Name of the function with the instruction at `pc`; `?` if no symbol covers it.
     pub fn function_at(&self, pc: u32) -> &str {
         let after = self.functions.partition_point(|f| f.start <= pc);
         self.functions[..after]
@@ -183,7 +183,7 @@ impl Firmware {
     }
 }
 
-/// Says what processor a foreign ELF is for, whatever its word size and byte order.
+/// Checks for a 32-bit little-endian ARM file; the error names another processor.
 fn check_header(bytes: &[u8]) -> Result<(), ImageError> {
     if bytes.len() < 20 || bytes[..4] != elf::ELFMAG {
         return Err(ImageError::NotElf("no ELF header".into()));

@@ -1,6 +1,6 @@
 //! Exception entry and return on the emulated CPU (ARMv7-M Architecture Reference Manual B1.5.6 to B1.5.8).
 //!
-//! Floating-point state is stacked at entry, not lazily: what the program sees is the same, FPCAR is not kept.
+//! Floating-point state is stacked at entry and not lazily, which the program does not notice; FPCAR is not kept.
 use super::Wiring;
 use super::cost;
 use super::elf::{FLASH_BASE, RAM_BASE};
@@ -8,10 +8,10 @@ use super::nvic::exception;
 use super::state::{Cpu, get, masks, service};
 use unicorn_engine::RegisterARM as Reg;
 
-/// Why an entry or return went wrong.
+/// Why an exception entry or return failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum FrameError {
-    /// The frame would lie, or lies, outside of memory.
+    /// The frame is outside of memory.
     Stack(u32),
     /// No valid EXC_RETURN, or return from an exception that is not active.
     Return(u32),
@@ -20,16 +20,11 @@ pub(crate) enum FrameError {
 }
 
 const CORE: [Reg; 6] = [Reg::R0, Reg::R1, Reg::R2, Reg::R3, Reg::R12, Reg::LR];
-const FLOAT: [Reg; 8] = [
-    Reg::D0,
-    Reg::D1,
-    Reg::D2,
-    Reg::D3,
-    Reg::D4,
-    Reg::D5,
-    Reg::D6,
-    Reg::D7,
-];
+/// D0 to D7, which the emulation numbers consecutively.
+fn float_registers() -> impl Iterator<Item = i32> {
+    (0..8).map(|n| Reg::D0 as i32 + n)
+}
+
 const NO_FLOAT: u32 = 0x10;
 const FRAME: u32 = 0x20;
 const FLOAT_FRAME: u32 = 0x68;
@@ -39,7 +34,7 @@ fn set<W: Wiring>(cpu: &mut Cpu<'_, W>, register: Reg, value: u32) -> Result<(),
         .map_err(|_| FrameError::Emulator)
 }
 
-/// Writes IPSR and the flags. The second write makes the emulation take over the new mode.
+/// Writes IPSR and the flags. The emulation adopts the new mode at the second write.
 pub(super) fn set_xpsr<W: Wiring>(cpu: &mut Cpu<'_, W>, xpsr: u32) -> Result<(), FrameError> {
     set(cpu, Reg::XPSR_NZCVQG, xpsr)?;
     set(cpu, Reg::APSR_NZCV, xpsr & 0xf000_0000)
@@ -67,7 +62,7 @@ pub(crate) fn enter<W: Wiring>(
     put(6, return_pc);
     put(7, xpsr & !(1 << 9) | (sp >> 2 & 1) << 9);
     if float {
-        for (i, register) in FLOAT.into_iter().enumerate() {
+        for (i, register) in float_registers().enumerate() {
             let pair = cpu.reg_read(register).map_err(|_| FrameError::Emulator)?;
             put(8 + 2 * i, pair as u32);
             put(9 + 2 * i, (pair >> 32) as u32);
@@ -122,7 +117,7 @@ fn start_handler<W: Wiring>(
     set(cpu, Reg::PC, vector | 1)
 }
 
-/// Handler address in the vector table, which mostly lies in flash.
+/// Word of the vector table, which is usually in flash.
 fn vector<W: Wiring>(cpu: &Cpu<'_, W>, address: u32) -> Result<u32, FrameError> {
     let offset = (address & !FLASH_BASE) as usize;
     let flash = &cpu.get_data().flash;
@@ -136,7 +131,7 @@ fn vector<W: Wiring>(cpu: &Cpu<'_, W>, address: u32) -> Result<u32, FrameError> 
     Ok(u32::from_le_bytes(word))
 }
 
-/// Returns from the running exception, or goes straight on to the next pending one (tail chaining).
+/// Returns from the running exception, or enters the next pending one directly (tail chaining).
 pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<(), FrameError> {
     let xpsr = get(cpu, Reg::XPSR);
     let running = (xpsr & 0x1ff) as usize;
@@ -175,7 +170,7 @@ pub(crate) fn leave<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32) -> Result<
 fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Result<(), FrameError> {
     let control = get(cpu, Reg::CONTROL);
     if exc_return & 8 != 0 {
-        // to thread mode: leave handler mode first, so that SP is the one that SPSEL names
+        // To thread mode: leave handler mode first, so that SP is the stack pointer that SPSEL selects.
         set_xpsr(cpu, xpsr & !0x1ff)?;
         set(cpu, Reg::CONTROL, control & !2 | (exc_return >> 2 & 1) << 1)?;
     }
@@ -185,19 +180,13 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
     let mut bytes = [0; FLOAT_FRAME as usize];
     cpu.mem_read(u64::from(sp), &mut bytes[..size as usize])
         .map_err(|_| FrameError::Stack(sp))?;
-    let word = |at: usize| {
-        u32::from_le_bytes([
-            bytes[4 * at],
-            bytes[4 * at + 1],
-            bytes[4 * at + 2],
-            bytes[4 * at + 3],
-        ])
-    };
+    let (words, _) = bytes.as_chunks();
+    let word = |at: usize| u32::from_le_bytes(words[at]);
     for (i, register) in CORE.into_iter().enumerate() {
         set(cpu, register, word(i))?;
     }
     if float {
-        for (i, register) in FLOAT.into_iter().enumerate() {
+        for (i, register) in float_registers().enumerate() {
             let pair = u64::from(word(8 + 2 * i)) | u64::from(word(9 + 2 * i)) << 32;
             cpu.reg_write(register, pair)
                 .map_err(|_| FrameError::Emulator)?;
@@ -216,16 +205,11 @@ fn unstack<W: Wiring>(cpu: &mut Cpu<'_, W>, exc_return: u32, xpsr: u32) -> Resul
     set(cpu, Reg::PC, word(6) | 1)
 }
 
-/// Registers as a reset leaves them (B1.5.5); the stack pointer and the PC come from the vector table.
+/// Sets the registers to their reset values (B1.5.5); the stack pointer and the PC come from the vector table.
 pub(crate) fn reset<W: Wiring>(cpu: &mut Cpu<'_, W>) -> Result<(), FrameError> {
     set_xpsr(cpu, 1 << 24)?;
-    for register in [
-        Reg::CONTROL,
-        Reg::PRIMASK,
-        Reg::BASEPRI,
-        Reg::FAULTMASK,
-        Reg::FPSCR,
-    ] {
+    let masks = [Reg::PRIMASK, Reg::BASEPRI, Reg::FAULTMASK];
+    for register in [Reg::CONTROL, Reg::FPSCR].into_iter().chain(masks) {
         set(cpu, register, 0)?;
     }
     let (sp, pc) = (vector(cpu, 0)?, vector(cpu, 4)?);

@@ -23,7 +23,7 @@ pub(crate) struct Exti {
 }
 
 impl Exti {
-    /// Lines whose pins must be watched, as `(line, port)`.
+    /// Lines whose pins must be sampled, as `(line, port)`.
     pub fn watched(&self) -> impl Iterator<Item = (u8, usize)> + '_ {
         let lines = self.imr & (self.rtsr | self.ftsr);
         (0..16u8).filter(move |l| lines >> l & 1 != 0).map(|l| {

@@ -7,7 +7,7 @@ use super::state::masks;
 use super::stop::{Access, Stop};
 use unicorn_engine::uc_error;
 
-/// A fault as the core reports it.
+/// A fault of the core.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fault {
     pub(super) exception: usize,
@@ -17,21 +17,26 @@ pub(super) struct Fault {
     pub(super) cause: &'static str,
 }
 
-const fn usage(status: u32, cause: &'static str) -> Fault {
-    Fault {
-        exception: exception::USAGE_FAULT,
-        status,
-        address: None,
-        cause,
+impl Fault {
+    pub(super) const fn new(exception: usize, status: u32, cause: &'static str) -> Self {
+        Self {
+            exception,
+            status,
+            address: None,
+            cause,
+        }
     }
 }
 
-pub(super) const NO_MEMORY: Fault = Fault {
-    exception: exception::BUS_FAULT,
-    status: 1 << 8,
-    address: None,
-    cause: "instruction fetch where no memory is",
-};
+const fn usage(status: u32, cause: &'static str) -> Fault {
+    Fault::new(exception::USAGE_FAULT, status, cause)
+}
+
+pub(super) const NO_MEMORY: Fault = Fault::new(
+    exception::BUS_FAULT,
+    1 << 8,
+    "instruction fetch where no memory is",
+);
 pub(super) const UNDEFINED: Fault = usage(1 << 16, "undefined instruction");
 pub(super) const INVALID_STATE: Fault = usage(1 << 17, "branch to an ARM address");
 pub(super) const INVALID_RETURN: Fault = usage(1 << 18, "invalid exception return");
@@ -40,24 +45,18 @@ pub(super) const NO_COPROCESSOR: Fault =
 pub(super) const UNALIGNED: Fault = usage(1 << 24, "unaligned access");
 
 impl<W: Wiring + 'static> Machine<W> {
-    /// An exception that the CPU emulation raised by itself.
-    pub(super) fn raised(&mut self, number: u32, pc: u32) -> Result<(), Stop> {
+    /// Handles an exception that the CPU emulation raised, by its number there.
+    pub(super) fn cpu_exception(&mut self, number: u32, pc: u32) -> Result<(), Stop> {
         match number {
             2 => self.supervisor_call(pc),
             7 => {
                 // no debugger is attached and the debug monitor is off (C1.5): a HardFault with DEBUGEVT
-                self.cpu.get_data_mut().chip().ppb.hfsr |= 1 << 31;
-                let fault = Fault {
-                    exception: exception::HARD_FAULT,
-                    status: 0,
-                    address: None,
-                    cause: "BKPT",
-                };
-                self.fault(fault, pc)
+                self.chip_mut().ppb.hfsr |= 1 << 31;
+                self.fault(Fault::new(exception::HARD_FAULT, 0, "BKPT"), pc)
             }
             8 => match exceptions::leave(&mut self.cpu, pc | 1) {
                 Err(FrameError::Return(_)) => self.fault(INVALID_RETURN, pc),
-                other => self.framed(other, "unstacking"),
+                other => self.checked_frame(other, "unstacking"),
             },
             17 => self.fault(NO_COPROCESSOR, pc),
             18 => self.fault(INVALID_STATE, pc),
@@ -80,19 +79,11 @@ impl<W: Wiring + 'static> Machine<W> {
             return self.enter(exception::SVCALL, pc);
         }
         let cause = "SVC at or above its own priority";
-        self.fault(
-            Fault {
-                exception: exception::HARD_FAULT,
-                status: 0,
-                address: None,
-                cause,
-            },
-            pc,
-        )
+        self.fault(Fault::new(exception::HARD_FAULT, 0, cause), pc)
     }
 
-    /// An access that no memory answered, as the CPU emulation reports it.
-    pub(super) fn bad_access(
+    /// Handles an access to an address without memory.
+    pub(super) fn access_fault(
         &mut self,
         error: uc_error,
         address: u32,
@@ -114,15 +105,11 @@ impl<W: Wiring + 'static> Machine<W> {
             uc_error::READ_UNMAPPED | uc_error::READ_PROT => "load where no memory is",
             _ => "store where no memory is",
         };
-        self.fault(
-            Fault {
-                exception: exception::BUS_FAULT,
-                status: 1 << 9 | 1 << 15,
-                address: Some(address),
-                cause,
-            },
-            pc,
-        )
+        let fault = Fault {
+            address: Some(address),
+            ..Fault::new(exception::BUS_FAULT, 1 << 9 | 1 << 15, cause)
+        };
+        self.fault(fault, pc)
     }
 
     /// Takes a fault: its own handler if enabled and urgent enough, else HardFault, else lockup.
@@ -160,15 +147,15 @@ impl<W: Wiring + 'static> Machine<W> {
 
     pub(super) fn enter(&mut self, exception: usize, pc: u32) -> Result<(), Stop> {
         let result = exceptions::enter(&mut self.cpu, exception, pc);
-        self.framed(result, "stacking")
+        self.checked_frame(result, "stacking")
     }
 
-    /// A frame that does not fit into memory: silicon derives a fault whose handler has no stack either, nor has an NMI's.
-    fn framed(&mut self, result: Result<(), FrameError>, what: &str) -> Result<(), Stop> {
+    /// Locks the CPU up when a frame does not fit into memory: the handler of the derived fault has no stack either, nor has the NMI's.
+    fn checked_frame(&mut self, result: Result<(), FrameError>, what: &str) -> Result<(), Stop> {
         match result {
             Ok(()) => Ok(()),
             Err(FrameError::Stack(address)) => {
-                let priority = self.cpu.get_data().chip_ref().nvic.active_priority();
+                let priority = self.chip().nvic.active_priority();
                 let stop = Stop::Lockup {
                     cause: format!("exception {what} at {address:#010x}, where no memory is"),
                     priority,

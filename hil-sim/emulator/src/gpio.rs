@@ -5,6 +5,7 @@ use super::stop::{Answer, Refusal, only};
 pub(crate) const PORTS: usize = 8;
 
 /// One port of 16 pins.
+#[derive(Default)]
 pub(crate) struct Port {
     moder: u32,
     otyper: u32,
@@ -14,7 +15,7 @@ pub(crate) struct Port {
     afr: [u32; 2],
 }
 
-/// What a pin is switched to.
+/// Mode of a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mode {
     Input,
@@ -33,11 +34,9 @@ impl Port {
         };
         Self {
             moder,
-            otyper: 0,
             ospeedr,
             pupdr,
-            odr: 0,
-            afr: [0; 2],
+            ..Self::default()
         }
     }
 
@@ -50,14 +49,14 @@ impl Port {
         }
     }
 
-    /// Level that the pin drives as a general-purpose output; `None` when it is none, or open-drain and high.
+    /// Level that the pin drives as a general-purpose output; `None` if it is not an output, or open-drain and high.
     pub fn output(&self, bit: u8) -> Option<bool> {
         let high = self.odr >> bit & 1 != 0;
         let floats = high && self.otyper >> bit & 1 != 0;
         (self.mode(bit) == Mode::Output && !floats).then_some(high)
     }
 
-    /// Bits driven as general-purpose outputs, and their levels; for cheap comparison.
+    /// Masks of the bits driven as general-purpose outputs, and of their levels.
     pub fn outputs(&self) -> (u32, u32) {
         let driven = (0..16)
             .filter(|b| self.output(*b).is_some())
@@ -72,7 +71,7 @@ impl Port {
         self.output(bit).or(external).unwrap_or(pulled_up) && self.mode(bit) != Mode::Analog
     }
 
-    /// Reads a register; `external` answers for the pins.
+    /// Reads a register; `external` gives the levels at the pins.
     pub fn read(&self, offset: u32, external: impl Fn(u8) -> Option<bool>) -> Answer<u32> {
         Ok(match offset {
             0x00 => self.moder,
@@ -126,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn open_drain_lets_go_when_high() {
+    fn an_open_drain_output_does_not_drive_high() {
         let mut port = Port::new(2);
         port.write(0x00, 0b01).unwrap();
         port.write(0x04, 1).unwrap();

@@ -1,9 +1,9 @@
-//! Faults put into the machine while it runs, each at its present cycle.
+//! Injection of faults into the running machine, each at its present cycle.
 //!
-//! A flip is one stored bit that changes, as radiation does it. What cannot be flipped faithfully is refused.
+//! A flip changes one stored bit, as radiation does. Flips that cannot be modelled faithfully are refused.
 use super::elf::{RAM_BASE, RAM_SIZE};
+use super::halt::Halt;
 use super::mcu::{Machine, emulator};
-use super::standstill::Standstill;
 use super::state::{Refused, get};
 use super::stop::{Access, Answer, Refusal, Stop};
 use super::{Wiring, exceptions};
@@ -16,7 +16,7 @@ use unicorn_engine::RegisterARM as Reg;
 /// Why a fault was not injected; the machine is as before.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum InjectError {
-    /// Not a byte of the RAM.
+    /// The address is not in the RAM.
     #[error("{0:#010x} is not in the RAM, which is {RAM_BASE:#010x} to {last:#010x}", last = RAM_BASE + RAM_SIZE - 1)]
     NotRam(u32),
     /// The place has no such bit.
@@ -42,7 +42,7 @@ pub enum InjectError {
         /// Stream.
         stream: u8,
     },
-    /// A stream that does not run cannot be stopped.
+    /// The DMA stream is not enabled, so it cannot be stopped.
     #[error("DMA{controller} stream {stream} is not enabled now")]
     StreamOff {
         /// Controller.
@@ -50,7 +50,7 @@ pub enum InjectError {
         /// Stream.
         stream: u8,
     },
-    /// Nobody knows where the stack ends.
+    /// The image has no symbol for the end of its stack.
     #[error("the image has no symbol that tells where its stack ends")]
     NoStackEnd,
     /// The CPU emulation failed.
@@ -94,8 +94,8 @@ impl<W: Wiring + 'static> Machine<W> {
         self.cpu
             .mem_read(address.into(), &mut byte)
             .map_err(emulator)?;
-        if byte[0] == self.fresh_ram[index] {
-            self.fresh_ram[index] ^= mask; // or the flip would count as use of the stack
+        if byte[0] == self.initial_ram[index] {
+            self.initial_ram[index] ^= mask; // otherwise the flip would count as use of the stack
         }
         self.cpu
             .mem_write(address.into(), &[byte[0] ^ mask])
@@ -108,46 +108,14 @@ impl<W: Wiring + 'static> Machine<W> {
     /// # Errors
     /// The register does not exist, or has no such bit that can flip.
     pub fn flip_core_bit(&mut self, register: CoreRegister, bit: u8) -> Result<(), InjectError> {
-        const R: [Reg; 13] = [
-            Reg::R0,
-            Reg::R1,
-            Reg::R2,
-            Reg::R3,
-            Reg::R4,
-            Reg::R5,
-            Reg::R6,
-            Reg::R7,
-            Reg::R8,
-            Reg::R9,
-            Reg::R10,
-            Reg::R11,
-            Reg::R12,
-        ];
-        const D: [Reg; 16] = [
-            Reg::D0,
-            Reg::D1,
-            Reg::D2,
-            Reg::D3,
-            Reg::D4,
-            Reg::D5,
-            Reg::D6,
-            Reg::D7,
-            Reg::D8,
-            Reg::D9,
-            Reg::D10,
-            Reg::D11,
-            Reg::D12,
-            Reg::D13,
-            Reg::D14,
-            Reg::D15,
-        ];
         let mask = one_bit(register, bit, register.bits())?;
         let cpu = &mut self.cpu;
+        // The emulation numbers R0 to R12, and D0 to D15, consecutively.
         let emulated = match register {
-            CoreRegister::R(n) => R[usize::from(n)],
-            CoreRegister::Sp => Reg::SP,
-            CoreRegister::Lr => Reg::LR,
-            CoreRegister::Fpscr => Reg::FPSCR,
+            CoreRegister::R(n) => Reg::R0 as i32 + i32::from(n),
+            CoreRegister::Sp => Reg::SP as i32,
+            CoreRegister::Lr => Reg::LR as i32,
+            CoreRegister::Fpscr => Reg::FPSCR as i32,
             CoreRegister::Pc => {
                 let pc = get(cpu, Reg::PC) ^ mask;
                 cpu.reg_write(Reg::PC, u64::from(pc | 1))
@@ -160,23 +128,23 @@ impl<W: Wiring + 'static> Machine<W> {
                 return Ok(());
             }
             CoreRegister::S(n) => {
-                let pair = D[usize::from(n / 2)];
+                let pair = Reg::D0 as i32 + i32::from(n / 2);
                 let old = cpu.reg_read(pair).map_err(emulator)?;
                 let new = old ^ u64::from(mask) << (32 * (n % 2));
-                cpu.reg_write(pair, new).map_err(emulator)?;
-                return Ok(());
+                return cpu.reg_write(pair, new).map_err(|e| emulator(e).into());
             }
         };
-        let flipped = get(cpu, emulated) ^ mask;
-        cpu.reg_write(emulated, flipped.into()).map_err(emulator)?;
+        let old = cpu.reg_read(emulated).map_err(emulator)?;
+        cpu.reg_write(emulated, old ^ u64::from(mask))
+            .map_err(emulator)?;
         Ok(())
     }
 
-    /// As after calls without end: the stack pointer in use stands at the stack's end, so that the next push leaves it.
-    /// What is below it stays; whoever runs now finds other things where it pops.
+    /// Sets the stack pointer in use to the end of the stack, as after unbounded recursion: the next push overflows it, and
+    /// the running code pops other data.
     ///
     /// # Errors
-    /// The image does not say where its stack ends.
+    /// The image has no symbol for the end of its stack.
     pub fn exhaust_stack(&mut self) -> Result<(), InjectError> {
         let end = self.stack_end().ok_or(InjectError::NoStackEnd)?;
         let cpu = &mut self.cpu;
@@ -185,13 +153,13 @@ impl<W: Wiring + 'static> Machine<W> {
         Ok(())
     }
 
-    /// Flips one bit of the device register at a word address, by a load and a store of the bus: what the device makes
-    /// of the two happens (a flag that is cleared by writing 0 can vanish, but not appear). An interrupt's enabled or
-    /// pending bit is flipped through either of its two registers.
+    /// Flips one bit of the device register at a word address by a bus read and a write, with the effects that both have on
+    /// the device (a flag that is cleared by writing 0 can be cleared but not set). An interrupt's enable or pending bit is
+    /// flipped through either of its two registers.
     ///
     /// # Errors
-    /// [`InjectError::Refused`]: no model of that register, or of it with that value, or its clock is off; or the flip
-    /// would stop a device's clock (the window watchdog's is modelled, the others' not).
+    /// [`InjectError::Refused`]: the register or the value is not modelled, or its clock is off; or the flip would stop the
+    /// clock of a device other than the window watchdog.
     pub fn flip_register_bit(&mut self, address: u32, bit: u8) -> Result<(), InjectError> {
         let mask = one_bit(
             format_args!("the register at {address:#010x}"),
@@ -199,7 +167,7 @@ impl<W: Wiring + 'static> Machine<W> {
             u32::MAX,
         )?;
         let now = self.now();
-        let chip = self.cpu.get_data_mut().chip();
+        let chip = self.chip_mut();
         let (load_at, store_at, value) = match address {
             // set- and clear-enable, set- and clear-pending registers of the interrupts (ARMv7-M B3.4)
             0xe000_e100..0xe000_e300 => {
@@ -220,14 +188,14 @@ impl<W: Wiring + 'static> Machine<W> {
                 )
             }
         };
-        let value = self.accepted(value, load_at, Access::Read(4), 0)?;
-        let chip = self.cpu.get_data_mut().chip();
+        let value = self.or_refused(value, load_at, Access::Read(4), 0)?;
+        let chip = self.chip_mut();
         let stored = chip.write(store_at, 4, value, now);
-        self.accepted(stored, store_at, Access::Write(4), value)?;
+        self.or_refused(stored, store_at, Access::Write(4), value)?;
         Ok(())
     }
 
-    fn accepted<T>(
+    fn or_refused<T>(
         &self,
         answer: Answer<T>,
         address: u32,
@@ -245,35 +213,35 @@ impl<W: Wiring + 'static> Machine<W> {
         })
     }
 
-    /// The CPU executes nothing from here on until a reset; all else goes on.
+    /// Halts the CPU until a reset; all other devices continue.
     pub fn hang_core(&mut self) {
-        self.standstill = Some(Standstill::Hung);
+        self.halt = Some(Halt::Hung);
     }
 
-    /// The external oscillator stops for good, resets and power cycles included. With clock security on (RCC_CR.CSSON)
-    /// the system goes on with the internal one, the NMI is raised, and enabled breaks of TIM1 and TIM8 act. Without,
-    /// a system clock that came from it stops, be it through the PLL: CPU and timers stand, pins keep the level of the
-    /// moment, and only the independent watchdog counts.
+    /// Stops the external oscillator permanently, through resets and power cycles. With clock security on (RCC_CR.CSSON) the
+    /// system continues on the internal oscillator, the NMI is raised, and enabled breaks of TIM1 and TIM8 act. Without it, a
+    /// system clock derived from the oscillator stops: CPU and timers halt, pins keep their present level, and only the
+    /// independent watchdog counts.
     ///
     /// # Errors
     /// [`InjectError::Refused`]: the bus prescalers suit no clock of the internal oscillator.
     pub fn stop_hse(&mut self) -> Result<(), InjectError> {
         let now = self.now();
-        let answer = self.cpu.get_data_mut().chip().stop_hse(now);
-        let clocked = self.accepted(answer, 0x4002_3800, Access::Write(4), 0)?;
+        let answer = self.chip_mut().stop_hse(now);
+        let clocked = self.or_refused(answer, 0x4002_3800, Access::Write(4), 0)?;
         if !clocked {
             self.hang_core();
         }
         Ok(())
     }
 
-    /// The converter never ends a conversion again until it is reset.
+    /// No conversion ends until the converter is reset.
     pub fn stop_adc(&mut self) {
         let now = self.now();
-        self.cpu.get_data_mut().chip().stop_adc(now);
+        self.chip_mut().stop_adc(now);
     }
 
-    /// A bus error ends a DMA stream (controller 1 or 2, stream 0 to 7): disabled, transfer-error flag set.
+    /// Ends a DMA stream (controller 1 or 2, stream 0 to 7) by a bus error: disabled, transfer-error flag set.
     ///
     /// # Errors
     /// There is no such stream, or it is not enabled.
@@ -282,7 +250,7 @@ impl<W: Wiring + 'static> Machine<W> {
             return Err(InjectError::NoStream { controller, stream });
         }
         let now = self.now();
-        let chip = self.cpu.get_data_mut().chip();
+        let chip = self.chip_mut();
         if chip.stop_stream(usize::from(controller - 1), stream.into(), now) {
             Ok(())
         } else {
@@ -290,7 +258,7 @@ impl<W: Wiring + 'static> Machine<W> {
         }
     }
 
-    /// The supply dips below the brown-out threshold (BORRSTF); the RAM keeps its contents.
+    /// Resets as a supply below the brown-out threshold does (BORRSTF); the RAM keeps its contents.
     ///
     /// # Errors
     /// The image cannot be started.
@@ -298,7 +266,7 @@ impl<W: Wiring + 'static> Machine<W> {
         self.system_reset(ResetCause::BrownOut)
     }
 
-    /// The reset pin is pulled low and released (PINRSTF).
+    /// Pulls the reset pin low and releases it (PINRSTF).
     ///
     /// # Errors
     /// The image cannot be started.
@@ -306,35 +274,30 @@ impl<W: Wiring + 'static> Machine<W> {
         self.system_reset(ResetCause::Pin)
     }
 
-    /// The program asks for a reset (SFTRSTF), as a lost one may.
+    /// Resets as a software request does (SFTRSTF).
     ///
     /// # Errors
     /// The image cannot be started.
-    pub fn ask_for_reset(&mut self) -> Result<(), Stop> {
+    pub fn request_reset(&mut self) -> Result<(), Stop> {
         self.system_reset(ResetCause::Software)
     }
 
-    /// A word is stored to the flash of the settings, as a lost program may do: what the flash makes of that happens.
+    /// Stores a word to the flash of the settings, as runaway code may do.
     ///
     /// # Errors
-    /// [`InjectError::Refused`]: not modelled in the state that the flash is in.
+    /// [`InjectError::Refused`]: not modelled in the present state of the flash.
     pub fn stray_store(&mut self, address: u32, value: u32) -> Result<(), InjectError> {
         let now = self.now();
-        let answer = self
-            .cpu
-            .get_data_mut()
-            .chip()
-            .store_flash(address, 4, value, now);
-        self.accepted(answer, address, Access::Write(4), value)
+        let answer = self.chip_mut().store_flash(address, 4, value, now);
+        self.or_refused(answer, address, Access::Write(4), value)
     }
 
-    /// The supply goes, so long that the RAM forgets, and comes back: noise of `seed` in RAM, flash kept. No time passes
-    /// without supply.
+    /// Switches the supply off and on: the RAM holds noise of `seed`, the flash is kept, and no time passes without supply.
     ///
     /// # Errors
     /// The image cannot be started.
     pub fn power_cycle(&mut self, seed: u64) -> Result<(), Stop> {
-        Xoshiro256PlusPlus::seed_from_u64(seed).fill_bytes(&mut self.fresh_ram);
+        Xoshiro256PlusPlus::seed_from_u64(seed).fill_bytes(&mut self.initial_ram);
         self.system_reset(ResetCause::PowerOn)
     }
 }

@@ -5,9 +5,10 @@ use super::stop::{Answer, Refusal, only};
 const KEY_UNLOCK: u32 = 0x5555;
 const KEY_RELOAD: u32 = 0xaaaa;
 const KEY_START: u32 = 0xcccc;
-/// A new prescaler or reload value takes up to five LSI cycles to arrive.
+/// Time until a new prescaler or reload value is adopted, LSI cycles.
 const UPDATE_LSI_CYCLES: u64 = 5;
 
+#[derive(Default)]
 pub(crate) struct Iwdg {
     unlocked: bool,
     running: bool,
@@ -21,12 +22,9 @@ pub(crate) struct Iwdg {
 impl Iwdg {
     pub fn new() -> Self {
         Self {
-            unlocked: false,
-            running: false,
-            prescaler: 0,
             reload: 0xfff,
-            updating_until: [0; 2],
             due: u64::MAX,
+            ..Self::default()
         }
     }
 
@@ -105,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn registers_need_the_key_and_reload_restarts() {
+    fn registers_need_the_key_and_a_reload_restarts_the_counter() {
         let mut iwdg = Iwdg::new();
         iwdg.write(8, 31, 0, HCLK).unwrap();
         assert_eq!(iwdg.read(8, 0).unwrap(), 0xfff, "locked");

@@ -5,27 +5,27 @@ mod board;
 mod build;
 mod chip;
 mod cost;
+mod cpu_setup;
 mod dma;
 mod elf;
 mod exceptions;
+mod execution_path;
 mod exti;
 mod faults;
 mod flash;
 mod gpio;
+mod halt;
 mod inject;
 mod iwdg;
 mod mcu;
 mod names;
 mod nvic;
-mod path;
 mod ppb;
 mod profile;
 mod ram;
 mod rcc;
 mod run;
-mod setup;
 mod stalls;
-mod standstill;
 mod state;
 mod stop;
 mod tim;
@@ -33,43 +33,43 @@ mod timebase;
 mod usart;
 mod wwdg;
 
-pub use board::{Image, ImageHand, StartError};
+pub use board::{FiveFingerBoard, OneFingerBoard, StartError};
 pub use build::build;
 pub use elf::{FLASH_BASE, FLASH_SIZE, Firmware, ImageError, RAM_BASE, RAM_SIZE};
+pub use execution_path::{ExecutedBlock, ExecutionPath};
 pub use inject::InjectError;
 pub use mcu::{Machine, Reset};
-pub use path::{Path, Ran};
 pub use profile::{InterruptStats, Stats};
 pub use rcc::{Clocks, HSE_HZ, HSI_HZ, LSI_HZ};
 pub use stalls::cold_fetch_stalls;
 pub use stop::{Access, Place, Stop};
 
-/// What is soldered to the pins. Times are CPU cycles since power-up and never go back.
+/// The circuit at the pins. Times are CPU cycles since power-up, in ascending order.
 pub trait Wiring {
     /// 12-bit code that ADC `channel` (0 to 15) converts at `now`, the end of the conversion.
     fn adc(&mut self, channel: u8, now: u64) -> u16;
 
-    /// Level that the outside puts on a pin (port 0 is A). `None`: nothing drives it; then the port's pull-up or
-    /// pull-down decides, and a floating pin reads low. Pins that act without being read (break input, EXTI) are
-    /// sampled at every device event, so at least once a conversion.
+    /// Level that the circuit drives on a pin (port 0 is A). `None`: not driven; the pin has the level of its pull-up or
+    /// pull-down, and a floating pin reads low. Break inputs and EXTI lines are sampled at every device event, so at least
+    /// once per conversion.
     fn pin(&self, port: u8, bit: u8) -> Option<bool>;
 
-    /// A byte left USART2's transmitter: its stop bit ended at `at`, the rate was `baud` bits a second.
+    /// USART2 has sent a byte, at `baud` bit/s; its stop bit ended at `at`.
     fn uart_tx(&mut self, byte: u8, at: u64, baud: u32);
 
-    /// The bridge legs (TIM1 CH1 on PA8, CH2 on PA9) are driven differently from `at` on.
+    /// The drive of the bridge legs (TIM1 CH1 on PA8, CH2 on PA9) changed at `at`.
     fn bridge(&mut self, _legs: [LegState; 2], _at: u64) {}
 
-    /// A general-purpose output changed at `at`; `None`: the pin is no longer driven.
+    /// A general-purpose output changed at `at`; `None`: no longer driven.
     fn output(&mut self, _port: u8, _bit: u8, _level: Option<bool>, _at: u64) {}
 }
 
 /// How a timer drives one input of a bridge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LegState {
-    /// Nothing drives the pin: main output off, channel off, or the pin is not the timer's.
+    /// Not driven: main output off, channel off, or not a pin of a timer.
     Off,
-    /// High for `high` of every `period` timer ticks; a constant level has period 1.
+    /// High for `high` ticks of every `period` timer ticks; a constant level has period 1.
     Duty {
         /// Ticks high.
         high: u32,
@@ -79,7 +79,7 @@ pub enum LegState {
 }
 
 impl LegState {
-    /// Share of the time that the pin is high, 0 to 1; `None` when nothing drives it.
+    /// Duty cycle, 0 to 1; `None` if not driven.
     pub fn duty(self) -> Option<f64> {
         match self {
             LegState::Off => None,

@@ -1,12 +1,13 @@
-//! The machine as its user sees it.
+//! The emulated microcontroller: its public interface.
 use super::chip::Chip;
+use super::cpu_setup::create_cpu;
 use super::elf::{Firmware, RAM_BASE, RAM_SIZE};
 use super::exceptions;
+use super::halt::Halt;
+use super::nvic::{self, EXCEPTIONS};
 use super::profile::Stats;
 use super::rcc::Clocks;
-use super::run::Until;
-use super::setup::set_up;
-use super::standstill::Standstill;
+use super::run::RunLimit;
 use super::state::{Cpu, State};
 use super::stop::Stop;
 use super::{LegState, Wiring};
@@ -33,9 +34,9 @@ pub struct Reset {
 pub struct Machine<W: Wiring + 'static> {
     pub(super) cpu: Cpu<'static, W>,
     pub(super) firmware: Firmware,
-    pub(super) standstill: Option<Standstill>,
-    /// What the RAM held at power-up.
-    pub(super) fresh_ram: Vec<u8>,
+    pub(super) halt: Option<Halt>,
+    /// Contents of the RAM at power-up.
+    pub(super) initial_ram: Vec<u8>,
     pub(super) resets: Vec<Reset>,
     stopped: Option<Stop>,
 }
@@ -48,15 +49,15 @@ impl<W: Wiring + 'static> Machine<W> {
     pub fn new(firmware: &Firmware, wiring: W) -> Result<Self, Stop> {
         let flash: Arc<[u8]> = firmware.flash().into();
         let state = State::new(Chip::new(wiring, flash.to_vec()), Arc::clone(&flash));
-        let mut cpu = set_up(state, &flash).map_err(emulator)?;
-        let fresh_ram = vec![PAINT; RAM_SIZE as usize];
-        cpu.mem_write(RAM_BASE.into(), &fresh_ram)
+        let mut cpu = create_cpu(state, &flash).map_err(emulator)?;
+        let initial_ram = vec![PAINT; RAM_SIZE as usize];
+        cpu.mem_write(RAM_BASE.into(), &initial_ram)
             .map_err(emulator)?;
         let mut machine = Self {
             cpu,
             firmware: firmware.clone(),
-            standstill: None,
-            fresh_ram,
+            halt: None,
+            initial_ram,
             resets: Vec::new(),
             stopped: None,
         };
@@ -69,23 +70,31 @@ impl<W: Wiring + 'static> Machine<W> {
         Ok(machine)
     }
 
-    /// Runs until `cycle` (to the end of the basic block that reaches it), with every device event up to there.
+    /// Runs to the end of the basic block that reaches `cycle`, and services all device events until then.
     ///
     /// # Errors
-    /// The reason why the run cannot go on; the same again on every later call.
+    /// The reason why the run cannot continue; every later call returns it again.
     pub fn run_until(&mut self, cycle: u64) -> Result<(), Stop> {
-        self.run_on(Until::Cycle(cycle))
+        self.run_unless_stopped(RunLimit::Cycle(cycle))
     }
 
-    /// The same, to a time in picoseconds since power-up, whatever the image or a reset does to the clock on the way.
+    /// Runs to a time in picoseconds since power-up; the image or a reset may change the clock on the way.
     ///
     /// # Errors
     /// As [`run_until`](Self::run_until).
     pub fn run_until_ps(&mut self, ps: u64) -> Result<(), Stop> {
-        self.run_on(Until::Ps(ps))
+        self.run_unless_stopped(RunLimit::Ps(ps))
     }
 
-    fn run_on(&mut self, until: Until) -> Result<(), Stop> {
+    pub(super) fn chip(&self) -> &Chip<W> {
+        self.cpu.get_data().chip_ref()
+    }
+
+    pub(super) fn chip_mut(&mut self) -> &mut Chip<W> {
+        self.cpu.get_data_mut().chip()
+    }
+
+    fn run_unless_stopped(&mut self, until: RunLimit) -> Result<(), Stop> {
         if let Some(stop) = &self.stopped {
             return Err(stop.clone());
         }
@@ -96,15 +105,15 @@ impl<W: Wiring + 'static> Machine<W> {
         result
     }
 
-    /// The cells of the flash. An image sees what changes of sectors 1 to 3, if it leaves them blank: the settings are
-    /// there. When power fails in an operation, the machine powers up anew by itself, with other contents of the RAM.
+    /// The cells of the flash. The image sees changes in sectors 1 to 3, which hold the settings, if it leaves them blank. After
+    /// a power failure in an operation the machine powers up again by itself, with other contents of the RAM.
     pub fn flash(&self) -> &FlashCells {
-        &self.cpu.get_data().chip_ref().flash.cells
+        &self.chip().flash.cells
     }
 
-    /// The same, to be changed between two calls of [`run_until`](Self::run_until).
+    /// The cells of the flash, for changes between two calls of [`run_until`](Self::run_until).
     pub fn flash_mut(&mut self) -> &mut FlashCells {
-        &mut self.cpu.get_data_mut().chip().flash.cells
+        &mut self.chip_mut().flash.cells
     }
 
     /// CPU cycles since power-up.
@@ -112,81 +121,65 @@ impl<W: Wiring + 'static> Machine<W> {
         self.cpu.get_data().cycles
     }
 
-    /// Picoseconds since power-up.
-    pub fn elapsed_ps(&self) -> u64 {
-        self.ps_at(self.now())
-    }
-
     /// Time of a cycle since the clock last changed, ps since power-up.
     pub fn ps_at(&self, cycle: u64) -> u64 {
-        self.cpu.get_data().chip_ref().time.ps_at(cycle)
+        self.chip().time.ps_at(cycle)
     }
 
     /// The clock tree as the image has set it.
     pub fn clocks(&self) -> Clocks {
-        self.cpu.get_data().chip_ref().clocks()
+        self.chip().clocks()
     }
 
-    /// What is at the pins.
+    /// The wiring of the pins.
     pub fn wiring(&self) -> &W {
-        &self.cpu.get_data().chip_ref().wiring
+        &self.chip().wiring
     }
 
-    /// What is at the pins, to be changed between two calls of [`run_until`](Self::run_until).
+    /// The wiring of the pins, for changes between two calls of [`run_until`](Self::run_until).
     pub fn wiring_mut(&mut self) -> &mut W {
-        &mut self.cpu.get_data_mut().chip().wiring
+        &mut self.chip_mut().wiring
     }
 
-    /// The host starts to send `bytes` on USART2 now, or right after what it is still sending.
+    /// The host sends `bytes` to USART2, from now on or after the bytes that it is still sending.
     pub fn uart_send(&mut self, bytes: &[u8]) {
         let now = self.now();
-        let chip = self.cpu.get_data_mut().chip();
+        let chip = self.chip_mut();
         chip.usart_mut().send(bytes, now);
         chip.refresh_next(now);
     }
 
-    /// Bytes that the host has not finished sending.
-    pub fn uart_sending(&self) -> usize {
-        self.cpu.get_data().chip_ref().usart().sending()
-    }
-
     /// Bit rate of the host, both ways; 1 Mbit/s at the start.
     pub fn set_host_baud(&mut self, baud: u32) {
-        self.cpu
-            .get_data_mut()
-            .chip()
-            .usart_mut()
-            .set_host_baud(baud);
+        self.chip_mut().usart_mut().set_host_baud(baud);
     }
 
     /// How a timer drives a pin (port 0 is A), or its level as a general-purpose output.
     pub fn pwm(&mut self, port: u8, bit: u8) -> LegState {
         let now = self.now();
-        self.cpu.get_data_mut().chip().pwm(port, bit, now)
+        self.chip_mut().pwm(port, bit, now)
     }
 
     /// Level that a general-purpose output drives (port 0 is A); `None` when the pin is no driven output.
     pub fn gpio_output(&self, port: u8, bit: u8) -> Option<bool> {
-        self.cpu.get_data().chip_ref().output(port, bit)
+        self.chip().output(port, bit)
     }
 
-    /// Notes which blocks an interrupt's handler runs, from its next activation on; `name` is that of
+    /// Records the blocks that an interrupt's handler executes, from its next activation on; `name` is that of
     /// [`InterruptStats`](super::InterruptStats).
     pub fn watch(&mut self, name: &str) {
-        if let Some(exception) =
-            (0..super::nvic::EXCEPTIONS).find(|n| super::nvic::name(*n) == name)
-        {
+        if let Some(exception) = (0..EXCEPTIONS).find(|n| nvic::name(*n) == name) {
             self.cpu.get_data_mut().profile.watch(exception);
         }
     }
 
-    /// What [`Self::watch`] has noted.
-    pub fn path(&self) -> Option<&super::Path> {
+    /// The record that [`Self::watch`] began.
+    pub fn path(&self) -> Option<&super::ExecutionPath> {
         self.cpu.get_data().profile.path()
     }
 
     /// Address and estimated cycles of each instruction of a block in the flash.
-    pub fn instructions(&self, (address, bytes): super::Ran) -> Vec<(u32, u16)> {
+    pub fn instructions(&self, (address, bytes): super::ExecutedBlock) -> Vec<(u32, u16)> {
         let start = (address & 0x07ff_ffff) as usize;
         let code = self.firmware.flash().get(start..start + usize::from(bytes));
         super::cost::instructions(code.unwrap_or_default())
@@ -194,12 +187,12 @@ impl<W: Wiring + 'static> Machine<W> {
             .collect()
     }
 
-    /// Starts the figures of the interrupts anew.
+    /// Clears the statistics of the interrupts.
     pub fn restart_interrupt_stats(&mut self) {
         self.cpu.get_data_mut().profile.restart();
     }
 
-    /// Counts since power-up.
+    /// Statistics since power-up.
     pub fn stats(&self) -> Stats {
         let state = self.cpu.get_data();
         Stats {
@@ -211,20 +204,20 @@ impl<W: Wiring + 'static> Machine<W> {
         }
     }
 
-    /// All resets, the first power-up included.
+    /// All resets since and including power-up.
     pub fn resets(&self) -> &[Reset] {
         &self.resets
     }
 
-    /// Deepest use of the main stack since power-up, bytes, by what has changed in RAM since then. `None` when the image has no
-    /// symbol that tells where its static data end (`__sheap`, `__euninit` or `__ebss`).
+    /// Deepest use of the main stack since power-up, bytes, found by the lowest changed byte. `None` if the image has no symbol
+    /// for the end of the stack or of its static data (`_stack_end`, `__sheap`, `__euninit` or `__ebss`).
     pub fn stack_high_water(&self) -> Option<u32> {
         let bottom = self.stack_end()?;
         let top = self.firmware.initial_sp();
         let size = top.checked_sub(bottom)? as usize;
         let stack = self.cpu.mem_read_as_vec(u64::from(bottom), size).ok()?;
         let fresh = self
-            .fresh_ram
+            .initial_ram
             .get(bottom.checked_sub(RAM_BASE)? as usize..)?;
         let untouched = stack
             .iter()
@@ -234,19 +227,19 @@ impl<W: Wiring + 'static> Machine<W> {
         Some((size - untouched) as u32)
     }
 
-    /// The RAM as power-up finds it.
-    pub(super) fn lose_memory(&mut self) -> Result<(), Stop> {
-        let lost = self.cpu.mem_write(u64::from(RAM_BASE), &self.fresh_ram);
+    /// Restores the contents that the RAM had at power-up.
+    pub(super) fn restore_initial_ram(&mut self) -> Result<(), Stop> {
+        let lost = self.cpu.mem_write(u64::from(RAM_BASE), &self.initial_ram);
         lost.map_err(emulator)
     }
 
-    /// Lowest address that is the stack's; see [`Self::stack_high_water`].
+    /// Lowest address of the stack; see [`Self::stack_high_water`].
     pub(super) fn stack_end(&self) -> Option<u32> {
         let symbols = ["_stack_end", "__sheap", "__euninit", "__ebss"];
         symbols.iter().find_map(|name| self.firmware.symbol(name))
     }
 
-    /// Contents of RAM or flash, for tests and probes.
+    /// Contents of RAM or flash.
     pub fn memory(&self, address: u32, bytes: usize) -> Option<Vec<u8>> {
         self.cpu.mem_read_as_vec(u64::from(address), bytes).ok()
     }

@@ -1,338 +1,95 @@
 //! Names of registers for messages: address to `PERIPHERAL_REGISTER` (RM0390 memory map and register maps).
 
-/// Offset and name of registers.
-type Registers = &'static [(u32, &'static str)];
-/// First address, name and registers of a peripheral.
-type Entry = (u32, &'static str, Registers);
+use std::collections::HashMap;
+use std::sync::LazyLock;
 
-const TIM: Registers = &[
-    (0x00, "CR1"),
-    (0x04, "CR2"),
-    (0x08, "SMCR"),
-    (0x0c, "DIER"),
-    (0x10, "SR"),
-    (0x14, "EGR"),
-    (0x18, "CCMR1"),
-    (0x1c, "CCMR2"),
-    (0x20, "CCER"),
-    (0x24, "CNT"),
-    (0x28, "PSC"),
-    (0x2c, "ARR"),
-    (0x30, "RCR"),
-    (0x34, "CCR1"),
-    (0x38, "CCR2"),
-    (0x3c, "CCR3"),
-    (0x40, "CCR4"),
-    (0x44, "BDTR"),
-    (0x48, "DCR"),
-    (0x4c, "DMAR"),
-    (0x50, "OR"),
-];
-const USART: Registers = &[
-    (0x00, "SR"),
-    (0x04, "DR"),
-    (0x08, "BRR"),
-    (0x0c, "CR1"),
-    (0x10, "CR2"),
-    (0x14, "CR3"),
-    (0x18, "GTPR"),
-];
-const ADC: Registers = &[
-    (0x00, "SR"),
-    (0x04, "CR1"),
-    (0x08, "CR2"),
-    (0x0c, "SMPR1"),
-    (0x10, "SMPR2"),
-    (0x14, "JOFR1"),
-    (0x18, "JOFR2"),
-    (0x1c, "JOFR3"),
-    (0x20, "JOFR4"),
-    (0x24, "HTR"),
-    (0x28, "LTR"),
-    (0x2c, "SQR1"),
-    (0x30, "SQR2"),
-    (0x34, "SQR3"),
-    (0x38, "JSQR"),
-    (0x3c, "JDR1"),
-    (0x4c, "DR"),
-    (0x300, "CSR"),
-    (0x304, "CCR"),
-    (0x308, "CDR"),
-];
-const GPIO: Registers = &[
-    (0x00, "MODER"),
-    (0x04, "OTYPER"),
-    (0x08, "OSPEEDR"),
-    (0x0c, "PUPDR"),
-    (0x10, "IDR"),
-    (0x14, "ODR"),
-    (0x18, "BSRR"),
-    (0x1c, "LCKR"),
-    (0x20, "AFRL"),
-    (0x24, "AFRH"),
-];
-const RCC: Registers = &[
-    (0x00, "CR"),
-    (0x04, "PLLCFGR"),
-    (0x08, "CFGR"),
-    (0x0c, "CIR"),
-    (0x10, "AHB1RSTR"),
-    (0x14, "AHB2RSTR"),
-    (0x18, "AHB3RSTR"),
-    (0x20, "APB1RSTR"),
-    (0x24, "APB2RSTR"),
-    (0x30, "AHB1ENR"),
-    (0x34, "AHB2ENR"),
-    (0x38, "AHB3ENR"),
-    (0x40, "APB1ENR"),
-    (0x44, "APB2ENR"),
-    (0x50, "AHB1LPENR"),
-    (0x54, "AHB2LPENR"),
-    (0x58, "AHB3LPENR"),
-    (0x60, "APB1LPENR"),
-    (0x64, "APB2LPENR"),
-    (0x70, "BDCR"),
-    (0x74, "CSR"),
-    (0x80, "SSCGR"),
-    (0x84, "PLLI2SCFGR"),
-    (0x88, "PLLSAICFGR"),
-    (0x8c, "DCKCFGR"),
-    (0x90, "CKGATENR"),
-    (0x94, "DCKCFGR2"),
-];
-const FLASH: Registers = &[
-    (0x00, "ACR"),
-    (0x04, "KEYR"),
-    (0x08, "OPTKEYR"),
-    (0x0c, "SR"),
-    (0x10, "CR"),
-    (0x14, "OPTCR"),
-];
-const PWR: Registers = &[(0x00, "CR"), (0x04, "CSR")];
-const EXTI: Registers = &[
-    (0x00, "IMR"),
-    (0x04, "EMR"),
-    (0x08, "RTSR"),
-    (0x0c, "FTSR"),
-    (0x10, "SWIER"),
-    (0x14, "PR"),
-];
-const SYSCFG: Registers = &[
-    (0x00, "MEMRMP"),
-    (0x04, "PMC"),
-    (0x08, "EXTICR1"),
-    (0x0c, "EXTICR2"),
-    (0x10, "EXTICR3"),
-    (0x14, "EXTICR4"),
-    (0x20, "CMPCR"),
-    (0x2c, "CFGR"),
-];
-const IWDG: Registers = &[(0x00, "KR"), (0x04, "PR"), (0x08, "RLR"), (0x0c, "SR")];
-const WWDG: Registers = &[(0x00, "CR"), (0x04, "CFR"), (0x08, "SR")];
-const NONE: Registers = &[];
+use serde::Deserialize;
 
-/// First address, name and registers of every peripheral of the STM32F446, ascending. The next entry's address
-/// bounds a peripheral; an empty name marks a reserved range.
-const MAP: &[Entry] = &[
-    (0x1fff_0000, "SYSTEM_MEMORY", NONE),
-    (0x1fff_7800, "OTP", NONE),
-    (0x1fff_7a10, "SIGNATURE", NONE),
-    (0x1fff_7a30, "", NONE),
-    (0x1fff_c000, "OPTION_BYTES", NONE),
-    (0x1fff_c010, "", NONE),
-    (0x2200_0000, "SRAM_BIT_BAND", NONE),
-    (0x2240_0000, "", NONE),
-    (0x4000_0000, "TIM2", TIM),
-    (0x4000_0400, "TIM3", TIM),
-    (0x4000_0800, "TIM4", TIM),
-    (0x4000_0c00, "TIM5", TIM),
-    (0x4000_1000, "TIM6", TIM),
-    (0x4000_1400, "TIM7", TIM),
-    (0x4000_1800, "TIM12", TIM),
-    (0x4000_1c00, "TIM13", TIM),
-    (0x4000_2000, "TIM14", TIM),
-    (0x4000_2400, "", NONE),
-    (0x4000_2800, "RTC", NONE),
-    (0x4000_2c00, "WWDG", WWDG),
-    (0x4000_3000, "IWDG", IWDG),
-    (0x4000_3400, "", NONE),
-    (0x4000_3800, "SPI2", NONE),
-    (0x4000_3c00, "SPI3", NONE),
-    (0x4000_4000, "SPDIFRX", NONE),
-    (0x4000_4400, "USART2", USART),
-    (0x4000_4800, "USART3", USART),
-    (0x4000_4c00, "UART4", USART),
-    (0x4000_5000, "UART5", USART),
-    (0x4000_5400, "I2C1", NONE),
-    (0x4000_5800, "I2C2", NONE),
-    (0x4000_5c00, "I2C3", NONE),
-    (0x4000_6000, "FMPI2C1", NONE),
-    (0x4000_6400, "CAN1", NONE),
-    (0x4000_6800, "CAN2", NONE),
-    (0x4000_6c00, "HDMI_CEC", NONE),
-    (0x4000_7000, "PWR", PWR),
-    (0x4000_7400, "DAC", NONE),
-    (0x4000_7800, "", NONE),
-    (0x4001_0000, "TIM1", TIM),
-    (0x4001_0400, "TIM8", TIM),
-    (0x4001_0800, "", NONE),
-    (0x4001_1000, "USART1", USART),
-    (0x4001_1400, "USART6", USART),
-    (0x4001_1800, "", NONE),
-    (0x4001_2000, "ADC1", ADC),
-    (0x4001_2100, "ADC2", ADC),
-    (0x4001_2200, "ADC3", ADC),
-    (
-        0x4001_2300,
-        "ADC_COMMON",
-        &[(0x00, "CSR"), (0x04, "CCR"), (0x08, "CDR")],
-    ),
-    (0x4001_2400, "", NONE),
-    (0x4001_2c00, "SDIO", NONE),
-    (0x4001_3000, "SPI1", NONE),
-    (0x4001_3400, "SPI4", NONE),
-    (0x4001_3800, "SYSCFG", SYSCFG),
-    (0x4001_3c00, "EXTI", EXTI),
-    (0x4001_4000, "TIM9", TIM),
-    (0x4001_4400, "TIM10", TIM),
-    (0x4001_4800, "TIM11", TIM),
-    (0x4001_4c00, "", NONE),
-    (0x4001_5800, "SAI1", NONE),
-    (0x4001_5c00, "SAI2", NONE),
-    (0x4001_6000, "", NONE),
-    (0x4002_0000, "GPIOA", GPIO),
-    (0x4002_0400, "GPIOB", GPIO),
-    (0x4002_0800, "GPIOC", GPIO),
-    (0x4002_0c00, "GPIOD", GPIO),
-    (0x4002_1000, "GPIOE", GPIO),
-    (0x4002_1400, "GPIOF", GPIO),
-    (0x4002_1800, "GPIOG", GPIO),
-    (0x4002_1c00, "GPIOH", GPIO),
-    (0x4002_2000, "", NONE),
-    (0x4002_3000, "CRC", NONE),
-    (0x4002_3400, "", NONE),
-    (0x4002_3800, "RCC", RCC),
-    (0x4002_3c00, "FLASH", FLASH),
-    (0x4002_4000, "BKPSRAM", NONE),
-    (0x4002_5000, "", NONE),
-    (0x4002_6000, "DMA1", NONE),
-    (0x4002_6400, "DMA2", NONE),
-    (0x4002_6800, "", NONE),
-    (0x4004_0000, "OTG_HS", NONE),
-    (0x4008_0000, "", NONE),
-    (0x5000_0000, "OTG_FS", NONE),
-    (0x5004_0000, "", NONE),
-    (0x5005_0000, "DCMI", NONE),
-    (0x5005_0400, "", NONE),
-    (0xa000_0000, "FMC", NONE),
-    (0xa000_1000, "QUADSPI", NONE),
-    (0xa000_2000, "", NONE),
-    (0xe000_0000, "ITM", NONE),
-    (
-        0xe000_1000,
-        "DWT",
-        &[
-            (0x00, "CTRL"),
-            (0x04, "CYCCNT"),
-            (0x20, "COMP0"),
-            (0xfb0, "LAR"),
-        ],
-    ),
-    (0xe000_2000, "FPB", NONE),
-    (0xe000_3000, "", NONE),
-    (
-        0xe000_e000,
-        "SCS",
-        &[
-            (0x04, "ICTR"),
-            (0x08, "ACTLR"),
-            (0x10, "SYST_CSR"),
-            (0x14, "SYST_RVR"),
-            (0x18, "SYST_CVR"),
-            (0x1c, "SYST_CALIB"),
-            (0xd00, "CPUID"),
-            (0xd04, "ICSR"),
-            (0xd08, "VTOR"),
-            (0xd0c, "AIRCR"),
-            (0xd10, "SCR"),
-            (0xd14, "CCR"),
-            (0xd24, "SHCSR"),
-            (0xd28, "CFSR"),
-            (0xd2c, "HFSR"),
-            (0xd88, "CPACR"),
-            (0xd94, "MPU_CTRL"),
-            (0xd98, "MPU_RNR"),
-            (0xd9c, "MPU_RBAR"),
-            (0xda0, "MPU_RASR"),
-            (0xdf0, "DHCSR"),
-            (0xdfc, "DEMCR"),
-            (0xf00, "STIR"),
-            (0xf34, "FPCCR"),
-            (0xf38, "FPCAR"),
-            (0xf3c, "FPDSCR"),
-        ],
-    ),
-    (0xe000_f000, "", NONE),
-    (0xe004_0000, "TPIU", NONE),
-    (0xe004_1000, "ETM", NONE),
-    (
-        0xe004_2000,
-        "DBGMCU",
-        &[
-            (0x00, "IDCODE"),
-            (0x04, "CR"),
-            (0x08, "APB1_FZ"),
-            (0x0c, "APB2_FZ"),
-        ],
-    ),
-    (0xe004_3000, "", NONE),
-];
-const DMA_GLOBAL: [&str; 4] = ["LISR", "HISR", "LIFCR", "HIFCR"];
-const DMA_STREAM: [&str; 6] = ["CR", "NDTR", "PAR", "M0AR", "M1AR", "FCR"];
+/// What `names.toml` holds.
+#[derive(Deserialize)]
+struct Map {
+    /// By ascending address.
+    peripherals: Vec<Peripheral>,
+    /// Offset of each register, by group and name.
+    registers: HashMap<String, HashMap<String, u32>>,
+}
 
-fn entry(address: u32) -> Option<Entry> {
-    let after = MAP.partition_point(|(base, ..)| *base <= address);
-    MAP.get(after.checked_sub(1)?).copied()
+/// A peripheral. The next one's address bounds it.
+#[derive(Deserialize)]
+struct Peripheral {
+    base: u32,
+    /// None in a reserved range.
+    #[serde(default)]
+    name: Option<String>,
+    /// Group of its registers, if their names are known.
+    #[serde(default)]
+    registers: Option<String>,
+}
+
+static MAP: LazyLock<Map> =
+    LazyLock::new(|| toml::from_str(include_str!("names.toml")).expect("names.toml"));
+
+fn find(address: u32) -> Option<(&'static Peripheral, &'static str)> {
+    let after = (MAP.peripherals).partition_point(|peripheral| peripheral.base <= address);
+    let found = MAP.peripherals.get(after.checked_sub(1)?)?;
+    Some((found, found.name.as_deref()?))
 }
 
 /// Name of the peripheral at an address; `None` in reserved ranges, where silicon answers with a bus error.
 pub(crate) fn peripheral(address: u32) -> Option<&'static str> {
-    entry(address).map(|e| e.1).filter(|name| !name.is_empty())
+    find(address).map(|(_, name)| name)
 }
 
 /// Name of the register at an address.
 pub(crate) fn register(address: u32) -> String {
-    let Some((base, name, registers)) = entry(address).filter(|e| !e.1.is_empty()) else {
+    let Some((peripheral, name)) = find(address) else {
         return format!("{address:#010x}");
     };
-    let offset = (address - base) & !3;
-    if name.starts_with("DMA") {
-        let stream = (offset.wrapping_sub(0x10) / 0x18) as usize;
-        return match DMA_GLOBAL.get(offset as usize / 4) {
-            Some(register) => format!("{name}_{register}"),
-            None if stream < 8 => format!(
-                "{name}_S{stream}{}",
-                DMA_STREAM[(offset as usize - 0x10) % 0x18 / 4]
-            ),
-            None => format!("{name}+{offset:#x}"),
-        };
-    }
-    match registers.iter().find(|(at, _)| *at == offset) {
-        Some((_, register)) => format!("{name}_{register}"),
+    let offset = (address - peripheral.base) & !3;
+    let group = peripheral
+        .registers
+        .as_ref()
+        .map(|group| &MAP.registers[group]);
+    match group.and_then(|group| group.iter().find(|(_, at)| **at == offset)) {
+        Some((register, _)) => format!("{name}_{register}"),
         None => format!("{name}+{offset:#x}"),
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
+
     use super::*;
 
     #[test]
     fn the_map_ascends_and_names_registers() {
-        assert!(MAP.windows(2).all(|pair| pair[0].0 < pair[1].0));
+        assert!((MAP.peripherals).is_sorted_by(|one, next| one.base < next.base));
         assert_eq!(register(0x4001_2304), "ADC_COMMON_CCR");
         assert_eq!(register(0x4002_64b8), "DMA2_S7CR");
         assert_eq!(register(0x4001_300c), "SPI1+0xc");
         assert_eq!(peripheral(0x4002_2800), None);
+    }
+
+    #[test]
+    fn every_group_of_registers_exists_and_belongs_to_a_peripheral() {
+        let groups = MAP
+            .peripherals
+            .iter()
+            .filter_map(|row| row.registers.as_ref());
+        let named: HashSet<_> = groups.collect();
+        assert_eq!(named, MAP.registers.keys().collect());
+    }
+
+    #[test]
+    fn offsets_are_words_and_no_two_registers_of_a_group_share_one() {
+        for (group, registers) in &MAP.registers {
+            let offsets: HashSet<_> = registers.values().collect();
+            assert_eq!(offsets.len(), registers.len(), "{group}");
+            assert!(
+                registers.values().all(|offset| offset.is_multiple_of(4)),
+                "{group}"
+            );
+        }
     }
 }

@@ -189,7 +189,7 @@ impl Nvic {
         self.best
     }
 
-    /// Whether a pending exception is more urgent than the active ones; the mask registers may still hold it.
+    /// Whether a pending exception is more urgent than the active ones; the mask registers may still block it.
     #[inline]
     pub fn may_preempt(&self) -> bool {
         self.best
@@ -268,7 +268,7 @@ impl Nvic {
         self.set_exception_line(16 + irq, level, now);
     }
 
-    /// Level of a request for an exception, as the NMI has one.
+    /// Level of the request for an exception, such as the NMI; a rising level pends.
     #[inline]
     pub fn set_exception_line(&mut self, exception: usize, level: bool, now: u64) {
         let bit = 1 << exception;

@@ -3,14 +3,11 @@
 use super::nvic::{Nvic, exception};
 use super::stop::{Answer, Refusal, only};
 
-/// Reset requested through AIRCR.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct SystemReset;
-
+#[derive(Default)]
 pub(crate) struct Ppb {
     systick_csr: u32,
     systick_load: u32,
-    /// What it counts down from in the running round.
+    /// Reload value of the present period.
     systick_from: u32,
     /// Cycle at which SysTick next reaches zero.
     pub systick_due: u64,
@@ -33,22 +30,9 @@ pub(crate) struct Ppb {
 impl Ppb {
     pub fn new() -> Self {
         Self {
-            systick_csr: 0,
-            systick_load: 0,
-            systick_from: 0,
             systick_due: u64::MAX,
-            vtor: 0,
-            shcsr: 0,
-            cfsr: 0,
-            hfsr: 0,
-            fault_address: 0,
-            cpacr: 0,
             fpccr: 0xc000_0000,
-            demcr: 0,
-            dwt_ctrl: 0,
-            cyccnt_offset: 0,
-            slept: 0,
-            dbgmcu: [0; 3],
+            ..Self::default()
         }
     }
 
@@ -62,7 +46,7 @@ impl Ppb {
         }
     }
 
-    /// Full access to coprocessors 10 and 11.
+    /// Whether CPACR grants access to the floating-point unit.
     #[inline]
     pub fn float_enabled(&self) -> bool {
         self.cpacr & 0xf0_0000 == 0xf0_0000
@@ -76,7 +60,7 @@ impl Ppb {
         (u64::from(self.systick_load) + 1) * self.systick_step()
     }
 
-    /// SysTick reached zero. `true`: its exception is enabled.
+    /// Handles the end of a SysTick period. `true`: its exception is enabled.
     pub fn systick_expire(&mut self) -> bool {
         self.systick_csr |= 1 << 16;
         self.systick_from = self.systick_load;
@@ -99,12 +83,16 @@ impl Ppb {
     }
 
     fn cyccnt(&self, now: u64) -> u32 {
+        self.counted_cycles(now).wrapping_add(self.cyccnt_offset)
+    }
+
+    /// Cycles awake if CYCCNT counts, else 0.
+    fn counted_cycles(&self, now: u64) -> u32 {
         if self.counts_cycles() {
             (now - self.slept) as u32
         } else {
             0
         }
-        .wrapping_add(self.cyccnt_offset)
     }
 
     fn counts_cycles(&self) -> bool {
@@ -112,11 +100,7 @@ impl Ppb {
     }
 
     fn rebase_cyccnt(&mut self, value: u32, now: u64) {
-        self.cyccnt_offset = value.wrapping_sub(if self.counts_cycles() {
-            (now - self.slept) as u32
-        } else {
-            0
-        });
+        self.cyccnt_offset = value.wrapping_sub(self.counted_cycles(now));
     }
 
     /// Reads the register at an address of 0xE0000000..0xE00FFFFF; `ipsr` is the running exception.
@@ -169,7 +153,8 @@ impl Ppb {
         bit(4, 0) | bit(5, 1) | bit(6, 3) | bit(11, 7) | bit(12, 8) | bit(14, 10) | bit(15, 11)
     }
 
-    /// Writes a register; `bytes` below 4 only where the manual has byte access (priorities).
+    /// Writes a register; `bytes` below 4 only where the manual has byte access (priorities). `Ok(true)`: AIRCR requests a
+    /// system reset.
     pub fn write(
         &mut self,
         nvic: &mut Nvic,
@@ -177,12 +162,10 @@ impl Ppb {
         bytes: u8,
         value: u32,
         now: u64,
-    ) -> Answer<Option<SystemReset>> {
+    ) -> Answer<bool> {
         match address {
             0xe000_e100..0xe000_e500 => {
-                return nvic
-                    .write(address - 0xe000_e000, bytes, value, now)
-                    .map(|()| None);
+                nvic.write(address - 0xe000_e000, bytes, value, now)?;
             }
             0xe000_ed18..0xe000_ed24 => {
                 for i in 0..u32::from(bytes) {
@@ -191,7 +174,6 @@ impl Ppb {
                         (value >> (8 * i)) as u8,
                     );
                 }
-                return Ok(None);
             }
             _ if bytes != 4 => return Err(Refusal::Width),
             0xe000_1000 => {
@@ -219,14 +201,14 @@ impl Ppb {
             0xe000_ed08 => self.vtor = value & 0xffff_fe00,
             0xe000_ed0c => {
                 if value >> 16 != 0x05fa {
-                    return Ok(None); // without the key a write is ignored
+                    return Ok(false); // without the key a write is ignored
                 }
                 only(
                     value & 0xffff,
                     0x0304,
                     "AIRCR.PRIGROUP with subpriorities, or VECTCLRACTIVE",
                 )?;
-                return Ok((value & 4 != 0).then_some(SystemReset));
+                return Ok(value & 4 != 0);
             }
             0xe000_ed10 => only(value, 0, "SCR (deep sleep, sleep on exit, SEVONPEND)")?,
             0xe000_ed14 => only(value, 0x200, "CCR traps")?,
@@ -265,7 +247,7 @@ impl Ppb {
             0xe004_2004..=0xe004_200c => self.dbgmcu[(address as usize - 0xe004_2004) / 4] = value,
             _ => return Err(Refusal::Offset),
         }
-        Ok(None)
+        Ok(false)
     }
 
     /// DBGMCU_CR.DBG_SLEEP keeps the core's clock, and with it CYCCNT, running in sleep.
@@ -298,7 +280,7 @@ mod tests {
 
     /// ARMv7-M B3.3: the counter takes the reload value when it has reached zero.
     #[test]
-    fn systick_takes_another_reload_value_at_its_next_round() {
+    fn systick_adopts_a_new_reload_value_at_its_next_period() {
         let (mut ppb, mut nvic) = (Ppb::new(), Nvic::new());
         ppb.write(&mut nvic, 0xe000_e014, 4, 999, 0).unwrap();
         ppb.write(&mut nvic, 0xe000_e010, 4, 5, 0).unwrap();
@@ -335,11 +317,11 @@ mod tests {
         );
         assert_eq!(
             ppb.write(&mut nvic, 0xe000_ed0c, 4, 0x05fa_0004, 0),
-            Ok(Some(SystemReset))
+            Ok(true)
         );
         assert_eq!(
             ppb.write(&mut nvic, 0xe000_ed0c, 4, 0x0000_0004, 0),
-            Ok(None),
+            Ok(false),
             "no key"
         );
     }

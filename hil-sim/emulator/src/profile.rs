@@ -1,8 +1,8 @@
-//! Where instructions and cycles go, by exception.
+//! Instructions and cycles of each exception handler.
+use super::execution_path::ExecutionPath;
 use super::nvic::{self, EXCEPTIONS};
-use super::path::Path;
 
-/// Figures of one exception handler since power-up or the last restart.
+/// Statistics of one exception handler since power-up or the last restart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InterruptStats {
     /// Name in the reference manual's vector table.
@@ -21,14 +21,14 @@ pub struct InterruptStats {
     pub cycles_min: u64,
     /// Most cycles of one activation.
     pub cycles_max: u64,
-    /// Longest time in cycles from request to first instruction (to the block, so a few cycles coarse).
+    /// Longest time from request to first instruction, cycles; accurate to a basic block.
     pub latency_max: u64,
 }
 
-/// Figures of a whole run since power-up.
+/// Statistics since power-up.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stats {
-    /// Instructions executed, exact to the block that runs when the figures are taken.
+    /// Instructions executed, exact to the present basic block.
     pub instructions: u64,
     /// CPU cycles passed, sleep included.
     pub cycles: u64,
@@ -53,20 +53,21 @@ struct Total {
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Open {
+/// An activation of a handler that has not returned.
+struct Activation {
     exception: usize,
     instructions: u64,
     cycles: u64,
 }
 
-/// Running account.
+/// Attributes instructions and cycles to the exception handlers, preemption excluded.
 pub(crate) struct Profile {
     totals: Vec<Total>,
-    open: Vec<Open>,
-    mark: (u64, u64),
-    /// The exception whose blocks are noted, and they.
-    watched: Option<(usize, Box<Path>)>,
-    /// It runs.
+    open: Vec<Activation>,
+    charged_to: (u64, u64),
+    /// The exception whose blocks are recorded, and the record.
+    watched: Option<(usize, Box<ExecutionPath>)>,
+    /// Its handler is running.
     pub watching: bool,
 }
 
@@ -75,29 +76,29 @@ impl Profile {
         Self {
             totals: vec![Total::default(); EXCEPTIONS],
             open: Vec::with_capacity(16),
-            mark: (0, 0),
+            charged_to: (0, 0),
             watched: None,
             watching: false,
         }
     }
 
-    /// Charges what ran since the last switch to the activation on top.
+    /// Attributes what ran since the last switch to the innermost activation.
     fn charge(&mut self, instructions: u64, cycles: u64) {
         if let Some(top) = self.open.last_mut() {
-            top.instructions += instructions - self.mark.0;
-            top.cycles += cycles - self.mark.1;
+            top.instructions += instructions - self.charged_to.0;
+            top.cycles += cycles - self.charged_to.1;
         }
-        self.mark = (instructions, cycles);
+        self.charged_to = (instructions, cycles);
     }
 
     pub fn enter(&mut self, exception: usize, latency: u64, instructions: u64, cycles: u64) {
         self.charge(instructions, cycles);
-        self.open.push(Open {
+        self.open.push(Activation {
             exception,
             instructions: 0,
             cycles: 0,
         });
-        self.look();
+        self.update_watching();
         let total = &mut self.totals[exception];
         total.latency_max = total.latency_max.max(latency);
     }
@@ -108,7 +109,7 @@ impl Profile {
             if let Some((watched, path)) = &mut self.watched
                 && *watched == done.exception
             {
-                path.ended(done.cycles);
+                path.finish_activation(done.cycles);
             }
             let total = &mut self.totals[done.exception];
             if total.count == 0 {
@@ -122,39 +123,39 @@ impl Profile {
             total.cycles_min = total.cycles_min.min(done.cycles);
             total.cycles_max = total.cycles_max.max(done.cycles);
         }
-        self.look();
+        self.update_watching();
     }
 
-    fn look(&mut self) {
+    fn update_watching(&mut self) {
         let running = self.open.last().map(|open| open.exception);
         self.watching =
             running.is_some() && running == self.watched.as_ref().map(|(watched, _)| *watched);
     }
 
-    /// Notes the blocks of an exception from its next activation on.
+    /// Records the blocks of an exception from its next activation on.
     pub fn watch(&mut self, exception: usize) {
         self.watched = Some((exception, Box::default()));
     }
 
-    /// A block of the watched exception runs.
+    /// Records a block of the watched exception.
     #[cold]
-    pub fn ran(&mut self, address: u32, bytes: u16) {
+    pub fn record(&mut self, address: u32, bytes: u16) {
         if let Some((_, path)) = &mut self.watched {
-            path.ran((address, bytes));
+            path.record((address, bytes));
         }
     }
 
-    pub fn path(&self) -> Option<&Path> {
+    pub fn path(&self) -> Option<&ExecutionPath> {
         self.watched.as_ref().map(|(_, path)| &**path)
     }
 
-    /// A reset ends every activation.
-    pub fn abandon(&mut self) {
+    /// Ends every activation, at a reset.
+    pub fn end_all(&mut self) {
         self.open.clear();
-        self.look();
+        self.update_watching();
     }
 
-    /// Starts the figures of all exceptions anew; what runs now counts when it ends.
+    /// Clears the statistics; running activations are counted when they end.
     pub fn restart(&mut self) {
         self.totals.fill(Total::default());
     }

@@ -1,4 +1,4 @@
-//! What a DMA controller sees of the memories.
+//! Memory accesses of the DMA controllers.
 use super::elf::{FLASH_BASE, FLASH_SIZE, RAM_BASE, RAM_SIZE};
 use unicorn_engine::Unicorn;
 
@@ -6,7 +6,7 @@ use unicorn_engine::Unicorn;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct NoMemory;
 
-/// Memory as seen by a DMA controller. `bytes` is 1, 2 or 4; addresses are aligned to it.
+/// Memory that a DMA controller accesses. `bytes` is 1, 2 or 4; addresses are aligned to it.
 pub(crate) trait Memory {
     fn load(&mut self, address: u32, bytes: u8) -> Result<u32, NoMemory>;
     fn store(&mut self, address: u32, bytes: u8, value: u32) -> Result<(), NoMemory>;
@@ -14,8 +14,8 @@ pub(crate) trait Memory {
 
 const LINE: usize = 64;
 
-/// The emulated memories while the CPU stands still. Single accesses to them are slow, so loads come from a line
-/// read ahead and stores to ascending addresses are gathered; [`flush`](Self::flush) must end the use.
+/// The emulated memories while the CPU is halted. Single accesses are slow, so a load reads a whole line and stores to
+/// ascending addresses are buffered until [`flush`](Self::flush), which must be called at the end.
 pub(crate) struct Ram<'a, 'u, D> {
     cpu: &'a mut Unicorn<'u, D>,
     line_at: Option<u32>,
@@ -37,12 +37,12 @@ impl<'a, 'u, D> Ram<'a, 'u, D> {
         }
     }
 
-    /// Writes what was gathered.
+    /// Writes the buffered stores.
     pub fn flush(&mut self) {
-        let gathered = &self.run[..self.run_bytes];
-        if !gathered.is_empty() {
-            let written = self.cpu.mem_write(u64::from(self.run_at), gathered);
-            debug_assert!(written.is_ok(), "only stores to RAM are gathered");
+        let buffered = &self.run[..self.run_bytes];
+        if !buffered.is_empty() {
+            let written = self.cpu.mem_write(u64::from(self.run_at), buffered);
+            debug_assert!(written.is_ok(), "only stores to RAM are buffered");
             self.run_bytes = 0;
         }
     }

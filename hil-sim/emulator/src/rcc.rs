@@ -3,15 +3,15 @@
 use super::stop::{Answer, Refusal, only};
 use thermal_sim::processor::ResetCause;
 
+mod clock_security;
 mod clock_tree;
 mod power;
-mod security;
 
-pub(crate) use security::AfterHse;
+pub(crate) use clock_security::AfterHse;
 
 /// High-speed internal oscillator.
 pub const HSI_HZ: u32 = 16_000_000;
-/// Clock that the NUCLEO board's probe feeds into OSC_IN.
+/// High-speed external clock: that which the NUCLEO board's debug probe feeds into OSC_IN.
 pub const HSE_HZ: u32 = 8_000_000;
 /// Low-speed internal oscillator, nominal.
 pub const LSI_HZ: u32 = 32_000;
@@ -20,7 +20,7 @@ pub const LSI_HZ: u32 = 32_000;
 const LSI_START_US: u64 = 20;
 
 /// Frequencies in Hz as the RCC registers set them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Clocks {
     /// System clock before the AHB prescaler.
     pub sysclk_hz: u32,
@@ -64,6 +64,7 @@ const ENR_NAMES: [&str; 5] = [
     "RCC_APB2ENR",
 ];
 
+#[derive(Default)]
 pub(crate) struct Rcc {
     cr: u32,
     pllcfgr: u32,
@@ -73,10 +74,10 @@ pub(crate) struct Rcc {
     lpenr: [u32; 5],
     csr: u32,
     dckcfgr: u32,
-    /// The external oscillator has failed, and the clock security system has seen that (RCC_CIR.CSSF).
     hse_failed: bool,
-    security: bool,
-    /// Cycle from which HSI, HSE, PLL, LSI are ready.
+    /// RCC_CIR.CSSF: the clock security system has detected the failure.
+    clock_failure: bool,
+    /// Cycle from which HSI, HSE, PLL and LSI are ready.
     ready_at: [u64; 4],
     /// PWR
     pwr_cr: u32,
@@ -97,18 +98,11 @@ impl Rcc {
         Self {
             cr: 0x81,
             pllcfgr: 0x2400_3010,
-            cfgr: 0,
             enr: [0x0010_0000, 0, 0, 0, 0],
-            rstr: [0; 5],
             lpenr: [0x7e67_91ff, 0xf1, 0x01, 0x36fe_c9ff, 0x0007_5f33],
             csr: reset_flags(cause) | old_flags & 0xfe00_0000,
-            dckcfgr: 0,
-            hse_failed: false,
-            security: false,
-            ready_at: [0; 4],
             pwr_cr: 0xc000,
             over_drive_at: [u64::MAX; 2],
-            acr: 0,
             clocks: Clocks {
                 sysclk_hz: hsi,
                 hclk_hz: hsi,
@@ -117,6 +111,7 @@ impl Rcc {
                 timclk1_hz: hsi,
                 timclk2_hz: hsi,
             },
+            ..Self::default()
         }
     }
 
@@ -165,7 +160,7 @@ impl Rcc {
             0x04 => self.pllcfgr,
             0x08 => self.cfgr | (self.cfgr & 3) << 2,
             // of the clock interrupts only that of the clock security system is modelled
-            0x0c => u32::from(self.security) << 7,
+            0x0c => u32::from(self.clock_failure) << 7,
             0x10 | 0x14 | 0x18 => self.rstr[(offset / 4 - 4) as usize],
             0x20 | 0x24 => self.rstr[(offset / 4 - 5) as usize],
             0x30 | 0x34 | 0x38 => self.enr[(offset / 4 - 12) as usize],
@@ -194,7 +189,7 @@ impl Rcc {
             0x08 => return self.write_cfgr(value, now).map(|()| true),
             0x0c => {
                 only(value, 0x00ff_0000, "RCC_CIR interrupt enables")?;
-                self.security &= value >> 23 & 1 == 0;
+                self.clock_failure &= value >> 23 & 1 == 0;
             }
             0x10 | 0x14 | 0x18 => self.rstr[(offset / 4 - 4) as usize] = value,
             0x20 | 0x24 => self.rstr[(offset / 4 - 5) as usize] = value,
@@ -216,7 +211,7 @@ impl Rcc {
             0x8c => {
                 only(value, 1 << 24, "RCC_DCKCFGR audio clocks")?;
                 self.dckcfgr = value;
-                self.clocks = self.computed(self.cfgr)?;
+                self.clocks = self.clocks_for(self.cfgr)?;
                 return Ok(true);
             }
             _ => return Err(Refusal::Offset),

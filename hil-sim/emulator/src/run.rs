@@ -6,7 +6,7 @@ use super::faults::{Fault, INVALID_STATE, NO_COPROCESSOR, NO_MEMORY, UNDEFINED};
 use super::mcu::{Machine, Reset, emulator};
 use super::nvic::exception;
 use super::rcc::HSI_HZ;
-use super::state::{self, Event, Refused, get, service, takeable};
+use super::state::{self, Exit, Refused, get, service, takeable};
 use super::stop::{Place, Refusal, Stop};
 use super::{Wiring, names};
 use thermal_sim::processor::ResetCause;
@@ -15,29 +15,29 @@ use unicorn_engine::{RegisterARM as Reg, uc_error};
 /// A system reset holds the chip for about 20 us (DS10693: NRST pulse).
 const RESET_US: u64 = 20;
 
-/// How far a run goes.
+/// End of a run.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Until {
+pub(super) enum RunLimit {
     /// To a cycle since power-up.
     Cycle(u64),
-    /// To a time since power-up, ps, whatever the clock does on the way.
+    /// To a time since power-up, ps; the clock may change on the way.
     Ps(u64),
 }
 
 impl<W: Wiring + 'static> Machine<W> {
-    pub(super) fn run(&mut self, until: Until) -> Result<(), Stop> {
+    pub(super) fn run(&mut self, until: RunLimit) -> Result<(), Stop> {
         let now = self.now();
-        self.cpu.get_data_mut().chip().sample_inputs(now);
+        self.chip_mut().sample_inputs(now);
         loop {
             let now = self.now();
             let state = self.cpu.get_data_mut();
             let cycle = match until {
-                Until::Cycle(cycle) => cycle,
-                Until::Ps(ps) => state.chip_ref().time.cycle_at(ps),
+                RunLimit::Cycle(cycle) => cycle,
+                RunLimit::Ps(ps) => state.chip_ref().time.cycle_at(ps),
             };
             state.limit = cycle;
             service(&mut self.cpu, now);
-            if let Some(cause) = self.cpu.get_data_mut().chip().reset {
+            if let Some(cause) = self.chip_mut().reset {
                 self.system_reset(cause)?;
                 continue;
             }
@@ -45,8 +45,8 @@ impl<W: Wiring + 'static> Machine<W> {
             if now >= cycle {
                 return Ok(());
             }
-            if let Some(standstill) = self.standstill {
-                self.stand_until(cycle, standstill);
+            if let Some(halt) = self.halt {
+                self.wait_while_halted(cycle, halt);
                 continue;
             }
             if let Some(exception) = takeable(&self.cpu) {
@@ -62,10 +62,10 @@ impl<W: Wiring + 'static> Machine<W> {
         }
     }
 
-    /// Register accesses that ended the last block badly.
+    /// Handles refused register accesses and bus errors of the last block.
     fn pending_errors(&mut self) -> Result<(), Stop> {
         let state = self.cpu.get_data_mut();
-        if !std::mem::take(&mut state.attention) {
+        if !std::mem::take(&mut state.pause_requested) {
             return Ok(());
         }
         if let Some(refused) = state.refused.take() {
@@ -74,31 +74,26 @@ impl<W: Wiring + 'static> Machine<W> {
         if state.bus_error.take().is_some() {
             let pc = get(&self.cpu, Reg::PC);
             let imprecise = 1 << 10;
-            let fault = Fault {
-                exception: exception::BUS_FAULT,
-                status: imprecise,
-                address: None,
-                cause: "access to a reserved peripheral address",
-            };
-            self.standstill = None;
-            return self.fault(fault, pc);
+            let cause = "access to a reserved peripheral address";
+            self.halt = None;
+            return self.fault(Fault::new(exception::BUS_FAULT, imprecise, cause), pc);
         }
         Ok(())
     }
 
-    /// Lets the CPU run until something needs the loop.
+    /// Runs the CPU until a hook or an error stops it.
     fn execute(&mut self) -> Result<(), Stop> {
         let pc = get(&self.cpu, Reg::PC);
-        self.cpu.get_data_mut().event = Event::None;
+        self.cpu.get_data_mut().exit = Exit::Unspecified;
         let result = self.cpu.emu_start(u64::from(pc) | 1, 0xffff_ffff, 0, 0);
         let pc = get(&self.cpu, Reg::PC);
         let state = self.cpu.get_data_mut();
-        match (state.event, result) {
-            (Event::Pause, _) => Ok(()),
-            (Event::FloatDenied, _) => self.fault(NO_COPROCESSOR, pc),
-            (Event::Raised(number), _) => self.raised(number, pc),
-            (Event::None, Ok(())) => self.asleep_or_stuck(pc),
-            (Event::None, Err(uc_error::INSN_INVALID)) => {
+        match (state.exit, result) {
+            (Exit::Requested, _) => Ok(()),
+            (Exit::FloatDenied, _) => self.fault(NO_COPROCESSOR, pc),
+            (Exit::Exception(number), _) => self.cpu_exception(number, pc),
+            (Exit::Unspecified, Ok(())) => self.asleep_or_stuck(pc),
+            (Exit::Unspecified, Err(uc_error::INSN_INVALID)) => {
                 let after_block = pc.wrapping_sub(state.block_pc) >= u32::from(state.block.bytes);
                 match state.block.last {
                     Last::Wfe if after_block => {
@@ -112,14 +107,14 @@ impl<W: Wiring + 'static> Machine<W> {
                     }
                 }
             }
-            (Event::None, Err(uc_error::EXCEPTION)) => {
+            (Exit::Unspecified, Err(uc_error::EXCEPTION)) => {
                 state::refund(state, pc);
                 self.fault(INVALID_STATE, pc)
             }
-            (Event::None, Err(error)) => match state.invalid.take() {
+            (Exit::Unspecified, Err(error)) => match state.invalid.take() {
                 Some((address, value, to_flash)) => {
                     state::refund(state, pc);
-                    self.bad_access(error, address, value, to_flash, pc)
+                    self.access_fault(error, address, value, to_flash, pc)
                 }
                 None => Err(emulator(error)),
             },
@@ -132,29 +127,25 @@ impl<W: Wiring + 'static> Machine<W> {
                 "the CPU halted at {pc:#010x} without a sleep instruction"
             )));
         }
-        self.fall_asleep();
+        self.enter_sleep();
         Ok(())
     }
 
     pub(super) fn system_reset(&mut self, cause: ResetCause) -> Result<(), Stop> {
         let state = self.cpu.get_data_mut();
-        state.profile.abandon();
+        state.profile.end_all();
         let at = state.cycles;
         let held = RESET_US * u64::from(HSI_HZ) / 1_000_000;
         state.chip().system_reset(cause, at);
         let at_ps = state.chip().time.ps_at(at);
         state.cycles += held;
         if cause == ResetCause::PowerOn {
-            self.lose_memory()?;
+            self.restore_initial_ram()?;
         }
         let state = self.cpu.get_data_mut();
-        (
-            state.attention,
-            state.refused,
-            state.bus_error,
-            state.event_register,
-        ) = (false, None, None, false);
-        self.standstill = None;
+        (state.pause_requested, state.event_register) = (false, false);
+        (state.refused, state.bus_error) = (None, None);
+        self.halt = None;
         self.resets.push(Reset { at, at_ps, cause });
         exceptions::reset(&mut self.cpu).map_err(|e| Stop::Emulator(format!("{e:?}")))
     }

@@ -1,5 +1,5 @@
-//! What fetching code from the flash may cost beyond the estimate of `cost.rs`.
-use super::path::Ran;
+//! Stalls of instruction fetches from the flash, which the estimate of `cost.rs` leaves out.
+use super::execution_path::ExecutedBlock;
 
 /// Wait states at 180 MHz and 3.3 V (RM0390 table 5).
 const WAIT_STATES: u64 = 5;
@@ -7,11 +7,14 @@ const WAIT_STATES: u64 = 5;
 const LINES: usize = 64;
 const LINE_BYTES: u32 = 16;
 
-/// Cycles that the core waits for instructions on a way through the code that begins with an empty cache: a line that is
-/// not in the cache takes the wait states, less what ran since the line before it began if it is the next one and so
-/// has been prefetched. Constants that code loads from the flash are not in it.
+/// Cycles that the core waits for instructions along an execution path that begins with an empty cache. A line outside the
+/// cache takes the wait states; the next line in order is prefetched while the line before it executes. Loads of constants
+/// from the flash are not included.
 #[must_use]
-pub fn cold_fetch_stalls(path: &[Ran], mut cycles: impl FnMut(Ran) -> Vec<(u32, u16)>) -> u64 {
+pub fn cold_fetch_stalls(
+    path: &[ExecutedBlock],
+    mut cycles: impl FnMut(ExecutedBlock) -> Vec<(u32, u16)>,
+) -> u64 {
     // Least recently used first.
     let mut cache: Vec<u32> = Vec::with_capacity(LINES);
     let (mut stalls, mut in_line, mut line) = (0, 0, None);
@@ -45,14 +48,14 @@ mod tests {
     use super::*;
 
     /// Four-byte instructions of one cycle.
-    fn straight((address, bytes): Ran) -> Vec<(u32, u16)> {
+    fn straight((address, bytes): ExecutedBlock) -> Vec<(u32, u16)> {
         (0..u32::from(bytes) / 4)
             .map(|i| (address + 4 * i, 1))
             .collect()
     }
 
     #[test]
-    fn straight_code_waits_for_what_the_prefetch_lacks_and_loops_wait_once() {
+    fn prefetch_shortens_stalls_of_straight_code_and_cached_loops_stall_once() {
         // Four cycles a line: one wait state is left at each line but the first.
         let line = (0x0800_0000, 160);
         assert_eq!(cold_fetch_stalls(&[line], straight), 5 + 9);
@@ -61,7 +64,7 @@ mod tests {
             5 + 9,
             "a loop of 10 lines fits"
         );
-        let far: Vec<Ran> = (0..80).map(|i| (0x0800_0000 + 64 * i, 16)).collect();
+        let far: Vec<ExecutedBlock> = (0..80).map(|i| (0x0800_0000 + 64 * i, 16)).collect();
         assert_eq!(
             cold_fetch_stalls(&far, straight),
             80 * 5,

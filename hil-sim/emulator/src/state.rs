@@ -1,4 +1,4 @@
-//! What the hooks of the CPU emulation share: the chip, the clock of the run, and why the CPU paused.
+//! State shared by the hooks of the CPU emulation: the chip, the cycle count, and why the CPU paused.
 use super::Wiring;
 use super::chip::Chip;
 use super::cost::{self, Block, CostTable, Last};
@@ -23,19 +23,19 @@ pub(crate) struct Refused {
 
 /// Why the CPU emulation returned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Event {
-    /// A hook asked for the run loop before the block at the PC.
-    Pause,
-    /// Nothing was said: a sleep instruction, or an error that the return value tells.
-    None,
+pub(crate) enum Exit {
+    /// A hook stopped the CPU before the block at the PC.
+    Requested,
+    /// No hook did: a sleep instruction, or an error that the return value gives.
+    Unspecified,
     /// The emulation raised its exception of that number.
-    Raised(u32),
+    Exception(u32),
     /// The block at the PC uses the floating-point unit, which CPACR denies.
     FloatDenied,
 }
 
 pub(crate) struct State<W> {
-    /// Taken out while it is serviced, so that it and the memory can be borrowed together.
+    /// `None` while it is serviced, so that chip and memory can be borrowed together.
     chip: Option<Box<Chip<W>>>,
     pub cost: CostTable,
     pub flash: Arc<[u8]>,
@@ -48,15 +48,15 @@ pub(crate) struct State<W> {
     pub block_pc: u32,
     pub block: Block,
     pub limit: u64,
-    /// Leave the CPU before the next block.
-    pub attention: bool,
-    pub event: Event,
+    /// Stop the CPU before the next block.
+    pub pause_requested: bool,
+    pub exit: Exit,
     pub refused: Option<Refused>,
-    /// A store or load that no device answered (imprecise bus fault).
+    /// Address of a load or store that no device answered (imprecise bus fault).
     pub bus_error: Option<u32>,
-    /// The access to unmapped memory that ended the emulation: address and whether it was a store to flash.
+    /// The access to unmapped memory that ended the emulation: address, value, and whether it was a store to flash.
     pub invalid: Option<(u32, u32, bool)>,
-    /// Event register of WFE.
+    /// Event register of WFE (ARMv7-M B1.5.18).
     pub event_register: bool,
 }
 
@@ -74,8 +74,8 @@ impl<W: Wiring> State<W> {
             block_pc: 0,
             block: Block::default(),
             limit: 0,
-            attention: false,
-            event: Event::None,
+            pause_requested: false,
+            exit: Exit::Unspecified,
             refused: None,
             bus_error: None,
             invalid: None,
@@ -86,7 +86,7 @@ impl<W: Wiring> State<W> {
     /// The chip.
     ///
     /// # Panics
-    /// Only from within [`service`], which nothing that it calls does.
+    /// If called from within [`service`]; no device does that.
     #[inline]
     pub fn chip(&mut self) -> &mut Chip<W> {
         self.chip
@@ -101,15 +101,15 @@ impl<W: Wiring> State<W> {
             .expect("the chip is in its place outside of service()")
     }
 
-    /// Charges a block of known cost if nothing is due before it; most blocks are such.
+    /// Fast path of most blocks: counts a block of known cost if no event is due before it.
     #[inline]
-    fn run_on(&mut self, address: u32, bytes: u32) -> bool {
+    fn charge_known_block(&mut self, address: u32, bytes: u32) -> bool {
         let (Some(chip), Some(block)) = (&self.chip, self.cost.known(address)) else {
             return false;
         };
         let undisturbed = self.cycles < chip.next
             && self.cycles < self.limit
-            && !self.attention
+            && !self.pause_requested
             && chip.reset.is_none()
             && !chip.nvic.may_preempt();
         if !undisturbed || u32::from(block.bytes) != bytes || block.float || block.sev {
@@ -121,18 +121,18 @@ impl<W: Wiring> State<W> {
         self.cycles += u64::from(block.cycles);
         self.instructions += u64::from(block.instructions);
         if self.profile.watching {
-            self.profile.ran(address, block.bytes);
+            self.profile.record(address, block.bytes);
         }
         true
     }
 
-    /// Code stands still while the flash that it is in is busy; the registers still show that in the same block.
+    /// Passes the time for which the busy flash stalls the code in it.
     fn wait_for_flash(&mut self) {
         self.cycles = self.cycles.max(self.chip_ref().flash.busy_until());
     }
 
     fn refuse(&mut self, refusal: Refusal, address: u32, access: Access, value: u32) {
-        self.attention = true;
+        self.pause_requested = true;
         if refusal == Refusal::BusError {
             self.bus_error = Some(address);
         } else if self.refused.is_none() {
@@ -147,7 +147,7 @@ impl<W: Wiring> State<W> {
     }
 }
 
-/// Runs `work` with the chip and the memories side by side.
+/// Runs `work` with exclusive access to the chip, and with a function that services it with access to the memories.
 pub(crate) fn with_chip<W: Wiring, R>(
     cpu: &mut Cpu<'_, W>,
     work: impl FnOnce(&mut Chip<W>, &mut dyn FnMut(&mut Chip<W>, u64)) -> R,
@@ -181,7 +181,7 @@ pub(crate) fn masks<D>(cpu: &Unicorn<'_, D>) -> (u32, u32, u32) {
     )
 }
 
-/// The exception that would be taken now.
+/// The exception to be taken now, if any.
 #[inline]
 pub(crate) fn takeable<W: Wiring>(cpu: &Cpu<'_, W>) -> Option<usize> {
     let nvic = &cpu.get_data().chip_ref().nvic;
@@ -193,17 +193,17 @@ pub(crate) fn takeable<W: Wiring>(cpu: &Cpu<'_, W>) -> Option<usize> {
     (priority < nvic.execution_priority(primask, basepri, faultmask)).then_some(exception)
 }
 
-/// Called before each basic block: pauses for what is due, else charges the block.
+/// Called before each basic block: pauses if an event or exception is due, else counts the block's cost.
 #[inline]
 pub(crate) fn on_block<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
-    if !cpu.get_data_mut().run_on(address, bytes) {
-        on_block_with_care(cpu, address, bytes);
+    if !cpu.get_data_mut().charge_known_block(address, bytes) {
+        charge_or_pause(cpu, address, bytes);
     }
 }
 
-/// A block before which something may be due, or whose cost is not known yet.
+/// Slow path: a block before which an event may be due, or whose cost is not known yet.
 #[cold]
-fn on_block_with_care<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
+fn charge_or_pause<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32) {
     let state = cpu.get_data_mut();
     let now = state.cycles;
     state.block_pc = address;
@@ -213,11 +213,11 @@ fn on_block_with_care<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32)
     let pause = {
         let state = cpu.get_data_mut();
         let (limit, chip) = (state.limit, state.chip_ref());
-        state.attention || now >= limit || chip.reset.is_some()
+        state.pause_requested || now >= limit || chip.reset.is_some()
     } || takeable(cpu).is_some();
     let state = cpu.get_data_mut();
     if pause {
-        state.event = Event::Pause;
+        state.exit = Exit::Requested;
     } else {
         let offset = if address >= FLASH_BASE {
             address - FLASH_BASE
@@ -241,11 +241,11 @@ fn on_block_with_care<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32)
             state.instructions += u64::from(block.instructions);
             state.event_register |= block.sev;
             if state.profile.watching {
-                state.profile.ran(address, block.bytes);
+                state.profile.record(address, block.bytes);
             }
             return;
         }
-        state.event = Event::FloatDenied;
+        state.exit = Exit::FloatDenied;
     }
     let state = cpu.get_data_mut();
     state.block = Block::default();
@@ -254,7 +254,7 @@ fn on_block_with_care<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u32)
     }
 }
 
-/// Takes back the part of a block that did not run because the instruction at `pc` stopped it.
+/// Subtracts the cost of the instructions of a block from `pc` on, which did not run.
 pub(crate) fn refund<W: Wiring>(state: &mut State<W>, pc: u32) {
     let ran = pc.wrapping_sub(state.block_pc);
     if ran >= u32::from(state.block.bytes) {
@@ -319,7 +319,7 @@ pub(crate) fn on_write<W: Wiring>(cpu: &mut Cpu<'_, W>, address: u32, bytes: u8,
         state.refuse(refusal, register, Access::Write(bytes), value);
     }
     // a new clock moves the cycle at which the run shall pause
-    state.attention |= register & 0xffff_fc00 == 0x4002_3800;
+    state.pause_requested |= register & 0xffff_fc00 == 0x4002_3800;
     state.wait_for_flash();
 }
 

@@ -19,7 +19,7 @@ impl fmt::Display for Access {
     }
 }
 
-/// Place in the image: the function and the address of the block that was executing.
+/// Place in the image: function and address of the executing block.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
     /// Demangled symbol, or `?` where the image names none.
@@ -34,7 +34,7 @@ impl fmt::Display for Place {
     }
 }
 
-/// Why the machine cannot go on.
+/// Why the machine cannot continue.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Stop {
     /// The image used a register, a bit or an access width that the emulated machine does not have.
@@ -97,7 +97,7 @@ pub enum Stop {
         /// Where in the image.
         place: Place,
     },
-    /// A fault in the fault handler while no watchdog runs: silicon would sit in lockup for good.
+    /// A fault in the fault handler while no watchdog runs: the core would stay in lockup.
     #[error("lockup: {cause} at priority {priority} in {place}")]
     Lockup {
         /// The last fault.
@@ -112,14 +112,14 @@ pub enum Stop {
     Emulator(String),
 }
 
-/// What a register model answers to an access it does not accept.
+/// Why a register model does not accept an access.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Refusal {
     /// Register (or bit of it) without a model.
     NotModelled(&'static str),
     /// Offset without a model inside a known peripheral.
     Offset,
-    /// Access width the register does not take here.
+    /// Access width that the register does not accept.
     Width,
     /// The peripheral's clock is off; names the enable bit's register and position.
     ClockOff(&'static str, u8),
@@ -143,7 +143,7 @@ pub(crate) enum Refusal {
 /// Result of a register access.
 pub(crate) type Answer<T> = Result<T, Refusal>;
 
-/// Refuses `value` when it has bits outside `allowed`; `what` names the register and its missing bits.
+/// Refuses `value` if it has bits outside `allowed`; `what` names the register and the bits that are not modelled.
 pub(crate) fn only(value: u32, allowed: u32, what: &'static str) -> Answer<()> {
     if value & !allowed == 0 {
         Ok(())

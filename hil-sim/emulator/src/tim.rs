@@ -5,44 +5,34 @@
 //! and preloaded registers up to date. Capture, encoder, slave, centre-aligned and down-counting modes are refused.
 mod registers;
 
-/// What distinguishes one timer from another.
-#[derive(Debug, Clone, Copy)]
+/// Properties in which the timers differ.
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Kind {
     pub counter_max: u32,
     pub channels: usize,
     pub advanced: bool,
 }
 
+impl Kind {
+    const fn new(counter_max: u32, channels: usize, advanced: bool) -> Self {
+        Self {
+            counter_max,
+            channels,
+            advanced,
+        }
+    }
+}
+
 /// TIM1 and TIM8.
-pub(crate) const ADVANCED: Kind = Kind {
-    counter_max: 0xffff,
-    channels: 4,
-    advanced: true,
-};
+pub(crate) const ADVANCED: Kind = Kind::new(0xffff, 4, true);
 /// TIM2 and TIM5.
-pub(crate) const WIDE: Kind = Kind {
-    counter_max: u32::MAX,
-    channels: 4,
-    advanced: false,
-};
+pub(crate) const WIDE: Kind = Kind::new(u32::MAX, 4, false);
 /// TIM3 and TIM4.
-pub(crate) const GENERAL: Kind = Kind {
-    counter_max: 0xffff,
-    channels: 4,
-    advanced: false,
-};
+pub(crate) const GENERAL: Kind = Kind::new(0xffff, 4, false);
 /// TIM10 and TIM11.
-pub(crate) const SINGLE: Kind = Kind {
-    counter_max: 0xffff,
-    channels: 1,
-    advanced: false,
-};
+pub(crate) const SINGLE: Kind = Kind::new(0xffff, 1, false);
 /// TIM6 and TIM7.
-pub(crate) const BASIC: Kind = Kind {
-    counter_max: 0xffff,
-    channels: 0,
-    advanced: false,
-};
+pub(crate) const BASIC: Kind = Kind::new(0xffff, 0, false);
 
 const UIF: u32 = 1;
 const BIF: u32 = 1 << 7;
@@ -53,7 +43,7 @@ const BKE: u32 = 1 << 12;
 const OSSR: u32 = 1 << 11;
 const OSSI: u32 = 1 << 10;
 
-/// What a channel's output does to its pin (RM0390 16.4.9, output control bits).
+/// Output of a channel to its pin (RM0390 16.4.9, output control bits).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Output {
     /// The timer does not drive the pin.
@@ -62,6 +52,7 @@ pub(crate) enum Output {
     High { high: u32, period: u32 },
 }
 
+#[derive(Default)]
 pub(crate) struct Tim {
     kind: Kind,
     /// CPU cycles per timer clock.
@@ -81,21 +72,22 @@ pub(crate) struct Tim {
     /// Active (shadow) registers.
     psc_now: u32,
     arr_now: u32,
-    /// Last count of the running period: that of the counter, where it was beyond the auto-reload value when that came.
-    last: u32,
+    /// Last count of the running period: the auto-reload value, or the counter's maximum if the count was already beyond that
+    /// value when it was written.
+    period_end: u32,
     ccr_now: [u32; 4],
     repeats_left: u32,
     /// Cycle at which the counter was 0; meaningful while counting.
     zero_at: u64,
     /// Counter while stopped.
     stopped_at: u32,
-    /// Flags are up to date to here.
-    seen: u64,
-    /// Set by each update event that is a trigger output; taken by the owner.
+    /// Cycle up to which the flags are up to date.
+    synced_to: u64,
+    /// Set by each update event that is a trigger output; the chip clears it.
     pub trigger: bool,
-    /// Someone listens to the trigger output, so update events must not be skipped.
-    trigger_used: bool,
-    /// Next cycle at which something visible happens.
+    /// A peripheral uses the trigger output, so update events must not be skipped.
+    trigger_is_used: bool,
+    /// Cycle of the next event that software or another peripheral can observe.
     pub due: u64,
 }
 
@@ -104,46 +96,28 @@ impl Tim {
         Self {
             kind,
             divider,
-            cr1: 0,
-            cr2: 0,
-            dier: 0,
-            sr: 0,
-            ccmr: [0; 2],
-            ccer: 0,
-            psc: 0,
             arr: kind.counter_max,
-            rcr: 0,
-            ccr: [0; 4],
-            bdtr: 0,
-            lock: 0,
-            psc_now: 0,
             arr_now: kind.counter_max,
-            last: kind.counter_max,
-            ccr_now: [0; 4],
-            repeats_left: 0,
-            zero_at: 0,
-            stopped_at: 0,
-            seen: 0,
-            trigger: false,
-            trigger_used: false,
+            period_end: kind.counter_max,
             due: u64::MAX,
+            ..Self::default()
         }
     }
 
     /// Back to the reset values; the clock stays.
     pub fn reset(&mut self) {
         *self = Self {
-            trigger_used: self.trigger_used,
+            trigger_is_used: self.trigger_is_used,
             ..Self::new(self.kind, self.divider)
         };
     }
 
-    /// Whether someone acts on the trigger output.
-    pub fn listen(&mut self, used: bool, now: u64) {
-        if used != self.trigger_used {
+    /// Sets whether a peripheral uses the trigger output.
+    pub fn use_trigger(&mut self, used: bool, now: u64) {
+        if used != self.trigger_is_used {
             self.sync(now);
             self.trigger = false;
-            self.trigger_used = used;
+            self.trigger_is_used = used;
             self.schedule();
         }
     }
@@ -164,11 +138,11 @@ impl Tim {
 
     /// Cycle at which the running period ends.
     fn overflow(&self) -> u64 {
-        let counts = u64::from(self.last) + 1;
+        let counts = u64::from(self.period_end) + 1;
         self.zero_at.wrapping_add(self.tick() * counts)
     }
 
-    /// The timer clock changes at `now`; the count goes on from its value.
+    /// Changes the timer clock at `now`; the count is kept.
     pub fn set_divider(&mut self, divider: u64, now: u64) {
         if divider != self.divider {
             self.sync(now);
@@ -190,12 +164,12 @@ impl Tim {
     fn set_count(&mut self, count: u32, now: u64) {
         self.stopped_at = count;
         self.zero_at = now.wrapping_sub(u64::from(count) * self.tick());
-        self.last = if count > self.arr_now {
+        self.period_end = if count > self.arr_now {
             self.kind.counter_max
         } else {
             self.arr_now
         };
-        self.seen = now;
+        self.synced_to = now;
     }
 
     /// Brings counter, flags and shadow registers up to `now`.
@@ -207,8 +181,8 @@ impl Tim {
                 break;
             }
             self.zero_at = overflow;
-            self.last = self.arr_now;
-            self.seen = overflow - 1;
+            self.period_end = self.arr_now;
+            self.synced_to = overflow - 1;
             if self.repeats_left > 0 {
                 self.repeats_left -= 1;
             } else {
@@ -216,38 +190,38 @@ impl Tim {
                 if self.cr1 & 8 != 0 {
                     self.cr1 &= !1; // one-pulse mode
                     self.stopped_at = 0;
-                } else if !self.is_preloading() && !self.trigger_used {
+                } else if !self.is_preloading() && !self.trigger_is_used {
                     self.skip_whole_periods(now);
                 }
             }
         }
-        self.seen = self.seen.max(now);
+        self.synced_to = self.synced_to.max(now);
         self.schedule();
     }
 
-    /// Nothing but the flags changes from period to period: goes to the last one.
+    /// Skips to the last whole period before `now`, where periods differ in their flags only.
     fn skip_whole_periods(&mut self, now: u64) {
         let all = self.period() * u64::from(self.rcr + 1);
         let whole = (now - self.zero_at) / all;
         if whole > 0 {
             self.compare_flags(self.zero_at + self.period() - 1);
             self.zero_at += whole * all;
-            self.seen = self.zero_at - 1;
+            self.synced_to = self.zero_at - 1;
         }
     }
 
-    /// Sets CCxIF for every match in `(seen, to]` (17.3.8), `to` within the running period.
+    /// Sets CCxIF for every match in `(synced_to, to]` (17.3.8), `to` within the running period.
     fn compare_flags(&mut self, to: u64) {
         for channel in 0..self.kind.channels {
             let compare = self.ccr_now[channel];
-            if compare <= self.last {
+            if compare <= self.period_end {
                 let matches = self.zero_at.wrapping_add(u64::from(compare) * self.tick());
-                if matches > self.seen && matches <= to {
+                if matches > self.synced_to && matches <= to {
                     self.sr |= 2 << channel;
                 }
             }
         }
-        self.seen = self.seen.max(to);
+        self.synced_to = self.synced_to.max(to);
     }
 
     fn is_preloading(&self) -> bool {
@@ -261,7 +235,7 @@ impl Tim {
         }
         self.psc_now = self.psc;
         self.arr_now = self.arr;
-        self.last = self.arr_now;
+        self.period_end = self.arr_now;
         self.ccr_now = self.ccr;
         self.repeats_left = self.rcr;
         if overflow || self.cr1 & 4 == 0 {
@@ -279,7 +253,7 @@ impl Tim {
             return;
         }
         let wants_update = self.dier & UIF != 0 && self.sr & UIF == 0
-            || self.trigger_used && self.cr2 >> 4 & 7 == 2
+            || self.trigger_is_used && self.cr2 >> 4 & 7 == 2
             || self.cr1 & 8 != 0
             || self.bdtr & (AOE | MOE) == AOE
             || self.is_preloading();
@@ -296,12 +270,12 @@ impl Tim {
                     .zero_at
                     .wrapping_add(u64::from(self.ccr_now[channel]) * self.tick());
                 let next = self.overflow() + (at - self.zero_at);
-                self.due = self.due.min(if at > self.seen { at } else { next });
+                self.due = self.due.min(if at > self.synced_to { at } else { next });
             }
         }
     }
 
-    /// Level of the break input; active at the polarity BKP selects (16.3.12). `true`: something changed.
+    /// Sets the level of the break input, active at the polarity that BKP selects (16.3.12). `true`: outputs or flags changed.
     pub fn set_break(&mut self, level: bool) -> bool {
         let active = self.watches_break() && level == (self.bdtr & BKP != 0);
         let changes = active && (self.bdtr & MOE != 0 || self.sr & BIF == 0);
@@ -312,7 +286,7 @@ impl Tim {
         changes
     }
 
-    /// The clock security system reports a failure: a break, if breaks are enabled (16.3.12). `true`: it is one.
+    /// Handles a failure reported by the clock security system: a break if breaks are enabled (16.3.12). `true`: they are.
     pub fn clock_failed(&mut self) -> bool {
         let breaks = self.watches_break();
         if breaks {
@@ -322,7 +296,7 @@ impl Tim {
         breaks
     }
 
-    /// The break input is enabled.
+    /// Whether the break input is enabled.
     pub fn watches_break(&self) -> bool {
         self.bdtr & BKE != 0
     }
@@ -338,29 +312,23 @@ impl Tim {
         ]
     }
 
-    /// What channel `channel` (0 is CH1) drives (16.4.9).
+    /// Output of a channel, 0 is CH1 (16.4.9).
     pub fn output(&self, channel: usize) -> Output {
         let inverted = self.ccer >> (4 * channel + 1) & 1 != 0;
-        let constant = |high: bool| Output::High {
-            high: u32::from(high),
-            period: 1,
+        let constant_if = |driven: bool, high: bool| match driven {
+            true => Output::High {
+                high: u32::from(high),
+                period: 1,
+            },
+            false => Output::Released,
         };
+        let enabled = self.ccer >> (4 * channel) & 1 != 0;
         if self.kind.advanced && self.bdtr & MOE == 0 {
             let idle = self.cr2 >> (8 + 2 * channel) & 1 != 0;
-            let enabled = self.ccer >> (4 * channel) & 1 != 0;
-            return if self.bdtr & OSSI != 0 && enabled {
-                constant(idle)
-            } else {
-                Output::Released
-            };
+            return constant_if(self.bdtr & OSSI != 0 && enabled, idle);
         }
-        if self.ccer >> (4 * channel) & 1 == 0 {
-            let held = self.kind.advanced && self.bdtr & OSSR != 0;
-            return if held {
-                constant(inverted)
-            } else {
-                Output::Released
-            };
+        if !enabled {
+            return constant_if(self.kind.advanced && self.bdtr & OSSR != 0, inverted);
         }
         let period = self.arr_now.saturating_add(1);
         let below = self.ccr_now[channel].min(period);

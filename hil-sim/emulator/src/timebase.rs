@@ -1,4 +1,4 @@
-//! Time from cycles: a cycle is as long as the HCLK period of its moment.
+//! Conversion between CPU cycles and time, across changes of HCLK.
 
 const PS_PER_S: u128 = 1_000_000_000_000;
 
@@ -20,7 +20,7 @@ impl Timebase {
         }
     }
 
-    /// The clock is `hclk_hz` from cycle `now` on.
+    /// Sets the clock from cycle `now` on.
     pub fn set_clock(&mut self, hclk_hz: u32, now: u64) {
         if hclk_hz != self.hclk_hz {
             *self = Self {
@@ -31,7 +31,7 @@ impl Timebase {
         }
     }
 
-    /// Time of a cycle, not before the present clock began, ps.
+    /// Time of a cycle, ps; the cycle is not before the last change of the clock.
     pub fn ps_at(&self, cycle: u64) -> u64 {
         let cycles = u128::from(cycle.saturating_sub(self.cycle));
         self.ps + (cycles * PS_PER_S / u128::from(self.hclk_hz)) as u64
@@ -49,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn cycles_are_as_long_as_their_clocks_period() {
+    fn a_cycle_lasts_a_period_of_its_clock() {
         let mut time = Timebase::new(16_000_000);
         assert_eq!(time.ps_at(16), 1_000_000);
         time.set_clock(180_000_000, 1600);
@@ -58,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn a_cycles_time_leads_back_to_it() {
+    fn cycle_to_time_and_back_gives_the_same_cycle() {
         let time = Timebase::new(180_000_000);
         for cycle in [1, 2, 7, 1_234_567, 90_000 * 123_456 + 1] {
             assert_eq!(time.cycle_at(time.ps_at(cycle)), cycle);

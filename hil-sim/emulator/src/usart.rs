@@ -1,4 +1,4 @@
-//! USART2 (RM0390 chapter 25) as an asynchronous 8N1 port with interrupts and DMA, and the host at its other end.
+//! USART2 (RM0390 chapter 25) as an asynchronous 8N1 port with interrupts and DMA, and the host at the other end of the line.
 use super::stop::{Answer, Refusal, only};
 use std::collections::VecDeque;
 
@@ -14,17 +14,20 @@ const RE: u32 = 1 << 2;
 /// Bits of a frame: start, eight data, stop.
 const FRAME_BITS: u64 = 10;
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Content of the transmitter's shift register.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 enum Shift {
+    #[default]
     Nothing,
     /// The idle frame that TE sends first (25.4.2).
     Preamble,
     Byte(u8),
 }
 
+#[derive(Default)]
 pub(crate) struct Usart {
     sr: u32,
-    /// Error and idle flags as software last read them; a read of DR then clears those (25.6.1).
+    /// Error and idle flags in the last read of SR; a read of DR clears these (25.6.1).
     sr_seen: u32,
     received: u32,
     waiting: u8,
@@ -48,41 +51,28 @@ impl Usart {
     pub fn new(bus_divider: u64, hclk_hz: u32, host_baud: u32) -> Self {
         Self {
             sr: TC | TXE,
-            sr_seen: 0,
-            received: 0,
-            waiting: 0,
-            shift: Shift::Nothing,
-            brr: 0,
-            cr1: 0,
-            cr2: 0,
-            cr3: 0,
             bus_divider,
             hclk_hz,
             host_baud,
-            incoming: VecDeque::new(),
-            arrival: 0,
             idle_at: u64::MAX,
             tx_due: u64::MAX,
             rx_due: u64::MAX,
+            ..Self::default()
         }
     }
 
-    /// A reset of the peripheral; the host and what it still sends stay.
+    /// Resets the peripheral; the host and its pending bytes stay.
     pub fn reset(&mut self) {
         let fresh = Self::new(self.bus_divider, self.hclk_hz, self.host_baud);
         let incoming = std::mem::take(&mut self.incoming);
-        let (arrival, rx_due) = (
-            self.arrival,
-            if incoming.is_empty() {
+        *self = Self {
+            rx_due: if incoming.is_empty() {
                 u64::MAX
             } else {
                 self.rx_due
             },
-        );
-        *self = Self {
+            arrival: self.arrival,
             incoming,
-            arrival,
-            rx_due,
             ..fresh
         };
     }
@@ -119,18 +109,13 @@ impl Usart {
         ((u128::from(self.hclk_hz) * u128::from(FRAME_BITS)) << 16) / u128::from(self.host_baud)
     }
 
-    /// The host starts to send `bytes` at `now`, or after what it is still sending.
+    /// The host sends `bytes` from `now` on, or after the bytes that it is still sending.
     pub fn send(&mut self, bytes: &[u8], now: u64) {
         if self.incoming.is_empty() {
             self.arrival = u128::from(now) << 16;
         }
         self.incoming.extend(bytes);
         self.schedule_rx();
-    }
-
-    /// Bytes that the host has not finished sending.
-    pub fn sending(&self) -> usize {
-        self.incoming.len()
     }
 
     fn schedule_rx(&mut self) {
@@ -141,7 +126,7 @@ impl Usart {
         };
     }
 
-    /// The stop bit of a byte has arrived, or the line has been idle for a frame. `connected`: PA3 is the receiver.
+    /// Event at the receiver: the end of a byte's stop bit, or a frame of idle line. `connected`: PA3 is the receiver's pin.
     pub fn receive(&mut self, connected: bool) {
         let Some(byte) = self.incoming.pop_front() else {
             self.idle_at = u64::MAX;
@@ -154,12 +139,12 @@ impl Usart {
         self.arrival += self.host_frame();
         let now = self.rx_due;
         if connected && self.is_receiving() {
-            let (value, framed) = self.sampled(byte);
+            let (value, checked_frame) = self.sampled(byte);
             if self.sr & RXNE != 0 {
-                self.sr |= ORE; // the newcomer is lost (25.4.3)
+                self.sr |= ORE; // the new byte is lost (25.4.3)
             } else {
                 self.received = value;
-                self.sr |= RXNE | if framed { 0 } else { FE };
+                self.sr |= RXNE | if checked_frame { 0 } else { FE };
             }
             self.idle_at = now + FRAME_BITS * self.bit_cycles();
         }
@@ -170,13 +155,11 @@ impl Usart {
         self.cr1 & (UE | RE) == UE | RE && self.brr != 0
     }
 
-    /// What the receiver makes of a byte sent at the host's rate: it samples the middle of its own bits. The rates
-    /// may differ by 3 % (25.4.5 allows 3.3 to 3.9 %); beyond that the frame counts as broken.
+    /// The value that the receiver samples, in the middle of its own bits, of a byte at the host's rate; and whether the frame
+    /// is valid: the rates may differ by 3 % (25.4.5 allows 3.3 to 3.9 %).
     fn sampled(&self, byte: u8) -> (u32, bool) {
-        let (own, host) = (
-            self.bit_cycles() * u64::from(self.host_baud),
-            u64::from(self.hclk_hz),
-        );
+        let own = self.bit_cycles() * u64::from(self.host_baud);
+        let host = u64::from(self.hclk_hz);
         let line = u32::from(byte) << 1 | 1 << 9;
         let level = |bit: u64| {
             let at = (2 * bit + 1) * own / (2 * host);
@@ -187,7 +170,7 @@ impl Usart {
         (value, close && level(FRAME_BITS - 1))
     }
 
-    /// The frame in the shift register has left. Returns its byte (not for the preamble).
+    /// End of the frame in the shift register; its byte, `None` for the preamble.
     pub fn transmitted(&mut self) -> Option<u8> {
         let sent = self.shift;
         let at = self.tx_due;
@@ -210,17 +193,17 @@ impl Usart {
         self.tx_due = now + FRAME_BITS * self.bit_cycles();
     }
 
-    /// The transmitter asks for a byte by DMA.
+    /// Whether the transmitter requests a byte by DMA.
     pub fn wants_tx(&self) -> bool {
         self.cr3 >> 7 & 1 != 0 && self.sr & TXE != 0 && self.cr1 & (UE | TE) == UE | TE
     }
 
-    /// The receiver offers a byte by DMA.
+    /// Whether the receiver requests a transfer of its byte by DMA.
     pub fn offers_rx(&self) -> bool {
         self.cr3 >> 6 & 1 != 0 && self.sr & RXNE != 0
     }
 
-    /// Data register as the CPU or a DMA writes it.
+    /// Writes the data register, from the CPU or by DMA.
     pub fn write_data(&mut self, value: u32, now: u64) {
         self.sr &= !TC;
         self.waiting = value as u8;
@@ -231,7 +214,7 @@ impl Usart {
         }
     }
 
-    /// Data register as the CPU or a DMA reads it.
+    /// Reads the data register, from the CPU or by DMA.
     pub fn read_data(&mut self) -> u32 {
         self.sr &= !RXNE & !self.sr_seen;
         self.sr_seen = 0;
@@ -266,7 +249,7 @@ impl Usart {
 
     pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<()> {
         match offset {
-            0x00 => self.sr &= value | !(TC | RXNE), // the others clear by reading SR, then DR
+            0x00 => self.sr &= value | !(TC | RXNE), // the other flags are cleared by reading SR, then DR
             0x04 => self.write_data(value, now),
             0x08 => {
                 only(value, 0xffff, "USART_BRR reserved bits")?;

@@ -13,32 +13,29 @@ const PRESCALER: u64 = 4096;
 /// Reset value of the counter and of the window.
 const TOP: u32 = 0x7f;
 
+#[derive(Default)]
 pub(crate) struct Wwdg {
     active: bool,
-    /// The counter at `seen`, 0 to 0x7f.
+    /// The counter at `synced_to`, 0 to 0x7f.
     count: u32,
     cfr: u32,
-    early: bool,
+    early_wakeup: bool,
     /// CPU cycles per PCLK1 cycle; `None` while the peripheral's clock is off.
     divider: Option<u64>,
     /// Cycle at which the prescaler was 0; with the clock off, the PCLK1 cycles that it had counted.
     zero_at: u64,
-    seen: u64,
+    synced_to: u64,
     /// Cycle of the early wake-up or of the reset, whichever comes first.
     pub due: u64,
 }
 
 impl Wwdg {
-    pub const fn new() -> Self {
+    pub fn new() -> Self {
         Self {
-            active: false,
             count: TOP,
             cfr: TOP,
-            early: false,
-            divider: None,
-            zero_at: 0,
-            seen: 0,
             due: u64::MAX,
+            ..Self::default()
         }
     }
 
@@ -49,17 +46,17 @@ impl Wwdg {
         self.set_clock(divider, now);
     }
 
-    /// It will reset the chip unless it is refreshed.
+    /// Whether it resets the chip unless it is refreshed.
     pub const fn is_running(&self) -> bool {
         self.active && self.divider.is_some()
     }
 
     /// Interrupt request (early wake-up).
     pub const fn request(&self) -> bool {
-        self.early && self.cfr & EWI != 0
+        self.early_wakeup && self.cfr & EWI != 0
     }
 
-    /// CPU cycles per PCLK1 cycle from `now` on, or no clock; prescaler and counter keep their values.
+    /// Sets the CPU cycles per PCLK1 cycle, or stops the clock, at `now`; prescaler and counter keep their values.
     pub fn set_clock(&mut self, divider: Option<u64>, now: u64) {
         if divider == self.divider {
             return;
@@ -74,7 +71,7 @@ impl Wwdg {
             Some(new) => now.wrapping_sub(counted * new),
             None => counted,
         };
-        self.seen = now;
+        self.synced_to = now;
         self.schedule();
     }
 
@@ -84,18 +81,18 @@ impl Wwdg {
             .map(|divider| divider * (PRESCALER << (self.cfr >> 7 & 3)))
     }
 
-    /// Counts up to `now`. `true`: the counter has passed 0x40, and the watchdog resets the chip.
+    /// Brings the counter up to `now`. `true`: it has passed 0x40, and the watchdog resets the chip.
     pub fn sync(&mut self, now: u64) -> bool {
         let mut expired = false;
         if let Some(step) = self.step() {
             let ticks = |to: u64| to.wrapping_sub(self.zero_at) / step;
-            let passed = ticks(now) - ticks(self.seen);
-            let to_early = u64::from(self.count.wrapping_sub(T6) & TOP);
-            self.early |= passed > 0 && to_early > 0 && passed >= to_early;
+            let passed = ticks(now) - ticks(self.synced_to);
+            let to_early_wakeup = u64::from(self.count.wrapping_sub(T6) & TOP);
+            self.early_wakeup |= passed > 0 && to_early_wakeup > 0 && passed >= to_early_wakeup;
             expired = self.active && passed > u64::from(self.count.saturating_sub(T6));
             self.count = (u64::from(self.count).wrapping_sub(passed) & u64::from(TOP)) as u32;
         }
-        self.seen = now;
+        self.synced_to = now;
         self.schedule();
         expired
     }
@@ -103,14 +100,14 @@ impl Wwdg {
     fn schedule(&mut self) {
         self.due = u64::MAX;
         let Some(step) = self.step() else { return };
-        let next = self.seen - self.seen.wrapping_sub(self.zero_at) % step + step;
+        let next = self.synced_to - self.synced_to.wrapping_sub(self.zero_at) % step + step;
         let at = |ticks: u32| next + u64::from(ticks - 1) * step;
         if self.active && self.count & T6 != 0 {
             self.due = at(self.count - T6 + 1);
         }
-        let to_early = self.count.wrapping_sub(T6) & TOP;
-        if self.cfr & EWI != 0 && !self.early && to_early > 0 {
-            self.due = self.due.min(at(to_early));
+        let to_early_wakeup = self.count.wrapping_sub(T6) & TOP;
+        if self.cfr & EWI != 0 && !self.early_wakeup && to_early_wakeup > 0 {
+            self.due = self.due.min(at(to_early_wakeup));
         }
     }
 
@@ -119,7 +116,7 @@ impl Wwdg {
         match offset {
             0x00 => Ok(self.count | if self.active { WDGA } else { 0 }),
             0x04 => Ok(self.cfr),
-            0x08 => Ok(u32::from(self.early)),
+            0x08 => Ok(u32::from(self.early_wakeup)),
             _ => Err(Refusal::Offset),
         }
     }
@@ -127,24 +124,24 @@ impl Wwdg {
     /// Writes a register. `Ok(true)`: the chip is reset (T6 written 0, or a refresh outside of the window).
     pub fn write(&mut self, offset: u32, value: u32, now: u64) -> Answer<bool> {
         self.sync(now);
-        let mut bites = false;
+        let mut resets = false;
         match offset {
             0x00 => {
                 only(value, WDGA | TOP, "WWDG_CR reserved bits")?;
                 let too_early = self.active && self.count > self.cfr & TOP;
                 self.active |= value & WDGA != 0;
                 self.count = value & TOP;
-                bites = too_early || self.active && value & T6 == 0;
+                resets = too_early || self.active && value & T6 == 0;
             }
             0x04 => {
                 only(value, 0x3ff, "WWDG_CFR reserved bits")?;
                 self.cfr = value | self.cfr & EWI; // only a reset clears EWI (21.6.2)
             }
-            0x08 => self.early &= value & 1 != 0,
+            0x08 => self.early_wakeup &= value & 1 != 0,
             _ => return Err(Refusal::Offset),
         }
         self.schedule();
-        Ok(bites)
+        Ok(resets)
     }
 }
 
@@ -166,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn time_outs_are_those_of_the_manuals_table() {
+    fn timeouts_are_those_of_the_manuals_table() {
         // RM0390 21.4, minimum and maximum at 30 MHz PCLK1, in microseconds; HCLK 120 MHz
         let table = [
             (0, 136.53, 8_738.0),
@@ -207,7 +204,7 @@ mod tests {
     }
 
     #[test]
-    fn a_refresh_above_the_window_bites_and_one_in_it_does_not() {
+    fn a_refresh_above_the_window_resets_and_one_inside_does_not() {
         let mut wwdg = enabled(0x7f, 0, 1);
         wwdg.write(CFR, 0x60, 0).unwrap();
         assert_eq!(
@@ -223,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn a_write_with_t6_clear_bites_at_once_when_enabled() {
+    fn a_write_with_t6_clear_resets_at_once_when_enabled() {
         let mut wwdg = Wwdg::new();
         wwdg.set_clock(Some(1), 0);
         assert_eq!(wwdg.write(CR, 0x3f, 0), Ok(false), "not enabled");
@@ -231,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn enable_and_early_interrupt_stay_and_the_counter_runs_before() {
+    fn the_counter_runs_before_the_enable_and_enable_bits_cannot_be_cleared() {
         let mut wwdg = Wwdg::new();
         wwdg.set_clock(Some(2), 100);
         assert_eq!(wwdg.read(CR, 100 + 3 * 8192), Ok(0x7c), "free-running");
@@ -257,7 +254,7 @@ mod tests {
     }
 
     #[test]
-    fn without_its_clock_it_stands_still() {
+    fn the_counter_stops_without_its_clock() {
         let mut wwdg = enabled(0x7f, 0, 1);
         wwdg.set_clock(None, 10 * 4096 + 1);
         assert_eq!((wwdg.due, wwdg.is_running()), (u64::MAX, false));
@@ -265,7 +262,7 @@ mod tests {
         assert_eq!(
             wwdg.due,
             1_000_000_000 + 4 * (54 * 4096 - 1),
-            "the rest, at a quarter of the rate"
+            "the remaining time, at a quarter of the rate"
         );
     }
 }

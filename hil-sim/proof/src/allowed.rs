@@ -1,4 +1,4 @@
-//! What is allowed although it looks wrong, each with its reason. An entry that nothing uses is an error.
+//! Exemptions from the checks, each with its reason. An exemption that is not used is an error.
 
 use std::collections::BTreeSet;
 
@@ -6,35 +6,35 @@ use std::collections::BTreeSet;
 pub const TICK: &str = "DMA2_STREAM0";
 /// The end of sampling.
 pub const CONVERTER: &str = "ADC";
-/// Bytes from the host.
+/// Reception of bytes from the host.
 pub const RECEIVER: &str = "USART2";
-/// The next line to the host.
+/// Transmission of the next line to the host.
 pub const REFILL: &str = "DMA1_STREAM6";
 /// The dispatcher of the task that answers the host.
 pub const HOST: &str = "EXTI0";
 
-/// The handlers that the control path consists of.
+/// The handlers of the control path.
 pub const CONTROL: [&str; 4] = [TICK, CONVERTER, RECEIVER, REFILL];
 
-/// Something allowed.
+/// An exemption.
 #[derive(Debug)]
 pub struct Entry {
-    /// On behalf of which handlers.
+    /// Handlers for which it is allowed.
     pub trees: &'static [&'static str],
-    /// In which functions, without parameters of types; or in which files, where the compiler has merged places.
+    /// Functions, without generic parameters; or files, if the compiler has merged several locations.
     pub names: &'static [&'static str],
-    /// Why it does no harm.
+    /// Why it is harmless.
     pub why: &'static str,
 }
 
-/// A list of entries, and which of them have been used for which handler.
+/// A list of exemptions, with the handlers for which each has been used.
 pub struct Allowed {
     entries: &'static [Entry],
     used: BTreeSet<(usize, &'static str)>,
 }
 
 impl Allowed {
-    /// None is used yet.
+    /// A list of which none has been used.
     pub fn new(entries: &'static [Entry]) -> Self {
         Self {
             entries,
@@ -42,7 +42,7 @@ impl Allowed {
         }
     }
 
-    /// Why something is allowed on behalf of a handler, if it is.
+    /// The reason why a function is allowed for a handler, if it is.
     pub fn why(&mut self, tree: &str, name: &str) -> Option<&'static str> {
         for (index, entry) in self
             .entries
@@ -58,7 +58,7 @@ impl Allowed {
         None
     }
 
-    /// Complaints about what is allowed, but is not there.
+    /// Descriptions of the exemptions that were not used.
     pub fn unused(&self) -> Vec<String> {
         let all = self.entries.iter().enumerate();
         let each =
@@ -72,7 +72,7 @@ impl Allowed {
     }
 }
 
-/// Panics, all but one in libraries. Each ends as any other: bridges off first of all, then a reset by the watchdog.
+/// Panics, all but one in libraries. Each switches the bridges off first, and ends in a reset by the watchdog.
 pub static PANICS: [Entry; 10] = [
     Entry {
         trees: &[TICK, REFILL],
@@ -82,10 +82,10 @@ pub static PANICS: [Entry; 10] = [
     Entry {
         trees: &[TICK, CONVERTER, HOST],
         names: &["defmt_rtt::AtomicRttEncoder::acquire"],
-        why: "a log within a log: nothing that is logged logs while it is formatted",
+        why: "a nested log entry: no logged value logs while it is formatted",
     },
     Entry {
-        trees: &[RECEIVER],
+        trees: &[TICK, RECEIVER],
         names: &["heapless::spsc::QueueInner::increment"],
         why: "remainder by the length of a queue, a constant above zero",
     },
@@ -96,7 +96,7 @@ pub static PANICS: [Entry; 10] = [
             "heapless::spsc::QueueInner::len",
             "heapless/src/spsc.rs",
         ],
-        why: "the same",
+        why: "remainder by, and difference to, the length of a queue, a constant above zero",
     },
     Entry {
         trees: &[HOST],
@@ -130,7 +130,7 @@ pub static PANICS: [Entry; 10] = [
             "fixed::from_str::parse_bounds",
             "fixed/src/bytes.rs",
         ],
-        why: "splits a number's text at a place that it has found in it",
+        why: "splits the text of a number at a position that was found in it",
     },
     Entry {
         trees: &[HOST],
@@ -150,17 +150,17 @@ pub static PANICS: [Entry; 10] = [
             "core::fmt::float::float_to_decimal_common_shortest",
             "core::num::flt2dec::strategy::dragon::mul_pow10",
         ],
-        why: "the language's own printing of an `f64`, checks of its own sums",
+        why: "the core library's formatting of an `f64`, which checks its own invariants",
     },
 ];
 
-/// Loops of the control path, but for those that repeat an exclusive access: once for each exception that has come
+/// Loops of the control path. Loops that repeat an exclusive access need no entry: they repeat once for each exception
 /// between its load and its store.
 pub static LOOPS: [Entry; 7] = [
     Entry {
         trees: &[TICK, CONVERTER, REFILL],
         names: &["stm32f4xx_hal::dma::stream_disable"],
-        why: "waits until a stream has ended its transfer, a few cycles of the bus; if it does not, the watchdog resets",
+        why: "waits until a stream has ended its transfer, a few bus cycles; otherwise the watchdog resets the device",
     },
     Entry {
         trees: &[TICK, CONVERTER],
@@ -169,12 +169,12 @@ pub static LOOPS: [Entry; 7] = [
     },
     Entry {
         trees: &[TICK],
-        names: &["contact_model::fixed_point::course::lengths_per_octave"],
+        names: &["contact_model::fixed_point::chord_interpolation::lengths_per_octave"],
         why: "a constant range",
     },
     Entry {
         trees: &[TICK],
-        names: &["thermal_display::commissioning::sums::Sums::equation"],
+        names: &["thermal_device::identification::normal_equations::NormalEquations::add_equation"],
         why: "arrays of constant length",
     },
     Entry {
@@ -188,16 +188,17 @@ pub static LOOPS: [Entry; 7] = [
         why: "moves values, whose sizes are those of their types",
     },
     Entry {
-        trees: &[TICK],
+        trees: &[TICK, CONVERTER],
         names: &[
             "compiler_builtins::arm::__aeabi_memset4",
             "compiler_builtins::mem::impls::set_bytes::set_bytes_bytes",
+            "compiler_builtins::mem::impls::set_bytes::set_bytes_words",
         ],
         why: "clears values, whose sizes are those of their types",
     },
     Entry {
         trees: &[TICK],
         names: &["compiler_builtins::int::specialized_div_rem::u64_div_rem"],
-        why: "at most one turn for each of 64 bits",
+        why: "at most one iteration for each of 64 bits",
     },
 ];

@@ -1,7 +1,6 @@
 //! Figures that depend on the compiler: instruction counts, sizes, names of functions in the machine code.
 //!
-//! They were recorded with one compiler. With another one a difference is a warning, because it need not be a change of the
-//! program.
+//! They were recorded with one compiler. With another one a difference is a warning, because the program may be the same.
 use std::fmt::Display;
 
 use anyhow::{Context, Result};
@@ -10,7 +9,7 @@ use object::{Object, ObjectSection};
 /// Version of rustc that the figures in this repository were recorded with.
 pub const RECORDED_WITH: &str = "1.95.0";
 
-/// The compiler's name and version, as it leaves them in an ELF file: `rustc version 1.95.0 (…)`.
+/// The compiler's name and version in an ELF file: `rustc version 1.95.0 (…)`.
 ///
 /// # Errors
 /// The file is no ELF file, or rustc did not compile it.
@@ -24,7 +23,7 @@ pub fn of_elf(elf: &[u8]) -> Result<String> {
     Ok(name.context("rustc did not compile the image")?.into())
 }
 
-/// Whether differences from recorded figures are failures for an image of this compiler; else prints them as warnings.
+/// Whether differences from recorded figures are failures for an image of this compiler; if not, prints them as warnings.
 pub fn recorded_with(compiler: &str, differences: &[impl Display]) -> bool {
     let same = compiler.split(' ').any(|word| word == RECORDED_WITH);
     if !same {

@@ -1,10 +1,10 @@
-//! Floating point: none in the control path, so no NaN and no infinity there.
+//! Floating point: the control path has none, so neither NaN nor infinity can occur there.
 use anyhow::Result;
 
 use crate::allowed::CONTROL;
 use crate::{Proof, Section};
 
-/// Whether a function calculates with floating-point numbers in integer registers.
+/// Whether a function is software floating-point arithmetic.
 fn is_software(name: &str) -> bool {
     let helper = name.strip_prefix("__aeabi_").is_some_and(|rest| {
         ["d", "f", "cd", "cf", "h2", "i2", "ui2", "l2", "ul2"]
@@ -17,7 +17,7 @@ fn is_software(name: &str) -> bool {
             .any(|library| name.starts_with(library))
 }
 
-/// Neither an instruction nor a function of the control path calculates with floating-point numbers.
+/// Checks that no instruction and no function of the control path is floating-point arithmetic.
 ///
 /// # Errors
 /// A handler is missing.
@@ -58,9 +58,9 @@ pub fn check(proof: &Proof) -> Result<Section> {
 mod tests {
     use super::is_software;
 
-    /// Names of the Arm run-time ABI (IHI 0043), section 4.1.2, and others that it has.
+    /// Names from the Arm run-time ABI (IHI 0043), section 4.1.2, and names that must not match.
     #[test]
-    fn arithmetic_is_told_from_moving_and_dividing_integers() {
+    fn floating_point_helpers_are_distinguished_from_integer_helpers() {
         for name in [
             "__aeabi_dadd",
             "__aeabi_fmul",

@@ -1,56 +1,56 @@
-//! The ways through one function: its calls with the stack in use at each, its loops, what it calculates with.
+//! Control flow of one function: its calls with the stack in use at each, its loops and its floating-point instructions.
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::image::{Function, Image, goes_on};
 use crate::thumb::Effect;
 
-/// What a call reaches.
+/// Target of a call.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Target {
     /// The function that begins here.
     Function(u32),
-    /// Whatever a register holds.
+    /// Address in a register.
     Register,
 }
 
 /// A call, or a jump to another function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Call {
-    /// What it reaches.
+    /// Target.
     pub target: Target,
     /// Stack in use by the caller at the call, in bytes.
     pub stack: u32,
 }
 
 impl Call {
-    /// It goes through a register.
+    /// Whether the target is an address in a register.
     pub fn is_indirect(&self) -> bool {
         self.target == Target::Register
     }
 }
 
-/// What is known of a function.
+/// Analysis of a function.
 #[derive(Clone, Debug, Default)]
 pub struct Flow {
-    /// Most stack in use by the function itself, in bytes.
+    /// Largest stack of the function itself, bytes.
     pub stack: u32,
-    /// Its calls, by the address of the instruction.
+    /// Calls, by the address of the instruction.
     pub calls: BTreeMap<u32, Call>,
-    /// The last instruction of each loop, and the first.
+    /// Last and first instruction of each loop.
     pub loops: BTreeSet<(u32, u32)>,
-    /// Exclusive stores: each ends a loop that repeats what an exception has interrupted.
+    /// Exclusive stores: each ends a loop that repeats an access which an exception has interrupted.
     pub exclusive: BTreeSet<u32>,
-    /// Instructions that calculate with floating-point numbers.
+    /// Floating-point instructions.
     pub float: BTreeSet<u32>,
-    /// Undefined instructions that control reaches.
+    /// Reachable undefined instructions.
     pub undefined: BTreeSet<u32>,
-    /// It can return.
+    /// Whether it can return.
     pub returns: bool,
-    /// What could not be followed, in words.
+    /// Code that could not be analysed, described in words.
     pub troubles: BTreeSet<String>,
 }
 
-/// Follows all ways through a function. `returns` tells which functions can return: behind a call of another nothing runs.
+/// Follows all paths through a function. A path ends at a call of a function that is not in `returns`.
 pub fn follow(image: &Image, function: &Function, returns: &BTreeSet<u32>) -> Flow {
     let mut walk = Walk {
         image,
@@ -87,7 +87,7 @@ impl Walk<'_> {
             .insert(format!("{} at {at:#010x}: {what}", self.function.name));
     }
 
-    /// Control comes from one instruction to another of this function.
+    /// Adds an edge from one instruction of this function to another.
     fn reach(&mut self, from: Option<u32>, to: u32, depth: i32) {
         if let Some(from) = from {
             self.edges.entry(from).or_default().push(to);
@@ -123,7 +123,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Runs a block of conditional instructions one way.
+    /// Follows a block of conditional instructions for one value of the condition.
     fn block(
         &mut self,
         start: u32,
@@ -148,7 +148,7 @@ impl Walk<'_> {
         self.reach(Some(start), at, depth);
     }
 
-    /// Runs one instruction; the depth behind it, if control goes on there.
+    /// Follows one instruction and returns the depth after it, if control continues there.
     fn run(&mut self, at: u32, depth: i32) -> Option<i32> {
         let instruction = self.image.instruction(at)?;
         if instruction.exclusive {
@@ -204,7 +204,7 @@ impl Walk<'_> {
         self.flow.calls.insert(at, Call { target, stack });
     }
 
-    /// A jump within the function, or to another as its last act.
+    /// A jump within the function, or a tail call.
     fn jump(&mut self, at: u32, to: u32, depth: i32) {
         if (self.function.start..self.function.end).contains(&to) {
             return self.reach(Some(at), to, depth);
@@ -213,8 +213,8 @@ impl Walk<'_> {
         self.flow.returns |= self.returns.contains(&to);
     }
 
-    /// Jumps by a table: the constants that follow, up to what fills the place before the next instruction (a zero or a
-    /// NOP, which as offsets would lead into the table).
+    /// Follows a jump table: the constants behind the jump, up to the padding before the next instruction (zero or a NOP,
+    /// which as offsets would lead into the table).
     fn table(&mut self, at: u32, entry: u32, depth: i32) {
         const NOP: u32 = 0xbf00;
         let start = at + 4;
@@ -241,17 +241,17 @@ impl Walk<'_> {
     }
 }
 
-/// The edges that lead back to where a walk in depth has come through.
+/// Back edges of a depth-first search.
 fn loops(start: u32, edges: &BTreeMap<u32, Vec<u32>>) -> BTreeSet<(u32, u32)> {
     let mut back = BTreeSet::new();
     let mut seen = BTreeSet::from([start]);
-    let mut way = vec![(start, 0)];
+    let mut path = vec![(start, 0)];
     let mut open = BTreeSet::from([start]);
-    while let Some((at, place)) = way.last_mut() {
+    while let Some((at, place)) = path.last_mut() {
         let at = *at;
         let Some(&to) = edges.get(&at).and_then(|to| to.get(*place)) else {
             open.remove(&at);
-            way.pop();
+            path.pop();
             continue;
         };
         *place += 1;
@@ -259,7 +259,7 @@ fn loops(start: u32, edges: &BTreeMap<u32, Vec<u32>>) -> BTreeSet<(u32, u32)> {
             back.insert((at, to));
         } else if seen.insert(to) {
             open.insert(to);
-            way.push((to, 0));
+            path.push((to, 0));
         }
     }
     back

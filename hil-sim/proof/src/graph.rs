@@ -1,4 +1,4 @@
-//! Which function calls which, in the whole image.
+//! The call graph of the image.
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::flow::{Call, Flow, Target, follow};
@@ -8,13 +8,13 @@ use crate::image::Image;
 pub struct Graph {
     flows: BTreeMap<u32, Flow>,
     returns: BTreeSet<u32>,
-    /// What a call through a register can reach: every function whose address is taken, but for exceptions' handlers.
+    /// Possible targets of an indirect call: every function whose address is taken, without exception handlers.
     targets: BTreeSet<u32>,
 }
 
 impl Graph {
-    /// Follows every function, and again until it is settled which of them return: at first none is taken to, so that
-    /// those remain that cannot.
+    /// Analyses every function, repeatedly until the set of functions that return no longer grows. It begins empty, so
+    /// that functions which cannot return never enter it.
     pub fn new(image: &Image, handlers: &BTreeSet<u32>) -> Self {
         let mut graph = Self {
             flows: BTreeMap::new(),
@@ -36,7 +36,7 @@ impl Graph {
         }
     }
 
-    /// What is known of the function that begins at an address.
+    /// Analysis of the function that begins at an address.
     pub fn flow(&self, start: u32) -> Option<&Flow> {
         self.flows.get(&start)
     }
@@ -46,7 +46,7 @@ impl Graph {
         self.returns.contains(&start)
     }
 
-    /// What a call can reach.
+    /// Possible targets of a call.
     pub fn targets(&self, call: &Call) -> impl Iterator<Item = u32> {
         let (one, any) = match call.target {
             Target::Function(start) => (Some(start), None),
@@ -55,7 +55,7 @@ impl Graph {
         one.into_iter().chain(any.into_iter().flatten().copied())
     }
 
-    /// All functions that run on behalf of one while none is entered that never returns.
+    /// All functions that are reachable from one without a call of a function that never returns.
     pub fn reached(&self, root: u32) -> BTreeSet<u32> {
         let mut reached = BTreeSet::from([root]);
         let mut waiting = vec![root];

@@ -1,4 +1,4 @@
-//! The image as machine code: functions, vector table, and words that may be addresses of functions.
+//! The image's machine code: functions, vector table, and words that may be addresses of functions.
 use std::collections::{BTreeMap, BTreeSet};
 
 use anyhow::{Context, Result, bail};
@@ -7,7 +7,7 @@ use object::{Endianness, Object, ObjectSection, ObjectSymbol, SymbolKind};
 
 use crate::thumb::{Effect, Instruction, decode};
 
-/// Words of the vector table of an Armv7-M: the stack pointer, 15 exceptions of the processor, then interrupts.
+/// Words of an Armv7-M vector table before the interrupts: the stack pointer and 15 exceptions of the processor.
 const PROCESSOR: [&str; 16] = [
     "",
     "Reset",
@@ -27,7 +27,7 @@ const PROCESSOR: [&str; 16] = [
     "SysTick",
 ];
 
-/// A section that is in memory with contents.
+/// A section with contents in memory.
 struct Contents {
     address: u32,
     bytes: Vec<u8>,
@@ -37,11 +37,11 @@ struct Contents {
 /// A function by its symbol.
 #[derive(Clone, Debug)]
 pub struct Function {
-    /// Its first address, without the Thumb bit.
+    /// First address, without the Thumb bit.
     pub start: u32,
-    /// One past its last.
+    /// Address after the last one.
     pub end: u32,
-    /// Its name as written in the source, without a hash.
+    /// Demangled name, without a hash.
     pub name: String,
 }
 
@@ -50,7 +50,7 @@ pub struct Image {
     contents: Vec<Contents>,
     functions: BTreeMap<u32, Function>,
     symbols: BTreeMap<String, u32>,
-    /// Ranges of constants between instructions: from, up to.
+    /// Ranges of constants between instructions: start and end.
     constants: Vec<(u32, u32)>,
     taken: BTreeSet<u32>,
 }
@@ -59,7 +59,7 @@ impl Image {
     /// Parses an ELF file for an Arm core, with its symbols.
     ///
     /// # Errors
-    /// No such file, or a function that is no function of it.
+    /// The file is no ELF file for Arm, or a function lies outside of its sections.
     pub fn parse(elf: &[u8]) -> Result<Self> {
         let file = ElfFile32::<Endianness>::parse(elf).context("not a 32-bit ELF file")?;
         let mut contents = Vec::new();
@@ -110,7 +110,7 @@ impl Image {
         }
         let starts: Vec<u32> = sized.keys().copied().collect();
         for (place, (start, (size, name))) in sized.into_iter().enumerate() {
-            // Written in assembly, a function may have no size: it ends where the next begins.
+            // A function in assembly may have no size; it ends where the next one begins.
             let next = starts.get(place + 1).copied();
             let end = match (size, next) {
                 (0, Some(next)) => next,
@@ -129,8 +129,8 @@ impl Image {
         Ok(())
     }
 
-    /// Collects what could be an address of a function: each aligned word of the data and of the constants in the code,
-    /// and each pair of instructions that builds one. The vector table is the caller of its own.
+    /// Collects words that may be addresses of functions: each aligned word of the data and of the constants in the code,
+    /// and each word that a pair of instructions builds. The vector table is excluded.
     fn read_addresses(&mut self) {
         let table = self
             .symbol("__EXCEPTIONS")
@@ -158,7 +158,7 @@ impl Image {
             .collect();
     }
 
-    /// The words that pairs of instructions (MOVW, MOVT) build between two addresses, in their order.
+    /// Words that pairs of instructions (MOVW, MOVT) between two addresses build, in their order.
     fn built(&self, mut at: u32, end: u32) -> Vec<u32> {
         let mut low = [0; 16];
         let mut words = Vec::new();
@@ -178,7 +178,7 @@ impl Image {
         words
     }
 
-    /// The words that so many instructions before an address build at most.
+    /// Words that the last `count` instructions before an address build.
     pub fn loaded_before(&self, at: u32, instructions: usize) -> Vec<u32> {
         let Some(function) = self.functions.range(..=at).next_back() else {
             return Vec::new();
@@ -187,7 +187,7 @@ impl Image {
         let mut start = function.1.start;
         while start < at {
             starts.push(start);
-            // Constants are passed over by halfwords.
+            // Constants are skipped by halfwords.
             start += self
                 .instruction(start)
                 .map_or(2, |instruction| instruction.length);
@@ -258,21 +258,21 @@ impl Image {
         self.function(start).map_or("?", |function| &function.name)
     }
 
-    /// The functions whose address is somewhere in the data or the code: what a call through a register can reach.
+    /// Functions whose address is taken in data or code: the possible targets of an indirect call.
     pub fn taken(&self) -> &BTreeSet<u32> {
         &self.taken
     }
 
-    /// Value of a symbol by its name in the file.
+    /// Value of a symbol, by its mangled name.
     pub fn symbol(&self, name: &str) -> Option<u32> {
         self.symbols.get(name).copied()
     }
 
-    /// What the vector table calls, in its order: the exception's name, and the function. Interrupts have the names of
-    /// their functions; those that no task is bound to are left out, but for the one that they share.
+    /// Functions of the vector table in its order, with the exception's name. Interrupts have the names of their
+    /// functions; the handler that all unused interrupts share occurs once.
     ///
     /// # Errors
-    /// There is no vector table, or it has an entry that is no function.
+    /// There is no vector table, or one of its entries is no function.
     pub fn vectors(&self) -> Result<Vec<(String, u32)>> {
         let start = self
             .symbol("__EXCEPTIONS")
@@ -309,7 +309,7 @@ impl Image {
     }
 }
 
-/// Whether control goes on behind an instruction.
+/// Whether control continues after an instruction.
 pub fn goes_on(effect: Effect) -> bool {
     !matches!(
         effect,

@@ -1,7 +1,7 @@
-//! The most stack that the whole can need: the background, and on it one handler of each priority, on one another.
+//! Upper bound of the image's stack: the background, and one handler of each priority nested on it.
 //!
-//! Interrupts are masked while the start goes on, so that it shares the stack with failures only; RTIC lets them in as the last
-//! thing that `__rtic_init_resources` does, when all that it has called has returned.
+//! Interrupts are masked during start-up, so that only the handlers of failures can share the stack with it. RTIC unmasks them
+//! at the end of `__rtic_init_resources`, after all functions that it calls have returned.
 use std::collections::BTreeSet;
 
 use anyhow::{Context, Result};
@@ -10,11 +10,11 @@ use crate::allowed::{CONVERTER, HOST, RECEIVER, REFILL, TICK};
 use crate::stack::{Budget, Deepest, EXCEPTION, Stacks};
 use crate::{Proof, Section};
 
-/// What sets everything up.
+/// The function that runs the start-up.
 const START: &str = "::__rtic_init_resources";
-/// Priorities from this one on cannot be masked.
+/// Index of the first level that cannot be masked.
 const FAILURES: usize = 6;
-/// Handlers of one priority, which never interrupt each other. The lowest priority first; as in the firmware's `main.rs`.
+/// Levels of the firmware's `main.rs`, lowest priority first. Handlers of one priority never interrupt each other.
 static LEVELS: [(&str, &[&str]); 8] = [
     ("background", &["Reset"]),
     ("host", &[HOST]),
@@ -25,7 +25,8 @@ static LEVELS: [(&str, &[&str]); 8] = [
     ("clock failure", &["NMI"]),
     ("hard fault", &["HardFault"]),
 ];
-/// The most stack that the whole can need, bytes. Of all panics the first is reported, no other.
+
+/// Upper bound of the stack, bytes, if only the first panic is reported.
 ///
 /// # Errors
 /// A handler is missing.
@@ -33,15 +34,15 @@ pub fn bound(proof: &Proof) -> Result<u32> {
     Ok(Levels::new(proof)?.bound())
 }
 
-/// What each priority needs.
+/// Stack of each priority.
 struct Levels {
-    /// Name, without a report of a panic, and with.
     each: Vec<Level>,
-    /// The background while the start goes on.
+    /// The background during start-up.
     start: Level,
     recursive: BTreeSet<u32>,
 }
 
+/// Name, deepest path without the report of a panic, and with it.
 type Level = (&'static str, Deepest, Deepest);
 
 impl Levels {
@@ -71,9 +72,9 @@ impl Levels {
         let mut deepest = [Deepest::default(), Deepest::default()];
         for (deepest, budget) in deepest.iter_mut().zip([Budget::SILENT, Budget::REPORT]) {
             for handler in handlers {
-                let way = stacks.deepest(proof.root(handler)?, budget);
-                if way.bytes > deepest.bytes {
-                    *deepest = way;
+                let path = stacks.deepest(proof.root(handler)?, budget);
+                if path.bytes > deepest.bytes {
+                    *deepest = path;
                 }
             }
         }
@@ -87,7 +88,7 @@ impl Levels {
     }
 }
 
-/// Levels on one another; nothing is stacked below the first.
+/// Stack of nested levels, bytes; the first one has no exception frame.
 fn sum<'a>(levels: impl Iterator<Item = &'a Level> + Clone) -> u32 {
     let frames = EXCEPTION * (levels.clone().count() as u32 - 1);
     let silent: u32 = levels.clone().map(|(_, silent, _)| silent.bytes).sum();
@@ -98,7 +99,7 @@ fn sum<'a>(levels: impl Iterator<Item = &'a Level> + Clone) -> u32 {
 /// Size of the stack, bytes.
 ///
 /// # Errors
-/// The image does not say.
+/// The image lacks a symbol of the stack.
 pub fn size(proof: &Proof) -> Result<u32> {
     let symbol = |name| {
         proof
@@ -112,10 +113,10 @@ pub fn size(proof: &Proof) -> Result<u32> {
         .context("_stack_end lies above _stack_start")
 }
 
-/// The stack is larger than the bound, and the bound is one.
+/// Checks that the stack is larger than its upper bound, and that no recursion invalidates the bound.
 ///
 /// # Errors
-/// A handler is missing, or the image does not say where its stack is.
+/// A handler or a symbol of the stack is missing.
 pub fn check(proof: &Proof) -> Result<Section> {
     let mut section = Section {
         title: "stack".into(),
@@ -161,10 +162,10 @@ pub fn check(proof: &Proof) -> Result<Section> {
     Ok(section)
 }
 
-/// Bytes, and the functions that take most of them.
+/// Bytes, and the functions that use most of them.
 fn shown(proof: &Proof, deepest: &Deepest) -> String {
     let mut large: Vec<_> = deepest
-        .way
+        .path
         .iter()
         .filter(|(_, bytes)| *bytes >= 200)
         .collect();
@@ -177,7 +178,7 @@ fn shown(proof: &Proof, deepest: &Deepest) -> String {
     format!(
         "{} bytes, through {} functions ({})",
         deepest.bytes,
-        deepest.way.len(),
+        deepest.path.len(),
         names.join(", ")
     )
 }

@@ -1,12 +1,12 @@
-//! What can be shown of the release image from its machine code, whatever the sources say: from where it can panic,
-//! how deep its stack can grow, what its control path loops on, and that it calculates with integers there.
+//! Static analysis of the release image's machine code: which functions can panic, how deep the stack can grow, which
+//! loops the control path has, and that it has no floating-point arithmetic.
 //!
-//! The whole image is decoded, function by function, along all ways through each ([`flow`]), and put together by its
-//! calls ([`graph`]). What cannot be followed is a violation, not a gap: an unknown change of the stack pointer, a
-//! return with another stack than at entry, a jump into constants or into the middle of another function.
+//! Every function of the image is decoded along all its paths ([`flow`]); the functions form a call graph ([`graph`]).
+//! Code that cannot be analysed is a violation: an unknown change of the stack pointer, a return with another stack
+//! pointer than at entry, a jump into constants or into the middle of another function.
 //!
-//! The checks are [`panics`], [`stack`], [`loops`] and [`float`]; what they let pass, with reasons, is in [`allowed`].
-//! [`measure`] sets the emulated machine's figures beside them.
+//! The checks are [`panics`], [`stack`], [`loops`] and [`float`]; [`allowed`] lists the exemptions with their reasons.
+//! [`measure`] adds figures that are measured in the emulator.
 
 pub mod allowed;
 pub mod compiler;

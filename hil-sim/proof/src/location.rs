@@ -1,4 +1,4 @@
-//! Where a panic says that it is: the `core::panic::Location` among its arguments.
+//! The source location of a panic: the `core::panic::Location` among the arguments of its call.
 use crate::flow::Target;
 use crate::graph::Graph;
 use crate::image::Image;
@@ -11,11 +11,11 @@ pub struct Location {
     pub line: u32,
 }
 
-/// Instructions before a call that may load its arguments.
+/// Number of instructions before a call that may load its arguments.
 const ARGUMENTS: usize = 6;
 
 impl Location {
-    /// The place that the call at an address passes on; if it passes none, that which the called function does.
+    /// The location that the call at an address passes; if it passes none, the one that the called function passes.
     pub fn of_call(image: &Image, graph: &Graph, at: u32) -> Option<Self> {
         let passed = image.loaded_before(at, ARGUMENTS).into_iter();
         passed
@@ -32,7 +32,7 @@ impl Location {
             })
     }
 
-    /// Address and length of the path, line, column.
+    /// Reads address and length of the path, line and column.
     fn read(image: &Image, address: u32) -> Option<Self> {
         let word = |place: u32| image.word(address.checked_add(4 * place)?);
         let (path, length, line, column) = (word(0)?, word(1)?, word(2)?, word(3)?);
@@ -43,7 +43,7 @@ impl Location {
         path.ends_with(".rs").then_some(Self { path, line })
     }
 
-    /// It is in a file of this project: a path from the workspace's root.
+    /// Whether it is a file of this project: its path is relative to the workspace.
     pub fn is_ours(&self) -> bool {
         !self.path.starts_with('/')
     }

@@ -1,4 +1,4 @@
-//! Loops of the control path: each is one whose end is argued.
+//! Loops of the control path: each is listed in [`allowed`](crate::allowed) with the reason why it ends.
 use std::collections::BTreeMap;
 
 use anyhow::Result;
@@ -7,7 +7,7 @@ use crate::allowed::{Allowed, CONTROL, LOOPS};
 use crate::flow::Flow;
 use crate::{Proof, Section};
 
-/// Whether a loop repeats an exclusive access: once for each exception that comes between its load and its store.
+/// Whether a loop repeats an exclusive access, once for each exception between its load and its store.
 fn is_exclusive(flow: &Flow, (last, first): (u32, u32)) -> bool {
     flow.exclusive
         .range(first.min(last)..=last)
@@ -15,7 +15,7 @@ fn is_exclusive(flow: &Flow, (last, first): (u32, u32)) -> bool {
         .is_some()
 }
 
-/// The function that a loop is written in: the innermost at its last instruction outside the language's library.
+/// The function whose source contains a loop: at its last instruction, the innermost outside of the core library.
 fn owner(proof: &Proof, last: u32) -> String {
     let frames = proof.names.frames(last);
     let owner = frames
@@ -25,7 +25,7 @@ fn owner(proof: &Proof, last: u32) -> String {
     owner.map_or_else(String::new, |frame| frame.function.clone())
 }
 
-/// No loop but those that are allowed; functions are not recursive, and nothing is called through a register.
+/// Checks that the control path has only allowed loops, no recursion and no indirect calls.
 ///
 /// # Errors
 /// A handler is missing.

@@ -1,4 +1,4 @@
-//! `image-proof`: what can be shown of the release image. Exit status 1 means a violation, or that it could not be looked for.
+//! `image-proof`: checks the machine code of the release image. Exit status 1 means a violation, or a failed check.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -12,18 +12,18 @@ use image_proof::{Proof, measure};
 #[derive(Parser)]
 #[command(name = "image-proof", max_term_width = 100)]
 struct Cli {
-    /// How many fingers the image is for
+    /// Number of fingers of the image
     #[arg(long, value_enum, default_value = "1")]
     fingers: Fingers,
-    /// Image to look at in place of that of the current sources; it must have its symbols
+    /// Image to check instead of that of the current sources; it must contain its symbols
     #[arg(long)]
     elf: Option<PathBuf>,
-    /// Leave out what takes a run in the emulated machine
+    /// Leave out the measurements in the emulator
     #[arg(long)]
     code_only: bool,
 }
 
-/// For how many fingers there is an image.
+/// The numbers of fingers for which there is an image.
 #[derive(Clone, Copy, ValueEnum)]
 enum Fingers {
     #[value(name = "1")]

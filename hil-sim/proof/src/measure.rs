@@ -1,11 +1,11 @@
-//! What the emulated machine says: the longest tick, and the deepest stack, over scenes that have something of everything.
+//! Measurements in the emulator: the longest tick and the deepest stack over the scenes of [`scenes`](crate::scenes).
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
 use documented_figures::{Verdict, figure};
 use stm32_emulator::Firmware;
-use stm32_emulator::Image;
-use stm32_emulator::ImageHand;
+use stm32_emulator::FiveFingerBoard;
+use stm32_emulator::OneFingerBoard;
 use thermal_campaigns::parallel_map;
 use thermal_sim::World;
 use thermal_sim::commissioning::{CommissioningSetup, commission};
@@ -26,7 +26,7 @@ struct Measured {
     cost: Cost,
 }
 
-/// Ticks and stack of the scenes are as `docs/figures.toml` states, and the stack is within the proven bound.
+/// Checks that ticks and stack are as `docs/figures.toml` states, and that the stack is within its upper bound.
 ///
 /// # Errors
 /// A scene does not run to its end.
@@ -86,7 +86,7 @@ pub fn check(proof: &Proof, elf: &Path, fingers: usize) -> Result<Section> {
     Ok(section.judged(&proof.compiler))
 }
 
-/// What a scene on one finger costs, without the eight seconds before it.
+/// Cost of all scenes with one finger, without the eight seconds before each.
 fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
     let scenes: Vec<(String, Scene)> = touched()?.into_iter().chain(faulty()?).collect();
     let jobs: Vec<Option<&(String, Scene)>> =
@@ -96,7 +96,7 @@ fn alone(firmware: &Firmware) -> Result<Vec<Measured>> {
         let Some((what, scene)) = job else {
             return commissioned(firmware);
         };
-        let mut image = Image::new(firmware, World::new(scene)?)?;
+        let mut image = OneFingerBoard::new(firmware, World::new(scene)?)?;
         let outcome = run(scene, &mut image, |_| ()).with_context(|| what.clone())?;
         of_outcome(what, &outcome)
     };
@@ -111,12 +111,12 @@ fn of_outcome(what: &str, outcome: &Outcome) -> Result<Measured> {
     })
 }
 
-/// The device calibrates its sensors and tunes itself.
+/// Cost of commissioning: calibration of the sensors and identification of the tile.
 fn commissioned(firmware: &Firmware) -> Result<Measured> {
     let what = "commissioning";
     let (_, scene) = touched()?.into_iter().next().context("no scene")?;
     let plants = CommissioningSetup::new(&scene.params, scene.room_c, scene.seed);
-    let mut image = Image::new(firmware, plants.at_work()?)?;
+    let mut image = OneFingerBoard::new(firmware, plants.in_use()?)?;
     commission(&plants, &mut image, &mut |_| ())?;
     Ok(Measured {
         what: what.into(),
@@ -139,7 +139,7 @@ fn together(firmware: &Firmware) -> Result<Measured> {
         worlds.push(World::new(scene)?);
     }
     let worlds = worlds.try_into().map_err(|_| anyhow::anyhow!("worlds"))?;
-    let mut hand = ImageHand::new(firmware, worlds)?;
+    let mut hand = FiveFingerBoard::new(firmware, worlds)?;
     five_fingers::run(&scenes, &mut hand, |_| ())?;
     Ok(Measured {
         what: names.join(", "),

@@ -1,23 +1,23 @@
-//! Names of functions, with those that the compiler has put into others.
+//! Names of functions, with those that the compiler has inlined into others.
 use std::path::Path;
 
 use addr2line::Loader;
 use anyhow::{Result, anyhow};
 
-/// In place of a line that the compiler does not tell.
+/// Stands for an unknown line.
 const UNKNOWN: &str = "?";
 
-/// One function at an address: the innermost, or one that it is compiled into.
+/// One function at an address: the innermost, or one that it is inlined into.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Path of the function without parameters, see [`plain`].
+    /// Path of the function without generic parameters, see [`plain`].
     pub function: String,
     /// File's name and line.
     pub place: String,
 }
 
 impl Frame {
-    /// What has no name.
+    /// A function without a name.
     pub fn unknown(at: u32) -> Self {
         Self {
             function: format!("{at:#010x}"),
@@ -25,21 +25,21 @@ impl Frame {
         }
     }
 
-    /// The compiler says which line it is.
+    /// Whether the line is known.
     pub fn has_line(&self) -> bool {
         self.place != UNKNOWN
     }
 
-    /// It belongs to the language's own library.
+    /// Whether it belongs to the language's own library.
     pub fn is_core(&self) -> bool {
         ["core::", "alloc::"]
             .iter()
             .any(|library| self.function.starts_with(library))
     }
 
-    /// It belongs to this project.
+    /// Whether it belongs to this project.
     pub fn is_ours(&self) -> bool {
-        ["thermal_display::", "contact_model::"]
+        ["thermal_", "contact_model::"]
             .iter()
             .any(|ours| self.function.starts_with(ours))
     }
@@ -49,7 +49,7 @@ impl Frame {
 pub struct Names(Loader);
 
 impl Names {
-    /// Reads them.
+    /// Reads them from an ELF file.
     ///
     /// # Errors
     /// The file has none.
@@ -102,7 +102,7 @@ impl Names {
     }
 }
 
-/// A function's path without parameters of types: `<a::B<C> as d::E<F>>::g::<H>` is `a::B::g`, `<[B] as d::E>::g` is
+/// A function's path without generic parameters: `<a::B<C> as d::E<F>>::g::<H>` is `a::B::g`, `<[B] as d::E>::g` is
 /// `d::E::g`.
 pub fn plain(name: &str) -> String {
     let (mut text, rest) = match name
@@ -117,7 +117,7 @@ pub fn plain(name: &str) -> String {
         let (before, inside) = (&rest[..open], &rest[open + 1..]);
         let Some(end) = closing(inside) else { break };
         text += before.strip_suffix("::").unwrap_or(before);
-        // The language's own types are extended by nameless implementations.
+        // Implementations for the language's own types have no path of their own.
         if let Some(kind) = inside[..end].strip_prefix("impl ") {
             text = format!("{text}::{}", plain(implementor(kind)));
         }
@@ -126,7 +126,7 @@ pub fn plain(name: &str) -> String {
     text + rest
 }
 
-/// The place of the bracket that closes one opened before the text.
+/// Position of the bracket that closes one opened before the text.
 fn closing(text: &str) -> Option<usize> {
     let mut depth = 1;
     let mut last = ' ';
@@ -144,7 +144,7 @@ fn closing(text: &str) -> Option<usize> {
     None
 }
 
-/// Of `Type as Trait` the one that tells whose function it is: the type, unless it is the language's own.
+/// Of `Type as Trait` the one whose crate defines the function: the type, unless it is the language's own.
 fn implementor(inside: &str) -> &str {
     let mut depth = 0;
     for (place, letter) in inside.char_indices() {
@@ -169,7 +169,7 @@ mod tests {
     use super::plain;
 
     #[test]
-    fn parameters_of_types_are_left_out() {
+    fn generic_parameters_are_left_out() {
         for (name, expected) in [
             ("main", "main"),
             ("a::b::c", "a::b::c"),

@@ -1,4 +1,4 @@
-//! Panics: which call of a function that never returns can be reached from where.
+//! Panics: calls of functions that never return, and the handlers that can reach them.
 use std::collections::BTreeMap;
 
 use anyhow::Result;
@@ -16,14 +16,14 @@ use crate::{Proof, Section};
 pub struct Site {
     /// Address of the call.
     pub at: u32,
-    /// Whose it is: the innermost function outside the language's library, or the outermost of that; where the compiler
-    /// has merged several, the file that they name.
+    /// The function that contains it: the innermost outside of the core library, or the outermost of the core library; if
+    /// the compiler has merged several calls, their source file.
     pub owner: String,
-    /// It belongs to this project.
+    /// Whether it belongs to this project.
     pub ours: bool,
-    /// The functions there, innermost first.
+    /// Inlined functions at the address, innermost first.
     pub chain: String,
-    /// What is called.
+    /// The called function.
     pub called: String,
 }
 
@@ -35,7 +35,7 @@ impl Site {
             .find(|frame| !frame.is_core())
             .or(frames.last());
         let owner = owner.cloned().unwrap_or_else(|| Frame::unknown(at));
-        // Without a line: several panics in one, whose place only their argument tells.
+        // Without a line, the compiler has merged several panics; only their argument contains the location.
         let merged =
             Location::of_call(image, graph, at).filter(|_| !owner.has_line() && !owner.is_core());
         Self {
@@ -49,7 +49,7 @@ impl Site {
 }
 
 impl Site {
-    fn complaint(&self, tree: &str) -> String {
+    fn violation(&self, tree: &str) -> String {
         let Self {
             at, called, chain, ..
         } = self;
@@ -62,7 +62,7 @@ impl Site {
     }
 }
 
-/// All such calls on behalf of a function, by address.
+/// All such calls that are reachable from a function, by address.
 pub fn sites(image: &Image, graph: &Graph, names: &Names, root: u32) -> Vec<Site> {
     let mut sites = Vec::new();
     for function in &graph.reached(root) {
@@ -82,8 +82,8 @@ pub fn sites(image: &Image, graph: &Graph, names: &Names, root: u32) -> Vec<Site
     sites
 }
 
-/// No panic of this project's own code in the control path, and in libraries none but those that are allowed; the same of
-/// the task that answers the host.
+/// Checks that the control path and the task that answers the host contain no panic of this project's own code and only
+/// the allowed panics of libraries.
 ///
 /// # Errors
 /// A handler is missing.
@@ -112,7 +112,7 @@ pub fn check(proof: &Proof) -> Result<Section> {
                 } else {
                     &mut section.differences
                 };
-                list.push(site.complaint(tree));
+                list.push(site.violation(tree));
             }
         }
         section.lines.extend(
@@ -126,13 +126,13 @@ pub fn check(proof: &Proof) -> Result<Section> {
                 .flow(*function)
                 .into_iter()
                 .flat_map(|flow| &flow.undefined);
-            let complain = |at: &u32| {
+            let violation = |at: &u32| {
                 format!(
                     "{tree} can run into an undefined instruction: {}",
                     proof.names.chain(*at)
                 )
             };
-            section.violations.extend(undefined.map(complain));
+            section.violations.extend(undefined.map(violation));
         }
     }
     section.differences.extend(allowed.unused());

@@ -1,4 +1,4 @@
-//! One image and all that is checked of it.
+//! An image and its checks.
 use std::fmt;
 use std::path::Path;
 
@@ -10,35 +10,35 @@ use crate::image::Image;
 use crate::names::Names;
 use crate::{float, levels, loops, panics};
 
-/// An image, its calls and its names.
+/// An image with its call graph and its names.
 pub struct Proof {
     /// The machine code.
     pub image: Image,
-    /// Its calls.
+    /// Call graph.
     pub graph: Graph,
-    /// Its names.
+    /// Names of functions, with those inlined into others.
     pub names: Names,
     /// Name and version of the compiler.
     pub compiler: String,
-    /// What the vector table calls: the exception's name, the function.
+    /// Functions of the vector table, with the name of the exception.
     pub vectors: Vec<(String, u32)>,
 }
 
-/// What one check has found.
+/// Result of one check.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Section {
-    /// Its title.
+    /// Title.
     pub title: String,
-    /// What it shows.
+    /// Findings that are no violation.
     pub lines: Vec<String>,
-    /// What is wrong.
+    /// Violations.
     pub violations: Vec<String>,
-    /// What differs from names and counts that depend on the compiler.
+    /// Differences from recorded names and counts, which depend on the compiler.
     pub differences: Vec<String>,
 }
 
 impl Section {
-    /// Makes the differences violations, or warnings if another compiler than the recorded one has compiled the image.
+    /// Turns the differences into violations, or into warnings if the image is of another compiler than the recorded one.
     #[must_use]
     pub fn judged(mut self, compiler: &str) -> Self {
         if recorded_with(compiler, &self.differences) {
@@ -49,10 +49,10 @@ impl Section {
 }
 
 impl Proof {
-    /// Reads an ELF file and follows its code.
+    /// Reads an ELF file and analyses its code.
     ///
     /// # Errors
-    /// It cannot be read, or is no image with symbols, a vector table and line tables.
+    /// The file cannot be read, or lacks symbols, vector table or line tables.
     pub fn read(elf: &Path) -> Result<Self> {
         let bytes = std::fs::read(elf).with_context(|| format!("cannot read {}", elf.display()))?;
         let image = Image::parse(&bytes).with_context(|| elf.display().to_string())?;
@@ -67,10 +67,10 @@ impl Proof {
         })
     }
 
-    /// The function that the vector table has for an exception.
+    /// The handler of an exception.
     ///
     /// # Errors
-    /// It has none.
+    /// The vector table has none.
     pub fn root(&self, exception: &str) -> Result<u32> {
         let found = self.vectors.iter().find(|(name, _)| name == exception);
         let (_, function) =
@@ -94,7 +94,7 @@ impl Proof {
         .into())
     }
 
-    /// What could not be followed.
+    /// Code that could not be analysed.
     fn decoded(&self) -> Section {
         let flows = || {
             self.image

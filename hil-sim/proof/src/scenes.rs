@@ -1,4 +1,4 @@
-//! Scenes whose ticks have something of everything: materials, forces, laws, faults, talk.
+//! Scenes that cover materials, forces, control laws, faults and lines of the host.
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -6,10 +6,10 @@ use anyhow::{Context, Result};
 use contact_model::material::MATERIALS;
 use thermal_sim::scene::{FaultKind, Scene};
 
-/// When each fault begins, s: in contact.
+/// Time at which each fault begins, during contact, s.
 const FAULT_S: f64 = 0.5;
 
-/// Each material, with landings, presses and a lift; the laws in turn; questions, and lines that are no good.
+/// One scene for each material, with changes of force and law, queries, and lines that are refused.
 ///
 /// # Errors
 /// A scene is refused.
@@ -50,7 +50,7 @@ pub fn touched() -> Result<Vec<(String, Scene)>> {
     MATERIALS.iter().map(scene).collect()
 }
 
-/// Each fault, in contact; of what it takes the middle.
+/// One scene for each fault, during contact, with a value at three quarters of its range.
 ///
 /// # Errors
 /// A scene is refused.

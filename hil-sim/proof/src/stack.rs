@@ -1,30 +1,30 @@
-//! The most stack that a function can need, with all that it calls.
+//! Upper bound of the stack of a function, with all functions that it calls.
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::Proof;
 use crate::flow::{Call, Target};
 
-/// Bytes that the processor puts on the stack when an exception is entered: 26 words with the floating-point registers,
-/// and one to align it (DDI 0403E, section B1.5.7).
+/// Bytes that the processor pushes on exception entry: 26 words with the floating-point registers, and one for alignment
+/// (DDI 0403E, section B1.5.7).
 pub const EXCEPTION: u32 = 26 * 4 + 4;
 
-/// The function that a panic ends in.
+/// The function that every panic calls last.
 const PANIC: &str = "rust_begin_unwind";
 
-/// What bounds recursion: formatting calls the formatting of its parts, and a panic formats.
+/// Limits of the recursion that formatting causes: it calls the formatting of its parts, and a panic formats its message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Budget {
-    /// Calls through registers, one within the other: formatting of a part of what is formatted.
+    /// Nested indirect calls, each of which formats a part of a value.
     nested: u8,
-    /// Panics, one within the other.
+    /// Nested panics.
     panics: u8,
 }
 
 impl Budget {
-    /// An answer, its reply, a setting in it, a number, the text's place: five. A panic within, its message, an error in
-    /// it, a field of that, its number, the text's place: six. And one to spare.
+    /// Five for an answer: the line, its reply, a setting, a number, the output buffer. Six for a panic while formatting
+    /// it: the panic, its message, an error, a field, a number, the output buffer. One in reserve.
     const NESTED: u8 = 12;
-    /// No panic is reported: it goes no deeper than the function that all panics end in.
+    /// No panic is reported; the analysis ends at the function that every panic calls last.
     pub const SILENT: Self = Self {
         nested: Self::NESTED,
         panics: 0,
@@ -36,38 +36,38 @@ impl Budget {
     };
 }
 
-/// What a call through a register can reach.
+/// Possible targets of an indirect call.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Reach {
-    /// Where text goes to.
+    /// Functions that write text.
     Text,
-    /// Whatever has its address taken.
+    /// All functions whose address is taken.
     Anything,
 }
 
-/// The deepest way from a function.
+/// The deepest path of calls from a function.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Deepest {
-    /// Bytes.
+    /// Stack, bytes.
     pub bytes: u32,
-    /// The functions on the way, and the stack that each has in use where it calls the next.
-    pub way: Vec<(u32, u32)>,
+    /// Functions of the path, with the stack that each uses at the call of the next one, bytes.
+    pub path: Vec<(u32, u32)>,
 }
 
-/// Adds up stacks along calls.
+/// Sums of the stacks along the calls.
 pub struct Stacks<'a> {
     proof: &'a Proof,
     targets: BTreeMap<Reach, Vec<u32>>,
     known: BTreeMap<(u32, Budget), Deepest>,
     open: BTreeSet<(u32, Budget)>,
-    /// Functions that call themselves within one level of formatting and panic.
+    /// Functions that call themselves without another level of formatting or panic.
     pub recursive: BTreeSet<u32>,
-    /// What the functions of this name call is left out.
+    /// Calls of functions with this name are left out.
     shallow: Option<&'static str>,
 }
 
 impl<'a> Stacks<'a> {
-    /// Nothing is added up yet.
+    /// An analysis without results.
     pub fn new(proof: &'a Proof) -> Self {
         let through_register = Call {
             target: Target::Register,
@@ -89,7 +89,7 @@ impl<'a> Stacks<'a> {
         }
     }
 
-    /// The same without what the functions of a name call.
+    /// The same without the calls of functions whose name ends with `name`.
     pub fn without_calls_of(proof: &'a Proof, name: &'static str) -> Self {
         Self {
             shallow: Some(name),
@@ -97,14 +97,14 @@ impl<'a> Stacks<'a> {
         }
     }
 
-    /// The deepest way from a function.
+    /// The deepest path of calls from a function.
     pub fn deepest(&mut self, function: u32, mut budget: Budget) -> Deepest {
         let proof = self.proof;
         let flow = proof.graph.flow(function);
         let own = flow.map_or(0, |flow| flow.stack);
         let mut deepest = Deepest {
             bytes: own,
-            way: vec![(function, own)],
+            path: vec![(function, own)],
         };
         if proof.image.name(function).ends_with(PANIC) {
             match budget.panics.checked_sub(1) {
@@ -131,8 +131,8 @@ impl<'a> Stacks<'a> {
                 && call.stack + inner.bytes > deepest.bytes
             {
                 deepest.bytes = call.stack + inner.bytes;
-                deepest.way = vec![(function, call.stack)];
-                deepest.way.extend(inner.way);
+                deepest.path = vec![(function, call.stack)];
+                deepest.path.extend(inner.path);
             }
         }
         self.open.remove(&key);
@@ -148,15 +148,15 @@ impl<'a> Stacks<'a> {
                 .get(&self.reach(at))
                 .cloned()
                 .unwrap_or_default();
-            let ways = targets
+            let paths = targets
                 .into_iter()
                 .map(|target| self.deepest(target, budget));
-            return ways.max_by_key(|way| way.bytes);
+            return paths.max_by_key(|path| path.bytes);
         };
         Some(self.deepest(target, budget))
     }
 
-    /// Formatters hand text to its place; only what calls a formatter by its address can reach more.
+    /// Formatters call the output by its address, and it writes text; other indirect calls may reach any function.
     fn reach(&self, at: u32) -> Reach {
         let frames = self.proof.names.frames(at);
         let text = [
@@ -167,7 +167,7 @@ impl<'a> Stacks<'a> {
         match frames.first() {
             Some(frame) if !frame.has_line() => Reach::Anything,
             Some(frame) if text.iter().any(|kind| frame.function.starts_with(kind)) => Reach::Text,
-            // Between the parts it formats, for which it has a name of its own.
+            // The text between formatted parts; the parts themselves are formatted in inlined functions with other names.
             Some(frame) if frame.function == "core::fmt::write" => Reach::Text,
             _ => Reach::Anything,
         }

@@ -1,34 +1,34 @@
-//! What an instruction of the Armv7E-M does to the flow of control, to the stack pointer and to floating-point registers.
+//! Effects of Armv7E-M instructions on control flow, stack pointer and floating-point registers.
 //!
 //! Encodings are those of the Armv7-M Architecture Reference Manual (DDI 0403E), chapter A5 and section A7.7. An
-//! instruction that does none of this is [`Effect::Next`]; what moves the stack pointer by an amount that the
-//! instruction does not tell is [`Effect::StackUnknown`].
+//! instruction without such an effect is [`Effect::Next`]; one that changes the stack pointer by an amount that it does
+//! not contain is [`Effect::StackUnknown`].
 
 /// An instruction.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Instruction {
-    /// In bytes, 2 or 4.
+    /// Length, bytes: 2 or 4.
     pub length: u32,
-    /// What it does.
+    /// Effect.
     pub effect: Effect,
-    /// It calculates with floating-point numbers; loads, stores and moves of such registers do not.
+    /// Whether it is floating-point arithmetic; loads, stores and moves are not.
     pub float: bool,
-    /// It stores if no exception has come since the load that goes with it.
+    /// Whether it is an exclusive store, which fails if an exception has come since its load.
     pub exclusive: bool,
 }
 
-/// What an instruction does to the flow of control and the stack pointer.
+/// Effect of an instruction on control flow and stack pointer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
-    /// Neither.
+    /// None.
     Next,
-    /// The stack grows by so many bytes; shrinks if negative.
+    /// The stack grows by this number of bytes; it shrinks if negative.
     Stack(i32),
-    /// The stack pointer takes a value that the instruction does not tell.
+    /// The stack pointer takes an unknown value.
     StackUnknown,
     /// Jump.
     Jump(u32),
-    /// Jump on a condition.
+    /// Conditional jump.
     Branch(u32),
     /// Call.
     Call(u32),
@@ -41,16 +41,16 @@ pub enum Effect {
         /// Bytes of an entry, 1 or 2.
         entry: u32,
     },
-    /// Return, which takes so many bytes off the stack.
+    /// Return, which takes this number of bytes off the stack.
     Return(i32),
     /// The next instructions depend on conditions: for each, in order, whether it runs if the first does.
     IfThen {
-        /// One bit an instruction, the first in bit 0.
+        /// One bit for each instruction, the first in bit 0.
         same: u8,
-        /// How many instructions, 1 to 4.
+        /// Number of instructions, 1 to 4.
         count: u8,
     },
-    /// Undefined on purpose: a fault.
+    /// Permanently undefined: causes a fault.
     Undefined,
 }
 
@@ -151,7 +151,7 @@ fn wide_effect(address: u32, first: u32, second: u32) -> Effect {
         0xe8 | 0xe9 if first & 0x40 != 0 => double_or_table(first, second),
         0xe8 | 0xe9 => multiple(first, second),
         0xf8 | 0xf9 => single(first, second),
-        // Floating-point registers, several: imm8 words, by the stack pointer with write-back.
+        // Several floating-point registers: imm8 words, addressed by the stack pointer with write-back.
         0xec | 0xed if base == SP && first & 0x20 != 0 => match first & 0x1b0 {
             0x120 => Effect::Stack(4 * (second & 0xff) as i32),
             0x0b0 => Effect::Stack(-(4 * (second & 0xff) as i32)),
@@ -173,7 +173,7 @@ fn branch(address: u32, first: u32, second: u32) -> Effect {
         0x5000 => Effect::Call(far()),
         0x1000 => Effect::Jump(far()),
         0x4000 => Effect::Undefined,
-        // The condition "always" is the place of barriers, hints and special registers.
+        // The encodings of the condition "always" are barriers, hints and special registers.
         _ if first & 0x380 == 0x380 => match (first & 0x7f0, second & 0x7000) {
             (0x7f0, 0x2000) => Effect::Undefined,
             _ => Effect::Next,
@@ -185,7 +185,7 @@ fn branch(address: u32, first: u32, second: u32) -> Effect {
     }
 }
 
-/// Section A5.3.2: a byte, repeated or turned to its place.
+/// Section A5.3.2: a byte, repeated or rotated.
 fn expanded(first: u32, second: u32) -> i32 {
     let bits = (first >> 10 & 1) << 11 | (second >> 12 & 7) << 8 | second & 0xff;
     let byte = bits & 0xff;
@@ -249,7 +249,7 @@ fn single(first: u32, second: u32) -> Effect {
     }
 }
 
-/// Section A6.4: data processing of coprocessors 10 and 11, but for moves between their registers and of constants.
+/// Section A6.4: data processing of coprocessors 10 and 11, except moves between their registers and of constants.
 fn calculates(first: u32, second: u32) -> bool {
     if first & 0xef00 != 0xee00 || second & 0x0e00 != 0x0a00 || second & 0x10 != 0 {
         return false;

@@ -1,4 +1,4 @@
-//! What is claimed of the release images, and that the checks look at what they seem to.
+//! Properties of the release images, and tests that the checks find what they are meant to find.
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -56,8 +56,8 @@ fn ticks_and_stack_of_five_fingers_stay_within_their_bounds() {
     assert_clean(&[measure::check(&proof, five(), 5).expect("the scenes run")]);
 }
 
-/// Panics, calls and floating point that the image is known to have are found, so that an empty list of violations means
-/// something.
+/// Panics, calls and floating point that the image is known to contain are found, so that an empty list of violations is
+/// evidence.
 #[test]
 fn the_checks_find_what_the_image_is_known_to_have() {
     let proof = proof(one());
@@ -67,22 +67,25 @@ fn the_checks_find_what_the_image_is_known_to_have() {
             .iter()
             .any(|start| proof.image.name(*start).contains(part))
     };
-    // The host's task calculates in `f64`, formats through registers, and fits; the tick has the experiment out of line.
+    // The host's task calculates in `f64`, formats text and fits calibrations; the tick calls the identification.
     let known = [
         (HOST, "__aeabi_dmul"),
         (HOST, "libm::"),
         (HOST, "core::fmt::"),
         (HOST, "heapless::"),
-        (HOST, "commission::fit::fit"),
-        (TICK, "Identification::update"),
+        (HOST, "calibration_fit::fit"),
+        (TICK, "Identification::choose_current"),
     ];
     let inlined: Vec<String> = known
         .iter()
         .filter(|(tree, part)| !calls(tree, part))
         .map(|(tree, part)| format!("{tree} calls no {part}"))
         .collect();
-    assert!(inlined.is_empty() || !recorded_with(&proof.compiler, &inlined));
-    // Panics are known by not returning, not by their names: those with the names are among them.
+    assert!(
+        inlined.is_empty() || !recorded_with(&proof.compiler, &inlined),
+        "{inlined:?}"
+    );
+    // Panics are recognised as functions that never return; the functions named as panics are among them.
     let panicking =
         |name: &str| name.starts_with("core::panicking::") || name.ends_with("unwrap_failed");
     for function in proof
@@ -92,7 +95,7 @@ fn the_checks_find_what_the_image_is_known_to_have() {
     {
         assert!(!proof.graph.returns(function.start), "{}", function.name);
     }
-    // Each handler can be entered, returns, and has a stack of its own.
+    // Each handler returns and uses stack.
     for tree in CONTROL {
         let root = proof.root(tree).expect("a handler");
         assert!(proof.graph.returns(root), "{tree}");
@@ -101,7 +104,7 @@ fn the_checks_find_what_the_image_is_known_to_have() {
             "{tree}"
         );
     }
-    // The start-up unwraps: it is no part of the control path.
+    // The start-up may panic, as it is no part of the control path.
     let main = proof
         .image
         .functions()

@@ -84,8 +84,8 @@ fn removals() -> impl TypedValueParser<Value = Removed> {
 }
 
 fn laws() -> impl TypedValueParser<Value = Law> {
-    PossibleValuesParser::new(Law::WORDS.map(|(word, _)| word)).map(|word| {
-        let known = Law::WORDS.iter().find(|(known, _)| *known == word);
+    PossibleValuesParser::new(Law::PROTOCOL_WORDS.map(|(word, _)| word)).map(|word| {
+        let known = Law::PROTOCOL_WORDS.iter().find(|(known, _)| *known == word);
         known.map_or(Law::default(), |(_, law)| *law)
     })
 }
@@ -111,7 +111,7 @@ struct Report<'a> {
 /// Runs, prints, writes.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let laws = match arguments.law.as_slice() {
-        [] => Law::WORDS.map(|(_, law)| law).to_vec(),
+        [] => Law::PROTOCOL_WORDS.map(|(_, law)| law).to_vec(),
         chosen => chosen.to_vec(),
     };
     let cases = cases(arguments)?;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use stm32_emulator::{Firmware, Image, ImageHand, build};
+use stm32_emulator::{Firmware, FiveFingerBoard, OneFingerBoard, build};
 use thermal_sim::World;
 use thermal_sim::five_fingers::FINGERS;
 
@@ -22,11 +22,14 @@ pub fn firmware(elf: Option<&Path>, fingers: usize) -> Result<(Firmware, PathBuf
 }
 
 /// The image for one finger in a world, powered up.
-pub fn engine(elf: Option<&Path>, world: World) -> Result<Image, Failure> {
-    Image::new(&firmware(elf, 1)?.0, world).map_err(Failure::run)
+pub fn engine(elf: Option<&Path>, world: World) -> Result<OneFingerBoard, Failure> {
+    OneFingerBoard::new(&firmware(elf, 1)?.0, world).map_err(Failure::run)
 }
 
 /// The image for five fingers in their worlds, powered up.
-pub fn five_fingers(elf: Option<&Path>, worlds: [World; FINGERS]) -> Result<ImageHand, Failure> {
-    ImageHand::new(&firmware(elf, FINGERS)?.0, worlds).map_err(Failure::run)
+pub fn five_fingers(
+    elf: Option<&Path>,
+    worlds: [World; FINGERS],
+) -> Result<FiveFingerBoard, Failure> {
+    FiveFingerBoard::new(&firmware(elf, FINGERS)?.0, worlds).map_err(Failure::run)
 }

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use addr2line::Loader;
 use anyhow::{Context, anyhow};
 use clap::Args;
-use stm32_emulator::{Image, Ran, cold_fetch_stalls};
+use stm32_emulator::{ExecutedBlock, OneFingerBoard, cold_fetch_stalls};
 use thermal_sim::run::run as run_scene;
 
 use super::{Failure, engine, image, output};
@@ -36,7 +36,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (firmware, path) = image::firmware(arguments.elf.as_deref(), 1)?;
     let symbols = Loader::new(&path)
         .map_err(|error| Failure::input(anyhow!("{}: {error}", path.display())))?;
-    let mut engine = Image::new(&firmware, world).map_err(Failure::run)?;
+    let mut engine = OneFingerBoard::new(&firmware, world).map_err(Failure::run)?;
     engine.watch_tick();
     run_scene(&scene, &mut engine, |_| ()).map_err(Failure::run)?;
     let machine = engine.machine();
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .map_err(Failure::run)?;
     let mut shares = BTreeMap::<String, FunctionCost>::new();
     let mut names = HashMap::new();
-    let mut charge = |block: Ran, add: &dyn Fn(&mut FunctionCost, u64)| {
+    let mut charge = |block: ExecutedBlock, add: &dyn Fn(&mut FunctionCost, u64)| {
         for (address, cycles) in machine.instructions(block) {
             let name = names
                 .entry(address)

@@ -17,23 +17,26 @@ pub(super) struct Sample {
     pub material: Material,
 }
 
-/// The material that [`contact_model`] calls `key`.
-pub(super) fn sample(key: &'static str) -> Sample {
-    let material = *find(key).expect("a name of contact_model::material::MATERIALS");
-    let name = match key {
-        "stainless-steel" => "stainless steel",
-        "g10" => "G10",
-        "abs" => "ABS",
-        "baf2" => "BaF2",
-        "zns" => "ZnS",
-        other => other,
+/// A material by the name that the thesis gives it.
+pub(super) fn material(name: &str) -> Material {
+    let key = name.to_lowercase().replace(' ', "-");
+    let found = match key.as_str() {
+        "skin" => Some(&SKIN),
+        key => find(key),
     };
-    Sample { name, material }
+    *found.unwrap_or_else(|| panic!("{name:?} is no material of the model"))
+}
+
+pub(super) fn sample(name: &'static str) -> Sample {
+    Sample {
+        name,
+        material: material(name),
+    }
 }
 
 /// The five materials of chapters 4 and 6, by falling contact coefficient.
 pub(super) fn five() -> [Sample; 5] {
-    ["copper", "stainless-steel", "granite", "abs", "foam"].map(sample)
+    ["copper", "stainless steel", "granite", "ABS", "foam"].map(sample)
 }
 
 /// The contact coefficient as Tables 3-1, 3-4 and 4-1 print it: cut to a whole number.
@@ -56,9 +59,9 @@ pub struct Case {
 
 impl Case {
     /// Section 6.3: 34 and 24 °C, 2 N on 135 mm².
-    pub(super) fn simulation(object: &Sample) -> Self {
+    pub(super) fn simulation(object: Material) -> Self {
         Self {
-            object: object.material,
+            object,
             skin_c: 34.0,
             object_c: 24.0,
             pressure_pa: SIMULATION_PRESSURE_PA,
@@ -66,9 +69,9 @@ impl Case {
     }
 
     /// Section 6.4: 34 and 26 °C at one of the measured pressures.
-    pub(super) fn validation(object: &Sample, pressure_pa: f64) -> Self {
+    pub(super) fn validation(object: Material, pressure_pa: f64) -> Self {
         Self {
-            object: object.material,
+            object,
             skin_c: 34.0,
             object_c: 26.0,
             pressure_pa,

@@ -35,7 +35,7 @@ pub enum Remark {
 }
 
 /// What would make statement and computation agree.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Correction {
     /// The thesis should say this.
     Reads(Stated),
@@ -59,41 +59,6 @@ pub enum Verdict {
 }
 
 impl Row {
-    /// A row of which nothing further is known.
-    pub(super) fn new(
-        place: &'static str,
-        quantity: impl Into<String>,
-        unit: &'static str,
-        stated: Stated,
-        computed: f64,
-    ) -> Self {
-        Self {
-            place,
-            quantity: quantity.into(),
-            unit,
-            stated,
-            computed,
-            remark: None,
-        }
-    }
-
-    pub(super) fn note(self, text: impl Into<String>) -> Self {
-        self.remark(Remark::Note(text.into()))
-    }
-
-    pub(super) fn damaged(self, why: impl Into<String>, correction: Correction) -> Self {
-        self.remark(Remark::Damaged(why.into(), correction))
-    }
-
-    pub(super) fn wrong(self, why: impl Into<String>, correction: Correction) -> Self {
-        self.remark(Remark::Wrong(why.into(), correction))
-    }
-
-    pub(super) fn remark(mut self, remark: Remark) -> Self {
-        self.remark = Some(remark);
-        self
-    }
-
     /// Lays stated and computed beside each other. A remark changes the verdict only if the numbers differ and
     /// what it says makes them agree.
     #[must_use]

@@ -2,11 +2,14 @@
 
 use std::fmt;
 
+use serde::Deserialize;
+
 /// Part of a unit of the last printed digit by which binary fractions may miss an exact half.
 const HALF_SLACK: f64 = 1e-9;
 
 /// A statement of the thesis about one number.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(try_from = "String")]
 pub enum Stated {
     /// A number with its digits after the point; negative if trailing zeros before the point are not digits
     /// (-1: tens).
@@ -35,12 +38,7 @@ pub enum Stated {
     /// More than this.
     Above(f64),
     /// Characters that are no number.
-    Garbled(&'static str),
-}
-
-/// A printed number with that many digits after the point.
-pub(super) const fn printed(value: f64, decimals: i32) -> Stated {
-    Stated::Printed { value, decimals }
+    Garbled(String),
 }
 
 /// `value` without what follows that many digits after the point, as the thesis's tables of contact
@@ -103,6 +101,41 @@ impl Stated {
     }
 }
 
+impl TryFrom<String> for Stated {
+    type Error = String;
+
+    /// Reads what is displayed, but for zeros that are not digits: of "24e1" the last digit stands for tens.
+    fn try_from(text: String) -> Result<Self, String> {
+        let wrong = || format!("{text:?} is no number");
+        let number = |text: &str| text.trim().parse().map_err(|_| wrong());
+        let quoted = text
+            .strip_prefix('"')
+            .and_then(|text| text.strip_suffix('"'));
+        Ok(if let Some(text) = quoted {
+            Self::Garbled(text.into())
+        } else if let Some(limit) = text.strip_prefix('<') {
+            Self::Below(number(limit)?)
+        } else if let Some(limit) = text.strip_prefix('>') {
+            Self::Above(number(limit)?)
+        } else if let Some((low, high)) = text.split_once(" to ") {
+            let (low, high) = (number(low)?, number(high)?);
+            Self::Between { low, high }
+        } else if let Some((value, within)) = text.split_once('±') {
+            let (value, within) = (number(value)?, number(within)?);
+            Self::About { value, within }
+        } else {
+            let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+            let power: i32 = power.parse().map_err(|_| wrong())?;
+            let fraction = digits.split_once('.').map_or("", |(_, fraction)| fraction);
+            let value = number(&text)?;
+            Self::Printed {
+                value,
+                decimals: fraction.len() as i32 - power,
+            }
+        })
+    }
+}
+
 impl fmt::Display for Stated {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
@@ -113,7 +146,7 @@ impl fmt::Display for Stated {
             Self::Between { low, high } => write!(f, "{low} to {high}"),
             Self::Below(limit) => write!(f, "< {limit}"),
             Self::Above(limit) => write!(f, "> {limit}"),
-            Self::Garbled(text) => write!(f, "\"{text}\""),
+            Self::Garbled(ref text) => write!(f, "\"{text}\""),
         }
     }
 }

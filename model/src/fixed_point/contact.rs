@@ -112,7 +112,7 @@ impl Response {
 
 /// The product of two fractions; error at most half of the resolution.
 #[inline]
-pub(super) fn fraction_product(a: Fraction, b: Fraction) -> Fraction {
+fn fraction_product(a: Fraction, b: Fraction) -> Fraction {
     let bits = u64::from(a.to_bits()) * u64::from(b.to_bits());
     Fraction::from_bits(((bits + (1 << 31)) >> 32) as u32)
 }
@@ -151,7 +151,7 @@ pub(super) fn interface(weight: Fraction, skin_c: Celsius, object_c: Celsius) ->
 
 /// Heat flux, W/m², from a temperature difference (K, 54 binary places) and a conductance; relative error below
 /// 2^-30, rounded towards zero; saturates.
-pub(super) fn flux(difference: i64, conductance_w_m2k: MantissaExponent) -> Flux {
+fn flux(difference: i64, conductance_w_m2k: MantissaExponent) -> Flux {
     let magnitude = difference.unsigned_abs();
     let zeros = magnitude.leading_zeros();
     let leading = (magnitude.checked_shl(zeros).unwrap_or(0) >> 32) as u32;

@@ -1,8 +1,6 @@
 //! Parameters of the contact between a finger and a material, reproduced by a display surface.
 
-use super::properties::{
-    ContactPairError, check, moderate, of_display, of_object, of_skin, rate, weight,
-};
+use super::properties::{ContactPairError, check, moderate, rate};
 use super::{Celsius, Contact, Fraction, Log2, MantissaExponent, Ratio, contact, logarithm};
 use crate::material::{Material, Surface};
 use crate::reference;
@@ -33,10 +31,7 @@ impl ContactPair {
         display: &Surface,
         tick_s: f64,
     ) -> Result<Self, ContactPairError> {
-        check(of_skin(skin))?;
-        check(of_object(object))?;
-        check(of_display(display))?;
-        check([("tick (s)", tick_s)])?;
+        check(skin, object, display, tick_s)?;
         let (es, eo) = (skin.effusivity(), object.effusivity());
         let conductance = moderate(reference::mean_conductance::<f64>(
             &skin.surface,
@@ -49,7 +44,7 @@ impl ContactPair {
             rate_per_tick: rate(moderate(b * b)? * tick_s)?,
             root_rate_per_tick: rate(b * libm::sqrt(tick_s))?,
             conductance_w_m2k: rate(conductance)?,
-            weight: Fraction::saturating_from_num(weight(es, eo)),
+            weight: Fraction::saturating_from_num(1.0 / (1.0 + es / eo)),
         })
     }
 

@@ -2,8 +2,8 @@
 
 use super::logarithm::LogRow;
 
-const fn row(constant: u32, rest: [i32; 4]) -> LogRow {
-    LogRow { constant, rest }
+const fn row(constant: u32, slopes: [i32; 4]) -> LogRow {
+    LogRow { constant, slopes }
 }
 
 /// `log2(1 + f)` on 32 equal intervals of `f` in `[0, 1)`.

@@ -1,18 +1,36 @@
 //! Binary logarithm and power of 2, for pressures and times.
 
 use super::log_table::{EXP2, LOG2};
-use super::piecewise::Row;
 
 /// A logarithm to base 2 with 32 fraction bits.
 pub type Log2 = fixed::types::I32F32;
 
 /// log2 of the number of rows in each table.
 const ROW_BITS: u32 = 5;
-/// Binary places of the tables' coefficients, but for the constant ones.
-const SLOPE_BITS: u32 = 35;
+/// Binary places of the coefficients beyond those of the constant, so that their rounding errors matter less.
+const SPARE_BITS: u32 = 3;
 
-/// One row of either table.
-pub(super) type LogRow = Row<4, SLOPE_BITS>;
+/// Polynomial for one interval of a function with values in `[0, 1)`: the constant in units of 2^-32, the coefficients
+/// of `t` to `t⁴` in units of 2^-35.
+pub(super) struct LogRow {
+    pub(super) constant: u32,
+    pub(super) slopes: [i32; 4],
+}
+
+impl LogRow {
+    /// Value at `t`, in units of 2^-32 of the interval; result in units of 2^-32; saturates.
+    #[inline]
+    fn at(&self, t: u32) -> u32 {
+        let mut sum = 0i32;
+        for &c in self.slopes.iter().rev() {
+            sum = sum.wrapping_add(c);
+            sum = ((i64::from(sum) * i64::from(t)) >> 32) as i32;
+        }
+        // Half a unit rounds the result; 2 centres the error of the four products, which are rounded down.
+        let variable = sum.wrapping_add((1 << SPARE_BITS >> 1) + 2) >> SPARE_BITS;
+        self.constant.saturating_add_signed(variable)
+    }
+}
 
 /// `log2(x)` of an integer; error below 1.4 * 2^-32. Zero gives -1, the logarithm of one half.
 #[must_use]

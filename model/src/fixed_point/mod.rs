@@ -6,25 +6,20 @@
 mod chord_interpolation;
 mod contact;
 mod contact_pair;
-mod erf;
-mod erf_table;
 mod half_space;
 pub mod kernel;
 mod kernel_table;
 mod log_table;
 mod logarithm;
 mod mantissa_exponent;
-mod piecewise;
 mod pressure;
 mod product;
 mod properties;
-mod semi_infinite;
 mod ticks;
 
 pub use chord_interpolation::ChordInterpolation;
 pub use contact::{Contact, Response};
 pub use contact_pair::ContactPair;
-pub use erf::{ErfArgument, erf};
 pub use half_space::{ContactConductance, HalfSpace, MATCH_HORIZON_TICKS};
 pub use kernel::erfcx;
 pub use logarithm::{Log2, exp2, log2};
@@ -32,7 +27,6 @@ pub use mantissa_exponent::MantissaExponent;
 pub use pressure::{Area, Force, contact_area, log2_relative_pressure};
 pub use product::{Word, product, saturated, saturating_product, to_fixed};
 pub use properties::ContactPairError;
-pub use semi_infinite::{Depth, FourierNumber, SemiInfinite, fourier_number};
 pub use ticks::Ticks;
 
 use fixed::types::{I10F22, I40F24, U0F32, U4F28};

@@ -17,8 +17,7 @@ pub enum ContactPairError {
     },
     /// `R_display / R_object` is 16 or more: the object is too smooth or conducts too well.
     Ratio(f64),
-    /// `b²` (1/s), the conductance (W/(m² K)) at `P = H`, or the skin's effusivity or diffusivity is outside 2^-100
-    /// to 2^100.
+    /// `b²` (1/s) or the conductance (W/(m² K)) at `P = H` is outside 2^-100 to 2^100.
     OutOfRange(f64),
 }
 
@@ -39,45 +38,35 @@ impl fmt::Display for ContactPairError {
 
 impl core::error::Error for ContactPairError {}
 
-/// Properties as name with unit, and value.
-type Named<const N: usize> = [(&'static str, f64); N];
-
-pub(super) fn check<const N: usize>(properties: Named<N>) -> Result<(), ContactPairError> {
-    properties
-        .into_iter()
-        // `value <= 0.0` would accept NaN.
-        .find(|(_, value)| !(*value > 0.0 && value.is_finite()))
-        .map_or(Ok(()), |(name, value)| {
-            Err(ContactPairError::Property { name, value })
-        })
-}
-
-pub(super) fn of_skin(skin: &Material) -> Named<5> {
+/// Refuses properties that are not positive and finite.
+pub(super) fn check(
+    skin: &Material,
+    object: &Material,
+    display: &Surface,
+    tick_s: f64,
+) -> Result<(), ContactPairError> {
     [
         ("skin conductivity (W/mK)", skin.surface.conductivity_w_mk),
         ("skin density (kg/m3)", skin.density_kg_m3),
         ("skin specific heat (J/kgK)", skin.specific_heat_j_kgk),
         ("skin roughness (um)", skin.surface.roughness_um),
         ("skin slope (rad)", skin.surface.slope_rad),
-    ]
-}
-
-pub(super) fn of_object(object: &Material) -> Named<5> {
-    [
         ("conductivity (W/mK)", object.surface.conductivity_w_mk),
         ("density (kg/m3)", object.density_kg_m3),
         ("specific heat (J/kgK)", object.specific_heat_j_kgk),
         ("roughness (um)", object.surface.roughness_um),
         ("slope (rad)", object.surface.slope_rad),
-    ]
-}
-
-pub(super) fn of_display(display: &Surface) -> Named<3> {
-    [
         ("display conductivity (W/mK)", display.conductivity_w_mk),
         ("display roughness (um)", display.roughness_um),
         ("display slope (rad)", display.slope_rad),
+        ("tick (s)", tick_s),
     ]
+    .into_iter()
+    // `value <= 0.0` would accept NaN.
+    .find(|(_, value)| !(*value > 0.0 && value.is_finite()))
+    .map_or(Ok(()), |(name, value)| {
+        Err(ContactPairError::Property { name, value })
+    })
 }
 
 /// Refuses values outside 2^-100 to 2^100, so that their products stay within `f64` and [`MantissaExponent`].
@@ -93,9 +82,4 @@ pub(super) fn moderate(value: f64) -> Result<f64, ContactPairError> {
 pub(super) fn rate(value: f64) -> Result<MantissaExponent, ContactPairError> {
     MantissaExponent::from_f64(value.clamp(f64::MIN_POSITIVE, f64::MAX))
         .ok_or(ContactPairError::OutOfRange(value))
-}
-
-/// `e_object / (e_object + e_skin)`, for a positive, finite effusivity of the skin.
-pub(super) fn weight(e_skin: f64, e_object: f64) -> f64 {
-    1.0 / (1.0 + e_skin / e_object)
 }

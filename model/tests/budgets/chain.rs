@@ -29,7 +29,7 @@ pub fn log2_pressure() -> f64 {
     }))
 }
 
-fn contact_pair(object: &Material, tick_s: f64) -> ContactPair {
+pub(super) fn contact_pair(object: &Material, tick_s: f64) -> ContactPair {
     ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, tick_s).expect("ordinary material")
 }
 

@@ -1,10 +1,8 @@
 //! Errors of the elementary functions.
 
 use contact_model::fixed_point::kernel::OCTAVES;
-use contact_model::fixed_point::{
-    ErfArgument, Log2, MantissaExponent, Ticks, erf, erfcx, exp2, log2,
-};
-use contact_model::reference::{self, Real};
+use contact_model::fixed_point::{Log2, MantissaExponent, Ticks, erfcx, exp2, log2};
+use contact_model::reference;
 
 use super::sweep::{UNIT, log_between, points, relative, worst};
 use crate::golden::{number, rows};
@@ -80,14 +78,6 @@ pub fn log2_error() -> f64 {
 
 pub fn exp2_error() -> f64 {
     worst(spread().map(|f| f64::from(exp2(f)) - ((f64::from(f) * UNIT).exp2() - 1.0) / UNIT))
-}
-
-pub fn erf_error() -> f64 {
-    let near_the_end = (0..2000).map(|i| (9 << 28) - 1000 + i);
-    worst(spread().chain(near_the_end).map(|bits| {
-        let x = ErfArgument::from_bits(bits);
-        f64::from(erf(x).to_bits()) - Real::erf(x.to_num::<f64>()) / UNIT
-    }))
 }
 
 /// 32-bit numbers, evenly distributed, and both ends of each octave.

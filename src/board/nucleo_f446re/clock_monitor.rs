@@ -15,7 +15,7 @@ use stm32f4xx_hal::pac::RCC;
 use thermal_display::device::TICK_HZ;
 use thermal_display::device::safety::TickRateMonitor;
 
-use super::sampler::SampleError;
+use super::sample_error::SampleError;
 use super::wiring::FINGERS;
 
 /// Reload value of SysTick: the largest that its 24 bits hold.

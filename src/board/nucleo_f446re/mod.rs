@@ -31,6 +31,7 @@ mod log;
 #[cfg(not(feature = "five-fingers"))]
 mod one_finger;
 mod reset;
+mod sample_error;
 mod sampler;
 mod saved_dose;
 mod serial;
@@ -56,7 +57,8 @@ pub use fault_record::FaultRecord;
 use five_fingers as wiring;
 #[cfg(not(feature = "five-fingers"))]
 use one_finger as wiring;
-pub use sampler::{SampleError, SampleTrigger, Sampler};
+pub use sample_error::SampleError;
+pub use sampler::{SampleTrigger, Sampler};
 pub use saved_dose::save_dose;
 pub use serial::{Completed, Outbox, Receiver, Transmitter};
 pub use settings_storage::restart_to_save;

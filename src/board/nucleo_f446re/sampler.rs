@@ -17,12 +17,12 @@ use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, DMA2, TIM2, tim2};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::timer::{CounterHz, Timer};
-use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Scan};
 use thermal_display::device::{Finger, TICK_HZ};
 
 use super::clock_monitor::ClockMonitor;
 use super::log;
+use super::sample_error::SampleError;
 use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME};
 
 /// Scans of one block: those that are dropped while the multiplexers settle, and those of a
@@ -47,36 +47,6 @@ pub struct SensorPins {
     pub room: PC1<Analog>,
     pub force: PC0<Analog>,
     pub current: PC2<Analog>,
-}
-
-/// Why there is no valid block of samples.
-#[derive(Clone, Copy, Debug, defmt::Format)]
-pub enum SampleError {
-    /// The DMA stream has reported an error.
-    Bus,
-    /// A block was overwritten before the tick took it: the last tick took longer than its period.
-    Late,
-    /// The multiplexers were switched after the first scan of the next block.
-    LateSwitch,
-    /// A block was complete too early or too late: TIM2 or SysTick runs at a wrong rate.
-    TickRate,
-    /// The clock settings have changed since the start.
-    Clocks,
-    /// The converter has lost a conversion, because the stream did not fetch the one before in
-    /// time.
-    Overrun,
-}
-
-impl SampleError {
-    /// The fault that this error trips.
-    pub const fn fault(self) -> Fault {
-        match self {
-            Self::Bus | Self::Late | Self::LateSwitch | Self::TickRate | Self::Overrun => {
-                Fault::Sampling
-            }
-            Self::Clocks => Fault::Clock,
-        }
-    }
 }
 
 /// Collects the samples of the fingers, one block a tick and finger.

@@ -2,9 +2,9 @@
 
 use contact_model::fixed_point::Celsius;
 
-/// Temperature for which a module's data sheet states resistance and Seebeck coefficient.
+/// Temperature, °C, for which a Peltier module's data sheet states its resistance and its Seebeck coefficient.
 pub const DATA_SHEET_TEMPERATURE: Celsius = Celsius::lit("27");
-/// Relative rise of the resistivity above that temperature, 1/K.
-pub const RESISTIVITY_PER_K: f64 = 0.0049;
-/// Relative rise of the Seebeck coefficient above that temperature, 1/K.
-pub const SEEBECK_PER_K: f64 = 0.0016;
+/// Rise of the resistivity per kelvin above [`DATA_SHEET_TEMPERATURE`], as a part of its value there, 1/K.
+pub const RESISTIVITY_RISE_PER_K: f64 = 0.0049;
+/// Rise of the Seebeck coefficient per kelvin above [`DATA_SHEET_TEMPERATURE`], as a part of its value there, 1/K.
+pub const SEEBECK_RISE_PER_K: f64 = 0.0016;

@@ -20,12 +20,13 @@ pub enum Command {
     Status,
     /// Send telemetry at this interval; 0 ends it.
     Stream {
-        /// Interval, ms.
+        /// Time between two lines of telemetry, ms.
         interval_ms: u32,
     },
-    /// Present this material.
+    /// Choose the material of the object; it is presented from the next `start` on, or at once if an object is
+    /// presented.
     Material {
-        /// Name, or `custom`.
+        /// Name of the material, or `custom` if its properties were given.
         name: &'static str,
         /// The material under a finger, beside the display.
         pair: ContactPair,
@@ -40,9 +41,9 @@ pub enum Command {
     Arm,
     /// Drive the display to a temperature.
     Hold(Setpoint),
-    /// Present the object.
+    /// Present the chosen material: the display goes to the preset of Eq. 6-12 and waits for a finger.
     Start,
-    /// Switch the bridge off.
+    /// Switch the bridge off, in any state.
     Abort,
     /// Take back a fault that is no longer present.
     Clear,
@@ -56,14 +57,14 @@ pub enum Command {
     NormalEquation(usize),
     /// Use another calibration of the thermistors.
     Calibrate(CalibrationTables),
-    /// Control another tile.
+    /// Use the control parameters of another tile.
     Retune(ControlParameters),
 }
 
-/// What a station answers.
+/// The reply of a station to a command that it has executed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reply {
-    /// The command was executed.
+    /// The command was executed, and there is nothing to report.
     Done,
     /// Answer to [`Command::Status`].
     Status(Status),
@@ -80,33 +81,33 @@ pub enum Reply {
 /// Why a station refuses a command; nothing has changed then.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
-    /// `start` before `arm`.
+    /// `start` was sent before `arm`.
     NotArmed,
-    /// The self-test is running.
+    /// The self-test is running, which takes 0.7 s.
     Testing,
-    /// `start` before `material`.
+    /// `start` was sent before `material`.
     NoMaterial,
     /// `start` while an object is presented.
     AlreadyStarted,
     /// The named command needs the state armed.
     NeedsArmed(&'static str),
-    /// An object is presented.
+    /// An object is presented, and the command would change what the finger feels.
     Presenting,
     /// `tune` with a finger on the display.
     Touched,
     /// The tile was not identified since `arm`.
     NotTuned,
-    /// The identification is running.
+    /// The identification of the tile is still running.
     Tuning,
-    /// The identification ended early.
+    /// The identification of the tile ended early, for this reason.
     TuneAborted(AbortReason),
     /// The mean of a thermistor is not complete.
     TooEarly,
-    /// A fault is latched.
+    /// This fault is latched, and must be cleared first.
     Tripped(Fault),
     /// `clear` while the fault is present.
     StillFaulty(Fault),
-    /// `clear` without a fault.
+    /// `clear` was sent while no fault is latched.
     NothingToClear,
 }
 
@@ -115,7 +116,7 @@ pub enum Refused {
 pub struct Status {
     /// State and, if tripped, the fault.
     pub state: StateName,
-    /// Chosen material.
+    /// Name of the chosen material; `None` before the first choice.
     pub material: Option<&'static str>,
     /// Object temperature; `None` takes that of the room.
     pub object: Option<Celsius>,

@@ -12,7 +12,7 @@ pub struct SafeCurrent(Current);
 impl SafeCurrent {
     /// Largest magnitude, A: that of the smallest module of the class.
     pub const LIMIT: Current = Current::lit("6");
-    /// No current.
+    /// A current of 0 A.
     pub const ZERO: Self = Self(Current::ZERO);
 
     /// Clamps to plus or minus [`Self::LIMIT`].

@@ -8,7 +8,7 @@ use crate::safety::Setpoint;
 /// Slew rate of the set-point, K/s. A proportional-integral loop on the slowest thermistors overshoots by 0.7 K at this rate, to
 /// 42.7 °C; a step from skin temperature would reach 44 °C and trip. Thermistors of different lags stay together, too.
 const SLEW_RATE_K_S: u32 = 1;
-/// The same per tick.
+/// Largest change of the set-point in one tick, K.
 const STEP: Celsius = Celsius::from_bits(((SLEW_RATE_K_S << Celsius::FRAC_NBITS) / TICK_HZ) as i32);
 
 /// The temperature at which a display is held, and the present set-point on the way there.

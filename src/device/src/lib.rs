@@ -1,9 +1,4 @@
-//! The hardware-free half of a Peltier thermal display: one [`Station`] per finger, together a [`Device`].
-//!
-//! [`Station::step`] is the product: a pure function of the station and one tick's [`sense::Samples`], without
-//! hardware, clock, allocation or global state. All of it is integer arithmetic, so nothing in the control
-//! path can be NaN, and it computes the same bits on the microcontroller and on the host. `f64` is used where
-//! settings and materials are turned into integers, once each.
+#![doc = include_str!("../README.md")]
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -8,20 +8,22 @@ use crate::TICK_HZ;
 use crate::drive::Current;
 use crate::safety::Setpoint;
 
-/// Binary places of the integral below those of a current: a millikelvin for one tick still counts.
-const EXTRA_PLACES: u32 = I12F52::FRAC_NBITS - Current::FRAC_NBITS;
+/// Binary places that the integral has beyond those of a current, so that an error of 1 mK for one tick still counts.
+const EXTRA_INTEGRAL_PLACES: u32 = I12F52::FRAC_NBITS - Current::FRAC_NBITS;
 
-/// How often a controller samples its error.
+/// How often a proportional-integral controller takes the temperature error and changes its current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpdatePeriod {
-    /// At every control tick.
+    /// At every control tick, 1000 times a second: the law `pi`, the observer's correction, and the identification of
+    /// the tile.
     EveryTick,
-    /// Ten times a second, as the thesis's display; the current is held in between.
+    /// Ten times a second, as the display of the thesis: the law `pi-10hz`. The current is constant in between.
     TenthOfASecond,
 }
 
 impl UpdatePeriod {
-    const fn ticks(self) -> u32 {
+    /// The period in ticks of 1 ms.
+    const fn period_ticks(self) -> u32 {
         match self {
             Self::EveryTick => 1,
             Self::TenthOfASecond => TICK_HZ / 10,
@@ -29,21 +31,22 @@ impl UpdatePeriod {
     }
 }
 
-/// A controller's gains in fixed point.
+/// Gains of a proportional-integral controller in fixed point, and how often it takes the error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PiCoefficients {
-    /// A/K.
+    /// Proportional gain, A/K.
     proportional: I16F16,
-    /// A/K per update.
+    /// Integral gain for one update, A/K.
     integral: I2F30,
     period: UpdatePeriod,
 }
 
 impl PiCoefficients {
-    /// Converts gains, which saturate at 32768 A/K and 2 A/K per update. Computed in `f64`, for start-up.
+    /// Converts gains from settings: proportional gain, A/K, and integral time, s. They saturate at 32768 A/K and 2 A/K
+    /// per update. Computed in `f64`, so it is for start-up and the task that serves the host, not for the tick.
     #[must_use]
     pub fn new(gains: &Gains, period: UpdatePeriod) -> Self {
-        let per_update = gains.proportional_a_k * f64::from(period.ticks())
+        let per_update = gains.proportional_a_k * f64::from(period.period_ticks())
             / (gains.integral_s * f64::from(TICK_HZ));
         let bits = |value: f64, places: u32| libm::ldexp(value, places as i32) as i32;
         Self {
@@ -54,22 +57,24 @@ impl PiCoefficients {
     }
 }
 
-/// The controller.
+/// A proportional-integral controller from temperature error, K, to current, A, with limited output.
 ///
 /// Anti-windup: the integral stops while the output is at its limit and the error would drive it further.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pi {
     coefficients: PiCoefficients,
+    /// Largest magnitude of the output, A.
     limit: Current,
-    /// Ticks until the next update.
+    /// Ticks of 1 ms until the next update; the output is constant until then.
     ticks_to_update: u32,
+    /// Output of the last update, A; positive cools.
     output: Current,
     /// Integral part of the output, A; its magnitude never exceeds the limit.
     integral: I12F52,
 }
 
 impl Pi {
-    /// A controller with output zero.
+    /// A controller with output and integral 0 A, whose output never exceeds `limit`, A, in magnitude.
     #[must_use]
     pub const fn new(coefficients: PiCoefficients, limit: Current) -> Self {
         Self {
@@ -81,38 +86,41 @@ impl Pi {
         }
     }
 
-    /// Changes the coefficients; the integral part of the output stays.
+    /// Changes the gains; the integral part of the output, A, stays.
     pub const fn set_coefficients(&mut self, coefficients: PiCoefficients) {
         self.coefficients = coefficients;
     }
 
-    /// Bumpless transfer: the next update starts from the current that something else has driven until now.
-    pub fn track(&mut self, current: Current) {
+    /// Bumpless transfer: sets output and integral to the current, A, that something else has driven in this tick. The
+    /// next update starts from there, whatever the error has been.
+    pub fn track_current(&mut self, current: Current) {
         (self.ticks_to_update, self.output) = (0, current);
-        self.integral = I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_PLACES);
+        self.integral = I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_INTEGRAL_PLACES);
     }
 
     /// Largest magnitude of the output, A.
     #[must_use]
-    pub const fn limit(&self) -> Current {
+    pub const fn output_limit(&self) -> Current {
         self.limit
     }
 
-    /// Current for one tick, A. Positive current cools, so it rises while the display is above its set-point.
-    pub fn update(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
+    /// Current for one tick, A, positive cools: it rises while `display`, °C, is above the set-point. Between two
+    /// updates of a slower [`UpdatePeriod`] it is the output of the last one.
+    pub fn update_output(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
         if self.ticks_to_update == 0 {
-            self.ticks_to_update = self.coefficients.period.ticks();
-            self.output = self.respond(display.saturating_sub(setpoint.celsius()));
+            self.ticks_to_update = self.coefficients.period.period_ticks();
+            self.output = self.current_for_error(display.saturating_sub(setpoint.celsius()));
         }
         self.ticks_to_update -= 1;
         self.output
     }
 
-    /// Output for an error, K, that is positive while the display is too warm; updates whatever the period.
+    /// Current, A (positive cools), for an `error`, K, that is positive while the display is too warm. Integrates the
+    /// error by one update, whatever the period.
     ///
-    /// No sum overflows: the integral stays within 128 A (59 bits), its step within 2^10 A, the proportional part within
-    /// 2^24 A of 38 bits.
-    pub fn respond(&mut self, error: Celsius) -> Current {
+    /// No sum overflows: the integral stays within 128 A (59 bits), its step within 2^10 A, the proportional part
+    /// within 2^24 A of 38 bits.
+    pub fn current_for_error(&mut self, error: Celsius) -> Current {
         let PiCoefficients {
             proportional,
             integral,
@@ -122,11 +130,11 @@ impl Pi {
             >> (Celsius::FRAC_NBITS + I16F16::FRAC_NBITS - Current::FRAC_NBITS);
         let sum = self.integral.saturating_add(error.wide_mul(integral));
         let limit = i64::from(self.limit.to_bits());
-        let wanted = proportional + (sum.to_bits() >> EXTRA_PLACES);
+        let wanted = proportional + (sum.to_bits() >> EXTRA_INTEGRAL_PLACES);
         // Not `clamp`, which panics when its limits are the wrong way round.
         let output = wanted.min(limit).max(-limit);
         if output == wanted || (wanted > output) != (error > 0) {
-            let limit = I12F52::from_bits(limit << EXTRA_PLACES);
+            let limit = I12F52::from_bits(limit << EXTRA_INTEGRAL_PLACES);
             self.integral = sum.min(limit).max(-limit);
         }
         Current::from_bits(output as i32)
@@ -157,7 +165,7 @@ mod tests {
         let (setpoint, mut pi) = (Setpoint::limited(at(25.0)).0, pi());
         for tick in 1..=1000 {
             let expected = 2.0 * 0.5 * (1.0 + f64::from(tick) * 1e-3 / 0.5);
-            let output = pi.update(setpoint, at(25.5)).to_num::<f64>();
+            let output = pi.update_output(setpoint, at(25.5)).to_num::<f64>();
             assert!(
                 (output - expected).abs() < 1e-4,
                 "tick {tick}: {output}, expected {expected}"
@@ -169,10 +177,10 @@ mod tests {
     fn the_output_leaves_its_limit_as_soon_as_the_error_changes_sign() {
         let (setpoint, mut pi) = (Setpoint::limited(at(25.0)).0, pi());
         for _ in 0..10_000 {
-            assert_eq!(pi.update(setpoint, at(40.0)), Current::lit("6"));
+            assert_eq!(pi.update_output(setpoint, at(40.0)), Current::lit("6"));
         }
         // Without anti-windup the integral would hold 600 A by now.
-        let output = pi.update(setpoint, at(24.0));
+        let output = pi.update_output(setpoint, at(24.0));
         assert!(output <= Current::lit("4"), "{output}");
     }
 
@@ -181,8 +189,8 @@ mod tests {
         let (setpoint, mut up, mut down) = (Setpoint::limited(at(30.0)).0, pi(), pi());
         for _ in 0..100 {
             let (a, b) = (
-                up.update(setpoint, at(30.25)),
-                down.update(setpoint, at(29.75)),
+                up.update_output(setpoint, at(30.25)),
+                down.update_output(setpoint, at(29.75)),
             );
             assert!((a + b).abs() <= Current::from_bits(4));
         }

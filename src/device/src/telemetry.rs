@@ -10,21 +10,21 @@ use crate::drive::Current;
 pub struct Telemetry {
     /// Ticks since reset.
     pub tick: u32,
-    /// State of the station.
+    /// State of the station at the end of the tick.
     pub state: StateName,
     /// Set-point, °C, if the bridge is driven.
     pub setpoint: Option<Celsius>,
     /// The set-point was limited to the safe range.
     pub limited: bool,
-    /// Display thermistor, °C.
+    /// Reading of the display thermistor, °C; `None` if it is invalid.
     pub display: Option<Celsius>,
-    /// Sink thermistor, °C.
+    /// Reading of the sink, °C; `None` if it is invalid.
     pub sink: Option<Celsius>,
-    /// Skin thermistor, °C.
+    /// Reading of the skin, °C; `None` if it is invalid.
     pub skin: Option<Celsius>,
-    /// Room thermistor, °C.
+    /// Reading of the room, °C; `None` if it is invalid.
     pub room: Option<Celsius>,
-    /// Force, N.
+    /// Force, N; `None` if the sensor is faulty.
     pub force: Option<Force>,
     /// Demanded current, A; positive cools.
     pub demand: Current,

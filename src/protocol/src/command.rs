@@ -178,7 +178,7 @@ fn mode(words: &mut Words<'_>) -> Result<Mode, Error> {
 }
 
 fn law(name: &str) -> Result<Law, Error> {
-    let (_, law) = lookup(&Law::WORDS, name).ok_or(Error::UnknownLaw(name.into()))?;
+    let (_, law) = lookup(&Law::PROTOCOL_WORDS, name).ok_or(Error::UnknownLaw(name.into()))?;
     Ok(law)
 }
 

@@ -139,9 +139,12 @@ impl fmt::Display for Error {
             Self::UnknownMode(word) => {
                 unknown(f, "mode", word, MODES.iter().map(|(name, _)| *name))
             }
-            Self::UnknownLaw(word) => {
-                unknown(f, "law", word, Law::WORDS.iter().map(|(name, _)| *name))
-            }
+            Self::UnknownLaw(word) => unknown(
+                f,
+                "law",
+                word,
+                Law::PROTOCOL_WORDS.iter().map(|(name, _)| *name),
+            ),
             Self::UnknownSensor(word) => unknown(f, "sensor", word, SENSOR_WORDS.iter().copied()),
             Self::UnknownSetting(word) => {
                 unknown(f, "setting", word, SETTING_WORDS.iter().copied())

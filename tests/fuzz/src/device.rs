@@ -1,124 +1,136 @@
-//! A device on its tiles, and what must hold for it on every tick and after every line.
+//! A device on simulated tiles, whose outputs, states and answers are checked on every tick and
+//! after every line.
 //!
-//! Limits are written out here as the documentation has them, and temperatures are recomputed from the sums by the class's
-//! curve, so that a wrong constant or a wrong conversion does not vouch for itself.
+//! The limits are written out here as the documentation states them, and temperatures are computed
+//! from the samples by the thermistor class's nominal curve. A wrong constant or conversion of the
+//! firmware therefore cannot confirm itself.
 
-use thermal_display::commissioning::Desk;
+use thermal_display::device::command::{self, Addressed, Command, Status};
 use thermal_display::device::drive::{Drive, Outputs};
-use thermal_display::device::safety::{Fault, State};
+use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
-use thermal_display::device::{Device, Finger};
-use thermal_display::protocol::{Addressed, Command, Error, LineReader, Reply, Status};
+use thermal_display::device::{Device, Finger, StateName};
+use thermal_display::protocol::{CommandHandler, Error, LineReader, telemetry_line};
 use thermal_display::settings::Settings;
 
-use crate::tile::{FULL, Tile, sum_at};
+use crate::tile::{FULL_SCALE, Tile, sum_at};
 
-/// Longest answer and telemetry line, bytes: what is said, and `@n ` before it.
+/// Longest answer and telemetry line, bytes: the text, and `@n ` before it.
 const ANSWER_MAX: usize = 172 + 3;
 const TELEMETRY_MAX: usize = 128 + 3;
-/// What a display's reading may be off by, whatever lines have set, K: 2.52 of its correction, 0.18 of the converter's
-/// steps, 0.04 of its own warmth.
-pub const READING_K: f64 = 2.8;
-/// A display is off beyond these by either thermistor: its limits, and what its reading may be off by.
-const SURELY_COLD_C: f64 = 13.5 - READING_K;
-const SURELY_HOT_C: f64 = 43.0 + READING_K;
+/// Largest error of a display's reading, whatever settings lines have set, K: 2.52 of its
+/// correction, 0.18 of the converter's steps, 0.04 of its self-heating.
+pub const READING_ERROR_MAX_K: f64 = 2.8;
+/// Beyond these true temperatures the bridge must be off: the trip limits, widened by the largest
+/// error of a reading.
+const SURELY_COLD_C: f64 = 13.5 - READING_ERROR_MAX_K;
+const SURELY_HOT_C: f64 = 43.0 + READING_ERROR_MAX_K;
 
-/// Hand, desk and tiles, and the sums beyond which a display is too cold or too hot.
+/// A device and its command handler, on one tile for each finger.
 #[derive(Clone, Debug)]
-pub struct Device<const FINGERS: usize> {
-    hand: Hand<FINGERS>,
-    desk: Desk<FINGERS>,
+pub struct CheckedDevice<const FINGERS: usize> {
+    device: Device<FINGERS>,
+    handler: CommandHandler<FINGERS>,
     tiles: [Tile; FINGERS],
-    cold_above: u16,
-    hot_below: u16,
 }
 
-impl<const FINGERS: usize> Device<FINGERS> {
-    /// Switched on.
+impl<const FINGERS: usize> CheckedDevice<FINGERS> {
+    /// A device that has just been switched on.
     pub fn new() -> Self {
         let settings = Settings::default();
         Self {
-            hand: Hand::new(&settings),
-            desk: Desk::new(settings),
+            device: Device::new(&settings),
+            handler: CommandHandler::new(settings),
             tiles: [Tile::default(); FINGERS],
-            cold_above: sum_at(SURELY_COLD_C),
-            hot_below: sum_at(SURELY_HOT_C),
         }
     }
 
-    /// The tile of a finger, counted modulo `FINGERS`.
-    pub fn tile(&mut self, finger: usize) -> &mut Tile {
-        &mut self.tiles[finger % FINGERS]
+    /// The tile of a finger.
+    pub fn tile(&mut self, finger: Finger<FINGERS>) -> &mut Tile {
+        &mut self.tiles[finger.index()]
     }
 
-    /// What a finger says of itself.
-    pub fn status(&mut self, finger: usize) -> Status {
-        let asked = Addressed {
-            finger: Some((finger % FINGERS) as u8),
-            content: Command::Status,
-        };
-        match self.hand.execute(asked) {
+    /// Presses all fingers with this force.
+    pub fn press_all(&mut self, force_n: f64) {
+        self.tiles.iter_mut().for_each(|tile| tile.press(force_n));
+    }
+
+    /// State of a finger's station.
+    pub fn state(&mut self, finger: Finger<FINGERS>) -> StateName {
+        self.status(finger).state
+    }
+
+    fn status(&mut self, finger: Finger<FINGERS>) -> Status {
+        match self.device.execute(Some(finger), Command::Status) {
             Ok(Addressed {
-                content: Reply::Status(status),
+                content: command::Reply::Status(status),
                 ..
             }) => status,
-            other => panic!("state is answered by {other:?}"),
+            other => panic!("the status query is answered by {other:?}"),
         }
     }
 
-    /// What the first finger's display reads, °C, if it streams and there is anything to read.
+    fn states(&mut self) -> Vec<(Finger<FINGERS>, StateName)> {
+        Finger::all()
+            .map(|finger| (finger, self.state(finger)))
+            .collect()
+    }
+
+    /// Display temperature of the first finger, °C, if it streams telemetry and has a reading.
     pub fn display_c(&self) -> Option<f64> {
-        let telemetry = self.hand.telemetry(0)?.content;
+        let telemetry = self.device.telemetry(Finger::FIRST)?.content;
         telemetry.display.map(|celsius| celsius.to_num())
     }
 
-    /// A tick of every finger on its tile.
-    pub fn tick(&mut self) {
-        for finger in 0..FINGERS {
-            self.tick_with(finger, |_| ());
+    /// Runs ticks of every finger on its tile.
+    pub fn run(&mut self, ticks: u32) {
+        for _ in 0..ticks {
+            for finger in Finger::all() {
+                self.tick_with(finger, |_| ());
+            }
         }
     }
 
-    /// A tick of one finger on its tile, whose samples something has changed.
-    pub fn tick_with(&mut self, finger: usize, change: impl FnOnce(&mut Samples)) {
+    /// Runs one tick of a finger on its tile, with modified samples.
+    pub fn tick_with(&mut self, finger: Finger<FINGERS>, modify: impl FnOnce(&mut Samples)) {
         let mut samples = self.tile(finger).samples();
-        change(&mut samples);
+        modify(&mut samples);
         let outputs = self.step(finger, &samples);
         self.tile(finger).drive(outputs);
     }
 
-    /// Trips all fingers.
-    pub fn trip(&mut self, fault: Fault) {
-        let before: [_; FINGERS] = std::array::from_fn(|finger| self.status(finger).state);
-        self.hand.trip(fault);
-        for (finger, before) in before.into_iter().enumerate() {
-            let expected = State::Tripped(before.fault().unwrap_or(fault));
-            assert_eq!(self.status(finger).state, expected, "of {before:?}");
+    /// Trips all fingers; an earlier fault stays the reported one.
+    pub fn trip_all(&mut self, fault: Fault) {
+        let before = self.states();
+        self.device.trip_all(fault);
+        for (finger, before) in before {
+            let expected = StateName::Tripped(before.fault().unwrap_or(fault));
+            assert_eq!(self.state(finger), expected, "from {before:?}");
         }
     }
 
-    /// The host is there.
-    pub fn hear(&mut self) {
-        self.hand.hear();
+    /// Restarts the host time-out.
+    pub fn note_host_activity(&mut self) {
+        self.device.note_host_activity();
     }
 
-    /// One tick, whose outputs are looked at.
-    pub fn step(&mut self, finger: usize, samples: &Samples) -> Outputs {
-        let before = self.status(finger).state;
-        let outputs = self.hand.step(finger, samples);
+    /// Runs one tick and checks the outputs, the change of state and the telemetry.
+    pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> Outputs {
+        let before = self.state(finger);
+        let outputs = self.device.step(finger, samples);
         let Status {
             state, setpoint, ..
         } = self.status(finger);
         let allowed = match before {
-            State::Off | State::Ready => state == before,
-            State::SelfTest => matches!(state, State::SelfTest | State::Armed),
-            State::Armed => state == State::Armed,
-            State::Preset | State::Contact => state.presents(),
-            State::Tripped(_) => state == before,
+            StateName::SelfTest => matches!(state, StateName::SelfTest | StateName::Armed),
+            StateName::Preset | StateName::Contact => {
+                matches!(state, StateName::Preset | StateName::Contact)
+            }
+            before => state == before,
         };
         let trips = state.fault().is_some() && before.fault().is_none();
         assert!(allowed || trips, "{before:?} to {state:?} by {samples:?}");
-        self.look_at_outputs(outputs, state, samples);
+        check_outputs(outputs, state, samples);
         if let Some(setpoint) = setpoint {
             let setpoint_c: f64 = setpoint.to_num();
             assert!(
@@ -126,56 +138,23 @@ impl<const FINGERS: usize> Device<FINGERS> {
                 "set-point {setpoint_c} C"
             );
         }
-        if let Some(telemetry) = self.hand.telemetry(finger) {
+        if let Some(telemetry) = self.device.telemetry(finger) {
             let demand_a: f64 = telemetry.content.demand.to_num();
             assert!(demand_a.abs() <= 6.0, "demand {demand_a} A");
             let off = outputs.drive == Drive::Off;
             assert!(!off || demand_a == 0.0, "demand {demand_a} A while off");
-            look_at_text(&telemetry.to_string(), TELEMETRY_MAX);
+            check_text(&telemetry_line(telemetry).to_string(), TELEMETRY_MAX);
         }
         outputs
     }
 
-    fn look_at_outputs(&self, outputs: Outputs, state: State, samples: &Samples) {
-        let drives = matches!(
-            state,
-            State::SelfTest | State::Armed | State::Preset | State::Contact
-        );
-        if outputs.comparator_test {
-            assert_eq!(
-                (state, outputs.drive),
-                (State::SelfTest, Drive::Off),
-                "comparator tested"
-            );
-        }
-        let Drive::On(duty) = outputs.drive else {
-            return;
-        };
-        assert!(drives, "driven while {state:?}");
-        let fraction: f64 = duty.fraction().to_num();
-        assert!(fraction.abs() <= 0.9, "duty {fraction}");
-        assert!(
-            !samples.bridge_fault,
-            "driven against the bridge's fault: {samples:?}"
-        );
-        let ends = samples.thermistors().map(|sum| sum == 0 || sum >= FULL);
-        assert_eq!(ends, [false; 5], "driven without a thermistor: {samples:?}");
-        for sum in [samples.display, samples.display_check] {
-            let sound = self.hot_below..=self.cold_above;
-            assert!(
-                sound.contains(&sum),
-                "driven with a display at sum {sum}, allowed is {sound:?}"
-            );
-        }
-    }
-
-    /// Bytes from the host, through its reader; answers are looked at.
+    /// Passes a byte from the host through the line reader and checks the answer, if there is one.
     pub fn byte(&mut self, reader: &mut LineReader, byte: u8) {
         match reader.push(byte) {
             None => {}
             Some(Err(error)) => {
-                let refused = Addressed::device(Error::from(error));
-                look_at_answer(&refused.to_string(), false);
+                let error = Addressed::device(Error::from(error));
+                check_answer(&error.to_string(), false);
             }
             Some(Ok(line)) => {
                 let _ = self.line(&line);
@@ -183,61 +162,105 @@ impl<const FINGERS: usize> Device<FINGERS> {
         }
     }
 
-    /// Answers a line; the states change by no other line than those that may change them.
+    /// Answers a line, and checks the answer and the changes of state.
     pub fn line(&mut self, line: &str) -> Result<String, String> {
-        let before: [_; FINGERS] = std::array::from_fn(|finger| self.status(finger).state);
-        let hand = &mut self.hand;
-        let answer = self.desk.answer(line, |request| hand.execute(request));
-        let (answer, done) = match answer {
-            Ok(reply) => (reply.to_string(), true),
-            Err(error) => (error.to_string(), false),
-        };
-        look_at_answer(&answer, done);
-        for (finger, before) in before.into_iter().enumerate() {
-            let state = self.status(finger).state;
+        let before = self.states();
+        let device = &mut self.device;
+        let answer = self
+            .handler
+            .answer(line, |finger, command| device.execute(finger, command));
+        let answer = answer
+            .map(|reply| reply.to_string())
+            .map_err(|error| error.to_string());
+        let (Ok(text) | Err(text)) = &answer;
+        check_answer(text, answer.is_ok());
+        for (finger, before) in before {
+            let state = self.state(finger);
             assert!(
-                state == before || may_lead(line, before, state),
-                "{line:?}, answered {answer:?}, leads from {before:?} to {state:?}"
+                state == before || may_change_state(line, before, state),
+                "{line:?}, answered {text:?}, changes the state from {before:?} to {state:?}"
             );
         }
-        if done { Ok(answer) } else { Err(answer) }
+        answer
     }
 }
 
-/// Whether a line may change a state so.
-fn may_lead(line: &str, from: State, to: State) -> bool {
+fn check_outputs(outputs: Outputs, state: StateName, samples: &Samples) {
+    if outputs.comparator_test {
+        assert_eq!(
+            (state, outputs.drive),
+            (StateName::SelfTest, Drive::Off),
+            "comparator tested"
+        );
+    }
+    let Drive::On(duty) = outputs.drive else {
+        return;
+    };
+    let may_drive = matches!(
+        state,
+        StateName::SelfTest | StateName::Armed | StateName::Preset | StateName::Contact
+    );
+    assert!(may_drive, "driven while {state:?}");
+    let fraction: f64 = duty.fraction().to_num();
+    assert!(fraction.abs() <= 0.9, "duty {fraction}");
+    assert!(
+        !samples.bridge_fault,
+        "driven while the bridge reports a fault: {samples:?}"
+    );
+    let at_rail = samples
+        .thermistors()
+        .map(|sum| sum == 0 || sum >= FULL_SCALE);
+    assert_eq!(
+        at_rail, [false; 5],
+        "driven without a thermistor: {samples:?}"
+    );
+    // The hotter, the smaller the sum.
+    let allowed = sum_at(SURELY_HOT_C)..=sum_at(SURELY_COLD_C);
+    for sum in [samples.display, samples.display_check] {
+        assert!(
+            allowed.contains(&sum),
+            "driven with a display at sum {sum}, allowed is {allowed:?}"
+        );
+    }
+}
+
+/// Whether a line may change a state in this way.
+fn may_change_state(line: &str, from: StateName, to: StateName) -> bool {
+    use StateName::{Armed, Contact, Off, Preset, Ready, SelfTest, Tripped};
     let mut words = line
         .split_ascii_whitespace()
         .skip_while(|word| word.starts_with('@'));
     match (words.next().unwrap_or_default(), from) {
-        // What tripped second comes to light.
-        ("clear", State::Tripped(_)) => matches!(to, State::Off | State::Tripped(_)),
-        (_, State::Tripped(_)) => false,
-        ("arm", State::Off) => to == State::SelfTest,
-        ("arm", State::Ready | State::Preset | State::Contact) => to == State::Armed,
-        ("start", State::Armed) => to == State::Preset,
-        ("abort", State::SelfTest) => to == State::Off,
-        ("abort", State::Armed | State::Preset | State::Contact) => to == State::Ready,
+        // A second fault, still present, is reported next.
+        ("clear", Tripped(_)) => matches!(to, Off | Tripped(_)),
+        ("arm", Off) => to == SelfTest,
+        ("arm", Ready | Preset | Contact) => to == Armed,
+        ("start", Armed) => to == Preset,
+        ("abort", SelfTest) => to == Off,
+        ("abort", Armed | Preset | Contact) => to == Ready,
         _ => false,
     }
 }
 
-fn look_at_answer(answer: &str, done: bool) {
-    look_at_text(answer, ANSWER_MAX);
-    let said = answer
+fn check_answer(answer: &str, ok: bool) {
+    check_text(answer, ANSWER_MAX);
+    let text = answer
         .strip_prefix('@')
         .and_then(|rest| rest.get(2..))
         .unwrap_or(answer);
-    let word = said.split(' ').next();
-    assert_eq!(word, Some(if done { "ok" } else { "err" }), "{answer:?}");
-    // What is refused may quote the host.
-    let number = |word: &str| word.ends_with("NaN") || word.ends_with("inf");
-    assert!(!done || !answer.split([' ', '=']).any(number), "{answer:?}");
+    let word = text.split(' ').next();
+    assert_eq!(word, Some(if ok { "ok" } else { "err" }), "{answer:?}");
+    // An error may quote the host's own words.
+    let not_finite = |word: &str| word.ends_with("NaN") || word.ends_with("inf");
+    assert!(
+        !ok || !answer.split([' ', '=']).any(not_finite),
+        "{answer:?}"
+    );
 }
 
 /// A line to the host is short and printable.
-fn look_at_text(line: &str, longest: usize) {
-    assert!(line.len() <= longest, "{} bytes: {line:?}", line.len());
+fn check_text(line: &str, bytes_max: usize) {
+    assert!(line.len() <= bytes_max, "{} bytes: {line:?}", line.len());
     assert!(
         line.bytes().all(|byte| matches!(byte, b' '..=b'~')),
         "{line:?}"

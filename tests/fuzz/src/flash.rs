@@ -1,4 +1,4 @@
-//! What the settings' sectors hold: saves, with power that is cut, records of any content, and damage of any kind.
+//! The flash sectors of the settings: saves with power cuts, records of any content, and damage of any kind.
 
 use std::sync::OnceLock;
 
@@ -9,12 +9,12 @@ use thermal_display::settings::{
 };
 use thermal_sim::FlashCells;
 
-/// Saves that an input begins after: none, few, all that fit into a sector, and turns to another.
+/// Saves before an input begins: none, a few, as many as fit into a sector, and enough to begin other sectors.
 const SAVES: [u32; 8] = [0, 1, 2, 3, 20, 37, 38, 80];
-/// Events of one input, at most.
+/// Largest number of events of one input.
 const EVENTS: usize = 24;
 
-/// Values of a finger: least, most, and how many make one.
+/// Stored values of a finger: smallest and largest stored integer, and stored integers per unit.
 const VALUES: [(i32, i32, f64); 33] = {
     let mut values = [(-4_000, 4_000, 1e3); 33];
     let mut sensor = 0;
@@ -33,7 +33,7 @@ const VALUES: [(i32, i32, f64); 33] = {
 };
 
 #[derive(Arbitrary, Debug)]
-struct Course {
+struct Input {
     five_fingers: bool,
     saves: u8,
     events: Vec<Event>,
@@ -41,66 +41,66 @@ struct Course {
 
 #[derive(Arbitrary, Debug)]
 enum Event {
-    /// Cells read otherwise.
+    /// Inverts bits.
     Flip { at: u16, bits: u8 },
-    /// Cells read so.
+    /// Overwrites bytes.
     Bytes { at: u16, bytes: Vec<u8> },
-    /// A record whose checksums are right: values in parts of their ranges, another head, another length.
+    /// Appends a record whose checksums are right: values as fractions of their ranges, any header, any length.
     Record {
         values: [i16; 33],
-        head: Option<[u8; 4]>,
+        header: Option<[u8; 4]>,
         length: Option<u8>,
     },
-    /// Settings are saved; power fails in that operation.
+    /// Saves settings; with `cut`, power fails in this flash operation.
     Save { number: u8, cut: Option<(u8, u8)> },
 }
 
-/// FlashCells, and all that was ever written to them.
+/// Flash cells, and every value of the settings that was written to them.
 #[derive(Clone)]
-struct Kit<const FINGERS: usize> {
+struct History<const FINGERS: usize> {
     cells: FlashCells,
     written: Vec<Option<[StoredSettings; FINGERS]>>,
 }
 
-static ONE: OnceLock<Vec<Kit<1>>> = OnceLock::new();
-static FIVE: OnceLock<Vec<Kit<5>>> = OnceLock::new();
+static ONE: OnceLock<Vec<History<1>>> = OnceLock::new();
+static FIVE: OnceLock<Vec<History<5>>> = OnceLock::new();
 
-/// Whatever is found was written, and settings can be stored again.
+/// Settings that are found were written, and settings can be stored after any damage.
 pub fn run(input: &[u8]) -> bool {
-    let Ok(course) = Course::arbitrary_take_rest(Unstructured::new(input)) else {
+    let Ok(input) = Input::arbitrary_take_rest(Unstructured::new(input)) else {
         return false;
     };
-    if course.five_fingers {
-        play(&FIVE, &course);
+    if input.five_fingers {
+        play(&FIVE, &input);
     } else {
-        play(&ONE, &course);
+        play(&ONE, &input);
     }
     true
 }
 
-/// The course, line by line.
+/// The events.
 pub fn show(input: &[u8]) -> String {
-    match Course::arbitrary_take_rest(Unstructured::new(input)) {
-        Ok(course) => format!("{course:#?}"),
+    match Input::arbitrary_take_rest(Unstructured::new(input)) {
+        Ok(input) => format!("{input:#?}"),
         Err(error) => error.to_string(),
     }
 }
 
-fn play<const FINGERS: usize>(kits: &OnceLock<Vec<Kit<FINGERS>>>, course: &Course) {
-    let kits = kits.get_or_init(|| {
+fn play<const FINGERS: usize>(starts: &OnceLock<Vec<History<FINGERS>>>, input: &Input) {
+    let starts = starts.get_or_init(|| {
         SAVES
-            .map(|saves| (0..saves).fold(Kit::new(), |kit, number| kit.saved(number)))
+            .map(|saves| (0..saves).fold(History::new(), |history, number| history.saved(number)))
             .to_vec()
     });
-    let mut kit = kits[usize::from(course.saves) % kits.len()].clone();
-    for event in course.events.iter().take(EVENTS) {
-        kit.take(event);
-        kit.look();
+    let mut history = starts[usize::from(input.saves) % starts.len()].clone();
+    for event in input.events.iter().take(EVENTS) {
+        history.apply(event);
+        history.check_found();
     }
-    kit.mend();
+    history.check_save();
 }
 
-impl<const FINGERS: usize> Kit<FINGERS> {
+impl<const FINGERS: usize> History<FINGERS> {
     fn new() -> Self {
         Self {
             cells: FlashCells::new(vec![0xff; BYTES]),
@@ -114,7 +114,7 @@ impl<const FINGERS: usize> Kit<FINGERS> {
         self
     }
 
-    /// By a device that is switched on anew.
+    /// Saves settings as a device does that was just switched on.
     fn save(&mut self, settings: Option<[StoredSettings; FINGERS]>) -> Result<(), String> {
         let flash = Flash::new(self.cells.clone());
         let done = SettingsStore::new(flash.clone()).save(settings.as_ref());
@@ -129,7 +129,7 @@ impl<const FINGERS: usize> Kit<FINGERS> {
         SettingsStore::new(Flash::new(self.cells.clone())).load()
     }
 
-    fn take(&mut self, event: &Event) {
+    fn apply(&mut self, event: &Event) {
         match event {
             Event::Flip { at, bits } => {
                 let at = usize::from(*at) % BYTES;
@@ -143,9 +143,9 @@ impl<const FINGERS: usize> Kit<FINGERS> {
             }
             Event::Record {
                 values,
-                head,
+                header,
                 length,
-            } => self.record(values, *head, *length),
+            } => self.append_record(values, *header, *length),
             Event::Save { number, cut } => {
                 if let Some((nth, seed)) = cut {
                     self.cells
@@ -161,36 +161,41 @@ impl<const FINGERS: usize> Kit<FINGERS> {
         }
     }
 
-    /// Appends a record, which counts as written only if all of it is as it has to be.
-    fn record(&mut self, parts: &[i16; 33], head: Option<[u8; 4]>, length: Option<u8>) {
-        let units: Vec<_> = parts
+    /// Appends a record, which counts as written if it is valid.
+    fn append_record(
+        &mut self,
+        fractions: &[i16; 33],
+        header: Option<[u8; 4]>,
+        length: Option<u8>,
+    ) {
+        let units: Vec<_> = fractions
             .iter()
             .zip(VALUES)
-            .map(|(part, (least, most, _))| {
-                // The middle and up to 1.2 times half of the range beside it.
-                let (least, most) = (f64::from(least), f64::from(most));
-                (0.5 * (least + most) + 0.6 * (most - least) * f64::from(*part) / 32768.0) as i32
+            .map(|(fraction, (min, max, _))| {
+                // The range, and a tenth of it beyond either end.
+                let (min, max) = (f64::from(min), f64::from(max));
+                (0.5 * (min + max) + 0.6 * (max - min) * f64::from(*fraction) / 32768.0) as i32
             })
             .collect();
-        let good = [1, 0, 1, FINGERS as u8];
-        let head = head.unwrap_or(good);
-        let mut content = head.to_vec();
+        let valid = [1, 0, 1, FINGERS as u8];
+        let header = header.unwrap_or(valid);
+        let mut content = header.to_vec();
         (0..FINGERS).for_each(|_| content.extend(units.iter().flat_map(|unit| unit.to_le_bytes())));
-        let whole = content.len();
-        content.resize(length.map_or(whole, usize::from), 0);
+        let valid_length = content.len();
+        content.resize(length.map_or(valid_length, usize::from), 0);
         let allowed = units
             .iter()
             .zip(VALUES)
-            .all(|(unit, (least, most, _))| (least..=most).contains(unit));
+            .all(|(unit, (min, max, _))| (min..=max).contains(unit));
         if content == [1, 0, 0, 0] {
             self.written.push(None);
-        } else if head == good && content.len() == whole && allowed {
+        } else if header == valid && content.len() == valid_length && allowed {
             let mut values = units
                 .iter()
                 .zip(VALUES)
-                .map(|(unit, (_, _, per))| f64::from(*unit) / per);
+                .map(|(unit, (_, _, per_unit))| f64::from(*unit) / per_unit);
             let mut next = || values.next().unwrap_or_default();
-            let kept = StoredSettings {
+            let settings = StoredSettings {
                 calibration: Calibration {
                     steps_counts: std::array::from_fn(|_| next()),
                     corrections: std::array::from_fn(|_| Correction {
@@ -201,25 +206,25 @@ impl<const FINGERS: usize> Kit<FINGERS> {
                 },
                 tile: Tile::from_array(std::array::from_fn(|_| next())),
             };
-            self.written.push(Some([kept; FINGERS]));
+            self.written.push(Some([settings; FINGERS]));
         }
         let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(&content);
         content.extend(checksum.to_le_bytes());
-        let _taken = append(&mut self.cells, &content);
+        let _ = append(&mut self.cells, &content);
     }
 
-    /// Nothing is found that was not written.
-    fn look(&self) {
+    /// Only settings that were written are found.
+    fn check_found(&self) {
         if let Ok(found) = self.load() {
             assert!(self.written.contains(&found), "never written: {found:?}");
         }
     }
 
-    /// Whatever the cells hold, settings can be stored.
-    fn mend(&mut self) {
+    /// Settings can be stored, whatever the cells hold.
+    fn check_save(&mut self) {
         let settings = numbered(1000);
         let done = self.save(settings);
-        assert!(done.is_ok(), "cannot be mended: {done:?}");
+        assert!(done.is_ok(), "cannot be saved: {done:?}");
         assert_eq!(self.load().ok(), Some(settings), "stored, but not found");
     }
 }

@@ -1,15 +1,15 @@
-//! What is fuzzed: everything that takes bytes, text or samples from outside.
+//! Fuzz targets: every interface of the product that takes bytes, text or samples from outside.
 //!
-//! | target     | input                                                    | what must hold                                        |
-//! |------------|----------------------------------------------------------|-------------------------------------------------------|
-//! | `wire`     | bytes to the line reader, with ticks and touches between | what `device.rs` says of answers, outputs and states  |
-//! | `station`  | samples, lines, reasons to trip                          | the same, on every tick                               |
-//! | `settings` | values of `set` lines, then samples                      | they read back; no reading is off by more than 2.8 K  |
-//! | `flash`    | damage, records and cut saves in the settings' sectors    | nothing is read but what was written; a save mends it |
-//! | `scene`    | a scene's text                                           | an error names file and line, a scene has a plant     |
+//! | target     | input                                                      | property that is checked                                     |
+//! |------------|------------------------------------------------------------|--------------------------------------------------------------|
+//! | `wire`     | bytes to the line reader, with ticks and touches between   | the checks of `device.rs` on answers, outputs and states     |
+//! | `station`  | samples, lines, faults                                     | the same, on every tick                                      |
+//! | `settings` | values of `set` lines, then samples                        | they read back; no reading errs by more than 2.8 K           |
+//! | `flash`    | damage, records and interrupted saves in settings' sectors | only what was written is read; a save always succeeds again  |
+//! | `scene`    | text of a scene                                            | an error names file and line; an accepted scene has a plant  |
 //!
-//! And in all: no panic, no overflow of an integer, no hang. `cargo xtask fuzz` runs them; replaying one input is a call of
-//! [`Target::run`], a pure function.
+//! In all of them a panic, an integer overflow or a hang is a failure. `cargo xtask fuzz` runs them. [`Target::run`] is a
+//! pure function, so that a recorded input replays exactly.
 
 mod device;
 mod flash;
@@ -20,18 +20,18 @@ mod station;
 mod tile;
 mod wire;
 
-/// One thing that is fuzzed.
+/// A fuzz target.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
-    /// Its name on the command line, and that of its corpus.
+    /// Name on the command line and of the corpus.
     pub name: &'static str,
-    /// Runs one input; panics if what must hold does not. Returns whether the input is worth keeping.
+    /// Runs one input and panics if a checked property is violated. Returns whether the input is valid, and so may be kept.
     pub run: fn(&[u8]) -> bool,
-    /// Writes what the input means.
+    /// Describes the input.
     pub show: fn(&[u8]) -> String,
 }
 
-/// All of them.
+/// All targets.
 pub const TARGETS: [Target; 5] = [
     Target {
         name: "wire",

@@ -1,4 +1,4 @@
-//! libFuzzer on one of the targets: the one that `FUZZ_TARGET` names.
+//! libFuzzer on the target that `FUZZ_TARGET` names.
 #![no_main]
 
 use std::sync::OnceLock;
@@ -6,11 +6,11 @@ use std::sync::OnceLock;
 use fuzz::{TARGETS, Target};
 use libfuzzer_sys::{Corpus, fuzz_target};
 
-static CHOSEN: OnceLock<Target> = OnceLock::new();
+static TARGET: OnceLock<Target> = OnceLock::new();
 
-/// Ends the process if there is no such target. With `FUZZ_SHOW` every input is told before it is run.
-fn chosen() -> &'static Target {
-    CHOSEN.get_or_init(|| {
+/// The target that `FUZZ_TARGET` names. Ends the process if there is none.
+fn target() -> &'static Target {
+    TARGET.get_or_init(|| {
         let name = std::env::var("FUZZ_TARGET").unwrap_or_default();
         let known = TARGETS.iter().find(|target| target.name == name);
         *known.unwrap_or_else(|| {
@@ -22,7 +22,8 @@ fn chosen() -> &'static Target {
 }
 
 fuzz_target!(|input: &[u8]| -> Corpus {
-    let target = chosen();
+    let target = target();
+    // Describes every input before it is run.
     if std::env::var_os("FUZZ_SHOW").is_some() {
         eprintln!("{}", (target.show)(input));
     }

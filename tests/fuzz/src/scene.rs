@@ -1,4 +1,4 @@
-//! A scene's text.
+//! The parser of scenes.
 
 use std::path::Path;
 
@@ -8,24 +8,24 @@ use thermal_sim::scene::Scene;
 
 const FILE: &str = "scene.toml";
 
-/// Runs the parser. An error begins with the file and a line that is there; a scene is one that can be run.
+/// Parses a scene. An error begins with the file and one of its lines; an accepted scene can be run.
 pub fn run(input: &[u8]) -> bool {
     let Ok(text) = str::from_utf8(input) else {
         return false;
     };
     match Scene::parse(text, Path::new(FILE)) {
-        Ok(scene) => look_at(&scene),
-        Err(error) => look_at_error(&error.to_string(), text),
+        Ok(scene) => check_scene(&scene),
+        Err(error) => check_error(&error.to_string(), text),
     }
     true
 }
 
-/// The text.
+/// The scene's text.
 pub fn show(input: &[u8]) -> String {
     String::from_utf8_lossy(input).into_owned()
 }
 
-fn look_at_error(error: &str, text: &str) {
+fn check_error(error: &str, text: &str) {
     let place = error
         .strip_prefix(FILE)
         .and_then(|rest| rest.strip_prefix(':')?.split_once(": "));
@@ -41,7 +41,7 @@ fn look_at_error(error: &str, text: &str) {
     assert!(!problem.trim().is_empty(), "no problem: {error:?}");
 }
 
-fn look_at(scene: &Scene) {
+fn check_scene(scene: &Scene) {
     assert!(scene.duration_s > 0.0 && scene.duration_s <= 86_400.0);
     assert!(scene.settle_s.is_finite() && scene.settle_s >= 0.0);
     let preset_c = scene.exact_setpoint_c(0.0, 1.0);
@@ -56,23 +56,23 @@ fn look_at(scene: &Scene) {
             assert!((0.0..=10.0).contains(&force_n), "{force_n} N at {t_s} s");
         }
     }
-    let within = |t_s: f64| (0.0..=scene.duration_s).contains(&t_s);
-    assert!(scene.host.iter().all(|line| within(line.t_s)));
+    let during_scene = |t_s: f64| (0.0..=scene.duration_s).contains(&t_s);
+    assert!(scene.host.iter().all(|line| during_scene(line.t_s)));
     for fault in &scene.faults {
-        let at = [-1.0, 0.0, 0.5 * scene.duration_s, scene.duration_s].map(|t_s| fault.at(t_s));
-        assert_eq!(at[0], None, "{fault:?} before it begins");
+        let levels = [-1.0, 0.0, 0.5 * scene.duration_s, scene.duration_s].map(|t_s| fault.at(t_s));
+        assert_eq!(levels[0], None, "{fault:?} before it begins");
     }
     if let Some(Err(error)) = scene.infrared.map(|infrared| infrared.camera(scene.seed)) {
         panic!("accepted, but no camera: {error}");
     }
     match Plant::new(&scene.plant_config()) {
-        Ok(plant) => look_at_plant(plant),
+        Ok(plant) => check_plant(plant),
         Err(error) => panic!("accepted, but no plant: {error}"),
     }
 }
 
-/// Its first moments under a finger.
-fn look_at_plant(mut plant: Plant) {
+/// The temperatures of the first ticks under a finger are plausible.
+fn check_plant(mut plant: Plant) {
     plant.set_force(2.0);
     for _ in 0..3 {
         plant.step(&Legs::default());

@@ -1,64 +1,65 @@
-//! Devices in every state, made once: getting there takes hundreds of ticks.
+//! Devices in every state, prepared once, because reaching a state takes hundreds of ticks.
 
 use std::sync::OnceLock;
 
-use thermal_display::device::safety::{Fault, State};
+use thermal_display::device::safety::Fault;
+use thermal_display::device::{Finger, StateName};
 
-use crate::device::Device;
+use crate::device::CheckedDevice;
 
-/// An experiment has ended by now; at a quarter of it, it drives.
-const TUNED_MS: u32 = 40_000;
+/// By this time an identification of the tile has ended; at a quarter of it, it drives pulses.
+const IDENTIFIED_MS: u32 = 40_000;
 
-/// Where a run of inputs begins.
+/// Devices that an input can start with.
 #[derive(Debug)]
-pub struct Starts<const FINGERS: usize>(OnceLock<Vec<Device<FINGERS>>>);
+pub struct StartDevices<const FINGERS: usize>(OnceLock<Vec<CheckedDevice<FINGERS>>>);
 
-impl<const FINGERS: usize> Starts<FINGERS> {
-    /// None are made yet.
+impl<const FINGERS: usize> StartDevices<FINGERS> {
+    /// Prepares nothing yet.
     pub const fn new() -> Self {
         Self(OnceLock::new())
     }
 
-    /// One of them, counted modulo their number: off, in self-test, armed, at a preset, in contact, ready, tripped, tuning
-    /// (just begun, on its way, done), streaming in contact by the plain law.
-    pub fn get(&self, which: u8) -> Device<FINGERS> {
+    /// The device with this index, modulo their number: off, in self-test, armed, at the preset, in contact, ready,
+    /// tripped, identifying the tile (begun, driving pulses, done), streaming telemetry in contact under the PI law.
+    pub fn get(&self, index: u8) -> CheckedDevice<FINGERS> {
         let all = self.0.get_or_init(|| {
-            let lead = |lines: &[&str], newton: f64, ticks: usize| {
-                let mut device = Device::<FINGERS>::new();
-                (0..300).for_each(|_| device.tick());
+            let device_after = |lines: &[&str], force_n: f64, ticks: u32| {
+                let mut device = CheckedDevice::<FINGERS>::new();
+                device.run(300);
                 for line in lines {
                     assert!(device.line(line).is_ok(), "{line}");
                     if *line == "arm" {
-                        (0..800).for_each(|_| device.tick());
+                        device.run(800);
                     }
                 }
-                (0..FINGERS).for_each(|finger| device.tile(finger).press(newton));
-                (0..ticks).for_each(|_| device.tick());
+                device.press_all(force_n);
+                device.run(ticks);
                 device
             };
-            let off = lead(&[], 0.0, 0);
+            let off = device_after(&[], 0.0, 0);
             let mut testing = off.clone();
             assert!(testing.line("arm").is_ok());
-            (0..35).for_each(|_| testing.tick());
-            let armed = lead(&["arm"], 0.0, 100);
-            let preset = lead(&["material granite", "arm", "start"], 0.0, 100);
-            let contact = lead(&["material copper", "arm", "start"], 2.0, 300);
-            let ready = lead(&["arm", "abort"], 0.0, 10);
-            let mut tripped = lead(&["material abs", "arm"], 0.0, 0);
-            tripped.trip(Fault::Bridge);
-            let tuning = lead(&["arm", "stream 20", "tune"], 0.0, 300);
-            let mut on_the_way = tuning.clone();
-            let mut tuned = tuning.clone();
-            for ms in 0..TUNED_MS {
-                if ms == TUNED_MS / 4 {
-                    on_the_way = tuned.clone();
+            testing.run(35);
+            let armed = device_after(&["arm"], 0.0, 100);
+            let preset = device_after(&["material granite", "arm", "start"], 0.0, 100);
+            let contact = device_after(&["material copper", "arm", "start"], 2.0, 300);
+            let ready = device_after(&["arm", "abort"], 0.0, 10);
+            let mut tripped = device_after(&["material abs", "arm"], 0.0, 0);
+            tripped.trip_all(Fault::Bridge);
+            let identifying = device_after(&["arm", "stream 20", "tune"], 0.0, 300);
+            let mut driving_pulses = identifying.clone();
+            let mut identified = identifying.clone();
+            for ms in 0..IDENTIFIED_MS {
+                if ms == IDENTIFIED_MS / 4 {
+                    driving_pulses = identified.clone();
                 }
-                tuned.hear();
-                tuned.tick();
+                identified.note_host_activity();
+                identified.run(1);
             }
-            let answer = tuned.clone().line("@0 tune result");
+            let answer = identified.clone().line("@0 tune result");
             assert!(answer.is_ok(), "{answer:?}");
-            let streaming = lead(
+            let streaming = device_after(
                 &[
                     "law pi",
                     "object 20",
@@ -71,29 +72,38 @@ impl<const FINGERS: usize> Starts<FINGERS> {
                 50,
             );
             let mut all = vec![
-                off, testing, armed, preset, contact, ready, tripped, tuning, on_the_way, tuned,
+                off,
+                testing,
+                armed,
+                preset,
+                contact,
+                ready,
+                tripped,
+                identifying,
+                driving_pulses,
+                identified,
                 streaming,
             ];
             let states: Vec<_> = all
                 .iter_mut()
-                .map(|device| device.status(0).state)
+                .map(|device| device.state(Finger::FIRST))
                 .collect();
             let expected = [
-                State::Off,
-                State::SelfTest,
-                State::Armed,
-                State::Preset,
-                State::Contact,
-                State::Ready,
-                State::Tripped(Fault::Bridge),
-                State::Armed,
-                State::Armed,
-                State::Armed,
-                State::Contact,
+                StateName::Off,
+                StateName::SelfTest,
+                StateName::Armed,
+                StateName::Preset,
+                StateName::Contact,
+                StateName::Ready,
+                StateName::Tripped(Fault::Bridge),
+                StateName::Armed,
+                StateName::Armed,
+                StateName::Armed,
+                StateName::Contact,
             ];
             assert_eq!(states, expected);
             all
         });
-        all[usize::from(which) % all.len()].clone()
+        all[usize::from(index) % all.len()].clone()
     }
 }

@@ -1,57 +1,60 @@
-//! Samples of any kind, and lines in between.
+//! A device with one finger under samples of any kind, with lines and faults in between.
 
 use arbitrary::{Arbitrary, Unstructured};
 use thermal_display::commissioning::SENSOR_WORDS;
+use thermal_display::device::Finger;
+use thermal_display::device::drive::Drive;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Samples, Scan};
 
-use crate::start::Starts;
+use crate::start::StartDevices;
 
-static STARTS: Starts<1> = Starts::new();
+static STARTS: StartDevices<1> = StartDevices::new();
+const FINGER: Finger<1> = Finger::FIRST;
 
-/// Ticks of one input, at most.
+/// Largest number of ticks of one input.
 const TICKS: u32 = 2500;
 
-/// What happens to the device, from a state on.
+/// The initial state of the device, and the events that follow.
 #[derive(Arbitrary, Debug)]
-struct Course {
+struct Input {
     start: u8,
     events: Vec<Event>,
 }
 
-/// One thing that happens.
+/// An event.
 #[derive(Arbitrary, Debug)]
 enum Event {
     /// Ticks on the tile.
     Run(u8),
-    /// A tick with any sums.
+    /// A tick with these sums and bridge fault.
     Sums([u16; CHANNELS], bool),
-    /// A tick of any conversions, the last unlike the others.
+    /// A tick with these conversions, the second ones in the last scan.
     Scans([u16; CHANNELS], [u16; CHANNELS]),
-    /// Ticks on the tile in which one channel says something else.
+    /// Ticks on the tile in which one channel is stuck at a sum.
     Stuck { channel: u8, sum: u16, ticks: u8 },
-    /// Ticks on the tile in which one channel is off, by so much more every tick.
-    Off {
+    /// Ticks on the tile in which one channel has an offset that grows.
+    Offset {
         channel: u8,
-        by: i16,
-        more: i8,
+        start: i16,
+        per_tick: i8,
         ticks: u8,
     },
-    /// A tick in which the bridge's fault line is pulled.
+    /// A tick in which the bridge reports a fault.
     BridgeFault,
-    /// Force in 16ths of a newton.
+    /// Force, 1/16 N.
     Press(u8),
-    /// Sink, skin and room, in half degrees.
-    Surround(u8, u8, u8),
-    /// A reason that samples do not show.
+    /// Temperatures of sink, skin and room, 0.5 °C.
+    Surroundings(u8, u8, u8),
+    /// A fault that is detected outside of the station.
     Trip(u8),
-    /// The host is heard.
-    Hear,
-    /// A line.
-    Say(Line),
+    /// Activity of the host.
+    HostActivity,
+    /// A line from the host.
+    Line(Line),
 }
 
-/// A line of the protocol whose numbers are most often allowed.
+/// A line of the protocol whose numbers are within their ranges most of the time.
 #[derive(Arbitrary, Debug)]
 enum Line {
     Word(u8),
@@ -103,25 +106,25 @@ const MATERIALS: [&str; 9] = [
     "zns",
 ];
 
-/// One of several, counted modulo their number.
-fn of<T: Copy>(all: &[T], which: u8) -> T {
-    all[usize::from(which) % all.len()]
+/// The element at an index modulo their number.
+fn element<T: Copy>(all: &[T], index: u8) -> T {
+    all[usize::from(index) % all.len()]
 }
 
 impl Line {
     fn text(&self) -> String {
-        let fraction = |value: u16, most: f64| most * f64::from(value) / 65535.0;
+        let fraction = |value: u16, max: f64| max * f64::from(value) / 65535.0;
         match self {
-            Self::Word(which) => of(&WORDS, *which).into(),
-            Self::Material(which) => format!("material {}", of(&MATERIALS, *which)),
+            Self::Word(index) => element(&WORDS, *index).into(),
+            Self::Material(index) => format!("material {}", element(&MATERIALS, *index)),
             Self::Custom(values) => {
-                let most = [5000.0, 30_000.0, 10_000.0, 1000.0, 1.5];
-                let values = values.iter().zip(most).map(|(value, most)| {
-                    // By decades: a property of one material is a thousandth of another's.
+                let max = [5000.0, 30_000.0, 10_000.0, 1000.0, 1.5];
+                let values = values.iter().zip(max).map(|(value, max)| {
+                    // Logarithmic, because the properties of materials differ by factors of a thousand.
                     let decades = f64::from(value >> 8) / 256.0 * 5.0;
                     format!(
                         " {:.6}",
-                        most * 10f64.powf(-decades) * (1.0 - fraction(value & 0xff, 100.0))
+                        max * 10f64.powf(-decades) * (1.0 - fraction(value & 0xff, 100.0))
                     )
                 });
                 format!("material custom{}", values.collect::<String>())
@@ -141,27 +144,27 @@ impl Line {
                 )
             }
             Self::Correction(sensor, [offset, slope, curvature]) => {
-                let part = |value: &i16, most: f64| most * f64::from(*value) / 32768.0;
+                let fraction = |value: &i16, max: f64| max * f64::from(*value) / 32768.0;
                 format!(
                     "set correction {} {:.6} {:.7} {:.8}",
-                    of(&SENSOR_WORDS, *sensor),
-                    part(offset, 1.2),
-                    part(slope, 0.05),
-                    part(curvature, 0.002)
+                    element(&SENSOR_WORDS, *sensor),
+                    fraction(offset, 1.2),
+                    fraction(slope, 0.05),
+                    fraction(curvature, 0.002)
                 )
             }
             Self::Tile(values) => {
-                let most = [15.0, 0.5, 5.0, 5.0, 1.0];
+                let max = [15.0, 0.5, 5.0, 5.0, 1.0];
                 let values = values
                     .iter()
-                    .zip(most)
-                    .map(|(value, most)| format!(" {:.6}", fraction(*value, most)));
+                    .zip(max)
+                    .map(|(value, max)| format!(" {:.6}", fraction(*value, max)));
                 format!("set tile{}", values.collect::<String>())
             }
             Self::Point(sensor, celsius) => {
                 format!(
                     "calibrate {} {:.3}",
-                    of(&SENSOR_WORDS, *sensor),
+                    element(&SENSOR_WORDS, *sensor),
                     fraction(*celsius, 60.0)
                 )
             }
@@ -169,9 +172,9 @@ impl Line {
     }
 }
 
-/// The channel's place in the samples, counted modulo their number.
-fn channel(samples: &mut Samples, which: u8) -> &mut u16 {
-    match usize::from(which) % CHANNELS {
+/// The sum of the channel with this index, modulo their number.
+fn channel(samples: &mut Samples, index: u8) -> &mut u16 {
+    match usize::from(index) % CHANNELS {
         0 => &mut samples.display,
         1 => &mut samples.display_check,
         2 => &mut samples.sink,
@@ -182,21 +185,21 @@ fn channel(samples: &mut Samples, which: u8) -> &mut u16 {
     }
 }
 
-/// See [`Course`].
+/// Applies the events in order.
 pub fn run(input: &[u8]) -> bool {
-    let Ok(course) = Course::arbitrary_take_rest(Unstructured::new(input)) else {
+    let Ok(input) = Input::arbitrary_take_rest(Unstructured::new(input)) else {
         return false;
     };
-    let mut device = STARTS.get(course.start);
-    let mut left = TICKS;
+    let mut device = STARTS.get(input.start);
+    let mut remaining = TICKS;
     let mut limited = |ticks: u8| {
-        let ticks = left.min(u32::from(ticks));
-        left -= ticks;
-        ticks as i32
+        let ticks = remaining.min(u32::from(ticks));
+        remaining -= ticks;
+        ticks
     };
-    for event in &course.events {
+    for event in &input.events {
         match *event {
-            Event::Run(ticks) => (0..limited(ticks)).for_each(|_| device.tick()),
+            Event::Run(ticks) => device.run(limited(ticks)),
             Event::Sums(
                 [display, display_check, sink, skin, room, force, current],
                 bridge_fault,
@@ -211,7 +214,7 @@ pub fn run(input: &[u8]) -> bool {
                     current,
                     bridge_fault,
                 };
-                device.step(0, &samples);
+                device.step(FINGER, &samples);
             }
             Event::Scans(counts, last) => {
                 let scan = |counts: [u16; CHANNELS]| -> Scan { counts.map(|count| count & 0x0fff) };
@@ -220,44 +223,45 @@ pub fn run(input: &[u8]) -> bool {
                 let broken = scan(last)[..5]
                     .iter()
                     .any(|count| matches!(count, 0 | 4095));
-                let outputs = device.step(0, &Samples::from_scans(&scans, false));
+                let outputs = device.step(FINGER, &Samples::from_scans(&scans, false));
                 assert!(
-                    !broken || outputs.drive == thermal_display::device::drive::Drive::Off,
+                    !broken || outputs.drive == Drive::Off,
                     "driven in the tick in which a wire broke"
                 );
             }
             Event::Stuck {
-                channel: which,
+                channel: index,
                 sum,
                 ticks,
             } => {
                 for _ in 0..limited(ticks) {
-                    device.tick_with(0, |samples| *channel(samples, which) = sum);
+                    device.tick_with(FINGER, |samples| *channel(samples, index) = sum);
                 }
             }
-            Event::Off {
-                channel: which,
-                by,
-                more,
+            Event::Offset {
+                channel: index,
+                start,
+                per_tick,
                 ticks,
             } => {
-                for tick in 0..limited(ticks) {
-                    let off = i32::from(by) + tick * i32::from(more);
-                    device.tick_with(0, |samples| {
-                        let place = channel(samples, which);
-                        *place = (i32::from(*place) + off).clamp(0, 65_535) as u16;
+                for tick in 0..limited(ticks) as i32 {
+                    let offset = i32::from(start) + tick * i32::from(per_tick);
+                    device.tick_with(FINGER, |samples| {
+                        let sum = channel(samples, index);
+                        *sum = (i32::from(*sum) + offset).clamp(0, 65_535) as u16;
                     });
                 }
             }
-            Event::BridgeFault => device.tick_with(0, |samples| samples.bridge_fault = true),
-            Event::Press(part) => device.tile(0).press(f64::from(part) / 16.0),
-            Event::Surround(sink, skin, room) => {
-                let [sink, skin, room] = [sink, skin, room].map(|half| 0.5 * f64::from(half));
-                device.tile(0).surround(sink, skin, room);
+            Event::BridgeFault => device.tick_with(FINGER, |samples| samples.bridge_fault = true),
+            Event::Press(sixteenths_n) => device.tile(FINGER).press(f64::from(sixteenths_n) / 16.0),
+            Event::Surroundings(sink, skin, room) => {
+                let [sink, skin, room] =
+                    [sink, skin, room].map(|halves_c| 0.5 * f64::from(halves_c));
+                device.tile(FINGER).set_surroundings(sink, skin, room);
             }
-            Event::Trip(which) => device.trip(of(Fault::ALL, which)),
-            Event::Hear => device.hear(),
-            Event::Say(ref line) => {
+            Event::Trip(index) => device.trip_all(element(Fault::ALL, index)),
+            Event::HostActivity => device.note_host_activity(),
+            Event::Line(ref line) => {
                 let _ = device.line(&line.text());
             }
         }
@@ -265,15 +269,15 @@ pub fn run(input: &[u8]) -> bool {
     true
 }
 
-/// The course, line by line.
+/// The events, one a line.
 pub fn show(input: &[u8]) -> String {
-    match Course::arbitrary_take_rest(Unstructured::new(input)) {
-        Ok(course) => {
-            let told = course.events.iter().map(|event| match event {
-                Event::Say(line) => format!("say {:?}\n", line.text()),
+    match Input::arbitrary_take_rest(Unstructured::new(input)) {
+        Ok(input) => {
+            let events = input.events.iter().map(|event| match event {
+                Event::Line(line) => format!("Line({:?})\n", line.text()),
                 event => format!("{event:?}\n"),
             });
-            format!("start {}\n{}", course.start, told.collect::<String>())
+            format!("start {}\n{}", input.start, events.collect::<String>())
         }
         Err(error) => error.to_string(),
     }

@@ -1,26 +1,26 @@
 //! Bytes from the host.
 //!
-//! The first byte says where the device is: its low seven bits in which state, its highest whether it has five fingers.
-//! After it, bytes below 0x80 are the host's; the others, which no line has, say what happens between:
+//! The first byte selects the device: its low seven bits the state, its highest bit five fingers instead of one. Of the
+//! bytes after it, those below 0x80 are sent to the device; the others, which no line contains, are events between them:
 //!
 //! | byte         | meaning                                                   |
 //! |--------------|-----------------------------------------------------------|
 //! | 0x80 to 0xbf | 1 to 64 ticks                                             |
 //! | 0xc0 to 0xcf | all fingers press, in steps of 0.2 N                      |
-//! | 0xd0, 0xd1   | a byte was damaged, a line found no room                  |
-//! | 0xd2         | the host was heard                                        |
-//! | others       | themselves                                                |
+//! | 0xd0, 0xd1   | a reception error, a full queue of lines                  |
+//! | 0xd2         | activity of the host                                      |
+//! | others       | sent to the device, as bytes that no line may contain     |
 
 use thermal_display::protocol::{LineError, LineReader};
 
-use crate::device::Device;
-use crate::start::Starts;
+use crate::device::CheckedDevice;
+use crate::start::StartDevices;
 
-/// Ticks of one input, at most: more of the same finds nothing more.
+/// Largest number of ticks of one input; longer runs find nothing more.
 const TICKS: u32 = 2500;
 
-static ONE: Starts<1> = Starts::new();
-static FIVE: Starts<5> = Starts::new();
+static ONE: StartDevices<1> = StartDevices::new();
+static FIVE: StartDevices<5> = StartDevices::new();
 
 /// See [the module](self).
 pub fn run(input: &[u8]) -> bool {
@@ -31,32 +31,29 @@ pub fn run(input: &[u8]) -> bool {
     }
 }
 
-/// What happens, in the host's words.
+/// The input, with bytes that are not printable escaped.
 pub fn show(input: &[u8]) -> String {
     input.escape_ascii().to_string()
 }
 
-fn play<const FINGERS: usize>(mut device: Device<FINGERS>, bytes: &[u8]) -> bool {
+fn play<const FINGERS: usize>(mut device: CheckedDevice<FINGERS>, bytes: &[u8]) -> bool {
     let mut reader = LineReader::new();
-    let mut left = TICKS / FINGERS as u32;
+    let mut remaining = TICKS / FINGERS as u32;
     for &byte in bytes {
         match byte {
             0x80..=0xbf => {
-                let ticks = left.min(u32::from(byte & 0x3f) + 1);
-                left -= ticks;
-                (0..ticks).for_each(|_| device.tick());
+                let ticks = remaining.min(u32::from(byte & 0x3f) + 1);
+                remaining -= ticks;
+                device.run(ticks);
             }
-            0xc0..=0xcf => {
-                let newton = 0.2 * f64::from(byte & 0x0f);
-                (0..FINGERS).for_each(|finger| device.tile(finger).press(newton));
-            }
+            0xc0..=0xcf => device.press_all(0.2 * f64::from(byte & 0x0f)),
             0xd0 => reader.fail(LineError::Reception),
             0xd1 => reader.fail(LineError::QueueFull),
-            0xd2 => device.hear(),
+            0xd2 => device.note_host_activity(),
             byte => device.byte(&mut reader, byte),
         }
     }
-    // The last line need not end.
+    // Ends the last line.
     device.byte(&mut reader, b'\n');
     true
 }

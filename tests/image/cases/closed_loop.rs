@@ -107,6 +107,8 @@ fn granite_is_displayed_within_20_mk_of_the_skin() {
         ),
         ("tick.cycles_mean", cycles.mean),
         ("tick.cycles_max", cycles.max.map(|max| max as f64)),
+        ("tick.load", figures.cpu_load.map(|load| 100.0 * load)),
+        ("tick.stack", figures.stack_bytes.map(f64::from)),
     ] {
         assert_compiled(key, measured.expect("emulated"), &compiler);
     }

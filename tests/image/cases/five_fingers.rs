@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use documented_figures::{assert_compiled, assert_figure};
 use image_proof::compiler::of_elf;
 use stm32_emulator::Firmware;
-use stm32_emulator::ImageHand;
+use stm32_emulator::FiveFingerBoard;
 use system_tests::{forces, host, natively, scene};
 use thermal_sim::World;
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, NativeFiveFingers, run};
@@ -28,9 +28,9 @@ fn worlds(scenes: &[Scene; FINGERS]) -> [World; FINGERS] {
         .map(|scene| World::new(scene).expect("a plant for the scene"))
 }
 
-fn on_image(scenes: &[Scene; FINGERS]) -> ([Outcome; FINGERS], ImageHand) {
+fn on_image(scenes: &[Scene; FINGERS]) -> ([Outcome; FINGERS], FiveFingerBoard) {
     let image = Firmware::from_file(elf()).expect("an image for this chip");
-    let mut hand = ImageHand::new(&image, worlds(scenes)).expect("the image starts");
+    let mut hand = FiveFingerBoard::new(&image, worlds(scenes)).expect("the image starts");
     let outcomes = run(scenes, &mut hand, |_| ()).expect("the image runs to the end");
     (outcomes, hand)
 }

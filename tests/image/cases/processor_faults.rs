@@ -2,7 +2,7 @@
 
 use image_tests::{image, on_image};
 use stm32_emulator::Firmware;
-use stm32_emulator::Image;
+use stm32_emulator::OneFingerBoard;
 use system_tests::{between, copper_contact, forces, host, scene};
 use thermal_sim::World;
 use thermal_sim::processor::Injection;
@@ -16,7 +16,7 @@ fn with_fault(t_s: f64, fault: &str) -> Outcome {
         Firmware::from_file(image()).expect("an image"),
     );
     let world = World::new(&scene).expect("a plant for the scene");
-    let mut engine = Image::new(&firmware, world).expect("the image samples");
+    let mut engine = OneFingerBoard::new(&firmware, world).expect("the image samples");
     let fault = fault.parse().expect("a fault");
     run_with(&scene, &[Injection { t_s, fault }], &mut engine, |_| ())
         .expect("the image runs to the end")

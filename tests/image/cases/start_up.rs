@@ -49,7 +49,7 @@ fn an_unexpected_software_reset_is_a_fault_and_an_external_reset_is_none() {
         for _ in 0..2 {
             device.run(EARLY);
             match reset {
-                ResetCause::Software => device.0.ask_for_reset(),
+                ResetCause::Software => device.0.request_reset(),
                 ResetCause::Pin => device.0.pull_reset_pin(),
                 ResetCause::BrownOut => device.0.brown_out(),
                 _ => device.0.power_cycle(3),
@@ -68,7 +68,7 @@ fn the_first_fault_survives_resets_and_not_a_power_cycle() {
         let reset = match step {
             0 => device.0.pull_reset_pin(),
             1 => device.0.brown_out(),
-            2 => device.0.ask_for_reset(),
+            2 => device.0.request_reset(),
             _ => device.0.power_cycle(7),
         };
         reset.expect("starts anew");

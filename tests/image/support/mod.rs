@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use stm32_emulator::Firmware;
-use stm32_emulator::Image;
+use stm32_emulator::OneFingerBoard;
 use thermal_sim::World;
 use thermal_sim::run::{Outcome, run};
 use thermal_sim::scene::Scene;
@@ -27,7 +27,7 @@ pub fn image() -> &'static Path {
 /// # Errors
 /// The plant refuses the scene, or the image does not run to its end.
 pub fn on(image: &Firmware, scene: &Scene) -> anyhow::Result<Outcome> {
-    let mut engine = Image::new(image, World::new(scene)?)?;
+    let mut engine = OneFingerBoard::new(image, World::new(scene)?)?;
     Ok(run(scene, &mut engine, |_| ())?)
 }
 

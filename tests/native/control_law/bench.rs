@@ -109,10 +109,11 @@ impl ControlLoop {
     /// The current, A, for a target, the readings of the display's and the sink's thermistors, and a known load, W.
     pub fn step(&mut self, target_c: f64, (reading_c, sink_c): (f64, f64), load_w: f64) -> f64 {
         let (display, sink) = (celsius(reading_c), celsius(sink_c));
-        self.observer.correct(display, sink, Watt::from_num(load_w));
+        self.observer
+            .correct_by_reading(display, sink, Watt::from_num(load_w));
         let reference = Reference::at(setpoint(target_c).celsius());
-        let current = (self.controller).update(&reference, display, sink, &self.observer);
-        self.observer.advance(current);
+        let current = (self.controller).choose_current(&reference, display, sink, &self.observer);
+        self.observer.advance_model(current);
         current.to_num()
     }
 }

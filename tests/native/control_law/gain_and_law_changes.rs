@@ -75,7 +75,7 @@ fn the_pi_controllers_change_gains_without_a_bump() {
     for law in [Law::Pi, Law::Pi10Hz] {
         for factor in [0.5, 2.0] {
             let mut bench = loaded();
-            bench.control.controller.select(law);
+            bench.control.controller.select_law(law);
             bench.run(TARGET_C, 60.0);
             let tile = Tile {
                 gain_k_s_a: factor * IDENTIFIED.gain_k_s_a,
@@ -133,10 +133,10 @@ fn the_controller_changes_without_a_bump() {
     ] {
         let mut bench = Bench::settled_at(0.1, TARGET_C);
         (bench.load_w, bench.known_load_w) = (1.0, 1.0);
-        bench.control.controller.select(from);
+        bench.control.controller.select_law(from);
         bench.run(TARGET_C, 60.0);
         let before_a = bench.current_a;
-        bench.control.controller.select(to);
+        bench.control.controller.select_law(to);
         let (step_a, error_k) = disturbed(&mut bench);
         bench.run(TARGET_C, 20.0);
         let left_k = (bench.display_c() - TARGET_C).abs();

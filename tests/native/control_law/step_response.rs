@@ -75,7 +75,7 @@ fn the_current_limit_causes_no_windup() {
             // The same controller without its past.
             let mut afresh = bench.clone();
             afresh.control.observer.invalidate();
-            afresh.control.controller.track(Current::ZERO);
+            afresh.control.controller.track_current(Current::ZERO);
             let reachable_c = bench.display_c() + step_k;
             let [recovered, fresh] = [&mut bench, &mut afresh].map(|bench| {
                 let answer = bench.run(reachable_c, 10.0);

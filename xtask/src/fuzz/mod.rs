@@ -109,9 +109,8 @@ fn create(path: &Path) -> Result<()> {
 /// `cargo xtask fuzz`
 pub fn run(permission: Permission, options: &Options) -> Result<()> {
     let needs = Needs {
-        emulator: true,
         fuzzer: true,
-        lints: false,
+        ..Needs::default()
     };
     setup::prepare(needs, permission)?;
     let targets = match options.target.as_slice() {

@@ -165,87 +165,42 @@ mod tests {
 
     #[test]
     fn packages_are_installed_as_root_only_with_consent() {
-        let user = Situation {
-            apt: true,
-            root: false,
-            sudo: true,
-            agreed: false,
-            terminal: true,
+        let situation = |there: &str| Situation {
+            apt: there.contains("apt"),
+            root: there.contains("root"),
+            sudo: there.contains("sudo"),
+            agreed: there.contains("--yes"),
+            terminal: there.contains("terminal"),
         };
-        let root = Situation {
-            root: true,
-            sudo: false,
-            ..user
-        };
-        let cases = [
-            (user, Consent::Ask),
-            (root, Consent::Ask),
-            (
-                Situation {
-                    agreed: true,
-                    terminal: false,
-                    ..user
-                },
-                Consent::Given,
-            ),
-            (
-                Situation {
-                    agreed: true,
-                    terminal: false,
-                    ..root
-                },
-                Consent::Given,
-            ),
-        ];
-        for (situation, expected) in cases {
-            assert_eq!(consent(&situation), expected, "{situation:?}");
+        for (there, expected) in [
+            ("apt sudo terminal", Consent::Ask),
+            ("apt root terminal", Consent::Ask),
+            ("apt sudo --yes", Consent::Given),
+            ("apt root --yes", Consent::Given),
+        ] {
+            assert_eq!(consent(&situation(there)), expected, "{there}");
         }
-        let refused = [
-            (
-                Situation {
-                    terminal: false,
-                    ..root
-                },
-                "--yes",
-            ),
-            (
-                Situation {
-                    sudo: false,
-                    agreed: true,
-                    ..user
-                },
-                "sudo",
-            ),
-            (
-                Situation {
-                    apt: false,
-                    agreed: true,
-                    ..root
-                },
-                "apt-get",
-            ),
-        ];
-        for (situation, word) in refused {
-            let Consent::Refused(why) = consent(&situation) else {
-                panic!("{situation:?} was not refused")
+        for (there, lacking) in [
+            ("apt root", "--yes"),
+            ("apt --yes terminal", "sudo"),
+            ("root --yes terminal", "apt-get"),
+        ] {
+            let Consent::Refused(why) = consent(&situation(there)) else {
+                panic!("{there}: not refused")
             };
-            assert!(why.contains(word), "{why}");
+            assert!(why.contains(lacking), "{why}");
         }
     }
 
     #[test]
     fn sudo_is_used_unless_the_user_is_root() {
         let install = |root| commands(&["cmake"], root)[1].to_string();
+        let (user, root) = (install(false), install(true));
+        assert!(user.starts_with("sudo env "), "{user}");
+        assert!(root.starts_with("env "), "{root}");
         assert!(
-            install(false).starts_with("sudo env "),
-            "{}",
-            install(false)
-        );
-        assert!(install(true).starts_with("env "), "{}", install(true));
-        assert!(
-            install(true).ends_with(" install -y --no-install-recommends cmake"),
-            "{}",
-            install(true)
+            root.ends_with(" install -y --no-install-recommends cmake"),
+            "{root}"
         );
     }
 

@@ -14,6 +14,12 @@ pub struct Lints {
 }
 
 impl Lints {
+    /// Both tools.
+    pub const ALL: Self = Self {
+        rustfmt: true,
+        clippy: true,
+    };
+
     fn probe() -> Self {
         let runs = |tool: &str| Invocation::cargo([tool, "--version"]).answer().is_some();
         Self {
@@ -24,11 +30,8 @@ impl Lints {
 
     fn missing(self) -> Vec<&'static str> {
         let tools = [(self.rustfmt, "rustfmt"), (self.clippy, "clippy")];
-        tools
-            .into_iter()
-            .filter(|(there, _)| !there)
-            .map(|(_, name)| name)
-            .collect()
+        let missing = tools.into_iter().filter(|(there, _)| !there);
+        missing.map(|(_, name)| name).collect()
     }
 
     /// An error if a tool is missing in continuous integration; a developer's machine may lack it.
@@ -68,17 +71,11 @@ mod tests {
 
     #[test]
     fn a_missing_tool_is_an_error_in_continuous_integration_only() {
-        let (all, no_clippy) = (
-            Lints {
-                rustfmt: true,
-                clippy: true,
-            },
-            Lints {
-                rustfmt: true,
-                clippy: false,
-            },
-        );
-        assert_eq!(all.accept(true).unwrap(), all);
+        let no_clippy = Lints {
+            clippy: false,
+            ..Lints::ALL
+        };
+        assert_eq!(Lints::ALL.accept(true).unwrap(), Lints::ALL);
         assert_eq!(no_clippy.accept(false).unwrap(), no_clippy);
         let error = no_clippy.accept(true).unwrap_err().to_string();
         assert!(error.contains("rustup component add clippy"), "{error}");

@@ -1,7 +1,7 @@
 //! Finds the tools that a command needs, and installs missing ones where that is allowed.
 mod apt;
+mod compilers;
 mod components;
-mod emulator;
 mod target;
 mod toolchain;
 
@@ -34,6 +34,15 @@ pub struct Needs {
     pub lints: bool,
 }
 
+impl Needs {
+    /// The emulator only.
+    pub const EMULATOR: Self = Self {
+        emulator: true,
+        fuzzer: false,
+        lints: false,
+    };
+}
+
 /// A missing tool, and the packages that provide it in common package managers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Missing {
@@ -41,6 +50,12 @@ struct Missing {
     apt: &'static [&'static str],
     /// Other commands that install it, each with one argument.
     elsewhere: &'static [&'static str],
+}
+
+/// The tools of a list that are not there.
+fn missing(tools: &[(bool, Missing)]) -> Vec<Missing> {
+    let missing = tools.iter().filter(|(there, _)| !there);
+    missing.map(|(_, tool)| *tool).collect()
 }
 
 /// Whether this is continuous integration, where nobody can be asked.
@@ -65,14 +80,7 @@ pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
             }
             continue;
         }
-        let mut missing = if needs.emulator {
-            emulator::missing(&emulator::probe())
-        } else {
-            Vec::new()
-        };
-        if needs.fuzzer {
-            missing.extend(emulator::missing_for_fuzzer());
-        }
+        let mut missing = compilers::missing(needs);
         let ready = match decision {
             target::Decision::Use(toolchain) => Some(toolchain),
             target::Decision::Lacks(lacks) => {

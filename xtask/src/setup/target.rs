@@ -87,13 +87,7 @@ pub fn decide(choice: Choice, found: &Found, lints: bool, rustup_tried: bool) ->
             }))
         }
         _ if choice == Choice::Auto && found.rustup && !rustup_tried => Decision::AddWithRustup,
-        _ => Decision::Lacks(
-            lacks
-                .iter()
-                .filter(|(there, _)| !there)
-                .map(|(_, missing)| *missing)
-                .collect(),
-        ),
+        _ => Decision::Lacks(super::missing(&lacks)),
     }
 }
 
@@ -172,103 +166,30 @@ mod tests {
         }))
     }
 
-    /// The names of the packages of each case are those of Debian 12.
     #[test]
     fn the_tools_found_decide_the_next_step() {
         use Choice::{Auto, Distribution, Rustup};
+        use Decision::{AddWithRustup, Lacks, Use};
         let nothing = Found::default();
-        let bare = Found {
-            rustup: true,
-            linker: complete().linker,
-            ..nothing.clone()
-        };
-        let has_target = Found {
-            active_has_target: true,
-            ..complete()
-        };
-        let active = || Decision::Use(Toolchain::Active);
-        let lacks = |missing: &[Missing]| Decision::Lacks(missing.to_vec());
-        let cases = [
-            ("the target is there", Auto, &has_target, false, active()),
-            (
-                "the switch overrides it",
-                Distribution,
-                &has_target,
-                false,
-                distribution(),
-            ),
-            (
-                "rustup comes first on a bare machine",
-                Auto,
-                &bare,
-                false,
-                Decision::AddWithRustup,
-            ),
-            (
-                "packages follow when it failed",
-                Auto,
-                &bare,
-                true,
-                lacks(&[COMPILER]),
-            ),
-            (
-                "they are not a choice when forced",
-                Rustup,
-                &bare,
-                true,
-                lacks(&[RUSTUP_TARGET]),
-            ),
-            (
-                "no rustup, no linker of its toolchain",
-                Auto,
-                &nothing,
-                false,
-                lacks(&[COMPILER, LINKER]),
-            ),
-            (
-                "complete packages spare the download",
-                Auto,
-                &Found {
-                    rustup: true,
-                    ..complete()
-                },
-                false,
-                distribution(),
-            ),
-            (
-                "unless rustup is forced",
-                Rustup,
-                &Found {
-                    rustup: true,
-                    ..complete()
-                },
-                false,
-                Decision::AddWithRustup,
-            ),
-            (
-                "Debian 12's own rustc",
-                Auto,
-                &Found {
-                    rustc: Some((1, 63)),
-                    ..complete()
-                },
-                true,
-                lacks(&[COMPILER]),
-            ),
-            (
-                "no source",
-                Distribution,
-                &Found {
-                    source: false,
-                    ..complete()
-                },
-                false,
-                lacks(&[COMPILER]),
-            ),
-        ];
-        for (case, choice, found, tried, expected) in cases {
-            assert_eq!(decide(choice, found, false, tried), expected, "{case}");
-        }
+        let mut bare = nothing.clone();
+        (bare.rustup, bare.linker) = (true, complete().linker);
+        let (mut has_target, mut with_rustup) = (complete(), complete());
+        (has_target.active_has_target, with_rustup.rustup) = (true, true);
+        let (mut debian_12, mut no_source) = (complete(), complete());
+        (debian_12.rustc, no_source.source) = (Some((1, 63)), false);
+        let step = |choice, found, tried| decide(choice, found, false, tried);
+        assert_eq!(step(Auto, &has_target, false), Use(Toolchain::Active));
+        assert_eq!(step(Distribution, &has_target, false), distribution());
+        // rustup comes first on a bare machine; packages follow if it failed, unless rustup was asked for.
+        assert_eq!(step(Auto, &bare, false), AddWithRustup);
+        assert_eq!(step(Auto, &bare, true), Lacks(vec![COMPILER]));
+        assert_eq!(step(Rustup, &bare, true), Lacks(vec![RUSTUP_TARGET]));
+        assert_eq!(step(Auto, &nothing, false), Lacks(vec![COMPILER, LINKER]));
+        // Complete packages save the download, unless rustup was asked for.
+        assert_eq!(step(Auto, &with_rustup, false), distribution());
+        assert_eq!(step(Rustup, &with_rustup, false), AddWithRustup);
+        assert_eq!(step(Auto, &debian_12, true), Lacks(vec![COMPILER]));
+        assert_eq!(step(Distribution, &no_source, false), Lacks(vec![COMPILER]));
     }
 
     #[test]

@@ -43,6 +43,11 @@ fn formatting(lints: Lints) -> Check {
     )
 }
 
+/// Figures in the documents are those of `docs/figures.toml`, and tests assert them.
+fn figures() -> Check {
+    check("figures of the documentation", ["xtask docs --check"])
+}
+
 /// Unit tests in the dev profile, where integer overflow panics.
 fn units(members: &[Member]) -> Check {
     let small = members::options(members, Member::is_small);
@@ -59,6 +64,7 @@ fn quick(members: &[Member], lints: Lints) -> Vec<Vec<Lane>> {
     let clippy = format!("clippy {small} --all-targets -- -Dwarnings");
     let small = vec![
         formatting(lints),
+        figures(),
         only_if(
             lints.clippy,
             NO_CLIPPY,
@@ -114,6 +120,7 @@ fn whole(
     let documentation = cargo("doc --release --workspace --no-deps");
     let host = vec![
         formatting(lints),
+        figures(),
         check(
             "native packages without the emulator",
             [&without_emulator, &native_command],
@@ -159,15 +166,8 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
             whole(&members, toolchain, permission.choice, lints)
         }
     };
-    let all = Lints {
-        rustfmt: true,
-        clippy: true,
-    };
-    let count = phases(&Toolchain::Active, all)
-        .into_iter()
-        .flatten()
-        .flatten();
-    let mut steps = Steps::new(2 + count.count());
+    let all = phases(&Toolchain::Active, Lints::ALL);
+    let mut steps = Steps::new(2 + all.iter().flatten().flatten().count());
     let result = (|| {
         let (toolchain, lints) = steps.run("set-up", "", || {
             let needs = Needs {
@@ -197,15 +197,10 @@ mod tests {
         phases.into_iter().flatten().flatten().collect()
     }
 
-    const ALL: Lints = Lints {
-        rustfmt: true,
-        clippy: true,
-    };
-
     /// Compiling it takes more than a minute for each profile.
     #[test]
     fn the_emulator_is_compiled_in_the_release_profile_only() {
-        for check in checks(ALL) {
+        for check in checks(Lints::ALL) {
             for line in check.commands.unwrap() {
                 let line = line.to_string();
                 assert!(!line.contains("--workspace") || line.contains("--release"));
@@ -215,22 +210,15 @@ mod tests {
 
     #[test]
     fn a_missing_tool_leaves_out_its_own_checks_only() {
-        let skipped = |lints| {
-            checks(lints)
+        let skipped = |rustfmt, clippy| {
+            let checks = checks(Lints { rustfmt, clippy });
+            checks
                 .iter()
                 .filter(|check| check.commands.is_err())
                 .count()
         };
-        assert_eq!(skipped(ALL), 0);
-        let no_rustfmt = Lints {
-            rustfmt: false,
-            ..ALL
-        };
-        assert_eq!(skipped(no_rustfmt), 1);
-        let no_clippy = Lints {
-            clippy: false,
-            ..ALL
-        };
-        assert_eq!(skipped(no_clippy), 2);
+        assert_eq!(skipped(true, true), 0);
+        assert_eq!(skipped(false, true), 1);
+        assert_eq!(skipped(true, false), 2);
     }
 }

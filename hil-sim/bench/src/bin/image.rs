@@ -1,5 +1,5 @@
-//! The image that measures on the emulated microcontroller. The level of port C's pins selects the job. Each call is
-//! made by the handler of PendSV, whose instructions and cycles the machine counts.
+//! The image that is measured on the emulated microcontroller. The levels of port C's pins select the job. Each call is
+//! made by the handler of PendSV, whose instructions and cycles the emulator counts.
 #![no_std]
 #![no_main]
 
@@ -17,7 +17,7 @@ use model_bench::scenes::{Scene, Station, TICKS};
 /// 0 until the job is done, then [`DONE_WELL`] or [`DONE_BADLY`]. Read from outside only.
 #[used]
 static DONE: AtomicU32 = AtomicU32::new(0);
-/// What the calls returned, low word first. Read from outside only.
+/// Checksum of the values that the calls returned, low word first. Read from outside only.
 #[used]
 static CHECKSUM: [AtomicU32; 2] = [const { AtomicU32::new(0) }; 2];
 
@@ -27,20 +27,21 @@ const DONE_BADLY: u32 = 2;
 const AHB1ENR: usize = 0x4002_3830;
 const GPIOC_IDR: usize = 0x4002_0810;
 
-/// What the handler is to call, and what that returned.
-struct Desk {
+/// The call that the handler makes, and its result.
+struct Measurement {
     work: Option<Work>,
     station: Option<Station>,
     value: Option<Value>,
     set_point: u32,
 }
 
+/// One call.
 enum Work {
     Kernel(Call, Input),
     Scene(Scene, u32),
 }
 
-static DESK: Mutex<RefCell<Desk>> = Mutex::new(RefCell::new(Desk {
+static MEASUREMENT: Mutex<RefCell<Measurement>> = Mutex::new(RefCell::new(Measurement {
     work: None,
     station: None,
     value: None,
@@ -50,12 +51,12 @@ static DESK: Mutex<RefCell<Desk>> = Mutex::new(RefCell::new(Desk {
 #[exception]
 fn PendSV() {
     free(|section| {
-        let desk = &mut *DESK.borrow(section).borrow_mut();
-        match &desk.work {
-            Some(Work::Kernel(call, input)) => desk.value = Some(call.on(input)),
+        let measurement = &mut *MEASUREMENT.borrow(section).borrow_mut();
+        match &measurement.work {
+            Some(Work::Kernel(call, input)) => measurement.value = Some(call.on(input)),
             Some(Work::Scene(scene, tick)) => {
-                if let Some(station) = &mut desk.station {
-                    desk.set_point = (scene.step)(station, *tick);
+                if let Some(station) = &mut measurement.station {
+                    measurement.set_point = (scene.step)(station, *tick);
                 }
             }
             None => {}
@@ -63,19 +64,19 @@ fn PendSV() {
     });
 }
 
-/// Has the handler do `work` and returns the bits of the answer.
+/// Has the handler do `work` and returns the bits of the result.
 fn measure(work: Work) -> u64 {
-    free(|section| DESK.borrow(section).borrow_mut().work = Some(work));
+    free(|section| MEASUREMENT.borrow(section).borrow_mut().work = Some(work));
     SCB::set_pendsv();
     cortex_m::asm::dsb();
     cortex_m::asm::isb();
     free(|section| {
-        let desk = DESK.borrow(section).borrow();
-        match (&desk.work, &desk.station) {
+        let measurement = MEASUREMENT.borrow(section).borrow();
+        match (&measurement.work, &measurement.station) {
             (Some(Work::Scene(scene, _)), Some(station)) => station
-                .set_point_c(scene.arithmetic, desk.set_point)
+                .set_point_c(scene.arithmetic, measurement.set_point)
                 .to_bits(),
-            _ => desk.value.map_or(0, Value::to_bits),
+            _ => measurement.value.map_or(0, Value::to_bits),
         }
     })
 }
@@ -90,7 +91,7 @@ fn run(job: Job) -> Option<Checksum> {
         }
         Job::Scene(scene) => {
             let station = Station::new().ok()?;
-            free(|section| DESK.borrow(section).borrow_mut().station = Some(station));
+            free(|section| MEASUREMENT.borrow(section).borrow_mut().station = Some(station));
             for tick in 1..=TICKS {
                 checksum.add(measure(Work::Scene(scene, tick)));
             }
@@ -99,7 +100,7 @@ fn run(job: Job) -> Option<Checksum> {
     Some(checksum)
 }
 
-/// Level of port C's pins.
+/// Levels of port C's pins.
 fn selection() -> u32 {
     // SAFETY: registers of the clock controller and of port C, read and written whole; nothing else uses them.
     unsafe {

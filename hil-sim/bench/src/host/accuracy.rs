@@ -1,4 +1,4 @@
-//! Errors of the kernels, and where they break.
+//! Errors of the kernels, and the arguments from which on they fail.
 use contact_model::fixed_point::Ticks;
 use model_bench::inputs::Input;
 use model_bench::kernels::Call;
@@ -10,11 +10,11 @@ use super::precise::{Twofold, erfcx_of_root, exact_product};
 const UNITS: f64 = 4_294_967_296.0;
 /// The temperature step at which errors are given in mK.
 pub const STEP_K: f64 = 60.0;
-/// A relative error above this is a break.
+/// A relative error above this counts as a failure.
 const BREAK: f64 = 0.01;
-/// Range of `z` in which breaks are looked for: all of the inputs' domain, and below.
+/// Range of `z` that is searched for failures: the inputs' domain, extended downwards.
 const Z: std::ops::Range<f64> = 1e-4..256.0;
-/// Steps of `z` to a doubling.
+/// Steps of `z` per octave.
 const STEPS: f64 = 256.0;
 
 /// Errors of one kernel over the inputs for which it gives a number.
@@ -30,7 +30,7 @@ pub struct Accuracy {
     pub breaks_at_z: Option<f64>,
 }
 
-/// Inputs with what they should give.
+/// Inputs with their exact results.
 pub struct Truth {
     cases: Vec<(Input, Twofold)>,
 }
@@ -71,12 +71,12 @@ impl Truth {
     }
 }
 
-/// Result minus truth; NaN or infinite if the result is.
+/// Error of a result; NaN or infinite if the result is.
 fn error(call: Call, input: &Input, truth: Twofold) -> f64 {
     (call.on(input).to_f64() - truth.high) - truth.low
 }
 
-/// Whether the result at `z` is of no use.
+/// Whether the kernel fails at `z`.
 fn broken(call: Call, z: f64) -> bool {
     Input::new(Ticks::ONE, z * z).is_some_and(|input| {
         let truth = exact(&input);
@@ -85,7 +85,7 @@ fn broken(call: Call, z: f64) -> bool {
     })
 }
 
-/// The first break, to 1e-6 relative.
+/// Smallest argument of a failure, to 1e-6 relative.
 fn breaks_at(call: Call) -> Option<f64> {
     let steps = ((Z.end / Z.start).log2() * STEPS) as u32;
     let z = |step: u32| Z.start * (f64::from(step) / STEPS).exp2();
@@ -108,7 +108,7 @@ mod tests {
 
     /// 50-digit values of the model's test data.
     #[test]
-    fn truth_agrees_with_golden_values() {
+    fn the_exact_kernel_agrees_with_golden_values() {
         let path = concat!(
             env!("CARGO_MANIFEST_DIR"),
             "/../../model/tests/data/erfcx.csv"

@@ -7,21 +7,21 @@ use stm32_emulator::{FLASH_BASE, Firmware, Machine, Stats, Wiring};
 
 use super::image::{Image, build};
 
-/// Cycles after which a job is given up: far more than any needs.
+/// Time limit of a job, cycles; far more than any job needs.
 const LIMIT: u64 = 20_000_000_000;
-/// Cycles between two looks at whether a job is done.
+/// Cycles between two checks whether a job is done.
 const STRIDE: u64 = 10_000_000;
 /// Values of the image's `DONE`.
 const RUNNING: u32 = 0;
-/// See [`RUNNING`].
+/// Value of the image's `DONE` after success.
 const DONE_WELL: u32 = 1;
 
-/// What the image reports its progress and the result in.
+/// Symbol in which the image reports its progress.
 const DONE: &str = "image::DONE";
-/// See [`DONE`].
+/// Symbol in which the image reports the checksum.
 const CHECKSUM: &str = "image::CHECKSUM";
 
-/// Begin of the paths of the firmware's kernel and its tables.
+/// Prefix of the paths of the firmware's kernel and its tables.
 const KERNEL_MODULE: &str = "contact_model::fixed_point::kernel";
 
 /// Instructions (exact) and cycles (estimated) of a call, call and return included, over all inputs.
@@ -41,7 +41,7 @@ pub struct Cost {
     pub cycles_max: u64,
 }
 
-/// Port C with the job's number; nothing else is connected.
+/// Port C, whose levels select the job; nothing else is connected.
 struct Pins(u32);
 
 impl Wiring for Pins {
@@ -56,15 +56,15 @@ impl Wiring for Pins {
     fn uart_tx(&mut self, _: u8, _: u64, _: u32) {}
 }
 
-/// The image and what a call costs in it without the callee's work.
+/// The image, and the overhead of a call in it.
 pub struct Emulated {
     firmware: Firmware,
     image: Image,
-    /// Of the types of [`Call`] in their order, then of scenes.
+    /// Overheads for the types of [`Call`] in their order, then for scenes.
     overheads: Vec<Overhead>,
 }
 
-/// What the handler that makes a call costs beyond the call.
+/// Cost of the handler that makes a call, without the call.
 #[derive(Clone, Copy)]
 struct Overhead {
     instructions: u64,
@@ -114,12 +114,12 @@ impl Emulated {
         self.image.data_bytes(KERNEL_MODULE)
     }
 
-    /// What compiled the image.
+    /// Compiler of the image.
     pub fn compiler(&self) -> &str {
         self.image.compiler()
     }
 
-    /// Cost of the kernel of that place, and the checksum of what it returned.
+    /// Cost of a kernel by its index, and the checksum of its results.
     ///
     /// # Errors
     /// The run stopped.
@@ -127,7 +127,7 @@ impl Emulated {
         self.net(Job::kernel_pins(index), type_of(KERNELS[index].call))
     }
 
-    /// Cost of a tick of the scene of that place, and the checksum of the set-points.
+    /// Cost of a tick of a scene by its index, and the checksum of the set-points.
     ///
     /// # Errors
     /// The run stopped.
@@ -164,7 +164,7 @@ impl Emulated {
                 .map(u32::from_le_bytes)
                 .with_context(|| format!("the machine has no memory at {address:#x}"))
         };
-        // The first look comes after the start-up code has cleared the RAM.
+        // The first check comes after the start-up code has cleared the RAM.
         loop {
             machine.run_until(machine.now() + STRIDE)?;
             match word(&machine, done)? {
@@ -182,8 +182,8 @@ impl Emulated {
         Ok((cost, Checksum(u64::from(high) << 32 | u64::from(low))))
     }
 
-    /// Instructions and cycles of calling and returning from a function that only returns, by its code: with or
-    /// without a frame. Cycles as the machine estimates them.
+    /// Instructions, and cycles as the emulator estimates them, of the call of a function that only returns; they depend
+    /// on whether its code has a stack frame.
     fn call_and_return(&self, name: &str) -> anyhow::Result<(u64, u64)> {
         let address = self.image.address(name)? & !1;
         let start = (address - FLASH_BASE) as usize;
@@ -205,7 +205,7 @@ impl Emulated {
     }
 }
 
-/// Place among [`Emulated::overheads`].
+/// Index in [`Emulated::overheads`].
 fn type_of(call: Call) -> usize {
     match call {
         Call::Fixed(_) => 0,

@@ -6,19 +6,19 @@ use model_bench::job::{Checksum, ON_TARGET};
 use model_bench::kernels::{Call, KERNELS, Kernel, Table};
 use model_bench::scenes::{Arithmetic, SCENES, Station, TICKS};
 use serde::Serialize;
-use thermal_display::device::reference::TOLERANCE;
+use thermal_display::device::reference::INTERPOLATION_TOLERANCE;
 
 use super::accuracy::{Accuracy, STEP_K, Truth};
 use super::emulated::{Cost, Emulated};
 use super::scenes::judge;
 use super::timing::{Time, side_by_side};
 
-/// Inputs of a timed round.
+/// Number of inputs of a timed round.
 const TIMED: usize = 4096;
-/// How much is done.
+/// Extent of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Inputs whose error is taken.
+    /// Number of inputs whose error is evaluated.
     pub inputs: u32,
     /// Rounds of timing.
     pub rounds: usize,
@@ -27,9 +27,9 @@ pub struct Effort {
 /// A run of the benchmark.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
-    /// Inputs whose error was taken.
+    /// Number of inputs whose error was evaluated.
     pub inputs: u32,
-    /// Inputs on the emulated microcontroller.
+    /// Number of inputs on the emulated microcontroller.
     pub inputs_on_target: u32,
     /// Ticks of a scene.
     pub ticks: u32,
@@ -37,11 +37,11 @@ pub struct Figures {
     pub step_k: f64,
     /// Tolerance of the firmware's chords, mK.
     pub tolerance_mk: f64,
-    /// What runs the instructions that are counted.
+    /// Machine whose instructions are counted.
     pub target: &'static str,
-    /// What compiled those instructions.
+    /// Compiler of these instructions.
     pub compiler: String,
-    /// What took the nanoseconds.
+    /// Machine on which the times were measured.
     pub host: String,
     /// `erfcx` by the firmware and its peers.
     pub kernels: Vec<KernelFigures>,
@@ -54,19 +54,19 @@ pub struct Figures {
 pub struct KernelFigures {
     /// Short name.
     pub id: &'static str,
-    /// What it is.
+    /// Description.
     pub title: &'static str,
     /// Errors.
     #[serde(flatten)]
     pub accuracy: Accuracy,
-    /// Bytes of coefficients and tables; null where they lie in a library's code.
+    /// Bytes of coefficients and tables; null if they are constants in a library's code.
     pub table_bytes: Option<usize>,
     /// Cost on the emulated microcontroller.
     #[serde(flatten)]
     pub cost: Cost,
     /// Time of a call on the host, ns.
     pub host_ns: f64,
-    /// That time over the firmware's kernel's.
+    /// Ratio of that time to that of the firmware's kernel.
     pub host_ratio: f64,
     /// Whether host and microcontroller returned the same bits for all of the latter's inputs.
     pub same_on_target: bool,
@@ -81,7 +81,7 @@ pub struct SceneFigures {
     pub arithmetic: &'static str,
     /// Largest error of the set-point at the scene's step of 10 K, mK.
     pub worst_mk: f64,
-    /// Time of the first set-point that is no number, s.
+    /// Time of the first set-point that is not a number, s.
     pub breaks_at_s: Option<f64>,
     /// Cost of a tick on the emulated microcontroller.
     #[serde(flatten)]
@@ -92,7 +92,7 @@ pub struct SceneFigures {
     pub same_on_target: bool,
 }
 
-/// Does everything; `progress` is told what.
+/// Runs the benchmark and reports each step to `progress`.
 ///
 /// # Errors
 /// The image cannot be built or run.
@@ -136,7 +136,7 @@ pub fn measure(effort: Effort, progress: impl Fn(&str)) -> anyhow::Result<Figure
         inputs_on_target: ON_TARGET,
         ticks: TICKS,
         step_k: STEP_K,
-        tolerance_mk: 1e3 * TOLERANCE.to_num::<f64>(),
+        tolerance_mk: 1e3 * INTERPOLATION_TOLERANCE.to_num::<f64>(),
         target: "emulated STM32F446: instructions exact, cycles estimated, no wait states",
         compiler: emulated.compiler().into(),
         host: host(),
@@ -177,7 +177,7 @@ fn kernel_times(inputs: &[Input], rounds: usize) -> Vec<Time> {
     let mut candidates: Vec<Box<dyn FnMut()>> = KERNELS
         .iter()
         .map(|kernel| {
-            // The type is told apart once a round, not in every call.
+            // The type is matched once a round, not in every call.
             let run: Box<dyn FnMut()> = match black_box(kernel.call) {
                 Call::Fixed(f) => Box::new(move || each(inputs, |i| f(i.elapsed, i.rate))),
                 Call::Single(f) => Box::new(move || each(inputs, |i| f(i.elapsed.get(), i.single))),
@@ -211,7 +211,7 @@ fn scene_times(rounds: usize) -> anyhow::Result<Vec<Time>> {
     Ok(side_by_side(&mut candidates, 0, TICKS as usize, rounds))
 }
 
-/// The arithmetic in words.
+/// Name of the arithmetic.
 fn name(arithmetic: Arithmetic) -> &'static str {
     match arithmetic {
         Arithmetic::Integers => "integers",
@@ -222,7 +222,7 @@ fn name(arithmetic: Arithmetic) -> &'static str {
     }
 }
 
-/// The class of this machine.
+/// Description of this machine.
 pub(super) fn host() -> String {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     format!("one of {cores} cores, {}", std::env::consts::ARCH)

@@ -1,4 +1,4 @@
-//! The image that runs on the emulated microcontroller, as its ELF file shows it.
+//! The image that runs on the emulated microcontroller: its build, and the symbols of its ELF file.
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -37,7 +37,7 @@ struct Symbol {
     kind: SymbolKind,
 }
 
-/// What an ELF file says of functions and data, by their paths in the source.
+/// Functions and data of an ELF file, by their paths in the source.
 pub struct Image {
     symbols: Vec<Symbol>,
     compiler: String,
@@ -47,7 +47,7 @@ impl Image {
     /// Reads an ELF file.
     ///
     /// # Errors
-    /// It is none, or names no compiler.
+    /// The file is no ELF file, or names no compiler.
     pub fn new(elf: &[u8]) -> anyhow::Result<Self> {
         let file = object::File::parse(elf)?;
         let symbols = file.symbols().filter_map(|symbol| {
@@ -64,7 +64,7 @@ impl Image {
         })
     }
 
-    /// Address of the function or static of that path; a function's with the bit that marks Thumb code.
+    /// Address of the function or static with this path; a function's includes the Thumb bit.
     ///
     /// # Errors
     /// There is none, or more than one.
@@ -77,7 +77,7 @@ impl Image {
         Ok(symbol.address)
     }
 
-    /// Bytes of all data whose path begins so.
+    /// Bytes of all data whose path has this prefix.
     pub fn data_bytes(&self, prefix: &str) -> usize {
         let data = self
             .symbols

@@ -1,4 +1,4 @@
-//! The host's part: runs everything, here and in the emulator, and says how it went.
+//! The host's part: runs all measurements, on the host and in the emulator, and reports them.
 mod accuracy;
 mod emulated;
 mod figures;

@@ -245,7 +245,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn labels_of_one_place_keep_apart_and_inside() {
+    fn labels_at_one_point_do_not_overlap_and_stay_inside() {
         let inside = Frame {
             left: 0,
             top: 0,

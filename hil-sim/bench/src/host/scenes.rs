@@ -7,13 +7,13 @@ use model_bench::scenes::{
     FINGERS, FORCE_N, OBJECT_C, SKIN_C, Scene, Station, TICK_S, TICKS, kind, streaming_n,
 };
 
-/// What a scene gave on this host.
+/// Results of a scene on this host.
 pub struct Judgement {
-    /// Largest error, mK; of the ticks with a number.
+    /// Largest error, mK, of the set-points that are numbers.
     pub worst_mk: f64,
-    /// Time of the first set-point that is no number, s.
+    /// Time of the first set-point that is not a number, s.
     pub breaks_at_s: Option<f64>,
-    /// Of the set-points as `f64`.
+    /// Checksum of the set-points as `f64`.
     pub checksum: Checksum,
 }
 
@@ -60,7 +60,7 @@ fn exact_c(kind: &str, tick: u32) -> f64 {
     match kind {
         kind::SEMI_INFINITE => interface_temperature(&SKIN, SKIN_C, object, OBJECT_C),
         kind::IDLE => display_c(FORCE_N, 0),
-        kind::STREAMING | kind::RENDER_STREAMING => display_c(streaming_n(tick), tick),
+        kind::STREAMING | kind::REFERENCE_STREAMING => display_c(streaming_n(tick), tick),
         _ => display_c(FORCE_N, tick),
     }
 }

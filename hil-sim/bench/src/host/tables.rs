@@ -6,7 +6,7 @@ use super::figures::{Figures, KernelFigures, SceneFigures};
 /// Name of the plot beside the page.
 pub const SVG: &str = "benchmark.svg";
 
-/// Both tables with what they mean.
+/// Both tables with their explanations.
 #[must_use]
 pub fn tables(figures: &Figures) -> String {
     let kernels = grid(
@@ -68,7 +68,7 @@ pub fn tables(figures: &Figures) -> String {
     )
 }
 
-/// What the peers are, and what a reader may stumble over.
+/// Explanations of the peers and of unexpected figures.
 const PEERS: &str = "\
 ## The peers
 \n\
@@ -147,7 +147,7 @@ fn scene_row(scene: &SceneFigures) -> Vec<String> {
     ]
 }
 
-/// Three digits.
+/// Writes a number with three significant digits.
 pub(super) fn short(value: f64) -> String {
     match value {
         0.0 => "0".into(),
@@ -159,7 +159,7 @@ pub(super) fn short(value: f64) -> String {
     }
 }
 
-/// A Markdown table: the first column to the left, all others to the right.
+/// A Markdown table; the first column is left-aligned, all others are right-aligned.
 pub(super) fn grid(heads: &[&str], rows: impl Iterator<Item = Vec<String>>) -> String {
     let rows: Vec<Vec<String>> = rows.collect();
     let width = |column: usize| {

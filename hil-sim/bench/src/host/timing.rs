@@ -1,19 +1,19 @@
-//! Time on this host, side by side.
+//! Run times on this host, measured in turn.
 use std::time::Instant;
 
-/// Time of one call.
+/// Run time of one call.
 #[derive(Clone, Copy, Debug)]
 pub struct Time {
     /// Median over the rounds, ns.
     pub ns: f64,
-    /// Of the fastest round, ns.
+    /// Minimum over the rounds, ns.
     pub least_ns: f64,
-    /// Median over the rounds of the time over that of the candidate `base` in the same round.
+    /// Median over the rounds of the ratio to the time of the candidate `base` in the same round.
     pub ratio: f64,
 }
 
-/// Runs every candidate once a round, each making `calls` calls, and takes medians over `rounds`: what slows the host
-/// for a while slows all of them.
+/// Runs every candidate once a round, each making `calls` calls, and takes medians over `rounds`, so that a temporary
+/// slowdown of the host affects all candidates alike.
 pub fn side_by_side(
     candidates: &mut [Box<dyn FnMut() + '_>],
     base: usize,

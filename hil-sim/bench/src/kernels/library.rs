@@ -1,4 +1,4 @@
-//! The product `exp(u) erfc(z)` from libraries, and what is left of it without the `exp`.
+//! The product `exp(u) erfc(z)` from libraries, and the polynomial that remains if the `exp` cancels.
 use micromath::F32Ext;
 
 use super::root::sqrt;

@@ -1,5 +1,5 @@
-//! Ways to compute `E = erfcx(sqrt(u))` for `u = n K`. All take what the firmware has, the ticks since contact and
-//! `K`, so that forming `z = sqrt(u)` is part of their cost.
+//! Kernels that compute `E = erfcx(sqrt(u))` for `u = n K`. All take the firmware's arguments, the ticks `n` since contact
+//! and `K`, so that forming `z = sqrt(u)` is part of their cost.
 
 mod chebyshev;
 mod coefficients;
@@ -15,36 +15,36 @@ use crate::inputs::Input;
 pub(crate) use chebyshev::shepherd_laframboise;
 pub(crate) use library::{libm_f32, libm_f64};
 
-/// A way to compute `E`.
+/// A kernel that computes `E`.
 #[derive(Clone, Copy)]
 pub struct Kernel {
     /// Short name, unique.
     pub id: &'static str,
-    /// What it is.
+    /// Description.
     pub title: &'static str,
-    /// Its coefficients and tables.
+    /// Size of coefficients and tables.
     pub table: Table,
     /// The function.
     pub call: Call,
 }
 
-/// The firmware's kernel as a function of its own.
+/// The firmware's kernel, not inlined.
 fn firmware(elapsed: Ticks, per_tick: MantissaExponent) -> Fraction {
     erfcx(elapsed, per_tick)
 }
 
-/// Where coefficients and tables are.
+/// Size of coefficients and tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Table {
-    /// So many bytes.
+    /// Number of bytes.
     Bytes(usize),
-    /// In the firmware's kernel; the image tells how many bytes.
+    /// Tables of the firmware's kernel, whose size is read from the image.
     Firmware,
-    /// Scattered in the code of a library.
+    /// Unknown: constants in the code of a library.
     Library,
 }
 
-/// A function with the types that are natural to it.
+/// A kernel's function, in its own number types.
 #[derive(Clone, Copy)]
 pub enum Call {
     /// Integers.
@@ -55,7 +55,7 @@ pub enum Call {
     Double(fn(u32, f64) -> f64),
 }
 
-/// What a call returned.
+/// Result of a call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
     /// Of [`Call::Fixed`].
@@ -67,7 +67,7 @@ pub enum Value {
 }
 
 impl Call {
-    /// Calls it.
+    /// Calls the function.
     #[inline]
     #[must_use]
     pub fn on(self, input: &Input) -> Value {
@@ -78,7 +78,7 @@ impl Call {
         }
     }
 
-    /// A function of the same type that only returns: what a call costs beside the callee's work.
+    /// A function of the same type that only returns, which costs the overhead of a call.
     #[must_use]
     pub fn only_return(self) -> Self {
         match self {
@@ -89,7 +89,7 @@ impl Call {
     }
 }
 
-/// Paths of the functions that only return, by which they are found in the image.
+/// Paths of the functions that only return, as the image's symbols name them.
 pub const ONLY_RETURN: [&str; 4] = [
     "model_bench::kernels::only_return_fixed",
     "model_bench::kernels::only_return_single",
@@ -123,7 +123,7 @@ impl Value {
         }
     }
 
-    /// 64 bits that tell values apart; the same for every NaN, whose sign differs between processors.
+    /// The value as 64 bits; the same for every NaN, whose sign differs between processors.
     #[must_use]
     pub fn to_bits(self) -> u64 {
         match self {
@@ -148,7 +148,7 @@ const fn kernel(id: &'static str, title: &'static str, table: Table, call: Call)
     }
 }
 
-/// All of them, the firmware's first.
+/// All kernels, the firmware's first.
 pub static KERNELS: [Kernel; 15] = [
     kernel(
         OURS,

@@ -5,9 +5,9 @@ use contact_model::reference::{Contact, Real};
 
 use super::{FORCE_N, OBJECT_C, SKIN_C, TICK_S};
 
-/// The type's own conversion, which [`Real`] lacks: by way of `f64` it would be done in software.
+/// Conversion from integers in the type's own precision; [`Real`] converts by way of `f64`, in software.
 pub(super) trait Native: Real {
-    /// Rounds.
+    /// Converts with rounding.
     fn of(count: u32) -> Self;
 }
 
@@ -38,7 +38,7 @@ pub(super) struct Finger<F> {
     per_tick_at_hardness: F,
     /// Stated forces (N) and contact areas (m²).
     areas: [(F, F); THESIS_PRESSURES.len()],
-    /// What the last step found.
+    /// Set-point of the last step.
     pub(super) set_point_c: F,
 }
 
@@ -100,7 +100,7 @@ impl<F: Native> Finger<F> {
         self.display(kernel(tick, per_tick));
     }
 
-    /// Linear between the stated points.
+    /// Contact area, linear between the stated points.
     fn area_m2(&self, force_n: F) -> F {
         let mut below = self.areas[0];
         for point in self.areas {

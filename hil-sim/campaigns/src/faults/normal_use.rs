@@ -51,7 +51,7 @@ impl UseSession {
             Xoshiro256PlusPlus::seed_from_u64(stream(seed, &format!("session {number}")));
         let device = PlantDraw::in_use(seed, number / ON_ONE_DEVICE);
         let (material, _) = MATERIALS[draw.random_range(0..MATERIALS.len())];
-        let (law, _) = Law::WORDS[draw.random_range(0..Law::WORDS.len())];
+        let (law, _) = Law::PROTOCOL_WORDS[draw.random_range(0..Law::PROTOCOL_WORDS.len())];
         let skin_c = draw.random_range(30.0..=36.0);
         let object_c = draw.random_range(17.0..=41.0);
         let held_c = draw

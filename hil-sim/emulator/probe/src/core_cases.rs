@@ -170,7 +170,7 @@ pub fn tick() {
     black_box(compute(count as f32));
 }
 
-/// Floating-point work must not notice that an interrupt uses every register and another rounding mode.
+/// Computes in floating point while an interrupt uses every register and another rounding mode; logs the wrong results.
 pub fn float_context() {
     let wanted = compute(black_box(2.5)).to_bits();
     write(SYST_CSR + 4, 4_999);
@@ -211,7 +211,7 @@ pub fn hard_fault(pc: u32) -> ! {
     done()
 }
 
-/// Resets itself once; the second time it tells the reset flags and the mode.
+/// Resets itself once; after that it logs the reset flags and the exception number.
 pub fn software_reset() {
     let flags = read(RCC_CSR) >> 24;
     if flags & 0x10 != 0 {
@@ -242,7 +242,7 @@ pub fn sleep_by_events() {
 /// have no condition. Logs 1 for the load and 1 for those.
 pub fn condition_ends_with_its_block() {
     let (loaded, after): (u32, u32);
-    // SAFETY: reads a word of RAM below the stack, which holds whatever it holds; changes only its registers.
+    // SAFETY: reads a word of RAM below the stack, whose value does not matter; changes only its registers.
     unsafe {
         asm!(
             "cmp r0, #1",
@@ -262,7 +262,7 @@ pub fn condition_ends_with_its_block() {
     log(after);
 }
 
-/// Ticks while an IT block that straddles two pages skips its instructions; logs how often one was not skipped.
+/// Executes an IT block that straddles two pages and skips its instructions, under a tick; logs how many were not skipped.
 pub fn condition_survives_interrupts() {
     write(SYST_CSR + 4, 9_999);
     write(SYST_CSR, 7);
@@ -288,8 +288,8 @@ pub fn condition_survives_interrupts() {
     log(u32::from(TICKS.load(Relaxed) > 100));
 }
 
-/// Waits in turn until a bit of r4 and one of s20 have changed, logs both; then until one of the flags (Z) has, logs 3;
-/// then until bit 4 of the PC has, logs 4.
+/// Waits until a bit of r4 and one of s20 have changed, and logs both; then until flag Z has changed, logs 3; then until bit 4
+/// of the PC has, logs 4.
 pub fn waits_for_flips() {
     log(1);
     let (general, float): (u32, u32);
@@ -312,7 +312,7 @@ pub fn waits_for_flips() {
     // SAFETY: changes only the flags.
     unsafe { asm!("cmp {r}, {r}", "2: beq 2b", r = in(reg) 0) };
     log(3);
-    // SAFETY: only branches; the place with the flipped address is in the block.
+    // SAFETY: only branches; the instruction at the flipped address is in the block.
     unsafe { asm!(".balign 32", "2: b 2b", ".balign 16", "nop") };
     log(4);
 }

@@ -40,7 +40,7 @@ pub fn external_memory() {
     read(0xa000_1000);
 }
 
-/// The store and the sleep share a basic block.
+/// The store of the unmodelled mode and the sleep are in one basic block.
 pub fn encoder_mode_then_sleep() {
     set(RCC + 0x40, 1 << 1);
     // SAFETY: a store to a register of TIM3.
@@ -81,7 +81,7 @@ pub fn start_watchdog() {
     write(IWDG, 0xcccc);
 }
 
-/// Feeds the watchdog three times, then no more. PA5 changes with each feed.
+/// Feeds the independent watchdog three times, then no more. PA5 changes with each feed.
 pub fn watchdog() {
     let flags = read(RCC + 0x74) >> 24;
     log(flags);
@@ -98,9 +98,7 @@ pub fn watchdog() {
         write(GPIOA + 0x14, (feed + 1) << 5);
         write(IWDG, 0xaaaa);
     }
-    loop {
-        cortex_m::asm::wfi();
-    }
+    crate::sleep_forever()
 }
 
 fn usart2_at_1_mbaud() {
@@ -119,13 +117,13 @@ pub fn usart2() {
     log(read(USART2 + 4));
 }
 
-/// The device at 1 Mbit/s; the host's rate is the test's choice.
+/// USART2 at 1 Mbit/s; the test sets the host's rate.
 pub fn baud_mismatch() {
     clock_180_mhz(5);
     usart2_at_1_mbaud();
 }
 
-/// What the product's image does, without its arithmetic: 16 kHz scans of seven channels by DMA, PWM at 100 kHz,
+/// The load of the product's image without its arithmetic: 16 kHz scans of seven channels by DMA, PWM at 100 kHz,
 /// a steady stream of bytes by DMA, received bytes by interrupt, a 1 kHz tick, and sleep.
 pub fn product_load() {
     clock_180_mhz(5);

@@ -1,5 +1,5 @@
-//! Test image for the emulated microcontroller. The level of port C's pins selects what it does; what it saw it
-//! writes to [`LOG`].
+//! Test image for the emulated microcontroller. The level of port C's pins selects the case, which writes its observations
+//! to [`LOG`].
 #![no_std]
 #![no_main]
 
@@ -13,7 +13,7 @@ use cortex_m_rt::{entry, exception};
 /// Entries of the log.
 const ENTRIES: usize = 256;
 
-/// What happened, in order. The first word counts the entries.
+/// Observations in order. The first word is the number of entries.
 #[unsafe(no_mangle)]
 pub static LOG: [AtomicU32; ENTRIES + 1] = [const { AtomicU32::new(0) }; ENTRIES + 1];
 
@@ -30,7 +30,7 @@ pub fn log(word: u32) {
 
 /// Reads a register.
 pub fn read(address: usize) -> u32 {
-    // SAFETY: called with addresses of registers, or of nothing when a fault is wanted; no Rust object is there.
+    // SAFETY: the address is that of a register, or has no memory where a fault is intended; no Rust object is there.
     unsafe { (address as *const u32).read_volatile() }
 }
 
@@ -74,7 +74,7 @@ fn main() -> ! {
         19 => watchdog_cases::window_watchdog(),
         20 => watchdog_cases::refresh_outside_the_window(),
         21 => watchdog_cases::lockup_under_watchdog(),
-        22 => watchdog_cases::guarded_load(),
+        22 => watchdog_cases::load_under_window_watchdog(),
         23 => watchdog_cases::clock_security(),
         24 => watchdog_cases::load_without_clock_security(),
         25 => watchdog_cases::lockup_with_clock_security(),
@@ -84,20 +84,23 @@ fn main() -> ! {
     done()
 }
 
-/// End of a case.
-pub fn done() -> ! {
-    log(0xd0e);
+/// Sleeps between interrupts.
+pub fn sleep_forever() -> ! {
     loop {
         cortex_m::asm::wfi();
     }
 }
 
+/// End of a case.
+pub fn done() -> ! {
+    log(0xd0e);
+    sleep_forever()
+}
+
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo) -> ! {
     log(0xbad);
-    loop {
-        cortex_m::asm::wfi();
-    }
+    sleep_forever()
 }
 
 #[exception]
@@ -117,7 +120,7 @@ unsafe fn NonMaskableInt() {
 
 #[exception]
 fn SysTick() {
-    watchdog_cases::feed();
+    watchdog_cases::refresh();
     core_cases::tick();
 }
 

@@ -1,4 +1,4 @@
-//! Cases of the watchdogs, and of what only they end.
+//! Cases of the watchdogs, and of states that only a watchdog ends.
 use crate::device_cases::{GPIOA, RCC, clock_180_mhz, product_load, pwm, start_watchdog};
 use crate::{core_cases, log, read, set, write};
 use core::mem::MaybeUninit;
@@ -10,17 +10,17 @@ const RCC_CIR: usize = RCC + 0x0c;
 const IWDGRSTF: u32 = 0x20;
 const WWDGRSTF: u32 = 0x40;
 
-/// Two words that start-up leaves alone.
+/// Two words that start-up does not initialise.
 #[unsafe(link_section = ".uninit.KEPT")]
 #[unsafe(no_mangle)]
 static KEPT: MaybeUninit<[AtomicU32; 2]> = MaybeUninit::uninit();
-static FED: AtomicBool = AtomicBool::new(false);
+static REFRESHES: AtomicBool = AtomicBool::new(false);
 
 fn kept(index: usize) -> usize {
     KEPT.as_ptr() as usize + 4 * index
 }
 
-/// Logs the reset flags; after a reset by that watchdog also the kept words. `true`: there was one.
+/// Logs the reset flags, and after a reset by the watchdog of `flag` the kept words. `true`: there was one.
 fn was_reset_by(flag: u32) -> bool {
     let flags = read(RCC + 0x74) >> 24;
     log(flags);
@@ -41,7 +41,8 @@ fn start_window_watchdog() {
     write(WWDG, 0xff);
 }
 
-/// Refreshes three times in the window, then no more; the early interrupt counts itself. PA5 changes with each.
+/// Refreshes three times inside the window, then no more; the early interrupt counts its activations. PA5 changes with each
+/// refresh.
 pub fn window_watchdog() {
     if was_reset_by(WWDGRSTF) {
         return;
@@ -55,9 +56,7 @@ pub fn window_watchdog() {
         write(GPIOA + 0x14, (refresh + 1) << 5);
         write(WWDG, 0xff);
     }
-    loop {
-        cortex_m::asm::wfi();
-    }
+    crate::sleep_forever()
 }
 
 pub fn early_wakeup() {
@@ -86,7 +85,7 @@ pub fn lockup_under_watchdog() {
 }
 
 /// The product's load; the tick refreshes the window watchdog, 64 periods of 4096 * 8 / 45 MHz.
-pub fn guarded_load() {
+pub fn load_under_window_watchdog() {
     if was_reset_by(WWDGRSTF) {
         return;
     }
@@ -94,11 +93,11 @@ pub fn guarded_load() {
     set(RCC + 0x40, 1 << 11);
     write(WWDG + 4, 3 << 7 | 0x7f);
     write(WWDG, 0xff);
-    FED.store(true, Relaxed);
+    REFRESHES.store(true, Relaxed);
 }
 
-pub fn feed() {
-    if FED.load(Relaxed) {
+pub fn refresh() {
+    if REFRESHES.load(Relaxed) {
         write(WWDG, 0xff);
     }
 }
@@ -112,7 +111,7 @@ pub fn clock_security() {
     pwm();
 }
 
-/// Logs the clock interrupts that are pending and the system clock's source; ends the request.
+/// Logs the pending clock interrupts and the source of the system clock, then clears the request.
 pub fn clock_failed() {
     log(0x4000 | core_cases::ipsr());
     log(read(RCC_CIR));
@@ -120,7 +119,7 @@ pub fn clock_failed() {
     write(RCC_CIR, 1 << 23);
 }
 
-/// The product's load, with a watchdog that nobody feeds.
+/// The product's load under an independent watchdog that is never fed.
 pub fn load_without_clock_security() {
     if was_reset_by(IWDGRSTF) {
         return;

@@ -1,4 +1,4 @@
-//! The release image for five fingers in the emulated microcontroller, wired as its board module says.
+//! The release image for five fingers in the emulated microcontroller, wired as its board.
 
 use thermal_plant::bridge::Legs;
 use thermal_plant::sensors::Channel;
@@ -7,46 +7,21 @@ use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _, LineSplitter};
 use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine};
 
 use super::meter::Meter;
-use super::one_finger::{ADC_INPUTS, Image, StartError, power_up, resets};
+use super::one_finger::{ADC_INPUTS, OneFingerBoard, StartError, power_up, resets};
+use super::{A, B, Bridge, C, FIRST_BRIDGE, Pin, bridge, is_high};
 use crate::{Firmware, Machine, Stop, Wiring};
 
-/// A pin: port (0 is A) and bit.
-type Pin = (u8, u8);
-
-/// What one finger's bridge is soldered to.
-struct Bridge {
-    in1: Pin,
-    in2: Pin,
-    enable: Pin,
-    fault: Pin,
-    /// Lets the comparator cut the supply.
-    test: Pin,
-}
-
-const fn bridge(in1: Pin, in2: Pin, enable: Pin, fault: Pin, test: Pin) -> Bridge {
-    Bridge {
-        in1,
-        in2,
-        enable,
-        fault,
-        test,
-    }
-}
-
-const A: u8 = 0;
-const B: u8 = 1;
-const C: u8 = 2;
 const BRIDGES: [Bridge; FINGERS] = [
-    bridge((A, 8), (A, 9), (B, 10), (A, 6), (C, 3)),
+    FIRST_BRIDGE,
     bridge((A, 10), (A, 11), (B, 13), (A, 7), (C, 4)),
     bridge((C, 6), (C, 7), (B, 14), (A, 12), (C, 5)),
     bridge((C, 8), (C, 9), (B, 15), (B, 5), (B, 6)),
     bridge((B, 8), (B, 9), (B, 1), (B, 12), (B, 7)),
 ];
-/// The lines that choose what the multiplexers show, lowest bit first; pulled down.
+/// Select lines of the multiplexers, lowest bit first; pulled down.
 const SELECT: [Pin; 3] = [(C, 10), (C, 11), (C, 12)];
-/// What the multiplexers and their followers take to settle, the most that the board allows, microseconds. A conversion
-/// that ends earlier sees what was shown before.
+/// Longest settling time of the multiplexers and their followers that the board allows, microseconds. A conversion that ends
+/// earlier has the code of the finger before.
 const SETTLING_US: u64 = 11;
 
 /// From the end of the first conversion to the first finger's first boundary, and from finger to finger,
@@ -56,17 +31,17 @@ const FIRST_BOUNDARY_PS: u64 = 65_000_000;
 const TURN_PS: u64 = 200_000_000;
 
 /// The emulated microcontroller on five plants.
-pub struct ImageHand {
+pub struct FiveFingerBoard {
     machine: Machine<Pins>,
     /// Time of the first boundary, ps since power-up.
     first_boundary_ps: u64,
-    /// Boundaries that have been reached.
+    /// Boundaries reached so far.
     boundaries: u64,
     lines: LineSplitter,
     meter: Meter,
 }
 
-impl ImageHand {
+impl FiveFingerBoard {
     /// Powers the device up and runs it to its first conversion.
     ///
     /// # Errors
@@ -89,10 +64,10 @@ impl ImageHand {
     }
 }
 
-impl FiveFingerEngine for ImageHand {
+impl FiveFingerEngine for FiveFingerBoard {
     type Stop = Stop;
 
-    const NAME: &'static str = Image::NAME;
+    const NAME: &'static str = OneFingerBoard::NAME;
 
     fn run_to(&mut self, _finger: usize) -> Result<(), Stop> {
         let at_ps = self.first_boundary_ps + self.boundaries * TURN_PS;
@@ -100,7 +75,7 @@ impl FiveFingerEngine for ImageHand {
         self.machine.run_until_ps(at_ps)?;
         let tests = BRIDGES
             .each_ref()
-            .map(|Bridge { test, .. }| self.machine.gpio_output(test.0, test.1) == Some(true));
+            .map(|bridge| is_high(&self.machine, bridge.test));
         for (world, test) in self.machine.wiring_mut().worlds.iter_mut().zip(tests) {
             world.comparator_test(test);
         }
@@ -112,18 +87,11 @@ impl FiveFingerEngine for ImageHand {
     }
 
     fn legs(&mut self, finger: usize) -> Legs {
-        let Bridge {
-            in1, in2, enable, ..
-        } = &BRIDGES[finger];
-        Legs {
-            a: self.machine.pwm(in1.0, in1.1).into(),
-            b: self.machine.pwm(in2.0, in2.1).into(),
-            enabled: self.machine.gpio_output(enable.0, enable.1) == Some(true),
-        }
+        BRIDGES[finger].legs(&mut self.machine)
     }
 
     fn send(&mut self, finger: usize, line: &[u8]) {
-        // A blank line is nobody's.
+        // A blank line has no address.
         let address = if line == b"\n" {
             String::new()
         } else {
@@ -137,7 +105,7 @@ impl FiveFingerEngine for ImageHand {
             .received()
             .append(&mut self.machine.wiring_mut().received);
         let lines = self.lines.complete().into_iter();
-        // What the device says as a whole is put down to the first finger.
+        // LineSplitter of the device as a whole are attributed to the first finger.
         lines
             .map(|line| match line.split_at_checked(3) {
                 Some((prefix, rest)) => match prefix.as_bytes() {
@@ -164,11 +132,11 @@ impl FiveFingerEngine for ImageHand {
     }
 }
 
-/// What the pins of the microcontroller are soldered to.
+/// The circuit at the pins of the microcontroller.
 struct Pins {
     worlds: [World; FINGERS],
     select: [bool; SELECT.len()],
-    /// When the multiplexers were switched last, and how long they take to settle, cycles.
+    /// Cycle at which the multiplexers were last switched, and their settling time in cycles.
     switched_at: u64,
     settling: u64,
     /// Last code of each input.
@@ -193,19 +161,19 @@ impl Pins {
 
 impl Wiring for Pins {
     fn adc(&mut self, channel: u8, now: u64) -> u16 {
-        /// An input that nothing is wired to floats; it reads as the middle of the range.
+        /// An unconnected input floats; it reads as the middle of the range.
         const FLOATING: u16 = 0x800;
         self.first_conversion.get_or_insert(now);
         let Some(index) = ADC_INPUTS.iter().position(|input| *input == channel) else {
             return FLOATING;
         };
         if now >= self.switched_at + self.settling {
-            let shown = self
+            let finger = self
                 .select
                 .iter()
                 .rev()
-                .fold(0, |shown, bit| 2 * shown + usize::from(*bit));
-            let world = self.worlds.get_mut(shown);
+                .fold(0, |finger, bit| 2 * finger + usize::from(*bit));
+            let world = self.worlds.get_mut(finger);
             self.codes[index] = world.map_or(FLOATING, |world| world.convert(Channel::ALL[index]));
         }
         self.codes[index]

@@ -1,4 +1,4 @@
-//! What the image costs, from one moment on.
+//! Instructions and cycles of the image since the start of a measurement.
 
 use thermal_sim::engine::Cost;
 
@@ -7,7 +7,7 @@ use crate::{Machine, Wiring};
 /// The interrupt that a control tick runs in.
 pub const TICK: &str = "DMA2_STREAM0";
 
-/// Totals when the measurement began.
+/// Totals at the start of the measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct Meter {
     cycles: u64,
@@ -15,7 +15,7 @@ pub struct Meter {
 }
 
 impl Meter {
-    /// Begins to measure.
+    /// Starts the measurement.
     pub fn new<W: Wiring>(machine: &mut Machine<W>) -> Self {
         machine.restart_interrupt_stats();
         let stats = machine.stats();
@@ -25,7 +25,7 @@ impl Meter {
         }
     }
 
-    /// The cost since then; none without a tick.
+    /// The cost since the start; `None` before the first control tick.
     pub fn cost<W: Wiring>(&self, machine: &Machine<W>) -> Option<Cost> {
         let stats = machine.stats();
         let tick = stats

@@ -1,7 +1,7 @@
 //! The release image in the emulated microcontroller, wired as the NUCLEO-F446RE board is.
 
 use anyhow::Context;
-use thermal_plant::bridge::{Leg, Legs};
+use thermal_plant::bridge::Legs;
 use thermal_plant::sensors::Channel;
 use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine};
 use thermal_sim::metrics::Figures;
@@ -11,17 +11,11 @@ use thermal_sim::scene::Scene;
 use thermal_sim::{RamLayout, SceneRunner, World, run_scene_on};
 
 use super::meter::{Meter, TICK};
-use crate::{Firmware, InjectError, LegState, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
+use super::{FIRST_BRIDGE, is_high};
+use crate::{Firmware, InjectError, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
 
 /// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2.
 pub const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12];
-/// Fault line of the bridge, low is a fault: PA6.
-const FAULT_PIN: (u8, u8) = (0, 6);
-/// Enable input of the bridge: PB10.
-const ENABLE_PIN: (u8, u8) = (1, 10);
-/// Line that tests the comparator, pulled low: PC3.
-const TEST_PIN: (u8, u8) = (2, 3);
-
 /// From the first conversion to the first boundary, and between boundaries, picoseconds.
 const FIRST_BOUNDARY_PS: u64 = 230_000_000;
 const HALF_MS_PS: u64 = 500_000_000;
@@ -31,19 +25,19 @@ const BOOT_S: u64 = 1;
 /// Cycles of one search step for the first conversion.
 const SEARCH_CYCLES: u64 = 200;
 
-/// Why the image does not run, or stopped.
+/// Why the image did not start.
 #[derive(Debug, thiserror::Error)]
 pub enum StartError {
     /// The emulated machine stopped.
     #[error(transparent)]
     Stop(#[from] Stop),
-    /// The image runs, but samples nothing.
+    /// The image runs, but starts no conversion.
     #[error("the image started no conversion within {BOOT_S} s of power-up")]
     NoConversion,
 }
 
 /// The emulated microcontroller on the plant.
-pub struct Image {
+pub struct OneFingerBoard {
     machine: Machine<Pins>,
     /// Time of the first boundary, ps since power-up.
     first_boundary_ps: u64,
@@ -51,7 +45,7 @@ pub struct Image {
     meter: Meter,
 }
 
-/// Runs to the first conversion; its end in cycles since power-up.
+/// Runs to the end of the first conversion, which it returns in cycles since power-up.
 ///
 /// # Errors
 /// The image cannot run, or does not start its converter.
@@ -71,7 +65,7 @@ pub fn power_up<W: Wiring>(
     }
 }
 
-/// Resets after power-up, their times counted from the first boundary.
+/// Resets after power-up; times count from the first boundary.
 pub fn resets<W: Wiring>(machine: &Machine<W>, first_boundary_ps: u64) -> Vec<DeviceReset> {
     let after_power_up = machine.resets().iter().skip(1);
     after_power_up
@@ -82,13 +76,7 @@ pub fn resets<W: Wiring>(machine: &Machine<W>, first_boundary_ps: u64) -> Vec<De
         .collect()
 }
 
-impl From<LegState> for Leg {
-    fn from(state: LegState) -> Self {
-        state.duty().map_or(Self::Off, Self::Duty)
-    }
-}
-
-impl Image {
+impl OneFingerBoard {
     /// Powers the device up and runs it to the first boundary after its first conversion.
     ///
     /// # Errors
@@ -107,22 +95,20 @@ impl Image {
             meter,
         })
     }
-}
 
-impl Image {
-    /// Notes the way of the control tick through the code from now on.
+    /// Records the execution path of the control tick from now on.
     pub fn watch_tick(&mut self) {
         self.machine.watch(TICK);
     }
 
-    /// The machine, to read.
+    /// The machine, read-only.
     #[must_use]
     pub fn machine(&self) -> &Machine<impl Wiring + use<>> {
         &self.machine
     }
 }
 
-impl Engine for Image {
+impl Engine for OneFingerBoard {
     type Stop = Stop;
 
     const NAME: &'static str = "image";
@@ -132,19 +118,14 @@ impl Engine for Image {
     }
 
     fn legs(&mut self) -> Legs {
-        let (a, b) = (self.machine.pwm(0, 8), self.machine.pwm(0, 9));
-        Legs {
-            a: a.into(),
-            b: b.into(),
-            enabled: self.machine.gpio_output(ENABLE_PIN.0, ENABLE_PIN.1) == Some(true),
-        }
+        FIRST_BRIDGE.legs(&mut self.machine)
     }
 
     fn run_half_ms(&mut self) -> Result<(), Stop> {
         self.halves += 1;
         self.machine
             .run_until_ps(self.first_boundary_ps + self.halves * HALF_MS_PS)?;
-        let test = self.machine.gpio_output(TEST_PIN.0, TEST_PIN.1) == Some(true);
+        let test = is_high(&self.machine, FIRST_BRIDGE.test);
         self.world().comparator_test(test);
         Ok(())
     }
@@ -187,7 +168,7 @@ impl Engine for Image {
                 machine.power_cycle(seed).map_err(InjectError::from)
             }
             MachineFault::ResetPin => machine.pull_reset_pin().map_err(InjectError::from),
-            MachineFault::SoftwareReset => machine.ask_for_reset().map_err(InjectError::from),
+            MachineFault::SoftwareReset => machine.request_reset().map_err(InjectError::from),
             MachineFault::StackOverflow => machine.exhaust_stack(),
         };
         injected.map_err(refused)
@@ -209,11 +190,11 @@ impl Engine for Image {
 /// The image on the board; each scene is run from power-up.
 impl SceneRunner for Firmware {
     fn name(&self) -> &'static str {
-        Image::NAME
+        OneFingerBoard::NAME
     }
 
     fn run(&self, scene: &Scene) -> anyhow::Result<(Outcome, Figures)> {
-        run_scene_on(scene, |world| Ok(Image::new(self, world)?))
+        run_scene_on(scene, |world| Ok(OneFingerBoard::new(self, world)?))
     }
 
     fn has_processor(&self) -> bool {
@@ -235,7 +216,7 @@ impl SceneRunner for Firmware {
     }
 }
 
-/// What the pins of the microcontroller are soldered to.
+/// The circuit at the pins of the microcontroller.
 struct Pins {
     world: World,
     first_conversion: Option<u64>,
@@ -255,13 +236,13 @@ impl Pins {
 impl Wiring for Pins {
     fn adc(&mut self, channel: u8, now: u64) -> u16 {
         self.first_conversion.get_or_insert(now);
-        // An input that nothing is wired to floats; it reads as the middle of the range.
+        // An unconnected input floats; it reads as the middle of the range.
         let input = ADC_INPUTS.iter().position(|input| *input == channel);
         input.map_or(0x800, |index| self.world.convert(Channel::ALL[index]))
     }
 
     fn pin(&self, port: u8, bit: u8) -> Option<bool> {
-        ((port, bit) == FAULT_PIN).then(|| !self.world.bridge_fault())
+        ((port, bit) == FIRST_BRIDGE.fault).then(|| !self.world.bridge_fault())
     }
 
     fn uart_tx(&mut self, byte: u8, _at: u64, _baud: u32) {

@@ -1,4 +1,4 @@
-//! The address map: which device answers at an address, whether its clock runs, and what a store sets in motion.
+//! The address map: the device at an address, whether its clock runs, and the effects of a store on other devices.
 use super::{
     ADC_IRQ, Chip, INTERNAL_REFERENCE, TIM1, TIM8, TIM10, TIM11, TIMERS, USART2_IRQ, WWDG_IRQ,
 };
@@ -13,7 +13,7 @@ use crate::{Wiring, names};
 use crate::{exti::Exti, nvic::Nvic, ppb::Ppb, wwdg::Wwdg};
 use thermal_sim::processor::ResetCause;
 
-/// Peripheral behind an address, with its clock enable.
+/// A modelled peripheral.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Device {
     Gpio(usize),
@@ -30,37 +30,50 @@ enum Device {
     Exti,
 }
 
+/// First address of the 1 KiB of a peripheral, the peripheral, and its clock enable where it has one; the reset bit has the same
+/// place in the reset register of that bus.
+type Peripheral = (u32, Device, Option<(Enr, u8)>);
+
+const PERIPHERALS: [Peripheral; 29] = [
+    (0x4000_0000, Device::Tim(1), Some((Enr::Apb1, 0))),
+    (0x4000_0400, Device::Tim(2), Some((Enr::Apb1, 1))),
+    (0x4000_0800, Device::Tim(3), Some((Enr::Apb1, 2))),
+    (0x4000_0c00, Device::Tim(4), Some((Enr::Apb1, 3))),
+    (0x4000_1000, Device::Tim(5), Some((Enr::Apb1, 4))),
+    (0x4000_1400, Device::Tim(6), Some((Enr::Apb1, 5))),
+    (0x4000_2c00, Device::Wwdg, Some((Enr::Apb1, 11))),
+    (0x4000_3000, Device::Iwdg, None),
+    (0x4000_4400, Device::Usart2, Some((Enr::Apb1, 17))),
+    (0x4000_7000, Device::Pwr, Some((Enr::Apb1, 28))),
+    (0x4001_0000, Device::Tim(TIM1), Some((Enr::Apb2, 0))),
+    (0x4001_0400, Device::Tim(TIM8), Some((Enr::Apb2, 1))),
+    (0x4001_2000, Device::Adc, Some((Enr::Apb2, 8))),
+    (0x4001_3800, Device::Syscfg, Some((Enr::Apb2, 14))),
+    (0x4001_3c00, Device::Exti, None),
+    (0x4001_4400, Device::Tim(TIM10), Some((Enr::Apb2, 17))),
+    (0x4001_4800, Device::Tim(TIM11), Some((Enr::Apb2, 18))),
+    (0x4002_0000, Device::Gpio(0), Some((Enr::Ahb1, 0))),
+    (0x4002_0400, Device::Gpio(1), Some((Enr::Ahb1, 1))),
+    (0x4002_0800, Device::Gpio(2), Some((Enr::Ahb1, 2))),
+    (0x4002_0c00, Device::Gpio(3), Some((Enr::Ahb1, 3))),
+    (0x4002_1000, Device::Gpio(4), Some((Enr::Ahb1, 4))),
+    (0x4002_1400, Device::Gpio(5), Some((Enr::Ahb1, 5))),
+    (0x4002_1800, Device::Gpio(6), Some((Enr::Ahb1, 6))),
+    (0x4002_1c00, Device::Gpio(7), Some((Enr::Ahb1, 7))),
+    (0x4002_3800, Device::Rcc, None),
+    (0x4002_3c00, Device::Flash, None),
+    (0x4002_6000, Device::Dma(0), Some((Enr::Ahb1, 21))),
+    (0x4002_6400, Device::Dma(1), Some((Enr::Ahb1, 22))),
+];
+
 /// Modelled device at an address, with its clock enable where it has one.
 fn device(address: u32) -> Option<(Device, Option<(Enr, u8)>)> {
-    let page = address >> 10 & 0xff;
-    Some(match address & 0xffff_fc00 {
-        0x4002_0000..0x4002_2000 => (
-            Device::Gpio(page as usize & 7),
-            Some((Enr::Ahb1, page as u8 & 7)),
-        ),
-        0x4002_3800 => (Device::Rcc, None),
-        0x4002_3c00 => (Device::Flash, None),
-        0x4002_6000 => (Device::Dma(0), Some((Enr::Ahb1, 21))),
-        0x4002_6400 => (Device::Dma(1), Some((Enr::Ahb1, 22))),
-        0x4001_0000 => (Device::Tim(TIM1), Some((Enr::Apb2, 0))),
-        0x4001_0400 => (Device::Tim(TIM8), Some((Enr::Apb2, 1))),
-        0x4001_4400 => (Device::Tim(TIM10), Some((Enr::Apb2, 17))),
-        0x4001_4800 => (Device::Tim(TIM11), Some((Enr::Apb2, 18))),
-        0x4000_0000..0x4000_1800 => (
-            Device::Tim(page as usize + 1),
-            Some((Enr::Apb1, page as u8)),
-        ),
-        0x4001_2000 if !(0x100..0x300).contains(&(address & 0x3ff)) => {
-            (Device::Adc, Some((Enr::Apb2, 8)))
-        }
-        0x4000_4400 => (Device::Usart2, Some((Enr::Apb1, 17))),
-        0x4000_7000 => (Device::Pwr, Some((Enr::Apb1, 28))),
-        0x4000_3000 => (Device::Iwdg, None),
-        0x4000_2c00 => (Device::Wwdg, Some((Enr::Apb1, 11))),
-        0x4001_3800 => (Device::Syscfg, Some((Enr::Apb2, 14))),
-        0x4001_3c00 => (Device::Exti, None),
-        _ => return None,
-    })
+    let first = address & 0xffff_fc00;
+    let at = PERIPHERALS.binary_search_by_key(&first, |peripheral| peripheral.0);
+    let (_, device, enable) = *PERIPHERALS.get(at.ok()?)?;
+    // ADC2 and ADC3 are between ADC1 and the common registers.
+    let modelled = device != Device::Adc || !(0x100..0x300).contains(&(address & 0x3ff));
+    modelled.then_some((device, enable))
 }
 
 /// Factory words of the system memory (RM0390 chapter 34, DS10693): unique identifier, flash size in KiB,
@@ -76,7 +89,7 @@ fn signature(address: u32) -> Option<u32> {
 }
 
 impl<W: Wiring> Chip<W> {
-    /// System reset: every register to its reset value, reset flags kept; the host goes on sending.
+    /// System reset: every register takes its reset value but for the reset flags; the host continues to send.
     pub fn system_reset(&mut self, cause: ResetCause, now: u64) {
         let slept = self.ppb.slept;
         self.nvic = Nvic::new();
@@ -104,7 +117,7 @@ impl<W: Wiring> Chip<W> {
         self.after_change(now);
     }
 
-    /// Loads from a peripheral or core register. `ipsr`: the running exception.
+    /// Reads a peripheral or core register; `ipsr` is the running exception.
     pub fn read(&mut self, address: u32, now: u64, ipsr: u32) -> Answer<u32> {
         if address >= 0xe000_0000 {
             if names::peripheral(address).is_none() {
@@ -165,18 +178,15 @@ impl<W: Wiring> Chip<W> {
         Ok(device)
     }
 
-    /// Stores to a peripheral or core register. Byte and half-word stores reach the registers that take them:
-    /// priorities, GPIO BSRR, USART DR; any register takes a half-word at its lower half, the rest written 0.
+    /// Writes a peripheral or core register. Bytes and upper half-words are accepted by priorities, GPIO BSRR and USART DR only;
+    /// every register accepts a half-word at its lower half, and the upper half is written 0.
     pub fn write(&mut self, address: u32, bytes: u8, value: u32, now: u64) -> Answer<()> {
         if address >= 0xe000_0000 {
             if names::peripheral(address).is_none() {
                 return Err(Refusal::BusError);
             }
-            if self
-                .ppb
-                .write(&mut self.nvic, address, bytes, value, now)?
-                .is_some()
-            {
+            let nvic = &mut self.nvic;
+            if self.ppb.write(nvic, address, bytes, value, now)? {
                 self.reset = Some(ResetCause::Software);
             }
             self.refresh_next(now);
@@ -210,7 +220,7 @@ impl<W: Wiring> Chip<W> {
                 }
                 self.clock_wwdg(now);
                 self.apply_resets(now);
-                let security = self.rcc.security_interrupt();
+                let security = self.rcc.clock_failure_interrupt();
                 self.nvic.set_exception_line(exception::NMI, security, now);
             }
             Device::Flash if offset == 0 => self.rcc.write_acr(value)?,
@@ -226,7 +236,7 @@ impl<W: Wiring> Chip<W> {
                     let (irq, level) = self.dma[i].request_line(stream);
                     self.nvic.set_line(irq, level, now);
                 }
-                self.kick = true;
+                self.dma_request_possible = true;
             }
             Device::Tim(TIM10 | TIM11) if offset == 0x0c && value != 0 => {
                 return Err(Refusal::NotModelled(
@@ -239,15 +249,15 @@ impl<W: Wiring> Chip<W> {
             }
             Device::Adc => {
                 self.adc.write(offset, value, now)?;
-                self.tims[1].listen(self.adc.trigger() == Some(Trigger::Tim2), now);
-                self.tims[2].listen(self.adc.trigger() == Some(Trigger::Tim3), now);
+                self.tims[1].use_trigger(self.adc.trigger() == Some(Trigger::Tim2), now);
+                self.tims[2].use_trigger(self.adc.trigger() == Some(Trigger::Tim3), now);
                 self.nvic.set_line(ADC_IRQ, self.adc.request(), now);
-                self.kick = true;
+                self.dma_request_possible = true;
             }
             Device::Usart2 => {
                 self.usart.write(offset, value, now)?;
                 self.nvic.set_line(USART2_IRQ, self.usart.request(), now);
-                self.kick = true;
+                self.dma_request_possible = true;
             }
             Device::Iwdg => self
                 .iwdg
@@ -312,33 +322,10 @@ impl<W: Wiring> Chip<W> {
         self.iwdg.rescale(now, old.hclk_hz, clocks.hclk_hz);
     }
 
-    /// Peripherals whose reset bit is set go back to their reset values.
+    /// Resets the peripherals whose reset bit is set.
     fn apply_resets(&mut self, now: u64) {
-        const RESETS: [(Enr, u8, Device); 22] = [
-            (Enr::Apb2, 0, Device::Tim(TIM1)),
-            (Enr::Apb2, 1, Device::Tim(TIM8)),
-            (Enr::Apb2, 17, Device::Tim(TIM10)),
-            (Enr::Apb2, 18, Device::Tim(TIM11)),
-            (Enr::Apb1, 0, Device::Tim(1)),
-            (Enr::Apb1, 1, Device::Tim(2)),
-            (Enr::Apb1, 2, Device::Tim(3)),
-            (Enr::Apb1, 3, Device::Tim(4)),
-            (Enr::Apb1, 4, Device::Tim(5)),
-            (Enr::Apb1, 5, Device::Tim(6)),
-            (Enr::Apb2, 8, Device::Adc),
-            (Enr::Apb1, 11, Device::Wwdg),
-            (Enr::Apb1, 17, Device::Usart2),
-            (Enr::Apb2, 14, Device::Syscfg),
-            (Enr::Ahb1, 21, Device::Dma(0)),
-            (Enr::Ahb1, 22, Device::Dma(1)),
-            (Enr::Ahb1, 0, Device::Gpio(0)),
-            (Enr::Ahb1, 1, Device::Gpio(1)),
-            (Enr::Ahb1, 2, Device::Gpio(2)),
-            (Enr::Ahb1, 3, Device::Gpio(3)),
-            (Enr::Ahb1, 4, Device::Gpio(4)),
-            (Enr::Ahb1, 7, Device::Gpio(7)),
-        ];
-        for (enr, bit, device) in RESETS {
+        for (_, device, enable) in PERIPHERALS {
+            let Some((enr, bit)) = enable else { continue };
             if self.rcc.in_reset(enr, bit) {
                 self.reset_device(device, now);
                 self.after_change(now);

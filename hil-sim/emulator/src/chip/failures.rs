@@ -1,4 +1,4 @@
-//! What an injected fault does to the devices.
+//! Effects of injected faults on the peripherals.
 use super::{Chip, TIM1, TIM8, TIMERS};
 use crate::Wiring;
 use crate::nvic::exception;
@@ -7,16 +7,16 @@ use crate::stop::Answer;
 use thermal_sim::processor::ResetCause;
 
 impl<W: Wiring> Chip<W> {
-    /// A watchdog runs that will end whatever the CPU is caught in.
+    /// Whether a watchdog runs, which will reset a CPU that is locked up.
     pub fn is_watched(&self) -> bool {
         self.iwdg.due != u64::MAX || self.wwdg.is_running() && self.stopped_at.is_none()
     }
 
-    /// The external oscillator stops. `false`: with it every clock but that of the independent watchdog; pins keep the
-    /// level that they have at the moment.
+    /// Stops the external oscillator. `false`: with it stop all clocks but that of the independent watchdog, and pins keep
+    /// their present level.
     pub fn stop_hse(&mut self, now: u64) -> Answer<bool> {
         let after = self.rcc.stop_hse()?;
-        if self.rcc.security_interrupt() {
+        if self.rcc.clock_failure_interrupt() {
             self.nvic.set_exception_line(exception::NMI, true, now);
             for timer in [TIM1, TIM8] {
                 self.tims[timer].sync(now);
@@ -41,13 +41,13 @@ impl<W: Wiring> Chip<W> {
         Ok(after != AfterHse::Nothing)
     }
 
-    /// The converter never ends a conversion again, until it is reset.
+    /// No conversion ends until the converter is reset.
     pub fn stop_adc(&mut self, now: u64) {
         self.adc.stop_converting();
         self.refresh_next(now);
     }
 
-    /// A bus error ends a stream: disabled, with the transfer-error flag (RM0390 9.3.19). `false`: it was not enabled.
+    /// Ends a stream as a bus error does: disabled, with the transfer-error flag (RM0390 9.3.19). `false`: it was not enabled.
     pub fn stop_stream(&mut self, controller: usize, stream: usize, now: u64) -> bool {
         let was_enabled = self.dma[controller].fail(stream);
         let (irq, level) = self.dma[controller].request_line(stream);
@@ -55,7 +55,7 @@ impl<W: Wiring> Chip<W> {
         was_enabled
     }
 
-    /// Nothing but the independent watchdog lives while no clock reaches the chip.
+    /// Services the independent watchdog, the only device that runs while the chip has no clock.
     pub(super) fn service_without_clock(&mut self, now: u64) {
         if self.iwdg.due <= now {
             self.iwdg.due = u64::MAX;

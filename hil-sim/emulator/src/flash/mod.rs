@@ -1,5 +1,5 @@
-//! Programming and erasing of the flash (RM0390 chapter 3), for the settings' sectors 1 to 3, which hold no code. ACR, which the
-//! clocks depend on, is with them in `rcc`.
+//! Programming and erasing of the flash (RM0390 chapter 3) in sectors 1 to 3, which hold settings and no code. ACR, on which the
+//! clocks depend, is in `rcc`.
 
 use thermal_sim::FlashCells;
 
@@ -28,7 +28,7 @@ const ERRORS: u32 = 0x1f2;
 const PROGRAM_US: u64 = 16;
 const ERASE_US: [u64; 3] = [400_000, 300_000, 250_000];
 
-/// How far the unlock sequence has come.
+/// State of the unlock sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Lock {
     Locked,
@@ -57,12 +57,12 @@ impl Flash {
         }
     }
 
-    /// Registers as after a reset; the contents stay.
+    /// Resets the registers; the contents stay.
     pub fn reset(&mut self) {
         (self.lock, self.control, self.status, self.busy_until) = (Lock::Locked, 0, 0, 0);
     }
 
-    /// Whether the settings' sectors are left blank by the image, so that they can be modelled as flash that changes.
+    /// Whether the image leaves the settings' sectors blank, so that they can be modelled as writable flash.
     pub fn has_settings(flash: &[u8]) -> bool {
         let from = (SETTINGS.start - FLASH_BASE) as usize;
         let to = (SETTINGS.end - FLASH_BASE) as usize;
@@ -71,7 +71,7 @@ impl Flash {
             .is_some_and(|gap| gap.iter().all(|byte| *byte == 0xff))
     }
 
-    /// Until when code in the flash stands still.
+    /// Cycle until which the busy flash stalls the code in it.
     pub fn busy_until(&self) -> u64 {
         self.busy_until
     }
@@ -137,16 +137,16 @@ impl Flash {
         };
         self.cells
             .erase(sector * SECTOR_BYTES..(sector + 1) * SECTOR_BYTES);
-        self.occupy(now, *time, hclk_hz);
+        self.extend_busy(now, *time, hclk_hz);
         Ok(())
     }
 
-    /// Logarithm of the bytes that are programmed at a time.
+    /// Binary logarithm of the bytes programmed at a time.
     fn parallelism(&self) -> usize {
         (self.control >> 8 & 3) as usize
     }
 
-    /// A store to the settings' sectors.
+    /// Stores to the settings' sectors.
     pub fn store(
         &mut self,
         address: u32,
@@ -164,14 +164,14 @@ impl Flash {
             PGAERR
         } else {
             self.cells.program((address - FLASH_BASE) as usize, value);
-            self.occupy(now, PROGRAM_US, hclk_hz);
+            self.extend_busy(now, PROGRAM_US, hclk_hz);
             return Ok(());
         };
         self.status |= error;
         Ok(())
     }
 
-    /// A load from the settings' sectors.
+    /// Loads from the settings' sectors.
     pub fn load(&self, address: u32, bytes: u8) -> u32 {
         let from = (address - FLASH_BASE) as usize;
         let read = self.cells.bytes().get(from..from + usize::from(bytes));
@@ -181,8 +181,8 @@ impl Flash {
             .fold(0, |word, byte| word << 8 | u32::from(*byte))
     }
 
-    /// The next operation waits for the one before.
-    fn occupy(&mut self, now: u64, us: u64, hclk_hz: u32) {
+    /// Extends the busy time by an operation, which begins after the one before.
+    fn extend_busy(&mut self, now: u64, us: u64, hclk_hz: u32) {
         self.busy_until = self.busy_until.max(now) + (us * u64::from(hclk_hz)).div_ceil(1_000_000);
     }
 }

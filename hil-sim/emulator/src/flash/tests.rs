@@ -13,7 +13,7 @@ fn unlocked() -> Flash {
 }
 
 #[test]
-fn the_keys_open_the_control_register_in_their_order_only() {
+fn the_keys_unlock_the_control_register_in_their_order_only() {
     let mut flash = Flash::new(vec![0xff; 0x8_0000]);
     assert_eq!(flash.read(0x10, 0).unwrap(), LOCK);
     assert!(flash.write(0x10, PG, 0, HSI).is_err());
@@ -31,7 +31,7 @@ fn the_keys_open_the_control_register_in_their_order_only() {
 }
 
 #[test]
-fn words_are_programmed_and_a_sector_erased_in_their_time() {
+fn programming_and_erasing_take_their_documented_times() {
     let mut flash = unlocked();
     flash.write(0x10, PG | PSIZE_32, 0, HSI).unwrap();
     flash
@@ -63,7 +63,7 @@ fn words_are_programmed_and_a_sector_erased_in_their_time() {
 }
 
 #[test]
-fn wrong_stores_change_nothing_and_set_their_flag() {
+fn a_wrong_store_changes_nothing_and_sets_its_error_flag() {
     let mut flash = unlocked();
     let cases = [
         (SER, 4, 0, PGSERR),

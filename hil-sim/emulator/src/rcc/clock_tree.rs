@@ -1,5 +1,5 @@
-//! Oscillators, PLL and prescalers (RM0390 6.2, 6.3.1 to 6.3.3): which frequencies result, and whether the regulator
-//! and the flash stand them.
+//! Oscillators, PLL and prescalers (RM0390 6.2, 6.3.1 to 6.3.3): the resulting frequencies, and whether the regulator and the
+//! flash allow them.
 use super::{Clocks, HSE, HSE_HZ, HSI, HSI_HZ, PLL, Rcc};
 use crate::stop::{Answer, Refusal, only};
 
@@ -73,12 +73,12 @@ impl Rcc {
             ));
         }
         only(value, 0x001f_fcff, "RCC_CFGR clock outputs")?;
-        self.clocks = self.computed(value)?;
+        self.clocks = self.clocks_for(value)?;
         self.cfgr = value & 0x001f_fcf3;
         self.check_latency()
     }
 
-    pub(super) fn computed(&self, cfgr: u32) -> Answer<Clocks> {
+    pub(super) fn clocks_for(&self, cfgr: u32) -> Answer<Clocks> {
         let sysclk_hz = match cfgr & 3 {
             0 => HSI_HZ,
             1 => HSE_HZ,

@@ -1,4 +1,4 @@
-//! What the clock tree depends on: the voltage regulator (RM0390 5.4) and the flash interface (3.8).
+//! Limits of the clock tree: the voltage regulator (RM0390 5.4) and the flash interface (3.8).
 use super::{PLL, Rcc};
 use crate::stop::{Answer, Refusal, only};
 

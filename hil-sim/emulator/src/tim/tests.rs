@@ -1,31 +1,31 @@
-//! The timer against the manual.
+//! Timers against RM0390.
 use super::*;
 
-/// TIM1 as the bridge's PWM: 180 MHz / 1800 = 100 kHz, preload, CH1 in PWM mode 1.
-fn pwm(bdtr: u32) -> Tim {
-    let mut tim = Tim::new(ADVANCED, 1);
-    for (offset, value) in [
-        (0x2c, 1799),
-        (0x34, 450),
-        (0x18, 0x6868),
-        (0x20, 0x11),
-        (0x14, 1),
-        (0x44, bdtr),
-        (0x00, 0x81),
-    ] {
-        tim.write(offset, value, 0).unwrap();
+/// A timer after these writes at cycle 0: offset and value.
+fn timer(kind: Kind, divider: u64, writes: &[(u32, u32)]) -> Tim {
+    let mut tim = Tim::new(kind, divider);
+    for (offset, value) in writes {
+        tim.write(*offset, *value, 0).unwrap();
     }
     tim
 }
 
+/// TIM1 as the bridge's PWM: 180 MHz / 1800 = 100 kHz, preload, CH1 in PWM mode 1.
+fn pwm(bdtr: u32) -> Tim {
+    let output = [(0x2c, 1799), (0x34, 450), (0x18, 0x6868), (0x20, 0x11)];
+    let start = [(0x14, 1), (0x44, bdtr), (0x00, 0x81)];
+    timer(ADVANCED, 1, &[output.as_slice(), &start].concat())
+}
+
+/// High for so many of the 1800 ticks of a period.
+fn high(high: u32) -> Output {
+    Output::High { high, period: 1800 }
+}
+
 #[test]
 fn update_rate_is_clock_over_prescaler_and_reload() {
-    let mut tim = Tim::new(WIDE, 2);
-    tim.write(0x28, 8, 0).unwrap();
-    tim.write(0x2c, 624, 0).unwrap();
-    tim.write(0x14, 1, 0).unwrap();
-    tim.write(0x10, 0, 0).unwrap();
-    tim.write(0x0c, 1, 0).unwrap();
+    let writes = [(0x28, 8), (0x2c, 624), (0x14, 1), (0x10, 0), (0x0c, 1)];
+    let mut tim = timer(WIDE, 2, &writes);
     tim.write(0x00, 1, 100).unwrap();
     assert_eq!(tim.due, 100 + 2 * 9 * 625);
     assert_eq!(tim.read(0x24, 100 + 2 * 9 * 10).unwrap(), 10);
@@ -37,41 +37,16 @@ fn update_rate_is_clock_over_prescaler_and_reload() {
 #[test]
 fn preloaded_compare_values_wait_for_the_update() {
     let mut tim = pwm(MOE);
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 450,
-            period: 1800
-        }
-    );
+    assert_eq!(tim.output(0), high(450));
     tim.write(0x34, 900, 1000).unwrap();
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 450,
-            period: 1800
-        }
-    );
+    assert_eq!(tim.output(0), high(450));
     assert_eq!(tim.due, 1800);
     tim.sync(1800);
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 900,
-            period: 1800
-        }
-    );
-    assert_eq!(tim.due, u64::MAX, "nobody waits for the next update");
+    assert_eq!(tim.output(0), high(900));
+    assert_eq!(tim.due, u64::MAX, "no event is due at the next update");
     tim.write(0x34, 5000, 1900).unwrap();
     tim.sync(3600);
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 1800,
-            period: 1800
-        },
-        "above ARR: always high"
-    );
+    assert_eq!(tim.output(0), high(1800), "above ARR: always high");
 }
 
 #[test]
@@ -105,13 +80,7 @@ fn break_switches_the_outputs_off_and_holds_them() {
     tim.write(0x10, 0, 200).unwrap();
     tim.write(0x44, MOE | BKE, 200).unwrap();
     assert!(!tim.set_break(true));
-    assert_eq!(
-        tim.output(0),
-        Output::High {
-            high: 450,
-            period: 1800
-        }
-    );
+    assert_eq!(tim.output(0), high(450));
 }
 
 #[test]
@@ -136,9 +105,7 @@ fn compare_flags_rise_at_the_match() {
 
 #[test]
 fn one_pulse_mode_stops_at_the_update() {
-    let mut tim = Tim::new(BASIC, 2);
-    tim.write(0x2c, 99, 0).unwrap();
-    tim.write(0x00, 9, 0).unwrap();
+    let mut tim = timer(BASIC, 2, &[(0x2c, 99), (0x00, 9)]);
     assert_eq!(tim.read(0x00, 199).unwrap() & 1, 1);
     assert_eq!(
         (
@@ -150,7 +117,7 @@ fn one_pulse_mode_stops_at_the_update() {
 }
 
 #[test]
-fn other_modes_are_refused() {
+fn unmodelled_modes_are_refused() {
     let mut tim = Tim::new(GENERAL, 2);
     assert!(tim.write(0x08, 3, 0).is_err(), "encoder");
     assert!(tim.write(0x18, 1, 0).is_err(), "input capture");
@@ -159,7 +126,7 @@ fn other_modes_are_refused() {
 
 /// Register maps of 16.4.21, 17.4.21 and 18.5.12.
 #[test]
-fn a_timer_has_the_registers_of_its_kind_only() {
+fn each_kind_of_timer_has_only_its_own_registers() {
     for (kind, present, absent) in [
         (
             ADVANCED,
@@ -194,20 +161,11 @@ fn a_timer_has_the_registers_of_its_kind_only() {
     }
 }
 
-/// TIM10 drives one pin without a main output enable.
 #[test]
-fn a_single_channel_drives_at_once() {
-    let mut tim = Tim::new(SINGLE, 1);
-    for (offset, value) in [
-        (0x2c, 1874),
-        (0x34, 625),
-        (0x18, 0x68),
-        (0x20, 0x1),
-        (0x14, 1),
-        (0x00, 0x81),
-    ] {
-        tim.write(offset, value, 0).unwrap();
-    }
+fn a_single_channel_timer_needs_no_main_output_enable() {
+    let output = [(0x2c, 1874), (0x34, 625), (0x18, 0x68), (0x20, 0x1)];
+    let start = [(0x14, 1), (0x00, 0x81)];
+    let tim = timer(SINGLE, 1, &[output.as_slice(), &start].concat());
     let third = Output::High {
         high: 625,
         period: 1875,
@@ -215,16 +173,11 @@ fn a_single_channel_drives_at_once() {
     assert_eq!(tim.output(0), third);
 }
 
-/// 17.3.2: the counter counts to the auto-reload value; a lower one that comes without preload, when the count is beyond it,
-/// is met only after the counter's end.
+/// 17.3.2: without preload, an auto-reload value below the present count matches only after the counter has wrapped.
 #[test]
-fn a_count_beyond_a_new_reload_value_goes_on_to_the_end() {
-    let mut tim = Tim::new(GENERAL, 1);
-    tim.write(0x2c, 5624, 0).unwrap();
-    tim.write(0x14, 1, 0).unwrap();
-    tim.write(0x10, 0, 0).unwrap();
-    tim.write(0x0c, 1, 0).unwrap();
-    tim.write(0x00, 1, 0).unwrap();
+fn a_count_beyond_a_new_reload_value_runs_to_the_counters_maximum() {
+    let writes = [(0x2c, 5624), (0x14, 1), (0x10, 0), (0x0c, 1), (0x00, 1)];
+    let mut tim = timer(GENERAL, 1, &writes);
     tim.write(0x2c, 1528, 1528).unwrap();
     assert_eq!(tim.due, 1529, "not beyond yet");
     tim.write(0x2c, 5624, 1528).unwrap();

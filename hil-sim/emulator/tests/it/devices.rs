@@ -1,68 +1,44 @@
-//! The emulated peripherals under a real image: strictness, clocks, converters, serial port, watchdog, repeatability.
-use stm32_emulator::{Access, LegState, Stop};
+//! The emulated peripherals under the probe image: refusals, clocks, converter, serial port, watchdogs, repeatability.
+use stm32_emulator::{LegState, Stop};
 use thermal_sim::processor::ResetCause;
 
 use crate::probe;
 
 const SECOND: u64 = 180_000_000;
 
-/// Runs a case that must stop.
-fn stop(case: u8) -> Stop {
-    probe::machine(case)
-        .run_until(10_000_000)
-        .expect_err("the case stops")
+/// A case ends early, and the reason begins with `expected`.
+fn assert_ends(case: u8, expected: &str) {
+    let stop = probe::machine(case).run_until(10_000_000);
+    let stop = stop.expect_err("the case ends early").to_string();
+    assert!(stop.starts_with(expected), "case {case}: {stop}");
 }
 
 #[test]
-fn an_unmodelled_register_stops_the_run_by_name() {
-    let Stop::NotModelled {
-        register,
-        address,
-        access,
-        place,
-        ..
-    } = stop(8)
-    else {
-        panic!()
-    };
-    assert_eq!(
-        (register.as_str(), address, access),
-        ("SPI1+0x0", 0x4001_3000, Access::Read(4))
-    );
-    assert_eq!(probe::firmware().function_at(place.pc), place.function);
-    assert!(place.function.starts_with("probe::"), "{place}");
-}
-
-#[test]
-fn a_peripheral_without_clock_stops_the_run() {
-    let Stop::ClockOff {
-        peripheral,
-        enable,
-        access,
-        ..
-    } = stop(9)
-    else {
-        panic!()
-    };
-    assert_eq!(
-        (peripheral.as_str(), enable.as_str(), access),
-        ("TIM2", "RCC_APB1ENR bit 0", Access::Write(4))
+fn an_unmodelled_register_ends_the_run_and_is_named() {
+    assert_ends(
+        8,
+        "SPI1+0x0 at 0x40013000 is not modelled: 32-bit read, value 0x0, in probe::",
     );
 }
 
 #[test]
-fn reading_without_clock_stops_too() {
-    let Stop::ClockOff {
-        peripheral, access, ..
-    } = stop(7)
-    else {
-        panic!()
-    };
-    assert_eq!((peripheral.as_str(), access), ("USART2", Access::Read(4)));
+fn a_write_to_a_peripheral_without_clock_ends_the_run() {
+    assert_ends(
+        9,
+        "TIM2 used at 0x4000002c while its clock is off (set RCC_APB1ENR bit 0 first): 32-bit write in",
+    );
 }
 
 #[test]
-fn the_signature_tells_the_flash_size_and_other_memories_stop_the_run() {
+fn a_read_from_a_peripheral_without_clock_ends_the_run() {
+    assert_ends(
+        7,
+        "USART2 used at 0x40004400 while its clock is off (set RCC_APB1ENR bit 17 first): 32-bit read in",
+    );
+}
+
+#[test]
+fn the_signature_has_the_flash_size_and_external_memory_ends_the_run() {
     let mut machine = probe::machine(15);
     let stop = machine.run_until(100_000).expect_err("stops");
     assert_eq!(probe::log(&machine), [512]);
@@ -70,7 +46,7 @@ fn the_signature_tells_the_flash_size_and_other_memories_stop_the_run() {
         matches!(&stop, Stop::NotModelled { register, .. } if register == "QUADSPI+0x0"),
         "{stop}"
     );
-    assert_eq!(machine.run_until(200_000), Err(stop), "for good");
+    assert_eq!(machine.run_until(200_000), Err(stop), "again");
 }
 
 #[test]
@@ -89,32 +65,19 @@ fn the_break_input_releases_both_legs() {
 }
 
 #[test]
-fn too_few_wait_states_stop_the_run() {
-    let Stop::FlashLatency {
-        hclk_hz,
-        latency,
-        needed,
-        ..
-    } = stop(10)
-    else {
-        panic!()
-    };
-    assert_eq!((hclk_hz, latency, needed), (180_000_000, 4, 5));
+fn too_few_wait_states_end_the_run() {
+    assert_ends(
+        10,
+        "FLASH_ACR.LATENCY = 4 is too small for HCLK = 180000000 Hz, which needs 5 (in",
+    );
 }
 
 #[test]
-fn an_unmodelled_mode_stops_the_run() {
+fn an_unmodelled_mode_ends_the_run() {
     for case in [11, 16] {
-        let Stop::NotModelled {
-            register, value, ..
-        } = stop(case)
-        else {
-            panic!()
-        };
-        assert_eq!(
-            (register.as_str(), value),
-            ("TIM3_SMCR (TIM SMCR (slave modes))", 3),
-            "case {case}"
+        assert_ends(
+            case,
+            "TIM3_SMCR (TIM SMCR (slave modes)) at 0x40000408 is not modelled: 32-bit write, value 0x3, in",
         );
     }
 }
@@ -127,9 +90,7 @@ fn the_watchdog_resets_ten_milliseconds_after_the_last_feed() {
         [0x2e, 0, 0xd0e],
         "flags after the reset (start-up has cleared the log), flags cleared"
     );
-    let [_, reset] = machine.resets() else {
-        panic!("{:?}", machine.resets())
-    };
+    let reset = probe::only_reset(&machine);
     assert_eq!(reset.cause, ResetCause::IndependentWatchdog);
     let feeds: Vec<u64> = machine
         .wiring()
@@ -157,9 +118,7 @@ fn the_window_watchdog_resets_when_it_is_no_longer_refreshed() {
         [0x4e, 0x00fe_ed00, 1, 0xd0e],
         "flags; RAM that start-up leaves alone has survived; one early interrupt"
     );
-    let [_, reset] = machine.resets() else {
-        panic!("{:?}", machine.resets())
-    };
+    let reset = probe::only_reset(&machine);
     assert_eq!(reset.cause, ResetCause::WindowWatchdog);
     let refreshes: Vec<u64> = machine
         .wiring()
@@ -186,7 +145,7 @@ fn a_refresh_outside_the_window_resets_at_once() {
 }
 
 #[test]
-fn the_products_load_keeps_its_rates() {
+fn the_load_of_the_product_keeps_its_rates() {
     let (mut machine, log) = probe::run(13, SECOND / 10);
     assert_eq!(log, [1, 0xd0e]);
     let clocks = machine.clocks();
@@ -209,11 +168,9 @@ fn the_products_load_keeps_its_rates() {
         machine.wiring().sent.len(),
     );
     let ticks = |m: &stm32_emulator::Machine<probe::Bench>| {
-        m.stats()
-            .interrupts
-            .iter()
-            .find(|i| i.name == "SysTick")
-            .map_or(0, |i| i.count)
+        let interrupts = m.stats().interrupts;
+        let tick = interrupts.iter().find(|i| i.name == "SysTick");
+        tick.map_or(0, |i| i.count)
     };
     let ticks_before = ticks(&machine);
     machine.run_until(from + SECOND).expect("runs");
@@ -278,7 +235,7 @@ fn received_bytes_arrive_by_interrupt() {
 }
 
 #[test]
-fn a_host_at_another_rate_breaks_frames() {
+fn a_host_rate_more_than_3_percent_off_causes_framing_errors() {
     for (baud, framing_error) in [(1_029_000, 0), (972_000, 0), (1_040_000, 2), (500_000, 2)] {
         let (mut machine, _) = probe::run(14, SECOND / 100);
         machine.set_host_baud(baud);
@@ -293,7 +250,7 @@ fn a_host_at_another_rate_breaks_frames() {
 }
 
 #[test]
-fn two_runs_are_the_same_to_the_bit() {
+fn two_runs_are_identical() {
     let run = |steps: u64| {
         let mut machine = probe::machine(13);
         for step in 1..=steps {
@@ -313,7 +270,7 @@ fn two_runs_are_the_same_to_the_bit() {
     let (_, _, in_steps) = run(777);
     assert_eq!(
         bench.conversions, in_steps.conversions,
-        "nor does it matter where the run is cut"
+        "in one run and in 777 parts"
     );
     assert!(
         stack.is_some_and(|bytes| bytes > 0 && bytes < 4096),

@@ -1,4 +1,4 @@
-//! Faults injected into the emulated machine, under a real image.
+//! Faults injected into the emulated machine, under the probe image.
 use stm32_emulator::{InjectError, LegState, Machine, Stop};
 use thermal_sim::processor::{CoreRegister, ResetCause};
 
@@ -24,7 +24,7 @@ fn a_hung_core_is_reset_by_the_window_watchdog_and_the_legs_are_off_at_once() {
     assert_eq!(
         (log[0], machine.resets().len()),
         (0x0e, 1),
-        "fed by the tick, it does not bite"
+        "no reset while the tick refreshes the watchdog"
     );
     assert_ne!(legs(&mut machine), OFF);
     let conversions = machine.wiring().conversions.len();
@@ -39,9 +39,7 @@ fn a_hung_core_is_reset_by_the_window_watchdog_and_the_legs_are_off_at_once() {
     let more = machine.wiring().conversions.len() - conversions;
     assert!(more.abs_diff(44 * 16 * 7) <= 7, "and samples: {more}");
     run(&mut machine, 5 * MS);
-    let [_, reset] = machine.resets() else {
-        panic!("{:?}", machine.resets())
-    };
+    let reset = probe::only_reset(&machine);
     assert_eq!(reset.cause, ResetCause::WindowWatchdog);
     // 64 periods of 4096 * 2^3 / 45 MHz, less the prescaler's state, from a refresh at most a tick before
     let longest = 64 * 4096 * 8 * 4;
@@ -58,7 +56,7 @@ fn a_hung_core_is_reset_by_the_window_watchdog_and_the_legs_are_off_at_once() {
 }
 
 #[test]
-fn every_reset_releases_the_legs_in_its_cycle() {
+fn every_reset_releases_the_legs_in_the_same_cycle() {
     let resets: [(Injection, ResetCause); 3] = [
         (Machine::brown_out, ResetCause::BrownOut),
         (Machine::pull_reset_pin, ResetCause::Pin),
@@ -76,18 +74,18 @@ fn every_reset_releases_the_legs_in_its_cycle() {
 }
 
 #[test]
-fn time_goes_on_through_a_reset_at_the_clock_of_its_moment() {
+fn time_continues_through_a_reset_at_the_changed_clock() {
     let (mut machine, _) = probe::run(13, 10 * MS);
-    let at_ps = machine.elapsed_ps();
+    let at_ps = machine.ps_at(machine.now());
     machine.pull_reset_pin().expect("resets");
     assert_eq!(
-        machine.elapsed_ps() - at_ps,
+        machine.ps_at(machine.now()) - at_ps,
         20_000_000,
         "the chip is held for 20 us"
     );
     machine.run_until_ps(at_ps + 2_000_000_000).expect("runs");
     assert!(
-        machine.elapsed_ps().abs_diff(at_ps + 2_000_000_000) < 1_000_000,
+        machine.ps_at(machine.now()).abs_diff(at_ps + 2_000_000_000) < 1_000_000,
         "within a basic block"
     );
     assert_eq!(
@@ -105,7 +103,7 @@ fn time_goes_on_through_a_reset_at_the_clock_of_its_moment() {
 }
 
 #[test]
-fn only_a_power_cycle_clears_the_ram() {
+fn only_a_power_cycle_changes_the_ram() {
     let (mut machine, _) = probe::run(19, 1_600_000);
     machine.brown_out().expect("resets");
     assert_eq!(probe::words(&machine, "KEPT", 2), [0x00fe_ed00, 1]);
@@ -122,7 +120,7 @@ fn only_a_power_cycle_clears_the_ram() {
 }
 
 #[test]
-fn reset_flags_gather_until_the_supply_goes() {
+fn reset_flags_accumulate_until_the_supply_is_lost() {
     let mut machine = probe::machine(19);
     let mut flags_after = |inject: Injection| {
         inject(&mut machine).expect("resets");
@@ -139,7 +137,7 @@ fn reset_flags_gather_until_the_supply_goes() {
 }
 
 #[test]
-fn bits_of_the_core_flip() {
+fn flipped_bits_of_core_registers_reach_the_program() {
     let mut machine = probe::machine(26);
     run(&mut machine, 20_000);
     assert_eq!(probe::log(&machine), [1]);
@@ -156,7 +154,7 @@ fn bits_of_the_core_flip() {
 }
 
 #[test]
-fn bits_of_ram_flip_and_count_as_no_use_of_the_stack() {
+fn a_flipped_bit_of_ram_does_not_count_as_use_of_the_stack() {
     let (mut machine, _) = probe::run(13, 10 * MS);
     let at = probe::firmware().symbol("KEPT").expect("a symbol");
     let old = probe::words(&machine, "KEPT", 1)[0];
@@ -168,7 +166,7 @@ fn bits_of_ram_flip_and_count_as_no_use_of_the_stack() {
 }
 
 #[test]
-fn bits_of_devices_flip() {
+fn flipped_bits_of_peripherals_take_effect() {
     const TIM1_CCR1: u32 = 0x4001_0034;
     const TIM1_BDTR: u32 = 0x4001_0044;
     const ISER1: u32 = 0xe000_e104;
@@ -205,7 +203,7 @@ fn bits_of_devices_flip() {
 }
 
 #[test]
-fn what_cannot_flip_is_refused() {
+fn faults_in_absent_or_unmodelled_places_are_refused() {
     let (mut machine, _) = probe::run(13, 10 * MS);
     assert_eq!(
         machine.flip_ram_bit(0x2002_0000, 0),
@@ -264,7 +262,7 @@ fn a_stopped_stream_delivers_nothing_and_overruns_the_converter() {
 }
 
 #[test]
-fn a_stopped_converter_stays_so_until_a_reset() {
+fn a_stopped_converter_converts_again_after_a_reset() {
     let (mut machine, _) = probe::run(13, 10 * MS);
     let conversions = machine.wiring().conversions.len();
     machine.stop_adc();
@@ -296,7 +294,7 @@ fn clock_security_releases_the_bridge_and_raises_the_nmi() {
 }
 
 #[test]
-fn without_clock_security_the_pins_freeze_until_the_independent_watchdog_bites() {
+fn without_clock_security_the_pins_keep_their_level_until_the_independent_watchdog_resets() {
     let (mut machine, _) = probe::run(24, 5 * MS);
     let executed = machine.stats().instructions;
     machine.stop_hse().expect("stops");
@@ -322,7 +320,7 @@ fn without_clock_security_the_pins_freeze_until_the_independent_watchdog_bites()
 }
 
 #[test]
-fn an_nmi_gets_through_lockup_and_returns_into_it() {
+fn an_nmi_is_taken_in_lockup_and_returns_to_it() {
     let (mut machine, log) = probe::run(25, MS);
     assert_eq!(
         log.len(),

@@ -1,4 +1,4 @@
-//! The emulated microcontroller against its reference manuals, under a test image of its own.
+//! The emulated microcontroller against its reference manuals, under the test image of `probe/`.
 
 mod core;
 mod devices;

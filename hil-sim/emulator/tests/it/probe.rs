@@ -1,9 +1,9 @@
-//! Builds the test image once and runs its cases.
+//! Builds the test image of `probe/` once and runs its cases.
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
-use stm32_emulator::{Firmware, LegState, Machine, Wiring};
+use stm32_emulator::{Firmware, LegState, Machine, Reset, Wiring};
 
 static FIRMWARE: LazyLock<Firmware> =
     LazyLock::new(|| Firmware::from_file(&build()).expect("the probe is an image"));
@@ -24,7 +24,7 @@ fn build() -> PathBuf {
     PathBuf::from(String::from_utf8_lossy(&built.stdout).trim())
 }
 
-/// Pins of the test bench.
+/// The circuit at the pins, which records what the image does.
 #[derive(Debug, Default)]
 pub struct Bench {
     /// Level of port C, which selects the case.
@@ -73,14 +73,19 @@ impl Wiring for Bench {
 
 /// A machine about to run a case.
 pub fn machine(case: u8) -> Machine<Bench> {
-    Machine::new(
-        &FIRMWARE,
-        Bench {
-            case,
-            ..Bench::default()
-        },
-    )
-    .expect("the machine powers up")
+    let bench = Bench {
+        case,
+        ..Bench::default()
+    };
+    Machine::new(&FIRMWARE, bench).expect("the machine powers up")
+}
+
+/// The only reset after power-up.
+pub fn only_reset(machine: &Machine<Bench>) -> Reset {
+    let [_, reset] = machine.resets() else {
+        panic!("{:?}", machine.resets())
+    };
+    *reset
 }
 
 /// The image.
@@ -94,10 +99,8 @@ pub fn words<W: Wiring + 'static>(machine: &Machine<W>, name: &str, count: usize
     let bytes = machine
         .memory(address, 4 * count)
         .expect("it lies in memory");
-    bytes
-        .chunks_exact(4)
-        .map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]))
-        .collect()
+    let (words, _) = bytes.as_chunks();
+    words.iter().copied().map(u32::from_le_bytes).collect()
 }
 
 /// The log of the image.

@@ -1,4 +1,4 @@
-//! Encodings as an independent assembler wrote them.
+//! Encodings that an independent assembler produced.
 use super::*;
 
 fn effect(first: u16, second: u16) -> Effect {
@@ -6,7 +6,7 @@ fn effect(first: u16, second: u16) -> Effect {
 }
 
 #[test]
-fn lengths() {
+fn instructions_have_the_length_of_their_encoding() {
     for (first, length) in [
         (0x4770, 2),
         (0xe7fe, 2),
@@ -19,7 +19,7 @@ fn lengths() {
 }
 
 #[test]
-fn flow() {
+fn jumps_calls_and_returns_are_decoded() {
     let cases = [
         // b . ; beq .+4 ; cbz r0, .+6 ; cbnz r1, .+0x44
         (0xe7fe, 0, Effect::Jump(0x0800_1000)),
@@ -64,7 +64,7 @@ fn flow() {
 }
 
 #[test]
-fn stack() {
+fn changes_of_the_stack_pointer_are_decoded() {
     let cases = [
         // push {r4-r7, lr} ; pop {r4-r7, pc} ; push.w {r8-r11} ; pop.w {r8-r11} ; pop.w {r4-r11, pc}
         (0xb5f0, 0, Effect::Stack(20)),
@@ -101,7 +101,7 @@ fn stack() {
 }
 
 #[test]
-fn floating_point() {
+fn floating_point_arithmetic_is_distinguished_from_moves() {
     let cases = [
         // vadd.f32 s0, s1, s2 ; vmul ; vdiv ; vcvt.f32.s32 s0, s0 ; vsqrt.f32 s0, s1 ; vcmp.f32 s0, s1 ; vabs.f32 s0, s1
         (0xee30, 0x0a81, true),
@@ -129,7 +129,7 @@ fn floating_point() {
 }
 
 #[test]
-fn exclusive_stores() {
+fn exclusive_stores_are_recognised() {
     // strex r1, r0, [r2] ; strexb r1, r0, [r2] ; strexh r1, r0, [r2] ; ldrex r0, [r2] ; strd r0, r1, [r2]
     for (first, second, expected) in [
         (0xe842, 0x0100, true),

@@ -90,9 +90,11 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
 
 /// The control law of a name, as the device knows it.
 fn law(source: &Source<'_>, name: &Spanned<String>) -> Result<Law, SceneError> {
-    let known = Law::WORDS.iter().find(|(word, _)| word == name.get_ref());
+    let known = Law::PROTOCOL_WORDS
+        .iter()
+        .find(|(word, _)| word == name.get_ref());
     known.map(|(_, law)| *law).ok_or_else(|| {
-        let words: Vec<_> = Law::WORDS.iter().map(|(word, _)| *word).collect();
+        let words: Vec<_> = Law::PROTOCOL_WORDS.iter().map(|(word, _)| *word).collect();
         let problem = format!("law = {:?}; known are {}", name.get_ref(), words.join(", "));
         source.error(Some(name.span()), problem)
     })

@@ -3,7 +3,7 @@
 use contact_model::pressure::{THESIS_PRESSURES, pressure_pa};
 
 use super::{Curve, END_S, FLUX, Figure, Kind, TEMPERATURE, TIME, over_time, times_s};
-use crate::case::{Case, Source, Surfaces, five, sample};
+use crate::case::{Case, Source, Surfaces, five, material, sample};
 
 const SIMULATION: &str = "34 and 24 °C, 14.81 kPa";
 /// First time of figure 3-2 (B), s; Eq. 3-3 is singular at landing.
@@ -14,10 +14,10 @@ pub(super) fn figure_3_2() -> Vec<Figure> {
     let materials = [
         "copper",
         "bronze",
-        "stainless-steel",
+        "stainless steel",
         "granite",
-        "g10",
-        "abs",
+        "G10",
+        "ABS",
         "foam",
     ];
     let figure = |number, y, title: &str, value: &dyn Fn(&Case, f64) -> Option<f64>| Figure {
@@ -32,7 +32,7 @@ pub(super) fn figure_3_2() -> Vec<Figure> {
             .map(|(group, sample)| {
                 let case = Case {
                     skin_c: 33.0,
-                    ..Case::simulation(sample)
+                    ..Case::simulation(sample.material)
                 };
                 let points = times_s().into_iter();
                 Curve {
@@ -76,7 +76,7 @@ pub(super) fn figures_6_6_to_6_9(source: &dyn Source) -> anyhow::Result<Vec<Figu
     ];
     let figure = |(number, title, y, value): (_, &str, _, _)| {
         let curves = five().into_iter().enumerate().map(|(group, sample)| {
-            let case = Case::simulation(&sample);
+            let case = Case::simulation(sample.material);
             over_time(
                 source,
                 &case,
@@ -99,7 +99,7 @@ pub(super) fn figures_6_6_to_6_9(source: &dyn Source) -> anyhow::Result<Vec<Figu
 pub(super) fn figure_6_10(source: &dyn Source) -> anyhow::Result<Figure> {
     let mut curves = Vec::new();
     for (group, sample) in five().into_iter().enumerate() {
-        let case = Case::simulation(&sample);
+        let case = Case::simulation(sample.material);
         let label = |what| format!("{}, {what}", sample.name);
         let interface_c = case.perfect().interface_c;
         curves.extend([
@@ -136,7 +136,7 @@ pub(super) fn figure_6_10(source: &dyn Source) -> anyhow::Result<Figure> {
 
 /// Coldness of copper over roughness and over pressure.
 pub(super) fn figures_6_11_and_6_12(source: &dyn Source) -> anyhow::Result<[Figure; 2]> {
-    let copper = Case::simulation(&sample("copper"));
+    let copper = Case::simulation(material("copper"));
     let flux = |case: &Case, label: String, group| {
         over_time(source, case, |at| at.flux_w_m2, (label, Kind::Line, group))
     };

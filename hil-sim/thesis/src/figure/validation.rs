@@ -7,7 +7,7 @@ use crate::case::{Case, Sample, Source, sample};
 
 /// The two windows with the part of figures 6-19 and 6-20 that shows them.
 const WINDOWS: [(&str, &str, &str); 2] =
-    [("baf2", "6-19 A", "6-20 A"), ("zns", "6-19 B", "6-20 B")];
+    [("BaF2", "6-19 A", "6-20 A"), ("ZnS", "6-19 B", "6-20 B")];
 /// Steps of pressure of the curve in figure 6-19, and the highest, Pa.
 const PRESSURES: (u32, f64) = (60, 12e3);
 
@@ -17,7 +17,7 @@ pub(super) fn figure_6_13(source: &dyn Source) -> anyhow::Result<[Figure; 2]> {
     let pressure_pa = THESIS_PRESSURES[4].1;
     for (group, (key, ..)) in WINDOWS.iter().enumerate() {
         let window = sample(key);
-        let case = Case::validation(&window, pressure_pa);
+        let case = Case::validation(window.material, pressure_pa);
         let label = |what| format!("{}, {what}", window.name);
         temperatures.push(over_time(
             source,
@@ -94,7 +94,7 @@ fn falls(
     kind: Kind,
 ) -> anyhow::Result<Curve> {
     let fall = |pressure_pa: f64| {
-        let case = Case::validation(window, pressure_pa);
+        let case = Case::validation(window.material, pressure_pa);
         let course = source.course(&case, &[0.0, END_S])?;
         Ok((pressure_pa * 1e-3, course[0].skin_c - course[1].skin_c))
     };
@@ -117,7 +117,7 @@ pub(super) fn figure_6_20(source: &dyn Source) -> anyhow::Result<Vec<Figure>> {
             .enumerate()
             .map(|(group, (force_n, pressure_pa))| {
                 let label = format!("{:.2} kPa ({force_n} N)", pressure_pa * 1e-3);
-                let case = Case::validation(&window, *pressure_pa);
+                let case = Case::validation(window.material, *pressure_pa);
                 over_time(source, &case, |at| at.skin_c, (label, Kind::Line, group))
             });
         Ok(Figure {

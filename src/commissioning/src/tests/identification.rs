@@ -97,7 +97,7 @@ impl Plant {
             }
             let touching = tick >= touched_from;
             let readings = self.readings(tick, measured);
-            let current = identification.update(&mut equations, &readings, touching);
+            let current = identification.choose_current(&mut equations, &readings, touching);
             measured = self.step(current.unwrap_or(Current::ZERO));
         }
         panic!("the identification did not end within 80 s");

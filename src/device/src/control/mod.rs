@@ -14,30 +14,33 @@ use crate::pi::Pi;
 use crate::reference::Reference;
 use crate::safety::limits::COOLING_REDUCED_FROM;
 
-/// Above that sink temperature cooling is reduced by this part of its limit per K, as a power of two.
-const REDUCTION_SHIFT: u32 = 1;
+/// For each kelvin of the sink above [`COOLING_REDUCED_FROM`] the law `model` reduces the limit of the cooling current
+/// by one half (this power of two) of the whole.
+const COOLING_REDUCTION_SHIFT: u32 = 1;
 
-/// Which law finds the current.
+/// Control law that chooses the module's current from the reference and the readings; selected by the host's command
+/// `law`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Law {
-    /// Proportional-integral, ten times a second, as the thesis's display.
+    /// Proportional-integral control of the display's reading, ten times a second, as the display of the thesis.
     Pi10Hz,
-    /// Proportional-integral, every tick.
+    /// Proportional-integral control of the display's reading, at every tick of 1 ms.
     Pi,
-    /// Feed-forward by the internal model of plate and finger, with a disturbance observer.
+    /// Feed-forward by the internal model of plate and finger, with a disturbance observer; it also corrects the skin's
+    /// temperature. The default.
     #[default]
     Model,
 }
 
 impl Law {
-    /// All laws with their words in the protocol.
-    pub const WORDS: [(&'static str, Self); 3] = [
+    /// All laws, each with its word on the line to the host.
+    pub const PROTOCOL_WORDS: [(&'static str, Self); 3] = [
         ("pi-10hz", Self::Pi10Hz),
         ("pi", Self::Pi),
         ("model", Self::Model),
     ];
 
-    /// The law's word in the protocol.
+    /// The law's word on the line to the host, as in [`Self::PROTOCOL_WORDS`].
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -48,18 +51,22 @@ impl Law {
     }
 }
 
-/// The controller: the law in use, and the state of the proportional-integral laws.
+/// The controller of one finger's display: the selected law, and the states of both proportional-integral laws, which
+/// start from the present current when their law is selected.
 #[derive(Clone, Debug)]
 pub struct Controller {
     law: Law,
+    /// The law `pi-10hz`.
     pi_10hz: Pi,
+    /// The law `pi`.
     pi: Pi,
-    /// Current of the last tick.
+    /// Current of the last tick, A; positive cools.
     current: Current,
 }
 
 impl Controller {
-    /// A controller with current zero, and the default law.
+    /// A controller with the default law `model` and no current; no law ever chooses more than `limit`, A, in
+    /// magnitude.
     #[must_use]
     pub fn new(parameters: &ControlParameters, limit: Current) -> Self {
         Self {
@@ -70,41 +77,46 @@ impl Controller {
         }
     }
 
-    /// Takes the parameters of another tile; the current goes on from where it is.
+    /// Takes the gains of another tile, after the host has stored a new identification; the integral parts of the
+    /// currents stay. The plate's observer takes its own constants.
     pub fn set_parameters(&mut self, parameters: &ControlParameters) {
         self.pi.set_coefficients(parameters.pi);
         self.pi_10hz.set_coefficients(parameters.pi_10hz);
     }
 
-    /// The law in use.
+    /// The law that chooses the current.
     #[must_use]
     pub const fn law(&self) -> Law {
         self.law
     }
 
-    /// Uses another law, which starts from the present current (bumpless transfer).
-    pub fn select(&mut self, law: Law) {
+    /// Selects another law. The proportional-integral laws start from the present current (bumpless transfer), the law
+    /// `model` from the observer, which has followed that current. The law in use, selected again, continues
+    /// undisturbed.
+    pub fn select_law(&mut self, law: Law) {
         if law != self.law {
             self.law = law;
-            self.track(self.current);
+            self.track_current(self.current);
         }
     }
 
-    /// Largest current that [`Self::update`] returns.
+    /// Largest magnitude, A, of the current that [`Self::choose_current`] returns.
     #[must_use]
-    pub const fn limit(&self) -> Current {
-        self.pi.limit()
+    pub const fn current_limit(&self) -> Current {
+        self.pi.output_limit()
     }
 
-    /// Takes the current of a tick in which something else has chosen it, so that the laws start from there.
-    pub fn track(&mut self, current: Current) {
+    /// Takes the current, A, of a tick in which the self-test or an identification has chosen it, or in which the
+    /// bridge is off, so that the laws start from there.
+    pub fn track_current(&mut self, current: Current) {
         self.current = current;
-        self.pi_10hz.track(current);
-        self.pi.track(current);
+        self.pi_10hz.track_current(current);
+        self.pi.track_current(current);
     }
 
-    /// Current of this tick, A; positive cools. `plate` has been corrected by this tick's readings.
-    pub fn update(
+    /// Chooses the current of this tick, A (positive cools), by the selected law. `display` and `sink` are this tick's
+    /// readings, °C, by which the observer `plate` has already been corrected.
+    pub fn choose_current(
         &mut self,
         reference: &Reference,
         display: Celsius,
@@ -112,22 +124,22 @@ impl Controller {
         plate: &PlateObserver,
     ) -> Current {
         self.current = match self.law {
-            Law::Pi10Hz => self.pi_10hz.update(reference.setpoint, display),
-            Law::Pi => self.pi.update(reference.setpoint, display),
+            Law::Pi10Hz => self.pi_10hz.update_output(reference.setpoint, display),
+            Law::Pi => self.pi.update_output(reference.setpoint, display),
             Law::Model => plate
-                .current_to(reference.target.celsius())
+                .current_to_target(reference.target.celsius())
                 .min(self.cooling_limit(sink))
-                .max(-self.limit()),
+                .max(-self.current_limit()),
         };
         self.current
     }
 
-    /// Largest cooling current. It falls to zero over 2 K of the sink, because there more current would warm the sink more
-    /// than cool the display.
+    /// Largest cooling current of the law `model`, A, at this temperature of the sink, °C. It falls to zero over 2 K
+    /// above [`COOLING_REDUCED_FROM`], because there more current would warm the sink more than cool the display.
     fn cooling_limit(&self, sink: Celsius) -> Current {
         let excess =
-            sink.saturating_sub(COOLING_REDUCED_FROM).max(Celsius::ZERO) >> REDUCTION_SHIFT;
+            sink.saturating_sub(COOLING_REDUCED_FROM).max(Celsius::ZERO) >> COOLING_REDUCTION_SHIFT;
         let part = Celsius::ONE.saturating_sub(excess).max(Celsius::ZERO);
-        product(self.limit(), part)
+        product(self.current_limit(), part)
     }
 }

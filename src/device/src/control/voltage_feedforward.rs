@@ -4,17 +4,18 @@ use contact_model::fixed_point::{Celsius, product};
 use fixed::types::{I0F32, I1F15, I4F28, I8F24};
 use thermal_settings::Module;
 
-use crate::bismuth_telluride::{DATA_SHEET_TEMPERATURE, RESISTIVITY_PER_K};
+use crate::bismuth_telluride::{DATA_SHEET_TEMPERATURE, RESISTIVITY_RISE_PER_K};
 use crate::drive::{Current, Duty, SafeCurrent};
 use crate::estimate::LegTemperatures;
 
-/// A voltage as a part of the bridge supply.
+/// A voltage as a part of the bridge's supply voltage; 1 is all of it.
 type SupplyPart = I8F24;
 
-/// Largest distance of the loss from its middle, on the line between none and all of it.
-const LARGEST_OFFSET: SupplyPart = SupplyPart::lit("0.0625");
-/// Binary places of the divisor in a quotient.
-const DIVISOR_PLACES: u32 = 10;
+/// Limit of the dead-time loss's distance from half of its largest value, as a part of the supply, on the line between
+/// no loss and all of it; keeps the quotient in range.
+const LARGEST_OFFSET_FROM_HALF_LOSS: SupplyPart = SupplyPart::lit("0.0625");
+/// Binary places to which the divisor is cut, so that a 32-bit division is enough.
+const DIVISOR_BINARY_PLACES: u32 = 10;
 
 /// The module's electrical side: `V = R I + a (T_hot - T_cold) + V_dead`, where `V_dead` is what the bridge loses
 /// in its dead times.
@@ -33,22 +34,24 @@ const DIVISOR_PLACES: u32 = 10;
 /// ±128 A, temperatures within ±512 K, all else within the supply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VoltageFeedforward {
-    /// Resistance with the legs at the data sheet's temperature, 1/A.
+    /// Resistance of legs at 27 °C, leads and bridge, divided by the supply voltage, 1/A.
     per_ampere: I4F28,
-    /// Rise of the resistance, 1/(A K).
+    /// Rise of the resistance of the legs with their mean temperature, divided by the supply voltage, 1/(A K).
     rise_per_k: I4F28,
-    /// Seebeck voltage, 1/K.
+    /// Seebeck voltage per kelvin between the legs' hot and cold ends, as a part of the supply, 1/K.
     per_k: I0F32,
-    /// Voltage lost in dead times.
+    /// Largest voltage that the bridge loses in its dead times, `V_dead`, as a part of the supply.
     dead_time: SupplyPart,
+    /// Half of the inductor's ripple current, A, divided by `w (1 - w)` for pulses of a part `w` of the period.
     ripple_a: Current,
+    /// Change of the inductor's current during one dead time, A.
     dead_time_a: Current,
-    /// Rise of the loss between none and all of it, 1/A.
+    /// Slope of the loss between none and all of it, as a part of the supply per ampere, 1/A.
     dead_time_per_a: SupplyPart,
 }
 
 impl VoltageFeedforward {
-    /// Converts settings. Computed in `f64`, for start-up.
+    /// Converts the module's electrical settings. Computed in `f64`, so it is for start-up and not for the tick.
     #[must_use]
     pub fn new(module: &Module) -> Self {
         let bits = |value: f64, places: u32| libm::round(libm::ldexp(value, places as i32)) as i32;
@@ -58,7 +61,7 @@ impl VoltageFeedforward {
         let dead_time = module.dead_time_v / module.supply_v;
         Self {
             per_ampere: resistance(module.legs_ohm + module.leads_ohm),
-            rise_per_k: resistance(module.legs_ohm * RESISTIVITY_PER_K),
+            rise_per_k: resistance(module.legs_ohm * RESISTIVITY_RISE_PER_K),
             per_k: I0F32::from_bits(bits(
                 module.seebeck_v_k / module.supply_v,
                 I0F32::FRAC_NBITS,
@@ -70,9 +73,10 @@ impl VoltageFeedforward {
         }
     }
 
-    /// Mean bridge voltage for a current.
+    /// Duty cycle of the bridge that drives `current` through the module, whose `legs` have these temperatures:
+    /// resistive and Seebeck voltage plus what the dead times lose, limited to ±0.9. Positive cools.
     #[must_use]
-    pub fn duty(&self, current: SafeCurrent, legs: &LegTemperatures) -> Duty {
+    pub fn duty_for_current(&self, current: SafeCurrent, legs: &LegTemperatures) -> Duty {
         let current = current.ampere();
         let difference: Celsius = legs.hot.saturating_sub(legs.cold);
         let above_data_sheet = legs.mean.saturating_sub(DATA_SHEET_TEMPERATURE);
@@ -80,16 +84,19 @@ impl VoltageFeedforward {
         let resistive: SupplyPart = product(current, self.per_ampere.saturating_add(rise));
         let needed = resistive.saturating_add(product(difference, self.per_k));
         let voltage = if needed < 0 {
-            needed.saturating_sub(self.lost(needed.saturating_neg(), current.saturating_neg()))
+            needed.saturating_sub(
+                self.dead_time_loss(needed.saturating_neg(), current.saturating_neg()),
+            )
         } else {
-            needed.saturating_add(self.lost(needed, current))
+            needed.saturating_add(self.dead_time_loss(needed, current))
         };
         Duty::saturating(I1F15::saturating_from_num(voltage))
     }
 
-    /// Loss of pulses that leave `needed` after it: where the line of the loss meets the width that the loss demands, to first
-    /// order around half of the loss.
-    fn lost(&self, needed: SupplyPart, current: Current) -> SupplyPart {
+    /// Voltage that the bridge loses in its dead times, as a part of the supply, while its pulses must leave `needed`
+    /// (0 or more) after the loss, at `current`, A, along the pulses. The loss widens the pulses, which changes ripple
+    /// and loss in turn: solved to first order around half of the largest loss.
+    fn dead_time_loss(&self, needed: SupplyPart, current: Current) -> SupplyPart {
         const ONE: SupplyPart = SupplyPart::ONE;
         let times = product::<SupplyPart, _>;
         let half = self.dead_time >> 1u32;
@@ -99,11 +106,13 @@ impl VoltageFeedforward {
         // A wider pulse has more ripple, which takes back a part of the loss.
         let ripple_per_width = times(self.ripple_a, ONE - 2 * middle);
         let feedback = times(ripple_per_width, self.dead_time_per_a).max(SupplyPart::ZERO);
-        let offset = line
-            .saturating_sub(half)
-            .clamp(-LARGEST_OFFSET, LARGEST_OFFSET);
-        let divisor = ONE.saturating_add(feedback) >> (SupplyPart::FRAC_NBITS - DIVISOR_PLACES);
-        let quotient = (offset.to_bits() << DIVISOR_PLACES) / divisor.to_bits();
+        let offset = line.saturating_sub(half).clamp(
+            -LARGEST_OFFSET_FROM_HALF_LOSS,
+            LARGEST_OFFSET_FROM_HALF_LOSS,
+        );
+        let divisor =
+            ONE.saturating_add(feedback) >> (SupplyPart::FRAC_NBITS - DIVISOR_BINARY_PLACES);
+        let quotient = (offset.to_bits() << DIVISOR_BINARY_PLACES) / divisor.to_bits();
         (half + SupplyPart::from_bits(quotient))
             .min(self.dead_time)
             .max(SupplyPart::ZERO)
@@ -145,7 +154,8 @@ mod tests {
             let seebeck_v = 12.0 * width - lost_v - 1.251 * current_a;
             for sign in [1.0, -1.0] {
                 let current = Current::saturating_from_num(sign * current_a);
-                let duty = voltage.duty(SafeCurrent::saturating(current), &legs(sign * seebeck_v));
+                let duty = voltage
+                    .duty_for_current(SafeCurrent::saturating(current), &legs(sign * seebeck_v));
                 let error_v = 12.0 * (duty.fraction().to_num::<f64>() - sign * width);
                 assert!(error_v.abs() < 0.08, "{width}, {current_a} A: {error_v} V");
             }
@@ -162,7 +172,7 @@ mod tests {
         };
         let part = |legs| {
             voltage
-                .duty(SafeCurrent::saturating(Current::lit("4")), legs)
+                .duty_for_current(SafeCurrent::saturating(Current::lit("4")), legs)
                 .fraction()
                 .to_num::<f64>()
         };

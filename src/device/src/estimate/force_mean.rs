@@ -4,61 +4,76 @@ use core::num::NonZeroU32;
 
 use contact_model::fixed_point::Force;
 
-/// A force that differs from the recent mean by more than this has changed; less is noise.
-const CHANGED: Threshold = Threshold {
+/// A tick's force that differs from the mean of the last 64 ticks by more than this (1/16 of the mean, at least 10 mN)
+/// is a new force, and the mean starts again from it; a smaller difference is noise.
+const NEW_FORCE_THRESHOLD: ForceThreshold = ForceThreshold {
     shift: 4,
     floor: Force::lit("0.01"),
 };
-/// A recent mean that differs from the force in use by more than this has drifted; its noise is smaller than a tick's.
-const DRIFTED: Threshold = Threshold {
+/// The mean of the last 64 ticks has drifted if it differs from the mean in use for set-points by more than this
+/// (1/2048 of the latter, at least 0.25 mN). Smaller than the threshold of a new force, because averaging has reduced
+/// the noise.
+const DRIFT_THRESHOLD: ForceThreshold = ForceThreshold {
     shift: 11,
     floor: Force::lit("0.00025"),
 };
-/// Ticks of the recent mean.
-const RECENT_TICKS: u32 = 64;
-/// The mean reaches back over this part, as a power of two, of the time since the force changed, and over
-/// `RECENT_TICKS` to `LONGEST_TICKS`. The set-point depends on the logarithm of time, so late noise may be averaged longer.
-const REACH_SHIFT: u32 = 2;
-const LONGEST_TICKS: u32 = 4096;
-/// Ticks after a change until the mean is first more accurate than the force that it began with.
-const FIRST_MEAN_TICKS: u32 = 16;
+/// Ticks (64 ms) over which the recent mean of the force averages; the drift is detected by it.
+const RECENT_MEAN_TICKS: u32 = 64;
+/// The long mean averages over the last quarter (this power of two) of the ticks since the force changed, limited to 64
+/// to 4096 ticks. The set-point depends on the logarithm of time, so noise may be averaged longer in a later contact.
+const AVERAGED_PART_SHIFT: u32 = 2;
+/// Largest number of ticks (4.1 s) over which the long mean of the force averages.
+const LONGEST_MEAN_TICKS: u32 = 4096;
+/// Ticks since the force changed from which on a set-point may be computed again for the mean. A mean of fewer is
+/// hardly better than the single force that it began with.
+const FIRST_USEFUL_MEAN_TICKS: u32 = 16;
 
-/// The larger of a relative difference, as a power of two, and an absolute one.
-struct Threshold {
+/// A threshold for the difference of two forces: the larger of a part of the one that is compared with, and a constant.
+struct ForceThreshold {
+    /// The part, as a power of two: 4 stands for 1/16.
     shift: u32,
+    /// The constant, N.
     floor: Force,
 }
 
-impl Threshold {
+impl ForceThreshold {
+    /// Whether `force` differs from `from` by more than the threshold, in either direction.
     fn is_exceeded(&self, force: Force, from: Force) -> bool {
         force.max(from) - force.min(from) > (from >> self.shift).max(self.floor)
     }
 }
 
-/// The running mean.
+/// Running means of the force of one contact, N, which start again when the force jumps; and the mean for which the
+/// set-points are computed now.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForceMean {
-    /// Mean of the recent ticks.
+    /// Mean of the last 64 ticks, or of fewer since the force changed, N.
     recent: Force,
+    /// Mean of up to 4096 ticks since the force changed, N.
     mean: Force,
+    /// The mean for which the set-points are computed, N.
     in_use: Force,
-    /// Ticks since the force changed; stops where the mean reaches back no further.
+    /// Ticks of 1 ms since the force changed; stops at 16384, where the long mean has its largest length, and returns
+    /// to 64 after a drift.
     ticks: u32,
 }
 
-/// How a tick's force differs from those before.
+/// How one tick's force compares with the mean of the ticks before it; decides whether set-points are computed again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceChange {
-    /// By noise.
+    /// The force is within 1/16 (or 10 mN) of the mean of the last 64 ticks, and that mean has not drifted; set-points
+    /// need not change.
     Noise,
-    /// The mean differs from the force in use: it is more accurate, or the force drifts.
+    /// The mean of the last 64 ticks is more than 1/2048 (or 0.25 mN) away from the mean in use for set-points; the
+    /// long mean has started again from the recent one.
     Drifted,
-    /// A new force; the mean has started again.
+    /// The force differs from the mean of the last 64 ticks by more than 1/16 (or 10 mN), or the finger has just
+    /// landed; all means have started again from this force.
     New,
 }
 
 impl ForceMean {
-    /// A mean of one tick.
+    /// Means of one tick, all equal to its force, N: the state at landing and after the force has jumped.
     #[must_use]
     pub const fn new(force: Force) -> Self {
         Self {
@@ -69,51 +84,55 @@ impl ForceMean {
         }
     }
 
-    /// The mean.
+    /// Mean force, N, of the last quarter of the time since the force changed, 64 to 4096 ticks (of all ticks if there
+    /// are fewer).
     #[must_use]
     pub const fn mean(&self) -> Force {
         self.mean
     }
 
-    /// The mean at the last call of [`Self::use_mean`].
+    /// The mean force, N, for which set-points are computed: the mean at the last call of [`Self::use_present_mean`],
+    /// or the single force with which the means have started since.
     #[must_use]
-    pub const fn in_use(&self) -> Force {
+    pub const fn mean_in_use(&self) -> Force {
         self.in_use
     }
 
-    /// Takes the mean into use.
-    pub const fn use_mean(&mut self) {
+    /// Makes the present mean the one for which set-points are computed.
+    pub const fn use_present_mean(&mut self) {
         self.in_use = self.mean;
     }
 
-    /// Whether the mean covers twice as many ticks as when this was last true, or all that it reaches back over. In between
-    /// it is hardly more accurate.
+    /// Whether the mean has become clearly more accurate, so that new set-points for it may be worth their cost: true
+    /// in the 16th, 32nd, 64th … tick since the force changed, and in every tick from the 16384th on.
     #[must_use]
-    pub const fn is_more_accurate(&self) -> bool {
-        self.ticks >= FIRST_MEAN_TICKS && self.ticks.is_power_of_two()
+    pub const fn has_doubled_ticks(&self) -> bool {
+        self.ticks >= FIRST_USEFUL_MEAN_TICKS && self.ticks.is_power_of_two()
     }
 
-    /// Takes the force of one tick.
-    pub fn update(&mut self, force: Force) -> ForceChange {
-        if CHANGED.is_exceeded(force, self.recent) {
+    /// Takes the force of one tick, N, into the means, or starts them again if the force has jumped; tells which.
+    pub fn add_tick(&mut self, force: Force) -> ForceChange {
+        if NEW_FORCE_THRESHOLD.is_exceeded(force, self.recent) {
             *self = Self::new(force);
             return ForceChange::New;
         }
-        self.ticks = (self.ticks + 1).min(LONGEST_TICKS << REACH_SHIFT);
-        let reach_ticks = RECENT_TICKS.max(self.ticks >> REACH_SHIFT);
-        self.recent = mean_with(self.recent, force, self.ticks.min(RECENT_TICKS));
-        self.mean = mean_with(self.mean, force, self.ticks.min(reach_ticks));
-        if self.ticks >= RECENT_TICKS && DRIFTED.is_exceeded(self.recent, self.in_use) {
+        self.ticks = (self.ticks + 1).min(LONGEST_MEAN_TICKS << AVERAGED_PART_SHIFT);
+        let reach_ticks = RECENT_MEAN_TICKS.max(self.ticks >> AVERAGED_PART_SHIFT);
+        self.recent = mean_including(self.recent, force, self.ticks.min(RECENT_MEAN_TICKS));
+        self.mean = mean_including(self.mean, force, self.ticks.min(reach_ticks));
+        if self.ticks >= RECENT_MEAN_TICKS && DRIFT_THRESHOLD.is_exceeded(self.recent, self.in_use)
+        {
             self.mean = self.recent;
-            self.ticks = RECENT_TICKS;
+            self.ticks = RECENT_MEAN_TICKS;
             return ForceChange::Drifted;
         }
         ForceChange::Noise
     }
 }
 
-/// The mean of `ticks` values (1 at least), the last of which is `force`.
-fn mean_with(mean: Force, force: Force, ticks: u32) -> Force {
+/// The mean, N, of `ticks` forces (at least 1), given the mean without the last one and the last one, `force`. Once
+/// `ticks` no longer grows it is a low-pass filter with a time constant of that many ticks.
+fn mean_including(mean: Force, force: Force, ticks: u32) -> Force {
     let ticks = NonZeroU32::new(ticks).unwrap_or(NonZeroU32::MIN);
     let part = Force::from_bits((force.max(mean) - force.min(mean)).to_bits() / ticks);
     if force >= mean {
@@ -136,12 +155,12 @@ mod tests {
             } else {
                 Force::lit("1.99")
             };
-            assert_eq!(mean.update(noisy), ForceChange::Noise);
+            assert_eq!(mean.add_tick(noisy), ForceChange::Noise);
         }
-        mean.update(Force::lit("2"));
+        mean.add_tick(Force::lit("2"));
         let error = mean.mean().to_num::<f64>() - 2.0;
         assert!(error.abs() < 5e-4, "{error}");
-        assert_eq!(mean.update(Force::lit("1")), ForceChange::New);
+        assert_eq!(mean.add_tick(Force::lit("1")), ForceChange::New);
         assert_eq!(mean.mean(), Force::lit("1"));
     }
 }

@@ -4,24 +4,27 @@ use core::ops::RangeInclusive;
 
 use contact_model::fixed_point::{Celsius, Force};
 
-/// Largest change of the set-point that a new force may cause before Eq. 6-12 is evaluated again.
-const TOLERANCE: Celsius = Celsius::lit("0.0001");
+/// Largest change of the set-point, K, that a new mean force may cause before Eq. 6-12 is evaluated again for it.
+const EQUIVALENT_FORCE_TOLERANCE: Celsius = Celsius::lit("0.0001");
 
-/// Forces around `force` for which the set-point stays within [`TOLERANCE`]; `amplitude` is the factor of `E` in Eq. 6-12.
+/// Forces, N, around `force` for which the set-point stays within 0.1 mK ([`EQUIVALENT_FORCE_TOLERANCE`]), so that Eq.
+/// 6-12 need not be evaluated again. `amplitude` is the factor of `E` in Eq. 6-12, K: by how much the set-point changes
+/// during the whole contact.
 ///
 /// R changes by 0.95 of the force's relative change (Eq. 6-8), `E` by at most 0.277 of R's, and the set-point by
 /// `amplitude` times as much: 0.264 in all, rounded up to 17/64.
 pub fn equivalent_forces(force: Force, amplitude: Celsius) -> RangeInclusive<Force> {
     // Relative change of the force in 2^-29, for an amplitude in 2^-14 K that is rounded up, so that one division of 32 bits
     // is enough.
-    const RELATIVE: u32 =
-        (((TOLERANCE.to_bits() as u64 * 64) << (29 - AMPLITUDE_SHIFT)) / 17) as u32;
+    const RELATIVE_TOLERANCE: u32 = (((EQUIVALENT_FORCE_TOLERANCE.to_bits() as u64 * 64)
+        << (29 - AMPLITUDE_SHIFT))
+        / 17) as u32;
     const AMPLITUDE_SHIFT: u32 = 8;
     let amplitude = amplitude
         .to_bits()
         .unsigned_abs()
         .div_ceil(1 << AMPLITUDE_SHIFT);
-    let allowed = RELATIVE
+    let allowed = RELATIVE_TOLERANCE
         .checked_div(amplitude)
         .and_then(|relative| {
             u32::try_from((u64::from(force.to_bits()) * u64::from(relative)) >> 29).ok()

@@ -7,19 +7,22 @@ use contact_model::fixed_point::{
 };
 use fixed::types::U16F16;
 
-/// The pair's quantities that Eq. 6-12 needs. Without a pair all are zero, and no heat flows.
+/// Constants of Eq. 6-12 for one pair of skin and object. The default, for no pair, has zeros, with which no heat
+/// flows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PairFactors {
-    /// `e_object / (e_object + e_skin)`, with effusivities `e`.
+    /// Part of the initial temperature difference by which a long contact cools the skin: `e_object / (e_object +
+    /// e_skin)`, with effusivities `e`.
     weight: Fraction,
-    /// Its reciprocal.
+    /// Reciprocal of the weight, `(e_object + e_skin) / e_object`; turns the skin's cooling into the change at the
+    /// interface.
     inverse_weight: U16F16,
-    /// `R_display / R_object`, with contact resistances `R`.
+    /// Ratio of contact resistances `R_display / R_object`, from the two surfaces' finish and conductivity.
     ratio: Ratio,
 }
 
 impl PairFactors {
-    /// Computes the factors of a pair.
+    /// Computes the factors of a pair, with one 64-bit division; only when the presented object has changed.
     #[must_use]
     pub fn new(pair: &ContactPair) -> Self {
         // 1 in 2^-48 over the weight in 2^-32.
@@ -31,30 +34,33 @@ impl PairFactors {
         }
     }
 
-    /// Whether a pair has these factors.
+    /// Whether these factors were computed for this pair.
     #[must_use]
-    pub fn belong_to(&self, pair: &ContactPair) -> bool {
+    pub fn are_those_of(&self, pair: &ContactPair) -> bool {
         self.weight == pair.weight() && self.ratio == pair.ratio()
     }
 }
 
-/// The skin on the object.
+/// Simulates the skin as it would be on the presented object, tick by tick, from the heat that would flow into the
+/// object under the measured force.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SkinOnObject {
-    /// How far the skin's surface has cooled.
+    /// Temperature change of the skin's surface by that heat, K, counted positive when it cools.
     cooling: HalfSpace,
-    /// Heat flow of this tick, as the temperature step that it causes.
+    /// Heat flow of this tick, as the temperature step, K, that it causes at the skin's surface.
     scaled_flux: Celsius,
 }
 
 impl SkinOnObject {
-    /// Starts a contact with an object at its own temperature, by a skin as it is on the display.
-    pub fn restart(&mut self, skin_on_display: &HalfSpace) {
+    /// Starts a contact with an object at its initial temperature, by a skin that is as warm or cold as the display has
+    /// left it.
+    pub fn restart_contact(&mut self, skin_on_display: &HalfSpace) {
         self.cooling = skin_on_display.staggered();
         self.scaled_flux = Celsius::ZERO;
     }
 
-    /// Advances by one tick. `skin_above_object` is the difference before contact; without a conductance nothing touches.
+    /// Advances the skin by one tick. `skin_above_object` is the temperature difference before contact, K. With
+    /// `conductance` `None` no finger touches, and the skin recovers.
     pub fn step(
         &mut self,
         conductance: Option<&ContactConductance>,
@@ -68,7 +74,8 @@ impl SkinOnObject {
         self.cooling.step(self.scaled_flux);
     }
 
-    /// The set-point by Eq. 6-12. `skin_on_display` is given between contacts, when it is the skin that will land.
+    /// The display temperature by Eq. 6-12, °C, for the simulated skin. Between contacts `skin_on_display` is given,
+    /// because the skin that will land is the one that the display has left, which need not be the simulated one.
     #[must_use]
     pub fn setpoint(
         &self,
@@ -82,27 +89,33 @@ impl SkinOnObject {
         let step_at_interface = (i64::from(cooling.to_bits())
             * i64::from(factors.inverse_weight.to_bits()))
             >> U16F16::FRAC_NBITS;
-        let step_at_object = limited(i64::from(skin_above_object.to_bits()) - step_at_interface);
+        let step_at_object =
+            saturating_celsius(i64::from(skin_above_object.to_bits()) - step_at_interface);
         let step_at_display = (i64::from(step_at_object.to_bits())
             * i64::from(factors.ratio.to_bits()))
             >> Ratio::FRAC_NBITS;
         let skin_cooling = skin_on_display.map_or(cooling, HalfSpace::free_response);
-        limited(
+        saturating_celsius(
             i64::from(skin_before_contact.to_bits())
                 - i64::from(skin_cooling.to_bits())
                 - step_at_display,
         )
     }
 
-    /// What must be added to the set-point for the skin on the display to reach the skin on the object.
+    /// What must be added to the set-point, K, for the skin on the display to reach the temperature that it would have
+    /// on the object within the matching horizon of the half-space.
     #[must_use]
-    pub fn correction(&self, skin_on_display: &HalfSpace, display: &ContactConductance) -> Celsius {
+    pub fn setpoint_correction(
+        &self,
+        skin_on_display: &HalfSpace,
+        display: &ContactConductance,
+    ) -> Celsius {
         let scaled_flux = skin_on_display.scaled_flux_to_match(&self.cooling);
         display.temperature_drop(scaled_flux).saturating_neg()
     }
 }
 
-/// A temperature in 2^-22 K, limited to the range of its type.
-fn limited(bits: i64) -> Celsius {
+/// A temperature from 64 bits in units of 2^-22 K, limited to the range of its type (±512 °C).
+fn saturating_celsius(bits: i64) -> Celsius {
     Celsius::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
 }

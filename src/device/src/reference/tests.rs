@@ -47,7 +47,7 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
         let force = Force::from_num(force_n(t_s) + noise_n);
         finger_estimator.observe(Celsius::from_num(SKIN_C), object_c, Some(force), 0);
         let reference = generator
-            .update(&scene, &mut finger_estimator, Celsius::ZERO, false)
+            .next_reference(&scene, &mut finger_estimator, Celsius::ZERO, false)
             .expect("observed");
         let setpoint_c = reference.setpoint.celsius().to_num::<f64>();
         let finger = (&SKIN, SKIN_C);
@@ -66,7 +66,7 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
     Seen {
         worst_k,
         step_k,
-        evaluations: generator.evaluations(),
+        evaluations: generator.erfcx_evaluations(),
     }
 }
 

@@ -29,7 +29,7 @@ const HOST_SILENT_TICKS: u16 = 2000;
 /// What the bridge did in the tick before: the readings of this tick respond to it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PreviousActuation {
-    /// Demanded current.
+    /// Current that was demanded of the bridge, A; zero while it was off.
     pub demanded: Current,
     /// Set-point; `None` while the bridge was off or the self-test ran.
     pub setpoint: Option<Setpoint>,
@@ -57,7 +57,7 @@ impl FaultDetectors {
         self.host_silent_ticks = 0;
     }
 
-    /// Thermal dose so far.
+    /// Thermal dose that the display may have given to the skin so far.
     #[must_use]
     pub const fn dose(&self) -> &ThermalDose {
         &self.dose

@@ -105,7 +105,7 @@ faults! {
     Sampling = "sampling",
     /// The stack has grown into its guard.
     Stack = "stack",
-    /// The program has panicked.
+    /// The program has panicked; found after the reset that ends a panic.
     Panic = "panic",
     /// The processor met an instruction that it cannot execute, or an interrupt without a handler.
     HardFault = "hard-fault",
@@ -124,15 +124,15 @@ faults! {
 /// Names one of the five thermistors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThermistorId {
-    /// Display surface.
+    /// Thermistor in the display surface, used for control.
     Display,
     /// Second thermistor of the display surface.
     Check,
-    /// Sink.
+    /// Thermistor on the sink.
     Sink,
-    /// Skin.
+    /// Thermistor on the skin, at the edge of the contact.
     Skin,
-    /// Room.
+    /// Thermistor in the room air.
     Room,
 }
 

@@ -33,7 +33,7 @@ impl FrozenDetector {
     /// # Errors
     /// A channel is frozen, or all are.
     pub fn check(&mut self, samples: &Samples) -> Result<(), Fault> {
-        let [display, check, sink, skin, room] = samples.thermistors();
+        let [display, check, sink, skin, room] = samples.thermistor_sums();
         let now = [display, check, sink, skin, room, samples.force];
         let mut frozen = None;
         for (i, now) in now.into_iter().enumerate() {

@@ -11,11 +11,11 @@ const fn celsius(limit: f64) -> Celsius {
 
 /// Coldest set-point, °C: lasting contact with a colder surface is painful.
 pub const SETPOINT_MIN_C: f64 = 15.0;
-/// Hottest set-point, °C.
+/// Hottest set-point, °C: one kelvin below the temperature at which the station trips.
 pub const SETPOINT_MAX_C: f64 = 42.0;
-/// The same, in fixed point.
+/// [`SETPOINT_MIN_C`] in fixed point.
 pub const SETPOINT_MIN: Celsius = celsius(SETPOINT_MIN_C);
-/// The same, in fixed point.
+/// [`SETPOINT_MAX_C`] in fixed point.
 pub const SETPOINT_MAX: Celsius = celsius(SETPOINT_MAX_C);
 /// Display temperature below which the station trips; cold pain begins at 13 °C.
 pub const DISPLAY_MIN: Celsius = celsius(13.5);

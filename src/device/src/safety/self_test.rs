@@ -35,7 +35,7 @@ const RESPONSE_END: u16 = COOLING_END + PULSE_TICKS;
 const WARMING_END: u16 = RESPONSE_END + PULSE_TICKS;
 /// Ticks within which the comparator must have cut, or released.
 const COMPARATOR_TICKS: u16 = 10;
-/// Current of the pulses.
+/// Current of the cooling and the warming pulse, A.
 const AMPLITUDE: Current = Current::ONE;
 /// Measured current in the second half of a pulse, on average.
 const CURRENT_MIN: Current = Current::lit("0.4");
@@ -57,18 +57,18 @@ type Sums = [i64; 2];
 /// What the bridge does in one tick of the self-test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelfTestStep {
-    /// The bridge is off.
+    /// The bridge stays off in this tick.
     Off {
         /// Level of the line that tests the comparator.
         comparator_test: bool,
     },
-    /// This current is driven.
+    /// The bridge drives this current, A; positive cools.
     Drive(Current),
-    /// The self-test has passed.
+    /// The self-test has passed; the bridge is off in this tick.
     Passed,
 }
 
-/// The self-test.
+/// Progress of the self-test, and the sums that it has measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelfTest {
     tick: u16,
@@ -81,7 +81,7 @@ pub struct SelfTest {
     untouched_ticks: u8,
     /// Ticks to wait until the baseline.
     wait_ticks: u16,
-    /// Ticks waited in all.
+    /// Ticks that the self-test has waited for fingers in all.
     waited_ticks: u16,
 }
 

@@ -9,9 +9,9 @@ use super::limits::{SETPOINT_MAX, SETPOINT_MIN};
 pub struct Setpoint(Celsius);
 
 impl Setpoint {
-    /// Coldest set-point.
+    /// Coldest set-point that can be commanded.
     pub const MIN: Self = Self(SETPOINT_MIN);
-    /// Hottest set-point.
+    /// Hottest set-point that can be commanded.
     pub const MAX: Self = Self(SETPOINT_MAX);
 
     /// The nearest allowed set-point, and whether the demanded one had to be limited.
@@ -21,7 +21,7 @@ impl Setpoint {
         (Self(allowed), allowed != demanded)
     }
 
-    /// The temperature.
+    /// The set-point in °C, within the safe range by construction.
     #[must_use]
     pub const fn celsius(self) -> Celsius {
         self.0

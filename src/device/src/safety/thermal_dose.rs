@@ -18,7 +18,7 @@ const SUM_MAX: u32 = (2 * LIMIT_TICKS) << 8;
 /// Below 39 °C an hour takes about a minute from the dose; as a power of two of the time.
 const FORGETTING_SHIFT: u32 = 6;
 
-/// The dose so far.
+/// Accumulated thermal dose, which decays while the display is cool.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ThermalDose {
     /// In 2^-8 ticks at 43 °C.

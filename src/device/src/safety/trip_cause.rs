@@ -9,24 +9,24 @@ use crate::sense::Readings;
 /// What is known of the tick in which a station tripped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TripCause {
-    /// The fault.
+    /// The fault that tripped the station.
     pub fault: Fault,
     /// Ticks since the reset before it; 0 if no tick has seen the fault.
     pub tick: u32,
-    /// Reading of the display; `None` if it was invalid.
+    /// Reading of the display, °C; `None` if it was invalid.
     pub display: Option<Celsius>,
-    /// Reading of the second display thermistor.
+    /// Reading of the second display thermistor, °C; `None` if it was invalid.
     pub check: Option<Celsius>,
-    /// Reading of the sink.
+    /// Reading of the sink, °C; `None` if it was invalid.
     pub sink: Option<Celsius>,
-    /// Magnitude of the measured current.
+    /// Magnitude of the measured current, A.
     pub current: Current,
-    /// Current demanded in the tick before.
+    /// Current demanded in the tick before, A.
     pub demanded: Current,
 }
 
 impl TripCause {
-    /// Length of [`Self::to_words`].
+    /// Number of words of [`Self::to_words`].
     pub const WORDS: usize = 7;
 
     /// Identifies the meaning of the words: their number, their order, and the numbers of the faults. A record that was kept by

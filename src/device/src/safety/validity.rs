@@ -10,19 +10,19 @@ use crate::sense::{Readings, SensorFault};
 /// Readings of sensors that work, within their limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ValidReadings {
-    /// Display, by its first thermistor.
+    /// Display, by its first thermistor, °C.
     pub display: Celsius,
-    /// Display, by its second thermistor.
+    /// Display, by its second thermistor, °C.
     pub check: Celsius,
-    /// Sink.
+    /// Sink, °C.
     pub sink: Celsius,
-    /// Skin at the edge of the contact.
+    /// Skin at the edge of the contact, °C.
     pub skin: Celsius,
-    /// Room.
+    /// Room air, °C.
     pub room: Celsius,
-    /// Force.
+    /// Force of the finger on the display, N.
     pub force: Force,
-    /// Magnitude of the measured current.
+    /// Magnitude of the measured module current, A.
     pub current: Current,
 }
 

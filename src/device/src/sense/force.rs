@@ -5,50 +5,63 @@ use fixed::types::I18F14;
 
 use thermal_settings::ForceSensor;
 
-/// From this force on the signal counts as off its zero. Noise of 0.7 to 1.2 counts a conversion is 0.6 to 1.1 mN here.
+/// Force, N, from which the signal counts as off its zero: a finger may be landing. Noise of 0.7 to 1.2 counts a
+/// conversion is 0.6 to 1.1 mN here.
 const OFF_ZERO_FROM: Force = Force::lit("0.003");
-/// A contact begins from the first force on and ends below the second (hysteresis).
-const CONTACT_FROM: Force = Force::lit("0.02");
-const RELEASE_BELOW: Force = Force::lit("0.01");
-/// Sum beyond which the signal is at the end of the converter's range.
-const SATURATED_ABOVE: u16 = 4060 * 16;
-/// Ticks for which a change must last.
-const DEBOUNCE_TICKS: u32 = 2;
-/// A signal that has been off its zero for longer, ticks, rose too slowly to tell when the finger landed.
-const MAX_RISE_TICKS: u32 = 32;
+/// Force, N, from which a finger touches the display.
+const CONTACT_BEGINS_FROM: Force = Force::lit("0.02");
+/// Force, N, below which a finger that touches has lifted; half of that at which it begins (hysteresis), so that noise
+/// does not end a light contact.
+const CONTACT_ENDS_BELOW: Force = Force::lit("0.01");
+/// Sum of 16 conversions above which the force sensor's wire counts as shorted to the supply: 4060 of 4095 counts,
+/// where the converter's range ends. The station then trips.
+const SHORTED_WIRE_ABOVE: u16 = 4060 * 16;
+/// Ticks of 1 ms for which the force must be off its zero before a contact begins, or below its threshold before a
+/// contact ends.
+const CONTACT_DEBOUNCE_TICKS: u32 = 2;
+/// Largest time, ticks of 1 ms, by which the detection of a contact is dated back to when the force left its zero. A
+/// force that has been off its zero for longer rose too slowly to tell when the finger landed.
+const DATED_RISE_MAX_TICKS: u32 = 32;
 
-/// Largest difference of the zero from that of the settings: 2 % of it, and 2 % of the reference. A smaller force that is
-/// there from switch-on is taken for zero.
-const MAX_ZERO_CHANGE_N: f64 = 0.06;
-/// Ticks after switch-on whose mean is the first zero, whatever the signal.
+/// Largest difference, N, of the tracked zero from that of the settings: 2 % of it, and 2 % of the reference. A smaller
+/// force that is there from switch-on is taken for zero.
+const ZERO_CHANGE_MAX_N: f64 = 0.06;
+/// Ticks after switch-on over which the zero is the plain mean of the signal. Only ticks count in which nothing touches
+/// and the signal is within 0.06 N of the stored zero.
 const INITIAL_ZERO_TICKS: i32 = 256;
-/// Time constants with which the zero then tracks a signal at its zero (1 s) and one off its zero (16 s), as powers of two
-/// of ticks.
-const AT_ZERO_SHIFT: u32 = 10;
-const OFF_ZERO_SHIFT: u32 = 14;
+/// Time constant, as a power of two of ticks (1 s), with which the zero then tracks a signal within 3 mN of it.
+const AT_ZERO_TRACKING_SHIFT: u32 = 10;
+/// Time constant, as a power of two of ticks (16 s), with which the zero tracks a signal that is off it, yet below the
+/// force of a contact: slower, because it may be a finger.
+const OFF_ZERO_TRACKING_SHIFT: u32 = 14;
 
-/// A sum of conversions, or its zero, at a resolution at which slow tracking does not stop; the largest sum fits.
+/// A sum of 16 conversions, or its zero, with 14 binary places, at which slow tracking does not stop by rounding; the
+/// largest sum fits.
 type FineSum = I18F14;
 
-/// Converts the signal of a linear sensor with a live zero, which is tracked while nothing touches.
+/// Converts the signal of a linear force sensor with a live zero, which is tracked while nothing touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ForceChannel {
-    /// Sum below which the wire is broken.
+    /// Sum of 16 conversions below which the sensor's wire counts as broken: half of the zero.
     broken_below: u16,
+    /// Sum without force, which is tracked.
     zero: FineSum,
+    /// Smallest signal that is still tracked as zero: 0.06 N below that of the settings.
     min_zero: FineSum,
+    /// Largest signal that is still tracked as zero: 0.06 N above that of the settings.
     max_zero: FineSum,
-    /// Ticks of which the zero is the mean, until it is tracked.
+    /// Ticks since switch-on of which the zero is the mean, up to [`INITIAL_ZERO_TICKS`]; then the zero is tracked.
     initial_ticks: i32,
+    /// Force, N, per unit of the sum.
     n_per_unit: Fraction,
 }
 
 impl ForceChannel {
-    /// Converts the settings from `f64`: for set-up, not for the tick.
+    /// Converts zero and sensitivity from the settings in `f64`, so it is for start-up and not for the tick.
     #[must_use]
     pub fn new(settings: &ForceSensor) -> Self {
         let zero = settings.zero_counts * 16.0;
-        let max_change = MAX_ZERO_CHANGE_N * settings.counts_per_n * 16.0;
+        let max_change = ZERO_CHANGE_MAX_N * settings.counts_per_n * 16.0;
         let fine = |sum| FineSum::from_bits(libm::ldexp(sum, FineSum::FRAC_NBITS as i32) as i32);
         Self {
             broken_below: (zero / 2.0) as u16,
@@ -60,11 +73,11 @@ impl ForceChannel {
         }
     }
 
-    /// Force for the sum of 16 conversions; 0 below the zero. `None`: the wire is broken or shorted, because the signal is
-    /// below half of its live zero or at the end of the range.
+    /// Force, N, for the sum of 16 conversions; 0 below the zero. `None`: the wire is broken or shorted, because the
+    /// sum is below half of the settings' zero or at the end of the converter's range.
     #[must_use]
-    pub fn force(&self, sum: u16) -> Option<Force> {
-        if sum < self.broken_below || sum > SATURATED_ABOVE {
+    pub fn force_of_sum(&self, sum: u16) -> Option<Force> {
+        if sum < self.broken_below || sum > SHORTED_WIRE_ABOVE {
             return None;
         }
         let change = FineSum::from(sum).saturating_sub(self.zero);
@@ -72,7 +85,8 @@ impl ForceChannel {
         Some(saturating_product(above_zero, self.n_per_unit))
     }
 
-    /// Tracks the zero by the sum of a tick in which nothing touches, slower if its force is off the zero.
+    /// Moves the zero towards the sum of a tick in which nothing touches, more slowly if the force is off the zero. A
+    /// sum more than 0.06 N from the settings' zero is ignored.
     pub fn track_zero(&mut self, sum: u16, is_off_zero: bool) {
         let sum = FineSum::from(sum);
         if !(self.min_zero..=self.max_zero).contains(&sum) {
@@ -83,62 +97,68 @@ impl ForceChannel {
             self.initial_ticks += 1;
             error.checked_div_int(self.initial_ticks).unwrap_or(error)
         } else {
-            let shifts = [AT_ZERO_SHIFT, OFF_ZERO_SHIFT];
+            let shifts = [AT_ZERO_TRACKING_SHIFT, OFF_ZERO_TRACKING_SHIFT];
             error >> shifts[usize::from(is_off_zero)]
         };
     }
 }
 
-/// Debounced contact of a finger, with hysteresis.
+/// Detects from the force whether a finger touches the display, with debouncing and hysteresis, and since when.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactDetector {
+    /// Whether a finger touches.
     touching: bool,
-    /// Ticks for which the force has been off its zero, up to [`MAX_RISE_TICKS`]; holds its value during a contact.
+    /// Ticks of 1 ms for which the force has been off its zero, up to [`DATED_RISE_MAX_TICKS`]; holds its value during
+    /// a contact.
     off_zero_ticks: u32,
-    /// Ticks for which the force has been below [`RELEASE_BELOW`] during a contact.
+    /// Ticks of 1 ms for which the force has been below [`CONTACT_ENDS_BELOW`] during a contact.
     release_ticks: u32,
 }
 
 impl ContactDetector {
-    /// Updates the contact by the force of one tick.
+    /// Takes the force of one tick, N, and decides whether a finger touches.
     ///
-    /// A contact begins in the second tick off zero at the earliest, so that one noisy tick does not begin one.
-    pub fn update(&mut self, force: Force) {
+    /// A contact begins at 20 mN and ends below 10 mN. It begins in the second tick off zero at the earliest, and ends
+    /// in the second tick below, so that one noisy tick does neither.
+    pub fn update_contact(&mut self, force: Force) {
         if self.touching {
-            let low = force < RELEASE_BELOW;
+            let low = force < CONTACT_ENDS_BELOW;
             self.release_ticks = if low { self.release_ticks + 1 } else { 0 };
-            if self.release_ticks == DEBOUNCE_TICKS {
+            if self.release_ticks == CONTACT_DEBOUNCE_TICKS {
                 *self = Self::default();
             }
         } else {
             self.off_zero_ticks = if force >= OFF_ZERO_FROM {
-                (self.off_zero_ticks + 1).min(MAX_RISE_TICKS)
+                (self.off_zero_ticks + 1).min(DATED_RISE_MAX_TICKS)
             } else {
                 0
             };
-            self.touching = self.may_be_landing() && force >= CONTACT_FROM;
+            self.touching = self.may_be_landing() && force >= CONTACT_BEGINS_FROM;
         }
     }
 
-    /// A finger touches.
+    /// Whether a finger touches the display, since the force of the last tick.
     #[must_use]
     pub const fn touching(&self) -> bool {
         self.touching
     }
 
-    /// The force is off its zero.
+    /// Whether the force is 3 mN or more, in the last tick or, during a contact, when it began; the zero is then
+    /// tracked more slowly.
     #[must_use]
     pub const fn is_off_zero(&self) -> bool {
         self.off_zero_ticks > 0
     }
 
-    /// The force has been off its zero for the debounce time, which noise seldom causes: a finger may be landing.
+    /// Whether the force has been off its zero for two ticks, which noise seldom causes: a finger may be landing. The
+    /// self-test takes it for a touch.
     #[must_use]
     pub const fn may_be_landing(&self) -> bool {
-        self.off_zero_ticks >= DEBOUNCE_TICKS
+        self.off_zero_ticks >= CONTACT_DEBOUNCE_TICKS
     }
 
-    /// Ticks from a landing, when the force left its zero, to its detection: 2 to 32.
+    /// Ticks of 1 ms from a landing, when the force left its zero, to its detection, 2 to 32; of use in the first tick
+    /// of a contact.
     #[must_use]
     pub const fn detection_delay_ticks(&self) -> u32 {
         self.off_zero_ticks
@@ -155,7 +175,7 @@ mod tests {
         let channel = ForceChannel::new(&Settings::default().force);
         for (counts, newton) in [(410.0, 0.0), (440.0, 0.1), (1010.0, 2.0), (3410.0, 10.0)] {
             let force = channel
-                .force((counts * 16.0) as u16)
+                .force_of_sum((counts * 16.0) as u16)
                 .expect("in range")
                 .to_num::<f64>();
             assert!(
@@ -163,9 +183,12 @@ mod tests {
                 "{newton}: {force}"
             );
         }
-        assert_eq!(channel.force(300 * 16).expect("in range"), Force::ZERO);
-        assert_eq!(channel.force(100 * 16), None);
-        assert_eq!(channel.force(4095 * 16), None);
+        assert_eq!(
+            channel.force_of_sum(300 * 16).expect("in range"),
+            Force::ZERO
+        );
+        assert_eq!(channel.force_of_sum(100 * 16), None);
+        assert_eq!(channel.force_of_sum(4095 * 16), None);
     }
 
     /// The sum of one tick for a steady signal.
@@ -179,7 +202,7 @@ mod tests {
         for _ in 0..INITIAL_ZERO_TICKS {
             channel.track_zero(sum(418.0), true);
         }
-        assert_eq!(channel.force(sum(418.0)), Some(Force::ZERO));
+        assert_eq!(channel.force_of_sum(sum(418.0)), Some(Force::ZERO));
         // 0.03 counts a second for ten minutes.
         for second in 0..600 {
             for _ in 0..1000 {
@@ -187,7 +210,7 @@ mod tests {
             }
         }
         let force = channel
-            .force(sum(400.0 + 30.0))
+            .force_of_sum(sum(400.0 + 30.0))
             .expect("in range")
             .to_num::<f64>();
         assert!((force - 0.1).abs() < 5e-4, "{force}");
@@ -203,7 +226,10 @@ mod tests {
         for _ in 0..2000 {
             channel.track_zero(sum(413.0), true);
         }
-        let force = channel.force(sum(413.0)).expect("in range").to_num::<f64>();
+        let force = channel
+            .force_of_sum(sum(413.0))
+            .expect("in range")
+            .to_num::<f64>();
         let expected = 0.01 * (-2000.0 / 16384.0f64).exp();
         assert!(
             (force - expected).abs() < 1e-4,
@@ -217,7 +243,10 @@ mod tests {
         for _ in 0..10_000 {
             channel.track_zero(sum(431.0), false);
         }
-        let force = channel.force(sum(431.0)).expect("in range").to_num::<f64>();
+        let force = channel
+            .force_of_sum(sum(431.0))
+            .expect("in range")
+            .to_num::<f64>();
         assert!((force - 0.07).abs() < 1e-5, "{force}");
     }
 
@@ -226,17 +255,17 @@ mod tests {
         let (mut detector, high, low) =
             (ContactDetector::default(), Force::lit("0.1"), Force::ZERO);
         for force in [high, low, high, low] {
-            detector.update(force);
+            detector.update_contact(force);
             assert!(!detector.touching());
         }
-        detector.update(high);
-        detector.update(high);
+        detector.update_contact(high);
+        detector.update_contact(high);
         assert!(detector.touching());
-        detector.update(low);
-        detector.update(high);
+        detector.update_contact(low);
+        detector.update_contact(high);
         assert!(detector.touching());
-        detector.update(low);
-        detector.update(low);
+        detector.update_contact(low);
+        detector.update_contact(low);
         assert!(!detector.touching());
     }
 
@@ -251,7 +280,7 @@ mod tests {
             let mut detector = ContactDetector::default();
             for (i, force) in rise.iter().enumerate() {
                 assert!(!detector.touching(), "{rise:?}, tick {i}");
-                detector.update(Force::from_str(force).expect("a force"));
+                detector.update_contact(Force::from_str(force).expect("a force"));
             }
             assert!(detector.touching(), "{rise:?}");
             assert_eq!(detector.detection_delay_ticks(), delay_ticks, "{rise:?}");

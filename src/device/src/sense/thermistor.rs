@@ -6,20 +6,22 @@ use fixed::types::I0F32;
 use super::correction::CorrectedSum;
 use thermal_settings as settings;
 
-/// Sums of 16 conversions beyond which a thermistor counts as shorted or open. The range between them is wider than
-/// -40 to 125 °C of a 10 k thermistor of beta 3950 K under 10 k.
+/// Sum of 16 conversions below which a thermistor counts as shorted: 40 counts, above 125 °C of a 10 kΩ thermistor with
+/// a beta of 3950 K under 10 kΩ.
 const SHORT_BELOW: u16 = 40 * 16;
+/// Sum of 16 conversions above which a thermistor counts as open: 4060 of 4095 counts, below -40 °C of a 10 kΩ
+/// thermistor with a beta of 3950 K under 10 kΩ.
 const OPEN_ABOVE: u16 = 4060 * 16;
 
-/// Whether the code of one conversion is that of a shorted or open thermistor.
-pub(super) const fn is_out_of_range(code: u16) -> bool {
+/// Whether the 12-bit code of one conversion is that of a shorted or open thermistor.
+pub(super) const fn is_code_out_of_range(code: u16) -> bool {
     code < SHORT_BELOW / 16 || code > OPEN_ABOVE / 16
 }
 
-/// Checks that a sum is within the range of a connected thermistor.
+/// Checks that the sum of 16 conversions is within the range of a connected thermistor.
 ///
 /// # Errors
-/// Open or shorted.
+/// The thermistor is open or shorted; the station then trips.
 pub(super) const fn check_wiring(sum: u16) -> Result<(), SensorFault> {
     match sum {
         ..SHORT_BELOW => Err(SensorFault::Short),
@@ -28,57 +30,62 @@ pub(super) const fn check_wiring(sum: u16) -> Result<(), SensorFault> {
     }
 }
 
-/// Number of equal intervals of the range of sums, and its power of two.
-const INTERVALS_LOG2: u32 = 6;
-const INTERVALS: usize = 1 << INTERVALS_LOG2;
+/// Number of equal intervals of the range of sums, as a power of two; each has a cubic of its own.
+const CURVE_INTERVALS_LOG2: u32 = 6;
+/// Number of equal intervals of the range of sums: 64.
+const CURVE_INTERVALS: usize = 1 << CURVE_INTERVALS_LOG2;
 
-/// Why a thermistor has no temperature.
+/// Why a thermistor has no temperature; the station trips with a fault that names thermistor and reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SensorFault {
-    /// No current flows: wire or thermistor broken.
+    /// The wire or the thermistor is broken: no current flows, so the converter reads its upper end.
     Open,
-    /// No voltage drops: wires or thermistor shorted.
+    /// The wires or the thermistor are shorted: no voltage drops, so the converter reads its lower end.
     Short,
 }
 
-/// The curve from sum to temperature as one cubic for each of 64 equal intervals: a tick pays three
-/// multiplications a sensor, no logarithm and no division, whatever the curve.
+/// The curve from sum to temperature as one cubic for each of 64 equal intervals: a tick pays three multiplications a
+/// sensor, no logarithm and no division, whatever the thermistor's curve. All five thermistors share it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ThermistorTable {
-    /// Coefficients, lowest power first, for the position in the interval from 0 to 1/2.
-    cubics: [[Celsius; 4]; INTERVALS],
+    /// Coefficients in °C, lowest power first, of the position in the interval, which runs from 0 to 1/2.
+    cubics: [[Celsius; 4]; CURVE_INTERVALS],
 }
 
 impl ThermistorTable {
-    /// Fits each cubic through four points of the curve, in `f64`: for set-up, not for the tick.
+    /// Fits each cubic through four points of the thermistor's curve, in `f64`, so it is for start-up and not for the
+    /// tick.
     #[must_use]
     pub fn new(settings: &settings::ThermistorDivider) -> Self {
-        let width = 65536.0 / INTERVALS as f64;
+        let width = 65536.0 / CURVE_INTERVALS as f64;
         Self {
             cubics: core::array::from_fn(|interval| {
                 let at =
                     |third: f64| settings.temperature_c((interval as f64 + third / 3.0) * width);
-                cubic([at(0.0), at(1.0), at(2.0), at(3.0)])
+                cubic_through([at(0.0), at(1.0), at(2.0), at(3.0)])
             }),
         }
     }
 
-    /// Temperature for the sum of 16 conversions of 12 bits (0 to 65520), which is also given corrected for the
-    /// converter's error.
-    ///
-    /// Error against the curve below 0.1 mK from -20 to 80 °C
-    /// (test `the_table_inverts_the_beta_equation_within_0_1_mk`).
+    /// Temperature, °C, for the sum of 16 conversions of 12 bits (0 to 65520), which is also given corrected for the
+    /// converter's error. The error against the thermistor's curve is below 0.1 mK from -20 to 80 °C (test
+    /// `the_table_inverts_the_beta_equation_within_0_1_mk`).
     ///
     /// # Errors
-    /// Open or shorted, by the uncorrected sum.
-    pub fn temperature(&self, sum: u16, corrected: CorrectedSum) -> Result<Celsius, SensorFault> {
+    /// The thermistor is open or shorted, by the uncorrected sum.
+    pub fn temperature_of_sum(
+        &self,
+        sum: u16,
+        corrected: CorrectedSum,
+    ) -> Result<Celsius, SensorFault> {
         check_wiring(sum)?;
-        let position_bits = u16::BITS + CorrectedSum::FRAC_NBITS - INTERVALS_LOG2;
+        let position_bits = u16::BITS + CorrectedSum::FRAC_NBITS - CURVE_INTERVALS_LOG2;
         let units = corrected.to_bits();
         let within = units & ((1 << position_bits) - 1);
         // From 0 to 1/2.
         let position = I0F32::from_bits((within << (u32::BITS - 1 - position_bits)) as i32);
-        let [constant, others @ ..] = self.cubics[(units >> position_bits) as usize % INTERVALS];
+        let [constant, others @ ..] =
+            self.cubics[(units >> position_bits) as usize % CURVE_INTERVALS];
         let mut change = Celsius::ZERO;
         for &coefficient in others.iter().rev() {
             change = product(change.saturating_add(coefficient), position);
@@ -87,8 +94,8 @@ impl ThermistorTable {
     }
 }
 
-/// Coefficients of the cubic through values in °C at 0, 1/6, 1/3 and 1/2.
-fn cubic([a, b, c, d]: [f64; 4]) -> [Celsius; 4] {
+/// Coefficients in °C, lowest power first, of the cubic through the values, °C, at 0, 1/6, 1/3 and 1/2.
+fn cubic_through([a, b, c, d]: [f64; 4]) -> [Celsius; 4] {
     [
         a,
         -11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d,
@@ -105,7 +112,7 @@ mod tests {
 
     /// Temperature of a sum from a converter without error.
     fn temperature(table: &ThermistorTable, sum: u16) -> Result<Celsius, SensorFault> {
-        table.temperature(sum, CorrectedSum::from(sum))
+        table.temperature_of_sum(sum, CorrectedSum::from(sum))
     }
 
     /// The sum that the divider's ideal converter gives at a temperature, by the beta equation.

@@ -19,7 +19,7 @@ impl Station {
             Command::Law(None) => return Ok(Reply::Law(self.controller.law())),
             Command::Average(thermistor) => return self.average(thermistor),
             Command::NormalEquation(row) => return self.normal_equation(row),
-            Command::Law(Some(law)) => self.controller.select(law),
+            Command::Law(Some(law)) => self.controller.select_law(law),
             Command::Stream { interval_ms } => {
                 self.telemetry_ticks = interval_ms * (TICK_HZ / 1000);
             }

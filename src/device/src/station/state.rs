@@ -31,7 +31,7 @@ pub enum Task {
     Neutral,
     /// Stay at a temperature that the host has chosen.
     Hold(Hold),
-    /// Identify the tile.
+    /// Drive current pulses that identify the tile.
     Identify(Identification),
 }
 
@@ -40,24 +40,24 @@ pub enum Task {
 pub enum Event {
     /// The host sends `arm`.
     Arm,
-    /// The self-test passes.
+    /// The self-test has passed.
     Pass,
     /// The host sends `start`.
     Start,
-    /// A finger lands.
+    /// A finger lands on the display.
     Land,
-    /// The finger lifts.
+    /// The finger lifts from the display.
     Lift,
     /// The host sends `abort`.
     Abort,
     /// The host sends `clear`, and no fault is present.
     Clear,
-    /// A fault occurs.
+    /// A fault is detected, or raised by the board.
     Trip(Fault),
 }
 
 impl State {
-    /// The state's name.
+    /// The state without its data, as it is reported to the host.
     #[must_use]
     pub const fn name(&self) -> StateName {
         match self {

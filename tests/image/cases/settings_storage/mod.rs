@@ -13,14 +13,14 @@ use thermal_sim::processor::ResetCause;
 
 /// The answers to `settings 1` to `settings 8` of a device with these settings.
 pub fn lines(kept: Option<&[StoredSettings; 1]>) -> Vec<String> {
-    let mut desk: Desk<1> = kept.map_or_else(
-        || Desk::new(Default::default()),
+    let mut handler: CommandHandler<1> = kept.map_or_else(
+        || CommandHandler::new(Default::default()),
         CommandHandler::from_stored,
     );
     (1..=8)
         .map(|line| {
-            let answer = desk.answer(&format!("settings {line}"), |_| {
-                unreachable!("nothing to execute")
+            let answer = handler.answer(&format!("settings {line}"), |_, _| {
+                unreachable!("the station executes nothing")
             });
             answer.expect("a line of settings").to_string()
         })

@@ -1,4 +1,4 @@
-//! The bodies of a finger on other meshes and in other steps: their errors against Eq. 6-5 to 6-7.
+//! Errors of the plant's bodies against Eq. 6-5 to 6-7, over meshes and time steps.
 use anyhow::Context;
 use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, find};
 use contact_model::pressure::pressure_pa;
@@ -10,7 +10,7 @@ use thermal_plant::touch::Touch;
 use thermal_plant::truth::Truth;
 use thermal_plant::{RECEPTORS_M, STEP_S};
 
-/// Objects and forces of the contacts whose errors are taken.
+/// Objects of the contacts whose errors are evaluated.
 pub const OBJECTS: [&str; 4] = ["copper", "granite", "abs", "foam"];
 /// Forces, N.
 pub const FORCES_N: [f64; 2] = [0.1, 2.0];
@@ -18,28 +18,28 @@ pub const FORCES_N: [f64; 2] = [0.1, 2.0];
 pub const CONTACT_S: f64 = 10.0;
 /// Skin and object before it, deg C.
 const START_C: (f64, f64) = (34.0, 24.0);
-/// From when on errors count, s.
+/// Errors count from this time on, s.
 pub const COUNTS_FROM_S: f64 = 0.02;
-/// From when on those before are told, s.
-pub const TOLD_FROM_S: f64 = 0.001;
+/// Errors before that are reported separately, from this time on, s.
+pub const REPORTED_FROM_S: f64 = 0.001;
 
-/// How the bodies are cut and stepped.
+/// Discretization of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cut {
     /// The mesh.
     pub grading: Grading,
-    /// The step, s.
+    /// Time step, s.
     pub step_s: f64,
 }
 
 impl Cut {
-    /// As every run has it.
+    /// The discretization of a simulated run.
     pub const RUN: Self = Self {
         grading: Grading::RUN,
         step_s: STEP_S,
     };
 
-    /// Cells of a half-space.
+    /// Number of cells of a half-space.
     #[must_use]
     pub fn cells(&self) -> usize {
         let skin = Layer {
@@ -49,7 +49,7 @@ impl Cut {
         Slab::new(&[skin], Back::Insulated, CONTACT_S, &self.grading).cells()
     }
 
-    /// A finger that lands on an object now.
+    /// A finger at the moment of landing on an object.
     fn landing(&self, object: &Material, touch: Touch) -> Truth {
         let (skin_c, object_c) = START_C;
         let object = ObjectConfig::half_space(*object, object_c);
@@ -112,11 +112,11 @@ impl Cut {
                         inside_mk: 1e3 * inside_k,
                         flux: (truth.flux_w_m2() - want.flux_w_m2).abs() / first_flux_w_m2,
                     };
-                    // Sums of steps are not exact.
+                    // Tolerance for the rounding of summed steps.
                     let by = |time_s: f64| t_s > time_s - 1e-9;
                     if by(COUNTS_FROM_S) {
                         worst.counted.raise(&now);
-                    } else if by(TOLD_FROM_S) {
+                    } else if by(REPORTED_FROM_S) {
                         worst.before.raise(&now);
                     }
                 }
@@ -138,7 +138,7 @@ fn touch(object: &str, force_n: f64) -> anyhow::Result<(&'static Material, Touch
 pub struct Worst {
     /// From [`COUNTS_FROM_S`] on.
     pub counted: Errors,
-    /// Before, from [`TOLD_FROM_S`] on.
+    /// From [`REPORTED_FROM_S`] to [`COUNTS_FROM_S`].
     pub before: Errors,
 }
 
@@ -161,7 +161,7 @@ impl Errors {
     }
 }
 
-/// The larger one; not a number if either is not.
+/// The larger value; NaN if either is NaN.
 fn larger(a: f64, b: f64) -> f64 {
     if b.is_nan() || b > a { b } else { a }
 }

@@ -1,4 +1,4 @@
-//! All figures of the plant, timed side by side.
+//! All figures of the plant, timed in turn.
 use serde::Serialize;
 use thermal_plant::slab::Grading;
 
@@ -11,11 +11,11 @@ use super::parts::{Candidate, Parts};
 
 /// Milliseconds of a finger in a timed round, shared by all fingers of a candidate; steps of bodies.
 const WORK: usize = 400;
-/// Numbers of fingers on the core; all divide [`WORK`].
+/// Numbers of fingers that are timed on one core; each divides [`WORK`].
 const FINGERS: [usize; 6] = [1, 2, 5, 10, 20, 40];
-/// Growths of the mesh.
+/// Ratios of successive cells of a mesh.
 const GROWTHS: [f64; 5] = [1.30, 1.20, Grading::RUN.growth, 1.06, 1.03];
-/// Steps, ms.
+/// Time steps, ms.
 const STEPS_MS: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 /// Nanoseconds of a millisecond.
 const MS_NS: f64 = 1e6;
@@ -23,62 +23,62 @@ const MS_NS: f64 = 1e6;
 /// A run of the benchmark.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
-    /// What took the nanoseconds.
+    /// Machine on which the times were measured.
     pub host: String,
-    /// Rounds, of which medians are given.
+    /// Number of rounds; medians over them are reported.
     pub rounds: usize,
-    /// Cells of each body in a run.
+    /// Number of cells of each body in a simulated run.
     pub cells: usize,
-    /// Whole fingers, by their number.
+    /// Whole fingers, over their number.
     pub fingers: Vec<FingersFigures>,
-    /// The power of the number of fingers with which the cost of all of them grows.
+    /// Exponent of the power law of total cost over the number of fingers.
     pub fingers_power: f64,
-    /// What a finger consists of, and what may be added.
+    /// Parts of a finger, and fingers with an addition.
     pub parts: Vec<PartFigures>,
-    /// The bodies, by mesh.
+    /// The bodies, over meshes.
     pub meshes: Vec<CutFigures>,
-    /// Of the straight line of a step's cost over the cells of a body: its rise, ns a cell of each of three bodies.
+    /// Slope of the line of a step's cost over the number of cells, ns per cell of each of three bodies.
     pub cell_ns: f64,
-    /// Its value without cells, ns.
+    /// Intercept of that line, ns.
     pub no_cells_ns: f64,
-    /// Largest distance of a mesh from it, as part of its cost.
+    /// Largest relative deviation of a mesh from that line.
     pub worst_off_line: f64,
-    /// The bodies, by step.
+    /// The bodies, over time steps.
     pub steps: Vec<CutFigures>,
 }
 
-/// So many fingers in turn on one core.
+/// Several fingers in turn on one core.
 #[derive(Clone, Debug, Serialize)]
 pub struct FingersFigures {
-    /// How many.
+    /// Number of fingers.
     pub fingers: usize,
-    /// A millisecond of one of them.
+    /// Cost of a millisecond of one finger.
     #[serde(flatten)]
     pub cost: Cost,
 }
 
-/// A part of one finger, or a finger with something added.
+/// A part of one finger, or a finger with an addition.
 #[derive(Clone, Debug, Serialize)]
 pub struct PartFigures {
-    /// What it is.
+    /// Description.
     pub name: &'static str,
-    /// A millisecond of it.
+    /// Cost of a millisecond.
     #[serde(flatten)]
     pub cost: Cost,
 }
 
-/// Both fingers, object and tile, cut and stepped in one way.
+/// Both fingers, object and tile in one discretization.
 #[derive(Clone, Debug, Serialize)]
 pub struct CutFigures {
-    /// Each cell against the one before it.
+    /// Ratio of successive cells.
     pub growth: f64,
-    /// Cells of each of the three slabs.
+    /// Number of cells of each of the three slabs.
     pub cells: usize,
-    /// Step, ms.
+    /// Time step, ms.
     pub step_ms: f64,
     /// Time of a step, median, ns.
     pub step_ns: f64,
-    /// A millisecond.
+    /// Cost of a millisecond.
     #[serde(flatten)]
     pub cost: Cost,
     /// Errors against Eq. 6-5 to 6-7.
@@ -92,14 +92,14 @@ pub struct Cost {
     pub ns: f64,
     /// Fastest round, ns.
     pub least_ns: f64,
-    /// Over that of a finger alone, median of the rounds.
+    /// Median over the rounds of the ratio to the time of one finger.
     pub ratio: f64,
-    /// Simulated time over time, of the median.
+    /// Ratio of simulated time to median run time.
     pub times_real_time: f64,
 }
 
 impl Cost {
-    /// Of what took `time` for `ms` simulated milliseconds.
+    /// The cost of a candidate that took `time` for `ms` simulated milliseconds.
     fn new(time: Time, ms: f64) -> Self {
         let ns = time.ns / ms;
         Self {
@@ -111,7 +111,7 @@ impl Cost {
     }
 }
 
-/// Does everything; `progress` is told what.
+/// Runs the benchmark and reports each step to `progress`.
 ///
 /// # Errors
 /// The device refused the scene or left the contact.
@@ -209,7 +209,7 @@ pub fn measure(rounds: usize, progress: impl Fn(&str)) -> anyhow::Result<Figures
     })
 }
 
-/// Meshes, then steps.
+/// Figures over meshes, then over time steps.
 fn cuts() -> Vec<Cut> {
     let meshes = GROWTHS.map(|growth| Cut {
         grading: Grading {
@@ -225,7 +225,7 @@ fn cuts() -> Vec<Cut> {
     meshes.into_iter().chain(steps).collect()
 }
 
-/// Fingers that differ in their noise.
+/// Fingers with different noise.
 fn bank(count: usize) -> anyhow::Result<Vec<Finger>> {
     (1..=count as u64).map(Finger::in_contact).collect()
 }

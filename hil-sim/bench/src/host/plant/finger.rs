@@ -1,4 +1,4 @@
-//! A whole finger without its microcontroller: plant and truth, sensors and converter, the firmware's logic.
+//! A whole finger on the native engine: plant, true contact, sensors, converter and the firmware's logic.
 use std::hint::black_box;
 use std::path::Path;
 
@@ -10,29 +10,29 @@ use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::scene::Scene;
 use thermal_sim::telemetry::Telemetry;
 
-/// What is presented.
+/// Material of the presented object.
 pub const OBJECT: &str = "granite";
 /// Force of the finger, N.
 pub const FORCE_N: f64 = 2.0;
-/// Length of the scene for which half-spaces are cut, s: that of the demo.
+/// Duration of the scene, which sets the depth of the half-spaces, s: that of the demo.
 pub const DURATION_S: u32 = 12;
 
-/// Lines of the host and the millisecond at which they leave.
+/// Lines of the host and the time at which they are sent, ms.
 pub const LINES: [(u64, &str); 5] = [
     (10, "material granite"),
     (13, "object room"),
     (16, "mode contact"),
     (19, "arm"),
-    // The skin is watched before an object is presented.
+    // The device has filtered the skin temperature by then.
     (2600, "start"),
 ];
-/// When the finger lands and the scene begins, ms: once the device has settled.
+/// Time at which the finger lands and the scene begins, ms; the device has settled by then.
 pub const LANDING_MS: u64 = 8000;
-/// From when on it is measured, ms.
+/// Time from which on run times are measured, ms.
 pub const READY_MS: u64 = 9000;
-/// How often the host gives a sign of life.
+/// Interval of the host's keep-alive lines, ms.
 const ALIVE_MS: u64 = 500;
-/// By then a line is answered and what it asks for has arrived, ms.
+/// Time within which a line is answered and its effect has arrived, ms.
 const ANSWER_MS: u64 = 5;
 
 /// A finger on its display.
@@ -44,7 +44,7 @@ pub struct Finger {
 }
 
 impl Finger {
-    /// A finger, with noise of its own, that has been in contact for a second.
+    /// A finger with its own noise that has been in contact for a second.
     ///
     /// # Errors
     /// The device refused its set-up, or is not in contact.
@@ -58,7 +58,7 @@ impl Finger {
         Ok(finger)
     }
 
-    /// A finger at the first boundary.
+    /// A finger at switch-on.
     ///
     /// # Errors
     /// None for this scene.
@@ -76,7 +76,7 @@ impl Finger {
         })
     }
 
-    /// Sends what the host has to say at a millisecond.
+    /// Sends the lines of a millisecond.
     pub fn send_lines_of(&mut self, ms: u64) {
         for (_, line) in LINES.iter().filter(|(at, _)| *at == ms) {
             self.send(line);
@@ -88,7 +88,7 @@ impl Finger {
         self.engine.send(b"\n");
     }
 
-    /// One millisecond in the order of a run: the plant, then the device.
+    /// Runs one millisecond: the plant, then the device, as in a simulated run.
     pub fn step(&mut self, force_n: f64) {
         if self.ms.is_multiple_of(ALIVE_MS) {
             self.engine.send(b"\n");
@@ -103,22 +103,22 @@ impl Finger {
         let Ok(()) = self.engine.run_half_ms();
     }
 
-    /// The plant as it is now.
+    /// The present state of the plant.
     pub fn plant(&mut self) -> Plant {
         self.engine.world().plant().clone()
     }
 
-    /// The bridge's fault pin is pulled.
+    /// Whether the bridge reports a fault.
     pub fn fault(&mut self) -> bool {
         self.engine.world().bridge_fault()
     }
 
-    /// The bridge's legs as they are now.
+    /// The present state of the bridge's legs.
     pub fn legs(&mut self) -> Legs {
         self.engine.legs()
     }
 
-    /// Has every tick streamed from now on.
+    /// Requests telemetry of every tick.
     pub fn stream(&mut self) {
         self.send("stream 1");
         for _ in 0..ANSWER_MS {
@@ -128,10 +128,10 @@ impl Finger {
         self.engine.receive(&mut self.received);
     }
 
-    /// One millisecond, and what the device says of its tick.
+    /// Runs one millisecond and returns the telemetry of its tick.
     ///
     /// # Errors
-    /// A line that is no telemetry.
+    /// The device sent a line other than telemetry.
     pub fn step_and_listen(&mut self) -> anyhow::Result<()> {
         self.step(FORCE_N);
         self.received.clear();
@@ -142,7 +142,7 @@ impl Finger {
         Ok(())
     }
 
-    /// Makes sure that the finger has been what it was meant to be.
+    /// Checks that the device has accepted the set-up and is in contact.
     ///
     /// # Errors
     /// The device refused a line or is not in contact.
@@ -169,7 +169,7 @@ impl Finger {
     }
 }
 
-/// The force at a millisecond of the set-up, N.
+/// Force at a time of the set-up, N.
 pub fn force_n(ms: u64) -> f64 {
     if ms < LANDING_MS { 0.0 } else { FORCE_N }
 }

@@ -5,13 +5,13 @@
 pub struct Line {
     /// Value at zero.
     pub start: f64,
-    /// Rise.
+    /// Slope.
     pub slope: f64,
-    /// Largest distance of a point from the line, as part of its value.
+    /// Largest deviation of a point from the line, relative to the line.
     pub worst_off: f64,
 }
 
-/// The line through at least two points that differ in the first coordinate.
+/// Fits at least two points that differ in the first coordinate.
 #[must_use]
 pub fn line(points: &[(f64, f64)]) -> Line {
     let count = points.len() as f64;
@@ -31,7 +31,7 @@ pub fn line(points: &[(f64, f64)]) -> Line {
     }
 }
 
-/// The power of `x` with which `y` grows, of positive points.
+/// Exponent of the power law through positive points.
 #[must_use]
 pub fn power(points: &[(f64, f64)]) -> f64 {
     let logarithms: Vec<_> = points.iter().map(|(x, y)| (x.ln(), y.ln())).collect();
@@ -43,11 +43,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn lines_and_powers_are_found_again() {
+    fn lines_and_powers_are_recovered() {
         let found = line(&[(1.0, 5.0), (2.0, 7.0), (4.0, 11.0)]);
         assert!((found.start - 3.0).abs() < 1e-12 && (found.slope - 2.0).abs() < 1e-12);
         assert!(found.worst_off < 1e-12);
-        // Best through 0, 0 and 3 at 0, 1 and 2: -0.5 + 1.5 x.
+        // Least squares through 0, 0 and 3 at 0, 1 and 2: -0.5 + 1.5 x.
         let bent = line(&[(0.0, 0.0), (1.0, 0.0), (2.0, 3.0)]);
         assert!((bent.start + 0.5).abs() < 1e-12 && (bent.slope - 1.5).abs() < 1e-12);
         assert!((bent.worst_off - 1.0).abs() < 1e-12);

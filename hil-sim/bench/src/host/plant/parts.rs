@@ -1,25 +1,25 @@
-//! One finger taken apart, and with something added.
+//! Parts of one finger, and fingers with an addition.
 use std::hint::black_box;
 
 use super::finger::{FORCE_N, Finger};
 use super::replay::{Replay, scans};
 
-/// What is timed.
+/// A candidate to time, with its name.
 pub type Candidate<'a> = Box<dyn FnMut() + 'a>;
 
-/// One finger taken apart, and with something added.
+/// Parts of one finger, and fingers with an addition.
 pub struct Parts {
     ticks: usize,
     still: Finger,
     replay: Replay,
     moving: Finger,
     streaming: Finger,
-    /// What a finger that streams said, if that was no telemetry.
+    /// Error of a streaming finger, if it sent a line other than telemetry.
     heard: anyhow::Result<()>,
 }
 
 impl Parts {
-    /// All of it in contact, to be run for `ticks` in a round.
+    /// Prepares all parts in contact, to be run for `ticks` in a round.
     ///
     /// # Errors
     /// The device refused its set-up, or is not in contact.
@@ -36,7 +36,7 @@ impl Parts {
         })
     }
 
-    /// What to time, with its name.
+    /// The candidates.
     pub fn candidates(&mut self) -> Vec<(&'static str, Candidate<'_>)> {
         let Self {
             ticks,
@@ -74,7 +74,7 @@ impl Parts {
                 "all, with a force that moves in every ms",
                 Box::new(move || {
                     for _ in 0..ticks {
-                        // Up and down by 0.5 N in a second.
+                        // A triangle of 0.5 N with a period of two seconds.
                         let part = (f64::from(ms % 2000) * 1e-3 - 1.0).abs();
                         moving.step(FORCE_N - 0.5 * part);
                         ms += 1;
@@ -94,10 +94,10 @@ impl Parts {
         ]
     }
 
-    /// Makes sure that every part has been what it was meant to be.
+    /// Checks that all fingers are still in contact and sent nothing but telemetry.
     ///
     /// # Errors
-    /// A finger has left the contact, or said what is no telemetry.
+    /// A finger has left the contact, or sent a line other than telemetry.
     pub fn check(mut self) -> anyhow::Result<()> {
         self.heard?;
         self.moving.check_contact()

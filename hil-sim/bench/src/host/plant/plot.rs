@@ -15,7 +15,7 @@ const UPPER: u32 = 400;
 const FONT: i32 = 15;
 const CAPTION: (&str, i32) = ("sans-serif", 19);
 const RADIUS: i32 = 5;
-/// Wanted: so many times real time.
+/// Required real-time factor.
 const WANTED: f64 = 300.0;
 /// Range of the number of fingers.
 const FINGERS: Range<f64> = 0.85..48.0;
@@ -29,7 +29,7 @@ const ORANGE: RGBColor = RGBColor(0xe3, 0x9c, 0x2b);
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b, X, Y> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>;
 
-/// A named row of points.
+/// A named series of points.
 struct Series {
     name: &'static str,
     color: RGBColor,
@@ -37,11 +37,11 @@ struct Series {
     points: Vec<(f64, f64)>,
 }
 
-/// How points are drawn.
+/// Marker of a point.
 #[derive(Clone, Copy)]
 enum Dots {
     Full,
-    /// Wide and hollow, to be seen around others.
+    /// Wide and hollow, visible around other markers.
     Rings,
 }
 
@@ -235,7 +235,7 @@ fn errors(
     legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
 
-/// From the least to the largest.
+/// Smallest and largest value.
 fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
     values.fold(f64::INFINITY..0.0, |all, v| {
         all.start.min(v)..all.end.max(v)
@@ -251,7 +251,7 @@ fn round_numbers(range: &Range<f64>) -> Vec<f64> {
         .collect()
 }
 
-/// A level to compare with, named at its right end.
+/// A labelled reference level.
 fn guide<X, Y>(
     chart: &mut Chart<'_, '_, X, Y>,
     (from, to): (f64, f64),

@@ -1,13 +1,13 @@
 //! The figures as text: tables in Markdown, aligned for the terminal, and the page around them.
 use super::super::tables::{grid, short};
-use super::bodies::{CONTACT_S, COUNTS_FROM_S, FORCES_N, OBJECTS, TOLD_FROM_S};
+use super::bodies::{CONTACT_S, COUNTS_FROM_S, FORCES_N, OBJECTS, REPORTED_FROM_S};
 use super::figures::{Cost, CutFigures, Figures};
 use super::finger::{DURATION_S, FORCE_N, OBJECT};
 
 /// Name of the plot beside the page.
 const SVG: &str = "plant-benchmark.svg";
 
-/// All tables with what they mean.
+/// All tables with their explanations.
 #[must_use]
 pub fn tables(figures: &Figures) -> String {
     let fingers = grid(
@@ -82,7 +82,7 @@ pub fn tables(figures: &Figures) -> String {
         cells = figures.cells,
         objects = OBJECTS.join(", "),
         counts = COUNTS_FROM_S * 1e3,
-        told = TOLD_FROM_S * 1e3,
+        told = REPORTED_FROM_S * 1e3,
     )
 }
 

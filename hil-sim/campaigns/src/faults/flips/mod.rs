@@ -12,7 +12,6 @@
 mod bit_flip;
 mod effect;
 mod region;
-mod registers;
 mod table;
 
 use anyhow::Context;

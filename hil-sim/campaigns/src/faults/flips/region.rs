@@ -1,14 +1,32 @@
 //! Regions of the microcontroller whose bits flip.
 
 use std::ops::Range;
+use std::sync::LazyLock;
 
 use rand::{Rng, RngExt};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::MachineFault;
 use thermal_sim::{RamLayout, SceneRunner, named_enum};
 
-use super::registers::REGISTERS;
+/// What `registers.toml` holds.
+#[derive(Deserialize)]
+struct Registers {
+    registers: Vec<Register>,
+}
+
+/// A register of a device.
+#[derive(Clone, Copy, Deserialize)]
+struct Register {
+    address: u32,
+    /// Mask of the bits that it has.
+    bits: u32,
+}
+
+static REGISTERS: LazyLock<Vec<Register>> = LazyLock::new(|| {
+    let file: Registers = toml::from_str(include_str!("registers.toml")).expect("registers.toml");
+    file.registers
+});
 
 named_enum! {
     /// A part of the microcontroller whose bits flip.
@@ -78,7 +96,7 @@ impl FlipRegion {
                 n => core(CoreRegister::S(n), draw),
             },
             Self::Device => {
-                let (address, bits) = REGISTERS[draw.random_range(0..REGISTERS.len())];
+                let Register { address, bits } = REGISTERS[draw.random_range(0..REGISTERS.len())];
                 MachineFault::RegisterBit {
                     address,
                     bit: one_of(bits, draw),
@@ -141,6 +159,8 @@ impl FlippableMemory {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::HashSet;
+
     use super::*;
 
     #[test]
@@ -150,12 +170,10 @@ mod tests {
 
     #[test]
     fn every_register_is_its_own_word_and_has_bits() {
-        for (i, (address, bits)) in REGISTERS.iter().enumerate() {
+        let mut addresses = HashSet::new();
+        for Register { address, bits } in REGISTERS.iter() {
             assert!(address.is_multiple_of(4) && *bits != 0, "{address:#x}");
-            assert!(
-                REGISTERS[..i].iter().all(|(other, _)| other != address),
-                "{address:#x}"
-            );
+            assert!(addresses.insert(address), "{address:#x}");
         }
     }
 }

@@ -63,10 +63,10 @@ fn other_statements_hold_within_their_limits() {
     );
     assert!(Stated::Below(0.05).agrees(0.0499) && !Stated::Below(0.05).agrees(0.05));
     assert!(Stated::Above(3.0).agrees(3.01) && !Stated::Above(3.0).agrees(3.0));
-    assert!(!Stated::Garbled("47 53").agrees(53.0));
+    assert!(!Stated::Garbled("47 53".into()).agrees(53.0));
     assert_eq!(between.difference(6.5), Some(0.5));
     assert_eq!(between.difference(1.0), Some(-1.0));
-    assert_eq!(Stated::Garbled("47 53").difference(53.0), None);
+    assert_eq!(Stated::Garbled("47 53".into()).difference(53.0), None);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 use super::Wiring;
 use super::elf::{FLASH_BASE, FLASH_SIZE, RAM_BASE, RAM_SIZE};
 use super::flash::{Flash, SETTINGS};
-use super::state::{self, Cpu, Event, State};
+use super::state::{self, Cpu, Exit, State};
 use unicorn_engine::{
     Arch, ArmCpuModel, HookType, MemType, Mode, Prot, RegisterARM, TlbEntry, TlbType, Unicorn,
     uc_error,
@@ -24,21 +24,21 @@ const DEVICES: [(u64, u64); 7] = [
 const THUMB_UNCONDITIONAL: u64 = 1 << 24;
 
 /// Maps the memories and installs the hooks.
-pub(super) fn set_up<W: Wiring + 'static>(
+pub(super) fn create_cpu<W: Wiring + 'static>(
     state: State<W>,
     flash: &[u8],
 ) -> Result<Cpu<'static, W>, uc_error> {
     let mut cpu = Unicorn::new_with_data(Arch::ARM, Mode::THUMB | Mode::MCLASS, state)?;
     cpu.ctl_set_cpu_model(ArmCpuModel::CORTEX_M4 as i32)?;
-    let changes = Flash::has_settings(flash);
+    let settings_are_writable = Flash::has_settings(flash);
     let (from, to) = (
         (SETTINGS.start - FLASH_BASE) as usize,
         (SETTINGS.end - FLASH_BASE) as usize,
     );
     // BOOT0 is low: the flash also appears at 0 (RM0390 2.4)
     for base in [0, FLASH_BASE] {
-        // Whole pages either way, and never empty.
-        let parts = if changes {
+        // Each part is a whole number of pages, and not empty.
+        let parts = if settings_are_writable {
             [0..from, to..flash.len()]
         } else {
             [0..to, to..flash.len()]
@@ -48,7 +48,7 @@ pub(super) fn set_up<W: Wiring + 'static>(
             cpu.mem_map(base, part.len() as u64, Prot::READ | Prot::EXEC)?;
             cpu.mem_write(base, part)?;
         }
-        if changes {
+        if settings_are_writable {
             cpu.mmio_map(
                 u64::from(base) + from as u64,
                 (to - from) as u64,
@@ -95,7 +95,7 @@ pub(super) fn set_up<W: Wiring + 'static>(
         state::on_block(cpu, address as u32, bytes)
     })?;
     cpu.add_intr_hook(|cpu, number| {
-        cpu.get_data_mut().event = Event::Raised(number);
+        cpu.get_data_mut().exit = Exit::Exception(number);
         if let Err(error) = cpu.emu_stop() {
             debug_assert!(false, "{error:?}");
         }
@@ -107,8 +107,8 @@ pub(super) fn set_up<W: Wiring + 'static>(
         let perms = if kind == MemType::FETCH {
             Prot::ALL
         } else {
-            // A page that is missing puts the condition of the instruction into the CPU's state, which nothing takes
-            // out again: the next block would run under it.
+            // A missing page leaves the instruction's condition in the CPU's state, and the next block would run under that
+            // condition.
             if let Err(error) = cpu.reg_write(RegisterARM::EPSR, THUMB_UNCONDITIONAL) {
                 debug_assert!(false, "{error:?}");
             }

@@ -1,28 +1,28 @@
-//! The way that one exception handler takes through the code, block by block.
+//! The execution path of one exception handler, block by block.
 use std::collections::BTreeMap;
 
-/// A basic block that ran: address and bytes.
-pub type Ran = (u32, u16);
+/// A basic block that was executed: address and length in bytes.
+pub type ExecutedBlock = (u32, u16);
 
 /// The basic blocks of all activations of one handler, those of handlers that preempted it excluded.
 #[derive(Debug, Clone, Default)]
-pub struct Path {
-    /// How often each block ran.
-    pub all: BTreeMap<Ran, u64>,
-    /// The blocks of the activation that took most cycles, in their order.
-    pub worst: Vec<Ran>,
+pub struct ExecutionPath {
+    /// Number of executions of each block.
+    pub all: BTreeMap<ExecutedBlock, u64>,
+    /// The blocks of the activation with the most cycles, in order.
+    pub worst: Vec<ExecutedBlock>,
     /// Activations that ended.
     pub activations: u64,
     worst_cycles: u64,
-    running: Vec<Ran>,
+    running: Vec<ExecutedBlock>,
 }
 
-impl Path {
-    pub(super) fn ran(&mut self, block: Ran) {
+impl ExecutionPath {
+    pub(super) fn record(&mut self, block: ExecutedBlock) {
         self.running.push(block);
     }
 
-    pub(super) fn ended(&mut self, cycles: u64) {
+    pub(super) fn finish_activation(&mut self, cycles: u64) {
         for block in &self.running {
             *self.all.entry(*block).or_default() += 1;
         }

@@ -1,5 +1,4 @@
-//! What becomes of the clocks when the external oscillator fails (RM0390 6.2.7, clock security system), and of the
-//! reset flags at a reset.
+//! Failure of the external oscillator (RM0390 6.2.7, clock security system), and the reset flags.
 use super::{Clocks, Rcc};
 use crate::stop::Answer;
 use thermal_sim::processor::ResetCause;
@@ -9,20 +8,20 @@ const CSSON: u32 = 1 << 19;
 const PLLON: u32 = 1 << 24;
 const PLL_BY_HSE: u32 = 1 << 22;
 
-/// What drives the chip after the external oscillator has stopped.
+/// Source of the system clock after the external oscillator has stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum AfterHse {
-    /// What drove it before.
+    /// As before.
     Unaffected,
-    /// The internal oscillator, to which the clock security system has switched; the clocks were these.
+    /// The internal oscillator, selected by the clock security system; holds the clocks before.
     Internal(Clocks),
-    /// Nothing: no clock security, and the system clock came from it.
+    /// Nothing: no clock security system, and the system clock came from it.
     Nothing,
 }
 
 impl Rcc {
-    /// The registers after a reset. The flags of earlier resets stay, unless the supply was gone (6.3.21); an external
-    /// oscillator that has failed stays so.
+    /// The registers after a reset. Flags of earlier resets stay unless the supply was lost (6.3.21); a failed
+    /// external oscillator stays failed.
     pub fn after_reset(&self, cause: ResetCause) -> Self {
         let flags = match cause {
             ResetCause::PowerOn | ResetCause::BrownOut => 0,
@@ -34,7 +33,7 @@ impl Rcc {
         }
     }
 
-    /// The external oscillator stops for good.
+    /// Stops the external oscillator permanently.
     pub fn stop_hse(&mut self) -> Answer<AfterHse> {
         self.hse_failed = true;
         let pll = self.cr & PLLON != 0 && self.pllcfgr & PLL_BY_HSE != 0;
@@ -51,7 +50,7 @@ impl Rcc {
                 AfterHse::Unaffected
             });
         }
-        self.security = true;
+        self.clock_failure = true;
         self.cr &= !HSEON;
         if pll {
             self.cr &= !PLLON;
@@ -62,12 +61,12 @@ impl Rcc {
         let old = self.clocks;
         self.cr |= 1;
         self.cfgr &= !3;
-        self.clocks = self.computed(self.cfgr)?;
+        self.clocks = self.clocks_for(self.cfgr)?;
         Ok(AfterHse::Internal(old))
     }
 
-    /// The clock security system has seen the oscillator fail (CSSF): holds the NMI until software clears it.
-    pub const fn security_interrupt(&self) -> bool {
-        self.security
+    /// Request for the NMI: the clock security system has detected a failure, and software has not cleared CSSF.
+    pub const fn clock_failure_interrupt(&self) -> bool {
+        self.clock_failure
     }
 }

@@ -3,93 +3,58 @@ use std::env;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::Missing;
+use super::{Missing, Needs};
 use crate::process::{Invocation, on_path};
 
-/// Tools found on the machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Found {
-    cmake: bool,
-    make: bool,
-    compiler: bool,
-    libclang: bool,
-}
+const CMAKE: Missing = Missing {
+    what: "cmake",
+    apt: &["cmake"],
+    elsewhere: &["dnf install cmake", "pacman -S cmake", "brew install cmake"],
+};
+const MAKE: Missing = Missing {
+    what: "make",
+    apt: &["make"],
+    elsewhere: &["dnf install make", "pacman -S make", XCODE],
+};
+const C_COMPILER: Missing = Missing {
+    what: "a C compiler",
+    apt: &["gcc", "libc6-dev"],
+    elsewhere: &["dnf install gcc", "pacman -S gcc", XCODE],
+};
+const LIBCLANG: Missing = Missing {
+    what: "libclang with its headers",
+    apt: &["libclang-dev"],
+    elsewhere: &[
+        "dnf install clang-devel",
+        "pacman -S clang",
+        "brew install llvm",
+    ],
+};
+const CPP_COMPILER: Missing = Missing {
+    what: "a C++ compiler",
+    apt: &["g++"],
+    elsewhere: &["dnf install gcc-c++", "pacman -S gcc", XCODE],
+};
+const XCODE: &str = "xcode-select --install";
 
-/// The missing tools.
-pub fn missing(found: &Found) -> Vec<Missing> {
-    let tools = [
-        (
-            found.cmake,
-            Missing {
-                what: "cmake",
-                apt: &["cmake"],
-                elsewhere: &["dnf install cmake", "pacman -S cmake", "brew install cmake"],
-            },
-        ),
-        (
-            found.make,
-            Missing {
-                what: "make",
-                apt: &["make"],
-                elsewhere: &[
-                    "dnf install make",
-                    "pacman -S make",
-                    "xcode-select --install",
-                ],
-            },
-        ),
-        (
-            found.compiler,
-            Missing {
-                what: "a C compiler",
-                apt: &["gcc", "libc6-dev"],
-                elsewhere: &["dnf install gcc", "pacman -S gcc", "xcode-select --install"],
-            },
-        ),
-        (
-            found.libclang,
-            Missing {
-                what: "libclang with its headers",
-                apt: &["libclang-dev"],
-                elsewhere: &[
-                    "dnf install clang-devel",
-                    "pacman -S clang",
-                    "brew install llvm",
-                ],
-            },
-        ),
-    ];
-    tools
-        .into_iter()
-        .filter(|(there, _)| !there)
-        .map(|(_, missing)| missing)
-        .collect()
-}
-
-/// Looks for the tools.
-pub fn probe() -> Found {
+/// The missing tools of those that are needed.
+pub fn missing(needs: Needs) -> Vec<Missing> {
     let runs = |program: &str| Invocation::new(program, ["--version"]).answer().is_some();
-    Found {
-        cmake: runs("cmake"),
-        make: on_path("make").is_some() || on_path("ninja").is_some(),
-        compiler: runs(&env::var("CC").unwrap_or_else(|_| "cc".into())),
-        libclang: has_libclang(),
+    let compiler = |variable: &str, default: &str| {
+        runs(&env::var(variable).unwrap_or_else(|_| default.into()))
+    };
+    let mut tools = Vec::new();
+    if needs.emulator {
+        let make = on_path("make").is_some() || on_path("ninja").is_some();
+        tools.push((runs("cmake"), CMAKE));
+        tools.push((make, MAKE));
+        tools.push((compiler("CC", "cc"), C_COMPILER));
+        tools.push((has_libclang(), LIBCLANG));
     }
-}
-
-/// The C++ compiler, if it is missing.
-pub fn missing_for_fuzzer() -> Option<Missing> {
-    let program = env::var("CXX").unwrap_or_else(|_| "c++".into());
-    let there = Invocation::new(&program, ["--version"]).answer().is_some();
-    (!there).then_some(Missing {
-        what: "a C++ compiler",
-        apt: &["g++"],
-        elsewhere: &[
-            "dnf install gcc-c++",
-            "pacman -S gcc",
-            "xcode-select --install",
-        ],
-    })
+    if needs.fuzzer {
+        tools.push((compiler("CXX", "c++"), CPP_COMPILER));
+    }
+    super::missing(&tools)
 }
 
 /// Whether bindgen will find libclang and the compiler's own headers.
@@ -196,49 +161,6 @@ mod tests {
         ];
         for (name, expected) in cases {
             assert_eq!(is_libclang(name), expected, "{name}");
-        }
-    }
-
-    #[test]
-    fn only_missing_tools_are_installed() {
-        let all = Found {
-            cmake: true,
-            make: true,
-            compiler: true,
-            libclang: true,
-        };
-        let cases = [
-            (all, vec![]),
-            (
-                Found {
-                    libclang: false,
-                    ..all
-                },
-                vec!["libclang-dev"],
-            ),
-            (
-                Found {
-                    cmake: false,
-                    make: false,
-                    ..all
-                },
-                vec!["cmake", "make"],
-            ),
-            (
-                Found {
-                    compiler: false,
-                    ..all
-                },
-                vec!["gcc", "libc6-dev"],
-            ),
-        ];
-        for (found, expected) in cases {
-            let packages: Vec<_> = missing(&found)
-                .iter()
-                .flat_map(|missing| missing.apt)
-                .copied()
-                .collect();
-            assert_eq!(packages, expected, "{found:?}");
         }
     }
 }
