@@ -188,7 +188,8 @@ pub fn saved<const FINGERS: usize>(
 /// Whether a save began a new page: the header of its sector is written, that of the next one erased.
 #[must_use]
 pub fn changes_page(before: &FlashCells, after: &FlashCells) -> bool {
-    let headers =
-        |cells: &Cells| [0, 1, 2].map(|sector| cells.bytes()[sector * SECTOR..][..24].to_vec());
+    let headers = |cells: &FlashCells| {
+        [0, 1, 2].map(|sector| cells.bytes()[sector * SECTOR..][..24].to_vec())
+    };
     headers(before) != headers(after)
 }
