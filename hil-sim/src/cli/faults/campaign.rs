@@ -31,7 +31,7 @@ pub fn run(
     let report = RunsReport {
         engine: Some(device.name()),
         seed: arguments.seed,
-        failing: failing,
+        failing,
         key: "campaigns",
         runs: &ran,
     };

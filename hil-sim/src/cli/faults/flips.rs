@@ -56,7 +56,7 @@ pub fn run(
     let report = RunsReport {
         engine: None,
         seed: arguments.seed,
-        failing: failing,
+        failing,
         key: "flips",
         runs: &ran,
     };

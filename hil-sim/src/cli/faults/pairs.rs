@@ -25,7 +25,7 @@ pub fn run(arguments: &Arguments, device: &dyn SceneRunner) -> Result<(), Failur
     let report = RunsReport {
         engine: Some(device.name()),
         seed: arguments.seed,
-        failing: failing,
+        failing,
         key: "pairs",
         runs: &ran,
     };
