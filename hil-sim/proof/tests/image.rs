@@ -74,7 +74,7 @@ fn the_checks_find_what_the_image_is_known_to_have() {
         (HOST, "core::fmt::"),
         (HOST, "heapless::"),
         (HOST, "calibration_fit::fit"),
-        (TICK, "Identification::choose_current"),
+        (TICK, "Station::detect_faults"),
     ];
     let inlined: Vec<String> = known
         .iter()
