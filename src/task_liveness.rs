@@ -50,7 +50,7 @@ pub struct HostPoll {
 impl HostPoll {
     /// Ticks from one call to the next: 9 ms at most, far below the watchdog's shortest period of
     /// 68 ms.
-    const INTERVAL_TICKS: u8 = 9;
+    const HOST_POLL_INTERVAL_TICKS: u8 = 9;
 
     /// A call is due at the first tick.
     pub const fn new() -> Self {
@@ -69,6 +69,6 @@ impl HostPoll {
 
     /// Begins a new interval, after a call.
     pub const fn restart(&mut self) {
-        self.ticks_left = Self::INTERVAL_TICKS;
+        self.ticks_left = Self::HOST_POLL_INTERVAL_TICKS;
     }
 }

@@ -25,8 +25,10 @@ pub struct ControlLoop {
 }
 
 impl ControlLoop {
-    /// Runs one tick of the finger whose samples are complete; `host_is_active` is set if the host
-    /// has sent a line since the last tick. Returns whether telemetry is due.
+    /// Runs one tick of the finger whose samples are complete, drives its bridge, and queues its
+    /// telemetry if it is due; a full queue drops it. `host_is_active` tells that something was
+    /// received from the host since the last tick; it is read and cleared. Returns whether telemetry
+    /// was due, so that the caller starts the task that sends it.
     ///
     /// # Errors
     /// [`SampleError`] if there are no valid samples; the control loop has then

@@ -1,4 +1,4 @@
-//! Measurements in the emulator: the longest tick and the deepest stack over the scenes of [`scenes`](crate::scenes).
+//! Measurements in the emulator: the longest tick and the deepest stack over the scenes.
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};

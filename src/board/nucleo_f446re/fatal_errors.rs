@@ -15,7 +15,7 @@ use super::{fault_record, watchdog, wiring};
 
 /// Disables interrupts, turns all bridges off and stores `fault` as the cause of the reset that
 /// will follow.
-fn shut_down(fault: Fault) {
+fn turn_off_and_record(fault: Fault) {
     cortex_m::interrupt::disable();
     wiring::disable_bridges();
     fault_record::store_if_empty(&TripCause::without_readings(fault));
@@ -40,7 +40,7 @@ fn wait_for_watchdog() -> ! {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    shut_down(Fault::Panic);
+    turn_off_and_record(Fault::Panic);
     if first_report() {
         defmt::error!("{}", defmt::Display2Format(info));
     }
@@ -51,7 +51,7 @@ fn panic(info: &PanicInfo<'_>) -> ! {
 // has just stacked.
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    shut_down(Fault::HardFault);
+    turn_off_and_record(Fault::HardFault);
     if first_report() {
         defmt::error!(
             "hard fault at pc {=u32:#x}, lr {=u32:#x}",
@@ -65,7 +65,7 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 // SAFETY: `unsafe` because it interrupts critical sections. It accesses no data that they protect.
 #[exception]
 unsafe fn NonMaskableInt() -> ! {
-    shut_down(Fault::Clock);
+    turn_off_and_record(Fault::Clock);
     if first_report() {
         defmt::error!("the 8 MHz clock has failed");
     }
@@ -75,7 +75,7 @@ unsafe fn NonMaskableInt() -> ! {
 // SAFETY: `unsafe` because it may interrupt any code. It accesses no data that other code uses.
 #[exception]
 unsafe fn DefaultHandler(irqn: i16) -> ! {
-    shut_down(Fault::HardFault);
+    turn_off_and_record(Fault::HardFault);
     if first_report() {
         defmt::error!("interrupt {=i16} has no task", irqn);
     }

@@ -208,7 +208,7 @@ impl Board {
         };
         #[cfg(feature = "five-fingers")]
         let (stages, multiplexer) = {
-            let pins = wiring::BridgePins {
+            let pins = wiring::BridgePeripherals {
                 timers: (
                     peripherals.TIM1,
                     peripherals.TIM8,

@@ -119,8 +119,8 @@ pub enum Refused {
     Tuning,
     /// The normal equations were asked for, but the identification has ended early, for this reason.
     TuneAborted(AbortReason),
-    /// The mean of a thermistor was asked for within 0.5 s after power-up or after the presenting of an object, before
-    /// it was complete.
+    /// The mean of a thermistor was asked for before it covered 512 ticks (0.5 s) since power-up or since an object was
+    /// last presented; ticks while an object is presented do not count, because a finger may touch the display then.
     TooEarly,
     /// The command needs a station that is not tripped, and this fault is latched: `clear` must come first.
     Tripped(Fault),

@@ -3,7 +3,7 @@
 use core::array;
 
 use crate::command::{Addressed, Command, Refused, Reply};
-use crate::drive::Outputs;
+use crate::drive::BoardOutputs;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
@@ -62,7 +62,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
 
     /// Runs one control tick of a finger's station with the samples of the last millisecond; returns what
     /// its bridge must do until the next tick.
-    pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> Outputs {
+    pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> BoardOutputs {
         self.stations[finger.index()].step(samples)
     }
 

@@ -1,4 +1,4 @@
-//! Outputs of a control tick: current, duty cycle and state of the bridge.
+//! BoardOutputs of a control tick: current, duty cycle and state of the bridge.
 
 use fixed::types::{I1F15, I8F24};
 
@@ -35,8 +35,8 @@ impl SafeCurrent {
 pub struct Duty(I1F15);
 
 impl Duty {
-    /// Largest magnitude of a duty cycle: 0.9, which is 10.8 V of a supply of 12 V, more than 6 A through a cold module
-    /// need.
+    /// Largest magnitude of a duty cycle, 0.9. On a supply of 12 V these are 10.8 V, which is more than the resistance, the
+    /// Seebeck voltage and the dead times together need at the largest current of 6 A.
     pub const DUTY_LIMIT: I1F15 = I1F15::lit("0.9");
     /// No voltage: both half-bridges are driven to the same level, which lets current circulate, unlike [`Drive::Off`].
     pub const ZERO: Self = Self(I1F15::ZERO);
@@ -86,7 +86,7 @@ pub enum Drive {
 
 /// What a control tick of one finger demands of the board until the next tick, 1 ms later.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Outputs {
+pub struct BoardOutputs {
     /// Whether the finger's bridge is off or drives, and with which duty cycle.
     pub drive: Drive,
     /// Level of the comparator's test line: high makes the comparator cut the supply, and the falling edge restores it.

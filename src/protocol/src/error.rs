@@ -126,7 +126,7 @@ impl fmt::Display for Error {
         match self {
             Self::Line(error) => line(f, *error),
             Self::UnknownCommand(word) => {
-                unknown(f, "command", word, Request::WORDS.iter().copied())
+                write_unknown_word(f, "command", word, Request::WORDS.iter().copied())
             }
             Self::UnknownFinger(word, fingers) => {
                 let last = fingers.saturating_sub(1);
@@ -134,20 +134,22 @@ impl fmt::Display for Error {
             }
             Self::UnknownMaterial(word) => {
                 let names = MATERIALS.iter().map(|(name, _)| *name);
-                unknown(f, "material", word, names.chain([CUSTOM]))
+                write_unknown_word(f, "material", word, names.chain([CUSTOM]))
             }
             Self::UnknownMode(word) => {
-                unknown(f, "mode", word, MODES.iter().map(|(name, _)| *name))
+                write_unknown_word(f, "mode", word, MODES.iter().map(|(name, _)| *name))
             }
-            Self::UnknownLaw(word) => unknown(
+            Self::UnknownLaw(word) => write_unknown_word(
                 f,
                 "law",
                 word,
                 Law::PROTOCOL_WORDS.iter().map(|(name, _)| *name),
             ),
-            Self::UnknownSensor(word) => unknown(f, "sensor", word, SENSOR_WORDS.iter().copied()),
+            Self::UnknownSensor(word) => {
+                write_unknown_word(f, "sensor", word, SENSOR_WORDS.iter().copied())
+            }
             Self::UnknownSetting(word) => {
-                unknown(f, "setting", word, SETTING_WORDS.iter().copied())
+                write_unknown_word(f, "setting", word, SETTING_WORDS.iter().copied())
             }
             Self::Missing(argument) => write!(f, "{argument} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
@@ -169,13 +171,13 @@ impl fmt::Display for Error {
 }
 
 /// Writes that a word is unknown, and the known words.
-fn unknown<'a>(
+fn write_unknown_word<'a>(
     f: &mut fmt::Formatter<'_>,
     kind: &str,
     word: &WordExcerpt,
     known: impl Iterator<Item = &'a str>,
 ) -> fmt::Result {
-    unknown_word(f, kind, word)?;
+    write_unknown_prefix(f, kind, word)?;
     for known in known {
         f.write_str(" ")?;
         f.write_str(known)?;
@@ -183,9 +185,9 @@ fn unknown<'a>(
     Ok(())
 }
 
-/// The part of [`unknown`] that does not depend on the iterator, so that the image contains it once.
+/// The part of [`write_unknown_word`] that does not depend on the iterator, so that the image contains it once.
 #[inline(never)]
-fn unknown_word(f: &mut fmt::Formatter<'_>, kind: &str, word: &WordExcerpt) -> fmt::Result {
+fn write_unknown_prefix(f: &mut fmt::Formatter<'_>, kind: &str, word: &WordExcerpt) -> fmt::Result {
     write!(f, "unknown {kind} {word}; known:")
 }
 

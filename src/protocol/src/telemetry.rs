@@ -10,8 +10,8 @@ use crate::line_buffer::LineBuffer;
 /// Telemetry whose `Display` writes a line without its line ending, at most 128 bytes:
 ///
 /// `T tick state setpoint_c display_c sink_c skin_c room_c force_n demand_a current_a evaluations remark`.
-/// An unknown quantity is written as `-`. The remark is the fault that tripped the station, `limited` if the set-point is,
-/// or `-`.
+/// An unknown quantity is written as `-`. `evaluations` counts the evaluations of `erfcx` since reset. The remark is the fault
+/// that tripped the station, else `limited` if the set-point was limited to 15 to 42 °C, else `-`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TelemetryLine(pub Telemetry);
 

@@ -62,7 +62,7 @@ impl Settings {
     #[inline(never)]
     pub fn set_tile(&mut self, tile: Tile) {
         self.tile = tile;
-        [self.gains, self.gains_10hz] = Gains::for_tile(&tile);
+        [self.gains, self.gains_10hz] = Gains::for_both_loop_rates(&tile);
     }
 }
 
@@ -167,7 +167,7 @@ impl Default for Settings {
     /// Factory defaults, the nominal values of the components in the wiring table: 10 kΩ thermistors with a beta of
     /// 3950 K under 10 kΩ, a 30 mm, 6 A module on 12 V, and its nominal tile.
     fn default() -> Self {
-        let [gains, gains_10hz] = Gains::for_tile(&Tile::CLASS);
+        let [gains, gains_10hz] = Gains::for_both_loop_rates(&Tile::CLASS);
         Self {
             thermistor: ThermistorDivider {
                 pull_up_ohm: 10e3,

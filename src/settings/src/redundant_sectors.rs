@@ -26,7 +26,7 @@ const WORD_BYTES: usize = 4;
 /// Number of copies in which each word is stored; a majority of them decides when it is read.
 const COPIES: usize = 3;
 /// Bytes of flash that one word occupies.
-const STORED_WORD_BYTES: usize = COPIES * WORD_BYTES;
+const WORD_COPIES_BYTES: usize = COPIES * WORD_BYTES;
 /// Marks a valid sector. It differs in many bits from erased flash and from zeros.
 const SEAL: [u8; 2 * WORD_BYTES] = *b"settings";
 /// Invalidates a seal when programmed over its first word: programming can only clear bits.
@@ -73,7 +73,7 @@ impl<E: fmt::Debug> NorFlashError for SectorError<E> {
 impl<F: BlockingNorFlash> RedundantSectors<F> {
     /// Bytes of data in one sector: a third of its size, because each word is stored three times, less the seal that marks a
     /// valid sector.
-    pub const SECTOR_BYTES: usize = F::ERASE_SIZE / STORED_WORD_BYTES * WORD_BYTES - SEAL.len();
+    pub const SECTOR_BYTES: usize = F::ERASE_SIZE / WORD_COPIES_BYTES * WORD_BYTES - SEAL.len();
 
     /// Redundant sectors on all sectors of this flash.
     pub const fn new(flash: F) -> Self {
@@ -90,7 +90,7 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
             && within + bytes <= Self::SECTOR_BYTES
             && start + F::ERASE_SIZE <= self.0.capacity();
         if fits {
-            let from_start = (SEAL.len() + within) / WORD_BYTES * STORED_WORD_BYTES;
+            let from_start = (SEAL.len() + within) / WORD_BYTES * WORD_COPIES_BYTES;
             Ok((start as u32, (start + from_start) as u32))
         } else {
             Err(SectorError::OutOfBounds)
@@ -105,7 +105,7 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
     ) -> Result<(), SectorError<F::Error>> {
         for (word, at) in bytes
             .chunks_mut(WORD_BYTES)
-            .zip((address..).step_by(STORED_WORD_BYTES))
+            .zip((address..).step_by(WORD_COPIES_BYTES))
         {
             let mut copies = [[0; WORD_BYTES]; COPIES];
             self.0
@@ -125,7 +125,7 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
         let (words, []) = bytes.as_chunks() else {
             return Err(SectorError::OutOfBounds);
         };
-        for (word, at) in words.iter().zip((address..).step_by(STORED_WORD_BYTES)) {
+        for (word, at) in words.iter().zip((address..).step_by(WORD_COPIES_BYTES)) {
             let copies: [[u8; WORD_BYTES]; COPIES] = [*word; COPIES];
             self.0
                 .write(at, copies.as_flattened())

@@ -78,7 +78,8 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
         }
     }
 
-    /// Opens the log with an empty cache, and the buffer for one record.
+    /// Returns the log of records in the flash and the buffer for one record; both come from one call, so that they can be
+    /// borrowed together. The log's cache is empty, so that it reads the flash as after power-up.
     fn log(
         &mut self,
     ) -> (

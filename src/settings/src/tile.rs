@@ -80,7 +80,7 @@ impl Gains {
 
     /// Gains of the loop that is closed at every tick, and of the loop that is closed ten times a second.
     #[must_use]
-    pub fn for_tile(tile: &Tile) -> [Self; 2] {
+    pub fn for_both_loop_rates(tile: &Tile) -> [Self; 2] {
         [1.0 / f64::from(TICK_HZ), 0.1].map(|hold_s| Self::simc(tile, hold_s))
     }
 }

@@ -13,8 +13,8 @@ use std::string::{String, ToString};
 
 use crate::device::Telemetry;
 use crate::device::command::Addressed;
+use crate::device::drive::BoardOutputs;
 use crate::device::drive::Drive;
-use crate::device::drive::Outputs;
 use crate::device::sense::Samples;
 use crate::device::{StateName, Station};
 use crate::protocol::CommandHandler;
@@ -160,7 +160,7 @@ impl TestBench {
         (outputs.drive, telemetry)
     }
 
-    fn step_with_outputs(&mut self) -> (Outputs, Telemetry) {
+    fn step_with_outputs(&mut self) -> (BoardOutputs, Telemetry) {
         let mut samples = self.samples();
         let noisy = [
             &mut samples.display,

@@ -6,7 +6,7 @@
 //! firmware therefore cannot confirm itself.
 
 use thermal_display::device::command::{self, Addressed, Command, Status};
-use thermal_display::device::drive::{Drive, Outputs};
+use thermal_display::device::drive::{BoardOutputs, Drive};
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, Finger, StateName};
@@ -115,7 +115,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     }
 
     /// Runs one tick and checks the outputs, the change of state and the telemetry.
-    pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> Outputs {
+    pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> BoardOutputs {
         let before = self.state(finger);
         let outputs = self.device.step(finger, samples);
         let Status {
@@ -185,7 +185,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     }
 }
 
-fn check_outputs(outputs: Outputs, state: StateName, samples: &Samples) {
+fn check_outputs(outputs: BoardOutputs, state: StateName, samples: &Samples) {
     if outputs.comparator_test {
         assert_eq!(
             (state, outputs.drive),

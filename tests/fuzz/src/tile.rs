@@ -1,6 +1,6 @@
 //! A simulated tile with the class's nominal response, so that a device on it passes its self-test and stays armed.
 
-use thermal_display::device::drive::{Drive, Outputs};
+use thermal_display::device::drive::{BoardOutputs, Drive};
 use thermal_display::device::sense::Samples;
 
 /// Tile and sensors of one finger. A first-order model instead of the plant of `hil-sim`, to keep a tick fast.
@@ -87,7 +87,7 @@ impl Tile {
     }
 
     /// Advances the model by one tick of 1 ms.
-    pub fn drive(&mut self, outputs: Outputs) {
+    pub fn drive(&mut self, outputs: BoardOutputs) {
         let current_a = match outputs.drive {
             Drive::Off => 0.0,
             Drive::On(duty) => {

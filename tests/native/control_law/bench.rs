@@ -48,7 +48,7 @@ pub fn settings(sensor_lag_s: f64) -> Settings {
 
 /// Settings with the gains that follow from an identified tile.
 pub fn settings_of(tile: settings::Tile) -> Settings {
-    let [gains, gains_10hz] = settings::Gains::for_tile(&tile);
+    let [gains, gains_10hz] = settings::Gains::for_both_loop_rates(&tile);
     Settings {
         gains,
         gains_10hz,

@@ -6,7 +6,7 @@ use std::fmt::Display;
 
 use thermal_commissioning::StorageOrder;
 use thermal_device::command::Addressed;
-use thermal_device::drive::{Drive, Outputs};
+use thermal_device::drive::{BoardOutputs, Drive};
 use thermal_device::safety::{Fault, ThermalDose, TripCause};
 use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_device::{Device, Finger};
@@ -31,8 +31,8 @@ const PWM_STEPS: u16 = 1875;
 /// Timeout of the window watchdog, ms.
 const WINDOW_MS: u64 = 46;
 
-/// Outputs after a reset.
-const OFF: Outputs = Outputs {
+/// BoardOutputs after a reset.
+const OFF: BoardOutputs = BoardOutputs {
     drive: Drive::Off,
     comparator_test: false,
 };
@@ -57,7 +57,7 @@ pub struct NativeEngine {
     settling_scans: usize,
     /// Whether the bridge has pulled its fault pin since the last tick, as the board's break flag records.
     fault: bool,
-    outputs: Outputs,
+    outputs: BoardOutputs,
     /// Time for which no tick has run, while the outputs keep their state.
     hung_ms: Option<u64>,
     resets: Vec<DeviceReset>,

@@ -54,7 +54,7 @@ mod power;
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1, TIM8};
 
 pub use multiplexer::Multiplexer;
-pub use power::{BridgePins, ControlLines, PowerStage};
+pub use power::{BridgePeripherals, ControlLines, PowerStage};
 
 /// Number of fingers that this wiring controls.
 pub const FINGERS: usize = 5;

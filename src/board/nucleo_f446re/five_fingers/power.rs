@@ -11,7 +11,7 @@ use stm32f4xx_hal::pac::{TIM1, TIM8, TIM10, TIM11};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::timer::ErasedChannel;
-use thermal_display::device::drive::{Drive, Outputs};
+use thermal_display::device::drive::{BoardOutputs, Drive};
 
 use super::FINGERS;
 use thermal_display::bridge::Bridge;
@@ -32,7 +32,7 @@ pub struct PowerStage {
 }
 
 /// Timers and pins of all bridges, in the order of the fingers.
-pub struct BridgePins {
+pub struct BridgePeripherals {
     pub timers: (TIM1, TIM8, TIM10, TIM11),
     pub first: (PA8<Input>, PA9<Input>),
     pub second: (PA10<Input>, PA11<Input>),
@@ -56,14 +56,14 @@ impl ControlLines {
     pub fn new<
         const ENABLE_PORT: char,
         const ENABLE: u8,
-        const FAULT_PORT: char,
-        const FAULT: u8,
-        const TEST_PORT: char,
-        const TEST: u8,
+        const FAULT_LINE_PORT: char,
+        const FAULT_LINE_PIN: u8,
+        const COMPARATOR_TEST_PORT: char,
+        const COMPARATOR_TEST_PIN: u8,
     >(
         enable: Pin<ENABLE_PORT, ENABLE>,
-        fault: Pin<FAULT_PORT, FAULT>,
-        test: Pin<TEST_PORT, TEST>,
+        fault: Pin<FAULT_LINE_PORT, FAULT_LINE_PIN>,
+        test: Pin<COMPARATOR_TEST_PORT, COMPARATOR_TEST_PIN>,
     ) -> Self {
         Self {
             enable: enable.into_push_pull_output().erase(),
@@ -75,7 +75,7 @@ impl ControlLines {
     }
 }
 
-impl BridgePins {
+impl BridgePeripherals {
     /// Sets the timers up, with all bridges off.
     pub fn into_stages(self, rcc: &mut Rcc) -> [PowerStage; FINGERS] {
         let (tim1, tim8, tim10, tim11) = self.timers;
@@ -119,7 +119,7 @@ impl BridgePins {
                 fifth_lines,
             ),
         ];
-        enable_outputs();
+        enable_and_lock_timer_outputs();
         stages
     }
 }
@@ -127,7 +127,7 @@ impl BridgePins {
 /// Lets TIM1 and TIM8 drive their pins until the clock fails, which is a break (RM0390, 17.3.12).
 /// No pin is connected to the break inputs; their polarity makes them inactive. The lock prevents
 /// faulty code from changing these settings or the PWM mode before the next reset.
-fn enable_outputs() {
+fn enable_and_lock_timer_outputs() {
     // SAFETY: `pwm_hz` has consumed the handles of the timers. Their channels write only the
     // compare and enable registers; the break and dead-time registers are written here and by
     // `disable_bridges` only.
@@ -170,7 +170,7 @@ impl PowerStage {
     }
 
     /// Applies the outputs of a tick to the bridge and to the test line of the comparator.
-    pub fn apply(&mut self, outputs: &Outputs) {
+    pub fn apply(&mut self, outputs: &BoardOutputs) {
         self.test.set_state(outputs.comparator_test.into());
         match outputs.drive {
             Drive::Off => self.off(),

@@ -6,7 +6,7 @@ use stm32f4xx_hal::pac::TIM1;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::timer::{C1, C2, PwmChannel};
-use thermal_display::device::drive::{Drive, Outputs};
+use thermal_display::device::drive::{BoardOutputs, Drive};
 
 use thermal_display::bridge::Bridge;
 
@@ -15,7 +15,7 @@ use thermal_display::bridge::Bridge;
 /// 5.6 ns.
 const PWM_KHZ: u32 = 96;
 
-type Fault = Pin<'A', 6, Alternate<1>>;
+type FaultLinePin = Pin<'A', 6, Alternate<1>>;
 
 /// Bridge, fault line and LED.
 ///
@@ -26,7 +26,7 @@ type Fault = Pin<'A', 6, Alternate<1>>;
 pub struct PowerStage {
     bridge: Bridge<PwmChannel<TIM1, C1>, PwmChannel<TIM1, C2>, PB10<Output>>,
     timer: TIM1,
-    fault: Fault,
+    fault: FaultLinePin,
     test: PC3<Output>,
     led: PA5<Output>,
     on: bool,
@@ -94,7 +94,7 @@ impl PowerStage {
     /// The timer's outputs are enabled only when the bridge changes from off to on. A break
     /// disables them; they stay disabled until the station has detected the fault and has switched
     /// the bridge off itself.
-    pub fn apply(&mut self, outputs: &Outputs) {
+    pub fn apply(&mut self, outputs: &BoardOutputs) {
         self.test.set_state(outputs.comparator_test.into());
         match outputs.drive {
             Drive::Off => self.off(),

@@ -90,7 +90,7 @@ proptest! {
             sensor_lag_s: lag,
             dead_time_s: dead,
         };
-        let [gains, _] = Gains::for_tile(&tile);
+        let [gains, _] = Gains::for_both_loop_rates(&tile);
         let found = StabilityMargins::new(&tile, &gains);
         let (phase_deg, margin) = margins_by_sweep(&tile, &gains);
         prop_assert!((found.phase_deg - phase_deg).abs() < 0.05, "{found:?}, {phase_deg}");

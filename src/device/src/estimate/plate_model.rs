@@ -354,7 +354,7 @@ impl PlateModel {
         self.leg_heating.set_output(Celsius::ZERO);
         (self.hot, self.surface) = (sink, surface);
         let inputs = self.inputs_of_tick(current, finger, sink);
-        let mut remainder = to_model_kelvin(surface)
+        let mut remainder = to_model_resolution(surface)
             .saturating_sub(product(inputs.finger, self.finger_feedthrough));
         let [slowest, others @ ..] = &mut self.relaxations;
         for relaxation in others {
@@ -380,7 +380,7 @@ impl PlateModel {
     /// much higher. The legs' hot ends keep theirs.
     pub fn offset_temperatures(&mut self, by: Celsius) {
         let [slowest, ..] = &mut self.relaxations;
-        slowest.state += kelvin_to_state(to_model_kelvin(by));
+        slowest.state += kelvin_to_state(to_model_resolution(by));
         self.surface = self.surface.saturating_add(by);
     }
 
@@ -428,14 +428,15 @@ impl PlateModel {
         }
     }
 
-    /// Additional current, A (positive cools), beside the one in `inputs`, that brings the surface to `target`, °C, at
-    /// the end of 12 ticks, if finger and sink stay as in `inputs`.
+    /// Current, A (positive cools), to be added to the one from which `inputs` were computed, so that the surface reaches
+    /// `target`, °C, within the control horizon of 12 ms. Assumes that the finger's heat flow and the sink's temperature
+    /// stay as in `inputs`, and neglects the change of the Joule heat.
     #[must_use]
     pub fn additional_current_to_target(&self, target: Celsius, inputs: &PlateInputs) -> Current {
         const ONE: I4F28 = I4F28::ONE;
         let [slowest, ..] = &self.relaxations;
         let mut change = self.horizon_gains.temperature_change(inputs)
-            + to_model_kelvin(inputs.sink).wide_mul(slowest.horizon_decay);
+            + to_model_resolution(inputs.sink).wide_mul(slowest.horizon_decay);
         for relaxation in &self.relaxations {
             change -= relaxation.state_kelvin().wide_mul(relaxation.horizon_decay);
         }
@@ -449,7 +450,7 @@ impl PlateModel {
     pub fn step(&mut self, inputs: &PlateInputs) {
         let mut surface: Kelvin = product(inputs.finger, self.finger_feedthrough);
         let [slowest, ..] = &mut self.relaxations;
-        slowest.state += to_model_kelvin(inputs.sink).wide_mul(slowest.tick_decay);
+        slowest.state += to_model_resolution(inputs.sink).wide_mul(slowest.tick_decay);
         for relaxation in &mut self.relaxations {
             relaxation.state += relaxation.tick_gains.temperature_change(inputs)
                 - relaxation.state_kelvin().wide_mul(relaxation.tick_decay);
@@ -465,6 +466,6 @@ impl PlateModel {
 }
 
 /// A temperature at the model's resolution of 1 µK, rounded down.
-fn to_model_kelvin(temperature: Celsius) -> Kelvin {
+fn to_model_resolution(temperature: Celsius) -> Kelvin {
     Kelvin::from_bits(temperature.to_bits() >> (Celsius::FRAC_NBITS - Kelvin::FRAC_NBITS))
 }

@@ -112,7 +112,7 @@ impl PlateObserver {
             .then(|| (self.plate.surface()).saturating_add(self.disturbance.output()))
     }
 
-    /// Temperatures of the module's legs by the model, °C; `None` before the first reading.
+    /// Temperatures of the legs' cold and hot ends and their mean by the model, °C; `None` before the first reading.
     #[must_use]
     pub fn leg_temperatures(&self) -> Option<LegTemperatures> {
         self.valid.then(|| self.plate.leg_temperatures())

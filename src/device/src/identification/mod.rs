@@ -35,8 +35,8 @@ use thermal_settings::Gains;
 /// Demanded current, A, in magnitude, from which the module's current certainly flows in the demanded direction. Below
 /// it, the demanded current is taken instead of the measured one, whose sign the current mirror does not show.
 const CURRENT_DIRECTION_CERTAIN_FROM: Current = Current::lit("0.25");
-/// Demanded current, A, in magnitude, above which demanded and measured current are summed to find their relation. At a
-/// smaller current the bridge's dead times take less than their full voltage.
+/// Magnitude of the demanded current, A, above which demanded and measured current enter the sums from which their ratio is
+/// fitted. Below it the voltage lost in the bridge's dead times may be only partial, which makes the relation nonlinear.
 const CURRENTS_COMPARED_ABOVE: Current = Current::lit("1");
 
 /// Excitation pulses: change of the current from the baseline, in eighths of [`PULSE_AMPLITUDE`], and length in ticks

@@ -45,7 +45,8 @@ pub struct Scene<'a> {
     pub pair: &'a ContactPair,
     /// Temperature of the object before contact, °C; `None` stands for that of the room.
     pub object: Option<Celsius>,
-    /// Contact model that gives the set-point.
+    /// Contact model of the set-point: with contact resistance (Eq. 6-12) or perfect contact (Eq. 3-1). Independent of the
+    /// control law.
     pub mode: Mode,
 }
 
@@ -238,12 +239,13 @@ impl ReferenceGenerator {
         finger.forget_conductances();
     }
 
-    /// The reference of this tick, for a display whose surface has the temperature `surface`, °C; `None` before skin
-    /// and room have been read.
+    /// Set-point and target of this tick; `None` before skin and room have been read.
     ///
-    /// `follow_skin` is set for the law `model`: the skin on the display is followed tick by tick, and the target
-    /// corrects its difference from the skin on the object. Otherwise the closed form of Eq. 6-12 holds, as if every
-    /// contact were the first and its force had always been the present one.
+    /// In the semi-infinite mode both are the constant temperature of Eq. 3-1. Otherwise they follow Eq. 6-12: without
+    /// `follow_skin` in closed form, as for a first contact under a constant force; with it (law `model`) in closed form
+    /// only while that describes the contact, else from the simulated skin on the object, and the target also corrects the
+    /// difference between the skin on the display and that on the object. `surface`, °C, is the display's surface
+    /// temperature; it only decides at landing whether the display was late, which excludes the closed form.
     pub fn next_reference(
         &mut self,
         scene: &Scene<'_>,

@@ -17,7 +17,8 @@ pub struct PairFactors {
     /// Reciprocal of the weight, `(e_object + e_skin) / e_object`; turns the skin's cooling into the change at the
     /// interface.
     inverse_weight: U16F16,
-    /// Ratio of contact resistances `R_display / R_object`, from the two surfaces' finish and conductivity.
+    /// Contact resistance of skin to display divided by that of skin to object, `R_display / R_object`. It scales the
+    /// temperature drop across the object's contact to the drop that the same heat flow causes across the display's contact.
     ratio: Ratio,
 }
 

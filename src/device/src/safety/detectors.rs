@@ -17,17 +17,18 @@ use crate::sense::{Readings, Samples};
 /// Thermistors whose lags differ by 0.1 s differ by 1.6 K while the bridge at its current limit moves a display without
 /// a finger.
 const DISPLAY_DIFFERENCE_MAX: Celsius = Celsius::lit("3");
-/// Ticks of 1 ms for which the display's thermistors must differ before [`Fault::DisplaysApart`] trips the station.
+/// Net ticks of 1 ms at which [`Fault::DisplaysApart`] trips the station: counted up in each tick in which the display's
+/// thermistors differ by more than [`DISPLAY_DIFFERENCE_MAX`], and down in each other one, so that noise does not trip.
 const DISPLAY_DIFFERENCE_TICKS: u8 = 40;
 /// Excess of the room's reading over the skin's, K, above which their thermistors count as swapped or misplaced. The
 /// skin of a finger is warmer than the room, except for cold hands of 17 °C in a warm room; without a finger its
 /// thermistor reads the room.
 const ROOM_ABOVE_SKIN_MAX: Celsius = Celsius::lit("8");
-/// Ticks of 1 ms for which the room must read so much more than the skin before [`Fault::RoomAboveSkin`] trips the
-/// station.
+/// Net ticks of 1 ms at which [`Fault::RoomAboveSkin`] trips the station: counted up in each tick in which the room reads
+/// more than [`ROOM_ABOVE_SKIN_MAX`] above the skin, and down in each other one.
 const ROOM_ABOVE_SKIN_TICKS: u8 = 40;
-/// Ticks of 1 ms for which the plate observer's residual must be too large before [`Fault::UnlikeModel`] trips the
-/// station.
+/// Net ticks of 1 ms at which [`Fault::UnlikeModel`] trips the station: counted up in each tick in which the plate
+/// observer's residual exceeds that of a sound tile, and down in each other one.
 const RESIDUAL_TICKS: u8 = 30;
 /// Ticks of 1 ms without a line from the host, while telemetry streams and a set-point is followed, that trip the
 /// station by [`Fault::HostSilent`].

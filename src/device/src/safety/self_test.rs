@@ -56,8 +56,8 @@ const MEASURED_CURRENT_MAX: Current = Current::lit("2");
 /// [`Fault::NoResponse`]. A typical display responds by 0.54 K; a thermistor of 0.5 s lag sees a third of that in time,
 /// and a finger that rests on the display takes as much.
 const RESPONSE_MIN: Celsius = Celsius::lit("0.05");
-/// Largest fall of each display reading by the cooling pulse, K; more trips by [`Fault::NoResponse`]. A typical display
-/// falls by 0.54 K.
+/// Largest fall of each display reading 0.2 s after the end of the cooling pulse, K. A typical display falls by 0.54 K; more
+/// than this is no response to the pulse but another disturbance, and trips by [`Fault::NoResponse`], too.
 const RESPONSE_MAX: Celsius = Celsius::lit("1.5");
 /// Ticks of 1 ms to wait after a finger has landed or lifted before the baseline begins, because the display's
 /// temperature then follows no straight line.

@@ -8,7 +8,8 @@ use thermal_settings::ForceSensor;
 /// Force, N, from which the signal counts as off its zero: a finger may be landing. Noise of 0.7 to 1.2 counts a
 /// conversion is 0.6 to 1.1 mN here.
 const OFF_ZERO_FROM: Force = Force::lit("0.003");
-/// Force, 20 mN, from which a finger touches the display, if it has been off its zero for two ticks.
+/// Force, N, from which on a contact begins, provided that the force has been at least [`OFF_ZERO_FROM`] for
+/// [`CONTACT_DEBOUNCE_TICKS`] ticks, so that one noisy tick begins no contact.
 const CONTACT_BEGINS_FROM: Force = Force::lit("0.02");
 /// Force, N, below which a finger that touches has lifted; half of that at which it begins (hysteresis), so that noise
 /// does not end a light contact.

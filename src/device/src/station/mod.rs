@@ -20,7 +20,7 @@ use thermal_settings::Settings;
 pub use state::{ArmedTask, Event, State};
 
 use crate::control::{ControlParameters, Controller, Law, VoltageFeedforward};
-use crate::drive::{Current, Drive, Outputs, SafeCurrent};
+use crate::drive::{BoardOutputs, Current, Drive, SafeCurrent};
 use crate::estimate::{
     Estimator, FingerEstimator, LegTemperatures, PlateObserver, UncorrectedEstimate,
 };
@@ -147,7 +147,7 @@ impl Station {
     /// returns what bridge and comparator's test line must do until the next one. In a tick that detects a fault the
     /// bridge is off.
     #[inline(never)]
-    pub fn step(&mut self, samples: &Samples) -> Outputs {
+    pub fn step(&mut self, samples: &Samples) -> BoardOutputs {
         self.tick = self.tick.wrapping_add(1);
         let readings = self.sense(samples);
         let valid = self.detect_faults(samples, &readings);
@@ -371,7 +371,7 @@ impl Station {
     /// returns the current clamped to -6 to 6 A, zero if the bridge is off. Off interrupts an identification, and lets
     /// the control laws start from zero current.
     #[inline(always)]
-    fn actuate(&mut self, demand: BridgeDemand) -> (Outputs, Current) {
+    fn actuate(&mut self, demand: BridgeDemand) -> (BoardOutputs, Current) {
         match demand {
             BridgeDemand::Drive {
                 current,
@@ -379,7 +379,7 @@ impl Station {
             } => {
                 self.estimator.plate.advance_model(current);
                 let current = SafeCurrent::saturating(current);
-                let outputs = Outputs {
+                let outputs = BoardOutputs {
                     drive: Drive::On(self.voltage.duty_for_current(current, &previous_legs)),
                     comparator_test: false,
                 };
@@ -389,7 +389,7 @@ impl Station {
                 self.interrupt_identification();
                 self.controller.track_current(Current::ZERO);
                 self.estimator.plate.advance_model(Current::ZERO);
-                let outputs = Outputs {
+                let outputs = BoardOutputs {
                     drive: Drive::Off,
                     comparator_test,
                 };

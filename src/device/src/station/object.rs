@@ -16,8 +16,9 @@ pub struct PresentedObject {
     pub temperature: Option<Celsius>,
     /// Model that gives the set-point: with contact resistance, or semi-infinite with perfect contact.
     pub mode: Mode,
-    /// Constants of the contact of the finger with the first material of the list, used before a material is chosen:
-    /// their part for skin and display is the same for every material. `None` if the display's settings give none.
+    /// Contact constants with which the estimator computes the heat between skin and display until the host chooses a
+    /// material. Built for the first material of the list; any would do, because the part for skin and display does not
+    /// depend on the material. `None` if the display's surface in the settings is outside the domain of the contact model.
     default_pair: Option<ContactPair>,
 }
 

@@ -146,6 +146,6 @@ fn stored_settings_determine_the_gains() {
     assert_eq!(StoredSettings::from_settings(&settings), stored);
     assert_eq!(
         [settings.gains, settings.gains_10hz],
-        super::super::Gains::for_tile(&tile)
+        super::super::Gains::for_both_loop_rates(&tile)
     );
 }
