@@ -6,6 +6,7 @@
 extern crate std;
 
 pub mod fixed_point;
+pub mod impedance;
 pub mod material;
 pub mod pressure;
 pub mod reference;

@@ -3,6 +3,7 @@
 //! No input causes a panic or an overflow; values out of range saturate. The control path uses no
 //! floating-point arithmetic. Set-up ([`ContactPair::new`]) uses `f64`, once per material.
 
+mod body;
 mod chord_interpolation;
 mod contact;
 mod contact_pair;
@@ -15,18 +16,23 @@ mod mantissa_exponent;
 mod pressure;
 mod product;
 mod properties;
+mod relaxation_bank;
 mod ticks;
 
+pub use body::{Body, BodyError, BodyState, FAST_MAX, SLOW_MAX};
 pub use chord_interpolation::ChordInterpolation;
 pub use contact::{Contact, Response};
 pub use contact_pair::ContactPair;
-pub use half_space::{ContactConductance, HalfSpace, MATCH_HORIZON_TICKS};
+pub use half_space::{ContactConductance, HalfSpace};
 pub use kernel::erfcx;
 pub use logarithm::{Log2, exp2, log2};
 pub use mantissa_exponent::MantissaExponent;
 pub use pressure::{Area, Force, contact_area, log2_relative_pressure};
 pub use product::{Word, product, saturated, saturating_product, to_fixed};
 pub use properties::ContactPairError;
+pub use relaxation_bank::{
+    FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation,
+};
 pub use ticks::Ticks;
 
 use fixed::types::{I10F22, I40F24, U0F32, U4F28};

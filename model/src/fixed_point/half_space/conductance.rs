@@ -4,7 +4,7 @@ use fixed::types::{I12F20, U0F32, U16F16};
 
 use super::{HalfSpace, TICK_GAIN};
 use crate::fixed_point::{
-    Celsius, Contact, Fraction, MantissaExponent, Ratio, product, saturating_product,
+    Body, Celsius, Contact, Fraction, MantissaExponent, Ratio, product, saturating_product,
 };
 
 /// A contact resistance in series with a [`HalfSpace`], for one tick: gives the scaled flux for a temperature
@@ -18,17 +18,26 @@ pub struct ContactConductance {
     resistance: U16F16,
 }
 
-/// [`TICK_GAIN`] in the binary places of a resistance, rounded.
-const TICK_RESISTANCE: u32 = {
+/// A body's response of one tick in the binary places of a resistance, rounded. At least 1, as that of any finger is.
+const fn tick_resistance(tick_gain: I12F20) -> u32 {
     const FEWER: u32 = I12F20::FRAC_NBITS - U16F16::FRAC_NBITS;
-    (TICK_GAIN.to_bits() as u32 + (1 << FEWER >> 1)) >> FEWER
-};
+    let bits = tick_gain.to_bits();
+    let bits = if bits < 1 << I12F20::FRAC_NBITS {
+        1 << I12F20::FRAC_NBITS
+    } else {
+        bits as u32
+    };
+    (bits + (1 << FEWER >> 1)) >> FEWER
+}
 
 impl ContactConductance {
-    /// The series conductance has a relative error of at most 1e-5.
-    const fn new(resistance: U16F16) -> Self {
-        // At least 1.18, so at most 15 zeros lead it.
-        let total = resistance.to_bits().saturating_add(TICK_RESISTANCE);
+    /// A resistance in series with bodies whose responses of one tick add up to `tick_gain`. The series conductance has a
+    /// relative error of at most 1e-5.
+    const fn new(resistance: U16F16, tick_gain: I12F20) -> Self {
+        // At least 1, so at most 15 zeros lead it.
+        let total = resistance
+            .to_bits()
+            .saturating_add(tick_resistance(tick_gain));
         let zeros = total.leading_zeros();
         Self {
             series: U0F32::from_bits(inverse(total << zeros) << 1 >> (15 - zeros)),
@@ -40,10 +49,13 @@ impl ContactConductance {
     /// the resistance.
     #[must_use]
     pub fn scaled_flux(&self, target: Celsius, half_space: &HalfSpace) -> Celsius {
-        product(
-            target.saturating_sub(half_space.free_response()),
-            self.series,
-        )
+        self.scaled_flux_by(target.saturating_sub(half_space.free_response()))
+    }
+
+    /// Scaled flux of the coming tick, K, under a temperature difference that counts the free responses of all bodies, K.
+    #[must_use]
+    pub fn scaled_flux_by(&self, difference: Celsius) -> Celsius {
+        product(difference, self.series)
     }
 
     /// Temperature difference across the resistance under a scaled flux, both in K; saturates.
@@ -86,17 +98,39 @@ impl Contact {
     /// object; its target is `w (T_skin,i - T_object,i)`.
     #[must_use]
     pub fn object_conductance(&self) -> ContactConductance {
-        ContactConductance::new(resistance(
-            Ratio::ONE,
-            self.root_rate_per_tick,
-            Fraction::MAX,
-        ))
+        ContactConductance::new(
+            resistance(Ratio::ONE, self.root_rate_per_tick, Fraction::MAX),
+            TICK_GAIN,
+        )
     }
 
     /// Conductance between skin and display. The [`HalfSpace`] is the cooling of the skin's surface on the
     /// display; its target is `T_skin,i - T_display`.
     #[must_use]
     pub fn display_conductance(&self) -> ContactConductance {
-        ContactConductance::new(resistance(self.ratio, self.root_rate_per_tick, self.weight))
+        self.display_conductance_for(TICK_GAIN)
+    }
+
+    /// Conductance between skin and display, for a finger that is another [`super::super::Body`].
+    #[must_use]
+    pub fn display_conductance_of(&self, skin: &Body) -> ContactConductance {
+        self.display_conductance_for(skin.tick_gain())
+    }
+
+    fn display_conductance_for(&self, tick_gain: I12F20) -> ContactConductance {
+        ContactConductance::new(
+            resistance(self.ratio, self.root_rate_per_tick, self.weight),
+            tick_gain,
+        )
+    }
+
+    /// Conductance between the bodies of skin and object. Its target is `T_skin,i - T_object,i`, less the free responses
+    /// of both.
+    #[must_use]
+    pub fn conductance_of(&self, skin: &Body, object: &Body) -> ContactConductance {
+        ContactConductance::new(
+            resistance(Ratio::ONE, self.root_rate_per_tick, self.weight),
+            skin.tick_gain().saturating_add(object.tick_gain()),
+        )
     }
 }

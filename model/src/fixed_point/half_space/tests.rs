@@ -9,6 +9,7 @@ use documented_figures::assert_figure;
 use proptest::prelude::*;
 
 use super::*;
+use crate::fixed_point::relaxation_bank::{MATCH_HORIZON_TICKS, WINDOW};
 use crate::fixed_point::{Contact, ContactPair, Force, log2_relative_pressure};
 use crate::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use crate::pressure::pressure_pa;
@@ -101,10 +102,13 @@ fn coefficients_are_those_of_the_sum_of_modes() {
     let slow_gain = slow
         .iter()
         .map(|mode| Exact::input_gain(mode) * (-mode.0).exp());
-    assert_eq!(SLOW_INPUT_GAIN.to_bits(), scaled(slow_gain.sum(), 32));
+    assert_eq!(
+        RELAXATIONS.slow_input_gain.to_bits(),
+        scaled(slow_gain.sum(), 32)
+    );
     assert_eq!(TICK_GAIN.to_bits(), scaled(Exact::gain(1), 20));
     assert_eq!(
-        INVERSE_HORIZON_GAIN.to_bits(),
+        RELAXATIONS.inverse_horizon_gain.to_bits(),
         scaled(1.0 / Exact::gain(MATCH_HORIZON_TICKS), 32)
     );
 }
@@ -179,7 +183,7 @@ fn staggered_copy_ends_its_windows_half_a_window_apart_and_responds_the_same() {
         }
         let mut other = body.staggered();
         for _ in 0..100 {
-            assert_eq!(body.ticks_left.abs_diff(other.ticks_left), WINDOW / 2);
+            assert_eq!(body.0.ticks_left.abs_diff(other.0.ticks_left), WINDOW / 2);
             body.step(Celsius::lit("0.1"));
             other.step(Celsius::lit("0.1"));
             let difference = body.free_response().abs_diff(other.free_response());

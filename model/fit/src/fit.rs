@@ -1,0 +1,161 @@
+//! Fit of relaxations to an exact surface impedance.
+
+use contact_model::impedance::{Impedance, Relaxation};
+use nalgebra::{DMatrix, DVector};
+
+use crate::nonnegative;
+
+/// Fastest rate, 1/s: the device's tick of 1 ms follows no faster one, and what is faster becomes part of the direct term.
+pub const RATE_MAX_1_S: f64 = 600.0;
+/// Slowest rate, 1/s; an integrator stands for slower ones.
+const RATE_MIN_1_S: f64 = 2e-4;
+/// Rates offered to the fit, evenly spaced in the logarithm.
+const RATES: usize = 150;
+/// Laplace variables at which the impedance is compared, evenly spaced in the logarithm from [`S_MIN_1_S`] to
+/// [`S_MAX_1_S`].
+const SAMPLES: usize = 200;
+const S_MIN_1_S: f64 = 0.01;
+const S_MAX_1_S: f64 = 2000.0;
+/// Neighbouring rates within this factor are one relaxation.
+const MERGED_FACTOR: f64 = 1.25;
+/// A relaxation whose largest weighted part in the impedance is below this is left out.
+const NEGLIGIBLE: f64 = 1e-7;
+
+/// Relaxations of a body, fitted to its impedance.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit {
+    /// Part without delay, m² K/W.
+    pub direct_m2k_w: f64,
+    /// Relaxations, the slowest first.
+    pub relaxations: Vec<Relaxation>,
+    /// Largest weighted error over the samples.
+    pub weighted_error: f64,
+}
+
+impl Fit {
+    /// The fitted impedance.
+    #[must_use]
+    pub fn impedance(&self) -> Impedance<'_> {
+        Impedance {
+            direct_m2k_w: self.direct_m2k_w,
+            relaxations: &self.relaxations,
+        }
+    }
+}
+
+fn logarithmic(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
+    (0..count).map(move |i| from * (to / from).powf(i as f64 / (count - 1) as f64))
+}
+
+/// The samples of an impedance and the weight of its error at each.
+struct Samples(Vec<(f64, f64, f64)>);
+
+impl Samples {
+    /// One column of the least-squares problem.
+    fn column(&self, term: impl Fn(f64) -> f64) -> Vec<f64> {
+        self.0
+            .iter()
+            .map(|(s, _, weight)| weight * term(*s))
+            .collect()
+    }
+
+    /// Gains of the direct term and of these rates, with the largest weighted error.
+    fn solve(&self, rates: &[f64]) -> (f64, Vec<f64>, f64) {
+        let mut columns = vec![self.column(|_| 1.0)];
+        columns.extend(rates.iter().map(|rate| self.column(|s| 1.0 / (s + rate))));
+        let norms: Vec<f64> = (columns.iter())
+            .map(|column| column.iter().map(|x| x * x).sum::<f64>().sqrt())
+            .collect();
+        let a = DMatrix::from_fn(self.0.len(), columns.len(), |row, column| {
+            columns[column][row] / norms[column]
+        });
+        let b = DVector::from_iterator(self.0.len(), self.0.iter().map(|(_, z, w)| z * w));
+        let x = nonnegative::solve(&a, &b);
+        let error = (&a * &x - &b).amax();
+        let gain = |i: usize| x[i] / norms[i];
+        (gain(0), (1..columns.len()).map(gain).collect(), error)
+    }
+}
+
+/// Joins relaxations `i` and `i + 1` into one of the same gain and the same impedance at `s = 0` (or at the slowest sample,
+/// if one is an integrator).
+fn join(relaxations: &mut Vec<Relaxation>, i: usize) {
+    let (a, b) = (relaxations[i], relaxations.remove(i + 1));
+    let gain = a.gain_m2k_j + b.gain_m2k_j;
+    let part = |one: Relaxation| one.gain_m2k_j / (one.rate_1_s + S_MIN_1_S);
+    let rate = gain / (part(a) + part(b)) - S_MIN_1_S;
+    relaxations[i] = Relaxation {
+        rate_1_s: if a.rate_1_s == 0.0 && rate < RATE_MIN_1_S {
+            0.0
+        } else {
+            rate
+        },
+        gain_m2k_j: gain,
+    };
+}
+
+/// Fits at most `count_max` relaxations to the impedance `exact(s)`, m² K/W, at real `s` in 1/s, so that `weight(s, Z)` times
+/// the error of the impedance is least in the squares.
+#[must_use]
+pub fn fit(exact: impl Fn(f64) -> f64, weight: impl Fn(f64, f64) -> f64, count_max: usize) -> Fit {
+    let samples = Samples(
+        logarithmic(S_MIN_1_S, S_MAX_1_S, SAMPLES)
+            .map(|s| {
+                let z = exact(s);
+                (s, z, weight(s, z))
+            })
+            .collect(),
+    );
+    let mut rates: Vec<f64> = vec![0.0];
+    rates.extend(logarithmic(RATE_MIN_1_S, RATE_MAX_1_S, RATES));
+    let (_, gains, _) = samples.solve(&rates);
+    let mut relaxations: Vec<Relaxation> = (rates.iter().zip(gains))
+        .map(|(&rate_1_s, gain_m2k_j)| Relaxation {
+            rate_1_s,
+            gain_m2k_j,
+        })
+        .filter(|one| {
+            let largest = samples.column(|s| one.gain_m2k_j / (s + one.rate_1_s));
+            largest.into_iter().fold(0.0, f64::max) > NEGLIGIBLE
+        })
+        .collect();
+    let mut i = 0;
+    while i + 1 < relaxations.len() {
+        let (a, b) = (relaxations[i].rate_1_s, relaxations[i + 1].rate_1_s);
+        if a > 0.0 && b < MERGED_FACTOR * a {
+            join(&mut relaxations, i);
+        } else {
+            i += 1;
+        }
+    }
+    let solve = |relaxations: &[Relaxation]| {
+        let rates: Vec<f64> = relaxations.iter().map(|one| one.rate_1_s).collect();
+        let (direct_m2k_w, gains, weighted_error) = samples.solve(&rates);
+        let relaxations = (rates.iter().zip(gains))
+            .map(|(&rate_1_s, gain_m2k_j)| Relaxation {
+                rate_1_s,
+                gain_m2k_j,
+            })
+            .filter(|one| one.gain_m2k_j > 0.0)
+            .collect();
+        Fit {
+            direct_m2k_w,
+            relaxations,
+            weighted_error,
+        }
+    };
+    let mut best = solve(&relaxations);
+    while best.relaxations.len() > count_max {
+        let joined = (0..best.relaxations.len() - 1).map(|i| {
+            let mut fewer = best.relaxations.clone();
+            join(&mut fewer, i);
+            solve(&fewer)
+        });
+        let Some(least) = joined.min_by(|a, b| a.weighted_error.total_cmp(&b.weighted_error))
+        else {
+            break;
+        };
+        best = least;
+    }
+    best
+}

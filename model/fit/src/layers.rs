@@ -1,0 +1,45 @@
+//! Exact surface impedance of layers in one dimension.
+
+/// A layer of a body, with the conduction of heat in one dimension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layer {
+    /// Thickness, m; infinite for the last layer of a body without a back.
+    pub thickness_m: f64,
+    /// Conductivity, W/(m K).
+    pub conductivity_w_mk: f64,
+    /// Heat capacity of a volume, J/(m³ K).
+    pub capacity_j_m3k: f64,
+    /// Exchange with the blood in a volume, W/(m³ K) (Pennes); 0 for an object.
+    pub perfusion_w_m3k: f64,
+}
+
+/// What is behind the last layer.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Back {
+    /// No heat passes.
+    Insulated,
+    /// A fixed temperature behind a film of this coefficient, W/(m² K); infinite for a back that is held.
+    Film(f64),
+}
+
+/// Surface impedance of layers, from the touched face down, at the real Laplace variable `s_1_s` in 1/s, above 0;
+/// m² K/W. Exact: each layer is a transmission line.
+#[must_use]
+pub fn impedance(layers: &[Layer], back: Back, s_1_s: f64) -> f64 {
+    let behind = match back {
+        Back::Insulated => f64::INFINITY,
+        Back::Film(film_w_m2k) => 1.0 / film_w_m2k,
+    };
+    layers.iter().rev().fold(behind, |behind, layer| {
+        let decay_1_m = ((s_1_s * layer.capacity_j_m3k + layer.perfusion_w_m3k)
+            / layer.conductivity_w_mk)
+            .sqrt();
+        let own = 1.0 / (layer.conductivity_w_mk * decay_1_m);
+        let tanh = (layer.thickness_m * decay_1_m).tanh();
+        if behind.is_infinite() {
+            own / tanh
+        } else {
+            own * (behind + own * tanh) / (own + behind * tanh)
+        }
+    })
+}

@@ -1,0 +1,9 @@
+#![doc = include_str!("../README.md")]
+#![forbid(unsafe_code)]
+
+mod fit;
+mod layers;
+mod nonnegative;
+
+pub use fit::{Fit, RATE_MAX_1_S, fit};
+pub use layers::{Back, Layer, impedance};

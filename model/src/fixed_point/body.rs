@@ -1,0 +1,200 @@
+//! Relaxations of a body that the host describes, in fixed point.
+
+use core::fmt;
+
+use fixed::types::{I0F32, I1F31, I12F20};
+
+use super::relaxation_bank::{
+    FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation, WINDOW,
+};
+use super::to_fixed;
+use crate::impedance::{Impedance, Relaxation};
+
+/// Most fast relaxations of a body.
+pub const FAST_MAX: usize = 6;
+/// Most slow relaxations of a body.
+pub const SLOW_MAX: usize = 14;
+/// Largest rate of a relaxation, per tick: a state then loses less than half of its value in a tick.
+const RATE_PER_TICK_MAX: f64 = 0.69;
+/// Rate, per tick, from which a relaxation is fast: in a window of 8 ticks it decays by a tenth, up to which the straight
+/// line of the slow ones is good.
+const FAST_RATE_PER_TICK: f64 = 0.0125;
+/// Largest state of a fast relaxation, K: below the range of its type, ±512 K.
+const FAST_STATE_MAX_K: f64 = 500.0;
+/// Largest scaled flux, K, to which [`RelaxationBank`] limits its input.
+const SCALED_FLUX_MAX_K: f64 = 32.0;
+/// Largest shift of the states, which then have a resolution of 0.24 mK.
+const STATE_SHIFT_MAX: i32 = 10;
+
+/// An impedance that the device cannot follow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BodyError {
+    /// More fast relaxations than [`FAST_MAX`]; their number.
+    TooManyFast(usize),
+    /// More slow relaxations than [`SLOW_MAX`]; their number.
+    TooManySlow(usize),
+    /// A rate, 1/s, that is not from 0 to 690, for ticks of 1 ms.
+    Rate(f64),
+    /// A gain, m² K/J, or direct term, m² K/W, that is negative, not a number, or too large.
+    Gain(f64),
+}
+
+impl fmt::Display for BodyError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooManyFast(count) => {
+                write!(
+                    f,
+                    "{count} rates above 12.5 1/s; at most {FAST_MAX} are allowed"
+                )
+            }
+            Self::TooManySlow(count) => {
+                write!(
+                    f,
+                    "{count} rates up to 12.5 1/s; at most {SLOW_MAX} are allowed"
+                )
+            }
+            Self::Rate(value) => write!(f, "rate {value} 1/s; it must be 0 to 690"),
+            Self::Gain(value) => write!(
+                f,
+                "gain {value}; it must be positive and not larger than that of foam"
+            ),
+        }
+    }
+}
+
+impl core::error::Error for BodyError {}
+
+/// Relaxations of a body, for ticks of one length, with the flux scaled as for the skin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Body {
+    fast: [FastRelaxation; FAST_MAX],
+    fast_count: usize,
+    slow: [SlowRelaxation; SLOW_MAX],
+    slow_count: usize,
+    slow_input_gain: I0F32,
+    tick_gain: I12F20,
+    inverse_horizon_gain: I0F32,
+    state_shift: u32,
+}
+
+/// State of a body.
+pub type BodyState = RelaxationBank<FAST_MAX, SLOW_MAX>;
+
+/// Response of a relaxation of rate `r` per tick to a unit flux of one tick, over its gain: `(1 - e^-r) / r`.
+fn mean_decay(r: f64) -> f64 {
+    if r > 0.0 { -libm::expm1(-r) / r } else { 1.0 }
+}
+
+impl Body {
+    /// The relaxations of `impedance` for ticks of `tick_s` seconds; `effusivity`, J/(m² s^½ K), is that which scales the
+    /// flux. In `f64`, so for set-up only.
+    ///
+    /// # Errors
+    /// A rate or gain outside its range, or too many of them.
+    pub fn new(impedance: &Impedance<'_>, effusivity: f64, tick_s: f64) -> Result<Self, BodyError> {
+        // A scaled flux of 1 K for one tick, J/m².
+        let dose_j_m2 = effusivity * libm::sqrt(tick_s);
+        let input_gain =
+            |one: &Relaxation| one.gain_m2k_j * dose_j_m2 * mean_decay(one.rate_1_s * tick_s);
+        let mut all_gains = 0.0;
+        let (mut largest, mut tick_gain) = (0.0f64, impedance.direct_m2k_w * dose_j_m2 / tick_s);
+        if !(impedance.direct_m2k_w >= 0.0 && tick_gain < 1024.0) {
+            return Err(BodyError::Gain(impedance.direct_m2k_w));
+        }
+        for one in impedance.relaxations {
+            let gain = input_gain(one);
+            if !(0.0..=RATE_PER_TICK_MAX).contains(&(one.rate_1_s * tick_s)) {
+                return Err(BodyError::Rate(one.rate_1_s));
+            }
+            if !(gain > 0.0 && gain < 1024.0) {
+                return Err(BodyError::Gain(one.gain_m2k_j));
+            }
+            // The gain of a state is below a half, and no flux takes a fast state out of its range.
+            all_gains += gain;
+            largest = largest.max(2.0 * all_gains);
+            if one.rate_1_s * tick_s >= FAST_RATE_PER_TICK {
+                let decay = -libm::expm1(-one.rate_1_s * tick_s);
+                largest = largest.max(gain / decay * SCALED_FLUX_MAX_K / FAST_STATE_MAX_K);
+            }
+            tick_gain += gain;
+        }
+        let state_shift = (libm::ilogb(largest.max(f64::MIN_POSITIVE)) + 1).max(0);
+        if state_shift > STATE_SHIFT_MAX {
+            return Err(BodyError::Gain(largest));
+        }
+        let scaled = |gain: f64| to_fixed::<I0F32>(libm::ldexp(gain, -state_shift));
+        let (mut horizon_gain, mut slow_input_gain) = (tick_gain, 0.0);
+        let mut body = Self {
+            fast: [FastRelaxation::default(); FAST_MAX],
+            fast_count: 0,
+            slow: [SlowRelaxation::default(); SLOW_MAX],
+            slow_count: 0,
+            slow_input_gain: I0F32::ZERO,
+            tick_gain: to_fixed(tick_gain),
+            inverse_horizon_gain: I0F32::ZERO,
+            state_shift: state_shift as u32,
+        };
+        let ticks = f64::from(MATCH_HORIZON_TICKS);
+        for one in impedance.relaxations {
+            let (r, gain) = (one.rate_1_s * tick_s, input_gain(one));
+            let after_first = mean_decay(ticks * r) * ticks / mean_decay(r) - 1.0;
+            horizon_gain += gain * after_first;
+            if r >= FAST_RATE_PER_TICK {
+                let count = body.fast_count;
+                *body
+                    .fast
+                    .get_mut(count)
+                    .ok_or(BodyError::TooManyFast(count + 1))? = FastRelaxation {
+                    input_gain: scaled(gain),
+                    decay: to_fixed(-libm::expm1(-r)),
+                    horizon_factor: to_fixed::<I1F31>(libm::exp(-(ticks - 1.0) * r)),
+                };
+                body.fast_count += 1;
+            } else {
+                let window = f64::from(WINDOW);
+                // Mean of e^(r j) for j from 0 to 7.
+                let mean = if r > 0.0 {
+                    libm::expm1(r * window) / libm::expm1(r) / window
+                } else {
+                    1.0
+                };
+                let count = body.slow_count;
+                *body
+                    .slow
+                    .get_mut(count)
+                    .ok_or(BodyError::TooManySlow(count + 1))? = SlowRelaxation {
+                    input_gain: scaled(gain * mean),
+                    decay: to_fixed(-libm::expm1(-r * window)),
+                };
+                body.slow_count += 1;
+                slow_input_gain += gain * libm::exp(-r);
+            }
+        }
+        body.slow_input_gain = scaled(slow_input_gain);
+        body.inverse_horizon_gain = to_fixed(1.0 / horizon_gain);
+        Ok(body)
+    }
+
+    /// The coefficients, for [`BodyState`].
+    #[must_use]
+    pub fn relaxations(&self) -> Relaxations<'_> {
+        Relaxations {
+            fast: &self.fast[..self.fast_count.min(FAST_MAX)],
+            slow: &self.slow[..self.slow_count.min(SLOW_MAX)],
+            slow_input_gain: self.slow_input_gain,
+            tick_gain: self.tick_gain,
+            inverse_horizon_gain: self.inverse_horizon_gain,
+            state_shift: self.state_shift,
+        }
+    }
+
+    /// Response of the surface to a scaled flux of 1 at the end of its tick.
+    #[must_use]
+    pub const fn tick_gain(&self) -> I12F20 {
+        self.tick_gain
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,119 @@
+//! Bodies against their impedance in `f64`.
+
+extern crate std;
+
+use std::vec::Vec;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::fixed_point::Celsius;
+use crate::material::SKIN;
+
+const TICK_S: f64 = 1e-3;
+
+/// Surface after each of these scaled fluxes, K, by the exact response to their steps.
+fn exact(impedance: &Impedance<'_>, fluxes: &[f64]) -> Vec<f64> {
+    let flux_w_m2 = SKIN.effusivity() / libm::sqrt(TICK_S);
+    let mut states: Vec<f64> = impedance.relaxations.iter().map(|_| 0.0).collect();
+    let step = |flux: &f64| {
+        for (state, one) in states.iter_mut().zip(impedance.relaxations) {
+            let one_only = Impedance {
+                direct_m2k_w: 0.0,
+                relaxations: core::slice::from_ref(one),
+            };
+            *state = *state * libm::exp(-one.rate_1_s * TICK_S)
+                + flux * flux_w_m2 * one_only.step_response(TICK_S);
+        }
+        impedance.direct_m2k_w * flux_w_m2 * flux + states.iter().sum::<f64>()
+    };
+    fluxes.iter().map(step).collect()
+}
+
+fn relaxation() -> impl Strategy<Value = Relaxation> {
+    (1e-3..690.0f64, -9.0..-4.5f64).prop_map(|(rate_1_s, gain)| Relaxation {
+        rate_1_s,
+        gain_m2k_j: libm::pow(10.0, gain),
+    })
+}
+
+proptest! {
+    #[test]
+    fn surface_follows_the_impedance(
+        relaxations in prop::collection::vec(relaxation(), 1..6),
+        integrator in 1e-9..1e-5f64,
+        direct_m2k_w in 0.0..1e-4f64,
+    ) {
+        let mut relaxations = relaxations;
+        relaxations.push(Relaxation { rate_1_s: 0.0, gain_m2k_j: integrator });
+        let impedance = Impedance { direct_m2k_w, relaxations: &relaxations };
+        let body = Body::new(&impedance, SKIN.effusivity(), TICK_S).expect("a valid body");
+        let fluxes: Vec<f64> = (0..3000u32).map(|i| if i < 1500 { 0.5 / f64::from(i + 1) } else { -0.1e-3 }).collect();
+        let mut state = BodyState::default();
+        let mut largest = 0.0f64;
+        let mut worst = 0.0f64;
+        for (flux, exact) in fluxes.iter().zip(exact(&impedance, &fluxes)) {
+            let flux = Celsius::from_num(*flux);
+            let now = state.response_to(flux, &body.relaxations()).to_num::<f64>();
+            state.step(flux, &body.relaxations());
+            largest = largest.max(exact.abs());
+            worst = worst.max((now - exact).abs());
+        }
+        prop_assert!(worst < 2e-3 * largest + 1e-4, "{worst} of {largest}");
+    }
+
+    #[test]
+    fn no_flux_overflows(
+        relaxations in prop::collection::vec(relaxation(), 1..6),
+        fluxes in prop::collection::vec(any::<i32>(), 1..50),
+    ) {
+        let impedance = Impedance { direct_m2k_w: 0.0, relaxations: &relaxations };
+        let Ok(body) = Body::new(&impedance, SKIN.effusivity(), TICK_S) else { return Ok(()) };
+        let mut state = BodyState::default();
+        for bits in fluxes {
+            for _ in 0..200 {
+                state.step(Celsius::from_bits(bits), &body.relaxations());
+            }
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_followed_is_refused() {
+    let with = |relaxations: &[Relaxation], direct_m2k_w| {
+        Body::new(
+            &Impedance {
+                direct_m2k_w,
+                relaxations,
+            },
+            SKIN.effusivity(),
+            TICK_S,
+        )
+        .err()
+    };
+    let one = |rate_1_s, gain_m2k_j| Relaxation {
+        rate_1_s,
+        gain_m2k_j,
+    };
+    assert_eq!(with(&[one(700.0, 1e-6)], 0.0), Some(BodyError::Rate(700.0)));
+    assert_eq!(with(&[one(-1.0, 1e-6)], 0.0), Some(BodyError::Rate(-1.0)));
+    assert!(matches!(
+        with(&[one(f64::NAN, 1e-6)], 0.0),
+        Some(BodyError::Rate(_))
+    ));
+    assert_eq!(with(&[one(1.0, -1e-6)], 0.0), Some(BodyError::Gain(-1e-6)));
+    assert!(matches!(
+        with(&[one(1.0, f64::NAN)], 0.0),
+        Some(BodyError::Gain(_))
+    ));
+    assert_eq!(with(&[], -1.0), Some(BodyError::Gain(-1.0)));
+    assert_eq!(
+        with(&[one(100.0, 1e-6); FAST_MAX + 1], 0.0),
+        Some(BodyError::TooManyFast(FAST_MAX + 1))
+    );
+    assert_eq!(
+        with(&[one(0.1, 1e-6); SLOW_MAX + 1], 0.0),
+        Some(BodyError::TooManySlow(SLOW_MAX + 1))
+    );
+    assert_eq!(with(&[one(0.1, 1e-6); SLOW_MAX], 0.0), None);
+}

@@ -1,0 +1,212 @@
+//! Temperature change of a surface under any heat flux, as a sum of first-order relaxations.
+//!
+//! A surface impedance `Z(s) = direct + sum of g / (s + l)` answers a heat flux with one first-order state for each
+//! pair of gain `g` and rate `l`; a rate of zero is an integrator. What settles within a tick is the direct term.
+//!
+//! The input is the *scaled flux* of one tick, in K: the heat flux times `sqrt(dt) / e_skin`. The output is the change of
+//! the surface temperature since the body was uniform, in K.
+//!
+//! Fast relaxations are updated every tick. Slow ones are updated once per window of [`WINDOW`] ticks, with the sum of
+//! the window's fluxes; within a window their sum is extrapolated along a straight line.
+
+use fixed::traits::LossyFrom;
+use fixed::types::{I0F32, I1F31, I10F54, I11F53, I12F20, I42F22};
+
+use super::{Celsius, product, saturated};
+
+/// Ticks between two updates of the slow relaxations.
+pub(super) const WINDOW: u32 = 8;
+/// Horizon of [`RelaxationBank::scaled_flux_to_match`], ticks.
+pub const MATCH_HORIZON_TICKS: u32 = 20;
+
+/// Coefficients of a fast relaxation of rate `r` per tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FastRelaxation {
+    /// Response to a scaled flux of 1 in one tick.
+    pub(super) input_gain: I0F32,
+    /// Fraction of the state that decays in a tick, `1 - e^-r`.
+    pub(super) decay: I0F32,
+    /// Fraction of the state that remains at the horizon of [`RelaxationBank::scaled_flux_to_match`], `e^(-19 r)`.
+    pub(super) horizon_factor: I1F31,
+}
+
+/// Coefficients of a slow relaxation of rate `r` per tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SlowRelaxation {
+    /// Response to the sum of a window's scaled fluxes: that of one tick, times the mean of `e^(r j)` for `j` from 0
+    /// to 7, because a flux decays only from its own tick to the end of the window.
+    pub(super) input_gain: I0F32,
+    /// Fraction of the state that decays in a window, `1 - e^(-8 r)`.
+    pub(super) decay: I0F32,
+}
+
+/// Coefficients of all relaxations of a body.
+#[derive(Clone, Copy, Debug)]
+pub struct Relaxations<'a> {
+    /// The fast ones, updated every tick.
+    pub(super) fast: &'a [FastRelaxation],
+    /// The slow ones, updated once per window.
+    pub(super) slow: &'a [SlowRelaxation],
+    /// Response of all slow relaxations together to a scaled flux of 1, one tick later: the sum of `g e^-r`.
+    pub(super) slow_input_gain: I0F32,
+    /// Response to a scaled flux of 1 at the end of its tick: the sum of all gains, and the direct term.
+    pub(super) tick_gain: I12F20,
+    /// Inverse of the response to a constant scaled flux of 1 after [`MATCH_HORIZON_TICKS`].
+    pub(super) inverse_horizon_gain: I0F32,
+    /// The states are temperatures divided by two to this power, for bodies whose gains exceed the range of theirs.
+    pub(super) state_shift: u32,
+}
+
+/// Change of the surface temperature of a body, updated tick by tick; the default is uniform. It has room for `FAST` fast
+/// and `SLOW` slow relaxations, of which the coefficients may name fewer.
+///
+/// No input overflows: a scaled flux is limited to ±32 K, more than any contact gives, and the states saturate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RelaxationBank<const FAST: usize, const SLOW: usize> {
+    /// States of the fast relaxations at the end of the coming tick if no flux flows, K.
+    fast: [I10F54; FAST],
+    /// States of the slow relaxations at the start of the window, K; limited to ±256 K.
+    slow: [I10F54; SLOW],
+    /// Sum of the slow relaxations at the start of the window.
+    slow_sum: Celsius,
+    /// Change of this sum since, K.
+    slow_change: I10F54,
+    /// Decay of this sum in a tick, K.
+    slow_decay: I10F54,
+    /// Sum of the scaled fluxes since the start of the window.
+    flux_sum: Celsius,
+    /// Length of the window, ticks.
+    window: u32,
+    /// Ticks until its end.
+    pub(super) ticks_left: u32,
+    free_response: Celsius,
+}
+
+impl<const FAST: usize, const SLOW: usize> Default for RelaxationBank<FAST, SLOW> {
+    fn default() -> Self {
+        Self {
+            fast: [I10F54::ZERO; FAST],
+            slow: [I10F54::ZERO; SLOW],
+            slow_sum: Celsius::ZERO,
+            slow_change: I10F54::ZERO,
+            slow_decay: I10F54::ZERO,
+            flux_sum: Celsius::ZERO,
+            window: WINDOW,
+            ticks_left: WINDOW,
+            free_response: Celsius::ZERO,
+        }
+    }
+}
+
+/// A state, rounded down.
+fn celsius(state: I10F54) -> Celsius {
+    Celsius::lossy_from(state)
+}
+
+/// A state limited to ±256 K, so that the fluxes of a window can be added. The low 32 bits stay as they are.
+fn limited(state: I10F54) -> I10F54 {
+    const LIMIT: Celsius = Celsius::const_from_int(256);
+    let high = celsius(state).clamp(-LIMIT, LIMIT - Celsius::DELTA);
+    I10F54::from(high) | (state & I10F54::from_bits(u32::MAX as i64))
+}
+
+/// A scaled flux limited to ±32 K.
+fn bounded(scaled_flux: Celsius) -> Celsius {
+    const BOUND: Celsius = Celsius::const_from_int(32);
+    scaled_flux.clamp(-BOUND, BOUND - Celsius::DELTA)
+}
+
+impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
+    /// The same state with windows that end half a window apart from this one's. Of two bodies that are
+    /// updated together, only one then has to update its slow relaxations in any tick.
+    #[must_use]
+    #[inline]
+    pub fn staggered(&self, relaxations: &Relaxations<'_>) -> Self {
+        let mut other = *self;
+        other.end_window(
+            (self.ticks_left + WINDOW / 2 - 1) % WINDOW + 1,
+            relaxations.slow,
+        );
+        other
+    }
+
+    /// Change of the surface temperature at the end of the coming tick if no flux flows, K.
+    #[must_use]
+    pub const fn free_response(&self) -> Celsius {
+        self.free_response
+    }
+
+    /// Change of the surface temperature at the end of the coming tick if `scaled_flux` flows in it, K.
+    #[must_use]
+    #[inline]
+    pub fn response_to(&self, scaled_flux: Celsius, relaxations: &Relaxations<'_>) -> Celsius {
+        self.free_response
+            .saturating_add(product(bounded(scaled_flux), relaxations.tick_gain))
+    }
+
+    /// Updates the state by one tick in which `scaled_flux` flows.
+    #[inline]
+    pub fn step(&mut self, scaled_flux: Celsius, relaxations: &Relaxations<'_>) {
+        let flux = bounded(scaled_flux);
+        let mut fast_sum = Celsius::ZERO;
+        for (state, relaxation) in self.fast.iter_mut().zip(relaxations.fast) {
+            *state += flux.wide_mul(relaxation.input_gain);
+            *state += celsius(*state).wide_mul(-relaxation.decay);
+            fast_sum = fast_sum.saturating_add(celsius(*state));
+        }
+        self.flux_sum += flux;
+        self.slow_change += flux.wide_mul(relaxations.slow_input_gain) - self.slow_decay;
+        self.ticks_left -= 1;
+        if self.ticks_left == 0 {
+            self.end_window(WINDOW, relaxations.slow);
+        }
+        let sum = fast_sum.saturating_add(self.slow_response());
+        self.free_response = match relaxations.state_shift {
+            0 => sum,
+            shift => saturated(I42F22::from(sum) << shift),
+        };
+    }
+
+    /// Sum of the slow relaxations, extrapolated from the start of the window.
+    fn slow_response(&self) -> Celsius {
+        self.slow_sum.saturating_add(celsius(self.slow_change))
+    }
+
+    /// Updates the slow relaxations by the ticks that have passed of the window, and starts one of `ticks`.
+    #[inline]
+    fn end_window(&mut self, ticks: u32, slow: &[SlowRelaxation]) {
+        let passed = (self.window - self.ticks_left) as i32;
+        let (mut sum, mut decay) = (Celsius::ZERO, I10F54::ZERO);
+        for (state, relaxation) in self.slow.iter_mut().zip(slow) {
+            *state += self.flux_sum.wide_mul(relaxation.input_gain);
+            let decayed = celsius(*state).wide_mul(relaxation.decay / WINDOW as i32 * passed);
+            *state = limited(*state - decayed);
+            sum = sum.saturating_add(celsius(*state));
+            decay += celsius(*state).wide_mul(relaxation.decay);
+        }
+        (self.slow_sum, self.slow_change) = (sum, I10F54::ZERO);
+        self.slow_decay = decay / i64::from(WINDOW);
+        (self.flux_sum, self.window, self.ticks_left) = (Celsius::ZERO, ticks, ticks);
+    }
+
+    /// The constant scaled flux that, added to a flux common to both, brings this surface to that of `other`
+    /// within [`MATCH_HORIZON_TICKS`], K.
+    #[must_use]
+    #[inline]
+    pub fn scaled_flux_to_match(&self, other: &Self, relaxations: &Relaxations<'_>) -> Celsius {
+        let mut fast = I11F53::ZERO;
+        for ((from, to), relaxation) in self.fast.iter().zip(&other.fast).zip(relaxations.fast) {
+            let difference = celsius(*to).saturating_sub(celsius(*from));
+            fast += difference.wide_mul(relaxation.horizon_factor);
+        }
+        // The slow relaxations are extrapolated along their straight lines.
+        let slow_decay = (other.slow_decay - self.slow_decay) * i64::from(MATCH_HORIZON_TICKS - 1);
+        let slow = other.slow_response().saturating_sub(self.slow_response());
+        let half_of_fast = Celsius::from_bits((fast.to_bits() >> 32) as i32);
+        let difference = half_of_fast
+            .saturating_add(half_of_fast)
+            .saturating_add(slow)
+            .saturating_sub(celsius(slow_decay));
+        product(difference, relaxations.inverse_horizon_gain)
+    }
+}
