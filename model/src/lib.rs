@@ -5,8 +5,10 @@
 #[cfg(test)]
 extern crate std;
 
+pub mod finger;
 pub mod fixed_point;
 pub mod impedance;
 pub mod material;
 pub mod pressure;
 pub mod reference;
+pub mod slab;

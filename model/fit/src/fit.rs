@@ -15,7 +15,7 @@ const RATES: usize = 150;
 /// [`S_MAX_1_S`].
 const SAMPLES: usize = 200;
 const S_MIN_1_S: f64 = 0.01;
-const S_MAX_1_S: f64 = 2000.0;
+const S_MAX_1_S: f64 = 600.0;
 /// Neighbouring rates within this factor are one relaxation.
 const MERGED_FACTOR: f64 = 1.25;
 /// A relaxation whose largest weighted part in the impedance is below this is left out.

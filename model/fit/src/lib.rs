@@ -1,6 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
+pub mod fingers;
 mod fit;
 mod layers;
 mod nonnegative;

@@ -11,7 +11,7 @@ use super::to_fixed;
 use crate::impedance::{Impedance, Relaxation};
 
 /// Most fast relaxations of a body.
-pub const FAST_MAX: usize = 6;
+pub const FAST_MAX: usize = 8;
 /// Most slow relaxations of a body.
 pub const SLOW_MAX: usize = 14;
 /// Largest rate of a relaxation, per tick: a state then loses less than half of its value in a tick.

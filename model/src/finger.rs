@@ -1,0 +1,64 @@
+//! Fingers that the device may assume: surface impedance of the tissue, and its film of air before contact.
+
+use crate::impedance::{Impedance, Relaxation};
+
+/// A finger that the device assumes for the one that it does not know.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AssumedFinger {
+    /// Surface impedance of the tissue in contact.
+    pub impedance: Impedance<'static>,
+    /// Film coefficient of the air on the skin before contact, W/(m² K). The contact takes the film away, and the skin that
+    /// is no longer cooled by it becomes warmer.
+    pub air_w_m2k: f64,
+}
+
+const fn relaxation(rate_1_s: f64, gain_m2k_j: f64) -> Relaxation {
+    Relaxation {
+        rate_1_s,
+        gain_m2k_j,
+    }
+}
+
+/// The thesis's finger: a half-space of skin (section 2.1), insulated before contact. Its impedance is within 1.2e-4 of the
+/// exact one from 0.01 to 600 1/s, a time of some 2 ms to 100 s.
+pub const THESIS: AssumedFinger = AssumedFinger {
+    impedance: Impedance {
+        direct_m2k_w: 9.89171e-6,
+        relaxations: &[
+            relaxation(8.97613e-4, 3.28511e-5),
+            relaxation(2.44228e-3, 1.93296e-6),
+            relaxation(1.09611e-2, 4.79175e-5),
+            relaxation(1.63583e-2, 4.82610e-7),
+            relaxation(4.45085e-2, 4.45990e-5),
+            relaxation(6.00973e-2, 4.58985e-5),
+            relaxation(2.07559e-1, 1.67946e-4),
+            relaxation(8.21858e-1, 3.45555e-4),
+            relaxation(3.45121e0, 7.44243e-4),
+            relaxation(1.57500e1, 1.69415e-3),
+            relaxation(8.15410e1, 4.28737e-3),
+            relaxation(6.00000e2, 1.63013e-2),
+        ],
+    },
+    air_w_m2k: 0.0,
+};
+
+/// The mean finger: epidermis (0.65 mm), dermis (1.2 mm) and fat (4 mm) of literature values over a core that keeps its
+/// temperature, in a film of air of 10 W/(m² K) before contact; without blood, which a touch of 1 N or more stops (section
+/// 6.4.3). Accuracy as of [`THESIS`].
+pub const MEAN: AssumedFinger = AssumedFinger {
+    impedance: Impedance {
+        direct_m2k_w: 1.26345e-5,
+        relaxations: &[
+            relaxation(0.00000e0, 1.42326e-7),
+            relaxation(3.87276e-3, 1.06410e-4),
+            relaxation(5.33844e-2, 7.18475e-5),
+            relaxation(2.20462e-1, 2.90762e-4),
+            relaxation(8.33694e-1, 4.05721e-4),
+            relaxation(3.46320e0, 9.57844e-4),
+            relaxation(1.57930e1, 2.16226e-3),
+            relaxation(8.15867e1, 5.47400e-3),
+            relaxation(6.00000e2, 2.08197e-2),
+        ],
+    },
+    air_w_m2k: 10.0,
+};
