@@ -8,7 +8,8 @@
 //! | 132   | each finger: 13 steps, 5 times offset, slope and curvature, 5 parameters of the tile |
 //! | 4     | CRC-32 (ISO-HDLC) of all bytes before it, in every version                          |
 //!
-//! All fields are little-endian. Each value is an `i32` in units of its last decimal on a line of text.
+//! All fields are little-endian. Each value is an `i32` in units of its last decimal on a `set` line, so that a record
+//! holds exactly what the line does.
 
 use core::fmt;
 
@@ -16,37 +17,40 @@ use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use heapless::Vec;
 
 use super::calibration::power_of_ten;
-use super::{BORDER_COUNT, Calibration, Correction, Range, Settings, Tile};
+use super::{CALIBRATED_BORDER_COUNT, Calibration, Correction, Range, Settings, Tile};
 
-const VERSION: u16 = 1;
-const KIND_FACTORY: u8 = 0;
+const LAYOUT_VERSION: u16 = 1;
+const KIND_FACTORY_DEFAULTS: u8 = 0;
 const KIND_SETTINGS: u8 = 1;
 const HEADER_BYTES: usize = 4;
 const CHECKSUM_BYTES: usize = 4;
-const CORRECTIONS: usize = 5;
-const VALUES_PER_FINGER: usize = BORDER_COUNT + 3 * CORRECTIONS + 5;
+const CORRECTION_COUNT: usize = 5;
+const VALUES_PER_FINGER: usize = CALIBRATED_BORDER_COUNT + 3 * CORRECTION_COUNT + 5;
 const FINGER_BYTES: usize = 4 * VALUES_PER_FINGER;
-/// Largest number of fingers of a device.
+/// Largest number of fingers that a device can have.
 const FINGERS_MAX: usize = 10;
-/// Length of the longest record, that of a device with ten fingers, bytes.
+/// Length of the longest record, that of a device with ten fingers: 1328 bytes.
 pub const RECORD_MAX_BYTES: usize = HEADER_BYTES + FINGERS_MAX * FINGER_BYTES + CHECKSUM_BYTES;
 
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
-/// The bytes of one record, as they are written to flash.
+/// The bytes of one record as they are written to flash: the stored settings of all fingers, or the order to use
+/// factory defaults, between a header and a checksum.
 pub type SettingsRecord = Vec<u8, RECORD_MAX_BYTES>;
 
-/// The part of a finger's settings that is stored: all that commissioning determines.
+/// The part of one finger's settings that is stored in flash, because commissioning determines it for each device:
+/// calibration and tile. All other settings always have their factory defaults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSettings {
-    /// Corrections of the converter and of the thermistors.
+    /// Steps of the converter's error and corrections of the finger's five thermistors, from the commands `calibrate`
+    /// and `set`.
     pub calibration: Calibration,
-    /// Identified parameters of the tile.
+    /// Thermal parameters of the finger's tile, from the commands `tune` and `set`.
     pub tile: Tile,
 }
 
 impl StoredSettings {
-    /// The stored part of these settings.
+    /// Takes calibration and tile, the part that is stored in flash, from a finger's complete `settings`.
     #[must_use]
     pub const fn from_settings(settings: &Settings) -> Self {
         Self {
@@ -55,10 +59,11 @@ impl StoredSettings {
         }
     }
 
-    /// Complete settings: the stored part, and the factory defaults of all else.
+    /// Complete settings of the finger: the stored calibration and tile, the gains that follow from the tile, and
+    /// factory defaults for everything else.
     #[must_use]
     #[inline(never)]
-    pub fn settings(&self) -> Settings {
+    pub fn with_factory_defaults(&self) -> Settings {
         let mut settings = Settings {
             calibration: self.calibration,
             ..Settings::default()
@@ -67,8 +72,8 @@ impl StoredSettings {
         settings
     }
 
-    /// Values in the order of the record, each with its number of decimals.
-    fn values(&self) -> impl Iterator<Item = (f64, i32)> {
+    /// This finger's values in the order of the record, each with the number of decimals that the record holds.
+    fn record_values(&self) -> impl Iterator<Item = (f64, i32)> {
         let steps = self.calibration.steps_counts.into_iter();
         let corrections = self.calibration.corrections.into_iter();
         let tile = self.tile.to_array().into_iter();
@@ -81,8 +86,9 @@ impl StoredSettings {
             .chain(tile.map(|value| (value, Tile::DECIMALS as i32)))
     }
 
-    /// Settings from the values of a record; values that are missing become 0.
-    fn from_values(mut values: impl Iterator<Item = i32>) -> Self {
+    /// The settings of one finger from its integers in a record, each in units of its last decimal. Missing integers
+    /// count as 0; [`decode`] has checked that there are enough.
+    fn from_record_values(mut values: impl Iterator<Item = i32>) -> Self {
         let mut next =
             |decimals| f64::from(values.next().unwrap_or_default()) / power_of_ten(decimals);
         Self {
@@ -96,7 +102,8 @@ impl StoredSettings {
         }
     }
 
-    /// The first value outside its range, with that range.
+    /// The first value of calibration or tile that is outside its allowed range, with that range; `None` if all are
+    /// inside.
     fn out_of_range(&self) -> Option<(&'static Range, f64)> {
         self.calibration
             .out_of_range()
@@ -104,26 +111,29 @@ impl StoredSettings {
     }
 }
 
-/// Why bytes are not a valid record of this device.
+/// Why bytes from the flash are not a valid record of this device. The device then starts with factory defaults, and
+/// all fingers are tripped by the fault `settings-corrupt`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RecordError {
-    /// The length, bytes, is shorter than any record or does not match the number of fingers.
+    /// The record has this length, bytes, which is too short for header and checksum, or does not match the number of
+    /// fingers in its header.
     Length(usize),
-    /// The checksum does not match.
+    /// The CRC-32 at the end of the record does not match the bytes before it.
     Checksum,
-    /// The layout has a version that this firmware does not know.
+    /// The header of the record names this version of the layout, but this firmware reads only version 1.
     Version(u16),
-    /// The kind is neither factory defaults nor settings.
+    /// The header of the record names this kind of content, which is neither 0 (factory defaults) nor 1 (settings).
     Kind(u8),
-    /// The record is that of a device with this number of fingers.
+    /// The header of the record names this number of fingers, but the device has another number; or the number is not 0
+    /// though the record stands for factory defaults.
     Fingers(u8),
-    /// A value lies outside its range.
+    /// A value in the record lies outside its allowed range.
     OutOfRange {
-        /// Finger whose value in the record is out of range, counted from 0.
+        /// Index, from 0, of the finger whose value in the record is out of range.
         finger: u8,
-        /// Name and range of the value.
+        /// Name, unit and allowed range of the value that is out of range.
         allowed: &'static Range,
-        /// The value in the record.
+        /// The value in the record that is out of range, in the unit of `allowed`.
         value: f64,
     },
 }
@@ -137,7 +147,7 @@ impl fmt::Display for RecordError {
             Self::Version(version) => {
                 write!(
                     f,
-                    "settings have the unknown version {version}; known: {VERSION}"
+                    "settings have the unknown version {version}; known: {LAYOUT_VERSION}"
                 )
             }
             Self::Kind(kind) => write!(f, "settings have the unknown kind {kind}; known: 0 1"),
@@ -157,7 +167,8 @@ impl fmt::Display for RecordError {
     }
 }
 
-/// Encodes the settings of all fingers, or factory defaults for `None`, as a record.
+/// Encodes the stored settings of all fingers as the bytes of a record; `None` gives the record that stands for factory
+/// defaults.
 #[must_use]
 #[inline(never)]
 pub fn encode<const FINGERS: usize>(
@@ -169,15 +180,15 @@ pub fn encode<const FINGERS: usize>(
     let mut append = |bytes: &[u8]| {
         let _fits = record.extend_from_slice(bytes);
     };
-    append(&VERSION.to_le_bytes());
+    append(&LAYOUT_VERSION.to_le_bytes());
     append(&match settings {
         Some(_) => [KIND_SETTINGS, FINGERS as u8],
-        None => [KIND_FACTORY, 0],
+        None => [KIND_FACTORY_DEFAULTS, 0],
     });
     for (value, decimals) in settings
         .into_iter()
         .flatten()
-        .flat_map(StoredSettings::values)
+        .flat_map(StoredSettings::record_values)
     {
         append(&(libm::round(value * power_of_ten(decimals)) as i32).to_le_bytes());
     }
@@ -186,10 +197,11 @@ pub fn encode<const FINGERS: usize>(
     record
 }
 
-/// Decodes a record to the settings of all fingers, or to `None` for factory defaults.
+/// Decodes the bytes of a record to the stored settings of all fingers; `None` if the record stands for factory
+/// defaults.
 ///
 /// # Errors
-/// The bytes are not a valid record of a device with this number of fingers.
+/// The bytes are not a valid record of a device with `FINGERS` fingers.
 #[inline(never)]
 pub fn decode<const FINGERS: usize>(
     bytes: &[u8],
@@ -206,11 +218,11 @@ pub fn decode<const FINGERS: usize>(
     }
     let [version_low, version_high, kind, fingers] = *header;
     match u16::from_le_bytes([version_low, version_high]) {
-        VERSION => {}
+        LAYOUT_VERSION => {}
         version => return Err(RecordError::Version(version)),
     }
     let expected_fingers = match kind {
-        KIND_FACTORY => 0,
+        KIND_FACTORY_DEFAULTS => 0,
         KIND_SETTINGS => FINGERS,
         kind => return Err(RecordError::Kind(kind)),
     };
@@ -220,13 +232,13 @@ pub fn decode<const FINGERS: usize>(
     if values.len() != expected_fingers * FINGER_BYTES {
         return Err(wrong_length);
     }
-    if kind == KIND_FACTORY {
+    if kind == KIND_FACTORY_DEFAULTS {
         return Ok(None);
     }
     let (words, _) = values.as_chunks::<4>();
     let mut words = words.iter().map(|word| i32::from_le_bytes(*word));
     let settings = core::array::from_fn(|_| {
-        StoredSettings::from_values(words.by_ref().take(VALUES_PER_FINGER))
+        StoredSettings::from_record_values(words.by_ref().take(VALUES_PER_FINGER))
     });
     for (finger, one) in (0..).zip(&settings) {
         if let Some((allowed, value)) = one.out_of_range() {

@@ -1,4 +1,4 @@
-//! The settings in flash: a log of records, of which the newest is valid.
+//! The settings in flash: a log of records, of which only the newest counts.
 
 use core::fmt;
 
@@ -15,37 +15,38 @@ use super::{
     RECORD_MAX_BYTES, RecordError, RedundantSectors, SectorError, StoredSettings, decode, encode,
 };
 
-/// Sectors that the log rotates through.
+/// Number of flash sectors that the log of records fills one after the other, in a circle.
 const SECTOR_COUNT: usize = 3;
 
-/// Position of the newest record, cached during one operation. Without it, the whole flash would be searched once for
-/// every record of a sector that is reclaimed, which takes seconds.
-type LogCache = Cache<
+/// Cache in RAM of the position of the newest record in the flash, used during one operation. Without this cache,
+/// erasing a full sector for reuse would search the whole flash once for every record in that sector, which takes
+/// seconds.
+type RecordLogCache = Cache<
     ArrayPageStates<SECTOR_COUNT>,
     ArrayPagePointers<SECTOR_COUNT>,
     ArrayKeyPointers<(), 1>,
     (),
 >;
 
-/// The stored settings of a device with `FINGERS` fingers, in three sectors of a flash.
+/// The stored settings of a device with `FINGERS` fingers, in three sectors of the flash `F`.
 ///
-/// Every operation blocks until the flash has finished. After a power failure at any time, the flash holds either the
-/// previous settings or the new ones.
+/// Every operation blocks until the flash has finished. After a power failure the flash holds either the previous
+/// settings or the new ones; [`Self::save`] describes the exception, a flash that was damaged before.
 pub struct SettingsStore<F: NorFlash, const FINGERS: usize> {
     flash: RedundantSectors<F>,
     buffer: [u8; RECORD_MAX_BYTES],
 }
 
-/// Why settings could not be loaded or saved.
+/// Why settings could not be loaded from flash or saved to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StoreError<E> {
-    /// The driver of the flash reported an error, or a sector could not be erased.
+    /// Reading, programming or erasing the flash failed, for this reason.
     Flash(SectorError<E>),
-    /// The structure of the log is damaged.
+    /// The log of records in the flash is damaged, so that its newest record cannot be found or no record be appended.
     Corrupt,
-    /// The newest record holds no valid settings.
+    /// The newest record in the flash holds no valid settings of this device, for this reason.
     Record(RecordError),
-    /// A record that was written reads back differently.
+    /// A record that was written to the flash reads back differently.
     VerifyFailed,
 }
 
@@ -70,7 +71,7 @@ impl<E: fmt::Debug> From<Error<SectorError<E>>> for StoreError<E> {
 }
 
 impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
-    /// A store in the first three sectors of `flash`.
+    /// A store of settings in the first three sectors of `flash`, which is neither read nor written yet.
     pub const fn new(flash: F) -> Self {
         Self {
             flash: RedundantSectors::new(flash),
@@ -78,15 +79,15 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
         }
     }
 
-    /// Returns the log of records in the flash and the buffer for one record; both come from one call, so that they can be
-    /// borrowed together. The log's cache is empty, so that it reads the flash as after power-up.
-    fn log(
+    /// Returns the log of records in the flash and the buffer for one record; both come from one call, so that they can
+    /// be borrowed together. The log starts with an empty cache, and so reads the flash as after power-up.
+    fn record_log_and_buffer(
         &mut self,
     ) -> (
-        MapStorage<(), &mut RedundantSectors<F>, LogCache>,
+        MapStorage<(), &mut RedundantSectors<F>, RecordLogCache>,
         &mut [u8],
     ) {
-        let end = (SECTOR_COUNT * RedundantSectors::<F>::SECTOR_BYTES) as u32;
+        let end = (SECTOR_COUNT * RedundantSectors::<F>::DATA_BYTES_PER_SECTOR) as u32;
         let empty_cache = Cache::new(
             ArrayPageStates::new(),
             ArrayPagePointers::new(),
@@ -96,51 +97,55 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
         (log, &mut self.buffer)
     }
 
-    /// The settings that were saved last; `None` means factory defaults, which an empty flash holds too.
+    /// Reads the settings of all fingers that were saved last; `None` if those are factory defaults, or if none were
+    /// ever saved.
     ///
     /// # Errors
-    /// The flash cannot be read, or the newest record holds no valid settings of this device.
+    /// The flash cannot be read, or its newest record holds no valid settings of this device.
     #[inline(never)]
     pub fn load(&mut self) -> Result<Option<[StoredSettings; FINGERS]>, StoreError<F::Error>> {
-        let (mut log, buffer) = self.log();
+        let (mut log, buffer) = self.record_log_and_buffer();
         let record = block_on(log.fetch_item::<&[u8]>(buffer, &()))?;
         record.map_or(Ok(None), |bytes| decode(bytes).map_err(StoreError::Record))
     }
 
-    /// Saves settings, or factory defaults for `None`, and verifies them, whatever the flash held before.
+    /// Saves the settings of all fingers, or factory defaults for `None`, as the newest record, and verifies the record
+    /// by reading it back. Works whatever the flash held before.
     ///
-    /// Only if the log is damaged beyond repair is all of it erased first; a power failure in the middle of that loses the
-    /// old settings. A power failure by itself causes no such damage.
+    /// If the log of records is damaged beyond repair, or if the record has twice been read back differently, all
+    /// records are erased first; a power failure before the new one is written then loses the previous settings. A
+    /// power failure alone never damages the log in this way.
     ///
     /// # Errors
-    /// The settings are not saved. The previous ones remain, unless they were unreadable or all was erased.
+    /// The settings are not saved. The previous ones remain in the flash, unless they were unreadable or all records
+    /// were erased.
     #[inline(never)]
     pub fn save(
         &mut self,
         settings: Option<&[StoredSettings; FINGERS]>,
     ) -> Result<(), StoreError<F::Error>> {
         let bytes = encode(settings);
-        let mut saved = self.append(&bytes);
+        let mut saved = self.append_and_verify(&bytes);
         if matches!(saved, Err(StoreError::VerifyFailed)) {
             // Some bits at that place were no longer erased; the next place may be intact.
-            saved = self.append(&bytes);
+            saved = self.append_and_verify(&bytes);
         }
         if matches!(saved, Err(StoreError::Corrupt | StoreError::VerifyFailed)) {
             // The log can be damaged though a record is found: two sectors both look like the newest.
-            block_on(self.log().0.erase_all())?;
-            saved = self.append(&bytes);
+            block_on(self.record_log_and_buffer().0.erase_all())?;
+            saved = self.append_and_verify(&bytes);
         }
         saved
     }
 
-    /// Appends a record, and verifies it with an empty cache, as after power-up.
+    /// Appends a record to the log, and verifies the record by reading it back with an empty cache, as after power-up.
     #[inline(never)]
-    fn append(&mut self, bytes: &[u8]) -> Result<(), StoreError<F::Error>> {
-        let (mut log, buffer) = self.log();
+    fn append_and_verify(&mut self, bytes: &[u8]) -> Result<(), StoreError<F::Error>> {
+        let (mut log, buffer) = self.record_log_and_buffer();
         // Fills the cache with the position of the newest record, whose content no longer matters.
         let _newest = block_on(log.fetch_item::<&[u8]>(buffer, &()));
         block_on(log.store_item(buffer, &(), &bytes))?;
-        let (mut log, buffer) = self.log();
+        let (mut log, buffer) = self.record_log_and_buffer();
         match block_on(log.fetch_item::<&[u8]>(buffer, &()))? {
             Some(read) if read == bytes => Ok(()),
             _ => Err(StoreError::VerifyFailed),

@@ -136,13 +136,13 @@ fn each_invalid_record_has_its_error_message() {
 
 #[test]
 fn stored_settings_determine_the_gains() {
-    let mut tile = Tile::CLASS;
+    let mut tile = Tile::NOMINAL;
     tile.gain_k_s_a = 5.0;
     let stored = StoredSettings {
         calibration: Calibration::default(),
         tile,
     };
-    let settings = stored.settings();
+    let settings = stored.with_factory_defaults();
     assert_eq!(StoredSettings::from_settings(&settings), stored);
     assert_eq!(
         [settings.gains, settings.gains_10hz],
