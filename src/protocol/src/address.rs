@@ -1,18 +1,19 @@
 //! The finger that a line is for, on a device with several fingers.
 //!
-//! A line may begin with `@` and the number of a finger, as in `@2 material copper`; its answer then begins with the same.
-//! A line without an address is for all fingers. Telemetry has an address if there is more than one finger.
+//! A line may begin with `@` and the number of a finger, as in `@2 material copper`; its answer then begins with the
+//! same. A line without an address is for all fingers. Telemetry has an address if there is more than one finger.
 
 use thermal_device::Finger;
 use thermal_device::command::Addressed;
 
 use crate::Error;
 
-/// Splits a line into its address and the rest; `None` is the address of all fingers.
+/// Splits a line from the host, such as `@2 material copper`, into the finger that its address names and the rest;
+/// `None`, all fingers, if the line has no address.
 ///
 /// # Errors
-/// The device has no finger with this number.
-pub fn address<const FINGERS: usize>(
+/// The device has no finger with the number after `@`.
+pub fn split_address<const FINGERS: usize>(
     line: &str,
 ) -> Result<(Option<Finger<FINGERS>>, &str), Addressed<Error>> {
     let line = line.trim_ascii_start();

@@ -1,4 +1,4 @@
-//! Parsing of a line to a request.
+//! Parsing of a line from the host to a request.
 
 use contact_model::fixed_point::{Celsius, ContactPair};
 use contact_model::material::{MATERIALS, Material, SKIN, Surface};
@@ -7,38 +7,40 @@ use thermal_commissioning::{SessionRequest, StorageOrder};
 use thermal_device::TICK_HZ;
 use thermal_device::command::Command;
 use thermal_device::control::Law;
-use thermal_device::reference::Mode;
+use thermal_device::reference::ContactModel;
 use thermal_device::safety::Setpoint;
 use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
 use thermal_settings::{Range, Settings};
 
 use crate::Error;
-use crate::arguments::{Words, lookup, number, numbers, skip, word};
-use crate::commissioning_commands::{calibrate, set, settings};
+use crate::arguments::{Words, find_entry, read_number, read_numbers, read_word, skip_if_next_is};
+use crate::commissioning_commands::{parse_calibrate, parse_set, parse_settings};
 
-/// A line of the host, checked and ready to execute.
+/// A line from the host after parsing: a command with its arguments, which are within their ranges.
 #[allow(
     clippy::large_enum_variant,
     reason = "no heap to box the larger one in"
 )]
 #[derive(Clone, Debug, PartialEq)]
 pub enum Request {
-    /// `id`: reports what the device is.
+    /// The line `id`: report name and version of the firmware, number of fingers, tick rate and scan rate.
     Identify,
-    /// A command for the stations.
+    /// A line that the stations (the control) of the addressed fingers execute as this command, such as `arm` or
+    /// `material`.
     Station(Command),
-    /// A request to the commissioning sessions.
+    /// A line about settings or calibration, which the commissioning sessions of the addressed fingers execute:
+    /// `calibrate`, `tune result`, `margins`, `settings` or `set`.
     Commissioning(SessionRequest),
-    /// `save` or `forget`: an order for the device as a whole.
+    /// The line `save` or `forget`: store the present settings of all fingers, or factory defaults, in flash.
     Storage(StorageOrder),
 }
 
-/// Declares the commands, each by its first word and the expression that reads its arguments: once for the parser, and
-/// once for the list of known commands in an error message.
+/// Declares all commands, each by its first word and the expression that reads its arguments. From one list this
+/// generates the parser of the arguments and the list of commands in the answer to an unknown command.
 macro_rules! commands {
     (|$words:ident, $display:ident| { $($name:literal => $request:expr,)* }) => {
         /// First words of all commands, which the answer to an unknown command lists.
-        pub const WORDS: &[&str] = &[$($name),*];
+        pub const COMMAND_WORDS: &[&str] = &[$($name),*];
 
         fn parse_arguments(
             name: &str,
@@ -57,37 +59,38 @@ impl Request {
     commands!(|words, display| {
         "id" => Self::Identify,
         "state" => Self::Station(Command::Status),
-        "stream" => Self::Station(stream(words)?),
-        "material" => Self::Station(material(words, display)?),
-        "object" => Self::Station(Command::Object(object(words)?)),
-        "mode" => Self::Station(Command::Mode(mode(words)?)),
-        "law" => Self::Station(Command::Law(words.next().map(law).transpose()?)),
+        "stream" => Self::Station(parse_stream(words)?),
+        "material" => Self::Station(parse_material(words, display)?),
+        "object" => Self::Station(Command::Object(parse_object(words)?)),
+        "mode" => Self::Station(Command::Mode(parse_mode(words)?)),
+        "law" => Self::Station(Command::Law(words.next().map(parse_law).transpose()?)),
         "arm" => Self::Station(Command::Arm),
-        "hold" => Self::Station(Command::Hold(hold(words)?)),
+        "hold" => Self::Station(Command::Hold(parse_hold(words)?)),
         "start" => Self::Station(Command::Start),
         "abort" => Self::Station(Command::Abort),
         "clear" => Self::Station(Command::Clear),
         "cause" => Self::Station(Command::Cause),
-        "calibrate" => Self::Commissioning(calibrate(words)?),
-        "tune" => match skip(words, "result") {
+        "calibrate" => Self::Commissioning(parse_calibrate(words)?),
+        "tune" => match skip_if_next_is(words, "result") {
             true => Self::Commissioning(SessionRequest::TuneResult),
             false => Self::Station(Command::Tune),
         },
         "margins" => Self::Commissioning(SessionRequest::Margins),
-        "settings" => Self::Commissioning(settings(words)?),
-        "set" => Self::Commissioning(SessionRequest::Set(set(words)?)),
+        "settings" => Self::Commissioning(parse_settings(words)?),
+        "set" => Self::Commissioning(SessionRequest::Set(parse_set(words)?)),
         "save" => Self::Storage(StorageOrder::Save),
         "forget" => Self::Storage(StorageOrder::Forget),
     });
 
-    /// Parses one line. The costly part of a command, the floating-point set-up of a material, is done here, so that
-    /// executing the request takes a short time.
+    /// Parses a line from the host without its address; `settings` give the surface of the display, on which the
+    /// contact with a material depends. The floating-point constants of that contact take long to compute, so this is
+    /// done here and not when the request is executed.
     ///
     /// # Errors
-    /// The line is no request; the error says what is wrong with it and what is allowed.
+    /// The line is no valid request; the error says what is wrong with it and what is allowed.
     pub fn parse(line: &str, settings: &Settings) -> Result<Self, Error> {
         let mut words = line.split_ascii_whitespace();
-        let name = word(&mut words, "command")?;
+        let name = read_word(&mut words, "command")?;
         let request = Self::parse_arguments(name, &mut words, &settings.display)?;
         match words.next() {
             None => Ok(request),
@@ -96,34 +99,35 @@ impl Request {
     }
 }
 
-/// Words of the modes that give the set-point, as the command `mode` takes them.
-pub const MODES: [(&str, Mode); 2] = [
-    ("contact", Mode::ContactResistance),
-    ("semi-infinite", Mode::SemiInfinite),
+/// Arguments of the command `mode`, each with the model of the contact that it chooses to compute the set-point.
+pub const MODE_WORDS: [(&str, ContactModel); 2] = [
+    ("contact", ContactModel::ContactResistance),
+    ("semi-infinite", ContactModel::SemiInfinite),
 ];
-/// Word of a material that is given by its properties: conductivity, density, specific heat, roughness and slope follow.
-pub const CUSTOM: &str = "custom";
+/// Argument of the command `material` in place of a material's name. The properties of the material follow:
+/// conductivity (W/mK), density (kg/m³), specific heat (J/kgK), roughness (µm) and slope of the asperities (rad).
+pub const CUSTOM_MATERIAL_WORD: &str = "custom";
 
-static STREAM: Range = Range {
+static STREAM_INTERVAL_RANGE: Range = Range {
     name: "interval",
     unit: "ms",
     min: 0.0,
     max: 60_000.0,
 };
-static HOLD: Range = Range {
+static HOLD_TEMPERATURE_RANGE: Range = Range {
     name: "temperature",
     unit: "C",
     min: SETPOINT_MIN_C,
     max: SETPOINT_MAX_C,
 };
-static OBJECT: Range = Range {
+static OBJECT_TEMPERATURE_RANGE: Range = Range {
     name: "object temperature",
     unit: "C",
     min: -20.0,
     max: 60.0,
 };
-/// The properties of a custom material, in their order on the line.
-static PROPERTIES: [Range; 5] = [
+/// Allowed ranges of the properties of a material in the line `material custom ...`, in their order on the line.
+static MATERIAL_PROPERTY_RANGES: [Range; 5] = [
     Range {
         name: "conductivity",
         unit: "W/mK",
@@ -156,57 +160,61 @@ static PROPERTIES: [Range; 5] = [
     },
 ];
 
-fn stream(words: &mut Words<'_>) -> Result<Command, Error> {
+fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
     // Rounds a fraction of a millisecond up, so that only 0 ends the stream.
-    let interval_ms = number(words, &STREAM)?.saturating_ceil().to_num::<i64>();
+    let interval_ms = read_number(words, &STREAM_INTERVAL_RANGE)?
+        .saturating_ceil()
+        .to_num::<i64>();
     Ok(Command::Stream {
         interval_ms: interval_ms.unsigned_abs() as u32,
     })
 }
 
-fn object(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
-    if skip(words, "room") {
+fn parse_object(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
+    if skip_if_next_is(words, "room") {
         return Ok(None);
     }
-    Ok(Some(number(words, &OBJECT)?.to_num()))
+    Ok(Some(
+        read_number(words, &OBJECT_TEMPERATURE_RANGE)?.to_num(),
+    ))
 }
 
-fn mode(words: &mut Words<'_>) -> Result<Mode, Error> {
-    let name = word(words, "mode")?;
-    let (_, mode) = lookup(&MODES, name).ok_or(Error::UnknownMode(name.into()))?;
+fn parse_mode(words: &mut Words<'_>) -> Result<ContactModel, Error> {
+    let name = read_word(words, "mode")?;
+    let (_, mode) = find_entry(&MODE_WORDS, name).ok_or(Error::UnknownMode(name.into()))?;
     Ok(mode)
 }
 
-fn law(name: &str) -> Result<Law, Error> {
-    let (_, law) = lookup(&Law::PROTOCOL_WORDS, name).ok_or(Error::UnknownLaw(name.into()))?;
+fn parse_law(name: &str) -> Result<Law, Error> {
+    let (_, law) = find_entry(&Law::PROTOCOL_WORDS, name).ok_or(Error::UnknownLaw(name.into()))?;
     Ok(law)
 }
 
-fn hold(words: &mut Words<'_>) -> Result<Setpoint, Error> {
-    let celsius = number(words, &HOLD)?.to_num();
+fn parse_hold(words: &mut Words<'_>) -> Result<Setpoint, Error> {
+    let celsius = read_number(words, &HOLD_TEMPERATURE_RANGE)?.to_num();
     Ok(Setpoint::saturating_celsius(celsius).0)
 }
 
-fn material(words: &mut Words<'_>, display: &Surface) -> Result<Command, Error> {
-    let name = word(words, "material")?;
-    let (name, material) = if name == CUSTOM {
-        (CUSTOM, custom_material(words)?)
+fn parse_material(words: &mut Words<'_>, display: &Surface) -> Result<Command, Error> {
+    let name = read_word(words, "material")?;
+    let (name, material) = if name == CUSTOM_MATERIAL_WORD {
+        (CUSTOM_MATERIAL_WORD, parse_custom_material(words)?)
     } else {
-        lookup(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
+        find_entry(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
     };
     let pair = ContactPair::new(&SKIN, &material, display, 1.0 / f64::from(TICK_HZ))
         .map_err(Error::ContactPair)?;
     Ok(Command::Material { name, pair })
 }
 
-fn custom_material(words: &mut Words<'_>) -> Result<Material, Error> {
+fn parse_custom_material(words: &mut Words<'_>) -> Result<Material, Error> {
     let [
         conductivity_w_mk,
         density_kg_m3,
         specific_heat_j_kgk,
         roughness_um,
         slope_rad,
-    ] = numbers(words, &PROPERTIES)?;
+    ] = read_numbers(words, &MATERIAL_PROPERTY_RANGES)?;
     Ok(Material {
         surface: Surface {
             conductivity_w_mk,

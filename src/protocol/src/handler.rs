@@ -7,31 +7,35 @@ use thermal_device::command::{self, Addressed, Command, Refused};
 use thermal_device::{Finger, StateName};
 use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode};
 
-use crate::address::address;
+use crate::address::split_address;
 use crate::{Error, Reply, Request};
 
-/// Executes a command on the station of one finger, or on all stations if there is no finger, in bounded and short time.
-pub trait Execute<const FINGERS: usize>:
+/// A function that executes a command in the station (the control) of the given finger, or in the stations of all
+/// fingers for `None`, in bounded and short time. [`CommandHandler::answer`] calls it.
+pub trait ExecuteOnStations<const FINGERS: usize>:
     FnMut(Option<Finger<FINGERS>>, Command) -> ExecutionResult
 {
 }
 
-impl<const FINGERS: usize, F> Execute<FINGERS> for F where
+impl<const FINGERS: usize, F> ExecuteOnStations<FINGERS> for F where
     F: FnMut(Option<Finger<FINGERS>>, Command) -> ExecutionResult
 {
 }
 
-/// The reply of the stations.
+/// What the station, the control of a finger, returns for a command: its reply, or why it refuses the command, with the
+/// finger from which this comes.
 pub type ExecutionResult = Result<Addressed<command::Reply>, Addressed<Refused>>;
 
-/// Answers the host's lines, by the commissioning sessions of all fingers, one to ten, and by their stations.
+/// Executes the host's lines on a device with one to ten fingers, and returns the answers. It holds the commissioning
+/// session of each finger, which is its settings and calibration points; lines that command the control of a finger are
+/// passed on to the finger's station.
 #[derive(Clone, Debug)]
 pub struct CommandHandler<const FINGERS: usize> {
     sessions: [CommissioningSession; FINGERS],
 }
 
 impl<const FINGERS: usize> CommandHandler<FINGERS> {
-    /// A handler for a device whose fingers all have these settings.
+    /// A handler for a device whose fingers all have the same `settings`, such as the factory defaults.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
         Self {
@@ -39,16 +43,19 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// A handler for a device with stored settings.
+    /// A handler for a device whose fingers have the calibration and the tile that were loaded from flash, one element
+    /// for each finger, and factory defaults for all other settings.
     #[must_use]
     pub fn from_stored(stored: &[StoredSettings; FINGERS]) -> Self {
-        let session = |stored: &StoredSettings| CommissioningSession::new(stored.settings());
+        let session =
+            |stored: &StoredSettings| CommissioningSession::new(stored.with_factory_defaults());
         Self {
             sessions: stored.each_ref().map(session),
         }
     }
 
-    /// The record that an order stores.
+    /// The bytes to be written to flash for the command `save` (the present settings of all fingers) or `forget`
+    /// (factory defaults).
     #[must_use]
     pub fn settings_record(&self, order: StorageOrder) -> SettingsRecord {
         match order {
@@ -61,21 +68,22 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// Answers a line for one finger or for all. Time-consuming computations are done here, outside of `execute`, which
-    /// runs with the control tick locked out. If a line addresses all fingers, a query is answered by the first one, and
-    /// a change is made by each.
+    /// Parses a line from the host, executes it on the finger that it addresses, and returns the answer. A line without
+    /// an address is for all fingers: a query is answered by the first finger that can, a change is made by each.
+    ///
+    /// Time-consuming computations are done here, outside of `execute`, which runs with the control tick locked out.
     ///
     /// # Errors
-    /// The line is rejected. The error names the first finger that rejects it, which is unchanged; the other fingers have
-    /// executed the line.
+    /// No finger has executed a line that cannot be parsed. Otherwise the error names the first finger that rejects the
+    /// line; those fingers whose state permits it have executed the line.
     pub fn answer(
         &mut self,
         line: &str,
-        mut execute: impl Execute<FINGERS>,
+        mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<Addressed<Reply>, Addressed<Error>> {
         const { assert!(FINGERS > 0 && FINGERS <= 10) };
-        let (finger, line) = address(line)?;
-        let number = finger.map(Finger::number);
+        let (finger, line) = split_address(line)?;
+        let number = finger.map(Finger::index_u8);
         let addressed = |content| Addressed {
             finger: number,
             content,
@@ -93,20 +101,22 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 Ok(reply) => Ok(reply.map_content(Reply::Station)),
                 Err(refused) => Err(refused.map_content(Error::from)),
             },
-            Request::Commissioning(request) => self.commission(request, finger, execute),
-            Request::Storage(order) => match Self::reject_storage(order, finger, execute) {
+            Request::Commissioning(request) => self.execute_in_sessions(request, finger, execute),
+            Request::Storage(order) => match Self::storage_rejection(order, finger, execute) {
                 None => Ok(addressed(Reply::Restart(order))),
                 Some(error) => Err(error),
             },
         }
     }
 
-    /// Executes a request in the session of one finger or of all.
-    fn commission(
+    /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. On a
+    /// device with several fingers, a query without a finger is answered by the first finger, and a request with a long
+    /// computation is rejected if it names no finger.
+    fn execute_in_sessions(
         &mut self,
         request: SessionRequest,
         finger: Option<Finger<FINGERS>>,
-        mut execute: impl Execute<FINGERS>,
+        mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<Addressed<Reply>, Addressed<Error>> {
         let finger = match request {
             SessionRequest::CountSettingsLines
@@ -116,7 +126,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             {
                 finger.or(Some(Finger::FIRST))
             }
-            // Each takes milliseconds of `f64`: for all fingers at once it would exceed the watchdog's period.
+            // Each of these requests takes milliseconds of `f64`; for all fingers this would exceed the watchdog's
+            // period.
             SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
                 if finger.is_none() && FINGERS > 1 =>
             {
@@ -142,27 +153,28 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 Ok(answer) => reply = answer,
                 Err(error) => {
                     first_error.get_or_insert(Addressed {
-                        finger: finger.map(Finger::number).or(one.reply_address()),
+                        finger: finger.map(Finger::index_u8).or(one.reply_address()),
                         content: Error::from(error),
                     });
                 }
             }
         }
         let content = Reply::Commissioning(reply);
-        let finger = finger.map(Finger::number);
+        let finger = finger.map(Finger::index_u8);
         first_error.map_or(Ok(Addressed { finger, content }), Err)
     }
 
-    /// Rejects an order for a single finger, and while any bridge is driven: the device restarts to store the settings,
-    /// which a user must not feel.
-    fn reject_storage(
+    /// Why `save` or `forget` must not be executed now, or `None` if it may: the line addresses a single finger of
+    /// several, or a bridge is on. The device restarts to store settings, which would switch off a display that a
+    /// finger may feel.
+    fn storage_rejection(
         order: StorageOrder,
         finger: Option<Finger<FINGERS>>,
-        mut execute: impl Execute<FINGERS>,
+        mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Option<Addressed<Error>> {
         if finger.is_some() && FINGERS > 1 {
             let content = Error::WholeDevice(order.name());
-            let finger = finger.map(Finger::number);
+            let finger = finger.map(Finger::index_u8);
             return Some(Addressed { finger, content });
         }
         for one in Finger::all() {
@@ -177,7 +189,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 ) => {}
                 Ok(_) => {
                     return Some(Addressed {
-                        finger: one.reply_address().or(finger.map(Finger::number)),
+                        finger: one.reply_address().or(finger.map(Finger::index_u8)),
                         content: Error::NeedsOff(order.name()),
                     });
                 }

@@ -17,8 +17,8 @@ mod reply;
 mod telemetry;
 
 pub use command::Request;
-pub use error::{Error, FailureText, WordExcerpt};
-pub use handler::{CommandHandler, Execute, ExecutionResult};
+pub use error::{Error, StorageFailureText, WordExcerpt};
+pub use handler::{CommandHandler, ExecuteOnStations, ExecutionResult};
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use reply::Reply;
 pub use telemetry::{TelemetryLine, telemetry_line};
