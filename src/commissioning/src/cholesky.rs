@@ -1,8 +1,8 @@
 //! Solution of the normal equations of least squares.
 
-/// Solves the linear equations `a x = b` by a Cholesky decomposition without square roots (LDLᵀ), and replaces `b` by
-/// `x`. The matrix `a` must be symmetric and positive definite; only its lower triangle is used, and it is overwritten.
-/// Returns `None` if `a` is not positive definite.
+/// Solves the linear equations `a x = b` by a Cholesky decomposition without square roots (LDLᵀ), and replaces the
+/// content of `b` by `x`. The matrix `a` must be symmetric and positive definite; only its lower triangle is used, and
+/// its content is overwritten. Returns `None` if `a` is not positive definite.
 #[must_use]
 pub fn solve<const N: usize>(a: &mut [[f64; N]; N], b: &mut [f64; N]) -> Option<()> {
     for i in 0..N {

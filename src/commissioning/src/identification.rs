@@ -6,95 +6,114 @@ use core::ops::RangeInclusive;
 use super::cholesky::solve;
 use thermal_device::TICK_HZ;
 use thermal_device::identification::{
-    NormalEquationRow, ROWS, Statistic, TIME_UNIT_SHIFT, UNKNOWNS,
+    NORMAL_EQUATION_ROWS, NormalEquationRow, StatisticIndex, TIME_UNIT_TICKS_LOG2, UNKNOWN_COUNT,
 };
 use thermal_settings::{Range, Tile};
 
-/// Unit of time of the equations, s.
-const UNIT_S: f64 = (1 << TIME_UNIT_SHIFT) as f64 / TICK_HZ as f64;
-/// Delay from a demanded current to its flow, one tick, s; the equations count the dead time from the flow.
+/// Unit of time, s, of the normal equations from the station: 2048 ticks of 1 ms, so 2.048 s.
+const TIME_UNIT_S: f64 = (1 << TIME_UNIT_TICKS_LOG2) as f64 / TICK_HZ as f64;
+/// Time, s, from the tick that demands a current to its flow: one tick of 1 ms. The normal equations count the dead
+/// time from the flow of the current, so this delay is added to their result.
 const ACTUATION_DELAY_S: f64 = 1.0 / TICK_HZ as f64;
-/// Prior value of the dead time of plates of this class, s. The response hardly distinguishes a dead time from an
-/// equally short lag of the sensor; only their sum is observable, so a prior has to divide it.
+/// Expected dead time, s, from the flow of a current to the surface of a plate of this class. The response determines
+/// only the sum of dead time and sensor lag well, so this prior decides how the sum is divided.
 const DEAD_TIME_PRIOR_S: f64 = 0.0145;
-/// Weight of this prior in the normal equations, whose coefficients are in units of 2^-44.
+/// Weight of [`DEAD_TIME_PRIOR_S`] in the fit: what is added to the diagonal element of gain times dead time in the
+/// normal matrix, whose elements are in units of 2^-44. A larger weight draws the dead time nearer to the prior.
 const DEAD_TIME_PRIOR_WEIGHT: f64 = 1e14;
 
-/// Indices of the unknowns in the equation of [`thermal_device::identification`], where their signs stand; each is divided
-/// by `1 + leak lag`. The unknowns without an index here are nuisance parameters.
-const LAG: usize = 0;
-const GAIN: usize = 1;
-const GAIN_DEAD_TIME: usize = 2;
-const GAIN_JOULE: usize = 3;
-const LEAK: usize = 4;
-const GAIN_MIRROR_ZERO: usize = 7;
+// Indices of six of the eight unknowns of the normal equations. The equation with their signs stands in
+// `thermal_device::identification`; each unknown is divided by `1 + leak lag`. The unknowns 5 and 6 represent the error
+// of the baseline reading and a drift, and are not used.
+const LAG_INDEX: usize = 0;
+const GAIN_INDEX: usize = 1;
+const GAIN_TIMES_DEAD_TIME_INDEX: usize = 2;
+const GAIN_TIMES_JOULE_INDEX: usize = 3;
+const LEAK_INDEX: usize = 4;
+const GAIN_TIMES_MIRROR_ZERO_INDEX: usize = 7;
 
-/// One ampere in the unit of the current comparison.
-const AMPERE: f64 = 65_536.0;
-/// Current at which demanded and measured current are compared, 4.5 A. The dead times of the bridge take the same from
-/// any current, which is a large part of a small one; large currents move the display most.
-const COMPARISON_CURRENT: f64 = 4.5 * AMPERE;
+/// One ampere in units of 2^-16 A, in which the station adds up the currents whose ratio is computed.
+const CURRENT_UNITS_PER_AMPERE: f64 = 65_536.0;
+/// Current, 4.5 A in units of 2^-16 A, at which the ratio of measured to demanded current is evaluated. The dead times
+/// of the bridge's switches take a constant amount from any current, which is a large part of a small one; so a large
+/// current is chosen, because large currents move the display most.
+const COMPARISON_CURRENT: f64 = 4.5 * CURRENT_UNITS_PER_AMPERE;
 
-/// Plausible ratios of measured to demanded current.
-const CURRENT_RATIOS: RangeInclusive<f64> = 0.5..=1.5;
-/// Plausible dead times of plates of this class. A disturbance of the display distorts this parameter first.
+/// Ratios of measured to demanded current that a sound bridge, module and current mirror can have; another ratio ends
+/// the identification with [`IdentificationError::CurrentRatio`].
+const PLAUSIBLE_CURRENT_RATIOS: RangeInclusive<f64> = 0.5..=1.5;
+/// Dead times, s, that an identified plate of this class can have; another ends the identification with
+/// [`IdentificationError::OutOfRange`]. A disturbance of the display, such as a touch too light for the force sensor,
+/// distorts the dead time before the other parameters.
 static PLAUSIBLE_DEAD_TIME: Range = Range {
     name: "dead time",
     unit: "s",
     min: 0.004,
     max: 0.04,
 };
-/// Largest RMS residual of the integrated response, as a fraction of the response; quantisation by the converter leaves
-/// 0.007.
-const RESIDUAL_MAX: f64 = 0.02;
+/// Largest RMS residual of the fit as a fraction of the fitted signal, which is the time integral of the change of the
+/// display's reading. Above it the identification ends with [`IdentificationError::ModelMismatch`]; quantisation by the
+/// converter alone leaves 0.007.
+const RELATIVE_RESIDUAL_MAX: f64 = 0.02;
 
-/// Why the response to the pulses is not that of a tile.
+/// Why the display's response to the current pulses of `tune` gives no tile. The tile in the settings stays as it was.
 #[derive(Clone, Debug, PartialEq)]
 pub enum IdentificationError {
-    /// The ratio of measured to demanded current is implausible.
+    /// The ratio of measured to demanded current, which is the value, lies outside 0.5 to 1.5: bridge, module or
+    /// current mirror is defective.
     CurrentRatio(f64),
-    /// The display did not respond to the current.
+    /// The normal equations have no solution, as when the display did not respond to the current.
     NoResponse,
-    /// The model does not explain the response: RMS residual as a fraction of the response.
+    /// The model of a tile does not explain the response: the RMS residual of the fit, given as a fraction of the
+    /// response, is above 0.02.
     ModelMismatch(f64),
-    /// A parameter lies outside its range.
+    /// A parameter of the identified tile lies outside its allowed range. The values are that range, with the
+    /// parameter's name and unit, and the parameter in this unit.
     OutOfRange(&'static Range, f64),
 }
 
-/// The tile whose response fits best.
+/// The parameters of the tile whose model fits the response to the current pulses best, from all rows of sums that the
+/// station has added up during `tune`.
 ///
 /// # Errors
-/// The response is not that of a tile, or a parameter lies outside its range.
-pub fn identify(rows: &[NormalEquationRow; ROWS]) -> Result<Tile, IdentificationError> {
+/// The ratio of the currents, the residual of the fit, or a parameter is outside the range that a tile can have; or the
+/// equations have no solution.
+pub fn tile_from_normal_equations(
+    rows: &[NormalEquationRow; NORMAL_EQUATION_ROWS],
+) -> Result<Tile, IdentificationError> {
     let [.., totals] = rows;
-    let total = |place: Statistic| totals[place as usize] as f64;
+    let total = |place: StatisticIndex| totals[place as usize] as f64;
     let measured_ratio = current_ratio(total, 0.0);
-    if !CURRENT_RATIOS.contains(&measured_ratio) {
+    if !PLAUSIBLE_CURRENT_RATIOS.contains(&measured_ratio) {
         return Err(IdentificationError::CurrentRatio(measured_ratio));
     }
     // The prior is one of gain times dead time, so a fit without it determines the gain first.
-    let without_prior = fit(rows, 0.0, 0.0).ok_or(IdentificationError::NoResponse)?;
-    let gain_dead_time_prior = -without_prior[GAIN] / UNIT_S * DEAD_TIME_PRIOR_S;
-    let fitted = fit(rows, DEAD_TIME_PRIOR_WEIGHT, gain_dead_time_prior)
+    let without_prior =
+        solve_with_dead_time_prior(rows, 0.0, 0.0).ok_or(IdentificationError::NoResponse)?;
+    let gain_dead_time_prior = -without_prior[GAIN_INDEX] / TIME_UNIT_S * DEAD_TIME_PRIOR_S;
+    let fitted = solve_with_dead_time_prior(rows, DEAD_TIME_PRIOR_WEIGHT, gain_dead_time_prior)
         .ok_or(IdentificationError::NoResponse)?;
-    let residual = relative_residual(rows, &fitted, total(Statistic::SquaredRegressand));
-    if residual.is_nan() || residual > RESIDUAL_MAX {
+    let residual = relative_residual(rows, &fitted, total(StatisticIndex::SquaredRegressand));
+    if residual.is_nan() || residual > RELATIVE_RESIDUAL_MAX {
         return Err(IdentificationError::ModelMismatch(residual));
     }
-    let flowing_ratio = current_ratio(total, -fitted[GAIN_MIRROR_ZERO] / fitted[GAIN]);
+    let flowing_ratio = current_ratio(
+        total,
+        -fitted[GAIN_TIMES_MIRROR_ZERO_INDEX] / fitted[GAIN_INDEX],
+    );
     let (lag, gain, leak) = (
-        -fitted[LAG] * UNIT_S,
-        -fitted[GAIN] / UNIT_S,
-        -fitted[LEAK] / UNIT_S,
+        -fitted[LAG_INDEX] * TIME_UNIT_S,
+        -fitted[GAIN_INDEX] / TIME_UNIT_S,
+        -fitted[LEAK_INDEX] / TIME_UNIT_S,
     );
     // All unknowns are divided by m = 1 + leak lag, so m is a root of m = 1 + (leak / m) (lag / m) m^2.
     let m = 2.0 / (1.0 + libm::sqrt((1.0 - 4.0 * leak * lag).max(0.0)));
     let tile = Tile::from_array([
         gain * m * flowing_ratio,
-        fitted[GAIN_JOULE] / UNIT_S / gain * flowing_ratio,
+        fitted[GAIN_TIMES_JOULE_INDEX] / TIME_UNIT_S / gain * flowing_ratio,
         leak * m,
         lag * m,
-        fitted[GAIN_DEAD_TIME] / gain + ACTUATION_DELAY_S,
+        fitted[GAIN_TIMES_DEAD_TIME_INDEX] / gain + ACTUATION_DELAY_S,
     ]);
     let implausible_dead_time = (!PLAUSIBLE_DEAD_TIME.contains(tile.dead_time_s))
         .then_some((&PLAUSIBLE_DEAD_TIME, tile.dead_time_s));
@@ -104,45 +123,50 @@ pub fn identify(rows: &[NormalEquationRow; ROWS]) -> Result<Tile, Identification
     }
 }
 
-/// Ratio of measured to demanded current at [`COMPARISON_CURRENT`], by linear regression of all compared currents; the
-/// zero error of the mirror, A, is subtracted.
-fn current_ratio(total: impl Fn(Statistic) -> f64, mirror_zero_a: f64) -> f64 {
+/// Ratio of measured to demanded current at [`COMPARISON_CURRENT`] (4.5 A), from a linear regression over all ticks in
+/// which more than 1 A was demanded. `total` returns a sum that the station has added up. `mirror_zero_a` is what the
+/// current mirror shows without a current, A; it is subtracted from the measured current.
+fn current_ratio(total: impl Fn(StatisticIndex) -> f64, mirror_zero_a: f64) -> f64 {
     let (ticks, demanded, measured) = (
-        total(Statistic::ComparedTicks),
-        total(Statistic::Demanded),
-        total(Statistic::Measured),
+        total(StatisticIndex::ComparedTicks),
+        total(StatisticIndex::Demanded),
+        total(StatisticIndex::Measured),
     );
-    let slope = (ticks * total(Statistic::DemandedTimesMeasured) - demanded * measured)
-        / (ticks * total(Statistic::SquaredDemanded) - demanded * demanded);
+    let slope = (ticks * total(StatisticIndex::DemandedTimesMeasured) - demanded * measured)
+        / (ticks * total(StatisticIndex::SquaredDemanded) - demanded * demanded);
     let intercept = (measured - slope * demanded) / ticks;
-    slope + (intercept - mirror_zero_a * AMPERE) / COMPARISON_CURRENT
+    slope + (intercept - mirror_zero_a * CURRENT_UNITS_PER_AMPERE) / COMPARISON_CURRENT
 }
 
-/// RMS residual of a fit as a fraction of the response, whose sum of squares is `response_squared`.
+/// RMS residual of the solution `fitted` of the normal equations `rows`, as a fraction of the RMS response.
+/// `response_squared` is the sum of the squared response, in the unit of the rows.
 fn relative_residual(
-    rows: &[NormalEquationRow; ROWS],
-    fitted: &[f64; UNKNOWNS],
+    rows: &[NormalEquationRow; NORMAL_EQUATION_ROWS],
+    fitted: &[f64; UNKNOWN_COUNT],
     response_squared: f64,
 ) -> f64 {
     let residual_squared: f64 = response_squared
         + rows.iter().zip(fitted).fold(0.0, |sum, (row, x)| {
             let explained: f64 = row.iter().zip(fitted).map(|(a, y)| *a as f64 * y).sum();
-            sum + x * (explained - 2.0 * row[UNKNOWNS] as f64)
+            sum + x * (explained - 2.0 * row[UNKNOWN_COUNT] as f64)
         });
     libm::sqrt(residual_squared.max(0.0) / response_squared)
 }
 
-/// Solves the normal equations with a weighted prior of gain times dead time.
-fn fit(
-    rows: &[NormalEquationRow; ROWS],
+/// Solves the normal equations for the eight unknowns, together with a prior: gain times dead time equals
+/// `gain_dead_time`, K/A, with the weight `prior_weight`; a weight of 0 leaves the prior out. Returns `None` if the
+/// equations are numerically singular.
+fn solve_with_dead_time_prior(
+    rows: &[NormalEquationRow; NORMAL_EQUATION_ROWS],
     prior_weight: f64,
     gain_dead_time: f64,
-) -> Option<[f64; UNKNOWNS]> {
-    let mut matrix: [[f64; UNKNOWNS]; UNKNOWNS] =
+) -> Option<[f64; UNKNOWN_COUNT]> {
+    let mut matrix: [[f64; UNKNOWN_COUNT]; UNKNOWN_COUNT] =
         core::array::from_fn(|i| core::array::from_fn(|j| rows[i][j] as f64));
-    let mut solution: [f64; UNKNOWNS] = core::array::from_fn(|i| rows[i][UNKNOWNS] as f64);
-    matrix[GAIN_DEAD_TIME][GAIN_DEAD_TIME] += prior_weight;
-    solution[GAIN_DEAD_TIME] += prior_weight * gain_dead_time;
+    let mut solution: [f64; UNKNOWN_COUNT] =
+        core::array::from_fn(|i| rows[i][UNKNOWN_COUNT] as f64);
+    matrix[GAIN_TIMES_DEAD_TIME_INDEX][GAIN_TIMES_DEAD_TIME_INDEX] += prior_weight;
+    solution[GAIN_TIMES_DEAD_TIME_INDEX] += prior_weight * gain_dead_time;
     solve(&mut matrix, &mut solution)?;
     Some(solution)
 }

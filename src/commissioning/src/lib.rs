@@ -14,10 +14,10 @@ mod session;
 mod stability_margins;
 mod storage;
 
-pub use calibration_points::{POINT_DEVIATION_MAX_K, POINTS_MAX, PointError};
+pub use calibration_points::{POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K};
 pub use identification::IdentificationError;
 pub use request::{
-    SENSOR_WORDS, STEPS_PER_LINE, SessionError, SessionReply, SessionRequest, Setting,
+    CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SessionError, SessionReply, SessionRequest, Setting,
 };
 pub use session::{CommissioningSession, ExecuteOnStation, SETTINGS_LINES};
 pub use stability_margins::StabilityMargins;

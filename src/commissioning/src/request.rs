@@ -1,87 +1,102 @@
 //! Requests to a commissioning session, its replies and its errors.
 
 use thermal_device::command::Refused;
-use thermal_device::sense::THERMISTORS;
+use thermal_device::sense::THERMISTOR_COUNT;
 use thermal_settings::{Correction, Tile};
 
 use crate::{IdentificationError, PointError, StabilityMargins};
 
-/// Words for the thermistors on a line of text, in the order of their indices.
-pub const SENSOR_WORDS: [&str; THERMISTORS] = ["display", "check", "sink", "skin", "room"];
-/// Largest number of converter steps on one line.
-pub const STEPS_PER_LINE: usize = 7;
+/// Words for the five thermistors in lines from and to the host, in the order of their indices. `check` is the
+/// display's second thermistor.
+pub const SENSOR_WORDS: [&str; THERMISTOR_COUNT] = ["display", "check", "sink", "skin", "room"];
+/// Largest number of converter steps on one line of the settings. The converter has a calibrated step at each of 13
+/// borders of its segments, so the steps take two lines.
+pub const CONVERTER_STEPS_PER_LINE: usize = 7;
 
-/// A request to the commissioning session of one finger, read from a line of text.
+/// A request of the host to the commissioning session of one finger. Each variant begins with the line of text from
+/// which `thermal-protocol` reads it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SessionRequest {
-    /// `calibrate SENSOR CELSIUS`: adds a calibration point.
+    /// `calibrate SENSOR CELSIUS`: adds a calibration point, that is the thermistor's mean over half a second and the
+    /// temperature of the reference thermometer. The calibration that fits all points is used from then on.
     AddPoint {
-        /// Index of the thermistor.
+        /// Index of the thermistor to calibrate, 0 to 4, in the order of [`SENSOR_WORDS`].
         sensor: usize,
-        /// Temperature of the reference thermometer, °C.
+        /// Temperature that the reference thermometer shows at the thermistor, °C.
         reference_c: f64,
     },
-    /// `calibrate SENSOR clear`: removes a thermistor's points and its correction.
+    /// `calibrate SENSOR clear`: removes a thermistor's calibration points, and sets its correction to zero.
     ClearCalibration {
-        /// Index of the thermistor.
+        /// Index of the thermistor whose calibration is removed, 0 to 4, in the order of [`SENSOR_WORDS`].
         sensor: usize,
     },
-    /// `settings`: reports the number of lines that [`Self::SettingsLine`] has.
+    /// `settings`: reports the number of lines that hold the settings, which [`Self::SettingsLine`] reports one by one.
     CountSettingsLines,
-    /// `settings N`: reports one line of the settings, by its index from 0.
+    /// `settings N`: reports one line of the settings. The value is `N - 1`, the index of the line from 0.
     SettingsLine(usize),
-    /// `tune result`: identifies the tile from the recorded response, and uses it.
+    /// `tune result`: computes the tile's parameters from the response that the station has recorded during `tune`, and
+    /// uses them in place of the present ones. Reports them with the stability margins.
     TuneResult,
-    /// `margins`: reports the tile and the stability margins of its loop.
+    /// `margins`: reports the present parameters of the tile, and the phase and gain margin of the temperature loop
+    /// with them.
     Margins,
-    /// `set ...`: replaces a part of the settings.
+    /// `set ...`: replaces the part of the settings that the line holds, and uses it from the next tick on.
     Set(Setting),
 }
 
-/// The reply of a commissioning session.
+/// What a commissioning session replies to a request that it has executed; [`SessionError`] is the reply to the others.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SessionReply {
-    /// The request was executed.
+    /// The request was executed, and there is nothing to report: reply to [`SessionRequest::ClearCalibration`] and
+    /// [`SessionRequest::Set`].
     Done,
-    /// Reply to [`SessionRequest::TuneResult`] and [`SessionRequest::Margins`].
+    /// The present parameters of the tile, and the stability margins of the temperature loop: reply to
+    /// [`SessionRequest::TuneResult`] and [`SessionRequest::Margins`].
     Tile(Tile, StabilityMargins),
-    /// Reply to [`SessionRequest::AddPoint`].
+    /// The calibration point was added, and the calibration fitted again is in use: reply to
+    /// [`SessionRequest::AddPoint`].
     PointAdded {
-        /// Number of points of this thermistor.
+        /// Number of calibration points that this thermistor has now, the new one included.
         points: usize,
-        /// Largest difference between the new calibration and the reference over these points, mK.
+        /// Largest difference in magnitude, mK, between this thermistor's reading with the new calibration and the
+        /// reference thermometer, over all its calibration points.
         worst_mk: f64,
     },
-    /// Reply to [`SessionRequest::CountSettingsLines`].
+    /// Number of lines that hold the settings: reply to [`SessionRequest::CountSettingsLines`].
     SettingsLines(usize),
-    /// Reply to [`SessionRequest::SettingsLine`].
+    /// One line of the settings: reply to [`SessionRequest::SettingsLine`].
     Setting(Setting),
 }
 
-/// The part of the settings that one `set` line holds.
+/// The part of a finger's settings that one line holds: a line that the host sends after `set`, or that the device
+/// replies to `settings N`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Setting {
-    /// `steps BORDER COUNTS...`: up to seven steps of the converter.
+    /// `steps BORDER COUNTS...`: one to seven steps of the converter at successive borders of its segments. A step is
+    /// the excess of the converter's code above a border over that below it.
     Steps {
-        /// The first border, at least [`FIRST_BORDER`](thermal_settings::FIRST_BORDER).
+        /// Index of the first of these borders, 10 to 22; border `n` lies at the converter's code `128 n`.
         first: usize,
-        /// Steps at this border and the next ones, counts.
-        counts: heapless::Vec<f64, STEPS_PER_LINE>,
+        /// Steps at the border `first` and at the borders after it, converter counts; positive if the code above the
+        /// border is too high.
+        counts: heapless::Vec<f64, CONVERTER_STEPS_PER_LINE>,
     },
-    /// `correction SENSOR OFFSET SLOPE CURVATURE`: the correction of a thermistor, by its index.
+    /// `correction SENSOR OFFSET SLOPE CURVATURE`: index of a thermistor (0 to 4, in the order of [`SENSOR_WORDS`]),
+    /// and the correction that is added to its temperature.
     Correction(usize, Correction),
-    /// `tile GAIN JOULE LEAK LAG DEAD`: the parameters of the tile.
+    /// `tile GAIN JOULE LEAK LAG DEAD`: the tile's gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and
+    /// dead time (s).
     Tile(Tile),
 }
 
-/// Why a commissioning session rejects a request; the settings are unchanged then.
+/// Why a commissioning session rejects a request. The settings are unchanged then.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SessionError {
-    /// The station refuses a command that the request needs.
+    /// The finger's station refuses a command that the request needs; the value is its reason.
     Refused(Refused),
-    /// The recorded response is not that of a tile.
+    /// No tile can be computed from the response that the station has recorded during `tune`; the value is the reason.
     Identification(IdentificationError),
-    /// The calibration point is rejected.
+    /// The calibration point is rejected; the value is the reason.
     Point(PointError),
 }
 

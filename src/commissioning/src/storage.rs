@@ -1,19 +1,21 @@
 //! Orders to store the settings: `save` and `forget`.
 //!
-//! The flash stalls the processor, so it is written while nothing else runs: the device hands the record over in memory that
-//! a reset preserves, restarts, stores the record before anything else, and then replies to the order.
+//! Writing the flash stalls the processor, so the flash is written while nothing else runs: the device keeps the record
+//! in memory that a reset preserves, restarts, writes the record to flash before anything else, and then replies to the
+//! order.
 
-/// An order to store the settings of all fingers.
+/// An order of the host to write the settings of all fingers to flash, from where they are read at start-up. The device
+/// restarts to execute the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StorageOrder {
-    /// `save`: store the present settings.
+    /// `save`: stores the present settings, so that they still hold after a restart.
     Save,
-    /// `forget`: store factory defaults.
+    /// `forget`: stores the factory defaults in place of the stored settings; all calibration is lost.
     Forget,
 }
 
 impl StorageOrder {
-    /// The word that begins its line.
+    /// The order's word on the line from the host: `save` or `forget`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
