@@ -1,14 +1,15 @@
 //! The index of a finger, as a type.
 
-/// Selects one of the `FINGERS` fingers of a device, by an index that is counted from 0.
+/// Index of one of the `FINGERS` fingers of a device, counted from 0.
 ///
-/// Its index is below `FINGERS` by construction, so an index that is out of range cannot select
-/// another finger's station or bridge.
+/// A value with an index of `FINGERS` or more cannot be constructed, so no index can select a finger that does not
+/// exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Finger<const FINGERS: usize>(u8);
 
 impl<const FINGERS: usize> Finger<FINGERS> {
-    /// The finger with index 0, which every device has. Compiling fails for no finger and for more than ten.
+    /// The finger with index 0. This constant does not compile for a device without fingers or with more than ten,
+    /// because a finger's address is one digit.
     pub const FIRST: Self = {
         assert!(
             0 < FINGERS && FINGERS <= 10,
@@ -17,7 +18,7 @@ impl<const FINGERS: usize> Finger<FINGERS> {
         Self(0)
     };
 
-    /// The finger with this index, counted from 0; `None` if the device has fewer fingers.
+    /// The finger with this index, counted from 0; `None` if the index is not below `FINGERS`.
     #[must_use]
     pub const fn new(index: usize) -> Option<Self> {
         if index < FINGERS {
@@ -27,13 +28,13 @@ impl<const FINGERS: usize> Finger<FINGERS> {
         }
     }
 
-    /// All fingers of the device, from index 0 upwards.
+    /// All fingers of the device, in the order of their indices from 0.
     pub fn all() -> impl Iterator<Item = Self> {
         (0..FINGERS).filter_map(Self::new)
     }
 
-    /// The finger with the next higher index, and finger 0 after the last one: the order in which their
-    /// ticks take turns.
+    /// The finger with the next higher index, and finger 0 after the last one: the cyclic order in which the board
+    /// samples the fingers and runs their ticks.
     #[must_use]
     pub const fn next_cyclic(self) -> Self {
         match Self::new(self.index() + 1) {
@@ -47,17 +48,18 @@ impl<const FINGERS: usize> Finger<FINGERS> {
     pub const fn index(self) -> usize {
         // The remainder changes nothing. It tells the compiler that an array of `FINGERS` elements
         // needs no bounds check.
-        self.number() as usize % FINGERS
+        self.index_u8() as usize % FINGERS
     }
 
-    /// Index of the finger as a byte, 0 to 9: the digit after `@` in lines to and from the host.
+    /// Index of the finger as a byte, 0 to `FINGERS` - 1. In lines to and from the host this index is the digit after
+    /// `@`.
     #[must_use]
-    pub const fn number(self) -> u8 {
+    pub const fn index_u8(self) -> u8 {
         self.0
     }
 
-    /// Index with which the finger's replies and telemetry begin when the host has named no finger;
-    /// `None` on a device with a single finger, whose lines name none.
+    /// Index that replies and telemetry of this finger begin with, after `@`, if the host's line has named no finger.
+    /// `None` on a device with a single finger, whose lines then begin without an index.
     #[must_use]
     pub const fn reply_address(self) -> Option<u8> {
         if FINGERS > 1 { Some(self.0) } else { None }

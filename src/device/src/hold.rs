@@ -5,15 +5,17 @@ use contact_model::fixed_point::Celsius;
 use crate::TICK_HZ;
 use crate::safety::Setpoint;
 
-/// Rate at which the set-point of the command `hold` moves to its target, K/s. A proportional-integral loop on the
-/// slowest thermistors overshoots by 0.7 K at this rate, to 42.7 °C; a step from skin temperature would reach 44 °C and
-/// trip. Thermistors of different lags stay together, too.
-const SLEW_RATE_K_S: u32 = 1;
-/// Largest change of the held set-point in one tick of 1 ms: 1 mK.
-const SLEW_PER_TICK: Celsius =
-    Celsius::from_bits(((SLEW_RATE_K_S << Celsius::FRAC_NBITS) / TICK_HZ) as i32);
+/// Rate at which the set-point of the command `hold` moves to its target, K/s. At 1 K/s a proportional-integral loop on
+/// the slowest thermistors overshoots a target of 42 °C by 0.7 K. A sudden step from skin temperature would lead to 44
+/// °C and trip the station, whose limit is 43 °C. At 1 K/s the two display thermistors also agree closely enough for
+/// the fault detectors, even with different lags.
+const SETPOINT_SLEW_RATE_K_S: u32 = 1;
+/// Largest change of the set-point of the command `hold` in one tick of 1 ms: 1 mK, rounded down to a multiple of 2^-22
+/// K.
+const SETPOINT_SLEW_PER_TICK: Celsius =
+    Celsius::from_bits(((SETPOINT_SLEW_RATE_K_S << Celsius::FRAC_NBITS) / TICK_HZ) as i32);
 
-/// A running `hold` command: the temperature that the host has asked for, and the set-point that moves there by 1 K/s.
+/// A running command `hold`: the temperature that the host has chosen, and the set-point that moves there by 1 K/s.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TemperatureHold {
     target: Setpoint,
@@ -21,20 +23,21 @@ pub struct TemperatureHold {
 }
 
 impl TemperatureHold {
-    /// A hold whose set-point starts at the display's `reading`, °C, clamped to 15 to 42 °C, and moves to `target`.
-    /// Created when the host sends `hold`.
+    /// A hold whose set-point starts at `reading`, the display's temperature in °C, clamped to 15 to 42 °C, and moves
+    /// to `target`. Created when the host sends `hold`.
     #[must_use]
     pub fn new(target: Setpoint, reading: Celsius) -> Self {
         let (setpoint, _) = Setpoint::saturating_celsius(reading);
         Self { target, setpoint }
     }
 
-    /// Moves the set-point by up to 1 mK toward the target, and returns it. To be called once in each tick of 1 ms.
+    /// Moves the set-point toward the target by up to 1 mK, and returns the new set-point. To be called once in each
+    /// tick of 1 ms.
     pub fn next_setpoint(&mut self) -> Setpoint {
         let now = self.setpoint.celsius();
         let distance = self.target.celsius().saturating_sub(now);
         (self.setpoint, _) = Setpoint::saturating_celsius(
-            now.saturating_add(distance.clamp(-SLEW_PER_TICK, SLEW_PER_TICK)),
+            now.saturating_add(distance.clamp(-SETPOINT_SLEW_PER_TICK, SETPOINT_SLEW_PER_TICK)),
         );
         self.setpoint
     }

@@ -1,128 +1,138 @@
-//! Running mean of the force, which starts again when the force changes.
+//! Running means of the finger's force, which start again when the force jumps.
 
 use core::num::NonZeroU32;
 
 use contact_model::fixed_point::Force;
 
-/// A tick's force that differs from the mean of the last 64 ticks by more than this (1/16 of the mean, at least 10 mN)
-/// is a new force, and the mean starts again from it; a smaller difference is noise.
-const NEW_FORCE_THRESHOLD: ForceThreshold = ForceThreshold {
+/// Threshold of a jump: a tick's force that differs from the mean of the last 64 ticks by more than 1/16 of that mean,
+/// and by more than 10 mN, is a new force, and the means start again from it. A smaller difference counts as noise.
+const FORCE_JUMP_THRESHOLD: ForceThreshold = ForceThreshold {
     shift: 4,
     floor: Force::lit("0.01"),
 };
-/// The mean of the last 64 ticks has drifted if it differs from the mean in use for set-points by more than this
-/// (1/2048 of the latter, at least 0.25 mN). Smaller than the threshold of a new force, because averaging has reduced
-/// the noise.
-const DRIFT_THRESHOLD: ForceThreshold = ForceThreshold {
+/// Threshold of drift: the mean of the last 64 ticks has drifted if it differs from the mean for which the set-points
+/// were computed by more than 1/2048 of that mean, and by more than 0.25 mN. Smaller than the threshold of a jump,
+/// because a mean has less noise than the force of a single tick.
+const FORCE_DRIFT_THRESHOLD: ForceThreshold = ForceThreshold {
     shift: 11,
     floor: Force::lit("0.00025"),
 };
-/// Ticks (64 ms) over which the recent mean of the force averages; the drift is detected by it.
+/// Ticks of 1 ms (64 ms) over which the recent mean of the force averages. Jumps and drift of the force are detected by
+/// comparison with the recent mean.
 const RECENT_MEAN_TICKS: u32 = 64;
-/// The long mean averages over the last quarter (this power of two) of the ticks since the force changed, limited to 64
-/// to 4096 ticks. The set-point depends on the logarithm of time, so noise may be averaged longer in a later contact.
-const AVERAGED_PART_SHIFT: u32 = 2;
-/// Largest number of ticks (4.1 s) over which the long mean of the force averages.
-const LONGEST_MEAN_TICKS: u32 = 4096;
-/// Ticks since the force changed from which on a set-point may be computed again for the mean. A mean of fewer is
-/// hardly better than the single force that it began with.
-const FIRST_USEFUL_MEAN_TICKS: u32 = 16;
+/// The long running mean of the force averages over the last quarter (2^-2, this power of two) of the ticks since the
+/// last jump, limited to 64 to 4096 ticks. The set-point changes with the logarithm of time, so noise may be averaged
+/// over a longer time late in a contact.
+const LONG_MEAN_FRACTION_SHIFT: u32 = 2;
+/// Largest number of ticks of 1 ms over which the long running mean of the force averages (4.1 s).
+const LONG_MEAN_MAX_TICKS: u32 = 4096;
+/// Fewest ticks of 1 ms since the last jump of the force after which a better mean may cause new set-points. A mean of
+/// fewer ticks is hardly more accurate than the force of the single tick with which it began.
+const MIN_TICKS_FOR_NEW_SETPOINT: u32 = 16;
 
-/// A threshold for the difference of two forces: the larger of a part of the one that is compared with, and a constant.
+/// Threshold for the difference between a force and a force of comparison: a fraction of the force of comparison, but
+/// at least a constant.
 struct ForceThreshold {
-    /// Part of the force that is compared with, as a power of two: 4 stands for 1/16.
+    /// Fraction of the force of comparison, as a right shift in bits: 4 stands for 1/16.
     shift: u32,
-    /// Smallest threshold, N, which holds for small forces.
+    /// Smallest threshold, N; it applies to small forces of comparison.
     floor: Force,
 }
 
 impl ForceThreshold {
-    /// Whether `force` differs from `from` by more than the threshold, in either direction.
+    /// Whether the forces `force` and `from`, N, differ by more than the threshold, in either direction. The threshold
+    /// is a fraction of `from`, the force of comparison, but at least the constant `floor`.
     fn is_exceeded(&self, force: Force, from: Force) -> bool {
         force.max(from) - force.min(from) > (from >> self.shift).max(self.floor)
     }
 }
 
-/// Running means of the force of one contact, N, which start again when the force jumps; and the mean for which the
-/// set-points are computed now.
+/// Running means of a finger's force, N, during one contact. They start again when the force jumps. Also holds the mean
+/// for which the present set-points are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ForceMean {
-    /// Mean force of the last 64 ticks, or of fewer since the force changed, N; jumps and drift are detected by it.
-    recent: Force,
-    /// Mean of up to 4096 ticks since the force changed, N.
-    mean: Force,
-    /// The mean for which the set-points are computed, N.
-    in_use: Force,
-    /// Ticks of 1 ms since the force changed; stops at 16384, where the long mean has its largest length, and returns
-    /// to 64 after a drift.
+    /// Mean force, N, of the last 64 ticks, or of the ticks since the last jump if they are fewer. Jumps of the force
+    /// and drift are detected by comparison with this mean.
+    recent_mean: Force,
+    /// Running mean of the force, N, over the last quarter of the ticks since the last jump, but over 64 to 4096 ticks
+    /// (over all ticks while there are fewer than 64).
+    long_mean: Force,
+    mean_for_setpoints: Force,
+    /// Ticks of 1 ms since the last jump of the force (at most 16384, from which on the long mean covers its largest
+    /// length); set back to 64 by a drift.
     ticks: u32,
 }
 
-/// How one tick's force compares with the mean of the ticks before it; decides whether set-points are computed again.
+/// How one tick's force compares with the mean of the ticks before it; decides whether the set-points must be computed
+/// again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceChange {
-    /// The force is within 1/16 (or 10 mN) of the mean of the last 64 ticks, and that mean has not drifted; set-points
-    /// need not change.
+    /// The force differs from the mean of the last 64 ticks by at most 1/16 of that mean, or by at most 10 mN, and that
+    /// mean has not drifted. The set-points need not change.
     Noise,
-    /// The mean of the last 64 ticks is more than 1/2048 (or 0.25 mN) away from the mean in use for set-points; the
-    /// long mean has started again from the recent one.
+    /// The force has drifted: the mean of the last 64 ticks differs from the mean for which the set-points were
+    /// computed by more than 1/2048 of the latter and more than 0.25 mN. The long mean has started again from the mean
+    /// of the last 64 ticks.
     Drifted,
-    /// The force differs from the mean of the last 64 ticks by more than 1/16 (or 10 mN), or the finger has just
-    /// landed; all means have started again from this force.
+    /// The force has jumped: it differs from the mean of the last 64 ticks by more than 1/16 of that mean and more than
+    /// 10 mN; or the finger has just landed. All means have started again from this force.
     New,
 }
 
 impl ForceMean {
-    /// Means of one tick, all equal to its force, N: the state at landing and after the force has jumped.
+    /// Starts the means with a single force, N, at landing and after each jump of the force.
     #[must_use]
     pub const fn new(force: Force) -> Self {
         Self {
-            recent: force,
-            mean: force,
-            in_use: force,
+            recent_mean: force,
+            long_mean: force,
+            mean_for_setpoints: force,
             ticks: 1,
         }
     }
 
-    /// Mean force, N, of the last quarter of the time since the force changed, 64 to 4096 ticks (of all ticks if there
-    /// are fewer).
+    /// Long running mean of the force, N: over all ticks since the last jump while these are fewer than 64, later over
+    /// the last quarter of them, with at least 64 and at most 4096 ticks.
     #[must_use]
     pub const fn mean(&self) -> Force {
-        self.mean
+        self.long_mean
     }
 
-    /// The mean force, N, for which set-points are computed: the mean at the last call of [`Self::use_present_mean`],
-    /// or the single force with which the means have started since.
+    /// Mean force, N, for which the present set-points are computed: set by [`Self::adopt_mean_for_setpoints`], and by
+    /// a jump of the force to the force after the jump.
     #[must_use]
-    pub const fn mean_in_use(&self) -> Force {
-        self.in_use
+    pub const fn mean_for_setpoints(&self) -> Force {
+        self.mean_for_setpoints
     }
 
-    /// Makes the present mean the one for which set-points are computed.
-    pub const fn use_present_mean(&mut self) {
-        self.in_use = self.mean;
+    /// Makes the present long mean of the force the one for which set-points are computed.
+    pub const fn adopt_mean_for_setpoints(&mut self) {
+        self.mean_for_setpoints = self.long_mean;
     }
 
-    /// Whether the mean has become clearly more accurate, so that new set-points for it may be worth their cost: true
-    /// in the 16th, 32nd, 64th … tick since the force changed, and in every tick from the 16384th on.
+    /// Whether the number of averaged ticks has doubled, so that new set-points for the more accurate mean may be worth
+    /// the computing time: true in the 16th, 32nd, 64th … tick since the last jump of the force, and in every tick from
+    /// the 16384th on. A drift sets the count back to 64.
     #[must_use]
-    pub const fn has_doubled_ticks(&self) -> bool {
-        self.ticks >= FIRST_USEFUL_MEAN_TICKS && self.ticks.is_power_of_two()
+    pub const fn has_doubled_sample_count(&self) -> bool {
+        self.ticks >= MIN_TICKS_FOR_NEW_SETPOINT && self.ticks.is_power_of_two()
     }
 
-    /// Takes the force of one tick, N, into the means, or starts them again if the force has jumped; tells which.
-    pub fn add_tick(&mut self, force: Force) -> ForceChange {
-        if NEW_FORCE_THRESHOLD.is_exceeded(force, self.recent) {
+    /// Adds the force of one tick, N, to the running means, or starts them again if the force has jumped. Returns
+    /// whether the force has jumped, has drifted, or shows only noise.
+    pub fn add_force(&mut self, force: Force) -> ForceChange {
+        if FORCE_JUMP_THRESHOLD.is_exceeded(force, self.recent_mean) {
             *self = Self::new(force);
             return ForceChange::New;
         }
-        self.ticks = (self.ticks + 1).min(LONGEST_MEAN_TICKS << AVERAGED_PART_SHIFT);
-        let reach_ticks = RECENT_MEAN_TICKS.max(self.ticks >> AVERAGED_PART_SHIFT);
-        self.recent = mean_including(self.recent, force, self.ticks.min(RECENT_MEAN_TICKS));
-        self.mean = mean_including(self.mean, force, self.ticks.min(reach_ticks));
-        if self.ticks >= RECENT_MEAN_TICKS && DRIFT_THRESHOLD.is_exceeded(self.recent, self.in_use)
+        self.ticks = (self.ticks + 1).min(LONG_MEAN_MAX_TICKS << LONG_MEAN_FRACTION_SHIFT);
+        let reach_ticks = RECENT_MEAN_TICKS.max(self.ticks >> LONG_MEAN_FRACTION_SHIFT);
+        self.recent_mean = updated_mean(self.recent_mean, force, self.ticks.min(RECENT_MEAN_TICKS));
+        self.long_mean = updated_mean(self.long_mean, force, self.ticks.min(reach_ticks));
+        if self.ticks >= RECENT_MEAN_TICKS
+            && FORCE_DRIFT_THRESHOLD.is_exceeded(self.recent_mean, self.mean_for_setpoints)
         {
-            self.mean = self.recent;
+            self.long_mean = self.recent_mean;
             self.ticks = RECENT_MEAN_TICKS;
             return ForceChange::Drifted;
         }
@@ -130,9 +140,10 @@ impl ForceMean {
     }
 }
 
-/// The mean, N, of `ticks` forces (at least 1), given the mean without the last one and the last one, `force`. Once
-/// `ticks` no longer grows it is a low-pass filter with a time constant of that many ticks.
-fn mean_including(mean: Force, force: Force, ticks: u32) -> Force {
+/// Running mean, N, of the last `ticks` forces (at least 1): the previous `mean` moves towards the new `force` by
+/// 1/`ticks` of their difference. With constant `ticks` this is a low-pass filter with a time constant of that many
+/// ticks.
+fn updated_mean(mean: Force, force: Force, ticks: u32) -> Force {
     let ticks = NonZeroU32::new(ticks).unwrap_or(NonZeroU32::MIN);
     let part = Force::from_bits((force.max(mean) - force.min(mean)).to_bits() / ticks);
     if force >= mean {
@@ -155,12 +166,12 @@ mod tests {
             } else {
                 Force::lit("1.99")
             };
-            assert_eq!(mean.add_tick(noisy), ForceChange::Noise);
+            assert_eq!(mean.add_force(noisy), ForceChange::Noise);
         }
-        mean.add_tick(Force::lit("2"));
+        mean.add_force(Force::lit("2"));
         let error = mean.mean().to_num::<f64>() - 2.0;
         assert!(error.abs() < 5e-4, "{error}");
-        assert_eq!(mean.add_tick(Force::lit("1")), ForceChange::New);
+        assert_eq!(mean.add_force(Force::lit("1")), ForceChange::New);
         assert_eq!(mean.mean(), Force::lit("1"));
     }
 }

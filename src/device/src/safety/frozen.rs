@@ -3,19 +3,19 @@
 use super::Fault;
 use crate::sense::Samples;
 
-/// Ticks of 1 ms in a row in which a channel's sample equals the one before, from which on the channel counts as
-/// frozen. Noise moves the sum of 16 conversions by 3 units, so a sum repeats once in ten ticks by chance, and never 46
-/// times in a row. With the tick in which the signal freezes, and the one in which the bridge is switched off, the
-/// fault lasts less than 50 ms.
+/// Number of ticks of 1 ms in a row in which a channel's sum of 16 conversions equals that of the tick before, from
+/// which on the channel counts as frozen. The sum has noise of 3 units, so it repeats by chance in one tick of ten, and
+/// never 46 times in a row. A frozen channel switches the bridge off less than 50 ms after the signal stops.
 pub const FROZEN_TICKS: u8 = 46;
-/// Ticks of 1 ms for which every channel must have repeated, when one has reached [`FROZEN_TICKS`], so that the
-/// converter and not that one sensor is named as frozen. Fewer than [`FROZEN_TICKS`], because noise lets channels
-/// repeat now and then.
+/// When one channel has repeated for [`FROZEN_TICKS`], all channels must have repeated for this number of ticks of 1 ms
+/// for the converter, and not that one sensor, to be named as frozen. It is smaller than [`FROZEN_TICKS`], because by
+/// chance one channel may have begun to repeat earlier than the others.
 const ALL_FROZEN_TICKS: u8 = 30;
-/// Number of signals that are monitored: five thermistors and the force sensor. The current mirror is not, because its
-/// sample is zero, and so repeats, while the bridge is off.
+/// Number of signals that are monitored: five thermistors and the force sensor. The current mirror is not monitored,
+/// because its sum is zero, and thus repeats, while the bridge is off.
 const MONITORED_CHANNELS: usize = 6;
-/// Fault of each monitored channel, in the order in which [`FrozenDetector::check_samples`] lists their samples.
+/// The fault of each monitored channel when that channel is frozen, in the order in which
+/// [`FrozenDetector::check_samples`] compares the channels.
 const CHANNEL_FAULTS: [Fault; MONITORED_CHANNELS] = [
     Fault::DisplayFrozen,
     Fault::CheckFrozen,
@@ -25,8 +25,8 @@ const CHANNEL_FAULTS: [Fault; MONITORED_CHANNELS] = [
     Fault::ForceFrozen,
 ];
 
-/// Detects a wire or converter that delivers a constant: remembers each monitored channel's last sample, and for how
-/// many ticks in a row it has repeated.
+/// Detects a wire or a converter that delivers a constant: keeps each monitored channel's last sum of 16 conversions,
+/// and the number of ticks in a row for which the sum has not changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrozenDetector {
     previous: [u16; MONITORED_CHANNELS],
@@ -37,8 +37,8 @@ impl FrozenDetector {
     /// Compares the samples of this tick with those of the tick before. To be called in every tick.
     ///
     /// # Errors
-    /// The fault of the first frozen channel, or [`Fault::SamplesFrozen`] if all channels have repeated for 30 ticks by
-    /// then.
+    /// The fault of the first channel that has repeated for 46 ticks, or [`Fault::SamplesFrozen`] if by then all
+    /// channels have repeated for 30 ticks.
     pub fn check_samples(&mut self, samples: &Samples) -> Result<(), Fault> {
         let [display, check, sink, skin, room] = samples.thermistor_sums();
         let now = [display, check, sink, skin, room, samples.force];

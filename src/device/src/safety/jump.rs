@@ -7,39 +7,43 @@ use contact_model::fixed_point::Celsius;
 use super::Fault;
 use super::validity::ValidReadings;
 
-/// Ticks of 1 ms between two readings that are compared for a jump.
-const COMPARED_TICKS: usize = 4;
-/// Change of a reading within 4 ms, K, above which it counts as a jump: in that time the bridge at its current limit
-/// moves a display without a finger by 0.06 K (16 K/s), the full supply by 0.1 K (25 K/s), and noise is 4 mK.
-const MOVEMENT_MAX: Celsius = Celsius::lit("0.5");
+/// Number of ticks of 1 ms between the two readings that are compared to detect a jump.
+const JUMP_INTERVAL_TICKS: usize = 4;
+/// Change of a thermistor's reading within 4 ms, K, above which it counts as a jump. The display cannot do that:
+/// without a finger it moves by 0.06 K in 4 ms (16 K/s) at the bridge's current limit, and by 0.1 K (25 K/s) with the
+/// whole supply voltage on the module; noise is 4 mK.
+const JUMP_ABOVE: Celsius = Celsius::lit("0.5");
 
-/// Detects a broken thermistor by a change that is too fast for the part to which it is bonded: keeps the readings of
-/// both display thermistors and of the sink's for four ticks, in a ring.
+/// Detects a broken thermistor by a reading that changes faster than the display or the sink to which the thermistor is
+/// bonded can. Keeps the readings of the two display thermistors and the sink thermistor for the last four ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JumpDetector {
-    ring: [[Celsius; 3]; COMPARED_TICKS],
-    /// Number of ticks that the ring holds, up to [`COMPARED_TICKS`].
+    ring: [[Celsius; 3]; JUMP_INTERVAL_TICKS],
+    /// Number of ticks whose readings the ring holds, up to [`JUMP_INTERVAL_TICKS`].
     ticks: u8,
-    /// Index of the oldest tick in the ring, modulo [`COMPARED_TICKS`].
+    /// Number of ticks added to the ring, wrapping at 256; modulo [`JUMP_INTERVAL_TICKS`] it is the place of the oldest
+    /// readings.
     oldest: u8,
 }
 
 impl JumpDetector {
-    /// Compares the readings of this tick with those of four ticks before; the first four ticks cannot fail.
+    /// Compares the thermistor readings of this tick with those of four ticks before; returns `Ok` in the first four
+    /// ticks after construction.
     ///
     /// # Errors
-    /// The first of display, second display and sink thermistor whose reading has changed by more than 0.5 K.
-    pub fn check_movement(&mut self, readings: &ValidReadings) -> Result<(), Fault> {
+    /// [`Fault::DisplayJump`], [`Fault::CheckJump`] or [`Fault::SinkJump`]: the first of these whose thermistor's
+    /// reading has changed by more than 0.5 K.
+    pub fn check_jumps(&mut self, readings: &ValidReadings) -> Result<(), Fault> {
         let now = [readings.display, readings.check, readings.sink];
-        let place = &mut self.ring[usize::from(self.oldest) % COMPARED_TICKS];
+        let place = &mut self.ring[usize::from(self.oldest) % JUMP_INTERVAL_TICKS];
         let [display, check, sink] = mem::replace(place, now);
         self.oldest = self.oldest.wrapping_add(1);
-        if usize::from(self.ticks) < COMPARED_TICKS {
+        if usize::from(self.ticks) < JUMP_INTERVAL_TICKS {
             self.ticks += 1;
             return Ok(());
         }
         let jumped =
-            |now: Celsius, then: Celsius| now.saturating_sub(then).saturating_abs() > MOVEMENT_MAX;
+            |now: Celsius, then: Celsius| now.saturating_sub(then).saturating_abs() > JUMP_ABOVE;
         if jumped(readings.display, display) {
             Err(Fault::DisplayJump)
         } else if jumped(readings.check, check) {

@@ -2,46 +2,46 @@
 
 use super::{Fault, TripCause};
 
-/// Remembers why a station tripped, for `cause`, and which fault is still present or pending, for `clear`. Whether the
-/// station is tripped is part of its state, not of the latch.
+/// Memory of a station's faults: the cause of the last trip, which the command `cause` reports, and the present and
+/// pending faults, which `clear` checks. Whether the station is tripped is not stored here but in its state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FaultLatch {
-    /// Cause of the present trip, or of the last one since it was cleared; `None` if the station has never tripped.
     cause: Option<TripCause>,
-    /// Number of the tick in which the station tripped; 0 if it has not, or was tripped from the start.
     tripped_at_tick: u32,
-    /// Fault that the last tick has detected, or that the board had raised before it.
     present: Option<Fault>,
-    /// Fault that the board has raised since the last tick; the next tick makes it the present one.
+    /// Fault that the board has raised, outside of a tick, since the last tick; at the end of the next tick it becomes
+    /// the present fault unless that tick detects another one.
     external: Option<Fault>,
-    /// First fault that the board has raised while another one was latched. It may show in no later tick, so `clear`
-    /// trips the station by it again.
+    /// First fault that the board has raised while the station was tripped by another fault. `clear` then trips the
+    /// station by it again, because later ticks may not show it.
     pending: Option<Fault>,
 }
 
 impl FaultLatch {
-    /// Cause of the present trip or, after `clear`, of the last one; `None` if the station has never tripped.
+    /// Cause of the present trip or, after `clear`, of the last one; `None` if the station has never tripped since the
+    /// start.
     #[must_use]
     pub const fn cause(&self) -> Option<&TripCause> {
         self.cause.as_ref()
     }
 
-    /// Number of the tick, of 1 ms since the start, in which the station tripped last; 0 if that was before the first
-    /// tick. The device finds the earliest trip of several fingers by it.
+    /// Number of the tick (of 1 ms since the start) in which the station tripped last; 0 if it has never tripped or was
+    /// tripped before the first tick. The device compares these numbers to report the earliest trip of all fingers.
     #[must_use]
     pub const fn tripped_at_tick(&self) -> u32 {
         self.tripped_at_tick
     }
 
-    /// Stores why the station trips, and the number of the tick. To be called when the state changes to tripped, so
-    /// that a later fault does not replace the first.
+    /// Stores the cause of a trip and the number `tick` of the present tick. To be called only when the station's state
+    /// changes to tripped, so that a later fault does not replace the first one.
     pub const fn latch_cause(&mut self, cause: TripCause, tick: u32) {
         self.cause = Some(cause);
         self.tripped_at_tick = tick;
     }
 
-    /// Notes a fault that the board has found outside of the tick: it is present in the next tick. If the station is
-    /// already tripped by a different fault, `latched`, it also becomes pending.
+    /// Records a fault that the board has found outside of a tick: `fault` is present in the next tick. If the station
+    /// is already tripped by a different fault (`latched`), `fault` is kept as pending, too, unless another one is
+    /// already pending.
     pub fn raise_external_fault(&mut self, fault: Fault, latched: Option<Fault>) {
         self.external = Some(fault);
         if latched.is_some_and(|first| first != fault) {
@@ -49,8 +49,9 @@ impl FaultLatch {
         }
     }
 
-    /// Ends a tick: the present fault is now the one that the tick has detected or else the one that the board has
-    /// raised since the tick before, or `None`.
+    /// Ends a tick: the present fault is now `detected`, the fault that the tick has detected, or else the fault that
+    /// the board has raised since the tick before, or `None` if there is neither. A fault raised by the board counts
+    /// for this one tick only.
     pub const fn set_present_fault(&mut self, detected: Option<Fault>) {
         let external = self.external.take();
         self.present = match detected {
@@ -59,14 +60,15 @@ impl FaultLatch {
         };
     }
 
-    /// Fault that was present in the last tick, latched or not; `clear` is refused while there is one.
+    /// Fault that the last tick detected, or that the board raised before that tick; `None` if that tick found no
+    /// fault. The command `clear` is refused while a fault is present.
     #[must_use]
     pub const fn present_fault(&self) -> Option<Fault> {
         self.present
     }
 
-    /// Removes and returns the fault that the board has raised while another one was latched. Called when the latched
-    /// one is cleared; the station then trips by the returned one.
+    /// Removes and returns the pending fault: the one that the board raised while the station was already tripped. To
+    /// be called when `clear` has cleared the latched fault; the station then trips by the returned one.
     pub const fn take_pending_fault(&mut self) -> Option<Fault> {
         self.pending.take()
     }

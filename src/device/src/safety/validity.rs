@@ -5,34 +5,37 @@ use contact_model::fixed_point::{Celsius, Force};
 use super::limits::{DISPLAY_MAX, DISPLAY_MIN, OVER_CURRENT_MARGIN, SINK_MAX};
 use super::{Fault, ThermistorId};
 use crate::drive::Current;
-use crate::sense::{Readings, SensorFault};
+use crate::sense::{Readings, ThermistorFault};
 
-/// The readings of one tick after [`validate_readings`]: no sensor is open or shorted, and temperatures and current are
-/// within the limits that trip the station.
+/// Readings of one tick that have passed [`validate_readings`]: no thermistor and no force sensor is open or shorted,
+/// and no temperature and no current exceeds its trip limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ValidReadings {
-    /// Display surface by its first thermistor, which the control uses, 13.5 to 43 °C.
+    /// Display surface temperature by the display's first thermistor, which the control uses, °C, 13.5 to 43 °C.
     pub display: Celsius,
-    /// Display surface by its second thermistor, which only the detectors and the thermal dose use, 13.5 to 43 °C.
+    /// Display surface temperature by the display's second thermistor, °C, 13.5 to 43 °C. The control does not use it:
+    /// only the fault detectors, the self-test and the thermal dose do.
     pub check: Celsius,
-    /// Sink, up to 42 °C.
+    /// Temperature of the Peltier module's heat sink, °C; at most 42 °C, above which the station trips.
     pub sink: Celsius,
-    /// Thermistor on the skin at the edge of the contact, °C; reads the room if no finger is there.
+    /// Temperature of the finger's skin at the edge of the contact, °C, by the skin's thermistor; if the thermistor is
+    /// on no finger, it reads the room's air.
     pub skin: Celsius,
-    /// Thermistor in the room's air, °C.
+    /// Air temperature of the room, °C, by the room's thermistor.
     pub room: Celsius,
-    /// Force of the finger on the display, N; zero if the signal is below its zero.
+    /// Force of the finger on the display, N; 0 if the sensor's signal is below the signal of no force.
     pub force: Force,
-    /// Magnitude of the measured module current, A; up to 3 A above the controller's limit.
+    /// Magnitude of the measured module current, A; at most 3 A above the largest current that the controller demands,
+    /// 6 A.
     pub current: Current,
 }
 
-/// Checks the readings of one tick by what a single tick can show. `current_limit` is the largest current that the
-/// controller ever demands, A.
+/// Checks what the readings of one tick alone can show: broken sensors, and temperatures and current beyond their
+/// limits. `current_limit` is the largest current that the controller demands, 6 A.
 ///
 /// # Errors
-/// The first fault in this order: all thermistors shorted, one open or shorted, force sensor, display hot, display
-/// cold, sink hot, over-current. So a broken sensor is not named as the temperature that it pretends.
+/// The first fault found in this order: all thermistors shorted, one open or shorted, force sensor, display hot,
+/// display cold, sink hot, over-current. Broken sensors come first, because their readings mean no temperature.
 pub fn validate_readings(
     readings: &Readings,
     current_limit: Current,
@@ -44,10 +47,10 @@ pub fn validate_readings(
         readings.skin,
         readings.room,
     ];
-    if thermistors == [Err(SensorFault::Short); 5] {
+    if thermistors == [Err(ThermistorFault::Short); 5] {
         return Err(Fault::Excitation);
     }
-    let temperature = |reading: Result<Celsius, SensorFault>, thermistor| {
+    let temperature = |reading: Result<Celsius, ThermistorFault>, thermistor| {
         reading.map_err(|fault| Fault::of_thermistor(thermistor, fault))
     };
     let valid = ValidReadings {
@@ -103,20 +106,20 @@ mod tests {
     #[test]
     fn each_invalid_reading_has_its_fault() {
         let t = |t: f64| Ok(Celsius::from_num(t));
-        let short = Err(SensorFault::Short);
+        let short = Err(ThermistorFault::Short);
         assert_eq!(fault_of(|_| ()), None);
         assert_eq!(
-            fault_of(|r| r.display = Err(SensorFault::Open)),
+            fault_of(|r| r.display = Err(ThermistorFault::Open)),
             Some("display-open")
         );
         assert_eq!(fault_of(|r| r.display_check = short), Some("check-short"));
         assert_eq!(
-            fault_of(|r| r.sink = Err(SensorFault::Open)),
+            fault_of(|r| r.sink = Err(ThermistorFault::Open)),
             Some("sink-open")
         );
         assert_eq!(fault_of(|r| r.skin = short), Some("skin-short"));
         assert_eq!(
-            fault_of(|r| r.room = Err(SensorFault::Open)),
+            fault_of(|r| r.room = Err(ThermistorFault::Open)),
             Some("room-open")
         );
         let all = |r: &mut Readings| {

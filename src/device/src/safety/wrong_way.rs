@@ -1,51 +1,53 @@
 //! Detects a display that moves against the current.
 //!
-//! While current cools a display that is above its set-point, the reading must fall or stay; while current warms one that is
-//! below, it must rise or stay. A reading that returns by 2.5 K from its best value is driven by something else: quickly, if
-//! the polarity is wrong or the thermistor is misplaced; slowly, if the current warms the sink more than it cools the
-//! display. A finger of 36 °C that lands with 5 N while a hot sink limits the current causes 2 K. The test needs no model of
-//! the tile, so it holds for every law and every tile.
+//! While current cools a display that is above its set-point, the reading must fall or stay; while current warms one
+//! that is below, it must rise or stay. A reading that returns by 2.5 K from its best value is driven by something
+//! else: quickly, if the polarity is wrong or the thermistor is misplaced; slowly, if the current warms the sink more
+//! than it cools the display. A finger of 36 °C that lands with 5 N while a hot sink limits the current causes 2 K. The
+//! test needs no model of the tile, so it holds for every law and every tile.
 
 use contact_model::fixed_point::Celsius;
 
 use super::Fault;
 use crate::drive::Current;
 
-/// Rise of the display's reading above the lowest one so far while cooling, or fall below the highest one while
-/// warming, K, that trips the station. A finger that lands while the current is at its limit causes 2 K.
+/// Rise of the display's reading above its lowest value while it is cooled, or fall below its highest value while it is
+/// warmed, K, that trips the station. A finger that lands while the current is at its limit causes up to 2 K.
 const TRIP_REVERSAL: Celsius = Celsius::lit("2.5");
-/// Magnitude of the mean demanded current, A, from which on the direction of the reading is tested; while the mean is
-/// smaller, its sign may not be that of the current that flows, and the best reading is forgotten.
+/// Magnitude of the mean demanded current, A, from which on the direction of the reading is checked. Below it, the sign
+/// of the mean may differ from that of the current that flows, so the check starts again later.
 const MIN_TESTED_CURRENT: Current = Current::lit("1");
-/// Time constant of the mean demanded current, as a power of two of ticks of 1 ms: 8 gives 0.26 s. The mean is used
-/// because the reading goes on in its old direction for the thermistor's lag of up to 0.5 s after the current has
-/// changed sign.
+/// Time constant of the filter of the demanded current, as a power of two of ticks of 1 ms: 8 gives 0.26 s. The filter
+/// is needed because the thermistor's lag (up to 0.5 s) lets the reading move in the old direction after the current
+/// has changed sign.
 const MEAN_CURRENT_SHIFT: u32 = 8;
-/// Ticks of 1 ms since the best reading from which on a reversal is named [`Fault::Runaway`]; a quicker one is named
-/// [`Fault::Polarity`].
+/// Ticks of 1 ms after the best reading (the lowest while cooling, the highest while warming) from which on a reversal
+/// is named [`Fault::Runaway`]; an earlier one is named [`Fault::Polarity`].
 const RUNAWAY_FROM_TICKS: u16 = 2000;
 
-/// Detects a display that warms while it is cooled above its set-point, or cools while it is warmed below it: keeps the
-/// mean demanded current, and the lowest (while warming highest) reading since the test began.
+/// Detects a display that warms while it is cooled and still above its set-point, or cools while it is warmed and still
+/// below it. Keeps the filtered demanded current, and the best reading (the lowest while cooling, the highest while
+/// warming) since the check began.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct WrongWayDetector {
-    /// Mean of the demanded current, A; positive cools.
+    /// Demanded current, low-pass filtered with a time constant of 0.26 s, A; positive cools.
     mean_current: Current,
-    /// Lowest reading while cooling, or highest while warming, with its sign inverted, °C; `None` while nothing is
-    /// tested.
+    /// Best reading so far, °C: the lowest while cooling, or, while warming, the negative of the highest, so that lower
+    /// is better in both cases. `None` while the direction is not checked, because the mean current is below
+    /// [`MIN_TESTED_CURRENT`] or the display has reached its set-point.
     best: Option<Celsius>,
-    /// Ticks of 1 ms since the best reading.
     ticks_since_best: u16,
 }
 
 impl WrongWayDetector {
-    /// Tests one tick: `demanded` is the current demanded in the tick before, A, positive if it cools and zero if the
-    /// bridge was off; `display` is the reading, °C; `above_setpoint` is the reading less the set-point, K, and zero,
-    /// which ends the test, if no set-point is followed.
+    /// Checks in one tick whether the display moves against the mean current. `demanded` is the current of the tick
+    /// before, A, positive cools and zero if the bridge was off; `display` is the reading of the display's first
+    /// thermistor, °C; `above_setpoint` is that reading minus the set-point, K, or zero if no set-point is followed, in
+    /// which case the check starts again later.
     ///
     /// # Errors
-    /// The reading has moved against the mean current by 2.5 K from its best value: [`Fault::Polarity`] within 2 s,
-    /// later [`Fault::Runaway`].
+    /// The reading has moved back by 2.5 K from its best value (the lowest while cooling, the highest while warming):
+    /// [`Fault::Polarity`] within 2 s of that value, later [`Fault::Runaway`].
     pub fn check_direction(
         &mut self,
         demanded: Current,

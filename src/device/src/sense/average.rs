@@ -1,74 +1,77 @@
 //! Means of the thermistors' sums over half a second, for calibration.
 
-use super::THERMISTORS;
+use super::THERMISTOR_COUNT;
 
-/// Ticks of 1 ms whose sums are added in one block; two blocks, half a second, make an average.
+/// Length of one block, ticks of 1 ms. The sums of the ticks of a block are added up, and two blocks (0.5 s) make an
+/// average.
 const AVERAGED_BLOCK_TICKS: u32 = 256;
 
-/// Mean of one thermistor's sums over the last two complete blocks, 512 ticks of 1 ms, from which a calibration is
-/// computed.
+/// Mean of one thermistor's sums over the last two complete blocks of 256 ticks of 1 ms. The calibration compares it
+/// with a reference thermometer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ThermistorAverage {
-    /// Total over the last two complete blocks: [`Self::TICKS`] sums of 16 conversions each. The block in progress is
-    /// not included.
+    /// Total of [`Self::TICKS`] sums of 16 conversions each: those of the last two complete blocks.
     total: u32,
-    /// Total of the later block minus that of the earlier one, which tells whether the reading is steady.
+    /// Total of the later block minus total of the earlier block, in units of a sum of 16 conversions; small if the
+    /// temperature is steady.
     change: i32,
 }
 
 impl ThermistorAverage {
-    /// Ticks of 1 ms that the mean covers: those of two blocks.
+    /// Ticks of 1 ms over which the mean is taken, 512: two blocks.
     pub const TICKS: u32 = 2 * AVERAGED_BLOCK_TICKS;
-    /// Largest difference of the two blocks' totals, in units of a sum, for a steady reading: 0.12 counts (3 mK) in a
-    /// quarter of a second, which is four standard deviations if the converter's noise is 1.2 counts.
+    /// Largest magnitude of the difference between the totals of the two blocks for a steady reading, in units of a sum
+    /// of 16 conversions. It stands for a change of 0.12 counts a conversion (3 mK) in a quarter of a second: more than
+    /// four standard deviations if the converter's noise is 1.2 counts.
     const STEADY_CHANGE_MAX: u32 = AVERAGED_BLOCK_TICKS * 16 * 12 / 100;
 
-    /// Mean of the sums of 16 conversions of 12 bits, 0 to 65520.
+    /// Mean, over 512 ticks of 1 ms, of the sum of 16 conversions of 12 bits: 0 to 65520.
     #[must_use]
     pub fn mean_sum(&self) -> f64 {
         f64::from(self.total) / f64::from(Self::TICKS)
     }
 
-    /// Whether the two blocks differ by at most 0.12 counts, about 3 mK; only a steady reading may serve for a
-    /// calibration.
+    /// Whether the means of the two blocks differ by at most 0.12 counts a conversion, about 3 mK. A calibration
+    /// accepts only a steady reading.
     #[must_use]
     pub const fn is_steady(&self) -> bool {
         self.change.unsigned_abs() <= Self::STEADY_CHANGE_MAX
     }
 }
 
-/// Running sums from which the averages of all five thermistors follow, for the calibration. A station adds its ticks
-/// while it presents no object.
+/// Adds up the sums of all five thermistors in blocks of 256 ticks of 1 ms, and computes from them the half-second
+/// averages for the calibration. A station adds each tick in which it presents no object.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ThermistorAverages {
-    /// Ticks in the block in progress, below 256.
+    /// Number of ticks in the block in progress, 0 to 255.
     ticks: u32,
-    /// Blocks completed since the start; an average needs two.
+    /// Number of blocks completed since power-up or since an object was last presented; an average needs two.
     complete_blocks: u32,
-    /// Totals of each thermistor over the block in progress; 256 sums of 16 bits fit.
-    current: [u32; THERMISTORS],
-    /// Totals of each thermistor's sums over the last complete block of 256 ticks.
-    last: [u32; THERMISTORS],
-    /// Totals of each thermistor's sums over the complete block of 256 ticks before the last one.
-    second_last: [u32; THERMISTORS],
+    /// Total of each thermistor's sums over the block in progress. 256 sums of 16 bits fit in 32 bits.
+    current: [u32; THERMISTOR_COUNT],
+    /// Total of each thermistor's sums over the last complete block of 256 ticks.
+    last: [u32; THERMISTOR_COUNT],
+    /// Total of each thermistor's sums over the block of 256 ticks before the last complete one.
+    second_last: [u32; THERMISTOR_COUNT],
 }
 
 impl ThermistorAverages {
-    /// Adds the five thermistors' sums of one tick, in the order display, second display, sink, skin, room.
-    pub fn add_tick(&mut self, sums: &[u16; THERMISTORS]) {
+    /// Adds one tick: the five thermistors' sums of 16 conversions, in the order display, second display, sink, skin,
+    /// room. Every 256th tick completes a block.
+    pub fn add_tick(&mut self, sums: &[u16; THERMISTOR_COUNT]) {
         for (total, sum) in self.current.iter_mut().zip(sums) {
             *total += u32::from(*sum);
         }
         self.ticks += 1;
         if self.ticks == AVERAGED_BLOCK_TICKS {
             (self.second_last, self.last) = (self.last, self.current);
-            (self.current, self.ticks) = ([0; THERMISTORS], 0);
+            (self.current, self.ticks) = ([0; THERMISTOR_COUNT], 0);
             self.complete_blocks = self.complete_blocks.saturating_add(1);
         }
     }
 
-    /// The average of one thermistor by its index (0 to 4: display, second display, sink, skin, room); `None` for a
-    /// larger index, and before two blocks are complete.
+    /// Average of one thermistor over the last two complete blocks, by its index (0 to 4: display, second display,
+    /// sink, skin, room). `None` before two blocks are complete, and for a larger index.
     #[must_use]
     pub fn of(&self, thermistor: usize) -> Option<ThermistorAverage> {
         let last = *self.last.get(thermistor)?;

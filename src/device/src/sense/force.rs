@@ -1,69 +1,77 @@
-//! The force sensor: sums to newtons, zero tracking, and detection of a finger's contact.
+//! The force sensor: conversion of its sums to newtons, tracking of its zero, and detection of a finger's contact.
 
 use contact_model::fixed_point::{Force, Fraction, saturating_product, to_fixed};
 use fixed::types::I18F14;
 
 use thermal_settings::ForceSensor;
 
-/// Force, N, from which the signal counts as off its zero: a finger may be landing. Noise of 0.7 to 1.2 counts a
-/// conversion is 0.6 to 1.1 mN here.
-const OFF_ZERO_FROM: Force = Force::lit("0.003");
-/// Force, N, from which on a contact begins, provided that the force has been at least [`OFF_ZERO_FROM`] for
-/// [`CONTACT_DEBOUNCE_TICKS`] ticks, so that one noisy tick begins no contact.
-const CONTACT_BEGINS_FROM: Force = Force::lit("0.02");
-/// Force, N, below which a finger that touches has lifted; half of that at which it begins (hysteresis), so that noise
+/// Smallest force, N, that counts as off zero: a finger may be landing. Noise is smaller: 0.7 to 1.2 counts RMS a
+/// conversion make about 0.6 to 1 mN RMS in the force of a tick.
+const OFF_ZERO_FORCE_MIN: Force = Force::lit("0.003");
+/// Smallest force, N, at which a contact begins. The force must also have been off zero, at least
+/// [`OFF_ZERO_FORCE_MIN`], for [`CONTACT_DEBOUNCE_TICKS`] ticks in a row, so that one noisy tick begins no contact.
+const CONTACT_BEGIN_FORCE: Force = Force::lit("0.02");
+/// Force, N, below which a contact ends. It is half of the force at which a contact begins (hysteresis), so that noise
 /// does not end a light contact.
-const CONTACT_ENDS_BELOW: Force = Force::lit("0.01");
-/// Sum of 16 conversions above which the force sensor's wire counts as shorted to the supply: 4060 of 4095 counts,
-/// where the converter's range ends. The station then trips.
-const SHORTED_WIRE_ABOVE: u16 = 4060 * 16;
-/// Ticks of 1 ms for which the force must be off its zero before a contact begins, or below its threshold before a
-/// contact ends.
+const CONTACT_END_FORCE: Force = Force::lit("0.01");
+/// Largest valid sum of 16 conversions of the force sensor: 4060 of 4095 counts a conversion. Above it the sensor's
+/// wire counts as shorted to the supply, and the station trips.
+const FORCE_SHORTED_ABOVE_SUM: u16 = 4060 * 16;
+/// Ticks of 1 ms in a row in which the force must be off zero (3 mN or more) before a contact begins, or below 10 mN
+/// before a contact ends.
 const CONTACT_DEBOUNCE_TICKS: u32 = 2;
-/// Largest time, ticks of 1 ms, by which the detection of a contact is dated back to when the force left its zero. A
-/// force that has been off its zero for longer rose too slowly to tell when the finger landed.
-const DATED_RISE_MAX_TICKS: u32 = 32;
+/// Largest delay of a contact's detection that is counted, ticks of 1 ms from the tick in which the force left zero. A
+/// force that takes longer to rise does not show when the finger landed.
+const DETECTION_DELAY_MAX_TICKS: u32 = 32;
 
-/// Largest difference, N, of the tracked zero from that of the settings: 2 % of it, and 2 % of the reference. A smaller
-/// force that is there from switch-on is taken for zero.
+/// Largest difference, N, between the force sensor's tracked zero and the zero in the settings. Covers a sensor whose
+/// zero of 410 counts is off by 2 % (0.027 N), and a reference voltage that is off by 2 % (as much again). A smaller
+/// force that is present from switch-on is taken for the zero.
 const ZERO_CHANGE_MAX_N: f64 = 0.06;
-/// Ticks after switch-on over which the zero is the plain mean of the signal. Only ticks count in which nothing touches
-/// and the signal is within 0.06 N of the stored zero.
+/// Ticks of 1 ms after switch-on over which the force sensor's zero is the plain mean of its sums; afterwards the zero
+/// is tracked by a low-pass filter. Only ticks count in which no finger touches and the signal is within 0.06 N of the
+/// zero in the settings.
 const INITIAL_ZERO_TICKS: i32 = 256;
-/// Time constant, as a power of two of ticks (1 s), with which the zero then tracks a signal within 3 mN of it.
-const AT_ZERO_TRACKING_SHIFT: u32 = 10;
-/// Time constant, as a power of two of ticks (16 s), with which the zero tracks a signal that is off it, yet below the
-/// force of a contact: slower, because it may be a finger.
-const OFF_ZERO_TRACKING_SHIFT: u32 = 14;
+/// Time constant, as a power of two of ticks of 1 ms (2^10, 1 s), of the low-pass filter by which the force sensor's
+/// zero tracks the signal while the force is below 3 mN.
+const FAST_ZERO_TRACKING_SHIFT: u32 = 10;
+/// Time constant, as a power of two of ticks of 1 ms (2^14, 16 s), of the low-pass filter by which the force sensor's
+/// zero tracks the signal while the force is 3 mN or more but no contact is detected. Slow, because the force may be
+/// that of a finger.
+const SLOW_ZERO_TRACKING_SHIFT: u32 = 14;
 
-/// A sum of 16 conversions, or its zero, with 14 binary places, at which slow tracking does not stop by rounding; the
-/// largest sum fits.
-type FineSum = I18F14;
+/// A sum of 16 conversions with 14 fractional bits, up to 131072. At this resolution a difference of one unit still
+/// moves the zero of the force sensor when it is tracked with the time constant of 2^14 ticks.
+type FixedSum = I18F14;
 
-/// Converts the signal of a linear force sensor with a live zero, which is tracked while nothing touches.
+/// Converts the sums of a linear force sensor to newtons. The sensor's output without force, its zero, is well above 0
+/// counts and may drift; it is tracked while no finger touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ForceChannel {
-    /// Sum of 16 conversions below which the sensor's wire counts as broken: half of the zero.
+    /// Sum of 16 conversions below which the sensor's wire counts as broken: half of the zero in the settings.
     broken_below: u16,
-    /// Sum of 16 conversions without force; follows the signal slowly while nothing touches.
-    zero: FineSum,
-    /// Smallest signal that is still tracked as zero: 0.06 N below that of the settings.
-    min_zero: FineSum,
-    /// Largest signal that is still tracked as zero: 0.06 N above that of the settings.
-    max_zero: FineSum,
-    /// Ticks since switch-on of which the zero is the mean, up to [`INITIAL_ZERO_TICKS`]; then the zero is tracked.
+    /// The sensor's tracked zero: sum of 16 conversions without force. Follows the signal slowly while no finger
+    /// touches.
+    zero: FixedSum,
+    /// Smallest sum of 16 conversions that the sensor's tracked zero follows: 0.06 N below the zero in the settings.
+    min_zero: FixedSum,
+    /// Largest sum of 16 conversions that the sensor's tracked zero follows: 0.06 N above the zero in the settings.
+    max_zero: FixedSum,
+    /// Number of ticks since switch-on of which the zero is the plain mean so far. At [`INITIAL_ZERO_TICKS`] the count
+    /// ends, and the zero is tracked by a low-pass filter.
     initial_ticks: i32,
-    /// Force, N, that one unit of the sensor's sum of 16 conversions stands for.
+    /// Force, N, per unit of the sensor's sum of 16 conversions; nominally 1/4800 N.
     n_per_unit: Fraction,
 }
 
 impl ForceChannel {
-    /// Converts zero and sensitivity from the settings in `f64`, so it is for start-up and not for the tick.
+    /// A channel with zero and sensitivity of the force sensor from the settings. Computes in `f64`, so it is for
+    /// start-up and not for the control tick.
     #[must_use]
     pub fn new(settings: &ForceSensor) -> Self {
         let zero = settings.zero_counts * 16.0;
         let max_change = ZERO_CHANGE_MAX_N * settings.counts_per_n * 16.0;
-        let fine = |sum| FineSum::from_bits(libm::ldexp(sum, FineSum::FRAC_NBITS as i32) as i32);
+        let fine = |sum| FixedSum::from_bits(libm::ldexp(sum, FixedSum::FRAC_NBITS as i32) as i32);
         Self {
             broken_below: (zero / 2.0) as u16,
             zero: fine(zero),
@@ -74,22 +82,23 @@ impl ForceChannel {
         }
     }
 
-    /// Force, N, for the sum of 16 conversions; 0 below the zero. `None`: the wire is broken or shorted, because the
-    /// sum is below half of the settings' zero or at the end of the converter's range.
+    /// Force on the display, N, for a sum of 16 conversions; 0 for a sum below the tracked zero. `None` if the sensor's
+    /// wire is broken (sum below half of the zero in the settings) or shorted (more than 4060 counts a conversion).
     #[must_use]
     pub fn force_of_sum(&self, sum: u16) -> Option<Force> {
-        if sum < self.broken_below || sum > SHORTED_WIRE_ABOVE {
+        if sum < self.broken_below || sum > FORCE_SHORTED_ABOVE_SUM {
             return None;
         }
-        let change = FineSum::from(sum).saturating_sub(self.zero);
-        let above_zero = change.max(FineSum::ZERO);
+        let change = FixedSum::from(sum).saturating_sub(self.zero);
+        let above_zero = change.max(FixedSum::ZERO);
         Some(saturating_product(above_zero, self.n_per_unit))
     }
 
-    /// Moves the zero towards the sum of a tick in which nothing touches, more slowly if the force is off the zero. A
-    /// sum more than 0.06 N from the settings' zero is ignored.
+    /// Moves the zero towards `sum`, the sum of 16 conversions of a tick in which no finger touches: the first 256
+    /// times as their plain mean, later with a time constant of 1 s, or of 16 s if the force `is_off_zero`. Ignores a
+    /// sum that is more than 0.06 N from the zero in the settings.
     pub fn track_zero(&mut self, sum: u16, is_off_zero: bool) {
-        let sum = FineSum::from(sum);
+        let sum = FixedSum::from(sum);
         if !(self.min_zero..=self.max_zero).contains(&sum) {
             return;
         }
@@ -98,68 +107,70 @@ impl ForceChannel {
             self.initial_ticks += 1;
             error.checked_div_int(self.initial_ticks).unwrap_or(error)
         } else {
-            let shifts = [AT_ZERO_TRACKING_SHIFT, OFF_ZERO_TRACKING_SHIFT];
+            let shifts = [FAST_ZERO_TRACKING_SHIFT, SLOW_ZERO_TRACKING_SHIFT];
             error >> shifts[usize::from(is_off_zero)]
         };
     }
 }
 
-/// Detects from the force whether a finger touches the display, with debouncing and hysteresis, and since when.
+/// Detects from the force whether a finger touches the display, with debouncing and hysteresis, and counts for how many
+/// ticks the force had been off zero when it detected the contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ContactDetector {
-    /// Whether a finger touches the display, after debouncing.
     touching: bool,
-    /// Ticks of 1 ms for which the force has been off its zero, up to [`DATED_RISE_MAX_TICKS`]; holds its value during
-    /// a contact.
+    /// Number of ticks of 1 ms in a row in which the force has been off zero (3 mN or more), up to
+    /// [`DETECTION_DELAY_MAX_TICKS`]. During a contact it keeps its value from the contact's detection.
     off_zero_ticks: u32,
-    /// Ticks of 1 ms for which the force has been below [`CONTACT_ENDS_BELOW`] during a contact.
+    /// Number of ticks of 1 ms in a row, during a contact, in which the force has been below [`CONTACT_END_FORCE`].
     release_ticks: u32,
 }
 
 impl ContactDetector {
-    /// Takes the force of one tick, N, and decides whether a finger touches.
+    /// Decides from the force of this tick, N, whether a finger touches the display. To be called once a tick.
     ///
-    /// A contact begins at 20 mN and ends below 10 mN. It begins in the second tick off zero at the earliest, and ends
-    /// in the second tick below, so that one noisy tick does neither.
+    /// A contact begins at 20 mN or more, at the earliest in the second tick in a row with 3 mN or more. It ends in the
+    /// second tick in a row below 10 mN. So one noisy tick neither begins nor ends a contact.
     pub fn update_contact(&mut self, force: Force) {
         if self.touching {
-            let low = force < CONTACT_ENDS_BELOW;
+            let low = force < CONTACT_END_FORCE;
             self.release_ticks = if low { self.release_ticks + 1 } else { 0 };
             if self.release_ticks == CONTACT_DEBOUNCE_TICKS {
                 *self = Self::default();
             }
         } else {
-            self.off_zero_ticks = if force >= OFF_ZERO_FROM {
-                (self.off_zero_ticks + 1).min(DATED_RISE_MAX_TICKS)
+            self.off_zero_ticks = if force >= OFF_ZERO_FORCE_MIN {
+                (self.off_zero_ticks + 1).min(DETECTION_DELAY_MAX_TICKS)
             } else {
                 0
             };
-            self.touching = self.may_be_landing() && force >= CONTACT_BEGINS_FROM;
+            self.touching = self.may_be_landing() && force >= CONTACT_BEGIN_FORCE;
         }
     }
 
-    /// Whether a finger touches the display, since the force of the last tick.
+    /// Whether a finger touches the display, after debouncing, as of the last call of [`Self::update_contact`].
     #[must_use]
     pub const fn touching(&self) -> bool {
         self.touching
     }
 
-    /// Whether the force is 3 mN or more, in the last tick or, during a contact, when it began; the zero is then
-    /// tracked more slowly.
+    /// Whether the force of the last tick was off zero, 3 mN or more; always true during a contact. The zero of the
+    /// force sensor is then tracked with a time constant of 16 s instead of 1 s, and not at all during a contact.
     #[must_use]
     pub const fn is_off_zero(&self) -> bool {
         self.off_zero_ticks > 0
     }
 
-    /// Whether the force has been off its zero for two ticks, which noise seldom causes: a finger may be landing. The
-    /// self-test takes it for a touch.
+    /// Whether the force has been off zero (3 mN or more) for at least two ticks in a row, which noise seldom causes: a
+    /// finger may be landing. Stays true during a contact. The self-test treats this like a contact, and measures its
+    /// baseline again.
     #[must_use]
     pub const fn may_be_landing(&self) -> bool {
         self.off_zero_ticks >= CONTACT_DEBOUNCE_TICKS
     }
 
-    /// Ticks of 1 ms from a landing, when the force left its zero, to its detection, 2 to 32; of use in the first tick
-    /// of a contact.
+    /// Delay of the contact's detection, ticks of 1 ms, 2 to 32: for how long the force had been off zero when the
+    /// contact was detected. By this delay the estimate of the finger dates the landing back. Meaningful only while a
+    /// finger touches.
     #[must_use]
     pub const fn detection_delay_ticks(&self) -> u32 {
         self.off_zero_ticks

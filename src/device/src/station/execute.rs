@@ -1,4 +1,4 @@
-//! Commands of the host.
+//! Execution of the host's commands by one station.
 
 use super::{ArmedTask, Event, State, Station};
 use crate::TICK_HZ;
@@ -8,12 +8,12 @@ use crate::identification::Identification;
 use crate::sense::ThermistorAverages;
 
 impl Station {
-    /// Executes a command of the host between two ticks, in bounded and short time; what it changes takes effect in the
-    /// next tick.
+    /// Executes a command of the host between two ticks, in bounded and short time; its effect begins in the next tick.
     ///
     /// # Errors
-    /// The station's state does not permit the command, and nothing has changed. One exception: if the board has raised
-    /// a second fault, `clear` clears the first, trips the station by the second, and answers with it.
+    /// Why the station's state does not permit the command; nothing has changed then. One exception: if the board has
+    /// raised a second fault while a first one was latched, `clear` clears the first, trips the station by the second,
+    /// and returns the second as [`Refused::StillFaulty`].
     pub fn execute(&mut self, command: Command) -> Result<Reply, Refused> {
         match command {
             Command::Status => return Ok(Reply::Status(self.status())),
@@ -39,7 +39,7 @@ impl Station {
                 }
                 self.object.mode = mode;
             }
-            Command::Arm => self.arm()?,
+            Command::Arm => self.execute_arm()?,
             Command::Hold(setpoint) => {
                 self.require_armed("hold")?;
                 self.identified.outcome = None;
@@ -48,13 +48,13 @@ impl Station {
                     Err(_) => ArmedTask::Neutral,
                 });
             }
-            Command::Start => self.start()?,
+            Command::Start => self.execute_start()?,
             // Never refused: the bridge is off afterwards.
             Command::Abort => {
                 self.change_state(Event::Abort);
             }
-            Command::Clear => self.clear()?,
-            Command::Tune => self.tune()?,
+            Command::Clear => self.execute_clear()?,
+            Command::Tune => self.execute_tune()?,
             Command::Calibrate(tables) => {
                 self.require_calibration_allowed()?;
                 // The reading changes with the calibration, which neither the identification nor the detectors may take
@@ -62,10 +62,10 @@ impl Station {
                 self.interrupt_identification();
                 self.sensors.recalibrate(&tables);
                 self.estimator.plate.note_recalibration();
-                self.detectors.forget_motion();
+                self.detectors.restart_motion_detectors();
             }
             Command::Retune(parameters) => {
-                self.require_not_presenting()?;
+                self.require_no_object_presented()?;
                 self.set_control_parameters(&parameters);
                 self.interrupt_identification();
                 // The result has been used, so the display is neutral again.
@@ -89,25 +89,27 @@ impl Station {
         }
     }
 
-    /// Lets a finger that touches begin a new contact in the next tick, because another object or model was chosen, or
-    /// is presented from now on.
+    /// Makes the next tick begin a new contact for a finger that already touches. Called when the host has chosen
+    /// another object or contact model, and when `start` presents the object.
     fn restart_contact(&mut self) {
         self.reference.restart_contact(&mut self.estimator.finger);
     }
 
-    /// Refuses new parameters and calibrations while an object is presented, because the finger would feel the change.
-    fn require_not_presenting(&self) -> Result<(), Refused> {
-        if self.state.is_presenting() {
+    /// Refuses a command that changes parameters or calibration while an object is presented, because the finger would
+    /// feel the change.
+    fn require_no_object_presented(&self) -> Result<(), Refused> {
+        if self.state.is_presenting_object() {
             Err(Refused::Presenting)
         } else {
             Ok(())
         }
     }
 
-    /// Refuses calibrations while an object is presented, and in the self-test, which would take the change of the
-    /// readings for the display's response to its current.
+    /// Refuses a calibration, or a request for the average that a calibration needs, while an object is presented and
+    /// in the self-test. The self-test would mistake the step of the calibrated readings for the display's response to
+    /// the test current.
     fn require_calibration_allowed(&self) -> Result<(), Refused> {
-        self.require_not_presenting()?;
+        self.require_no_object_presented()?;
         if matches!(self.state, State::SelfTest(_)) {
             Err(Refused::Testing)
         } else {
@@ -137,7 +139,7 @@ impl Station {
         }
     }
 
-    fn arm(&mut self) -> Result<(), Refused> {
+    fn execute_arm(&mut self) -> Result<(), Refused> {
         match self.state {
             State::Tripped(fault) => return Err(Refused::Tripped(fault)),
             State::SelfTest(_) => return Ok(()),
@@ -153,7 +155,7 @@ impl Station {
         Ok(())
     }
 
-    fn start(&mut self) -> Result<(), Refused> {
+    fn execute_start(&mut self) -> Result<(), Refused> {
         match (&self.state, self.object.material) {
             (State::Tripped(fault), _) => return Err(Refused::Tripped(*fault)),
             (State::Off | State::Ready, _) => return Err(Refused::NotArmed),
@@ -168,7 +170,7 @@ impl Station {
         Ok(())
     }
 
-    fn clear(&mut self) -> Result<(), Refused> {
+    fn execute_clear(&mut self) -> Result<(), Refused> {
         if !self.is_tripped() {
             return Err(Refused::NothingToClear);
         }
@@ -193,7 +195,7 @@ impl Station {
         }
     }
 
-    fn tune(&mut self) -> Result<(), Refused> {
+    fn execute_tune(&mut self) -> Result<(), Refused> {
         self.require_armed("tune")?;
         if self.contact.touching() {
             return Err(Refused::Touched);
