@@ -4,102 +4,111 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use thermal_display::device::safety::TripCause;
 
-use super::reset::Reset;
+use super::reset::ResetCause;
 
-/// Initial value of the checksum. It differs between versions of the firmware whose records have
-/// different layouts, so that none takes the record of another for its own.
-const CHECKSUM_START: u32 = 0x5afe_d15b ^ TripCause::LAYOUT_HASH;
-const LENGTH: usize = TripCause::WORD_COUNT + 1;
+/// Initial value of the checksum. It differs between versions of the firmware whose stored trip
+/// causes have different layouts, so that no version accepts the words of another.
+const CHECKSUM_INITIAL_VALUE: u32 = 0x5afe_d15b ^ TripCause::LAYOUT_HASH;
+const STORED_WORDS: usize = TripCause::WORD_COUNT + 1;
 
-/// The words of the cause and their checksum. Neither the loader nor the start-up code writes to
-/// `.uninit`; its content is lost only with the power.
+/// The words of the stored trip cause and their checksum. Neither the loader nor the start-up code
+/// writes to the section `.uninit`, so that its content is lost only with the power.
 #[unsafe(link_section = ".uninit.cause")]
-static STORED: [AtomicU32; LENGTH] = [const { AtomicU32::new(0) }; LENGTH];
+static STORED_CAUSE: [AtomicU32; STORED_WORDS] = [const { AtomicU32::new(0) }; STORED_WORDS];
 
-/// Checksum of data in RAM that is not initialised at start.
-pub fn checksum(words: &[u32]) -> u32 {
-    words.iter().fold(CHECKSUM_START, |sum, word| {
+/// Checksum of 32-bit words in RAM that a reset does not clear. After power-up the content of this
+/// RAM is arbitrary, which a wrong checksum shows.
+pub fn checksum_of_words(words: &[u32]) -> u32 {
+    words.iter().fold(CHECKSUM_INITIAL_VALUE, |sum, word| {
         sum.rotate_left(5)
             .wrapping_add(*word)
             .wrapping_mul(0x9e37_79b1)
     })
 }
 
-/// The trip cause that was stored before the reset; `None` if the checksum does not match.
-pub fn stored() -> Option<TripCause> {
-    let words: [u32; LENGTH] = core::array::from_fn(|i| STORED[i].load(Ordering::Relaxed));
+/// The trip cause in RAM that a reset does not clear; `None` if no cause is stored there, which a
+/// wrong checksum shows.
+pub fn stored_cause() -> Option<TripCause> {
+    let words: [u32; STORED_WORDS] =
+        core::array::from_fn(|i| STORED_CAUSE[i].load(Ordering::Relaxed));
     let [cause @ .., sum] = words;
-    if checksum(&cause) == sum {
+    if checksum_of_words(&cause) == sum {
         TripCause::from_words(cause)
     } else {
         None
     }
 }
 
-/// Stores a cause, unless one is stored already: an earlier cause explains the later ones.
-pub fn store_if_empty(cause: &TripCause) {
-    if stored().is_some() {
+/// Stores a trip cause in RAM that a reset does not clear, unless a cause is stored there already:
+/// an earlier cause explains the later ones.
+pub fn store_cause_if_none(cause: &TripCause) {
+    if stored_cause().is_some() {
         return;
     }
     let words = cause.to_words();
-    for (place, word) in STORED
+    for (place, word) in STORED_CAUSE
         .iter()
-        .zip(words.into_iter().chain([checksum(&words)]))
+        .zip(words.into_iter().chain([checksum_of_words(&words)]))
     {
         place.store(word, Ordering::Relaxed);
     }
 }
 
 /// Erases the stored cause by making its checksum invalid.
-pub fn erase() {
-    let [.., sum] = &STORED;
-    sum.fetch_xor(CHECKSUM_START, Ordering::Relaxed);
+pub fn erase_stored_cause() {
+    let [.., sum] = &STORED_CAUSE;
+    sum.fetch_xor(CHECKSUM_INITIAL_VALUE, Ordering::Relaxed);
     // The words may have been invalid before, and valid with the changed checksum.
-    if stored().is_some() {
+    if stored_cause().is_some() {
         sum.fetch_add(1, Ordering::Relaxed);
     }
 }
 
-/// The cause by which the device is tripped when it starts: the stored one, or else the reset
-/// itself if that is a fault.
-pub fn cause_at_start(reset: Reset, restart_is_planned: bool) -> Option<TripCause> {
-    if reset == Reset::PowerOn {
+/// The cause by which all fingers must be tripped when the device starts after `reset`: the stored
+/// cause or, if none is stored, the fault that the reset itself indicates, which is then stored
+/// too. After power-on the old cause is erased first. `restart_is_planned`: settings wait in RAM to
+/// be stored, so a reset by the program is no fault.
+pub fn trip_cause_after_reset(reset: ResetCause, restart_is_planned: bool) -> Option<TripCause> {
+    if reset == ResetCause::PowerOn {
         // The content of the RAM is arbitrary.
-        erase();
+        erase_stored_cause();
     }
-    if let Some(fault) = reset.fault(restart_is_planned) {
-        store_if_empty(&TripCause::without_readings(fault));
+    if let Some(fault) = reset.indicated_fault(restart_is_planned) {
+        store_cause_if_none(&TripCause::without_readings(fault));
     }
-    stored()
+    stored_cause()
 }
 
-/// Keeps the stored cause up to date while the program runs: stores it when a finger trips, erases
-/// it when the host has cleared the fault.
+/// Keeps the stored trip cause up to date while the program runs: stores the cause when a finger
+/// trips, and erases it when no finger is tripped any more.
 pub struct FaultRecord {
     stored: Option<TripCause>,
 }
 
 impl FaultRecord {
-    /// A record of the cause that is stored at the start.
+    /// Creates the record. `stored` is the cause by which the device is tripped at the start,
+    /// `None` if it is not tripped. This cause counts as stored: only a later, different one is
+    /// written to RAM.
     pub const fn new(stored: Option<TripCause>) -> Self {
         Self { stored }
     }
 
-    /// Whether a trip cause is stored, so that it must be erased once no finger is tripped any more.
-    pub const fn is_stored(&self) -> bool {
+    /// Whether a trip cause counts as stored. If so, it must be erased once no finger is tripped
+    /// any more.
+    pub const fn has_stored_cause(&self) -> bool {
         self.stored.is_some()
     }
 
-    /// Stores the earliest cause of all fingers, or erases the stored one if no finger is tripped
-    /// any more.
-    pub fn update(&mut self, earliest: Option<&TripCause>) {
+    /// Makes the stored cause equal to `earliest`, the earliest trip cause of those fingers that
+    /// are tripped now: replaces it if it differs, and erases it if `earliest` is `None`.
+    pub fn store_or_erase(&mut self, earliest: Option<&TripCause>) {
         if earliest == self.stored.as_ref() {
             return;
         }
         // The stored cause has been cleared, even if another fault has tripped since.
-        erase();
+        erase_stored_cause();
         if let Some(cause) = earliest {
-            store_if_empty(cause);
+            store_cause_if_none(cause);
         }
         self.stored = earliest.copied();
     }

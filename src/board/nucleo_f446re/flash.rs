@@ -15,35 +15,39 @@ use embedded_storage::nor_flash::{
 use stm32f4xx_hal::pac::FLASH;
 
 /// Address of sector 1, the first of the three sectors that hold the settings.
-const BASE: usize = 0x0800_4000;
-/// Bytes of the three sectors together, of one sector, and of one word.
-const BYTES: usize = 3 * SECTOR;
-const SECTOR: usize = 16 * 1024;
-const WORD: usize = 4;
-/// Sequence that unlocks the control register (RM0390, 3.5.1).
-const KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
-/// Error flags of FLASH_SR, cleared by writing 1: operation, protection, alignment, parallelism,
-/// sequence, read-out.
-const ERRORS: u32 = 0x1f2;
-/// The error flag of write protection, WRPERR.
-const PROTECTION: u32 = 1 << 4;
-/// Reads of the busy flag until an operation is given up. Each read takes more than four cycles of
-/// 16 MHz, all of them more than 500 ms, the longest operation: erasing a sector of 16 KiB with 32
-/// bits of parallelism (datasheet).
-const BUSY_READS: u32 = 2_000_000;
+const SETTINGS_ADDRESS: usize = 0x0800_4000;
+const CAPACITY_BYTES: usize = 3 * SECTOR_BYTES;
+const SECTOR_BYTES: usize = 16 * 1024;
+const WORD_BYTES: usize = 4;
+/// The two words that unlock the control register FLASH_CR when they are written to FLASH_KEYR in
+/// this order (RM0390, 3.5.1).
+const UNLOCK_KEYS: [u32; 2] = [0x4567_0123, 0xcdef_89ab];
+/// All error flags of FLASH_SR, which are cleared by writing 1: operation error, write protection,
+/// alignment, parallelism, sequence, read protection.
+const ERROR_FLAGS: u32 = 0x1f2;
+/// The flag WRPERR of FLASH_SR: an operation was refused because the sector is write-protected.
+const WRITE_PROTECTION_FLAG: u32 = 1 << 4;
+/// Number of reads of the busy flag after which an operation counts as failed. Each read takes more
+/// than four cycles at 16 MHz, so all reads take more than 500 ms. That is the duration of the
+/// longest operation, erasing a sector of 16 KiB with 32 bits of parallelism (datasheet).
+const BUSY_READS_MAX: u32 = 2_000_000;
 
-/// Why the flash was not programmed or erased.
+/// Why an access to the flash sectors of the settings has failed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FlashError {
-    /// The control register has stayed locked.
+    /// The control register FLASH_CR has stayed locked after the unlock keys were written.
     Locked,
-    /// An operation has not ended in time.
+    /// The flash was still busy after more than 500 ms, the longest time that an operation may
+    /// take.
     Busy,
-    /// An option byte protects the sector from being written.
+    /// The flash has refused to write or erase a sector, because an option byte protects the
+    /// sector.
     Protected,
-    /// Other error flags of FLASH_SR.
+    /// An operation has failed with these error flags of FLASH_SR, which do not include write
+    /// protection.
     Flags(u32),
-    /// The access reaches beyond the sectors or is not aligned to words or sectors.
+    /// The access reaches beyond the three sectors, or is not aligned to words (writing) or sectors
+    /// (erasing).
     OutOfBounds,
 }
 
@@ -68,23 +72,25 @@ impl NorFlashError for FlashError {
     }
 }
 
-/// The three sectors, addressed from 0.
+/// Driver of the three flash sectors that hold the settings, 1 to 3, of 16 KiB each. Offsets count
+/// bytes from the start of sector 1.
 pub struct SettingsFlash<'a>(&'a FLASH);
 
 impl<'a> SettingsFlash<'a> {
-    /// A driver on the registers of the flash interface.
+    /// Creates the driver from the registers of the flash interface.
     pub const fn new(registers: &'a FLASH) -> Self {
         Self(registers)
     }
 
-    /// Unlocks the control register, does `work`, and locks the register again.
-    fn unlocked(
+    /// Unlocks the control register FLASH_CR, clears old error flags, does `work`, which writes or
+    /// erases, and locks the register again.
+    fn with_flash_unlocked(
         &mut self,
         work: impl FnOnce(&mut Self) -> Result<(), FlashError>,
     ) -> Result<(), FlashError> {
         self.wait_until_idle()?;
         if self.0.cr().read().lock().bit_is_set() {
-            for key in KEYS {
+            for key in UNLOCK_KEYS {
                 // SAFETY: any value may be written; a wrong one locks the register until the next
                 // reset.
                 self.0.keyr().write(|w| unsafe { w.key().bits(key) });
@@ -95,40 +101,47 @@ impl<'a> SettingsFlash<'a> {
         }
         // Flags of earlier errors, such as a stray store, would block programming (RM0390, 3.8.4).
         // SAFETY: flags are cleared by writing 1.
-        self.0.sr().write(|w| unsafe { w.bits(ERRORS) });
+        self.0.sr().write(|w| unsafe { w.bits(ERROR_FLAGS) });
         let done = work(self);
         self.0.cr().write(|w| w.lock().set_bit());
         done
     }
 
-    /// Waits until no operation is in progress and returns the error flags.
+    /// Waits until the flash has no operation in progress, and returns the error flags of FLASH_SR,
+    /// zero if none is set.
+    ///
+    /// # Errors
+    /// [`FlashError::Busy`] if the operation has not ended in time.
     fn wait_until_idle(&self) -> Result<u32, FlashError> {
-        for _ in 0..BUSY_READS {
+        for _ in 0..BUSY_READS_MAX {
             let status = self.0.sr().read();
             if status.bsy().bit_is_clear() {
-                return Ok(status.bits() & ERRORS);
+                return Ok(status.bits() & ERROR_FLAGS);
             }
         }
         Err(FlashError::Busy)
     }
 
-    /// Waits for the end of an operation.
+    /// Waits for the end of a write or erase operation.
     ///
     /// # Errors
-    /// The operation has failed or has not ended in time.
-    fn wait(&self) -> Result<(), FlashError> {
+    /// [`FlashError::Busy`] if the operation has not ended in time, [`FlashError::Protected`] or
+    /// [`FlashError::Flags`] if it has failed.
+    fn wait_and_check(&self) -> Result<(), FlashError> {
         match self.wait_until_idle()? {
             0 => Ok(()),
-            flags if flags & PROTECTION != 0 => Err(FlashError::Protected),
+            flags if flags & WRITE_PROTECTION_FLAG != 0 => Err(FlashError::Protected),
             flags => Err(FlashError::Flags(flags)),
         }
     }
 }
 
-/// Checks that a range lies within the sectors and consists of whole, aligned units of `unit`
-/// bytes.
-fn check(from: usize, bytes: usize, unit: usize) -> Result<(), FlashError> {
-    let within = from.checked_add(bytes).is_some_and(|end| end <= BYTES);
+/// Checks that the `bytes` bytes from the offset `from` lie within the three sectors, and that
+/// `from` and `bytes` are multiples of `unit` bytes.
+fn check_range(from: usize, bytes: usize, unit: usize) -> Result<(), FlashError> {
+    let within = from
+        .checked_add(bytes)
+        .is_some_and(|end| end <= CAPACITY_BYTES);
     if within && from.is_multiple_of(unit) && bytes.is_multiple_of(unit) {
         Ok(())
     } else {
@@ -144,8 +157,8 @@ impl ReadNorFlash for SettingsFlash<'_> {
     const READ_SIZE: usize = 1;
 
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
-        check(offset as usize, bytes.len(), 1)?;
-        for (byte, address) in bytes.iter_mut().zip(BASE + offset as usize..) {
+        check_range(offset as usize, bytes.len(), 1)?;
+        for (byte, address) in bytes.iter_mut().zip(SETTINGS_ADDRESS + offset as usize..) {
             // SAFETY: the address is within the sectors, which hold no part of the program. The
             // read is volatile because the content of the flash changes.
             *byte = unsafe { ptr::read_volatile(address as *const u8) };
@@ -154,19 +167,19 @@ impl ReadNorFlash for SettingsFlash<'_> {
     }
 
     fn capacity(&self) -> usize {
-        BYTES
+        CAPACITY_BYTES
     }
 }
 
 impl NorFlash for SettingsFlash<'_> {
-    const WRITE_SIZE: usize = WORD;
-    const ERASE_SIZE: usize = SECTOR;
+    const WRITE_SIZE: usize = WORD_BYTES;
+    const ERASE_SIZE: usize = SECTOR_BYTES;
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
         let (from, to) = (from as usize, to as usize);
-        check(from, to.saturating_sub(from), SECTOR)?;
-        self.unlocked(|flash| {
-            for number in 1 + from / SECTOR..1 + to / SECTOR {
+        check_range(from, to.saturating_sub(from), SECTOR_BYTES)?;
+        self.with_flash_unlocked(|flash| {
+            for number in 1 + from / SECTOR_BYTES..1 + to / SECTOR_BYTES {
                 flash.0.cr().write(|w| {
                     // `write` starts from the reset value of the register, in which the lock is
                     // set.
@@ -175,24 +188,27 @@ impl NorFlash for SettingsFlash<'_> {
                     unsafe { w.snb().bits(number as u8) };
                     w.strt().set_bit()
                 });
-                flash.wait()?;
+                flash.wait_and_check()?;
             }
             Ok(())
         })
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
-        check(offset as usize, bytes.len(), WORD)?;
-        let (words, _) = bytes.as_chunks::<WORD>();
-        self.unlocked(|flash| {
+        check_range(offset as usize, bytes.len(), WORD_BYTES)?;
+        let (words, _) = bytes.as_chunks::<WORD_BYTES>();
+        self.with_flash_unlocked(|flash| {
             // `write` starts from the reset value, as in `erase`.
             (flash.0.cr()).write(|w| w.lock().clear_bit().psize().psize32().pg().set_bit());
-            for (word, address) in words.iter().zip((BASE + offset as usize..).step_by(WORD)) {
+            for (word, address) in words
+                .iter()
+                .zip((SETTINGS_ADDRESS + offset as usize..).step_by(WORD_BYTES))
+            {
                 // SAFETY: the address is that of an aligned word within the sectors, which hold no
                 // part of the program; PG is set.
                 unsafe { ptr::write_volatile(address as *mut u32, u32::from_le_bytes(*word)) };
                 cortex_m::asm::dsb();
-                flash.wait()?;
+                flash.wait_and_check()?;
             }
             Ok(())
         })

@@ -3,17 +3,18 @@
 use stm32f4xx_hal::pac::RCC;
 use thermal_display::device::safety::Fault;
 
-/// Cause of a reset (RM0390, 6.3.21).
+/// Cause of the last reset, by the flags of the register RCC_CSR (RM0390, 6.3.21).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, defmt::Format)]
-pub enum Reset {
+pub enum ResetCause {
     /// The supply was switched on; the content of the RAM is arbitrary.
     PowerOn,
-    /// The window watchdog: the control tick did not run.
+    /// Reset by the window watchdog: no control tick with valid samples ran for 46.6 ms, for
+    /// example because a handler of a fatal error waited for this reset.
     WindowWatchdog,
-    /// The independent watchdog: a task did not check in, or a handler of a fatal error waited for
-    /// the reset.
+    /// Reset by the independent watchdog: a task did not check in for 68 to 188 ms, or a handler of
+    /// a fatal error waited for the reset while the window watchdog did not run.
     Watchdog,
-    /// The program requested the reset, to store settings or after a fatal error.
+    /// The program reset the device, which it does only to store settings.
     Software,
     /// The supply voltage was too low; the RAM has kept its content.
     BrownOut,
@@ -23,8 +24,9 @@ pub enum Reset {
     Other,
 }
 
-impl Reset {
-    /// Reads the reset flags, which accumulate until they are [cleared](Self::clear).
+impl ResetCause {
+    /// Reads the cause of the last reset from the reset flags, which accumulate until they are
+    /// [cleared](Self::clear_flags). If several are set, the most specific one counts.
     pub fn read(rcc: &RCC) -> Self {
         let flags = rcc.csr().read();
         // The most specific flag is tested first: power-on sets the flag of the brown-out too, and
@@ -46,14 +48,16 @@ impl Reset {
         }
     }
 
-    /// Clears the reset flags, so that the next reset is told from this one.
-    pub fn clear(rcc: &RCC) {
+    /// Clears the reset flags, so that the next start finds only the flags of the next reset.
+    pub fn clear_flags(rcc: &RCC) {
         rcc.csr().modify(|_, w| w.rmvf().clear());
     }
 
-    /// The fault that this reset indicates; `None` if it was requested by the user, by the probe or
-    /// by the host, or caused by the supply.
-    pub const fn fault(self, restart_is_planned: bool) -> Option<Fault> {
+    /// The fault that this reset indicates: [`Fault::TickLost`] for the window watchdog,
+    /// [`Fault::Watchdog`] for the independent watchdog, [`Fault::UnaskedReset`] for a low-power
+    /// reset and for a reset by the program, except if `restart_is_planned`: settings wait in RAM
+    /// to be stored. `None` for that exception, power-on, brown-out, and a reset by the pin.
+    pub const fn indicated_fault(self, restart_is_planned: bool) -> Option<Fault> {
         match self {
             Self::WindowWatchdog => Some(Fault::TickLost),
             Self::Watchdog => Some(Fault::Watchdog),

@@ -6,29 +6,32 @@ use core::sync::atomic::{AtomicU32, Ordering};
 /// Number of 32-bit words in the guard below the stack.
 const GUARD_WORDS: usize = 4;
 /// Value of each word of the guard while the stack has not overwritten it.
-const UNTOUCHED: u32 = 0x57ac_0bad;
+const GUARD_VALUE: u32 = 0x57ac_0bad;
 
 unsafe extern "C" {
-    /// The guard: words that `memory.x` places directly below the stack, so that an overflow overwrites them.
+    /// The guard: words that `memory.x` places directly below the stack, so that an overflow of the
+    /// stack overwrites them.
     static _stack_guard: [AtomicU32; GUARD_WORDS];
 }
 
-fn guard() -> &'static [AtomicU32; GUARD_WORDS] {
+fn guard_words() -> &'static [AtomicU32; GUARD_WORDS] {
     // SAFETY: `memory.x` reserves these words, the first of the RAM, for the guard. They are
     // atomics because code that overruns the stack may write to them.
     unsafe { &_stack_guard }
 }
 
-/// Whether the stack has overwritten the guard since it was last [initialised](init_guard).
+/// Whether the stack has overwritten the guard since [`init_guard`] last wrote it. Every control
+/// tick checks this, and so does the next start, because a reset does not clear the guard.
 pub fn stack_is_overrun() -> bool {
-    guard()
+    guard_words()
         .iter()
-        .any(|word| word.load(Ordering::Relaxed) != UNTOUCHED)
+        .any(|word| word.load(Ordering::Relaxed) != GUARD_VALUE)
 }
 
-/// Writes the known value into all words of the guard, at every start.
+/// Writes the expected value into all words of the guard. Called at every start, after the check
+/// whether the stack has overwritten the guard before the reset.
 pub fn init_guard() {
-    guard()
+    guard_words()
         .iter()
-        .for_each(|word| word.store(UNTOUCHED, Ordering::Relaxed));
+        .for_each(|word| word.store(GUARD_VALUE, Ordering::Relaxed));
 }

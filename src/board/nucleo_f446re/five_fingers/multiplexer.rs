@@ -6,14 +6,16 @@ use thermal_display::device::Finger;
 
 use super::FINGERS;
 
-/// The three select lines, which are common to all multiplexers.
+/// The three select lines PC10 to PC12, which are common to all seven multiplexers.
 pub struct Multiplexer(OutPort3<'C', 10, 11, 12>);
 
 impl Multiplexer {
-    /// Scans after a switch that may still belong to the previous finger.
+    /// Number of scans to drop after each switch to another finger. During the first scan, of 11
+    /// us, the control tick switches the multiplexers; during the second, multiplexers and voltage
+    /// followers settle. Both scans may still contain samples of the previous finger.
     pub const SETTLING_SCANS: usize = 2;
 
-    /// Sets the select lines up and selects finger 0.
+    /// Sets up the three select lines as outputs and selects finger 0.
     pub fn new(bit0: PC10<Input>, bit1: PC11<Input>, bit2: PC12<Input>) -> Self {
         let lines = (
             bit0.into_push_pull_output(),
@@ -25,8 +27,9 @@ impl Multiplexer {
         multiplexer
     }
 
-    /// Selects a finger. All lines change at the same time.
+    /// Connects the sensors of a finger to the converter. All three select lines change at the same
+    /// time, so that no other finger is selected in between.
     pub fn select(&mut self, finger: Finger<FINGERS>) {
-        self.0.write(finger.number().into());
+        self.0.write(finger.index_u8().into());
     }
 }

@@ -16,11 +16,11 @@ use thermal_display::device::drive::{BoardOutputs, Drive};
 use super::FINGERS;
 use thermal_display::bridge::Bridge;
 
-/// PWM frequency, kHz: that of the one-finger wiring, for which the LC filters and the dead-time
-/// compensation are designed. A period has 1875 steps.
+/// PWM frequency of all bridges, kHz: that of the one-finger wiring, for which the LC filters and
+/// the dead-time compensation are designed. A period has 1875 steps of 5.6 ns.
 const PWM_KHZ: u32 = 96;
 
-/// One bridge and its fault line.
+/// One finger's bridge, with its fault line and the test line of its comparator.
 ///
 /// Turning the bridge off takes effect at once; a new duty takes effect at the next PWM period,
 /// because the compare registers are preloaded.
@@ -31,7 +31,8 @@ pub struct PowerStage {
     on: bool,
 }
 
-/// Timers and pins of all bridges, in the order of the fingers.
+/// Timers and pins of all bridges. `first` to `fifth` are the PWM pins IN1 and IN2 of fingers 0 to
+/// 4, and `lines` their other pins.
 pub struct BridgePeripherals {
     pub timers: (TIM1, TIM8, TIM10, TIM11),
     pub first: (PA8<Input>, PA9<Input>),
@@ -39,29 +40,29 @@ pub struct BridgePeripherals {
     pub third: (PC6<Input>, PC7<Input>),
     pub fourth: (PC8<Input>, PC9<Input>),
     pub fifth: (PB8<Input>, PB9<Input>),
-    pub lines: [ControlLines; FINGERS],
+    pub lines: [ControlPins; FINGERS],
 }
 
-/// The lines between the processor and one finger's bridge and comparator, except for the PWM
-/// signals.
-pub struct ControlLines {
+/// The pins of one finger's bridge and comparator, except for the PWM signals: the bridge's enable
+/// line, the fault line of both, and the comparator's test line.
+pub struct ControlPins {
     enable: ErasedPin<Output>,
     fault: ErasedPin<Input>,
     test: ErasedPin<Output>,
 }
 
-impl ControlLines {
-    /// Sets the pins of one finger up: enable line of the bridge, fault line, test line of the
-    /// comparator.
+impl ControlPins {
+    /// Sets up the pins of one finger: enable line of the bridge and test line of the comparator as
+    /// outputs, fault line as input.
     pub fn new<
         const ENABLE_PORT: char,
-        const ENABLE: u8,
+        const ENABLE_PIN: u8,
         const FAULT_LINE_PORT: char,
         const FAULT_LINE_PIN: u8,
         const COMPARATOR_TEST_PORT: char,
         const COMPARATOR_TEST_PIN: u8,
     >(
-        enable: Pin<ENABLE_PORT, ENABLE>,
+        enable: Pin<ENABLE_PORT, ENABLE_PIN>,
         fault: Pin<FAULT_LINE_PORT, FAULT_LINE_PIN>,
         test: Pin<COMPARATOR_TEST_PORT, COMPARATOR_TEST_PIN>,
     ) -> Self {
@@ -76,8 +77,9 @@ impl ControlLines {
 }
 
 impl BridgePeripherals {
-    /// Sets the timers up, with all bridges off.
-    pub fn into_stages(self, rcc: &mut Rcc) -> [PowerStage; FINGERS] {
+    /// Sets up the timers for PWM and returns the power stages of all fingers, in the order of the
+    /// fingers, with all bridges off.
+    pub fn into_power_stages(self, rcc: &mut Rcc) -> [PowerStage; FINGERS] {
         let (tim1, tim8, tim10, tim11) = self.timers;
         let (_, (a0, b0, a1, b1)) = tim1.pwm_hz(PWM_KHZ.kHz(), rcc);
         let (_, (a2, b2, a3, b3)) = tim8.pwm_hz(PWM_KHZ.kHz(), rcc);
@@ -124,9 +126,10 @@ impl BridgePeripherals {
     }
 }
 
-/// Lets TIM1 and TIM8 drive their pins until the clock fails, which is a break (RM0390, 17.3.12).
-/// No pin is connected to the break inputs; their polarity makes them inactive. The lock prevents
-/// faulty code from changing these settings or the PWM mode before the next reset.
+/// Lets TIM1 and TIM8 drive their PWM pins until the 8 MHz clock fails: that failure acts as a
+/// break, which disables the PWM outputs without any code (RM0390, 17.3.12). No pin is connected to
+/// the break inputs; their polarity makes them inactive. The lock prevents faulty code from
+/// changing these settings or the PWM mode before the next reset.
 fn enable_and_lock_timer_outputs() {
     // SAFETY: `pwm_hz` has consumed the handles of the timers. Their channels write only the
     // compare and enable registers; the break and dead-time registers are written here and by
@@ -148,11 +151,11 @@ impl PowerStage {
     fn new(
         mut in1: PwmOutput,
         mut in2: PwmOutput,
-        ControlLines {
+        ControlPins {
             enable,
             fault,
             test,
-        }: ControlLines,
+        }: ControlPins,
     ) -> Self {
         in1.enable();
         in2.enable();
@@ -164,13 +167,16 @@ impl PowerStage {
         }
     }
 
-    /// Whether the bridge or the comparator pulls the fault line low.
-    pub fn fault(&mut self) -> bool {
+    /// Whether the fault line is low at this moment: the bridge or the comparator reports a fault,
+    /// or the line is broken.
+    pub fn reports_fault(&mut self) -> bool {
         self.fault.is_low()
     }
 
-    /// Applies the outputs of a tick to the bridge and to the test line of the comparator.
-    pub fn apply(&mut self, outputs: &BoardOutputs) {
+    /// Applies the outputs of a control tick: turns the bridge off or drives it with the demanded
+    /// duty, and sets the comparator's test line, which makes the comparator cut the bridge's
+    /// supply while it is high.
+    pub fn apply_outputs(&mut self, outputs: &BoardOutputs) {
         self.test.set_state(outputs.comparator_test.into());
         match outputs.drive {
             Drive::Off => self.off(),
@@ -184,7 +190,8 @@ impl PowerStage {
         }
     }
 
-    /// Makes both outputs of the bridge high-impedance at once.
+    /// Makes both outputs of the bridge high-impedance at once, without waiting for the next PWM
+    /// period.
     pub fn off(&mut self) {
         self.bridge.off();
         if self.on {
@@ -194,7 +201,7 @@ impl PowerStage {
     }
 }
 
-/// The PWM channel of one input of a bridge.
+/// The PWM channel of one input of a bridge, IN1 or IN2. It may belong to any of the four timers.
 enum PwmOutput {
     Tim1(ErasedChannel<TIM1>),
     Tim8(ErasedChannel<TIM8>),

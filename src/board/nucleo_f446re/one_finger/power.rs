@@ -10,19 +10,20 @@ use thermal_display::device::drive::{BoardOutputs, Drive};
 
 use thermal_display::bridge::Bridge;
 
-/// PWM frequency, kHz. A scan takes exactly six periods, so every conversion samples the ripple at
-/// the same phase, and no beat frequency enters the control bandwidth. A period has 1875 steps of
-/// 5.6 ns.
+/// PWM frequency of the bridge, kHz. Scans are exactly six PWM periods apart, so every conversion
+/// samples the PWM ripple at the same phase, and no beat frequency enters the control bandwidth. A
+/// period has 1875 steps of 5.6 ns.
 const PWM_KHZ: u32 = 96;
 
 type FaultLinePin = Pin<'A', 6, Alternate<1>>;
 
-/// Bridge, fault line and LED.
+/// The bridge of the finger, with its fault line, the test line of its comparator, and the LED that
+/// is lit while the bridge may drive.
 ///
 /// Turning the bridge off takes effect at once; a new duty takes effect at the next PWM period,
-/// because the compare registers are preloaded. If a period ends between the writes to the two
-/// registers, the next one combines an old and a new value. The voltage is then wrong for 10 us,
-/// which the LC filter suppresses.
+/// because the compare registers are preloaded. If a PWM period ends between the writes to the
+/// compare registers of IN1 and IN2, the next period combines an old and a new value. The bridge's
+/// voltage is then wrong for one period of 10 us, which the LC filter suppresses.
 pub struct PowerStage {
     bridge: Bridge<PwmChannel<TIM1, C1>, PwmChannel<TIM1, C2>, PB10<Output>>,
     timer: TIM1,
@@ -33,7 +34,8 @@ pub struct PowerStage {
 }
 
 impl PowerStage {
-    /// Sets timer and pins up, with the bridge off.
+    /// Sets up TIM1, for PWM with the fault line as its break input, and the pins, with the bridge
+    /// off.
     pub fn new(
         timer: TIM1,
         (in1, in2): (PA8<Input>, PA9<Input>),
@@ -79,9 +81,10 @@ impl PowerStage {
         }
     }
 
-    /// Whether the bridge or the comparator pulls the fault line low, or has done so since the last
-    /// call: the break flag stores pulses that are shorter than a tick.
-    pub fn fault(&mut self) -> bool {
+    /// Whether the fault line is low, or was low for a moment since the last call: the bridge or
+    /// the comparator reports a fault, or the line is broken. The break flag of TIM1 stores pulses
+    /// that are shorter than a tick.
+    pub fn reports_fault(&mut self) -> bool {
         let pulsed = self.timer.sr().read().bif().bit_is_set();
         if pulsed {
             self.timer.sr().write(|w| w.bif().clear());
@@ -89,12 +92,14 @@ impl PowerStage {
         pulsed || self.fault.is_low()
     }
 
-    /// Applies the outputs of a tick to the bridge and to the test line of the comparator.
+    /// Applies the outputs of a control tick: turns the bridge off or drives it with the demanded
+    /// duty, and sets the comparator's test line, which makes the comparator cut the bridge's
+    /// supply while it is high.
     ///
-    /// The timer's outputs are enabled only when the bridge changes from off to on. A break
-    /// disables them; they stay disabled until the station has detected the fault and has switched
-    /// the bridge off itself.
-    pub fn apply(&mut self, outputs: &BoardOutputs) {
+    /// The PWM outputs of TIM1 are enabled only when the bridge changes from off to on. A break, by
+    /// a low fault line or a failure of the 8 MHz clock, disables the PWM outputs; they stay
+    /// disabled until the station has detected the fault and has switched the bridge off itself.
+    pub fn apply_outputs(&mut self, outputs: &BoardOutputs) {
         self.test.set_state(outputs.comparator_test.into());
         match outputs.drive {
             Drive::Off => self.off(),
@@ -110,7 +115,8 @@ impl PowerStage {
         }
     }
 
-    /// Makes both outputs of the bridge high-impedance at once.
+    /// Makes both outputs of the bridge high-impedance at once, without waiting for the next PWM
+    /// period, and switches the LED off.
     pub fn off(&mut self) {
         self.timer.bdtr().modify(|_, w| w.moe().disabled_idle());
         self.bridge.off();
