@@ -1,8 +1,9 @@
-//! The hardware-free half of the firmware of a Peltier thermal display: a tile that feels like copper, granite, ABS or foam
-//! to the finger on it.
+//! The hardware-free half of the firmware of a Peltier thermal display: a tile that feels like
+//! copper, granite, ABS or foam to the finger on it.
 //!
-//! Start at [`Station::step`](device::Station::step): one control tick of one finger, from the counts of thermistors, force
-//! and current to the command of the bridge, as a straight line of stages.
+//! Start at [`Station::step`](device::Station::step): one control tick of one finger, from the
+//! counts of thermistors, force and current to the command of the bridge, as a straight line of
+//! stages.
 //!
 //! ```text
 //! samples -> sense -> detect faults -> estimate -> reference -> control -> actuate -> outputs
@@ -19,8 +20,8 @@
 //! | [`task_liveness`] | feeds the independent watchdog only while every task runs |
 //!
 //! The contact model behind the reference is the crate [`contact_model`]. The tasks are in `src/main.rs`, pins, clocks and
-//! peripherals in `src/board/`. The same library runs on the microcontroller, in the emulated microcontroller and natively
-//! in the simulator, bit for bit. Nobody has run it on silicon yet.
+//! peripherals in `src/board/`. The same library runs on the microcontroller, in the emulated
+//! microcontroller and natively in the simulator, bit for bit. Nobody has run it on silicon yet.
 //!
 //! A station that is off drives nothing:
 //!

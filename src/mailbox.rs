@@ -2,42 +2,44 @@
 //! them.
 //!
 //! Every line gets exactly one answer, in the order of arrival. A line that arrives while the queue
-//! is full is only counted, and answered by an error. Until all counted lines are answered, no
-//! other line enters the queue, because its answer would overtake theirs.
+//! is full is refused: it is dropped and counted, and its answer is an error. No other line enters
+//! the queue until all refused lines are answered, because its answer would overtake theirs.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
 use heapless::spsc::{Consumer, Producer, Queue};
 use thermal_protocol::{Line, LineError};
 
-/// Number of received lines that can wait for their answers.
-pub const DEPTH: usize = 4;
+/// Number of received lines that can wait for their answers. A line beyond that is refused with
+/// [`LineError::QueueFull`].
+pub const QUEUE_CAPACITY: usize = 4;
 
-/// A received line, or why it could not be received.
-type Received = Result<Line, LineError>;
+/// A line from the host, or the reason why the received bytes form no valid line.
+type ReceivedLine = Result<Line, LineError>;
 
-/// The queue, which [`split`](Self::split) divides into its two ends.
+/// The queue of lines that were received and wait for their answers. [`split`](Self::split) divides
+/// it into a writing end for the receiving interrupt and a reading end for the answering task.
 #[derive(Default)]
 pub struct Mailbox {
-    // The queue always keeps one slot free, to tell full from empty.
-    lines: Queue<Received, { DEPTH + 1 }>,
+    // The queue always keeps one slot free, to distinguish full from empty.
+    lines: Queue<ReceivedLine, { QUEUE_CAPACITY + 1 }>,
     refused: AtomicU32,
 }
 
-/// The end that the receiver puts lines into.
-pub struct Inlet<'a> {
-    lines: Producer<'a, Received>,
+/// The writing end of a [`Mailbox`], for the interrupt that receives lines from the host.
+pub struct LineProducer<'a> {
+    lines: Producer<'a, ReceivedLine>,
     refused: &'a AtomicU32,
 }
 
-/// The end that the answering task takes lines from.
-pub struct Outlet<'a> {
-    lines: Consumer<'a, Received>,
+/// The reading end of a [`Mailbox`], for the task that answers the lines.
+pub struct LineConsumer<'a> {
+    lines: Consumer<'a, ReceivedLine>,
     refused: &'a AtomicU32,
 }
 
 impl Mailbox {
-    /// A mailbox in which no line waits.
+    /// Creates a mailbox in which no line waits.
     pub const fn new() -> Self {
         Self {
             lines: Queue::new(),
@@ -45,16 +47,17 @@ impl Mailbox {
         }
     }
 
-    /// The two ends of the queue, each for one task.
-    pub fn split(&mut self) -> (Inlet<'_>, Outlet<'_>) {
+    /// Divides the mailbox into its writing end, for the receiving interrupt, and its reading end,
+    /// for the answering task.
+    pub fn split(&mut self) -> (LineProducer<'_>, LineConsumer<'_>) {
         let (producer, consumer) = self.lines.split();
         let refused = &self.refused;
         (
-            Inlet {
+            LineProducer {
                 lines: producer,
                 refused,
             },
-            Outlet {
+            LineConsumer {
                 lines: consumer,
                 refused,
             },
@@ -62,20 +65,20 @@ impl Mailbox {
     }
 }
 
-impl Inlet<'_> {
-    /// Appends a line to the queue, or counts it as refused if the queue is full or refused lines
-    /// are not answered yet.
-    pub fn put(&mut self, line: Received) {
+impl LineProducer<'_> {
+    /// Appends a line to the queue. If the queue is full, or lines that were refused before still
+    /// wait for their error answers, the line is dropped and only counted as refused.
+    pub fn enqueue(&mut self, line: ReceivedLine) {
         if self.refused.load(Ordering::Acquire) > 0 || self.lines.enqueue(line).is_err() {
             self.refused.fetch_add(1, Ordering::Release);
         }
     }
 }
 
-impl Outlet<'_> {
-    /// Takes the next line to be answered; [`LineError::QueueFull`] stands for a line that did not
-    /// fit into the queue.
-    pub fn take(&mut self) -> Option<Received> {
+impl LineConsumer<'_> {
+    /// Removes and returns the next line to be answered, or [`LineError::QueueFull`] in place of a
+    /// line that was refused. `None` if no line waits for an answer.
+    pub fn dequeue(&mut self) -> Option<ReceivedLine> {
         // The count is read before the queue. While it is above zero no line enters the queue, so
         // if the queue is empty then the refused lines are next.
         let refused = self.refused.load(Ordering::Acquire);

@@ -1,4 +1,5 @@
-//! Tests of the device as a whole without its hardware: lines and samples in, answers and outputs out.
+//! Tests of the device as a whole without its hardware: lines and samples in, answers and outputs
+//! out.
 
 mod bridge;
 mod commissioning;

@@ -36,7 +36,7 @@ pub fn samples(noise: u16) -> Samples {
 /// Arms a finger and simulates, during its self-test, a display that responds to the current and a
 /// comparator that works.
 pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: Finger<FINGERS>) {
-    let number = finger.number();
+    let number = finger.index_u8();
     host(device, &format!("@{number} arm"));
     // 46 counts per kelvin; 2.7 K/s per ampere.
     let (mut tick, mut cooler, mut current, mut bridge_fault) = (0, 0.0, 0, false);

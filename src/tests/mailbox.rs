@@ -3,14 +3,14 @@
 use std::format;
 use std::vec::Vec;
 
-use crate::mailbox::{self, DEPTH, Mailbox};
+use crate::mailbox::{self, Mailbox, QUEUE_CAPACITY};
 use crate::protocol::{Line, LineError};
 
 /// Puts a numbered line into the mailbox and appends it to `sent`.
-fn put(inlet: &mut mailbox::Inlet<'_>, sent: &mut Vec<Line>) {
+fn put(inlet: &mut mailbox::LineProducer<'_>, sent: &mut Vec<Line>) {
     let line = Line::try_from(format!("line {}", sent.len()).as_str()).expect("short");
     sent.push(line.clone());
-    inlet.put(Ok(line));
+    inlet.enqueue(Ok(line));
 }
 
 #[test]
@@ -18,16 +18,16 @@ fn lines_beyond_the_depth_are_taken_as_refused() {
     let mut mailbox = Mailbox::new();
     let (mut inlet, mut outlet) = mailbox.split();
     let mut sent = Vec::new();
-    for _ in 0..DEPTH + 3 {
+    for _ in 0..QUEUE_CAPACITY + 3 {
         put(&mut inlet, &mut sent);
     }
-    for line in &sent[..DEPTH] {
-        assert_eq!(outlet.take(), Some(Ok(line.clone())));
+    for line in &sent[..QUEUE_CAPACITY] {
+        assert_eq!(outlet.dequeue(), Some(Ok(line.clone())));
     }
     for _ in 0..3 {
-        assert_eq!(outlet.take(), Some(Err(LineError::QueueFull)));
+        assert_eq!(outlet.dequeue(), Some(Err(LineError::QueueFull)));
     }
-    assert_eq!(outlet.take(), None);
+    assert_eq!(outlet.dequeue(), None);
 }
 
 /// Tries every sequence of 18 steps, each of which puts or takes one line.
@@ -41,10 +41,10 @@ fn lines_are_taken_in_the_order_in_which_they_were_put() {
             if sequence >> step & 1 == 1 {
                 put(&mut inlet, &mut sent);
             } else {
-                answered.extend(outlet.take());
+                answered.extend(outlet.dequeue());
             }
         }
-        answered.extend(std::iter::from_fn(|| outlet.take()));
+        answered.extend(std::iter::from_fn(|| outlet.dequeue()));
         assert_eq!(answered.len(), sent.len(), "sequence {sequence:#b}");
         for (answer, line) in answered.iter().zip(&sent) {
             match answer {

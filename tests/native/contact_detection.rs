@@ -45,11 +45,11 @@ impl Bench {
         };
         let force = self
             .sensors
-            .read_samples(&samples)
+            .convert_samples(&samples)
             .force
             .expect("a sound sensor");
         self.touch.update_contact(force);
-        self.sensors.track_zero(&samples, &self.touch);
+        self.sensors.track_force_zero(&samples, &self.touch);
         self.sum = 0;
         self.scan(SCANS_BEFORE);
     }

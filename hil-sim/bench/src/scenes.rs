@@ -9,7 +9,9 @@ use contact_model::fixed_point::{
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use thermal_display::device::estimate::FingerEstimator;
-use thermal_display::device::reference::{self, INTERPOLATION_TOLERANCE, Mode, ReferenceGenerator};
+use thermal_display::device::reference::{
+    self, ContactModel, INTERPOLATION_TOLERANCE, ReferenceGenerator,
+};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
 use floating::Finger as FloatingFinger;
@@ -99,7 +101,7 @@ impl Station {
         };
         let fixed = [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?];
         let mut estimator = FingerEstimator::default();
-        estimator.observe(skin, object_c, None, 0);
+        estimator.update_by_readings(skin, object_c, None, 0);
         Ok(Self {
             skin,
             object: object_c,
@@ -181,11 +183,11 @@ fn five_fingers(station: &mut Station, _: u32) -> u32 {
 fn reference_step(station: &mut Station, force: Force) -> u32 {
     station
         .estimator
-        .observe(station.skin, station.object, Some(force), 1);
+        .update_by_readings(station.skin, station.object, Some(force), 1);
     let scene = reference::Scene {
         pair: &station.fixed[0].pair,
         object: Some(station.object),
-        mode: Mode::ContactResistance,
+        mode: ContactModel::ContactResistance,
     };
     let reference =
         station

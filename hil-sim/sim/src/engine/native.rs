@@ -141,7 +141,7 @@ impl NativeEngine {
     /// Restarts the logic with the bridge off and with the trip cause and dose that the board retains. The start-up time of
     /// the board is not modelled.
     fn restart(&mut self, cause: ResetCause) {
-        let tripped = self.device.earliest_cause().copied();
+        let tripped = self.device.earliest_trip_cause().copied();
         let cause_retained = match cause {
             ResetCause::PowerOn => None,
             ResetCause::WindowWatchdog => {
@@ -151,11 +151,11 @@ impl NativeEngine {
         };
         let dose = match cause {
             ResetCause::PowerOn => ThermalDose::default(),
-            _ => ThermalDose::from_word(self.device.dose(Finger::FIRST).to_word()),
+            _ => ThermalDose::from_word(self.device.thermal_dose(Finger::FIRST).to_word()),
         };
         let settings = Settings::default();
         self.device = Device::with_trip_cause(cause_retained, &settings);
-        self.device.restore_dose(Finger::FIRST, dose);
+        self.device.restore_thermal_dose(Finger::FIRST, dose);
         self.handler = match &self.stored {
             Some(stored) => {
                 self.device.restore_settings(stored);
@@ -184,7 +184,7 @@ impl NativeEngine {
     /// Executes the lines whose last byte has arrived before the tick.
     fn execute_received_lines(&mut self, now_ns: u64) {
         while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
-            if LineReader::is_end(byte) {
+            if LineReader::is_line_end(byte) {
                 self.device.note_host_activity();
             }
             let Some(line) = self.reader.push(byte) else {
