@@ -16,7 +16,7 @@
 //! | [`commissioning`] | calibration of the thermistors and identification of the tile, in the task that answers the host |
 //! | [`protocol`] | the lines between host and device |
 //! | [`bridge`] | driver of an H-bridge with two logic inputs and an enable input |
-//! | [`mailbox`] | the queue of received lines, between the interrupt and the task that answers |
+//! | [`line_queue`] | the queue of received lines, between the interrupt and the task that answers |
 //! | [`task_liveness`] | feeds the independent watchdog only while every task runs |
 //!
 //! The contact model behind the reference is the crate [`contact_model`]. The tasks are in `src/main.rs`, pins, clocks and
@@ -42,7 +42,7 @@
 extern crate std;
 
 pub mod bridge;
-pub mod mailbox;
+pub mod line_queue;
 pub mod task_liveness;
 
 pub use thermal_commissioning as commissioning;

@@ -4,7 +4,7 @@
 mod bridge;
 mod commissioning;
 mod device;
-mod mailbox;
+mod line_queue;
 mod station;
 mod storage;
 mod task_liveness;

@@ -4,7 +4,7 @@ use heapless::spsc::Consumer;
 use thermal_display::commissioning::StorageOrder;
 use thermal_display::device::Telemetry;
 use thermal_display::device::command::Addressed;
-use thermal_display::mailbox::LineConsumer;
+use thermal_display::line_queue::LineConsumer;
 use thermal_display::protocol::{CommandHandler, Error, ExecuteOnStations, Reply, telemetry_line};
 
 use super::{FINGERS, Outbox, restart_to_save};

@@ -9,7 +9,7 @@ use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, Telemetry};
 
 use super::{
-    FINGERS, FaultRecord, PowerStage, SampleError, Sampler, WindowWatchdog, save_dose,
+    FINGERS, PowerStage, SampleError, Sampler, TripCauseRecorder, WindowWatchdog, save_dose,
     stack_is_overrun,
 };
 
@@ -18,7 +18,7 @@ use super::{
 pub struct ControlLoop {
     pub sampler: Sampler,
     pub stages: [PowerStage; FINGERS],
-    pub fault_record: FaultRecord,
+    pub trip_cause_recorder: TripCauseRecorder,
     pub telemetry: Producer<'static, Addressed<Telemetry>>,
     pub window_watchdog: WindowWatchdog,
     /// Whether the 8 MHz clock of the debug probe ran at the start. Without this clock the tick has
@@ -64,8 +64,8 @@ impl ControlLoop {
         }
         let outputs = device.step(finger, &samples);
         // Scan all fingers only when one has tripped or a cause is stored.
-        if self.fault_record.has_stored_cause() || device.is_tripped(finger) {
-            self.fault_record
+        if self.trip_cause_recorder.has_stored_cause() || device.is_tripped(finger) {
+            self.trip_cause_recorder
                 .store_or_erase(device.earliest_trip_cause());
         }
         save_dose(finger, device.thermal_dose(finger));
@@ -87,7 +87,7 @@ impl ControlLoop {
         self.stages.iter_mut().for_each(PowerStage::off);
         self.sampler.stop();
         device.trip_all(error.fault());
-        self.fault_record
+        self.trip_cause_recorder
             .store_or_erase(device.earliest_trip_cause());
         defmt::error!("sampling stopped: {}", error);
     }

@@ -74,7 +74,7 @@ fn the_checks_find_what_the_image_is_known_to_have() {
         (HOST, "core::fmt::"),
         (HOST, "heapless::"),
         (HOST, "calibration_fit::fit"),
-        (TICK, "Station::detect_faults"),
+        (TICK, "Station::valid_readings_or_fault"),
     ];
     let inlined: Vec<String> = known
         .iter()

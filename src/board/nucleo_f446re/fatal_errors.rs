@@ -11,14 +11,14 @@ use cortex_m_rt::{ExceptionFrame, exception};
 
 use thermal_display::device::safety::{Fault, TripCause};
 
-use super::{fault_record, watchdog, wiring};
+use super::{trip_cause_recorder, watchdog, wiring};
 
 /// Disables interrupts, turns all bridges off, and stores `fault` in RAM, unless an earlier cause
 /// is stored there, as the cause by which the next start trips all fingers.
 fn turn_bridges_off_and_record(fault: Fault) {
     cortex_m::interrupt::disable();
     wiring::disable_bridges();
-    fault_record::store_cause_if_none(&TripCause::without_readings(fault));
+    trip_cause_recorder::store_cause_if_none(&TripCause::without_readings(fault));
 }
 
 /// Returns `true` at its first call only. The handlers log an error only then, because logging the

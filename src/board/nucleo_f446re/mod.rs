@@ -23,7 +23,6 @@
 
 mod clock_monitor;
 mod fatal_errors;
-mod fault_record;
 #[cfg(feature = "five-fingers")]
 mod five_fingers;
 mod flash;
@@ -37,6 +36,7 @@ mod saved_dose;
 mod serial;
 mod settings_storage;
 mod stack;
+mod trip_cause_recorder;
 mod watchdog;
 mod window_watchdog;
 
@@ -48,11 +48,10 @@ use stm32f4xx_hal::rcc::{Config, Rcc};
 use thermal_display::device::command::Addressed;
 use thermal_display::device::safety::{Fault, TripCause};
 use thermal_display::device::{Device, Finger, Telemetry};
-use thermal_display::mailbox::Mailbox;
+use thermal_display::line_queue::LineQueue;
 use thermal_display::protocol::{CommandHandler, Error, Reply, StorageFailureText};
 use thermal_display::settings::Settings;
 
-pub use fault_record::FaultRecord;
 #[cfg(feature = "five-fingers")]
 use five_fingers as wiring;
 #[cfg(not(feature = "five-fingers"))]
@@ -64,6 +63,7 @@ pub use serial::{CompletedLine, Outbox, Receiver, Transmitter};
 pub use settings_storage::restart_to_save;
 pub use stack::stack_is_overrun;
 pub use stm32f4xx_hal::pac;
+pub use trip_cause_recorder::TripCauseRecorder;
 pub use watchdog::Watchdog;
 pub use window_watchdog::WindowWatchdog;
 pub use wiring::{FINGERS, PowerStage};
@@ -83,7 +83,7 @@ pub struct StaticMemory {
     scans: [sampler::ScanBlock; sampler::BLOCK_COUNT],
     frames: [serial::FrameBuffer; serial::FRAME_COUNT],
     frame_queues: serial::FrameQueues,
-    mailbox: Mailbox,
+    line_queue: LineQueue,
     telemetry: Queue<Addressed<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
     // Created in place, because moving it while sampling runs would delay the first tick.
     handler: Option<CommandHandler<FINGERS>>,
@@ -96,7 +96,7 @@ impl StaticMemory {
             scans: [sampler::EMPTY_BLOCK; sampler::BLOCK_COUNT],
             frames: [const { serial::FrameBuffer::new() }; serial::FRAME_COUNT],
             frame_queues: serial::FrameQueues::new(),
-            mailbox: Mailbox::new(),
+            line_queue: LineQueue::new(),
             telemetry: Queue::new(),
             handler: None,
         }
@@ -115,15 +115,15 @@ fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
         saved_dose::clear_doses();
     }
     let mut cause =
-        fault_record::trip_cause_after_reset(reset, settings_storage::save_is_pending());
+        trip_cause_recorder::trip_cause_after_reset(reset, settings_storage::save_is_pending());
     // A fault that no tick has recorded is a consequence of the overrun. The first start of another
     // version of the firmware is excepted, because its predecessor may have used the words of the
     // guard.
     let is_consequence = |cause: TripCause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
     if stack_was_overrun && cause.is_some_and(is_consequence) {
-        fault_record::erase_stored_cause();
-        fault_record::store_cause_if_none(&TripCause::without_readings(Fault::Stack));
-        cause = fault_record::stored_cause();
+        trip_cause_recorder::erase_stored_trip_cause();
+        trip_cause_recorder::store_cause_if_none(&TripCause::without_readings(Fault::Stack));
+        cause = trip_cause_recorder::stored_cause();
     }
     // The flags are cleared last: if a reset intervenes, the next start still finds them.
     ResetCause::clear_flags(rcc);
@@ -192,7 +192,7 @@ impl Board {
         let device = restore_device(device, cause, &storage);
         // A fault of the settings is not stored, because every start finds it again until other
         // settings are stored.
-        let fault_record = FaultRecord::new(device.earliest_trip_cause().copied());
+        let trip_cause_recorder = TripCauseRecorder::new(device.earliest_trip_cause().copied());
 
         // Before the clocks are set up, because this watchdog has its own oscillator.
         let watchdog = Watchdog::start(peripherals.IWDG);
@@ -245,7 +245,7 @@ impl Board {
             (pins.into_power_stages(&mut rcc), multiplexer)
         };
 
-        let (line_producer, line_consumer) = memory.mailbox.split();
+        let (line_producer, line_consumer) = memory.line_queue.split();
         let (telemetry_in, telemetry_out) = memory.telemetry.split();
         let dma1 = StreamsTuple::new(peripherals.DMA1, &mut rcc);
         let (receiver, transmitter, outbox) = serial::set_up(
@@ -298,7 +298,7 @@ impl Board {
             control_loop: ControlLoop {
                 sampler,
                 stages,
-                fault_record,
+                trip_cause_recorder,
                 telemetry: telemetry_in,
                 window_watchdog: WindowWatchdog::start(peripherals.WWDG, &mut rcc),
                 has_clock,

@@ -6,7 +6,7 @@ use thermal_display::device::Finger;
 use thermal_display::device::safety::ThermalDose;
 
 use super::FINGERS;
-use super::fault_record::checksum_of_words;
+use super::trip_cause_recorder::checksum_of_words;
 
 /// Thermal dose of each finger, in 2^-8 ms at 43 °C, and its checksum. The start-up code does not
 /// initialise the section `.uninit`, so that a dose survives a reset.

@@ -19,7 +19,7 @@ use stm32f4xx_hal::serial::{Config, Rx, RxListen, Serial, Tx, config};
 use stm32f4xx_hal::{ClearFlags, ReadFlags, nb};
 use thermal_display::protocol::{ANSWER_MAX_BYTES, LineError, LineReader};
 
-use thermal_display::mailbox::LineProducer;
+use thermal_display::line_queue::LineProducer;
 
 /// Bits per second of the serial line in both directions. One telemetry line per millisecond does
 /// not fit into the usual 115 200. The clocks of both ends are exact multiples of this rate.
@@ -146,18 +146,18 @@ impl Transmitter {
 /// The kind of line that a received byte, a carriage return or line feed, has ended.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum CompletedLine {
-    /// A line with content, valid or not, which is now in the mailbox and waits for its answer.
+    /// A line with content, valid or not, which is now in the line_queue and waits for its answer.
     ToBeAnswered,
     /// A blank line, which has no answer but shows that the host is active.
     Blank,
 }
 
-/// Assembles the bytes that the host sends to lines and puts the lines into the mailbox, in the
+/// Assembles the bytes that the host sends to lines and puts the lines into the line_queue, in the
 /// interrupt of USART2.
 pub struct Receiver {
     rx: Rx<USART2>,
     reader: LineReader,
-    mailbox: LineProducer<'static>,
+    line_queue: LineProducer<'static>,
 }
 
 impl Receiver {
@@ -167,7 +167,7 @@ impl Receiver {
         match self.rx.read() {
             Ok(byte) => match self.reader.push(byte) {
                 Some(line) => {
-                    self.mailbox.enqueue(line);
+                    self.line_queue.enqueue(line);
                     Some(CompletedLine::ToBeAnswered)
                 }
                 None => LineReader::is_line_end(byte).then_some(CompletedLine::Blank),
@@ -190,7 +190,7 @@ pub fn set_up(
     stream: Stream6<DMA1>,
     buffers: &'static mut [FrameBuffer; FRAME_COUNT],
     queues: &'static mut FrameQueues,
-    mailbox: LineProducer<'static>,
+    line_queue: LineProducer<'static>,
     rcc: &mut Rcc,
 ) -> (Receiver, Transmitter, Outbox) {
     let config = Config::default()
@@ -216,7 +216,7 @@ pub fn set_up(
     let receiver = Receiver {
         rx,
         reader: LineReader::new(),
-        mailbox,
+        line_queue,
     };
     let transmitter = Transmitter {
         transfer,

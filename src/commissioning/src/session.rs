@@ -111,7 +111,7 @@ impl CommissioningSession {
                 return Ok(SessionReply::SettingsLines(SETTINGS_LINES));
             }
             SessionRequest::SettingsLine(index) => {
-                return Ok(SessionReply::Setting(self.settings_line(index)));
+                return Ok(SessionReply::Setting(self.setting_at_line_index(index)));
             }
         }
         Ok(SessionReply::Done)
@@ -250,7 +250,7 @@ impl CommissioningSession {
 
     /// The content of one line of the settings by its index, 0 to 7: two lines of converter steps, five corrections,
     /// the tile.
-    fn settings_line(&self, index: usize) -> Setting {
+    fn setting_at_line_index(&self, index: usize) -> Setting {
         let calibration = &self.settings.calibration;
         if let Some(steps) = calibration
             .steps_counts

@@ -26,7 +26,10 @@ pub fn skip_if_next_is(words: &mut Words<'_>, expected: &str) -> bool {
 }
 
 /// Finds the entry of a table whose first element is `word`; `None` if there is none.
-pub fn find_entry<T: Copy>(table: &[(&'static str, T)], word: &str) -> Option<(&'static str, T)> {
+pub fn find_entry_by_word<T: Copy>(
+    table: &[(&'static str, T)],
+    word: &str,
+) -> Option<(&'static str, T)> {
     table.iter().find(|(known, _)| *known == word).copied()
 }
 

@@ -13,7 +13,9 @@ use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
 use thermal_settings::{Range, Settings};
 
 use crate::Error;
-use crate::arguments::{Words, find_entry, read_number, read_numbers, read_word, skip_if_next_is};
+use crate::arguments::{
+    Words, find_entry_by_word, read_number, read_numbers, read_word, skip_if_next_is,
+};
 use crate::commissioning_commands::{parse_calibrate, parse_set, parse_settings};
 
 /// A line from the host after parsing: a command with its arguments, which are within their ranges.
@@ -181,12 +183,13 @@ fn parse_object(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
 
 fn parse_mode(words: &mut Words<'_>) -> Result<ContactModel, Error> {
     let name = read_word(words, "mode")?;
-    let (_, mode) = find_entry(&MODE_WORDS, name).ok_or(Error::UnknownMode(name.into()))?;
+    let (_, mode) = find_entry_by_word(&MODE_WORDS, name).ok_or(Error::UnknownMode(name.into()))?;
     Ok(mode)
 }
 
 fn parse_law(name: &str) -> Result<Law, Error> {
-    let (_, law) = find_entry(&Law::PROTOCOL_WORDS, name).ok_or(Error::UnknownLaw(name.into()))?;
+    let (_, law) =
+        find_entry_by_word(&Law::PROTOCOL_WORDS, name).ok_or(Error::UnknownLaw(name.into()))?;
     Ok(law)
 }
 
@@ -200,7 +203,7 @@ fn parse_material(words: &mut Words<'_>, display: &Surface) -> Result<Command, E
     let (name, material) = if name == CUSTOM_MATERIAL_WORD {
         (CUSTOM_MATERIAL_WORD, parse_custom_material(words)?)
     } else {
-        find_entry(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
+        find_entry_by_word(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
     };
     let pair = ContactPair::new(&SKIN, &material, display, 1.0 / f64::from(TICK_HZ))
         .map_err(Error::ContactPair)?;

@@ -25,7 +25,7 @@ static SETTINGS_LINE_NUMBER_RANGE: Range = Range {
     min: 1.0,
     max: SETTINGS_LINES as f64,
 };
-static BORDER_INDEX_RANGE: Range = Range {
+static CONVERTER_BORDER_INDEX_RANGE: Range = Range {
     name: "border",
     unit: "(whole)",
     min: FIRST_CALIBRATED_BORDER as f64,
@@ -72,7 +72,7 @@ pub fn parse_settings(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
 pub fn parse_set(words: &mut Words<'_>) -> Result<Setting, Error> {
     Ok(match read_word(words, "setting")? {
         "steps" => {
-            let first = read_whole_number(words, &BORDER_INDEX_RANGE)?;
+            let first = read_whole_number(words, &CONVERTER_BORDER_INDEX_RANGE)?;
             let room = CONVERTER_STEPS_PER_LINE
                 .min(FIRST_CALIBRATED_BORDER + CALIBRATED_BORDER_COUNT - first);
             let mut counts = heapless::Vec::new();

@@ -91,7 +91,7 @@ impl ThermistorDivider {
     #[must_use]
     pub fn temperature_c(&self, voltage: f64) -> f64 {
         let ohm = self.pull_up_ohm * voltage / (65536.0 - voltage);
-        let (a, b, c) = self.curve.steinhart_hart();
+        let (a, b, c) = self.curve.steinhart_hart_coefficients();
         let log = libm::log(ohm.clamp(1e-3, 1e12));
         let inverse = (a + b * log + c * log * log * log).clamp(1.0 / 573.0, 1.0 / 173.0);
         1.0 / inverse - 273.15
@@ -129,7 +129,7 @@ impl ThermistorCurve {
     /// Coefficients `a`, `b`, `c`, 1/K, of the Steinhart-Hart equation `1/T = a + b ln R + c (ln R)^3` of this
     /// thermistor, with `T` in K and `R` in ohm. The beta equation is the same with `c = 0`.
     #[must_use]
-    pub fn steinhart_hart(&self) -> (f64, f64, f64) {
+    pub fn steinhart_hart_coefficients(&self) -> (f64, f64, f64) {
         match *self {
             Self::Beta { r25_ohm, beta_k } => (
                 1.0 / 298.15 - libm::log(r25_ohm) / beta_k,

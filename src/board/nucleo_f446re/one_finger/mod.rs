@@ -34,9 +34,11 @@ pub const SAMPLE_TIME_CODE: u8 = 3;
 
 /// Takes the place of the multiplexers of the five-finger wiring, so that both wirings use the same
 /// sampler; one finger needs no multiplexer.
-pub struct Multiplexer;
+pub struct NoMultiplexer;
 
-impl Multiplexer {
+pub use NoMultiplexer as Multiplexer;
+
+impl NoMultiplexer {
     /// Number of scans to drop after each switch to another finger: none, because a single finger
     /// is never switched.
     pub const SETTLING_SCANS: usize = 0;

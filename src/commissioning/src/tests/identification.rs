@@ -98,7 +98,7 @@ impl Plant {
             }
             let touching = tick >= touched_from;
             let readings = self.readings(tick, measured);
-            let current = identification.choose_current(&mut equations, &readings, touching);
+            let current = identification.step(&mut equations, &readings, touching);
             measured = self.step(current.unwrap_or(Current::ZERO));
         }
         panic!("the identification did not end within 80 s");

@@ -9,11 +9,11 @@ use crate::pi::{PiCoefficients, UpdatePeriod};
 
 /// Largest residual of the plate's observer, K, that is permitted on a tile that has been identified. If a larger
 /// residual lasts for 30 ms, the station trips with the fault `unlike-model`.
-const IDENTIFIED_TILE_RESIDUAL_MAX: Celsius = Celsius::lit("3.75");
+const OBSERVER_RESIDUAL_MAX_IDENTIFIED_TILE: Celsius = Celsius::lit("3.75");
 /// Largest residual of the plate's observer, K, that is permitted before the tile has been identified. It is larger
 /// than the limit for an identified tile, because fast temperature changes of sound modules at the ends of their
 /// tolerances, with thermistors of 0.5 s lag, cause residuals of up to 7.3 K.
-const CLASS_TILE_RESIDUAL_MAX: Celsius = Celsius::lit("8");
+const OBSERVER_RESIDUAL_MAX_NOMINAL_TILE: Celsius = Celsius::lit("8");
 
 /// Gains and models of all control laws for one tile. They are converted from the settings in advance, so that the
 /// control tick needs no floating point.
@@ -43,9 +43,9 @@ impl ControlParameters {
                 sensor: Coefficient::from_time_constant_s(settings.tile.sensor_lag_s),
                 correction: pi,
                 largest_residual: if settings.tile == Tile::NOMINAL {
-                    CLASS_TILE_RESIDUAL_MAX
+                    OBSERVER_RESIDUAL_MAX_NOMINAL_TILE
                 } else {
-                    IDENTIFIED_TILE_RESIDUAL_MAX
+                    OBSERVER_RESIDUAL_MAX_IDENTIFIED_TILE
                 },
             },
         }

@@ -91,7 +91,7 @@ pub struct FingerContact {
     force: ForceMean,
     /// Whether the last tick's force was noise, showed a drift, or was a jump; `New` (a jump) at landing.
     change: ForceChange,
-    /// Whether the closed-form set-point of Eq. 6-12 is valid for the contact; see [`Self::has_closed_form`]. Once
+    /// Whether the closed-form set-point of Eq. 6-12 is valid for the contact; see [`Self::closed_form_is_valid`]. Once
     /// false, this stays false until the finger lifts.
     closed_form_applies: bool,
     /// Mean force of the contact, N, [`INITIAL_FORCE_STORED_AFTER_TICKS`] (64 ms) after landing; before that, the
@@ -162,7 +162,7 @@ impl FingerContact {
     /// `model`, the reference generator computes the set-point from the simulated skin on the object; with the other
     /// laws it uses the closed form in any case.
     #[must_use]
-    pub const fn has_closed_form(&self) -> bool {
+    pub const fn closed_form_is_valid(&self) -> bool {
         self.closed_form_applies
     }
 
@@ -217,7 +217,7 @@ pub struct FingerEstimator {
     contact: Option<FingerContact>,
     /// Thermal state of the skin. Its output is the cooling of the skin's surface, K, by the heat that the skin has
     /// given to the display: positive where the skin is colder than before contact. Decays to zero after lifting.
-    skin_cooling_on_display: HalfSpace,
+    skin_state_on_display: HalfSpace,
 }
 
 impl FingerEstimator {
@@ -280,16 +280,16 @@ impl FingerEstimator {
     /// The present contact (`None` while no finger touches), mutable because the reference generator chooses the force
     /// for which set-points are computed; and the thermal state of the skin, whose output is the cooling of the skin's
     /// surface by the display, K, positive where the skin is colder than before contact.
-    pub const fn contact_and_skin_cooling(&mut self) -> (Option<&mut FingerContact>, &HalfSpace) {
-        (self.contact.as_mut(), &self.skin_cooling_on_display)
+    pub const fn contact_and_skin_state(&mut self) -> (Option<&mut FingerContact>, &HalfSpace) {
+        (self.contact.as_mut(), &self.skin_state_on_display)
     }
 
     /// Thermal state of the skin on the display. Its output is the cooling of the skin's surface, K, by the contact
     /// with the display so far: positive where the skin is colder than before contact, negative where the display has
     /// warmed it. Decays to zero after lifting.
     #[must_use]
-    pub const fn skin_cooling_on_display(&self) -> &HalfSpace {
-        &self.skin_cooling_on_display
+    pub const fn skin_state_on_display(&self) -> &HalfSpace {
+        &self.skin_state_on_display
     }
 
     /// Discards the contact conductances of the present contact, if there is one, because the host presents another
@@ -309,7 +309,7 @@ impl FingerEstimator {
             return Watt::ZERO;
         };
         let Some(contact) = &mut self.contact else {
-            self.skin_cooling_on_display.step(Celsius::ZERO);
+            self.skin_state_on_display.step(Celsius::ZERO);
             return Watt::ZERO;
         };
         let force = contact.force.mean();
@@ -319,8 +319,8 @@ impl FingerEstimator {
         };
         let scaled_flux = conductances
             .display
-            .scaled_flux(skin.saturating_sub(surface), &self.skin_cooling_on_display);
-        self.skin_cooling_on_display.step(scaled_flux);
+            .scaled_flux(skin.saturating_sub(surface), &self.skin_state_on_display);
+        self.skin_state_on_display.step(scaled_flux);
         let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
         saturating_product(flux_w_mm2, contact_area(force))
     }

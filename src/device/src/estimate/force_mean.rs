@@ -28,7 +28,7 @@ const LONG_MEAN_FRACTION_SHIFT: u32 = 2;
 const LONG_MEAN_MAX_TICKS: u32 = 4096;
 /// Fewest ticks of 1 ms since the last jump of the force after which a better mean may cause new set-points. A mean of
 /// fewer ticks is hardly more accurate than the force of the single tick with which it began.
-const MIN_TICKS_FOR_NEW_SETPOINT: u32 = 16;
+const MIN_TICKS_SINCE_JUMP_FOR_NEW_SETPOINT: u32 = 16;
 
 /// Threshold for the difference between a force and a force of comparison: a fraction of the force of comparison, but
 /// at least a constant.
@@ -115,7 +115,7 @@ impl ForceMean {
     /// the 16384th on. A drift sets the count back to 64.
     #[must_use]
     pub const fn has_doubled_sample_count(&self) -> bool {
-        self.ticks >= MIN_TICKS_FOR_NEW_SETPOINT && self.ticks.is_power_of_two()
+        self.ticks >= MIN_TICKS_SINCE_JUMP_FOR_NEW_SETPOINT && self.ticks.is_power_of_two()
     }
 
     /// Adds the force of one tick, N, to the running means, or starts them again if the force has jumped. Returns

@@ -34,7 +34,7 @@ type ModelTemperature = I12F20;
 /// steady state, K/W, per watt of heat pumped out of the plate (which cools), of Joule heat in the legs, and of heat
 /// from the finger, in this order.
 #[derive(Clone, Copy)]
-struct RelaxationParameters {
+struct FirstOrderLagParameters {
     time_constant_s: f64,
     gains_k_w: [f64; 3],
 }
@@ -46,8 +46,8 @@ const fn relaxation_parameters(
     pumped: f64,
     joule: f64,
     finger: f64,
-) -> RelaxationParameters {
-    RelaxationParameters {
+) -> FirstOrderLagParameters {
+    FirstOrderLagParameters {
         time_constant_s,
         gains_k_w: [pumped, joule, finger],
     }
@@ -59,7 +59,7 @@ const RELAXATION_COUNT: usize = 5;
 /// Relaxations of the class module (the nominal module), slowest first: the plate relative to the sink, the patch under
 /// the finger relative to the rest of the plate, the legs, the hot plate, and the temperature difference across the
 /// thickness of the ceramic. Without heat flow the first decays to the sink's temperature, the others to zero.
-const CLASS_RELAXATIONS: [RelaxationParameters; RELAXATION_COUNT] = [
+const CLASS_RELAXATIONS: [FirstOrderLagParameters; RELAXATION_COUNT] = [
     relaxation_parameters(10.241_19, 3.540_82, 1.813_82, 3.555_85),
     relaxation_parameters(2.361_25, 0.0, 0.0, 3.203_31),
     relaxation_parameters(0.186_38, 0.002_51, -0.029_89, 0.018_41),
@@ -165,10 +165,14 @@ impl TileToClassRatios {
     /// Scales a relaxation of the class tile to the identified tile. With `slowest`, which marks the relaxation towards
     /// the sink, a faster leak divides time constant and steady-state gains by the same ratio, so the initial rate of
     /// change per watt does not depend on the leak.
-    fn scale_relaxation(&self, slowest: bool, class: RelaxationParameters) -> RelaxationParameters {
+    fn scale_relaxation(
+        &self,
+        slowest: bool,
+        class: FirstOrderLagParameters,
+    ) -> FirstOrderLagParameters {
         let leak = if slowest { self.leak } else { 1.0 };
         let [pumped, joule, finger] = class.gains_k_w;
-        RelaxationParameters {
+        FirstOrderLagParameters {
             time_constant_s: class.time_constant_s / leak,
             gains_k_w: [
                 pumped * self.pumped / leak,
@@ -232,12 +236,12 @@ pub struct PlateInputs {
 /// Resistance or Seebeck coefficient of the legs as a linear function of their mean temperature: value at the data
 /// sheet's 27 °C, and rise per kelvin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct LegProperty<Value> {
+struct LinearInLegTemperature<Value> {
     value: Value,
     rise_per_k: Value,
 }
 
-impl<Frac: LeEqU32> LegProperty<FixedI32<Frac>> {
+impl<Frac: LeEqU32> LinearInLegTemperature<FixedI32<Frac>> {
     fn new(value: f64, rise_per_k: f64) -> Self {
         Self {
             value: rounded_fixed_point(value),
@@ -295,10 +299,10 @@ pub struct PlateModel {
     hot: Celsius,
     surface: Celsius,
     /// Seebeck coefficient of the whole module, V/K, as a function of the legs' mean temperature.
-    seebeck: LegProperty<I1F31>,
+    seebeck: LinearInLegTemperature<I1F31>,
     /// Electrical resistance of the semiconductor legs without leads and bridge, ohm, as a function of the legs' mean
     /// temperature.
-    resistance: LegProperty<I8F24>,
+    resistance: LinearInLegTemperature<I8F24>,
     /// Additional current, A (positive cools), that lowers the surface temperature by 1 K after the control horizon of
     /// 12 ms. Computed for legs and surface at 27 °C (300 K).
     current_per_kelvin: I20F12,
@@ -333,7 +337,7 @@ impl PlateModel {
         let [pumped_k_w, ..] = horizon_gains;
         Self {
             relaxations: relaxations.map(|relaxation| {
-                let RelaxationParameters {
+                let FirstOrderLagParameters {
                     time_constant_s,
                     gains_k_w,
                 } = relaxation;
@@ -356,8 +360,8 @@ impl PlateModel {
             )),
             hot: DATA_SHEET_TEMPERATURE,
             surface: DATA_SHEET_TEMPERATURE,
-            seebeck: LegProperty::new(module.seebeck_v_k, SEEBECK_RISE_PER_K),
-            resistance: LegProperty::new(module.legs_ohm, RESISTIVITY_RISE_PER_K),
+            seebeck: LinearInLegTemperature::new(module.seebeck_v_k, SEEBECK_RISE_PER_K),
+            resistance: LinearInLegTemperature::new(module.legs_ohm, RESISTIVITY_RISE_PER_K),
             current_per_kelvin: rounded_fixed_point(
                 1.0 / (pumped_k_w * module.seebeck_v_k * 300.0),
             ),

@@ -240,7 +240,7 @@ impl Identification {
     /// Runs one tick of the identification: returns the current to demand in this tick, A (positive cools), and during
     /// the pulses adds the tick to `equations`, which must be empty at the start. `None` once the identification has
     /// ended early; only the tick in which the time to settle runs out still returns a current.
-    pub fn choose_current(
+    pub fn step(
         &mut self,
         equations: &mut NormalEquations,
         readings: &ValidReadings,

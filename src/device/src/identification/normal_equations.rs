@@ -37,7 +37,7 @@ const FILTER_FRACTION_BITS: u32 = 15;
 
 /// Ticks of 1 ms from one equation of the least-squares fit to the next. Each equation adds the products of its
 /// regressors and its regressand to the normal equations; the pulses give 1010 equations.
-const TICKS_PER_EQUATION: u32 = 8;
+const EQUATION_INTERVAL_TICKS: u32 = 8;
 /// Unit of time of the integrals in the equations, as a power of two of ticks of 1 ms: 2^11 ticks, 2.048 s. In this
 /// unit the regressors stay within ±16 (in K, or in A), the limit that keeps the sums within 64 bits.
 pub const TIME_UNIT_TICKS_LOG2: u32 = 11;
@@ -49,7 +49,7 @@ const CURRENT_FRACTION_BITS: u32 = 24;
 /// which larger values are clamped. Currents within their limits do not reach it. The product of two values is below
 /// 2^52, so the sums over all 1010 equations stay below 2^62.
 const REGRESSOR_MAX: i64 = (1 << (REGRESSOR_FRACTION_BITS + 4)) - 1;
-const _: () = assert!(EXCITATION_TICKS / TICKS_PER_EQUATION <= 1 << 10);
+const _: () = assert!(EXCITATION_TICKS / EQUATION_INTERVAL_TICKS <= 1 << 10);
 
 /// Index of a sum in the last row of the [normal equations](NormalEquationRow), which contains sums other than products
 /// of regressors. Its currents are magnitudes.
@@ -178,7 +178,7 @@ impl NormalEquations {
             JOULE_HEAT_FILTER_COEFFICIENT,
         ));
         self.reading.add(reading);
-        if self.ticks.is_multiple_of(TICKS_PER_EQUATION) {
+        if self.ticks.is_multiple_of(EQUATION_INTERVAL_TICKS) {
             self.add_equation(reading);
         }
     }

@@ -97,7 +97,7 @@ impl Reference {
 /// One contact of a finger with the presented object: its time, and the interpolation of its set-points. It begins when
 /// the finger lands, or when an object is presented or exchanged while a finger rests on the display.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct ObjectContact {
+struct ContactSetpoints {
     /// Ticks of 1 ms since this contact with the object began: the time of Eq. 6-12.
     elapsed: u64,
     /// Forces, N, for which the set-points of the present interpolation are right within 0.1 mK. While the mean force
@@ -116,7 +116,7 @@ struct ObjectContact {
     conductances_ready: bool,
 }
 
-impl ObjectContact {
+impl ContactSetpoints {
     /// A contact with the object in its first tick. Its time counts from the landing if the finger's force is new in
     /// this tick, as it is at landing; else from this tick, as when the object is exchanged under a resting finger.
     fn begin_contact(finger: &FingerContact) -> Self {
@@ -216,7 +216,7 @@ pub struct ReferenceGenerator {
     factors: ContactPairFactors,
     /// The present contact with the object. `None` while no finger touches, in the semi-infinite model, and, after a
     /// change of the object or invalid readings, until the next tick.
-    contact: Option<ObjectContact>,
+    contact: Option<ContactSetpoints>,
     /// Number of evaluations of `erfcx`, the costly function in Eq. 6-12, since start-up; wraps at 2^32. For the
     /// telemetry.
     evaluations: u32,
@@ -256,7 +256,7 @@ impl ReferenceGenerator {
     pub fn restart_contact(&mut self, finger: &mut FingerEstimator) {
         self.contact = None;
         self.skin_on_object
-            .restart_contact(finger.skin_cooling_on_display());
+            .restart_contact(finger.skin_state_on_display());
         finger.forget_conductances();
     }
 
@@ -294,7 +294,7 @@ impl ReferenceGenerator {
             self.factors = ContactPairFactors::new(scene.pair);
         }
         let factors = &self.factors;
-        let (contact, skin_cooling_on_display) = finger.contact_and_skin_cooling();
+        let (contact, skin_state_on_display) = finger.contact_and_skin_state();
         let Some(finger) = contact else {
             self.contact = None;
             self.skin_on_object.step(None, factors, skin_above_object);
@@ -305,7 +305,7 @@ impl ReferenceGenerator {
                 factors,
                 skin,
                 skin_above_object,
-                Some(skin_cooling_on_display),
+                Some(skin_state_on_display),
             );
             return Some(Reference::new(
                 setpoint,
@@ -323,12 +323,12 @@ impl ReferenceGenerator {
                 {
                     finger.exclude_closed_form();
                 }
-                none.insert(ObjectContact::begin_contact(finger))
+                none.insert(ContactSetpoints::begin_contact(finger))
             }
         };
         let conductance = finger.conductances().map(|both| &both.object);
         (self.skin_on_object).step(conductance, factors, skin_above_object);
-        let closed_form = finger.has_closed_form() || !follow_skin;
+        let closed_form = finger.closed_form_is_valid() || !follow_skin;
         contact.schedule_interpolation(finger, scene.pair, closed_form, follow_skin);
         let interpolated = contact.interpolated_setpoint(
             finger,
@@ -341,7 +341,7 @@ impl ReferenceGenerator {
         });
         let correction = match finger.conductances() {
             Some(both) if follow_skin => {
-                (self.skin_on_object).setpoint_correction(skin_cooling_on_display, &both.display)
+                (self.skin_on_object).setpoint_correction(skin_state_on_display, &both.display)
             }
             _ => Celsius::ZERO,
         };

@@ -61,9 +61,9 @@ pub struct SkinOnObject {
 
 impl SkinOnObject {
     /// Starts a contact with an object at its initial temperature. The simulated skin starts with the cooling that the
-    /// display has caused in the real skin, `skin_cooling_on_display`.
-    pub fn restart_contact(&mut self, skin_cooling_on_display: &HalfSpace) {
-        self.cooling = skin_cooling_on_display.staggered();
+    /// display has caused in the real skin, `skin_state_on_display`.
+    pub fn restart_contact(&mut self, skin_state_on_display: &HalfSpace) {
+        self.cooling = skin_state_on_display.staggered();
         self.scaled_flux = Celsius::ZERO;
     }
 
@@ -84,7 +84,7 @@ impl SkinOnObject {
     }
 
     /// The set-point by Eq. 6-12, °C: the temperature of the simulated skin's surface, less the temperature drop that
-    /// the simulated heat flow would cause across the display's contact. While no finger touches, `skin_cooling_on_display`
+    /// the simulated heat flow would cause across the display's contact. While no finger touches, `skin_state_on_display`
     /// must be given, and the real skin's temperature takes the place of the simulated one, because the real skin is
     /// the one that lands next; `None` during contact. `skin_above_object` is as for [`Self::step`].
     #[must_use]
@@ -93,7 +93,7 @@ impl SkinOnObject {
         factors: &ContactPairFactors,
         skin_before_contact: Celsius,
         skin_above_object: Celsius,
-        skin_cooling_on_display: Option<&HalfSpace>,
+        skin_state_on_display: Option<&HalfSpace>,
     ) -> Celsius {
         let cooling = self.cooling.response_to(self.scaled_flux);
         // Temperature steps in 2^-22 K; the product has 38 places and up to 63 bits.
@@ -106,7 +106,7 @@ impl SkinOnObject {
         let step_at_display = (i64::from(step_at_object.to_bits())
             * i64::from(factors.ratio.to_bits()))
             >> Ratio::FRAC_NBITS;
-        let skin_cooling = skin_cooling_on_display.map_or(cooling, HalfSpace::free_response);
+        let skin_cooling = skin_state_on_display.map_or(cooling, HalfSpace::free_response);
         saturating_celsius_from_bits(
             i64::from(skin_before_contact.to_bits())
                 - i64::from(skin_cooling.to_bits())
@@ -120,10 +120,10 @@ impl SkinOnObject {
     #[must_use]
     pub fn setpoint_correction(
         &self,
-        skin_cooling_on_display: &HalfSpace,
+        skin_state_on_display: &HalfSpace,
         display: &ContactConductance,
     ) -> Celsius {
-        let scaled_flux = skin_cooling_on_display.scaled_flux_to_match(&self.cooling);
+        let scaled_flux = skin_state_on_display.scaled_flux_to_match(&self.cooling);
         display.temperature_drop(scaled_flux).saturating_neg()
     }
 }

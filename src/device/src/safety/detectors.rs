@@ -7,7 +7,7 @@ use super::debounce::DebounceCounter;
 use super::frozen::FrozenDetector;
 use super::jump::JumpDetector;
 use super::thermal_dose::ThermalDose;
-use super::validity::ValidReadings;
+use super::validate_readings::ValidReadings;
 use super::wrong_way::WrongWayDetector;
 use super::{Fault, Setpoint};
 use crate::drive::Current;
@@ -115,7 +115,7 @@ impl FaultDetectors {
     /// # Errors
     /// The first fault in this order: jump, display thermistors apart, current high or low, wrong direction, unlike
     /// model, room above skin, silent host. All these detectors count the tick, even when an earlier one has a fault.
-    pub fn check_readings(
+    pub fn run_multi_tick_detectors(
         &mut self,
         readings: &ValidReadings,
         previous: &PreviousActuation,

@@ -5,7 +5,7 @@ use core::mem;
 use contact_model::fixed_point::Celsius;
 
 use super::Fault;
-use super::validity::ValidReadings;
+use super::validate_readings::ValidReadings;
 
 /// Number of ticks of 1 ms between the two readings that are compared to detect a jump.
 const JUMP_INTERVAL_TICKS: usize = 4;

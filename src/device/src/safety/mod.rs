@@ -52,7 +52,7 @@ mod setpoint;
 mod thermal_dose;
 mod tick_rate;
 mod trip_cause;
-mod validity;
+mod validate_readings;
 mod wrong_way;
 
 pub use detectors::{FaultDetectors, PreviousActuation};
@@ -63,4 +63,4 @@ pub use setpoint::Setpoint;
 pub use thermal_dose::ThermalDose;
 pub use tick_rate::TickRateMonitor;
 pub use trip_cause::TripCause;
-pub use validity::{ValidReadings, validate_readings};
+pub use validate_readings::{ValidReadings, validate_readings};

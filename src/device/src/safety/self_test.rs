@@ -19,7 +19,7 @@ use core::ops::RangeInclusive;
 use contact_model::fixed_point::Celsius;
 
 use super::Fault;
-use super::validity::ValidReadings;
+use super::validate_readings::ValidReadings;
 use crate::drive::Current;
 
 /// Length of each half of the self-test's baseline, in ticks of 1 ms. In the baseline the bridge is off; the straight
@@ -51,10 +51,10 @@ const COMPARATOR_DELAY_MAX_TICKS: u16 = 10;
 const PULSE_CURRENT: Current = Current::ONE;
 /// Smallest mean of the measured current over the second half of a self-test pulse of 1 A, A; a smaller mean trips the
 /// station by [`Fault::CurrentLow`].
-const MEASURED_CURRENT_MIN: Current = Current::lit("0.4");
+const PULSE_MEAN_CURRENT_MIN: Current = Current::lit("0.4");
 /// Largest mean of the measured current over the second half of a self-test pulse of 1 A, A; a larger mean trips the
 /// station by [`Fault::CurrentHigh`].
-const MEASURED_CURRENT_MAX: Current = Current::lit("2");
+const PULSE_MEAN_CURRENT_MAX: Current = Current::lit("2");
 /// Smallest fall of each display thermistor's reading, K, 0.2 s after the end of the self-test's cooling pulse; a
 /// smaller one trips the station by [`Fault::NoResponse`]. A typical display falls by 0.54 K; a thermistor with a lag
 /// of 0.5 s shows only a third of that by then, and a resting finger reduces the fall by a similar factor.
@@ -220,9 +220,9 @@ impl SelfTest {
     /// pulse, and resets the sum of the measured current to zero for the next pulse.
     fn check_pulse_current(&mut self) -> Result<(), Fault> {
         let mean = mem::take(&mut self.current_sum) / i64::from(PULSE_TICKS / 2);
-        if mean < i64::from(MEASURED_CURRENT_MIN.to_bits()) {
+        if mean < i64::from(PULSE_MEAN_CURRENT_MIN.to_bits()) {
             Err(Fault::CurrentLow)
-        } else if mean > i64::from(MEASURED_CURRENT_MAX.to_bits()) {
+        } else if mean > i64::from(PULSE_MEAN_CURRENT_MAX.to_bits()) {
             Err(Fault::CurrentHigh)
         } else {
             Ok(())

@@ -153,7 +153,7 @@ impl Station {
     pub fn step(&mut self, samples: &Samples) -> BoardOutputs {
         self.tick = self.tick.wrapping_add(1);
         let readings = self.read_sensors(samples);
-        let valid = self.detect_faults(samples, &readings);
+        let valid = self.valid_readings_or_fault(samples, &readings);
         let (demand, reference) = match valid {
             Ok(valid) => {
                 let estimate = self.update_estimates(samples, &valid);
@@ -198,7 +198,7 @@ impl Station {
     /// The first fault in this order: sensor faults and limits that a single tick shows, bridge fault line, detectors
     /// that count over several ticks, thermal dose, frozen samples.
     #[inline(never)]
-    fn detect_faults(
+    fn valid_readings_or_fault(
         &mut self,
         samples: &Samples,
         readings: &Readings,
@@ -215,7 +215,8 @@ impl Station {
         let over_ticks = match &valid {
             Ok(valid) => {
                 let streams = self.telemetry_ticks != 0;
-                self.detectors.check_readings(valid, &previous, streams)
+                self.detectors
+                    .run_multi_tick_detectors(valid, &previous, streams)
             }
             Err(_) => {
                 self.detectors.restart_motion_detectors();
@@ -349,7 +350,7 @@ impl Station {
             return None;
         };
         let touching = self.contact.touching();
-        let current = tile.choose_current(&mut self.identified.equations, valid, touching);
+        let current = tile.step(&mut self.identified.equations, valid, touching);
         self.identified.outcome = tile.outcome();
         if let Some(Err(_)) = self.identified.outcome {
             self.state = State::Armed(ArmedTask::Neutral);

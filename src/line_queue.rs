@@ -20,26 +20,26 @@ type ReceivedLine = Result<Line, LineError>;
 /// The queue of lines that were received and wait for their answers. [`split`](Self::split) divides
 /// it into a writing end for the receiving interrupt and a reading end for the answering task.
 #[derive(Default)]
-pub struct Mailbox {
+pub struct LineQueue {
     // The queue always keeps one slot free, to distinguish full from empty.
     lines: Queue<ReceivedLine, { QUEUE_CAPACITY + 1 }>,
     refused: AtomicU32,
 }
 
-/// The writing end of a [`Mailbox`], for the interrupt that receives lines from the host.
+/// The writing end of a [`LineQueue`], for the interrupt that receives lines from the host.
 pub struct LineProducer<'a> {
     lines: Producer<'a, ReceivedLine>,
     refused: &'a AtomicU32,
 }
 
-/// The reading end of a [`Mailbox`], for the task that answers the lines.
+/// The reading end of a [`LineQueue`], for the task that answers the lines.
 pub struct LineConsumer<'a> {
     lines: Consumer<'a, ReceivedLine>,
     refused: &'a AtomicU32,
 }
 
-impl Mailbox {
-    /// Creates a mailbox in which no line waits.
+impl LineQueue {
+    /// Creates a line_queue in which no line waits.
     pub const fn new() -> Self {
         Self {
             lines: Queue::new(),
@@ -47,7 +47,7 @@ impl Mailbox {
         }
     }
 
-    /// Divides the mailbox into its writing end, for the receiving interrupt, and its reading end,
+    /// Divides the line_queue into its writing end, for the receiving interrupt, and its reading end,
     /// for the answering task.
     pub fn split(&mut self) -> (LineProducer<'_>, LineConsumer<'_>) {
         let (producer, consumer) = self.lines.split();

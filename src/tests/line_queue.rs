@@ -1,13 +1,13 @@
-//! The mailbox yields one answer for each line, in the order of the lines, also when it overflows.
+//! The line_queue yields one answer for each line, in the order of the lines, also when it overflows.
 
 use std::format;
 use std::vec::Vec;
 
-use crate::mailbox::{self, Mailbox, QUEUE_CAPACITY};
+use crate::line_queue::{self, LineQueue, QUEUE_CAPACITY};
 use crate::protocol::{Line, LineError};
 
-/// Puts a numbered line into the mailbox and appends it to `sent`.
-fn put(inlet: &mut mailbox::LineProducer<'_>, sent: &mut Vec<Line>) {
+/// Puts a numbered line into the line_queue and appends it to `sent`.
+fn put(inlet: &mut line_queue::LineProducer<'_>, sent: &mut Vec<Line>) {
     let line = Line::try_from(format!("line {}", sent.len()).as_str()).expect("short");
     sent.push(line.clone());
     inlet.enqueue(Ok(line));
@@ -15,8 +15,8 @@ fn put(inlet: &mut mailbox::LineProducer<'_>, sent: &mut Vec<Line>) {
 
 #[test]
 fn lines_beyond_the_depth_are_taken_as_refused() {
-    let mut mailbox = Mailbox::new();
-    let (mut inlet, mut outlet) = mailbox.split();
+    let mut line_queue = LineQueue::new();
+    let (mut inlet, mut outlet) = line_queue.split();
     let mut sent = Vec::new();
     for _ in 0..QUEUE_CAPACITY + 3 {
         put(&mut inlet, &mut sent);
@@ -34,8 +34,8 @@ fn lines_beyond_the_depth_are_taken_as_refused() {
 #[test]
 fn lines_are_taken_in_the_order_in_which_they_were_put() {
     for sequence in 0..1u32 << 18 {
-        let mut mailbox = Mailbox::new();
-        let (mut inlet, mut outlet) = mailbox.split();
+        let mut line_queue = LineQueue::new();
+        let (mut inlet, mut outlet) = line_queue.split();
         let (mut sent, mut answered) = (Vec::new(), Vec::new());
         for step in 0..18 {
             if sequence >> step & 1 == 1 {

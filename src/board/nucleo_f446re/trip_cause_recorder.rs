@@ -55,7 +55,7 @@ pub fn store_cause_if_none(cause: &TripCause) {
 }
 
 /// Erases the stored cause by making its checksum invalid.
-pub fn erase_stored_cause() {
+pub fn erase_stored_trip_cause() {
     let [.., sum] = &STORED_CAUSE;
     sum.fetch_xor(CHECKSUM_INITIAL_VALUE, Ordering::Relaxed);
     // The words may have been invalid before, and valid with the changed checksum.
@@ -71,7 +71,7 @@ pub fn erase_stored_cause() {
 pub fn trip_cause_after_reset(reset: ResetCause, restart_is_planned: bool) -> Option<TripCause> {
     if reset == ResetCause::PowerOn {
         // The content of the RAM is arbitrary.
-        erase_stored_cause();
+        erase_stored_trip_cause();
     }
     if let Some(fault) = reset.indicated_fault(restart_is_planned) {
         store_cause_if_none(&TripCause::without_readings(fault));
@@ -81,11 +81,11 @@ pub fn trip_cause_after_reset(reset: ResetCause, restart_is_planned: bool) -> Op
 
 /// Keeps the stored trip cause up to date while the program runs: stores the cause when a finger
 /// trips, and erases it when no finger is tripped any more.
-pub struct FaultRecord {
+pub struct TripCauseRecorder {
     stored: Option<TripCause>,
 }
 
-impl FaultRecord {
+impl TripCauseRecorder {
     /// Creates the record. `stored` is the cause by which the device is tripped at the start,
     /// `None` if it is not tripped. This cause counts as stored: only a later, different one is
     /// written to RAM.
@@ -106,7 +106,7 @@ impl FaultRecord {
             return;
         }
         // The stored cause has been cleared, even if another fault has tripped since.
-        erase_stored_cause();
+        erase_stored_trip_cause();
         if let Some(cause) = earliest {
             store_cause_if_none(cause);
         }
