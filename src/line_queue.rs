@@ -39,7 +39,7 @@ pub struct LineConsumer<'a> {
 }
 
 impl LineQueue {
-    /// Creates a line_queue in which no line waits.
+    /// Creates a queue in which no line waits.
     pub const fn new() -> Self {
         Self {
             lines: Queue::new(),
@@ -47,7 +47,7 @@ impl LineQueue {
         }
     }
 
-    /// Divides the line_queue into its writing end, for the receiving interrupt, and its reading end,
+    /// Divides the queue into its writing end, for the receiving interrupt, and its reading end,
     /// for the answering task.
     pub fn split(&mut self) -> (LineProducer<'_>, LineConsumer<'_>) {
         let (producer, consumer) = self.lines.split();
@@ -66,8 +66,10 @@ impl LineQueue {
 }
 
 impl LineProducer<'_> {
-    /// Appends a line to the queue. If the queue is full, or lines that were refused before still
-    /// wait for their error answers, the line is dropped and only counted as refused.
+    /// Appends a line from the host to the queue. If the queue is full, the line is refused: it is
+    /// dropped and counted, and [`LineConsumer::dequeue`] returns [`LineError::QueueFull`] in its
+    /// place. All further lines are also refused until every refused line has its error answer, so
+    /// that the answers keep the order of the lines.
     pub fn enqueue(&mut self, line: ReceivedLine) {
         if self.refused.load(Ordering::Acquire) > 0 || self.lines.enqueue(line).is_err() {
             self.refused.fetch_add(1, Ordering::Release);

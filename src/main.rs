@@ -28,8 +28,8 @@ mod app {
     use thermal_display::task_liveness::{HostTaskTimer, Task, TaskLiveness};
 
     use crate::board::{
-        Board, CompletedLine, Console, ControlLoop, FINGERS, Receiver, SampleError, SampleTrigger,
-        StaticMemory, Transmitter, Watchdog,
+        Board, CompletedLineKind, Console, ControlLoop, FINGERS, IndependentWatchdog, Receiver,
+        SampleError, SampleTrigger, StaticMemory, Transmitter,
     };
 
     #[shared]
@@ -39,7 +39,8 @@ mod app {
         control_loop: ControlLoop,
         task_liveness: TaskLiveness,
         /// Set when the host has sent a line, even a blank one. The next control tick clears it and
-        /// restarts the 2 s after which a silent host trips a finger whose telemetry streams.
+        /// restarts the 2 s after which a silent host trips a finger whose display follows a
+        /// set-point while its telemetry streams.
         host_is_active: AtomicBool,
     }
 
@@ -48,7 +49,7 @@ mod app {
         receiver: Receiver,
         transmitter: Transmitter,
         console: Console,
-        watchdog: Watchdog,
+        watchdog: IndependentWatchdog,
         trigger: SampleTrigger,
     }
 
@@ -59,7 +60,7 @@ mod app {
         device: Option<Device<FINGERS>> = None
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let board = Board::start(cx.core.SYST, cx.device, cx.local.memory, cx.local.device);
+        let board = Board::set_up(cx.core.SYST, cx.device, cx.local.memory, cx.local.device);
         let shared = Shared {
             device: board.device,
             control_loop: board.control_loop,
@@ -122,11 +123,11 @@ mod app {
 
     #[task(binds = USART2, priority = 4, shared = [&host_is_active], local = [receiver])]
     fn receive(cx: receive::Context) {
-        let Some(completed) = cx.local.receiver.receive() else {
+        let Some(completed) = cx.local.receiver.receive_byte() else {
             return;
         };
         cx.shared.host_is_active.store(true, Ordering::Relaxed);
-        if completed == CompletedLine::ToBeAnswered {
+        if completed == CompletedLineKind::ToBeAnswered {
             let _ = host::spawn();
         }
     }

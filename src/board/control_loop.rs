@@ -21,19 +21,24 @@ pub struct ControlLoop {
     pub trip_cause_recorder: TripCauseRecorder,
     pub telemetry: Producer<'static, Addressed<Telemetry>>,
     pub window_watchdog: WindowWatchdog,
-    /// Whether the 8 MHz clock of the debug probe ran at the start. Without this clock the tick has
-    /// no accurate period, so every tick trips all fingers by [`Fault::Clock`].
+    /// Whether the 8 MHz clock of the debug probe was stable at the start. If not, the ticks come
+    /// from the internal oscillator, whose tolerance of 1 % makes their period inaccurate, so every
+    /// tick trips all fingers by [`Fault::Clock`].
     pub has_clock: bool,
 }
 
 impl ControlLoop {
     /// Runs one control tick of the finger whose samples are complete: computes the outputs, drives
     /// the finger's bridge, saves its thermal dose, and queues its telemetry if that is due. If the
-    /// telemetry queue is full, this telemetry is lost. Called once a millisecond for each finger.
+    /// telemetry queue is full, this telemetry is lost. Also feeds the window watchdog and keeps
+    /// the stored trip cause up to date. Called once a millisecond for each finger.
     ///
-    /// `host_is_active` is true if the host has sent a line since the last tick; it is read and
-    /// cleared. Returns whether telemetry was due, so that the caller starts the host task, which
-    /// sends it.
+    /// `host_is_active` is true if the host has sent a line since the control tick before. It is
+    /// read and cleared; a true value restarts, for all fingers, the 2 s after which
+    /// [`Fault::HostSilent`] trips a finger whose display follows a set-point while its telemetry
+    /// streams.
+    ///
+    /// Returns whether telemetry was due, so that the caller starts the host task, which sends it.
     ///
     /// # Errors
     /// [`SampleError`] if there are no valid samples; the control loop has then
@@ -43,7 +48,7 @@ impl ControlLoop {
         device: &mut Device<FINGERS>,
         host_is_active: &AtomicBool,
     ) -> Result<bool, SampleError> {
-        let (finger, scans) = match self.sampler.take_block() {
+        let (finger, scans) = match self.sampler.take_block_and_select_next_finger() {
             Ok(block) => block,
             Err(error) => {
                 self.stop(device, error);
@@ -80,9 +85,9 @@ impl ControlLoop {
         Ok(is_due)
     }
 
-    /// Turns all bridges off, stops sampling until the next reset, and trips all fingers by the
-    /// fault of `error`, which is stored for the next start. The watchdogs then reset the device,
-    /// because no tick runs any more.
+    /// Turns all bridges off, stops sampling until the next reset, trips all fingers by the fault
+    /// of `error`, and stores the earliest trip cause of all fingers for the next start. The
+    /// watchdogs then reset the device, because no tick runs any more.
     pub fn stop(&mut self, device: &mut Device<FINGERS>, error: SampleError) {
         self.stages.iter_mut().for_each(PowerStage::off);
         self.sampler.stop();

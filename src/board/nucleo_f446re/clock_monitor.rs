@@ -24,10 +24,12 @@ use super::wiring::FINGERS;
 const SYSTICK_RELOAD: u32 = 0xff_ffff;
 
 /// Checks in every tick, with the counter SysTick, that the ticks come at the right rate, and that
-/// the clock settings are still those of the start. An error stops control.
+/// the clock settings are still those of the start. An error turns all bridges off and stops
+/// sampling.
 pub struct ClockMonitor {
     tick_rate: TickRateMonitor,
-    /// Value of the register RCC_CFGR when the monitor was created; it must not change afterwards.
+    /// Value of the register RCC_CFGR when the monitor was created. If the register changes
+    /// afterwards, sampling stops with [`SampleError::Clocks`].
     clock_settings: u32,
 }
 
@@ -38,8 +40,10 @@ fn clock_settings() -> u32 {
 }
 
 impl ClockMonitor {
-    /// Starts SysTick on the core clock of `hclk_hz`, Hz, and reads the clock settings to compare
-    /// with later. Checks are expected once for each finger and tick of 1 ms.
+    /// Starts SysTick on the core clock, whose frequency is `hclk_hz` (Hz), and stores the present
+    /// clock settings for later comparison.
+    /// [`check_clocks_and_tick_rate`](Self::check_clocks_and_tick_rate) must then be called once
+    /// for each finger and tick of 1 ms.
     pub fn new(mut counter: SYST, hclk_hz: u32) -> Self {
         counter.set_clock_source(SystClkSource::Core);
         counter.set_reload(SYSTICK_RELOAD);
@@ -52,12 +56,13 @@ impl ClockMonitor {
     }
 
     /// Checks the clock settings and the tick rate. To be called once for each finger and tick, as
-    /// soon as a block of samples is complete, because the time of the call is measured.
+    /// soon as a block of samples is complete: SysTick measures the time of each call. A call is
+    /// due at the time of the first call plus a whole number of periods of 1 ms divided by the
+    /// number of fingers.
     ///
     /// # Errors
     /// [`SampleError::Clocks`] if the register RCC_CFGR has changed since the start,
-    /// [`SampleError::TickRate`] if the block is early or late by more than a quarter of its period
-    /// (1 ms divided by the number of fingers).
+    /// [`SampleError::TickRate`] if the call is early or late by more than a quarter of a period.
     pub fn check_clocks_and_tick_rate(&mut self) -> Result<(), SampleError> {
         if clock_settings() != self.clock_settings {
             return Err(SampleError::Clocks);

@@ -18,19 +18,19 @@ use super::{trip_cause_recorder, watchdog, wiring};
 fn turn_bridges_off_and_record(fault: Fault) {
     cortex_m::interrupt::disable();
     wiring::disable_bridges();
-    trip_cause_recorder::store_cause_if_none(&TripCause::without_readings(fault));
+    trip_cause_recorder::store_trip_cause_if_none(&TripCause::without_readings(fault));
 }
 
-/// Returns `true` at its first call only. The handlers log an error only then, because logging the
-/// first error may be what has raised the next one.
+/// Returns `true` at its first call only. The handlers of fatal errors log only the first error,
+/// because writing to the log may itself have raised the next one.
 fn is_first_error() -> bool {
     static ERROR_SEEN: AtomicBool = AtomicBool::new(false);
     !ERROR_SEEN.swap(true, Ordering::Relaxed)
 }
 
-/// Waits until a watchdog resets the device: 47 ms, or at most 188 ms if the clock of the window
-/// watchdog has failed, or at most a second if the start-up has not set up the watchdogs yet. The
-/// processor stays awake, so that the debug probe can read the log.
+/// Waits until a watchdog resets the device: the window watchdog within 47 ms. If that does not
+/// run, the independent watchdog does so within 188 ms, or within a second if the start-up has not
+/// set its period yet. The processor stays awake, so that the debug probe can read the log.
 fn wait_for_watchdog() -> ! {
     watchdog::start_counter();
     loop {

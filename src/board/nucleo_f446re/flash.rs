@@ -77,13 +77,18 @@ impl NorFlashError for FlashError {
 pub struct SettingsFlash<'a>(&'a FLASH);
 
 impl<'a> SettingsFlash<'a> {
-    /// Creates the driver from the registers of the flash interface.
+    /// Creates the driver of the three sectors that hold the settings. `registers` are those of the
+    /// flash interface.
     pub const fn new(registers: &'a FLASH) -> Self {
         Self(registers)
     }
 
-    /// Unlocks the control register FLASH_CR, clears old error flags, does `work`, which writes or
-    /// erases, and locks the register again.
+    /// Unlocks the control register FLASH_CR, clears old error flags, calls `work`, which writes or
+    /// erases, and locks the register again, also if `work` has failed.
+    ///
+    /// # Errors
+    /// [`FlashError::Busy`] if the flash stays busy, [`FlashError::Locked`] if the register stays
+    /// locked, or the error of `work`.
     fn with_flash_unlocked(
         &mut self,
         work: impl FnOnce(&mut Self) -> Result<(), FlashError>,
@@ -111,7 +116,8 @@ impl<'a> SettingsFlash<'a> {
     /// zero if none is set.
     ///
     /// # Errors
-    /// [`FlashError::Busy`] if the operation has not ended in time.
+    /// [`FlashError::Busy`] if the flash is still busy after [`BUSY_READS_MAX`] reads of the busy
+    /// flag, more than 500 ms.
     fn wait_until_idle(&self) -> Result<u32, FlashError> {
         for _ in 0..BUSY_READS_MAX {
             let status = self.0.sr().read();
@@ -122,11 +128,12 @@ impl<'a> SettingsFlash<'a> {
         Err(FlashError::Busy)
     }
 
-    /// Waits for the end of a write or erase operation.
+    /// Waits for the end of a write or erase operation, and checks the error flags of FLASH_SR.
     ///
     /// # Errors
-    /// [`FlashError::Busy`] if the operation has not ended in time, [`FlashError::Protected`] or
-    /// [`FlashError::Flags`] if it has failed.
+    /// [`FlashError::Busy`] if the operation has not ended after more than 500 ms,
+    /// [`FlashError::Protected`] if the sector is write-protected, [`FlashError::Flags`] if only
+    /// other error flags are set.
     fn wait_and_check(&self) -> Result<(), FlashError> {
         match self.wait_until_idle()? {
             0 => Ok(()),
@@ -136,9 +143,10 @@ impl<'a> SettingsFlash<'a> {
     }
 }
 
-/// Checks that the `bytes` bytes from the offset `from` lie within the three sectors, and that
-/// `from` and `bytes` are multiples of `unit` bytes.
-fn check_range(from: usize, bytes: usize, unit: usize) -> Result<(), FlashError> {
+/// Checks that the `bytes` bytes from the offset `from`, which counts from the start of sector 1,
+/// lie within the three sectors, and that `from` and `bytes` are multiples of `unit` bytes. Returns
+/// [`FlashError::OutOfBounds`] if not.
+fn check_bounds_and_alignment(from: usize, bytes: usize, unit: usize) -> Result<(), FlashError> {
     let within = from
         .checked_add(bytes)
         .is_some_and(|end| end <= CAPACITY_BYTES);
@@ -157,7 +165,7 @@ impl ReadNorFlash for SettingsFlash<'_> {
     const READ_SIZE: usize = 1;
 
     fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), FlashError> {
-        check_range(offset as usize, bytes.len(), 1)?;
+        check_bounds_and_alignment(offset as usize, bytes.len(), 1)?;
         for (byte, address) in bytes.iter_mut().zip(SETTINGS_ADDRESS + offset as usize..) {
             // SAFETY: the address is within the sectors, which hold no part of the program. The
             // read is volatile because the content of the flash changes.
@@ -177,7 +185,7 @@ impl NorFlash for SettingsFlash<'_> {
 
     fn erase(&mut self, from: u32, to: u32) -> Result<(), FlashError> {
         let (from, to) = (from as usize, to as usize);
-        check_range(from, to.saturating_sub(from), SECTOR_BYTES)?;
+        check_bounds_and_alignment(from, to.saturating_sub(from), SECTOR_BYTES)?;
         self.with_flash_unlocked(|flash| {
             for number in 1 + from / SECTOR_BYTES..1 + to / SECTOR_BYTES {
                 flash.0.cr().write(|w| {
@@ -195,7 +203,7 @@ impl NorFlash for SettingsFlash<'_> {
     }
 
     fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), FlashError> {
-        check_range(offset as usize, bytes.len(), WORD_BYTES)?;
+        check_bounds_and_alignment(offset as usize, bytes.len(), WORD_BYTES)?;
         let (words, _) = bytes.as_chunks::<WORD_BYTES>();
         self.with_flash_unlocked(|flash| {
             // `write` starts from the reset value, as in `erase`.

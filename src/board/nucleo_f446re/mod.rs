@@ -59,12 +59,12 @@ use one_finger as wiring;
 pub use sample_error::SampleError;
 pub use sampler::{SampleTrigger, Sampler};
 pub use saved_dose::save_dose;
-pub use serial::{CompletedLine, Outbox, Receiver, Transmitter};
+pub use serial::{CompletedLineKind, Outbox, Receiver, Transmitter};
 pub use settings_storage::restart_to_save;
 pub use stack::stack_is_overrun;
 pub use stm32f4xx_hal::pac;
 pub use trip_cause_recorder::TripCauseRecorder;
-pub use watchdog::Watchdog;
+pub use watchdog::IndependentWatchdog;
 pub use window_watchdog::WindowWatchdog;
 pub use wiring::{FINGERS, PowerStage};
 
@@ -77,8 +77,9 @@ use settings_storage::SaveAndLoadResult;
 /// each finger.
 const TELEMETRY_QUEUE_CAPACITY: usize = 8 * FINGERS;
 
-/// Buffers and queues that the DMA streams and the tasks share by reference. `main.rs` allocates
-/// them statically, because they must live as long as the program.
+/// Buffers and queues that the DMA streams and the tasks share by reference, and the command
+/// handler of the host task. `main.rs` allocates them statically, because they must live as long as
+/// the program.
 pub struct StaticMemory {
     scans: [sampler::ScanBlock; sampler::BLOCK_COUNT],
     frames: [serial::FrameBuffer; serial::FRAME_COUNT],
@@ -90,7 +91,7 @@ pub struct StaticMemory {
 }
 
 impl StaticMemory {
-    /// Creates the memory with empty buffers and queues, as [`Board::start`] expects it.
+    /// Creates the memory with empty buffers and queues, as [`Board::set_up`] expects it.
     pub const fn new() -> Self {
         Self {
             scans: [sampler::EMPTY_BLOCK; sampler::BLOCK_COUNT],
@@ -104,15 +105,17 @@ impl StaticMemory {
 }
 
 /// Determines the cause, if any, by which all fingers are tripped before their first tick: the trip
-/// cause stored before the reset, or a fault that the reset itself indicates. Stores the cause
-/// before the rest of the start-up, which takes long, so that another reset during the start-up
-/// does not lose it.
+/// cause stored before the reset or, if none is stored, the fault that the reset itself indicates.
+/// If the stack guard was overwritten, [`Fault::Stack`] replaces a cause that no tick has recorded,
+/// except [`Fault::UnaskedReset`]. Stores the cause before the rest of the start-up, which takes
+/// long, so that another reset during the start-up does not lose it. After power-on, also sets the
+/// saved thermal doses to zero.
 fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
     let stack_was_overrun = stack::stack_is_overrun();
     stack::init_guard();
     let reset = ResetCause::read(rcc);
     if reset == ResetCause::PowerOn {
-        saved_dose::clear_doses();
+        saved_dose::clear_saved_doses();
     }
     let mut cause =
         trip_cause_recorder::trip_cause_after_reset(reset, settings_storage::save_is_pending());
@@ -122,8 +125,8 @@ fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
     let is_consequence = |cause: TripCause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
     if stack_was_overrun && cause.is_some_and(is_consequence) {
         trip_cause_recorder::erase_stored_trip_cause();
-        trip_cause_recorder::store_cause_if_none(&TripCause::without_readings(Fault::Stack));
-        cause = trip_cause_recorder::stored_cause();
+        trip_cause_recorder::store_trip_cause_if_none(&TripCause::without_readings(Fault::Stack));
+        cause = trip_cause_recorder::stored_trip_cause();
     }
     // The flags are cleared last: if a reset intervenes, the next start still finds them.
     ResetCause::clear_flags(rcc);
@@ -163,22 +166,24 @@ pub struct Board {
     /// The timer that triggers the scans, not started yet. The idle task starts it, because
     /// sampling must not begin before interrupts are enabled.
     pub trigger: SampleTrigger,
-    /// Receives bytes from the host and assembles them to lines, in the interrupt of USART2.
+    /// Receives bytes from the host and assembles them into lines, in the interrupt of USART2.
     pub receiver: Receiver,
-    /// Sends full lines to the host one after the other, in the interrupt of the DMA stream that
+    /// Sends queued lines to the host one after the other, in the interrupt of the DMA stream that
     /// sends.
     pub transmitter: Transmitter,
     /// Answers the lines of the host and sends telemetry, in the host task.
     pub console: Console,
     /// The independent watchdog, which already runs; the idle task feeds it.
-    pub watchdog: Watchdog,
+    pub watchdog: IndependentWatchdog,
 }
 
 impl Board {
-    /// Sets up the device and all parts of the board at the start of the program, with all bridges
-    /// off and sampling not started yet. If the host requested the restart by `save` or `forget`,
-    /// stores the settings in flash before that. `memory` and `device` provide the static memory.
-    pub fn start(
+    /// Sets up the device and all parts of the board at the start of the program; all bridges are
+    /// then off, and sampling has not started. If settings wait in RAM, because the host has
+    /// requested the restart by `save` or `forget`, they are stored in flash first. `memory` and
+    /// `device` are static memory: `memory` for buffers, queues and command handler, `device` for
+    /// the device, which is created in it.
+    pub fn set_up(
         systick: SYST,
         peripherals: pac::Peripherals,
         memory: &'static mut StaticMemory,
@@ -195,7 +200,7 @@ impl Board {
         let trip_cause_recorder = TripCauseRecorder::new(device.earliest_trip_cause().copied());
 
         // Before the clocks are set up, because this watchdog has its own oscillator.
-        let watchdog = Watchdog::start(peripherals.IWDG);
+        let watchdog = IndependentWatchdog::start(peripherals.IWDG);
         let has_clock = start_probe_clock(&peripherals.RCC);
         let mut rcc = peripherals.RCC.freeze(clock_config(has_clock));
         if has_clock {
@@ -234,11 +239,11 @@ impl Board {
                 fourth: (gpioc.pc8, gpioc.pc9),
                 fifth: (gpiob.pb8, gpiob.pb9),
                 lines: [
-                    wiring::ControlPins::new(gpiob.pb10, gpioa.pa6, gpioc.pc3),
-                    wiring::ControlPins::new(gpiob.pb13, gpioa.pa7, gpioc.pc4),
-                    wiring::ControlPins::new(gpiob.pb14, gpioa.pa12, gpioc.pc5),
-                    wiring::ControlPins::new(gpiob.pb15, gpiob.pb5, gpiob.pb6),
-                    wiring::ControlPins::new(gpiob.pb1, gpiob.pb12, gpiob.pb7),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb10, gpioa.pa6, gpioc.pc3),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb13, gpioa.pa7, gpioc.pc4),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb14, gpioa.pa12, gpioc.pc5),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb15, gpiob.pb5, gpiob.pb6),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb1, gpiob.pb12, gpiob.pb7),
                 ],
             };
             let multiplexer = wiring::Multiplexer::new(gpioc.pc10, gpioc.pc11, gpioc.pc12);
@@ -321,9 +326,9 @@ fn start_probe_clock(rcc: &pac::RCC) -> bool {
 
 /// Clock settings of the microcontroller: 180 MHz for the core, which is the maximum. If
 /// `has_clock`, the clocks are derived from the 8 MHz crystal of the debug probe, else from the
-/// internal oscillator. The internal oscillator has a tolerance of 1 %, which would be an error of
-/// time in every rendered contact, so nothing is rendered with it; it only allows the host to read
-/// the reason.
+/// internal oscillator. The tolerance of the internal oscillator, 1 %, would falsify the time in
+/// every rendered contact, so all fingers then stay tripped by [`Fault::Clock`], and the device
+/// runs only so that the host can read this fault.
 ///
 /// All rates are exact: the USART's 45 MHz are a multiple of the baud rate, the sample timer's 90
 /// MHz a multiple of the scan rate, and the PWM timers' 180 MHz a multiple of the PWM frequency.

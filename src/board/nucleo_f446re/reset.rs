@@ -11,10 +11,12 @@ pub enum ResetCause {
     /// Reset by the window watchdog: no control tick with valid samples ran for 46.6 ms, for
     /// example because a handler of a fatal error waited for this reset.
     WindowWatchdog,
-    /// Reset by the independent watchdog: a task did not check in for 68 to 188 ms, or a handler of
-    /// a fatal error waited for the reset while the window watchdog did not run.
+    /// Reset by the independent watchdog: it was not fed for 68 to 188 ms, because the tick, host
+    /// or idle task did not run, or because a handler of a fatal error waited for the reset while
+    /// the window watchdog did not run.
     Watchdog,
-    /// The program reset the device, which it does only to store settings.
+    /// A reset by software. The program resets the device only to store settings; if no settings
+    /// wait in RAM, the reset is a fault.
     Software,
     /// The supply voltage was too low; the RAM has kept its content.
     BrownOut,
@@ -26,7 +28,8 @@ pub enum ResetCause {
 
 impl ResetCause {
     /// Reads the cause of the last reset from the reset flags, which accumulate until they are
-    /// [cleared](Self::clear_flags). If several are set, the most specific one counts.
+    /// [cleared](Self::clear_flags). If several flags are set, the first one in this order counts:
+    /// power-on, window watchdog, independent watchdog, software, brown-out, low-power mode, pin.
     pub fn read(rcc: &RCC) -> Self {
         let flags = rcc.csr().read();
         // The most specific flag is tested first: power-on sets the flag of the brown-out too, and
@@ -55,8 +58,9 @@ impl ResetCause {
 
     /// The fault that this reset indicates: [`Fault::TickLost`] for the window watchdog,
     /// [`Fault::Watchdog`] for the independent watchdog, [`Fault::UnaskedReset`] for a low-power
-    /// reset and for a reset by the program, except if `restart_is_planned`: settings wait in RAM
-    /// to be stored. `None` for that exception, power-on, brown-out, and a reset by the pin.
+    /// reset and for an unplanned reset by software. `None` for a planned one
+    /// (`restart_is_planned`: settings wait in RAM to be stored), for power-on, brown-out, and a
+    /// reset by the pin.
     pub const fn indicated_fault(self, restart_is_planned: bool) -> Option<Fault> {
         match self {
             Self::WindowWatchdog => Some(Fault::TickLost),

@@ -25,8 +25,8 @@ use super::log;
 use super::sample_error::SampleError;
 use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME_CODE};
 
-/// Scans of one block: those that are dropped while the multiplexers settle, and the 16 that a
-/// control tick of the finger uses.
+/// Number of scans in one block: 16 with one finger, 18 with five. A control tick uses the last 16;
+/// the scans before them are dropped, because the multiplexers still settle.
 const SCANS_PER_BLOCK: usize = Multiplexer::SETTLING_SCANS + SCANS_PER_TICK;
 
 /// Consecutive scans of one finger, in counts of the converter (0 to 4095). The DMA stream fills
@@ -56,11 +56,14 @@ pub struct SensorPins {
 /// stored by DMA.
 pub struct Sampler {
     transfer: Transfer<Stream0<DMA2>, 0, Converter, PeripheralToMemory, &'static mut ScanBlock>,
-    /// The block that the last [`take_block`](Self::take_block) returned, or an unused one before
-    /// the first. The next `take_block` gives it to the DMA stream to be filled. `None` only after
-    /// an exchange of blocks has failed.
+    /// The block that the last
+    /// [`take_block_and_select_next_finger`](Self::take_block_and_select_next_finger) returned or,
+    /// before the first call, one that was never filled. The next call gives this block to the DMA
+    /// stream to be filled. `None` only after that function has returned an error, which stops
+    /// sampling.
     spare: Option<&'static mut ScanBlock>,
-    /// Which of the DMA stream's two buffers the last [`take_block`](Self::take_block) emptied. The
+    /// Which of the DMA stream's two buffers the last call of
+    /// [`take_block_and_select_next_finger`](Self::take_block_and_select_next_finger) emptied. The
     /// buffers must alternate: the same one twice means that a block was overwritten before it was
     /// taken.
     last_buffer: CurrentBuffer,
@@ -130,9 +133,11 @@ impl Sampler {
     /// which occurs when a block is full.
     ///
     /// # Errors
-    /// [`SampleError`] if samples are missing or may belong to another finger, or if the clocks are
-    /// wrong; control must then stop.
-    pub fn take_block(
+    /// [`SampleError::LateSwitch`] if the multiplexers were switched too late, [`SampleError::Bus`]
+    /// if the DMA stream has failed, [`SampleError::Late`] if a block was overwritten before it was
+    /// taken, [`SampleError::Clocks`] or [`SampleError::TickRate`] if the clock settings or the
+    /// rate of the ticks are wrong. The control loop must then stop.
+    pub fn take_block_and_select_next_finger(
         &mut self,
     ) -> Result<(Finger<FINGERS>, &[Scan; SCANS_PER_TICK]), SampleError> {
         // Checked first, because the start of the tick is measured; reported last, because the
@@ -141,7 +146,7 @@ impl Sampler {
         let finger = self.finger;
         self.finger = finger.next_cyclic();
         self.multiplexer.select(self.finger);
-        if Multiplexer::SETTLING_SCANS != 0 && self.first_scan_is_complete() {
+        if Multiplexer::SETTLING_SCANS != 0 && self.first_scan_of_block_is_stored() {
             return Err(SampleError::LateSwitch);
         }
         if self.transfer.flags().is_transfer_error() {
@@ -173,7 +178,7 @@ impl Sampler {
 
     /// Whether the DMA stream has already stored the first scan of the block that it is filling.
     /// The multiplexers must be switched before that.
-    fn first_scan_is_complete(&self) -> bool {
+    fn first_scan_of_block_is_stored(&self) -> bool {
         usize::from(self.transfer.number_of_transfers()) <= (SCANS_PER_BLOCK - 1) * CHANNEL_COUNT
     }
 
@@ -242,7 +247,8 @@ impl Converter {
         }
     }
 
-    /// Switches ADC1 off and disables its overrun interrupt.
+    /// Switches ADC1 off and disables its overrun interrupt, which the conversions would raise once
+    /// the DMA stream no longer fetches them.
     fn stop(&mut self) {
         self.adc.cr1().write(|w| w.ovrie().disabled());
         self.adc.cr2().write(|w| w.adon().disabled());

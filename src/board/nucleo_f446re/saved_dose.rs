@@ -14,8 +14,9 @@ use super::trip_cause_recorder::checksum_of_words;
 static SAVED_DOSES: [[AtomicU32; 2]; FINGERS] =
     [const { [const { AtomicU32::new(0) }; 2] }; FINGERS];
 
-/// The thermal dose of a finger that was saved before the last reset; zero if its checksum does not
-/// match, because the RAM has lost its content.
+/// The thermal dose of a finger that was saved in RAM before the last reset. Zero if its checksum
+/// does not match, because the RAM has lost its content or firmware with another checksum has saved
+/// the dose.
 pub fn saved_dose(finger: Finger<FINGERS>) -> ThermalDose {
     let [dose, sum] = &SAVED_DOSES[finger.index()];
     let word = dose.load(Ordering::Relaxed);
@@ -32,11 +33,11 @@ pub fn save_dose(finger: Finger<FINGERS>, dose: &ThermalDose) {
     let saved = &SAVED_DOSES[finger.index()];
     // The dose changes every 256 ticks only; the comparison is faster than the checksum.
     if saved[0].load(Ordering::Relaxed) != dose.to_word() {
-        store_dose(saved, dose);
+        write_dose_and_checksum(saved, dose);
     }
 }
 
-fn store_dose([saved, sum]: &[AtomicU32; 2], dose: &ThermalDose) {
+fn write_dose_and_checksum([saved, sum]: &[AtomicU32; 2], dose: &ThermalDose) {
     let word = dose.to_word();
     saved.store(word, Ordering::Relaxed);
     sum.store(checksum_of_words(&[word]), Ordering::Relaxed);
@@ -44,8 +45,8 @@ fn store_dose([saved, sum]: &[AtomicU32; 2], dose: &ThermalDose) {
 
 /// Sets the saved thermal doses of all fingers to zero. Called after power-on, when the content of
 /// the RAM is arbitrary.
-pub fn clear_doses() {
+pub fn clear_saved_doses() {
     SAVED_DOSES
         .iter()
-        .for_each(|saved| store_dose(saved, &ThermalDose::default()));
+        .for_each(|saved| write_dose_and_checksum(saved, &ThermalDose::default()));
 }

@@ -118,10 +118,10 @@ pub struct Transmitter {
 }
 
 impl Transmitter {
-    /// Starts to send the next full frame if the DMA stream has read the last one completely.
-    /// Called in the interrupt of the stream, which occurs at the end of a frame and when a line is
-    /// queued. At the end of a frame the USART still holds two bytes; the line to the host pauses
-    /// if the next frame is not started within these 20 us.
+    /// Starts to send the next full frame, if there is one and the DMA stream has read the last one
+    /// completely. Called in the interrupt of the stream, which occurs at the end of a frame and
+    /// when a line is queued. At the end of a frame the USART still holds two bytes, which take 20
+    /// us; the line to the host pauses if the next frame is not started within this time.
     pub fn send_next(&mut self) {
         if self.sending {
             let flags = self.transfer.flags();
@@ -145,15 +145,16 @@ impl Transmitter {
 
 /// The kind of line that a received byte, a carriage return or line feed, has ended.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum CompletedLine {
-    /// A line with content, valid or not, which is now in the line_queue and waits for its answer.
+pub enum CompletedLineKind {
+    /// A line with content, valid or not. It waits for its answer in the queue of received lines
+    /// or, if that queue is full, is refused, and its answer is an error.
     ToBeAnswered,
     /// A blank line, which has no answer but shows that the host is active.
     Blank,
 }
 
-/// Assembles the bytes that the host sends to lines and puts the lines into the line_queue, in the
-/// interrupt of USART2.
+/// Assembles the bytes that the host sends into lines and appends the lines to the queue of
+/// received lines, in the interrupt of USART2.
 pub struct Receiver {
     rx: Rx<USART2>,
     reader: LineReader,
@@ -163,14 +164,14 @@ pub struct Receiver {
 impl Receiver {
     /// Reads the byte that has arrived. Returns the kind of line that this byte has ended, `None`
     /// if it has ended no line.
-    pub fn receive(&mut self) -> Option<CompletedLine> {
+    pub fn receive_byte(&mut self) -> Option<CompletedLineKind> {
         match self.rx.read() {
             Ok(byte) => match self.reader.push(byte) {
                 Some(line) => {
                     self.line_queue.enqueue(line);
-                    Some(CompletedLine::ToBeAnswered)
+                    Some(CompletedLineKind::ToBeAnswered)
                 }
-                None => LineReader::is_line_end(byte).then_some(CompletedLine::Blank),
+                None => LineReader::is_line_end(byte).then_some(CompletedLineKind::Blank),
             },
             Err(nb::Error::WouldBlock) => None,
             Err(nb::Error::Other(_)) => {

@@ -57,7 +57,8 @@ impl PendingSave {
     }
 
     /// Begins an attempt to store the waiting settings: counts it and returns their bytes. `None`
-    /// if no settings wait; an error if all attempts are used up or the length is damaged.
+    /// if no settings wait; [`SaveError::Interrupted`] if both attempts are used up,
+    /// [`SaveError::Damaged`] if the length is damaged.
     fn begin_attempt(&self) -> Option<Result<SettingsRecord, SaveError>> {
         let begun = self.attempts_begun()?;
         if begun == MAX_SAVE_ATTEMPTS {
@@ -83,12 +84,12 @@ impl PendingSave {
 }
 
 /// Why settings could not be read from the flash or written to it.
-type FlashStoreError = StoreError<FlashError>;
+type SettingsStoreError = StoreError<FlashError>;
 
 /// Why the settings that waited in RAM were not stored in flash.
 pub enum SaveError {
     /// The flash could not be written, for the reason given.
-    Failed(FlashStoreError),
+    Failed(SettingsStoreError),
     /// Resets have interrupted both attempts to store the settings, and there is no third attempt.
     /// The flash holds either the old or the new settings, unless its content was damaged before.
     Interrupted,
@@ -111,15 +112,15 @@ impl fmt::Display for SaveError {
 /// holds, and whether waiting settings were stored.
 pub struct SaveAndLoadResult {
     /// The settings of all fingers that the flash holds; `None` if it holds none or factory
-    /// defaults were stored. An error if the flash content is not readable.
-    pub settings: Result<Option<[StoredSettings; FINGERS]>, FlashStoreError>,
+    /// defaults were stored. An error if the flash cannot be read or holds no valid settings.
+    pub settings: Result<Option<[StoredSettings; FINGERS]>, SettingsStoreError>,
     /// Whether the settings that waited in RAM were stored in flash at this start; `None` if none
     /// waited.
     pub save_result: Option<Result<(), SaveError>>,
 }
 
-/// Whether settings wait in RAM to be stored in flash: the program has then itself requested the
-/// last reset.
+/// Whether settings wait in RAM to be stored in flash. A reset by the program is then no fault: the
+/// host has requested the restart by `save` or `forget`.
 pub fn save_is_pending() -> bool {
     PENDING_SAVE.attempts_begun().is_some()
 }

@@ -1,4 +1,4 @@
-//! The fault record: the cause of the earliest trip, in RAM that a reset does not clear.
+//! The recorder of the earliest trip cause, in RAM that a reset does not clear.
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
@@ -9,12 +9,13 @@ use super::reset::ResetCause;
 /// Initial value of the checksum. It differs between versions of the firmware whose stored trip
 /// causes have different layouts, so that no version accepts the words of another.
 const CHECKSUM_INITIAL_VALUE: u32 = 0x5afe_d15b ^ TripCause::LAYOUT_HASH;
-const STORED_WORDS: usize = TripCause::WORD_COUNT + 1;
+const STORED_WORD_COUNT: usize = TripCause::WORD_COUNT + 1;
 
 /// The words of the stored trip cause and their checksum. Neither the loader nor the start-up code
 /// writes to the section `.uninit`, so that its content is lost only with the power.
 #[unsafe(link_section = ".uninit.cause")]
-static STORED_CAUSE: [AtomicU32; STORED_WORDS] = [const { AtomicU32::new(0) }; STORED_WORDS];
+static STORED_TRIP_CAUSE: [AtomicU32; STORED_WORD_COUNT] =
+    [const { AtomicU32::new(0) }; STORED_WORD_COUNT];
 
 /// Checksum of 32-bit words in RAM that a reset does not clear. After power-up the content of this
 /// RAM is arbitrary, which a wrong checksum shows.
@@ -28,9 +29,9 @@ pub fn checksum_of_words(words: &[u32]) -> u32 {
 
 /// The trip cause in RAM that a reset does not clear; `None` if no cause is stored there, which a
 /// wrong checksum shows.
-pub fn stored_cause() -> Option<TripCause> {
-    let words: [u32; STORED_WORDS] =
-        core::array::from_fn(|i| STORED_CAUSE[i].load(Ordering::Relaxed));
+pub fn stored_trip_cause() -> Option<TripCause> {
+    let words: [u32; STORED_WORD_COUNT] =
+        core::array::from_fn(|i| STORED_TRIP_CAUSE[i].load(Ordering::Relaxed));
     let [cause @ .., sum] = words;
     if checksum_of_words(&cause) == sum {
         TripCause::from_words(cause)
@@ -41,12 +42,12 @@ pub fn stored_cause() -> Option<TripCause> {
 
 /// Stores a trip cause in RAM that a reset does not clear, unless a cause is stored there already:
 /// an earlier cause explains the later ones.
-pub fn store_cause_if_none(cause: &TripCause) {
-    if stored_cause().is_some() {
+pub fn store_trip_cause_if_none(cause: &TripCause) {
+    if stored_trip_cause().is_some() {
         return;
     }
     let words = cause.to_words();
-    for (place, word) in STORED_CAUSE
+    for (place, word) in STORED_TRIP_CAUSE
         .iter()
         .zip(words.into_iter().chain([checksum_of_words(&words)]))
     {
@@ -54,12 +55,14 @@ pub fn store_cause_if_none(cause: &TripCause) {
     }
 }
 
-/// Erases the stored cause by making its checksum invalid.
+/// Erases the trip cause that is kept in RAM through a reset, so that the next start does not trip
+/// the fingers by it: makes its checksum invalid. Called after power-on, when no finger is tripped
+/// any more, and before another cause replaces it.
 pub fn erase_stored_trip_cause() {
-    let [.., sum] = &STORED_CAUSE;
+    let [.., sum] = &STORED_TRIP_CAUSE;
     sum.fetch_xor(CHECKSUM_INITIAL_VALUE, Ordering::Relaxed);
     // The words may have been invalid before, and valid with the changed checksum.
-    if stored_cause().is_some() {
+    if stored_trip_cause().is_some() {
         sum.fetch_add(1, Ordering::Relaxed);
     }
 }
@@ -74,9 +77,9 @@ pub fn trip_cause_after_reset(reset: ResetCause, restart_is_planned: bool) -> Op
         erase_stored_trip_cause();
     }
     if let Some(fault) = reset.indicated_fault(restart_is_planned) {
-        store_cause_if_none(&TripCause::without_readings(fault));
+        store_trip_cause_if_none(&TripCause::without_readings(fault));
     }
-    stored_cause()
+    stored_trip_cause()
 }
 
 /// Keeps the stored trip cause up to date while the program runs: stores the cause when a finger
@@ -86,15 +89,16 @@ pub struct TripCauseRecorder {
 }
 
 impl TripCauseRecorder {
-    /// Creates the record. `stored` is the cause by which the device is tripped at the start,
-    /// `None` if it is not tripped. This cause counts as stored: only a later, different one is
-    /// written to RAM.
+    /// Creates the recorder. `stored` is the cause by which the device is tripped at the start,
+    /// `None` if it is not tripped. This cause counts as stored: only a different one is written to
+    /// RAM.
     pub const fn new(stored: Option<TripCause>) -> Self {
         Self { stored }
     }
 
-    /// Whether a trip cause counts as stored. If so, it must be erased once no finger is tripped
-    /// any more.
+    /// Whether the recorder treats a trip cause as stored: the one given to [`new`](Self::new), or
+    /// the last one that [`store_or_erase`](Self::store_or_erase) has stored. If so, every control
+    /// tick must call `store_or_erase`, which erases the cause once no finger is tripped any more.
     pub const fn has_stored_cause(&self) -> bool {
         self.stored.is_some()
     }
@@ -108,7 +112,7 @@ impl TripCauseRecorder {
         // The stored cause has been cleared, even if another fault has tripped since.
         erase_stored_trip_cause();
         if let Some(cause) = earliest {
-            store_cause_if_none(cause);
+            store_trip_cause_if_none(cause);
         }
         self.stored = earliest.copied();
     }

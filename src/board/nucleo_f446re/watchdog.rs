@@ -12,19 +12,19 @@ use stm32f4xx_hal::pac::IWDG;
 const TIMEOUT_COUNTS: u16 = 100;
 
 /// Starts the counter of the independent watchdog with the period that its registers hold. Before
-/// [`Watchdog::start`] has set them, that is their reset value, 4096 counts of 4 periods of the
-/// watchdog's oscillator: 0.35 to 0.96 s. Also for handlers of errors that occur so early.
+/// [`IndependentWatchdog::start`] has set them, that is their reset value, 4096 counts of 4 periods
+/// of the watchdog's oscillator: 0.35 to 0.96 s. Also for handlers of errors that occur so early.
 pub fn start_counter() {
     // SAFETY: one store of a key that starts the watchdog and has no other effect, whatever else
     // accesses the register.
     unsafe { &*IWDG::ptr() }.kr().write(|w| w.key().start());
 }
 
-/// The independent watchdog (IWDG), running. It cannot be stopped, and it also runs while a
-/// debugger halts the core, because a halted core does not control the bridges.
-pub struct Watchdog(IWDG);
+/// The running independent watchdog (IWDG). Only a reset stops it. It also counts while a debugger
+/// halts the core, and then resets the device, because a halted core does not control the bridges.
+pub struct IndependentWatchdog(IWDG);
 
-impl Watchdog {
+impl IndependentWatchdog {
     /// Starts the independent watchdog with its period of 68 to 188 ms, in the order of RM0390,
     /// 20.3.
     ///

@@ -5,7 +5,7 @@
 //! thermistors have too few points to determine steps; they are fitted afterwards, with the steps held fixed.
 
 use super::calibration_points::{CalibrationPoint, CalibrationPoints};
-use super::cholesky::solve;
+use super::cholesky::solve_by_cholesky;
 use thermal_device::sense::THERMISTOR_COUNT;
 use thermal_settings::{
     CALIBRATED_BORDER_COUNT, CODES_PER_CONVERTER_SEGMENT, CORRECTION_CENTER_C,
@@ -14,28 +14,28 @@ use thermal_settings::{
 
 /// Number of the display's thermistors, which have the indices 0 and 1. Only their calibration points determine the
 /// steps of the converter at the borders of its segments; those of sink, skin and room (2 to 4) do not.
-pub const DISPLAY_THERMISTORS: usize = 2;
+pub const DISPLAY_THERMISTOR_COUNT: usize = 2;
 const COEFFICIENTS_PER_CORRECTION: usize = 3;
 /// Number of unknowns of the joint fit, 19: three coefficients of the correction of each of the two display
 /// thermistors, then the converter's steps at 13 borders of its segments.
-const JOINT_FIT_UNKNOWNS: usize = FIRST_STEP_INDEX + CALIBRATED_BORDER_COUNT;
-const FIRST_STEP_INDEX: usize = DISPLAY_THERMISTORS * COEFFICIENTS_PER_CORRECTION;
+const JOINT_FIT_UNKNOWN_COUNT: usize = FIRST_STEP_UNKNOWN_INDEX + CALIBRATED_BORDER_COUNT;
+const FIRST_STEP_UNKNOWN_INDEX: usize = DISPLAY_THERMISTOR_COUNT * COEFFICIENTS_PER_CORRECTION;
 /// Assumed standard deviation, K, of the error of a calibration point: 0.5 mK. The fit weights each point by the
 /// inverse of its square.
 const POINT_STANDARD_DEVIATION_K: f64 = 0.5e-3;
 /// Assumed standard deviations of a correction's offset (K), slope (K/K) and curvature (1/K) from their prior values:
 /// those of thermistors with a tolerance of 1 %. The fit weights the prior by the inverse of their squares.
 const COEFFICIENT_PRIOR_STANDARD_DEVIATIONS: [f64; COEFFICIENTS_PER_CORRECTION] = [0.5, 0.02, 2e-4];
-/// Assumed standard deviation, converter counts, of each of the converter's steps at the borders of its segments from
-/// its prior value. The fit weights the prior by the inverse of its square.
+/// Assumed standard deviation, converter counts, of each of the converter's 13 steps at the borders of its segments
+/// from its prior value: that of a converter of this class. The fit weights the prior by the inverse of its square.
 const STEP_PRIOR_STANDARD_DEVIATION_COUNTS: f64 = 1.0;
 /// Iterations of the joint fit of the display thermistors' corrections and the converter's steps. A correction is
 /// evaluated at a temperature that depends on the steps, so the fit is done a second time with the steps of the first
 /// fit; a third fit would change no reading noticeably.
 const JOINT_FIT_ITERATIONS: usize = 2;
 
-/// Excess of a thermistor's temperature over the surface that it measures, K, caused by its measuring current; from the
-/// settings, 0 for an index above 4.
+/// Self-heating, K, of the thermistor with the index `sensor`, from the settings: how much warmer its measuring current
+/// makes it than what it measures. 0 for an index above 4.
 fn self_heating_k(settings: &Settings, sensor: usize) -> f64 {
     let self_heating_k = settings.self_heating_k.get(sensor);
     self_heating_k.copied().unwrap_or(0.0)
@@ -43,7 +43,7 @@ fn self_heating_k(settings: &Settings, sensor: usize) -> f64 {
 
 /// Number of the 13 calibrated segment borders of the converter (codes 1280 to 2816 in steps of 128) at or below a
 /// reading, which is a mean sum of 16 conversions, 0 to 65520.
-fn calibrated_borders_below(sum: f64) -> usize {
+fn calibrated_border_count_below(sum: f64) -> usize {
     let segment = (sum / f64::from(16 * CODES_PER_CONVERTER_SEGMENT)) as usize;
     (segment + 1)
         .saturating_sub(FIRST_CALIBRATED_BORDER)
@@ -62,14 +62,14 @@ fn polynomial_terms(thermistor_c: f64) -> [f64; COEFFICIENTS_PER_CORRECTION] {
 /// mean sum of 16 conversions, 0 to 65520. It is not valid within two codes of a segment border, where the device
 /// interpolates the converter's step, nor if the steps add up to more than 8 counts, to which the device limits them.
 #[must_use]
-pub fn reading_c(settings: &Settings, sensor: usize, sum: f64) -> f64 {
+pub fn thermistor_reading_c(settings: &Settings, sensor: usize, sum: f64) -> f64 {
     let Calibration {
         steps_counts,
         corrections,
     } = &settings.calibration;
     let steps: f64 = steps_counts
         .iter()
-        .take(calibrated_borders_below(sum))
+        .take(calibrated_border_count_below(sum))
         .sum();
     let self_heating_k = self_heating_k(settings, sensor);
     let uncorrected_c = settings.thermistor.temperature_c(sum - 16.0 * steps) - self_heating_k;
@@ -85,7 +85,8 @@ pub fn reading_c(settings: &Settings, sensor: usize, sum: f64) -> f64 {
 /// the correction, plus `k_per_count` times the change of each converter step below the reading, equals `deviation_k`.
 struct ObservationEquation {
     /// Temperature of the reference thermometer minus the uncorrected temperature, K. The uncorrected temperature is
-    /// computed from the converter's reading without the present steps, and its self-heating is subtracted.
+    /// that of the calibration point's reading minus the present converter steps at all borders below the reading, less
+    /// the thermistor's self-heating.
     deviation_k: f64,
     /// Factors `1`, `u` and `u²` of the correction's offset, slope and curvature. `u` is the thermistor's temperature
     /// minus 29 °C, limited to ±16 K.
@@ -93,8 +94,8 @@ struct ObservationEquation {
     /// Number of calibrated segment borders of the converter below the calibration point's reading. The reading
     /// contains the converter's step at each of these borders.
     borders: usize,
-    /// Rise of the uncorrected temperature, K, if a step below the reading is one converter count larger. It is
-    /// positive: the step is subtracted from the reading, and a smaller reading is a higher temperature.
+    /// Rise of the uncorrected temperature, K, if the converter's step at a border below the reading is one count
+    /// larger. It is positive: the step is subtracted from the reading, and a smaller reading is a higher temperature.
     k_per_count: f64,
 }
 
@@ -105,7 +106,7 @@ impl ObservationEquation {
         sensor: usize,
         point: &CalibrationPoint,
     ) -> Self {
-        let borders = calibrated_borders_below(point.sum);
+        let borders = calibrated_border_count_below(point.sum);
         let step_counts: f64 = steps.iter().take(borders).sum();
         let sum = point.sum - 16.0 * step_counts;
         let thermistor_c = settings.thermistor.temperature_c(sum);
@@ -169,7 +170,7 @@ impl<const N: usize> NormalEquations<N> {
     /// Solves the normal equations for the `N` unknowns that fit the added equations best; `None` if the matrix is
     /// numerically singular.
     fn solve(mut self) -> Option<[f64; N]> {
-        solve(&mut self.matrix, &mut self.right)?;
+        solve_by_cholesky(&mut self.matrix, &mut self.right)?;
         Some(self.right)
     }
 }
@@ -186,13 +187,13 @@ pub fn fit(
     points: &CalibrationPoints,
 ) -> Option<Calibration> {
     let mut calibration = *prior;
-    if (0..DISPLAY_THERMISTORS).any(|sensor| !points.of_sensor(sensor).is_empty()) {
+    if (0..DISPLAY_THERMISTOR_COUNT).any(|sensor| !points.of_sensor(sensor).is_empty()) {
         for _ in 0..JOINT_FIT_ITERATIONS {
             fit_display_thermistors_and_steps(settings, prior, points, &mut calibration)?;
         }
     }
-    for sensor in DISPLAY_THERMISTORS..THERMISTOR_COUNT {
-        fit_other_thermistor(settings, points, sensor, &mut calibration)?;
+    for sensor in DISPLAY_THERMISTOR_COUNT..THERMISTOR_COUNT {
+        fit_thermistor_with_fixed_steps(settings, points, sensor, &mut calibration)?;
     }
     Some(calibration.rounded())
 }
@@ -206,19 +207,19 @@ fn fit_display_thermistors_and_steps(
     points: &CalibrationPoints,
     calibration: &mut Calibration,
 ) -> Option<()> {
-    let mut equations = NormalEquations::<JOINT_FIT_UNKNOWNS>::new();
+    let mut equations = NormalEquations::<JOINT_FIT_UNKNOWN_COUNT>::new();
     let steps = calibration.steps_counts;
-    for sensor in 0..DISPLAY_THERMISTORS {
+    for sensor in 0..DISPLAY_THERMISTOR_COUNT {
         let first = sensor * COEFFICIENTS_PER_CORRECTION;
         equations.add_correction_prior(first, &prior.corrections[sensor]);
         for point in points.of_sensor(sensor) {
             let observation = ObservationEquation::new(settings, &steps, sensor, point);
-            let mut terms = heapless::Vec::<_, JOINT_FIT_UNKNOWNS>::new();
+            let mut terms = heapless::Vec::<_, JOINT_FIT_UNKNOWN_COUNT>::new();
             for (i, term) in observation.polynomial_terms.into_iter().enumerate() {
                 let _ = terms.push((first + i, term));
             }
             for border in 0..observation.borders {
-                let _ = terms.push((FIRST_STEP_INDEX + border, observation.k_per_count));
+                let _ = terms.push((FIRST_STEP_UNKNOWN_INDEX + border, observation.k_per_count));
             }
             // The unknowns are the steps themselves, not their changes, so the present steps are added back.
             let removed_counts: f64 = steps.iter().take(observation.borders).sum();
@@ -228,13 +229,13 @@ fn fit_display_thermistors_and_steps(
     }
     for (border, step) in prior.steps_counts.into_iter().enumerate() {
         equations.add_equation(
-            &[(FIRST_STEP_INDEX + border, 1.0)],
+            &[(FIRST_STEP_UNKNOWN_INDEX + border, 1.0)],
             step,
             STEP_PRIOR_STANDARD_DEVIATION_COUNTS,
         );
     }
     let solution = equations.solve()?;
-    for sensor in 0..DISPLAY_THERMISTORS {
+    for sensor in 0..DISPLAY_THERMISTOR_COUNT {
         if !points.of_sensor(sensor).is_empty() {
             let first = sensor * COEFFICIENTS_PER_CORRECTION;
             calibration.corrections[sensor] =
@@ -242,7 +243,7 @@ fn fit_display_thermistors_and_steps(
         }
     }
     for (border, step) in calibration.steps_counts.iter_mut().enumerate() {
-        *step = solution[FIRST_STEP_INDEX + border];
+        *step = solution[FIRST_STEP_UNKNOWN_INDEX + border];
     }
     Some(())
 }
@@ -250,7 +251,7 @@ fn fit_display_thermistors_and_steps(
 /// Fits the correction of the thermistor with the index `sensor` (sink, skin or room) to its points, and replaces it in
 /// `calibration`. The converter's steps stay fixed. Without points nothing changes. Returns `None` if the equations are
 /// numerically singular.
-fn fit_other_thermistor(
+fn fit_thermistor_with_fixed_steps(
     settings: &Settings,
     points: &CalibrationPoints,
     sensor: usize,

@@ -17,8 +17,8 @@ pub const REFERENCE_DIFFERENCE_MAX_K: f64 = 2.0;
 /// conversions to both sides of the step.
 const SEGMENT_BORDER_MARGIN_CODES: f64 = 6.0;
 
-/// One calibration point of a thermistor: what the converter read at a temperature that the reference thermometer
-/// measured.
+/// One calibration point of a thermistor: the converter's mean reading of the thermistor, and the temperature that the
+/// reference thermometer showed at the same time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CalibrationPoint {
     /// Mean over 512 ticks of 1 ms of the sum of 16 conversions that each tick makes: 0 to 65520, in sixteenths of a
@@ -65,7 +65,7 @@ impl CalibrationPoints {
     }
 
     /// Removes all calibration points of the thermistor with the index `sensor`.
-    pub fn clear_sensor(&mut self, sensor: usize) {
+    pub fn remove_points_of_sensor(&mut self, sensor: usize) {
         if let Some(points) = self.by_sensor.get_mut(sensor) {
             points.clear();
         }
@@ -76,8 +76,12 @@ impl CalibrationPoints {
     /// the reference thermometer, °C.
     ///
     /// # Errors
-    /// The reading is drifting, near a border of the converter's segments or far from the reference thermometer, or the
-    /// thermistor has 24 points already. Nothing is added then.
+    /// Nothing is added then.
+    ///
+    /// - [`PointError::Unsteady`]: `average` is drifting, by more than 0.12 converter counts in a quarter of a second.
+    /// - [`PointError::AtBorder`]: `average` is less than 6 codes from a border of the converter's segments.
+    /// - [`PointError::TooFar`]: `reading_c` and `reference_c` differ by more than 2 K.
+    /// - [`PointError::Full`]: the thermistor has 24 points already, or `sensor` is above 4.
     pub fn add(
         &mut self,
         sensor: usize,

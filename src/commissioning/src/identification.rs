@@ -3,20 +3,21 @@
 
 use core::ops::RangeInclusive;
 
-use super::cholesky::solve;
+use super::cholesky::solve_by_cholesky;
 use thermal_device::TICK_HZ;
 use thermal_device::identification::{
     NORMAL_EQUATION_ROWS, NormalEquationRow, StatisticIndex, TIME_UNIT_TICKS_LOG2, UNKNOWN_COUNT,
 };
 use thermal_settings::{Range, Tile};
 
-/// Unit of time, s, of the normal equations from the station: 2048 ticks of 1 ms, so 2.048 s.
-const TIME_UNIT_S: f64 = (1 << TIME_UNIT_TICKS_LOG2) as f64 / TICK_HZ as f64;
+/// Unit of time, s, in which the station computes the integrals of the normal equations: 2.048 s, which are 2048 ticks
+/// of 1 ms. The solution is converted from this unit to seconds.
+const EQUATION_TIME_UNIT_S: f64 = (1 << TIME_UNIT_TICKS_LOG2) as f64 / TICK_HZ as f64;
 /// Time, s, from the tick that demands a current to its flow: one tick of 1 ms. The normal equations count the dead
 /// time from the flow of the current, so this delay is added to their result.
 const ACTUATION_DELAY_S: f64 = 1.0 / TICK_HZ as f64;
-/// Expected dead time, s, from the flow of a current to the surface of a plate of this class. The response determines
-/// only the sum of dead time and sensor lag well, so this prior decides how the sum is divided.
+/// Expected dead time, s, from the flow of a current to the response of a plate like that of the nominal tile. The
+/// response determines only the sum of dead time and sensor lag well, so this prior decides how the sum is divided.
 const DEAD_TIME_PRIOR_S: f64 = 0.0145;
 /// Weight of [`DEAD_TIME_PRIOR_S`] in the fit: what is added to the diagonal element of gain times dead time in the
 /// normal matrix, whose elements are in units of 2^-44. A larger weight draws the dead time nearer to the prior.
@@ -34,15 +35,15 @@ const GAIN_TIMES_MIRROR_ZERO_INDEX: usize = 7;
 
 /// One ampere in units of 2^-16 A, in which the station adds up the currents whose ratio is computed.
 const CURRENT_UNITS_PER_AMPERE: f64 = 65_536.0;
-/// Current, 4.5 A in units of 2^-16 A, at which the ratio of measured to demanded current is evaluated. The dead times
-/// of the bridge's switches take a constant amount from any current, which is a large part of a small one; so a large
-/// current is chosen, because large currents move the display most.
-const COMPARISON_CURRENT: f64 = 4.5 * CURRENT_UNITS_PER_AMPERE;
+/// Current, 4.5 A in units of 2^-16 A, at which the ratio of measured to demanded current is evaluated. The ratio
+/// depends on the current, because the dead times of the bridge's switches take a constant amount from any current. A
+/// large current is chosen, because the parameters must be most accurate for the currents that move the display most.
+const RATIO_EVALUATION_CURRENT: f64 = 4.5 * CURRENT_UNITS_PER_AMPERE;
 
 /// Ratios of measured to demanded current that a sound bridge, module and current mirror can have; another ratio ends
 /// the identification with [`IdentificationError::CurrentRatio`].
 const PLAUSIBLE_CURRENT_RATIOS: RangeInclusive<f64> = 0.5..=1.5;
-/// Dead times, s, that an identified plate of this class can have; another ends the identification with
+/// Dead times, 0.004 to 0.04 s, that an identified tile can have; another ends the identification with
 /// [`IdentificationError::OutOfRange`]. A disturbance of the display, such as a touch too light for the force sensor,
 /// distorts the dead time before the other parameters.
 static PLAUSIBLE_DEAD_TIME: Range = Range {
@@ -65,19 +66,21 @@ pub enum IdentificationError {
     /// The normal equations have no solution, as when the display did not respond to the current.
     NoResponse,
     /// The model of a tile does not explain the response: the RMS residual of the fit, given as a fraction of the
-    /// response, is above 0.02.
+    /// fitted signal (the time integral of the change of the display's reading), is above 0.02.
     ModelMismatch(f64),
     /// A parameter of the identified tile lies outside its allowed range. The values are that range, with the
     /// parameter's name and unit, and the parameter in this unit.
     OutOfRange(&'static Range, f64),
 }
 
-/// The parameters of the tile whose model fits the response to the current pulses best, from all rows of sums that the
+/// The parameters of the tile whose model fits the response to the current pulses best. `rows` are all sums that the
 /// station has added up during `tune`.
 ///
 /// # Errors
-/// The ratio of the currents, the residual of the fit, or a parameter is outside the range that a tile can have; or the
-/// equations have no solution.
+/// - [`IdentificationError::CurrentRatio`]: the ratio of measured to demanded current is outside 0.5 to 1.5.
+/// - [`IdentificationError::NoResponse`]: the normal equations have no solution.
+/// - [`IdentificationError::ModelMismatch`]: the residual of the fit is above 2 % of the fitted signal.
+/// - [`IdentificationError::OutOfRange`]: a parameter of the tile is outside its allowed range.
 pub fn tile_from_normal_equations(
     rows: &[NormalEquationRow; NORMAL_EQUATION_ROWS],
 ) -> Result<Tile, IdentificationError> {
@@ -90,7 +93,8 @@ pub fn tile_from_normal_equations(
     // The prior is one of gain times dead time, so a fit without it determines the gain first.
     let without_prior =
         solve_with_dead_time_prior(rows, 0.0, 0.0).ok_or(IdentificationError::NoResponse)?;
-    let gain_dead_time_prior = -without_prior[GAIN_INDEX] / TIME_UNIT_S * DEAD_TIME_PRIOR_S;
+    let gain_dead_time_prior =
+        -without_prior[GAIN_INDEX] / EQUATION_TIME_UNIT_S * DEAD_TIME_PRIOR_S;
     let fitted = solve_with_dead_time_prior(rows, DEAD_TIME_PRIOR_WEIGHT, gain_dead_time_prior)
         .ok_or(IdentificationError::NoResponse)?;
     let residual = relative_residual(rows, &fitted, total(StatisticIndex::SquaredRegressand));
@@ -102,15 +106,15 @@ pub fn tile_from_normal_equations(
         -fitted[GAIN_TIMES_MIRROR_ZERO_INDEX] / fitted[GAIN_INDEX],
     );
     let (lag, gain, leak) = (
-        -fitted[LAG_INDEX] * TIME_UNIT_S,
-        -fitted[GAIN_INDEX] / TIME_UNIT_S,
-        -fitted[LEAK_INDEX] / TIME_UNIT_S,
+        -fitted[LAG_INDEX] * EQUATION_TIME_UNIT_S,
+        -fitted[GAIN_INDEX] / EQUATION_TIME_UNIT_S,
+        -fitted[LEAK_INDEX] / EQUATION_TIME_UNIT_S,
     );
     // All unknowns are divided by m = 1 + leak lag, so m is a root of m = 1 + (leak / m) (lag / m) m^2.
     let m = 2.0 / (1.0 + libm::sqrt((1.0 - 4.0 * leak * lag).max(0.0)));
     let tile = Tile::from_array([
         gain * m * flowing_ratio,
-        fitted[GAIN_TIMES_JOULE_INDEX] / TIME_UNIT_S / gain * flowing_ratio,
+        fitted[GAIN_TIMES_JOULE_INDEX] / EQUATION_TIME_UNIT_S / gain * flowing_ratio,
         leak * m,
         lag * m,
         fitted[GAIN_TIMES_DEAD_TIME_INDEX] / gain + ACTUATION_DELAY_S,
@@ -123,9 +127,9 @@ pub fn tile_from_normal_equations(
     }
 }
 
-/// Ratio of measured to demanded current at [`COMPARISON_CURRENT`] (4.5 A), from a linear regression over all ticks in
-/// which more than 1 A was demanded. `total` returns a sum that the station has added up. `mirror_zero_a` is what the
-/// current mirror shows without a current, A; it is subtracted from the measured current.
+/// Ratio of measured to demanded current at [`RATIO_EVALUATION_CURRENT`] (4.5 A), from a linear regression over all
+/// ticks in which more than 1 A was demanded. `total` returns the station's sum with the given index. `mirror_zero_a`
+/// is the current, A, that the current mirror shows while none flows; it is subtracted from the measured current.
 fn current_ratio(total: impl Fn(StatisticIndex) -> f64, mirror_zero_a: f64) -> f64 {
     let (ticks, demanded, measured) = (
         total(StatisticIndex::ComparedTicks),
@@ -135,11 +139,12 @@ fn current_ratio(total: impl Fn(StatisticIndex) -> f64, mirror_zero_a: f64) -> f
     let slope = (ticks * total(StatisticIndex::DemandedTimesMeasured) - demanded * measured)
         / (ticks * total(StatisticIndex::SquaredDemanded) - demanded * demanded);
     let intercept = (measured - slope * demanded) / ticks;
-    slope + (intercept - mirror_zero_a * CURRENT_UNITS_PER_AMPERE) / COMPARISON_CURRENT
+    slope + (intercept - mirror_zero_a * CURRENT_UNITS_PER_AMPERE) / RATIO_EVALUATION_CURRENT
 }
 
-/// RMS residual of the solution `fitted` of the normal equations `rows`, as a fraction of the RMS response.
-/// `response_squared` is the sum of the squared response, in the unit of the rows.
+/// RMS residual of the solution `fitted` of the normal equations `rows`, as a fraction of the RMS of the fitted signal,
+/// which is the time integral of the change of the display's reading. `response_squared` is the sum of the squares of
+/// this signal, in the unit of the rows, 2^-44.
 fn relative_residual(
     rows: &[NormalEquationRow; NORMAL_EQUATION_ROWS],
     fitted: &[f64; UNKNOWN_COUNT],
@@ -153,9 +158,9 @@ fn relative_residual(
     libm::sqrt(residual_squared.max(0.0) / response_squared)
 }
 
-/// Solves the normal equations for the eight unknowns, together with a prior: gain times dead time equals
-/// `gain_dead_time`, K/A, with the weight `prior_weight`; a weight of 0 leaves the prior out. Returns `None` if the
-/// equations are numerically singular.
+/// Solves the normal equations for the eight unknowns, together with a prior: the unknown gain times dead time equals
+/// `gain_dead_time`, K/A. `prior_weight` is added to its diagonal element of the normal matrix, in units of 2^-44; a
+/// weight of 0 leaves the prior out. Returns `None` if the equations are numerically singular.
 fn solve_with_dead_time_prior(
     rows: &[NormalEquationRow; NORMAL_EQUATION_ROWS],
     prior_weight: f64,
@@ -167,6 +172,6 @@ fn solve_with_dead_time_prior(
         core::array::from_fn(|i| rows[i][UNKNOWN_COUNT] as f64);
     matrix[GAIN_TIMES_DEAD_TIME_INDEX][GAIN_TIMES_DEAD_TIME_INDEX] += prior_weight;
     solution[GAIN_TIMES_DEAD_TIME_INDEX] += prior_weight * gain_dead_time;
-    solve(&mut matrix, &mut solution)?;
+    solve_by_cholesky(&mut matrix, &mut solution)?;
     Some(solution)
 }

@@ -17,15 +17,17 @@ pub const CONVERTER_STEPS_PER_LINE: usize = 7;
 /// which `thermal-protocol` reads it.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SessionRequest {
-    /// `calibrate SENSOR CELSIUS`: adds a calibration point, that is the thermistor's mean over half a second and the
-    /// temperature of the reference thermometer. The calibration that fits all points is used from then on.
+    /// `calibrate SENSOR CELSIUS`: adds a calibration point, that is the mean of the thermistor's converter sums over
+    /// half a second and the temperature of the reference thermometer. The calibration that fits all points is used
+    /// from then on.
     AddPoint {
         /// Index of the thermistor to calibrate, 0 to 4, in the order of [`SENSOR_WORDS`].
         sensor: usize,
         /// Temperature that the reference thermometer shows at the thermistor, °C.
         reference_c: f64,
     },
-    /// `calibrate SENSOR clear`: removes a thermistor's calibration points, and sets its correction to zero.
+    /// `calibrate SENSOR clear`: removes a thermistor's calibration points, and sets its correction to zero. If the
+    /// corrections of both display thermistors are zero then, the converter's steps are set to zero, too.
     ClearCalibration {
         /// Index of the thermistor whose calibration is removed, 0 to 4, in the order of [`SENSOR_WORDS`].
         sensor: usize,
@@ -34,13 +36,15 @@ pub enum SessionRequest {
     CountSettingsLines,
     /// `settings N`: reports one line of the settings. The value is `N - 1`, the index of the line from 0.
     SettingsLine(usize),
-    /// `tune result`: computes the tile's parameters from the response that the station has recorded during `tune`, and
-    /// uses them in place of the present ones. Reports them with the stability margins.
+    /// `tune result`: computes the tile's parameters from the response that the station has recorded during a complete
+    /// `tune`, and uses them in place of the present ones; `save` stores them. Reports them with the stability margins.
     TuneResult,
-    /// `margins`: reports the present parameters of the tile, and the phase and gain margin of the temperature loop
-    /// with them.
+    /// `margins`: reports the present parameters of the tile, and with them the phase margin and the gain margin of the
+    /// temperature loop that the law `pi` closes.
     Margins,
-    /// `set ...`: replaces the part of the settings that the line holds, and uses it from the next tick on.
+    /// `set ...`: replaces the part of the settings that the line holds, and uses it from the next tick on. A line with
+    /// a correction also removes the calibration points of its thermistor; a line with steps removes those of both
+    /// display thermistors.
     Set(Setting),
 }
 
@@ -50,8 +54,8 @@ pub enum SessionReply {
     /// The request was executed, and there is nothing to report: reply to [`SessionRequest::ClearCalibration`] and
     /// [`SessionRequest::Set`].
     Done,
-    /// The present parameters of the tile, and the stability margins of the temperature loop: reply to
-    /// [`SessionRequest::TuneResult`] and [`SessionRequest::Margins`].
+    /// The present parameters of the tile, and with them the stability margins of the temperature loop that the law
+    /// `pi` closes: reply to [`SessionRequest::TuneResult`] and [`SessionRequest::Margins`].
     Tile(Tile, StabilityMargins),
     /// The calibration point was added, and the calibration fitted again is in use: reply to
     /// [`SessionRequest::AddPoint`].
@@ -72,20 +76,22 @@ pub enum SessionReply {
 /// replies to `settings N`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Setting {
-    /// `steps BORDER COUNTS...`: one to seven steps of the converter at successive borders of its segments. A step is
-    /// the excess of the converter's code above a border over that below it.
+    /// `steps BORDER COUNTS...`: one to seven steps of the converter's error at successive borders of its segments,
+    /// from the border `first` on. A step is the error just above a border minus that just below, converter counts.
     Steps {
-        /// Index of the first of these borders, 10 to 22; border `n` lies at the converter's code `128 n`.
+        /// Index of the border to which the first element of `counts` belongs, 10 to 22; border `n` lies at the
+        /// converter's code `128 n`.
         first: usize,
         /// Steps at the border `first` and at the borders after it, converter counts; positive if the code above the
         /// border is too high.
         counts: heapless::Vec<f64, CONVERTER_STEPS_PER_LINE>,
     },
     /// `correction SENSOR OFFSET SLOPE CURVATURE`: index of a thermistor (0 to 4, in the order of [`SENSOR_WORDS`]),
-    /// and the correction that is added to its temperature.
+    /// and the correction that is added to its temperature, with offset (K), slope (K/K) and curvature (1/K).
     Correction(usize, Correction),
-    /// `tile GAIN JOULE LEAK LAG DEAD`: the tile's gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and
-    /// dead time (s).
+    /// `tile GAIN JOULE LEAK LAG DEAD`: the tile's gain (cooling rate per ampere, K/s per A), Joule term (Joule heating
+    /// relative to the cooling, 1/A), leak (rate at which a temperature deviation decays, 1/s), lag of the display's
+    /// thermistor (s) and dead time (s).
     Tile(Tile),
 }
 

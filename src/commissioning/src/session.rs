@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::calibration_fit::{DISPLAY_THERMISTORS, fit, reading_c};
+use super::calibration_fit::{DISPLAY_THERMISTOR_COUNT, fit, thermistor_reading_c};
 use super::calibration_points::{CalibrationPoints, PointError};
 use super::identification::tile_from_normal_equations;
 use super::request::{
@@ -19,10 +19,11 @@ use thermal_settings::{
 
 /// Number of lines of the settings that hold the converter's steps at 13 borders of its segments, up to seven in each
 /// line: 2.
-const CONVERTER_STEPS_LINES: usize = CALIBRATED_BORDER_COUNT.div_ceil(CONVERTER_STEPS_PER_LINE);
+const CONVERTER_STEPS_LINE_COUNT: usize =
+    CALIBRATED_BORDER_COUNT.div_ceil(CONVERTER_STEPS_PER_LINE);
 /// Number of lines that hold all commissioned settings of a finger, 8: two for the converter's 13 steps, one for the
 /// correction of each of the five thermistors, and one for the tile.
-pub const SETTINGS_LINES: usize = CONVERTER_STEPS_LINES + SENSOR_WORDS.len() + 1;
+pub const SETTINGS_LINES: usize = CONVERTER_STEPS_LINE_COUNT + SENSOR_WORDS.len() + 1;
 
 /// A function that executes a command on the station of the session's finger, and returns the station's reply or
 /// refusal. The control tick may be locked out while it runs, so it must end after a bounded, short time.
@@ -64,7 +65,11 @@ impl CommissioningSession {
     /// `execute`.
     ///
     /// # Errors
-    /// Why the request is rejected; the settings are unchanged then.
+    /// The settings are unchanged then.
+    ///
+    /// - [`SessionError::Refused`]: the station refuses a command that the request needs.
+    /// - [`SessionError::Identification`]: `tune result`, but the recorded response gives no tile.
+    /// - [`SessionError::Point`]: the calibration point is rejected.
     pub fn answer(
         &mut self,
         request: SessionRequest,
@@ -74,7 +79,7 @@ impl CommissioningSession {
             SessionRequest::AddPoint {
                 sensor,
                 reference_c,
-            } => return self.add_point(sensor, reference_c, &mut execute),
+            } => return self.add_point_and_refit(sensor, reference_c, &mut execute),
             SessionRequest::ClearCalibration { sensor } => {
                 self.clear_calibration(sensor, &mut execute)?;
             }
@@ -87,7 +92,7 @@ impl CommissioningSession {
                 self.replace_calibration_and_prior(
                     calibration,
                     calibration,
-                    0..DISPLAY_THERMISTORS,
+                    0..DISPLAY_THERMISTOR_COUNT,
                     &mut execute,
                 )?;
             }
@@ -104,9 +109,9 @@ impl CommissioningSession {
             SessionRequest::Set(Setting::Tile(tile)) => self.set_tile(tile, &mut execute)?,
             SessionRequest::TuneResult => {
                 self.identify_tile(&mut execute)?;
-                return Ok(self.tile_and_margins());
+                return Ok(self.tile_and_margins_reply());
             }
-            SessionRequest::Margins => return Ok(self.tile_and_margins()),
+            SessionRequest::Margins => return Ok(self.tile_and_margins_reply()),
             SessionRequest::CountSettingsLines => {
                 return Ok(SessionReply::SettingsLines(SETTINGS_LINES));
             }
@@ -118,7 +123,8 @@ impl CommissioningSession {
     }
 
     /// Computes the tile's parameters from the response that the station has recorded during `tune`, and makes them the
-    /// tile of the settings and of the station.
+    /// tile of the settings and of the station. Without a complete `tune`, if the response gives no tile, or if the
+    /// station refuses the parameters, nothing changes.
     fn identify_tile(&mut self, execute: &mut impl ExecuteOnStation) -> Result<(), SessionError> {
         let mut rows = [NormalEquationRow::default(); NORMAL_EQUATION_ROWS];
         for (i, row) in rows.iter_mut().enumerate() {
@@ -131,8 +137,9 @@ impl CommissioningSession {
         Ok(self.set_tile(tile, execute)?)
     }
 
-    /// Replaces the tile's parameters, and the controller gains that follow from them, in the station and in the
-    /// settings. If the station refuses them, as it does while it presents an object, nothing changes.
+    /// Replaces the tile's parameters, and the controller gains that follow from them, in the station and in this
+    /// session's settings (in RAM; only `save` writes them to flash). If the station refuses them, because it presents
+    /// an object, nothing changes.
     fn set_tile(&mut self, tile: Tile, execute: &mut impl ExecuteOnStation) -> Result<(), Refused> {
         let mut settings = self.settings;
         settings.set_tile(tile);
@@ -141,14 +148,14 @@ impl CommissioningSession {
         Ok(())
     }
 
-    fn tile_and_margins(&self) -> SessionReply {
+    fn tile_and_margins_reply(&self) -> SessionReply {
         let Settings { tile, gains, .. } = &self.settings;
         SessionReply::Tile(*tile, StabilityMargins::new(tile, gains))
     }
 
-    /// Replaces the calibration in the station and in the settings. If the station refuses it, as it does while it
-    /// presents an object, nothing changes. Not inlined, so that the copy of the settings takes stack in this function
-    /// only.
+    /// Replaces the calibration in the station and in this session's settings (in RAM; only `save` writes them to
+    /// flash). If the station refuses it, because it presents an object or runs the self-test, nothing changes. Not
+    /// inlined, so that the copy of the settings takes stack in this function only.
     #[inline(never)]
     fn apply_calibration(
         &mut self,
@@ -166,7 +173,7 @@ impl CommissioningSession {
 
     /// Replaces the calibration in use and the prior of the calibration fit, and removes the calibration points of the
     /// thermistors with the indices `sensors`, because the new prior replaces what they contributed. If the station
-    /// refuses the calibration, nothing changes.
+    /// refuses the calibration, because it presents an object or runs the self-test, nothing changes.
     fn replace_calibration_and_prior(
         &mut self,
         calibration: Calibration,
@@ -176,7 +183,7 @@ impl CommissioningSession {
     ) -> Result<(), Refused> {
         self.apply_calibration(calibration, execute)?;
         self.prior = prior;
-        sensors.for_each(|sensor| self.points.clear_sensor(sensor));
+        sensors.for_each(|sensor| self.points.remove_points_of_sensor(sensor));
         Ok(())
     }
 
@@ -198,7 +205,8 @@ impl CommissioningSession {
 
     /// Removes the calibration points of the thermistor with the index `sensor`, and sets its correction to zero. If
     /// the corrections of both display thermistors are zero then, the converter's steps at its segment borders are set
-    /// to zero, too, because only these two thermistors determine them.
+    /// to zero, too, because only these two thermistors determine them. If the station refuses the calibration, nothing
+    /// changes.
     fn clear_calibration(
         &mut self,
         sensor: usize,
@@ -206,7 +214,10 @@ impl CommissioningSession {
     ) -> Result<(), Refused> {
         let (mut calibration, mut prior) =
             self.calibration_and_prior_with_correction(sensor, Correction::default());
-        let mut display = calibration.corrections.iter().take(DISPLAY_THERMISTORS);
+        let mut display = calibration
+            .corrections
+            .iter()
+            .take(DISPLAY_THERMISTOR_COUNT);
         if display.all(|correction| *correction == Correction::default()) {
             calibration.steps_counts = [0.0; CALIBRATED_BORDER_COUNT];
             prior.steps_counts = [0.0; CALIBRATED_BORDER_COUNT];
@@ -214,10 +225,11 @@ impl CommissioningSession {
         self.replace_calibration_and_prior(calibration, prior, sensor..sensor + 1, execute)
     }
 
-    /// Adds a calibration point: the thermistor's mean over half a second, and the temperature of the reference
-    /// thermometer, `reference_c`, °C. Then fits the calibration to all points and uses it. If no allowed calibration
-    /// fits, or the station refuses it, the new point is removed again and nothing changes.
-    fn add_point(
+    /// Adds a calibration point: the mean of the thermistor's converter sums over half a second, and the temperature of
+    /// the reference thermometer, `reference_c`, °C. Then fits the calibration to all points, and uses it in station
+    /// and settings. If no allowed calibration fits, or the station refuses it, the new point is removed again and
+    /// nothing changes.
+    fn add_point_and_refit(
         &mut self,
         sensor: usize,
         reference_c: f64,
@@ -226,7 +238,7 @@ impl CommissioningSession {
         let command::Reply::Average(average) = execute(Command::Average(sensor))? else {
             return Err(Refused::TooEarly.into());
         };
-        let present_c = reading_c(&self.settings, sensor, average.mean_sum());
+        let present_c = thermistor_reading_c(&self.settings, sensor, average.mean_sum());
         self.points
             .add(sensor, &average, present_c, reference_c)
             .map_err(SessionError::Point)?;
@@ -240,7 +252,7 @@ impl CommissioningSession {
         applied?;
         let points = self.points.of_sensor(sensor);
         let errors_k = points.iter().map(|point| {
-            libm::fabs(reading_c(&self.settings, sensor, point.sum) - point.reference_c)
+            libm::fabs(thermistor_reading_c(&self.settings, sensor, point.sum) - point.reference_c)
         });
         Ok(SessionReply::PointAdded {
             points: points.len(),
@@ -262,7 +274,7 @@ impl CommissioningSession {
                 counts: heapless::Vec::from_slice(steps).unwrap_or_default(),
             };
         }
-        let sensor = index - CONVERTER_STEPS_LINES;
+        let sensor = index - CONVERTER_STEPS_LINE_COUNT;
         match calibration.corrections.get(sensor) {
             Some(correction) => Setting::Correction(sensor, *correction),
             None => Setting::Tile(self.settings.tile),

@@ -5,7 +5,8 @@ use core::f64::consts::PI;
 use thermal_device::TICK_HZ;
 use thermal_settings::{Gains, Tile};
 
-/// Phase margin and gain margin of the control loop of the display's temperature: how far the loop is from instability.
+/// Phase margin and gain margin of the loop by which the law `pi` controls the display's temperature: how far the loop
+/// is from instability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityMargins {
     /// Phase margin, degrees: phase of the open loop above -180° at the frequency at which the magnitude of its gain is
@@ -15,14 +16,14 @@ pub struct StabilityMargins {
     pub gain: f64,
 }
 
-/// Lower end of the search for the frequency at which the open loop's gain is one, rad/s; below this frequency for all
-/// allowed settings.
+/// Lower end of the search for the frequency at which the magnitude of the open loop's gain is one, rad/s. That
+/// frequency is higher for all allowed settings.
 const SEARCH_FREQUENCY_MIN_RAD_S: f64 = 1e-6;
 /// Upper end of the search for frequencies of the open loop, rad/s: the Nyquist frequency of a loop that is closed at
 /// every tick of 1 ms.
 const SEARCH_FREQUENCY_MAX_RAD_S: f64 = PI * TICK_HZ as f64;
-/// Number of bisections of the logarithm of the frequency: 34 determine a frequency between the ends of the search to
-/// about one part in 10^9.
+/// Number of bisections of the logarithm of the frequency. Between [`SEARCH_FREQUENCY_MIN_RAD_S`] and
+/// [`SEARCH_FREQUENCY_MAX_RAD_S`], 34 bisections determine a frequency to about one part in 10^9.
 const BISECTION_STEPS: u32 = 34;
 
 impl StabilityMargins {

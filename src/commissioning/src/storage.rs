@@ -8,9 +8,10 @@
 /// restarts to execute the order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StorageOrder {
-    /// `save`: stores the present settings, so that they still hold after a restart.
+    /// `save`: stores the present calibration and tile parameters of all fingers, so that they still hold after a
+    /// restart.
     Save,
-    /// `forget`: stores the factory defaults in place of the stored settings; all calibration is lost.
+    /// `forget`: stores the factory defaults of all fingers in place of the stored settings; all calibration is lost.
     Forget,
 }
 

@@ -20,8 +20,9 @@ pub enum Command {
     /// Report the state, the chosen material, object temperature and contact model, and the set-point of the last tick,
     /// by [`Reply::Status`]. Never refused.
     Status,
-    /// Send a line of telemetry at this interval from now on. While telemetry is on and the display follows a set-point
-    /// (in armed, preset and contact), 2 s without a line from the host trip the station by [`Fault::HostSilent`].
+    /// Send a line of telemetry every `interval_ms` from now on. While telemetry is on and the display follows a
+    /// set-point (in armed, preset and contact), 2 s without a line from the host trip the station by
+    /// [`Fault::HostSilent`].
     Stream {
         /// Time from one line of telemetry to the next, ms, up to 60000; 0 switches telemetry off.
         interval_ms: u32,
@@ -42,11 +43,13 @@ pub enum Command {
     /// Choose the contact model that gives the set-point while an object is presented. If that changes the model while
     /// a finger touches, a new contact begins.
     Mode(ContactModel),
-    /// Choose the control law that computes the current; a law that was not in use starts from the present current.
-    /// `None` changes nothing: the answer is the law in use.
+    /// Choose the control law that computes the current. A law `pi` or `pi-10hz` that was not in use starts from the
+    /// present current; the law `model` continues from the plate's observer, which runs with every law. `None` changes
+    /// nothing: the answer is the law in use.
     Law(Option<Law>),
-    /// Drive the display to skin temperature, with no object presented: in off after the self-test, in ready, armed,
-    /// preset and contact at once. No effect in the self-test; refused while the station is tripped.
+    /// Drive the display to skin temperature, with no object presented. From off the self-test runs first; from ready,
+    /// armed, preset and contact the display moves at once. A `hold` or an identification of the tile ends, and the
+    /// result of an identification is discarded. No effect in the self-test; refused while the station is tripped.
     Arm,
     /// Move the set-point of an armed display from the display's present reading to this temperature, by 1 K/s, and
     /// stay there. Refused if the station is not armed.
@@ -58,21 +61,25 @@ pub enum Command {
     /// refused; no effect in off, ready and tripped, where the bridge is off already.
     Abort,
     /// Change from tripped to off, from where `arm` runs the self-test again. Refused while a fault is present, and if
-    /// the station is not tripped.
+    /// the station is not tripped. If the board has raised a second fault while the first one was latched, the second
+    /// one then trips the station ([`Refused::StillFaulty`]).
     Clear,
     /// Report the cause of the present trip or, after `clear`, of the last one. Never refused.
     Cause,
     /// Report the mean of one thermistor's samples over half a second, for a calibration. Index of the thermistor: 0
     /// first display, 1 second display, 2 sink, 3 skin, 4 room. Refused while an object is presented, in the self-test,
-    /// and before the mean covers half a second.
+    /// and while too few samples have been added ([`Refused::TooEarly`]).
     Average(usize),
-    /// Begin to identify the tile: current pulses move the armed display, and each tick adds its response to the normal
-    /// equations. Refused if the station is not armed, or while a finger touches.
+    /// Begin to identify the tile: current pulses move the armed display, and each tick adds the display's response to
+    /// the normal equations, from which the tile's parameters are fitted afterwards. Refused if the station is not
+    /// armed, while a finger touches, and if the sink's thermistor has no valid reading.
     Tune,
-    /// Report the row with this index, 0 to 8, of the normal equations of a complete identification of the tile.
+    /// Report one row, by its index from 0 to 8, of the normal equations of the last identification of the tile.
+    /// Refused unless that identification is complete, and while the station is tripped.
     NormalEquation(usize),
-    /// Use these corrections of converter and thermistors from the next tick on. Refused while an object is presented,
-    /// because the finger would feel the change, and in the self-test, which a step of the readings would disturb.
+    /// Use these corrections of converter and thermistors from the next tick on; an identification of the tile that is
+    /// still running ends without a result. Refused while an object is presented, because the finger would feel the
+    /// change, and in the self-test, which a step of the readings would disturb.
     Calibrate(CalibrationTables),
     /// Use these gains and this model of the tile from the next tick on; an identification of the tile ends. Refused
     /// while an object is presented, because the finger would feel the change.
@@ -92,8 +99,8 @@ pub enum Reply {
     /// Answer to [`Command::Cause`]: cause of the present trip or, after `clear`, of the last one. `None` if the
     /// station has not tripped since the start of the program, and was not tripped when it started.
     Cause(Option<TripCause>),
-    /// Answer to [`Command::Average`]: mean of one thermistor's samples over 512 ticks, in converter units before any
-    /// calibration.
+    /// Answer to [`Command::Average`]: mean of one thermistor's sums of 16 conversions over 512 ticks of 1 ms, in
+    /// converter counts before any calibration, and whether the thermistor was steady.
     Average(ThermistorAverage),
     /// Answer to [`Command::NormalEquation`]: one row of the normal equations of the tile's identification.
     NormalEquation(NormalEquationRow),
@@ -128,15 +135,15 @@ pub enum Refused {
     /// A row of the normal equations was requested, but the identification of the tile has ended early, for this
     /// reason, and has no result.
     TuneAborted(AbortReason),
-    /// The mean of a thermistor was requested before it covered 512 ticks (0.5 s) since the start of the program or, if
-    /// later, the last `start`. Ticks in which an object is presented do not count, because a finger may touch the
-    /// display then.
+    /// The mean of a thermistor was requested before 512 ticks (0.5 s) of samples had been added since the start of the
+    /// program or, if later, since the last accepted `start`. Ticks in which an object is presented are not added,
+    /// because a finger may touch the display then.
     TooEarly,
     /// The station is tripped by this fault, and the command needs one that is not tripped: `clear` must come first.
     Tripped(Fault),
-    /// `clear` was sent, but the station is still tripped. Either this fault is still present, so that the latched one
-    /// stays; or the board had raised this fault while another one was latched, and the station is now tripped by this
-    /// fault instead.
+    /// `clear` was sent, but the station is still tripped, for one of two reasons. This fault is still present, and the
+    /// fault that has tripped the station stays latched. Or the board had raised this fault while another one was
+    /// latched; `clear` has cleared that other one, and this fault has tripped the station again.
     StillFaulty(Fault),
     /// `clear` was sent to a station that is not tripped.
     NothingToClear,
@@ -150,12 +157,13 @@ pub struct Status {
     pub state: StateName,
     /// Name of the material that the host has chosen; `None` before the first command `material`.
     pub material: Option<&'static str>,
-    /// Temperature of the object before contact that the host has chosen, °C; `None` if the object takes the room's
+    /// Temperature of the object before contact, °C, as chosen by the host; `None` if the object takes the room's
     /// temperature.
     pub object: Option<Celsius>,
     /// Contact model that the host has chosen; it gives the set-point while an object is presented.
     pub mode: ContactModel,
-    /// Set-point of the last tick, °C; `None` in off, self-test, ready and tripped, where no set-point is followed.
+    /// Set-point of the last tick, °C. `None` if that tick began in off, self-test, ready or tripped, or found a fault:
+    /// no set-point is followed then.
     pub setpoint: Option<Celsius>,
     /// Whether the set-point of the last tick would have been outside of 15 to 42 °C, and was clamped to that range.
     pub limited: bool,
@@ -165,8 +173,8 @@ pub struct Status {
 /// finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Addressed<T> {
-    /// Index of the finger, from 0. `None` if the content concerns the device as a whole, or if the device has only one
-    /// finger and the host's line has named none.
+    /// Index of the finger, from 0. `None` if the content concerns the device as a whole. On a device with one finger
+    /// also `None`, except in the answer to a line of the host that has named the finger.
     pub finger: Option<u8>,
     /// The reply, refusal or telemetry itself, without the finger.
     pub content: T,

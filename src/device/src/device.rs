@@ -25,9 +25,9 @@ impl<const FINGERS: usize> Device<FINGERS> {
         Self::with_trip_cause(None, settings)
     }
 
-    /// A device with the same settings for every finger. If the board has stored or found a `cause` for a trip from
-    /// before the last reset, all stations start tripped by it, otherwise in off. Converts the settings from `f64`, so
-    /// it is for the start only.
+    /// A device with the same settings for every finger. With a `cause` all stations start tripped by it: a trip that
+    /// the board stored before the last reset, or a fault that the reset itself shows. With `None` they start in off.
+    /// Converts the settings from `f64`, so it is for the start only.
     #[must_use]
     #[inline(never)]
     pub fn with_trip_cause(cause: Option<TripCause>, settings: &Settings) -> Self {
@@ -69,8 +69,8 @@ impl<const FINGERS: usize> Device<FINGERS> {
     }
 
     /// Trips the stations of all fingers by a fault that the board has found outside of a control tick, such as an
-    /// overrun stack. A station that another fault has tripped before keeps that one latched; the first fault that is
-    /// raised meanwhile trips the station again when the latched one is cleared.
+    /// overrun stack. On a station that a different fault has already tripped, that fault stays latched; this one is
+    /// stored, unless one is stored already, and trips the station when `clear` has cleared the latched one.
     pub fn trip_all(&mut self, fault: Fault) {
         self.stations
             .iter_mut()
@@ -102,8 +102,9 @@ impl<const FINGERS: usize> Device<FINGERS> {
             .for_each(Station::note_host_activity);
     }
 
-    /// Telemetry of a finger's last tick, with the index of the finger. `None` if the host has not switched telemetry
-    /// on, or if the interval that the host has chosen does not end in this tick. To be called once after each tick.
+    /// Telemetry of a finger's last tick, with the index of the finger (none on a device with one finger). `None` if
+    /// the host has not switched telemetry on, or if the number of that tick is not a multiple of the interval that the
+    /// host has chosen. To be called once after each tick.
     #[must_use]
     pub fn telemetry(&self, finger: Finger<FINGERS>) -> Option<Addressed<Telemetry>> {
         let content = self.stations[finger.index()].telemetry()?;
@@ -119,8 +120,9 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// all fingers succeeds if at least one was tripped, and every tripped one could be cleared.
     ///
     /// # Errors
-    /// The refusal of the lowest finger that refuses, with its index; [`Refused::NothingToClear`] only if there is no
-    /// other refusal. All fingers whose state permits the command have executed it.
+    /// The refusal of `finger`. For all fingers: the refusal of the finger with the lowest index among those that
+    /// refuse, with that index (none on a device with one finger); [`Refused::NothingToClear`] only if no finger was
+    /// tripped. The other fingers, which do not refuse the command, have executed it.
     pub fn execute(
         &mut self,
         finger: Option<Finger<FINGERS>>,

@@ -38,8 +38,7 @@ impl Duty {
     /// Largest magnitude of a duty cycle, as a fraction of the supply voltage. On a supply of 12 V, 0.9 is 10.8 V,
     /// which is more than resistance, Seebeck voltage and dead times together need at the largest current of 6 A.
     pub const DUTY_LIMIT: I1F15 = I1F15::lit("0.9");
-    /// No mean voltage: both half-bridges stay at the same level, so that current can circulate, unlike with
-    /// [`Drive::Off`].
+    /// No mean voltage: both half-bridges stay high, so that current can circulate, unlike with [`Drive::Off`].
     pub const ZERO: Self = Self(I1F15::ZERO);
 
     /// Duty cycle of this `fraction` of the supply voltage, clamped to -0.9 to 0.9; positive cools the display.

@@ -46,8 +46,8 @@ impl<const FINGERS: usize> Finger<FINGERS> {
     /// Index of the finger, 0 to `FINGERS` - 1, for arrays with an element per finger.
     #[must_use]
     pub const fn index(self) -> usize {
-        // The remainder changes nothing. It tells the compiler that an array of `FINGERS` elements
-        // needs no bounds check.
+        // The remainder does not change the index, but lets the compiler omit the bounds check of an array of `FINGERS`
+        // elements.
         self.index_u8() as usize % FINGERS
     }
 
@@ -58,8 +58,8 @@ impl<const FINGERS: usize> Finger<FINGERS> {
         self.0
     }
 
-    /// Index that replies and telemetry of this finger begin with, after `@`, if the host's line has named no finger.
-    /// `None` on a device with a single finger, whose lines then begin without an index.
+    /// Index of this finger at the start of its telemetry lines, and of its replies to a command that names no finger,
+    /// as in `@3 `. `None` on a device with a single finger, where these lines begin without an index.
     #[must_use]
     pub const fn reply_address(self) -> Option<u8> {
         if FINGERS > 1 { Some(self.0) } else { None }

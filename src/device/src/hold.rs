@@ -31,8 +31,8 @@ impl TemperatureHold {
         Self { target, setpoint }
     }
 
-    /// Moves the set-point toward the target by up to 1 mK, and returns the new set-point. To be called once in each
-    /// tick of 1 ms.
+    /// Moves the set-point by up to 1 mK toward the target temperature, and returns the new set-point; at the target it
+    /// stays. To be called once in each tick of 1 ms.
     pub fn next_setpoint(&mut self) -> Setpoint {
         let now = self.setpoint.celsius();
         let distance = self.target.celsius().saturating_sub(now);

@@ -23,7 +23,8 @@ impl Coefficient {
     }
 }
 
-/// Binary places that the filter's state has in addition to the 22 of a [`Celsius`]: 32.
+/// Binary places that the filter's state has in addition to the 22 of a [`Celsius`]: 32, as many as a [`Coefficient`]
+/// has, so that even the smallest change of the input changes the state.
 const EXTRA_STATE_BINARY_PLACES: u32 = I10F54::FRAC_NBITS - Celsius::FRAC_NBITS;
 
 /// A first-order low-pass filter for a temperature, °C, or a temperature difference, K, with one input in each tick of
@@ -51,7 +52,7 @@ impl LowPass {
         self.coefficient = coefficient;
     }
 
-    /// The filter's output after the last tick, in the unit of its input, °C or K.
+    /// The filter's present output, in the unit of its input, °C or K.
     #[must_use]
     pub const fn output(&self) -> Celsius {
         Celsius::from_bits((self.state.to_bits() >> EXTRA_STATE_BINARY_PLACES) as i32)

@@ -12,11 +12,12 @@ use crate::safety::Setpoint;
 /// still changes the integral.
 const EXTRA_INTEGRAL_BINARY_PLACES: u32 = I12F52::FRAC_NBITS - Current::FRAC_NBITS;
 
-/// How often a proportional-integral controller takes the temperature error and changes its current.
+/// How often a proportional-integral controller computes a new current from the temperature error: at every tick of 1
+/// ms, or at every 100th. The integral gain is scaled to this period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpdatePeriod {
-    /// At every control tick, 1000 times a second: for the law `pi`, for the correction of the plate's observer, and
-    /// for the loop that holds the display during an identification of the tile.
+    /// At every control tick, 1000 times a second: for the law `pi`, for the loop that corrects the model of the
+    /// plate's observer, and for the loop that holds the display during an identification of the tile.
     EveryTick,
     /// At every 100th control tick, ten times a second, as in the display of the thesis (docs/thesis.md): for the law
     /// `pi-10hz`. The current is constant between two updates.
@@ -33,8 +34,7 @@ impl UpdatePeriod {
     }
 }
 
-/// Gains of a proportional-integral controller in fixed point, and how often the controller takes the temperature
-/// error.
+/// Gains of a proportional-integral controller in fixed point, and how often the controller computes a new current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PiCoefficients {
     /// Proportional gain: current for each kelvin of temperature error, A/K.
@@ -69,9 +69,10 @@ pub struct Pi {
     coefficients: PiCoefficients,
     /// Largest magnitude of the controller's output and of its integral part, A.
     limit: Current,
-    /// Ticks of 1 ms until the next update; the output stays constant until then.
+    /// Ticks of 1 ms that are still to pass without an update, 0 to 99; the output stays constant in them. 0 if the
+    /// next tick updates the output.
     ticks_to_update: u32,
-    /// Output of the last update, or the current that something else has driven since, A; positive cools.
+    /// Output of the last update, or the current that [`Self::track_current`] has set since, A; positive cools.
     output: Current,
     /// Integral part of the output, A; positive cools. Its magnitude never exceeds `limit`.
     integral: I12F52,
@@ -95,9 +96,10 @@ impl Pi {
         self.coefficients = coefficients;
     }
 
-    /// Sets output and integral to `current`, A (positive cools), which something else, such as the self-test, has
-    /// chosen in this tick. The next update starts from this current and not from errors of the past (bumpless
-    /// transfer).
+    /// Sets output and integral to `current`, A (positive cools), which this controller has not chosen: that of the
+    /// self-test, of an identification or of another control law, or 0 A while the bridge is off or at a restart of the
+    /// plate's observer. The next tick updates the output, starting from this current and not from errors of the past
+    /// (bumpless transfer).
     pub fn track_current(&mut self, current: Current) {
         (self.ticks_to_update, self.output) = (0, current);
         self.integral =
@@ -122,9 +124,10 @@ impl Pi {
         self.output
     }
 
-    /// Runs one update: adds the `error`, K (positive while the display is too warm), to the integral, and returns the
-    /// current, A (positive cools), as the limited sum of proportional part and integral. Ignores the [`UpdatePeriod`];
-    /// the caller decides how often to update.
+    /// Runs one update for the temperature `error`, K (positive while the display is too warm): adds the error times
+    /// the integral gain to the integral, and returns the current, A (positive cools): the sum of proportional part and
+    /// integral, limited in magnitude. Every call is an update; [`Self::update_output`] calls this only when an update
+    /// is due by the [`UpdatePeriod`].
     pub fn current_for_error(&mut self, error: Celsius) -> Current {
         // Nothing overflows 64 bits: with 52 binary places the integral is within 2^7 A and its step within 2^10 A;
         // with 38 binary places the proportional part is within 2^24 A.

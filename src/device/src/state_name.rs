@@ -6,8 +6,8 @@ use crate::safety::Fault;
 /// the fault that has tripped the station.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StateName {
-    /// The bridge is off: after power-up, after `clear`, or after `abort` of the self-test. `arm` leads to the
-    /// self-test.
+    /// The bridge is off: after a start of the program without a trip, after `clear`, or after `abort` of the
+    /// self-test. `arm` leads to the self-test.
     Off,
     /// The self-test runs, for 0.7 s if no finger disturbs it: the comparator is tested with the bridge off, then 1 A
     /// cools and 1 A warms the display.

@@ -12,7 +12,8 @@ pub struct Telemetry {
     pub tick: u32,
     /// State of the station after the tick; in the state tripped with the fault.
     pub state: StateName,
-    /// Set-point of the tick, °C; `None` in off, self-test, ready and tripped, where no set-point is followed.
+    /// Set-point of the tick, °C. `None` if the tick began in off, self-test, ready or tripped, or found a fault: no
+    /// set-point is followed then.
     pub setpoint: Option<Celsius>,
     /// Whether the set-point of the tick would have been outside of 15 to 42 °C, and was clamped to that range.
     pub limited: bool,

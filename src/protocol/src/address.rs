@@ -8,11 +8,12 @@ use thermal_device::command::Addressed;
 
 use crate::Error;
 
-/// Splits a line from the host, such as `@2 material copper`, into the finger that its address names and the rest;
-/// `None`, all fingers, if the line has no address.
+/// Splits a line from the host, such as `@2 material copper`, into the finger whose index its address contains, here 2
+/// for the third finger, and the rest of the line. The finger is `None`, which stands for all fingers, if the line has
+/// no address.
 ///
 /// # Errors
-/// The device has no finger with the number after `@`.
+/// [`Error::UnknownFinger`]: what follows `@` is not a single digit, or the device has no finger with this index.
 pub fn split_address<const FINGERS: usize>(
     line: &str,
 ) -> Result<(Option<Finger<FINGERS>>, &str), Addressed<Error>> {

@@ -10,12 +10,15 @@ use crate::Error;
 /// Iterator over the words of a line from the host that are not read yet, separated by white space.
 pub type Words<'a> = SplitAsciiWhitespace<'a>;
 
-/// Reads the next word of a line. If there is none, the error is that the argument called `name` is missing.
+/// Returns the next word of a line.
+///
+/// # Errors
+/// [`Error::Missing`] with `name`, the name of the argument that is expected: no word is left.
 pub fn read_word<'a>(words: &mut Words<'a>, name: &'static str) -> Result<&'a str, Error> {
     words.next().ok_or(Error::Missing(name))
 }
 
-/// Skips the next word of a line if it is `expected`, and returns whether it is.
+/// Skips the next word of a line if it is `expected`, and returns whether it is. Otherwise the word stays the next one.
 pub fn skip_if_next_is(words: &mut Words<'_>, expected: &str) -> bool {
     let mut rest = words.clone();
     let is_next = rest.next() == Some(expected);
@@ -25,7 +28,8 @@ pub fn skip_if_next_is(words: &mut Words<'_>, expected: &str) -> bool {
     is_next
 }
 
-/// Finds the entry of a table whose first element is `word`; `None` if there is none.
+/// Returns the entry of `table` whose word is `word`: the word with its value, such as the name of a material with its
+/// properties. `None` if no entry has this word.
 pub fn find_entry_by_word<T: Copy>(
     table: &[(&'static str, T)],
     word: &str,
@@ -33,7 +37,11 @@ pub fn find_entry_by_word<T: Copy>(
     table.iter().find(|(known, _)| *known == word).copied()
 }
 
-/// Reads the next word of a line as a decimal number, and checks that it lies within `range`, both limits included.
+/// Reads the next word of a line as a decimal number within `range`, both limits included.
+///
+/// # Errors
+/// [`Error::Missing`]: no word is left. [`Error::NotANumber`]: the word is not a decimal number. [`Error::OutOfRange`]:
+/// the number lies outside `range`.
 pub fn read_number(words: &mut Words<'_>, range: &'static Range) -> Result<I32F32, Error> {
     let word = read_word(words, range.name)?;
     // A number with too many digits becomes the largest `I32F32`, which is outside of all ranges.
@@ -46,8 +54,8 @@ pub fn read_number(words: &mut Words<'_>, range: &'static Range) -> Result<I32F3
     }
 }
 
-/// Reads the next words of a line as decimal numbers, one for each of `ranges`, and checks that each lies within its
-/// range.
+/// Reads the next words of a line as decimal numbers, one for each of `ranges`, and returns them in this order. Each
+/// number must lie within its range; the errors are those of [`read_number`].
 pub fn read_numbers<const N: usize>(
     words: &mut Words<'_>,
     ranges: &'static [Range; N],
@@ -59,7 +67,8 @@ pub fn read_numbers<const N: usize>(
     Ok(values)
 }
 
-/// Reads the next word of a line as a whole number, and checks that it lies within `range`, both limits included.
+/// Reads the next word of a line as a whole number within `range`, both limits included. The errors are those of
+/// [`read_number`]; a number that is not whole gives [`Error::OutOfRange`], too.
 pub fn read_whole_number(words: &mut Words<'_>, range: &'static Range) -> Result<usize, Error> {
     let word = words.clone().next().unwrap_or_default();
     let value = read_number(words, range)?;

@@ -16,7 +16,7 @@ use crate::Error;
 use crate::arguments::{
     Words, find_entry_by_word, read_number, read_numbers, read_word, skip_if_next_is,
 };
-use crate::commissioning_commands::{parse_calibrate, parse_set, parse_settings};
+use crate::commissioning_commands::{parse_calibrate, parse_set_arguments, parse_settings_query};
 
 /// A line from the host after parsing: a command with its arguments, which are within their ranges.
 #[allow(
@@ -37,8 +37,8 @@ pub enum Request {
     Storage(StorageOrder),
 }
 
-/// Declares all commands, each by its first word and the expression that reads its arguments. From one list this
-/// generates the parser of the arguments and the list of commands in the answer to an unknown command.
+/// Generates the parser of the commands' arguments, and the list of commands in the answer to an unknown command, from
+/// one list: each entry is the first word of a command and the expression that reads its arguments.
 macro_rules! commands {
     (|$words:ident, $display:ident| { $($name:literal => $request:expr,)* }) => {
         /// First words of all commands, which the answer to an unknown command lists.
@@ -63,7 +63,7 @@ impl Request {
         "state" => Self::Station(Command::Status),
         "stream" => Self::Station(parse_stream(words)?),
         "material" => Self::Station(parse_material(words, display)?),
-        "object" => Self::Station(Command::Object(parse_object(words)?)),
+        "object" => Self::Station(Command::Object(parse_object_temperature(words)?)),
         "mode" => Self::Station(Command::Mode(parse_mode(words)?)),
         "law" => Self::Station(Command::Law(words.next().map(parse_law).transpose()?)),
         "arm" => Self::Station(Command::Arm),
@@ -78,15 +78,15 @@ impl Request {
             false => Self::Station(Command::Tune),
         },
         "margins" => Self::Commissioning(SessionRequest::Margins),
-        "settings" => Self::Commissioning(parse_settings(words)?),
-        "set" => Self::Commissioning(SessionRequest::Set(parse_set(words)?)),
+        "settings" => Self::Commissioning(parse_settings_query(words)?),
+        "set" => Self::Commissioning(SessionRequest::Set(parse_set_arguments(words)?)),
         "save" => Self::Storage(StorageOrder::Save),
         "forget" => Self::Storage(StorageOrder::Forget),
     });
 
-    /// Parses a line from the host without its address; `settings` give the surface of the display, on which the
-    /// contact with a material depends. The floating-point constants of that contact take long to compute, so this is
-    /// done here and not when the request is executed.
+    /// Parses a line from the host without its address. `settings` give the surface of the display, on which the
+    /// contact with a material depends. The floating-point constants of that contact take long to compute, so they are
+    /// computed here and not when the request is executed, while the control tick is locked out.
     ///
     /// # Errors
     /// The line is no valid request; the error says what is wrong with it and what is allowed.
@@ -101,7 +101,8 @@ impl Request {
     }
 }
 
-/// Arguments of the command `mode`, each with the model of the contact that it chooses to compute the set-point.
+/// Arguments of the command `mode`, each with the contact model that it selects: `contact` takes the thermal contact
+/// resistance between skin and object into account, `semi-infinite` does not. The contact model gives the set-point.
 pub const MODE_WORDS: [(&str, ContactModel); 2] = [
     ("contact", ContactModel::ContactResistance),
     ("semi-infinite", ContactModel::SemiInfinite),
@@ -128,7 +129,8 @@ static OBJECT_TEMPERATURE_RANGE: Range = Range {
     min: -20.0,
     max: 60.0,
 };
-/// Allowed ranges of the properties of a material in the line `material custom ...`, in their order on the line.
+/// Allowed ranges of the properties of a material in the line `material custom ...`, in their order on the line:
+/// thermal conductivity, density, specific heat, roughness and slope of the asperities.
 static MATERIAL_PROPERTY_RANGES: [Range; 5] = [
     Range {
         name: "conductivity",
@@ -172,7 +174,7 @@ fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
     })
 }
 
-fn parse_object(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
+fn parse_object_temperature(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
     if skip_if_next_is(words, "room") {
         return Ok(None);
     }

@@ -36,16 +36,16 @@ static CONVERTER_BORDER_INDEX_RANGE: Range = Range {
 /// thermistor, or the parameters of the tile.
 pub const SETTING_WORDS: [&str; 3] = ["steps", "correction", "tile"];
 
-fn parse_sensor(words: &mut Words<'_>) -> Result<usize, Error> {
+fn parse_thermistor_index(words: &mut Words<'_>) -> Result<usize, Error> {
     let name = read_word(words, "sensor")?;
     let known = SENSOR_WORDS.iter().position(|known| *known == name);
     known.ok_or(Error::UnknownSensor(name.into()))
 }
 
 /// Reads the arguments of the command `calibrate`: a thermistor, then either the temperature of the reference
-/// thermometer, °C, or `clear`.
+/// thermometer, °C, which adds a calibration point, or `clear`, which removes the thermistor's calibration.
 pub fn parse_calibrate(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
-    let sensor = parse_sensor(words)?;
+    let sensor = parse_thermistor_index(words)?;
     if skip_if_next_is(words, "clear") {
         return Ok(SessionRequest::ClearCalibration { sensor });
     }
@@ -55,9 +55,9 @@ pub fn parse_calibrate(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
     })
 }
 
-/// Reads the argument of the command `settings`: the number of a line of settings, from 1; without an argument, the
-/// number of lines is requested.
-pub fn parse_settings(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
+/// Reads the argument of the command `settings`: a number from 1 to 8 requests the line of the settings with this
+/// number. Without an argument, the number of lines is requested.
+pub fn parse_settings_query(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
     if words.clone().next().is_none() {
         return Ok(SessionRequest::CountSettingsLines);
     }
@@ -66,10 +66,11 @@ pub fn parse_settings(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
     ))
 }
 
-/// Reads the arguments of the command `set`, which replaces settings. They are `steps` with the index of a border and
-/// up to seven steps, or `correction` with a thermistor and three coefficients, or `tile` with five parameters.
+/// Reads the arguments of the command `set`, which replaces settings. They are `steps` with the index of a border
+/// between two segments of the converter and one to seven steps, at this border and the next ones; or `correction` with
+/// a thermistor and three coefficients; or `tile` with five parameters.
 #[inline(never)]
-pub fn parse_set(words: &mut Words<'_>) -> Result<Setting, Error> {
+pub fn parse_set_arguments(words: &mut Words<'_>) -> Result<Setting, Error> {
     Ok(match read_word(words, "setting")? {
         "steps" => {
             let first = read_whole_number(words, &CONVERTER_BORDER_INDEX_RANGE)?;
@@ -79,12 +80,15 @@ pub fn parse_set(words: &mut Words<'_>) -> Result<Setting, Error> {
             // At least one step. Words that follow the last possible step are left to the caller, who reports them.
             while counts.is_empty() || counts.len() < room && words.clone().next().is_some() {
                 let step = read_number(words, &CONVERTER_STEP_RANGE)?.to_num();
-                let _ = counts.push(round_to_decimals(step, Calibration::STEP_DECIMALS));
+                let _ = counts.push(round_to_decimals(
+                    step,
+                    Calibration::CONVERTER_STEP_DECIMALS,
+                ));
             }
             Setting::Steps { first, counts }
         }
         "correction" => {
-            let sensor = parse_sensor(words)?;
+            let sensor = parse_thermistor_index(words)?;
             let correction = Correction::from_array(read_numbers(words, &CORRECTION_RANGES)?);
             Setting::Correction(sensor, correction.rounded())
         }

@@ -45,11 +45,12 @@ impl fmt::Display for WordExcerpt {
 pub struct StorageFailureText(heapless::String<56>);
 
 impl StorageFailureText {
-    /// The message of `error`, the reason why the settings were not stored, shortened to at most 56 bytes.
+    /// The message of `error`, the reason why the settings were not stored. A message of more than 56 bytes ends before
+    /// the first of its parts, as `Display` writes them, that does not fit.
     #[must_use]
     pub fn new(error: &impl fmt::Display) -> Self {
         let mut text = heapless::String::new();
-        // A longer message is cut off.
+        // Writing ends at the first part of the message that does not fit.
         let _ = fmt::Write::write_fmt(&mut text, format_args!("{error}"));
         Self(text)
     }
@@ -63,7 +64,8 @@ pub enum Error {
     Line(LineError),
     /// The first word of the line, quoted here, is no command.
     UnknownCommand(WordExcerpt),
-    /// The word after `@`, quoted here, is no finger of the device; the second value is how many fingers it has.
+    /// The word after `@`, quoted here, is not the index of a finger, which counts from 0; the second value is the
+    /// number of fingers of the device.
     UnknownFinger(WordExcerpt, usize),
     /// The argument of `material`, quoted here, is neither the name of a material nor `custom`.
     UnknownMaterial(WordExcerpt),
@@ -76,13 +78,15 @@ pub enum Error {
     UnknownSensor(WordExcerpt),
     /// The word after `set`, quoted here, is none of `steps`, `correction` and `tile`.
     UnknownSetting(WordExcerpt),
-    /// The line lacks the argument that is named here, or the command itself, or the address of a finger.
+    /// The line lacks the argument with this name. The name is `command` if the line has no command, and
+    /// `finger (as @0)` if the line must address a single finger but has no address.
     Missing(&'static str),
     /// The word quoted here follows the last argument of the command, where the line should end.
     Extra(WordExcerpt),
-    /// The argument with this name and range must be a decimal number, but is the word quoted here.
+    /// The word quoted here is not a decimal number, but stands where the argument with this name and range is
+    /// expected.
     NotANumber(&'static Range, WordExcerpt),
-    /// The number quoted here is outside the range of its argument, or has decimals where only a whole number is
+    /// The number quoted here is outside the range of its argument, or is not whole where only a whole number is
     /// allowed.
     OutOfRange(&'static Range, WordExcerpt),
     /// The properties of a custom material are outside the domain in which the contact model can compute set-points,
@@ -91,8 +95,8 @@ pub enum Error {
     /// The command named here, `save` or `forget`, was sent while a bridge was on or a self-test ran. It needs all
     /// bridges off, because the device restarts.
     NeedsOff(&'static str),
-    /// The command named here, `save` or `forget`, was sent with the address of a finger, but is for all fingers at
-    /// once.
+    /// The command named here, `save` or `forget`, was sent with the address of one of several fingers, but is for all
+    /// fingers at once.
     WholeDevice(&'static str),
     /// After `save` or `forget`, the settings could not be stored in flash, for this reason; sent after the restart.
     NotStored(StorageFailureText),
@@ -172,19 +176,20 @@ impl fmt::Display for Error {
             Self::NotStored(StorageFailureText(failure)) => write!(f, "not stored: {failure}"),
             Self::Refused(refused) => write_refusal(f, refused),
             Self::Identification(error) => write_identification_error(f, error),
-            Self::Point(error) => write_point_error(f, error),
+            Self::Point(error) => write_calibration_point_error(f, error),
         }
     }
 }
 
-/// Writes that `word`, which should be a word of this `kind`, is unknown, and then all known words of that kind.
+/// Writes that `word` is unknown, and which words are known, as in `unknown mode 'x'; known: contact semi-infinite`.
+/// There, `mode` is the `kind` of the word.
 fn write_unknown_word<'a>(
     f: &mut fmt::Formatter<'_>,
     kind: &str,
     word: &WordExcerpt,
     known: impl Iterator<Item = &'a str>,
 ) -> fmt::Result {
-    write_unknown_prefix(f, kind, word)?;
+    write_unknown_word_prefix(f, kind, word)?;
     for known in known {
         f.write_str(" ")?;
         f.write_str(known)?;
@@ -192,10 +197,14 @@ fn write_unknown_word<'a>(
     Ok(())
 }
 
-/// Writes what comes before the list of known words. It is not part of the generic [`write_unknown_word`], so that the
-/// program contains it only once.
+/// Writes the message of [`write_unknown_word`] up to its list of known words, as in `unknown mode 'x'; known:`. Not
+/// part of that generic function, so that the program contains this code only once.
 #[inline(never)]
-fn write_unknown_prefix(f: &mut fmt::Formatter<'_>, kind: &str, word: &WordExcerpt) -> fmt::Result {
+fn write_unknown_word_prefix(
+    f: &mut fmt::Formatter<'_>,
+    kind: &str,
+    word: &WordExcerpt,
+) -> fmt::Result {
     write!(f, "unknown {kind} {word}; known:")
 }
 
@@ -263,7 +272,7 @@ fn write_identification_error(
     }
 }
 
-fn write_point_error(f: &mut fmt::Formatter<'_>, error: &PointError) -> fmt::Result {
+fn write_calibration_point_error(f: &mut fmt::Formatter<'_>, error: &PointError) -> fmt::Result {
     match error {
         PointError::Unsteady => f.write_str(
             "the reading moves; wait until it is steady to 3 mK in a quarter of a second",

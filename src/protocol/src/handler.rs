@@ -11,7 +11,8 @@ use crate::address::split_address;
 use crate::{Error, Reply, Request};
 
 /// A function that executes a command in the station (the control) of the given finger, or in the stations of all
-/// fingers for `None`, in bounded and short time. [`CommandHandler::answer`] calls it.
+/// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
+/// calls it.
 pub trait ExecuteOnStations<const FINGERS: usize>:
     FnMut(Option<Finger<FINGERS>>, Command) -> ExecutionResult
 {
@@ -22,8 +23,9 @@ impl<const FINGERS: usize, F> ExecuteOnStations<FINGERS> for F where
 {
 }
 
-/// What the station, the control of a finger, returns for a command: its reply, or why it refuses the command, with the
-/// finger from which this comes.
+/// Result of a command in the station (the control) of one finger or in the stations of all fingers: a station's reply,
+/// or the reason why a station refuses the command. For the answer to the host, the result contains the index of that
+/// station's finger, or no index if the result is for all fingers or the device has only one.
 pub type ExecutionResult = Result<Addressed<command::Reply>, Addressed<Refused>>;
 
 /// Executes the host's lines on a device with one to ten fingers, and returns the answers. It holds the commissioning
@@ -68,14 +70,17 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// Parses a line from the host, executes it on the finger that it addresses, and returns the answer. A line without
-    /// an address is for all fingers: a query is answered by the first finger that can, a change is made by each.
+    /// Parses a line from the host, executes it, and returns the answer. A line with an address is for one finger. A
+    /// line without an address is for all fingers: a query is answered by the first finger that does not refuse it, a
+    /// change is made by each finger. For `save` and `forget` the caller must do the rest ([`Reply::Restart`]).
     ///
     /// Time-consuming computations are done here, outside of `execute`, which runs with the control tick locked out.
     ///
     /// # Errors
-    /// No finger has executed a line that cannot be parsed. Otherwise the error names the first finger that rejects the
-    /// line; those fingers whose state permits it have executed the line.
+    /// No finger executes a line that is not valid, a line whose command requires or forbids an address, or a rejected
+    /// `save` or `forget`. Otherwise the error is that of the first finger that rejects the line, and the other fingers
+    /// have executed the line if their state permits it. For `clear` without an address, a finger that is not tripped
+    /// gives an error only if no finger is tripped.
     pub fn answer(
         &mut self,
         line: &str,
@@ -109,9 +114,9 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. On a
-    /// device with several fingers, a query without a finger is answered by the first finger, and a request with a long
-    /// computation is rejected if it names no finger.
+    /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With
+    /// `None` on a device with several fingers, the queries `settings` and `margins` are answered by the first finger;
+    /// a new calibration point and `tune result`, which are computed for milliseconds, are rejected.
     fn execute_in_sessions(
         &mut self,
         request: SessionRequest,
@@ -164,9 +169,9 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         first_error.map_or(Ok(Addressed { finger, content }), Err)
     }
 
-    /// Why `save` or `forget` must not be executed now, or `None` if it may: the line addresses a single finger of
-    /// several, or a bridge is on. The device restarts to store settings, which would switch off a display that a
-    /// finger may feel.
+    /// The error that rejects `save` or `forget`, or `None` if the command may be executed. Rejected are a line that
+    /// addresses one of several fingers, and any line while a bridge is on or a self-test runs: the device restarts to
+    /// store settings, and would switch off a display that a finger may feel.
     fn storage_rejection(
         order: StorageOrder,
         finger: Option<Finger<FINGERS>>,

@@ -9,7 +9,7 @@ pub const LINE_MAX_BYTES: usize = 96;
 /// the answer to an unknown command, which lists all commands.
 pub const ANSWER_MAX_BYTES: usize = 172;
 
-/// A complete line from the host, without its line ending.
+/// A complete line from the host, without its line ending: at most 96 characters of printable ASCII.
 pub type Line = String<LINE_MAX_BYTES>;
 
 /// Why bytes received from the host form no valid line. The line is not executed, and its answer is this error.
@@ -21,8 +21,8 @@ pub enum LineError {
     NotText(u8),
     /// The serial port reported that a byte of the line was damaged or lost; the host must send the line again.
     Reception,
-    /// The line was dropped because the queue of received lines that wait for their answers was full; the host sends
-    /// lines faster than it awaits their answers.
+    /// The line was dropped because the queue of received lines was full, or because answers to lines dropped before
+    /// are still due: the host sends lines faster than it awaits their answers.
     QueueFull,
 }
 
@@ -56,8 +56,9 @@ impl LineReader {
         matches!(byte, b'\r' | b'\n')
     }
 
-    /// Adds one received byte to the line. Returns the line, or its first error, if the byte is its line ending,
-    /// carriage return or line feed; otherwise, and for an empty line, `None`.
+    /// Processes one received byte. At the line ending, carriage return or line feed, returns the complete line or, if
+    /// the line is invalid, its first error; returns `None` for an empty line, and for every byte that is not a line
+    /// ending.
     pub fn push(&mut self, byte: u8) -> Option<Result<Line, LineError>> {
         match byte {
             _ if Self::is_line_end(byte) => {

@@ -21,10 +21,11 @@ pub enum Reply {
         /// Number of fingers of the device, 1 to 10.
         fingers: u8,
     },
-    /// Answer to a command that the station (the control) of one finger, or of all fingers, has executed.
+    /// Answer to a command that was executed by the station (the control) of one finger, or by the stations of all
+    /// fingers.
     Station(command::Reply),
-    /// Answer to a request that the commissioning session of a finger (its settings and calibration points), or the
-    /// sessions of all fingers, have executed.
+    /// Answer to a request that was executed by the commissioning session of one finger, or by the sessions of all
+    /// fingers. The session of a finger is its settings and calibration points.
     Commissioning(SessionReply),
     /// The line was `save` or `forget`, and may be executed. The caller must now restart the device, which stores the
     /// settings and only then sends the answer, `ok` or an error.
@@ -133,13 +134,14 @@ fn trip_cause_line(cause: Option<&TripCause>) -> LineBuffer {
     line
 }
 
-/// Writes `ok` and the line `set ...` with which the host can restore this part of the settings later.
+/// Writes one part of the settings as the answer `ok set ...` to the command `settings N`. The host can restore this
+/// part later by sending the line that follows `ok`.
 fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result {
     f.write_str("ok set ")?;
     match setting {
         Setting::Steps { first, counts } => {
             write!(f, "steps {first}")?;
-            let decimals = Calibration::STEP_DECIMALS as usize;
+            let decimals = Calibration::CONVERTER_STEP_DECIMALS as usize;
             counts
                 .iter()
                 .try_for_each(|count| write!(f, " {count:.decimals$}"))

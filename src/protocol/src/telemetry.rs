@@ -12,14 +12,16 @@ use crate::line_buffer::LineBuffer;
 ///
 /// `T tick state setpoint_c display_c sink_c skin_c room_c force_n demand_a current_a evaluations remark`
 ///
-/// `tick` counts milliseconds since reset. Temperatures are in °C, the force is in N, the demanded current (positive
-/// cools) and the magnitude of the measured current are in A; an unknown quantity is written as `-`. `evaluations`
-/// counts since reset how often the function `erfcx` was computed for set-points. `remark` is the fault that tripped
-/// the station, else `limited` if the set-point was limited to 15 to 42 °C, else `-`.
+/// `tick` counts milliseconds since reset. `state` is the state of the finger's station. Temperatures are in °C, the
+/// force is in N, the demanded current (positive cools) and the magnitude of the measured current are in A. A quantity
+/// whose sensor has failed, and the set-point in a state without one, is written as `-`. `evaluations` counts since
+/// reset how often the function `erfcx` was computed for set-points. `remark` is the fault that tripped the station,
+/// else `limited` if the set-point was limited to 15 to 42 °C, else `-`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TelemetryLine(pub Telemetry);
 
-/// Converts one finger's telemetry to the line for the host, whose address, if any, is kept.
+/// Wraps one finger's telemetry in a [`TelemetryLine`], whose `Display` writes the line to the host. The address of the
+/// finger, which precedes the line on a device with several fingers, does not change.
 #[must_use]
 pub fn telemetry_line(telemetry: Addressed<Telemetry>) -> Addressed<TelemetryLine> {
     telemetry.map_content(TelemetryLine)

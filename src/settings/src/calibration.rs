@@ -11,8 +11,8 @@ pub const CORRECTION_HALF_SPAN_K: f64 = 16.0;
 /// constant within a segment, and has a step at the border to the next segment.
 pub const CODES_PER_CONVERTER_SEGMENT: u32 = 128;
 /// Index of the first border between two segments of the analogue-to-digital converter at which the step of its error
-/// is calibrated: 10. Border `n` lies at code `n * CODES_PER_CONVERTER_SEGMENT`, the first one at code 1280, 44 °C;
-/// lower codes are warmer than any set-point of the display.
+/// is calibrated: 10. Border `n` lies at code `n * CODES_PER_CONVERTER_SEGMENT`, so this border lies at code 1280,
+/// which is 44 °C. Lower codes are warmer than any set-point of the display.
 pub const FIRST_CALIBRATED_BORDER: usize = 10;
 /// Number of borders between segments of the analogue-to-digital converter at which the step of its error is
 /// calibrated: the 13 borders at codes 1280 to 2816. With a 10 kΩ thermistor of 3950 K beta and a 10 kΩ pull-up
@@ -44,26 +44,27 @@ pub struct Correction {
     pub offset_k: f64,
     /// Coefficient `slope` of the thermistor's correction, K/K: what is added per kelvin above 29 °C.
     pub slope: f64,
-    /// Coefficient `curvature` of the thermistor's correction, 1/K: what is added, K, per squared kelvin from 29 °C.
+    /// Coefficient `curvature` of the thermistor's correction, 1/K: what is added, K, per square of the distance from
+    /// 29 °C, K².
     pub curvature_1_k: f64,
 }
 
 impl Calibration {
     /// Number of decimals, 3, of a step of the converter's error, counts, in a `set steps` line from the host and in
     /// the record in flash. Steps are rounded to it, so that line and record hold them exactly.
-    pub const STEP_DECIMALS: i32 = 3;
+    pub const CONVERTER_STEP_DECIMALS: i32 = 3;
     /// Numbers of decimals of a correction's offset (K), slope (K/K) and curvature (1/K), in this order, in a
     /// `set correction` line from the host and in the record in flash.
     pub const CORRECTION_DECIMALS: [i32; 3] = [6, 7, 8];
 
-    /// Returns this calibration with its steps rounded to [`Self::STEP_DECIMALS`], and its corrections to
+    /// Returns this calibration with its steps rounded to [`Self::CONVERTER_STEP_DECIMALS`], and its corrections to
     /// [`Self::CORRECTION_DECIMALS`], as the record in flash holds them.
     #[must_use]
     pub fn rounded(&self) -> Self {
         Self {
             steps_counts: self
                 .steps_counts
-                .map(|step| round_to_decimals(step, Self::STEP_DECIMALS)),
+                .map(|step| round_to_decimals(step, Self::CONVERTER_STEP_DECIMALS)),
             corrections: self.corrections.map(|correction| correction.rounded()),
         }
     }
@@ -108,7 +109,8 @@ pub fn round_to_decimals(value: f64, decimals: i32) -> f64 {
     libm::round(value * scale) / scale + 0.0
 }
 
-/// `10^exponent` for an exponent that is not negative.
+/// `10^exponent`, or 1 if `exponent` is negative. Multiplied by this power, a value with `exponent` decimals is a whole
+/// number.
 pub(crate) fn power_of_ten(exponent: i32) -> f64 {
     (0..exponent).fold(1.0, |power, _| 10.0 * power)
 }

@@ -35,12 +35,15 @@ pub const THERMISTOR_COUNT: usize = 5;
 /// settings at start-up and after each change of them, so that the tick itself needs no floating point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Voltage divider and nominal thermistor, which are the same for all five thermistors of the finger.
+    /// Voltage divider of a thermistor, with the nominal values of its parts, which are the same for all five
+    /// thermistors of the finger.
     pub thermistor: ThermistorDivider,
-    /// Self-heating of each thermistor, K: how much warmer the current of its divider makes it than the surface that it
-    /// measures. It is subtracted from the reading. Order: display, second display, sink, skin, room.
+    /// Self-heating of each thermistor, K: how much warmer the current of its divider makes it than what it measures,
+    /// which is a surface or, for the room, the air. It is subtracted from the reading. Order: display, second display,
+    /// sink, skin, room.
     pub self_heating_k: [f64; 5],
-    /// Zero and sensitivity of the force sensor under the display, from whose signal a touching finger is detected.
+    /// Nominal output without force, and sensitivity, of the force sensor under the display. The sensor measures the
+    /// force of the finger on the display.
     pub force: ForceSensor,
     /// Sensitivity of the H-bridge's current mirror, which measures the magnitude of the module's current: counts of
     /// the converter (of 4096) per ampere.
@@ -54,8 +57,8 @@ pub struct Settings {
     /// Gains of the control law `pi-10hz`, which updates the module's current ten times a second; [`Self::set_tile`]
     /// computes them.
     pub gains_10hz: Gains,
-    /// Thermal conductivity (W/mK), RMS roughness (µm) and mean slope of the asperities (rad) of the display's surface,
-    /// from which its thermal contact resistance to the skin is computed.
+    /// Surface of the display: thermal conductivity (W/mK), RMS roughness (µm) and mean slope of the asperities (rad).
+    /// The thermal contact resistance between display and skin is computed from these properties.
     pub display: Surface,
     /// Steps of the converter's error and corrections of the five thermistors, found by calibration with a reference
     /// thermometer; all zero before the first calibration.
@@ -127,7 +130,7 @@ pub enum ThermistorCurve {
 
 impl ThermistorCurve {
     /// Coefficients `a`, `b`, `c`, 1/K, of the Steinhart-Hart equation `1/T = a + b ln R + c (ln R)^3` of this
-    /// thermistor, with `T` in K and `R` in ohm. The beta equation is the same with `c = 0`.
+    /// thermistor, with `T` in K and `R` in ohm. The beta equation is a Steinhart-Hart equation with `c = 0`.
     #[must_use]
     pub fn steinhart_hart_coefficients(&self) -> (f64, f64, f64) {
         match *self {
@@ -142,7 +145,7 @@ impl ThermistorCurve {
 }
 
 /// Linear force sensor under the display, with a live zero: its output without force is well above 0, so that an output
-/// below half of that means a broken wire.
+/// below half of [`Self::zero_counts`] means a broken wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ForceSensor {
     /// Nominal output of the force sensor without force, counts of the converter (of 4096).
@@ -163,14 +166,16 @@ pub struct PeltierModule {
     /// of its legs.
     pub seebeck_v_k: f64,
     /// Largest voltage, V, 0 or more, that the H-bridge loses because of its dead times, in which neither switch of a
-    /// half-bridge conducts. It is lost while the inductor's current keeps its direction for the whole PWM period.
+    /// half-bridge conducts. All of this voltage is lost while the current in the output filter's inductor keeps its
+    /// direction for the whole PWM period.
     pub dead_time_v: f64,
     /// Ripple of the current in the output filter's inductor, A: at a duty cycle `w` from 0 to 1, half of the
-    /// peak-to-peak ripple is `ripple_a w (1 - w)`. A small current that the ripple reverses loses less voltage in the
-    /// dead times.
+    /// peak-to-peak ripple is `ripple_a w (1 - w)`. If the ripple reverses the inductor's current within a PWM period,
+    /// as it does with a small current, less voltage is lost in the dead times.
     pub ripple_a: f64,
-    /// Change, A, above 0, of the current in the output filter's inductor during one dead time of the H-bridge. If the
-    /// ripple reverses the current by more than this, no voltage is lost in the dead times.
+    /// Change, A, above 0, of the current in the output filter's inductor during one dead time of the H-bridge. No
+    /// voltage is lost in the dead times if the ripple carries the inductor's current beyond zero by at least this
+    /// much.
     pub dead_time_a: f64,
     /// Nominal supply voltage of the H-bridge, V: what it applies at a duty cycle of 1.
     pub supply_v: f64,

@@ -101,8 +101,8 @@ pub static TILE_RANGES: [Range; 5] = [
 ];
 
 impl Calibration {
-    /// The first step, or coefficient of a correction, that is outside its allowed range, with that range; `None` if
-    /// all are inside.
+    /// The first value of this calibration that lies outside its allowed range, with that range; `None` if all values
+    /// are inside. The steps of the converter are checked first, then the coefficients of the five corrections.
     #[must_use]
     pub fn out_of_range(&self) -> Option<(&'static Range, f64)> {
         let steps = self
@@ -113,7 +113,7 @@ impl Calibration {
             .corrections
             .iter()
             .flat_map(|correction| CORRECTION_RANGES.iter().zip(correction.to_array()));
-        first_out_of_range(steps.chain(corrections))
+        first_value_out_of_range(steps.chain(corrections))
     }
 }
 
@@ -121,11 +121,11 @@ impl Tile {
     /// The first parameter of the tile that is outside its allowed range, with that range; `None` if all are inside.
     #[must_use]
     pub fn out_of_range(&self) -> Option<(&'static Range, f64)> {
-        first_out_of_range(TILE_RANGES.iter().zip(self.to_array()))
+        first_value_out_of_range(TILE_RANGES.iter().zip(self.to_array()))
     }
 }
 
-fn first_out_of_range(
+fn first_value_out_of_range(
     mut values: impl Iterator<Item = (&'static Range, f64)>,
 ) -> Option<(&'static Range, f64)> {
     values.find(|(range, value)| !range.contains(*value))

@@ -19,18 +19,18 @@ use heapless::Vec;
 use super::calibration::power_of_ten;
 use super::{CALIBRATED_BORDER_COUNT, Calibration, Correction, Range, Settings, Tile};
 
-const LAYOUT_VERSION: u16 = 1;
+const RECORD_LAYOUT_VERSION: u16 = 1;
 const KIND_FACTORY_DEFAULTS: u8 = 0;
 const KIND_SETTINGS: u8 = 1;
 const HEADER_BYTES: usize = 4;
 const CHECKSUM_BYTES: usize = 4;
-const CORRECTION_COUNT: usize = 5;
-const VALUES_PER_FINGER: usize = CALIBRATED_BORDER_COUNT + 3 * CORRECTION_COUNT + 5;
-const FINGER_BYTES: usize = 4 * VALUES_PER_FINGER;
+const CORRECTIONS_PER_FINGER: usize = 5;
+const VALUES_PER_FINGER: usize = CALIBRATED_BORDER_COUNT + 3 * CORRECTIONS_PER_FINGER + 5;
+const BYTES_PER_FINGER: usize = 4 * VALUES_PER_FINGER;
 /// Largest number of fingers that a device can have.
 const FINGERS_MAX: usize = 10;
 /// Length of the longest record, that of a device with ten fingers: 1328 bytes.
-pub const RECORD_MAX_BYTES: usize = HEADER_BYTES + FINGERS_MAX * FINGER_BYTES + CHECKSUM_BYTES;
+pub const RECORD_MAX_BYTES: usize = HEADER_BYTES + FINGERS_MAX * BYTES_PER_FINGER + CHECKSUM_BYTES;
 
 const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
@@ -59,7 +59,7 @@ impl StoredSettings {
         }
     }
 
-    /// Complete settings of the finger: the stored calibration and tile, the gains that follow from the tile, and
+    /// Complete settings of the finger: the stored calibration and tile, the gains that follow from this tile, and
     /// factory defaults for everything else.
     #[must_use]
     #[inline(never)]
@@ -78,7 +78,7 @@ impl StoredSettings {
         let corrections = self.calibration.corrections.into_iter();
         let tile = self.tile.to_array().into_iter();
         steps
-            .map(|step| (step, Calibration::STEP_DECIMALS))
+            .map(|step| (step, Calibration::CONVERTER_STEP_DECIMALS))
             .chain(corrections.flat_map(|correction| {
                 let values = correction.to_array().into_iter();
                 values.zip(Calibration::CORRECTION_DECIMALS)
@@ -86,14 +86,15 @@ impl StoredSettings {
             .chain(tile.map(|value| (value, Tile::DECIMALS as i32)))
     }
 
-    /// The settings of one finger from its integers in a record, each in units of its last decimal. Missing integers
-    /// count as 0; [`decode`] has checked that there are enough.
+    /// Converts the 33 integers that a record holds for one finger to the stored settings of that finger. The integers
+    /// have the order of the record, and each is a value in units of its last decimal. A missing integer would count as
+    /// 0, but [`decode`] has checked the length of the record.
     fn from_record_values(mut values: impl Iterator<Item = i32>) -> Self {
         let mut next =
             |decimals| f64::from(values.next().unwrap_or_default()) / power_of_ten(decimals);
         Self {
             calibration: Calibration {
-                steps_counts: core::array::from_fn(|_| next(Calibration::STEP_DECIMALS)),
+                steps_counts: core::array::from_fn(|_| next(Calibration::CONVERTER_STEP_DECIMALS)),
                 corrections: core::array::from_fn(|_| {
                     Correction::from_array(Calibration::CORRECTION_DECIMALS.map(&mut next))
                 }),
@@ -125,7 +126,7 @@ pub enum RecordError {
     /// The header of the record names this kind of content, which is neither 0 (factory defaults) nor 1 (settings).
     Kind(u8),
     /// The header of the record names this number of fingers, but the device has another number; or the number is not 0
-    /// though the record stands for factory defaults.
+    /// although the record stands for factory defaults.
     Fingers(u8),
     /// A value in the record lies outside its allowed range.
     OutOfRange {
@@ -147,7 +148,7 @@ impl fmt::Display for RecordError {
             Self::Version(version) => {
                 write!(
                     f,
-                    "settings have the unknown version {version}; known: {LAYOUT_VERSION}"
+                    "settings have the unknown version {version}; known: {RECORD_LAYOUT_VERSION}"
                 )
             }
             Self::Kind(kind) => write!(f, "settings have the unknown kind {kind}; known: 0 1"),
@@ -180,7 +181,7 @@ pub fn encode<const FINGERS: usize>(
     let mut append = |bytes: &[u8]| {
         let _fits = record.extend_from_slice(bytes);
     };
-    append(&LAYOUT_VERSION.to_le_bytes());
+    append(&RECORD_LAYOUT_VERSION.to_le_bytes());
     append(&match settings {
         Some(_) => [KIND_SETTINGS, FINGERS as u8],
         None => [KIND_FACTORY_DEFAULTS, 0],
@@ -218,7 +219,7 @@ pub fn decode<const FINGERS: usize>(
     }
     let [version_low, version_high, kind, fingers] = *header;
     match u16::from_le_bytes([version_low, version_high]) {
-        LAYOUT_VERSION => {}
+        RECORD_LAYOUT_VERSION => {}
         version => return Err(RecordError::Version(version)),
     }
     let expected_fingers = match kind {
@@ -229,7 +230,7 @@ pub fn decode<const FINGERS: usize>(
     if usize::from(fingers) != expected_fingers {
         return Err(RecordError::Fingers(fingers));
     }
-    if values.len() != expected_fingers * FINGER_BYTES {
+    if values.len() != expected_fingers * BYTES_PER_FINGER {
         return Err(wrong_length);
     }
     if kind == KIND_FACTORY_DEFAULTS {

@@ -26,20 +26,20 @@ const WORD_BYTES: usize = 4;
 /// Number of copies in which each word is stored in the flash; a bit is read as what two of the three copies hold.
 const COPIES_PER_WORD: usize = 3;
 /// Bytes of flash that one word of data occupies with its three copies.
-const WORD_COPIES_BYTES: usize = COPIES_PER_WORD * WORD_BYTES;
+const FLASH_BYTES_PER_DATA_WORD: usize = COPIES_PER_WORD * WORD_BYTES;
 /// The first two words of a valid sector; a sector without this seal reads as erased. It differs in many bits from
 /// erased flash (0xff) and from zeros, so that an interrupted erasure is unlikely to form it.
 const SECTOR_SEAL: [u8; 2 * WORD_BYTES] = *b"settings";
 /// Programmed over the first word of a sector's seal to make the sector invalid before its erasure; zeros, because
 /// programming can only clear bits.
-const BROKEN_SEAL: [u8; WORD_BYTES] = [0; WORD_BYTES];
+const BROKEN_SEAL_WORD: [u8; WORD_BYTES] = [0; WORD_BYTES];
 const ERASED_BYTE: u8 = 0xff;
 /// Bytes of flash that are read at a time to check that an erased sector is blank.
-const VERIFY_CHUNK_BYTES: usize = 32;
+const BLANK_CHECK_CHUNK_BYTES: usize = 32;
 
-/// A NOR flash that survives single-bit errors and interrupted erasures, on top of the flash `F`, whose sectors all
-/// have one size. It stores each word three times, so each sector holds a third of the data of a sector of `F`, less a
-/// seal of two words that marks it as valid.
+/// A NOR flash in which single-bit errors do not change the data, and interrupted erasures leave no false data. It is
+/// built on the flash `F`, whose sectors all have one size. Each word is stored three times, so each sector holds a
+/// third of the data of a sector of `F`, less a seal of two words that marks the sector as valid.
 #[derive(Debug)]
 pub struct RedundantSectors<F>(F);
 
@@ -50,8 +50,8 @@ pub enum SectorError<E> {
     Flash(E),
     /// A sector of the flash is not blank (all bytes 0xff) after it was erased.
     NotErased,
-    /// The access to the flash is not aligned to words of 4 bytes, crosses from one sector to the next, or lies outside
-    /// of all sectors.
+    /// The access to the flash does not begin at a multiple of 4 bytes, crosses from one sector to the next, or lies
+    /// outside of all sectors; or data to be written are not whole words of 4 bytes.
     OutOfBounds,
 }
 
@@ -78,18 +78,22 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
     /// Bytes of data that one sector holds: a third of the size of the flash's sector, because each word is stored
     /// three times, less the seal of 8 bytes that marks a valid sector.
     pub const DATA_BYTES_PER_SECTOR: usize =
-        F::ERASE_SIZE / WORD_COPIES_BYTES * WORD_BYTES - SECTOR_SEAL.len();
+        F::ERASE_SIZE / FLASH_BYTES_PER_DATA_WORD * WORD_BYTES - SECTOR_SEAL.len();
 
-    /// Redundant sectors on all sectors of `flash`. Compiling fails if `flash` is read or written in units of more than
-    /// 4 bytes.
+    /// Makes redundant sectors of all sectors of `flash`. Compiling fails if `flash` is read or written in units of
+    /// more than 4 bytes.
     pub const fn new(flash: F) -> Self {
         const { assert!(F::READ_SIZE <= WORD_BYTES && F::WRITE_SIZE <= WORD_BYTES) };
         Self(flash)
     }
 
-    /// Converts an access to `bytes` bytes of data from `offset` on to two addresses in the flash: the start of the
-    /// sector, and the first copy of the first word.
-    fn flash_addresses(
+    /// Returns two flash addresses for an access to the `bytes` bytes of data at `offset`, which counts data only,
+    /// without seals and copies: the start of the sector, and the first copy of the first word.
+    ///
+    /// # Errors
+    /// [`SectorError::OutOfBounds`]: `offset` is not a multiple of 4 bytes from the start of the sector's data, or the
+    /// access does not lie within one sector of the flash.
+    fn sector_and_word_addresses(
         &self,
         offset: u32,
         bytes: usize,
@@ -104,14 +108,15 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
             && within + bytes <= Self::DATA_BYTES_PER_SECTOR
             && start + F::ERASE_SIZE <= self.0.capacity();
         if fits {
-            let from_start = (SECTOR_SEAL.len() + within) / WORD_BYTES * WORD_COPIES_BYTES;
+            let from_start = (SECTOR_SEAL.len() + within) / WORD_BYTES * FLASH_BYTES_PER_DATA_WORD;
             Ok((start as u32, (start + from_start) as u32))
         } else {
             Err(SectorError::OutOfBounds)
         }
     }
 
-    /// Reads words whose copies begin at `address` in the flash; each bit by majority vote over the three copies.
+    /// Fills `bytes` with the words whose copies begin at `address` in the flash. Each bit is read as what two of its
+    /// three copies hold.
     fn read_majority(
         &mut self,
         address: u32,
@@ -119,7 +124,7 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
     ) -> Result<(), SectorError<F::Error>> {
         for (word, at) in bytes
             .chunks_mut(WORD_BYTES)
-            .zip((address..).step_by(WORD_COPIES_BYTES))
+            .zip((address..).step_by(FLASH_BYTES_PER_DATA_WORD))
         {
             let mut copies = [[0; WORD_BYTES]; COPIES_PER_WORD];
             self.0
@@ -134,12 +139,19 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
         Ok(())
     }
 
-    /// Programs three copies of each word of `bytes`, one after the other, from `address` in the flash on.
+    /// Programs the words of `bytes` in their order from `address` in the flash on, each word three times in a row.
+    ///
+    /// # Errors
+    /// [`SectorError::OutOfBounds`]: `bytes` are not whole words of 4 bytes. [`SectorError::Flash`]: programming
+    /// failed.
     fn program_copies(&mut self, address: u32, bytes: &[u8]) -> Result<(), SectorError<F::Error>> {
         let (words, []) = bytes.as_chunks() else {
             return Err(SectorError::OutOfBounds);
         };
-        for (word, at) in words.iter().zip((address..).step_by(WORD_COPIES_BYTES)) {
+        for (word, at) in words
+            .iter()
+            .zip((address..).step_by(FLASH_BYTES_PER_DATA_WORD))
+        {
             let copies: [[u8; WORD_BYTES]; COPIES_PER_WORD] = [*word; COPIES_PER_WORD];
             self.0
                 .write(at, copies.as_flattened())
@@ -161,10 +173,10 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
     fn erase_and_seal(&mut self, start: u32) -> Result<(), SectorError<F::Error>> {
         let end = start + F::ERASE_SIZE as u32;
         self.0.erase(start, end).map_err(SectorError::Flash)?;
-        for at in (start..end).step_by(VERIFY_CHUNK_BYTES) {
-            let mut read = [0; VERIFY_CHUNK_BYTES];
+        for at in (start..end).step_by(BLANK_CHECK_CHUNK_BYTES) {
+            let mut read = [0; BLANK_CHECK_CHUNK_BYTES];
             self.0.read(at, &mut read).map_err(SectorError::Flash)?;
-            if read != [ERASED_BYTE; VERIFY_CHUNK_BYTES] {
+            if read != [ERASED_BYTE; BLANK_CHECK_CHUNK_BYTES] {
                 return Err(SectorError::NotErased);
             }
         }
@@ -180,7 +192,7 @@ impl<F: BlockingNorFlash> ReadNorFlash for RedundantSectors<F> {
     const READ_SIZE: usize = WORD_BYTES;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
-        let (start, address) = self.flash_addresses(offset, bytes.len())?;
+        let (start, address) = self.sector_and_word_addresses(offset, bytes.len())?;
         if self.is_sealed(start)? {
             return self.read_majority(address, bytes);
         }
@@ -199,16 +211,16 @@ impl<F: BlockingNorFlash> NorFlash for RedundantSectors<F> {
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
         for offset in (from..to).step_by(Self::DATA_BYTES_PER_SECTOR) {
-            let (start, _) = self.flash_addresses(offset, 0)?;
+            let (start, _) = self.sector_and_word_addresses(offset, 0)?;
             if self.is_sealed(start)? {
-                self.program_copies(start, &BROKEN_SEAL)?;
+                self.program_copies(start, &BROKEN_SEAL_WORD)?;
             }
         }
         Ok(())
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
-        let (start, address) = self.flash_addresses(offset, bytes.len())?;
+        let (start, address) = self.sector_and_word_addresses(offset, bytes.len())?;
         if !self.is_sealed(start)? {
             self.erase_and_seal(start)?;
         }

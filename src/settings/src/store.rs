@@ -16,14 +16,14 @@ use super::{
 };
 
 /// Number of flash sectors that the log of records fills one after the other, in a circle.
-const SECTOR_COUNT: usize = 3;
+const LOG_SECTOR_COUNT: usize = 3;
 
 /// Cache in RAM of the position of the newest record in the flash, used during one operation. Without this cache,
 /// erasing a full sector for reuse would search the whole flash once for every record in that sector, which takes
 /// seconds.
 type RecordLogCache = Cache<
-    ArrayPageStates<SECTOR_COUNT>,
-    ArrayPagePointers<SECTOR_COUNT>,
+    ArrayPageStates<LOG_SECTOR_COUNT>,
+    ArrayPagePointers<LOG_SECTOR_COUNT>,
     ArrayKeyPointers<(), 1>,
     (),
 >;
@@ -42,11 +42,12 @@ pub struct SettingsStore<F: NorFlash, const FINGERS: usize> {
 pub enum StoreError<E> {
     /// Reading, programming or erasing the flash failed, for this reason.
     Flash(SectorError<E>),
-    /// The log of records in the flash is damaged, so that its newest record cannot be found or no record be appended.
+    /// The log of records in the flash is damaged: its newest record cannot be found, or no record can be appended.
     Corrupt,
     /// The newest record in the flash holds no valid settings of this device, for this reason.
     Record(RecordError),
-    /// A record that was written to the flash reads back differently.
+    /// A record that was written to the flash reads back differently. [`SettingsStore::save`] returns this error only
+    /// if that also happens after it has erased all records.
     VerifyFailed,
 }
 
@@ -87,7 +88,7 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
         MapStorage<(), &mut RedundantSectors<F>, RecordLogCache>,
         &mut [u8],
     ) {
-        let end = (SECTOR_COUNT * RedundantSectors::<F>::DATA_BYTES_PER_SECTOR) as u32;
+        let end = (LOG_SECTOR_COUNT * RedundantSectors::<F>::DATA_BYTES_PER_SECTOR) as u32;
         let empty_cache = Cache::new(
             ArrayPageStates::new(),
             ArrayPagePointers::new(),
@@ -97,11 +98,13 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
         (log, &mut self.buffer)
     }
 
-    /// Reads the settings of all fingers that were saved last; `None` if those are factory defaults, or if none were
-    /// ever saved.
+    /// Reads the settings of all fingers that were saved last; `None` if factory defaults were saved last, or if
+    /// nothing was ever saved.
     ///
     /// # Errors
-    /// The flash cannot be read, or its newest record holds no valid settings of this device.
+    /// [`StoreError::Flash`]: reading the flash failed. [`StoreError::Corrupt`]: the log of records is damaged, so that
+    /// its newest record cannot be found. [`StoreError::Record`]: the newest record holds no valid settings of a device
+    /// with `FINGERS` fingers.
     #[inline(never)]
     pub fn load(&mut self) -> Result<Option<[StoredSettings; FINGERS]>, StoreError<F::Error>> {
         let (mut log, buffer) = self.record_log_and_buffer();
@@ -113,12 +116,13 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
     /// by reading it back. Works whatever the flash held before.
     ///
     /// If the log of records is damaged beyond repair, or if the record has twice been read back differently, all
-    /// records are erased first; a power failure before the new one is written then loses the previous settings. A
+    /// records are erased first; a power failure before the new record is written then loses the previous settings. A
     /// power failure alone never damages the log in this way.
     ///
     /// # Errors
-    /// The settings are not saved. The previous ones remain in the flash, unless they were unreadable or all records
-    /// were erased.
+    /// The settings are not saved, because reading, programming or erasing the flash failed ([`StoreError::Flash`]), or
+    /// because the log is damaged or the record reads back differently even after all records were erased. The previous
+    /// settings remain in the flash, unless they were unreadable or all records were erased.
     #[inline(never)]
     pub fn save(
         &mut self,
@@ -138,7 +142,8 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
         saved
     }
 
-    /// Appends a record to the log, and verifies the record by reading it back with an empty cache, as after power-up.
+    /// Appends a record to the log, and compares it with the newest record that is then read from the flash. The cache
+    /// is emptied before this reading, so that the newest record is searched for as after power-up.
     #[inline(never)]
     fn append_and_verify(&mut self, bytes: &[u8]) -> Result<(), StoreError<F::Error>> {
         let (mut log, buffer) = self.record_log_and_buffer();

@@ -54,7 +54,7 @@ mod power;
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1, TIM8};
 
 pub use multiplexer::Multiplexer;
-pub use power::{BridgePeripherals, ControlPins, PowerStage};
+pub use power::{BridgeAndComparatorPins, BridgePeripherals, PowerStage};
 
 /// Number of fingers that this wiring controls, each with its own bridge and sensors.
 pub const FINGERS: usize = 5;

@@ -6,7 +6,8 @@ use thermal_display::device::Finger;
 
 use super::FINGERS;
 
-/// The three select lines PC10 to PC12, which are common to all seven multiplexers.
+/// The three select lines PC10 to PC12, which are common to all seven analog multiplexers. They
+/// select the finger whose sensors the multiplexers connect to the inputs of ADC1.
 pub struct Multiplexer(OutPort3<'C', 10, 11, 12>);
 
 impl Multiplexer {

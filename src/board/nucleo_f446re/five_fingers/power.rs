@@ -40,18 +40,19 @@ pub struct BridgePeripherals {
     pub third: (PC6<Input>, PC7<Input>),
     pub fourth: (PC8<Input>, PC9<Input>),
     pub fifth: (PB8<Input>, PB9<Input>),
-    pub lines: [ControlPins; FINGERS],
+    pub lines: [BridgeAndComparatorPins; FINGERS],
 }
 
-/// The pins of one finger's bridge and comparator, except for the PWM signals: the bridge's enable
-/// line, the fault line of both, and the comparator's test line.
-pub struct ControlPins {
+/// The pins of one finger's bridge and comparator, except for the bridge's PWM inputs: the bridge's
+/// enable line, the fault line, which bridge and comparator pull low, and the comparator's test
+/// line.
+pub struct BridgeAndComparatorPins {
     enable: ErasedPin<Output>,
     fault: ErasedPin<Input>,
     test: ErasedPin<Output>,
 }
 
-impl ControlPins {
+impl BridgeAndComparatorPins {
     /// Sets up the pins of one finger: enable line of the bridge and test line of the comparator as
     /// outputs, fault line as input.
     pub fn new<
@@ -151,11 +152,11 @@ impl PowerStage {
     fn new(
         mut in1: PwmOutput,
         mut in2: PwmOutput,
-        ControlPins {
+        BridgeAndComparatorPins {
             enable,
             fault,
             test,
-        }: ControlPins,
+        }: BridgeAndComparatorPins,
     ) -> Self {
         in1.enable();
         in2.enable();
@@ -174,8 +175,8 @@ impl PowerStage {
     }
 
     /// Applies the outputs of a control tick: turns the bridge off or drives it with the demanded
-    /// duty, and sets the comparator's test line, which makes the comparator cut the bridge's
-    /// supply while it is high.
+    /// duty, and sets the level of the comparator's test line. While that line is high, the
+    /// comparator cuts the bridge's supply, which the self-test checks.
     pub fn apply_outputs(&mut self, outputs: &BoardOutputs) {
         self.test.set_state(outputs.comparator_test.into());
         match outputs.drive {

@@ -93,8 +93,8 @@ impl PowerStage {
     }
 
     /// Applies the outputs of a control tick: turns the bridge off or drives it with the demanded
-    /// duty, and sets the comparator's test line, which makes the comparator cut the bridge's
-    /// supply while it is high.
+    /// duty, and sets the level of the comparator's test line. While that line is high, the
+    /// comparator cuts the bridge's supply, which the self-test checks.
     ///
     /// The PWM outputs of TIM1 are enabled only when the bridge changes from off to on. A break, by
     /// a low fault line or a failure of the 8 MHz clock, disables the PWM outputs; they stay

@@ -16,10 +16,10 @@ use crate::safety::limits::SINK_DERATING_FROM;
 
 /// Slope by which the law `model` reduces its largest cooling current while the sink is above [`SINK_DERATING_FROM`]
 /// (39.5 °C): by 1/2 (2^-1, this power of two) of the current limit per kelvin, so to zero at 41.5 °C.
-const COOLING_REDUCTION_PER_K_SHIFT: u32 = 1;
+const COOLING_LIMIT_REDUCTION_PER_K_SHIFT: u32 = 1;
 
-/// Control law that chooses the module's current from the reference and the readings; selected by the host's command
-/// `law`.
+/// Control law that chooses the module's current from the reference and the readings of the display's thermistor;
+/// selected by the host's command `law`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Law {
     /// Proportional-integral control of the reading of the display's thermistor to the set-point, updated ten times a
@@ -29,9 +29,9 @@ pub enum Law {
     /// of 1 ms.
     Pi,
     /// Feed-forward: computes the current that brings the surface of the internal plate model to the target in 12 ms,
-    /// including the finger's estimated heat. A disturbance observer corrects the model by the display's reading. The
-    /// target, unlike the set-point of the other laws, also corrects errors of the skin's temperature. This law is the
-    /// default.
+    /// including the finger's estimated heat. A disturbance observer corrects the model by the display's reading.
+    /// During contact the target contains a correction that brings the skin on the display to the temperature that it
+    /// would have on the object; the other laws have no such correction. This law is the default.
     #[default]
     Model,
 }
@@ -80,9 +80,9 @@ impl Controller {
         }
     }
 
-    /// Replaces the gains of the proportional-integral laws by those of another tile, after the host has stored a new
-    /// identification; the integral parts of the currents stay. The plate's observer must be given its own constants
-    /// separately ([`PlateObserver::set_parameters`]).
+    /// Replaces the gains of the two proportional-integral laws: at the start by those of the settings in flash, later
+    /// when the host sets a new tile (commands `tune result`, `set tile`). The integral parts of the currents stay. The
+    /// plate's observer must be given its own constants separately ([`PlateObserver::set_parameters`]).
     pub fn set_parameters(&mut self, parameters: &ControlParameters) {
         self.pi.set_coefficients(parameters.pi);
         self.pi_10hz.set_coefficients(parameters.pi_10hz);
@@ -104,23 +104,25 @@ impl Controller {
         }
     }
 
-    /// Largest magnitude, A, of the current that [`Self::choose_current`] returns.
+    /// Largest magnitude, A, of the current that [`Self::choose_current`] returns: the `limit` that [`Self::new`] has
+    /// received from the settings.
     #[must_use]
     pub const fn current_limit(&self) -> Current {
         self.pi.output_limit()
     }
 
     /// Sets the present current, A (positive cools), in a tick in which no law has chosen it: during the self-test or
-    /// an identification, or while the bridge is off (0 A). The control laws start from this current.
+    /// an identification, or while the bridge is off (0 A). The two proportional-integral laws continue from this
+    /// current (bumpless transfer); the law `model` continues from the observer instead.
     pub fn track_current(&mut self, current: Current) {
         self.current = current;
         self.pi_10hz.track_current(current);
         self.pi.track_current(current);
     }
 
-    /// Chooses the current of this tick, A (positive cools), by the selected law. The law `model` brings the display to
-    /// the target of `reference`, the other laws bring it to the set-point. `display` and `sink` are this tick's
-    /// readings, °C; the observer `plate` must already have been corrected by them.
+    /// Chooses the current of this tick, A (positive cools), by the selected law, within the current limit. The law
+    /// `model` brings the display to the target of `reference`, the other laws bring it to the set-point. `display` and
+    /// `sink` are this tick's readings, °C; the observer `plate` must already have been corrected by them.
     pub fn choose_current(
         &mut self,
         reference: &Reference,
@@ -133,7 +135,7 @@ impl Controller {
             Law::Pi => self.pi.update_output(reference.setpoint, display),
             Law::Model => plate
                 .current_to_target(reference.target.celsius())
-                .min(self.cooling_limit(sink))
+                .min(self.cooling_current_limit(sink))
                 .max(-self.current_limit()),
         };
         self.current
@@ -142,9 +144,9 @@ impl Controller {
     /// Largest cooling current of the law `model`, A, when the sink has the temperature `sink`, °C: the current limit
     /// up to [`SINK_DERATING_FROM`] (39.5 °C), falling linearly to zero 2 K above it. At such temperatures more
     /// current would warm the sink more than cool the display.
-    fn cooling_limit(&self, sink: Celsius) -> Current {
+    fn cooling_current_limit(&self, sink: Celsius) -> Current {
         let excess = sink.saturating_sub(SINK_DERATING_FROM).max(Celsius::ZERO)
-            >> COOLING_REDUCTION_PER_K_SHIFT;
+            >> COOLING_LIMIT_REDUCTION_PER_K_SHIFT;
         let part = Celsius::ONE.saturating_sub(excess).max(Celsius::ZERO);
         product(self.current_limit(), part)
     }

@@ -7,11 +7,14 @@ use crate::estimate::{ObserverParameters, PlateModel};
 use crate::low_pass::Coefficient;
 use crate::pi::{PiCoefficients, UpdatePeriod};
 
-/// Largest residual of the plate's observer, K, that is permitted on a tile that has been identified. If a larger
-/// residual lasts for 30 ms, the station trips with the fault `unlike-model`.
+/// Largest residual of the plate's observer, K, that is permitted on a tile that has been identified. The residual is
+/// the difference between the display's reading and the modelled reading, filtered, plus 0.5 K per ampere of the
+/// observer's correcting current. If a larger residual lasts for 30 ms while the display follows a set-point, the
+/// station trips with the fault `unlike-model`.
 const OBSERVER_RESIDUAL_MAX_IDENTIFIED_TILE: Celsius = Celsius::lit("3.75");
-/// Largest residual of the plate's observer, K, that is permitted before the tile has been identified. It is larger
-/// than the limit for an identified tile, because fast temperature changes of sound modules at the ends of their
+/// Largest residual of the plate's observer, K, that is permitted before the tile has been identified; a larger one
+/// that lasts for 30 ms while the display follows a set-point trips the station with the fault `unlike-model`. It is
+/// larger than the limit for an identified tile, because fast temperature changes of sound modules at the ends of their
 /// tolerances, with thermistors of 0.5 s lag, cause residuals of up to 7.3 K.
 const OBSERVER_RESIDUAL_MAX_NOMINAL_TILE: Celsius = Celsius::lit("8");
 

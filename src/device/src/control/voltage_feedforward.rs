@@ -11,21 +11,22 @@ use crate::estimate::LegTemperatures;
 /// Voltage as a fraction of the bridge's supply voltage; 1 is the whole supply.
 type SupplyFraction = I8F24;
 
-/// Limit of the difference between the dead-time loss and half of its largest value `V_dead`, as a fraction of the
-/// supply voltage, in either direction. It only keeps the division within 32 bits: the loss itself is limited to 0 to
-/// `V_dead` afterwards.
+/// Limit, in either direction, of the difference between the dead-time loss and half of the largest dead-time loss, as
+/// a fraction of the supply voltage. It only keeps a division in the computation of the loss within 32 bits; the loss
+/// itself is limited afterwards, to between zero and the largest loss.
 const LARGEST_OFFSET_FROM_HALF_DEAD_TIME_LOSS: SupplyFraction = SupplyFraction::lit("0.0625");
-/// Fractional bits of the divisor in the computation of the dead-time loss; so few that a 32-bit division is enough.
-const DIVISOR_FRACTION_BITS: u32 = 10;
+/// Fractional bits of the divisor in the computation of the dead-time loss, by which the dividend is also shifted; so
+/// few that a 32-bit division is enough.
+const DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS: u32 = 10;
 
 /// Computes the bridge's output voltage that drives a current through the module: `V = R I + S (T_hot - T_cold) +
 /// lost`, with the resistance `R`, the Seebeck coefficient `S` of the module, the temperatures of the legs' ends, and
 /// the voltage `lost` in the dead times of the bridge, in which both switches of a half-bridge are off. A positive
 /// current `I` cools.
 ///
-/// All of `V_dead` is lost while the current in the filter's inductor keeps the direction of the pulses for the whole
-/// PWM period, and nothing while the ripple of the inductor's current reverses that current in every dead time. In
-/// between, the loss rises linearly with `I`:
+/// All of `V_dead`, the largest loss, is lost while the current in the filter's inductor keeps the direction of the
+/// pulses for the whole PWM period, and nothing while the ripple of the inductor's current reverses that current in
+/// every dead time. In between, the loss rises linearly with `I`:
 ///
 /// ```text
 /// lost = V_dead (I - from) / (dead_time_a / 2), from 0 to V_dead      from = ripple_a w (1 - w) - dead_time_a
@@ -33,7 +34,7 @@ const DIVISOR_FRACTION_BITS: u32 = 10;
 ///
 /// Here `w` is the fraction of the PWM period that a pulse takes, `I` is positive in the direction of the pulses,
 /// `dead_time_a` is the change of the inductor's current during one dead time, A, and `ripple_a w (1 - w)` is half of
-/// its peak-to-peak ripple, A.
+/// the peak-to-peak ripple of the inductor's current, A.
 ///
 /// No product overflows if 1 A needs less than half of the supply voltage and `ripple_a` is at most 64 A: currents are
 /// within ±128 A, temperatures within ±512 °C, and all voltages within the supply.
@@ -53,8 +54,8 @@ pub struct VoltageFeedforward {
     ripple_a: Current,
     /// Change of the current in the inductor of the bridge's output filter during one dead time, A.
     dead_time_a: Current,
-    /// Slope of the dead-time loss over the current between no loss and the largest loss, as a fraction of the supply
-    /// voltage per ampere, 1/A.
+    /// Rise of the dead-time loss per ampere of the module's current, in the range of currents in which the loss rises
+    /// from zero to its largest value, as a fraction of the supply voltage, 1/A.
     dead_time_per_a: SupplyFraction,
 }
 
@@ -103,10 +104,10 @@ impl VoltageFeedforward {
         Duty::saturating(I1F15::saturating_from_num(voltage))
     }
 
-    /// Voltage that the bridge loses in its dead times, as a fraction of the supply voltage, if the fraction `needed`
-    /// (0 or more) must remain after the loss. `current`, A, is positive in the direction of the pulses. The pulses
-    /// must be wider by the loss, which changes ripple and loss in turn; the solution is of first order around half of
-    /// `V_dead`.
+    /// Voltage that the bridge loses in its dead times, as a fraction of the supply voltage, from zero to the largest
+    /// loss, `V_dead`. The fraction `needed` (0 or more) must remain for the module after the loss. `current`, A, is
+    /// positive in the direction of the pulses. The loss makes wider pulses necessary, and wider pulses change the
+    /// ripple and thereby the loss; the solution is of first order around half of `V_dead`.
     fn dead_time_loss(&self, needed: SupplyFraction, current: Current) -> SupplyFraction {
         const FIXED_POINT_ONE: SupplyFraction = SupplyFraction::ONE;
         let times = product::<SupplyFraction, _>;
@@ -122,8 +123,9 @@ impl VoltageFeedforward {
             LARGEST_OFFSET_FROM_HALF_DEAD_TIME_LOSS,
         );
         let divisor = FIXED_POINT_ONE.saturating_add(feedback)
-            >> (SupplyFraction::FRAC_NBITS - DIVISOR_FRACTION_BITS);
-        let quotient = (offset.to_bits() << DIVISOR_FRACTION_BITS) / divisor.to_bits();
+            >> (SupplyFraction::FRAC_NBITS - DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS);
+        let quotient =
+            (offset.to_bits() << DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS) / divisor.to_bits();
         (half + SupplyFraction::from_bits(quotient))
             .min(self.dead_time)
             .max(SupplyFraction::ZERO)

@@ -7,25 +7,27 @@ use contact_model::fixed_point::{
 use fixed::types::{I2F30, I10F22};
 
 use super::Watt;
-use super::force_mean::{ForceChange, ForceMean};
+use super::force_mean::{ForceChange, ForceMeans};
 
 /// Time constant of the low-pass filters of skin and room temperature while no finger touches, as an exponent of two:
 /// 2^8 ticks of 1 ms, 0.26 s.
 const SKIN_AND_ROOM_FILTER_SHIFT: u32 = 8;
 /// Ticks of 1 ms (2 s) after lifting during which the skin's thermistor still shows the cooling or warming by the
-/// contact. During this time the filtered temperatures of skin and room stay, and a contact that begins in it does not
-/// use the closed-form set-point of Eq. 6-12.
+/// contact. During this time the filtered temperatures of skin and room stay, and for a contact that begins in this
+/// time the law `model` does not use the closed-form set-point of Eq. 6-12.
 const SKIN_RECOVERY_TICKS: u32 = 2000;
-/// Ticks of 1 ms after landing during which a jump of the force counts as part of the landing. A later jump excludes
-/// the closed-form set-point of Eq. 6-12, which assumes a constant force, for the rest of the contact.
+/// Ticks of 1 ms after landing during which a jump of the force is taken for the rise of the force at landing and only
+/// starts the running means of the force again. After a later jump the law `model` does not use the closed-form
+/// set-point of Eq. 6-12, which assumes a constant force, for the rest of the contact.
 const LANDING_RISE_TICKS: u64 = 16;
-/// Ticks of 1 ms after landing at which the mean force is stored as the force of this contact, to which later mean
-/// forces are compared. Each jump during the rise at landing starts the mean again, so the stored mean hardly contains
-/// the rise.
+/// Ticks of 1 ms after landing from which on the initial force of a contact is fixed; until then the initial force
+/// equals the present mean force. The delay keeps most of the rise of the force at landing out of the initial force. If
+/// a later mean force differs from the initial force by more than 1/64, the law `model` does not use the closed-form
+/// set-point of Eq. 6-12 for the rest of the contact.
 const INITIAL_FORCE_STORED_AFTER_TICKS: u64 = 64;
 /// The force counts as constant while its mean stays within 1/64 (2^-6, this power of two) of the mean that it had
-/// [`INITIAL_FORCE_STORED_AFTER_TICKS`] (64 ms) after landing. After a larger change the closed-form set-point of Eq.
-/// 6-12 is not used for the rest of the contact.
+/// [`INITIAL_FORCE_STORED_AFTER_TICKS`] (64 ms) after landing. After a larger change the law `model` does not use the
+/// closed-form set-point of Eq. 6-12 for the rest of the contact.
 const CONSTANT_FORCE_TOLERANCE_SHIFT: u32 = 6;
 /// The contact conductances are computed again when the mean force has changed by more than 1/1024 (2^-10, this power
 /// of two) since they were computed. A smaller change of the force has no noticeable effect on the skin's temperature.
@@ -53,16 +55,18 @@ fn filter_skin_or_room(state: Celsius, input: Celsius) -> Celsius {
     state.saturating_add(input.saturating_sub(state) >> SKIN_AND_ROOM_FILTER_SHIFT)
 }
 
-/// Thermal contact conductances for one finger force: of the real contact between skin and display, and of the
-/// simulated contact between skin and presented object.
+/// Thermal contact conductances for one finger force, as scaled heat flux (K) per kelvin: of the real contact between
+/// skin and display, and of the simulated contact between skin and presented object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContactConductances {
     /// Force, N, for which the conductances were computed.
     force: Force,
     contact: Contact,
-    /// Conductance between skin and display; determines the heat that the finger really gives to the display.
+    /// Conductance between skin and display, as scaled heat flux (K) per kelvin; determines the heat that the finger
+    /// really gives to the display.
     pub display: ContactConductance,
-    /// Conductance between skin and presented object; determines how much the simulated skin cools on the object.
+    /// Conductance between skin and presented object, as scaled heat flux (K) per kelvin; determines how much the
+    /// simulated skin cools on the object.
     pub object: ContactConductance,
 }
 
@@ -84,11 +88,11 @@ impl ContactConductances {
     }
 }
 
-/// One contact of a finger with the display, from landing to lifting: force, time, and contact conductances. Of these
-/// only the conductance between skin and object depends on the presented object.
+/// One contact of a finger with the display, from landing to lifting: force, time, and contact conductances. It
+/// continues when the host presents another object; only the conductance between skin and object depends on the object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FingerContact {
-    force: ForceMean,
+    force: ForceMeans,
     /// Whether the last tick's force was noise, showed a drift, or was a jump; `New` (a jump) at landing.
     change: ForceChange,
     /// Whether the closed-form set-point of Eq. 6-12 is valid for the contact; see [`Self::closed_form_is_valid`]. Once
@@ -97,20 +101,21 @@ pub struct FingerContact {
     /// Mean force of the contact, N, [`INITIAL_FORCE_STORED_AFTER_TICKS`] (64 ms) after landing; before that, the
     /// present mean. The force counts as constant while its mean stays within 1/64 of this value.
     initial_force: Force,
-    /// Ticks of 1 ms since landing, when the force rose from zero (to 3 mN).
+    /// Ticks of 1 ms since landing, when the force rose from zero (to 3 mN); landing counts as at most 32 ticks before
+    /// the contact was detected.
     elapsed: u64,
-    /// Contact conductances for the present mean force; `None` until a tick computes them, and after another object has
-    /// been presented.
+    /// Contact conductances for a force within 1/1024 of the present mean force; `None` until a tick computes them, and
+    /// after another object has been presented.
     conductances: Option<ContactConductances>,
 }
 
 impl FingerContact {
-    /// Begins a contact in the tick in which it is detected, `landed_ticks` ticks after the force rose from zero (to 3
-    /// mN). `skin_recovered` means that the estimator has run without contact for at least 2 s, so that the closed-form
-    /// set-point of Eq. 6-12 may be valid for the contact.
-    fn at_landing(force: Force, landed_ticks: u32, skin_recovered: bool) -> Self {
+    /// Begins a contact in the tick in which it is detected, `landed_ticks` (2 to 32) ticks after the force rose from
+    /// zero (to 3 mN); `force`, N, is the force in this tick. `skin_recovered` means that the estimator has run without
+    /// contact for at least 2 s; else the closed-form set-point of Eq. 6-12 is not valid for the contact.
+    fn new_at_landing(force: Force, landed_ticks: u32, skin_recovered: bool) -> Self {
         Self {
-            force: ForceMean::new(force),
+            force: ForceMeans::new(force),
             change: ForceChange::New,
             closed_form_applies: skin_recovered,
             initial_force: force,
@@ -121,7 +126,7 @@ impl FingerContact {
 
     /// Updates the contact by the force of one further tick, N, and decides whether the force is still constant enough
     /// for the closed-form set-point of Eq. 6-12.
-    fn update_force(&mut self, force: Force) {
+    fn update_by_force(&mut self, force: Force) {
         self.change = self.force.add_force(force);
         self.elapsed += 1;
         let mean = self.force.mean();
@@ -136,13 +141,13 @@ impl FingerContact {
 
     /// Running means of this contact's force, N, which also hold the mean for which set-points are computed.
     #[must_use]
-    pub const fn force_mean(&self) -> &ForceMean {
+    pub const fn force_mean(&self) -> &ForceMeans {
         &self.force
     }
 
-    /// Whether the last tick's force was noise, showed a drift, or was a jump. After a drift or a jump the reference
-    /// generator computes its interpolation of the set-point (Eq. 6-12) again, if the closed form is valid for the
-    /// contact.
+    /// Whether the last tick's force was noise, showed a drift, or was a jump; a landing also counts as a jump. After a
+    /// drift or a jump the reference generator computes its interpolation of the closed-form set-point (Eq. 6-12)
+    /// again: with the law `model` only while the closed form is valid for the contact, with the other laws always.
     #[must_use]
     pub const fn force_change(&self) -> ForceChange {
         self.change
@@ -158,17 +163,19 @@ impl FingerContact {
     /// Whether the closed-form set-point of Eq. 6-12, which assumes a first contact under constant force, is valid for
     /// this contact. It is valid if this estimator had run without contact for at least 2 s before landing, the display
     /// was near its preset temperature when the contact with the presented object began, the force has not jumped since
-    /// 16 ms after landing, and its mean stays within 1/64 of the mean 64 ms after landing. Otherwise, with the law
-    /// `model`, the reference generator computes the set-point from the simulated skin on the object; with the other
-    /// laws it uses the closed form in any case.
+    /// 16 ms after landing, and the force's mean has stayed within 1/64 of its value 64 ms after landing. Otherwise,
+    /// with the law `model`, the reference generator computes the set-point from the simulated skin on the object; with
+    /// the other laws it uses the closed form in any case.
     #[must_use]
     pub const fn closed_form_is_valid(&self) -> bool {
         self.closed_form_applies
     }
 
-    /// Excludes the closed-form set-point of Eq. 6-12 for the rest of this contact. The reference generator calls this
-    /// in the first tick of a contact with the presented object if the surface of the display is then more than 0.1 K
-    /// away from where it should wait for the finger (the preset temperature).
+    /// Makes the closed-form set-point of Eq. 6-12 invalid for the rest of this contact, so that the law `model` does
+    /// not use it. The reference generator calls this in the first tick of a contact with the presented object if the
+    /// surface of the display is then more than 0.1 K outside the range between two temperatures: the preset (the
+    /// set-point before contact), and the temperature at which the law `model` keeps a waiting display, which is below
+    /// the preset by 1/128 of the skin's temperature minus the preset.
     pub const fn exclude_closed_form(&mut self) {
         self.closed_form_applies = false;
     }
@@ -181,9 +188,9 @@ impl FingerContact {
     }
 
     /// Makes the present mean force, N, the one for which set-points are computed, and computes the contact
-    /// conductances for exactly this force. With the law `model` the reference generator calls this one tick before it
-    /// computes its interpolation of the set-point (Eq. 6-12) again, to spread the computing time over two ticks; with
-    /// the other laws it does both in the same tick.
+    /// conductances for exactly this force. The reference generator calls this when its interpolation of the set-point
+    /// (Eq. 6-12) must be computed. With the law `model` the interpolation then normally follows in the next tick, to
+    /// spread the computing time over two ticks; with the other laws in the same tick.
     pub fn adopt_mean_force_for_setpoints(&mut self, pair: &ContactPair) {
         self.force.adopt_mean_for_setpoints();
         if self.contact_at_mean_for_setpoints().is_none() {
@@ -204,12 +211,13 @@ impl FingerContact {
     }
 }
 
-/// Estimates, tick by tick, the skin's temperature before contact, the force of the present contact, and by how much
-/// the display has cooled the skin. Runs with every control law, because the host may select another law during a
-/// contact.
+/// Estimates the skin's temperature before contact, the force of the present contact, by how much the display has
+/// cooled the skin, and the heat flow from the finger into the display, tick by tick. Runs under every control law, so
+/// that the estimates are right when the host selects the law `model` during a contact.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FingerEstimator {
-    /// Filtered temperatures of skin and room before contact, °C; `None` until a first tick with valid readings.
+    /// Filtered temperatures of skin and room before contact, °C; `None` until a first tick with valid readings, also
+    /// after `invalidate`.
     before_contact: Option<PreContactTemperatures>,
     /// Ticks of 1 ms without contact since the last contact ended, or since the estimator was started or invalidated; 0
     /// during contact. From 2000 (2 s) on, the temperatures of skin and room are filtered again.
@@ -223,11 +231,12 @@ pub struct FingerEstimator {
 impl FingerEstimator {
     /// Updates the finger's estimates by one tick's temperatures of skin and room, °C, and by the force `touch`, N,
     /// which is `None` without contact. In the first tick of a contact `landed_ticks` is the number of ticks since the
-    /// force rose from zero (to 3 mN); in all other ticks it is ignored.
+    /// force rose from zero (to 3 mN), at most 32; in all other ticks it is ignored.
     ///
-    /// The temperatures of skin and room are filtered only while no finger touches and the last contact ended 2 s ago
-    /// or earlier: during contact the skin's thermistor does not measure the undisturbed skin, and for some time
-    /// afterwards it shows the cooling or warming by that contact.
+    /// The first readings after a start or [`Self::invalidate`] set the temperatures of skin and room. Later readings
+    /// are filtered only while no finger touches and there has been no contact for 2 s: during contact the skin's
+    /// thermistor does not measure the undisturbed skin, and for some time afterwards it shows the cooling or warming
+    /// by that contact. So the temperatures also stay for the first 2 s after a start or [`Self::invalidate`].
     pub fn update_by_readings(
         &mut self,
         skin: Celsius,
@@ -247,9 +256,13 @@ impl FingerEstimator {
         match (touch, &mut self.contact) {
             (None, contact) => *contact = None,
             (Some(force), contact @ None) => {
-                *contact = Some(FingerContact::at_landing(force, landed_ticks, recovered));
+                *contact = Some(FingerContact::new_at_landing(
+                    force,
+                    landed_ticks,
+                    recovered,
+                ));
             }
-            (Some(force), Some(contact)) => contact.update_force(force),
+            (Some(force), Some(contact)) => contact.update_by_force(force),
         }
         self.lifted_ticks = match touch {
             Some(_) => 0,
@@ -258,28 +271,32 @@ impl FingerEstimator {
     }
 
     /// Discards the temperatures before contact, the contact, and the cooling of the skin; the next call of
-    /// [`Self::update_by_readings`] starts from its readings. Called in each tick with invalid readings or a detected
-    /// fault, because then a landing or lifting of the finger would be missed.
+    /// [`Self::update_by_readings`] starts from its readings. Called in each tick whose readings are invalid or in
+    /// which a fault detector finds a fault, because such a tick does not update the estimates, and a landing or
+    /// lifting of the finger would be missed.
     pub fn invalidate(&mut self) {
         *self = Self::default();
     }
 
-    /// Skin and room temperature before the present contact, or at present while no finger touches; `None` until a
-    /// first tick with valid readings, and after [`Self::invalidate`].
+    /// Filtered temperatures of skin and room, °C: those before the present or last contact, or, once no finger has
+    /// touched for 2 s, the present ones. `None` until a first tick with valid readings, also after
+    /// [`Self::invalidate`].
     #[must_use]
     pub const fn temperatures_before_contact(&self) -> Option<PreContactTemperatures> {
         self.before_contact
     }
 
-    /// The present contact; `None` while no finger touches.
+    /// The present contact; `None` while no finger touches, and after [`Self::invalidate`] until the next valid
+    /// readings.
     #[must_use]
     pub const fn contact(&self) -> Option<&FingerContact> {
         self.contact.as_ref()
     }
 
-    /// The present contact (`None` while no finger touches), mutable because the reference generator chooses the force
-    /// for which set-points are computed; and the thermal state of the skin, whose output is the cooling of the skin's
-    /// surface by the display, K, positive where the skin is colder than before contact.
+    /// Two values. First, the present contact, or `None` while no finger touches; it is mutable, because the reference
+    /// generator chooses the force for which set-points are computed. Second, the thermal state of the skin, whose
+    /// output is the cooling of the skin's surface by the display, K: positive where the skin is colder than before
+    /// contact.
     pub const fn contact_and_skin_state(&mut self) -> (Option<&mut FingerContact>, &HalfSpace) {
         (self.contact.as_mut(), &self.skin_state_on_display)
     }
@@ -300,11 +317,12 @@ impl FingerEstimator {
         }
     }
 
-    /// Advances the simulated skin by one tick on a display whose surface has the temperature `surface`, °C. Returns
-    /// the heat flow from the finger into the display, W: negative if the display is warmer than the skin's surface, 0
-    /// without contact. Of `pair` only the properties of skin and display matter here, so the caller may give a pair
-    /// with any object.
-    pub fn heat_into_display(&mut self, pair: &ContactPair, surface: Celsius) -> Watt {
+    /// Advances the thermal state of the skin by one tick, in contact with a display whose surface has the temperature
+    /// `surface`, °C, or without contact. Returns the heat flow from the finger into the display, W: negative if the
+    /// display is warmer than the skin's surface, 0 without contact. Computes the contact conductances again if the
+    /// mean force has changed by more than 1/1024. Of `pair` only the properties of skin and display matter here, so
+    /// the caller may give a pair with any object.
+    pub fn step_skin_heat_flow(&mut self, pair: &ContactPair, surface: Celsius) -> Watt {
         let Some(PreContactTemperatures { skin, .. }) = self.before_contact else {
             return Watt::ZERO;
         };

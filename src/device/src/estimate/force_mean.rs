@@ -5,7 +5,7 @@ use core::num::NonZeroU32;
 use contact_model::fixed_point::Force;
 
 /// Threshold of a jump: a tick's force that differs from the mean of the last 64 ticks by more than 1/16 of that mean,
-/// and by more than 10 mN, is a new force, and the means start again from it. A smaller difference counts as noise.
+/// and by more than 10 mN, is a new force, and the means start again from it. A smaller difference is no jump.
 const FORCE_JUMP_THRESHOLD: ForceThreshold = ForceThreshold {
     shift: 4,
     floor: Force::lit("0.01"),
@@ -21,9 +21,10 @@ const FORCE_DRIFT_THRESHOLD: ForceThreshold = ForceThreshold {
 /// comparison with the recent mean.
 const RECENT_MEAN_TICKS: u32 = 64;
 /// The long running mean of the force averages over the last quarter (2^-2, this power of two) of the ticks since the
-/// last jump, limited to 64 to 4096 ticks. The set-point changes with the logarithm of time, so noise may be averaged
-/// over a longer time late in a contact.
-const LONG_MEAN_FRACTION_SHIFT: u32 = 2;
+/// last jump of the force, but over at least 64 and at most 4096 ticks. The set-point changes with the logarithm of
+/// time, so late in a contact noise may be averaged over a longer time. A drift sets the count of ticks since the jump
+/// back to 64.
+const LONG_MEAN_WINDOW_FRACTION_SHIFT: u32 = 2;
 /// Largest number of ticks of 1 ms over which the long running mean of the force averages (4.1 s).
 const LONG_MEAN_MAX_TICKS: u32 = 4096;
 /// Fewest ticks of 1 ms since the last jump of the force after which a better mean may cause new set-points. A mean of
@@ -31,11 +32,11 @@ const LONG_MEAN_MAX_TICKS: u32 = 4096;
 const MIN_TICKS_SINCE_JUMP_FOR_NEW_SETPOINT: u32 = 16;
 
 /// Threshold for the difference between a force and a force of comparison: a fraction of the force of comparison, but
-/// at least a constant.
+/// at least a constant number of newtons.
 struct ForceThreshold {
     /// Fraction of the force of comparison, as a right shift in bits: 4 stands for 1/16.
     shift: u32,
-    /// Smallest threshold, N; it applies to small forces of comparison.
+    /// Smallest threshold, N; used where the fraction of the force of comparison is smaller.
     floor: Force,
 }
 
@@ -50,25 +51,26 @@ impl ForceThreshold {
 /// Running means of a finger's force, N, during one contact. They start again when the force jumps. Also holds the mean
 /// for which the present set-points are computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ForceMean {
+pub struct ForceMeans {
     /// Mean force, N, of the last 64 ticks, or of the ticks since the last jump if they are fewer. Jumps of the force
     /// and drift are detected by comparison with this mean.
     recent_mean: Force,
-    /// Running mean of the force, N, over the last quarter of the ticks since the last jump, but over 64 to 4096 ticks
-    /// (over all ticks while there are fewer than 64).
+    /// Running mean of the force, N, over the last quarter of the ticks since the last jump of the force, but over at
+    /// least 64 and at most 4096 ticks; over all ticks since the jump while these are fewer than 64. A drift starts
+    /// this mean again from the mean of the last 64 ticks.
     long_mean: Force,
     mean_for_setpoints: Force,
-    /// Ticks of 1 ms since the last jump of the force (at most 16384, from which on the long mean covers its largest
-    /// length); set back to 64 by a drift.
+    /// Number of ticks of 1 ms since the last jump of the force, the tick of the jump included. Stops at 16384, where a
+    /// quarter of it reaches the largest length of the long mean; a drift sets it back to 64.
     ticks: u32,
 }
 
-/// How one tick's force compares with the mean of the ticks before it; decides whether the set-points must be computed
-/// again.
+/// Whether the force of one tick is noise, a jump, or completes a drift of the mean force. After a jump or a drift the
+/// set-points must be computed again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ForceChange {
     /// The force differs from the mean of the last 64 ticks by at most 1/16 of that mean, or by at most 10 mN, and that
-    /// mean has not drifted. The set-points need not change.
+    /// mean has not drifted. A force like this does not require new set-points.
     Noise,
     /// The force has drifted: the mean of the last 64 ticks differs from the mean for which the set-points were
     /// computed by more than 1/2048 of the latter and more than 0.25 mN. The long mean has started again from the mean
@@ -79,7 +81,7 @@ pub enum ForceChange {
     New,
 }
 
-impl ForceMean {
+impl ForceMeans {
     /// Starts the means with a single force, N, at landing and after each jump of the force.
     #[must_use]
     pub const fn new(force: Force) -> Self {
@@ -91,28 +93,29 @@ impl ForceMean {
         }
     }
 
-    /// Long running mean of the force, N: over all ticks since the last jump while these are fewer than 64, later over
-    /// the last quarter of them, with at least 64 and at most 4096 ticks.
+    /// Long running mean of the force, N: over all ticks since the last jump of the force while these are fewer than
+    /// 64, later over the last quarter of them, with at least 64 and at most 4096 ticks. A drift starts this mean again
+    /// from the mean of the last 64 ticks.
     #[must_use]
     pub const fn mean(&self) -> Force {
         self.long_mean
     }
 
-    /// Mean force, N, for which the present set-points are computed: set by [`Self::adopt_mean_for_setpoints`], and by
-    /// a jump of the force to the force after the jump.
+    /// Mean force, N, for which the present set-points are computed. A landing or a jump of the force sets it to the
+    /// force of that tick; [`Self::adopt_mean_for_setpoints`] sets it to the long mean.
     #[must_use]
     pub const fn mean_for_setpoints(&self) -> Force {
         self.mean_for_setpoints
     }
 
-    /// Makes the present long mean of the force the one for which set-points are computed.
+    /// Sets the mean force for which set-points are computed to the present long mean.
     pub const fn adopt_mean_for_setpoints(&mut self) {
         self.mean_for_setpoints = self.long_mean;
     }
 
-    /// Whether the number of averaged ticks has doubled, so that new set-points for the more accurate mean may be worth
-    /// the computing time: true in the 16th, 32nd, 64th … tick since the last jump of the force, and in every tick from
-    /// the 16384th on. A drift sets the count back to 64.
+    /// Whether the number of ticks since the last jump of the force, the tick of the jump included, is a power of two
+    /// from 16 on: 16, 32, 64 … 16384, where the number stops. The mean has then become more accurate, so new
+    /// set-points may be worth the computing time. True also in the tick of a drift, which sets the number back to 64.
     #[must_use]
     pub const fn has_doubled_sample_count(&self) -> bool {
         self.ticks >= MIN_TICKS_SINCE_JUMP_FOR_NEW_SETPOINT && self.ticks.is_power_of_two()
@@ -125,8 +128,8 @@ impl ForceMean {
             *self = Self::new(force);
             return ForceChange::New;
         }
-        self.ticks = (self.ticks + 1).min(LONG_MEAN_MAX_TICKS << LONG_MEAN_FRACTION_SHIFT);
-        let reach_ticks = RECENT_MEAN_TICKS.max(self.ticks >> LONG_MEAN_FRACTION_SHIFT);
+        self.ticks = (self.ticks + 1).min(LONG_MEAN_MAX_TICKS << LONG_MEAN_WINDOW_FRACTION_SHIFT);
+        let reach_ticks = RECENT_MEAN_TICKS.max(self.ticks >> LONG_MEAN_WINDOW_FRACTION_SHIFT);
         self.recent_mean = updated_mean(self.recent_mean, force, self.ticks.min(RECENT_MEAN_TICKS));
         self.long_mean = updated_mean(self.long_mean, force, self.ticks.min(reach_ticks));
         if self.ticks >= RECENT_MEAN_TICKS
@@ -159,7 +162,7 @@ mod tests {
 
     #[test]
     fn the_mean_averages_noise_and_takes_a_step_at_once() {
-        let mut mean = ForceMean::new(Force::lit("2"));
+        let mut mean = ForceMeans::new(Force::lit("2"));
         for i in 0..500 {
             let noisy = if i % 2 == 0 {
                 Force::lit("2.01")

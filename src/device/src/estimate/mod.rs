@@ -7,7 +7,7 @@ mod plate_model;
 mod plate_observer;
 
 pub use finger::{FingerContact, FingerEstimator, PreContactTemperatures};
-pub use force_mean::{ForceChange, ForceMean};
+pub use force_mean::{ForceChange, ForceMeans};
 pub use plate_model::{LegTemperatures, PlateModel, Watt};
 pub use plate_observer::{ObserverParameters, PlateObserver};
 
@@ -20,12 +20,14 @@ use crate::safety::ValidReadings;
 /// itself needs the finger's heat flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct UncorrectedEstimate {
-    /// Temperature of the display's surface under the finger, °C, at the end of the previous tick; the finger's heat
-    /// flow is computed from it, and the display's temperature at landing is checked by it. It is the reading of the
-    /// display's thermistor if the observer has not started yet.
+    /// Temperature of the display's surface under the finger, °C, at the end of the previous tick. The finger's heat
+    /// flow is computed from this temperature, and in the first tick of a contact the reference generator checks
+    /// whether the display was near its preset. It is the reading of the display's thermistor if the observer has no
+    /// valid model: before its first reading, and after `invalidate`.
     pub previous_surface: Celsius,
     /// Temperatures of the module's legs, °C, at the end of the previous tick; the voltage of the bridge is computed
-    /// from them. They are derived from the readings of display and sink if the observer has not started yet.
+    /// from them. They are derived from the readings of display and sink if the observer has no valid model: before its
+    /// first reading, and after `invalidate`.
     pub previous_legs: LegTemperatures,
 }
 
@@ -42,10 +44,10 @@ pub struct Estimator {
 
 impl Estimator {
     /// Updates the estimates of finger and plate by the valid readings of one tick, and returns the plate's
-    /// temperatures as estimated before this correction. `touch` is the force, N, of a finger that touches, or `None`.
-    /// `landed_ticks` is the number of ticks since the force rose from zero; it is used only in the first tick of a
-    /// contact. `pair` holds the thermal properties of finger, object and display; without `pair` the finger's heat is
-    /// taken as zero.
+    /// temperatures as estimated before this update. `touch` is the force, N, of a finger that touches, or `None`.
+    /// `landed_ticks` is the number of ticks of 1 ms since the force rose from zero, at most 32; it is used only in the
+    /// first tick of a contact. `pair` holds the thermal properties of finger, object and display; without `pair` the
+    /// finger's heat is taken as zero.
     #[inline(always)]
     pub fn update_estimates(
         &mut self,
@@ -69,14 +71,15 @@ impl Estimator {
         self.finger
             .update_by_readings(skin, room, touch, landed_ticks);
         let heat = pair.map_or(Watt::ZERO, |pair| {
-            (self.finger).heat_into_display(pair, estimate.previous_surface)
+            (self.finger).step_skin_heat_flow(pair, estimate.previous_surface)
         });
         self.plate.correct_by_reading(display, sink, heat);
         estimate
     }
 
-    /// Discards all estimates; they start again from the next valid readings. Called in each tick with invalid readings
-    /// or a detected fault, because then temperatures and finger may change without being measured.
+    /// Discards all estimates of plate and finger; they start again from the next valid readings. Called in each tick
+    /// whose readings are invalid or in which a fault detector finds a fault, because such a tick does not update the
+    /// estimates.
     pub fn invalidate(&mut self) {
         self.plate.invalidate();
         self.finger.invalidate();

@@ -39,9 +39,9 @@ struct FirstOrderLagParameters {
     gains_k_w: [f64; 3],
 }
 
-/// Builds one row of [`CLASS_RELAXATIONS`]: time constant, s, then the contributions in the steady state, K/W, per watt
-/// of pumped heat, of Joule heat and of heat from the finger.
-const fn relaxation_parameters(
+/// Builds one row of [`CLASS_RELAXATIONS`]: time constant, s, then the contributions to the surface temperature in the
+/// steady state, K/W, per watt of pumped heat, of Joule heat and of heat from the finger.
+const fn class_relaxation_row(
     time_constant_s: f64,
     pumped: f64,
     joule: f64,
@@ -60,11 +60,11 @@ const RELAXATION_COUNT: usize = 5;
 /// the finger relative to the rest of the plate, the legs, the hot plate, and the temperature difference across the
 /// thickness of the ceramic. Without heat flow the first decays to the sink's temperature, the others to zero.
 const CLASS_RELAXATIONS: [FirstOrderLagParameters; RELAXATION_COUNT] = [
-    relaxation_parameters(10.241_19, 3.540_82, 1.813_82, 3.555_85),
-    relaxation_parameters(2.361_25, 0.0, 0.0, 3.203_31),
-    relaxation_parameters(0.186_38, 0.002_51, -0.029_89, 0.018_41),
-    relaxation_parameters(0.010_79, -0.007_31, -0.000_99, 0.047_71),
-    relaxation_parameters(0.003_73, 0.001_38, -0.000_03, 0.002_40),
+    class_relaxation_row(10.241_19, 3.540_82, 1.813_82, 3.555_85),
+    class_relaxation_row(2.361_25, 0.0, 0.0, 3.203_31),
+    class_relaxation_row(0.186_38, 0.002_51, -0.029_89, 0.018_41),
+    class_relaxation_row(0.010_79, -0.007_31, -0.000_99, 0.047_71),
+    class_relaxation_row(0.003_73, 0.001_38, -0.000_03, 0.002_40),
 ];
 /// Immediate rise of the class module's surface temperature, K, per watt of heat from the finger: the sum of all
 /// responses that are faster than a tick of 1 ms.
@@ -78,11 +78,11 @@ const LEG_HEATING_TIME_CONSTANT_S: f64 = 0.186;
 const HOT_SIDE_THERMAL_RESISTANCE_K_W: I4F28 = I4F28::lit("0.0285");
 const ZERO_C_IN_K: Celsius = Celsius::lit("273.15");
 
-/// Exponent that gives the ratio of the tile's response to the finger's heat from the ratio of its gain (K/s/A), each
-/// relative to the class tile: finger ratio = gain ratio ^ 0.4. A gain may differ by the heat pumped per ampere or by
-/// the heat capacity of the plate; only the capacity affects the response to the finger's heat, and is assumed to cause
-/// 0.4 of the gain's difference on a logarithmic scale.
-const FINGER_RATIO_AS_POWER_OF_GAIN_RATIO: f64 = 0.4;
+/// Exponent, 0.4, in the response of a tile to the finger's heat: relative to the class tile, this response is the
+/// tile's gain (cooling rate per ampere, K/s/A) to the power of 0.4. The gain may differ from that of the class tile by
+/// the heat that the module pumps per ampere, or by the heat capacity of the plate. Only the heat capacity changes the
+/// response to the finger's heat; it is assumed to cause 0.4 of the difference, on a logarithmic scale.
+const GAIN_RATIO_TO_FINGER_RATIO_EXPONENT: f64 = 0.4;
 /// Largest ratio of an identified parameter of a tile (gain, Joule heat, leak) to that of the class tile; the smallest
 /// is its reciprocal, 1/2. The limits keep the fixed-point gains in range, whatever values the identification has
 /// found.
@@ -106,8 +106,10 @@ const CONTROL_HORIZON_TICKS: f64 = 12.0;
 // its target.
 const _: () = assert!(CONTROL_HORIZON_TICKS <= MATCH_HORIZON_TICKS as f64);
 
-/// Temperature change per watt of each of the model's three heat inputs, K/W. It holds for one duration of the heat:
-/// one tick, the control horizon, or the steady state.
+/// Change, K/W, of the display's surface temperature, or of one relaxation's contribution to it, per watt of each heat
+/// input: heat pumped out of the plate by the Peltier effect, Joule heat in the legs, heat from the finger. Each value
+/// of this type is for heat that acts constantly for one time: one tick of 1 ms, the control horizon of 12 ms, or until
+/// the steady state. [`Self::temperature_change`] subtracts the pumped heat, because it leaves the plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct HeatInputGains<Gain> {
     pumped: Gain,
@@ -124,7 +126,9 @@ impl<Frac: LeEqU32> HeatInputGains<FixedI32<Frac>> {
         }
     }
 
-    /// Temperature change, K, by the three heat inputs together. Pumped heat leaves the plate, so it is subtracted.
+    /// Change, K, of the display's surface temperature, or of one relaxation's contribution to it, by the three heat
+    /// inputs of the plate together: pumped heat, Joule heat, and heat from the finger. Pumped heat leaves the plate,
+    /// so it is subtracted.
     fn temperature_change(&self, inputs: &PlateInputs) -> FixedI64<<U24 as Add<Frac>>::Output>
     where
         U24: Add<Frac, Output: LeEqU64>,
@@ -157,14 +161,15 @@ impl TileToClassRatios {
         Self {
             pumped: gain,
             joule: ratio(gain * tile.joule_per_a, Tile::NOMINAL.joule_per_a),
-            finger: libm::pow(gain, FINGER_RATIO_AS_POWER_OF_GAIN_RATIO),
+            finger: libm::pow(gain, GAIN_RATIO_TO_FINGER_RATIO_EXPONENT),
             leak: ratio(tile.leak_1_s, Tile::NOMINAL.leak_1_s),
         }
     }
 
-    /// Scales a relaxation of the class tile to the identified tile. With `slowest`, which marks the relaxation towards
-    /// the sink, a faster leak divides time constant and steady-state gains by the same ratio, so the initial rate of
-    /// change per watt does not depend on the leak.
+    /// Scales a relaxation of the class tile to the identified tile: multiplies its steady-state gains by the ratios
+    /// for pumped heat, Joule heat and the finger's heat. `slowest` marks the relaxation towards the sink; its time
+    /// constant and its gains are also divided by the ratio of the leak. The initial rate of change per watt then does
+    /// not depend on the leak.
     fn scale_relaxation(
         &self,
         slowest: bool,
@@ -189,15 +194,17 @@ struct FixedPointRelaxation {
     /// Present contribution of this relaxation to the surface temperature, K; for the slowest relaxation a temperature
     /// in °C, because it contains the sink's temperature.
     state: I12F52,
-    /// Change of this relaxation's state within one tick of 1 ms, per watt of each heat input, K/W.
+    /// Change of this relaxation's state within one tick of 1 ms, K/W, per watt of pumped heat (whose effect is
+    /// subtracted), of Joule heat, and of heat from the finger.
     tick_gains: HeatInputGains<I4F28>,
-    /// Contribution of this relaxation to the surface temperature in the steady state, per watt of each heat input,
-    /// K/W. Used only to start the model.
+    /// Contribution of this relaxation to the surface temperature in the steady state, K/W, per watt of pumped heat
+    /// (whose effect is subtracted), of Joule heat, and of heat from the finger. Used only to start the model.
     steady_state_gains: HeatInputGains<I4F28>,
     /// Fraction of the state that decays in one tick of 1 ms; in the slowest relaxation the same fraction of the sink's
     /// temperature is added.
     tick_decay: I0F32,
-    /// Fraction of the state that decays within [`CONTROL_HORIZON_TICKS`].
+    /// Fraction of the state that decays within [`CONTROL_HORIZON_TICKS`] (12 ms); in the slowest relaxation the same
+    /// fraction of the sink's temperature is added.
     horizon_decay: I2F30,
 }
 
@@ -218,8 +225,8 @@ fn temperature_to_state(temperature: ModelTemperature) -> I12F52 {
     I12F52::from_bits(i64::from(temperature.to_bits()) << STATE_TO_TEMPERATURE_SHIFT)
 }
 
-/// Heat flows that act on the plate in one tick, and the temperature of the heat sink. [`PlateModel::inputs_of_tick`]
-/// limits each of them, to keep the model from overflowing.
+/// Heat flows that act on the plate in one tick, W, and the temperature of the heat sink, °C.
+/// [`PlateModel::inputs_of_tick`] limits each of them, to keep the model from overflowing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlateInputs {
     /// Heat that the Peltier effect pumps out of the plate, W; negative while it heats.
@@ -249,7 +256,7 @@ impl<Frac: LeEqU32> LinearInLegTemperature<FixedI32<Frac>> {
         }
     }
 
-    /// Value of the property for legs whose mean temperature is 27 °C plus `above_data_sheet`, K.
+    /// Resistance or Seebeck coefficient of legs whose mean temperature is 27 °C plus `above_data_sheet`, K.
     fn at(&self, above_data_sheet: Celsius) -> FixedI32<Frac> {
         self.value
             .saturating_add(product(above_data_sheet, self.rise_per_k))
@@ -270,8 +277,8 @@ pub struct LegTemperatures {
 }
 
 impl LegTemperatures {
-    /// Temperatures of legs without heat by a current: the ends at the temperatures of display and sink, °C, and the
-    /// mean temperature half way between.
+    /// Temperatures of legs without current: the ends at the temperatures of display and sink, °C, and the mean half
+    /// way between.
     #[must_use]
     pub fn between_display_and_sink(display: Celsius, sink: Celsius) -> Self {
         Self {
@@ -287,15 +294,16 @@ impl LegTemperatures {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlateModel {
     relaxations: [FixedPointRelaxation; RELAXATION_COUNT],
-    /// Change of the surface temperature, K/W, after [`CONTROL_HORIZON_TICKS`], per watt of each heat input that acts
-    /// during all of this time. Sum over all relaxations, without the finger's immediate effect (feed-through).
+    /// Change of the surface temperature after [`CONTROL_HORIZON_TICKS`] (12 ms), K/W, per watt of pumped heat
+    /// (whose effect is subtracted), of Joule heat, and of heat from the finger, each acting during all of this time.
+    /// Sum over all relaxations, without the finger's immediate effect (feed-through).
     horizon_gains: HeatInputGains<I6F26>,
     /// Immediate rise of this tile's surface temperature, K, per watt of heat from the finger, within one tick.
     finger_feedthrough: I4F28,
     /// Rise of the legs' mean temperature above the mean of their two ends, K: proportional to the Joule heat, with a
     /// first-order lag of [`LEG_HEATING_TIME_CONSTANT_S`].
     leg_heating: LowPass,
-    /// Temperature of the leg ends at the sink, °C.
+    /// Temperature of the leg ends at the sink, °C, after the last step of the model.
     hot: Celsius,
     surface: Celsius,
     /// Seebeck coefficient of the whole module, V/K, as a function of the legs' mean temperature.
@@ -414,13 +422,14 @@ impl PlateModel {
         self.surface = self.surface.saturating_add(by);
     }
 
-    /// Temperature of the display's surface in the patch under the finger, °C, at the end of the last tick.
+    /// Modelled temperature of the display's surface in the patch under the finger, °C, after the last step of the
+    /// model; without the disturbance that the observer adds.
     #[must_use]
     pub const fn surface(&self) -> Celsius {
         self.surface
     }
 
-    /// Temperatures of the legs' two ends and their mean, °C, at the end of the last tick.
+    /// Modelled temperatures of the legs' two ends and their mean, °C, after the last step of the model.
     #[must_use]
     pub fn leg_temperatures(&self) -> LegTemperatures {
         let LegTemperatures { cold, hot, mean } =
@@ -433,8 +442,9 @@ impl PlateModel {
     }
 
     /// Inputs of the model in a tick with this current, A (positive cools), heat flow from the finger, W, and
-    /// temperature of the sink, °C; each is limited. The pumped heat is computed with the Seebeck coefficient at the
-    /// mean temperature of the legs, which takes account of the Thomson heat.
+    /// temperature of the sink, °C. Pumped and Joule heat are limited to ±64 W, the finger's heat to ±8 W, and the sink
+    /// to ±100 °C. The pumped heat is computed with the Seebeck coefficient at the mean temperature of the legs, which
+    /// takes account of the Thomson heat.
     #[must_use]
     #[inline(always)]
     pub fn inputs_of_tick(&self, current: Current, finger: Watt, sink: Celsius) -> PlateInputs {
@@ -461,9 +471,9 @@ impl PlateModel {
         }
     }
 
-    /// Additional current, A (positive cools), with which the surface reaches `target`, °C, after the control horizon
-    /// of 12 ms; it is to be added to the current from which `inputs` were computed. Assumes that the finger's heat
-    /// flow and the sink's temperature stay as in `inputs`, and neglects the change of the Joule heat.
+    /// Additional current, A (positive cools), with which the modelled surface reaches `target`, °C, after the control
+    /// horizon of 12 ms; it is to be added to the current from which `inputs` were computed. Assumes that the finger's
+    /// heat flow and the sink's temperature stay as in `inputs`, and neglects the change of the Joule heat.
     #[must_use]
     pub fn additional_current_to_target(&self, target: Celsius, inputs: &PlateInputs) -> Current {
         const FIXED_POINT_ONE: I4F28 = I4F28::ONE;

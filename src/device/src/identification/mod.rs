@@ -39,7 +39,7 @@ use thermal_settings::Gains;
 /// direction.
 const CERTAIN_DIRECTION_CURRENT_MIN: Current = Current::lit("0.25");
 /// Magnitude of the demanded current, A, above which demanded and measured current enter the sums from which their
-/// ratio is fitted. At a smaller current the bridge may lose only a part of the voltage that its dead times take, so
+/// ratio is fitted. At a smaller current the voltage that the bridge's dead times take may depend on the current, so
 /// the measured current is not linear in the demanded one.
 const CURRENT_COMPARISON_MIN: Current = Current::lit("1");
 
@@ -89,8 +89,9 @@ const SETTLING_GAINS: Gains = Gains {
 /// display by 3 K/s; a faster display would let thermistors of different lags differ so much that the fault detectors
 /// could trip.
 const SETTLING_CURRENT_LIMIT: Current = Current::ONE;
-/// Deviation of the display's reading from the operating point, K, below which the display counts as settled if this
-/// lasts for [`SETTLED_TICKS_MIN`]. It is far below the 2.3 K by which the pulses move the display.
+/// Deviation of the display's reading from the operating point, K. If the deviation stays below this for
+/// [`SETTLED_TICKS_MIN`], the display counts as settled and the baseline is measured. It is far below the 2.3 K by
+/// which the pulses then move the display.
 const SETTLED_DEVIATION_MAX: Celsius = Celsius::lit("0.06");
 /// Ticks of 1 ms in a row (1.5 s) for which the display's reading must be within [`SETTLED_DEVIATION_MAX`] of the
 /// operating point before the baseline is measured.
@@ -124,8 +125,8 @@ pub enum AbortReason {
     TooFar,
     /// The heat sink is hotter than 41.5 °C, half a kelvin below the temperature at which the station trips.
     SinkHot,
-    /// While the identification was running, another command of the host changed the station's state or calibration, or
-    /// a fault tripped the station.
+    /// While the identification was running, the host sent `start` or `abort`, or changed the calibration, the gains or
+    /// the tile's parameters, or a fault tripped the station.
     Interrupted,
 }
 
@@ -143,8 +144,8 @@ impl AbortReason {
     }
 }
 
-/// Phase of an identification. The first four follow each other in this order; an identification that ends early
-/// changes from one of the first three to the last.
+/// Phase of an identification. `Settling`, `Baseline`, `Pulses` and `Done` follow each other in this order. An
+/// identification that ends early changes from `Settling`, `Baseline` or `Pulses` to `Aborted`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum IdentificationPhase {
     /// The PI loop brings the display to the operating point, for `ticks` ticks of 1 ms so far. In the last `near` of
@@ -173,7 +174,8 @@ pub struct Identification {
     phase: IdentificationPhase,
     /// Temperature around which the pulses move the display, 22 to 35 °C.
     operating_point: Setpoint,
-    /// PI loop whose current holds the display at the operating point before and after the pulses.
+    /// PI loop whose current holds the display at the operating point: while the display settles, in the first half of
+    /// the baseline, and after the pulses.
     pi: Pi,
     /// Total of the currents demanded in the first half of the baseline, in 2^-24 A; positive cools. Divided by
     /// [`HALF_BASELINE_TICKS`], it is the baseline current.
@@ -184,8 +186,8 @@ pub struct Identification {
     /// Until the baseline ends: total of the measured currents in its second half, in 2^-24 A, with the sign of the
     /// demanded current (positive cools). During the pulses: the mean of these currents.
     baseline_measured: i64,
-    /// Current demanded in the previous tick, A (positive cools). The current that is measured in the present tick is
-    /// the response to it.
+    /// Current demanded in the previous tick, A (positive cools), to which the current measured in the present tick
+    /// responds. Kept up to date only in the second half of the baseline and during the pulses; zero before.
     previous_demand: Current,
 }
 
@@ -237,9 +239,12 @@ impl Identification {
         }
     }
 
-    /// Runs one tick of the identification: returns the current to demand in this tick, A (positive cools), and during
-    /// the pulses adds the tick to `equations`, which must be empty at the start. `None` once the identification has
-    /// ended early; only the tick in which the time to settle runs out still returns a current.
+    /// Runs one tick of the identification, and returns the current to demand in this tick, A (positive cools). During
+    /// the pulses the tick is added to `equations`, which must be empty when the identification begins. `touching` is
+    /// true while a finger touches the display, which ends the identification early.
+    ///
+    /// `None` in the tick that ends the identification early and in all later ticks; but in the tick that ends it with
+    /// [`AbortReason::NotSettled`], still the current of the PI loop.
     pub fn step(
         &mut self,
         equations: &mut NormalEquations,

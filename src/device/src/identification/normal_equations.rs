@@ -15,9 +15,9 @@ pub const NORMAL_EQUATION_COLUMNS: usize = UNKNOWN_COUNT + 1;
 /// [statistics](StatisticIndex).
 pub const NORMAL_EQUATION_ROWS: usize = UNKNOWN_COUNT + 1;
 
-/// One row of the normal equations of one unknown: sums, over all equations, of the product of the unknown's regressor
-/// with each regressor and with the regressand, in units of 2^-44 (22 fractional bits of each factor). The last row
-/// contains the [statistics](StatisticIndex) instead.
+/// One row of sums. A row for one unknown of the fit contains the products of its regressor with each regressor and
+/// with the regressand, added up over all equations, in units of 2^-44 (22 fractional bits of each factor). The last
+/// row contains the [statistics](StatisticIndex) instead.
 pub type NormalEquationRow = [i64; NORMAL_EQUATION_COLUMNS];
 
 /// Coefficient, in 2^-15 per tick of 1 ms, of the low-pass filter that models how late the module's legs take up heat.
@@ -39,23 +39,23 @@ const FILTER_FRACTION_BITS: u32 = 15;
 /// regressors and its regressand to the normal equations; the pulses give 1010 equations.
 const EQUATION_INTERVAL_TICKS: u32 = 8;
 /// Unit of time of the integrals in the equations, as a power of two of ticks of 1 ms: 2^11 ticks, 2.048 s. In this
-/// unit the regressors stay within ±16 (in K, or in A), the limit that keeps the sums within 64 bits.
+/// unit the regressors of the pulses stay within ±16 (in K, A or A²), the limit that keeps the sums within 64 bits.
 pub const TIME_UNIT_TICKS_LOG2: u32 = 11;
-/// Fractional bits of the regressors and of the regressand: the 22 of a temperature in K.
+/// Fractional bits of the regressors and of the regressand: 22, as many as a temperature in K has.
 const REGRESSOR_FRACTION_BITS: u32 = 22;
-/// Fractional bits of a [`Current`] in A.
+/// Fractional bits of a [`Current`] in A: its unit is 2^-24 A.
 const CURRENT_FRACTION_BITS: u32 = 24;
-/// Largest magnitude of a regressor or of the regressand, in 2^-22: 16 (in K or A, with time in units of 2.048 s), to
-/// which larger values are clamped. Currents within their limits do not reach it. The product of two values is below
-/// 2^52, so the sums over all 1010 equations stay below 2^62.
+/// Largest magnitude of a regressor or of the regressand, in 2^-22: 16 (in K, A or A², with time in units of 2.048 s),
+/// to which larger values are clamped. Of the regressors of the pulses' current, the twice integrated squared current
+/// is the largest, 11. The product of two values is below 2^52, so the sums over all 1010 equations stay below 2^62.
 const REGRESSOR_MAX: i64 = (1 << (REGRESSOR_FRACTION_BITS + 4)) - 1;
 const _: () = assert!(EXCITATION_TICKS / EQUATION_INTERVAL_TICKS <= 1 << 10);
 
 /// Index of a sum in the last row of the [normal equations](NormalEquationRow), which contains sums other than products
 /// of regressors. Its currents are magnitudes.
 pub enum StatisticIndex {
-    /// Sum of the squared regressand (the first integral of the change of the display's reading) over all equations, in
-    /// 2^-44. The residual of the fit is computed from it.
+    /// Sum of the squared regressand over all equations, in 2^-44 (K times 2.048 s)². The regressand is the first
+    /// integral of the change of the display's reading. The residual of the fit is computed from this sum.
     SquaredRegressand = 0,
     /// Number of compared ticks: those whose demanded current was above 1 A in magnitude, so that demanded and measured
     /// current were compared.
@@ -96,26 +96,28 @@ impl TickIntegrals {
 pub struct NormalEquations {
     /// Ticks of 1 ms since the pulses began.
     ticks: u32,
-    /// Integrals of the display's reading minus its baseline, in 2^-22 K.
+    /// First and second integral, over ticks of 1 ms, of the display's reading minus its baseline (each reading in
+    /// 2^-22 K).
     reading: TickIntegrals,
-    /// Integrals of the measured current minus its baseline, in 2^-24 A (positive cools), less the part of it whose
-    /// heat the module's legs take up with a delay.
+    /// First and second integral, over ticks of 1 ms, of the current's change: the measured current minus its baseline,
+    /// in 2^-24 A (positive cools), less [`LEGS_HEAT_FRACTION`] of `filtered_current`, which changes the temperature of
+    /// the module's legs instead of the plate's.
     current: TickIntegrals,
-    /// Integrals of the current's direction (1 cools, -1 heats, 0 uncertain) minus its baseline, in 2^-24, less the
-    /// part of it that acts on the module's legs with a delay. The fit finds from them the zero error of the current
-    /// mirror.
+    /// First and second integral, over ticks of 1 ms, of the change of the current's direction: the direction (1 cools,
+    /// -1 heats, 0 uncertain) minus its baseline, in 2^-24, less [`LEGS_HEAT_FRACTION`] of `filtered_direction`. The
+    /// fit finds from the second integral the zero error of the current mirror.
     direction: TickIntegrals,
-    /// Integrals of the squared measured current minus the squared baseline current, in 2^-24 A², behind the low-pass
-    /// filter that delays Joule's heat.
+    /// First and second integral, over ticks of 1 ms, of `filtered_squared_current`: the squared measured current minus
+    /// the squared baseline current, in 2^-24 A², delayed as Joule's heat is on its way to the plate.
     squared_current: TickIntegrals,
-    /// State of the low-pass filter of the legs' heat, in 2^-24 A; its input is the measured current minus its
-    /// baseline.
+    /// Output of the low-pass filter that models how late the module's legs take up heat, in 2^-24 A; its input is the
+    /// measured current minus its baseline.
     filtered_current: i64,
-    /// State of the low-pass filter of the legs' heat, in 2^-24; its input is the current's direction (1, 0 or -1)
-    /// minus its baseline.
+    /// Output of the low-pass filter that models how late the module's legs take up heat, in 2^-24; its input is the
+    /// current's direction (1, 0 or -1) minus the direction of the baseline current.
     filtered_direction: i64,
-    /// State of the low-pass filter of Joule's heat, in 2^-24 A²; its input is the squared measured current minus the
-    /// squared baseline current.
+    /// Output of the low-pass filter that models how late Joule's heat reaches the plate, in 2^-24 A²; its input is the
+    /// squared measured current minus the square of its baseline.
     filtered_squared_current: i64,
     /// One row of sums for each of the eight unknowns, then the row of [statistics](StatisticIndex).
     rows: [NormalEquationRow; NORMAL_EQUATION_ROWS],
@@ -214,8 +216,8 @@ impl NormalEquations {
     }
 }
 
-/// Runs one tick of a first-order low-pass filter: moves its output `state` towards `input` by the fraction
-/// `coefficient`, in 2^-15, of their difference, and returns the new output.
+/// Runs one tick of a first-order low-pass filter: moves `state`, the output of the filter, towards `input` by the
+/// fraction `coefficient` (in 2^-15) of their difference, and returns the new output.
 const fn step_low_pass(state: &mut i64, input: i64, coefficient: i64) -> i64 {
     *state += ((input - *state) * coefficient) >> FILTER_FRACTION_BITS;
     *state

@@ -18,7 +18,7 @@ const EQUIVALENT_SETPOINT_TOLERANCE: Celsius = Celsius::lit("0.0001");
 pub fn equivalent_forces(force: Force, amplitude: Celsius) -> RangeInclusive<Force> {
     // Allowed relative change of the force, in 2^-29, times the amplitude in 2^-14 K, which is rounded up. In these
     // units one division of 32 bits is enough.
-    const ALLOWED_CHANGE_TIMES_AMPLITUDE: u32 =
+    const RELATIVE_FORCE_CHANGE_TIMES_AMPLITUDE: u32 =
         (((EQUIVALENT_SETPOINT_TOLERANCE.to_bits() as u64 * 64) << (29 - AMPLITUDE_SHIFT)) / 17)
             as u32;
     const AMPLITUDE_SHIFT: u32 = 8;
@@ -26,7 +26,7 @@ pub fn equivalent_forces(force: Force, amplitude: Celsius) -> RangeInclusive<For
         .to_bits()
         .unsigned_abs()
         .div_ceil(1 << AMPLITUDE_SHIFT);
-    let allowed = ALLOWED_CHANGE_TIMES_AMPLITUDE
+    let allowed = RELATIVE_FORCE_CHANGE_TIMES_AMPLITUDE
         .checked_div(amplitude)
         .and_then(|relative| {
             u32::try_from((u64::from(force.to_bits()) * u64::from(relative)) >> 29).ok()

@@ -16,24 +16,27 @@ use crate::safety::Setpoint;
 use equivalent_forces::equivalent_forces;
 use skin_on_object::{ContactPairFactors, SkinOnObject};
 
-/// Largest error, K, of the interpolated set-point against Eq. 6-12 at the force for which the contact resistance was
-/// computed: 0.4 mK. Noise of the force adds up to 0.1 mK to this error, which gives 0.5 mK in all.
+/// Largest error, K, of the set-point by interpolation in time, compared with Eq. 6-12 for the same force: 0.4 mK. The
+/// smaller it is, the more often Eq. 6-12 must be evaluated. Noise of the force may add up to 0.1 mK before the
+/// interpolation is computed again, which gives 0.5 mK in all.
 pub const INTERPOLATION_TOLERANCE: Celsius = Celsius::lit("0.0004");
-/// Largest error of the display's surface temperature, K, in the first tick of a contact. The error is counted from the
-/// range between the preset (the set-point before contact) and the temperature at which the display waits below the
-/// preset. After a larger error the law `model` does not use the closed form of Eq. 6-12 for this contact, because the
-/// closed form assumes a start at the preset.
-const PRESET_ERROR_MAX: Celsius = Celsius::lit("0.1");
-/// While a display waits for a finger, the law `model` keeps it below its preset, the set-point before contact, by
-/// 1/128 of the skin's temperature minus the preset. 7 is the power of two of this divisor.
-const WAITING_OFFSET_SHIFT: u32 = 7;
+/// Largest distance, K, of the display's surface temperature in the first tick of a contact from the range in which the
+/// display should wait: from the preset (the set-point before contact) to the waiting temperature below it. After a
+/// larger error the law `model` does not use the closed form of Eq. 6-12 for this contact, because the closed form
+/// assumes a start at the preset.
+const WAITING_RANGE_ERROR_MAX: Celsius = Celsius::lit("0.1");
+/// Divisor of the waiting offset as a power of two: 2^7 = 128. While a display waits for a finger, the law `model`
+/// keeps it below its preset, the set-point before contact, by the difference of skin temperature and preset divided by
+/// 128.
+const WAITING_OFFSET_DIVISOR_LOG2: u32 = 7;
 
 /// Contact model that gives the set-point while an object is presented; chosen by the host's command `mode`. The
 /// equations are those of Ho's thesis (MIT 2006).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ContactModel {
     /// Command `mode contact`: Eq. 6-12, two semi-infinite bodies with a thermal contact resistance between skin and
-    /// object. The set-point is the preset before contact, and changes during contact.
+    /// object. The set-point before contact, the preset, is Eq. 6-12 at `t = 0`; during contact the set-point changes
+    /// with time and force.
     #[default]
     ContactResistance,
     /// Command `mode semi-infinite`: Eq. 3-1, two semi-infinite bodies in perfect contact. The set-point is their
@@ -59,16 +62,17 @@ pub struct Scene<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
     /// Set-point, 15 to 42 °C. The laws `pi` and `pi-10hz` control the display's reading to it, the fault detectors
-    /// check the reading against it, and the host gets it in status and telemetry. In a contact that the closed form of
-    /// Eq. 6-12 does not describe, the law `model` makes it equal to the target.
+    /// check the reading against it, and the host gets it in status and telemetry. With the law `model`, in a contact
+    /// for which the closed form of Eq. 6-12 is not valid, it contains the correction of the target, so both are equal.
     pub setpoint: Setpoint,
     /// Whether the set-point had to be limited, because the computed one was outside the safe range of 15 to 42 °C;
     /// reported to the host. A limited target does not count.
     pub limited: bool,
-    /// Target of the law `model`, 15 to 42 °C. During contact it is the temperature by Eq. 6-12 plus a correction,
-    /// which brings a skin that is too warm or too cold to the temperature that it would have on the object. While the
-    /// display waits for a finger, it is the set-point minus 1/128 of the difference of skin and set-point. Otherwise
-    /// it equals the set-point.
+    /// Target, 15 to 42 °C, to which the law `model` controls. It differs from the set-point only with this law and the
+    /// contact model with contact resistance. During contact it is the temperature by Eq. 6-12 plus a correction, which
+    /// brings a skin that is too warm or too cold to the temperature that it would have on the object. While the
+    /// display waits for a finger, it is below the set-point by 1/128 of the difference from the set-point to the
+    /// skin's temperature.
     pub target: Setpoint,
 }
 
@@ -86,8 +90,9 @@ impl Reference {
         }
     }
 
-    /// A reference whose set-point and target are the same temperature, °C, limited to 15 to 42 °C. Used for a display
-    /// that presents no object, for the semi-infinite model, and for the laws `pi` and `pi-10hz` before contact.
+    /// A reference whose set-point and target are the same temperature, °C, limited to 15 to 42 °C. Used while no
+    /// object is presented, for the semi-infinite contact model, and, with the laws `pi` and `pi-10hz`, while no finger
+    /// touches.
     #[must_use]
     pub fn at(setpoint: Celsius) -> Self {
         Self::new(setpoint, setpoint)
@@ -95,30 +100,34 @@ impl Reference {
 }
 
 /// One contact of a finger with the presented object: its time, and the interpolation of its set-points. It begins when
-/// the finger lands, or when an object is presented or exchanged while a finger rests on the display.
+/// the finger lands. While a finger rests on the display, a new one begins at `start`, and when the host chooses a
+/// material, object temperature or contact model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct ContactSetpoints {
-    /// Ticks of 1 ms since this contact with the object began: the time of Eq. 6-12.
+    /// Time `t` of Eq. 6-12, ticks of 1 ms: since the finger landed or, if this contact began under a finger that had
+    /// landed before, since this contact began.
     elapsed: u64,
-    /// Forces, N, for which the set-points of the present interpolation are right within 0.1 mK. While the mean force
-    /// stays in this range, noise of the force causes no new interpolation.
+    /// Forces, N, for which the set-point by Eq. 6-12 differs by at most 0.1 mK from that of the present interpolation.
+    /// While the mean force stays in this range, noise of the force causes no new interpolation.
     equivalent_forces: RangeInclusive<Force>,
-    /// Interpolation of the closed form of Eq. 6-12. `None` until the first one is computed, while the closed form does
-    /// not describe the contact, and, with the law `model`, from a new force until its interpolation is computed.
-    /// Without an interpolation the set-point follows from the simulated skin on the object.
+    /// Interpolation of the closed form of Eq. 6-12. `None` until the first one is computed. With the law `model` it is
+    /// also `None` while the closed form is not valid for the contact, and from a jump of the force until the
+    /// interpolation for the new force is computed. Without an interpolation the set-point follows from the simulated
+    /// skin on the object.
     interpolation: Option<ChordInterpolation>,
     /// Whether the interpolation must be computed for the present mean force. With the law `model` the contact
     /// conductances are computed in one tick and the interpolation in the next, so that no tick takes the time of both;
     /// the other laws compute both in one tick.
     interpolation_due: bool,
-    /// Whether an earlier tick has computed the contact conductances for the interpolation that is due. The law `model`
-    /// computes the interpolation only then.
+    /// Whether an earlier tick has computed the contact conductances for the interpolation that is due. With the law
+    /// `model` the interpolation is computed only in a tick in which this is true; the other laws do not use it.
     conductances_ready: bool,
 }
 
 impl ContactSetpoints {
-    /// A contact with the object in its first tick. Its time counts from the landing if the finger's force is new in
-    /// this tick, as it is at landing; else from this tick, as when the object is exchanged under a resting finger.
+    /// A contact with the object in its first tick. If the finger has just landed, so that its force is new in this
+    /// tick, the contact's time is that since landing. Otherwise, as when the object is exchanged under a resting
+    /// finger, the time is 0 in this tick.
     fn begin_contact(finger: &FingerContact) -> Self {
         let has_just_landed = finger.force_change() == ForceChange::New;
         Self {
@@ -134,10 +143,11 @@ impl ContactSetpoints {
         }
     }
 
-    /// Decides whether the interpolation of Eq. 6-12 must be computed: if there is none, after a new or drifting force,
-    /// or when the mean force has left `equivalent_forces`. If so, the mean force becomes the one for set-points, and
-    /// the contact conductances are computed for it. `closed_form` is whether the closed form of Eq. 6-12 describes the
-    /// contact; if not, there is no interpolation. With `follow_skin` (law `model`) the interpolation itself is left to
+    /// Decides whether the interpolation of Eq. 6-12 must be computed: if there is none yet, after a jump or drift of
+    /// the force, or if the mean force has left `equivalent_forces`, which is checked each time the number of averaged
+    /// ticks has doubled. If so, the mean force becomes the one for set-points, and the contact conductances are
+    /// computed for it. `closed_form` is whether the set-point is to be computed by the closed form of Eq. 6-12; if
+    /// not, the interpolation is discarded. With `follow_skin` (law `model`) the interpolation itself is computed in
     /// the next tick.
     fn schedule_interpolation(
         &mut self,
@@ -165,10 +175,10 @@ impl ContactSetpoints {
         }
     }
 
-    /// The set-point of this tick, °C, by the interpolation of Eq. 6-12, which is computed first if it is due. `skin`
-    /// and `object` are the temperatures before contact, °C; `follow_skin` is true for the law `model`. Adds the number
-    /// of evaluations of `erfcx`, the costly function in Eq. 6-12, to `evaluations`. Returns `None` if there is no
-    /// interpolation.
+    /// The set-point of this tick, °C, by the interpolation of Eq. 6-12. Computes the interpolation first if it is due;
+    /// with `follow_skin` (law `model`) only if an earlier tick has computed the conductances. `skin` and `object` are
+    /// the temperatures before contact, °C. Adds the number of evaluations of `erfcx`, the costly function in Eq. 6-12,
+    /// to `evaluations`. Returns `None` if there is no interpolation.
     fn interpolated_setpoint(
         &mut self,
         finger: &FingerContact,
@@ -214,28 +224,30 @@ pub struct ReferenceGenerator {
     skin_on_object: SkinOnObject,
     /// Constants of Eq. 6-12 for the object that was presented last; computed again when another one is presented.
     factors: ContactPairFactors,
-    /// The present contact with the object. `None` while no finger touches, in the semi-infinite model, and, after a
-    /// change of the object or invalid readings, until the next tick.
+    /// The present contact with the object. `None` while an object is presented and no finger touches, in the
+    /// semi-infinite model, and from [`Self::restart_contact`] or [`Self::discard_contact`] until the next reference is
+    /// generated. Without an object it has no meaning.
     contact: Option<ContactSetpoints>,
     /// Number of evaluations of `erfcx`, the costly function in Eq. 6-12, since start-up; wraps at 2^32. For the
     /// telemetry.
     evaluations: u32,
 }
 
-/// How far below its preset (the set-point before contact) a display waits for a finger with the law `model`, K: 1/128
-/// of the skin's temperature minus the preset. Negative, so that the display waits above its preset, if the skin is
-/// colder than the preset.
+/// How far below its preset (the set-point before contact) a display waits for a finger with the law `model`, K: the
+/// skin's temperature minus the preset, divided by 128. Negative, so that the display waits above its preset, if the
+/// skin is colder than the preset.
 ///
 /// In the first 10 ms of a contact the finger brings heat that the bridge needs 50 ms to remove. The offset removes
 /// half of this heat before the contact, which halves the error of the skin's temperature. For every material this heat
 /// is proportional to the difference between skin and display.
 fn waiting_offset_below_preset(skin: Celsius, preset: Celsius) -> Celsius {
-    skin.saturating_sub(preset) >> WAITING_OFFSET_SHIFT
+    skin.saturating_sub(preset) >> WAITING_OFFSET_DIVISOR_LOG2
 }
 
 impl ReferenceGenerator {
-    /// Discards the contact with the object and the simulation of the skin; only the number of evaluations is kept.
-    /// Called in a tick with invalid readings, because the finger may have landed or lifted unnoticed in it.
+    /// Discards the contact with the object and the simulation of the skin; only the number of evaluations of `erfcx`
+    /// is kept. Called in a tick with invalid readings or a detected fault, because the finger may have landed or
+    /// lifted unnoticed in it.
     pub fn discard_contact(&mut self) {
         *self = Self {
             evaluations: self.evaluations,
@@ -243,8 +255,8 @@ impl ReferenceGenerator {
         };
     }
 
-    /// Number of evaluations of `erfcx` since start-up, for the telemetry; wraps at 2^32. This scaled complementary
-    /// error function is the costly part of Eq. 6-12.
+    /// Number of evaluations since start-up of `erfcx`, the scaled complementary error function, which is the costly
+    /// part of Eq. 6-12. For the telemetry; wraps at 2^32.
     #[must_use]
     pub const fn erfcx_evaluations(&self) -> u32 {
         self.evaluations
@@ -260,20 +272,25 @@ impl ReferenceGenerator {
         finger.forget_conductances();
     }
 
-    /// Set-point and target of this tick; `None` before skin and room temperature have been read.
+    /// Set-point and target of this tick. `None` if the finger's estimator has no temperatures of skin and room, that
+    /// is before its first tick with valid readings and after [`FingerEstimator::invalidate`].
     ///
-    /// In the semi-infinite mode both are the constant temperature of Eq. 3-1. Otherwise the set-point follows Eq.
-    /// 6-12; while no finger touches, it is the preset, Eq. 6-12 at landing:
+    /// In the semi-infinite mode both are the constant temperature of Eq. 3-1. In the mode with contact resistance both
+    /// follow Eq. 6-12:
     ///
-    /// - Without `follow_skin` (laws `pi` and `pi-10hz`) the set-point is always computed in closed form, as for a
-    ///   first contact under a constant force. The target equals the set-point.
-    /// - With `follow_skin` (law `model`) it is computed in closed form only while that describes the contact, else
-    ///   from the simulated skin on the object. The target adds a correction, by which the skin on the display follows
-    ///   the simulated skin; before contact it lies below the preset by the waiting offset.
+    /// - Without `follow_skin` (laws `pi` and `pi-10hz`) the target equals the set-point. While no finger touches, it
+    ///   is the preset, Eq. 6-12 at landing. During contact it is computed by the closed form, as for a first contact
+    ///   under a constant force.
+    /// - With `follow_skin` (law `model`), while no finger touches, the set-point is the preset for the skin's present
+    ///   temperature, which the last contact may still have changed, and the target lies below it by the waiting
+    ///   offset. During contact the set-point is computed by the closed form while this is valid
+    ///   ([`FingerContact::closed_form_is_valid`]) and its interpolation is computed, else from the simulated skin on
+    ///   the object. The target adds a correction, by which the skin on the display follows the simulated skin; if the
+    ///   closed form is not valid, the set-point contains this correction, too.
     ///
     /// `surface` is the temperature of the display's surface, °C. It is used only in the first tick of a contact: if it
     /// is more than 0.1 K outside the range from the preset to the waiting temperature, the closed form is excluded for
-    /// this contact.
+    /// this contact with the law `model`.
     pub fn next_reference(
         &mut self,
         scene: &Scene<'_>,
@@ -319,8 +336,11 @@ impl ReferenceGenerator {
             }
             none => {
                 let preset = scene.pair.preset(skin, object);
-                if is_display_off_preset(surface, preset, waiting_offset_below_preset(skin, preset))
-                {
+                if is_display_outside_waiting_range(
+                    surface,
+                    preset,
+                    waiting_offset_below_preset(skin, preset),
+                ) {
                     finger.exclude_closed_form();
                 }
                 none.insert(ContactSetpoints::begin_contact(finger))
@@ -352,13 +372,17 @@ impl ReferenceGenerator {
     }
 }
 
-/// Whether the display's surface, °C, is more than 0.1 K outside the range between the preset, °C, and the temperature
-/// `waiting_offset`, K, below the preset. If so in the first tick of a contact, the law `model` does not use the closed
-/// form of Eq. 6-12 for this contact.
-fn is_display_off_preset(surface: Celsius, preset: Celsius, waiting_offset: Celsius) -> bool {
+/// Whether the temperature of the display's surface, °C, is more than 0.1 K outside the range from the preset, °C, to
+/// the temperature `waiting_offset`, K, below the preset. If so in the first tick of a contact, the law `model` does
+/// not use the closed form of Eq. 6-12 for this contact.
+fn is_display_outside_waiting_range(
+    surface: Celsius,
+    preset: Celsius,
+    waiting_offset: Celsius,
+) -> bool {
     let half_offset = waiting_offset >> 1u32;
     let error = surface.saturating_sub(preset).saturating_add(half_offset);
-    error.abs() > PRESET_ERROR_MAX.saturating_add(half_offset.abs())
+    error.abs() > WAITING_RANGE_ERROR_MAX.saturating_add(half_offset.abs())
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Simulation of the skin on the presented object, from the heat that would flow into the object at the measured force.
 //!
-//! The set-point of Eq. 6-12 follows from the simulated skin where the closed form of Eq. 6-12 does not hold: under a
-//! changing force, and in a contact that begins soon after another one.
+//! With the law `model`, the set-point follows from the simulated skin where the closed form of Eq. 6-12 does not hold:
+//! under a changing force, and in a contact that begins soon after another one.
 
 use contact_model::fixed_point::{
     Celsius, ContactConductance, ContactPair, Fraction, HalfSpace, Ratio, saturating_product,
@@ -51,8 +51,8 @@ impl ContactPairFactors {
 /// display, under the measured force.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SkinOnObject {
-    /// Decrease of the simulated skin's surface temperature since before contact, K; negative if the object has warmed
-    /// the skin. It decays while no finger touches.
+    /// Thermal state of the simulated skin. Its output is the decrease of the skin's surface temperature since before
+    /// contact, K; negative if the object has warmed the skin. It decays towards zero while no finger touches.
     cooling: HalfSpace,
     /// Heat flux of this tick from the simulated skin into the object, positive out of the skin. It is counted as `q
     /// sqrt(dt) / e_skin`, K, with the flux `q`, the tick `dt` and the skin's effusivity `e_skin`.
@@ -60,16 +60,16 @@ pub struct SkinOnObject {
 }
 
 impl SkinOnObject {
-    /// Starts a contact with an object at its initial temperature. The simulated skin starts with the cooling that the
-    /// display has caused in the real skin, `skin_state_on_display`.
+    /// Makes the simulated skin start a new contact with the presented object: it starts with the cooling that the
+    /// display has caused in the real skin, `skin_state_on_display`, and without heat flux.
     pub fn restart_contact(&mut self, skin_state_on_display: &HalfSpace) {
         self.cooling = skin_state_on_display.staggered();
         self.scaled_flux = Celsius::ZERO;
     }
 
-    /// Advances the simulated skin by one tick of 1 ms. `conductance` is that of the contact of skin and object; `None`
-    /// while no finger touches, and then no heat flows and the skin returns to its temperature before contact.
-    /// `skin_above_object` is the skin's minus the object's temperature before contact, K.
+    /// Advances the simulated skin by one tick of 1 ms. `conductance` is that of the contact of skin and object. It is
+    /// `None` while no finger touches; then no heat flows, and the cooling of the skin decays towards zero.
+    /// `skin_above_object` is the skin's temperature minus the object's, both before contact, K.
     pub fn step(
         &mut self,
         conductance: Option<&ContactConductance>,
@@ -84,9 +84,10 @@ impl SkinOnObject {
     }
 
     /// The set-point by Eq. 6-12, °C: the temperature of the simulated skin's surface, less the temperature drop that
-    /// the simulated heat flow would cause across the display's contact. While no finger touches, `skin_state_on_display`
-    /// must be given, and the real skin's temperature takes the place of the simulated one, because the real skin is
-    /// the one that lands next; `None` during contact. `skin_above_object` is as for [`Self::step`].
+    /// the simulated heat flow would cause across the display's contact. `skin_above_object` is the skin's temperature
+    /// minus the object's, both before contact, K. `skin_state_on_display` is `None` during contact. While no finger
+    /// touches, it is the state of the real skin, whose surface temperature is then used in place of the simulated one,
+    /// because the real skin is the one that lands next.
     #[must_use]
     pub fn setpoint(
         &self,
@@ -114,9 +115,10 @@ impl SkinOnObject {
         )
     }
 
-    /// Correction to be added to the set-point, K, so that the real skin on the display reaches within 20 ticks of 1 ms
-    /// the temperature of the simulated skin on the object; negative if the display must cool the real skin more.
-    /// `display` is the conductance of the contact of skin and display.
+    /// Correction to be added to the set-point, K, so that in 20 ticks of 1 ms the real skin on the display has the
+    /// temperature of the simulated skin on the object, if the correction stays; negative if the display must cool the
+    /// real skin more. It is computed again in each tick of a contact. `display` is the conductance of the contact of
+    /// skin and display.
     #[must_use]
     pub fn setpoint_correction(
         &self,

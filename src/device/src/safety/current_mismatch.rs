@@ -6,14 +6,15 @@ use crate::drive::Current;
 
 /// Part of the tolerated difference between measured and demanded current that does not depend on the demand, A. At
 /// small currents the dead times of the bridge's switches alone cause a difference of up to 0.5 A.
-const CONSTANT_TOLERANCE: Current = Current::lit("1");
+const CONSTANT_CURRENT_TOLERANCE: Current = Current::lit("1");
 /// Part of the tolerated difference between measured and demanded current that grows with the demand, as a right shift
 /// of the demanded current: 2 tolerates a quarter of it. Module, leads and supply deviate from their nominal values by
 /// up to 10 %, the current mirror by up to 5 %.
-const DEMAND_TOLERANCE_SHIFT: u32 = 2;
-/// Net ticks of 1 ms for which measured and demanded current must differ before the station trips. Shorter differences
-/// are tolerated: an overloaded bridge driver, which switches off and retries every 4 ms, pulls its fault line first,
-/// which trips the station by [`Fault::Bridge`].
+const PROPORTIONAL_TOLERANCE_SHIFT: u32 = 2;
+/// Net ticks of 1 ms at which [`Fault::CurrentHigh`] or [`Fault::CurrentLow`] trips the station: each tick in which
+/// measured and demanded current differ too much counts up, each other tick counts down. It is long enough for an
+/// overloaded bridge driver, which switches off and retries every 4 ms, to pull its fault line first, which trips the
+/// station by [`Fault::Bridge`].
 const MISMATCH_TICKS: u8 = 30;
 
 /// Detects a measured current that differs from the demanded one in magnitude. One counter serves both too much and too
@@ -33,7 +34,8 @@ impl CurrentMismatchDetector {
     /// [`Fault::CurrentLow`].
     pub fn check_current(&mut self, demanded: Current, measured: Current) -> Result<(), Fault> {
         let demanded = demanded.saturating_abs();
-        let tolerance = CONSTANT_TOLERANCE.saturating_add(demanded >> DEMAND_TOLERANCE_SHIFT);
+        let tolerance =
+            CONSTANT_CURRENT_TOLERANCE.saturating_add(demanded >> PROPORTIONAL_TOLERANCE_SHIFT);
         let high = measured > demanded.saturating_add(tolerance);
         let low = measured < demanded.saturating_sub(tolerance);
         if !self.0.count_tick(high || low, MISMATCH_TICKS) {

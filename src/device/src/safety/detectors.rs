@@ -20,18 +20,18 @@ const DISPLAY_DIFFERENCE_MAX: Celsius = Celsius::lit("3");
 /// Net ticks of 1 ms at which [`Fault::DisplaysApart`] trips the station: each tick in which the display's two
 /// thermistors differ by more than [`DISPLAY_DIFFERENCE_MAX`] counts up, each other tick counts down, so that noise
 /// does not trip the station.
-const DISPLAY_DIFFERENCE_TICKS: u8 = 40;
+const DISPLAY_DIFFERENCE_TRIP_TICKS: u8 = 40;
 /// Excess of the room's reading over the skin's, K, above which the two thermistors count as swapped or misplaced. A
 /// finger's skin is warmer than the room, except for cold hands of 17 °C in a warm room; if the skin's thermistor is on
 /// no finger, it reads the room's air.
 const ROOM_ABOVE_SKIN_MAX: Celsius = Celsius::lit("8");
 /// Net ticks of 1 ms at which [`Fault::RoomAboveSkin`] trips the station: each tick in which the room reads more than
 /// [`ROOM_ABOVE_SKIN_MAX`] above the skin counts up, each other tick counts down.
-const ROOM_ABOVE_SKIN_TICKS: u8 = 40;
+const ROOM_ABOVE_SKIN_TRIP_TICKS: u8 = 40;
 /// Net ticks of 1 ms at which [`Fault::UnlikeModel`] trips the station: each tick in which the display follows a
 /// set-point and the plate observer's residual is larger than a sound tile can cause counts up, each other tick counts
 /// down.
-const UNLIKE_MODEL_TICKS: u8 = 30;
+const UNLIKE_MODEL_TRIP_TICKS: u8 = 30;
 /// Ticks of 1 ms without a line from the host, while telemetry streams and a set-point is followed, that trip the
 /// station by [`Fault::HostSilent`].
 const HOST_SILENT_TICKS: u16 = 2000;
@@ -110,11 +110,15 @@ impl FaultDetectors {
     }
 
     /// Runs all detectors that compare several ticks and need valid readings, once per tick. `readings` are those of
-    /// this tick, `previous` is what the tick before demanded; `streams` is true while telemetry is sent to the host.
+    /// this tick, `previous` is what the tick before demanded of the bridge; `streams` is true while telemetry is sent
+    /// to the host.
     ///
     /// # Errors
-    /// The first fault in this order: jump, display thermistors apart, current high or low, wrong direction, unlike
-    /// model, room above skin, silent host. All these detectors count the tick, even when an earlier one has a fault.
+    /// The first fault in this order: a jump of the first or second display reading or of the sink's (0.5 K in 4 ms),
+    /// [`Fault::DisplaysApart`] (3 K for 40 ms), [`Fault::CurrentHigh`] or [`Fault::CurrentLow`] (1 A plus a quarter of
+    /// the demanded current for 30 ms), [`Fault::Polarity`] or [`Fault::Runaway`] (2.5 K against the current),
+    /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms),
+    /// [`Fault::HostSilent`] (2 s). All these detectors count the tick, even when an earlier one has a fault.
     pub fn run_multi_tick_detectors(
         &mut self,
         readings: &ValidReadings,
@@ -127,16 +131,16 @@ impl FaultDetectors {
         let difference = readings.display.saturating_sub(readings.check);
         let displays_differ = self.display_difference.count_tick(
             difference.saturating_abs() > DISPLAY_DIFFERENCE_MAX,
-            DISPLAY_DIFFERENCE_TICKS,
+            DISPLAY_DIFFERENCE_TRIP_TICKS,
         );
         let room_above_skin = self.room_above_skin.count_tick(
             readings.room.saturating_sub(readings.skin) > ROOM_ABOVE_SKIN_MAX,
-            ROOM_ABOVE_SKIN_TICKS,
+            ROOM_ABOVE_SKIN_TRIP_TICKS,
         );
         let follows_setpoint = previous.setpoint.is_some();
         let unlike_model = self.residual.count_tick(
             follows_setpoint && previous.residual_is_large,
-            UNLIKE_MODEL_TICKS,
+            UNLIKE_MODEL_TRIP_TICKS,
         );
         self.host_silent_ticks = if streams && follows_setpoint {
             self.host_silent_ticks.saturating_add(1)

@@ -94,25 +94,28 @@ faults! {
     DisplayCold = "display-cold",
     /// The heat sink's thermistor reads above 42 °C in one tick.
     SinkHot = "sink-hot",
-    /// The display has moved by 2.5 K against the current within 2 s, or has warmed by more than 0.05 K by the
-    /// self-test's cooling pulse: the module's polarity is wrong, or a thermistor is misplaced.
+    /// The display has moved by 2.5 K against the current from its best reading (the lowest while cooled, the highest
+    /// while warmed), less than 2 s after that reading, or has warmed by more than 0.05 K by the self-test's cooling
+    /// pulse: the module's polarity is wrong, or a thermistor is misplaced.
     Polarity = "polarity",
     /// The display has moved by 2.5 K against the current from its best reading (the lowest while cooled, the highest
-    /// while warmed), 2 s or more after that reading: the current warms the sink more than it cools the display.
+    /// while warmed), 2 s or more after that reading: typically, the current warms the sink more than it cools the
+    /// display.
     Runaway = "runaway",
-    /// For 30 ms (debounced) the display has differed too much from what its internal model predicts: the residual
-    /// (prediction error, K, plus 0.5 K for each ampere by which the observer corrects the model) exceeds 3.75 K, or
-    /// 8 K on a tile that was never identified. The module or its thermal contact has changed, or heat enters that no
-    /// sensor measures.
+    /// For 30 ms (debounced), while the display followed a set-point, its reading has differed too much from what its
+    /// internal model predicts: the residual (prediction error, K, plus 0.5 K for each ampere by which the observer
+    /// corrects the model) exceeded 3.75 K, or 8 K on a tile that was never identified. The module or its thermal
+    /// contact has changed, or heat enters that no sensor measures.
     UnlikeModel = "unlike-model",
     /// The measured current is more than 3 A above the controller's limit of 6 A in one tick.
     OverCurrent = "over-current",
-    /// The measured current has exceeded the demanded one by more than 1 A plus a quarter of the demanded one for 30 ms
-    /// (debounced), or its mean in a self-test pulse of 1 A was more than 2 A.
+    /// For 30 ms (debounced) the measured current has differed from the demanded one, in magnitude, by more than 1 A
+    /// plus a quarter of the demanded one, and was the larger one in the last tick; or its mean in a self-test pulse of
+    /// 1 A was more than 2 A.
     CurrentHigh = "current-high",
-    /// The measured current has been below the demanded one by more than 1 A plus a quarter of the demanded one for
-    /// 30 ms (debounced), or its mean in a self-test pulse of 1 A was less than 0.4 A: a bridge leg, a wire or the
-    /// supply has failed.
+    /// For 30 ms (debounced) the measured current has differed from the demanded one, in magnitude, by more than 1 A
+    /// plus a quarter of the demanded one, and was the smaller one in the last tick; or its mean in a self-test pulse
+    /// of 1 A was less than 0.4 A. A bridge leg, a wire or the supply has failed.
     CurrentLow = "current-low",
     /// The bridge's fault line is pulled: the bridge driver reports a fault, or the comparator has cut the supply
     /// because the second display thermistor was outside of 10 to 45 °C. Ignored while the station is off or tripped,
@@ -133,12 +136,12 @@ faults! {
     Sampling = "sampling",
     /// The stack has overflowed: the guard words at its end were overwritten. Checked in every tick and at the start.
     Stack = "stack",
-    /// The program has panicked. The panic handler turns the bridges off and stores this fault; the device starts
-    /// tripped after the watchdog's reset.
+    /// The program has panicked. The panic handler turns the bridges off and stores this fault, unless the cause of an
+    /// earlier trip is stored; the device starts tripped by the stored fault after the watchdog's reset.
     Panic = "panic",
     /// The processor met an instruction or a memory access that it cannot execute, or an interrupt that no handler
-    /// serves. The exception handler turns the bridges off and stores this fault; the device starts tripped after the
-    /// watchdog's reset.
+    /// serves. The exception handler turns the bridges off and stores this fault, unless the cause of an earlier trip
+    /// is stored; the device starts tripped by the stored fault after the watchdog's reset.
     HardFault = "hard-fault",
     /// The external 8 MHz clock has failed or was missing at the start, or the clock configuration register has
     /// changed.

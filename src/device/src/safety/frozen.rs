@@ -13,10 +13,10 @@ pub const FROZEN_TICKS: u8 = 46;
 const ALL_FROZEN_TICKS: u8 = 30;
 /// Number of signals that are monitored: five thermistors and the force sensor. The current mirror is not monitored,
 /// because its sum is zero, and thus repeats, while the bridge is off.
-const MONITORED_CHANNELS: usize = 6;
+const MONITORED_CHANNEL_COUNT: usize = 6;
 /// The fault of each monitored channel when that channel is frozen, in the order in which
 /// [`FrozenDetector::check_samples`] compares the channels.
-const CHANNEL_FAULTS: [Fault; MONITORED_CHANNELS] = [
+const FROZEN_CHANNEL_FAULTS: [Fault; MONITORED_CHANNEL_COUNT] = [
     Fault::DisplayFrozen,
     Fault::CheckFrozen,
     Fault::SinkFrozen,
@@ -25,12 +25,12 @@ const CHANNEL_FAULTS: [Fault; MONITORED_CHANNELS] = [
     Fault::ForceFrozen,
 ];
 
-/// Detects a wire or a converter that delivers a constant: keeps each monitored channel's last sum of 16 conversions,
-/// and the number of ticks in a row for which the sum has not changed.
+/// Detects a wire or a converter that delivers a constant. Keeps, for each of the five thermistors and the force
+/// sensor, the last sum of 16 conversions, and the number of ticks in a row for which the sum has not changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FrozenDetector {
-    previous: [u16; MONITORED_CHANNELS],
-    repeats: [u8; MONITORED_CHANNELS],
+    previous: [u16; MONITORED_CHANNEL_COUNT],
+    repeats: [u8; MONITORED_CHANNEL_COUNT],
 }
 
 impl FrozenDetector {
@@ -53,7 +53,7 @@ impl FrozenDetector {
             };
             self.repeats[i] = ticks;
             if ticks >= FROZEN_TICKS {
-                frozen = frozen.or(Some(CHANNEL_FAULTS[i]));
+                frozen = frozen.or(Some(FROZEN_CHANNEL_FAULTS[i]));
             }
         }
         match frozen {

@@ -14,15 +14,15 @@ const JUMP_INTERVAL_TICKS: usize = 4;
 /// whole supply voltage on the module; noise is 4 mK.
 const JUMP_ABOVE: Celsius = Celsius::lit("0.5");
 
-/// Detects a broken thermistor by a reading that changes faster than the display or the sink to which the thermistor is
-/// bonded can. Keeps the readings of the two display thermistors and the sink thermistor for the last four ticks.
+/// Detects a broken thermistor by a reading that changes faster than the display or the heat sink can. Keeps the
+/// readings of the two display thermistors and the sink thermistor for the last four ticks.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct JumpDetector {
     ring: [[Celsius; 3]; JUMP_INTERVAL_TICKS],
     /// Number of ticks whose readings the ring holds, up to [`JUMP_INTERVAL_TICKS`].
     ticks: u8,
-    /// Number of ticks added to the ring, wrapping at 256; modulo [`JUMP_INTERVAL_TICKS`] it is the place of the oldest
-    /// readings.
+    /// Count of the ticks that were added to the ring, wrapping at 256. Modulo [`JUMP_INTERVAL_TICKS`] it is the index
+    /// of the oldest readings in the ring.
     oldest: u8,
 }
 

@@ -9,8 +9,8 @@ pub struct FaultLatch {
     cause: Option<TripCause>,
     tripped_at_tick: u32,
     present: Option<Fault>,
-    /// Fault that the board has raised, outside of a tick, since the last tick; at the end of the next tick it becomes
-    /// the present fault unless that tick detects another one.
+    /// Last fault that the board has raised, outside of a tick, since the last tick. At the end of the next tick it
+    /// becomes the present fault, unless that tick detects a fault itself.
     external: Option<Fault>,
     /// First fault that the board has raised while the station was tripped by another fault. `clear` then trips the
     /// station by it again, because later ticks may not show it.
@@ -39,9 +39,9 @@ impl FaultLatch {
         self.tripped_at_tick = tick;
     }
 
-    /// Records a fault that the board has found outside of a tick: `fault` is present in the next tick. If the station
-    /// is already tripped by a different fault (`latched`), `fault` is kept as pending, too, unless another one is
-    /// already pending.
+    /// Records `fault`, which the board has found outside of a tick. At the end of the next tick `fault` becomes the
+    /// present fault, unless that tick detects one itself. `latched` is the fault by which the station is tripped
+    /// already; if it differs from `fault` and no fault is pending yet, `fault` also becomes the pending fault.
     pub fn raise_external_fault(&mut self, fault: Fault, latched: Option<Fault>) {
         self.external = Some(fault);
         if latched.is_some_and(|first| first != fault) {
@@ -49,9 +49,9 @@ impl FaultLatch {
         }
     }
 
-    /// Ends a tick: the present fault is now `detected`, the fault that the tick has detected, or else the fault that
-    /// the board has raised since the tick before, or `None` if there is neither. A fault raised by the board counts
-    /// for this one tick only.
+    /// Ends a tick: the present fault becomes `detected`, the fault that the tick has detected. If that is `None`, the
+    /// fault that the board has raised since the tick before becomes the present fault; `None` if there is neither. A
+    /// fault that the board has raised counts for this one tick only.
     pub const fn set_present_fault(&mut self, detected: Option<Fault>) {
         let external = self.external.take();
         self.present = match detected {
@@ -67,8 +67,9 @@ impl FaultLatch {
         self.present
     }
 
-    /// Removes and returns the pending fault: the one that the board raised while the station was already tripped. To
-    /// be called when `clear` has cleared the latched fault; the station then trips by the returned one.
+    /// Removes and returns the pending fault: the first that the board raised while the station was tripped by another
+    /// one; `None` if there is none. To be called when `clear` has cleared the latched fault; `clear` then trips the
+    /// station by the returned fault.
     pub const fn take_pending_fault(&mut self) -> Option<Fault> {
         self.pending.take()
     }

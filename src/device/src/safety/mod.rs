@@ -4,10 +4,11 @@
 //! fault, both of its legs are high-impedance; only that is called "off". Off is safe only while the sink is cool
 //! enough, because heat flows back from the sink to the display; so the sink has the lowest upper limit of all.
 //!
-//! **Detection.** Every detector sees every tick in every state, so that a fault that was present before `arm` refuses it,
-//! and one that is still present after a trip refuses `clear`. Faults that one tick does not show have detectors that
-//! count ticks; these need valid readings, except for frozen signals and the thermal dose. Only the bridge's fault line
-//! is ignored while the bridge is off and untested, or tripped: the comparator pulls it, too, until the next self-test.
+//! **Detection.** Every detector sees every tick in every state, so that a fault that was present before `arm` refuses
+//! it, and one that is still present after a trip refuses `clear`. Faults that one tick does not show have detectors
+//! that count ticks; these need valid readings, except for frozen signals and the thermal dose. Only the bridge's fault
+//! line is ignored while the bridge is off and untested, or tripped: the comparator pulls it, too, until the next
+//! self-test.
 //!
 //! **Latch.** The first fault latches, with the readings of its tick, as [`TripCause`]; later ones do not replace it. A
 //! second fault that the board has raised is reported when the first is cleared. The cause and the dose survive every

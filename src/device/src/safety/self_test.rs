@@ -40,10 +40,10 @@ const BASELINE_END_TICK: u16 = COMPARATOR_RELEASE_END_TICK + 2 * HALF_BASELINE_T
 /// demanded current becomes zero.
 const COOLING_PULSE_END_TICK: u16 = BASELINE_END_TICK + PULSE_TICKS;
 /// Tick of the self-test in which the display's response to the cooling pulse is checked and the warming pulse begins.
-const RESPONSE_END_TICK: u16 = COOLING_PULSE_END_TICK + PULSE_TICKS;
+const RESPONSE_CHECK_TICK: u16 = COOLING_PULSE_END_TICK + PULSE_TICKS;
 /// Tick of the self-test in which the measured current of the warming pulse is checked; if it is in range, the
 /// self-test has passed.
-const WARMING_PULSE_END_TICK: u16 = RESPONSE_END_TICK + PULSE_TICKS;
+const WARMING_PULSE_END_TICK: u16 = RESPONSE_CHECK_TICK + PULSE_TICKS;
 /// Ticks of 1 ms within which the comparator must have followed its test line: cut the bridge's supply after the line
 /// was set, or released it after the line was cleared. A slower response trips the station by [`Fault::Comparator`].
 const COMPARATOR_DELAY_MAX_TICKS: u16 = 10;
@@ -58,17 +58,17 @@ const PULSE_MEAN_CURRENT_MAX: Current = Current::lit("2");
 /// Smallest fall of each display thermistor's reading, K, 0.2 s after the end of the self-test's cooling pulse; a
 /// smaller one trips the station by [`Fault::NoResponse`]. A typical display falls by 0.54 K; a thermistor with a lag
 /// of 0.5 s shows only a third of that by then, and a resting finger reduces the fall by a similar factor.
-const RESPONSE_MIN: Celsius = Celsius::lit("0.05");
+const DISPLAY_RESPONSE_MIN: Celsius = Celsius::lit("0.05");
 /// Largest fall of each display thermistor's reading, K, 0.2 s after the end of the self-test's cooling pulse; a larger
 /// one trips by [`Fault::NoResponse`]. A typical display falls by 0.54 K, so more than this is caused by something else
 /// than the pulse.
-const RESPONSE_MAX: Celsius = Celsius::lit("1.5");
+const DISPLAY_RESPONSE_MAX: Celsius = Celsius::lit("1.5");
 /// Ticks of 1 ms that the self-test waits after a finger has landed or lifted before its baseline begins, because the
 /// display's temperature then does not follow a straight line.
-const UNDISTURBED_TICKS: u16 = 1000;
+const WAIT_AFTER_LANDING_OR_LIFTING_TICKS: u16 = 1000;
 /// Ticks of 1 ms that one self-test may wait in all for fingers that land and lift; then [`Fault::NoResponse`] trips
 /// the station.
-const FINGER_WAIT_MAX_TICKS: u16 = 20 * UNDISTURBED_TICKS;
+const FINGER_WAIT_MAX_TICKS: u16 = 20 * WAIT_AFTER_LANDING_OR_LIFTING_TICKS;
 /// Ticks of 1 ms in a row in which the force sensor detects no finger, after which a finger counts as lifted. A force
 /// just above the contact threshold falls below the threshold by noise now and then.
 const LIFTED_AFTER_TICKS: u8 = 32;
@@ -102,12 +102,14 @@ pub struct SelfTest {
     tick: u16,
     first_half: DisplayReadingSums,
     second_half: DisplayReadingSums,
-    /// Sum of the measured current over the ticks so far in the second half of the present pulse, in units of 2^-24 A.
+    /// Sum of the measured current, as magnitude, over the second half (100 ticks) of the present pulse so far, in
+    /// units of 2^-24 A. At the end of the pulse the mean is checked.
     current_sum: i64,
-    /// Whether a finger counts as on the display: true at once when the force sensor detects one, false after 32 ticks
-    /// of 1 ms without.
+    /// Whether a finger counts as on the display: true at once when the force shows a finger, or one that may be
+    /// landing; false after 32 ticks of 1 ms in a row without. After each change the self-test waits for 1 s before a
+    /// new baseline.
     touched: bool,
-    /// Ticks of 1 ms since the force sensor last detected a finger; stops at 255.
+    /// Ticks of 1 ms since the force last showed a finger, or one that may be landing; stops at 255.
     untouched_ticks: u8,
     /// Ticks of 1 ms that remain to wait before the baseline begins, because a finger has landed or lifted.
     wait_ticks: u16,
@@ -129,9 +131,11 @@ impl SelfTest {
     /// landing.
     ///
     /// # Errors
-    /// The fault of the part that fails: [`Fault::Comparator`], [`Fault::CurrentLow`] or [`Fault::CurrentHigh`]
-    /// (measured current of a pulse), [`Fault::Polarity`], or [`Fault::NoResponse`], which fingers also cause that have
-    /// delayed the baseline by 20 s in all.
+    /// [`Fault::Comparator`]: the comparator has not cut or not released the bridge's supply within 10 ms.
+    /// [`Fault::CurrentLow`], [`Fault::CurrentHigh`]: the mean measured current of a pulse is below 0.4 A or above 2 A.
+    /// [`Fault::Polarity`]: the cooling pulse has warmed the display. [`Fault::NoResponse`]: a display reading has not
+    /// fallen by 0.05 to 1.5 K after the cooling pulse, or fingers that landed and lifted have delayed the baseline by
+    /// 20 s in all.
     pub fn step(
         &mut self,
         readings: &ValidReadings,
@@ -182,14 +186,14 @@ impl SelfTest {
         if tick == COOLING_PULSE_END_TICK {
             self.check_pulse_current()?;
         }
-        if tick < RESPONSE_END_TICK {
+        if tick < RESPONSE_CHECK_TICK {
             return Ok(SelfTestStep::Drive(Current::ZERO));
         }
-        if tick == RESPONSE_END_TICK {
+        if tick == RESPONSE_CHECK_TICK {
             self.check_display_response(display)?;
         }
         if tick < WARMING_PULSE_END_TICK {
-            self.add_measured_current(tick - RESPONSE_END_TICK, readings.current);
+            self.add_measured_current(tick - RESPONSE_CHECK_TICK, readings.current);
             return Ok(SelfTestStep::Drive(PULSE_CURRENT.saturating_neg()));
         }
         self.check_pulse_current()?;
@@ -204,7 +208,7 @@ impl SelfTest {
             tick: self.tick.min(COMPARATOR_RELEASE_END_TICK),
             touched,
             untouched_ticks: self.untouched_ticks,
-            wait_ticks: UNDISTURBED_TICKS,
+            wait_ticks: WAIT_AFTER_LANDING_OR_LIFTING_TICKS,
             waited_ticks: self.waited_ticks,
             ..Self::default()
         };
@@ -216,8 +220,11 @@ impl SelfTest {
         }
     }
 
-    /// Checks at the end of a pulse that the measured current was 0.4 to 2 A on average over the second half of that
-    /// pulse, and resets the sum of the measured current to zero for the next pulse.
+    /// Checks at the end of a pulse the mean of the measured current over the second half of that pulse, and resets the
+    /// sum of the measured current to zero for the next pulse.
+    ///
+    /// # Errors
+    /// [`Fault::CurrentLow`] below 0.4 A, [`Fault::CurrentHigh`] above 2 A.
     fn check_pulse_current(&mut self) -> Result<(), Fault> {
         let mean = mem::take(&mut self.current_sum) / i64::from(PULSE_TICKS / 2);
         if mean < i64::from(PULSE_MEAN_CURRENT_MIN.to_bits()) {
@@ -234,11 +241,11 @@ impl SelfTest {
     /// second display thermistor, in units of 2^-22 °C. A reading more than 0.05 K above the line is
     /// [`Fault::Polarity`]; any other failure is [`Fault::NoResponse`].
     fn check_display_response(&self, display: [i64; 2]) -> Result<(), Fault> {
-        const RESPONSE_MIN_BITS: i64 = RESPONSE_MIN.to_bits() as i64;
+        const RESPONSE_MIN_BITS: i64 = DISPLAY_RESPONSE_MIN.to_bits() as i64;
         const RESPONSE_RANGE_BITS: RangeInclusive<i64> =
-            RESPONSE_MIN_BITS..=RESPONSE_MAX.to_bits() as i64;
+            RESPONSE_MIN_BITS..=DISPLAY_RESPONSE_MAX.to_bits() as i64;
         let half = i64::from(HALF_BASELINE_TICKS);
-        let ticks = i64::from(RESPONSE_END_TICK - (BASELINE_END_TICK - HALF_BASELINE_TICKS / 2));
+        let ticks = i64::from(RESPONSE_CHECK_TICK - (BASELINE_END_TICK - HALF_BASELINE_TICKS / 2));
         let halves = self.first_half.iter().zip(&self.second_half);
         for ((first, second), reading) in halves.zip(display) {
             let expected = second / half + (second - first) * ticks / (half * half);

@@ -1,9 +1,9 @@
 //! Thermal dose of the skin.
 //!
-//! Cumulative equivalent minutes at 43 °C, CEM43 (Sapareto and Dewey 1984): each minute at `T` counts as `R^(43 - T)` minutes,
-//! with `R` 0.5 above 43 °C and 0.25 below it; below 39 °C none. The warmer of the display's readings stands for the
-//! skin, which is never warmer than the display. Contact is not considered, because the force sensor may be what
-//! failed.
+//! Cumulative equivalent minutes at 43 °C, CEM43 (Sapareto and Dewey 1984): each minute at `T` counts as `R^(43 - T)`
+//! minutes, with `R` 0.5 above 43 °C and 0.25 below it; below 39 °C none. The warmer of the display's readings stands
+//! for the skin, which is never warmer than the display. Contact is not considered, because the force sensor may be
+//! what failed.
 
 use contact_model::fixed_point::{Celsius, exp2};
 
@@ -12,14 +12,14 @@ use super::limits::{DOSE_COUNTED_FROM, DOSE_REFERENCE_TEMPERATURE};
 
 /// Ticks of 1 ms from one evaluation of the display's temperature to the next; the dose of the whole interval is
 /// computed from the temperature at its end.
-const EVALUATION_INTERVAL_TICKS: u16 = 256;
+const DOSE_INTERVAL_TICKS: u16 = 256;
 /// Thermal dose at which the station trips by [`Fault::Dose`], in ticks of 1 ms at 43 °C: 30 s. This is far below the
 /// dose that burns skin, hundreds of minutes at 43 °C, and below the few minutes that may hurt.
 const DOSE_LIMIT_TICKS: u32 = 30_000;
 /// Upper limit of the stored dose, in units of 2^-8 ticks of 1 ms at 43 °C: twice the trip limit. Thus after a long
 /// time above the limit, or after a bit error in the stored dose, 32 minutes below 39 °C are enough to bring it back to
 /// the trip limit.
-const DOSE_SUM_MAX: u32 = (2 * DOSE_LIMIT_TICKS) << 8;
+const STORED_DOSE_MAX: u32 = (2 * DOSE_LIMIT_TICKS) << 8;
 /// Decay of the dose below 39 °C, as a right shift of the elapsed time: 6 subtracts 1/64 of it, about one minute per
 /// hour.
 const DOSE_DECAY_SHIFT: u32 = 6;
@@ -29,9 +29,10 @@ const DOSE_DECAY_SHIFT: u32 = 6;
 /// reaches the equivalent of 30 s at 43 °C.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ThermalDose {
-    /// The dose, in units of 2^-8 ticks of 1 ms at 43 °C; at most [`DOSE_SUM_MAX`] after each evaluation.
+    /// The dose, in units of 2^-8 ticks of 1 ms at 43 °C; at most [`STORED_DOSE_MAX`] after each evaluation.
     sum: u32,
-    /// Ticks of 1 ms since the display's temperature was last added to the dose, below [`EVALUATION_INTERVAL_TICKS`].
+    /// Ticks of 1 ms since the display's temperature was last evaluated, 0 to 255. At [`DOSE_INTERVAL_TICKS`] (256) the
+    /// temperature is evaluated again, and this count restarts at 0.
     ticks: u16,
 }
 
@@ -56,9 +57,9 @@ impl ThermalDose {
     /// # Errors
     /// [`Fault::Dose`]: the dose has reached 30 s at 43 °C; returned in every tick while that holds.
     pub fn add_tick(&mut self, warmest: impl FnOnce() -> Option<Celsius>) -> Result<(), Fault> {
-        const DECAY_PER_INTERVAL: u32 = (EVALUATION_INTERVAL_TICKS as u32) << 8 >> DOSE_DECAY_SHIFT;
+        const DECAY_PER_INTERVAL: u32 = (DOSE_INTERVAL_TICKS as u32) << 8 >> DOSE_DECAY_SHIFT;
         self.ticks += 1;
-        if self.ticks >= EVALUATION_INTERVAL_TICKS {
+        if self.ticks >= DOSE_INTERVAL_TICKS {
             self.ticks = 0;
             self.sum = match warmest() {
                 None => self.sum,
@@ -66,11 +67,11 @@ impl ThermalDose {
                     self.sum.saturating_sub(DECAY_PER_INTERVAL)
                 }
                 Some(warmest) => {
-                    let dose = dose_rate(warmest).saturating_mul(EVALUATION_INTERVAL_TICKS.into());
+                    let dose = dose_rate(warmest).saturating_mul(DOSE_INTERVAL_TICKS.into());
                     self.sum.saturating_add(dose)
                 }
             }
-            .min(DOSE_SUM_MAX);
+            .min(STORED_DOSE_MAX);
         }
         if self.sum >> 8 >= DOSE_LIMIT_TICKS {
             Err(Fault::Dose)

@@ -1,18 +1,18 @@
 //! Monitors the rate of the control ticks by a second counter.
 
 /// Width in bits of SysTick, the core's timer, with whose count the time of each tick is compared.
-const COUNTER_BITS: u32 = 24;
+const SYSTICK_BITS: u32 = 24;
 /// Divisor of the tick's period that gives how early or late a tick may be: 4 allows a quarter of a period.
-const TOLERANCE_DIVISOR: u32 = 4;
+const TICK_TOLERANCE_DIVISOR: u32 = 4;
 
 /// Checks that each control tick comes on time, by SysTick: a 24-bit hardware counter that counts the core clock down
 /// and wraps, independent of the timer that generates the ticks. If a tick is early or late by more than a quarter of
 /// its period, the board stops sampling and trips the stations of all fingers by
 /// [`Fault::Sampling`](super::Fault::Sampling).
 ///
-/// Counter and ticks derive from one oscillator. So the jitter of single ticks does not accumulate, but a wrong rate
-/// does: 0.5 % becomes a quarter of a period after 50 ticks, and a rate that is wrong by a factor of ten is detected at
-/// the next tick.
+/// Each tick is due a whole number of periods after the first, and SysTick and the ticks derive from one oscillator. So
+/// the jitter of single ticks does not accumulate, but a wrong rate does: 0.5 % becomes a quarter of a period after 50
+/// ticks, and a rate that is wrong by a factor of ten is detected at the next tick.
 #[derive(Clone, Copy, Debug)]
 pub struct TickRateMonitor {
     /// SysTick counts from one tick to the next, in the upper 24 bits of the word, so that its arithmetic wraps where
@@ -29,21 +29,22 @@ impl TickRateMonitor {
     #[must_use]
     pub const fn new(period: u32) -> Self {
         Self {
-            period: period << (u32::BITS - COUNTER_BITS),
+            period: period << (u32::BITS - SYSTICK_BITS),
             due: None,
         }
     }
 
-    /// Checks the time at which a tick has come. `count` is the present value of SysTick, which counts down. Returns
-    /// whether the tick is early or late by a quarter of a period at most. To be called once in each tick.
+    /// Returns whether this tick has come within a quarter of a period of the time at which it was due: the time of the
+    /// first tick plus a whole number of periods. `count` is the present value of SysTick, which counts down. To be
+    /// called once in each tick; the first call sets the schedule and returns true.
     ///
     /// A tick that is late by a whole turn of SysTick (2^24 counts, 93 ms at 180 MHz) seems to be on time; the window
     /// watchdog has reset the device by then, after 47 ms.
     pub fn tick_is_on_time(&mut self, count: u32) -> bool {
-        let now = (count << (u32::BITS - COUNTER_BITS)).wrapping_neg();
+        let now = (count << (u32::BITS - SYSTICK_BITS)).wrapping_neg();
         let due = self.due.map_or(now, |due| due.wrapping_add(self.period));
         self.due = Some(due);
-        now.wrapping_sub(due).cast_signed().unsigned_abs() <= self.period / TOLERANCE_DIVISOR
+        now.wrapping_sub(due).cast_signed().unsigned_abs() <= self.period / TICK_TOLERANCE_DIVISOR
     }
 }
 

@@ -8,7 +8,7 @@ use crate::drive::Current;
 use crate::sense::{Readings, ThermistorFault};
 
 /// Readings of one tick that have passed [`validate_readings`]: no thermistor and no force sensor is open or shorted,
-/// and no temperature and no current exceeds its trip limit.
+/// and temperatures and current are within the limits beyond which the station trips.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ValidReadings {
     /// Display surface temperature by the display's first thermistor, which the control uses, °C, 13.5 to 43 °C.
@@ -34,8 +34,10 @@ pub struct ValidReadings {
 /// limits. `current_limit` is the largest current that the controller demands, 6 A.
 ///
 /// # Errors
-/// The first fault found in this order: all thermistors shorted, one open or shorted, force sensor, display hot,
-/// display cold, sink hot, over-current. Broken sensors come first, because their readings mean no temperature.
+/// The first of these faults: [`Fault::Excitation`] (all five thermistors shorted), the fault of one open or shorted
+/// thermistor, [`Fault::ForceSensor`] (signal invalid), [`Fault::DisplayHot`] and [`Fault::DisplayCold`] (a display
+/// thermistor above 43 °C, or below 13.5 °C), [`Fault::SinkHot`] (above 42 °C), [`Fault::OverCurrent`] (more than 3 A
+/// above `current_limit`). Broken sensors come first, because their readings mean no temperature.
 pub fn validate_readings(
     readings: &Readings,
     current_limit: Current,

@@ -11,19 +11,21 @@ use contact_model::fixed_point::Celsius;
 use super::Fault;
 use crate::drive::Current;
 
-/// Rise of the display's reading above its lowest value while it is cooled, or fall below its highest value while it is
-/// warmed, K, that trips the station. A finger that lands while the current is at its limit causes up to 2 K.
+/// Change of the display's reading against the current, K, at which the station trips by [`Fault::Polarity`] or
+/// [`Fault::Runaway`]: rise above its lowest value while the display is cooled, or fall below its highest value while
+/// the display is warmed. A finger that lands while the current is at its limit causes up to 2 K.
 const TRIP_REVERSAL: Celsius = Celsius::lit("2.5");
 /// Magnitude of the mean demanded current, A, from which on the direction of the reading is checked. Below it, the sign
 /// of the mean may differ from that of the current that flows, so the check starts again later.
-const MIN_TESTED_CURRENT: Current = Current::lit("1");
+const DIRECTION_CHECK_CURRENT_MIN: Current = Current::lit("1");
 /// Time constant of the filter of the demanded current, as a power of two of ticks of 1 ms: 8 gives 0.26 s. The filter
 /// is needed because the thermistor's lag (up to 0.5 s) lets the reading move in the old direction after the current
 /// has changed sign.
-const MEAN_CURRENT_SHIFT: u32 = 8;
-/// Ticks of 1 ms after the best reading (the lowest while cooling, the highest while warming) from which on a reversal
-/// is named [`Fault::Runaway`]; an earlier one is named [`Fault::Polarity`].
-const RUNAWAY_FROM_TICKS: u16 = 2000;
+const CURRENT_FILTER_SHIFT: u32 = 8;
+/// Ticks of 1 ms since the best reading (the lowest while cooling, the highest while warming). If the reading has moved
+/// back by [`TRIP_REVERSAL`] after this time or later, the fault is [`Fault::Runaway`]; if earlier,
+/// [`Fault::Polarity`].
+const RUNAWAY_TICKS_SINCE_BEST_MIN: u16 = 2000;
 
 /// Detects a display that warms while it is cooled and still above its set-point, or cools while it is warmed and still
 /// below it. Keeps the filtered demanded current, and the best reading (the lowest while cooling, the highest while
@@ -33,8 +35,8 @@ pub struct WrongWayDetector {
     /// Demanded current, low-pass filtered with a time constant of 0.26 s, A; positive cools.
     mean_current: Current,
     /// Best reading so far, °C: the lowest while cooling, or, while warming, the negative of the highest, so that lower
-    /// is better in both cases. `None` while the direction is not checked, because the mean current is below
-    /// [`MIN_TESTED_CURRENT`] or the display has reached its set-point.
+    /// is better in both cases. `None` while the direction is not checked: the mean current is below
+    /// [`DIRECTION_CHECK_CURRENT_MIN`], no set-point is followed, or the display has reached its set-point.
     best: Option<Celsius>,
     ticks_since_best: u16,
 }
@@ -56,14 +58,14 @@ impl WrongWayDetector {
     ) -> Result<(), Fault> {
         self.mean_current = self
             .mean_current
-            .saturating_add(demanded.saturating_sub(self.mean_current) >> MEAN_CURRENT_SHIFT);
+            .saturating_add(demanded.saturating_sub(self.mean_current) >> CURRENT_FILTER_SHIFT);
         // Warming is mirrored, so that a lower reading is better for both signs.
         let (display, above_setpoint) = if self.mean_current < 0 {
             (display.saturating_neg(), above_setpoint.saturating_neg())
         } else {
             (display, above_setpoint)
         };
-        if self.mean_current.saturating_abs() < MIN_TESTED_CURRENT || above_setpoint <= 0 {
+        if self.mean_current.saturating_abs() < DIRECTION_CHECK_CURRENT_MIN || above_setpoint <= 0 {
             self.best = None;
             return Ok(());
         }
@@ -72,7 +74,7 @@ impl WrongWayDetector {
                 self.ticks_since_best = self.ticks_since_best.saturating_add(1);
                 if display.saturating_sub(best) < TRIP_REVERSAL {
                     Ok(())
-                } else if self.ticks_since_best < RUNAWAY_FROM_TICKS {
+                } else if self.ticks_since_best < RUNAWAY_TICKS_SINCE_BEST_MIN {
                     Err(Fault::Polarity)
                 } else {
                     Err(Fault::Runaway)

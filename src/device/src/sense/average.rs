@@ -6,11 +6,12 @@ use super::THERMISTOR_COUNT;
 /// average.
 const AVERAGED_BLOCK_TICKS: u32 = 256;
 
-/// Mean of one thermistor's sums over the last two complete blocks of 256 ticks of 1 ms. The calibration compares it
-/// with a reference thermometer.
+/// Mean of one thermistor's sums of 16 conversions over 512 ticks of 1 ms, and the change from the first block of 256
+/// ticks to the second. The calibration compares the mean with a reference thermometer, and accepts it only if the
+/// change shows a steady temperature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ThermistorAverage {
-    /// Total of [`Self::TICKS`] sums of 16 conversions each: those of the last two complete blocks.
+    /// Total of [`Self::AVERAGED_TICKS`] sums of 16 conversions each: those of the last two complete blocks.
     total: u32,
     /// Total of the later block minus total of the earlier block, in units of a sum of 16 conversions; small if the
     /// temperature is steady.
@@ -19,7 +20,7 @@ pub struct ThermistorAverage {
 
 impl ThermistorAverage {
     /// Ticks of 1 ms over which the mean is taken, 512: two blocks.
-    pub const TICKS: u32 = 2 * AVERAGED_BLOCK_TICKS;
+    pub const AVERAGED_TICKS: u32 = 2 * AVERAGED_BLOCK_TICKS;
     /// Largest magnitude of the difference between the totals of the two blocks for a steady reading, in units of a sum
     /// of 16 conversions. It stands for a change of 0.12 counts a conversion (3 mK) in a quarter of a second: more than
     /// four standard deviations if the converter's noise is 1.2 counts.
@@ -28,7 +29,7 @@ impl ThermistorAverage {
     /// Mean, over 512 ticks of 1 ms, of the sum of 16 conversions of 12 bits: 0 to 65520.
     #[must_use]
     pub fn mean_sum(&self) -> f64 {
-        f64::from(self.total) / f64::from(Self::TICKS)
+        f64::from(self.total) / f64::from(Self::AVERAGED_TICKS)
     }
 
     /// Whether the means of the two blocks differ by at most 0.12 counts a conversion, about 3 mK. A calibration
@@ -40,12 +41,14 @@ impl ThermistorAverage {
 }
 
 /// Adds up the sums of all five thermistors in blocks of 256 ticks of 1 ms, and computes from them the half-second
-/// averages for the calibration. A station adds each tick in which it presents no object.
+/// averages for the calibration. A station adds each tick in which it presents no object, and begins again when the
+/// host sends `start`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ThermistorAverages {
     /// Number of ticks in the block in progress, 0 to 255.
     ticks: u32,
-    /// Number of blocks completed since power-up or since an object was last presented; an average needs two.
+    /// Number of blocks completed since the start of the program or, if later, since the host's last `start`; stops at
+    /// the largest number. An average needs two complete blocks.
     complete_blocks: u32,
     /// Total of each thermistor's sums over the block in progress. 256 sums of 16 bits fit in 32 bits.
     current: [u32; THERMISTOR_COUNT],
@@ -71,7 +74,7 @@ impl ThermistorAverages {
     }
 
     /// Average of one thermistor over the last two complete blocks, by its index (0 to 4: display, second display,
-    /// sink, skin, room). `None` before two blocks are complete, and for a larger index.
+    /// sink, skin, room). `None` while fewer than two blocks are complete, and for a larger index.
     #[must_use]
     pub fn of(&self, thermistor: usize) -> Option<ThermistorAverage> {
         let last = *self.last.get(thermistor)?;

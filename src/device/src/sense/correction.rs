@@ -14,16 +14,17 @@ pub type CorrectedSum = U28F4;
 
 /// Width of one segment of the converter's range, as a power of two, in units of a sum of 16 conversions: 2^11, which
 /// is 128 codes. Within a segment the converter's error is constant.
-const SEGMENT_WIDTH_LOG2: u32 = (CODES_PER_CONVERTER_SEGMENT * SCANS_PER_TICK as u32).ilog2();
+const CONVERTER_SEGMENT_WIDTH_LOG2: u32 =
+    (CODES_PER_CONVERTER_SEGMENT * SCANS_PER_TICK as u32).ilog2();
 /// Number of segments of 128 codes in the converter's range of 4096 codes: 32.
-const CONVERTER_SEGMENT_COUNT: usize = 1 << (u16::BITS - SEGMENT_WIDTH_LOG2);
+const CONVERTER_SEGMENT_COUNT: usize = 1 << (u16::BITS - CONVERTER_SEGMENT_WIDTH_LOG2);
 /// Width of the transition at a border of two segments, as a power of two, in units of a sum of 16 conversions: 2^6,
 /// which is two codes on either side of the border. Noise spreads conversions there over both segments, so the
 /// converter's error is interpolated.
-const BORDER_WIDTH_LOG2: u32 = 6;
+const BORDER_TRANSITION_WIDTH_LOG2: u32 = 6;
 /// Half of the width of the transition at a border of two segments, in units of a sum of 16 conversions: how far below
 /// the border the transition begins.
-const BORDER_HALF_WIDTH: u32 = 1 << (BORDER_WIDTH_LOG2 - 1);
+const BORDER_TRANSITION_HALF_WIDTH: u32 = 1 << (BORDER_TRANSITION_WIDTH_LOG2 - 1);
 
 /// Largest magnitude of the converter's error in any segment, counts; a larger one is reduced to this. The host may set
 /// each of the 13 steps between segments to ±4 counts; with equal signs they would add up to 52 counts, more than 1 K,
@@ -35,8 +36,8 @@ const CONVERTER_ERROR_MAX_COUNTS: f64 = 8.0;
 /// Converted from the `f64` settings in advance, because a tick has no time for `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CalibrationTables {
-    /// Error of the analogue-to-digital converter, which is the same for all thermistors, because one converter reads
-    /// them all.
+    /// Error of the analogue-to-digital converter, subtracted from the sums of all five thermistors, because one
+    /// converter reads them all.
     pub(super) converter: ConverterCorrection,
     /// Corrections to be added to the temperatures of the five thermistors, in the order display, second display, sink,
     /// skin, room.
@@ -59,8 +60,9 @@ impl CalibrationTables {
     }
 }
 
-/// Error of the analogue-to-digital converter, which is subtracted from each thermistor sum. The error is constant
-/// within each segment of 128 codes and has a step at each border of two segments.
+/// Error of the analogue-to-digital converter: its code minus the true value. It is subtracted from the sum of each
+/// thermistor before the sum is converted to °C. It is constant within each segment of 128 codes, and has a calibrated
+/// step at each of 13 borders between segments.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct ConverterCorrection {
     /// The converter's code minus the true value in each segment, in 1/256 of a code (1/16 of a unit of a sum of 16
@@ -93,14 +95,15 @@ impl ConverterCorrection {
     /// both segments there, and the sum does not show how many were in each.
     #[must_use]
     pub fn correct_sum(&self, sum: u16) -> CorrectedSum {
-        let shifted = u32::from(sum) + BORDER_HALF_WIDTH;
-        let segment = (shifted >> SEGMENT_WIDTH_LOG2) as usize;
-        let from_transition = shifted & ((1 << SEGMENT_WIDTH_LOG2) - 1);
+        let shifted = u32::from(sum) + BORDER_TRANSITION_HALF_WIDTH;
+        let segment = (shifted >> CONVERTER_SEGMENT_WIDTH_LOG2) as usize;
+        let from_transition = shifted & ((1 << CONVERTER_SEGMENT_WIDTH_LOG2) - 1);
         let error_in = |segment: usize| i32::from(self.errors[segment % CONVERTER_SEGMENT_COUNT]);
         let mut error = error_in(segment.min(CONVERTER_SEGMENT_COUNT - 1));
-        if from_transition < 1 << BORDER_WIDTH_LOG2 {
+        if from_transition < 1 << BORDER_TRANSITION_WIDTH_LOG2 {
             let below = error_in(segment.saturating_sub(1));
-            error = below + (((error - below) * from_transition as i32) >> BORDER_WIDTH_LOG2);
+            error = below
+                + (((error - below) * from_transition as i32) >> BORDER_TRANSITION_WIDTH_LOG2);
         }
         let units = (u32::from(sum) << CorrectedSum::FRAC_NBITS).saturating_add_signed(-error);
         CorrectedSum::from_bits(units.min((1 << (u16::BITS + CorrectedSum::FRAC_NBITS)) - 1))

@@ -17,32 +17,33 @@ const CONTACT_END_FORCE: Force = Force::lit("0.01");
 /// Largest valid sum of 16 conversions of the force sensor: 4060 of 4095 counts a conversion. Above it the sensor's
 /// wire counts as shorted to the supply, and the station trips.
 const FORCE_SHORTED_ABOVE_SUM: u16 = 4060 * 16;
-/// Ticks of 1 ms in a row in which the force must be off zero (3 mN or more) before a contact begins, or below 10 mN
-/// before a contact ends.
+/// Ticks of 1 ms in a row, 2, in which the force must be off zero (3 mN or more) before a contact begins, or below 10
+/// mN before a contact ends. So one noisy tick neither begins nor ends a contact.
 const CONTACT_DEBOUNCE_TICKS: u32 = 2;
-/// Largest delay of a contact's detection that is counted, ticks of 1 ms from the tick in which the force left zero. A
-/// force that takes longer to rise does not show when the finger landed.
-const DETECTION_DELAY_MAX_TICKS: u32 = 32;
+/// Upper limit, ticks of 1 ms, of the counted delay from the tick in which the force left zero to the detection of a
+/// contact. The estimate of the finger dates the landing back by the counted delay. A force that takes longer to rise
+/// does not show when the finger landed.
+const COUNTED_DETECTION_DELAY_MAX_TICKS: u32 = 32;
 
 /// Largest difference, N, between the force sensor's tracked zero and the zero in the settings. Covers a sensor whose
 /// zero of 410 counts is off by 2 % (0.027 N), and a reference voltage that is off by 2 % (as much again). A smaller
 /// force that is present from switch-on is taken for the zero.
-const ZERO_CHANGE_MAX_N: f64 = 0.06;
+const FORCE_ZERO_CHANGE_MAX_N: f64 = 0.06;
 /// Ticks of 1 ms after switch-on over which the force sensor's zero is the plain mean of its sums; afterwards the zero
 /// is tracked by a low-pass filter. Only ticks count in which no finger touches and the signal is within 0.06 N of the
 /// zero in the settings.
-const INITIAL_ZERO_TICKS: i32 = 256;
+const INITIAL_ZERO_MEAN_TICKS: i32 = 256;
 /// Time constant, as a power of two of ticks of 1 ms (2^10, 1 s), of the low-pass filter by which the force sensor's
 /// zero tracks the signal while the force is below 3 mN.
-const FAST_ZERO_TRACKING_SHIFT: u32 = 10;
+const FAST_ZERO_TRACKING_TICKS_LOG2: u32 = 10;
 /// Time constant, as a power of two of ticks of 1 ms (2^14, 16 s), of the low-pass filter by which the force sensor's
 /// zero tracks the signal while the force is 3 mN or more but no contact is detected. Slow, because the force may be
 /// that of a finger.
-const SLOW_ZERO_TRACKING_SHIFT: u32 = 14;
+const SLOW_ZERO_TRACKING_TICKS_LOG2: u32 = 14;
 
-/// A sum of 16 conversions with 14 fractional bits, up to 131072. At this resolution a difference of one unit still
-/// moves the zero of the force sensor when it is tracked with the time constant of 2^14 ticks.
-type FixedSum = I18F14;
+/// A sum of 16 conversions of the force sensor with 14 fractional bits, range ±131072. At this resolution a difference
+/// of one unit of the sum still moves the sensor's zero when the zero is tracked with the time constant of 2^14 ticks.
+type FineForceSum = I18F14;
 
 /// Converts the sums of a linear force sensor to newtons. The sensor's output without force, its zero, is well above 0
 /// counts and may drift; it is tracked while no finger touches.
@@ -50,15 +51,17 @@ type FixedSum = I18F14;
 pub(super) struct ForceChannel {
     /// Sum of 16 conversions below which the sensor's wire counts as broken: half of the zero in the settings.
     broken_below: u16,
-    /// The sensor's tracked zero: sum of 16 conversions without force. Follows the signal slowly while no finger
-    /// touches.
-    zero: FixedSum,
-    /// Smallest sum of 16 conversions that the sensor's tracked zero follows: 0.06 N below the zero in the settings.
-    min_zero: FixedSum,
-    /// Largest sum of 16 conversions that the sensor's tracked zero follows: 0.06 N above the zero in the settings.
-    max_zero: FixedSum,
-    /// Number of ticks since switch-on of which the zero is the plain mean so far. At [`INITIAL_ZERO_TICKS`] the count
-    /// ends, and the zero is tracked by a low-pass filter.
+    /// The sensor's tracked zero: sum of 16 conversions without force. Starts at the zero in the settings, and follows
+    /// the signal while no finger touches: as the plain mean of the first 256 ticks, then through a low-pass filter.
+    zero: FineForceSum,
+    /// Smallest sum of 16 conversions that the sensor's tracked zero follows: 0.06 N below the zero in the settings. A
+    /// smaller sum leaves the zero unchanged.
+    min_zero: FineForceSum,
+    /// Largest sum of 16 conversions that the sensor's tracked zero follows: 0.06 N above the zero in the settings. A
+    /// larger sum leaves the zero unchanged.
+    max_zero: FineForceSum,
+    /// Number of ticks of 1 ms, 0 to 256, from which the zero has been computed as their plain mean so far. From
+    /// [`INITIAL_ZERO_MEAN_TICKS`] (256) on, this number stays, and the zero is tracked by a low-pass filter.
     initial_ticks: i32,
     /// Force, N, per unit of the sensor's sum of 16 conversions; nominally 1/4800 N.
     n_per_unit: Fraction,
@@ -70,8 +73,9 @@ impl ForceChannel {
     #[must_use]
     pub fn new(settings: &ForceSensor) -> Self {
         let zero = settings.zero_counts * 16.0;
-        let max_change = ZERO_CHANGE_MAX_N * settings.counts_per_n * 16.0;
-        let fine = |sum| FixedSum::from_bits(libm::ldexp(sum, FixedSum::FRAC_NBITS as i32) as i32);
+        let max_change = FORCE_ZERO_CHANGE_MAX_N * settings.counts_per_n * 16.0;
+        let fine =
+            |sum| FineForceSum::from_bits(libm::ldexp(sum, FineForceSum::FRAC_NBITS as i32) as i32);
         Self {
             broken_below: (zero / 2.0) as u16,
             zero: fine(zero),
@@ -89,8 +93,8 @@ impl ForceChannel {
         if sum < self.broken_below || sum > FORCE_SHORTED_ABOVE_SUM {
             return None;
         }
-        let change = FixedSum::from(sum).saturating_sub(self.zero);
-        let above_zero = change.max(FixedSum::ZERO);
+        let change = FineForceSum::from(sum).saturating_sub(self.zero);
+        let above_zero = change.max(FineForceSum::ZERO);
         Some(saturating_product(above_zero, self.n_per_unit))
     }
 
@@ -98,16 +102,16 @@ impl ForceChannel {
     /// times as their plain mean, later with a time constant of 1 s, or of 16 s if the force `is_off_zero`. Ignores a
     /// sum that is more than 0.06 N from the zero in the settings.
     pub fn track_zero(&mut self, sum: u16, is_off_zero: bool) {
-        let sum = FixedSum::from(sum);
+        let sum = FineForceSum::from(sum);
         if !(self.min_zero..=self.max_zero).contains(&sum) {
             return;
         }
         let error = sum.saturating_sub(self.zero);
-        self.zero += if self.initial_ticks < INITIAL_ZERO_TICKS {
+        self.zero += if self.initial_ticks < INITIAL_ZERO_MEAN_TICKS {
             self.initial_ticks += 1;
             error.checked_div_int(self.initial_ticks).unwrap_or(error)
         } else {
-            let shifts = [FAST_ZERO_TRACKING_SHIFT, SLOW_ZERO_TRACKING_SHIFT];
+            let shifts = [FAST_ZERO_TRACKING_TICKS_LOG2, SLOW_ZERO_TRACKING_TICKS_LOG2];
             error >> shifts[usize::from(is_off_zero)]
         };
     }
@@ -119,14 +123,15 @@ impl ForceChannel {
 pub struct ContactDetector {
     touching: bool,
     /// Number of ticks of 1 ms in a row in which the force has been off zero (3 mN or more), up to
-    /// [`DETECTION_DELAY_MAX_TICKS`]. During a contact it keeps its value from the contact's detection.
+    /// [`COUNTED_DETECTION_DELAY_MAX_TICKS`]. During a contact it keeps its value from the contact's detection.
     off_zero_ticks: u32,
     /// Number of ticks of 1 ms in a row, during a contact, in which the force has been below [`CONTACT_END_FORCE`].
     release_ticks: u32,
 }
 
 impl ContactDetector {
-    /// Decides from the force of this tick, N, whether a finger touches the display. To be called once a tick.
+    /// Decides from the force of this tick, N, whether a finger touches the display. To be called in each tick with
+    /// valid readings; other ticks do not count.
     ///
     /// A contact begins at 20 mN or more, at the earliest in the second tick in a row with 3 mN or more. It ends in the
     /// second tick in a row below 10 mN. So one noisy tick neither begins nor ends a contact.
@@ -139,7 +144,7 @@ impl ContactDetector {
             }
         } else {
             self.off_zero_ticks = if force >= OFF_ZERO_FORCE_MIN {
-                (self.off_zero_ticks + 1).min(DETECTION_DELAY_MAX_TICKS)
+                (self.off_zero_ticks + 1).min(COUNTED_DETECTION_DELAY_MAX_TICKS)
             } else {
                 0
             };
@@ -153,8 +158,9 @@ impl ContactDetector {
         self.touching
     }
 
-    /// Whether the force of the last tick was off zero, 3 mN or more; always true during a contact. The zero of the
-    /// force sensor is then tracked with a time constant of 16 s instead of 1 s, and not at all during a contact.
+    /// Whether the force of the last call of [`Self::update_contact`] was off zero, 3 mN or more. Always true during a
+    /// contact; false in the call that ends a contact. While it is true without a contact, the force may be that of a
+    /// finger, so the zero of the force sensor is tracked with a time constant of 16 s instead of 1 s.
     #[must_use]
     pub const fn is_off_zero(&self) -> bool {
         self.off_zero_ticks > 0
@@ -211,7 +217,7 @@ mod tests {
     #[test]
     fn the_zero_is_found_at_switch_on_and_tracks_a_drift() {
         let mut channel = ForceChannel::new(&Settings::default().force);
-        for _ in 0..INITIAL_ZERO_TICKS {
+        for _ in 0..INITIAL_ZERO_MEAN_TICKS {
             channel.track_zero(sum(418.0), true);
         }
         assert_eq!(channel.force_of_sum(sum(418.0)), Some(Force::ZERO));
@@ -232,7 +238,7 @@ mod tests {
     #[test]
     fn a_small_force_of_2_s_moves_the_zero_by_an_eighth_of_it() {
         let mut channel = ForceChannel::new(&Settings::default().force);
-        for _ in 0..INITIAL_ZERO_TICKS {
+        for _ in 0..INITIAL_ZERO_MEAN_TICKS {
             channel.track_zero(sum(410.0), false);
         }
         for _ in 0..2000 {

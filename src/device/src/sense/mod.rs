@@ -167,12 +167,13 @@ impl Readings {
     };
 }
 
-/// Number of slow thermistors, 2: skin and room. Their temperatures change by less than 1 mK in two ticks, so each tick
-/// saves time by converting the sum of only one of them to °C, in turn. Every tick checks the wires of both.
+/// Number of slow thermistors, 2: skin and room. Their temperatures change by less than 1 mK in two ticks of 1 ms. To
+/// save time, each tick converts the sum of only one of them to °C, in turn, after one tick has converted both. Every
+/// tick checks the wires of both.
 const SLOW_THERMISTOR_COUNT: usize = 2;
 
-/// Converts one finger's [`Samples`] to [`Readings`] with the finger's calibration. Stores the zero of the force sensor
-/// and the last temperatures of skin and room.
+/// Converts one finger's [`Samples`] of each tick to [`Readings`] with the finger's calibration. Stores the zero of the
+/// force sensor, which it tracks while no finger touches, and the last temperatures of skin and room.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Sensors {
     thermistor: ThermistorTable,
@@ -180,11 +181,13 @@ pub struct Sensors {
     force: ForceChannel,
     /// Current of the Peltier module, A, per unit of the current mirror's sum of 16 conversions; nominally 1/6400 A.
     current_per_unit: Current,
-    /// Last temperatures of skin and room, °C; `None` until one tick has found both thermistors connected (neither open
-    /// nor shorted).
+    /// Last converted temperatures of skin and room, °C, in this order. Stored because each tick converts only one of
+    /// the two, to save computing time; the other one keeps its last value, and its reading is this value while its
+    /// wire is intact. `None` until both thermistors were connected in the same tick; until then each tick converts
+    /// both.
     slow_temperatures: Option<[Celsius; SLOW_THERMISTOR_COUNT]>,
-    /// Selects the thermistor whose sum the next tick converts to °C: the skin's if this number is even, the room's if
-    /// it is odd.
+    /// Selects the slow thermistor that the next tick converts to °C: the skin's if this number is even, the room's if
+    /// it is odd. Not used while `slow_temperatures` is `None`, because each tick then converts both.
     next_slow: usize,
 }
 
@@ -204,8 +207,9 @@ impl Sensors {
         }
     }
 
-    /// Moves the stored zero of the force sensor towards this tick's force signal, unless a finger touches the display.
-    /// To be called once a tick, after `contact` has been updated by this tick's force.
+    /// Moves the stored zero of the force sensor towards this tick's force signal, unless a finger touches the display
+    /// or the signal is more than 0.06 N from the zero in the settings. To be called in each tick with valid readings,
+    /// after `contact` has been updated by this tick's force.
     pub fn track_force_zero(&mut self, samples: &Samples, contact: &ContactDetector) {
         if !contact.touching() {
             self.force.track_zero(samples.force, contact.is_off_zero());
@@ -218,9 +222,10 @@ impl Sensors {
         self.calibration = *calibration;
     }
 
-    /// Converts the samples of one tick to °C, N and A. Once one tick has given a temperature of both skin and room,
-    /// each tick converts only one of these two, in turn, and the other one keeps its last temperature. Each of them is
-    /// `Err` in every tick in which its own wire is open or shorted.
+    /// Converts the samples of one tick to °C, N and A. To save computing time, each tick converts only one of skin and
+    /// room, in turn, and gives the last temperature of the other one, because both change slowly; until one tick has
+    /// found both thermistors connected, each tick converts both. A thermistor's reading is `Err` in every tick in
+    /// which its own wire is open or shorted.
     #[must_use]
     pub fn convert_samples(&mut self, samples: &Samples) -> Readings {
         let CalibrationTables {

@@ -21,7 +21,8 @@ pub(super) const fn is_open_or_short_code(code: u16) -> bool {
 /// Checks that a thermistor's sum of 16 conversions is that of a connected thermistor: 40 to 4060 counts a conversion.
 ///
 /// # Errors
-/// The thermistor is shorted (sum too small) or open (sum too large); the station then trips.
+/// [`ThermistorFault::Short`] if `sum` is below this range, [`ThermistorFault::Open`] if it is above; the station then
+/// trips.
 pub(super) const fn check_wiring(sum: u16) -> Result<(), ThermistorFault> {
     match sum {
         ..SHORT_BELOW_SUM => Err(ThermistorFault::Short),
@@ -80,7 +81,8 @@ impl ThermistorTable {
     /// `the_table_inverts_the_beta_equation_within_0_1_mk`).
     ///
     /// # Errors
-    /// `sum` is that of an open or shorted thermistor.
+    /// [`ThermistorFault::Short`] if `sum` is below 40 counts a conversion, [`ThermistorFault::Open`] if it is above
+    /// 4060 counts a conversion.
     pub fn temperature_of_sum(
         &self,
         sum: u16,

@@ -51,7 +51,7 @@ impl Station {
             Command::Start => self.execute_start()?,
             // Never refused: the bridge is off afterwards.
             Command::Abort => {
-                self.change_state(Event::Abort);
+                self.apply_event(Event::Abort);
             }
             Command::Clear => self.execute_clear()?,
             Command::Tune => self.execute_tune()?,
@@ -80,7 +80,7 @@ impl Station {
     fn status(&self) -> Status {
         let reference = self.last.reference;
         Status {
-            state: self.state.name(),
+            state: self.state.state_name(),
             material: self.object.material.map(|(name, _)| name),
             object: self.object.temperature,
             mode: self.object.mode,
@@ -95,8 +95,9 @@ impl Station {
         self.reference.restart_contact(&mut self.estimator.finger);
     }
 
-    /// Refuses a command that changes parameters or calibration while an object is presented, because the finger would
-    /// feel the change.
+    /// Returns [`Refused::Presenting`] while an object is presented. For the commands that change parameters or
+    /// calibration, because the finger would feel the change, and for the query of a thermistor's average, which the
+    /// finger would disturb.
     fn require_no_object_presented(&self) -> Result<(), Refused> {
         if self.state.is_presenting_object() {
             Err(Refused::Presenting)
@@ -150,7 +151,7 @@ impl Station {
             State::Off => self.estimator.plate.invalidate(),
             _ => {}
         }
-        self.change_state(Event::Arm);
+        self.apply_event(Event::Arm);
         self.identified.outcome = None;
         Ok(())
     }
@@ -166,7 +167,7 @@ impl Station {
         }
         self.restart_contact();
         self.averages = ThermistorAverages::default();
-        self.change_state(Event::Start);
+        self.apply_event(Event::Start);
         Ok(())
     }
 
@@ -177,7 +178,7 @@ impl Station {
         if let Some(fault) = self.latch.present_fault() {
             return Err(Refused::StillFaulty(fault));
         }
-        self.change_state(Event::Clear);
+        self.apply_event(Event::Clear);
         match self.latch.take_pending_fault() {
             None => Ok(()),
             Some(fault) => {

@@ -57,11 +57,11 @@ pub struct Station {
     tick: u32,
     /// Ticks of 1 ms from one line of telemetry to the next; 0 while telemetry is off.
     telemetry_ticks: u32,
-    last: LastTick,
+    last: LastTickValues,
 }
 
-/// Normal equations and outcome of the last identification of the tile. The host can request them also after the
-/// station has left that task, until the host sends `arm`, `hold` or `tune`.
+/// Normal equations and outcome of the last identification of the tile. The host can request them, unless the station
+/// is tripped, also after the station has left that task, until the host sends `arm`, `hold` or `tune`.
 #[derive(Clone, Debug, Default)]
 struct IdentificationResult {
     equations: NormalEquations,
@@ -70,10 +70,11 @@ struct IdentificationResult {
     outcome: Option<Result<(), AbortReason>>,
 }
 
-/// Readings, reference and demanded current of the last tick. Telemetry and status report them, and the fault detectors
-/// compare the next tick's readings with the demanded current, to which those readings respond.
+/// Readings, reference (set-point and target; `None` if none was followed) and demanded current, A, of the last tick.
+/// Telemetry reports readings, set-point and current, status reports the set-point, `hold` and `tune` start from the
+/// readings, and the fault detectors check the readings of the next tick against set-point and current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct LastTick {
+struct LastTickValues {
     readings: Readings,
     reference: Option<Reference>,
     demanded: Current,
@@ -125,7 +126,7 @@ impl Station {
             identified: IdentificationResult::default(),
             tick: 0,
             telemetry_ticks: 0,
-            last: LastTick {
+            last: LastTickValues {
                 readings: Readings::ALL_OPEN,
                 reference: None,
                 demanded: Current::ZERO,
@@ -152,7 +153,7 @@ impl Station {
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples) -> BoardOutputs {
         self.tick = self.tick.wrapping_add(1);
-        let readings = self.read_sensors(samples);
+        let readings = self.convert_and_average_samples(samples);
         let valid = self.valid_readings_or_fault(samples, &readings);
         let (demand, reference) = match valid {
             Ok(valid) => {
@@ -173,7 +174,7 @@ impl Station {
         };
         let demand = self.trip_on_fault(demand, &readings);
         let (outputs, demanded) = self.apply_demand(demand);
-        self.last = LastTick {
+        self.last = LastTickValues {
             readings,
             reference,
             demanded,
@@ -184,7 +185,7 @@ impl Station {
     /// Converts the tick's samples to °C, N and A. Unless an object is presented, also adds the thermistors' samples to
     /// the half-second means from which calibrations are computed.
     #[inline(never)]
-    fn read_sensors(&mut self, samples: &Samples) -> Readings {
+    fn convert_and_average_samples(&mut self, samples: &Samples) -> Readings {
         // Calibrations are refused while an object is presented.
         if !self.state.is_presenting_object() {
             self.averages.add_tick(&samples.thermistor_sums());
@@ -250,9 +251,9 @@ impl Station {
         }
     }
 
-    /// Detects whether a finger touches, and changes the state accordingly; tracks the force sensor's zero while no
-    /// finger touches; corrects the estimates of plate and finger by this tick's readings. Returns the estimates from
-    /// before the correction.
+    /// Detects whether a finger touches, and changes from preset to contact or back accordingly; tracks the force
+    /// sensor's zero while no finger touches; corrects the estimates of plate and finger by this tick's readings.
+    /// Returns the plate's temperatures as they were estimated before this correction.
     fn update_estimates(
         &mut self,
         samples: &Samples,
@@ -262,7 +263,7 @@ impl Station {
         self.contact.update_contact(valid.force);
         self.sensors.track_force_zero(samples, &self.contact);
         let touching = self.contact.touching();
-        self.change_state(if touching { Event::Land } else { Event::Lift });
+        self.apply_event(if touching { Event::Land } else { Event::Lift });
         let landed_ticks = if previously_touching {
             0
         } else {
@@ -284,7 +285,7 @@ impl Station {
             State::Armed(ArmedTask::Hold(hold)) => hold.next_setpoint().celsius(),
             State::Armed(ArmedTask::Identify(tile)) => tile.operating_point().celsius(),
             State::Preset | State::Contact => {
-                let scene = self.object.scene()?;
+                let scene = self.object.reference_input()?;
                 let surface = estimate.previous_surface;
                 let follow_skin = self.controller.law() == Law::Model;
                 return self
@@ -295,8 +296,9 @@ impl Station {
         Some(Reference::at(setpoint))
     }
 
-    /// Chooses what the bridge must do in this tick: in the self-test what the self-test demands; otherwise off if
-    /// there is no `reference`, else the current of an identification of the tile, else that of the control law.
+    /// Chooses what the bridge must do in this tick. In the self-test: what the self-test demands, and off in the tick
+    /// in which the self-test passes. Else off if `reference` is `None`, as in off, ready and tripped. Else the current
+    /// of an identification of the tile or, if none demands a current, that of the control law.
     ///
     /// # Errors
     /// The fault that the self-test has found in this tick.
@@ -321,7 +323,7 @@ impl Station {
                     drive(current)
                 }
                 SelfTestStep::Passed => {
-                    self.change_state(Event::Pass);
+                    self.apply_event(Event::Pass);
                     BridgeDemand::BRIDGE_OFF
                 }
             });
@@ -329,7 +331,7 @@ impl Station {
         let Some(reference) = reference else {
             return Ok(BridgeDemand::BRIDGE_OFF);
         };
-        let current = match self.identification_current(valid) {
+        let current = match self.step_identification(valid) {
             Some(current) => {
                 self.controller.track_current(current);
                 current
@@ -342,10 +344,11 @@ impl Station {
         Ok(drive(current))
     }
 
-    /// Current that an identification of the tile demands in this tick, A (positive cools); a complete identification
-    /// still demands the current that holds its operating point. `None` in every other state or task, and if the
-    /// identification ends early in this tick; the task is then neutral, and the control law chooses the current.
-    fn identification_current(&mut self, valid: &ValidReadings) -> Option<Current> {
+    /// Runs one tick of an identification of the tile, and returns the current that it demands, A (positive cools); a
+    /// complete identification demands the current that holds its operating point. `None` in every other state or task,
+    /// and in the tick of an early end (except for [`AbortReason::NotSettled`]): then the control law chooses the
+    /// current. An early end changes the armed task to neutral.
+    fn step_identification(&mut self, valid: &ValidReadings) -> Option<Current> {
         let State::Armed(ArmedTask::Identify(tile)) = &mut self.state else {
             return None;
         };
@@ -358,9 +361,10 @@ impl Station {
         current
     }
 
-    /// Returns the tick's demand. If the tick has found a fault instead, trips the station, with the tick's readings in
-    /// the trip's cause, and returns the demand for a bridge that is off. In both cases stores in the latch which fault
-    /// is present now, because `clear` is refused while a fault is present.
+    /// Returns the tick's demand. If the tick has found a fault instead, returns the demand for a bridge that is off
+    /// and, unless the station is already tripped, trips it, with the tick's readings in the trip's cause. In both
+    /// cases the fault latch stores which fault is present now, if any, because `clear` is refused while a fault is
+    /// present.
     fn trip_on_fault(
         &mut self,
         demand: Result<BridgeDemand, Fault>,
@@ -381,8 +385,8 @@ impl Station {
 
     /// Converts the demand to the board's outputs, and advances the plate's model by one tick under the demanded
     /// current. Returns the outputs, and the demanded current, A, clamped to -6 to 6 A; zero if the bridge is off. A
-    /// bridge that is off also interrupts an identification of the tile, and makes the control laws start from zero
-    /// current.
+    /// bridge that is off also interrupts an identification of the tile, and makes the laws `pi` and `pi-10hz` start
+    /// from zero current; the law `model` continues from the plate's observer.
     #[inline(always)]
     fn apply_demand(&mut self, demand: BridgeDemand) -> (BoardOutputs, Current) {
         match demand {
@@ -429,10 +433,9 @@ impl Station {
         }
     }
 
-    /// Moves the station to the state that [`State::state_after`] gives for `event`, and interrupts an identification
-    /// of the tile that is still running. Returns false, and does nothing, if the event has no effect in the present
-    /// state.
-    fn change_state(&mut self, event: Event) -> bool {
+    /// Moves the station to the state that [`State::state_after`] gives for `event`, and ends an identification of the
+    /// tile that is still running. Returns false, and does nothing, if the event has no effect in the present state.
+    fn apply_event(&mut self, event: Event) -> bool {
         let Some(state) = self.state.state_after(event) else {
             return false;
         };
@@ -442,8 +445,8 @@ impl Station {
     }
 
     /// Trips the station by a fault that no reading shows and that the board has found outside of the control tick,
-    /// such as an overrun stack. If another fault has tripped the station before, that one stays latched; the first
-    /// fault that is raised meanwhile trips the station again when the latched one is cleared.
+    /// such as an overrun stack. If a different fault has already tripped the station, that fault stays latched; this
+    /// one is stored, unless one is stored already, and trips the station when `clear` has cleared the latched one.
     pub fn raise_external_fault(&mut self, fault: Fault) {
         self.latch
             .raise_external_fault(fault, self.state.latched_fault());
@@ -457,10 +460,11 @@ impl Station {
         });
     }
 
-    /// Trips the station with this cause; the bridge is off from the next tick on. Has no effect on a station that is
-    /// tripped already, so that the first cause stays.
+    /// Trips the station with this cause. The bridge is off from the tick on that has detected the fault or, if the
+    /// fault was found between two ticks, from the next tick on. Has no effect on a station that is tripped already, so
+    /// that the first cause stays.
     pub fn trip(&mut self, cause: TripCause) {
-        if self.change_state(Event::Trip(cause.fault)) {
+        if self.apply_event(Event::Trip(cause.fault)) {
             self.latch.latch_cause(cause, self.tick);
         }
     }
@@ -468,7 +472,7 @@ impl Station {
     /// The station's present state, without its internal data; with the fault if the station is tripped.
     #[must_use]
     pub const fn state(&self) -> StateName {
-        self.state.name()
+        self.state.state_name()
     }
 
     /// Whether the station is tripped, so that its bridge stays off until the host sends `clear`.
@@ -477,8 +481,8 @@ impl Station {
         self.state.latched_fault().is_some()
     }
 
-    /// The station's fault latch. The device compares the latches of all fingers to find the cause of the earliest
-    /// trip.
+    /// The station's fault latch, which stores the cause and the tick of the last trip. The device compares the latches
+    /// of all fingers to find the cause of the earliest trip.
     #[must_use]
     pub const fn fault_latch(&self) -> &FaultLatch {
         &self.latch
@@ -510,14 +514,14 @@ impl Station {
         if self.telemetry_ticks == 0 || !self.tick.is_multiple_of(self.telemetry_ticks) {
             return None;
         }
-        let LastTick {
+        let LastTickValues {
             readings,
             reference,
             demanded,
         } = &self.last;
         Some(Telemetry {
             tick: self.tick,
-            state: self.state.name(),
+            state: self.state.state_name(),
             setpoint: reference.map(|reference| reference.setpoint.celsius()),
             limited: reference.is_some_and(|reference| reference.limited),
             display: readings.display.ok(),

@@ -48,10 +48,10 @@ impl ChosenObject {
         chosen.or(self.default_pair.as_ref())
     }
 
-    /// Input of the reference generator in the states preset and contact: contact constants, object temperature and
-    /// contact model. `None` before a material is chosen.
+    /// Input of the reference generator, which computes set-point and target in the states preset and contact: contact
+    /// constants, object temperature and contact model. `None` before a material is chosen.
     #[must_use]
-    pub fn scene(&self) -> Option<Scene<'_>> {
+    pub fn reference_input(&self) -> Option<Scene<'_>> {
         let (_, pair) = self.material.as_ref()?;
         Some(Scene {
             pair,

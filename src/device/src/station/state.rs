@@ -8,8 +8,8 @@ use crate::safety::{Fault, SelfTest};
 /// State of one finger's station, with the data that exist only in that state.
 #[derive(Clone, Debug)]
 pub enum State {
-    /// The bridge is off: after power-up, after `clear`, or after `abort` of the self-test. `arm` leads to the
-    /// self-test.
+    /// The bridge is off: after a start of the program without a trip, after `clear`, or after `abort` of the
+    /// self-test. `arm` leads to the self-test.
     Off,
     /// The self-test runs: the comparator is tested with the bridge off, then 1 A cools and 1 A warms the display.
     /// Leads to armed if all checks pass, else to tripped.
@@ -34,12 +34,14 @@ pub enum State {
 #[derive(Clone, Debug)]
 pub enum ArmedTask {
     /// Stay at the temperature of the finger's skin, so that the finger feels no object. That temperature is the
-    /// filtered reading of the skin's thermistor, kept constant from landing until 2 s after lifting.
+    /// filtered reading of the skin's thermistor, kept constant from landing until 2 s after lifting, and for 2 s after
+    /// the estimates have started or restarted.
     Neutral,
     /// Move the set-point by 1 K/s to a temperature that the host has chosen, and stay there.
     Hold(TemperatureHold),
-    /// Identify the tile: move to an operating point near the sink's temperature, apply current pulses there, and stay
-    /// until a command ends this task or uses its result.
+    /// Identify the tile: move to an operating point near the sink's temperature and apply current pulses there. Then
+    /// stay at the operating point until a command, such as `arm`, or a fault ends this task. An identification that
+    /// ends early changes the task to neutral.
     Identify(Identification),
 }
 
@@ -54,9 +56,9 @@ pub enum Event {
     Pass,
     /// The host has sent `start` in the state armed, and a material is chosen: leads to preset.
     Start,
-    /// A finger touches the display; reported in every tick of a contact. Leads from preset to contact.
+    /// A finger touches the display; reported in every fault-free tick of a contact. Leads from preset to contact.
     Land,
-    /// No finger touches the display; reported in every tick without a contact. Leads from contact to preset.
+    /// No finger touches the display; reported in every fault-free tick without contact. Leads from contact to preset.
     Lift,
     /// The host has sent `abort`, which switches the bridge off: leads from the self-test to off, and from armed,
     /// preset and contact to ready. No effect in off, ready and tripped.
@@ -72,7 +74,7 @@ impl State {
     /// The state without its internal data, as status and telemetry report it; with the fault if the station is
     /// tripped.
     #[must_use]
-    pub const fn name(&self) -> StateName {
+    pub const fn state_name(&self) -> StateName {
         match self {
             Self::Off => StateName::Off,
             Self::SelfTest(_) => StateName::SelfTest,

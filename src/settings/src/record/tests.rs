@@ -60,14 +60,14 @@ proptest! {
         // Bytes with a valid checksum, then with a valid header too.
         let _any_content = decode::<1>(&with_checksum(&bytes));
         let mut content = std::vec![1, 0, 1, 1];
-        content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { FINGER_BYTES }));
+        content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { BYTES_PER_FINGER }));
         if let Ok(Some([stored])) = decode::<1>(&with_checksum(&content)) {
             prop_assert_eq!(stored.out_of_range(), None);
         }
     }
 
     #[test]
-    fn the_checksum_detects_any_flipped_bit(stored in stored_settings(), bit in 0..8 * (HEADER_BYTES + FINGER_BYTES + CHECKSUM_BYTES)) {
+    fn the_checksum_detects_any_flipped_bit(stored in stored_settings(), bit in 0..8 * (HEADER_BYTES + BYTES_PER_FINGER + CHECKSUM_BYTES)) {
         let mut bytes = encode(Some(&[stored]));
         bytes[bit / 8] ^= 1 << (bit % 8);
         prop_assert_eq!(decode::<1>(&bytes), Err(RecordError::Checksum));
