@@ -19,20 +19,21 @@
 //! | [`line_queue`] | the queue of received lines, between the interrupt and the task that answers |
 //! | [`task_liveness`] | feeds the independent watchdog only while every task runs |
 //!
-//! The contact model behind the reference is the crate [`contact_model`]. The tasks are in `src/main.rs`, pins, clocks and
-//! peripherals in `src/board/`. The same library runs on the microcontroller, in the emulated
-//! microcontroller and natively in the simulator, bit for bit. Nobody has run it on silicon yet.
+//! The contact model behind the reference is the crate [`contact_model`]. The tasks are in
+//! `src/main.rs`, pins, clocks and peripherals in `src/board/`. The same library runs on the
+//! microcontroller, in the emulated microcontroller and natively in the simulator, bit for bit.
+//! Nobody has run it on silicon yet.
 //!
 //! A station that is off drives nothing:
 //!
 //! ```
 //! use thermal_display::device::drive::Drive;
 //! use thermal_display::device::sense::Samples;
-//! use thermal_display::device::{Device, Finger};
+//! use thermal_display::device::{Device, FingerIndex};
 //! use thermal_display::settings::Settings;
 //!
 //! let mut device = Device::<1>::new(&Settings::default());
-//! let outputs = device.step(Finger::FIRST, &Samples::default());
+//! let outputs = device.step(FingerIndex::FIRST, &Samples::default());
 //! assert_eq!(outputs.drive, Drive::Off);
 //! ```
 #![no_std]

@@ -12,7 +12,7 @@ use thermal_protocol::{Line, LineError};
 
 /// Number of received lines that can wait for their answers. A line beyond that is refused with
 /// [`LineError::QueueFull`].
-pub const QUEUE_CAPACITY: usize = 4;
+pub const LINE_QUEUE_CAPACITY: usize = 4;
 
 /// A line from the host, or the reason why the received bytes form no valid line.
 type ReceivedLine = Result<Line, LineError>;
@@ -22,7 +22,7 @@ type ReceivedLine = Result<Line, LineError>;
 #[derive(Default)]
 pub struct LineQueue {
     // The queue always keeps one slot free, to distinguish full from empty.
-    lines: Queue<ReceivedLine, { QUEUE_CAPACITY + 1 }>,
+    lines: Queue<ReceivedLine, { LINE_QUEUE_CAPACITY + 1 }>,
     refused: AtomicU32,
 }
 

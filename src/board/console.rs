@@ -3,7 +3,7 @@
 use heapless::spsc::Consumer;
 use thermal_display::commissioning::StorageOrder;
 use thermal_display::device::Telemetry;
-use thermal_display::device::command::Addressed;
+use thermal_display::device::command::WithFingerIndex;
 use thermal_display::line_queue::LineConsumer;
 use thermal_display::protocol::{CommandHandler, Error, ExecuteOnStations, Reply, telemetry_line};
 
@@ -13,7 +13,7 @@ use super::{FINGERS, Outbox, restart_to_save};
 /// the host.
 pub struct Console {
     pub lines: LineConsumer<'static>,
-    pub telemetry: Consumer<'static, Addressed<Telemetry>>,
+    pub telemetry: Consumer<'static, WithFingerIndex<Telemetry>>,
     pub outbox: Outbox,
     pub handler: &'static mut CommandHandler<FINGERS>,
     /// The answer to `save` or `forget` after the restart that either of them requests: whether the
@@ -50,10 +50,10 @@ impl Console {
                 }
             } else if let Some(line) = self.lines.dequeue() {
                 let answer = line
-                    .map_err(|error| Addressed::from_whole_device(Error::from(error)))
+                    .map_err(|error| WithFingerIndex::from_whole_device(Error::from(error)))
                     .and_then(|line| self.handler.answer(&line, &mut execute));
                 match answer {
-                    Ok(Addressed {
+                    Ok(WithFingerIndex {
                         content: Reply::Restart(order),
                         ..
                     }) => self.storage_order = Some(order),

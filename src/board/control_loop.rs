@@ -3,7 +3,7 @@
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use heapless::spsc::Producer;
-use thermal_display::device::command::Addressed;
+use thermal_display::device::command::WithFingerIndex;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, Telemetry};
@@ -19,7 +19,7 @@ pub struct ControlLoop {
     pub sampler: Sampler,
     pub stages: [PowerStage; FINGERS],
     pub trip_cause_recorder: TripCauseRecorder,
-    pub telemetry: Producer<'static, Addressed<Telemetry>>,
+    pub telemetry: Producer<'static, WithFingerIndex<Telemetry>>,
     pub window_watchdog: WindowWatchdog,
     /// Whether the 8 MHz clock of the debug probe was stable at the start. If not, the ticks come
     /// from the internal oscillator, whose tolerance of 1 % makes their period inaccurate, so every

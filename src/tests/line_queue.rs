@@ -1,12 +1,12 @@
-//! The line_queue yields one answer for each line, in the order of the lines, also when it overflows.
+//! The queue yields one answer for each line, in the order of the lines, also when it overflows.
 
 use std::format;
 use std::vec::Vec;
 
-use crate::line_queue::{self, LineQueue, QUEUE_CAPACITY};
+use crate::line_queue::{self, LINE_QUEUE_CAPACITY, LineQueue};
 use crate::protocol::{Line, LineError};
 
-/// Puts a numbered line into the line_queue and appends it to `sent`.
+/// Puts a numbered line into the queue and appends it to `sent`.
 fn put(inlet: &mut line_queue::LineProducer<'_>, sent: &mut Vec<Line>) {
     let line = Line::try_from(format!("line {}", sent.len()).as_str()).expect("short");
     sent.push(line.clone());
@@ -18,10 +18,10 @@ fn lines_beyond_the_depth_are_taken_as_refused() {
     let mut line_queue = LineQueue::new();
     let (mut inlet, mut outlet) = line_queue.split();
     let mut sent = Vec::new();
-    for _ in 0..QUEUE_CAPACITY + 3 {
+    for _ in 0..LINE_QUEUE_CAPACITY + 3 {
         put(&mut inlet, &mut sent);
     }
-    for line in &sent[..QUEUE_CAPACITY] {
+    for line in &sent[..LINE_QUEUE_CAPACITY] {
         assert_eq!(outlet.dequeue(), Some(Ok(line.clone())));
     }
     for _ in 0..3 {

@@ -10,7 +10,7 @@ use contact_model::fixed_point::{
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use thermal_display::device::estimate::FingerEstimator;
 use thermal_display::device::reference::{
-    self, ContactModel, INTERPOLATION_TOLERANCE, ReferenceGenerator,
+    self, ContactModel, ReferenceGenerator, SETPOINT_INTERPOLATION_TOLERANCE,
 };
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
@@ -91,8 +91,13 @@ impl Station {
             let object = &MATERIALS[FINGERS[finger]].1;
             let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
             let contact = pair.at_pressure(log2_relative_pressure(force));
-            let (chords, _) =
-                ChordInterpolation::new(&contact, skin, object_c, 0, INTERPOLATION_TOLERANCE);
+            let (chords, _) = ChordInterpolation::new(
+                &contact,
+                skin,
+                object_c,
+                0,
+                SETPOINT_INTERPOLATION_TOLERANCE,
+            );
             Ok(Finger {
                 pair,
                 chords,
@@ -184,7 +189,7 @@ fn reference_step(station: &mut Station, force: Force) -> u32 {
     station
         .estimator
         .update_by_readings(station.skin, station.object, Some(force), 1);
-    let scene = reference::Scene {
+    let scene = reference::PresentedObject {
         pair: &station.fixed[0].pair,
         object: Some(station.object),
         mode: ContactModel::ContactResistance,

@@ -11,7 +11,7 @@ use cortex_m_rt::{ExceptionFrame, exception};
 
 use thermal_display::device::safety::{Fault, TripCause};
 
-use super::{trip_cause_recorder, watchdog, wiring};
+use super::{independent_watchdog, trip_cause_recorder, wiring};
 
 /// Disables interrupts, turns all bridges off, and stores `fault` in RAM, unless an earlier cause
 /// is stored there, as the cause by which the next start trips all fingers.
@@ -32,7 +32,7 @@ fn is_first_error() -> bool {
 /// run, the independent watchdog does so within 188 ms, or within a second if the start-up has not
 /// set its period yet. The processor stays awake, so that the debug probe can read the log.
 fn wait_for_watchdog() -> ! {
-    watchdog::start_counter();
+    independent_watchdog::start_counter();
     loop {
         cortex_m::asm::nop();
     }

@@ -25,19 +25,19 @@ mod clock_monitor;
 mod fatal_errors;
 #[cfg(feature = "five-fingers")]
 mod five_fingers;
-mod flash;
+mod independent_watchdog;
 mod log;
 #[cfg(not(feature = "five-fingers"))]
 mod one_finger;
-mod reset;
+mod reset_cause;
 mod sample_error;
 mod sampler;
 mod saved_dose;
 mod serial;
+mod settings_flash;
 mod settings_storage;
-mod stack;
+mod stack_guard;
 mod trip_cause_recorder;
-mod watchdog;
 mod window_watchdog;
 
 use cortex_m::peripheral::SYST;
@@ -45,15 +45,16 @@ use heapless::spsc::Queue;
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use thermal_display::device::command::Addressed;
+use thermal_display::device::command::WithFingerIndex;
 use thermal_display::device::safety::{Fault, TripCause};
-use thermal_display::device::{Device, Finger, Telemetry};
+use thermal_display::device::{Device, FingerIndex, Telemetry};
 use thermal_display::line_queue::LineQueue;
 use thermal_display::protocol::{CommandHandler, Error, Reply, StorageFailureText};
 use thermal_display::settings::Settings;
 
 #[cfg(feature = "five-fingers")]
 use five_fingers as wiring;
+pub use independent_watchdog::IndependentWatchdog;
 #[cfg(not(feature = "five-fingers"))]
 use one_finger as wiring;
 pub use sample_error::SampleError;
@@ -61,16 +62,15 @@ pub use sampler::{SampleTrigger, Sampler};
 pub use saved_dose::save_dose;
 pub use serial::{CompletedLineKind, Outbox, Receiver, Transmitter};
 pub use settings_storage::restart_to_save;
-pub use stack::stack_is_overrun;
+pub use stack_guard::stack_is_overrun;
 pub use stm32f4xx_hal::pac;
 pub use trip_cause_recorder::TripCauseRecorder;
-pub use watchdog::IndependentWatchdog;
 pub use window_watchdog::WindowWatchdog;
 pub use wiring::{FINGERS, PowerStage};
 
 use super::{Console, ControlLoop};
 use clock_monitor::ClockMonitor;
-use reset::ResetCause;
+use reset_cause::ResetCause;
 use settings_storage::SaveAndLoadResult;
 
 /// Capacity of the telemetry queue, in lines: those of eight ticks of 1 ms, one line a tick for
@@ -85,7 +85,7 @@ pub struct StaticMemory {
     frames: [serial::FrameBuffer; serial::FRAME_COUNT],
     frame_queues: serial::FrameQueues,
     line_queue: LineQueue,
-    telemetry: Queue<Addressed<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
+    telemetry: Queue<WithFingerIndex<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
     // Created in place, because moving it while sampling runs would delay the first tick.
     handler: Option<CommandHandler<FINGERS>>,
 }
@@ -111,8 +111,8 @@ impl StaticMemory {
 /// long, so that another reset during the start-up does not lose it. After power-on, also sets the
 /// saved thermal doses to zero.
 fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
-    let stack_was_overrun = stack::stack_is_overrun();
-    stack::init_guard();
+    let stack_was_overrun = stack_guard::stack_is_overrun();
+    stack_guard::init_guard();
     let reset = ResetCause::read(rcc);
     if reset == ResetCause::PowerOn {
         saved_dose::clear_saved_doses();
@@ -148,7 +148,7 @@ fn restore_device(
         Ok(None) => {}
         Err(_) => device.trip_all(Fault::SettingsCorrupt),
     }
-    for finger in Finger::all() {
+    for finger in FingerIndex::all() {
         device.restore_thermal_dose(finger, saved_dose::saved_dose(finger));
     }
     device

@@ -18,7 +18,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::timer::{CounterHz, Timer};
 use thermal_display::device::sense::{CHANNEL_COUNT, SCANS_PER_TICK, Scan};
-use thermal_display::device::{Finger, TICK_HZ};
+use thermal_display::device::{FingerIndex, TICK_HZ};
 
 use super::clock_monitor::ClockMonitor;
 use super::log;
@@ -69,7 +69,7 @@ pub struct Sampler {
     last_buffer: CurrentBuffer,
     multiplexer: Multiplexer,
     /// The finger whose samples the DMA stream stores now. The next tick takes that finger's block.
-    finger: Finger<FINGERS>,
+    finger: FingerIndex<FINGERS>,
     clock_monitor: ClockMonitor,
 }
 
@@ -122,7 +122,7 @@ impl Sampler {
             spare: Some(spare),
             last_buffer: CurrentBuffer::SecondBuffer,
             multiplexer,
-            finger: Finger::FIRST,
+            finger: FingerIndex::FIRST,
             clock_monitor,
         };
         (sampler, SampleTrigger(timer.counter_hz()))
@@ -139,7 +139,7 @@ impl Sampler {
     /// rate of the ticks are wrong. The control loop must then stop.
     pub fn take_block_and_select_next_finger(
         &mut self,
-    ) -> Result<(Finger<FINGERS>, &[Scan; SCANS_PER_TICK]), SampleError> {
+    ) -> Result<(FingerIndex<FINGERS>, &[Scan; SCANS_PER_TICK]), SampleError> {
         // Checked first, because the start of the tick is measured; reported last, because the
         // other errors are more specific.
         let clock_check = self.clock_monitor.check_clocks_and_tick_rate();
@@ -165,7 +165,7 @@ impl Sampler {
         }
         self.last_buffer = which;
         clock_check?;
-        if finger == Finger::FIRST {
+        if finger == FingerIndex::FIRST {
             log::advance_time_stamp();
         }
         let scans = self

@@ -2,7 +2,7 @@
 
 use core::sync::atomic::{AtomicU32, Ordering};
 
-use thermal_display::device::Finger;
+use thermal_display::device::FingerIndex;
 use thermal_display::device::safety::ThermalDose;
 
 use super::FINGERS;
@@ -17,7 +17,7 @@ static SAVED_DOSES: [[AtomicU32; 2]; FINGERS] =
 /// The thermal dose of a finger that was saved in RAM before the last reset. Zero if its checksum
 /// does not match, because the RAM has lost its content or firmware with another checksum has saved
 /// the dose.
-pub fn saved_dose(finger: Finger<FINGERS>) -> ThermalDose {
+pub fn saved_dose(finger: FingerIndex<FINGERS>) -> ThermalDose {
     let [dose, sum] = &SAVED_DOSES[finger.index()];
     let word = dose.load(Ordering::Relaxed);
     if checksum_of_words(&[word]) == sum.load(Ordering::Relaxed) {
@@ -29,7 +29,7 @@ pub fn saved_dose(finger: Finger<FINGERS>) -> ThermalDose {
 
 /// Saves the thermal dose of a finger in RAM that a reset does not clear; called in every control
 /// tick of that finger.
-pub fn save_dose(finger: Finger<FINGERS>, dose: &ThermalDose) {
+pub fn save_dose(finger: FingerIndex<FINGERS>, dose: &ThermalDose) {
     let saved = &SAVED_DOSES[finger.index()];
     // The dose changes every 256 ticks only; the comparison is faster than the checksum.
     if saved[0].load(Ordering::Relaxed) != dose.to_word() {

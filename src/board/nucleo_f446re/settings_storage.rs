@@ -19,7 +19,7 @@ use thermal_display::settings::{
 };
 
 use super::FINGERS;
-use super::flash::{FlashError, SettingsFlash};
+use super::settings_flash::{FlashError, SettingsFlash};
 
 /// Value of [`PendingSave::state`] when settings wait in RAM and no attempt to store them has
 /// begun; each attempt adds one. After power-up the RAM is unlikely to hold such a value by chance,

@@ -4,7 +4,7 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use thermal_display::device::safety::TripCause;
 
-use super::reset::ResetCause;
+use super::reset_cause::ResetCause;
 
 /// Initial value of the checksum. It differs between versions of the firmware whose stored trip
 /// causes have different layouts, so that no version accepts the words of another.

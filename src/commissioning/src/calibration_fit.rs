@@ -181,7 +181,7 @@ impl<const N: usize> NormalEquations<N> {
 ///
 /// Returns `None` if the equations are numerically singular.
 #[must_use]
-pub fn fit(
+pub fn fit_calibration(
     settings: &Settings,
     prior: &Calibration,
     points: &CalibrationPoints,

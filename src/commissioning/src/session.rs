@@ -2,13 +2,13 @@
 
 use core::ops::Range;
 
-use super::calibration_fit::{DISPLAY_THERMISTOR_COUNT, fit, thermistor_reading_c};
+use super::calibration_fit::{DISPLAY_THERMISTOR_COUNT, fit_calibration, thermistor_reading_c};
 use super::calibration_points::{CalibrationPoints, PointError};
-use super::identification::tile_from_normal_equations;
-use super::request::{
+use super::session_messages::{
     CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SessionError, SessionReply, SessionRequest, Setting,
 };
 use super::stability_margins::StabilityMargins;
+use super::tile_identification::tile_from_normal_equations;
 use thermal_device::command::{self, Command, Refused};
 use thermal_device::control::ControlParameters;
 use thermal_device::identification::{NORMAL_EQUATION_ROWS, NormalEquationRow};
@@ -23,7 +23,7 @@ const CONVERTER_STEPS_LINE_COUNT: usize =
     CALIBRATED_BORDER_COUNT.div_ceil(CONVERTER_STEPS_PER_LINE);
 /// Number of lines that hold all commissioned settings of a finger, 8: two for the converter's 13 steps, one for the
 /// correction of each of the five thermistors, and one for the tile.
-pub const SETTINGS_LINES: usize = CONVERTER_STEPS_LINE_COUNT + SENSOR_WORDS.len() + 1;
+pub const SETTINGS_LINE_COUNT: usize = CONVERTER_STEPS_LINE_COUNT + SENSOR_WORDS.len() + 1;
 
 /// A function that executes a command on the station of the session's finger, and returns the station's reply or
 /// refusal. The control tick may be locked out while it runs, so it must end after a bounded, short time.
@@ -113,7 +113,7 @@ impl CommissioningSession {
             }
             SessionRequest::Margins => return Ok(self.tile_and_margins_reply()),
             SessionRequest::CountSettingsLines => {
-                return Ok(SessionReply::SettingsLines(SETTINGS_LINES));
+                return Ok(SessionReply::SettingsLines(SETTINGS_LINE_COUNT));
             }
             SessionRequest::SettingsLine(index) => {
                 return Ok(SessionReply::Setting(self.setting_at_line_index(index)));
@@ -242,8 +242,8 @@ impl CommissioningSession {
         self.points
             .add(sensor, &average, present_c, reference_c)
             .map_err(SessionError::Point)?;
-        let applied = fit(&self.settings, &self.prior, &self.points)
-            .filter(|calibration| calibration.out_of_range().is_none())
+        let applied = fit_calibration(&self.settings, &self.prior, &self.points)
+            .filter(|calibration| calibration.first_value_out_of_range().is_none())
             .ok_or(SessionError::Point(PointError::Contradicts))
             .and_then(|calibration| Ok(self.apply_calibration(calibration, execute)?));
         if applied.is_err() {

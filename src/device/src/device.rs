@@ -2,12 +2,12 @@
 
 use core::array;
 
-use crate::command::{Addressed, Command, Refused, Reply};
+use crate::command::{Command, Refused, Reply, WithFingerIndex};
 use crate::drive::BoardOutputs;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
-use crate::{Finger, Station};
+use crate::{FingerIndex, Station};
 use thermal_settings::{Settings, StoredSettings};
 
 /// The whole device without its hardware: one [`Station`] for each of its `FINGERS` fingers. The stations share no
@@ -45,26 +45,26 @@ impl<const FINGERS: usize> Device<FINGERS> {
     #[inline(never)]
     pub fn restore_settings(&mut self, stored: &[StoredSettings; FINGERS]) {
         for (station, stored) in self.stations.iter_mut().zip(stored) {
-            station.apply_settings(&stored.with_factory_defaults());
+            station.apply_settings(&stored.to_complete_settings());
         }
     }
 
     /// Thermal dose (CEM43, equivalent time at 43 °C) that skin would have received if it had always touched this
     /// finger's display. The board stores the dose after every tick, so that a reset does not erase it.
     #[must_use]
-    pub const fn thermal_dose(&self, finger: Finger<FINGERS>) -> &ThermalDose {
+    pub const fn thermal_dose(&self, finger: FingerIndex<FINGERS>) -> &ThermalDose {
         self.stations[finger.index()].thermal_dose()
     }
 
     /// Sets a finger's thermal dose to `dose`, which the board stored before the last reset. To be called once, at the
     /// start.
-    pub const fn restore_thermal_dose(&mut self, finger: Finger<FINGERS>, dose: ThermalDose) {
+    pub const fn restore_thermal_dose(&mut self, finger: FingerIndex<FINGERS>, dose: ThermalDose) {
         self.stations[finger.index()].restore_thermal_dose(dose);
     }
 
     /// Runs one control tick of a finger's station with the samples of the last millisecond. Returns what the board
     /// must set at the finger's bridge and comparator until the next tick.
-    pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> BoardOutputs {
+    pub fn step(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
         self.stations[finger.index()].step(samples)
     }
 
@@ -79,7 +79,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
 
     /// Whether this finger's station is tripped, so that its bridge stays off until the host sends `clear`.
     #[must_use]
-    pub const fn is_tripped(&self, finger: Finger<FINGERS>) -> bool {
+    pub const fn is_tripped(&self, finger: FingerIndex<FINGERS>) -> bool {
         self.stations[finger.index()].is_tripped()
     }
 
@@ -106,9 +106,9 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// the host has not switched telemetry on, or if the number of that tick is not a multiple of the interval that the
     /// host has chosen. To be called once after each tick.
     #[must_use]
-    pub fn telemetry(&self, finger: Finger<FINGERS>) -> Option<Addressed<Telemetry>> {
+    pub fn telemetry(&self, finger: FingerIndex<FINGERS>) -> Option<WithFingerIndex<Telemetry>> {
         let content = self.stations[finger.index()].telemetry()?;
-        Some(Addressed {
+        Some(WithFingerIndex {
             finger: finger.reply_address(),
             content,
         })
@@ -125,29 +125,30 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// tripped. The other fingers, which do not refuse the command, have executed it.
     pub fn execute(
         &mut self,
-        finger: Option<Finger<FINGERS>>,
+        finger: Option<FingerIndex<FINGERS>>,
         command: Command,
-    ) -> Result<Addressed<Reply>, Addressed<Refused>> {
+    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Refused>> {
         if let Some(one) = finger {
             let finger = Some(one.index_u8());
             return match self.stations[one.index()].execute(command) {
-                Ok(content) => Ok(Addressed { finger, content }),
-                Err(content) => Err(Addressed { finger, content }),
+                Ok(content) => Ok(WithFingerIndex { finger, content }),
+                Err(content) => Err(WithFingerIndex { finger, content }),
             };
         }
         let (mut refused, mut nothing_to_clear, mut executed) = (None, None, false);
-        for (finger, station) in Finger::<FINGERS>::all().zip(&mut self.stations) {
+        for (finger, station) in FingerIndex::<FINGERS>::all().zip(&mut self.stations) {
             let finger = finger.reply_address();
             match station.execute(command) {
                 Ok(Reply::Done) => executed = true,
-                Ok(content) => return Ok(Addressed { finger, content }),
+                Ok(content) => return Ok(WithFingerIndex { finger, content }),
                 Err(content @ Refused::NothingToClear) => {
-                    nothing_to_clear = nothing_to_clear.or(Some(Addressed { finger, content }))
+                    nothing_to_clear =
+                        nothing_to_clear.or(Some(WithFingerIndex { finger, content }))
                 }
-                Err(content) => refused = refused.or(Some(Addressed { finger, content })),
+                Err(content) => refused = refused.or(Some(WithFingerIndex { finger, content })),
             }
         }
         let refused = refused.or(nothing_to_clear.filter(|_| !executed));
-        refused.map_or(Ok(Addressed::from_whole_device(Reply::Done)), Err)
+        refused.map_or(Ok(WithFingerIndex::from_whole_device(Reply::Done)), Err)
     }
 }

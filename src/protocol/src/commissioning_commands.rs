@@ -1,7 +1,7 @@
 //! Parsing of the commands `calibrate`, `settings` and `set`.
 
 use thermal_commissioning::{
-    CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SETTINGS_LINES, SessionRequest, Setting,
+    CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SETTINGS_LINE_COUNT, SessionRequest, Setting,
 };
 use thermal_settings::{
     CALIBRATED_BORDER_COUNT, CONVERTER_STEP_RANGE, CORRECTION_RANGES, Calibration, Correction,
@@ -23,7 +23,7 @@ static SETTINGS_LINE_NUMBER_RANGE: Range = Range {
     name: "line of settings",
     unit: "(whole)",
     min: 1.0,
-    max: SETTINGS_LINES as f64,
+    max: SETTINGS_LINE_COUNT as f64,
 };
 static CONVERTER_BORDER_INDEX_RANGE: Range = Range {
     name: "border",

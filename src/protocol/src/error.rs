@@ -13,8 +13,8 @@ use thermal_device::command::Refused;
 use thermal_device::control::Law;
 use thermal_settings::Range;
 
-use crate::command::{CUSTOM_MATERIAL_WORD, MODE_WORDS};
 use crate::commissioning_commands::SETTING_WORDS;
+use crate::request::{CUSTOM_MATERIAL_WORD, MODE_WORDS};
 use crate::{LINE_MAX_BYTES, LineError, Request};
 
 /// The first 20 bytes of a word from the host; `Display` writes them in single quotes, as part of an error message.

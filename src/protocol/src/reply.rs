@@ -8,8 +8,8 @@ use thermal_device::safety::TripCause;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, Tile};
 
-use crate::command::MODE_WORDS;
 use crate::line_buffer::LineBuffer;
+use crate::request::MODE_WORDS;
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use thermal_device::Telemetry;
-use thermal_device::command::Addressed;
+use thermal_device::command::WithFingerIndex;
 
 use crate::line_buffer::LineBuffer;
 
@@ -23,7 +23,7 @@ pub struct TelemetryLine(pub Telemetry);
 /// Wraps one finger's telemetry in a [`TelemetryLine`], whose `Display` writes the line to the host. The address of the
 /// finger, which precedes the line on a device with several fingers, does not change.
 #[must_use]
-pub fn telemetry_line(telemetry: Addressed<Telemetry>) -> Addressed<TelemetryLine> {
+pub fn telemetry_line(telemetry: WithFingerIndex<Telemetry>) -> WithFingerIndex<TelemetryLine> {
     telemetry.map_content(TelemetryLine)
 }
 

@@ -7,9 +7,9 @@ extern crate std;
 
 mod calibration;
 mod range;
-mod record;
 mod redundant_sectors;
-mod store;
+mod settings_record;
+mod settings_store;
 mod tile;
 
 pub use calibration::{
@@ -17,9 +17,11 @@ pub use calibration::{
     CORRECTION_HALF_SPAN_K, Calibration, Correction, FIRST_CALIBRATED_BORDER, round_to_decimals,
 };
 pub use range::{CONVERTER_STEP_RANGE, CORRECTION_RANGES, Range, TILE_RANGES};
-pub use record::{RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode, encode};
 pub use redundant_sectors::{RedundantSectors, SectorError};
-pub use store::{SettingsStore, StoreError};
+pub use settings_record::{
+    RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode, encode,
+};
+pub use settings_store::{SettingsStore, StoreError};
 pub use tile::Tile;
 
 use contact_model::material::{REFERENCE_DISPLAY, Surface};

@@ -104,7 +104,7 @@ impl Calibration {
     /// The first value of this calibration that lies outside its allowed range, with that range; `None` if all values
     /// are inside. The steps of the converter are checked first, then the coefficients of the five corrections.
     #[must_use]
-    pub fn out_of_range(&self) -> Option<(&'static Range, f64)> {
+    pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
         let steps = self
             .steps_counts
             .iter()
@@ -120,7 +120,7 @@ impl Calibration {
 impl Tile {
     /// The first parameter of the tile that is outside its allowed range, with that range; `None` if all are inside.
     #[must_use]
-    pub fn out_of_range(&self) -> Option<(&'static Range, f64)> {
+    pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
         first_value_out_of_range(TILE_RANGES.iter().zip(self.to_array()))
     }
 }

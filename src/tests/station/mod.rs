@@ -12,7 +12,7 @@ use std::mem;
 use std::string::{String, ToString};
 
 use crate::device::Telemetry;
-use crate::device::command::Addressed;
+use crate::device::command::WithFingerIndex;
 use crate::device::drive::BoardOutputs;
 use crate::device::drive::Drive;
 use crate::device::sense::Samples;
@@ -83,8 +83,8 @@ impl TestBench {
             let content = self
                 .station
                 .execute(command)
-                .map_err(Addressed::from_whole_device)?;
-            Ok(Addressed::from_whole_device(content))
+                .map_err(WithFingerIndex::from_whole_device)?;
+            Ok(WithFingerIndex::from_whole_device(content))
         });
         answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }

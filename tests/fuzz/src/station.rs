@@ -2,7 +2,7 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use thermal_display::commissioning::SENSOR_WORDS;
-use thermal_display::device::Finger;
+use thermal_display::device::FingerIndex;
 use thermal_display::device::drive::Drive;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::{CHANNEL_COUNT, SCANS_PER_TICK, Samples, Scan};
@@ -10,7 +10,7 @@ use thermal_display::device::sense::{CHANNEL_COUNT, SCANS_PER_TICK, Samples, Sca
 use crate::start::StartDevices;
 
 static STARTS: StartDevices<1> = StartDevices::new();
-const FINGER: Finger<1> = Finger::FIRST;
+const FINGER: FingerIndex<1> = FingerIndex::FIRST;
 
 /// Largest number of ticks of one input.
 const TICKS: u32 = 2500;

@@ -5,11 +5,11 @@ use std::convert::Infallible;
 use std::fmt::Display;
 
 use thermal_commissioning::StorageOrder;
-use thermal_device::command::Addressed;
+use thermal_device::command::WithFingerIndex;
 use thermal_device::drive::{BoardOutputs, Drive};
 use thermal_device::safety::{Fault, ThermalDose, TripCause};
 use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
-use thermal_device::{Device, Finger};
+use thermal_device::{Device, FingerIndex};
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::sensors::Channel;
 use thermal_protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
@@ -131,9 +131,9 @@ impl NativeEngine {
         self.execute_received_lines((self.halves - 1) * HALF_NS + TICK_NS);
         let samples = Samples::from_scans(&self.scans, self.fault);
         self.fault = self.world.bridge_fault();
-        self.outputs = self.device.step(Finger::FIRST, &samples);
+        self.outputs = self.device.step(FingerIndex::FIRST, &samples);
         self.world.comparator_test(self.outputs.comparator_test);
-        if let Some(telemetry) = self.device.telemetry(Finger::FIRST) {
+        if let Some(telemetry) = self.device.telemetry(FingerIndex::FIRST) {
             self.send_line(&telemetry_line(telemetry));
         }
     }
@@ -151,11 +151,11 @@ impl NativeEngine {
         };
         let dose = match cause {
             ResetCause::PowerOn => ThermalDose::default(),
-            _ => ThermalDose::from_word(self.device.thermal_dose(Finger::FIRST).to_word()),
+            _ => ThermalDose::from_word(self.device.thermal_dose(FingerIndex::FIRST).to_word()),
         };
         let settings = Settings::default();
         self.device = Device::with_trip_cause(cause_retained, &settings);
-        self.device.restore_thermal_dose(Finger::FIRST, dose);
+        self.device.restore_thermal_dose(FingerIndex::FIRST, dose);
         self.handler = match &self.stored {
             Some(stored) => {
                 self.device.restore_settings(stored);
@@ -191,13 +191,13 @@ impl NativeEngine {
                 continue;
             };
             let executed = line
-                .map_err(|error| Addressed::from_whole_device(Error::from(error)))
+                .map_err(|error| WithFingerIndex::from_whole_device(Error::from(error)))
                 .and_then(|line| {
                     self.handler.answer(&line, |finger, command| {
                         self.device.execute(finger, command)
                     })
                 });
-            if let Ok(Addressed {
+            if let Ok(WithFingerIndex {
                 content: Reply::Restart(order),
                 ..
             }) = &executed

@@ -49,12 +49,12 @@
 //! A sum of 16 scans therefore contains at most a sixteenth of the amplitude of the ripple.
 
 mod multiplexer;
-mod power;
+mod power_stage;
 
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1, TIM8};
 
 pub use multiplexer::Multiplexer;
-pub use power::{BridgeAndComparatorPins, BridgePeripherals, PowerStage};
+pub use power_stage::{BridgeAndComparatorPins, BridgePeripherals, PowerStage};
 
 /// Number of fingers that this wiring controls, each with its own bridge and sensors.
 pub const FINGERS: usize = 5;

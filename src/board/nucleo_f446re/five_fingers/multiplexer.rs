@@ -2,7 +2,7 @@
 
 use stm32f4xx_hal::gpio::outport::{OutPort, OutPort3};
 use stm32f4xx_hal::gpio::{Input, PC10, PC11, PC12};
-use thermal_display::device::Finger;
+use thermal_display::device::FingerIndex;
 
 use super::FINGERS;
 
@@ -24,13 +24,13 @@ impl Multiplexer {
             bit2.into_push_pull_output(),
         );
         let mut multiplexer = Self(lines.outport());
-        multiplexer.select(Finger::FIRST);
+        multiplexer.select(FingerIndex::FIRST);
         multiplexer
     }
 
     /// Connects the sensors of a finger to the converter. All three select lines change at the same
     /// time, so that no other finger is selected in between.
-    pub fn select(&mut self, finger: Finger<FINGERS>) {
+    pub fn select(&mut self, finger: FingerIndex<FINGERS>) {
         self.0.write(finger.index_u8().into());
     }
 }

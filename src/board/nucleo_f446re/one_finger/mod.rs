@@ -13,12 +13,12 @@
 //! without the processor. It also pulls nFAULT low, so that the break input reports the trip to the
 //! processor.
 
-mod power;
+mod power_stage;
 
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1};
-use thermal_display::device::Finger;
+use thermal_display::device::FingerIndex;
 
-pub use power::PowerStage;
+pub use power_stage::PowerStage;
 
 /// Number of fingers that this wiring controls, each with its own bridge and sensors.
 pub const FINGERS: usize = 1;
@@ -44,7 +44,7 @@ impl NoMultiplexer {
     pub const SETTLING_SCANS: usize = 0;
 
     /// Does nothing, because a single finger needs no multiplexer.
-    pub fn select(&mut self, _finger: Finger<FINGERS>) {}
+    pub fn select(&mut self, _finger: FingerIndex<FINGERS>) {}
 }
 
 /// Makes the outputs of the bridge high-impedance by direct writes to the registers, in any state

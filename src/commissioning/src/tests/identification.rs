@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use contact_model::fixed_point::{Celsius, Force};
 
 use crate::SessionError;
-use crate::identification::{IdentificationError, tile_from_normal_equations};
+use crate::tile_identification::{IdentificationError, tile_from_normal_equations};
 use thermal_device::command::Refused;
 use thermal_device::drive::Current;
 use thermal_device::identification::{AbortReason, Identification, NormalEquations};

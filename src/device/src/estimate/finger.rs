@@ -7,7 +7,7 @@ use contact_model::fixed_point::{
 use fixed::types::{I2F30, I10F22};
 
 use super::Watt;
-use super::force_mean::{ForceChange, ForceMeans};
+use super::force_means::{ForceChange, ForceMeans};
 
 /// Time constant of the low-pass filters of skin and room temperature while no finger touches, as an exponent of two:
 /// 2^8 ticks of 1 ms, 0.26 s.
@@ -129,7 +129,7 @@ impl FingerContact {
     fn update_by_force(&mut self, force: Force) {
         self.change = self.force.add_force(force);
         self.elapsed += 1;
-        let mean = self.force.mean();
+        let mean = self.force.long_mean();
         if self.elapsed < INITIAL_FORCE_STORED_AFTER_TICKS {
             self.initial_force = mean;
         }
@@ -141,7 +141,7 @@ impl FingerContact {
 
     /// Running means of this contact's force, N, which also hold the mean for which set-points are computed.
     #[must_use]
-    pub const fn force_mean(&self) -> &ForceMeans {
+    pub const fn force_means(&self) -> &ForceMeans {
         &self.force
     }
 
@@ -330,7 +330,7 @@ impl FingerEstimator {
             self.skin_state_on_display.step(Celsius::ZERO);
             return Watt::ZERO;
         };
-        let force = contact.force.mean();
+        let force = contact.force.long_mean();
         let conductances = match &mut contact.conductances {
             Some(conductances) if conductances.are_valid_for_force(force) => conductances,
             outdated => outdated.insert(ContactConductances::new(pair, force)),

@@ -2,12 +2,12 @@
 //! temperature under the finger, and the contact.
 
 mod finger;
-mod force_mean;
+mod force_means;
 mod plate_model;
 mod plate_observer;
 
 pub use finger::{FingerContact, FingerEstimator, PreContactTemperatures};
-pub use force_mean::{ForceChange, ForceMeans};
+pub use force_means::{ForceChange, ForceMeans};
 pub use plate_model::{LegTemperatures, PlateModel, Watt};
 pub use plate_observer::{ObserverParameters, PlateObserver};
 
@@ -19,7 +19,7 @@ use crate::safety::ValidReadings;
 /// of the display's temperature at landing, and the bridge voltage are computed from them, because the correction
 /// itself needs the finger's heat flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UncorrectedEstimate {
+pub struct UncorrectedPlateTemperatures {
     /// Temperature of the display's surface under the finger, °C, at the end of the previous tick. The finger's heat
     /// flow is computed from this temperature, and in the first tick of a contact the reference generator checks
     /// whether the display was near its preset. It is the reading of the display's thermistor if the observer has no
@@ -55,7 +55,7 @@ impl Estimator {
         touch: Option<Force>,
         landed_ticks: u32,
         pair: Option<&ContactPair>,
-    ) -> UncorrectedEstimate {
+    ) -> UncorrectedPlateTemperatures {
         let ValidReadings {
             display,
             sink,
@@ -63,7 +63,7 @@ impl Estimator {
             room,
             ..
         } = *readings;
-        let estimate = UncorrectedEstimate {
+        let estimate = UncorrectedPlateTemperatures {
             previous_surface: self.plate.surface().unwrap_or(display),
             previous_legs: (self.plate.leg_temperatures())
                 .unwrap_or_else(|| LegTemperatures::between_display_and_sink(display, sink)),

@@ -19,7 +19,7 @@ use skin_on_object::{ContactPairFactors, SkinOnObject};
 /// Largest error, K, of the set-point by interpolation in time, compared with Eq. 6-12 for the same force: 0.4 mK. The
 /// smaller it is, the more often Eq. 6-12 must be evaluated. Noise of the force may add up to 0.1 mK before the
 /// interpolation is computed again, which gives 0.5 mK in all.
-pub const INTERPOLATION_TOLERANCE: Celsius = Celsius::lit("0.0004");
+pub const SETPOINT_INTERPOLATION_TOLERANCE: Celsius = Celsius::lit("0.0004");
 /// Largest distance, K, of the display's surface temperature in the first tick of a contact from the range in which the
 /// display should wait: from the preset (the set-point before contact) to the waiting temperature below it. After a
 /// larger error the law `model` does not use the closed form of Eq. 6-12 for this contact, because the closed form
@@ -47,7 +47,7 @@ pub enum ContactModel {
 /// The object that the host has chosen to present, and the contact model. The reference generator computes the
 /// set-point from a scene, the state of the finger, and the temperature of the display's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Scene<'a> {
+pub struct PresentedObject<'a> {
     /// Constants of the contact of a finger's skin with the presented material, and of its contact with the display's
     /// surface. Contact conductances and set-points are computed from them.
     pub pair: &'a ContactPair,
@@ -157,9 +157,9 @@ impl ContactSetpoints {
         follow_skin: bool,
     ) {
         let is_new = finger.force_change() == ForceChange::New;
-        let force = finger.force_mean();
-        let is_equivalent =
-            !force.has_doubled_sample_count() || self.equivalent_forces.contains(&force.mean());
+        let force = finger.force_means();
+        let is_equivalent = !force.has_doubled_sample_count()
+            || self.equivalent_forces.contains(&force.long_mean());
         if !closed_form || (is_new && follow_skin) {
             self.interpolation = None;
         }
@@ -196,11 +196,11 @@ impl ContactSetpoints {
                     skin,
                     object,
                     self.elapsed,
-                    INTERPOLATION_TOLERANCE,
+                    SETPOINT_INTERPOLATION_TOLERANCE,
                 );
                 *evaluations = evaluations.wrapping_add(count);
                 self.equivalent_forces = equivalent_forces(
-                    finger.force_mean().mean_for_setpoints(),
+                    finger.force_means().mean_for_setpoints(),
                     interpolation.transient_amplitude(),
                 );
                 self.interpolation_due = false;
@@ -293,22 +293,22 @@ impl ReferenceGenerator {
     /// this contact with the law `model`.
     pub fn next_reference(
         &mut self,
-        scene: &Scene<'_>,
+        object_presented: &PresentedObject<'_>,
         finger: &mut FingerEstimator,
         surface: Celsius,
         follow_skin: bool,
     ) -> Option<Reference> {
         let PreContactTemperatures { skin, room } = finger.temperatures_before_contact()?;
-        let object = scene.object.unwrap_or(room);
-        if scene.mode == ContactModel::SemiInfinite {
+        let object = object_presented.object.unwrap_or(room);
+        if object_presented.mode == ContactModel::SemiInfinite {
             self.contact = None;
             return Some(Reference::at(
-                scene.pair.interface_temperature(skin, object),
+                object_presented.pair.interface_temperature(skin, object),
             ));
         }
         let skin_above_object = skin.saturating_sub(object);
-        if !self.factors.were_computed_for(scene.pair) {
-            self.factors = ContactPairFactors::new(scene.pair);
+        if !self.factors.were_computed_for(object_presented.pair) {
+            self.factors = ContactPairFactors::new(object_presented.pair);
         }
         let factors = &self.factors;
         let (contact, skin_state_on_display) = finger.contact_and_skin_state();
@@ -316,7 +316,7 @@ impl ReferenceGenerator {
             self.contact = None;
             self.skin_on_object.step(None, factors, skin_above_object);
             if !follow_skin {
-                return Some(Reference::at(scene.pair.preset(skin, object)));
+                return Some(Reference::at(object_presented.pair.preset(skin, object)));
             }
             let setpoint = self.skin_on_object.setpoint(
                 factors,
@@ -335,7 +335,7 @@ impl ReferenceGenerator {
                 contact
             }
             none => {
-                let preset = scene.pair.preset(skin, object);
+                let preset = object_presented.pair.preset(skin, object);
                 if is_display_outside_waiting_range(
                     surface,
                     preset,
@@ -349,7 +349,7 @@ impl ReferenceGenerator {
         let conductance = finger.conductances().map(|both| &both.object);
         (self.skin_on_object).step(conductance, factors, skin_above_object);
         let closed_form = finger.closed_form_is_valid() || !follow_skin;
-        contact.schedule_interpolation(finger, scene.pair, closed_form, follow_skin);
+        contact.schedule_interpolation(finger, object_presented.pair, closed_form, follow_skin);
         let interpolated = contact.interpolated_setpoint(
             finger,
             (skin, object),

@@ -31,7 +31,7 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
     let object = &MATERIALS[material].1;
     let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S).expect("pair");
     let object_c = Celsius::from_num(OBJECT_C);
-    let scene = Scene {
+    let scene = PresentedObject {
         pair: &pair,
         object: Some(object_c),
         mode: ContactModel::ContactResistance,

@@ -15,7 +15,7 @@ const PROPORTIONAL_TOLERANCE_SHIFT: u32 = 2;
 /// measured and demanded current differ too much counts up, each other tick counts down. It is long enough for an
 /// overloaded bridge driver, which switches off and retries every 4 ms, to pull its fault line first, which trips the
 /// station by [`Fault::Bridge`].
-const MISMATCH_TICKS: u8 = 30;
+const CURRENT_MISMATCH_TRIP_TICKS: u8 = 30;
 
 /// Detects a measured current that differs from the demanded one in magnitude. One counter serves both too much and too
 /// little current, because a leg of the bridge that is stuck causes one or the other, depending on the sign of the
@@ -38,7 +38,7 @@ impl CurrentMismatchDetector {
             CONSTANT_CURRENT_TOLERANCE.saturating_add(demanded >> PROPORTIONAL_TOLERANCE_SHIFT);
         let high = measured > demanded.saturating_add(tolerance);
         let low = measured < demanded.saturating_sub(tolerance);
-        if !self.0.count_tick(high || low, MISMATCH_TICKS) {
+        if !self.0.count_tick(high || low, CURRENT_MISMATCH_TRIP_TICKS) {
             Ok(())
         } else if high {
             Err(Fault::CurrentHigh)

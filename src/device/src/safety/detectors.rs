@@ -4,11 +4,11 @@ use contact_model::fixed_point::Celsius;
 
 use super::current_mismatch::CurrentMismatchDetector;
 use super::debounce::DebounceCounter;
-use super::frozen::FrozenDetector;
-use super::jump::JumpDetector;
+use super::frozen_detector::FrozenDetector;
+use super::jump_detector::JumpDetector;
 use super::thermal_dose::ThermalDose;
 use super::validate_readings::ValidReadings;
-use super::wrong_way::WrongWayDetector;
+use super::wrong_way_detector::WrongWayDetector;
 use super::{Fault, Setpoint};
 use crate::drive::Current;
 use crate::sense::{Readings, Samples};
@@ -16,10 +16,10 @@ use crate::sense::{Readings, Samples};
 /// Difference between the readings of the display's two thermistors, K, above which one of them counts as wrong. A
 /// correct pair whose thermal lags differ by 0.1 s differs by 1.6 K while the bridge at its current limit moves a
 /// display without a finger.
-const DISPLAY_DIFFERENCE_MAX: Celsius = Celsius::lit("3");
+const DISPLAY_THERMISTOR_DIFFERENCE_MAX: Celsius = Celsius::lit("3");
 /// Net ticks of 1 ms at which [`Fault::DisplaysApart`] trips the station: each tick in which the display's two
-/// thermistors differ by more than [`DISPLAY_DIFFERENCE_MAX`] counts up, each other tick counts down, so that noise
-/// does not trip the station.
+/// thermistors differ by more than [`DISPLAY_THERMISTOR_DIFFERENCE_MAX`] counts up, each other tick counts down, so
+/// that noise does not trip the station.
 const DISPLAY_DIFFERENCE_TRIP_TICKS: u8 = 40;
 /// Excess of the room's reading over the skin's, K, above which the two thermistors count as swapped or misplaced. A
 /// finger's skin is warmer than the room, except for cold hands of 17 °C in a warm room; if the skin's thermistor is on
@@ -130,7 +130,7 @@ impl FaultDetectors {
         });
         let difference = readings.display.saturating_sub(readings.check);
         let displays_differ = self.display_difference.count_tick(
-            difference.saturating_abs() > DISPLAY_DIFFERENCE_MAX,
+            difference.saturating_abs() > DISPLAY_THERMISTOR_DIFFERENCE_MAX,
             DISPLAY_DIFFERENCE_TRIP_TICKS,
         );
         let room_above_skin = self.room_above_skin.count_tick(

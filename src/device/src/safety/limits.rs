@@ -21,17 +21,17 @@ pub const SETPOINT_MIN: Celsius = fixed_celsius(SETPOINT_MIN_C);
 pub const SETPOINT_MAX: Celsius = fixed_celsius(SETPOINT_MAX_C);
 /// Reading of either display thermistor, °C, below which the station trips by
 /// [`Fault::DisplayCold`](super::Fault::DisplayCold). Cold pain begins at 13 °C.
-pub const DISPLAY_MIN: Celsius = fixed_celsius(13.5);
+pub const DISPLAY_TRIP_BELOW: Celsius = fixed_celsius(13.5);
 /// Reading of either display thermistor, °C, above which the station trips by
 /// [`Fault::DisplayHot`](super::Fault::DisplayHot). Heat pain begins at 45 °C.
-pub const DISPLAY_MAX: Celsius = fixed_celsius(43.0);
+pub const DISPLAY_TRIP_ABOVE: Celsius = fixed_celsius(43.0);
 /// Skin temperature at which heat pain begins, °C. No detector uses it; an assertion at compile time checks that the
-/// display's trip limit [`DISPLAY_MAX`] is below it.
+/// display's trip limit [`DISPLAY_TRIP_ABOVE`] is below it.
 pub const HEAT_PAIN_FROM: Celsius = fixed_celsius(45.0);
 /// Sink temperature, °C, above which the station trips by [`Fault::SinkHot`](super::Fault::SinkHot). With the bridge
 /// off, the display and the finger on it drift to the sink's temperature. At 42 °C four minutes add one minute of
 /// thermal dose, and meanwhile the sink cools.
-pub const SINK_MAX: Celsius = fixed_celsius(42.0);
+pub const SINK_TRIP_ABOVE: Celsius = fixed_celsius(42.0);
 /// Sink temperature, °C, above which an identification of the tile (current pulses that measure its thermal parameters)
 /// ends early, so that its pulses do not warm the sink to the trip limit of 42 °C.
 pub const SINK_MAX_IDENTIFICATION: Celsius = fixed_celsius(41.5);
@@ -47,11 +47,11 @@ pub const DOSE_REFERENCE_TEMPERATURE: Celsius = fixed_celsius(43.0);
 /// and current mirror can cause an excess of 1.8 A.
 pub const OVER_CURRENT_MARGIN: Current = Current::lit("3");
 
-const _: () = assert!(DISPLAY_MIN.to_bits() < SETPOINT_MIN.to_bits());
+const _: () = assert!(DISPLAY_TRIP_BELOW.to_bits() < SETPOINT_MIN.to_bits());
 const _: () = assert!(SETPOINT_MIN.to_bits() < SETPOINT_MAX.to_bits());
 const _: () = assert!(DOSE_COUNTED_FROM.to_bits() < SINK_DERATING_FROM.to_bits());
 const _: () = assert!(SINK_DERATING_FROM.to_bits() < SINK_MAX_IDENTIFICATION.to_bits());
-const _: () = assert!(SINK_MAX_IDENTIFICATION.to_bits() < SINK_MAX.to_bits());
-const _: () = assert!(SINK_MAX.to_bits() < DISPLAY_MAX.to_bits());
-const _: () = assert!(SETPOINT_MAX.to_bits() < DISPLAY_MAX.to_bits());
-const _: () = assert!(DISPLAY_MAX.to_bits() < HEAT_PAIN_FROM.to_bits());
+const _: () = assert!(SINK_MAX_IDENTIFICATION.to_bits() < SINK_TRIP_ABOVE.to_bits());
+const _: () = assert!(SINK_TRIP_ABOVE.to_bits() < DISPLAY_TRIP_ABOVE.to_bits());
+const _: () = assert!(SETPOINT_MAX.to_bits() < DISPLAY_TRIP_ABOVE.to_bits());
+const _: () = assert!(DISPLAY_TRIP_ABOVE.to_bits() < HEAT_PAIN_FROM.to_bits());

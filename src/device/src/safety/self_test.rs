@@ -241,19 +241,19 @@ impl SelfTest {
     /// second display thermistor, in units of 2^-22 °C. A reading more than 0.05 K above the line is
     /// [`Fault::Polarity`]; any other failure is [`Fault::NoResponse`].
     fn check_display_response(&self, display: [i64; 2]) -> Result<(), Fault> {
-        const RESPONSE_MIN_BITS: i64 = DISPLAY_RESPONSE_MIN.to_bits() as i64;
-        const RESPONSE_RANGE_BITS: RangeInclusive<i64> =
-            RESPONSE_MIN_BITS..=DISPLAY_RESPONSE_MAX.to_bits() as i64;
+        const DISPLAY_RESPONSE_MIN_BITS: i64 = DISPLAY_RESPONSE_MIN.to_bits() as i64;
+        const DISPLAY_RESPONSE_RANGE_BITS: RangeInclusive<i64> =
+            DISPLAY_RESPONSE_MIN_BITS..=DISPLAY_RESPONSE_MAX.to_bits() as i64;
         let half = i64::from(HALF_BASELINE_TICKS);
         let ticks = i64::from(RESPONSE_CHECK_TICK - (BASELINE_END_TICK - HALF_BASELINE_TICKS / 2));
         let halves = self.first_half.iter().zip(&self.second_half);
         for ((first, second), reading) in halves.zip(display) {
             let expected = second / half + (second - first) * ticks / (half * half);
             let response = expected - reading;
-            if response < -RESPONSE_MIN_BITS {
+            if response < -DISPLAY_RESPONSE_MIN_BITS {
                 return Err(Fault::Polarity);
             }
-            if !RESPONSE_RANGE_BITS.contains(&response) {
+            if !DISPLAY_RESPONSE_RANGE_BITS.contains(&response) {
                 return Err(Fault::NoResponse);
             }
         }

@@ -2,7 +2,7 @@
 
 use contact_model::fixed_point::{Celsius, Force};
 
-use super::limits::{DISPLAY_MAX, DISPLAY_MIN, OVER_CURRENT_MARGIN, SINK_MAX};
+use super::limits::{DISPLAY_TRIP_ABOVE, DISPLAY_TRIP_BELOW, OVER_CURRENT_MARGIN, SINK_TRIP_ABOVE};
 use super::{Fault, ThermistorId};
 use crate::drive::Current;
 use crate::sense::{Readings, ThermistorFault};
@@ -64,13 +64,13 @@ pub fn validate_readings(
         force: readings.force.ok_or(Fault::ForceSensor)?,
         current: readings.current,
     };
-    if valid.display.max(valid.check) > DISPLAY_MAX {
+    if valid.display.max(valid.check) > DISPLAY_TRIP_ABOVE {
         return Err(Fault::DisplayHot);
     }
-    if valid.display.min(valid.check) < DISPLAY_MIN {
+    if valid.display.min(valid.check) < DISPLAY_TRIP_BELOW {
         return Err(Fault::DisplayCold);
     }
-    if valid.sink > SINK_MAX {
+    if valid.sink > SINK_TRIP_ABOVE {
         return Err(Fault::SinkHot);
     }
     if valid.current > current_limit.saturating_add(OVER_CURRENT_MARGIN) {

@@ -1,22 +1,22 @@
 //! Sensing: converts each tick's sums of analogue-to-digital conversions to temperatures, force and current.
 
-mod average;
-mod correction;
-mod force;
+mod calibration_tables;
+mod force_sensor;
 mod thermistor;
+mod thermistor_average;
 
-pub use average::{ThermistorAverage, ThermistorAverages};
-pub use correction::CalibrationTables;
-pub use force::ContactDetector;
+pub use calibration_tables::CalibrationTables;
+pub use force_sensor::ContactDetector;
 pub use thermistor::ThermistorFault;
+pub use thermistor_average::{ThermistorAverage, ThermistorAverages};
 
 use core::array;
 
 use contact_model::fixed_point::{Celsius, Force};
 
 use crate::drive::Current;
-use correction::ThermistorCorrection;
-use force::ForceChannel;
+use calibration_tables::ThermistorCorrection;
+use force_sensor::ForceChannel;
 use thermal_settings::Settings;
 use thermistor::ThermistorTable;
 
@@ -175,7 +175,7 @@ const SLOW_THERMISTOR_COUNT: usize = 2;
 /// Converts one finger's [`Samples`] of each tick to [`Readings`] with the finger's calibration. Stores the zero of the
 /// force sensor, which it tracks while no finger touches, and the last temperatures of skin and room.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sensors {
+pub struct SampleConverter {
     thermistor: ThermistorTable,
     calibration: CalibrationTables,
     force: ForceChannel,
@@ -191,9 +191,9 @@ pub struct Sensors {
     next_slow: usize,
 }
 
-impl Sensors {
-    /// Sensors of one finger with these settings, before the first tick. Computes in `f64`, so it is for start-up and
-    /// not for the control tick.
+impl SampleConverter {
+    /// SampleConverter of one finger with these settings, before the first tick. Computes in `f64`, so it is for
+    /// start-up and not for the control tick.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let per_unit = 1.0 / (settings.current_counts_per_a * SCANS_PER_TICK as f64);

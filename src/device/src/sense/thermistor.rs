@@ -3,7 +3,7 @@
 use contact_model::fixed_point::{Celsius, product};
 use fixed::types::I0F32;
 
-use super::correction::CorrectedSum;
+use super::calibration_tables::CorrectedSum;
 use thermal_settings as settings;
 
 /// Smallest valid sum of 16 conversions of a thermistor: 40 of 4095 counts a conversion. Below it the thermistor counts

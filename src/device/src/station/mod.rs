@@ -12,8 +12,8 @@
 //! The `inline` attributes here and in `estimate` were found by measurement with the recorded compiler: without them a
 //! tick costs 3 % more instructions (`cargo hil-sim run scenes/copper.toml --json`, `instructions_per_tick`).
 
-mod execute;
-mod object;
+mod chosen_object;
+mod execute_command;
 mod state;
 
 use thermal_settings::Settings;
@@ -23,7 +23,7 @@ pub use state::{ArmedTask, Event, State};
 use crate::control::{ControlParameters, Controller, Law, VoltageFeedforward};
 use crate::drive::{BoardOutputs, Current, Drive, SafeCurrent};
 use crate::estimate::{
-    Estimator, FingerEstimator, LegTemperatures, PlateObserver, UncorrectedEstimate,
+    Estimator, FingerEstimator, LegTemperatures, PlateObserver, UncorrectedPlateTemperatures,
 };
 use crate::identification::{AbortReason, NormalEquations};
 use crate::reference::{Reference, ReferenceGenerator};
@@ -32,16 +32,16 @@ use crate::safety::{
     TripCause, ValidReadings,
 };
 use crate::sense::{
-    CalibrationTables, ContactDetector, Readings, Samples, Sensors, ThermistorAverages,
+    CalibrationTables, ContactDetector, Readings, SampleConverter, Samples, ThermistorAverages,
 };
 use crate::{StateName, Telemetry};
-use object::ChosenObject;
+use chosen_object::ChosenObject;
 
 /// The control of one finger without its hardware. Takes the samples of each tick of 1 ms and returns what the bridge
 /// must do, and executes the host's commands between ticks. Independent of the stations of other fingers.
 #[derive(Clone, Debug)]
 pub struct Station {
-    sensors: Sensors,
+    sensors: SampleConverter,
     averages: ThermistorAverages,
     contact: ContactDetector,
     detectors: FaultDetectors,
@@ -109,7 +109,7 @@ impl Station {
         let parameters = ControlParameters::new(settings);
         let limit = Current::saturating_from_num(settings.module.current_limit_a);
         Self {
-            sensors: Sensors::new(settings),
+            sensors: SampleConverter::new(settings),
             averages: ThermistorAverages::default(),
             contact: ContactDetector::default(),
             detectors: FaultDetectors::default(),
@@ -258,7 +258,7 @@ impl Station {
         &mut self,
         samples: &Samples,
         valid: &ValidReadings,
-    ) -> UncorrectedEstimate {
+    ) -> UncorrectedPlateTemperatures {
         let previously_touching = self.contact.touching();
         self.contact.update_contact(valid.force);
         self.sensors.track_force_zero(samples, &self.contact);
@@ -277,7 +277,7 @@ impl Station {
 
     /// Set-point and target temperature that the display must follow in this tick. `None` in off, ready and tripped,
     /// where the bridge is off, and in the self-test, which chooses its own current.
-    fn generate_reference(&mut self, estimate: &UncorrectedEstimate) -> Option<Reference> {
+    fn generate_reference(&mut self, estimate: &UncorrectedPlateTemperatures) -> Option<Reference> {
         let finger = &mut self.estimator.finger;
         let setpoint = match &mut self.state {
             State::Off | State::SelfTest(_) | State::Ready | State::Tripped(_) => return None,
@@ -307,7 +307,7 @@ impl Station {
         &mut self,
         valid: &ValidReadings,
         bridge_fault: bool,
-        estimate: &UncorrectedEstimate,
+        estimate: &UncorrectedPlateTemperatures,
         reference: Option<&Reference>,
     ) -> Result<BridgeDemand, Fault> {
         let drive = |current| BridgeDemand::Drive {

@@ -1,9 +1,9 @@
 //! The states of a station and the transitions between them.
 
 use crate::StateName;
-use crate::hold::TemperatureHold;
 use crate::identification::Identification;
 use crate::safety::{Fault, SelfTest};
+use crate::temperature_hold::TemperatureHold;
 
 /// State of one finger's station, with the data that exist only in that state.
 #[derive(Clone, Debug)]

@@ -4,7 +4,7 @@ use contact_model::fixed_point::{Celsius, ContactPair};
 use contact_model::material::{MATERIALS, SKIN, Surface};
 
 use crate::TICK_HZ;
-use crate::reference::{ContactModel, Scene};
+use crate::reference::{ContactModel, PresentedObject};
 
 /// What the host has chosen to present: material and temperature of the object, and the contact model that gives the
 /// set-point. The choice is kept in every state, and `start` presents it.
@@ -51,9 +51,9 @@ impl ChosenObject {
     /// Input of the reference generator, which computes set-point and target in the states preset and contact: contact
     /// constants, object temperature and contact model. `None` before a material is chosen.
     #[must_use]
-    pub fn reference_input(&self) -> Option<Scene<'_>> {
+    pub fn reference_input(&self) -> Option<PresentedObject<'_>> {
         let (_, pair) = self.material.as_ref()?;
-        Some(Scene {
+        Some(PresentedObject {
             pair,
             object: self.temperature,
             mode: self.mode,

@@ -62,7 +62,7 @@ proptest! {
         let mut content = std::vec![1, 0, 1, 1];
         content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { BYTES_PER_FINGER }));
         if let Ok(Some([stored])) = decode::<1>(&with_checksum(&content)) {
-            prop_assert_eq!(stored.out_of_range(), None);
+            prop_assert_eq!(stored.first_value_out_of_range(), None);
         }
     }
 
@@ -142,7 +142,7 @@ fn stored_settings_determine_the_gains() {
         calibration: Calibration::default(),
         tile,
     };
-    let settings = stored.with_factory_defaults();
+    let settings = stored.to_complete_settings();
     assert_eq!(StoredSettings::from_settings(&settings), stored);
     assert_eq!(
         [settings.gains, settings.gains_10hz],

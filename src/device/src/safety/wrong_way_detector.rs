@@ -14,7 +14,7 @@ use crate::drive::Current;
 /// Change of the display's reading against the current, K, at which the station trips by [`Fault::Polarity`] or
 /// [`Fault::Runaway`]: rise above its lowest value while the display is cooled, or fall below its highest value while
 /// the display is warmed. A finger that lands while the current is at its limit causes up to 2 K.
-const TRIP_REVERSAL: Celsius = Celsius::lit("2.5");
+const TRIP_TEMPERATURE_REVERSAL: Celsius = Celsius::lit("2.5");
 /// Magnitude of the mean demanded current, A, from which on the direction of the reading is checked. Below it, the sign
 /// of the mean may differ from that of the current that flows, so the check starts again later.
 const DIRECTION_CHECK_CURRENT_MIN: Current = Current::lit("1");
@@ -23,7 +23,7 @@ const DIRECTION_CHECK_CURRENT_MIN: Current = Current::lit("1");
 /// has changed sign.
 const CURRENT_FILTER_SHIFT: u32 = 8;
 /// Ticks of 1 ms since the best reading (the lowest while cooling, the highest while warming). If the reading has moved
-/// back by [`TRIP_REVERSAL`] after this time or later, the fault is [`Fault::Runaway`]; if earlier,
+/// back by [`TRIP_TEMPERATURE_REVERSAL`] after this time or later, the fault is [`Fault::Runaway`]; if earlier,
 /// [`Fault::Polarity`].
 const RUNAWAY_TICKS_SINCE_BEST_MIN: u16 = 2000;
 
@@ -72,7 +72,7 @@ impl WrongWayDetector {
         match self.best {
             Some(best) if display >= best => {
                 self.ticks_since_best = self.ticks_since_best.saturating_add(1);
-                if display.saturating_sub(best) < TRIP_REVERSAL {
+                if display.saturating_sub(best) < TRIP_TEMPERATURE_REVERSAL {
                     Ok(())
                 } else if self.ticks_since_best < RUNAWAY_TICKS_SINCE_BEST_MIN {
                     Err(Fault::Polarity)

@@ -5,9 +5,9 @@
 /// A value with an index of `FINGERS` or more cannot be constructed, so no index can select a finger that does not
 /// exist.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Finger<const FINGERS: usize>(u8);
+pub struct FingerIndex<const FINGERS: usize>(u8);
 
-impl<const FINGERS: usize> Finger<FINGERS> {
+impl<const FINGERS: usize> FingerIndex<FINGERS> {
     /// The finger with index 0. This constant does not compile for a device without fingers or with more than ten,
     /// because a finger's address is one digit.
     pub const FIRST: Self = {
@@ -70,26 +70,29 @@ impl<const FINGERS: usize> Finger<FINGERS> {
 mod tests {
     use std::vec::Vec;
 
-    use super::Finger;
+    use super::FingerIndex;
 
     #[test]
     fn a_finger_exists_for_each_index_below_the_number_of_fingers() {
         for index in [0, 1, 4] {
-            assert_eq!(Finger::<5>::new(index).map(Finger::index), Some(index));
+            assert_eq!(
+                FingerIndex::<5>::new(index).map(FingerIndex::index),
+                Some(index)
+            );
         }
         for index in [5, 256, usize::MAX] {
-            assert_eq!(Finger::<5>::new(index), None);
+            assert_eq!(FingerIndex::<5>::new(index), None);
         }
-        let all: Vec<_> = Finger::<5>::all().map(Finger::index).collect();
+        let all: Vec<_> = FingerIndex::<5>::all().map(FingerIndex::index).collect();
         assert_eq!(all, [0, 1, 2, 3, 4]);
     }
 
     #[test]
     fn the_finger_after_the_last_is_the_first() {
-        let all: Vec<_> = Finger::<5>::all().collect();
+        let all: Vec<_> = FingerIndex::<5>::all().collect();
         for (n, finger) in all.iter().enumerate() {
             assert_eq!(finger.next_cyclic(), all[(n + 1) % 5]);
         }
-        assert_eq!(Finger::<1>::FIRST.next_cyclic(), Finger::FIRST);
+        assert_eq!(FingerIndex::<1>::FIRST.next_cyclic(), FingerIndex::FIRST);
     }
 }

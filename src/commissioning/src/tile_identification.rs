@@ -121,7 +121,7 @@ pub fn tile_from_normal_equations(
     ]);
     let implausible_dead_time = (!PLAUSIBLE_DEAD_TIME.contains(tile.dead_time_s))
         .then_some((&PLAUSIBLE_DEAD_TIME, tile.dead_time_s));
-    match tile.out_of_range().or(implausible_dead_time) {
+    match tile.first_value_out_of_range().or(implausible_dead_time) {
         Some((allowed, value)) => Err(IdentificationError::OutOfRange(allowed, value)),
         None => Ok(tile),
     }

@@ -3,9 +3,9 @@
 use super::{ArmedTask, Event, State, Station};
 use crate::TICK_HZ;
 use crate::command::{Command, Refused, Reply, Status};
-use crate::hold::TemperatureHold;
 use crate::identification::Identification;
 use crate::sense::ThermistorAverages;
+use crate::temperature_hold::TemperatureHold;
 
 impl Station {
     /// Executes a command of the host between two ticks, in bounded and short time; its effect begins in the next tick.

@@ -3,30 +3,30 @@
 use core::array;
 
 use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
-use thermal_device::command::{self, Addressed, Command, Refused};
-use thermal_device::{Finger, StateName};
+use thermal_device::command::{self, Command, Refused, WithFingerIndex};
+use thermal_device::{FingerIndex, StateName};
 use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode};
 
-use crate::address::split_address;
+use crate::finger_address::split_address;
 use crate::{Error, Reply, Request};
 
 /// A function that executes a command in the station (the control) of the given finger, or in the stations of all
 /// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
 /// calls it.
 pub trait ExecuteOnStations<const FINGERS: usize>:
-    FnMut(Option<Finger<FINGERS>>, Command) -> ExecutionResult
+    FnMut(Option<FingerIndex<FINGERS>>, Command) -> ExecutionResult
 {
 }
 
 impl<const FINGERS: usize, F> ExecuteOnStations<FINGERS> for F where
-    F: FnMut(Option<Finger<FINGERS>>, Command) -> ExecutionResult
+    F: FnMut(Option<FingerIndex<FINGERS>>, Command) -> ExecutionResult
 {
 }
 
 /// Result of a command in the station (the control) of one finger or in the stations of all fingers: a station's reply,
 /// or the reason why a station refuses the command. For the answer to the host, the result contains the index of that
 /// station's finger, or no index if the result is for all fingers or the device has only one.
-pub type ExecutionResult = Result<Addressed<command::Reply>, Addressed<Refused>>;
+pub type ExecutionResult = Result<WithFingerIndex<command::Reply>, WithFingerIndex<Refused>>;
 
 /// Executes the host's lines on a device with one to ten fingers, and returns the answers. It holds the commissioning
 /// session of each finger, which is its settings and calibration points; lines that command the control of a finger are
@@ -50,7 +50,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     #[must_use]
     pub fn from_stored(stored: &[StoredSettings; FINGERS]) -> Self {
         let session =
-            |stored: &StoredSettings| CommissioningSession::new(stored.with_factory_defaults());
+            |stored: &StoredSettings| CommissioningSession::new(stored.to_complete_settings());
         Self {
             sessions: stored.each_ref().map(session),
         }
@@ -85,19 +85,20 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         &mut self,
         line: &str,
         mut execute: impl ExecuteOnStations<FINGERS>,
-    ) -> Result<Addressed<Reply>, Addressed<Error>> {
+    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Error>> {
         const { assert!(FINGERS > 0 && FINGERS <= 10) };
         let (finger, line) = split_address(line)?;
-        let number = finger.map(Finger::index_u8);
-        let addressed = |content| Addressed {
+        let number = finger.map(FingerIndex::index_u8);
+        let addressed = |content| WithFingerIndex {
             finger: number,
             content,
         };
-        let request =
-            Request::parse(line, self.sessions[0].settings()).map_err(|content| Addressed {
+        let request = Request::parse(line, self.sessions[0].settings()).map_err(|content| {
+            WithFingerIndex {
                 finger: number,
                 content,
-            })?;
+            }
+        })?;
         match request {
             Request::Identify => Ok(addressed(Reply::Identity {
                 fingers: FINGERS as u8,
@@ -120,30 +121,30 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     fn execute_in_sessions(
         &mut self,
         request: SessionRequest,
-        finger: Option<Finger<FINGERS>>,
+        finger: Option<FingerIndex<FINGERS>>,
         mut execute: impl ExecuteOnStations<FINGERS>,
-    ) -> Result<Addressed<Reply>, Addressed<Error>> {
+    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Error>> {
         let finger = match request {
             SessionRequest::CountSettingsLines
             | SessionRequest::SettingsLine(_)
             | SessionRequest::Margins
                 if FINGERS > 1 =>
             {
-                finger.or(Some(Finger::FIRST))
+                finger.or(Some(FingerIndex::FIRST))
             }
             // Each of these requests takes milliseconds of `f64`; for all fingers this would exceed the watchdog's
             // period.
             SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
                 if finger.is_none() && FINGERS > 1 =>
             {
-                return Err(Addressed::from_whole_device(Error::Missing(
+                return Err(WithFingerIndex::from_whole_device(Error::Missing(
                     "finger (as @0)",
                 )));
             }
             _ => finger,
         };
         let (mut reply, mut first_error) = (SessionReply::Done, None);
-        for (one, session) in Finger::all().zip(&mut self.sessions) {
+        for (one, session) in FingerIndex::all().zip(&mut self.sessions) {
             if finger.is_some_and(|finger| finger != one) {
                 continue;
             }
@@ -157,16 +158,16 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 // A request to several fingers has no other reply than `Done`.
                 Ok(answer) => reply = answer,
                 Err(error) => {
-                    first_error.get_or_insert(Addressed {
-                        finger: finger.map(Finger::index_u8).or(one.reply_address()),
+                    first_error.get_or_insert(WithFingerIndex {
+                        finger: finger.map(FingerIndex::index_u8).or(one.reply_address()),
                         content: Error::from(error),
                     });
                 }
             }
         }
         let content = Reply::Commissioning(reply);
-        let finger = finger.map(Finger::index_u8);
-        first_error.map_or(Ok(Addressed { finger, content }), Err)
+        let finger = finger.map(FingerIndex::index_u8);
+        first_error.map_or(Ok(WithFingerIndex { finger, content }), Err)
     }
 
     /// The error that rejects `save` or `forget`, or `None` if the command may be executed. Rejected are a line that
@@ -174,18 +175,18 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// store settings, and would switch off a display that a finger may feel.
     fn storage_rejection(
         order: StorageOrder,
-        finger: Option<Finger<FINGERS>>,
+        finger: Option<FingerIndex<FINGERS>>,
         mut execute: impl ExecuteOnStations<FINGERS>,
-    ) -> Option<Addressed<Error>> {
+    ) -> Option<WithFingerIndex<Error>> {
         if finger.is_some() && FINGERS > 1 {
             let content = Error::WholeDevice(order.name());
-            let finger = finger.map(Finger::index_u8);
-            return Some(Addressed { finger, content });
+            let finger = finger.map(FingerIndex::index_u8);
+            return Some(WithFingerIndex { finger, content });
         }
-        for one in Finger::all() {
+        for one in FingerIndex::all() {
             match execute(Some(one), Command::Status) {
                 Err(refused) => return Some(refused.map_content(Error::from)),
-                Ok(Addressed {
+                Ok(WithFingerIndex {
                     content: command::Reply::Status(status),
                     ..
                 }) if matches!(
@@ -193,8 +194,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                     StateName::Off | StateName::Ready | StateName::Tripped(_)
                 ) => {}
                 Ok(_) => {
-                    return Some(Addressed {
-                        finger: one.reply_address().or(finger.map(Finger::index_u8)),
+                    return Some(WithFingerIndex {
+                        finger: one.reply_address().or(finger.map(FingerIndex::index_u8)),
                         content: Error::NeedsOff(order.name()),
                     });
                 }

@@ -97,7 +97,7 @@ impl ForceMeans {
     /// 64, later over the last quarter of them, with at least 64 and at most 4096 ticks. A drift starts this mean again
     /// from the mean of the last 64 ticks.
     #[must_use]
-    pub const fn mean(&self) -> Force {
+    pub const fn long_mean(&self) -> Force {
         self.long_mean
     }
 
@@ -172,9 +172,9 @@ mod tests {
             assert_eq!(mean.add_force(noisy), ForceChange::Noise);
         }
         mean.add_force(Force::lit("2"));
-        let error = mean.mean().to_num::<f64>() - 2.0;
+        let error = mean.long_mean().to_num::<f64>() - 2.0;
         assert!(error.abs() < 5e-4, "{error}");
         assert_eq!(mean.add_force(Force::lit("1")), ForceChange::New);
-        assert_eq!(mean.mean(), Force::lit("1"));
+        assert_eq!(mean.long_mean(), Force::lit("1"));
     }
 }

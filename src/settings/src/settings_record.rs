@@ -63,7 +63,7 @@ impl StoredSettings {
     /// factory defaults for everything else.
     #[must_use]
     #[inline(never)]
-    pub fn with_factory_defaults(&self) -> Settings {
+    pub fn to_complete_settings(&self) -> Settings {
         let mut settings = Settings {
             calibration: self.calibration,
             ..Settings::default()
@@ -105,10 +105,10 @@ impl StoredSettings {
 
     /// The first value of calibration or tile that is outside its allowed range, with that range; `None` if all are
     /// inside.
-    fn out_of_range(&self) -> Option<(&'static Range, f64)> {
+    fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
         self.calibration
-            .out_of_range()
-            .or_else(|| self.tile.out_of_range())
+            .first_value_out_of_range()
+            .or_else(|| self.tile.first_value_out_of_range())
     }
 }
 
@@ -242,7 +242,7 @@ pub fn decode<const FINGERS: usize>(
         StoredSettings::from_record_values(words.by_ref().take(VALUES_PER_FINGER))
     });
     for (finger, one) in (0..).zip(&settings) {
-        if let Some((allowed, value)) = one.out_of_range() {
+        if let Some((allowed, value)) = one.first_value_out_of_range() {
             return Err(RecordError::OutOfRange {
                 finger,
                 allowed,
