@@ -305,7 +305,7 @@ fn parameters_are_printed_with_limits_and_drawn_alike_by_one_seed() {
     refused(&["parameters", "--draw", "x"]);
 }
 
-/// The native engine knows of a reset what the logic knows: that it starts anew.
+/// A reset of the native engine is a restart of the logic, and nothing else.
 #[test]
 fn run_reports_resets_and_refuses_other_faults_of_the_processor() {
     let scene = File::new(
