@@ -12,6 +12,18 @@ fn golden(name: &str) -> Vec<Row> {
 }
 
 #[test]
+fn the_readmes_example_prints_what_it_shows() {
+    let readme = include_str!("../../README.md");
+    let (_, example) = readme
+        .split_once("$ cargo hil-sim ")
+        .expect("an example with a prompt");
+    let (line, shown) = example.split_once('\n').expect("its output");
+    let (shown, _) = shown.split_once("```").expect("an end");
+    let arguments: Vec<&str> = line.split(' ').collect();
+    assert_eq!(good(&arguments, ""), shown);
+}
+
+#[test]
 fn model_meets_golden_values_in_f64_and_fixed_point() {
     let mut checked = 0;
     for row in golden("contact") {
