@@ -16,17 +16,6 @@ fn loaded() -> Bench {
     bench
 }
 
-/// Current's step in the next tick, A, and largest error of the display in the three seconds after it, K.
-fn disturbed(bench: &mut Bench) -> (f64, f64) {
-    let before_a = bench.current_a;
-    let after = bench.run(TARGET_C, 3.0);
-    let error_k = after.iter().map(|tick| (tick.display_c - TARGET_C).abs());
-    (
-        (after[0].current_a - before_a).abs(),
-        error_k.fold(0.0, f64::max),
-    )
-}
-
 /// The largest of what several changes have done to current and display.
 #[derive(Default)]
 struct Largest {
@@ -35,7 +24,19 @@ struct Largest {
 }
 
 impl Largest {
-    fn add(&mut self, (step_a, error_k): (f64, f64)) {
+    /// Runs three seconds after a change: takes the step of the current in the first tick, and the largest error of the
+    /// display, into account, and prints them.
+    fn observe(&mut self, change: &str, bench: &mut Bench) {
+        let before_a = bench.current_a;
+        let after = bench.run(TARGET_C, 3.0);
+        let step_a = (after[0].current_a - before_a).abs();
+        let errors = after.iter().map(|tick| (tick.display_c - TARGET_C).abs());
+        let error_k = errors.fold(0.0, f64::max);
+        println!(
+            "{change}: from {before_a:.3} A by {:.3} mA, {:.3} mK",
+            1e3 * step_a,
+            1e3 * error_k
+        );
         self.step_a = self.step_a.max(step_a);
         self.error_k = self.error_k.max(error_k);
     }
@@ -56,13 +57,7 @@ fn the_model_based_controller_changes_gains_without_a_bump() {
             ..IDENTIFIED
         };
         retune(&mut bench, tile);
-        let (step_a, error_k) = disturbed(&mut bench);
-        println!(
-            "gain x {factor}: {:.3} mA, {:.3} mK",
-            1e3 * step_a,
-            1e3 * error_k
-        );
-        largest.add((step_a, error_k));
+        largest.observe(&format!("gain x {factor}"), &mut bench);
     }
     assert_figure("law.regain_current", largest.step_a);
     assert_figure("law.regain_error", 1e3 * largest.error_k);
@@ -82,14 +77,7 @@ fn the_pi_controllers_change_gains_without_a_bump() {
                 ..IDENTIFIED
             };
             retune(&mut bench, tile);
-            let (step_a, error_k) = disturbed(&mut bench);
-            println!(
-                "{}, gain x {factor}: {:.3} mA, {:.3} mK",
-                law.name(),
-                1e3 * step_a,
-                1e3 * error_k
-            );
-            largest.add((step_a, error_k));
+            largest.observe(&format!("{}, gain x {factor}", law.name()), &mut bench);
         }
     }
     assert_figure("law.plain_regain_current", 1e3 * largest.step_a);
@@ -109,13 +97,7 @@ fn the_sensor_lag_changes_without_a_bump() {
                 ..IDENTIFIED
             },
         );
-        let (step_a, error_k) = disturbed(&mut bench);
-        println!(
-            "lag {sensor_lag_s} s: {:.3} mA, {:.3} mK",
-            1e3 * step_a,
-            1e3 * error_k
-        );
-        largest.add((step_a, error_k));
+        largest.observe(&format!("lag {sensor_lag_s} s"), &mut bench);
     }
     assert_figure("law.relag_current", 1e3 * largest.step_a);
     assert_figure("law.relag_error", 1e3 * largest.error_k);
@@ -135,19 +117,10 @@ fn the_controller_changes_without_a_bump() {
         (bench.load_w, bench.known_load_w) = (1.0, 1.0);
         bench.control.controller.select_law(from);
         bench.run(TARGET_C, 60.0);
-        let before_a = bench.current_a;
         bench.control.controller.select_law(to);
-        let (step_a, error_k) = disturbed(&mut bench);
+        largest.observe(&format!("{} to {}", from.name(), to.name()), &mut bench);
         bench.run(TARGET_C, 20.0);
         let left_k = (bench.display_c() - TARGET_C).abs();
-        println!(
-            "{} to {}: from {before_a:.3} A by {step_a:.3} A, {:.1} mK, {:.3} mK in the end",
-            from.name(),
-            to.name(),
-            1e3 * error_k,
-            1e3 * left_k
-        );
-        largest.add((step_a, error_k));
         most_left_k = most_left_k.max(left_k);
     }
     assert_figure("law.change_current", 1e3 * largest.step_a);

@@ -88,7 +88,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// The control law of a name, as the device knows it.
+/// The control law of a name, with the names of the device's protocol.
 fn law(source: &Source<'_>, name: &Spanned<String>) -> Result<Law, SceneError> {
     let known = Law::PROTOCOL_WORDS
         .iter()

@@ -55,7 +55,7 @@ pub struct PreviousActuation {
 }
 
 /// The fault detectors of one station that need the readings of several ticks, and the thermal dose of the station's
-/// display. Faults that a single tick shows are found by [`validate_readings`](super::validate_readings) instead.
+/// display. Faults that a single tick shows are found by [`validate_readings`](super::validate_readings()) instead.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FaultDetectors {
     frozen: FrozenDetector,

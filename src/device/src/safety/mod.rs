@@ -19,7 +19,7 @@
 //!
 //! | detector                     | faults                                 | trips when                                    |
 //! |------------------------------|----------------------------------------|-----------------------------------------------|
-//! | [`validate_readings`]        | open, short, excitation, force sensor  | a signal is outside of its possible range     |
+//! | [`validate_readings()`]       | open, short, excitation, force sensor  | a signal is outside of its possible range     |
 //! |                              | display hot, display cold              | 43 °C, 13.5 °C by either thermistor           |
 //! |                              | sink hot                               | 42 °C                                         |
 //! |                              | over-current                           | 3 A above the largest demand                  |
