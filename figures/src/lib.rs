@@ -8,7 +8,7 @@ mod generator;
 mod parse;
 
 pub use check::Verdict;
-pub use generator::run_generator;
+pub use generator::{GENERATORS_REQUIRED, VIRTUAL_ENVIRONMENT, python_with_mpmath, run_generator};
 
 /// The source of all figures.
 const TEXT: &str = include_str!("../../docs/figures.toml");

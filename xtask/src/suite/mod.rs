@@ -3,6 +3,7 @@ mod lanes;
 mod members;
 
 use anyhow::Result;
+use documented_figures::GENERATORS_REQUIRED;
 
 use crate::firmware::{self, Fingers};
 use crate::process::Invocation;
@@ -24,8 +25,14 @@ fn check<const N: usize>(title: &'static str, lines: [&str; N]) -> Check {
     }
 }
 
+/// A command line of cargo. Where it runs tests, the generators of golden data must run as well.
 fn cargo(line: &str) -> Invocation {
-    Invocation::cargo(line.split(' '))
+    let cargo = Invocation::cargo(line.split(' '));
+    if line.starts_with("test ") {
+        cargo.env(GENERATORS_REQUIRED, "1")
+    } else {
+        cargo
+    }
 }
 
 /// `check`, or why it is left out.
@@ -174,6 +181,7 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
                 emulator: !quick_only,
                 fuzzer: !quick_only,
                 lints: true,
+                generators: true,
             };
             Ok((setup::prepare(needs, permission)?, setup::lints()?))
         })?;
