@@ -85,9 +85,6 @@ pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
             continue;
         }
         let mut missing = compilers::missing(needs);
-        if needs.generators {
-            missing.extend(python::missing());
-        }
         let ready = match decision {
             target::Decision::Use(toolchain) => Some(toolchain),
             target::Decision::Lacks(lacks) => {
@@ -99,7 +96,7 @@ pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
         match (ready, missing.is_empty()) {
             (Some(toolchain), true) => {
                 if needs.generators {
-                    python::install_mpmath()?;
+                    python::install_mpmath();
                 }
                 eprintln!("cross compiler: {toolchain}");
                 return Ok(toolchain);
