@@ -98,7 +98,7 @@ pub enum Setting {
 /// Why a commissioning session rejects a request. The settings are unchanged then.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SessionError {
-    /// The finger's station refuses a command that the request needs; the value is its reason.
+    /// The finger's station refuses a command that the request needs; the value says why it refuses.
     Refused(Refused),
     /// No tile can be computed from the response that the station has recorded during `tune`; the value is the reason.
     Identification(IdentificationError),

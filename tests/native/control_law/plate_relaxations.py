@@ -104,13 +104,13 @@ def main():
         lag, _ = max(groups[0], key=lambda mode: abs(mode[1][0]))
         gains = [fsum(total(group, heat) for group in groups) for heat in range(3)]
         if left:
-            print(f"relaxation({', '.join(map(rust, (lag, *gains)))}),")
+            print(f"class_relaxation_row({', '.join(map(rust, (lag, *gains)))}),")
         else:
             print(f"const FINGER_FEEDTHROUGH_K_W: f64 = {rust(gains[2])};")
         if len(row) == 2 and left:
-            print(f"const LEG_TIME_CONSTANT_S: f64 = {nstr(lag, 3)};")
-    print(f'const LEG_MEAN_RISE_K_W: I4F28 = I4F28::lit("{nstr(1 / (12 * LEGS_W_K), 3)}");')
-    print(f'const HOT_SIDE_RESISTANCE_K_W: I4F28 = I4F28::lit("{nstr(HOT_K_W, 3)}");')
+            print(f"const LEG_HEATING_TIME_CONSTANT_S: f64 = {nstr(lag, 3)};")
+    print(f'const LEG_MEAN_RISE_PER_JOULE_HEAT_K_W: I4F28 = I4F28::lit("{nstr(1 / (12 * LEGS_W_K), 3)}");')
+    print(f'const HOT_SIDE_THERMAL_RESISTANCE_K_W: I4F28 = I4F28::lit("{nstr(HOT_K_W, 3)}");')
 
 
 if __name__ == "__main__":

@@ -30,9 +30,10 @@ pub type Watt = I8F24;
 /// Temperature in °C or temperature difference in K within the plate model: ±2048 with a resolution of 1 µK.
 type ModelTemperature = I12F20;
 
-/// Parameters of one first-order relaxation of the surface temperature: time constant, s, and contributions in the
-/// steady state, K/W, per watt of heat pumped out of the plate (which cools), of Joule heat in the legs, and of heat
-/// from the finger, in this order.
+/// One first-order lag of the plate model, whose surface temperature is the sum of five such lags: its time constant, s,
+/// and its steady-state gains, K/W, for the three heat inputs in the order heat pumped out of the plate, Joule heat in
+/// the legs, heat from the finger. The gain for pumped heat is the fall of the temperature, positive if pumping cools;
+/// [`HeatInputGains::temperature_change`] subtracts it.
 #[derive(Clone, Copy)]
 struct FirstOrderLagParameters {
     time_constant_s: f64,

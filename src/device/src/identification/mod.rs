@@ -148,8 +148,8 @@ impl AbortReason {
 /// identification that ends early changes from `Settling`, `Baseline` or `Pulses` to `Aborted`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum IdentificationPhase {
-    /// The PI loop brings the display to the operating point, for `ticks` ticks of 1 ms so far. In the last `near` of
-    /// these ticks, in a row, the display's reading was within 0.06 K of the operating point.
+    /// The PI loop brings the display to the operating point, for `ticks` ticks of 1 ms so far. `near` counts
+    /// the ticks in a row, up to the present one, in which the display's reading was within 0.06 K of it.
     Settling { ticks: u32, near: u32 },
     /// The baseline before the pulses is measured, for `ticks` ticks of 1 ms so far. In the first 512 ticks the current
     /// of the PI loop is averaged; in the next 512 ticks this mean current is demanded, and the display's reading and

@@ -104,8 +104,9 @@ impl Reference {
 /// material, object temperature or contact model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct ContactSetpoints {
-    /// Time `t` of Eq. 6-12, ticks of 1 ms: since the finger landed or, if this contact began under a finger that had
-    /// landed before, since this contact began.
+    /// Time `t` of Eq. 6-12, ticks of 1 ms since the finger landed. If the host has sent `start` or chosen another
+    /// material, object temperature or contact model under a resting finger: ticks since then, because the transient of
+    /// Eq. 6-12 begins anew with the new object.
     elapsed: u64,
     /// Forces, N, for which the set-point by Eq. 6-12 differs by at most 0.1 mK from that of the present interpolation.
     /// While the mean force stays in this range, noise of the force causes no new interpolation.

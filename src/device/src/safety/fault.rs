@@ -13,8 +13,9 @@ macro_rules! faults {
         pub enum Fault { $($(#[$doc])+ $fault,)+ }
 
         impl Fault {
-            /// All faults in the order of their numbers, which start at 0. A stored trip cause names its fault by this
-            /// number; [`TripCause::LAYOUT_HASH`](super::TripCause::LAYOUT_HASH) covers the order.
+            /// All faults in the order of their numbers, which start at 0. A trip cause that is kept in RAM through
+            /// a reset holds its fault as this number. [`TripCause::LAYOUT_HASH`](super::TripCause::LAYOUT_HASH) includes
+            /// names and order of the faults, so that firmware with other faults rejects the kept cause.
             pub const ALL: &'static [Self] = &[$(Self::$fault,)+];
 
             /// Word of the fault on the serial line to the host, in states, replies and telemetry, such as

@@ -13,8 +13,8 @@ use crate::sense::{Readings, ThermistorFault};
 pub struct ValidReadings {
     /// Display surface temperature by the display's first thermistor, which the control uses, °C, 13.5 to 43 °C.
     pub display: Celsius,
-    /// Display surface temperature by the display's second thermistor, °C, 13.5 to 43 °C. The control does not use it:
-    /// only the fault detectors, the self-test and the thermal dose do.
+    /// Display surface temperature by the display's second thermistor, °C, 13.5 to 43 °C. Only the
+    /// fault detectors and the self-test use it, to check the first thermistor; the control does not.
     pub check: Celsius,
     /// Temperature of the Peltier module's heat sink, °C; at most 42 °C, above which the station trips.
     pub sink: Celsius,

@@ -116,9 +116,9 @@ impl ConverterCorrection {
 pub(super) struct ThermistorCorrection {
     /// Constant term, K: the calibrated offset minus the thermistor's self-heating.
     offset: Celsius,
-    /// Coefficient, K/K, of the linear term, which is linear in the uncorrected temperature minus 29 °C.
+    /// Coefficient, K/K, of `u`, where `u` is the uncorrected temperature minus 29 °C, limited to ±16 K.
     slope: I0F32,
-    /// Coefficient, K/K², of the quadratic term, which is quadratic in the uncorrected temperature minus 29 °C.
+    /// Coefficient, 1/K, of `u²`, where `u` is the uncorrected temperature minus 29 °C, limited to ±16 K.
     curvature: I0F32,
 }
 

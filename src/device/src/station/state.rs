@@ -45,7 +45,8 @@ pub enum ArmedTask {
     Identify(Identification),
 }
 
-/// What may change a station's state: a command of the host, a finger, the end of the self-test, or a fault.
+/// What changes a station's state: a command of the host (except those that only change the task within armed), a finger
+/// that lands or lifts, the passing of the self-test, or a fault.
 /// [`State::state_after`] is the table of the transitions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
