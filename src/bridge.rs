@@ -19,7 +19,8 @@ use embedded_hal::digital::OutputPin;
 use embedded_hal::pwm::SetDutyCycle;
 use thermal_device::drive::Duty;
 
-/// A bridge on two PWM channels with the same period and an output pin of the microcontroller.
+/// An H-bridge that drives a Peltier module. `In1` and `In2` are the PWM channels of its two logic
+/// inputs, with the same period; `Enable` is the output pin that is high while the bridge drives.
 #[derive(Debug)]
 pub struct Bridge<In1, In2, Enable> {
     in1: In1,
@@ -33,22 +34,24 @@ where
     In2: SetDutyCycle<Error = Infallible>,
     Enable: OutputPin<Error = Infallible>,
 {
-    /// Takes the pins of a bridge and turns the bridge off.
+    /// Creates the driver from the two PWM channels and the enable pin of a bridge, and turns the
+    /// bridge off.
     pub fn new(in1: In1, in2: In2, enable: Enable) -> Self {
         let mut bridge = Self { in1, in2, enable };
         bridge.off();
         bridge
     }
 
-    /// Turns the bridge off: makes both outputs high-impedance, so that no current flows through the module.
+    /// Turns the bridge off: makes both outputs high-impedance, so that the bridge drives no
+    /// current through the Peltier module.
     pub fn off(&mut self) {
         let Ok(()) = self.enable.set_low();
         let Ok(()) = self.in1.set_duty_cycle_fully_off();
         let Ok(()) = self.in2.set_duty_cycle_fully_off();
     }
 
-    /// Drives the module with a mean voltage of `duty` times the supply voltage; positive values
-    /// cool the display.
+    /// Drives the Peltier module with a mean voltage of `duty` times the supply voltage. `duty` is
+    /// -0.9 to 0.9; positive values cool the display, negative ones warm it.
     pub fn drive(&mut self, duty: Duty) {
         let (in1, in2) = duty.half_bridge_on_times(self.in1.max_duty_cycle());
         let Ok(()) = self.in1.set_duty_cycle(in1);

@@ -1,8 +1,9 @@
-//! The hardware-free half of the firmware of a Peltier thermal display: a tile that feels like copper, granite, ABS or foam
-//! to the finger on it.
+//! The hardware-free half of the firmware of a Peltier thermal display: a tile that feels like
+//! copper, granite, ABS or foam to the finger on it.
 //!
-//! Start at [`Station::step`](device::Station::step): one control tick of one finger, from the counts of thermistors, force
-//! and current to the command of the bridge, as a straight line of stages.
+//! Start at [`Station::step`](device::Station::step): one control tick of one finger, from the
+//! counts of thermistors, force and current to the command of the bridge, as a straight line of
+//! stages.
 //!
 //! ```text
 //! samples -> sense -> detect faults -> estimate -> reference -> control -> actuate -> outputs
@@ -15,23 +16,24 @@
 //! | [`commissioning`] | calibration of the thermistors and identification of the tile, in the task that answers the host |
 //! | [`protocol`] | the lines between host and device |
 //! | [`bridge`] | driver of an H-bridge with two logic inputs and an enable input |
-//! | [`mailbox`] | the queue of received lines, between the interrupt and the task that answers |
+//! | [`line_queue`] | the queue of received lines, between the interrupt and the task that answers |
 //! | [`task_liveness`] | feeds the independent watchdog only while every task runs |
 //!
-//! The contact model behind the reference is the crate [`contact_model`]. The tasks are in `src/main.rs`, pins, clocks and
-//! peripherals in `src/board/`. The same library runs on the microcontroller, in the emulated microcontroller and natively
-//! in the simulator, bit for bit. Nobody has run it on silicon yet.
+//! The contact model behind the reference is the crate [`contact_model`]. The tasks are in
+//! `src/main.rs`, pins, clocks and peripherals in `src/board/`. The same library runs on the
+//! microcontroller, in the emulated microcontroller and natively in the simulator, bit for bit.
+//! Nobody has run it on silicon yet.
 //!
 //! A station that is off drives nothing:
 //!
 //! ```
 //! use thermal_display::device::drive::Drive;
 //! use thermal_display::device::sense::Samples;
-//! use thermal_display::device::{Device, Finger};
+//! use thermal_display::device::{Device, FingerIndex};
 //! use thermal_display::settings::Settings;
 //!
 //! let mut device = Device::<1>::new(&Settings::default());
-//! let outputs = device.step(Finger::FIRST, &Samples::default());
+//! let outputs = device.step(FingerIndex::FIRST, &Samples::default());
 //! assert_eq!(outputs.drive, Drive::Off);
 //! ```
 #![no_std]
@@ -41,7 +43,7 @@
 extern crate std;
 
 pub mod bridge;
-pub mod mailbox;
+pub mod line_queue;
 pub mod task_liveness;
 
 pub use thermal_commissioning as commissioning;

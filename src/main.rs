@@ -1,13 +1,13 @@
 //! The firmware's tasks: when each runs, at which priority, and which data it may use.
 //!
-//! | task       | runs when                                | priority | must end within                        |
-//! |------------|------------------------------------------|----------|----------------------------------------|
-//! | `receive`  | a byte has come from the host            | 4        | 20 us: two bytes at 1 Mbaud            |
-//! | `tick`     | the samples of a finger are in memory    | 3        | 1 ms divided by the number of fingers  |
-//! | `overrun`  | the converter has lost a conversion      | 3        | no limit: sampling has stopped         |
-//! | `transmit` | a line has been sent                     | 2        | 20 us, or the line to the host pauses  |
-//! | `host`     | a line or telemetry waits                | 1        | 68 ms: the shortest watchdog period    |
-//! | `idle`     | nothing else runs                        | 0        | 68 ms: the shortest watchdog period    |
+//! | task          | runs when                             | priority | must end within                       |
+//! |---------------|---------------------------------------|----------|---------------------------------------|
+//! | `receive`     | a byte has come from the host         | 4        | 20 us: two bytes at 1 Mbaud           |
+//! | `tick`        | the samples of a finger are in memory | 3        | 1 ms divided by the number of fingers |
+//! | `adc_overrun` | the converter has lost a conversion   | 3        | no limit: sampling has stopped        |
+//! | `transmit`    | a line has been sent                  | 2        | 20 us, or the line to the host pauses |
+//! | `host`        | a line or telemetry waits             | 1        | 68 ms: the shortest watchdog period   |
+//! | `idle`        | nothing else runs                     | 0        | 68 ms: the shortest watchdog period   |
 //!
 //! Priorities are rate-monotonic. `receive` has the highest one because a byte is lost if it is not
 //! fetched before the next but one arrives. Nothing is lost when a tick starts some microseconds
@@ -25,11 +25,11 @@ mod app {
     use core::sync::atomic::{AtomicBool, Ordering};
 
     use thermal_display::device::Device;
-    use thermal_display::task_liveness::{HostPoll, Task, TaskLiveness};
+    use thermal_display::task_liveness::{HostTaskTimer, Task, TaskLiveness};
 
     use crate::board::{
-        Board, Completed, Console, ControlLoop, FINGERS, Memory, Receiver, SampleError,
-        SampleTrigger, Transmitter, Watchdog,
+        Board, CompletedLineKind, Console, ControlLoop, FINGERS, IndependentWatchdog, Receiver,
+        SampleError, SampleTrigger, StaticMemory, Transmitter,
     };
 
     #[shared]
@@ -38,8 +38,9 @@ mod app {
         #[lock_free]
         control_loop: ControlLoop,
         task_liveness: TaskLiveness,
-        /// Set when the host has sent a line or a blank one, cleared by the next tick: it restarts the time-out
-        /// of a silent host.
+        /// Set when the host has sent a line, even a blank one. The next control tick clears it and
+        /// restarts the 2 s after which a silent host trips a finger whose display follows a
+        /// set-point while its telemetry streams.
         host_is_active: AtomicBool,
     }
 
@@ -48,15 +49,18 @@ mod app {
         receiver: Receiver,
         transmitter: Transmitter,
         console: Console,
-        watchdog: Watchdog,
+        watchdog: IndependentWatchdog,
         trigger: SampleTrigger,
     }
 
     // `device` is a variable of its own, not a field of `memory`: the compiler then treats its
     // address as a constant, which saves 200 instructions a tick.
-    #[init(local = [memory: Memory = Memory::new(), device: Option<Device<FINGERS>> = None])]
+    #[init(local = [
+        memory: StaticMemory = StaticMemory::new(),
+        device: Option<Device<FINGERS>> = None
+    ])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let board = Board::start(cx.core.SYST, cx.device, cx.local.memory, cx.local.device);
+        let board = Board::set_up(cx.core.SYST, cx.device, cx.local.memory, cx.local.device);
         let shared = Shared {
             device: board.device,
             control_loop: board.control_loop,
@@ -78,7 +82,7 @@ mod app {
         // Sampling starts here and not in `init`, during which interrupts are disabled.
         cx.local.trigger.start();
         loop {
-            if cx.shared.task_liveness.all_checked_in() {
+            if cx.shared.task_liveness.clear_if_all_checked_in() {
                 cx.local.watchdog.feed();
             }
             cortex_m::asm::wfi();
@@ -89,7 +93,7 @@ mod app {
         binds = DMA2_STREAM0,
         priority = 3,
         shared = [device, control_loop, &task_liveness, &host_is_active],
-        local = [host_poll: HostPoll = HostPoll::new()],
+        local = [host_task_timer: HostTaskTimer = HostTaskTimer::new()],
     )]
     fn tick(mut cx: tick::Context) {
         let (control_loop, host_is_active) = (cx.shared.control_loop, cx.shared.host_is_active);
@@ -100,25 +104,30 @@ mod app {
             return;
         };
         cx.shared.task_liveness.check_in(Task::Tick);
-        // `spawn` fails while `host` runs, which is then called at the next tick.
-        if cx.local.host_poll.is_due(telemetry_is_due) && host::spawn().is_ok() {
-            cx.local.host_poll.restart();
+        // `spawn` fails while `host` still runs; `host` is then called at the next tick.
+        if cx
+            .local
+            .host_task_timer
+            .count_tick_and_check_due(telemetry_is_due)
+            && host::spawn().is_ok()
+        {
+            cx.local.host_task_timer.restart();
         }
     }
 
     #[task(binds = ADC, priority = 3, shared = [device, control_loop])]
-    fn overrun(mut cx: overrun::Context) {
+    fn adc_overrun(mut cx: adc_overrun::Context) {
         let control_loop = cx.shared.control_loop;
         (cx.shared.device).lock(|device| control_loop.stop(device, SampleError::Overrun));
     }
 
     #[task(binds = USART2, priority = 4, shared = [&host_is_active], local = [receiver])]
     fn receive(cx: receive::Context) {
-        let Some(completed) = cx.local.receiver.receive() else {
+        let Some(completed) = cx.local.receiver.receive_byte() else {
             return;
         };
         cx.shared.host_is_active.store(true, Ordering::Relaxed);
-        if completed == Completed::Line {
+        if completed == CompletedLineKind::ToBeAnswered {
             let _ = host::spawn();
         }
     }

@@ -1,9 +1,10 @@
-//! Tests of the device as a whole without its hardware: lines and samples in, answers and outputs out.
+//! Tests of the device as a whole without its hardware: lines and samples in, answers and outputs
+//! out.
 
 mod bridge;
 mod commissioning;
 mod device;
-mod mailbox;
+mod line_queue;
 mod station;
 mod storage;
 mod task_liveness;

@@ -4,9 +4,11 @@ use std::fmt;
 use std::sync::LazyLock;
 
 mod check;
+mod generator;
 mod parse;
 
 pub use check::Verdict;
+pub use generator::{GENERATORS_REQUIRED, VIRTUAL_ENVIRONMENT, python_with_mpmath, run_generator};
 
 /// The source of all figures.
 const TEXT: &str = include_str!("../../docs/figures.toml");

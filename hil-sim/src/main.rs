@@ -1,5 +1,4 @@
-//! The `hil-sim` command. Results on standard output, progress on standard error; exit status 1 if a run
-//! fails, 2 for bad input.
+#![doc = include_str!("../README.md")]
 
 mod cli;
 

@@ -2,8 +2,8 @@
 //! crate. `budgets` compares the crate with them.
 
 use contact_model::material::{Material, find};
+use documented_figures::run_generator;
 use std::collections::HashMap;
-use std::process::Command;
 
 /// A row of a golden table, as column name to text.
 pub type Row = HashMap<String, String>;
@@ -29,12 +29,6 @@ pub fn material(row: &Row) -> &'static Material {
 
 #[test]
 fn committed_golden_values_are_those_that_the_generator_writes() {
-    let python = |arguments: [&str; 2]| Command::new("python3").args(arguments).output();
-    if !python(["-c", "import mpmath"]).is_ok_and(|output| output.status.success()) {
-        println!("skipped: the generator of the golden values needs python3 with mpmath");
-        return;
-    }
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/generate.py");
-    let output = python([script, "--check"]).expect("python3");
-    assert!(output.status.success(), "{output:#?}");
+    run_generator(script, &["--check"]);
 }

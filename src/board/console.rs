@@ -3,32 +3,38 @@
 use heapless::spsc::Consumer;
 use thermal_display::commissioning::StorageOrder;
 use thermal_display::device::Telemetry;
-use thermal_display::device::command::Addressed;
-use thermal_display::mailbox::Outlet;
-use thermal_display::protocol::{CommandHandler, Error, Execute, Reply, telemetry_line};
+use thermal_display::device::command::WithFingerIndex;
+use thermal_display::line_queue::LineConsumer;
+use thermal_display::protocol::{CommandHandler, Error, ExecuteOnStations, Reply, telemetry_line};
 
 use super::{FINGERS, Outbox, restart_to_save};
 
-/// Takes received lines and telemetry from their queues and sends answers and telemetry lines to
+/// The host task's part of the serial line: answers received lines, and sends queued telemetry to
 /// the host.
 pub struct Console {
-    pub lines: Outlet<'static>,
-    pub telemetry: Consumer<'static, Addressed<Telemetry>>,
+    pub lines: LineConsumer<'static>,
+    pub telemetry: Consumer<'static, WithFingerIndex<Telemetry>>,
     pub outbox: Outbox,
     pub handler: &'static mut CommandHandler<FINGERS>,
-    /// Sent before anything else: the answer to the line that requested the restart.
+    /// The answer to `save` or `forget` after the restart that either of them requests: whether the
+    /// settings were stored. Sent before any other line; `None` after any other start, and once
+    /// sent.
     pub first_answer: Option<Result<Reply, Error>>,
-    /// The settings are to be stored or erased by a restart, once all answers are sent.
+    /// The order of the host to store the present settings (`save`) or factory defaults (`forget`).
+    /// Once all lines in the outbox are sent, the console restarts the device to execute this
+    /// order. `None` while there is no order.
     pub storage_order: Option<StorageOrder>,
 }
 
 impl Console {
-    /// Sends what waits, answers before telemetry, until nothing waits or the outbox is full.
+    /// Answers received lines and sends queued telemetry, answers first, until nothing waits or the
+    /// [`Outbox`] is full. What does not fit into the outbox stays in its queue for the next call.
     ///
-    /// What does not fit into the outbox stays in its queue. No answer is ever lost; telemetry is
-    /// lost only when its queue is full. A request is parsed, checked and computed here, which
-    /// takes long but needs no lock; `execute` then executes the resulting command under one.
-    pub fn serve(&mut self, mut execute: impl Execute<FINGERS>) {
+    /// No answer is ever lost; telemetry is lost only when its queue is full. A request is parsed,
+    /// checked and computed without locking the device, because that takes long; only `execute`,
+    /// which executes the resulting command, locks it. After `save` or `forget` no more lines are
+    /// answered, and the device restarts once the outbox is empty.
+    pub fn serve(&mut self, mut execute: impl ExecuteOnStations<FINGERS>) {
         while self.outbox.has_room() {
             if let Some(order) = self.storage_order {
                 if self.outbox.is_empty() {
@@ -39,26 +45,26 @@ impl Console {
             }
             if let Some(first_answer) = self.first_answer.take() {
                 match first_answer {
-                    Ok(reply) => self.outbox.send(&reply),
-                    Err(error) => self.outbox.send(&error),
+                    Ok(reply) => self.outbox.enqueue(&reply),
+                    Err(error) => self.outbox.enqueue(&error),
                 }
-            } else if let Some(line) = self.lines.take() {
+            } else if let Some(line) = self.lines.dequeue() {
                 let answer = line
-                    .map_err(|error| Addressed::from_whole_device(Error::from(error)))
+                    .map_err(|error| WithFingerIndex::from_whole_device(Error::from(error)))
                     .and_then(|line| self.handler.answer(&line, &mut execute));
                 match answer {
-                    Ok(Addressed {
+                    Ok(WithFingerIndex {
                         content: Reply::Restart(order),
                         ..
                     }) => self.storage_order = Some(order),
-                    Ok(reply) => self.outbox.send(&reply),
+                    Ok(reply) => self.outbox.enqueue(&reply),
                     Err(error) => {
                         defmt::warn!("line refused: {}", defmt::Display2Format(&error));
-                        self.outbox.send(&error);
+                        self.outbox.enqueue(&error);
                     }
                 }
             } else if let Some(telemetry) = self.telemetry.dequeue() {
-                self.outbox.send(&telemetry_line(telemetry));
+                self.outbox.enqueue(&telemetry_line(telemetry));
             } else {
                 break;
             }

@@ -3,32 +3,42 @@
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use heapless::spsc::Producer;
-use thermal_display::device::command::Addressed;
+use thermal_display::device::command::WithFingerIndex;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, Telemetry};
 
 use super::{
-    FINGERS, FaultRecord, PowerStage, SampleError, Sampler, WindowWatchdog, save_dose,
+    FINGERS, PowerStage, SampleError, Sampler, TripCauseRecorder, WindowWatchdog, save_dose,
     stack_is_overrun,
 };
 
-/// Samples the sensors and drives the bridges of all fingers.
+/// Executes the control ticks of all fingers: samples the sensors, computes each finger's outputs,
+/// and drives the bridges. Owns the hardware that this needs.
 pub struct ControlLoop {
     pub sampler: Sampler,
     pub stages: [PowerStage; FINGERS],
-    pub fault_record: FaultRecord,
-    pub telemetry: Producer<'static, Addressed<Telemetry>>,
+    pub trip_cause_recorder: TripCauseRecorder,
+    pub telemetry: Producer<'static, WithFingerIndex<Telemetry>>,
     pub window_watchdog: WindowWatchdog,
-    /// The 8 MHz clock of the debug probe runs. Without it the control tick has no accurate period.
+    /// Whether the 8 MHz clock of the debug probe was stable at the start. If not, the ticks come
+    /// from the internal oscillator, whose tolerance of 1 % makes their period inaccurate, so every
+    /// tick trips all fingers by [`Fault::Clock`].
     pub has_clock: bool,
 }
 
 impl ControlLoop {
-    /// Runs one tick of the finger whose samples are complete, drives its bridge, and queues its
-    /// telemetry if it is due; a full queue drops it. `host_is_active` tells that something was
-    /// received from the host since the last tick; it is read and cleared. Returns whether telemetry
-    /// was due, so that the caller starts the task that sends it.
+    /// Runs one control tick of the finger whose samples are complete: computes the outputs, drives
+    /// the finger's bridge, saves its thermal dose, and queues its telemetry if that is due. If the
+    /// telemetry queue is full, this telemetry is lost. Also feeds the window watchdog and keeps
+    /// the stored trip cause up to date. Called once a millisecond for each finger.
+    ///
+    /// `host_is_active` is true if the host has sent a line since the control tick before. It is
+    /// read and cleared; a true value restarts, for all fingers, the 2 s after which
+    /// [`Fault::HostSilent`] trips a finger whose display follows a set-point while its telemetry
+    /// streams.
+    ///
+    /// Returns whether telemetry was due, so that the caller starts the host task, which sends it.
     ///
     /// # Errors
     /// [`SampleError`] if there are no valid samples; the control loop has then
@@ -38,7 +48,7 @@ impl ControlLoop {
         device: &mut Device<FINGERS>,
         host_is_active: &AtomicBool,
     ) -> Result<bool, SampleError> {
-        let (finger, scans) = match self.sampler.take() {
+        let (finger, scans) = match self.sampler.take_block_and_select_next_finger() {
             Ok(block) => block,
             Err(error) => {
                 self.stop(device, error);
@@ -47,7 +57,7 @@ impl ControlLoop {
         };
         self.window_watchdog.feed();
         let stage = &mut self.stages[finger.index()];
-        let samples = Samples::from_scans(scans, stage.fault());
+        let samples = Samples::from_scans(scans, stage.reports_fault());
         if host_is_active.swap(false, Ordering::Relaxed) {
             device.note_host_activity();
         }
@@ -59,11 +69,12 @@ impl ControlLoop {
         }
         let outputs = device.step(finger, &samples);
         // Scan all fingers only when one has tripped or a cause is stored.
-        if self.fault_record.is_stored() || device.is_tripped(finger) {
-            self.fault_record.update(device.earliest_cause());
+        if self.trip_cause_recorder.has_stored_cause() || device.is_tripped(finger) {
+            self.trip_cause_recorder
+                .store_or_erase(device.earliest_trip_cause());
         }
-        save_dose(finger, device.dose(finger));
-        stage.apply(&outputs);
+        save_dose(finger, device.thermal_dose(finger));
+        stage.apply_outputs(&outputs);
         let telemetry = device.telemetry(finger);
         let is_due = telemetry.is_some();
         if let Some(telemetry) = telemetry {
@@ -74,13 +85,15 @@ impl ControlLoop {
         Ok(is_due)
     }
 
-    /// Turns all bridges off, stops sampling for good and trips all fingers. The watchdogs then
-    /// reset the device.
+    /// Turns all bridges off, stops sampling until the next reset, trips all fingers by the fault
+    /// of `error`, and stores the earliest trip cause of all fingers for the next start. The
+    /// watchdogs then reset the device, because no tick runs any more.
     pub fn stop(&mut self, device: &mut Device<FINGERS>, error: SampleError) {
         self.stages.iter_mut().for_each(PowerStage::off);
         self.sampler.stop();
         device.trip_all(error.fault());
-        self.fault_record.update(device.earliest_cause());
+        self.trip_cause_recorder
+            .store_or_erase(device.earliest_trip_cause());
         defmt::error!("sampling stopped: {}", error);
     }
 }

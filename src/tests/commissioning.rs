@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use super::device::arm;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
-use crate::device::{Device, Finger};
+use crate::device::{Device, FingerIndex};
 use crate::protocol::CommandHandler;
 use crate::settings::Settings;
 
@@ -55,7 +55,7 @@ impl<const FINGERS: usize> Bench<FINGERS> {
     /// Steps at 26 °C and a skin of 34 °C until all averages are complete.
     fn complete_averages(&mut self) {
         for tick in 0..600u16 {
-            for finger in Finger::all() {
+            for finger in FingerIndex::all() {
                 let count = |counts: u16| counts * SCANS_PER_TICK as u16 + tick % 2;
                 let samples = Samples {
                     display: count(2000),
@@ -140,7 +140,7 @@ fn an_unaddressed_change_is_made_by_all_fingers_and_a_query_answered_by_the_firs
 fn an_error_names_the_first_finger_that_refuses_and_the_others_execute_the_line() {
     let mut five = Bench::<5>::new();
     five.complete_averages();
-    arm(&mut five.device, Finger::new(2).expect("a finger"));
+    arm(&mut five.device, FingerIndex::new(2).expect("a finger"));
     assert_eq!(five.send("@2 material copper"), "@2 ok");
     assert_eq!(five.send("@2 start"), "@2 ok");
     let refused = "@2 err not while an object is presented: abort or arm first";

@@ -5,7 +5,7 @@ use std::string::{String, ToString};
 
 use crate::device::drive::Drive;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
-use crate::device::{Device, Finger};
+use crate::device::{Device, FingerIndex};
 use crate::protocol::{CommandHandler, telemetry_line};
 use crate::settings::Settings;
 
@@ -35,8 +35,8 @@ pub fn samples(noise: u16) -> Samples {
 
 /// Arms a finger and simulates, during its self-test, a display that responds to the current and a
 /// comparator that works.
-pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: Finger<FINGERS>) {
-    let number = finger.number();
+pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: FingerIndex<FINGERS>) {
+    let number = finger.index_u8();
     host(device, &format!("@{number} arm"));
     // 46 counts per kelvin; 2.7 K/s per ampere.
     let (mut tick, mut cooler, mut current, mut bridge_fault) = (0, 0.0, 0, false);
@@ -65,8 +65,8 @@ pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: Finger<FI
     }
 }
 
-fn finger(index: usize) -> Finger<FIVE> {
-    Finger::new(index).expect("one of five fingers")
+fn finger(index: usize) -> FingerIndex<FIVE> {
+    FingerIndex::new(index).expect("one of five fingers")
 }
 
 fn state_of(device: &mut Device<FIVE>, finger: usize) -> String {
@@ -115,8 +115,8 @@ fn a_command_is_executed_by_the_addressed_finger_or_by_all() {
 #[test]
 fn a_fault_at_one_finger_does_not_affect_the_others() {
     let mut device = Device::<FIVE>::new(&Settings::default());
-    Finger::all().for_each(|finger| arm(&mut device, finger));
-    for finger in Finger::all() {
+    FingerIndex::all().for_each(|finger| arm(&mut device, finger));
+    for finger in FingerIndex::all() {
         let bridge_fault = finger.index() == 1;
         let drive = device.step(
             finger,
@@ -168,7 +168,7 @@ fn answers_and_telemetry_have_the_address_of_their_finger() {
     }
     assert_eq!(host(&mut device, "@2"), "@2 err command missing");
     assert_eq!(host(&mut device, "@2 stream 1"), "@2 ok");
-    for finger in Finger::all() {
+    for finger in FingerIndex::all() {
         device.step(finger, &samples(0));
         let line = device
             .telemetry(finger)
@@ -186,12 +186,12 @@ fn lines_of_a_single_finger_have_no_address() {
     assert!(host(&mut device, "id").contains(" fingers=1 "));
     assert!(host(&mut device, "state").starts_with("ok state=off"));
     assert_eq!(host(&mut device, "@0 arm"), "@0 ok");
-    arm(&mut device, Finger::FIRST);
+    arm(&mut device, FingerIndex::FIRST);
     assert_eq!(
         host(&mut device, "@1 arm"),
         "err unknown finger '1' after @; known: 0 to 0"
     );
-    device.step(Finger::FIRST, &samples(0));
-    let line = telemetry_line(device.telemetry(Finger::FIRST).expect("telemetry")).to_string();
+    device.step(FingerIndex::FIRST, &samples(0));
+    let line = telemetry_line(device.telemetry(FingerIndex::FIRST).expect("telemetry")).to_string();
     assert!(line.contains(" armed "), "{line}");
 }

@@ -1,27 +1,36 @@
 //! The condition under which the watchdog is fed, and how often the host task is called.
 
-use crate::task_liveness::{HostPoll, Task, TaskLiveness};
+use crate::task_liveness::{HostTaskTimer, Task, TaskLiveness};
 
 #[test]
 fn the_watchdog_is_fed_only_after_every_task_has_checked_in_again() {
     for (present, missing) in [(Task::Tick, Task::Host), (Task::Host, Task::Tick)] {
         let liveness = TaskLiveness::new();
-        assert!(!liveness.all_checked_in(), "no task has checked in");
+        assert!(
+            !liveness.clear_if_all_checked_in(),
+            "no task has checked in"
+        );
         liveness.check_in(present);
         liveness.check_in(present);
-        assert!(!liveness.all_checked_in(), "{missing:?} is missing");
+        assert!(
+            !liveness.clear_if_all_checked_in(),
+            "{missing:?} is missing"
+        );
         liveness.check_in(missing);
-        assert!(liveness.all_checked_in());
-        assert!(!liveness.all_checked_in(), "all must check in again");
+        assert!(liveness.clear_if_all_checked_in());
+        assert!(
+            !liveness.clear_if_all_checked_in(),
+            "all must check in again"
+        );
     }
 }
 
 #[test]
 fn the_host_task_is_called_every_nine_ticks_and_at_once_for_telemetry() {
-    let mut poll = HostPoll::new();
+    let mut poll = HostTaskTimer::new();
     let mut called_at = |telemetry_tick: usize| {
         let mut due = |tick: &usize| {
-            let is_due = poll.is_due(*tick == telemetry_tick);
+            let is_due = poll.count_tick_and_check_due(*tick == telemetry_tick);
             if is_due {
                 poll.restart();
             }
@@ -35,6 +44,6 @@ fn the_host_task_is_called_every_nine_ticks_and_at_once_for_telemetry() {
 
 #[test]
 fn a_call_stays_due_until_it_is_made() {
-    let mut poll = HostPoll::new();
-    assert!((0..30).all(|_| poll.is_due(false)));
+    let mut poll = HostTaskTimer::new();
+    assert!((0..30).all(|_| poll.count_tick_and_check_due(false)));
 }

@@ -2,7 +2,7 @@
 //! detections by noise and drift.
 
 use documented_figures::assert_figure;
-use thermal_display::device::sense::{ContactDetector, SCANS_PER_TICK, Samples, Sensors};
+use thermal_display::device::sense::{ContactDetector, SCANS_PER_TICK, SampleConverter, Samples};
 use thermal_display::settings::Settings;
 use thermal_plant::sensors::{Channel, SensorInputs, SensorParams, Sensors as Plant};
 
@@ -12,7 +12,7 @@ const SCANS_BEFORE: usize = 4;
 /// Simulated force sensor and converter, read by the device's contact detection.
 struct Bench {
     plant: Plant,
-    sensors: Sensors,
+    sensors: SampleConverter,
     touch: ContactDetector,
     sum: u16,
 }
@@ -21,7 +21,7 @@ impl Bench {
     fn new(params: SensorParams, seed: u64) -> Self {
         let mut bench = Self {
             plant: Plant::new(params, &state(0.0), seed),
-            sensors: Sensors::new(&Settings::default()),
+            sensors: SampleConverter::new(&Settings::default()),
             touch: ContactDetector::default(),
             sum: 0,
         };
@@ -45,11 +45,11 @@ impl Bench {
         };
         let force = self
             .sensors
-            .read_samples(&samples)
+            .convert_samples(&samples)
             .force
             .expect("a sound sensor");
         self.touch.update_contact(force);
-        self.sensors.track_zero(&samples, &self.touch);
+        self.sensors.track_force_zero(&samples, &self.touch);
         self.sum = 0;
         self.scan(SCANS_BEFORE);
     }

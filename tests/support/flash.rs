@@ -131,7 +131,7 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FI
 /// Appends any bytes as the newest record; whether that succeeded.
 pub fn append(cells: &mut FlashCells, record: &[u8]) -> bool {
     let flash = Flash::new(cells.clone());
-    let end = (3 * RedundantSectors::<Flash>::SECTOR_BYTES) as u32;
+    let end = (3 * RedundantSectors::<Flash>::DATA_BYTES_PER_SECTOR) as u32;
     let config = MapConfig::new(0..end);
     let mut map = MapStorage::<(), _, _>::new(
         RedundantSectors::new(flash.clone()),

@@ -1,6 +1,4 @@
-//! Shared by the tests of the whole system: scenes, native runs of them, figures of a run, and the flash of the settings.
-//!
-//! Nothing here needs the emulator.
+#![doc = include_str!("../README.md")]
 
 pub mod flash;
 

@@ -1,7 +1,4 @@
-//! The code that the benchmark measures on the host and on the emulated microcontroller: [`kernels`] that compute
-//! `E = erfcx(sqrt(n K))`, [`scenes`] for the whole model, and their [`inputs`].
-//!
-//! The peers are written after the cited formulas; their coefficients are derived by `build.rs`.
+#![doc = include_str!("../README.md")]
 #![no_std]
 
 pub mod inputs;

@@ -9,7 +9,9 @@ use contact_model::fixed_point::{
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use thermal_display::device::estimate::FingerEstimator;
-use thermal_display::device::reference::{self, INTERPOLATION_TOLERANCE, Mode, ReferenceGenerator};
+use thermal_display::device::reference::{
+    self, ContactModel, ReferenceGenerator, SETPOINT_INTERPOLATION_TOLERANCE,
+};
 
 use crate::kernels::{libm_f32, libm_f64, shepherd_laframboise};
 use floating::Finger as FloatingFinger;
@@ -89,8 +91,13 @@ impl Station {
             let object = &MATERIALS[FINGERS[finger]].1;
             let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S)?;
             let contact = pair.at_pressure(log2_relative_pressure(force));
-            let (chords, _) =
-                ChordInterpolation::new(&contact, skin, object_c, 0, INTERPOLATION_TOLERANCE);
+            let (chords, _) = ChordInterpolation::new(
+                &contact,
+                skin,
+                object_c,
+                0,
+                SETPOINT_INTERPOLATION_TOLERANCE,
+            );
             Ok(Finger {
                 pair,
                 chords,
@@ -99,7 +106,7 @@ impl Station {
         };
         let fixed = [fixed(0)?, fixed(1)?, fixed(2)?, fixed(3)?, fixed(4)?];
         let mut estimator = FingerEstimator::default();
-        estimator.observe(skin, object_c, None, 0);
+        estimator.update_by_readings(skin, object_c, None, 0);
         Ok(Self {
             skin,
             object: object_c,
@@ -181,11 +188,11 @@ fn five_fingers(station: &mut Station, _: u32) -> u32 {
 fn reference_step(station: &mut Station, force: Force) -> u32 {
     station
         .estimator
-        .observe(station.skin, station.object, Some(force), 1);
-    let scene = reference::Scene {
+        .update_by_readings(station.skin, station.object, Some(force), 1);
+    let scene = reference::PresentedObject {
         pair: &station.fixed[0].pair,
         object: Some(station.object),
-        mode: Mode::ContactResistance,
+        mode: ContactModel::ContactResistance,
     };
     let reference =
         station

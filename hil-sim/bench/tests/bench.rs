@@ -9,7 +9,7 @@ use documented_figures::{assert_compiled, assert_figure};
 use image_proof::compiler::recorded_with;
 use model_bench::scenes::{FINGERS, TICKS, kind};
 use serde_json::Value;
-use thermal_display::device::reference::INTERPOLATION_TOLERANCE;
+use thermal_display::device::reference::SETPOINT_INTERPOLATION_TOLERANCE;
 
 /// 2^32: errors are in units of the fixed-point result.
 const UNITS: f64 = 4_294_967_296.0;
@@ -156,7 +156,7 @@ fn set_points_obey_equations_6_12_and_3_1() {
                 && (row["kind"] == kind::CONSTANT || row["kind"] == kind::FIVE);
         let bound_mk = match chords {
             _ if row["kind"] == kind::REFERENCE_STREAMING => lag_mk,
-            true => 1e3 * INTERPOLATION_TOLERANCE.to_num::<f64>(),
+            true => 1e3 * SETPOINT_INTERPOLATION_TOLERANCE.to_num::<f64>(),
             false => 0.01,
         };
         assert!(number(row, "worst_mk") < bound_mk, "{row} below {bound_mk}");

@@ -177,8 +177,8 @@ fn ratio_at_large_current(pairs: &[(f64, f64)]) -> f64 {
     let off = pairs
         .iter()
         .map(|pair| (pair.0 - demand_a, pair.1 - flows_a));
-    let (together, alone) = off.fold((0.0, 0.0), |(together, alone), (asked, flows)| {
-        (together + asked * flows, alone + asked * asked)
+    let (together, alone) = off.fold((0.0, 0.0), |(together, alone), (demand, flows)| {
+        (together + demand * flows, alone + demand * demand)
     });
     (flows_a + together / alone * (LARGE_A - demand_a)) / LARGE_A
 }

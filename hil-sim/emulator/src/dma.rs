@@ -1,8 +1,8 @@
 //! DMA controllers (RM0390 chapter 9): peripheral streams in direct or FIFO mode without packing, circular and
 //! double-buffer mode, half- and full-transfer, transfer-error interrupts.
 //!
-//! A request is served immediately: arbitration and FIFO delays (some ten cycles on silicon) are not modelled, so software sees
-//! a FIFO threshold in FS only.
+//! A request is served immediately: arbitration and FIFO delays (some ten cycles on silicon) are not modelled, so a FIFO
+//! threshold shows to software in FS only.
 use super::ram::Memory;
 use super::stop::{Answer, Refusal, only};
 

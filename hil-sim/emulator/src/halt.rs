@@ -16,7 +16,7 @@ pub(super) enum Halt {
     Asleep { threshold: i32 },
     /// Lockup: only an NMI is taken, and only at HardFault's priority.
     LockedUp { priority: i32 },
-    /// Halted until a reset by an injected fault, or for want of a clock.
+    /// Halted until a reset by an injected fault, or for lack of a clock.
     Hung,
 }
 

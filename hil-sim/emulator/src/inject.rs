@@ -24,7 +24,7 @@ pub enum InjectError {
     NoBit {
         /// Register or address.
         place: String,
-        /// Bit that was asked for.
+        /// Requested bit.
         bit: u8,
         /// Mask of those that can flip.
         bits: u32,
@@ -51,7 +51,7 @@ pub enum InjectError {
         stream: u8,
     },
     /// The image has no symbol for the end of its stack.
-    #[error("the image has no symbol that tells where its stack ends")]
+    #[error("the image has no symbol for the end of its stack")]
     NoStackEnd,
     /// The CPU emulation failed.
     #[error(transparent)]

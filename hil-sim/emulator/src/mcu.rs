@@ -105,7 +105,7 @@ impl<W: Wiring + 'static> Machine<W> {
         result
     }
 
-    /// The cells of the flash. The image sees changes in sectors 1 to 3, which hold the settings, if it leaves them blank. After
+    /// The cells of the flash. The image reads changes in sectors 1 to 3, which hold the settings, if it leaves them blank. After
     /// a power failure in an operation the machine powers up again by itself, with other contents of the RAM.
     pub fn flash(&self) -> &FlashCells {
         &self.chip().flash.cells

@@ -74,7 +74,7 @@ pub enum Stop {
         "FLASH_ACR.LATENCY = {latency} is too small for HCLK = {hclk_hz} Hz, which needs {needed} (in {place})"
     )]
     FlashLatency {
-        /// Core clock that was asked for.
+        /// Requested core clock.
         hclk_hz: u32,
         /// Wait states set.
         latency: u32,

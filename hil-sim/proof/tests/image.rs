@@ -73,8 +73,8 @@ fn the_checks_find_what_the_image_is_known_to_have() {
         (HOST, "libm::"),
         (HOST, "core::fmt::"),
         (HOST, "heapless::"),
-        (HOST, "calibration_fit::fit"),
-        (TICK, "Station::detect_faults"),
+        (HOST, "calibration_fit::fit_calibration"),
+        (TICK, "Station::valid_readings_or_fault"),
     ];
     let inlined: Vec<String> = known
         .iter()

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use thermal_device::reference::Mode;
+use thermal_device::reference::ContactModel;
 use thermal_protocol::LINE_MAX_BYTES;
 
 use crate::scene::{FaultKind, Scene, custom_line};
@@ -50,8 +50,8 @@ impl Host {
             .start_c
             .map_or("object room".into(), |c| format!("object {c}"));
         let mode = match scene.mode {
-            Mode::ContactResistance => "mode contact",
-            Mode::SemiInfinite => "mode semi-infinite",
+            ContactModel::ContactResistance => "mode contact",
+            ContactModel::SemiInfinite => "mode semi-infinite",
         };
         let law = scene.law.map(|law| format!("law {}", law.name()));
         let set_up = [material, object, mode.into()].into_iter().chain(law);

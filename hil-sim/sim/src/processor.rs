@@ -127,7 +127,7 @@ pub enum MachineFault {
     },
     /// The reset pin is pulled.
     ResetPin,
-    /// The program asks for a reset.
+    /// The program requests a reset.
     SoftwareReset,
     /// The stack pointer is set to the end of the stack, so that the next push overflows.
     StackOverflow,

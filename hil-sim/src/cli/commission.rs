@@ -21,7 +21,7 @@ use super::{Failure, output};
 /// Text after the options in the help.
 const USAGE: &str = "\
 The operator holds a reference thermometer to each sensor, types what it shows, and lets the device find out what its
-tile is like. It then has the device save that, which outlives switching off. What happens is told on standard error.
+tile is like. It then has the device save that, which outlives switching off. Progress goes to standard error.
 Standard output has the same as lines, for another device with these sensors, or for this one after `forget`.
 
   hil-sim commission scenes/copper.toml > settings.txt
@@ -37,7 +37,7 @@ pub struct Arguments {
     /// Instead, a device of the parameter box, drawn by this seed
     #[arg(long, value_name = "SEED")]
     draw: Option<u64>,
-    /// Instead, that many devices of the box, from seed 1 on, native: how well they know themselves, as percentiles
+    /// Instead, that many devices of the box, from seed 1 on, native: how well they identify themselves, as percentiles
     #[arg(long = "box", value_name = "N", conflicts_with_all = ["draw", "restore", "engine", "elf"])]
     survey: Option<u64>,
     /// Sends the lines of a file to a device that was just switched on, instead of commissioning it

@@ -45,7 +45,7 @@ pub struct Arguments {
     /// Seed of the noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// Body of the camera, °C: it sees itself in the window, and the way back does not know
+    /// Temperature of the camera's body, °C, reflected in the window; the recovered temperature neglects it
     #[arg(long, allow_negative_numbers = true)]
     camera_c: Option<f64>,
     /// How much of what the window mirrors is the camera, 0 to 1

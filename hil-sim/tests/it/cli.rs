@@ -12,6 +12,18 @@ fn golden(name: &str) -> Vec<Row> {
 }
 
 #[test]
+fn the_readmes_example_prints_what_it_shows() {
+    let readme = include_str!("../../README.md");
+    let (_, example) = readme
+        .split_once("$ cargo hil-sim ")
+        .expect("an example with a prompt");
+    let (line, shown) = example.split_once('\n').expect("its output");
+    let (shown, _) = shown.split_once("```").expect("an end");
+    let arguments: Vec<&str> = line.split(' ').collect();
+    assert_eq!(good(&arguments, ""), shown);
+}
+
+#[test]
 fn model_meets_golden_values_in_f64_and_fixed_point() {
     let mut checked = 0;
     for row in golden("contact") {
@@ -305,7 +317,7 @@ fn parameters_are_printed_with_limits_and_drawn_alike_by_one_seed() {
     refused(&["parameters", "--draw", "x"]);
 }
 
-/// The native engine knows of a reset what the logic knows: that it starts anew.
+/// A reset of the native engine is a restart of the logic, and nothing else.
 #[test]
 fn run_reports_resets_and_refuses_other_faults_of_the_processor() {
     let scene = File::new(

@@ -58,7 +58,7 @@ impl ChordInterpolation {
     /// from Eq. 6-12. The second value is the number of evaluations of `E` it took, at most 2.
     ///
     /// Set-points beyond ±127 °C saturate. Where an evaluation could not change the set-point by the tolerance, it
-    /// is constant and nothing is evaluated: contacts that cannot be told from perfect contact (Eq. 3-1), from no
+    /// is constant and nothing is evaluated: contacts that cannot be distinguished from perfect contact (Eq. 3-1), from no
     /// contact, or whose `dT (w - r)` is nearly 0 (both at the preset).
     #[must_use]
     pub fn new(

@@ -1,7 +1,7 @@
 //! Products of typed fixed-point numbers: the compiler counts the binary places.
 //!
 //! A product of two 32-bit numbers is exact in 64 bits and has the binary places of both. The functions here
-//! shift it to the places of the type that is asked for, so that no shift is counted by hand. They compile to
+//! shift it to the places of the requested type, so that no shift is counted by hand. They compile to
 //! one long multiplication and a shift. For a sum of products use [`fixed::FixedI32::wide_mul`], whose type
 //! holds the places, and [`saturated`].
 

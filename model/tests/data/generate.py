@@ -241,13 +241,14 @@ def contents(rows):
     return out.getvalue()
 
 
-def main():
+def run(folder, files, usage):
+    """Writes the files into the folder, or compares them, as the command line says; other generators use it too."""
     check = sys.argv[1:] == ["--check"]
     if sys.argv[1:] and not check:
-        sys.exit(__doc__)
+        sys.exit(usage)
     differ = 0
-    for name, rows in FILES.items():
-        path, new = FOLDER / name, contents(rows)
+    for name, rows in files.items():
+        path, new = folder / name, contents(rows)
         if not check:
             path.write_text(new, newline="\n")
             print(f"wrote {name}")
@@ -264,4 +265,4 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    run(FOLDER, FILES, __doc__)

@@ -18,28 +18,35 @@ use thermal_display::device::safety::TickRateMonitor;
 use super::sample_error::SampleError;
 use super::wiring::FINGERS;
 
-/// Reload value of SysTick: the largest that its 24 bits hold.
-const RELOAD: u32 = 0xff_ffff;
+/// Value from which SysTick counts down, again and again: the largest that its 24 bits hold. A
+/// round takes 93 ms at 180 MHz, much longer than a tick, so the counts between two ticks are
+/// unambiguous.
+const SYSTICK_RELOAD: u32 = 0xff_ffff;
 
-/// Compares the ticks with SysTick, and the clock settings with those of the start.
+/// Checks in every tick, with the counter SysTick, that the ticks come at the right rate, and that
+/// the clock settings are still those of the start. An error turns all bridges off and stops
+/// sampling.
 pub struct ClockMonitor {
     tick_rate: TickRateMonitor,
-    /// The register RCC_CFGR, as the start has set it.
+    /// Value of the register RCC_CFGR when the monitor was created. If the register changes
+    /// afterwards, sampling stops with [`SampleError::Clocks`].
     clock_settings: u32,
 }
 
-/// The register RCC_CFGR: source and prescalers of the clocks.
+/// Reads the register RCC_CFGR: source and prescalers of the clocks.
 fn clock_settings() -> u32 {
     // SAFETY: a load without side effects, from a register that is written at the start only.
     unsafe { &*RCC::ptr() }.cfgr().read().bits()
 }
 
 impl ClockMonitor {
-    /// Starts SysTick, on a core clock of `hclk_hz`. Checks are expected once for each finger and
-    /// tick.
+    /// Starts SysTick on the core clock, whose frequency is `hclk_hz` (Hz), and stores the present
+    /// clock settings for later comparison.
+    /// [`check_clocks_and_tick_rate`](Self::check_clocks_and_tick_rate) must then be called once
+    /// for each finger and tick of 1 ms.
     pub fn new(mut counter: SYST, hclk_hz: u32) -> Self {
         counter.set_clock_source(SystClkSource::Core);
-        counter.set_reload(RELOAD);
+        counter.set_reload(SYSTICK_RELOAD);
         counter.clear_current();
         counter.enable_counter();
         Self {
@@ -48,16 +55,19 @@ impl ClockMonitor {
         }
     }
 
-    /// Checks clocks and rate; to be called when a block of samples is complete.
+    /// Checks the clock settings and the tick rate. To be called once for each finger and tick, as
+    /// soon as a block of samples is complete: SysTick measures the time of each call. A call is
+    /// due at the time of the first call plus a whole number of periods of 1 ms divided by the
+    /// number of fingers.
     ///
     /// # Errors
-    /// [`SampleError::Clocks`] if the clock settings have changed, [`SampleError::TickRate`] if the
-    /// block is early or late.
-    pub fn check(&mut self) -> Result<(), SampleError> {
+    /// [`SampleError::Clocks`] if the register RCC_CFGR has changed since the start,
+    /// [`SampleError::TickRate`] if the call is early or late by more than a quarter of a period.
+    pub fn check_clocks_and_tick_rate(&mut self) -> Result<(), SampleError> {
         if clock_settings() != self.clock_settings {
             return Err(SampleError::Clocks);
         }
-        if !self.tick_rate.tick_is_due(SYST::get_current()) {
+        if !self.tick_rate.tick_is_on_time(SYST::get_current()) {
             return Err(SampleError::TickRate);
         }
         Ok(())

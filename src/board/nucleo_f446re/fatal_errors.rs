@@ -1,8 +1,8 @@
 //! Handlers of errors after which the program cannot continue: they turn the bridges off, log the
-//! error, and wait until the watchdog resets the device.
+//! error, and wait until a watchdog resets the device.
 //!
-//! They do not reset it at once, so that a debug probe has time to read the log, and so that a
-//! fault which recurs at every start does not cause a rapid series of resets.
+//! The handlers do not reset the device at once, so that a debug probe has time to read the log,
+//! and so that a fault which recurs at every start does not cause a rapid series of resets.
 
 use core::panic::PanicInfo;
 use core::sync::atomic::{AtomicBool, Ordering};
@@ -11,28 +11,28 @@ use cortex_m_rt::{ExceptionFrame, exception};
 
 use thermal_display::device::safety::{Fault, TripCause};
 
-use super::{fault_record, watchdog, wiring};
+use super::{independent_watchdog, trip_cause_recorder, wiring};
 
-/// Disables interrupts, turns all bridges off and stores `fault` as the cause of the reset that
-/// will follow.
-fn turn_off_and_record(fault: Fault) {
+/// Disables interrupts, turns all bridges off, and stores `fault` in RAM, unless an earlier cause
+/// is stored there, as the cause by which the next start trips all fingers.
+fn turn_bridges_off_and_record(fault: Fault) {
     cortex_m::interrupt::disable();
     wiring::disable_bridges();
-    fault_record::store_if_empty(&TripCause::without_readings(fault));
+    trip_cause_recorder::store_trip_cause_if_none(&TripCause::without_readings(fault));
 }
 
-/// Whether no handler has logged yet. Only the first error is logged, because logging may be what
-/// raised the next one.
-fn first_report() -> bool {
-    static REPORTED: AtomicBool = AtomicBool::new(false);
-    !REPORTED.swap(true, Ordering::Relaxed)
+/// Returns `true` at its first call only. The handlers of fatal errors log only the first error,
+/// because writing to the log may itself have raised the next one.
+fn is_first_error() -> bool {
+    static ERROR_SEEN: AtomicBool = AtomicBool::new(false);
+    !ERROR_SEEN.swap(true, Ordering::Relaxed)
 }
 
-/// Waits for the reset by a watchdog: 47 ms, or at most 188 ms if the clock of the window watchdog
-/// has failed, or at most a second if the start-up has not set the watchdogs up yet. The processor
-/// stays awake, so that the debug probe can read the log.
+/// Waits until a watchdog resets the device: the window watchdog within 47 ms. If that does not
+/// run, the independent watchdog does so within 188 ms, or within a second if the start-up has not
+/// set its period yet. The processor stays awake, so that the debug probe can read the log.
 fn wait_for_watchdog() -> ! {
-    watchdog::start();
+    independent_watchdog::start_counter();
     loop {
         cortex_m::asm::nop();
     }
@@ -40,8 +40,8 @@ fn wait_for_watchdog() -> ! {
 
 #[panic_handler]
 fn panic(info: &PanicInfo<'_>) -> ! {
-    turn_off_and_record(Fault::Panic);
-    if first_report() {
+    turn_bridges_off_and_record(Fault::Panic);
+    if is_first_error() {
         defmt::error!("{}", defmt::Display2Format(info));
     }
     wait_for_watchdog()
@@ -51,8 +51,8 @@ fn panic(info: &PanicInfo<'_>) -> ! {
 // has just stacked.
 #[exception]
 unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
-    turn_off_and_record(Fault::HardFault);
-    if first_report() {
+    turn_bridges_off_and_record(Fault::HardFault);
+    if is_first_error() {
         defmt::error!(
             "hard fault at pc {=u32:#x}, lr {=u32:#x}",
             frame.pc(),
@@ -65,8 +65,8 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 // SAFETY: `unsafe` because it interrupts critical sections. It accesses no data that they protect.
 #[exception]
 unsafe fn NonMaskableInt() -> ! {
-    turn_off_and_record(Fault::Clock);
-    if first_report() {
+    turn_bridges_off_and_record(Fault::Clock);
+    if is_first_error() {
         defmt::error!("the 8 MHz clock has failed");
     }
     wait_for_watchdog()
@@ -75,8 +75,8 @@ unsafe fn NonMaskableInt() -> ! {
 // SAFETY: `unsafe` because it may interrupt any code. It accesses no data that other code uses.
 #[exception]
 unsafe fn DefaultHandler(irqn: i16) -> ! {
-    turn_off_and_record(Fault::HardFault);
-    if first_report() {
+    turn_bridges_off_and_record(Fault::HardFault);
+    if is_first_error() {
         defmt::error!("interrupt {=i16} has no task", irqn);
     }
     wait_for_watchdog()

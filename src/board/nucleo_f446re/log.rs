@@ -4,12 +4,13 @@ use core::sync::atomic::{AtomicU32, Ordering};
 
 use defmt_rtt as _;
 
-/// Time stamp of the log: milliseconds since the control tick began to run.
+/// Time stamp of the log: milliseconds since the first control tick after the start.
 static UPTIME_MS: AtomicU32 = AtomicU32::new(0);
 
 defmt::timestamp!("{=u32:ms}", UPTIME_MS.load(Ordering::Relaxed));
 
-/// Advances the time stamp of the log by one tick, a millisecond.
-pub fn count_tick() {
+/// Advances the time stamp of the log by one millisecond; called in every control tick of the first
+/// finger.
+pub fn advance_time_stamp() {
     UPTIME_MS.fetch_add(1, Ordering::Relaxed);
 }

@@ -23,21 +23,21 @@
 
 mod clock_monitor;
 mod fatal_errors;
-mod fault_record;
 #[cfg(feature = "five-fingers")]
 mod five_fingers;
-mod flash;
+mod independent_watchdog;
 mod log;
 #[cfg(not(feature = "five-fingers"))]
 mod one_finger;
-mod reset;
+mod reset_cause;
 mod sample_error;
 mod sampler;
 mod saved_dose;
 mod serial;
+mod settings_flash;
 mod settings_storage;
-mod stack;
-mod watchdog;
+mod stack_guard;
+mod trip_cause_recorder;
 mod window_watchdog;
 
 use cortex_m::peripheral::SYST;
@@ -45,92 +45,102 @@ use heapless::spsc::Queue;
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use thermal_display::device::command::Addressed;
+use thermal_display::device::command::WithFingerIndex;
 use thermal_display::device::safety::{Fault, TripCause};
-use thermal_display::device::{Device, Finger, Telemetry};
-use thermal_display::mailbox::Mailbox;
-use thermal_display::protocol::{CommandHandler, Error, FailureText, Reply};
+use thermal_display::device::{Device, FingerIndex, Telemetry};
+use thermal_display::line_queue::LineQueue;
+use thermal_display::protocol::{CommandHandler, Error, Reply, StorageFailureText};
 use thermal_display::settings::Settings;
 
-pub use fault_record::FaultRecord;
 #[cfg(feature = "five-fingers")]
 use five_fingers as wiring;
+pub use independent_watchdog::IndependentWatchdog;
 #[cfg(not(feature = "five-fingers"))]
 use one_finger as wiring;
 pub use sample_error::SampleError;
 pub use sampler::{SampleTrigger, Sampler};
 pub use saved_dose::save_dose;
-pub use serial::{Completed, Outbox, Receiver, Transmitter};
+pub use serial::{CompletedLineKind, Outbox, Receiver, Transmitter};
 pub use settings_storage::restart_to_save;
-pub use stack::stack_is_overrun;
+pub use stack_guard::stack_is_overrun;
 pub use stm32f4xx_hal::pac;
-pub use watchdog::Watchdog;
+pub use trip_cause_recorder::TripCauseRecorder;
 pub use window_watchdog::WindowWatchdog;
 pub use wiring::{FINGERS, PowerStage};
 
 use super::{Console, ControlLoop};
 use clock_monitor::ClockMonitor;
-use reset::Reset;
-use settings_storage::StartupStorage;
+use reset_cause::ResetCause;
+use settings_storage::SaveAndLoadResult;
 
-/// Telemetry lines that can wait for the host task: those of eight ticks.
-const TELEMETRY_DEPTH: usize = 8 * FINGERS;
+/// Capacity of the telemetry queue, in lines: those of eight ticks of 1 ms, one line a tick for
+/// each finger.
+const TELEMETRY_QUEUE_CAPACITY: usize = 8 * FINGERS;
 
-/// Memory that hardware and tasks share by reference, and that must live as long as the program.
-pub struct Memory {
-    scans: [sampler::ScanBlock; sampler::BLOCKS],
-    frames: [serial::FrameBuffer; serial::FRAMES],
+/// Buffers and queues that the DMA streams and the tasks share by reference, and the command
+/// handler of the host task. `main.rs` allocates them statically, because they must live as long as
+/// the program.
+pub struct StaticMemory {
+    scans: [sampler::ScanBlock; sampler::BLOCK_COUNT],
+    frames: [serial::FrameBuffer; serial::FRAME_COUNT],
     frame_queues: serial::FrameQueues,
-    mailbox: Mailbox,
-    telemetry: Queue<Addressed<Telemetry>, { TELEMETRY_DEPTH + 1 }>,
+    line_queue: LineQueue,
+    telemetry: Queue<WithFingerIndex<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
     // Created in place, because moving it while sampling runs would delay the first tick.
     handler: Option<CommandHandler<FINGERS>>,
 }
 
-impl Memory {
-    /// Memory with empty buffers and queues, as it is before [`Board::start`] uses it.
+impl StaticMemory {
+    /// Creates the memory with empty buffers and queues, as [`Board::set_up`] expects it.
     pub const fn new() -> Self {
         Self {
-            scans: [sampler::EMPTY; sampler::BLOCKS],
-            frames: [const { serial::FrameBuffer::new() }; serial::FRAMES],
+            scans: [sampler::EMPTY_BLOCK; sampler::BLOCK_COUNT],
+            frames: [const { serial::FrameBuffer::new() }; serial::FRAME_COUNT],
             frame_queues: serial::FrameQueues::new(),
-            mailbox: Mailbox::new(),
+            line_queue: LineQueue::new(),
             telemetry: Queue::new(),
             handler: None,
         }
     }
 }
 
-/// Determines the fault by which the device is tripped from the start, and stores it before
-/// anything else is done: the rest of the start-up takes long, and another reset may end it.
-fn cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
-    let stack_was_overrun = stack::stack_is_overrun();
-    stack::init_guard();
-    let reset = Reset::read(rcc);
-    if reset == Reset::PowerOn {
-        saved_dose::clear_doses();
+/// Determines the cause, if any, by which all fingers are tripped before their first tick: the trip
+/// cause stored before the reset or, if none is stored, the fault that the reset itself indicates.
+/// If the stack guard was overwritten, [`Fault::Stack`] replaces a cause that no tick has recorded,
+/// except [`Fault::UnaskedReset`]. Stores the cause before the rest of the start-up, which takes
+/// long, so that another reset during the start-up does not lose it. After power-on, also sets the
+/// saved thermal doses to zero.
+fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
+    let stack_was_overrun = stack_guard::stack_is_overrun();
+    stack_guard::init_guard();
+    let reset = ResetCause::read(rcc);
+    if reset == ResetCause::PowerOn {
+        saved_dose::clear_saved_doses();
     }
-    let mut cause = fault_record::cause_at_start(reset, settings_storage::save_is_pending());
+    let mut cause =
+        trip_cause_recorder::trip_cause_after_reset(reset, settings_storage::save_is_pending());
     // A fault that no tick has recorded is a consequence of the overrun. The first start of another
     // version of the firmware is excepted, because its predecessor may have used the words of the
     // guard.
     let is_consequence = |cause: TripCause| cause.tick == 0 && cause.fault != Fault::UnaskedReset;
     if stack_was_overrun && cause.is_some_and(is_consequence) {
-        fault_record::erase();
-        fault_record::store_if_empty(&TripCause::without_readings(Fault::Stack));
-        cause = fault_record::stored();
+        trip_cause_recorder::erase_stored_trip_cause();
+        trip_cause_recorder::store_trip_cause_if_none(&TripCause::without_readings(Fault::Stack));
+        cause = trip_cause_recorder::stored_trip_cause();
     }
     // The flags are cleared last: if a reset intervenes, the next start still finds them.
-    Reset::clear(rcc);
+    ResetCause::clear_flags(rcc);
     defmt::info!("start after reset: {}", reset);
     cause
 }
 
-/// Creates the device with its stored settings and doses, tripped by `cause` if there is one.
+/// Creates the device in `place`, with the settings from the flash and with the thermal doses that
+/// were saved in RAM before the reset. All fingers are tripped by `cause` if there is one, and by
+/// [`Fault::SettingsCorrupt`] if the settings cannot be read.
 fn restore_device(
     place: &'static mut Option<Device<FINGERS>>,
     cause: Option<TripCause>,
-    storage: &StartupStorage,
+    storage: &SaveAndLoadResult,
 ) -> &'static mut Device<FINGERS> {
     let device = place.insert(Device::with_trip_cause(cause, &Settings::default()));
     match &storage.settings {
@@ -138,51 +148,59 @@ fn restore_device(
         Ok(None) => {}
         Err(_) => device.trip_all(Fault::SettingsCorrupt),
     }
-    for finger in Finger::all() {
-        device.restore_dose(finger, saved_dose::saved_dose(finger));
+    for finger in FingerIndex::all() {
+        device.restore_thermal_dose(finger, saved_dose::saved_dose(finger));
     }
     device
 }
 
-/// The parts of the board, set up and ready to take samples, which are moved to the tasks that own
-/// them.
+/// The parts of the board, set up and ready to sample. `main.rs` moves each part to the task that
+/// owns it.
 pub struct Board {
-    /// The hardware-free device: the stations of all fingers.
+    /// The control of all fingers, independent of the hardware: one station for each finger, which
+    /// computes the outputs of a control tick from the samples.
     pub device: &'static mut Device<FINGERS>,
-    /// Sampling, bridges and window watchdog, which is already running.
+    /// Sampling, bridges and window watchdog, for the control tick. The window watchdog already
+    /// runs, so the first tick must follow within 46.6 ms.
     pub control_loop: ControlLoop,
-    /// The timer that the idle task starts, so that sampling begins once interrupts are enabled.
+    /// The timer that triggers the scans, not started yet. The idle task starts it, because
+    /// sampling must not begin before interrupts are enabled.
     pub trigger: SampleTrigger,
-    /// Receives bytes from the host and assembles them to lines, in the interrupt of the serial port.
+    /// Receives bytes from the host and assembles them into lines, in the interrupt of USART2.
     pub receiver: Receiver,
-    /// Sends the lines to the host one after the other, in the interrupt of the sending DMA stream.
+    /// Sends queued lines to the host one after the other, in the interrupt of the DMA stream that
+    /// sends.
     pub transmitter: Transmitter,
     /// Answers the lines of the host and sends telemetry, in the host task.
     pub console: Console,
-    /// The independent watchdog, already running.
-    pub watchdog: Watchdog,
+    /// The independent watchdog, which already runs; the idle task feeds it.
+    pub watchdog: IndependentWatchdog,
 }
 
 impl Board {
-    /// Starts the device in the memory that is passed: stores settings if the restart was requested
-    /// for that, and sets everything up with the bridges off.
-    pub fn start(
+    /// Sets up the device and all parts of the board at the start of the program; all bridges are
+    /// then off, and sampling has not started. If settings wait in RAM, because the host has
+    /// requested the restart by `save` or `forget`, they are stored in flash first. `memory` and
+    /// `device` are static memory: `memory` for buffers, queues and command handler, `device` for
+    /// the device, which is created in it.
+    pub fn set_up(
         systick: SYST,
         peripherals: pac::Peripherals,
-        memory: &'static mut Memory,
+        memory: &'static mut StaticMemory,
         device: &'static mut Option<Device<FINGERS>>,
     ) -> Self {
-        let cause = cause_at_start(&peripherals.RCC);
+        let cause = trip_cause_at_start(&peripherals.RCC);
         // Before anything is set up that the flash would delay.
         let storage = settings_storage::save_pending_and_load(&peripherals.FLASH);
-        // This takes 0.2 s at 16 MHz, so it comes before the watchdogs and the sampling start.
+        // Creating the device takes 0.2 s at 16 MHz, so it comes before the watchdogs and the
+        // sampling start.
         let device = restore_device(device, cause, &storage);
         // A fault of the settings is not stored, because every start finds it again until other
         // settings are stored.
-        let fault_record = FaultRecord::new(device.earliest_cause().copied());
+        let trip_cause_recorder = TripCauseRecorder::new(device.earliest_trip_cause().copied());
 
-        // First, because it has its own oscillator.
-        let watchdog = Watchdog::start(peripherals.IWDG);
+        // Before the clocks are set up, because this watchdog has its own oscillator.
+        let watchdog = IndependentWatchdog::start(peripherals.IWDG);
         let has_clock = start_probe_clock(&peripherals.RCC);
         let mut rcc = peripherals.RCC.freeze(clock_config(has_clock));
         if has_clock {
@@ -221,27 +239,27 @@ impl Board {
                 fourth: (gpioc.pc8, gpioc.pc9),
                 fifth: (gpiob.pb8, gpiob.pb9),
                 lines: [
-                    wiring::ControlLines::new(gpiob.pb10, gpioa.pa6, gpioc.pc3),
-                    wiring::ControlLines::new(gpiob.pb13, gpioa.pa7, gpioc.pc4),
-                    wiring::ControlLines::new(gpiob.pb14, gpioa.pa12, gpioc.pc5),
-                    wiring::ControlLines::new(gpiob.pb15, gpiob.pb5, gpiob.pb6),
-                    wiring::ControlLines::new(gpiob.pb1, gpiob.pb12, gpiob.pb7),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb10, gpioa.pa6, gpioc.pc3),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb13, gpioa.pa7, gpioc.pc4),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb14, gpioa.pa12, gpioc.pc5),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb15, gpiob.pb5, gpiob.pb6),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb1, gpiob.pb12, gpiob.pb7),
                 ],
             };
             let multiplexer = wiring::Multiplexer::new(gpioc.pc10, gpioc.pc11, gpioc.pc12);
-            (pins.into_stages(&mut rcc), multiplexer)
+            (pins.into_power_stages(&mut rcc), multiplexer)
         };
 
-        let (inlet, outlet) = memory.mailbox.split();
+        let (line_producer, line_consumer) = memory.line_queue.split();
         let (telemetry_in, telemetry_out) = memory.telemetry.split();
         let dma1 = StreamsTuple::new(peripherals.DMA1, &mut rcc);
-        let (receiver, transmitter, outbox) = serial::start(
+        let (receiver, transmitter, outbox) = serial::set_up(
             peripherals.USART2,
             (gpioa.pa2, gpioa.pa3),
             dma1.6,
             &mut memory.frames,
             &mut memory.frame_queues,
-            inlet,
+            line_producer,
             &mut rcc,
         );
         let handler = match &storage.settings {
@@ -249,13 +267,13 @@ impl Board {
             Ok(None) | Err(_) => CommandHandler::new(Settings::default()),
         };
         let console = Console {
-            lines: outlet,
+            lines: line_consumer,
             telemetry: telemetry_out,
             outbox,
             handler: memory.handler.insert(handler),
             first_answer: storage.save_result.map(|result| match result {
                 Ok(()) => Ok(Reply::DONE),
-                Err(error) => Err(Error::NotStored(FailureText::new(&error))),
+                Err(error) => Err(Error::NotStored(StorageFailureText::new(&error))),
             }),
             storage_order: None,
         };
@@ -285,7 +303,7 @@ impl Board {
             control_loop: ControlLoop {
                 sampler,
                 stages,
-                fault_record,
+                trip_cause_recorder,
                 telemetry: telemetry_in,
                 window_watchdog: WindowWatchdog::start(peripherals.WWDG, &mut rcc),
                 has_clock,
@@ -299,20 +317,21 @@ impl Board {
     }
 }
 
-/// Starts the 8 MHz clock that the debug probe provides, and returns whether it has become stable.
-/// Waits for at least 20 ms, at a core clock of 16 MHz.
+/// Turns on the input of the 8 MHz clock that the debug probe provides, and returns whether this
+/// clock has become stable. Gives up after at least 20 ms, at a core clock of 16 MHz.
 fn start_probe_clock(rcc: &pac::RCC) -> bool {
     rcc.cr().modify(|_, w| w.hsebyp().bypassed().hseon().on());
     (0..1 << 16).any(|_| rcc.cr().read().hserdy().is_ready())
 }
 
-/// 180 MHz, the maximum of this microcontroller, derived from the crystal of the debug probe. The
-/// internal oscillator has a tolerance of 1 %, which would be an error of time in every rendered
-/// contact; it is used only if the probe's clock is missing, so that the host can be told why
-/// nothing is rendered.
+/// Clock settings of the microcontroller: 180 MHz for the core, which is the maximum. If
+/// `has_clock`, the clocks are derived from the 8 MHz crystal of the debug probe, else from the
+/// internal oscillator. The tolerance of the internal oscillator, 1 %, would falsify the time in
+/// every rendered contact, so all fingers then stay tripped by [`Fault::Clock`], and the device
+/// runs only so that the host can read this fault.
 ///
-/// All rates are exact: 45 MHz is a multiple of the baud rate, and 90 MHz, of which both timer
-/// clocks are multiples, is a multiple of the scan and PWM rates.
+/// All rates are exact: the USART's 45 MHz are a multiple of the baud rate, the sample timer's 90
+/// MHz a multiple of the scan rate, and the PWM timers' 180 MHz a multiple of the PWM frequency.
 fn clock_config(has_clock: bool) -> Config {
     let source = if has_clock {
         Config::hse(8.MHz()).bypass_hse_oscillator()
@@ -326,9 +345,10 @@ fn clock_config(has_clock: bool) -> Config {
         .pclk2(90.MHz())
 }
 
-/// Enables the clock security system. When the probe's clock fails, the hardware disables the
-/// outputs of TIM1 by its break input, without any code, and raises the non-maskable interrupt
-/// (RM0390, 6.2.7).
+/// Enables the clock security system. When the 8 MHz clock of the probe fails, the hardware
+/// disables the PWM outputs of TIM1 (and of TIM8, which drives bridges of the five-finger wiring)
+/// by their break inputs, without any code, and raises the non-maskable interrupt, whose handler
+/// turns all bridges off (RM0390, 6.2.7).
 fn enable_clock_security(rcc: &mut Rcc) {
     rcc.cr().modify(|_, w| w.csson().on());
 }

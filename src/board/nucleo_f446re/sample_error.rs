@@ -2,26 +2,34 @@
 
 use thermal_display::device::safety::Fault;
 
-/// Why there is no valid block of samples.
+/// Why a control tick has no valid samples. Each of these errors turns all bridges off, trips all
+/// fingers by the fault that [`fault`](Self::fault) returns, and stops sampling, so that the
+/// watchdogs reset the device.
 #[derive(Clone, Copy, Debug, defmt::Format)]
 pub enum SampleError {
-    /// The DMA stream has reported an error.
+    /// The DMA stream that stores the conversions has reported an error, or the control tick could
+    /// not exchange the full block for an empty one.
     Bus,
-    /// A block was overwritten before the tick took it: the last tick took longer than its period.
+    /// The DMA stream overwrote a full block before the control tick took it: the tick came more
+    /// than one block period (1 ms divided by the number of fingers) after the block was full.
     Late,
-    /// The multiplexers were switched after the first scan of the next block.
+    /// The control tick switched the multiplexers only after the first scan of the next finger's
+    /// block, so that the samples may belong to the wrong finger.
     LateSwitch,
-    /// A block was complete too early or too late: TIM2 or SysTick runs at a wrong rate.
+    /// The control tick came early or late by more than a quarter of its period (1 ms divided by
+    /// the number of fingers), compared with the time at which it was due by SysTick: TIM2 or
+    /// SysTick runs at a wrong rate, or the tick was delayed.
     TickRate,
-    /// The clock settings have changed since the start.
+    /// The register RCC_CFGR, with the source and the prescalers of the clocks, has changed since
+    /// the start.
     Clocks,
-    /// The converter has lost a conversion, because the stream did not fetch the one before in
-    /// time.
+    /// ADC1 has lost a conversion: its result was ready before the DMA stream had fetched the one
+    /// before.
     Overrun,
 }
 
 impl SampleError {
-    /// The fault that this error trips.
+    /// The fault by which this error trips all fingers.
     pub const fn fault(self) -> Fault {
         match self {
             Self::Bus | Self::Late | Self::LateSwitch | Self::TickRate | Self::Overrun => {

@@ -17,28 +17,31 @@ use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, DMA2, TIM2, tim2};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::timer::{CounterHz, Timer};
-use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Scan};
-use thermal_display::device::{Finger, TICK_HZ};
+use thermal_display::device::sense::{CHANNEL_COUNT, SCANS_PER_TICK, Scan};
+use thermal_display::device::{FingerIndex, TICK_HZ};
 
 use super::clock_monitor::ClockMonitor;
 use super::log;
 use super::sample_error::SampleError;
-use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME};
+use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME_CODE};
 
-/// Scans of one block: those that are dropped while the multiplexers settle, and those of a
-/// finger's tick.
+/// Number of scans in one block: 16 with one finger, 18 with five. A control tick uses the last 16;
+/// the scans before them are dropped, because the multiplexers still settle.
 const SCANS_PER_BLOCK: usize = Multiplexer::SETTLING_SCANS + SCANS_PER_TICK;
 
-/// Consecutive scans of one finger.
+/// Consecutive scans of one finger, in counts of the converter (0 to 4095). The DMA stream fills
+/// one block for each finger and control tick.
 pub type ScanBlock = [Scan; SCANS_PER_BLOCK];
 
-/// Number of blocks: one is being filled, one is filled next, one is read by the tick.
-pub const BLOCKS: usize = 3;
+/// Number of blocks: the DMA stream fills one and has the next one ready, and the tick reads the
+/// third.
+pub const BLOCK_COUNT: usize = 3;
 
-/// A block that has not been filled yet.
-pub const EMPTY: ScanBlock = [[0; CHANNELS]; SCANS_PER_BLOCK];
+/// Initial content of a block, before the DMA stream first fills it: all counts are zero.
+pub const EMPTY_BLOCK: ScanBlock = [[0; CHANNEL_COUNT]; SCANS_PER_BLOCK];
 
-/// The analog input pins, with the names of the fields of `Samples`.
+/// The analog input pins of the seven signals that ADC1 converts. The fields have the same names as
+/// those of `Samples`.
 pub struct SensorPins {
     pub display: PA0<Analog>,
     pub display_check: PA1<Analog>,
@@ -49,28 +52,37 @@ pub struct SensorPins {
     pub current: PC2<Analog>,
 }
 
-/// Collects the samples of the fingers, one block a tick and finger.
+/// Samples the sensors of all fingers in turn: one block of scans for each finger and control tick,
+/// stored by DMA.
 pub struct Sampler {
     transfer: Transfer<Stream0<DMA2>, 0, Converter, PeripheralToMemory, &'static mut ScanBlock>,
-    /// The block that was taken last. It may be read until the next one is taken, and is then given
-    /// to the stream.
+    /// The block that the last
+    /// [`take_block_and_select_next_finger`](Self::take_block_and_select_next_finger) returned or,
+    /// before the first call, one that was never filled. The next call gives this block to the DMA
+    /// stream to be filled. `None` only after that function has returned an error, which stops
+    /// sampling.
     spare: Option<&'static mut ScanBlock>,
-    /// The buffer of the stream that was taken last, of two.
-    last: CurrentBuffer,
+    /// Which of the DMA stream's two buffers the last call of
+    /// [`take_block_and_select_next_finger`](Self::take_block_and_select_next_finger) emptied. The
+    /// buffers must alternate: the same one twice means that a block was overwritten before it was
+    /// taken.
+    last_buffer: CurrentBuffer,
     multiplexer: Multiplexer,
-    /// The finger that is being sampled.
-    finger: Finger<FINGERS>,
+    /// The finger whose samples the DMA stream stores now. The next tick takes that finger's block.
+    finger: FingerIndex<FINGERS>,
     clock_monitor: ClockMonitor,
 }
 
-/// The timer that triggers the scans.
+/// The timer TIM2, which triggers the scans of the sensors.
 ///
-/// It is started last, once interrupts are enabled: the tick must switch the multiplexers within
-/// 11 us of the last scan of a finger.
+/// It is started last, once interrupts are enabled: with five fingers, the control tick must switch
+/// the multiplexers within 11 us after the last scan of a finger, and no tick runs while interrupts
+/// are disabled.
 pub struct SampleTrigger(CounterHz<TIM2>);
 
 impl SampleTrigger {
-    /// Starts the timer; from then on a scan of all channels is triggered 16 times a tick and finger.
+    /// Starts the timer, which from then on triggers scans of all channels without end: every
+    /// millisecond 16 scans for one finger, or 18 scans for each of five fingers.
     pub fn start(&mut self) {
         // This cannot fail, because the counter has 32 bits. 90 MHz is an exact multiple of both
         // scan rates, 16 and 90 kHz.
@@ -81,14 +93,15 @@ impl SampleTrigger {
 }
 
 impl Sampler {
-    /// Sets up the stream and the timer; sampling begins with finger 0 when the trigger is started.
+    /// Sets up the DMA stream and the timer of the scans. Sampling begins with finger 0 when the
+    /// returned trigger is started.
     pub fn new(
         converter: Converter,
         timer: TIM2,
         clock_monitor: ClockMonitor,
         stream: Stream0<DMA2>,
         multiplexer: Multiplexer,
-        blocks: &'static mut [ScanBlock; BLOCKS],
+        blocks: &'static mut [ScanBlock; BLOCK_COUNT],
         rcc: &mut Rcc,
     ) -> (Self, SampleTrigger) {
         let [first, second, spare] = blocks;
@@ -107,27 +120,33 @@ impl Sampler {
         let sampler = Self {
             transfer,
             spare: Some(spare),
-            last: CurrentBuffer::SecondBuffer,
+            last_buffer: CurrentBuffer::SecondBuffer,
             multiplexer,
-            finger: Finger::FIRST,
+            finger: FingerIndex::FIRST,
             clock_monitor,
         };
         (sampler, SampleTrigger(timer.counter_hz()))
     }
 
-    /// Returns the finger whose block has just been filled, with its scans, and switches the
-    /// multiplexers to the next finger.
+    /// Returns the finger whose block has just been filled, with the 16 scans for its control tick,
+    /// and switches the multiplexers to the next finger. Called in the interrupt of the DMA stream,
+    /// which occurs when a block is full.
     ///
     /// # Errors
-    /// [`SampleError`] if samples are missing or the clocks are wrong; control must then stop.
-    pub fn take(&mut self) -> Result<(Finger<FINGERS>, &[Scan; SCANS_PER_TICK]), SampleError> {
+    /// [`SampleError::LateSwitch`] if the multiplexers were switched too late, [`SampleError::Bus`]
+    /// if the DMA stream has failed, [`SampleError::Late`] if a block was overwritten before it was
+    /// taken, [`SampleError::Clocks`] or [`SampleError::TickRate`] if the clock settings or the
+    /// rate of the ticks are wrong. The control loop must then stop.
+    pub fn take_block_and_select_next_finger(
+        &mut self,
+    ) -> Result<(FingerIndex<FINGERS>, &[Scan; SCANS_PER_TICK]), SampleError> {
         // Checked first, because the start of the tick is measured; reported last, because the
         // other errors are more specific.
-        let clock_check = self.clock_monitor.check();
+        let clock_check = self.clock_monitor.check_clocks_and_tick_rate();
         let finger = self.finger;
         self.finger = finger.next_cyclic();
         self.multiplexer.select(self.finger);
-        if Multiplexer::SETTLING_SCANS != 0 && self.has_completed_a_scan() {
+        if Multiplexer::SETTLING_SCANS != 0 && self.first_scan_of_block_is_stored() {
             return Err(SampleError::LateSwitch);
         }
         if self.transfer.flags().is_transfer_error() {
@@ -141,13 +160,13 @@ impl Sampler {
                 DMAError::Overrun(_) => SampleError::Late,
                 DMAError::NotReady(_) | DMAError::SmallBuffer(_) => SampleError::Bus,
             })?;
-        if which == self.last {
+        if which == self.last_buffer {
             return Err(SampleError::Late);
         }
-        self.last = which;
+        self.last_buffer = which;
         clock_check?;
-        if finger == Finger::FIRST {
-            log::count_tick();
+        if finger == FingerIndex::FIRST {
+            log::advance_time_stamp();
         }
         let scans = self
             .spare
@@ -157,18 +176,20 @@ impl Sampler {
         Ok((finger, scans))
     }
 
-    /// Whether the first scan of the next block is complete.
-    fn has_completed_a_scan(&self) -> bool {
-        usize::from(self.transfer.number_of_transfers()) <= (SCANS_PER_BLOCK - 1) * CHANNELS
+    /// Whether the DMA stream has already stored the first scan of the block that it is filling.
+    /// The multiplexers must be switched before that.
+    fn first_scan_of_block_is_stored(&self) -> bool {
+        usize::from(self.transfer.number_of_transfers()) <= (SCANS_PER_BLOCK - 1) * CHANNEL_COUNT
     }
 
-    /// Stops sampling for good. No tick follows, so the watchdogs reset the device.
+    /// Stops sampling until the next reset. No control tick follows, so the watchdogs are no longer
+    /// fed and reset the device.
     pub fn stop(&mut self) {
         self.transfer.pause(Converter::stop);
     }
 }
 
-/// ADC1, which converts all channels once for each trigger.
+/// ADC1, which converts all seven channels of the sensors once for each trigger by TIM2.
 ///
 /// The driver of `stm32f4xx-hal` is not used: it measures the supply voltage during its set-up,
 /// which is of no use here because all sensors are ratiometric to the supply, and it does not
@@ -179,8 +200,8 @@ pub struct Converter {
 }
 
 impl Converter {
-    /// Sets the converter up, with a clock of 90 MHz / 4 = 22.5 MHz (the maximum is 36 MHz) and
-    /// [`SAMPLE_TIME`].
+    /// Sets up ADC1 with a clock of 90 MHz / 4 = 22.5 MHz (the maximum is 36 MHz) and with the
+    /// sampling time [`SAMPLE_TIME_CODE`] for each of the seven channels.
     pub fn new(adc: ADC1, inputs: SensorPins, rcc: &mut Rcc) -> Self {
         ADC1::enable(rcc);
         ADC1::reset(rcc);
@@ -188,15 +209,15 @@ impl Converter {
         let common = unsafe { ADC_COMMON::steal() };
         common.ccr().write(|w| w.adcpre().div4());
         adc.smpr1().write(|w| {
-            w.smp10().set(SAMPLE_TIME);
-            w.smp11().set(SAMPLE_TIME);
-            w.smp12().set(SAMPLE_TIME)
+            w.smp10().set(SAMPLE_TIME_CODE);
+            w.smp11().set(SAMPLE_TIME_CODE);
+            w.smp12().set(SAMPLE_TIME_CODE)
         });
         adc.smpr2().write(|w| {
-            w.smp0().set(SAMPLE_TIME);
-            w.smp1().set(SAMPLE_TIME);
-            w.smp4().set(SAMPLE_TIME);
-            w.smp8().set(SAMPLE_TIME)
+            w.smp0().set(SAMPLE_TIME_CODE);
+            w.smp1().set(SAMPLE_TIME_CODE);
+            w.smp4().set(SAMPLE_TIME_CODE);
+            w.smp8().set(SAMPLE_TIME_CODE)
         });
         // SAFETY: ADC1 has these channels. Their order is that of the fields of `Samples`.
         adc.sqr3().write(|w| unsafe {
@@ -209,7 +230,7 @@ impl Converter {
         });
         // SAFETY: ADC1 has this channel.
         adc.sqr2().write(|w| unsafe { w.sq7().bits(12) }); // current, PC2
-        adc.sqr1().write(|w| w.l().set(CHANNELS as u8 - 1));
+        adc.sqr1().write(|w| w.l().set(CHANNEL_COUNT as u8 - 1));
         adc.cr1().write(|w| w.scan().enabled().ovrie().enabled());
         adc.cr2().write(|w| {
             w.dma().enabled();
@@ -226,7 +247,8 @@ impl Converter {
         }
     }
 
-    /// Stops conversions and disables the overrun interrupt.
+    /// Switches ADC1 off and disables its overrun interrupt, which the conversions would raise once
+    /// the DMA stream no longer fetches them.
     fn stop(&mut self) {
         self.adc.cr1().write(|w| w.ovrie().disabled());
         self.adc.cr2().write(|w| w.adon().disabled());

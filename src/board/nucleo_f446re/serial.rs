@@ -19,39 +19,40 @@ use stm32f4xx_hal::serial::{Config, Rx, RxListen, Serial, Tx, config};
 use stm32f4xx_hal::{ClearFlags, ReadFlags, nb};
 use thermal_display::protocol::{ANSWER_MAX_BYTES, LineError, LineReader};
 
-use thermal_display::mailbox::Inlet;
+use thermal_display::line_queue::LineProducer;
 
-/// Bits per second. One telemetry line per millisecond does not fit into the usual 115 200. The
-/// clocks of both ends are exact multiples of this rate.
+/// Bits per second of the serial line in both directions. One telemetry line per millisecond does
+/// not fit into the usual 115 200. The clocks of both ends are exact multiples of this rate.
 const BAUD: u32 = 1_000_000;
 
-/// Number of frames: one is being sent, one has been sent and is still held by the stream, two are
-/// written meanwhile.
-pub const FRAMES: usize = 4;
+/// Number of frames, each with one line to the host: the DMA stream holds the one that it sends or
+/// has sent last; the other three are free, or wait to be sent.
+pub const FRAME_COUNT: usize = 4;
 
-/// Longest line to the host with its end, bytes.
-const FRAME_MAX: usize = "@0 ".len() + ANSWER_MAX_BYTES + 1;
+/// Bytes of the longest line to the host: the address of a finger, the longest answer, and the line
+/// feed.
+const FRAME_MAX_BYTES: usize = "@0 ".len() + ANSWER_MAX_BYTES + 1;
 
-/// The bytes of one frame: one line to the host with its line ending.
-pub type FrameBuffer = Vec<u8, FRAME_MAX>;
+/// Memory of one frame: the bytes of one line to the host, with its line feed.
+pub type FrameBuffer = Vec<u8, FRAME_MAX_BYTES>;
 
-/// One line to the host.
-struct Frame(&'static mut FrameBuffer);
+/// One line to the host, in memory that the DMA stream can read.
+struct TxFrame(&'static mut FrameBuffer);
 
-impl Frame {
-    /// Writes `line` and an end of line, in place of the previous content.
+impl TxFrame {
+    /// Replaces the content of the frame by `line` and a line feed.
     fn fill(&mut self, line: &impl fmt::Display) {
         self.0.clear();
         // All lines of the protocol fit; a longer one would be truncated.
         let _ = write!(self.0, "{line}");
-        self.0.truncate(FRAME_MAX - 1);
+        self.0.truncate(FRAME_MAX_BYTES - 1);
         let _ = self.0.push(b'\n');
     }
 }
 
 // SAFETY: the memory lives as long as the program, and no code writes to a frame that the stream
 // owns.
-unsafe impl ReadBuffer for Frame {
+unsafe impl ReadBuffer for TxFrame {
     type Word = u8;
 
     unsafe fn read_buffer(&self) -> (*const u8, usize) {
@@ -59,15 +60,15 @@ unsafe impl ReadBuffer for Frame {
     }
 }
 
-/// The queues between [`Outbox`] and [`Transmitter`]. Each has room for all frames, so it is never
-/// full.
+/// The two queues between [`Outbox`] and [`Transmitter`]: `full` with the lines to be sent, `empty`
+/// with the free frames. Each has room for all frames, so none is ever full.
 pub struct FrameQueues {
-    full: Queue<Frame, { FRAMES + 1 }>,
-    empty: Queue<Frame, { FRAMES + 1 }>,
+    full: Queue<TxFrame, { FRAME_COUNT + 1 }>,
+    empty: Queue<TxFrame, { FRAME_COUNT + 1 }>,
 }
 
 impl FrameQueues {
-    /// Queues before [`start`] puts the empty frames into one of them.
+    /// Creates both queues without frames; [`set_up`] then puts the free frames into `empty`.
     pub const fn new() -> Self {
         Self {
             full: Queue::new(),
@@ -76,25 +77,27 @@ impl FrameQueues {
     }
 }
 
-/// The end of the queues at which lines to the host are written.
+/// The host task's end of the frame queues: writes lines to the host into free frames and queues
+/// them for [`Transmitter`].
 pub struct Outbox {
-    full: Producer<'static, Frame>,
-    empty: Consumer<'static, Frame>,
+    full: Producer<'static, TxFrame>,
+    empty: Consumer<'static, TxFrame>,
 }
 
 impl Outbox {
-    /// Whether there is an empty frame for another line.
+    /// Whether a frame is free, so that [`enqueue`](Self::enqueue) can accept another line.
     pub fn has_room(&self) -> bool {
         self.empty.ready()
     }
 
-    /// Whether no line waits; the last one may not have been sent completely.
+    /// Whether no line waits to be sent. The DMA stream may still be sending the last one.
     pub fn is_empty(&self) -> bool {
-        self.empty.len() == FRAMES - 1
+        self.empty.len() == FRAME_COUNT - 1
     }
 
-    /// Writes one line into an empty frame, which is sent later; drops the line if there is none.
-    pub fn send(&mut self, line: &impl fmt::Display) {
+    /// Writes `line` into a free frame and queues it to be sent; drops the line if no frame is
+    /// free, so callers check [`has_room`](Self::has_room) first.
+    pub fn enqueue(&mut self, line: &impl fmt::Display) {
         let Some(mut frame) = self.empty.dequeue() else {
             return;
         };
@@ -106,17 +109,19 @@ impl Outbox {
     }
 }
 
-/// Sends the full frames one after the other.
+/// Sends the full frames to the host one after the other, in the interrupt of the DMA stream.
 pub struct Transmitter {
-    transfer: Transfer<Stream6<DMA1>, 4, Tx<USART2>, MemoryToPeripheral, Frame>,
+    transfer: Transfer<Stream6<DMA1>, 4, Tx<USART2>, MemoryToPeripheral, TxFrame>,
     sending: bool,
-    full: Consumer<'static, Frame>,
-    empty: Producer<'static, Frame>,
+    full: Consumer<'static, TxFrame>,
+    empty: Producer<'static, TxFrame>,
 }
 
 impl Transmitter {
-    /// Starts to send the next frame if the stream has read the last one completely. The USART then
-    /// still holds two bytes; the line pauses if the next frame is not started within these 20 us.
+    /// Starts to send the next full frame, if there is one and the DMA stream has read the last one
+    /// completely. Called in the interrupt of the stream, which occurs at the end of a frame and
+    /// when a line is queued. At the end of a frame the USART still holds two bytes, which take 20
+    /// us; the line to the host pauses if the next frame is not started within this time.
     pub fn send_next(&mut self) {
         if self.sending {
             let flags = self.transfer.flags();
@@ -138,50 +143,55 @@ impl Transmitter {
     }
 }
 
-/// What a received byte has completed.
+/// The kind of line that a received byte, a carriage return or line feed, has ended.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Completed {
-    /// A line, which now waits for its answer.
-    Line,
+pub enum CompletedLineKind {
+    /// A line with content, valid or not. It waits for its answer in the queue of received lines
+    /// or, if that queue is full, is refused, and its answer is an error.
+    ToBeAnswered,
     /// A blank line, which has no answer but shows that the host is active.
-    BlankLine,
+    Blank,
 }
 
-/// Assembles the received bytes to lines and puts these into the mailbox.
+/// Assembles the bytes that the host sends into lines and appends the lines to the queue of
+/// received lines, in the interrupt of USART2.
 pub struct Receiver {
     rx: Rx<USART2>,
     reader: LineReader,
-    inlet: Inlet<'static>,
+    line_queue: LineProducer<'static>,
 }
 
 impl Receiver {
-    /// Reads the byte that has arrived and returns what it has completed, if anything.
-    pub fn receive(&mut self) -> Option<Completed> {
+    /// Reads the byte that has arrived. Returns the kind of line that this byte has ended, `None`
+    /// if it has ended no line.
+    pub fn receive_byte(&mut self) -> Option<CompletedLineKind> {
         match self.rx.read() {
             Ok(byte) => match self.reader.push(byte) {
                 Some(line) => {
-                    self.inlet.put(line);
-                    Some(Completed::Line)
+                    self.line_queue.enqueue(line);
+                    Some(CompletedLineKind::ToBeAnswered)
                 }
-                None => LineReader::is_end(byte).then_some(Completed::BlankLine),
+                None => LineReader::is_line_end(byte).then_some(CompletedLineKind::Blank),
             },
             Err(nb::Error::WouldBlock) => None,
             Err(nb::Error::Other(_)) => {
-                self.reader.fail(LineError::Reception);
+                self.reader.mark_invalid(LineError::Reception);
                 None
             }
         }
     }
 }
 
-/// Sets up the USART and the stream that sends.
-pub fn start(
+/// Sets up USART2 and the DMA stream that sends, and enables the interrupt of received bytes.
+/// Returns the three parts of the serial line: one for the interrupt of USART2, one for the
+/// interrupt of the DMA stream, and one for the host task.
+pub fn set_up(
     usart: USART2,
     (tx, rx): (PA2<Input>, PA3<Input>),
     stream: Stream6<DMA1>,
-    buffers: &'static mut [FrameBuffer; FRAMES],
+    buffers: &'static mut [FrameBuffer; FRAME_COUNT],
     queues: &'static mut FrameQueues,
-    inlet: Inlet<'static>,
+    line_queue: LineProducer<'static>,
     rcc: &mut Rcc,
 ) -> (Receiver, Transmitter, Outbox) {
     let config = Config::default()
@@ -194,7 +204,7 @@ pub fn start(
 
     let (full_in, full_out) = queues.full.split();
     let (mut empty_in, empty_out) = queues.empty.split();
-    let [first, rest @ ..] = buffers.each_mut().map(Frame);
+    let [first, rest @ ..] = buffers.each_mut().map(TxFrame);
     for frame in rest {
         let _ = empty_in.enqueue(frame);
     }
@@ -207,7 +217,7 @@ pub fn start(
     let receiver = Receiver {
         rx,
         reader: LineReader::new(),
-        inlet,
+        line_queue,
     };
     let transmitter = Transmitter {
         transfer,

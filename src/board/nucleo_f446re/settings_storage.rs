@@ -19,18 +19,20 @@ use thermal_display::settings::{
 };
 
 use super::FINGERS;
-use super::flash::{FlashError, SettingsFlash};
+use super::settings_flash::{FlashError, SettingsFlash};
 
-/// Value of [`PendingSave::state`] when settings wait and no attempt has begun; each attempt
-/// increments it. The RAM is unlikely to hold such a value after power-up, and even then the
-/// checksum of the bytes would not match.
-const WAITING: u32 = 0x7361_7665;
-/// Attempts to store the settings.
-const ATTEMPTS: u32 = 2;
-/// 2 ms at 180 MHz. The last frame and the bytes in the USART take 1.74 ms at 1 Mbaud.
-const LAST_FRAME_CYCLES: u32 = 180_000_000 / 1000 * 2;
+/// Value of [`PendingSave::state`] when settings wait in RAM and no attempt to store them has
+/// begun; each attempt adds one. After power-up the RAM is unlikely to hold such a value by chance,
+/// and even then the checksum of the settings would not match.
+const SAVE_PENDING_MAGIC: u32 = 0x7361_7665;
+/// Number of program starts that may try to store the same settings. If a reset interrupts both
+/// attempts, there is no third, because the storing itself may cause the resets.
+const MAX_SAVE_ATTEMPTS: u32 = 2;
+/// Delay before the device restarts to store settings: 2 ms, in cycles of 180 MHz. The longest last
+/// line to the host, and the two bytes before it in the USART, take 1.78 ms at 1 Mbaud.
+const LAST_LINE_DELAY_CYCLES: u32 = 180_000_000 / 1000 * 2;
 
-/// Settings that wait to be stored by the next start.
+/// Settings in RAM that a reset does not clear, which the next start is to store in flash.
 struct PendingSave {
     state: AtomicU32,
     length_bytes: AtomicU32,
@@ -40,37 +42,40 @@ struct PendingSave {
 // SAFETY: the start-up code does not initialise the section, which holds nothing else; all bit
 // patterns are valid.
 #[unsafe(link_section = ".uninit.settings")]
-static PENDING: PendingSave = PendingSave {
+static PENDING_SAVE: PendingSave = PendingSave {
     state: AtomicU32::new(0),
     length_bytes: AtomicU32::new(0),
     bytes: [const { AtomicU8::new(0) }; RECORD_MAX_BYTES],
 };
 
 impl PendingSave {
-    /// Number of attempts that have begun, if settings wait.
-    fn attempts(&self) -> Option<u32> {
-        let begun = self.state.load(Relaxed).wrapping_sub(WAITING);
-        (begun <= ATTEMPTS).then_some(begun)
+    /// Number of attempts to store the settings that have begun, 0 to 2; `None` if no settings
+    /// wait.
+    fn attempts_begun(&self) -> Option<u32> {
+        let begun = self.state.load(Relaxed).wrapping_sub(SAVE_PENDING_MAGIC);
+        (begun <= MAX_SAVE_ATTEMPTS).then_some(begun)
     }
 
-    /// Begins an attempt: counts it and returns the bytes to be stored. `None` if no settings wait.
-    fn begin(&self) -> Option<Result<SettingsRecord, SaveError>> {
-        let begun = self.attempts()?;
-        if begun == ATTEMPTS {
+    /// Begins an attempt to store the waiting settings: counts it and returns their bytes. `None`
+    /// if no settings wait; [`SaveError::Interrupted`] if both attempts are used up,
+    /// [`SaveError::Damaged`] if the length is damaged.
+    fn begin_attempt(&self) -> Option<Result<SettingsRecord, SaveError>> {
+        let begun = self.attempts_begun()?;
+        if begun == MAX_SAVE_ATTEMPTS {
             return Some(Err(SaveError::Interrupted));
         }
-        self.state.store(WAITING + begun + 1, Relaxed);
+        self.state.store(SAVE_PENDING_MAGIC + begun + 1, Relaxed);
         let bytes = self.bytes.get(..self.length_bytes.load(Relaxed) as usize);
         let bytes = bytes.map(|bytes| bytes.iter().map(|byte| byte.load(Relaxed)).collect());
         Some(bytes.ok_or(SaveError::Damaged))
     }
 
-    fn put(&self, bytes: &SettingsRecord) {
+    fn write_to_ram(&self, bytes: &SettingsRecord) {
         for (place, byte) in self.bytes.iter().zip(bytes) {
             place.store(*byte, Relaxed);
         }
         self.length_bytes.store(bytes.len() as u32, Relaxed);
-        self.state.store(WAITING, Relaxed);
+        self.state.store(SAVE_PENDING_MAGIC, Relaxed);
     }
 
     fn clear(&self) {
@@ -79,15 +84,17 @@ impl PendingSave {
 }
 
 /// Why settings could not be read from the flash or written to it.
-type FlashStoreError = StoreError<FlashError>;
+type SettingsStoreError = StoreError<FlashError>;
 
-/// Why waiting settings were not stored.
+/// Why the settings that waited in RAM were not stored in flash.
 pub enum SaveError {
-    /// The flash could not be written.
-    Failed(FlashStoreError),
-    /// A reset has interrupted every attempt; the flash holds either the old or the new settings.
+    /// The flash could not be written, for the reason given.
+    Failed(SettingsStoreError),
+    /// Resets have interrupted both attempts to store the settings, and there is no third attempt.
+    /// The flash holds either the old or the new settings, unless its content was damaged before.
     Interrupted,
-    /// The bytes in RAM have been changed.
+    /// The settings in RAM were damaged between the restart and the attempt to store them: length
+    /// or checksum is wrong.
     Damaged,
 }
 
@@ -101,29 +108,34 @@ impl fmt::Display for SaveError {
     }
 }
 
-/// Stored settings, and the result of the last request to store some.
-pub struct StartupStorage {
-    /// The stored settings of all fingers; `None` stands for factory defaults.
-    pub settings: Result<Option<[StoredSettings; FINGERS]>, FlashStoreError>,
-    /// Whether the waiting settings were stored; `None` if no settings waited.
+/// What [`save_pending_and_load`] has found and done at the start: the settings that the flash
+/// holds, and whether waiting settings were stored.
+pub struct SaveAndLoadResult {
+    /// The settings of all fingers that the flash holds; `None` if it holds none or factory
+    /// defaults were stored. An error if the flash cannot be read or holds no valid settings.
+    pub settings: Result<Option<[StoredSettings; FINGERS]>, SettingsStoreError>,
+    /// Whether the settings that waited in RAM were stored in flash at this start; `None` if none
+    /// waited.
     pub save_result: Option<Result<(), SaveError>>,
 }
 
-/// Whether the device was restarted to store settings.
+/// Whether settings wait in RAM to be stored in flash. A reset by the program is then no fault: the
+/// host has requested the restart by `save` or `forget`.
 pub fn save_is_pending() -> bool {
-    PENDING.attempts().is_some()
+    PENDING_SAVE.attempts_begun().is_some()
 }
 
-/// Stores settings if any wait, and reads the stored ones. Must be called before peripherals are
-/// set up.
+/// Stores the settings that wait in RAM, if any, in flash, then reads the settings from the flash.
+/// Must be called at the start, before peripherals are set up, because the processor stalls while
+/// the flash is written.
 #[inline(never)]
-pub fn save_pending_and_load(registers: &FLASH) -> StartupStorage {
+pub fn save_pending_and_load(registers: &FLASH) -> SaveAndLoadResult {
     let mut store = SettingsStore::<_, FINGERS>::new(SettingsFlash::new(registers));
-    let save_result = PENDING.begin().map(|bytes| {
+    let save_result = PENDING_SAVE.begin_attempt().map(|bytes| {
         let settings = decode::<FINGERS>(&bytes?).map_err(|_| SaveError::Damaged)?;
         store.save(settings.as_ref()).map_err(SaveError::Failed)
     });
-    PENDING.clear();
+    PENDING_SAVE.clear();
     let settings = store.load();
     if let Err(error) = &settings {
         defmt::error!("{}", defmt::Display2Format(error));
@@ -131,16 +143,17 @@ pub fn save_pending_and_load(registers: &FLASH) -> StartupStorage {
     if let Some(Err(error)) = &save_result {
         defmt::error!("not stored: {}", defmt::Display2Format(error));
     }
-    StartupStorage {
+    SaveAndLoadResult {
         settings,
         save_result,
     }
 }
 
-/// Resets the device, which then stores `bytes`. The bridges must be off, and the last frame to the
-/// host must be in the stream.
+/// Waits 2 ms for the end of the last line to the host, copies `bytes`, the record of the settings,
+/// to RAM that a reset does not clear, and resets the device. The next start stores the settings in
+/// flash. The bridges must be off, and the DMA stream must already have the last line.
 pub fn restart_to_save(bytes: &SettingsRecord) -> ! {
-    cortex_m::asm::delay(LAST_FRAME_CYCLES);
-    PENDING.put(bytes);
+    cortex_m::asm::delay(LAST_LINE_DELAY_CYCLES);
+    PENDING_SAVE.write_to_ram(bytes);
     SCB::sys_reset()
 }

@@ -1,10 +1,10 @@
 //! Solution of the normal equations of least squares.
 
-/// Solves the linear equations `a x = b` by a Cholesky decomposition without square roots (LDLᵀ), and replaces `b` by
-/// `x`. The matrix `a` must be symmetric and positive definite; only its lower triangle is used, and it is overwritten.
-/// Returns `None` if `a` is not positive definite.
+/// Solves the linear equations `a x = b` by a Cholesky decomposition without square roots (LDLᵀ), and replaces the
+/// content of `b` by `x`. The matrix `a` must be symmetric and positive definite; only its lower triangle is used, and
+/// its content is overwritten. Returns `None` if `a` is not positive definite.
 #[must_use]
-pub fn solve<const N: usize>(a: &mut [[f64; N]; N], b: &mut [f64; N]) -> Option<()> {
+pub fn solve_by_cholesky<const N: usize>(a: &mut [[f64; N]; N], b: &mut [f64; N]) -> Option<()> {
     for i in 0..N {
         for j in 0..i {
             let sum: f64 = (0..j).map(|k| a[i][k] * a[j][k] * a[k][k]).sum();

@@ -8,20 +8,20 @@ extern crate std;
 mod calibration_fit;
 mod calibration_points;
 mod cholesky;
-mod identification;
-mod request;
 mod session;
+mod session_messages;
 mod stability_margins;
-mod storage;
+mod storage_order;
+mod tile_identification;
 
-pub use calibration_points::{POINT_DEVIATION_MAX_K, POINTS_MAX, PointError};
-pub use identification::IdentificationError;
-pub use request::{
-    SENSOR_WORDS, STEPS_PER_LINE, SessionError, SessionReply, SessionRequest, Setting,
+pub use calibration_points::{POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K};
+pub use session::{CommissioningSession, ExecuteOnStation, SETTINGS_LINE_COUNT};
+pub use session_messages::{
+    CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SessionError, SessionReply, SessionRequest, Setting,
 };
-pub use session::{CommissioningSession, ExecuteOnStation, SETTINGS_LINES};
 pub use stability_margins::StabilityMargins;
-pub use storage::StorageOrder;
+pub use storage_order::StorageOrder;
+pub use tile_identification::IdentificationError;
 
 #[cfg(test)]
 mod tests;

@@ -2,60 +2,74 @@
 
 use core::ops::Range;
 
-use super::calibration_fit::{DISPLAY_SENSORS, fit, reading_c};
-use super::calibration_points::{PointError, Points};
-use super::identification::identify;
-use super::request::{
-    SENSOR_WORDS, STEPS_PER_LINE, SessionError, SessionReply, SessionRequest, Setting,
+use super::calibration_fit::{DISPLAY_THERMISTOR_COUNT, fit_calibration, thermistor_reading_c};
+use super::calibration_points::{CalibrationPoints, PointError};
+use super::session_messages::{
+    CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SessionError, SessionReply, SessionRequest, Setting,
 };
 use super::stability_margins::StabilityMargins;
+use super::tile_identification::tile_from_normal_equations;
 use thermal_device::command::{self, Command, Refused};
 use thermal_device::control::ControlParameters;
-use thermal_device::identification::{NormalEquationRow, ROWS};
+use thermal_device::identification::{NORMAL_EQUATION_ROWS, NormalEquationRow};
 use thermal_device::sense::CalibrationTables;
-use thermal_settings::{BORDER_COUNT, Calibration, Correction, FIRST_BORDER, Settings, Tile};
+use thermal_settings::{
+    CALIBRATED_BORDER_COUNT, Calibration, Correction, FIRST_CALIBRATED_BORDER, Settings, Tile,
+};
 
-/// Number of lines that hold the steps.
-const STEPS_LINES: usize = BORDER_COUNT.div_ceil(STEPS_PER_LINE);
-/// Number of lines that hold all commissioned settings: the steps, one correction for each thermistor, the tile.
-pub const SETTINGS_LINES: usize = STEPS_LINES + SENSOR_WORDS.len() + 1;
+/// Number of lines of the settings that hold the converter's steps at 13 borders of its segments, up to seven in each
+/// line: 2.
+const CONVERTER_STEPS_LINE_COUNT: usize =
+    CALIBRATED_BORDER_COUNT.div_ceil(CONVERTER_STEPS_PER_LINE);
+/// Number of lines that hold all commissioned settings of a finger, 8: two for the converter's 13 steps, one for the
+/// correction of each of the five thermistors, and one for the tile.
+pub const SETTINGS_LINE_COUNT: usize = CONVERTER_STEPS_LINE_COUNT + SENSOR_WORDS.len() + 1;
 
-/// Executes a command on the session's station in bounded and short time.
+/// A function that executes a command on the station of the session's finger, and returns the station's reply or
+/// refusal. The control tick may be locked out while it runs, so it must end after a bounded, short time.
 pub trait ExecuteOnStation: FnMut(Command) -> Result<command::Reply, Refused> {}
 
 impl<F: FnMut(Command) -> Result<command::Reply, Refused>> ExecuteOnStation for F {}
 
-/// The settings of one finger, and its calibration points.
+/// The commissioning of one finger by requests of the host: holds the finger's settings, with the calibration of its
+/// thermistors and the parameters of its tile, and the calibration points since start-up.
 #[derive(Clone, Debug)]
 pub struct CommissioningSession {
     settings: Settings,
-    points: Points,
-    /// Prior of the calibration fit: the calibration before the first point, or what the host has set since.
+    points: CalibrationPoints,
+    /// Prior of the calibration fit: the calibration at start-up, replaced by what the host has set or cleared since. A
+    /// new calibration point changes the calibration in use, but not the prior.
     prior: Calibration,
 }
 
 impl CommissioningSession {
-    /// A session of a finger with these settings, without calibration points.
+    /// A session for a finger whose station starts with these settings; it has no calibration points yet.
     #[must_use]
     pub fn new(settings: Settings) -> Self {
         Self {
             settings,
-            points: Points::default(),
+            points: CalibrationPoints::default(),
             prior: settings.calibration,
         }
     }
 
-    /// The present settings.
+    /// The present settings of the finger, which its station uses: those at start-up, with every accepted change since.
+    /// `save` stores them.
     #[must_use]
     pub const fn settings(&self) -> &Settings {
         &self.settings
     }
 
-    /// Executes a request. Time-consuming computations are done here, outside of `execute`, which runs with the control
-    /// tick locked out.
+    /// Executes one request of the host and returns the reply to it. `execute` executes single commands on the finger's
+    /// station, with the control tick locked out; so all time-consuming computations are done here, outside of
+    /// `execute`.
     ///
     /// # Errors
-    /// The request is rejected, and the settings are unchanged.
+    /// The settings are unchanged then.
+    ///
+    /// - [`SessionError::Refused`]: the station refuses a command that the request needs.
+    /// - [`SessionError::Identification`]: `tune result`, but the recorded response gives no tile.
+    /// - [`SessionError::Point`]: the calibration point is rejected.
     pub fn answer(
         &mut self,
         request: SessionRequest,
@@ -65,52 +79,67 @@ impl CommissioningSession {
             SessionRequest::AddPoint {
                 sensor,
                 reference_c,
-            } => return self.add_point(sensor, reference_c, &mut execute),
+            } => return self.add_point_and_refit(sensor, reference_c, &mut execute),
             SessionRequest::ClearCalibration { sensor } => {
                 self.clear_calibration(sensor, &mut execute)?;
             }
             SessionRequest::Set(Setting::Steps { first, counts }) => {
                 let mut calibration = self.settings.calibration;
                 let steps = calibration.steps_counts.iter_mut();
-                for (step, count) in steps.skip(first - FIRST_BORDER).zip(&counts) {
+                for (step, count) in steps.skip(first - FIRST_CALIBRATED_BORDER).zip(&counts) {
                     *step = *count;
                 }
-                self.set_calibration(calibration, calibration, 0..DISPLAY_SENSORS, &mut execute)?;
+                self.replace_calibration_and_prior(
+                    calibration,
+                    calibration,
+                    0..DISPLAY_THERMISTOR_COUNT,
+                    &mut execute,
+                )?;
             }
             SessionRequest::Set(Setting::Correction(sensor, correction)) => {
-                let (calibration, prior) = self.with_correction(sensor, correction);
-                self.set_calibration(calibration, prior, sensor..sensor + 1, &mut execute)?;
+                let (calibration, prior) =
+                    self.calibration_and_prior_with_correction(sensor, correction);
+                self.replace_calibration_and_prior(
+                    calibration,
+                    prior,
+                    sensor..sensor + 1,
+                    &mut execute,
+                )?;
             }
             SessionRequest::Set(Setting::Tile(tile)) => self.set_tile(tile, &mut execute)?,
             SessionRequest::TuneResult => {
                 self.identify_tile(&mut execute)?;
-                return Ok(self.tile());
+                return Ok(self.tile_and_margins_reply());
             }
-            SessionRequest::Margins => return Ok(self.tile()),
+            SessionRequest::Margins => return Ok(self.tile_and_margins_reply()),
             SessionRequest::CountSettingsLines => {
-                return Ok(SessionReply::SettingsLines(SETTINGS_LINES));
+                return Ok(SessionReply::SettingsLines(SETTINGS_LINE_COUNT));
             }
             SessionRequest::SettingsLine(index) => {
-                return Ok(SessionReply::Setting(self.setting(index)));
+                return Ok(SessionReply::Setting(self.setting_at_line_index(index)));
             }
         }
         Ok(SessionReply::Done)
     }
 
-    /// Identifies the tile from the response that the station recorded, and uses it.
+    /// Computes the tile's parameters from the response that the station has recorded during `tune`, and makes them the
+    /// tile of the settings and of the station. Without a complete `tune`, if the response gives no tile, or if the
+    /// station refuses the parameters, nothing changes.
     fn identify_tile(&mut self, execute: &mut impl ExecuteOnStation) -> Result<(), SessionError> {
-        let mut rows = [NormalEquationRow::default(); ROWS];
+        let mut rows = [NormalEquationRow::default(); NORMAL_EQUATION_ROWS];
         for (i, row) in rows.iter_mut().enumerate() {
             let command::Reply::NormalEquation(sums) = execute(Command::NormalEquation(i))? else {
                 return Err(Refused::NotTuned.into());
             };
             *row = sums;
         }
-        let tile = identify(&rows).map_err(SessionError::Identification)?;
+        let tile = tile_from_normal_equations(&rows).map_err(SessionError::Identification)?;
         Ok(self.set_tile(tile, execute)?)
     }
 
-    /// Replaces the tile's parameters if the station accepts them.
+    /// Replaces the tile's parameters, and the controller gains that follow from them, in the station and in this
+    /// session's settings (in RAM; only `save` writes them to flash). If the station refuses them, because it presents
+    /// an object, nothing changes.
     fn set_tile(&mut self, tile: Tile, execute: &mut impl ExecuteOnStation) -> Result<(), Refused> {
         let mut settings = self.settings;
         settings.set_tile(tile);
@@ -119,14 +148,16 @@ impl CommissioningSession {
         Ok(())
     }
 
-    fn tile(&self) -> SessionReply {
+    fn tile_and_margins_reply(&self) -> SessionReply {
         let Settings { tile, gains, .. } = &self.settings;
         SessionReply::Tile(*tile, StabilityMargins::new(tile, gains))
     }
 
-    /// Replaces the calibration if the station accepts it. Not inlined: the copy of the settings takes stack only here.
+    /// Replaces the calibration in the station and in this session's settings (in RAM; only `save` writes them to
+    /// flash). If the station refuses it, because it presents an object or runs the self-test, nothing changes. Not
+    /// inlined, so that the copy of the settings takes stack in this function only.
     #[inline(never)]
-    fn apply(
+    fn apply_calibration(
         &mut self,
         calibration: Calibration,
         execute: &mut impl ExecuteOnStation,
@@ -140,23 +171,29 @@ impl CommissioningSession {
         Ok(())
     }
 
-    /// Replaces the calibration and the prior if the station accepts them, and removes the points of the sensors that the
-    /// prior now describes.
-    fn set_calibration(
+    /// Replaces the calibration in use and the prior of the calibration fit, and removes the calibration points of the
+    /// thermistors with the indices `sensors`, because the new prior replaces what they contributed. If the station
+    /// refuses the calibration, because it presents an object or runs the self-test, nothing changes.
+    fn replace_calibration_and_prior(
         &mut self,
         calibration: Calibration,
         prior: Calibration,
         sensors: Range<usize>,
         execute: &mut impl ExecuteOnStation,
     ) -> Result<(), Refused> {
-        self.apply(calibration, execute)?;
+        self.apply_calibration(calibration, execute)?;
         self.prior = prior;
-        sensors.for_each(|sensor| self.points.clear(sensor));
+        sensors.for_each(|sensor| self.points.remove_points_of_sensor(sensor));
         Ok(())
     }
 
-    /// The present calibration and prior with another correction of one thermistor.
-    fn with_correction(&self, sensor: usize, correction: Correction) -> (Calibration, Calibration) {
+    /// Copies of the calibration in use and of the prior of the calibration fit, in this order, both with `correction`
+    /// as the correction of the thermistor with the index `sensor`.
+    fn calibration_and_prior_with_correction(
+        &self,
+        sensor: usize,
+        correction: Correction,
+    ) -> (Calibration, Calibration) {
         let replaced = |mut calibration: Calibration| {
             if let Some(place) = calibration.corrections.get_mut(sensor) {
                 *place = correction;
@@ -166,24 +203,33 @@ impl CommissioningSession {
         (replaced(self.settings.calibration), replaced(self.prior))
     }
 
-    /// Removes a thermistor's points and correction. The steps of the converter are removed with the correction of the
-    /// last thermistor that determines them.
+    /// Removes the calibration points of the thermistor with the index `sensor`, and sets its correction to zero. If
+    /// the corrections of both display thermistors are zero then, the converter's steps at its segment borders are set
+    /// to zero, too, because only these two thermistors determine them. If the station refuses the calibration, nothing
+    /// changes.
     fn clear_calibration(
         &mut self,
         sensor: usize,
         execute: &mut impl ExecuteOnStation,
     ) -> Result<(), Refused> {
-        let (mut calibration, mut prior) = self.with_correction(sensor, Correction::default());
-        let mut display = calibration.corrections.iter().take(DISPLAY_SENSORS);
+        let (mut calibration, mut prior) =
+            self.calibration_and_prior_with_correction(sensor, Correction::default());
+        let mut display = calibration
+            .corrections
+            .iter()
+            .take(DISPLAY_THERMISTOR_COUNT);
         if display.all(|correction| *correction == Correction::default()) {
-            calibration.steps_counts = [0.0; BORDER_COUNT];
-            prior.steps_counts = [0.0; BORDER_COUNT];
+            calibration.steps_counts = [0.0; CALIBRATED_BORDER_COUNT];
+            prior.steps_counts = [0.0; CALIBRATED_BORDER_COUNT];
         }
-        self.set_calibration(calibration, prior, sensor..sensor + 1, execute)
+        self.replace_calibration_and_prior(calibration, prior, sensor..sensor + 1, execute)
     }
 
-    /// Adds a calibration point at the present average of a thermistor, and uses the calibration that fits all points.
-    fn add_point(
+    /// Adds a calibration point: the mean of the thermistor's converter sums over half a second, and the temperature of
+    /// the reference thermometer, `reference_c`, °C. Then fits the calibration to all points, and uses it in station
+    /// and settings. If no allowed calibration fits, or the station refuses it, the new point is removed again and
+    /// nothing changes.
+    fn add_point_and_refit(
         &mut self,
         sensor: usize,
         reference_c: f64,
@@ -192,21 +238,21 @@ impl CommissioningSession {
         let command::Reply::Average(average) = execute(Command::Average(sensor))? else {
             return Err(Refused::TooEarly.into());
         };
-        let present_c = reading_c(&self.settings, sensor, average.mean_sum());
+        let present_c = thermistor_reading_c(&self.settings, sensor, average.mean_sum());
         self.points
             .add(sensor, &average, present_c, reference_c)
             .map_err(SessionError::Point)?;
-        let applied = fit(&self.settings, &self.prior, &self.points)
-            .filter(|calibration| calibration.out_of_range().is_none())
+        let applied = fit_calibration(&self.settings, &self.prior, &self.points)
+            .filter(|calibration| calibration.first_value_out_of_range().is_none())
             .ok_or(SessionError::Point(PointError::Contradicts))
-            .and_then(|calibration| Ok(self.apply(calibration, execute)?));
+            .and_then(|calibration| Ok(self.apply_calibration(calibration, execute)?));
         if applied.is_err() {
             self.points.remove_latest(sensor);
         }
         applied?;
         let points = self.points.of_sensor(sensor);
         let errors_k = points.iter().map(|point| {
-            libm::fabs(reading_c(&self.settings, sensor, point.sum) - point.reference_c)
+            libm::fabs(thermistor_reading_c(&self.settings, sensor, point.sum) - point.reference_c)
         });
         Ok(SessionReply::PointAdded {
             points: points.len(),
@@ -214,16 +260,21 @@ impl CommissioningSession {
         })
     }
 
-    /// One line of the settings, by its index from 0.
-    fn setting(&self, index: usize) -> Setting {
+    /// The content of one line of the settings by its index, 0 to 7: two lines of converter steps, five corrections,
+    /// the tile.
+    fn setting_at_line_index(&self, index: usize) -> Setting {
         let calibration = &self.settings.calibration;
-        if let Some(steps) = calibration.steps_counts.chunks(STEPS_PER_LINE).nth(index) {
+        if let Some(steps) = calibration
+            .steps_counts
+            .chunks(CONVERTER_STEPS_PER_LINE)
+            .nth(index)
+        {
             return Setting::Steps {
-                first: FIRST_BORDER + index * STEPS_PER_LINE,
+                first: FIRST_CALIBRATED_BORDER + index * CONVERTER_STEPS_PER_LINE,
                 counts: heapless::Vec::from_slice(steps).unwrap_or_default(),
             };
         }
-        let sensor = index - STEPS_LINES;
+        let sensor = index - CONVERTER_STEPS_LINE_COUNT;
         match calibration.corrections.get(sensor) {
             Some(correction) => Setting::Correction(sensor, *correction),
             None => Setting::Tile(self.settings.tile),

@@ -5,29 +5,35 @@ use core::f64::consts::PI;
 use thermal_device::TICK_HZ;
 use thermal_settings::{Gains, Tile};
 
-/// Phase margin and gain margin of a control loop.
+/// Phase margin and gain margin of the loop by which the law `pi` controls the display's temperature: how far the loop
+/// is from instability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityMargins {
-    /// Phase margin: distance of the phase from -180° where the magnitude of the loop's gain is one, degrees.
+    /// Phase margin, degrees: phase of the open loop above -180° at the frequency at which the magnitude of its gain is
+    /// one.
     pub phase_deg: f64,
-    /// Gain margin: factor by which the gain may grow until the loop is at the stability limit.
+    /// Gain margin: factor, without unit, by which the gain of the loop may grow until the loop becomes unstable.
     pub gain: f64,
 }
 
-/// Lower end of the search, rad/s, slower than any loop of allowed settings.
-const FREQUENCY_MIN: f64 = 1e-6;
-/// Upper end of the search, rad/s, the Nyquist frequency of the ticks.
-const FREQUENCY_MAX: f64 = PI * TICK_HZ as f64;
-/// Bisection steps on the logarithm of the frequency; they determine it to one part in 10^9.
-const BISECTIONS: u32 = 34;
+/// Lower end of the search for the frequency at which the magnitude of the open loop's gain is one, rad/s. That
+/// frequency is higher for all allowed settings.
+const SEARCH_FREQUENCY_MIN_RAD_S: f64 = 1e-6;
+/// Upper end of the search for frequencies of the open loop, rad/s: the Nyquist frequency of a loop that is closed at
+/// every tick of 1 ms.
+const SEARCH_FREQUENCY_MAX_RAD_S: f64 = PI * TICK_HZ as f64;
+/// Number of bisections of the logarithm of the frequency. Between [`SEARCH_FREQUENCY_MIN_RAD_S`] and
+/// [`SEARCH_FREQUENCY_MAX_RAD_S`], 34 bisections determine a frequency to about one part in 10^9.
+const BISECTION_STEPS: u32 = 34;
 
 impl StabilityMargins {
     /// Margins of the open loop
-    /// `Kc (1 + 1 / (Ti s)) gain / (s + leak) e^(-dead_time s) / (1 + lag s)`.
+    /// `Kc (1 + 1 / (Ti s)) gain / (s + leak) e^(-dead_time s) / (1 + lag s)`,
+    /// with the proportional gain `Kc` and the integral time `Ti` of `gains`, and the other parameters of `tile`.
     ///
-    /// Its magnitude falls monotonically with frequency, and its phase crosses -180° once above `1 / Ti`, so bisection
-    /// finds both crossings. If a tile is so fast that the phase stays above -180° up to the Nyquist frequency, the gain
-    /// margin is that at the Nyquist frequency.
+    /// The magnitude of the open loop falls monotonically with frequency, and its phase crosses -180° once above `1 /
+    /// Ti`, so bisection finds both crossings. If a tile is so fast that the phase stays above -180° up to the Nyquist
+    /// frequency, the gain margin is that at the Nyquist frequency.
     #[must_use]
     pub fn new(tile: &Tile, gains: &Gains) -> Self {
         let magnitude = |w: f64| {
@@ -42,9 +48,9 @@ impl StabilityMargins {
             let plate = -libm::atan2(w, tile.leak_1_s);
             PI + controller + plate - libm::atan(tile.sensor_lag_s * w) - tile.dead_time_s * w
         };
-        let gain_crossover = bisect(|w| magnitude(w) > 1.0, FREQUENCY_MIN);
+        let gain_crossover = bisect_frequency(|w| magnitude(w) > 1.0, SEARCH_FREQUENCY_MIN_RAD_S);
         // Below 1 / Ti the two integrators can bring the phase near -180 degrees, too.
-        let phase_crossover = bisect(|w| phase(w) > 0.0, 1.0 / gains.integral_s);
+        let phase_crossover = bisect_frequency(|w| phase(w) > 0.0, 1.0 / gains.integral_s);
         Self {
             phase_deg: phase(gain_crossover) * 180.0 / PI,
             gain: 1.0 / magnitude(phase_crossover),
@@ -52,10 +58,11 @@ impl StabilityMargins {
     }
 }
 
-/// The angular frequency, rad/s, from `from` on, above which a condition no longer holds.
-fn bisect(holds: impl Fn(f64) -> bool, from: f64) -> f64 {
-    let (mut low, mut high) = (libm::log(from), libm::log(FREQUENCY_MAX));
-    for _ in 0..BISECTIONS {
+/// The angular frequency, rad/s, between `from` and the Nyquist frequency, up to which the condition `holds` is true
+/// and above which it is false; found by bisection.
+fn bisect_frequency(holds: impl Fn(f64) -> bool, from: f64) -> f64 {
+    let (mut low, mut high) = (libm::log(from), libm::log(SEARCH_FREQUENCY_MAX_RAD_S));
+    for _ in 0..BISECTION_STEPS {
         let middle = 0.5 * (low + high);
         if holds(libm::exp(middle)) {
             low = middle;

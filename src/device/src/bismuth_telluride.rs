@@ -2,9 +2,11 @@
 
 use contact_model::fixed_point::Celsius;
 
-/// Temperature, °C, for which a Peltier module's data sheet states its resistance and its Seebeck coefficient.
+/// Temperature at which the data sheet of a Peltier module states its resistance and its Seebeck coefficient, °C.
 pub const DATA_SHEET_TEMPERATURE: Celsius = Celsius::lit("27");
-/// Rise of the resistivity per kelvin above [`DATA_SHEET_TEMPERATURE`], as a part of its value there, 1/K.
+/// Relative rise of the resistivity of bismuth telluride for each kelvin above [`DATA_SHEET_TEMPERATURE`], 1/K; the
+/// resistivity at that temperature counts as 1.
 pub const RESISTIVITY_RISE_PER_K: f64 = 0.0049;
-/// Rise of the Seebeck coefficient per kelvin above [`DATA_SHEET_TEMPERATURE`], as a part of its value there, 1/K.
+/// Relative rise of the Seebeck coefficient of bismuth telluride for each kelvin above [`DATA_SHEET_TEMPERATURE`], 1/K;
+/// the coefficient at that temperature counts as 1.
 pub const SEEBECK_RISE_PER_K: f64 = 0.0016;

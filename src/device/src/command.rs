@@ -1,6 +1,6 @@
-//! What a host may ask of a station, and what a station answers.
+//! Commands and queries of the host to a station, and what a station answers.
 //!
-//! These are values: `thermal-protocol` reads them from lines of text and writes the answers.
+//! These are values: `thermal-protocol` reads commands from lines of text, and writes answers as lines.
 
 use core::fmt;
 
@@ -9,157 +9,179 @@ use contact_model::fixed_point::{Celsius, ContactPair};
 use crate::StateName;
 use crate::control::{ControlParameters, Law};
 use crate::identification::{AbortReason, NormalEquationRow};
-use crate::reference::Mode;
+use crate::reference::ContactModel;
 use crate::safety::{Fault, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, ThermistorAverage};
 
-/// What a host may ask of one finger's station. The values are in their ranges; whether the station's state permits the
-/// command is decided when it is executed.
+/// A command or query of the host to one finger's station. All values are within their ranges; whether the station's
+/// state permits the command is decided only when the station executes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Report state, material, object temperature, mode and set-point, and whether the set-point was clamped; never
-    /// refused.
+    /// Report the state, the chosen material, object temperature and contact model, and the set-point of the last tick,
+    /// by [`Reply::Status`]. Never refused.
     Status,
-    /// Send a line of telemetry at this interval from now on. A host that then sends nothing for 2 s trips a station
-    /// that follows a set-point.
+    /// Send a line of telemetry every `interval_ms` from now on. While telemetry is on and the display follows a
+    /// set-point (in armed, preset and contact), 2 s without a line from the host trip the station by
+    /// [`Fault::HostSilent`].
     Stream {
-        /// Time from one line of telemetry to the next, ms; 0 ends the stream.
+        /// Time from one line of telemetry to the next, ms, up to 60000; 0 switches telemetry off.
         interval_ms: u32,
     },
-    /// Choose the material of the object, which `start` presents. If an object is presented already, the new one
-    /// replaces it at once, and a finger that touches begins a new contact.
+    /// Choose the material of the object that `start` presents. If an object is presented already, the new one replaces
+    /// it at once; if a finger touches, a new contact begins.
     Material {
-        /// Name of the material, or `custom` if the host has given its properties; `status` reports it.
+        /// Name of the material, or `custom` if the host has given its properties; [`Command::Status`] reports this
+        /// name.
         name: &'static str,
-        /// Constants of the contact of a finger with this material and with the display, from which set-points are
-        /// computed.
+        /// Contact constants of the finger's skin, this material and the display's surface, from which set-points and
+        /// the finger's heat flow are computed.
         pair: ContactPair,
     },
-    /// Choose the object's temperature before contact, °C; `None` takes the room's. A finger that touches begins a new
-    /// contact.
+    /// Choose the object's temperature before contact, °C; `None` takes the room's. If a finger touches, a new contact
+    /// begins.
     Object(Option<Celsius>),
-    /// Choose the model that gives the set-point during contact; a finger that touches begins a new contact if it
-    /// differs.
-    Mode(Mode),
-    /// Choose the control law that gives the current, which starts from the present current; `None` only asks for the
-    /// law in use.
+    /// Choose the contact model that gives the set-point while an object is presented. If that changes the model while
+    /// a finger touches, a new contact begins.
+    Mode(ContactModel),
+    /// Choose the control law that computes the current. A law `pi` or `pi-10hz` that was not in use starts from the
+    /// present current; the law `model` continues from the plate's observer, which runs with every law. `None` changes
+    /// nothing: the answer is the law in use.
     Law(Option<Law>),
-    /// Drive the display to skin temperature: from off after the self-test, from ready, armed, preset and contact at
-    /// once. Refused while the station is tripped.
+    /// Drive the display to skin temperature, with no object presented. From off the self-test runs first; from ready,
+    /// armed, preset and contact the display moves at once. A `hold` or an identification of the tile ends, and the
+    /// result of an identification is discarded. No effect in the self-test; refused while the station is tripped.
     Arm,
-    /// Drive an armed display to this temperature, by 1 K/s from the present reading.
+    /// Move the set-point of an armed display from the display's present reading to this temperature, by 1 K/s, and
+    /// stay there. Refused if the station is not armed.
     Hold(Setpoint),
-    /// Present the chosen material on an armed display: it goes to the preset of the selected model and waits for a
-    /// finger.
+    /// Present the chosen object: the display goes to the preset, the temperature at which a contact with the object
+    /// begins, and waits for a finger. Refused if the station is not armed, or if no material is chosen.
     Start,
-    /// Switch the bridge off: a self-test ends in off, every other driven state in ready. Never refused; no effect if
-    /// the bridge is off already.
+    /// Switch the bridge off: leads from the self-test to off, and from armed, preset and contact to ready. Never
+    /// refused; no effect in off, ready and tripped, where the bridge is off already.
     Abort,
-    /// Leave the state tripped for off, if no fault is present any more.
+    /// Change from tripped to off, from where `arm` runs the self-test again. Refused while a fault is present, and if
+    /// the station is not tripped. If the board has raised a second fault while the first one was latched, the second
+    /// one then trips the station ([`Refused::StillFaulty`]).
     Clear,
-    /// Report the cause of the present trip or, after `clear`, of the last one.
+    /// Report the cause of the present trip or, after `clear`, of the last one. Never refused.
     Cause,
-    /// Report the mean sample of the thermistor with this index over half a second, for a calibration: 0 display, 1
-    /// second display, 2 sink, 3 skin, 4 room. Refused while an object is presented, and in the self-test.
+    /// Report the mean of one thermistor's samples over half a second, for a calibration. Index of the thermistor: 0
+    /// first display, 1 second display, 2 sink, 3 skin, 4 room. Refused while an object is presented, in the self-test,
+    /// and while too few samples have been added ([`Refused::TooEarly`]).
     Average(usize),
-    /// Identify the tile: drive an armed, untouched display by current pulses and add up the normal equations of its
-    /// response.
+    /// Begin to identify the tile: current pulses move the armed display, and each tick adds the display's response to
+    /// the normal equations, from which the tile's parameters are fitted afterwards. Refused if the station is not
+    /// armed, while a finger touches, and if the sink's thermistor has no valid reading.
     Tune,
-    /// Report the row with this index, from 0, of the normal equations that a complete identification has added up.
+    /// Report one row, by its index from 0 to 8, of the normal equations of the last identification of the tile.
+    /// Refused unless that identification is complete, and while the station is tripped.
     NormalEquation(usize),
-    /// Use these corrections of the thermistors from the next tick on. Refused while an object is presented, and in the
-    /// self-test.
+    /// Use these corrections of converter and thermistors from the next tick on; an identification of the tile that is
+    /// still running ends without a result. Refused while an object is presented, because the finger would feel the
+    /// change, and in the self-test, which a step of the readings would disturb.
     Calibrate(CalibrationTables),
-    /// Use these gains and this model of the tile from the next tick on. Refused while an object is presented.
+    /// Use these gains and this model of the tile from the next tick on; an identification of the tile ends. Refused
+    /// while an object is presented, because the finger would feel the change.
     Retune(ControlParameters),
 }
 
-/// What a station answers to a command that it has executed; [`Refused`] is the answer to the others.
+/// What a station answers to a command that it has executed. The answer to a command that it has not executed is
+/// [`Refused`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reply {
-    /// The command was executed, and asks for nothing that would have to be reported.
+    /// The command was executed and has no result to report.
     Done,
-    /// What the station is doing, for [`Command::Status`].
+    /// Answer to [`Command::Status`]: state, chosen object and set-point of the station.
     Status(Status),
-    /// The control law in use, for [`Command::Law`] without a law.
+    /// Answer to [`Command::Law`] with `None`: the control law in use.
     Law(Law),
-    /// Cause of the present or the last trip, for [`Command::Cause`]; `None` if the station has never tripped.
+    /// Answer to [`Command::Cause`]: cause of the present trip or, after `clear`, of the last one. `None` if the
+    /// station has not tripped since the start of the program, and was not tripped when it started.
     Cause(Option<TripCause>),
-    /// Mean of a thermistor's samples over 512 ticks, for [`Command::Average`].
+    /// Answer to [`Command::Average`]: mean of one thermistor's sums of 16 conversions over 512 ticks of 1 ms, in
+    /// converter counts before any calibration, and whether the thermistor was steady.
     Average(ThermistorAverage),
-    /// One row of the identification's normal equations, for [`Command::NormalEquation`].
+    /// Answer to [`Command::NormalEquation`]: one row of the normal equations of the tile's identification.
     NormalEquation(NormalEquationRow),
 }
 
-/// Why a station refuses a command. Nothing has changed then, except by a `clear` that finds a second fault
+/// Why a station refuses a command. A refused command changes nothing, except for a `clear` that finds a second fault
 /// ([`Self::StillFaulty`]).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Refused {
     /// `start` was sent in the state off or ready, in which the bridge is off: `arm` must come first.
     NotArmed,
-    /// The command was `start`, or one of a calibration, and the self-test is running, which takes 0.7 s without a
-    /// finger.
+    /// The command was `start`, [`Command::Average`] or [`Command::Calibrate`], and the self-test is running: 0.7 s, or
+    /// longer if a finger disturbs it.
     Testing,
-    /// `start` was sent before the first `material`, so there is no object to present.
+    /// `start` was sent before the first command `material`, so there is no object to present.
     NoMaterial,
-    /// `start` was sent while an object is presented already.
+    /// `start` was sent while an object is already presented.
     AlreadyStarted,
-    /// This command, `hold` or `tune`, was sent in another state than armed; `tune` also before the first reading of
-    /// the sink.
+    /// The command with this name, `hold` or `tune`, was sent in a state other than armed (in tripped the reply is
+    /// [`Self::Tripped`]), or `tune` without a valid reading of the sink.
     NeedsArmed(&'static str),
-    /// The command was one of a calibration or an identification, and an object is presented, whose feeling it would
-    /// change.
+    /// The command was [`Command::Average`], [`Command::Calibrate`] or [`Command::Retune`], and an object is presented:
+    /// the finger would feel the change, or disturb the average.
     Presenting,
-    /// `tune` was sent with a finger on the display, whose heat would distort the result.
+    /// `tune` was sent while a finger touches the display; the finger's heat would distort the result.
     Touched,
-    /// The normal equations were asked for, but no `tune` has been sent since the last `arm` or `hold`, or they have no
-    /// such row.
+    /// A row of the normal equations was requested, but no `tune` has been sent since the last `arm` or `hold`, or
+    /// there is no row with this index.
     NotTuned,
-    /// The normal equations were asked for while the identification is still running.
+    /// A row of the normal equations was requested while the identification of the tile is still running.
     Tuning,
-    /// The normal equations were asked for, but the identification has ended early, for this reason.
+    /// A row of the normal equations was requested, but the identification of the tile has ended early, for this
+    /// reason, and has no result.
     TuneAborted(AbortReason),
-    /// The mean of a thermistor was asked for before it covered 512 ticks (0.5 s) since power-up or since an object was
-    /// last presented; ticks while an object is presented do not count, because a finger may touch the display then.
+    /// The mean of a thermistor was requested before 512 ticks (0.5 s) of samples had been added since the start of the
+    /// program or, if later, since the last accepted `start`. Ticks in which an object is presented are not added,
+    /// because a finger may touch the display then.
     TooEarly,
-    /// The command needs a station that is not tripped, and this fault is latched: `clear` must come first.
+    /// The station is tripped by this fault, and the command needs one that is not tripped: `clear` must come first.
     Tripped(Fault),
-    /// `clear` was sent while this fault is present, or pending because the board has raised it after the latched one;
-    /// then the station is now tripped by it.
+    /// `clear` was sent, but the station is still tripped, for one of two reasons. This fault is still present, and the
+    /// fault that has tripped the station stays latched. Or the board had raised this fault while another one was
+    /// latched; `clear` has cleared that other one, and this fault has tripped the station again.
     StillFaulty(Fault),
     /// `clear` was sent to a station that is not tripped.
     NothingToClear,
 }
 
-/// What one finger's station is doing and presenting, as `status` reports it.
+/// State, chosen object and set-point of one finger's station: the answer to [`Command::Status`], which the host sends
+/// as `state`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Status {
-    /// State of the station and, if it is tripped, the latched fault.
+    /// State of the station; in the state tripped with the fault that has tripped it.
     pub state: StateName,
-    /// Name of the chosen material; `None` before the first `material`.
+    /// Name of the material that the host has chosen; `None` before the first command `material`.
     pub material: Option<&'static str>,
-    /// Chosen temperature of the object before contact, °C; `None` if it is that of the room.
+    /// Temperature of the object before contact, °C, as chosen by the host; `None` if the object takes the room's
+    /// temperature.
     pub object: Option<Celsius>,
-    /// Chosen model, which gives the set-point while an object is presented.
-    pub mode: Mode,
-    /// Set-point of the last tick, °C; `None` if the bridge was off, and in the self-test.
+    /// Contact model that the host has chosen; it gives the set-point while an object is presented.
+    pub mode: ContactModel,
+    /// Set-point of the last tick, °C. `None` if that tick began in off, self-test, ready or tripped, or found a fault:
+    /// no set-point is followed then.
     pub setpoint: Option<Celsius>,
-    /// Whether the set-point of the last tick was clamped to 15 to 42 °C.
+    /// Whether the set-point of the last tick would have been outside of 15 to 42 °C, and was clamped to that range.
     pub limited: bool,
 }
 
-/// A reply, refusal or telemetry with the finger that it comes from.
+/// A reply, refusal or telemetry together with the finger that it comes from, so that the line to the host can name the
+/// finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Addressed<T> {
-    /// Index of the finger, from 0; `None` if the content concerns the device as a whole, or if a device has only one
-    /// finger and the host has named none.
+pub struct WithFingerIndex<T> {
+    /// Index of the finger, from 0. `None` if the content concerns the device as a whole. On a device with one finger
+    /// also `None`, except in the answer to a line of the host that has named the finger.
     pub finger: Option<u8>,
-    /// The reply, refusal or telemetry itself.
+    /// The reply, refusal or telemetry itself, without the finger.
     pub content: T,
 }
 
-impl<T> Addressed<T> {
-    /// Content that comes from the device as a whole, so its line names no finger.
+impl<T> WithFingerIndex<T> {
+    /// Content that belongs to the device as a whole, so that its line to the host names no finger.
     pub const fn from_whole_device(content: T) -> Self {
         Self {
             finger: None,
@@ -167,17 +189,17 @@ impl<T> Addressed<T> {
         }
     }
 
-    /// Converts the content by `function`, for example a refusal to an error with its words; the finger stays.
-    pub fn map_content<U>(self, function: impl FnOnce(T) -> U) -> Addressed<U> {
-        Addressed {
+    /// Converts the content by `function`, for example a refusal to the error that the host receives; the finger stays.
+    pub fn map_content<U>(self, function: impl FnOnce(T) -> U) -> WithFingerIndex<U> {
+        WithFingerIndex {
             finger: self.finger,
             content: function(self.content),
         }
     }
 }
 
-/// Writes the content, after three bytes that name the finger, `@`, its index and a space, if there is one.
-impl<T: fmt::Display> fmt::Display for Addressed<T> {
+/// Writes the line to the host: the address of the finger, such as `@3 `, if there is a finger, and then the content.
+impl<T: fmt::Display> fmt::Display for WithFingerIndex<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(finger) = self.finger {
             write!(f, "@{finger} ")?;

@@ -2,16 +2,16 @@
 
 use core::array;
 
-use crate::command::{Addressed, Command, Refused, Reply};
+use crate::command::{Command, Refused, Reply, WithFingerIndex};
 use crate::drive::BoardOutputs;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
 use crate::telemetry::Telemetry;
-use crate::{Finger, Station};
+use crate::{FingerIndex, Station};
 use thermal_settings::{Settings, StoredSettings};
 
-/// The whole device without its hardware: one [`Station`] for each of its `FINGERS` fingers. The stations
-/// share no state, so a fault of one finger leaves the others running.
+/// The whole device without its hardware: one [`Station`] for each of its `FINGERS` fingers. The stations share no
+/// state, so a fault that one station detects leaves the other fingers running.
 #[derive(Clone, Debug)]
 pub struct Device<const FINGERS: usize> {
     stations: [Station; FINGERS],
@@ -25,8 +25,9 @@ impl<const FINGERS: usize> Device<FINGERS> {
         Self::with_trip_cause(None, settings)
     }
 
-    /// A device with the same settings for every finger, all of whose stations are tripped by `cause`,
-    /// the fault that has ended the previous run of the program, or off if that is `None`.
+    /// A device with the same settings for every finger. With a `cause` all stations start tripped by it: a trip that
+    /// the board stored before the last reset, or a fault that the reset itself shows. With `None` they start in off.
+    /// Converts the settings from `f64`, so it is for the start only.
     #[must_use]
     #[inline(never)]
     pub fn with_trip_cause(cause: Option<TripCause>, settings: &Settings) -> Self {
@@ -39,110 +40,115 @@ impl<const FINGERS: usize> Device<FINGERS> {
         }
     }
 
-    /// Applies to each finger's station its own stored calibration and tile. Converts them from `f64`,
-    /// so it is called at the start only, before the first tick.
+    /// Applies to each finger's station its own thermistor calibration and tile parameters from flash. Converts them
+    /// from `f64`, so it is called at the start only, before the first tick.
     #[inline(never)]
     pub fn restore_settings(&mut self, stored: &[StoredSettings; FINGERS]) {
         for (station, stored) in self.stations.iter_mut().zip(stored) {
-            station.apply_settings(&stored.settings());
+            station.apply_settings(&stored.to_complete_settings());
         }
     }
 
-    /// Thermal dose that a finger's display could have given to skin so far; the board stores it after
-    /// every tick, to keep it through a reset.
+    /// Thermal dose (CEM43, equivalent time at 43 °C) that skin would have received if it had always touched this
+    /// finger's display. The board stores the dose after every tick, so that a reset does not erase it.
     #[must_use]
-    pub const fn dose(&self, finger: Finger<FINGERS>) -> &ThermalDose {
-        self.stations[finger.index()].dose()
+    pub const fn thermal_dose(&self, finger: FingerIndex<FINGERS>) -> &ThermalDose {
+        self.stations[finger.index()].thermal_dose()
     }
 
-    /// Continues a finger's thermal dose from `dose`, stored before a reset. Called once, at the start.
-    pub const fn restore_dose(&mut self, finger: Finger<FINGERS>, dose: ThermalDose) {
-        self.stations[finger.index()].restore_dose(dose);
+    /// Sets a finger's thermal dose to `dose`, which the board stored before the last reset. To be called once, at the
+    /// start.
+    pub const fn restore_thermal_dose(&mut self, finger: FingerIndex<FINGERS>, dose: ThermalDose) {
+        self.stations[finger.index()].restore_thermal_dose(dose);
     }
 
-    /// Runs one control tick of a finger's station with the samples of the last millisecond; returns what
-    /// its bridge must do until the next tick.
-    pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> BoardOutputs {
+    /// Runs one control tick of a finger's station with the samples of the last millisecond. Returns what the board
+    /// must set at the finger's bridge and comparator until the next tick.
+    pub fn step(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
         self.stations[finger.index()].step(samples)
     }
 
-    /// Trips the stations of all fingers by a fault that the board has found outside of a tick. A station
-    /// that is tripped by another fault keeps it, and answers `clear` with this one.
+    /// Trips the stations of all fingers by a fault that the board has found outside of a control tick, such as an
+    /// overrun stack. On a station that a different fault has already tripped, that fault stays latched; this one is
+    /// stored, unless one is stored already, and trips the station when `clear` has cleared the latched one.
     pub fn trip_all(&mut self, fault: Fault) {
         self.stations
             .iter_mut()
             .for_each(|station| station.raise_external_fault(fault));
     }
 
-    /// Whether this finger's station is tripped, so that its bridge stays off until `clear`.
+    /// Whether this finger's station is tripped, so that its bridge stays off until the host sends `clear`.
     #[must_use]
-    pub const fn is_tripped(&self, finger: Finger<FINGERS>) -> bool {
+    pub const fn is_tripped(&self, finger: FingerIndex<FINGERS>) -> bool {
         self.stations[finger.index()].is_tripped()
     }
 
-    /// Cause of the trip that came first of those fingers that are still tripped, which the board stores
-    /// through a reset; `None` if no finger is tripped.
+    /// Cause of the earliest trip among the fingers that are tripped now; `None` if no finger is tripped. The board
+    /// stores this cause through a reset.
     #[must_use]
-    pub fn earliest_cause(&self) -> Option<&TripCause> {
+    pub fn earliest_trip_cause(&self) -> Option<&TripCause> {
         let tripped = self.stations.iter().filter(|station| station.is_tripped());
         tripped
-            .min_by_key(|station| station.latch().tripped_at_tick())?
-            .latch()
+            .min_by_key(|station| station.fault_latch().tripped_at_tick())?
+            .fault_latch()
             .cause()
     }
 
-    /// Restarts, for all fingers, the 2 s after which a silent host trips a finger whose telemetry
-    /// streams. To be called for each line from the host.
+    /// Restarts, for all fingers, the 2 s of silence of the host after which a station trips if its telemetry is on and
+    /// its display follows a set-point. To be called for each line from the host.
     pub fn note_host_activity(&mut self) {
         self.stations
             .iter_mut()
             .for_each(Station::note_host_activity);
     }
 
-    /// Telemetry of a finger's last tick; `None` unless the host has asked for telemetry and the interval
-    /// has elapsed in this tick. To be called once after each tick.
+    /// Telemetry of a finger's last tick, with the index of the finger (none on a device with one finger). `None` if
+    /// the host has not switched telemetry on, or if the number of that tick is not a multiple of the interval that the
+    /// host has chosen. To be called once after each tick.
     #[must_use]
-    pub fn telemetry(&self, finger: Finger<FINGERS>) -> Option<Addressed<Telemetry>> {
+    pub fn telemetry(&self, finger: FingerIndex<FINGERS>) -> Option<WithFingerIndex<Telemetry>> {
         let content = self.stations[finger.index()].telemetry()?;
-        Some(Addressed {
+        Some(WithFingerIndex {
             finger: finger.reply_address(),
             content,
         })
     }
 
-    /// Executes a command, in bounded and short time, on one finger, or on all if `finger` is
-    /// `None`.
+    /// Executes a command, in bounded and short time: on `finger`, or on all fingers if `finger` is `None`.
     ///
-    /// A query to all is answered by the first finger that does not refuse it. `clear` to all succeeds
-    /// if it has cleared one finger at least, and all others had nothing to clear.
+    /// A query to all fingers is answered by the one with the lowest index that does not refuse the query. `clear` to
+    /// all fingers succeeds if at least one was tripped, and every tripped one could be cleared.
     ///
     /// # Errors
-    /// The first refusal, with its finger; those fingers whose state permits the command have executed it.
+    /// The refusal of `finger`. For all fingers: the refusal of the finger with the lowest index among those that
+    /// refuse, with that index (none on a device with one finger); [`Refused::NothingToClear`] only if no finger was
+    /// tripped. The other fingers, which do not refuse the command, have executed it.
     pub fn execute(
         &mut self,
-        finger: Option<Finger<FINGERS>>,
+        finger: Option<FingerIndex<FINGERS>>,
         command: Command,
-    ) -> Result<Addressed<Reply>, Addressed<Refused>> {
+    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Refused>> {
         if let Some(one) = finger {
-            let finger = Some(one.number());
+            let finger = Some(one.index_u8());
             return match self.stations[one.index()].execute(command) {
-                Ok(content) => Ok(Addressed { finger, content }),
-                Err(content) => Err(Addressed { finger, content }),
+                Ok(content) => Ok(WithFingerIndex { finger, content }),
+                Err(content) => Err(WithFingerIndex { finger, content }),
             };
         }
         let (mut refused, mut nothing_to_clear, mut executed) = (None, None, false);
-        for (finger, station) in Finger::<FINGERS>::all().zip(&mut self.stations) {
+        for (finger, station) in FingerIndex::<FINGERS>::all().zip(&mut self.stations) {
             let finger = finger.reply_address();
             match station.execute(command) {
                 Ok(Reply::Done) => executed = true,
-                Ok(content) => return Ok(Addressed { finger, content }),
+                Ok(content) => return Ok(WithFingerIndex { finger, content }),
                 Err(content @ Refused::NothingToClear) => {
-                    nothing_to_clear = nothing_to_clear.or(Some(Addressed { finger, content }))
+                    nothing_to_clear =
+                        nothing_to_clear.or(Some(WithFingerIndex { finger, content }))
                 }
-                Err(content) => refused = refused.or(Some(Addressed { finger, content })),
+                Err(content) => refused = refused.or(Some(WithFingerIndex { finger, content })),
             }
         }
         let refused = refused.or(nothing_to_clear.filter(|_| !executed));
-        refused.map_or(Ok(Addressed::from_whole_device(Reply::Done)), Err)
+        refused.map_or(Ok(WithFingerIndex::from_whole_device(Reply::Done)), Err)
     }
 }

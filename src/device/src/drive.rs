@@ -1,22 +1,22 @@
-//! BoardOutputs of a control tick: current, duty cycle and state of the bridge.
+//! Outputs of a control tick to the board: current, duty cycle and state of the bridge, and the comparator's test line.
 
 use fixed::types::{I1F15, I8F24};
 
-/// Current through the module in A, ±128 at a resolution of 60 nA; positive cools the display.
+/// Current through the Peltier module, A, -128 to 128 in steps of 60 nA; positive cools the display.
 pub type Current = I8F24;
 
-/// A module current that every module of the class tolerates, -6 to 6 A; positive cools the display. The type can hold
-/// no other, and the bridge's voltage can be computed from no other type.
+/// A current that every Peltier module of the supported class tolerates, -6 to 6 A; positive cools the display. The
+/// type can hold no other value, and the bridge voltage can be computed from no other type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SafeCurrent(Current);
 
 impl SafeCurrent {
-    /// Largest magnitude of a [`SafeCurrent`], A: what the smallest module of the class tolerates.
+    /// Largest magnitude of a [`SafeCurrent`], A: the limit of the smallest Peltier module of the supported class.
     pub const CURRENT_LIMIT: Current = Current::lit("6");
     /// No current, 0 A.
     pub const ZERO: Self = Self(Current::ZERO);
 
-    /// Clamps `current`, A, to -6 to 6 A.
+    /// The current, A, clamped to -6 to 6 A; positive cools the display.
     #[must_use]
     pub fn saturating(current: Current) -> Self {
         Self(current.clamp(-Self::CURRENT_LIMIT, Self::CURRENT_LIMIT))
@@ -30,18 +30,18 @@ impl SafeCurrent {
 }
 
 /// Duty cycle of the bridge: its mean output voltage as a fraction of the supply voltage, -0.9 to 0.9; positive cools
-/// the display. The type can hold no other.
+/// the display. The type can hold no other value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Duty(I1F15);
 
 impl Duty {
-    /// Largest magnitude of a duty cycle, 0.9. On a supply of 12 V these are 10.8 V, which is more than the resistance, the
-    /// Seebeck voltage and the dead times together need at the largest current of 6 A.
+    /// Largest magnitude of a duty cycle, as a fraction of the supply voltage. On a supply of 12 V, 0.9 is 10.8 V,
+    /// which is more than resistance, Seebeck voltage and dead times together need at the largest current of 6 A.
     pub const DUTY_LIMIT: I1F15 = I1F15::lit("0.9");
-    /// No voltage: both half-bridges are driven to the same level, which lets current circulate, unlike [`Drive::Off`].
+    /// No mean voltage: both half-bridges stay high, so that current can circulate, unlike with [`Drive::Off`].
     pub const ZERO: Self = Self(I1F15::ZERO);
 
-    /// Clamps `fraction` of the supply voltage to -0.9 to 0.9.
+    /// Duty cycle of this `fraction` of the supply voltage, clamped to -0.9 to 0.9; positive cools the display.
     #[must_use]
     pub fn saturating(fraction: I1F15) -> Self {
         Self(fraction.clamp(-Self::DUTY_LIMIT, Self::DUTY_LIMIT))
@@ -53,13 +53,14 @@ impl Duty {
         self.0
     }
 
-    /// High times of the bridge's two half-bridges in each PWM period, in steps of the PWM timer, of which a period has
-    /// `period`: first that of the half-bridge that is high while cooling, second that of the one that is high while
-    /// warming.
+    /// High times of the bridge's two half-bridges in each PWM period, in steps of the PWM timer; `period` is the
+    /// length of the PWM period in these steps. The first value belongs to the half-bridge that stays high while
+    /// cooling, the second to the one that stays high while warming.
     ///
-    /// Slow decay: one half-bridge stays high and the other is low for the duty's part of the period, so that the
-    /// current circulates between the pulses and the mean voltage is the fraction of the supply, rounded to the nearest
-    /// step. With fast decay (both low between the pulses) the voltage would also depend on the current.
+    /// Slow decay: while one half-bridge stays high, the other one is low for the duty cycle's fraction of the period,
+    /// rounded to the nearest step. Between these pulses both are high and the current circulates, so that the mean
+    /// voltage is this fraction of the supply voltage. With fast decay (both high-impedance between the pulses) the
+    /// mean voltage would also depend on the current.
     #[must_use]
     pub fn half_bridge_on_times(self, period: u16) -> (u16, u16) {
         // The fraction has 15 binary places; half a step is added to round.
@@ -75,20 +76,22 @@ impl Duty {
     }
 }
 
-/// What the bridge must do until the next tick.
+/// What the bridge of one finger must do until the next control tick: be off, or apply a duty cycle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Drive {
-    /// Both half-bridges are high-impedance, so no current flows, whatever voltage the module generates.
+    /// Both half-bridges are high-impedance, so no current flows, whatever voltage the Peltier module generates.
     Off,
-    /// The bridge applies this duty cycle to the module.
+    /// The bridge applies this duty cycle to the Peltier module.
     On(Duty),
 }
 
-/// What a control tick of one finger demands of the board until the next tick, 1 ms later.
+/// What a control tick of one finger demands of the board until the next tick, 1 ms later: of the bridge, and of the
+/// comparator's test line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoardOutputs {
-    /// Whether the finger's bridge is off or drives, and with which duty cycle.
+    /// Whether the finger's bridge is off (high-impedance) or driven, and with which duty cycle.
     pub drive: Drive,
-    /// Level of the comparator's test line: high makes the comparator cut the supply, and the falling edge restores it.
+    /// Level of the comparator's test line: true (high) makes the comparator cut the bridge supply, and the falling
+    /// edge makes the comparator restore the supply.
     pub comparator_test: bool,
 }

@@ -11,8 +11,7 @@ pub mod control;
 mod device;
 pub mod drive;
 pub mod estimate;
-mod finger;
-mod hold;
+mod finger_index;
 pub mod identification;
 mod low_pass;
 pub mod pi;
@@ -22,13 +21,14 @@ pub mod sense;
 mod state_name;
 mod station;
 mod telemetry;
+mod temperature_hold;
 
 pub use device::Device;
-pub use finger::Finger;
+pub use finger_index::FingerIndex;
 pub use state_name::StateName;
 pub use station::Station;
 pub use telemetry::Telemetry;
 pub use thermal_settings::TICK_HZ;
 
-/// Scans of all seven channels of one finger per second: 16 000, of which 16 are summed for each tick.
+/// Scans of all seven analogue signals of one finger per second: 16 000, of which 16 are summed for each control tick.
 pub const SCANS_PER_SECOND: u32 = TICK_HZ * sense::SCANS_PER_TICK as u32;

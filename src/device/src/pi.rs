@@ -8,21 +8,24 @@ use crate::TICK_HZ;
 use crate::drive::Current;
 use crate::safety::Setpoint;
 
-/// Binary places that the integral has beyond those of a current, so that an error of 1 mK for one tick still counts.
-const EXTRA_INTEGRAL_PLACES: u32 = I12F52::FRAC_NBITS - Current::FRAC_NBITS;
+/// Binary places that the integral has in addition to the 24 of a [`Current`]: 28, so that an error of 1 mK in one tick
+/// still changes the integral.
+const EXTRA_INTEGRAL_BINARY_PLACES: u32 = I12F52::FRAC_NBITS - Current::FRAC_NBITS;
 
-/// How often a proportional-integral controller takes the temperature error and changes its current.
+/// How often a proportional-integral controller computes a new current from the temperature error: at every tick of 1
+/// ms, or at every 100th. The integral gain is scaled to this period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UpdatePeriod {
-    /// At every control tick, 1000 times a second: the law `pi`, the observer's correction, and the identification of
-    /// the tile.
+    /// At every control tick, 1000 times a second: for the law `pi`, for the loop that corrects the model of the
+    /// plate's observer, and for the loop that holds the display during an identification of the tile.
     EveryTick,
-    /// Ten times a second, as the display of the thesis: the law `pi-10hz`. The current is constant in between.
+    /// At every 100th control tick, ten times a second, as in the display of the thesis (docs/thesis.md): for the law
+    /// `pi-10hz`. The current is constant between two updates.
     TenthOfASecond,
 }
 
 impl UpdatePeriod {
-    /// The period in ticks of 1 ms.
+    /// Ticks of 1 ms from one update to the next: 1 or 100.
     const fn period_ticks(self) -> u32 {
         match self {
             Self::EveryTick => 1,
@@ -31,19 +34,20 @@ impl UpdatePeriod {
     }
 }
 
-/// Gains of a proportional-integral controller in fixed point, and how often it takes the error.
+/// Gains of a proportional-integral controller in fixed point, and how often the controller computes a new current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PiCoefficients {
-    /// Proportional gain: current per kelvin of error, A/K.
+    /// Proportional gain: current for each kelvin of temperature error, A/K.
     proportional: I16F16,
-    /// Integral gain: change of the current by one update per kelvin of error, A/K.
+    /// Integral gain: change of the current in one update for each kelvin of temperature error, A/K.
     integral: I2F30,
     period: UpdatePeriod,
 }
 
 impl PiCoefficients {
-    /// Converts gains from settings: proportional gain, A/K, and integral time, s. They saturate at 32768 A/K and 2 A/K
-    /// per update. Computed in `f64`, so it is for start-up and the task that serves the host, not for the tick.
+    /// Converts gains from the settings to fixed point: proportional gain, A/K, and integral time, s. The proportional
+    /// gain saturates at 32768 A/K, the integral gain at 2 A/K per update, where their fixed-point types end. Computed
+    /// in `f64`, so it is for start-up and the task that serves the host, not for the tick.
     #[must_use]
     pub fn new(gains: &Gains, period: UpdatePeriod) -> Self {
         let per_update = gains.proportional_a_k * f64::from(period.period_ticks())
@@ -59,22 +63,23 @@ impl PiCoefficients {
 
 /// A proportional-integral controller from temperature error, K, to current, A, with limited output.
 ///
-/// Anti-windup: the integral stops while the output is at its limit and the error would drive it further.
+/// Anti-windup: the integral stops while the output is at its limit and the error would drive the output beyond it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Pi {
     coefficients: PiCoefficients,
     /// Largest magnitude of the controller's output and of its integral part, A.
     limit: Current,
-    /// Ticks of 1 ms until the next update; the output is constant until then.
+    /// Ticks of 1 ms that are still to pass without an update, 0 to 99; the output stays constant in them. 0 if the
+    /// next tick updates the output.
     ticks_to_update: u32,
-    /// Output of the last update, A; positive cools.
+    /// Output of the last update, or the current that [`Self::track_current`] has set since, A; positive cools.
     output: Current,
-    /// Integral part of the output, A; its magnitude never exceeds the limit.
+    /// Integral part of the output, A; positive cools. Its magnitude never exceeds `limit`.
     integral: I12F52,
 }
 
 impl Pi {
-    /// A controller with output and integral 0 A, whose output never exceeds `limit`, A, in magnitude.
+    /// A controller whose output and integral start at 0 A, and whose output never exceeds `limit`, A, in magnitude.
     #[must_use]
     pub const fn new(coefficients: PiCoefficients, limit: Current) -> Self {
         Self {
@@ -86,27 +91,30 @@ impl Pi {
         }
     }
 
-    /// Changes the gains; the integral part of the output, A, stays.
+    /// Changes the gains and the update period; the output and its integral part, A, stay.
     pub const fn set_coefficients(&mut self, coefficients: PiCoefficients) {
         self.coefficients = coefficients;
     }
 
-    /// Bumpless transfer: sets output and integral to the current, A, that something else has driven in this tick. The
-    /// next update starts from there, whatever the error has been.
+    /// Sets output and integral to `current`, A (positive cools), which this controller has not chosen: that of the
+    /// self-test, of an identification or of another control law, or 0 A while the bridge is off or at a restart of the
+    /// plate's observer. The next tick updates the output, starting from this current and not from errors of the past
+    /// (bumpless transfer).
     pub fn track_current(&mut self, current: Current) {
         (self.ticks_to_update, self.output) = (0, current);
-        self.integral = I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_INTEGRAL_PLACES);
+        self.integral =
+            I12F52::from_bits(i64::from(current.to_bits()) << EXTRA_INTEGRAL_BINARY_PLACES);
     }
 
-    /// Largest magnitude of the current that the controller gives, A; its output saturates there and the integral
-    /// stops.
+    /// Largest magnitude of the current that the controller gives, A.
     #[must_use]
     pub const fn output_limit(&self) -> Current {
         self.limit
     }
 
-    /// Current for one tick, A, positive cools: it rises while `display`, °C, is above the set-point. Between two
-    /// updates of a slower [`UpdatePeriod`] it is the output of the last one.
+    /// Runs the controller for one tick, and returns the current, A (positive cools), that is to bring the reading
+    /// `display`, °C, to the set-point: the warmer the display, the larger the current. With the period
+    /// [`UpdatePeriod::TenthOfASecond`] only every 100th tick changes the current.
     pub fn update_output(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
         if self.ticks_to_update == 0 {
             self.ticks_to_update = self.coefficients.period.period_ticks();
@@ -116,12 +124,13 @@ impl Pi {
         self.output
     }
 
-    /// Current, A (positive cools), for an `error`, K, that is positive while the display is too warm. Integrates the
-    /// error by one update, whatever the period.
-    ///
-    /// No sum overflows: the integral stays within 128 A (59 bits), its step within 2^10 A, the proportional part
-    /// within 2^24 A of 38 bits.
+    /// Runs one update for the temperature `error`, K (positive while the display is too warm): adds the error times
+    /// the integral gain to the integral, and returns the current, A (positive cools): the sum of proportional part and
+    /// integral, limited in magnitude. Every call is an update; [`Self::update_output`] calls this only when an update
+    /// is due by the [`UpdatePeriod`].
     pub fn current_for_error(&mut self, error: Celsius) -> Current {
+        // Nothing overflows 64 bits: with 52 binary places the integral is within 2^7 A and its step within 2^10 A;
+        // with 38 binary places the proportional part is within 2^24 A.
         let PiCoefficients {
             proportional,
             integral,
@@ -131,11 +140,11 @@ impl Pi {
             >> (Celsius::FRAC_NBITS + I16F16::FRAC_NBITS - Current::FRAC_NBITS);
         let sum = self.integral.saturating_add(error.wide_mul(integral));
         let limit = i64::from(self.limit.to_bits());
-        let wanted = proportional + (sum.to_bits() >> EXTRA_INTEGRAL_PLACES);
+        let wanted = proportional + (sum.to_bits() >> EXTRA_INTEGRAL_BINARY_PLACES);
         // Not `clamp`, which panics when its limits are the wrong way round.
         let output = wanted.min(limit).max(-limit);
         if output == wanted || (wanted > output) != (error > 0) {
-            let limit = I12F52::from_bits(limit << EXTRA_INTEGRAL_PLACES);
+            let limit = I12F52::from_bits(limit << EXTRA_INTEGRAL_BINARY_PLACES);
             self.integral = sum.min(limit).max(-limit);
         }
         Current::from_bits(output as i32)

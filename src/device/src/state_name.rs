@@ -1,30 +1,35 @@
-//! Names of a station's states, as they are reported.
+//! The states of a station as status and telemetry report them.
 
 use crate::safety::Fault;
 
-/// The state of one finger's station as status and telemetry report it, without what only the station itself needs.
+/// State of one finger's station as status and telemetry report it: without the internal data of the state, except for
+/// the fault that has tripped the station.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StateName {
-    /// The bridge is off after power-up, after `clear`, or after `abort` of the self-test; `arm` starts the self-test.
+    /// The bridge is off: after a start of the program without a trip, after `clear`, or after `abort` of the
+    /// self-test. `arm` leads to the self-test.
     Off,
-    /// The self-test runs, 0.7 s without a finger: the comparator is tested with the bridge off, then 1 A cools and
-    /// warms.
+    /// The self-test runs, for 0.7 s if no finger disturbs it: the comparator is tested with the bridge off, then 1 A
+    /// cools and 1 A warms the display.
     SelfTest,
-    /// The bridge is off after `abort`; the self-test has passed before, so `arm` drives at once.
+    /// The bridge is off after `abort` in armed, preset or contact. The self-test was passed before, so `arm` leads to
+    /// armed at once.
     Ready,
-    /// The display is kept at skin temperature or held at a temperature, or the tile is identified; no object is
-    /// presented.
+    /// No object is presented, and the bridge drives the display: to stay at skin temperature, to hold a temperature,
+    /// or to identify the tile.
     Armed,
-    /// An object is presented, and the display waits at its preset temperature for a finger.
+    /// An object is presented and no finger touches the display, which waits at the preset: the temperature at which a
+    /// contact with the object begins.
     Preset,
-    /// An object is presented, and a finger touches the display.
+    /// An object is presented and a finger touches the display, whose temperature follows the contact model.
     Contact,
-    /// The bridge is off because of this fault, until the host sends `clear` and the fault is gone.
+    /// The bridge is off because of this fault, the first since the last `clear`. The bridge stays off until the host
+    /// sends `clear` when no fault is present any more.
     Tripped(Fault),
 }
 
 impl StateName {
-    /// The word by which lines to the host name the state, such as `self-test`.
+    /// The state's word in lines to the host, such as `self-test`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {

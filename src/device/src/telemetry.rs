@@ -1,36 +1,40 @@
-//! What the device streams.
+//! Telemetry: what a station reports of a control tick to the host.
 
 use contact_model::fixed_point::{Celsius, Force};
 
 use crate::StateName;
 use crate::drive::Current;
 
-/// What the host is told of one control tick of one finger, while telemetry streams.
+/// What one line of telemetry reports to the host: readings, set-point and current of one finger in one control tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Telemetry {
-    /// Number of the tick, of 1 ms since the last reset; wraps after 49 days.
+    /// Number of the tick: ticks of 1 ms since the last reset; wraps after 49 days.
     pub tick: u32,
-    /// State of the station after the tick, with the fault if it is tripped.
+    /// State of the station after the tick; in the state tripped with the fault.
     pub state: StateName,
-    /// Set-point that the display follows, °C; `None` while the bridge is off and during the self-test.
+    /// Set-point of the tick, °C. `None` if the tick began in off, self-test, ready or tripped, or found a fault: no
+    /// set-point is followed then.
     pub setpoint: Option<Celsius>,
-    /// Whether the model's set-point was outside of 15 to 42 °C and had to be clamped to that range.
+    /// Whether the set-point of the tick would have been outside of 15 to 42 °C, and was clamped to that range.
     pub limited: bool,
-    /// Reading of the first display thermistor, °C; `None` if the thermistor is open or shorted.
-    pub display: Option<Celsius>,
-    /// Reading of the sink's thermistor, °C; `None` if the thermistor is open or shorted.
-    pub sink: Option<Celsius>,
-    /// Reading of the skin's thermistor, °C, which sees the room if no finger is there; `None` if it is open or
+    /// Reading of the first display thermistor, °C, which the control laws use; `None` if the thermistor is open or
     /// shorted.
+    pub display: Option<Celsius>,
+    /// Reading of the heat sink's thermistor, °C; `None` if the thermistor is open or shorted.
+    pub sink: Option<Celsius>,
+    /// Reading of the thermistor on the skin beside the contact, °C; the room's temperature if no finger is there.
+    /// `None` if the thermistor is open or shorted.
     pub skin: Option<Celsius>,
-    /// Reading of the room's thermistor, °C; `None` if the thermistor is open or shorted.
+    /// Reading of the thermistor in the room's air, °C; `None` if the thermistor is open or shorted.
     pub room: Option<Celsius>,
-    /// Force of the finger on the display, N; `None` if the force sensor's wire is broken or shorted.
+    /// Force of the finger on the display, N, 0 or more; `None` if the force sensor's wire is broken or shorted.
     pub force: Option<Force>,
-    /// Current that this tick demands of the bridge, A, -6 to 6; positive cools; zero if the bridge is off.
+    /// Current that this tick demands of the bridge, A, -6 to 6; positive cools the display; zero if the bridge is off.
     pub demand: Current,
-    /// Magnitude of the module current measured in this tick, A; responds to the demand of the tick before.
+    /// Magnitude of the module current that the current mirror shows in this tick, A. It responds to the current that
+    /// the tick before has demanded.
     pub current: Current,
-    /// Evaluations of the function `erfcx` for set-points since the last reset, a measure of the load; wraps at 2^32.
+    /// Evaluations of the function `erfcx` for set-points since the last reset, as a measure of the processor's load;
+    /// wraps at 2^32.
     pub evaluations: u32,
 }

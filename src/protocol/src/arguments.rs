@@ -1,4 +1,4 @@
-//! Arguments of a command: words, and numbers within a range.
+//! Arguments of a command on a line from the host: words, and numbers within a range.
 
 use core::str::SplitAsciiWhitespace;
 
@@ -7,16 +7,19 @@ use thermal_settings::Range;
 
 use crate::Error;
 
-/// The words of a line that are not read yet.
+/// Iterator over the words of a line from the host that are not read yet, separated by white space.
 pub type Words<'a> = SplitAsciiWhitespace<'a>;
 
-/// Reads the next word; `name` is what is missing if there is none.
-pub fn word<'a>(words: &mut Words<'a>, name: &'static str) -> Result<&'a str, Error> {
+/// Returns the next word of a line.
+///
+/// # Errors
+/// [`Error::Missing`] with `name`, the name of the argument that is expected: no word is left.
+pub fn read_word<'a>(words: &mut Words<'a>, name: &'static str) -> Result<&'a str, Error> {
     words.next().ok_or(Error::Missing(name))
 }
 
-/// Skips the next word if it is the given one, and returns whether it is.
-pub fn skip(words: &mut Words<'_>, expected: &str) -> bool {
+/// Skips the next word of a line if it is `expected`, and returns whether it is. Otherwise the word stays the next one.
+pub fn skip_if_next_is(words: &mut Words<'_>, expected: &str) -> bool {
     let mut rest = words.clone();
     let is_next = rest.next() == Some(expected);
     if is_next {
@@ -25,15 +28,23 @@ pub fn skip(words: &mut Words<'_>, expected: &str) -> bool {
     is_next
 }
 
-/// Finds the value of a word in a table of words and values.
-pub fn lookup<T: Copy>(table: &[(&'static str, T)], word: &str) -> Option<(&'static str, T)> {
+/// Returns the entry of `table` whose word is `word`: the word with its value, such as the name of a material with its
+/// properties. `None` if no entry has this word.
+pub fn find_entry_by_word<T: Copy>(
+    table: &[(&'static str, T)],
+    word: &str,
+) -> Option<(&'static str, T)> {
     table.iter().find(|(known, _)| *known == word).copied()
 }
 
-/// Reads the next word as a decimal number within its range.
-pub fn number(words: &mut Words<'_>, range: &'static Range) -> Result<I32F32, Error> {
-    let word = word(words, range.name)?;
-    // A number with too many digits saturates, and is out of range then.
+/// Reads the next word of a line as a decimal number within `range`, both limits included.
+///
+/// # Errors
+/// [`Error::Missing`]: no word is left. [`Error::NotANumber`]: the word is not a decimal number. [`Error::OutOfRange`]:
+/// the number lies outside `range`.
+pub fn read_number(words: &mut Words<'_>, range: &'static Range) -> Result<I32F32, Error> {
+    let word = read_word(words, range.name)?;
+    // A number with too many digits becomes the largest `I32F32`, which is outside of all ranges.
     let value =
         I32F32::saturating_from_str(word).map_err(|_| Error::NotANumber(range, word.into()))?;
     if (I32F32::from_num(range.min)..=I32F32::from_num(range.max)).contains(&value) {
@@ -43,22 +54,24 @@ pub fn number(words: &mut Words<'_>, range: &'static Range) -> Result<I32F32, Er
     }
 }
 
-/// Reads one decimal number for each range.
-pub fn numbers<const N: usize>(
+/// Reads the next words of a line as decimal numbers, one for each of `ranges`, and returns them in this order. Each
+/// number must lie within its range; the errors are those of [`read_number`].
+pub fn read_numbers<const N: usize>(
     words: &mut Words<'_>,
     ranges: &'static [Range; N],
 ) -> Result<[f64; N], Error> {
     let mut values = [0.0; N];
     for (value, range) in values.iter_mut().zip(ranges) {
-        *value = number(words, range)?.to_num();
+        *value = read_number(words, range)?.to_num();
     }
     Ok(values)
 }
 
-/// Reads the next word as a whole number within its range.
-pub fn whole_number(words: &mut Words<'_>, range: &'static Range) -> Result<usize, Error> {
+/// Reads the next word of a line as a whole number within `range`, both limits included. The errors are those of
+/// [`read_number`]; a number that is not whole gives [`Error::OutOfRange`], too.
+pub fn read_whole_number(words: &mut Words<'_>, range: &'static Range) -> Result<usize, Error> {
     let word = words.clone().next().unwrap_or_default();
-    let value = number(words, range)?;
+    let value = read_number(words, range)?;
     if value.frac() == 0 {
         Ok(value.to_num())
     } else {

@@ -1,87 +1,98 @@
 //! Parsing of the commands `calibrate`, `settings` and `set`.
 
 use thermal_commissioning::{
-    SENSOR_WORDS, SETTINGS_LINES, STEPS_PER_LINE, SessionRequest, Setting,
+    CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SETTINGS_LINE_COUNT, SessionRequest, Setting,
 };
 use thermal_settings::{
-    BORDER_COUNT, CORRECTION_RANGES, Calibration, Correction, FIRST_BORDER, Range, STEP_RANGE,
-    TILE_RANGES, Tile, round_to_decimals,
+    CALIBRATED_BORDER_COUNT, CONVERTER_STEP_RANGE, CORRECTION_RANGES, Calibration, Correction,
+    FIRST_CALIBRATED_BORDER, Range, TILE_RANGES, Tile, round_to_decimals,
 };
 
 use crate::Error;
-use crate::arguments::{Words, number, numbers, skip, whole_number, word};
+use crate::arguments::{
+    Words, read_number, read_numbers, read_whole_number, read_word, skip_if_next_is,
+};
 
-static REFERENCE: Range = Range {
+static REFERENCE_TEMPERATURE_RANGE: Range = Range {
     name: "reference temperature",
     unit: "C",
     min: 0.0,
     max: 60.0,
 };
-static LINE: Range = Range {
+static SETTINGS_LINE_NUMBER_RANGE: Range = Range {
     name: "line of settings",
     unit: "(whole)",
     min: 1.0,
-    max: SETTINGS_LINES as f64,
+    max: SETTINGS_LINE_COUNT as f64,
 };
-static BORDER: Range = Range {
+static CONVERTER_BORDER_INDEX_RANGE: Range = Range {
     name: "border",
     unit: "(whole)",
-    min: FIRST_BORDER as f64,
-    max: (FIRST_BORDER + BORDER_COUNT - 1) as f64,
+    min: FIRST_CALIBRATED_BORDER as f64,
+    max: (FIRST_CALIBRATED_BORDER + CALIBRATED_BORDER_COUNT - 1) as f64,
 };
 
-/// Words of the settings that `set` replaces.
+/// First arguments of the command `set`, which name what it replaces: steps of the converter, the correction of a
+/// thermistor, or the parameters of the tile.
 pub const SETTING_WORDS: [&str; 3] = ["steps", "correction", "tile"];
 
-fn sensor(words: &mut Words<'_>) -> Result<usize, Error> {
-    let name = word(words, "sensor")?;
+fn parse_thermistor_index(words: &mut Words<'_>) -> Result<usize, Error> {
+    let name = read_word(words, "sensor")?;
     let known = SENSOR_WORDS.iter().position(|known| *known == name);
     known.ok_or(Error::UnknownSensor(name.into()))
 }
 
-/// Reads the arguments of `calibrate`.
-pub fn calibrate(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
-    let sensor = sensor(words)?;
-    if skip(words, "clear") {
+/// Reads the arguments of the command `calibrate`: a thermistor, then either the temperature of the reference
+/// thermometer, °C, which adds a calibration point, or `clear`, which removes the thermistor's calibration.
+pub fn parse_calibrate(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
+    let sensor = parse_thermistor_index(words)?;
+    if skip_if_next_is(words, "clear") {
         return Ok(SessionRequest::ClearCalibration { sensor });
     }
     Ok(SessionRequest::AddPoint {
         sensor,
-        reference_c: number(words, &REFERENCE)?.to_num(),
+        reference_c: read_number(words, &REFERENCE_TEMPERATURE_RANGE)?.to_num(),
     })
 }
 
-/// Reads the arguments of `settings`.
-pub fn settings(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
+/// Reads the argument of the command `settings`: a number from 1 to 8 requests the line of the settings with this
+/// number. Without an argument, the number of lines is requested.
+pub fn parse_settings_query(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
     if words.clone().next().is_none() {
         return Ok(SessionRequest::CountSettingsLines);
     }
     Ok(SessionRequest::SettingsLine(
-        whole_number(words, &LINE)? - 1,
+        read_whole_number(words, &SETTINGS_LINE_NUMBER_RANGE)? - 1,
     ))
 }
 
-/// Reads the arguments of `set`.
+/// Reads the arguments of the command `set`, which replaces settings. They are `steps` with the index of a border
+/// between two segments of the converter and one to seven steps, at this border and the next ones; or `correction` with
+/// a thermistor and three coefficients; or `tile` with five parameters.
 #[inline(never)]
-pub fn set(words: &mut Words<'_>) -> Result<Setting, Error> {
-    Ok(match word(words, "setting")? {
+pub fn parse_set_arguments(words: &mut Words<'_>) -> Result<Setting, Error> {
+    Ok(match read_word(words, "setting")? {
         "steps" => {
-            let first = whole_number(words, &BORDER)?;
-            let room = STEPS_PER_LINE.min(FIRST_BORDER + BORDER_COUNT - first);
+            let first = read_whole_number(words, &CONVERTER_BORDER_INDEX_RANGE)?;
+            let room = CONVERTER_STEPS_PER_LINE
+                .min(FIRST_CALIBRATED_BORDER + CALIBRATED_BORDER_COUNT - first);
             let mut counts = heapless::Vec::new();
-            // At least one step; a word too many is reported by the caller.
+            // At least one step. Words that follow the last possible step are left to the caller, who reports them.
             while counts.is_empty() || counts.len() < room && words.clone().next().is_some() {
-                let step = number(words, &STEP_RANGE)?.to_num();
-                let _ = counts.push(round_to_decimals(step, Calibration::STEP_DECIMALS));
+                let step = read_number(words, &CONVERTER_STEP_RANGE)?.to_num();
+                let _ = counts.push(round_to_decimals(
+                    step,
+                    Calibration::CONVERTER_STEP_DECIMALS,
+                ));
             }
             Setting::Steps { first, counts }
         }
         "correction" => {
-            let sensor = sensor(words)?;
-            let correction = Correction::from_array(numbers(words, &CORRECTION_RANGES)?);
+            let sensor = parse_thermistor_index(words)?;
+            let correction = Correction::from_array(read_numbers(words, &CORRECTION_RANGES)?);
             Setting::Correction(sensor, correction.rounded())
         }
-        "tile" => Setting::Tile(Tile::from_array(numbers(words, &TILE_RANGES)?)),
+        "tile" => Setting::Tile(Tile::from_array(read_numbers(words, &TILE_RANGES)?)),
         other => return Err(Error::UnknownSetting(other.into())),
     })
 }

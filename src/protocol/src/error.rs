@@ -6,17 +6,18 @@ use contact_model::fixed_point::ContactPairError;
 use contact_model::material::MATERIALS;
 
 use thermal_commissioning::{
-    IdentificationError, POINT_DEVIATION_MAX_K, POINTS_MAX, PointError, SENSOR_WORDS, SessionError,
+    IdentificationError, POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K,
+    SENSOR_WORDS, SessionError,
 };
 use thermal_device::command::Refused;
 use thermal_device::control::Law;
 use thermal_settings::Range;
 
-use crate::command::{CUSTOM, MODES};
 use crate::commissioning_commands::SETTING_WORDS;
+use crate::request::{CUSTOM_MATERIAL_WORD, MODE_WORDS};
 use crate::{LINE_MAX_BYTES, LineError, Request};
 
-/// The first 20 bytes of a word from the host, to be quoted in an error message.
+/// The first 20 bytes of a word from the host; `Display` writes them in single quotes, as part of an error message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct WordExcerpt(heapless::String<20>);
 
@@ -39,62 +40,72 @@ impl fmt::Display for WordExcerpt {
     }
 }
 
-/// The message of a hardware error, at most 56 bytes.
+/// Why the settings could not be stored in flash, as text of at most 56 bytes for the answer to the host.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct FailureText(heapless::String<56>);
+pub struct StorageFailureText(heapless::String<56>);
 
-impl FailureText {
-    /// The beginning of an error's message.
+impl StorageFailureText {
+    /// The message of `error`, the reason why the settings were not stored. A message of more than 56 bytes ends before
+    /// the first of its parts, as `Display` writes them, that does not fit.
     #[must_use]
     pub fn new(error: &impl fmt::Display) -> Self {
         let mut text = heapless::String::new();
-        // A longer message is cut off.
+        // Writing ends at the first part of the message that does not fit.
         let _ = fmt::Write::write_fmt(&mut text, format_args!("{error}"));
         Self(text)
     }
 }
 
-/// Why a line was rejected; `Display` writes the answer without its line ending, at most
-/// [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
+/// Why a line from the host was rejected; `Display` writes the answer to the host, `err` and a message, without a line
+/// ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Error {
-    /// The received bytes form no line.
+    /// The bytes that were received from the host form no valid line, for this reason.
     Line(LineError),
-    /// The first word is no command.
+    /// The first word of the line, quoted here, is no command.
     UnknownCommand(WordExcerpt),
-    /// The device has no such finger; the number is that of its fingers.
+    /// The word after `@`, quoted here, is not the index of a finger, which counts from 0; the second value is the
+    /// number of fingers of the device.
     UnknownFinger(WordExcerpt, usize),
-    /// The word is no material.
+    /// The argument of `material`, quoted here, is neither the name of a material nor `custom`.
     UnknownMaterial(WordExcerpt),
-    /// The word is no mode.
+    /// The argument of `mode`, quoted here, is neither `contact` nor `semi-infinite`.
     UnknownMode(WordExcerpt),
-    /// The word is no control law.
+    /// The argument of `law`, quoted here, is none of the control laws `pi-10hz`, `pi` and `model`.
     UnknownLaw(WordExcerpt),
-    /// The word is no thermistor.
+    /// The word after `calibrate` or `set correction`, quoted here, is none of the thermistors `display`, `check`,
+    /// `sink`, `skin` and `room`.
     UnknownSensor(WordExcerpt),
-    /// The word is no setting.
+    /// The word after `set`, quoted here, is none of `steps`, `correction` and `tile`.
     UnknownSetting(WordExcerpt),
-    /// The named argument is missing.
+    /// The line lacks the argument with this name. The name is `command` if the line has no command, and
+    /// `finger (as @0)` if the line must address a single finger but has no address.
     Missing(&'static str),
-    /// A word follows the last argument.
+    /// The word quoted here follows the last argument of the command, where the line should end.
     Extra(WordExcerpt),
-    /// The word is not a decimal number.
+    /// The word quoted here is not a decimal number, but stands where the argument with this name and range is
+    /// expected.
     NotANumber(&'static Range, WordExcerpt),
-    /// The number is outside its range.
+    /// The number quoted here is outside the range of its argument, or is not whole where only a whole number is
+    /// allowed.
     OutOfRange(&'static Range, WordExcerpt),
-    /// The contact with a custom material is outside the domain of the contact model.
+    /// The properties of a custom material are outside the domain in which the contact model can compute set-points,
+    /// for this reason.
     ContactPair(ContactPairError),
-    /// The named command needs all bridges off.
+    /// The command named here, `save` or `forget`, was sent while a bridge was on or a self-test ran. It needs all
+    /// bridges off, because the device restarts.
     NeedsOff(&'static str),
-    /// The named command cannot address a single finger.
+    /// The command named here, `save` or `forget`, was sent with the address of one of several fingers, but is for all
+    /// fingers at once.
     WholeDevice(&'static str),
-    /// The settings could not be stored.
-    NotStored(FailureText),
-    /// The station refuses the command.
+    /// After `save` or `forget`, the settings could not be stored in flash, for this reason; sent after the restart.
+    NotStored(StorageFailureText),
+    /// The station, which controls one finger, refuses the command in its present state, for this reason.
     Refused(Refused),
-    /// The recorded response is not that of a tile.
+    /// `tune result` found that the recorded response of the display is not that of a tile, for this reason; the tile's
+    /// parameters are unchanged.
     Identification(IdentificationError),
-    /// The calibration point is rejected.
+    /// The calibration point of a `calibrate` line is rejected, for this reason; the calibration is unchanged.
     Point(PointError),
 }
 
@@ -124,9 +135,9 @@ impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("err ")?;
         match self {
-            Self::Line(error) => line(f, *error),
+            Self::Line(error) => write_line_error(f, *error),
             Self::UnknownCommand(word) => {
-                write_unknown_word(f, "command", word, Request::WORDS.iter().copied())
+                write_unknown_word(f, "command", word, Request::COMMAND_WORDS.iter().copied())
             }
             Self::UnknownFinger(word, fingers) => {
                 let last = fingers.saturating_sub(1);
@@ -134,10 +145,10 @@ impl fmt::Display for Error {
             }
             Self::UnknownMaterial(word) => {
                 let names = MATERIALS.iter().map(|(name, _)| *name);
-                write_unknown_word(f, "material", word, names.chain([CUSTOM]))
+                write_unknown_word(f, "material", word, names.chain([CUSTOM_MATERIAL_WORD]))
             }
             Self::UnknownMode(word) => {
-                write_unknown_word(f, "mode", word, MODES.iter().map(|(name, _)| *name))
+                write_unknown_word(f, "mode", word, MODE_WORDS.iter().map(|(name, _)| *name))
             }
             Self::UnknownLaw(word) => write_unknown_word(
                 f,
@@ -162,22 +173,23 @@ impl fmt::Display for Error {
             Self::ContactPair(error) => error.fmt(f),
             Self::NeedsOff(command) => write!(f, "{command} needs the bridge off: abort first"),
             Self::WholeDevice(command) => write!(f, "{command} is for all fingers at once"),
-            Self::NotStored(FailureText(failure)) => write!(f, "not stored: {failure}"),
-            Self::Refused(refused) => refusal(f, refused),
-            Self::Identification(error) => identification(f, error),
-            Self::Point(error) => point(f, error),
+            Self::NotStored(StorageFailureText(failure)) => write!(f, "not stored: {failure}"),
+            Self::Refused(refused) => write_refusal(f, refused),
+            Self::Identification(error) => write_identification_error(f, error),
+            Self::Point(error) => write_calibration_point_error(f, error),
         }
     }
 }
 
-/// Writes that a word is unknown, and the known words.
+/// Writes that `word` is unknown, and which words are known, as in `unknown mode 'x'; known: contact semi-infinite`.
+/// There, `mode` is the `kind` of the word.
 fn write_unknown_word<'a>(
     f: &mut fmt::Formatter<'_>,
     kind: &str,
     word: &WordExcerpt,
     known: impl Iterator<Item = &'a str>,
 ) -> fmt::Result {
-    write_unknown_prefix(f, kind, word)?;
+    write_unknown_word_prefix(f, kind, word)?;
     for known in known {
         f.write_str(" ")?;
         f.write_str(known)?;
@@ -185,13 +197,18 @@ fn write_unknown_word<'a>(
     Ok(())
 }
 
-/// The part of [`write_unknown_word`] that does not depend on the iterator, so that the image contains it once.
+/// Writes the message of [`write_unknown_word`] up to its list of known words, as in `unknown mode 'x'; known:`. Not
+/// part of that generic function, so that the program contains this code only once.
 #[inline(never)]
-fn write_unknown_prefix(f: &mut fmt::Formatter<'_>, kind: &str, word: &WordExcerpt) -> fmt::Result {
+fn write_unknown_word_prefix(
+    f: &mut fmt::Formatter<'_>,
+    kind: &str,
+    word: &WordExcerpt,
+) -> fmt::Result {
     write!(f, "unknown {kind} {word}; known:")
 }
 
-fn line(f: &mut fmt::Formatter<'_>, error: LineError) -> fmt::Result {
+fn write_line_error(f: &mut fmt::Formatter<'_>, error: LineError) -> fmt::Result {
     match error {
         LineError::TooLong => write!(f, "line too long; at most {LINE_MAX_BYTES} bytes"),
         LineError::NotText(byte) => write!(f, "byte 0x{byte:02x} is not printable ASCII"),
@@ -200,7 +217,7 @@ fn line(f: &mut fmt::Formatter<'_>, error: LineError) -> fmt::Result {
     }
 }
 
-fn refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::Result {
+fn write_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::Result {
     f.write_str(match refused {
         Refused::NotArmed => "start needs arm first",
         Refused::Testing => "the self-test goes on; ask again in a second",
@@ -223,7 +240,10 @@ fn refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::Result {
     })
 }
 
-fn identification(f: &mut fmt::Formatter<'_>, error: &IdentificationError) -> fmt::Result {
+fn write_identification_error(
+    f: &mut fmt::Formatter<'_>,
+    error: &IdentificationError,
+) -> fmt::Result {
     match error {
         IdentificationError::CurrentRatio(ratio) => write!(
             f,
@@ -252,7 +272,7 @@ fn identification(f: &mut fmt::Formatter<'_>, error: &IdentificationError) -> fm
     }
 }
 
-fn point(f: &mut fmt::Formatter<'_>, error: &PointError) -> fmt::Result {
+fn write_calibration_point_error(f: &mut fmt::Formatter<'_>, error: &PointError) -> fmt::Result {
     match error {
         PointError::Unsteady => f.write_str(
             "the reading moves; wait until it is steady to 3 mK in a quarter of a second",
@@ -262,11 +282,14 @@ fn point(f: &mut fmt::Formatter<'_>, error: &PointError) -> fmt::Result {
         }
         PointError::TooFar(reading) => write!(
             f,
-            "the device reads {reading:.2} C; allowed is within {POINT_DEVIATION_MAX_K} C of that"
+            "the device reads {reading:.2} C; allowed is within {REFERENCE_DIFFERENCE_MAX_K} C of that"
         ),
         PointError::Contradicts => {
             f.write_str("no correction fits this and the points before; clear them and begin again")
         }
-        PointError::Full => write!(f, "no room for more than {POINTS_MAX} points; clear them"),
+        PointError::Full => write!(
+            f,
+            "no room for more than {POINTS_PER_THERMISTOR_MAX} points; clear them"
+        ),
     }
 }

@@ -5,22 +5,22 @@
 #[cfg(test)]
 extern crate std;
 
-mod address;
 mod arguments;
-mod command;
+mod command_handler;
 mod commissioning_commands;
 mod error;
-mod handler;
+mod finger_address;
 mod line_buffer;
 mod line_reader;
 mod reply;
+mod request;
 mod telemetry;
 
-pub use command::Request;
-pub use error::{Error, FailureText, WordExcerpt};
-pub use handler::{CommandHandler, Execute, ExecutionResult};
+pub use command_handler::{CommandHandler, ExecuteOnStations, ExecutionResult};
+pub use error::{Error, StorageFailureText, WordExcerpt};
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use reply::Reply;
+pub use request::Request;
 pub use telemetry::{TelemetryLine, telemetry_line};
 
 #[cfg(test)]

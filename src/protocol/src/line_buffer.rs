@@ -1,7 +1,7 @@
-//! Fast formatting of lines with words and decimal numbers.
+//! Fast formatting of lines to the host with words and decimal numbers.
 //!
-//! A telemetry line has ten numbers and is written up to a thousand times a second; the `Display` of the fixed-point types
-//! takes ten times as long.
+//! A telemetry line has ten numbers and is written up to a thousand times a second; the `Display` of the fixed-point
+//! types takes ten times as long.
 
 use core::fmt;
 
@@ -9,19 +9,20 @@ use contact_model::fixed_point::{Celsius, Force};
 
 use thermal_device::drive::Current;
 
-/// Capacity of a buffer, bytes: that of the longest telemetry line.
-const CAPACITY_BYTES: usize = 128;
+/// Capacity of a [`LineBuffer`], bytes: enough for the longest line of telemetry.
+const LINE_CAPACITY_BYTES: usize = 128;
 
-/// A line that is being written. A word or number that does not fit is left out as a whole.
+/// A line to the host that is being written, of at most 128 ASCII characters. A word or number that does not fit is
+/// left out as a whole.
 pub(super) struct LineBuffer {
-    bytes: [u8; CAPACITY_BYTES],
+    bytes: [u8; LINE_CAPACITY_BYTES],
     length: usize,
 }
 
 impl LineBuffer {
     pub(super) const fn new() -> Self {
         Self {
-            bytes: [0; CAPACITY_BYTES],
+            bytes: [0; LINE_CAPACITY_BYTES],
             length: 0,
         }
     }
@@ -33,7 +34,6 @@ impl LineBuffer {
         }
     }
 
-    /// Appends ASCII text.
     pub(super) fn push_str(&mut self, ascii: &str) {
         let end = self.length + ascii.len();
         if let Some(place) = self.bytes.get_mut(self.length..end) {
@@ -44,34 +44,34 @@ impl LineBuffer {
         }
     }
 
-    /// Appends a temperature in °C with `DIGITS` decimals, or `-` if it is unknown.
+    /// Appends a temperature in °C with `DIGITS` decimals, or `-` for `None`.
     pub(super) fn push_celsius<const DIGITS: usize>(&mut self, value: Option<Celsius>) {
         match value {
-            Some(value) => self.push_decimal::<22, DIGITS>(value.to_bits().into()),
+            Some(value) => self.push_fixed_point::<22, DIGITS>(value.to_bits().into()),
             None => self.push_byte(b'-'),
         }
     }
 
-    /// Appends a force in N with three decimals, or `-` if it is unknown.
+    /// Appends a force in N with three decimals, or `-` for `None`.
     pub(super) fn push_force(&mut self, value: Option<Force>) {
         match value {
-            Some(value) => self.push_decimal::<24, 3>(value.to_bits().into()),
+            Some(value) => self.push_fixed_point::<24, 3>(value.to_bits().into()),
             None => self.push_byte(b'-'),
         }
     }
 
-    /// Appends a current in A with three decimals.
+    /// Appends a current in A with three decimals, after a `-` if it is negative.
     pub(super) fn push_current(&mut self, value: Current) {
-        self.push_decimal::<24, 3>(value.to_bits().into());
+        self.push_fixed_point::<24, 3>(value.to_bits().into());
     }
 
-    /// Appends an integer in decimal.
     pub(super) fn push_integer(&mut self, value: u32) {
-        self.push_digits::<0>(value);
+        self.push_scaled_integer::<0>(value);
     }
 
-    /// Appends `bits / 2^FRACTION` with `DIGITS` decimals, rounded to the nearest.
-    fn push_decimal<const FRACTION: u32, const DIGITS: usize>(&mut self, bits: i64) {
+    /// Appends the fixed-point number `bits / 2^FRACTION` as a decimal number with `DIGITS` decimals, rounded to the
+    /// nearest.
+    fn push_fixed_point<const FRACTION: u32, const DIGITS: usize>(&mut self, bits: i64) {
         let scale = const { 10u64.pow(DIGITS as u32) };
         let scaled = (bits.unsigned_abs() * scale + (1 << (FRACTION - 1))) >> FRACTION;
         // All fixed-point types are below 2^10, so a `u32` holds five decimals.
@@ -79,11 +79,12 @@ impl LineBuffer {
         if bits < 0 && scaled != 0 {
             self.push_byte(b'-');
         }
-        self.push_digits::<DIGITS>(scaled);
+        self.push_scaled_integer::<DIGITS>(scaled);
     }
 
-    /// Appends `value / 10^DIGITS`.
-    fn push_digits<const DIGITS: usize>(&mut self, mut value: u32) {
+    /// Appends the number `value / 10^DIGITS` with a decimal point and `DIGITS` decimals, or without a point if
+    /// `DIGITS` is 0.
+    fn push_scaled_integer<const DIGITS: usize>(&mut self, mut value: u32) {
         // Digits before the decimal point: at least one, and at most ten digits altogether, those of a `u32`.
         let mut whole = 1;
         let mut bound = const { 10u32.pow(DIGITS as u32 + 1) };
@@ -165,11 +166,11 @@ mod tests {
     fn a_word_or_number_that_does_not_fit_is_left_out() {
         assert_eq!(
             text(|text| (0..100).for_each(|_| text.push_str("ab "))).len(),
-            CAPACITY_BYTES / 3 * 3
+            LINE_CAPACITY_BYTES / 3 * 3
         );
         assert_eq!(
             text(|text| (0..100).for_each(|_| text.push_integer(12345))).len(),
-            CAPACITY_BYTES / 5 * 5
+            LINE_CAPACITY_BYTES / 5 * 5
         );
     }
 }

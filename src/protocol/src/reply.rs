@@ -8,27 +8,32 @@ use thermal_device::safety::TripCause;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, Tile};
 
-use crate::command::MODES;
 use crate::line_buffer::LineBuffer;
+use crate::request::MODE_WORDS;
 
-/// An answer; `Display` writes it without its line ending, at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
+/// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
+/// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
-    /// Answer to `id`: name and version of the firmware, number of fingers and rates.
+    /// Answer to the command `id`: name and version of the firmware, number of fingers, control ticks per second and
+    /// scans of all sensors per second.
     Identity {
-        /// Number of fingers of the device.
+        /// Number of fingers of the device, 1 to 10.
         fingers: u8,
     },
-    /// Reply of the station that has executed the command.
+    /// Answer to a command that was executed by the station (the control) of one finger, or by the stations of all
+    /// fingers.
     Station(command::Reply),
-    /// Reply of the commissioning session that has executed the request.
+    /// Answer to a request that was executed by the commissioning session of one finger, or by the sessions of all
+    /// fingers. The session of a finger is its settings and calibration points.
     Commissioning(SessionReply),
-    /// `save` or `forget`: the device restarts to execute the order, and answers `ok` afterwards.
+    /// The line was `save` or `forget`, and may be executed. The caller must now restart the device, which stores the
+    /// settings and only then sends the answer, `ok` or an error.
     Restart(StorageOrder),
 }
 
 impl Reply {
-    /// The request was executed, and has no other result.
+    /// The line was executed, and there is nothing to report: the answer is `ok`.
     pub const DONE: Self = Self::Station(command::Reply::Done);
 }
 
@@ -40,26 +45,26 @@ impl fmt::Display for Reply {
                 "ok thermal-display {} fingers={fingers} tick_hz={TICK_HZ} scan_hz={SCANS_PER_SECOND}",
                 env!("CARGO_PKG_VERSION"),
             ),
-            Self::Station(reply) => station(f, reply),
-            Self::Commissioning(reply) => commissioning(f, reply),
+            Self::Station(reply) => write_station_reply(f, reply),
+            Self::Commissioning(reply) => write_session_reply(f, reply),
             Self::Restart(_) => f.write_str("ok"),
         }
     }
 }
 
-fn station(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fmt::Result {
+fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fmt::Result {
     match reply {
         command::Reply::Status(status) => status_line(status).fmt(f),
         command::Reply::Law(law) => write!(f, "ok law={}", law.name()),
-        command::Reply::Cause(cause) => cause_line(cause.as_ref()).fmt(f),
-        // A commissioning session evaluates averages and normal equations; no line requests them.
+        command::Reply::Cause(cause) => trip_cause_line(cause.as_ref()).fmt(f),
+        // No line from the host requests averages and normal equations, which commissioning sessions evaluate.
         command::Reply::Done | command::Reply::Average(_) | command::Reply::NormalEquation(_) => {
             f.write_str("ok")
         }
     }
 }
 
-fn commissioning(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt::Result {
+fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt::Result {
     match reply {
         SessionReply::Done => f.write_str("ok"),
         SessionReply::Tile(tile, margins) => {
@@ -78,7 +83,7 @@ fn commissioning(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt::Resul
             write!(f, "ok points={points} worst_mk={worst_mk:.2}")
         }
         SessionReply::SettingsLines(lines) => write!(f, "ok lines={lines}"),
-        SessionReply::Setting(setting) => write_setting(f, setting),
+        SessionReply::Setting(setting) => write_set_line(f, setting),
     }
 }
 
@@ -96,7 +101,7 @@ fn status_line(status: &Status) -> LineBuffer {
         None => line.push_str("room"),
     }
     line.push_str(" mode=");
-    let mode = MODES.iter().find(|(_, mode)| *mode == status.mode);
+    let mode = MODE_WORDS.iter().find(|(_, mode)| *mode == status.mode);
     line.push_str(mode.map_or("-", |(name, _)| name));
     line.push_str(" setpoint_c=");
     line.push_celsius::<2>(status.setpoint);
@@ -104,7 +109,7 @@ fn status_line(status: &Status) -> LineBuffer {
     line
 }
 
-fn cause_line(cause: Option<&TripCause>) -> LineBuffer {
+fn trip_cause_line(cause: Option<&TripCause>) -> LineBuffer {
     let mut line = LineBuffer::new();
     line.push_str("ok cause=");
     let Some(cause) = cause else {
@@ -129,13 +134,14 @@ fn cause_line(cause: Option<&TripCause>) -> LineBuffer {
     line
 }
 
-/// Writes `ok` and the `set` line that restores this part of the settings.
-fn write_setting(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result {
+/// Writes one part of the settings as the answer `ok set ...` to the command `settings N`. The host can restore this
+/// part later by sending the line that follows `ok`.
+fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result {
     f.write_str("ok set ")?;
     match setting {
         Setting::Steps { first, counts } => {
             write!(f, "steps {first}")?;
-            let decimals = Calibration::STEP_DECIMALS as usize;
+            let decimals = Calibration::CONVERTER_STEP_DECIMALS as usize;
             counts
                 .iter()
                 .try_for_each(|count| write!(f, " {count:.decimals$}"))

@@ -3,21 +3,27 @@
 use core::fmt;
 
 use thermal_device::Telemetry;
-use thermal_device::command::Addressed;
+use thermal_device::command::WithFingerIndex;
 
 use crate::line_buffer::LineBuffer;
 
-/// Telemetry whose `Display` writes a line without its line ending, at most 128 bytes:
+/// One finger's telemetry of a tick; `Display` writes it as a line to the host, without a line ending and in at most
+/// 128 bytes:
 ///
-/// `T tick state setpoint_c display_c sink_c skin_c room_c force_n demand_a current_a evaluations remark`.
-/// An unknown quantity is written as `-`. `evaluations` counts the evaluations of `erfcx` since reset. The remark is the fault
-/// that tripped the station, else `limited` if the set-point was limited to 15 to 42 °C, else `-`.
+/// `T tick state setpoint_c display_c sink_c skin_c room_c force_n demand_a current_a evaluations remark`
+///
+/// `tick` counts milliseconds since reset. `state` is the state of the finger's station. Temperatures are in °C, the
+/// force is in N, the demanded current (positive cools) and the magnitude of the measured current are in A. A quantity
+/// whose sensor has failed, and the set-point in a state without one, is written as `-`. `evaluations` counts since
+/// reset how often the function `erfcx` was computed for set-points. `remark` is the fault that tripped the station,
+/// else `limited` if the set-point was limited to 15 to 42 °C, else `-`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TelemetryLine(pub Telemetry);
 
-/// The telemetry line of one finger, with its address.
+/// Wraps one finger's telemetry in a [`TelemetryLine`], whose `Display` writes the line to the host. The address of the
+/// finger, which precedes the line on a device with several fingers, does not change.
 #[must_use]
-pub fn telemetry_line(telemetry: Addressed<Telemetry>) -> Addressed<TelemetryLine> {
+pub fn telemetry_line(telemetry: WithFingerIndex<Telemetry>) -> WithFingerIndex<TelemetryLine> {
     telemetry.map_content(TelemetryLine)
 }
 

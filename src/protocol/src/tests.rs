@@ -13,7 +13,7 @@ use thermal_commissioning::IdentificationError;
 use thermal_device::command::{self, Command, Status};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
-use thermal_device::reference::Mode;
+use thermal_device::reference::ContactModel;
 use thermal_device::safety::Fault;
 use thermal_device::{StateName, Telemetry};
 use thermal_settings::Settings;
@@ -46,8 +46,14 @@ fn every_command_is_parsed() {
         ("law", Command::Law(None)),
         ("law pi-10hz", Command::Law(Some(Law::Pi10Hz))),
         ("law pi", Command::Law(Some(Law::Pi))),
-        ("mode contact", Command::Mode(Mode::ContactResistance)),
-        ("mode semi-infinite", Command::Mode(Mode::SemiInfinite)),
+        (
+            "mode contact",
+            Command::Mode(ContactModel::ContactResistance),
+        ),
+        (
+            "mode semi-infinite",
+            Command::Mode(ContactModel::SemiInfinite),
+        ),
         ("arm", Command::Arm),
         ("start", Command::Start),
         ("abort", Command::Abort),
@@ -183,7 +189,7 @@ fn the_longest_answers_fit_their_limit() {
         state: tripped,
         material: Some("stainless-steel"),
         object: Some(Celsius::MIN),
-        mode: Mode::SemiInfinite,
+        mode: ContactModel::SemiInfinite,
         setpoint: Some(Celsius::MIN),
         limited: true,
     };

@@ -4,16 +4,17 @@ use core::fmt;
 
 use super::{Calibration, Tile};
 
-/// The range of a quantity, with its name and unit for error messages; it is displayed as `15 to 42 C`.
+/// Allowed range of a quantity in a line from the host or in the record in flash, with its name and unit for error
+/// messages. `Display` writes limits and unit, as in `15 to 42 C`.
 #[derive(Debug, PartialEq)]
 pub struct Range {
-    /// Name of the quantity, as error messages to the host have it.
+    /// Name of the quantity in error messages to the host, as in `dead time`.
     pub name: &'static str,
-    /// Unit of the quantity in ASCII, as error messages to the host have it.
+    /// Unit of the quantity, and of its limits, in ASCII for error messages to the host, as in `K/s/A`.
     pub unit: &'static str,
-    /// Smallest allowed value.
+    /// Smallest allowed value of the quantity, in its unit.
     pub min: f64,
-    /// Largest allowed value.
+    /// Largest allowed value of the quantity, in its unit.
     pub max: f64,
 }
 
@@ -31,18 +32,19 @@ impl fmt::Display for Range {
     }
 }
 
-/// Range of one step of the converter at a border of its segments, counts.
-pub static STEP_RANGE: Range = Range {
+/// Allowed range of the step of the analogue-to-digital converter's error at a border between two of its segments,
+/// counts (of 4096).
+pub static CONVERTER_STEP_RANGE: Range = Range {
     name: "step",
     unit: "counts",
     min: -4.0,
     max: 4.0,
 };
-/// Ranges of a correction's offset, slope and curvature.
+/// Allowed ranges of the offset, slope and curvature of a thermistor's correction, in this order.
 ///
-/// A correction within them changes a reading by at most 2.5 K in the calibrated range, ten times what components of
-/// this class need; the steps of the converter add at most 0.2 K. So no calibration hides from the safety limits a
-/// display that exceeds them by more than 2.7 K.
+/// Within these ranges a correction changes a reading by at most 2.5 K from 15 to 43 °C, ten times what the tolerances
+/// of the components need; the steps of the converter change it by at most 0.2 K more. So even with a wrong
+/// calibration, the fault detectors detect a display that exceeds a temperature limit by more than 2.7 K.
 pub static CORRECTION_RANGES: [Range; 3] = [
     Range {
         name: "offset",
@@ -63,7 +65,8 @@ pub static CORRECTION_RANGES: [Range; 3] = [
         max: 0.002,
     },
 ];
-/// Ranges of the tile's parameters, in the order of [`Tile::to_array`].
+/// Allowed ranges of the tile's parameters, in the order of [`Tile::to_array`]: gain, Joule term, leak, sensor lag,
+/// dead time.
 pub static TILE_RANGES: [Range; 5] = [
     Range {
         name: "gain",
@@ -98,27 +101,31 @@ pub static TILE_RANGES: [Range; 5] = [
 ];
 
 impl Calibration {
-    /// The first value outside its range, with that range.
+    /// The first value of this calibration that lies outside its allowed range, with that range; `None` if all values
+    /// are inside. The steps of the converter are checked first, then the coefficients of the five corrections.
     #[must_use]
-    pub fn out_of_range(&self) -> Option<(&'static Range, f64)> {
-        let steps = self.steps_counts.iter().map(|step| (&STEP_RANGE, *step));
+    pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
+        let steps = self
+            .steps_counts
+            .iter()
+            .map(|step| (&CONVERTER_STEP_RANGE, *step));
         let corrections = self
             .corrections
             .iter()
             .flat_map(|correction| CORRECTION_RANGES.iter().zip(correction.to_array()));
-        first_outside(steps.chain(corrections))
+        first_value_out_of_range(steps.chain(corrections))
     }
 }
 
 impl Tile {
-    /// The first value outside its range, with that range.
+    /// The first parameter of the tile that is outside its allowed range, with that range; `None` if all are inside.
     #[must_use]
-    pub fn out_of_range(&self) -> Option<(&'static Range, f64)> {
-        first_outside(TILE_RANGES.iter().zip(self.to_array()))
+    pub fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
+        first_value_out_of_range(TILE_RANGES.iter().zip(self.to_array()))
     }
 }
 
-fn first_outside(
+fn first_value_out_of_range(
     mut values: impl Iterator<Item = (&'static Range, f64)>,
 ) -> Option<(&'static Range, f64)> {
     values.find(|(range, value)| !range.contains(*value))

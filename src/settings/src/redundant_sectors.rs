@@ -1,8 +1,8 @@
 //! Flash sectors that survive single-bit errors and interrupted erasures.
 //!
-//! Each word is stored three times in a row, and each of its bits is read by majority vote. A single bit that flips over
-//! the years would otherwise invalidate a record and all that follow it, and an older record would be taken for the newest.
-//! A word also takes effect completely or not at all if the power fails between two of its copies.
+//! Each word is stored three times in a row, and each of its bits is read by majority vote. A single bit that flips
+//! over the years would otherwise invalidate a record and all that follow it, and an older record would be taken for
+//! the newest. A word also takes effect completely or not at all if the power fails between two of its copies.
 //!
 //! A power failure during an erasure leaves undefined bits: old records may still be readable and be taken for the
 //! newest. So a sector is valid only while it begins with a seal. Before a sector is erased, its seal is broken by
@@ -21,33 +21,37 @@ use embedded_storage_async::nor_flash::{
     ErrorType, NorFlash, NorFlashError, NorFlashErrorKind, ReadNorFlash,
 };
 
-/// Bytes in a word, the unit of programming.
+/// Bytes in a word, the unit in which the flash is programmed.
 const WORD_BYTES: usize = 4;
-/// Number of copies in which each word is stored; a majority of them decides when it is read.
-const COPIES: usize = 3;
-/// Bytes of flash that one word occupies.
-const WORD_COPIES_BYTES: usize = COPIES * WORD_BYTES;
-/// Marks a valid sector. It differs in many bits from erased flash and from zeros.
-const SEAL: [u8; 2 * WORD_BYTES] = *b"settings";
-/// Invalidates a seal when programmed over its first word: programming can only clear bits.
-const BROKEN_SEAL: [u8; WORD_BYTES] = [0; WORD_BYTES];
-/// Value of an erased byte.
-const ERASED: u8 = 0xff;
-/// Bytes that are read at a time when an erasure is verified.
-const VERIFY_BYTES: usize = 32;
+/// Number of copies in which each word is stored in the flash; a bit is read as what two of the three copies hold.
+const COPIES_PER_WORD: usize = 3;
+/// Bytes of flash that one word of data occupies with its three copies.
+const FLASH_BYTES_PER_DATA_WORD: usize = COPIES_PER_WORD * WORD_BYTES;
+/// The first two words of a valid sector; a sector without this seal reads as erased. It differs in many bits from
+/// erased flash (0xff) and from zeros, so that an interrupted erasure is unlikely to form it.
+const SECTOR_SEAL: [u8; 2 * WORD_BYTES] = *b"settings";
+/// Programmed over the first word of a sector's seal to make the sector invalid before its erasure; zeros, because
+/// programming can only clear bits.
+const BROKEN_SEAL_WORD: [u8; WORD_BYTES] = [0; WORD_BYTES];
+const ERASED_BYTE: u8 = 0xff;
+/// Bytes of flash that are read at a time to check that an erased sector is blank.
+const BLANK_CHECK_CHUNK_BYTES: usize = 32;
 
-/// Redundant sectors on a flash with equal sectors; each holds a third of the flash's sector, less the seal.
+/// A NOR flash in which single-bit errors do not change the data, and interrupted erasures leave no false data. It is
+/// built on the flash `F`, whose sectors all have one size. Each word is stored three times, so each sector holds a
+/// third of the data of a sector of `F`, less a seal of two words that marks the sector as valid.
 #[derive(Debug)]
 pub struct RedundantSectors<F>(F);
 
-/// Why an access to the sectors failed.
+/// Why redundant sectors could not be read, written or erased.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SectorError<E> {
-    /// The flash reported an error.
+    /// The driver of the flash reported this error when it read, programmed or erased.
     Flash(E),
-    /// A sector is not blank after it was erased.
+    /// A sector of the flash is not blank (all bytes 0xff) after it was erased.
     NotErased,
-    /// The access is not word-aligned, crosses the border of a sector or lies outside of the sectors.
+    /// The access to the flash does not begin at a multiple of 4 bytes, crosses from one sector to the next, or lies
+    /// outside of all sectors; or data to be written are not whole words of 4 bytes.
     OutOfBounds,
 }
 
@@ -71,33 +75,48 @@ impl<E: fmt::Debug> NorFlashError for SectorError<E> {
 }
 
 impl<F: BlockingNorFlash> RedundantSectors<F> {
-    /// Bytes of data in one sector: a third of its size, because each word is stored three times, less the seal that marks a
-    /// valid sector.
-    pub const SECTOR_BYTES: usize = F::ERASE_SIZE / WORD_COPIES_BYTES * WORD_BYTES - SEAL.len();
+    /// Bytes of data that one sector holds: a third of the size of the flash's sector, because each word is stored
+    /// three times, less the seal of 8 bytes that marks a valid sector.
+    pub const DATA_BYTES_PER_SECTOR: usize =
+        F::ERASE_SIZE / FLASH_BYTES_PER_DATA_WORD * WORD_BYTES - SECTOR_SEAL.len();
 
-    /// Redundant sectors on all sectors of this flash.
+    /// Makes redundant sectors of all sectors of `flash`. Compiling fails if `flash` is read or written in units of
+    /// more than 4 bytes.
     pub const fn new(flash: F) -> Self {
         const { assert!(F::READ_SIZE <= WORD_BYTES && F::WRITE_SIZE <= WORD_BYTES) };
         Self(flash)
     }
 
-    /// Flash addresses of the sector that holds an offset, and of the first copy of its word.
-    fn locate(&self, offset: u32, bytes: usize) -> Result<(u32, u32), SectorError<F::Error>> {
+    /// Returns two flash addresses for an access to the `bytes` bytes of data at `offset`, which counts data only,
+    /// without seals and copies: the start of the sector, and the first copy of the first word.
+    ///
+    /// # Errors
+    /// [`SectorError::OutOfBounds`]: `offset` is not a multiple of 4 bytes from the start of the sector's data, or the
+    /// access does not lie within one sector of the flash.
+    fn sector_and_word_addresses(
+        &self,
+        offset: u32,
+        bytes: usize,
+    ) -> Result<(u32, u32), SectorError<F::Error>> {
         let offset = offset as usize;
-        let (sector, within) = (offset / Self::SECTOR_BYTES, offset % Self::SECTOR_BYTES);
+        let (sector, within) = (
+            offset / Self::DATA_BYTES_PER_SECTOR,
+            offset % Self::DATA_BYTES_PER_SECTOR,
+        );
         let start = sector * F::ERASE_SIZE;
         let fits = within.is_multiple_of(WORD_BYTES)
-            && within + bytes <= Self::SECTOR_BYTES
+            && within + bytes <= Self::DATA_BYTES_PER_SECTOR
             && start + F::ERASE_SIZE <= self.0.capacity();
         if fits {
-            let from_start = (SEAL.len() + within) / WORD_BYTES * WORD_COPIES_BYTES;
+            let from_start = (SECTOR_SEAL.len() + within) / WORD_BYTES * FLASH_BYTES_PER_DATA_WORD;
             Ok((start as u32, (start + from_start) as u32))
         } else {
             Err(SectorError::OutOfBounds)
         }
     }
 
-    /// Reads words by majority vote over their copies.
+    /// Fills `bytes` with the words whose copies begin at `address` in the flash. Each bit is read as what two of its
+    /// three copies hold.
     fn read_majority(
         &mut self,
         address: u32,
@@ -105,9 +124,9 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
     ) -> Result<(), SectorError<F::Error>> {
         for (word, at) in bytes
             .chunks_mut(WORD_BYTES)
-            .zip((address..).step_by(WORD_COPIES_BYTES))
+            .zip((address..).step_by(FLASH_BYTES_PER_DATA_WORD))
         {
-            let mut copies = [[0; WORD_BYTES]; COPIES];
+            let mut copies = [[0; WORD_BYTES]; COPIES_PER_WORD];
             self.0
                 .read(at, copies.as_flattened_mut())
                 .map_err(SectorError::Flash)?;
@@ -120,13 +139,20 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
         Ok(())
     }
 
-    /// Programs all copies of words.
-    fn program(&mut self, address: u32, bytes: &[u8]) -> Result<(), SectorError<F::Error>> {
+    /// Programs the words of `bytes` in their order from `address` in the flash on, each word three times in a row.
+    ///
+    /// # Errors
+    /// [`SectorError::OutOfBounds`]: `bytes` are not whole words of 4 bytes. [`SectorError::Flash`]: programming
+    /// failed.
+    fn program_copies(&mut self, address: u32, bytes: &[u8]) -> Result<(), SectorError<F::Error>> {
         let (words, []) = bytes.as_chunks() else {
             return Err(SectorError::OutOfBounds);
         };
-        for (word, at) in words.iter().zip((address..).step_by(WORD_COPIES_BYTES)) {
-            let copies: [[u8; WORD_BYTES]; COPIES] = [*word; COPIES];
+        for (word, at) in words
+            .iter()
+            .zip((address..).step_by(FLASH_BYTES_PER_DATA_WORD))
+        {
+            let copies: [[u8; WORD_BYTES]; COPIES_PER_WORD] = [*word; COPIES_PER_WORD];
             self.0
                 .write(at, copies.as_flattened())
                 .map_err(SectorError::Flash)?;
@@ -136,25 +162,25 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
 
     #[inline(never)]
     fn is_sealed(&mut self, start: u32) -> Result<bool, SectorError<F::Error>> {
-        let mut seal = [0; SEAL.len()];
+        let mut seal = [0; SECTOR_SEAL.len()];
         self.read_majority(start, &mut seal)?;
-        Ok(seal == SEAL)
+        Ok(seal == SECTOR_SEAL)
     }
 
-    /// Erases, verifies and seals a sector. It erases even a sector that reads as blank: bits that an interrupted erasure
-    /// left half-erased may read as erased now and not later.
+    /// Erases the flash sector at `start`, checks that it is blank, and seals it. Even a sector that reads as blank is
+    /// erased: bits that an interrupted erasure left half-erased may read as erased now and not later.
     #[inline(never)]
     fn erase_and_seal(&mut self, start: u32) -> Result<(), SectorError<F::Error>> {
         let end = start + F::ERASE_SIZE as u32;
         self.0.erase(start, end).map_err(SectorError::Flash)?;
-        for at in (start..end).step_by(VERIFY_BYTES) {
-            let mut read = [0; VERIFY_BYTES];
+        for at in (start..end).step_by(BLANK_CHECK_CHUNK_BYTES) {
+            let mut read = [0; BLANK_CHECK_CHUNK_BYTES];
             self.0.read(at, &mut read).map_err(SectorError::Flash)?;
-            if read != [ERASED; VERIFY_BYTES] {
+            if read != [ERASED_BYTE; BLANK_CHECK_CHUNK_BYTES] {
                 return Err(SectorError::NotErased);
             }
         }
-        self.program(start, &SEAL)
+        self.program_copies(start, &SECTOR_SEAL)
     }
 }
 
@@ -166,38 +192,38 @@ impl<F: BlockingNorFlash> ReadNorFlash for RedundantSectors<F> {
     const READ_SIZE: usize = WORD_BYTES;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
-        let (start, address) = self.locate(offset, bytes.len())?;
+        let (start, address) = self.sector_and_word_addresses(offset, bytes.len())?;
         if self.is_sealed(start)? {
             return self.read_majority(address, bytes);
         }
-        bytes.fill(ERASED);
+        bytes.fill(ERASED_BYTE);
         Ok(())
     }
 
     fn capacity(&self) -> usize {
-        self.0.capacity() / F::ERASE_SIZE * Self::SECTOR_BYTES
+        self.0.capacity() / F::ERASE_SIZE * Self::DATA_BYTES_PER_SECTOR
     }
 }
 
 impl<F: BlockingNorFlash> NorFlash for RedundantSectors<F> {
     const WRITE_SIZE: usize = WORD_BYTES;
-    const ERASE_SIZE: usize = Self::SECTOR_BYTES;
+    const ERASE_SIZE: usize = Self::DATA_BYTES_PER_SECTOR;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
-        for offset in (from..to).step_by(Self::SECTOR_BYTES) {
-            let (start, _) = self.locate(offset, 0)?;
+        for offset in (from..to).step_by(Self::DATA_BYTES_PER_SECTOR) {
+            let (start, _) = self.sector_and_word_addresses(offset, 0)?;
             if self.is_sealed(start)? {
-                self.program(start, &BROKEN_SEAL)?;
+                self.program_copies(start, &BROKEN_SEAL_WORD)?;
             }
         }
         Ok(())
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
-        let (start, address) = self.locate(offset, bytes.len())?;
+        let (start, address) = self.sector_and_word_addresses(offset, bytes.len())?;
         if !self.is_sealed(start)? {
             self.erase_and_seal(start)?;
         }
-        self.program(address, bytes)
+        self.program_copies(address, bytes)
     }
 }

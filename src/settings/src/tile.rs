@@ -2,31 +2,35 @@
 
 use super::{Gains, TICK_HZ, round_to_decimals};
 
-/// Dynamics of the tile, the Peltier module with its display plate: from the demanded current `I` to the display's
-/// reading `y`, as deviations from a steady state.
+/// Thermal dynamics of the tile, the Peltier module with its display plate: how the module's demanded current `I`, A,
+/// positive if it cools, changes the plate's temperature `T`, K, and the reading `y`, K, of the thermistor in the
+/// plate. `T` and `y` are deviations from a steady state; `t` is the time, s.
 ///
 /// ```text
-/// dT/dt = -gain (I - joule I^2)(t - dead time) - leak T      plate; positive I cools
-/// lag dy/dt = T - y                                          sensor
+/// dT/dt = -gain (I - joule I^2) - leak T      with I at the time t - dead_time
+/// lag dy/dt = T - y
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tile {
-    /// Rate of change of the plate's temperature per current, K/s per A.
+    /// Rate at which the plate cools per ampere of cooling current, K/s per A, without Joule heating and leak;
+    /// positive.
     pub gain_k_s_a: f64,
-    /// Part of the cooling that Joule heating cancels, per current, 1/A.
+    /// Joule heating of the module relative to its cooling, 1/A: a cooling current `I` cools as much as the current
+    /// `I - joule_per_a I^2` would without Joule heating.
     pub joule_per_a: f64,
-    /// Rate at which the plate relaxes towards the sink, 1/s.
+    /// Rate, 1/s, at which the plate's deviation from its steady temperature decays through heat flow from and to the
+    /// sink.
     pub leak_1_s: f64,
-    /// Time constant of the display's thermistor, s.
+    /// Time constant, s, with which the reading of the display's thermistor follows the temperature of the plate.
     pub sensor_lag_s: f64,
-    /// Dead time from a demanded current to the surface of the plate, s.
+    /// Dead time, s: delay from a change of the demanded current to the first response of the plate's temperature.
     pub dead_time_s: f64,
 }
 
 impl Tile {
-    /// Nominal tile: a 30 mm, 6 A module with a thermistor in its display plate, as identified by
-    /// `cargo hil-sim commission scenes/copper.toml`.
-    pub const CLASS: Self = Self {
+    /// Nominal tile, the factory default: a Peltier module of 30 mm and 6 A with a thermistor in its display plate. Its
+    /// parameters were identified on the simulated device, by `cargo hil-sim commission scenes/copper.toml`.
+    pub const NOMINAL: Self = Self {
         gain_k_s_a: 2.91,
         joule_per_a: 0.0585,
         leak_1_s: 0.103,
@@ -34,10 +38,12 @@ impl Tile {
         dead_time_s: 0.016,
     };
 
-    /// Decimals of a stored parameter. Values are rounded to them, so that text and record hold them exactly.
+    /// Number of decimals, 6, of each of the tile's parameters in a `set tile` line and in the record in flash.
+    /// Parameters are rounded to it, so that line and record hold them exactly.
     pub const DECIMALS: usize = 6;
 
-    /// Gain, Joule term, leak, lag and dead time, in their order on a line of text.
+    /// Gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and dead time (s), in the order in which a
+    /// `set tile` line and the record in flash hold them.
     #[must_use]
     pub const fn to_array(&self) -> [f64; 5] {
         [
@@ -49,7 +55,8 @@ impl Tile {
         ]
     }
 
-    /// The inverse of [`Self::to_array`], rounded to the decimals that are stored.
+    /// A tile with this gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and dead time (s), each rounded
+    /// to [`Self::DECIMALS`].
     #[must_use]
     pub fn from_array(values: [f64; 5]) -> Self {
         let [gain_k_s_a, joule_per_a, leak_1_s, sensor_lag_s, dead_time_s] =
@@ -65,11 +72,12 @@ impl Tile {
 }
 
 impl Gains {
-    /// Gains by the SIMC rule for an integrating process (Skogestad 2003): `Kc = 1 / (k (tauc + theta))` and
-    /// `Ti = 4 (tauc + theta)` with `tauc = theta`. The effective dead time `theta` is the sum of the sensor's lag, the
-    /// tile's dead time and half of `hold_s`, the time for which each current is held, s.
+    /// Gains for a tile by the SIMC tuning rule for an integrating process (Skogestad 2003). The proportional gain is
+    /// `1 / (gain (tauc + theta))`, A/K, the integral time `4 (tauc + theta)`, s, with the tile's gain, K/s per A, and
+    /// the time constant of the closed loop `tauc = theta`. The effective dead time `theta`, s, is the sum of the
+    /// sensor's lag, the tile's dead time and half of `hold_s`, the time in seconds between two updates of the current.
     #[must_use]
-    pub fn simc(tile: &Tile, hold_s: f64) -> Self {
+    pub fn from_simc_rule(tile: &Tile, hold_s: f64) -> Self {
         let theta_s = tile.sensor_lag_s + tile.dead_time_s + 0.5 * hold_s;
         let closed_s = 2.0 * theta_s;
         Self {
@@ -78,9 +86,10 @@ impl Gains {
         }
     }
 
-    /// Gains of the loop that is closed at every tick, and of the loop that is closed ten times a second.
+    /// Gains for a tile, first those of the control law `pi`, which updates the module's current every 1 ms, then those
+    /// of the law `pi-10hz`, which updates it every 100 ms.
     #[must_use]
     pub fn for_both_loop_rates(tile: &Tile) -> [Self; 2] {
-        [1.0 / f64::from(TICK_HZ), 0.1].map(|hold_s| Self::simc(tile, hold_s))
+        [1.0 / f64::from(TICK_HZ), 0.1].map(|hold_s| Self::from_simc_rule(tile, hold_s))
     }
 }

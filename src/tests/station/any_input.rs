@@ -86,8 +86,8 @@ fn line() -> impl Strategy<Value = &'static str> {
     )
 }
 
-/// Lines that are sent first; targets that the physical quantities then approach at 0.1 K a tick; samples of one tick in the
-/// middle, with their probability in [`scenario`].
+/// Lines that are sent first; targets that the physical quantities then approach at 0.1 K a tick; samples of one tick
+/// in the middle, with their probability in [`scenario`].
 #[derive(Clone, Debug)]
 struct Phase {
     lines: Vec<&'static str>,

@@ -51,7 +51,8 @@ fn bench_in_each_state() -> [TestBench; 5] {
 fn every_fault_trips_in_its_tick_from_every_state_and_stays_latched() {
     for healthy in bench_in_each_state() {
         for (word, cause) in FAULT_CASES {
-            // While off, the station ignores the fault line, which the comparator may have latched since the last self-test.
+            // While off, the station ignores the fault line, which the comparator may have latched since the last
+            // self-test.
             if word == "bridge" && healthy.state() == StateName::Off {
                 continue;
             }
@@ -251,8 +252,8 @@ fn the_demanded_current_saturates_at_its_limit_and_reverses_at_once() {
     }
 }
 
-/// From a steady state: the voltage drop of 6 A in leads and legs, the loss of the dead times and the Seebeck voltage, as
-/// fractions of 12 V.
+/// From a steady state: the voltage drop of 6 A in leads and legs, the loss of the dead times and the Seebeck voltage,
+/// as fractions of 12 V.
 #[test]
 fn the_bridge_voltage_is_the_feed_forward_of_the_demanded_current() {
     for (line, duty) in [("object 60", -0.5), ("object -20", 0.5)] {
@@ -321,8 +322,8 @@ fn display_thermistors_that_differ_by_more_than_3_k_trip_after_40_ms() {
     );
 }
 
-/// The step is against the direction of the current, which could be mistaken for a wrong response; it comes in every phase
-/// of the detectors' period.
+/// The step is against the direction of the current, which could be mistaken for a wrong response; it comes in every
+/// phase of the detectors' period.
 #[test]
 fn a_step_of_the_reading_trips_as_a_jump_in_every_phase() {
     for phase in 0..8 {

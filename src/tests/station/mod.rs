@@ -12,7 +12,7 @@ use std::mem;
 use std::string::{String, ToString};
 
 use crate::device::Telemetry;
-use crate::device::command::Addressed;
+use crate::device::command::WithFingerIndex;
 use crate::device::drive::BoardOutputs;
 use crate::device::drive::Drive;
 use crate::device::sense::Samples;
@@ -83,8 +83,8 @@ impl TestBench {
             let content = self
                 .station
                 .execute(command)
-                .map_err(Addressed::from_whole_device)?;
-            Ok(Addressed::from_whole_device(content))
+                .map_err(WithFingerIndex::from_whole_device)?;
+            Ok(WithFingerIndex::from_whole_device(content))
         });
         answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
@@ -133,8 +133,8 @@ impl TestBench {
         (self.plate_c, self.plate_responds) = (display_c, plate_responds);
     }
 
-    /// Sums of sixteen conversions: 10 kΩ thermistors with a beta of 3950 K and self-heating under 10 kΩ, a force sensor
-    /// with 410 counts at zero and 300 counts/N, a current mirror with 400 counts/A.
+    /// Sums of sixteen conversions: 10 kΩ thermistors with a beta of 3950 K and self-heating under 10 kΩ, a force
+    /// sensor with 410 counts at zero and 300 counts/N, a current mirror with 400 counts/A.
     fn samples(&self) -> Samples {
         let thermistor = |t_c: f64, self_heating_k: f64| {
             let ohm =
@@ -189,7 +189,7 @@ impl TestBench {
                 joule_per_a,
                 leak_1_s,
                 ..
-            } = Tile::CLASS;
+            } = Tile::NOMINAL;
             let pumped_k_s = gain_k_s_a * (demand_a - joule_per_a * demand_a * demand_a);
             let leak_k_s = leak_1_s * (self.plate_c - self.sink_c);
             self.plate_c -= 1e-3 * (pumped_k_s + leak_k_s);
@@ -230,7 +230,8 @@ impl TestBench {
     }
 }
 
-/// Asserts agreement to 2 mK: a count of a thermistor's sum is 1.4 mK at 25 to 35 °C, so rounding shifts a temperature by
+/// Asserts agreement to 2 mK: a count of a thermistor's sum is 1.4 mK at 25 to 35 °C, so rounding shifts a temperature
+/// by
 /// 0.7 mK, and a set-point that is computed from skin and room by little more.
 #[track_caller]
 fn assert_close(actual_c: f64, expected_c: f64) {

@@ -38,8 +38,9 @@ fn a_first_contact_follows_equation_6_12_for_every_material_and_force() {
     }
 }
 
-/// If 5 s on granite cool the skin by `m`, the preset changes by `-m (1 - ratio / weight)` (Eq. 6-12 from the present skin
-/// temperature). A half-space that was held for 5 s and then left alone retains `2/pi asin sqrt(5/65)` of that after 60 s.
+/// If 5 s on granite cool the skin by `m`, the preset changes by `-m (1 - ratio / weight)` (Eq. 6-12 from the present
+/// skin temperature). A half-space that was held for 5 s and then left alone retains `2/pi asin sqrt(5/65)` of that
+/// after 60 s.
 #[test]
 fn the_preset_accounts_for_skin_that_has_not_recovered() {
     let mut bench = TestBench::settled_presenting("granite");

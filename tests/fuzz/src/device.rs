@@ -5,11 +5,11 @@
 //! from the samples by the thermistor class's nominal curve. A wrong constant or conversion of the
 //! firmware therefore cannot confirm itself.
 
-use thermal_display::device::command::{self, Addressed, Command, Status};
+use thermal_display::device::command::{self, Command, Status, WithFingerIndex};
 use thermal_display::device::drive::{BoardOutputs, Drive};
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
-use thermal_display::device::{Device, Finger, StateName};
+use thermal_display::device::{Device, FingerIndex, StateName};
 use thermal_display::protocol::{CommandHandler, Error, LineReader, telemetry_line};
 use thermal_display::settings::Settings;
 
@@ -46,7 +46,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     }
 
     /// The tile of a finger.
-    pub fn tile(&mut self, finger: Finger<FINGERS>) -> &mut Tile {
+    pub fn tile(&mut self, finger: FingerIndex<FINGERS>) -> &mut Tile {
         &mut self.tiles[finger.index()]
     }
 
@@ -56,13 +56,13 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     }
 
     /// State of a finger's station.
-    pub fn state(&mut self, finger: Finger<FINGERS>) -> StateName {
+    pub fn state(&mut self, finger: FingerIndex<FINGERS>) -> StateName {
         self.status(finger).state
     }
 
-    fn status(&mut self, finger: Finger<FINGERS>) -> Status {
+    fn status(&mut self, finger: FingerIndex<FINGERS>) -> Status {
         match self.device.execute(Some(finger), Command::Status) {
-            Ok(Addressed {
+            Ok(WithFingerIndex {
                 content: command::Reply::Status(status),
                 ..
             }) => status,
@@ -70,29 +70,29 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
         }
     }
 
-    fn states(&mut self) -> Vec<(Finger<FINGERS>, StateName)> {
-        Finger::all()
+    fn states(&mut self) -> Vec<(FingerIndex<FINGERS>, StateName)> {
+        FingerIndex::all()
             .map(|finger| (finger, self.state(finger)))
             .collect()
     }
 
     /// Display temperature of the first finger, °C, if it streams telemetry and has a reading.
     pub fn display_c(&self) -> Option<f64> {
-        let telemetry = self.device.telemetry(Finger::FIRST)?.content;
+        let telemetry = self.device.telemetry(FingerIndex::FIRST)?.content;
         telemetry.display.map(|celsius| celsius.to_num())
     }
 
     /// Runs ticks of every finger on its tile.
     pub fn run(&mut self, ticks: u32) {
         for _ in 0..ticks {
-            for finger in Finger::all() {
+            for finger in FingerIndex::all() {
                 self.tick_with(finger, |_| ());
             }
         }
     }
 
     /// Runs one tick of a finger on its tile, with modified samples.
-    pub fn tick_with(&mut self, finger: Finger<FINGERS>, modify: impl FnOnce(&mut Samples)) {
+    pub fn tick_with(&mut self, finger: FingerIndex<FINGERS>, modify: impl FnOnce(&mut Samples)) {
         let mut samples = self.tile(finger).samples();
         modify(&mut samples);
         let outputs = self.step(finger, &samples);
@@ -115,7 +115,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     }
 
     /// Runs one tick and checks the outputs, the change of state and the telemetry.
-    pub fn step(&mut self, finger: Finger<FINGERS>, samples: &Samples) -> BoardOutputs {
+    pub fn step(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
         let before = self.state(finger);
         let outputs = self.device.step(finger, samples);
         let Status {
@@ -153,7 +153,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
         match reader.push(byte) {
             None => {}
             Some(Err(error)) => {
-                let error = Addressed::from_whole_device(Error::from(error));
+                let error = WithFingerIndex::from_whole_device(Error::from(error));
                 check_answer(&error.to_string(), false);
             }
             Some(Ok(line)) => {

@@ -1,15 +1,4 @@
-//! Fuzz targets: every interface of the product that takes bytes, text or samples from outside.
-//!
-//! | target     | input                                                      | property that is checked                                     |
-//! |------------|------------------------------------------------------------|--------------------------------------------------------------|
-//! | `wire`     | bytes to the line reader, with ticks and touches between   | the checks of `device.rs` on answers, outputs and states     |
-//! | `station`  | samples, lines, faults                                     | the same, on every tick                                      |
-//! | `settings` | values of `set` lines, then samples                        | they read back; no reading errs by more than 2.8 K           |
-//! | `flash`    | damage, records and interrupted saves in settings' sectors | only what was written is read; a save always succeeds again  |
-//! | `scene`    | text of a scene                                            | an error names file and line; an accepted scene has a plant  |
-//!
-//! In all of them a panic, an integer overflow or a hang is a failure. `cargo xtask fuzz` runs them. [`Target::run`] is a
-//! pure function, so that a recorded input replays exactly.
+#![doc = include_str!("../README.md")]
 
 mod device;
 mod flash;

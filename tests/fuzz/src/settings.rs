@@ -2,7 +2,7 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use thermal_display::commissioning::SENSOR_WORDS;
-use thermal_display::device::Finger;
+use thermal_display::device::FingerIndex;
 
 use crate::device::{CheckedDevice, READING_ERROR_MAX_K};
 use crate::start::StartDevices;
@@ -88,7 +88,7 @@ pub fn run(input: &[u8]) -> bool {
     let _ = device.line("margins");
     let _ = device.line("stream 1");
     for &sum in values.sums.iter().take(256) {
-        device.tick_with(Finger::FIRST, |samples| {
+        device.tick_with(FingerIndex::FIRST, |samples| {
             (samples.display, samples.display_check) = (sum, sum);
         });
         check_reading(sum, device.display_c());

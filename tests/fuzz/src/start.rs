@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use thermal_display::device::safety::Fault;
-use thermal_display::device::{Finger, StateName};
+use thermal_display::device::{FingerIndex, StateName};
 
 use crate::device::CheckedDevice;
 
@@ -86,7 +86,7 @@ impl<const FINGERS: usize> StartDevices<FINGERS> {
             ];
             let states: Vec<_> = all
                 .iter_mut()
-                .map(|device| device.state(Finger::FIRST))
+                .map(|device| device.state(FingerIndex::FIRST))
                 .collect();
             let expected = [
                 StateName::Off,

@@ -2,15 +2,15 @@
 
 use arbitrary::{Arbitrary, Unstructured};
 use thermal_display::commissioning::SENSOR_WORDS;
-use thermal_display::device::Finger;
+use thermal_display::device::FingerIndex;
 use thermal_display::device::drive::Drive;
 use thermal_display::device::safety::Fault;
-use thermal_display::device::sense::{CHANNELS, SCANS_PER_TICK, Samples, Scan};
+use thermal_display::device::sense::{CHANNEL_COUNT, SCANS_PER_TICK, Samples, Scan};
 
 use crate::start::StartDevices;
 
 static STARTS: StartDevices<1> = StartDevices::new();
-const FINGER: Finger<1> = Finger::FIRST;
+const FINGER: FingerIndex<1> = FingerIndex::FIRST;
 
 /// Largest number of ticks of one input.
 const TICKS: u32 = 2500;
@@ -28,9 +28,9 @@ enum Event {
     /// Ticks on the tile.
     Run(u8),
     /// A tick with these sums and bridge fault.
-    Sums([u16; CHANNELS], bool),
+    Sums([u16; CHANNEL_COUNT], bool),
     /// A tick with these conversions, the second ones in the last scan.
-    Scans([u16; CHANNELS], [u16; CHANNELS]),
+    Scans([u16; CHANNEL_COUNT], [u16; CHANNEL_COUNT]),
     /// Ticks on the tile in which one channel is stuck at a sum.
     Stuck { channel: u8, sum: u16, ticks: u8 },
     /// Ticks on the tile in which one channel has an offset that grows.
@@ -174,7 +174,7 @@ impl Line {
 
 /// The sum of the channel with this index, modulo their number.
 fn channel(samples: &mut Samples, index: u8) -> &mut u16 {
-    match usize::from(index) % CHANNELS {
+    match usize::from(index) % CHANNEL_COUNT {
         0 => &mut samples.display,
         1 => &mut samples.display_check,
         2 => &mut samples.sink,
@@ -217,7 +217,8 @@ pub fn run(input: &[u8]) -> bool {
                 device.step(FINGER, &samples);
             }
             Event::Scans(counts, last) => {
-                let scan = |counts: [u16; CHANNELS]| -> Scan { counts.map(|count| count & 0x0fff) };
+                let scan =
+                    |counts: [u16; CHANNEL_COUNT]| -> Scan { counts.map(|count| count & 0x0fff) };
                 let mut scans = [scan(counts); SCANS_PER_TICK];
                 scans[SCANS_PER_TICK - 1] = scan(last);
                 let broken = scan(last)[..5]

@@ -47,8 +47,8 @@ fn play<const FINGERS: usize>(mut device: CheckedDevice<FINGERS>, bytes: &[u8]) 
                 device.run(ticks);
             }
             0xc0..=0xcf => device.press_all(0.2 * f64::from(byte & 0x0f)),
-            0xd0 => reader.fail(LineError::Reception),
-            0xd1 => reader.fail(LineError::QueueFull),
+            0xd0 => reader.mark_invalid(LineError::Reception),
+            0xd1 => reader.mark_invalid(LineError::QueueFull),
             0xd2 => device.note_host_activity(),
             byte => device.byte(&mut reader, byte),
         }

@@ -89,7 +89,7 @@ fn a_run_repeats_bit_for_bit_and_another_seed_changes_it() {
     assert_ne!(first, with_seed(2));
 }
 
-/// In a copy of the image a material has another name: the device does not know the old one.
+/// In a copy of the image a material has another name: the device refuses the old one.
 #[test]
 fn the_image_engine_runs_the_image_that_it_is_given() {
     let mut bytes = std::fs::read(image()).expect("the image");

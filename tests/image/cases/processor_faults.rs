@@ -45,7 +45,7 @@ fn a_hung_core_ends_in_a_watchdog_reset_that_switches_the_bridge_off() {
             row.t_s
         );
     }
-    // The plant sees the legs at its next boundary.
+    // The plant takes the legs' state at its next boundary.
     for row in between(&outcome, reset.t_s + 2e-3, 2.0) {
         assert_eq!(row.current_a, 0.0, "at {} s", row.t_s);
     }

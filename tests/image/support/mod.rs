@@ -1,4 +1,4 @@
-//! Shared by the tests that run the release image in the emulator: the image, runs of scenes on it, and a device without sensors.
+#![doc = include_str!("../README.md")]
 
 mod bare;
 

@@ -150,7 +150,7 @@ impl Bench {
         }
     }
 
-    /// The nominal tile with a thermistor lag that the controller knows, after 60 s at a constant target.
+    /// The nominal tile with a thermistor lag that the controller is set to, after 60 s at a constant target.
     pub fn settled_at(sensor_lag_s: f64, t_c: f64) -> Self {
         let mut bench = Self::new(&settings(sensor_lag_s), TileParams::NOMINAL);
         bench.run(t_c, 60.0);

@@ -3,10 +3,22 @@
 //! The model runs in open loop: an unreachable target keeps the current at its limit, which the test chooses, and a thermistor
 //! that reads what the model predicts leaves no innovation.
 
-use documented_figures::assert_figure;
+use documented_figures::{assert_figure, run_generator};
 use thermal_plant::tile::{Tile, TileParams, ZERO_C_K};
 
 use super::bench::{ControlLoop, ROOM_C, Sensor, advance, settings, ticks};
+
+#[test]
+fn the_models_constants_are_those_that_the_generator_prints() {
+    let script = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/native/control_law/plate_relaxations.py"
+    );
+    let source = include_str!("../../../src/device/src/estimate/plate_model.rs");
+    for line in run_generator(script, &[]).unwrap_or_default().lines() {
+        assert!(source.contains(line), "plate_model.rs lacks `{line}`");
+    }
+}
 
 /// Times at which both are compared, s.
 const TIMES_S: [f64; 9] = [0.02, 0.05, 0.1, 0.3, 1.0, 3.0, 10.0, 40.0, 100.0];

@@ -2,6 +2,7 @@
 mod apt;
 mod compilers;
 mod components;
+mod python;
 mod target;
 mod toolchain;
 
@@ -32,6 +33,8 @@ pub struct Needs {
     pub fuzzer: bool,
     /// clippy for the cross target.
     pub lints: bool,
+    /// Python with mpmath, for the generators of golden data.
+    pub generators: bool,
 }
 
 impl Needs {
@@ -40,6 +43,7 @@ impl Needs {
         emulator: true,
         fuzzer: false,
         lints: false,
+        generators: false,
     };
 }
 
@@ -91,6 +95,9 @@ pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
         };
         match (ready, missing.is_empty()) {
             (Some(toolchain), true) => {
+                if needs.generators {
+                    python::install_mpmath();
+                }
                 eprintln!("cross compiler: {toolchain}");
                 return Ok(toolchain);
             }

@@ -180,12 +180,12 @@ mod tests {
         let step = |choice, found, tried| decide(choice, found, false, tried);
         assert_eq!(step(Auto, &has_target, false), Use(Toolchain::Active));
         assert_eq!(step(Distribution, &has_target, false), distribution());
-        // rustup comes first on a bare machine; packages follow if it failed, unless rustup was asked for.
+        // rustup comes first on a bare machine; packages follow if it failed, unless rustup was requested.
         assert_eq!(step(Auto, &bare, false), AddWithRustup);
         assert_eq!(step(Auto, &bare, true), Lacks(vec![COMPILER]));
         assert_eq!(step(Rustup, &bare, true), Lacks(vec![RUSTUP_TARGET]));
         assert_eq!(step(Auto, &nothing, false), Lacks(vec![COMPILER, LINKER]));
-        // Complete packages save the download, unless rustup was asked for.
+        // Complete packages save the download, unless rustup was requested.
         assert_eq!(step(Auto, &with_rustup, false), distribution());
         assert_eq!(step(Rustup, &with_rustup, false), AddWithRustup);
         assert_eq!(step(Auto, &debian_12, true), Lacks(vec![COMPILER]));

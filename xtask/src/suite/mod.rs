@@ -3,6 +3,7 @@ mod lanes;
 mod members;
 
 use anyhow::Result;
+use documented_figures::{GENERATORS_REQUIRED, python_with_mpmath};
 
 use crate::firmware::{self, Fingers};
 use crate::process::Invocation;
@@ -24,8 +25,15 @@ fn check<const N: usize>(title: &'static str, lines: [&str; N]) -> Check {
     }
 }
 
+/// A command line of cargo. Where it runs tests and the set-up has found or installed mpmath, the generators of golden
+/// data must run as well.
 fn cargo(line: &str) -> Invocation {
-    Invocation::cargo(line.split(' '))
+    let cargo = Invocation::cargo(line.split(' '));
+    if line.starts_with("test ") && python_with_mpmath().is_some() {
+        cargo.env(GENERATORS_REQUIRED, "1")
+    } else {
+        cargo
+    }
 }
 
 /// `check`, or why it is left out.
@@ -174,6 +182,7 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
                 emulator: !quick_only,
                 fuzzer: !quick_only,
                 lints: true,
+                generators: true,
             };
             Ok((setup::prepare(needs, permission)?, setup::lints()?))
         })?;

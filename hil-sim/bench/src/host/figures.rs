@@ -6,7 +6,7 @@ use model_bench::job::{Checksum, ON_TARGET};
 use model_bench::kernels::{Call, KERNELS, Kernel, Table};
 use model_bench::scenes::{Arithmetic, SCENES, Station, TICKS};
 use serde::Serialize;
-use thermal_display::device::reference::INTERPOLATION_TOLERANCE;
+use thermal_display::device::reference::SETPOINT_INTERPOLATION_TOLERANCE;
 
 use super::accuracy::{Accuracy, STEP_K, Truth};
 use super::emulated::{Cost, Emulated};
@@ -136,7 +136,7 @@ pub fn measure(effort: Effort, progress: impl Fn(&str)) -> anyhow::Result<Figure
         inputs_on_target: ON_TARGET,
         ticks: TICKS,
         step_k: STEP_K,
-        tolerance_mk: 1e3 * INTERPOLATION_TOLERANCE.to_num::<f64>(),
+        tolerance_mk: 1e3 * SETPOINT_INTERPOLATION_TOLERANCE.to_num::<f64>(),
         target: "emulated STM32F446: instructions exact, cycles estimated, no wait states",
         compiler: emulated.compiler().into(),
         host: host(),

@@ -12,7 +12,7 @@ use thermal_sim::scene::Scene;
 use super::assessment::RunAssessment;
 use super::{FaultCase, FaultScene, InjectedFault, InjectionPoint, scene_text};
 
-/// Questions at the end and their times before it, s. The state is asked twice because a reset can truncate a line of
+/// Questions at the end and their times before it, s. The state is queried twice because a reset can truncate a line of
 /// telemetry, which then merges with the first answer.
 const QUESTIONS: [(f64, &str); 2] = [(0.2, "state"), (0.1, "state")];
 

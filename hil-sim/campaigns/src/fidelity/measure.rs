@@ -116,7 +116,7 @@ fn settled(errors: impl Iterator<Item = (f64, f64)>, below_mk: f64) -> Option<f6
 
 /// Percentage of the rows in contact in which the device reports `limited`.
 fn limited(outcome: &Outcome) -> Option<f64> {
-    let (mut contact, mut says) = (0u32, 0u32);
+    let (mut contact, mut limited) = (0u32, 0u32);
     for device in outcome
         .trace
         .rows()
@@ -125,10 +125,10 @@ fn limited(outcome: &Outcome) -> Option<f64> {
     {
         if device.state == "contact" {
             contact += 1;
-            says += u32::from(device.remark.as_deref() == Some("limited"));
+            limited += u32::from(device.remark.as_deref() == Some("limited"));
         }
     }
-    (contact > 0).then(|| 100.0 * f64::from(says) / f64::from(contact))
+    (contact > 0).then(|| 100.0 * f64::from(limited) / f64::from(contact))
 }
 
 #[cfg(test)]

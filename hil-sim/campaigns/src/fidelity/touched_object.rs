@@ -7,7 +7,7 @@ use contact_model::material::{MATERIALS, Material, Surface};
 pub struct TouchedObject {
     /// Name of the material.
     pub name: &'static str,
-    /// Its properties, if the device does not know the material by name.
+    /// Its properties, if the device has no material of that name.
     pub properties: Option<Material>,
 }
 
@@ -17,7 +17,7 @@ impl TouchedObject {
         MATERIALS.iter().map(|(name, _)| Self::of_thesis(name))
     }
 
-    /// A material of the thesis, which the device knows by name.
+    /// A material of the thesis, which the device has by name.
     #[must_use]
     pub const fn of_thesis(name: &'static str) -> Self {
         Self {

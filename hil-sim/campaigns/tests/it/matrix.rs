@@ -82,7 +82,7 @@ fn open_thermistor_holds_and_is_told_from_another() {
     assert_eq!(breaches(&silent, 2.0), [Breach::Reason]);
 }
 
-/// A drift shows after 3 s; whoever says that it shows at once finds the device late.
+/// A drift shows after 3 s; if a case states that it shows at once, the device counts as late.
 #[test]
 fn device_that_is_slower_than_its_sign_is_late() {
     let drift = fault_case("thermistor-drift display +5 K");
@@ -94,7 +94,7 @@ fn device_that_is_slower_than_its_sign_is_late() {
     assert_eq!(breaches(&at_once, 2.0), [Breach::Late]);
 }
 
-/// A fault that nobody sees, said to be seen: current flows on.
+/// A fault without a detector, stated as detectable: current continues to flow.
 #[test]
 fn device_that_goes_on_is_late_and_has_no_reason() {
     let unseen = FaultCase {

@@ -12,9 +12,9 @@ use crate::bridge::BridgeOutputs;
 use crate::contact::{SkinContact, is_abrupt};
 use crate::{Finger, Plant, STEP_S};
 
-/// Rows of `contact.csv`: material, force and numbers.
+/// Rows of `tests/data/contact.csv`: material, force and numbers.
 fn golden() -> impl Iterator<Item = (&'static str, [f64; 6])> {
-    let rows = include_str!("contact.csv")
+    let rows = include_str!("../../tests/data/contact.csv")
         .lines()
         .filter(|line| !line.starts_with('#'))
         .skip(1);

@@ -5,11 +5,11 @@ use std::convert::Infallible;
 use std::fmt::Display;
 
 use thermal_commissioning::StorageOrder;
-use thermal_device::command::Addressed;
+use thermal_device::command::WithFingerIndex;
 use thermal_device::drive::{BoardOutputs, Drive};
 use thermal_device::safety::{Fault, ThermalDose, TripCause};
 use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
-use thermal_device::{Device, Finger};
+use thermal_device::{Device, FingerIndex};
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::sensors::Channel;
 use thermal_protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
@@ -131,9 +131,9 @@ impl NativeEngine {
         self.execute_received_lines((self.halves - 1) * HALF_NS + TICK_NS);
         let samples = Samples::from_scans(&self.scans, self.fault);
         self.fault = self.world.bridge_fault();
-        self.outputs = self.device.step(Finger::FIRST, &samples);
+        self.outputs = self.device.step(FingerIndex::FIRST, &samples);
         self.world.comparator_test(self.outputs.comparator_test);
-        if let Some(telemetry) = self.device.telemetry(Finger::FIRST) {
+        if let Some(telemetry) = self.device.telemetry(FingerIndex::FIRST) {
             self.send_line(&telemetry_line(telemetry));
         }
     }
@@ -141,7 +141,7 @@ impl NativeEngine {
     /// Restarts the logic with the bridge off and with the trip cause and dose that the board retains. The start-up time of
     /// the board is not modelled.
     fn restart(&mut self, cause: ResetCause) {
-        let tripped = self.device.earliest_cause().copied();
+        let tripped = self.device.earliest_trip_cause().copied();
         let cause_retained = match cause {
             ResetCause::PowerOn => None,
             ResetCause::WindowWatchdog => {
@@ -151,11 +151,11 @@ impl NativeEngine {
         };
         let dose = match cause {
             ResetCause::PowerOn => ThermalDose::default(),
-            _ => ThermalDose::from_word(self.device.dose(Finger::FIRST).to_word()),
+            _ => ThermalDose::from_word(self.device.thermal_dose(FingerIndex::FIRST).to_word()),
         };
         let settings = Settings::default();
         self.device = Device::with_trip_cause(cause_retained, &settings);
-        self.device.restore_dose(Finger::FIRST, dose);
+        self.device.restore_thermal_dose(FingerIndex::FIRST, dose);
         self.handler = match &self.stored {
             Some(stored) => {
                 self.device.restore_settings(stored);
@@ -184,20 +184,20 @@ impl NativeEngine {
     /// Executes the lines whose last byte has arrived before the tick.
     fn execute_received_lines(&mut self, now_ns: u64) {
         while let Some((_, byte)) = self.incoming.pop_front_if(|(at, _)| *at <= now_ns) {
-            if LineReader::is_end(byte) {
+            if LineReader::is_line_end(byte) {
                 self.device.note_host_activity();
             }
             let Some(line) = self.reader.push(byte) else {
                 continue;
             };
             let executed = line
-                .map_err(|error| Addressed::from_whole_device(Error::from(error)))
+                .map_err(|error| WithFingerIndex::from_whole_device(Error::from(error)))
                 .and_then(|line| {
                     self.handler.answer(&line, |finger, command| {
                         self.device.execute(finger, command)
                     })
                 });
-            if let Ok(Addressed {
+            if let Ok(WithFingerIndex {
                 content: Reply::Restart(order),
                 ..
             }) = &executed

@@ -3,8 +3,8 @@
 //! # Time
 //! The device serves its fingers in turn, 0.2 ms apart, so each finger has millisecond boundaries of its own: between
 //! the fourth and the fifth of its 16 scans, as those of the one-finger engines are. The simulated sensors move by a
-//! sixteenth of a millisecond's change from scan to scan, though the scans of a finger take 0.18 ms only: a plant sees
-//! the same as on the one-finger board, and the device its sensors 0.4 ms older than they would be.
+//! sixteenth of a millisecond's change from scan to scan, though the scans of a finger take 0.18 ms only: a plant gets
+//! the same as on the one-finger board, and the device reads its sensors 0.4 ms older than they would be.
 //!
 //! A line to a finger is sent right after that finger's tick. Lines to later fingers follow one millisecond each later,
 //! because at 1 Mbaud they would delay each other.

@@ -16,7 +16,7 @@ use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
 use thermal_device::control::Law;
-use thermal_device::reference::Mode;
+use thermal_device::reference::ContactModel;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::BackBoundary;
 use thermal_plant::{Params, PlantConfig};
@@ -53,7 +53,7 @@ pub struct Scene {
     /// Whether the device was calibrated and tuned before the scene.
     pub commissioned: bool,
     /// Contact model that the device uses.
-    pub mode: Mode,
+    pub mode: ContactModel,
     /// Control law; `None` for the default of the device.
     pub law: Option<Law>,
     /// The object that the display imitates.
@@ -140,10 +140,10 @@ impl Scene {
     pub fn exact_setpoint_c(&self, since_s: f64, force_n: f64) -> f64 {
         let object = &self.object.material;
         match self.mode {
-            Mode::SemiInfinite => {
+            ContactModel::SemiInfinite => {
                 interface_temperature(&SKIN, self.skin_c, object, self.object_c())
             }
-            Mode::ContactResistance => {
+            ContactModel::ContactResistance => {
                 let (finger, object) = ((&SKIN, self.skin_c), (object, self.object_c()));
                 Contact::new(finger, object, &REFERENCE_DISPLAY, pressure_pa(force_n))
                     .at(since_s)

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use thermal_device::control::Law;
-use thermal_device::reference::Mode;
+use thermal_device::reference::ContactModel;
 use thermal_device::safety::Setpoint;
 use thermal_plant::{ConfigError, Plant};
 use toml::Spanned;
@@ -33,8 +33,8 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         source.within("room_c", &file.room_c, 5.0, 40.0)?,
     );
     let mode = match file.mode {
-        file::Mode::Contact => Mode::ContactResistance,
-        file::Mode::SemiInfinite => Mode::SemiInfinite,
+        file::Mode::Contact => ContactModel::ContactResistance,
+        file::Mode::SemiInfinite => ContactModel::SemiInfinite,
     };
     let (faults, injections) = faults(&source, &file.fault, duration_s, file.seed)?;
     let scene = Scene {
@@ -88,7 +88,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// The control law of a name, as the device knows it.
+/// The control law of a name, with the names of the device's protocol.
 fn law(source: &Source<'_>, name: &Spanned<String>) -> Result<Law, SceneError> {
     let known = Law::PROTOCOL_WORDS
         .iter()

@@ -119,7 +119,7 @@ fn slopes_converge_with_the_sampling() {
 
 #[test]
 fn incomplete_periods_cause_an_error_proportional_to_their_length() {
-    // What part of a period does to means over n periods is at most of order 1/n; spacing sees whole elements.
+    // A part of a period changes means over n periods by order 1/n at most; spacing counts whole elements.
     let mut worst = 0.0_f64;
     for (amplitude_m, period_m) in [(10e-6, 0.65e-3), (100e-6, 0.5e-3)] {
         for phase in [0.0, 0.7, 2.0, PI, 5.0] {
@@ -189,7 +189,7 @@ fn unequal_steps_give_the_same_roughness() {
 
 #[test]
 fn slopes_of_a_polynomial_of_sixth_degree_are_exact_in_the_middle() {
-    // The seven-point formula is exact for it; with uneven points that is what tells it from the even one. The
+    // The seven-point formula is exact for it; with uneven points that distinguishes it from the even one. The
     // ends' lower orders are outvoted by a steep middle: heights vanish to fourth order at both ends.
     let bump = |x: f64| (x * (1.0 - x)).powi(3) * 64.0;
     let slope = |x: f64| 192.0 * (x * (1.0 - x)).powi(2) * (1.0 - 2.0 * x);
@@ -296,7 +296,7 @@ fn noise_increases_roughness_but_not_spacing() {
 #[test]
 fn gaussian_profiles_follow_eq_6_13() {
     // Many waves of random phase, each of whole periods: Gaussian heights, moments known exactly. Slopes are
-    // small, as Eq. 6-13 wants.
+    // small, as Eq. 6-13 requires.
     let mut random = Xoshiro256PlusPlus::seed_from_u64(3);
     let (rq_m, count, length_m) = (2e-6, 300, 60e-3);
     let waves: Vec<Sine> = (0..count)

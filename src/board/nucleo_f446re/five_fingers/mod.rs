@@ -49,25 +49,28 @@
 //! A sum of 16 scans therefore contains at most a sixteenth of the amplitude of the ripple.
 
 mod multiplexer;
-mod power;
+mod power_stage;
 
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1, TIM8};
 
 pub use multiplexer::Multiplexer;
-pub use power::{BridgePeripherals, ControlLines, PowerStage};
+pub use power_stage::{BridgeAndComparatorPins, BridgePeripherals, PowerStage};
 
-/// Number of fingers that this wiring controls.
+/// Number of fingers that this wiring controls, each with its own bridge and sensors.
 pub const FINGERS: usize = 5;
 
-/// Register value for a sampling time of 15 cycles, 0.67 us.
+/// Code in the registers SMPR1 and SMPR2 of ADC1 for a sampling time of 15 cycles at 22.5 MHz, 0.67
+/// us.
 ///
-/// Behind a voltage follower, 7 pF and 6 kOhm inside the converter settle to a quarter of a step in
-/// 0.41 us. With 12 more cycles for the conversion, seven channels take 8.4 us of the 11.1 us
-/// between two scans, and 630 conversions take 756 us of each millisecond.
-pub const SAMPLE_TIME: u8 = 1;
+/// Behind a voltage follower, the input of the converter (7 pF and 6 kOhm) settles to a quarter of
+/// a count in 0.41 us. With 12 more cycles for each conversion, the seven channels of a scan take
+/// 8.4 us of the 11.1 us between two scans, and the 630 conversions of all fingers take 756 us of
+/// each millisecond.
+pub const SAMPLE_TIME_CODE: u8 = 1;
 
-/// Makes all bridges high-impedance, in any state of the program, which must not continue
-/// afterwards.
+/// Makes the outputs of all bridges high-impedance by direct writes to the registers, in any state
+/// of the program, also before the bridges are set up. For the handlers of fatal errors, after
+/// which the program must not continue.
 pub fn disable_bridges() {
     // SAFETY: the owners of these peripherals do not run again, because interrupts are disabled and
     // no caller of this function returns. The registers may be written at any time.

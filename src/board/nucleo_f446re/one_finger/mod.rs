@@ -13,37 +13,43 @@
 //! without the processor. It also pulls nFAULT low, so that the break input reports the trip to the
 //! processor.
 
-mod power;
+mod power_stage;
 
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1};
-use thermal_display::device::Finger;
+use thermal_display::device::FingerIndex;
 
-pub use power::PowerStage;
+pub use power_stage::PowerStage;
 
-/// Number of fingers that this wiring controls.
+/// Number of fingers that this wiring controls, each with its own bridge and sensors.
 pub const FINGERS: usize = 1;
 
-/// Register value for a sampling time of 56 cycles, 2.5 us.
+/// Code in the registers SMPR1 and SMPR2 of ADC1 for a sampling time of 56 cycles at 22.5 MHz, 2.5
+/// us.
 ///
-/// The input must settle to a quarter of a step, which takes 9.7 time constants: 0.75 us with 7 pF,
-/// 6 kOhm inside the converter and 5 kOhm of a 10k/10k divider. The margin is for a cold thermistor
-/// of 30 kOhm, whose divider has 7.5 kOhm. With 12 more cycles for the conversion, seven channels
-/// take 21 us of the 62.5 us between two scans.
-pub const SAMPLE_TIME: u8 = 3;
+/// The input of the converter must settle to a quarter of a count, which takes 9.7 time constants:
+/// 0.75 us with 7 pF and 6 kOhm inside the converter and 5 kOhm of a 10k/10k divider. The margin is
+/// for a cold thermistor of 30 kOhm, whose divider has 7.5 kOhm. With 12 more cycles for each
+/// conversion, the seven channels of a scan take 21 us of the 62.5 us between two scans.
+pub const SAMPLE_TIME_CODE: u8 = 3;
 
-/// Stands for the multiplexers of the five-finger wiring; one finger needs none.
-pub struct Multiplexer;
+/// Takes the place of the multiplexers of the five-finger wiring, so that both wirings use the same
+/// sampler; one finger needs no multiplexer.
+pub struct NoMultiplexer;
 
-impl Multiplexer {
-    /// Scans after a switch that may still belong to the previous finger.
+pub use NoMultiplexer as Multiplexer;
+
+impl NoMultiplexer {
+    /// Number of scans to drop after each switch to another finger: none, because a single finger
+    /// is never switched.
     pub const SETTLING_SCANS: usize = 0;
 
     /// Does nothing, because a single finger needs no multiplexer.
-    pub fn select(&mut self, _finger: Finger<FINGERS>) {}
+    pub fn select(&mut self, _finger: FingerIndex<FINGERS>) {}
 }
 
-/// Makes the bridge high-impedance, in any state of the program, which must not continue
-/// afterwards.
+/// Makes the outputs of the bridge high-impedance by direct writes to the registers, in any state
+/// of the program, also before the bridge is set up. For the handlers of fatal errors, after which
+/// the program must not continue.
 pub fn disable_bridges() {
     // SAFETY: the owners of these peripherals do not run again, because interrupts are disabled and
     // no caller of this function returns. The registers may be written at any time.

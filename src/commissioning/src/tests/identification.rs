@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 use contact_model::fixed_point::{Celsius, Force};
 
 use crate::SessionError;
-use crate::identification::{IdentificationError, identify};
+use crate::tile_identification::{IdentificationError, tile_from_normal_equations};
 use thermal_device::command::Refused;
 use thermal_device::drive::Current;
 use thermal_device::identification::{AbortReason, Identification, NormalEquations};
@@ -90,14 +90,15 @@ impl Plant {
         for tick in 0..80_000 {
             match identification.outcome() {
                 Some(Ok(())) => {
-                    return identify(equations.rows()).map_err(SessionError::Identification);
+                    return tile_from_normal_equations(equations.rows())
+                        .map_err(SessionError::Identification);
                 }
                 Some(Err(why)) => return Err(Refused::TuneAborted(why).into()),
                 None => {}
             }
             let touching = tick >= touched_from;
             let readings = self.readings(tick, measured);
-            let current = identification.choose_current(&mut equations, &readings, touching);
+            let current = identification.step(&mut equations, &readings, touching);
             measured = self.step(current.unwrap_or(Current::ZERO));
         }
         panic!("the identification did not end within 80 s");

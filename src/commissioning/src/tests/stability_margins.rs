@@ -19,7 +19,7 @@ fn simc_on_an_integrator_has_the_published_margins() {
         dead_time_s: 0.1,
     };
     let StabilityMargins { phase_deg, gain } =
-        StabilityMargins::new(&tile, &Gains::simc(&tile, 0.0));
+        StabilityMargins::new(&tile, &Gains::from_simc_rule(&tile, 0.0));
     assert!((gain - 2.96).abs() < 0.005, "{gain}");
     assert!((phase_deg - 46.9).abs() < 0.05, "{phase_deg}");
 }

@@ -1,4 +1,4 @@
-//! Control laws: from reference and estimate to current, and from current to bridge voltage.
+//! Control laws, which choose the current from reference and estimates, and the bridge voltage for that current.
 
 mod parameters;
 mod voltage_feedforward;
@@ -12,35 +12,39 @@ use crate::drive::Current;
 use crate::estimate::PlateObserver;
 use crate::pi::Pi;
 use crate::reference::Reference;
-use crate::safety::limits::COOLING_REDUCED_FROM;
+use crate::safety::limits::SINK_DERATING_FROM;
 
-/// For each kelvin of the sink above [`COOLING_REDUCED_FROM`] the law `model` reduces the limit of the cooling current
-/// by one half (this power of two) of the whole.
-const COOLING_REDUCTION_SHIFT: u32 = 1;
+/// Slope by which the law `model` reduces its largest cooling current while the sink is above [`SINK_DERATING_FROM`]
+/// (39.5 °C): by 1/2 (2^-1, this power of two) of the current limit per kelvin, so to zero at 41.5 °C.
+const COOLING_LIMIT_REDUCTION_PER_K_SHIFT: u32 = 1;
 
-/// Control law that chooses the module's current from the reference and the readings; selected by the host's command
-/// `law`.
+/// Control law that chooses the module's current from the reference and the readings of the display's thermistor;
+/// selected by the host's command `law`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Law {
-    /// Proportional-integral control of the display's reading, ten times a second, as the display of the thesis.
+    /// Proportional-integral control of the reading of the display's thermistor to the set-point, updated ten times a
+    /// second, as in the display of the thesis on which this project is based.
     Pi10Hz,
-    /// Proportional-integral control of the display's reading, at every tick of 1 ms.
+    /// Proportional-integral control of the reading of the display's thermistor to the set-point, updated at every tick
+    /// of 1 ms.
     Pi,
-    /// Feed-forward by the internal model of plate and finger, with a disturbance observer; it also corrects the skin's
-    /// temperature. The default.
+    /// Feed-forward: computes the current that brings the surface of the internal plate model to the target in 12 ms,
+    /// including the finger's estimated heat. A disturbance observer corrects the model by the display's reading.
+    /// During contact the target contains a correction that brings the skin on the display to the temperature that it
+    /// would have on the object; the other laws have no such correction. This law is the default.
     #[default]
     Model,
 }
 
 impl Law {
-    /// All laws, each with its word on the line to the host.
+    /// All laws, each with its word in the protocol with the host.
     pub const PROTOCOL_WORDS: [(&'static str, Self); 3] = [
         ("pi-10hz", Self::Pi10Hz),
         ("pi", Self::Pi),
         ("model", Self::Model),
     ];
 
-    /// The law's word on the line to the host, as in [`Self::PROTOCOL_WORDS`].
+    /// Word for this law in the protocol with the host, as in [`Self::PROTOCOL_WORDS`].
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -51,22 +55,21 @@ impl Law {
     }
 }
 
-/// The controller of one finger's display: the selected law, and the states of both proportional-integral laws, which
-/// start from the present current when their law is selected.
+/// Controller of one finger's display: the selected law, and the states of the two proportional-integral laws, which
+/// start from the present current when they are selected.
 #[derive(Clone, Debug)]
 pub struct Controller {
     law: Law,
-    /// Controller of the law `pi-10hz`, which updates its current ten times a second.
     pi_10hz: Pi,
-    /// Controller of the law `pi`, which updates its current at every tick.
     pi: Pi,
-    /// Current of the last tick, A; positive cools.
+    /// Current of the last tick, A (positive cools), chosen by the law or set by [`Self::track_current`]. A
+    /// proportional-integral law that is newly selected starts from it.
     current: Current,
 }
 
 impl Controller {
-    /// A controller with the default law `model` and no current; no law ever chooses more than `limit`, A, in
-    /// magnitude.
+    /// A controller with the default law `model` and no current, 0 A. No law ever chooses a current of more than
+    /// `limit`, A, in magnitude.
     #[must_use]
     pub fn new(parameters: &ControlParameters, limit: Current) -> Self {
         Self {
@@ -77,22 +80,23 @@ impl Controller {
         }
     }
 
-    /// Takes the gains of another tile, after the host has stored a new identification; the integral parts of the
-    /// currents stay. The plate's observer takes its own constants.
+    /// Replaces the gains of the two proportional-integral laws: at the start by those of the settings in flash, later
+    /// when the host sets a new tile (commands `tune result`, `set tile`). The integral parts of the currents stay. The
+    /// plate's observer must be given its own constants separately ([`PlateObserver::set_parameters`]).
     pub fn set_parameters(&mut self, parameters: &ControlParameters) {
         self.pi.set_coefficients(parameters.pi);
         self.pi_10hz.set_coefficients(parameters.pi_10hz);
     }
 
-    /// The law that chooses the current now; the host's command `law` selects another.
+    /// The selected law, which chooses the current. The host's command `law` selects another.
     #[must_use]
     pub const fn law(&self) -> Law {
         self.law
     }
 
-    /// Selects another law. The proportional-integral laws start from the present current (bumpless transfer), the law
-    /// `model` from the observer, which has followed that current. The law in use, selected again, continues
-    /// undisturbed.
+    /// Selects `law`. A proportional-integral law starts from the present current (bumpless transfer); the law `model`
+    /// continues from the observer, which follows the current under every law. If `law` is already selected, nothing
+    /// changes.
     pub fn select_law(&mut self, law: Law) {
         if law != self.law {
             self.law = law;
@@ -100,22 +104,25 @@ impl Controller {
         }
     }
 
-    /// Largest magnitude, A, of the current that [`Self::choose_current`] returns.
+    /// Largest magnitude, A, of the current that [`Self::choose_current`] returns: the `limit` that [`Self::new`] has
+    /// received from the settings.
     #[must_use]
     pub const fn current_limit(&self) -> Current {
         self.pi.output_limit()
     }
 
-    /// Takes the current, A, of a tick in which the self-test or an identification has chosen it, or in which the
-    /// bridge is off, so that the laws start from there.
+    /// Sets the present current, A (positive cools), in a tick in which no law has chosen it: during the self-test or
+    /// an identification, or while the bridge is off (0 A). The two proportional-integral laws continue from this
+    /// current (bumpless transfer); the law `model` continues from the observer instead.
     pub fn track_current(&mut self, current: Current) {
         self.current = current;
         self.pi_10hz.track_current(current);
         self.pi.track_current(current);
     }
 
-    /// Chooses the current of this tick, A (positive cools), by the selected law. `display` and `sink` are this tick's
-    /// readings, °C, by which the observer `plate` has already been corrected.
+    /// Chooses the current of this tick, A (positive cools), by the selected law, within the current limit. The law
+    /// `model` brings the display to the target of `reference`, the other laws bring it to the set-point. `display` and
+    /// `sink` are this tick's readings, °C; the observer `plate` must already have been corrected by them.
     pub fn choose_current(
         &mut self,
         reference: &Reference,
@@ -128,17 +135,18 @@ impl Controller {
             Law::Pi => self.pi.update_output(reference.setpoint, display),
             Law::Model => plate
                 .current_to_target(reference.target.celsius())
-                .min(self.cooling_limit(sink))
+                .min(self.cooling_current_limit(sink))
                 .max(-self.current_limit()),
         };
         self.current
     }
 
-    /// Largest cooling current of the law `model`, A, at this temperature of the sink, °C. It falls to zero over 2 K
-    /// above [`COOLING_REDUCED_FROM`], because there more current would warm the sink more than cool the display.
-    fn cooling_limit(&self, sink: Celsius) -> Current {
-        let excess =
-            sink.saturating_sub(COOLING_REDUCED_FROM).max(Celsius::ZERO) >> COOLING_REDUCTION_SHIFT;
+    /// Largest cooling current of the law `model`, A, when the sink has the temperature `sink`, °C: the current limit
+    /// up to [`SINK_DERATING_FROM`] (39.5 °C), falling linearly to zero 2 K above it. At such temperatures more
+    /// current would warm the sink more than cool the display.
+    fn cooling_current_limit(&self, sink: Celsius) -> Current {
+        let excess = sink.saturating_sub(SINK_DERATING_FROM).max(Celsius::ZERO)
+            >> COOLING_LIMIT_REDUCTION_PER_K_SHIFT;
         let part = Celsius::ONE.saturating_sub(excess).max(Celsius::ZERO);
         product(self.current_limit(), part)
     }

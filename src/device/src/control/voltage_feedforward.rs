@@ -1,61 +1,71 @@
-//! Feed-forward from current to bridge voltage.
+//! Feed-forward: the bridge voltage that drives a given current through the module.
 
 use contact_model::fixed_point::{Celsius, product};
 use fixed::types::{I0F32, I1F15, I4F28, I8F24};
-use thermal_settings::Module;
+use thermal_settings::PeltierModule;
 
 use crate::bismuth_telluride::{DATA_SHEET_TEMPERATURE, RESISTIVITY_RISE_PER_K};
 use crate::drive::{Current, Duty, SafeCurrent};
 use crate::estimate::LegTemperatures;
 
-/// A voltage as a part of the bridge's supply voltage; 1 is all of it.
-type SupplyPart = I8F24;
+/// Voltage as a fraction of the bridge's supply voltage; 1 is the whole supply.
+type SupplyFraction = I8F24;
 
-/// Limit of the dead-time loss's distance from half of its largest value, as a part of the supply, on the line between
-/// no loss and all of it; keeps the quotient in range.
-const LARGEST_OFFSET_FROM_HALF_LOSS: SupplyPart = SupplyPart::lit("0.0625");
-/// Binary places to which the divisor is cut, so that a 32-bit division is enough.
-const DIVISOR_BINARY_PLACES: u32 = 10;
+/// Limit, in either direction, of the difference between the dead-time loss and half of the largest dead-time loss, as
+/// a fraction of the supply voltage. It only keeps a division in the computation of the loss within 32 bits; the loss
+/// itself is limited afterwards, to between zero and the largest loss.
+const LARGEST_OFFSET_FROM_HALF_DEAD_TIME_LOSS: SupplyFraction = SupplyFraction::lit("0.0625");
+/// Fractional bits of the divisor in the computation of the dead-time loss, by which the dividend is also shifted; so
+/// few that a 32-bit division is enough.
+const DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS: u32 = 10;
 
-/// The module's electrical side: `V = R I + a (T_hot - T_cold) + V_dead`, where `V_dead` is what the bridge loses
-/// in its dead times.
+/// Computes the bridge's output voltage that drives a current through the module: `V = R I + S (T_hot - T_cold) +
+/// lost`, with the resistance `R`, the Seebeck coefficient `S` of the module, the temperatures of the legs' ends, and
+/// the voltage `lost` in the dead times of the bridge, in which both switches of a half-bridge are off. A positive
+/// current `I` cools.
 ///
-/// It loses all of `V_dead` while the inductor's current keeps the direction of the pulses for the whole period, and nothing
-/// while its ripple reverses the current in every dead time. In between, the loss follows a straight line over half of the
-/// current change of one dead time:
+/// All of `V_dead`, the largest loss, is lost while the current in the filter's inductor keeps the direction of the
+/// pulses for the whole PWM period, and nothing while the ripple of the inductor's current reverses that current in
+/// every dead time. In between, the loss rises linearly with `I`:
 ///
 /// ```text
 /// lost = V_dead (I - from) / (dead_time_a / 2), from 0 to V_dead      from = ripple_a w (1 - w) - dead_time_a
 /// ```
 ///
-/// for pulses of a part `w` of the period, and a current `I` that is positive in their direction.
+/// Here `w` is the fraction of the PWM period that a pulse takes, `I` is positive in the direction of the pulses,
+/// `dead_time_a` is the change of the inductor's current during one dead time, A, and `ripple_a w (1 - w)` is half of
+/// the peak-to-peak ripple of the inductor's current, A.
 ///
-/// No product overflows for a module of less than half of the supply per ampere, and 64 A of ripple: currents are within
-/// ±128 A, temperatures within ±512 K, all else within the supply.
+/// No product overflows if 1 A needs less than half of the supply voltage and `ripple_a` is at most 64 A: currents are
+/// within ±128 A, temperatures within ±512 °C, and all voltages within the supply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct VoltageFeedforward {
-    /// Resistance of legs at 27 °C, leads and bridge, divided by the supply voltage, 1/A.
+    /// Resistance of the legs at 27 °C, the leads and the bridge, divided by the supply voltage, 1/A: voltage per
+    /// ampere as a fraction of the supply.
     per_ampere: I4F28,
-    /// Rise of the resistance of the legs with their mean temperature, divided by the supply voltage, 1/(A K).
+    /// Rise of the legs' resistance per kelvin of their mean temperature, divided by the supply voltage, 1/(A K).
     rise_per_k: I4F28,
-    /// Seebeck voltage per kelvin between the legs' hot and cold ends, as a part of the supply, 1/K.
+    /// Seebeck voltage per kelvin between the legs' hot and cold ends, as a fraction of the supply voltage, 1/K.
     per_k: I0F32,
-    /// Largest voltage that the bridge loses in its dead times, `V_dead`, as a part of the supply.
-    dead_time: SupplyPart,
-    /// Half of the inductor's ripple current, A, divided by `w (1 - w)` for pulses of a part `w` of the period.
+    /// Largest voltage that the bridge loses in its dead times, `V_dead`, as a fraction of the supply voltage.
+    dead_time: SupplyFraction,
+    /// Amplitude factor of the inductor's ripple current, A: half of the peak-to-peak ripple is `ripple_a w (1 - w)`
+    /// for pulses of a fraction `w` of the PWM period.
     ripple_a: Current,
-    /// Change of the inductor's current during one dead time, A.
+    /// Change of the current in the inductor of the bridge's output filter during one dead time, A.
     dead_time_a: Current,
-    /// Slope of the loss between none and all of it, as a part of the supply per ampere, 1/A.
-    dead_time_per_a: SupplyPart,
+    /// Rise of the dead-time loss per ampere of the module's current, in the range of currents in which the loss rises
+    /// from zero to its largest value, as a fraction of the supply voltage, 1/A.
+    dead_time_per_a: SupplyFraction,
 }
 
 impl VoltageFeedforward {
-    /// Converts the module's electrical settings. Computed in `f64`, so it is for start-up and not for the tick.
+    /// Converts the electrical settings of the module to fixed point. Computed in floating point, so it is for
+    /// start-up, not for the control tick.
     #[must_use]
-    pub fn new(module: &Module) -> Self {
+    pub fn new(module: &PeltierModule) -> Self {
         let bits = |value: f64, places: u32| libm::round(libm::ldexp(value, places as i32)) as i32;
-        let part = |value: f64| SupplyPart::from_bits(bits(value, SupplyPart::FRAC_NBITS));
+        let part = |value: f64| SupplyFraction::from_bits(bits(value, SupplyFraction::FRAC_NBITS));
         let resistance =
             |ohm: f64| I4F28::from_bits(bits(ohm / module.supply_v, I4F28::FRAC_NBITS));
         let dead_time = module.dead_time_v / module.supply_v;
@@ -73,15 +83,16 @@ impl VoltageFeedforward {
         }
     }
 
-    /// Duty cycle of the bridge that drives `current` through the module, whose `legs` have these temperatures:
-    /// resistive and Seebeck voltage plus what the dead times lose, limited to ±0.9. Positive cools.
+    /// Duty cycle of the bridge, positive for cooling, that drives `current` through the module while its legs have the
+    /// temperatures `legs`. Sum of resistive voltage, Seebeck voltage and dead-time loss, divided by the supply voltage
+    /// and limited to ±0.9.
     #[must_use]
     pub fn duty_for_current(&self, current: SafeCurrent, legs: &LegTemperatures) -> Duty {
         let current = current.ampere();
         let difference: Celsius = legs.hot.saturating_sub(legs.cold);
         let above_data_sheet = legs.mean.saturating_sub(DATA_SHEET_TEMPERATURE);
         let rise = product(above_data_sheet, self.rise_per_k);
-        let resistive: SupplyPart = product(current, self.per_ampere.saturating_add(rise));
+        let resistive: SupplyFraction = product(current, self.per_ampere.saturating_add(rise));
         let needed = resistive.saturating_add(product(difference, self.per_k));
         let voltage = if needed < 0 {
             needed.saturating_sub(
@@ -93,29 +104,31 @@ impl VoltageFeedforward {
         Duty::saturating(I1F15::saturating_from_num(voltage))
     }
 
-    /// Voltage that the bridge loses in its dead times, as a part of the supply, while its pulses must leave `needed`
-    /// (0 or more) after the loss, at `current`, A, along the pulses. The loss widens the pulses, which changes ripple
-    /// and loss in turn: solved to first order around half of the largest loss.
-    fn dead_time_loss(&self, needed: SupplyPart, current: Current) -> SupplyPart {
-        const ONE: SupplyPart = SupplyPart::ONE;
-        let times = product::<SupplyPart, _>;
+    /// Voltage that the bridge loses in its dead times, as a fraction of the supply voltage, from zero to the largest
+    /// loss, `V_dead`. The fraction `needed` (0 or more) must remain for the module after the loss. `current`, A, is
+    /// positive in the direction of the pulses. The loss makes wider pulses necessary, and wider pulses change the
+    /// ripple and thereby the loss; the solution is of first order around half of `V_dead`.
+    fn dead_time_loss(&self, needed: SupplyFraction, current: Current) -> SupplyFraction {
+        const FIXED_POINT_ONE: SupplyFraction = SupplyFraction::ONE;
+        let times = product::<SupplyFraction, _>;
         let half = self.dead_time >> 1u32;
-        let middle = needed.saturating_add(half).min(ONE);
-        let from = times(self.ripple_a, times(middle, ONE - middle)) - self.dead_time_a;
+        let middle = needed.saturating_add(half).min(FIXED_POINT_ONE);
+        let from = times(self.ripple_a, times(middle, FIXED_POINT_ONE - middle)) - self.dead_time_a;
         let line = times(current.saturating_sub(from), self.dead_time_per_a);
-        // A wider pulse has more ripple, which takes back a part of the loss.
-        let ripple_per_width = times(self.ripple_a, ONE - 2 * middle);
-        let feedback = times(ripple_per_width, self.dead_time_per_a).max(SupplyPart::ZERO);
+        // A wider pulse (below half of the period) has more ripple, which reduces the loss.
+        let ripple_per_width = times(self.ripple_a, FIXED_POINT_ONE - 2 * middle);
+        let feedback = times(ripple_per_width, self.dead_time_per_a).max(SupplyFraction::ZERO);
         let offset = line.saturating_sub(half).clamp(
-            -LARGEST_OFFSET_FROM_HALF_LOSS,
-            LARGEST_OFFSET_FROM_HALF_LOSS,
+            -LARGEST_OFFSET_FROM_HALF_DEAD_TIME_LOSS,
+            LARGEST_OFFSET_FROM_HALF_DEAD_TIME_LOSS,
         );
-        let divisor =
-            ONE.saturating_add(feedback) >> (SupplyPart::FRAC_NBITS - DIVISOR_BINARY_PLACES);
-        let quotient = (offset.to_bits() << DIVISOR_BINARY_PLACES) / divisor.to_bits();
-        (half + SupplyPart::from_bits(quotient))
+        let divisor = FIXED_POINT_ONE.saturating_add(feedback)
+            >> (SupplyFraction::FRAC_NBITS - DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS);
+        let quotient =
+            (offset.to_bits() << DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS) / divisor.to_bits();
+        (half + SupplyFraction::from_bits(quotient))
             .min(self.dead_time)
-            .max(SupplyPart::ZERO)
+            .max(SupplyFraction::ZERO)
     }
 }
 
@@ -134,8 +147,8 @@ mod tests {
         }
     }
 
-    /// Pulse widths, currents, and the voltage that is lost at them, computed by hand from inductor, diodes and dead time:
-    /// corners of the straight lines, and currents far from them.
+    /// Pulse widths, currents, and the voltage that is lost at them, computed by hand from inductor, diodes and dead
+    /// time: corners of the straight lines, and currents far from them.
     #[test]
     fn the_duty_compensates_the_loss_of_the_dead_times() {
         let voltage = VoltageFeedforward::new(&Settings::default().module);

@@ -1,4 +1,4 @@
-//! The finger: its temperature before contact, its force, and how far its skin has cooled on the display.
+//! The finger: its temperature before contact, its force, and by how much the display has cooled its skin.
 
 use contact_model::fixed_point::{
     Celsius, Contact, ContactConductance, ContactPair, Force, HalfSpace, contact_area,
@@ -7,57 +7,66 @@ use contact_model::fixed_point::{
 use fixed::types::{I2F30, I10F22};
 
 use super::Watt;
-use super::force_mean::{ForceChange, ForceMean};
+use super::force_means::{ForceChange, ForceMeans};
 
-/// Time constant, as a power of two of ticks of 1 ms (0.26 s), of the low-pass filters of skin and room temperature
-/// while no finger touches.
-const BEFORE_CONTACT_FILTER_SHIFT: u32 = 8;
-/// Ticks (2 s) without contact until the skin's thermistor reads the skin again, and not the cold or warmth that the
-/// last contact has left. Until then skin and room temperature keep their values from before that contact, and a new
-/// contact does not count as the first one.
+/// Time constant of the low-pass filters of skin and room temperature while no finger touches, as an exponent of two:
+/// 2^8 ticks of 1 ms, 0.26 s.
+const SKIN_AND_ROOM_FILTER_SHIFT: u32 = 8;
+/// Ticks of 1 ms (2 s) after lifting during which the skin's thermistor still shows the cooling or warming by the
+/// contact. During this time the filtered temperatures of skin and room stay, and for a contact that begins in this
+/// time the law `model` does not use the closed-form set-point of Eq. 6-12.
 const SKIN_RECOVERY_TICKS: u32 = 2000;
-/// Ticks (16 ms) after landing in which a jump of the force counts as part of the landing. A jump after that ends the
-/// use of the closed form of Eq. 6-12, which assumes a constant force.
+/// Ticks of 1 ms after landing during which a jump of the force is taken for the rise of the force at landing and only
+/// starts the running means of the force again. After a later jump the law `model` does not use the closed-form
+/// set-point of Eq. 6-12, which assumes a constant force, for the rest of the contact.
 const LANDING_RISE_TICKS: u64 = 16;
-/// Ticks (64 ms) after landing at whose end the mean force is stored as the force of this contact. The recent mean
-/// covers 64 ticks, so it then no longer contains the rise.
-const RISEN_FORCE_TICKS: u64 = 64;
-/// The force counts as constant while its mean stays within 1/64 (this power of two) of the mean of
-/// [`RISEN_FORCE_TICKS`] after landing. Beyond that the closed form of Eq. 6-12 is no longer used.
-const CONSTANT_FORCE_SHIFT: u32 = 6;
-/// Contact conductances are kept while the mean force stays within 1/1024 (this power of two) of the force that they
-/// were computed for; the skin's temperature would not differ noticeably.
-const CONDUCTANCE_REUSE_SHIFT: u32 = 10;
-/// `e_skin / sqrt(dt)`, W/(K mm²), with the skin's effusivity and the tick of 1 ms: heat flux into the display for 1 K
-/// of the scaled flux in which [`HalfSpace`] counts.
-const EFFUSIVITY_PER_ROOT_TICK_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
+/// Ticks of 1 ms after landing from which on the initial force of a contact is fixed; until then the initial force
+/// equals the present mean force. The delay keeps most of the rise of the force at landing out of the initial force. If
+/// a later mean force differs from the initial force by more than 1/64, the law `model` does not use the closed-form
+/// set-point of Eq. 6-12 for the rest of the contact.
+const INITIAL_FORCE_STORED_AFTER_TICKS: u64 = 64;
+/// The force counts as constant while its mean stays within 1/64 (2^-6, this power of two) of the mean that it had
+/// [`INITIAL_FORCE_STORED_AFTER_TICKS`] (64 ms) after landing. After a larger change the law `model` does not use the
+/// closed-form set-point of Eq. 6-12 for the rest of the contact.
+const CONSTANT_FORCE_TOLERANCE_SHIFT: u32 = 6;
+/// The contact conductances are computed again when the mean force has changed by more than 1/1024 (2^-10, this power
+/// of two) since they were computed. A smaller change of the force has no noticeable effect on the skin's temperature.
+const CONDUCTANCE_FORCE_TOLERANCE_SHIFT: u32 = 10;
+/// `e_skin / sqrt(dt)`, W/(K mm²), with the effusivity of the skin (1170 J/(m² K s^½)) and the tick `dt` of 1 ms.
+/// [`HalfSpace`] represents a heat flux as a scaled flux, K; multiplied by this constant, the scaled flux is the heat
+/// flux into the display in W/mm².
+const SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
 
-/// Temperatures of skin and room while the finger does not touch, low-pass filtered. They are frozen from landing until
-/// 2 s after lifting, and every set-point of the contact starts from them.
+/// Low-pass filtered temperatures of the skin and of the room before a contact. They are not updated from landing until
+/// 2 s after lifting, and not in the first 2 s after a restart of the estimator. The set-points of a contact are
+/// computed from these initial temperatures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PreContactTemperatures {
-    /// Temperature of the skin at the edge of the contact, °C.
+    /// Filtered temperature, °C, of the skin beside the area that touches the display, where the skin's thermistor is.
     pub skin: Celsius,
-    /// Temperature of the room, °C; also that of the presented object if the host has set none.
+    /// Filtered temperature of the room, °C. It is also the initial temperature of the presented object if the host has
+    /// not set one.
     pub room: Celsius,
 }
 
-/// One tick of the filter with the time constant 2^[`BEFORE_CONTACT_FILTER_SHIFT`] ticks: the new filtered temperature,
-/// °C.
-fn filtered_before_contact(state: Celsius, input: Celsius) -> Celsius {
-    state.saturating_add(input.saturating_sub(state) >> BEFORE_CONTACT_FILTER_SHIFT)
+/// Updates the filtered temperature `state` of skin or room by the reading `input` of one tick, all in °C. The time
+/// constant is 2^[`SKIN_AND_ROOM_FILTER_SHIFT`] ticks of 1 ms (0.26 s).
+fn filter_skin_or_room(state: Celsius, input: Celsius) -> Celsius {
+    state.saturating_add(input.saturating_sub(state) >> SKIN_AND_ROOM_FILTER_SHIFT)
 }
 
-/// The two thermal contact conductances, W/(m² K), of one finger force: of the real contact between skin and display,
-/// and of the simulated contact between skin and presented object.
+/// Thermal contact conductances for one finger force, as scaled heat flux (K) per kelvin: of the real contact between
+/// skin and display, and of the simulated contact between skin and presented object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ContactConductances {
     /// Force, N, for which the conductances were computed.
     force: Force,
     contact: Contact,
-    /// Conductance between skin and display, which determines the heat that the finger really gives.
+    /// Conductance between skin and display, as scaled heat flux (K) per kelvin; determines the heat that the finger
+    /// really gives to the display.
     pub display: ContactConductance,
-    /// Conductance between skin and presented object, which determines how the skin would cool on the object.
+    /// Conductance between skin and presented object, as scaled heat flux (K) per kelvin; determines how much the
+    /// simulated skin cools on the object.
     pub object: ContactConductance,
 }
 
@@ -72,143 +81,163 @@ impl ContactConductances {
         }
     }
 
-    /// Whether the conductances may be used for `force`, too, because it differs by at most 1/1024 from the force that
-    /// they were computed for.
-    fn are_accurate_for(&self, force: Force) -> bool {
-        force.abs_diff(self.force) <= self.force >> CONDUCTANCE_REUSE_SHIFT
+    /// Whether the conductances may also be used for `force`, N, because it differs by at most 1/1024 from the force
+    /// for which they were computed.
+    fn are_valid_for_force(&self, force: Force) -> bool {
+        force.abs_diff(self.force) <= self.force >> CONDUCTANCE_FORCE_TOLERANCE_SHIFT
     }
 }
 
-/// One contact of a finger with the display, from landing to lifting: force, time, and contact conductances. It does
-/// not depend on the presented object, except for the conductance between skin and object.
+/// One contact of a finger with the display, from landing to lifting: force, time, and contact conductances. It
+/// continues when the host presents another object; only the conductance between skin and object depends on the object.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FingerContact {
-    force: ForceMean,
-    /// Result of the last tick's comparison of the force with its mean; `New` at landing.
+    force: ForceMeans,
+    /// Whether the last tick's force was noise, showed a drift, or was a jump; `New` (a jump) at landing.
     change: ForceChange,
-    /// Whether the closed form of Eq. 6-12 describes the contact; see [`Self::has_closed_form`]. Once false, it stays
-    /// false until the finger lifts.
-    constant: bool,
-    /// Mean force, N, at the end of the rise, [`RISEN_FORCE_TICKS`] after landing; until then the present mean.
-    risen_force: Force,
-    /// Ticks of 1 ms since the finger landed.
+    /// Whether the closed-form set-point of Eq. 6-12 is valid for the contact; see [`Self::closed_form_is_valid`]. Once
+    /// false, this stays false until the finger lifts.
+    closed_form_applies: bool,
+    /// Mean force of the contact, N, [`INITIAL_FORCE_STORED_AFTER_TICKS`] (64 ms) after landing; before that, the
+    /// present mean. The force counts as constant while its mean stays within 1/64 of this value.
+    initial_force: Force,
+    /// Ticks of 1 ms since landing, when the force rose from zero (to 3 mN); landing counts as at most 32 ticks before
+    /// the contact was detected.
     elapsed: u64,
-    /// Conductances under the present force; `None` until the first tick that needs them, and after the object has
-    /// changed.
+    /// Contact conductances for a force within 1/1024 of the present mean force; `None` until a tick computes them, and
+    /// after another object has been presented.
     conductances: Option<ContactConductances>,
 }
 
 impl FingerContact {
-    /// The contact in the tick in which it is detected, `landed_ticks` after the force left its zero. `skin_recovered`:
-    /// the last contact ended 2 s ago or earlier.
-    fn at_landing(force: Force, landed_ticks: u32, skin_recovered: bool) -> Self {
+    /// Begins a contact in the tick in which it is detected, `landed_ticks` (2 to 32) ticks after the force rose from
+    /// zero (to 3 mN); `force`, N, is the force in this tick. `skin_recovered` means that the estimator has run without
+    /// contact for at least 2 s; else the closed-form set-point of Eq. 6-12 is not valid for the contact.
+    fn new_at_landing(force: Force, landed_ticks: u32, skin_recovered: bool) -> Self {
         Self {
-            force: ForceMean::new(force),
+            force: ForceMeans::new(force),
             change: ForceChange::New,
-            constant: skin_recovered,
-            risen_force: force,
+            closed_form_applies: skin_recovered,
+            initial_force: force,
             elapsed: landed_ticks.into(),
             conductances: None,
         }
     }
 
-    /// Takes the force of one further tick of the contact, N, and decides whether the contact still has the closed
-    /// form.
-    fn update_force(&mut self, force: Force) {
-        self.change = self.force.add_tick(force);
+    /// Updates the contact by the force of one further tick, N, and decides whether the force is still constant enough
+    /// for the closed-form set-point of Eq. 6-12.
+    fn update_by_force(&mut self, force: Force) {
+        self.change = self.force.add_force(force);
         self.elapsed += 1;
-        let mean = self.force.mean();
-        if self.elapsed < RISEN_FORCE_TICKS {
-            self.risen_force = mean;
+        let mean = self.force.long_mean();
+        if self.elapsed < INITIAL_FORCE_STORED_AFTER_TICKS {
+            self.initial_force = mean;
         }
-        let drifted = mean.abs_diff(self.risen_force) > self.risen_force >> CONSTANT_FORCE_SHIFT;
+        let drifted = mean.abs_diff(self.initial_force)
+            > self.initial_force >> CONSTANT_FORCE_TOLERANCE_SHIFT;
         let changed = self.change == ForceChange::New && self.elapsed >= LANDING_RISE_TICKS;
-        self.constant &= !drifted && !changed;
+        self.closed_form_applies &= !drifted && !changed;
     }
 
-    /// The running mean of the force, N, and the mean for which set-points are computed.
+    /// Running means of this contact's force, N, which also hold the mean for which set-points are computed.
     #[must_use]
-    pub const fn force_mean(&self) -> &ForceMean {
+    pub const fn force_means(&self) -> &ForceMeans {
         &self.force
     }
 
-    /// How the last tick's force compares with its mean: noise, drift, or a new force. The reference generator rebuilds
-    /// its interpolation after the last two.
+    /// Whether the last tick's force was noise, showed a drift, or was a jump; a landing also counts as a jump. After a
+    /// drift or a jump the reference generator computes its interpolation of the closed-form set-point (Eq. 6-12)
+    /// again: with the law `model` only while the closed form is valid for the contact, with the other laws always.
     #[must_use]
     pub const fn force_change(&self) -> ForceChange {
         self.change
     }
 
-    /// Ticks of 1 ms since the force left its zero at landing.
+    /// Ticks of 1 ms since landing, which is the tick in which the force rose from zero (to 3 mN), but at most 32 ticks
+    /// before the contact was detected.
     #[must_use]
     pub const fn ticks_since_landing(&self) -> u64 {
         self.elapsed
     }
 
-    /// Whether Eq. 6-12 in closed form describes the contact. It does if the last contact ended at least 2 s before
-    /// landing, the display was at its preset at landing, and the force has been constant within 1/64 since it had
-    /// risen. Otherwise the reference generator integrates the heat flow tick by tick.
+    /// Whether the closed-form set-point of Eq. 6-12, which assumes a first contact under constant force, is valid for
+    /// this contact. It is valid if this estimator had run without contact for at least 2 s before landing, the display
+    /// was near its preset temperature when the contact with the presented object began, the force has not jumped since
+    /// 16 ms after landing, and the force's mean has stayed within 1/64 of its value 64 ms after landing. Otherwise,
+    /// with the law `model`, the reference generator computes the set-point from the simulated skin on the object; with
+    /// the other laws it uses the closed form in any case.
     #[must_use]
-    pub const fn has_closed_form(&self) -> bool {
-        self.constant
+    pub const fn closed_form_is_valid(&self) -> bool {
+        self.closed_form_applies
     }
 
-    /// Excludes the closed form of Eq. 6-12 for the rest of this contact, because the display was not near its preset
-    /// temperature at landing. Called by the reference generator in the first tick of a contact.
-    pub const fn note_late_display(&mut self) {
-        self.constant = false;
+    /// Makes the closed-form set-point of Eq. 6-12 invalid for the rest of this contact, so that the law `model` does
+    /// not use it. The reference generator calls this in the first tick of a contact with the presented object if the
+    /// surface of the display is then more than 0.1 K outside the range between two temperatures: the preset (the
+    /// set-point before contact), and the temperature at which the law `model` keeps a waiting display, which is below
+    /// the preset by 1/128 of the skin's temperature minus the preset.
+    pub const fn exclude_closed_form(&mut self) {
+        self.closed_form_applies = false;
     }
 
-    /// Contact conductances for the present force, within 1/1024; `None` if no tick of the contact has computed them
-    /// since landing or since the object changed.
+    /// Contact conductances for a force within 1/1024 of the present mean force. `None` if no tick has computed them
+    /// since landing, or since another object was presented.
     #[must_use]
     pub const fn conductances(&self) -> Option<&ContactConductances> {
         self.conductances.as_ref()
     }
 
     /// Makes the present mean force, N, the one for which set-points are computed, and computes the contact
-    /// conductances for exactly this force. The reference generator calls it one tick before it rebuilds its
-    /// interpolation, so that no tick pays for both.
-    pub fn use_mean_force(&mut self, pair: &ContactPair) {
-        self.force.use_present_mean();
-        if self.contact_at_force_in_use().is_none() {
-            self.conductances = Some(ContactConductances::new(pair, self.force.mean_in_use()));
+    /// conductances for exactly this force. The reference generator calls this when its interpolation of the set-point
+    /// (Eq. 6-12) must be computed. With the law `model` the interpolation then normally follows in the next tick, to
+    /// spread the computing time over two ticks; with the other laws in the same tick.
+    pub fn adopt_mean_force_for_setpoints(&mut self, pair: &ContactPair) {
+        self.force.adopt_mean_for_setpoints();
+        if self.contact_at_mean_for_setpoints().is_none() {
+            self.conductances = Some(ContactConductances::new(
+                pair,
+                self.force.mean_for_setpoints(),
+            ));
         }
     }
 
-    /// Parameters of the simulated contact under exactly the force for which set-points are computed. `None` if the
-    /// stored conductances belong to another force; then the interpolation of Eq. 6-12 cannot be rebuilt in this tick.
+    /// Parameters of the contact under exactly the force for which set-points are computed. `None` if the stored
+    /// conductances were computed for another force or not at all; then the interpolation of the set-point (Eq. 6-12)
+    /// cannot be computed in this tick.
     #[must_use]
-    pub fn contact_at_force_in_use(&self) -> Option<&Contact> {
+    pub fn contact_at_mean_for_setpoints(&self) -> Option<&Contact> {
         let conductances = self.conductances.as_ref()?;
-        (self.force.mean_in_use() == conductances.force).then_some(&conductances.contact)
+        (self.force.mean_for_setpoints() == conductances.force).then_some(&conductances.contact)
     }
 }
 
-/// Estimates, tick by tick, the skin's temperature before contact, the force of the present contact, and how far the
-/// skin has cooled on the display. Runs with every control law, because the host may change the law while a finger
-/// touches.
+/// Estimates the skin's temperature before contact, the force of the present contact, by how much the display has
+/// cooled the skin, and the heat flow from the finger into the display, tick by tick. Runs under every control law, so
+/// that the estimates are right when the host selects the law `model` during a contact.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FingerEstimator {
-    /// Filtered temperatures of skin and room from before the contact; `None` before the first valid readings.
+    /// Filtered temperatures of skin and room before contact, °C; `None` until a first tick with valid readings, also
+    /// after `invalidate`.
     before_contact: Option<PreContactTemperatures>,
-    /// Ticks of 1 ms since the last contact ended, or since the estimator started; 0 during contact.
+    /// Ticks of 1 ms without contact since the last contact ended, or since the estimator was started or invalidated; 0
+    /// during contact. From 2000 (2 s) on, the temperatures of skin and room are filtered again.
     lifted_ticks: u32,
-    /// The present contact; `None` while no finger touches.
     contact: Option<FingerContact>,
-    /// Temperature change of the skin's surface, K, by the heat that it has given to the display; decays to zero after
-    /// lifting.
-    skin_on_display: HalfSpace,
+    /// Thermal state of the skin. Its output is the cooling of the skin's surface, K, by the heat that the skin has
+    /// given to the display: positive where the skin is colder than before contact. Decays to zero after lifting.
+    skin_state_on_display: HalfSpace,
 }
 
 impl FingerEstimator {
-    /// Takes one tick's temperatures of skin and room, °C, and the force `touch`, N, which is `None` without contact.
-    /// In the first tick of a contact `landed_ticks` is the time since the force left its zero; otherwise it is
-    /// ignored.
+    /// Updates the finger's estimates by one tick's temperatures of skin and room, °C, and by the force `touch`, N,
+    /// which is `None` without contact. In the first tick of a contact `landed_ticks` is the number of ticks since the
+    /// force rose from zero (to 3 mN), at most 32; in all other ticks it is ignored.
     ///
-    /// Skin and room are filtered only while no finger touches and the last contact ended 2 s ago or earlier: in
-    /// contact the skin's thermistor sees little of the skin, and for some time afterwards what the contact has left.
-    pub fn observe(
+    /// The first readings after a start or [`Self::invalidate`] set the temperatures of skin and room. Later readings
+    /// are filtered only while no finger touches and there has been no contact for 2 s: during contact the skin's
+    /// thermistor does not measure the undisturbed skin, and for some time afterwards it shows the cooling or warming
+    /// by that contact. So the temperatures also stay for the first 2 s after a start or [`Self::invalidate`].
+    pub fn update_by_readings(
         &mut self,
         skin: Celsius,
         room: Celsius,
@@ -220,16 +249,20 @@ impl FingerEstimator {
             None => PreContactTemperatures { skin, room },
             Some(before) if touch.is_some() || !recovered => before,
             Some(before) => PreContactTemperatures {
-                skin: filtered_before_contact(before.skin, skin),
-                room: filtered_before_contact(before.room, room),
+                skin: filter_skin_or_room(before.skin, skin),
+                room: filter_skin_or_room(before.room, room),
             },
         });
         match (touch, &mut self.contact) {
             (None, contact) => *contact = None,
             (Some(force), contact @ None) => {
-                *contact = Some(FingerContact::at_landing(force, landed_ticks, recovered));
+                *contact = Some(FingerContact::new_at_landing(
+                    force,
+                    landed_ticks,
+                    recovered,
+                ));
             }
-            (Some(force), Some(contact)) => contact.update_force(force),
+            (Some(force), Some(contact)) => contact.update_by_force(force),
         }
         self.lifted_ticks = match touch {
             Some(_) => 0,
@@ -237,68 +270,76 @@ impl FingerEstimator {
         };
     }
 
-    /// Forgets temperatures, contact and cooling of the skin; the next call of [`Self::observe`] starts from its
-    /// readings. Called in a tick whose readings are invalid, because then the finger may have landed or lifted unseen.
+    /// Discards the temperatures before contact, the contact, and the cooling of the skin; the next call of
+    /// [`Self::update_by_readings`] starts from its readings. Called in each tick whose readings are invalid or in
+    /// which a fault detector finds a fault, because such a tick does not update the estimates, and a landing or
+    /// lifting of the finger would be missed.
     pub fn invalidate(&mut self) {
         *self = Self::default();
     }
 
-    /// Skin and room temperature before the present or the next contact; `None` until a tick has had valid readings.
+    /// Filtered temperatures of skin and room, °C: those before the present or last contact, or, once no finger has
+    /// touched for 2 s, the present ones. `None` until a first tick with valid readings, also after
+    /// [`Self::invalidate`].
     #[must_use]
     pub const fn temperatures_before_contact(&self) -> Option<PreContactTemperatures> {
         self.before_contact
     }
 
-    /// The present contact; `None` while no finger touches.
+    /// The present contact; `None` while no finger touches, and after [`Self::invalidate`] until the next valid
+    /// readings.
     #[must_use]
     pub const fn contact(&self) -> Option<&FingerContact> {
         self.contact.as_ref()
     }
 
-    /// The present contact, to be changed by the reference generator, which chooses the force for which set-points are
-    /// computed; and the temperature change of the skin's surface on the display, K.
-    pub const fn contact_and_skin_on_display(
-        &mut self,
-    ) -> (Option<&mut FingerContact>, &HalfSpace) {
-        (self.contact.as_mut(), &self.skin_on_display)
+    /// Two values. First, the present contact, or `None` while no finger touches; it is mutable, because the reference
+    /// generator chooses the force for which set-points are computed. Second, the thermal state of the skin, whose
+    /// output is the cooling of the skin's surface by the display, K: positive where the skin is colder than before
+    /// contact.
+    pub const fn contact_and_skin_state(&mut self) -> (Option<&mut FingerContact>, &HalfSpace) {
+        (self.contact.as_mut(), &self.skin_state_on_display)
     }
 
-    /// Temperature change of the skin's surface, K, that the contact with the display has caused so far; negative where
-    /// the display has cooled the skin.
+    /// Thermal state of the skin on the display. Its output is the cooling of the skin's surface, K, by the contact
+    /// with the display so far: positive where the skin is colder than before contact, negative where the display has
+    /// warmed it. Decays to zero after lifting.
     #[must_use]
-    pub const fn skin_on_display(&self) -> &HalfSpace {
-        &self.skin_on_display
+    pub const fn skin_state_on_display(&self) -> &HalfSpace {
+        &self.skin_state_on_display
     }
 
-    /// Discards the contact conductances of a finger that touches, because another object is presented; the next tick
-    /// that needs them computes them for the new object.
+    /// Discards the contact conductances of the present contact, if there is one, because the host presents another
+    /// object. The next tick that needs them computes them for the new object.
     pub const fn forget_conductances(&mut self) {
         if let Some(contact) = &mut self.contact {
             contact.conductances = None;
         }
     }
 
-    /// Advances the skin by one tick on a display whose surface has the temperature `surface`, °C. Returns the heat
-    /// flow from the finger into the display, W, negative if the display is warmer than the skin, 0 without contact.
-    /// `pair` is that of finger and presented object, or of any object if the host has chosen none.
-    pub fn heat_into_display(&mut self, pair: &ContactPair, surface: Celsius) -> Watt {
+    /// Advances the thermal state of the skin by one tick, in contact with a display whose surface has the temperature
+    /// `surface`, °C, or without contact. Returns the heat flow from the finger into the display, W: negative if the
+    /// display is warmer than the skin's surface, 0 without contact. Computes the contact conductances again if the
+    /// mean force has changed by more than 1/1024. Of `pair` only the properties of skin and display matter here, so
+    /// the caller may give a pair with any object.
+    pub fn step_skin_heat_flow(&mut self, pair: &ContactPair, surface: Celsius) -> Watt {
         let Some(PreContactTemperatures { skin, .. }) = self.before_contact else {
             return Watt::ZERO;
         };
         let Some(contact) = &mut self.contact else {
-            self.skin_on_display.step(Celsius::ZERO);
+            self.skin_state_on_display.step(Celsius::ZERO);
             return Watt::ZERO;
         };
-        let force = contact.force.mean();
+        let force = contact.force.long_mean();
         let conductances = match &mut contact.conductances {
-            Some(conductances) if conductances.are_accurate_for(force) => conductances,
+            Some(conductances) if conductances.are_valid_for_force(force) => conductances,
             outdated => outdated.insert(ContactConductances::new(pair, force)),
         };
         let scaled_flux = conductances
             .display
-            .scaled_flux(skin.saturating_sub(surface), &self.skin_on_display);
-        self.skin_on_display.step(scaled_flux);
-        let flux_w_mm2: I10F22 = product(scaled_flux, EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
+            .scaled_flux(skin.saturating_sub(surface), &self.skin_state_on_display);
+        self.skin_state_on_display.step(scaled_flux);
+        let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
         saturating_product(flux_w_mm2, contact_area(force))
     }
 }

@@ -1,9 +1,11 @@
-//! Internal model of the display plate: its surface temperature under current, a finger's heat and the sink.
+//! Internal model of the display plate: its surface temperature as a result of the current, the finger's heat and the
+//! sink's temperature.
 //!
-//! A column of the tile (plate, solder tab, legs, hot plate on the sink), and the difference between the patch under the
-//! finger and the rest of the plate, form a network of heat capacities, so the surface is a sum of first-order relaxations.
-//! [`CLASS_RELAXATIONS`] has those of the class module (71 couples, 30 mm square, 0.8 mm of alumina), with neighbouring time
-//! constants merged. What is faster than a tick acts at once.
+//! The tile is modelled as a column of heat capacities (plate, solder tab, legs, hot plate on the sink). A further
+//! state is the temperature difference between the patch under the finger and the rest of the plate. The surface
+//! temperature of such a network is a sum of first-order relaxations. [`CLASS_RELAXATIONS`] lists those of the class
+//! module (71 couples, 30 mm square, 0.8 mm of alumina), with neighbouring time constants merged. Responses that are
+//! faster than a tick of 1 ms are modelled as immediate.
 
 use core::ops::Add;
 
@@ -13,7 +15,7 @@ use contact_model::fixed_point::{
 use fixed::types::extra::{LeEqU32, LeEqU64, U24};
 use fixed::types::{I0F32, I1F31, I2F30, I4F28, I6F26, I8F24, I12F20, I12F52, I20F12};
 use fixed::{FixedI32, FixedI64};
-use thermal_settings::{Module, Tile};
+use thermal_settings::{PeltierModule, Tile};
 
 use crate::TICK_HZ;
 use crate::bismuth_telluride::{
@@ -25,83 +27,98 @@ use crate::low_pass::{Coefficient, LowPass};
 /// A power or heat flow, W: ±128 W at a resolution of 60 nW.
 pub type Watt = I8F24;
 
-/// A temperature in °C or a temperature difference in K within the plate model: ±2048 at a resolution of 1 µK.
-type Kelvin = I12F20;
+/// Temperature in °C or temperature difference in K within the plate model: ±2048 with a resolution of 1 µK.
+type ModelTemperature = I12F20;
 
-/// One first-order relaxation of the surface temperature: its time constant, s, and its steady-state contributions,
-/// K/W, per watt pumped out of the plate, per watt of Joule heat in the legs, and per watt from the finger, in this
-/// order. The first counts as cooling.
+/// One first-order lag of the plate model, whose surface temperature is the sum of five such lags: its time constant, s,
+/// and its steady-state gains, K/W, for the three heat inputs in the order heat pumped out of the plate, Joule heat in
+/// the legs, heat from the finger. The gain for pumped heat is the fall of the temperature, positive if pumping cools;
+/// [`HeatInputGains::temperature_change`] subtracts it.
 #[derive(Clone, Copy)]
-struct Relaxation {
+struct FirstOrderLagParameters {
     time_constant_s: f64,
     gains_k_w: [f64; 3],
 }
 
-/// Builds one row of [`CLASS_RELAXATIONS`]: the time constant, s, then the three gains, K/W.
-const fn relaxation(time_constant_s: f64, pumped: f64, joule: f64, finger: f64) -> Relaxation {
-    Relaxation {
+/// Builds one row of [`CLASS_RELAXATIONS`]: time constant, s, then the contributions to the surface temperature in the
+/// steady state, K/W, per watt of pumped heat, of Joule heat and of heat from the finger.
+const fn class_relaxation_row(
+    time_constant_s: f64,
+    pumped: f64,
+    joule: f64,
+    finger: f64,
+) -> FirstOrderLagParameters {
+    FirstOrderLagParameters {
         time_constant_s,
         gains_k_w: [pumped, joule, finger],
     }
 }
 
-/// Number of relaxations whose sum is the surface temperature.
+/// Number of relaxations in the plate model; the surface temperature is their sum.
 const RELAXATION_COUNT: usize = 5;
 
-/// Relaxations of the class module, slowest first: the plate against the sink, the patch under the finger against the
-/// rest of the plate, the legs, the hot plate, and the depth of the ceramic. Without heat the first decays to the
-/// sink's temperature, the others to zero.
-const CLASS_RELAXATIONS: [Relaxation; RELAXATION_COUNT] = [
-    relaxation(10.241_19, 3.540_82, 1.813_82, 3.555_85),
-    relaxation(2.361_25, 0.0, 0.0, 3.203_31),
-    relaxation(0.186_38, 0.002_51, -0.029_89, 0.018_41),
-    relaxation(0.010_79, -0.007_31, -0.000_99, 0.047_71),
-    relaxation(0.003_73, 0.001_38, -0.000_03, 0.002_40),
+/// Relaxations of the class module (the nominal module), slowest first: the plate relative to the sink, the patch under
+/// the finger relative to the rest of the plate, the legs, the hot plate, and the temperature difference across the
+/// thickness of the ceramic. Without heat flow the first decays to the sink's temperature, the others to zero.
+const CLASS_RELAXATIONS: [FirstOrderLagParameters; RELAXATION_COUNT] = [
+    class_relaxation_row(10.241_19, 3.540_82, 1.813_82, 3.555_85),
+    class_relaxation_row(2.361_25, 0.0, 0.0, 3.203_31),
+    class_relaxation_row(0.186_38, 0.002_51, -0.029_89, 0.018_41),
+    class_relaxation_row(0.010_79, -0.007_31, -0.000_99, 0.047_71),
+    class_relaxation_row(0.003_73, 0.001_38, -0.000_03, 0.002_40),
 ];
-/// Rise of the surface temperature, K, that each watt from the finger causes within the same tick.
+/// Immediate rise of the class module's surface temperature, K, per watt of heat from the finger: the sum of all
+/// responses that are faster than a tick of 1 ms.
 const FINGER_FEEDTHROUGH_K_W: f64 = 0.023_80;
 /// Rise of the legs' mean temperature above the mean of their two ends, K per watt of Joule heat, in the steady state.
-const LEG_MEAN_RISE_K_W: I4F28 = I4F28::lit("0.292");
-/// Time constant, s, with which the legs' mean temperature approaches that rise.
-const LEG_TIME_CONSTANT_S: f64 = 0.186;
-/// Thermal resistance, K/W, from the legs' hot ends through the hot plate to the sink.
-const HOT_SIDE_RESISTANCE_K_W: I4F28 = I4F28::lit("0.0285");
+const LEG_MEAN_RISE_PER_JOULE_HEAT_K_W: I4F28 = I4F28::lit("0.292");
+/// Time constant, s, with which the rise of the legs' mean temperature ([`LEG_MEAN_RISE_PER_JOULE_HEAT_K_W`]) follows
+/// the Joule heat.
+const LEG_HEATING_TIME_CONSTANT_S: f64 = 0.186;
+/// Thermal resistance, K/W, from the hot ends of the legs through the hot plate to the sink.
+const HOT_SIDE_THERMAL_RESISTANCE_K_W: I4F28 = I4F28::lit("0.0285");
 const ZERO_C_IN_K: Celsius = Celsius::lit("273.15");
 
-/// A tile's gain (K/s/A) differs from that of its class by the module's pumping and by the plate's heat capacity; only
-/// the capacity changes the response to a finger's heat. The capacity is taken to cause this part of the gain's
-/// logarithm.
-const HEAT_CAPACITY_EXPONENT: f64 = 0.4;
-/// Limit of the ratio of a tile's parameter to that of its class: from one half to this. Keeps the fixed-point gains
-/// within the range of their types, whatever the identification has found.
+/// Exponent, 0.4, in the response of a tile to the finger's heat: relative to the class tile, this response is the
+/// tile's gain (cooling rate per ampere, K/s/A) to the power of 0.4. The gain may differ from that of the class tile by
+/// the heat that the module pumps per ampere, or by the heat capacity of the plate. Only the heat capacity changes the
+/// response to the finger's heat; it is assumed to cause 0.4 of the difference, on a logarithmic scale.
+const GAIN_RATIO_TO_FINGER_RATIO_EXPONENT: f64 = 0.4;
+/// Largest ratio of an identified parameter of a tile (gain, Joule heat, leak) to that of the class tile; the smallest
+/// is its reciprocal, 1/2. The limits keep the fixed-point gains in range, whatever values the identification has
+/// found.
 const LARGEST_TILE_TO_CLASS_RATIO: f64 = 2.0;
-/// Limit of the pumped heat and of the Joule heat in the model, W, in either direction, so that no state overflows.
-const LARGEST_LEG_HEAT: Watt = Watt::lit("64");
-/// Limit of the finger's heat in the model, W, in either direction, so that no state overflows.
+/// Limit, W, of the pumped heat and of the Joule heat in the model, in either direction; keeps the model's fixed-point
+/// states from overflowing.
+const LARGEST_PUMPED_OR_JOULE_HEAT: Watt = Watt::lit("64");
+/// Limit of the finger's heat flow in the model, W, in either direction; keeps the model's fixed-point states from
+/// overflowing.
 const LARGEST_FINGER_HEAT: Watt = Watt::lit("8");
-/// Limit of the sink's temperature in the model, °C, also below zero, so that no state overflows.
+/// Limit of the sink's temperature in the model, -100 to 100 °C; keeps the model's fixed-point states from overflowing.
 const LARGEST_SINK_TEMPERATURE: Celsius = Celsius::lit("100");
-/// Limit of the difference between the legs' mean temperature and the data sheet's 27 °C, K, in either direction, by
-/// which their resistance and Seebeck coefficient are corrected; keeps the products in range.
-const LARGEST_LEG_DEVIATION: Celsius = Celsius::lit("100");
+/// Limit, K, of the difference between the legs' mean temperature and the data sheet's 27 °C, in either direction. The
+/// legs' resistance and Seebeck coefficient are corrected for this difference; the limit keeps the products in range.
+const LARGEST_LEG_DEVIATION_FROM_27_C: Celsius = Celsius::lit("100");
 
-/// Horizon of the law `model`, ticks of 1 ms: each current is chosen as if it stayed for this time, so that the surface
-/// reaches its target at the end.
+/// Horizon of the law `model`, ticks of 1 ms: the law chooses the current which, if held constant, brings the surface
+/// to its target after this time. 12 ms are about the delay with which the display's surface responds to a current.
 const CONTROL_HORIZON_TICKS: f64 = 12.0;
-/// The skin's correction is computed for [`MATCH_HORIZON_TICKS`], by the end of which the display must have reached its
-/// target.
+// The correction of the skin is computed for `MATCH_HORIZON_TICKS`, by the end of which the display must have reached
+// its target.
 const _: () = assert!(CONTROL_HORIZON_TICKS <= MATCH_HORIZON_TICKS as f64);
 
-/// Temperature change, K/W, that each of the model's three heat inputs causes, per watt; how long it acts depends on
-/// the use (one tick, the horizon, or for ever).
+/// Change, K/W, of the display's surface temperature, or of one relaxation's contribution to it, per watt of each heat
+/// input: heat pumped out of the plate by the Peltier effect, Joule heat in the legs, heat from the finger. Each value
+/// of this type is for heat that acts constantly for one time: one tick of 1 ms, the control horizon of 12 ms, or until
+/// the steady state. [`Self::temperature_change`] subtracts the pumped heat, because it leaves the plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct InputGains<Gain> {
+struct HeatInputGains<Gain> {
     pumped: Gain,
     joule: Gain,
     finger: Gain,
 }
 
-impl<Frac: LeEqU32> InputGains<FixedI32<Frac>> {
+impl<Frac: LeEqU32> HeatInputGains<FixedI32<Frac>> {
     fn new([pumped, joule, finger]: [f64; 3]) -> Self {
         Self {
             pumped: rounded_fixed_point(pumped),
@@ -110,7 +127,9 @@ impl<Frac: LeEqU32> InputGains<FixedI32<Frac>> {
         }
     }
 
-    /// Temperature change, K, by the three heat inputs together; pumped heat leaves the plate, so it counts negative.
+    /// Change, K, of the display's surface temperature, or of one relaxation's contribution to it, by the three heat
+    /// inputs of the plate together: pumped heat, Joule heat, and heat from the finger. Pumped heat leaves the plate,
+    /// so it is subtracted.
     fn temperature_change(&self, inputs: &PlateInputs) -> FixedI64<<U24 as Add<Frac>>::Output>
     where
         U24: Add<Frac, Output: LeEqU64>,
@@ -120,8 +139,8 @@ impl<Frac: LeEqU32> InputGains<FixedI32<Frac>> {
     }
 }
 
-/// Factors by which the identified tile differs from its class: of the gains for pumped heat, Joule heat and finger's
-/// heat, and of the rate of the leak to the sink.
+/// Ratios of an identified tile's parameters to those of the class (nominal) tile: for the gains of pumped heat, Joule
+/// heat and heat from the finger, and for the rate of the heat leak to the sink.
 struct TileToClassRatios {
     pumped: f64,
     joule: f64,
@@ -130,7 +149,8 @@ struct TileToClassRatios {
 }
 
 impl TileToClassRatios {
-    /// Ratios of an identified tile; each parameter's ratio is limited to 1/2 to 2.
+    /// Ratios of the parameters of an identified tile to those of the class (nominal) tile, each limited to the range
+    /// of 1/2 to 2.
     fn of(tile: &Tile) -> Self {
         let ratio = |identified: f64, class: f64| {
             (identified / class).clamp(
@@ -138,21 +158,27 @@ impl TileToClassRatios {
                 LARGEST_TILE_TO_CLASS_RATIO,
             )
         };
-        let gain = ratio(tile.gain_k_s_a, Tile::CLASS.gain_k_s_a);
+        let gain = ratio(tile.gain_k_s_a, Tile::NOMINAL.gain_k_s_a);
         Self {
             pumped: gain,
-            joule: ratio(gain * tile.joule_per_a, Tile::CLASS.joule_per_a),
-            finger: libm::pow(gain, HEAT_CAPACITY_EXPONENT),
-            leak: ratio(tile.leak_1_s, Tile::CLASS.leak_1_s),
+            joule: ratio(gain * tile.joule_per_a, Tile::NOMINAL.joule_per_a),
+            finger: libm::pow(gain, GAIN_RATIO_TO_FINGER_RATIO_EXPONENT),
+            leak: ratio(tile.leak_1_s, Tile::NOMINAL.leak_1_s),
         }
     }
 
-    /// The tile's relaxation for one of the class. `slowest` marks the leak to the sink: a faster leak divides its time
-    /// constant and its gains alike, so that the initial slopes stay.
-    fn scale_relaxation(&self, slowest: bool, class: Relaxation) -> Relaxation {
+    /// Scales a relaxation of the class tile to the identified tile: multiplies its steady-state gains by the ratios
+    /// for pumped heat, Joule heat and the finger's heat. `slowest` marks the relaxation towards the sink; its time
+    /// constant and its gains are also divided by the ratio of the leak. The initial rate of change per watt then does
+    /// not depend on the leak.
+    fn scale_relaxation(
+        &self,
+        slowest: bool,
+        class: FirstOrderLagParameters,
+    ) -> FirstOrderLagParameters {
         let leak = if slowest { self.leak } else { 1.0 };
         let [pumped, joule, finger] = class.gains_k_w;
-        Relaxation {
+        FirstOrderLagParameters {
             time_constant_s: class.time_constant_s / leak,
             gains_k_w: [
                 pumped * self.pumped / leak,
@@ -163,63 +189,67 @@ impl TileToClassRatios {
     }
 }
 
-/// One [`Relaxation`] of the tile in fixed point, with its present state.
+/// One first-order relaxation of the tile's surface temperature in fixed point: constants and present state.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct RelaxationState {
-    /// Present contribution of this relaxation to the surface temperature, K; for the slowest one °C, because it
-    /// includes the sink.
+struct FixedPointRelaxation {
+    /// Present contribution of this relaxation to the surface temperature, K; for the slowest relaxation a temperature
+    /// in °C, because it contains the sink's temperature.
     state: I12F52,
-    /// Temperature change per watt of each input within one tick, K/W.
-    tick_gains: InputGains<I4F28>,
-    /// Temperature per watt of each input in the steady state, K/W; used to start the model.
-    steady_state_gains: InputGains<I4F28>,
-    /// Part of the state that decays in one tick of 1 ms; for the slowest relaxation also the part of the sink's
-    /// temperature that is added.
+    /// Change of this relaxation's state within one tick of 1 ms, K/W, per watt of pumped heat (whose effect is
+    /// subtracted), of Joule heat, and of heat from the finger.
+    tick_gains: HeatInputGains<I4F28>,
+    /// Contribution of this relaxation to the surface temperature in the steady state, K/W, per watt of pumped heat
+    /// (whose effect is subtracted), of Joule heat, and of heat from the finger. Used only to start the model.
+    steady_state_gains: HeatInputGains<I4F28>,
+    /// Fraction of the state that decays in one tick of 1 ms; in the slowest relaxation the same fraction of the sink's
+    /// temperature is added.
     tick_decay: I0F32,
-    /// Part of the state that decays within [`CONTROL_HORIZON_TICKS`].
+    /// Fraction of the state that decays within [`CONTROL_HORIZON_TICKS`] (12 ms); in the slowest relaxation the same
+    /// fraction of the sink's temperature is added.
     horizon_decay: I2F30,
 }
 
-impl RelaxationState {
-    /// The state at the resolution of [`Kelvin`], rounded down.
-    fn state_kelvin(&self) -> Kelvin {
-        Kelvin::from_bits((self.state.to_bits() >> STATE_TO_KELVIN_SHIFT) as i32)
+impl FixedPointRelaxation {
+    /// State of the relaxation, K or °C, rounded down to the resolution of [`ModelTemperature`] (1 µK).
+    fn state_temperature(&self) -> ModelTemperature {
+        ModelTemperature::from_bits((self.state.to_bits() >> STATE_TO_TEMPERATURE_SHIFT) as i32)
     }
 
-    fn set_state_kelvin(&mut self, temperature: Kelvin) {
-        self.state = kelvin_to_state(temperature);
+    fn set_state_temperature(&mut self, temperature: ModelTemperature) {
+        self.state = temperature_to_state(temperature);
     }
 }
 
-const STATE_TO_KELVIN_SHIFT: u32 = I12F52::FRAC_NBITS - Kelvin::FRAC_NBITS;
+const STATE_TO_TEMPERATURE_SHIFT: u32 = I12F52::FRAC_NBITS - ModelTemperature::FRAC_NBITS;
 
-fn kelvin_to_state(temperature: Kelvin) -> I12F52 {
-    I12F52::from_bits(i64::from(temperature.to_bits()) << STATE_TO_KELVIN_SHIFT)
+fn temperature_to_state(temperature: ModelTemperature) -> I12F52 {
+    I12F52::from_bits(i64::from(temperature.to_bits()) << STATE_TO_TEMPERATURE_SHIFT)
 }
 
-/// Heat flows that act on the plate in one tick, and the temperature of the sink; each within the limit that keeps the
-/// model from overflowing.
+/// Heat flows that act on the plate in one tick, W, and the temperature of the heat sink, °C.
+/// [`PlateModel::inputs_of_tick`] limits each of them, to keep the model from overflowing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlateInputs {
     /// Heat that the Peltier effect pumps out of the plate, W; negative while it heats.
     pub pumped: Watt,
-    /// Joule heat in the module's legs, W; warms the plate in either direction of the current.
+    /// Joule heat in the module's legs, W; it warms the plate for either direction of the current, so it is never
+    /// negative.
     pub joule: Watt,
-    /// Heat flow from the finger into the plate, W; negative if the display is warmer than the skin.
+    /// Heat flow from the finger into the plate, W; negative if the display is warmer than the skin's surface.
     pub finger: Watt,
-    /// Temperature of the sink, °C.
+    /// Temperature of the module's heat sink, °C.
     pub sink: Celsius,
 }
 
 /// Resistance or Seebeck coefficient of the legs as a linear function of their mean temperature: value at the data
-/// sheet's 27 °C, and rise per K.
+/// sheet's 27 °C, and rise per kelvin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct LegProperty<Value> {
+struct LinearInLegTemperature<Value> {
     value: Value,
     rise_per_k: Value,
 }
 
-impl<Frac: LeEqU32> LegProperty<FixedI32<Frac>> {
+impl<Frac: LeEqU32> LinearInLegTemperature<FixedI32<Frac>> {
     fn new(value: f64, rise_per_k: f64) -> Self {
         Self {
             value: rounded_fixed_point(value),
@@ -227,28 +257,29 @@ impl<Frac: LeEqU32> LegProperty<FixedI32<Frac>> {
         }
     }
 
-    /// The property's value for legs whose mean temperature is `above_data_sheet`, K, above 27 °C.
+    /// Resistance or Seebeck coefficient of legs whose mean temperature is 27 °C plus `above_data_sheet`, K.
     fn at(&self, above_data_sheet: Celsius) -> FixedI32<Frac> {
         self.value
             .saturating_add(product(above_data_sheet, self.rise_per_k))
     }
 }
 
-/// Temperatures of the module's semiconductor legs, from which their resistance and Seebeck voltage follow.
+/// Temperatures, °C, of the module's semiconductor legs; the resistance and the Seebeck voltage of the module are
+/// computed from them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LegTemperatures {
-    /// Temperature of the leg ends at the display, °C; the model takes that of the display's surface.
+    /// Temperature of the leg ends at the display, °C; the model takes it to be that of the display's surface.
     pub cold: Celsius,
-    /// Temperature of the leg ends at the sink, °C: the sink's, plus the rise by the heat that flows through the hot
-    /// side.
+    /// Temperature of the leg ends at the sink, °C: the sink's temperature plus the rise by the heat that flows from
+    /// the legs through the hot plate.
     pub hot: Celsius,
     /// Mean temperature over the length of the legs, °C.
     pub mean: Celsius,
 }
 
 impl LegTemperatures {
-    /// Temperatures of legs that carry little current: ends at the temperatures of display and sink, °C, and the mean
-    /// half way between.
+    /// Temperatures of legs without current: the ends at the temperatures of display and sink, °C, and the mean half
+    /// way between.
     #[must_use]
     pub fn between_display_and_sink(display: Celsius, sink: Celsius) -> Self {
         Self {
@@ -259,42 +290,45 @@ impl LegTemperatures {
     }
 }
 
-/// The internal model of plate and legs in fixed point: constants of one tile, and the temperatures of the present
-/// tick.
+/// Internal model of the display plate and the module's legs in fixed point: the constants of one tile, and the
+/// temperatures of the present tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlateModel {
-    relaxations: [RelaxationState; RELAXATION_COUNT],
-    /// Change of the surface temperature at the end of [`CONTROL_HORIZON_TICKS`] per watt of each input, K/W, without
-    /// the finger's feed-through.
-    horizon_gains: InputGains<I6F26>,
-    /// Rise of the surface within the tick, K per watt from the finger.
+    relaxations: [FixedPointRelaxation; RELAXATION_COUNT],
+    /// Change of the surface temperature after [`CONTROL_HORIZON_TICKS`] (12 ms), K/W, per watt of pumped heat
+    /// (whose effect is subtracted), of Joule heat, and of heat from the finger, each acting during all of this time.
+    /// Sum over all relaxations, without the finger's immediate effect (feed-through).
+    horizon_gains: HeatInputGains<I6F26>,
+    /// Immediate rise of this tile's surface temperature, K, per watt of heat from the finger, within one tick.
     finger_feedthrough: I4F28,
-    /// Rise of the legs' mean temperature above the mean of their ends, K, behind the legs' time constant.
+    /// Rise of the legs' mean temperature above the mean of their two ends, K: proportional to the Joule heat, with a
+    /// first-order lag of [`LEG_HEATING_TIME_CONSTANT_S`].
     leg_heating: LowPass,
-    /// Temperature of the leg ends at the sink, °C.
+    /// Temperature of the leg ends at the sink, °C, after the last step of the model.
     hot: Celsius,
-    /// Temperature of the display's surface under the finger, °C.
     surface: Celsius,
-    /// Seebeck coefficient of the whole module, V/K.
-    seebeck: LegProperty<I1F31>,
-    /// Electrical resistance of the legs without leads, ohm.
-    resistance: LegProperty<I8F24>,
-    /// Current, A, that changes the surface temperature by 1 K at the horizon, with legs at 27 °C and a surface at 300
-    /// K.
+    /// Seebeck coefficient of the whole module, V/K, as a function of the legs' mean temperature.
+    seebeck: LinearInLegTemperature<I1F31>,
+    /// Electrical resistance of the semiconductor legs without leads and bridge, ohm, as a function of the legs' mean
+    /// temperature.
+    resistance: LinearInLegTemperature<I8F24>,
+    /// Additional current, A (positive cools), that lowers the surface temperature by 1 K after the control horizon of
+    /// 12 ms. Computed for legs and surface at 27 °C (300 K).
     current_per_kelvin: I20F12,
 }
 
-/// The nearest fixed-point number. Computed in `f64`, so it is for start-up and not for the tick.
+/// Nearest fixed-point number to `value`. Computed in floating point, so it is for start-up, not for the control tick.
 fn rounded_fixed_point<Frac: LeEqU32>(value: f64) -> FixedI32<Frac> {
     let places = FixedI32::<Frac>::FRAC_NBITS;
     FixedI32::from_bits(libm::round(libm::ldexp(value, places as i32)) as i32)
 }
 
 impl PlateModel {
-    /// The model of a module on an identified tile, at the data sheet's 27 °C. Computed in `f64`, so it is for start-up
-    /// and the task that serves the host, not for the tick.
+    /// Model with the electrical properties of `module` and the identified dynamics of `tile`. Its temperatures are not
+    /// valid until [`Self::initialise_steady_state`]. Computed in floating point, so it is too slow for the control
+    /// tick: for start-up and the task that serves the host.
     #[must_use]
-    pub fn new(module: &Module, tile: &Tile) -> Self {
+    pub fn new(module: &PeltierModule, tile: &Tile) -> Self {
         let tick_s = 1.0 / f64::from(TICK_HZ);
         let decay =
             |ticks: f64, time_constant_s: f64| 1.0 - libm::exp(-ticks * tick_s / time_constant_s);
@@ -312,15 +346,15 @@ impl PlateModel {
         let [pumped_k_w, ..] = horizon_gains;
         Self {
             relaxations: relaxations.map(|relaxation| {
-                let Relaxation {
+                let FirstOrderLagParameters {
                     time_constant_s,
                     gains_k_w,
                 } = relaxation;
                 let tick_decay = decay(1.0, time_constant_s);
-                RelaxationState {
+                FixedPointRelaxation {
                     state: I12F52::ZERO,
-                    tick_gains: InputGains::new(gains_k_w.map(|gain| tick_decay * gain)),
-                    steady_state_gains: InputGains::new(gains_k_w),
+                    tick_gains: HeatInputGains::new(gains_k_w.map(|gain| tick_decay * gain)),
+                    steady_state_gains: HeatInputGains::new(gains_k_w),
                     tick_decay: rounded_fixed_point(tick_decay),
                     horizon_decay: rounded_fixed_point(decay(
                         CONTROL_HORIZON_TICKS,
@@ -328,22 +362,25 @@ impl PlateModel {
                     )),
                 }
             }),
-            horizon_gains: InputGains::new(horizon_gains),
+            horizon_gains: HeatInputGains::new(horizon_gains),
             finger_feedthrough: rounded_fixed_point(ratios.finger * FINGER_FEEDTHROUGH_K_W),
-            leg_heating: LowPass::new(Coefficient::from_time_constant_s(LEG_TIME_CONSTANT_S)),
+            leg_heating: LowPass::new(Coefficient::from_time_constant_s(
+                LEG_HEATING_TIME_CONSTANT_S,
+            )),
             hot: DATA_SHEET_TEMPERATURE,
             surface: DATA_SHEET_TEMPERATURE,
-            seebeck: LegProperty::new(module.seebeck_v_k, SEEBECK_RISE_PER_K),
-            resistance: LegProperty::new(module.legs_ohm, RESISTIVITY_RISE_PER_K),
+            seebeck: LinearInLegTemperature::new(module.seebeck_v_k, SEEBECK_RISE_PER_K),
+            resistance: LinearInLegTemperature::new(module.legs_ohm, RESISTIVITY_RISE_PER_K),
             current_per_kelvin: rounded_fixed_point(
                 1.0 / (pumped_k_w * module.seebeck_v_k * 300.0),
             ),
         }
     }
 
-    /// Sets all temperatures to the steady state that has this `surface` temperature, °C, with `current`, A, the heat
-    /// flow from the finger, W, and the sink's temperature, °C, constant. What those do not explain of the surface
-    /// temperature is put into the slowest relaxation. Returns these inputs for the first tick.
+    /// Sets the model to a steady state with this `surface` temperature, °C, under a constant `current`, A (positive
+    /// cools), heat flow from the finger, W, and temperature of the sink, °C. The slowest relaxation takes the part of
+    /// the surface temperature that these inputs do not explain. The legs start with hot ends at the sink's temperature
+    /// and without Joule heating, as is right for zero current. Returns the inputs of the first tick.
     pub fn initialise_steady_state(
         &mut self,
         surface: Celsius,
@@ -354,18 +391,19 @@ impl PlateModel {
         self.leg_heating.set_output(Celsius::ZERO);
         (self.hot, self.surface) = (sink, surface);
         let inputs = self.inputs_of_tick(current, finger, sink);
-        let mut remainder = to_model_resolution(surface)
+        let mut remainder = to_model_temperature(surface)
             .saturating_sub(product(inputs.finger, self.finger_feedthrough));
         let [slowest, others @ ..] = &mut self.relaxations;
         for relaxation in others {
             relaxation.state = relaxation.steady_state_gains.temperature_change(&inputs);
-            remainder -= relaxation.state_kelvin();
+            remainder -= relaxation.state_temperature();
         }
-        slowest.set_state_kelvin(remainder);
+        slowest.set_state_temperature(remainder);
         inputs
     }
 
-    /// Takes the constants of another tile's model; the present temperatures stay.
+    /// Replaces the constants of the model by those of `other`, after the tile's settings have changed; the present
+    /// temperatures stay.
     pub fn set_parameters(&mut self, other: &Self) {
         let previous = *self;
         *self = *other;
@@ -376,21 +414,23 @@ impl PlateModel {
         (self.hot, self.surface) = (previous.hot, previous.surface);
     }
 
-    /// Raises the plate's temperature by `by`, K, without any heat, because a new calibration reads the same plate that
-    /// much higher. The legs' hot ends keep theirs.
-    pub fn offset_temperatures(&mut self, by: Celsius) {
+    /// Raises the temperature of plate and surface by `by`, K (negative lowers it), without any heat flow, when a new
+    /// calibration gives a reading that differs by this much for the same plate. The temperature of the legs' hot ends
+    /// stays.
+    pub fn shift_plate_temperature(&mut self, by: Celsius) {
         let [slowest, ..] = &mut self.relaxations;
-        slowest.state += kelvin_to_state(to_model_resolution(by));
+        slowest.state += temperature_to_state(to_model_temperature(by));
         self.surface = self.surface.saturating_add(by);
     }
 
-    /// Temperature of the display's surface in the patch under the finger, °C, at the end of the last tick.
+    /// Modelled temperature of the display's surface in the patch under the finger, °C, after the last step of the
+    /// model; without the disturbance that the observer adds.
     #[must_use]
     pub const fn surface(&self) -> Celsius {
         self.surface
     }
 
-    /// Temperatures of the legs' ends and their mean, °C, at the end of the last tick.
+    /// Modelled temperatures of the legs' two ends and their mean, °C, after the last step of the model.
     #[must_use]
     pub fn leg_temperatures(&self) -> LegTemperatures {
         let LegTemperatures { cold, hot, mean } =
@@ -402,9 +442,10 @@ impl PlateModel {
         }
     }
 
-    /// The model's inputs in a tick with this current, A (positive cools), heat flow from the finger, W, and sink
-    /// temperature, °C. The pumped heat is computed with the Seebeck coefficient at the legs' mean temperature, which
-    /// includes Thomson's heat.
+    /// Inputs of the model in a tick with this current, A (positive cools), heat flow from the finger, W, and
+    /// temperature of the sink, °C. Pumped and Joule heat are limited to ±64 W, the finger's heat to ±8 W, and the sink
+    /// to ±100 °C. The pumped heat is computed with the Seebeck coefficient at the mean temperature of the legs, which
+    /// takes account of the Thomson heat.
     #[must_use]
     #[inline(always)]
     pub fn inputs_of_tick(&self, current: Current, finger: Watt, sink: Celsius) -> PlateInputs {
@@ -412,13 +453,16 @@ impl PlateModel {
             .leg_temperatures()
             .mean
             .saturating_sub(DATA_SHEET_TEMPERATURE)
-            .clamp(-LARGEST_LEG_DEVIATION, LARGEST_LEG_DEVIATION);
+            .clamp(
+                -LARGEST_LEG_DEVIATION_FROM_27_C,
+                LARGEST_LEG_DEVIATION_FROM_27_C,
+            );
         let surface_k = self.surface.saturating_add(ZERO_C_IN_K);
         let peltier_v: I8F24 = product(self.seebeck.at(above_data_sheet), surface_k);
         let current_squared: I8F24 = saturating_product(current, current);
         let heat = |volts_or_ohms: I8F24, factor: I8F24| -> Watt {
             let heat: Watt = saturating_product(volts_or_ohms, factor);
-            heat.clamp(-LARGEST_LEG_HEAT, LARGEST_LEG_HEAT)
+            heat.clamp(-LARGEST_PUMPED_OR_JOULE_HEAT, LARGEST_PUMPED_OR_JOULE_HEAT)
         };
         PlateInputs {
             pumped: heat(peltier_v, current),
@@ -428,44 +472,51 @@ impl PlateModel {
         }
     }
 
-    /// Current, A (positive cools), to be added to the one from which `inputs` were computed, so that the surface reaches
-    /// `target`, °C, within the control horizon of 12 ms. Assumes that the finger's heat flow and the sink's temperature
-    /// stay as in `inputs`, and neglects the change of the Joule heat.
+    /// Additional current, A (positive cools), with which the modelled surface reaches `target`, °C, after the control
+    /// horizon of 12 ms; it is to be added to the current from which `inputs` were computed. Assumes that the finger's
+    /// heat flow and the sink's temperature stay as in `inputs`, and neglects the change of the Joule heat.
     #[must_use]
     pub fn additional_current_to_target(&self, target: Celsius, inputs: &PlateInputs) -> Current {
-        const ONE: I4F28 = I4F28::ONE;
+        const FIXED_POINT_ONE: I4F28 = I4F28::ONE;
         let [slowest, ..] = &self.relaxations;
         let mut change = self.horizon_gains.temperature_change(inputs)
-            + to_model_resolution(inputs.sink).wide_mul(slowest.horizon_decay);
+            + to_model_temperature(inputs.sink).wide_mul(slowest.horizon_decay);
         for relaxation in &self.relaxations {
-            change -= relaxation.state_kelvin().wide_mul(relaxation.horizon_decay);
+            change -= relaxation
+                .state_temperature()
+                .wide_mul(relaxation.horizon_decay);
         }
-        change += self.surface.wide_mul(ONE) - target.wide_mul(ONE);
+        change += self.surface.wide_mul(FIXED_POINT_ONE) - target.wide_mul(FIXED_POINT_ONE);
         let excess: Celsius = saturated(change);
         saturating_product(excess, self.current_per_kelvin)
     }
 
-    /// Advances all temperatures by one tick of 1 ms under `inputs`.
+    /// Advances all temperatures of the model by one tick of 1 ms under the heat flows and the sink temperature
+    /// `inputs`.
     #[inline(never)]
     pub fn step(&mut self, inputs: &PlateInputs) {
-        let mut surface: Kelvin = product(inputs.finger, self.finger_feedthrough);
+        let mut surface: ModelTemperature = product(inputs.finger, self.finger_feedthrough);
         let [slowest, ..] = &mut self.relaxations;
-        slowest.state += to_model_resolution(inputs.sink).wide_mul(slowest.tick_decay);
+        slowest.state += to_model_temperature(inputs.sink).wide_mul(slowest.tick_decay);
         for relaxation in &mut self.relaxations {
             relaxation.state += relaxation.tick_gains.temperature_change(inputs)
-                - relaxation.state_kelvin().wide_mul(relaxation.tick_decay);
-            surface += relaxation.state_kelvin();
+                - relaxation
+                    .state_temperature()
+                    .wide_mul(relaxation.tick_decay);
+            surface += relaxation.state_temperature();
         }
         self.surface = surface.saturating_to_num();
         self.leg_heating
-            .filter(product(inputs.joule, LEG_MEAN_RISE_K_W));
+            .filter(product(inputs.joule, LEG_MEAN_RISE_PER_JOULE_HEAT_K_W));
         let heat_out = inputs.joule.saturating_add(inputs.pumped);
-        let hot_side_rise = product(heat_out, HOT_SIDE_RESISTANCE_K_W);
+        let hot_side_rise = product(heat_out, HOT_SIDE_THERMAL_RESISTANCE_K_W);
         self.hot = inputs.sink.saturating_add(hot_side_rise);
     }
 }
 
-/// A temperature at the model's resolution of 1 µK, rounded down.
-fn to_model_resolution(temperature: Celsius) -> Kelvin {
-    Kelvin::from_bits(temperature.to_bits() >> (Celsius::FRAC_NBITS - Kelvin::FRAC_NBITS))
+/// Converts a temperature, °C or K, to the resolution of the model, 1 µK, rounded down.
+fn to_model_temperature(temperature: Celsius) -> ModelTemperature {
+    ModelTemperature::from_bits(
+        temperature.to_bits() >> (Celsius::FRAC_NBITS - ModelTemperature::FRAC_NBITS),
+    )
 }

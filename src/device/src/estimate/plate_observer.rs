@@ -1,5 +1,5 @@
-//! Disturbance observer of the display plate: the internal model runs beside the plate, whatever chooses the current, and a
-//! loop corrects it by what the thermistor reads.
+//! Disturbance observer of the display plate: an internal model runs in parallel with the plate, whatever chooses the
+//! current, and a loop corrects the model by the readings of the display's thermistor.
 
 use contact_model::fixed_point::Celsius;
 use fixed::traits::LossyInto;
@@ -9,64 +9,83 @@ use crate::drive::Current;
 use crate::low_pass::{Coefficient, LowPass};
 use crate::pi::{Pi, PiCoefficients};
 
-/// Time constant, s, with which the difference between the thermistor's reading and the model is filtered before it is
-/// added to the modelled surface.
-const DISTURBANCE_TIME_CONSTANT_S: f64 = 0.02;
-/// The residual counts an ampere of the correcting current as half a kelvin (this power of two): enough to detect a
-/// weak module while the current is at its limit, and little beside what a sound tile needs.
+/// Time constant, s, of the low-pass filter for the difference between the thermistor's reading and the modelled
+/// reading; the filtered difference is added to the modelled surface temperature.
+const DISTURBANCE_FILTER_TIME_CONSTANT_S: f64 = 0.02;
+/// Weight of the correcting current in the residual, which is the filtered disturbance, K, plus this weight times the
+/// correcting current: 1/2 K/A (2^-1, this power of two). The correcting current drives the disturbance towards zero,
+/// so the disturbance alone would be small even with a wrong model. With this weight a module that is too weak is
+/// detected even while the current is at its limit; for a sound tile the correcting current adds little, compared with
+/// the permitted residual.
 const RESIDUAL_PER_AMPERE_SHIFT: u32 = 1;
-/// The current in the model may exceed the controller's limit by a quarter (this power of two). A tile that responds
-/// more than its model has a negative correction, so at the limit its model needs more current than flows.
+/// Margin by which the current in the model may exceed the controller's limit: 1/4 of the limit (2^-2, this power of
+/// two). If the real tile responds more strongly than its model, the correcting current is opposite to the real
+/// current. The current in the model, the real current minus the correcting current, is then larger in magnitude than
+/// the real current, also at the limit.
 const MODEL_CURRENT_MARGIN_SHIFT: u32 = 2;
 
-/// Constants of the plate's observer in fixed point, converted from the settings of one tile at start-up and after a
-/// change of the settings.
+/// Constants of the plate's observer in fixed point. They are converted from the settings of one tile, at start-up and
+/// after a change of the settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ObserverParameters {
-    /// Internal model of the plate; only its constants are taken from here after the start.
+    /// Internal model of the plate. Its constants are used; its temperatures are not, because the observer sets them
+    /// itself.
     pub plate: PlateModel,
-    /// Low-pass filter, per tick, that stands for the lag of the display's thermistor.
+    /// Coefficient per tick of the low-pass filter that models the lag of the display's thermistor; computed from the
+    /// lag in the tile's settings, s.
     pub sensor: Coefficient,
-    /// Gains of the loop that turns the innovation (reading minus modelled reading, K) into a correcting current, A.
+    /// Gains of the proportional-integral loop that computes the correcting current, A, from the innovation (reading
+    /// minus modelled reading, K). They are those of the law `pi`.
     pub correction: PiCoefficients,
-    /// Largest residual of a sound tile, K. A larger one that lasts trips the station with the fault `unlike-model`.
+    /// Largest residual of a sound tile, K. The residual is the filtered innovation (reading minus modelled reading)
+    /// plus half a kelvin per ampere of the correcting current. If a larger residual lasts for 30 ms while the display
+    /// follows a set-point, the station trips with the fault `unlike-model`.
     pub largest_residual: Celsius,
 }
 
-/// Disturbance observer of the display plate. An internal model runs beside the real plate; what the thermistor reads
-/// beyond the model is added to the modelled surface as a disturbance, and a proportional-integral loop turns it into a
-/// current that corrects the model.
+/// Disturbance observer of the display plate. An internal model runs in parallel with the real plate. The innovation is
+/// the difference between the thermistor's reading and the modelled reading. Filtered with 20 ms, the innovation is
+/// added to the modelled surface temperature as a disturbance. From the unfiltered innovation a proportional-integral
+/// loop computes the correcting current, which makes the model follow the reading.
 #[derive(Clone, Debug)]
 pub struct PlateObserver {
     plate: PlateModel,
-    /// Modelled reading of the display's thermistor, °C: the modelled surface behind the thermistor's lag.
+    /// Modelled reading of the display's thermistor, °C: the modelled surface temperature, low-pass filtered with the
+    /// lag of the thermistor.
     sensor: LowPass,
-    /// Filtered innovation (thermistor's reading minus modelled reading), K, which is added to the modelled surface.
+    /// Disturbance, K: the innovation (reading of the display's thermistor minus modelled reading), low-pass filtered
+    /// with 20 ms. The disturbance is added to the modelled surface temperature.
     disturbance: LowPass,
-    /// Loop from the innovation, K, to the correcting current, A.
+    /// Proportional-integral loop from the innovation (reading minus modelled reading), K, to the correcting current,
+    /// A.
     correction_loop: Pi,
-    /// Correcting current, A: the part of the real current that the model does not get, so that both surfaces agree.
+    /// Correcting current, A (positive cools): the part of the real current that does not act in the model, so that the
+    /// modelled reading agrees with the thermistor's.
     correction: Current,
-    /// Current that flows in the model, A: that of the real module, less the correction.
+    /// Current in the model, A (positive cools): that of the real module minus the correcting current, limited to 1.25
+    /// times the controller's limit.
     model_current: Current,
-    /// Heat flows, W, and sink temperature, °C, by which the model advances in this tick.
+    /// Heat flows, W, and sink temperature, °C, under which the model advances. Sink and finger's heat flow are those
+    /// of this tick; pumped and Joule heat are those of the model's last step.
     inputs: PlateInputs,
-    /// Largest residual of a sound tile, K; see [`ObserverParameters::largest_residual`].
     largest_residual: Celsius,
-    /// The controller's largest current, A: limits the correction, and with a quarter more the current in the model.
+    /// Largest current of the controller, A. The correcting current is limited to this magnitude, the current in the
+    /// model to 1.25 times as much.
     limit: Current,
-    /// Whether the model has started from a reading; false after construction and [`Self::invalidate`].
+    /// Whether the model has been started from a reading; false after construction and [`Self::invalidate`]. While it
+    /// is false, the observer gives no temperatures, and the next reading starts the model.
     valid: bool,
-    /// The next reading of the display is by a new calibration, so its step is no movement of the plate.
+    /// Whether the next reading of the display is the first with a new calibration. The step of that reading is then
+    /// not counted as a disturbance.
     recalibrated: bool,
 }
 
 impl PlateObserver {
-    /// An observer that starts from its first reading. `limit` is the controller's largest current, A: the correction
-    /// is limited to it, and the current in the model to a quarter more.
+    /// An observer that starts from its first reading. `limit` is the controller's largest current, A: it limits the
+    /// correcting current, and 1.25 times as much limits the current in the model.
     #[must_use]
     pub fn new(parameters: &ObserverParameters, limit: Current) -> Self {
-        let disturbance = Coefficient::from_time_constant_s(DISTURBANCE_TIME_CONSTANT_S);
+        let disturbance = Coefficient::from_time_constant_s(DISTURBANCE_FILTER_TIME_CONSTANT_S);
         Self {
             plate: parameters.plate,
             sensor: LowPass::new(parameters.sensor),
@@ -82,8 +101,9 @@ impl PlateObserver {
         }
     }
 
-    /// Takes the constants of another tile, after the host has stored a new identification; the estimated temperatures
-    /// and the correcting current stay.
+    /// Replaces the constants of the observer by those of other settings: at the start by those of the settings in
+    /// flash, later when the host sets a new tile (commands `tune result`, `set tile`). The estimated temperatures and
+    /// the correcting current stay.
     pub fn set_parameters(&mut self, parameters: &ObserverParameters) {
         self.plate.set_parameters(&parameters.plate);
         self.sensor.set_coefficient(parameters.sensor);
@@ -91,36 +111,42 @@ impl PlateObserver {
         self.largest_residual = parameters.largest_residual;
     }
 
-    /// Lets the next reading restart the model in its steady state, with no disturbance and no correcting current.
-    /// Called in a tick whose readings are invalid, and by the command `arm` in the state off, so that no correction
-    /// from the time without current enters the first currents.
+    /// Restarts the model at the next reading, in its steady state without disturbance and correcting current. Called
+    /// in each tick whose readings are invalid or in which a fault detector finds a fault, and by the command `arm` in
+    /// the state off. While the bridge is off, heat that the model does not contain adds up in disturbance and
+    /// correcting current; after `arm` this must not trip the station with the fault `unlike-model`.
     pub const fn invalidate(&mut self) {
         self.valid = false;
     }
 
-    /// Announces that the next reading of the display uses a new calibration: its step moves the modelled temperatures,
-    /// too, and is not taken for a movement of the plate.
+    /// Called when the host has changed the calibration (commands `calibrate`, `set correction` and `set steps`),
+    /// before the next reading of the display: the step of that reading then shifts the modelled temperatures, instead
+    /// of counting as a disturbance of the plate.
     pub const fn note_recalibration(&mut self) {
         self.recalibrated = true;
     }
 
-    /// Temperature of the display's surface under the finger, °C: that of the model plus the disturbance. `None` before
-    /// the first reading.
+    /// Temperature of the display's surface under the finger, °C: the modelled surface temperature plus the
+    /// disturbance, which is the filtered difference between the thermistor's reading and the modelled reading. `None`
+    /// until a reading has started the model, also after [`Self::invalidate`].
     #[must_use]
     pub fn surface(&self) -> Option<Celsius> {
         self.valid
             .then(|| (self.plate.surface()).saturating_add(self.disturbance.output()))
     }
 
-    /// Temperatures of the legs' cold and hot ends and their mean by the model, °C; `None` before the first reading.
+    /// Modelled temperatures of the legs' cold and hot ends and their mean, °C. `None` until a reading has started the
+    /// model, also after [`Self::invalidate`].
     #[must_use]
     pub fn leg_temperatures(&self) -> Option<LegTemperatures> {
         self.valid.then(|| self.plate.leg_temperatures())
     }
 
-    /// Whether the disturbance, K, plus half a kelvin per ampere of the correcting current exceeds
-    /// [`ObserverParameters::largest_residual`] in magnitude; false before the first reading. If that lasts, the
-    /// station trips with `unlike-model`.
+    /// Whether the residual exceeds [`ObserverParameters::largest_residual`] in magnitude; false until a reading has
+    /// started the model, also after [`Self::invalidate`]. The residual is the disturbance, K (the filtered difference
+    /// between the thermistor's reading and the modelled reading), plus half a kelvin per ampere of the correcting
+    /// current. If the excess lasts for 30 ms while the display follows a set-point, the station trips with the fault
+    /// `unlike-model`.
     #[must_use]
     pub fn residual_is_large(&self) -> bool {
         let correction: Celsius = (self.correction >> RESIDUAL_PER_AMPERE_SHIFT).lossy_into();
@@ -128,9 +154,9 @@ impl PlateObserver {
         self.valid && residual.saturating_abs() > self.largest_residual
     }
 
-    /// Corrects the observer by this tick's reading of the display's thermistor, °C, and takes the sink's temperature,
-    /// °C, and the heat flow from the finger, W, as the model's inputs. The first reading starts the model in its
-    /// steady state.
+    /// Computes the disturbance and the correcting current from this tick's `reading` of the display's thermistor, °C,
+    /// minus the modelled reading. Stores the temperature of the sink, °C, and the heat flow from the finger, W, as
+    /// inputs of the model. The first reading, also after [`Self::invalidate`], starts the model in its steady state.
     pub fn correct_by_reading(&mut self, reading: Celsius, sink: Celsius, finger: Watt) {
         if !self.valid {
             self.inputs = self
@@ -146,7 +172,7 @@ impl PlateObserver {
         let mut innovation = reading.saturating_sub(self.sensor.output());
         if self.recalibrated {
             let offset = innovation.saturating_sub(self.disturbance.output());
-            self.plate.offset_temperatures(offset);
+            self.plate.shift_plate_temperature(offset);
             self.sensor
                 .set_output(self.sensor.output().saturating_add(offset));
             innovation = self.disturbance.output();
@@ -156,8 +182,10 @@ impl PlateObserver {
         self.correction = self.correction_loop.current_for_error(innovation);
     }
 
-    /// Current, A (positive cools), that brings the display's surface to `target`, °C, in 12 ticks: that in the model,
-    /// what the model needs in addition, and the correction. Not limited; the law `model` limits it.
+    /// Current, A (positive cools), with which the modelled surface of the display reaches `target`, °C, in 12 ms: the
+    /// present current in the model, plus the additional current that the model needs, plus the correcting current,
+    /// because the real current is larger than that in the model by the correcting current. The sum is not limited
+    /// here; the controller limits it.
     #[must_use]
     pub fn current_to_target(&self, target: Celsius) -> Current {
         self.model_current
@@ -169,7 +197,7 @@ impl PlateObserver {
     }
 
     /// Advances the model by one tick in which `current`, A (positive cools), flows through the real module. Does
-    /// nothing before the first reading.
+    /// nothing until a reading has started the model, also after [`Self::invalidate`].
     pub fn advance_model(&mut self, current: Current) {
         if !self.valid {
             return;
@@ -185,7 +213,7 @@ impl PlateObserver {
         self.inputs = self.plate.inputs_of_tick(self.model_current, finger, sink);
         let previous_surface = self.plate.surface();
         self.plate.step(&self.inputs);
-        // The thermistor sees the mean of the surface over the tick.
+        // The modelled thermistor responds to the mean surface temperature over the tick.
         let surface = (previous_surface >> 1u32).saturating_add(self.plate.surface() >> 1u32);
         self.sensor.filter(surface);
     }

@@ -1,4 +1,5 @@
-//! Identification of the tile: current pulses about an operating point, and the least squares of what follows.
+//! Identification of the tile: applies current pulses around an operating point, and adds up the normal equations of a
+//! least-squares fit of the display's response.
 //!
 //! The model of [`Tile`](thermal_settings::Tile), integrated twice from the steady state on, is linear in its unknowns:
 //!
@@ -9,14 +10,14 @@
 //! with the change of the reading `y`, its first and second integral `Y1` and `Y2`, the integrals `U1` and `U2` of the
 //! current's change, and `V2` of its square. Integration averages noise, and nothing is differentiated. `a` and `b`
 //! absorb the error of the baseline reading and a drift. `zero`, with the second integral `D2` of the change of the
-//! current's direction, is what the current mirror shows when no current flows: up to 0.05 A, which is much of a small
-//! pulse. The tick adds up the [`NormalEquations`] in integers.
+//! current's direction, is what the current mirror shows when no current flows: up to 0.05 A, which is a large part of
+//! a small pulse. Each tick adds to the [`NormalEquations`] in integers; the task that serves the host solves them.
 //!
-//! Two effects would bias lag and leak if they were neglected. The legs take up heat with the plate, later than the
-//! plate, so a part of the current acts late; and Joule's heat reaches the plate through the legs. Both are first-order
-//! low-pass filters with the time constants of diffusion along the legs of a module of this class. The current is the
-//! measured one, because bridge and module turn a demanded current into one that is unknown to their tolerances; the
-//! relation of both is added up as well.
+//! Two effects would bias lag and leak if they were neglected. The module's legs take up heat later than the plate, so
+//! a part of the current acts late; and Joule's heat reaches the plate late, through the legs. Each effect is modelled
+//! by a first-order low-pass filter with the time constant of diffusion along the legs of a module of this class. The
+//! current in the equations is the measured one, because tolerances of bridge and module make it differ from the
+//! demanded one. The sums from which the ratio of measured to demanded current is fitted are added up, too.
 
 use contact_model::fixed_point::Celsius;
 
@@ -28,21 +29,26 @@ use crate::pi::{Pi, PiCoefficients, UpdatePeriod};
 use crate::safety::limits::SINK_MAX_IDENTIFICATION;
 use crate::safety::{Setpoint, ValidReadings};
 pub use normal_equations::{
-    NormalEquationRow, NormalEquations, ROWS, Statistic, TIME_UNIT_SHIFT, UNKNOWNS,
+    NORMAL_EQUATION_ROWS, NormalEquationRow, NormalEquations, StatisticIndex, TIME_UNIT_TICKS_LOG2,
+    UNKNOWN_COUNT,
 };
 use thermal_settings::Gains;
 
-/// Demanded current, A, in magnitude, from which the module's current certainly flows in the demanded direction. Below
-/// it, the demanded current is taken instead of the measured one, whose sign the current mirror does not show.
-const CURRENT_DIRECTION_CERTAIN_FROM: Current = Current::lit("0.25");
-/// Magnitude of the demanded current, A, above which demanded and measured current enter the sums from which their ratio is
-/// fitted. Below it the voltage lost in the bridge's dead times may be only partial, which makes the relation nonlinear.
-const CURRENTS_COMPARED_ABOVE: Current = Current::lit("1");
+/// Magnitude of the demanded current, A, from which on the module's current certainly flows in the demanded direction.
+/// Below it the demanded current is used instead of the measured one, because the current mirror does not show the
+/// direction.
+const CERTAIN_DIRECTION_CURRENT_MIN: Current = Current::lit("0.25");
+/// Magnitude of the demanded current, A, above which demanded and measured current enter the sums from which their
+/// ratio is fitted. At a smaller current the voltage that the bridge's dead times take may depend on the current, so
+/// the measured current is not linear in the demanded one.
+const CURRENT_COMPARISON_MIN: Current = Current::lit("1");
 
-/// Excitation pulses: change of the current from the baseline, in eighths of [`PULSE_AMPLITUDE`], and length in ticks
-/// of 1 ms. Both signs last equally long at each height, so that the display moves by 2.3 K at most; heights differ to
-/// tell Joule's heat from drift. There are no pauses, because near zero the bridge does not give the demanded current
-/// and the mirror does not show the one that flows; an error of the baseline current has the effect of a drift.
+/// Excitation pulses in their order: change of the demanded current from the baseline, in eighths of
+/// [`NOMINAL_PULSE_CURRENT`], and duration in ticks of 1 ms. At each of the three heights the positive and the negative
+/// pulses last equally long, so that the display moves by 2.3 K at most. Three heights separate Joule's heat, which
+/// grows with the square of the current, from a drift. No pulse is zero, because near zero the bridge does not give the
+/// demanded current, and the current mirror does not show the current that flows. An error of the baseline current
+/// looks like a drift, which the fit removes.
 const EXCITATION_PULSES: [(i32, u32); 15] = [
     (8, 150),
     (-8, 300),
@@ -60,9 +66,10 @@ const EXCITATION_PULSES: [(i32, u32); 15] = [
     (16, 240),
     (-16, 120),
 ];
-/// Current, A, of which [`EXCITATION_PULSES`] are eighths; the largest pulse has twice this amplitude.
-const PULSE_AMPLITUDE: Current = Current::lit("1.5");
-/// Length of all excitation pulses together, ticks of 1 ms (8.1 s).
+/// Current, A, that eight eighths in [`EXCITATION_PULSES`] stand for. The pulses have 4, 8 or 16 eighths: 0.75, 1.5 or
+/// 3 A.
+const NOMINAL_PULSE_CURRENT: Current = Current::lit("1.5");
+/// Duration of all excitation pulses together, ticks of 1 ms: 8080 (8.1 s).
 const EXCITATION_TICKS: u32 = {
     let (mut ticks, mut pulse) = (0, 0);
     while pulse < EXCITATION_PULSES.len() {
@@ -72,50 +79,59 @@ const EXCITATION_TICKS: u32 = {
     ticks
 };
 
-/// Gains of the loop that brings the display to the operating point: stable for any tile of the class and a
-/// thermistor's lag of up to half a second, because the tile's own gains are not known yet.
+/// Gains of the PI loop that brings the display to the operating point. They are stable for any tile of the class and
+/// any thermistor lag up to 0.5 s, because the parameters of this tile are not known yet.
 const SETTLING_GAINS: Gains = Gains {
     proportional_a_k: 0.3,
     integral_s: 5.0,
 };
-/// Largest current, A, while the display settles. It moves the display by 3 K/s, at which thermistors of different lags
-/// agree closely enough for the fault detectors.
+/// Largest magnitude of the current, A, by which the PI loop brings the display to the operating point. It moves the
+/// display by 3 K/s; a faster display would let thermistors of different lags differ so much that the fault detectors
+/// could trip.
 const SETTLING_CURRENT_LIMIT: Current = Current::ONE;
-/// Largest difference from the operating point, K, of a display that settles.
-const SETTLED_WITHIN: Celsius = Celsius::lit("0.06");
-/// Ticks of 1 ms for which the display must stay within [`SETTLED_WITHIN`] before the baseline begins.
-const SETTLED_TICKS: u32 = 1500;
-/// Ticks of 1 ms (60 s) after which an identification ends early if the display has not settled.
+/// Deviation of the display's reading from the operating point, K. If the deviation stays below this for
+/// [`SETTLED_TICKS_MIN`], the display counts as settled and the baseline is measured. It is far below the 2.3 K by
+/// which the pulses then move the display.
+const SETTLED_DEVIATION_MAX: Celsius = Celsius::lit("0.06");
+/// Ticks of 1 ms in a row (1.5 s) for which the display's reading must be within [`SETTLED_DEVIATION_MAX`] of the
+/// operating point before the baseline is measured.
+const SETTLED_TICKS_MIN: u32 = 1500;
+/// Ticks of 1 ms (60 s) after which an identification ends early with [`AbortReason::NotSettled`] if the display has
+/// not settled at the operating point.
 const SETTLING_TIMEOUT_TICKS: u32 = 60 * TICK_HZ;
-/// Ticks of 1 ms over which the loop's current is averaged into the baseline current, and then again over which reading
-/// and measured current are averaged at this current.
-const BASELINE_TICKS: u32 = 512;
-/// Coldest operating point, °C. The operating point is the sink's temperature, which needs no current, unless that is
-/// colder.
+/// Length of each half of the baseline, ticks of 1 ms. In the first half the PI loop runs, and the mean of its current
+/// becomes the baseline current. In the second half the baseline current is demanded, and the display's reading and the
+/// measured current are averaged.
+const HALF_BASELINE_TICKS: u32 = 512;
+/// Lowest operating point, °C, used if the sink is colder than this. Otherwise the operating point is the sink's
+/// temperature, at which the display needs no current.
 const OPERATING_POINT_MIN: Celsius = Celsius::lit("22");
-/// Hottest operating point, °C; taken if the sink is hotter.
+/// Highest operating point, °C, used if the sink is hotter than this.
 const OPERATING_POINT_MAX: Celsius = Celsius::lit("35");
-/// Largest difference of the display from the operating point, K, during baseline and pulses; beyond it the
-/// identification ends early.
-const EXCURSION_MAX: Celsius = Celsius::lit("7");
+/// Largest deviation of the display's reading from the operating point, K, during baseline and pulses. Beyond it the
+/// identification ends early with [`AbortReason::TooFar`]; the pulses alone move the display by 2.3 K at most.
+const OPERATING_POINT_DEVIATION_MAX: Celsius = Celsius::lit("7");
 
-/// Why an identification of the tile ended early; the host gets it in words.
+/// Why an identification of the tile ended early; the reply to the host contains the reason as text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AbortReason {
-    /// A finger touches the display, whose heat would falsify the parameters.
+    /// A finger touches the display (a contact is detected from 0.02 N on). The finger's heat would falsify the tile's
+    /// parameters.
     Touched,
-    /// The display was not within 0.06 K of the operating point for 1.5 s in a row in the first 60 s.
+    /// Within 60 s the display's reading did not stay within 0.06 K of the operating point for 1.5 s in a row.
     NotSettled,
-    /// The display was more than 7 K from the operating point during baseline or pulses.
+    /// The display's reading was more than 7 K from the operating point while the baseline was measured or pulses were
+    /// applied.
     TooFar,
-    /// The sink is hotter than 41.5 °C, half a kelvin below the temperature at which the station trips.
+    /// The heat sink is hotter than 41.5 °C, half a kelvin below the temperature at which the station trips.
     SinkHot,
-    /// Another command of the host changed the station's state or calibration, or a fault tripped the station.
+    /// While the identification was running, the host sent `start` or `abort`, or changed the calibration, the gains or
+    /// the tile's parameters, or a fault tripped the station.
     Interrupted,
 }
 
 impl AbortReason {
-    /// The reason in the words of the reply to the host.
+    /// The reason as text for the reply to the host.
     #[must_use]
     pub const fn description(self) -> &'static str {
         match self {
@@ -128,48 +144,56 @@ impl AbortReason {
     }
 }
 
-/// Phases of an identification, in their order; the last two end it.
+/// Phase of an identification. `Settling`, `Baseline`, `Pulses` and `Done` follow each other in this order. An
+/// identification that ends early changes from `Settling`, `Baseline` or `Pulses` to `Aborted`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum IdentificationPhase {
-    /// The loop brings the display to the operating point, for `ticks` so far; it has been within 0.06 K of it for the
-    /// last `near` ticks.
+    /// The PI loop brings the display to the operating point, for `ticks` ticks of 1 ms so far. `near` counts
+    /// the ticks in a row, up to the present one, in which the display's reading was within 0.06 K of it.
     Settling { ticks: u32, near: u32 },
-    /// In the first 512 ticks the loop's current is averaged; in the next 512 ticks, at this current, the reading and
-    /// the measured current are.
+    /// The baseline before the pulses is measured, for `ticks` ticks of 1 ms so far. In the first 512 ticks the current
+    /// of the PI loop is averaged; in the next 512 ticks this mean current is demanded, and the display's reading and
+    /// the measured current are averaged.
     Baseline { ticks: u32 },
-    /// The pulse with the index `pulse` is applied, for `ticks` so far; each tick is added to the normal equations.
+    /// The pulse with the index `pulse` in [`EXCITATION_PULSES`] is applied, for `ticks` ticks of 1 ms so far. Each
+    /// tick is added to the normal equations.
     Pulses { pulse: usize, ticks: u32 },
-    /// The normal equations are complete; the loop holds the display at the operating point until a command of the host
-    /// changes that.
+    /// The normal equations are complete. The PI loop holds the display at the operating point until a command of the
+    /// host or a fault ends that.
     Done,
-    /// Ended early, for this reason; the station then brings the display to skin temperature.
+    /// The identification has ended early, for this reason. The station then brings the display to the skin's
+    /// temperature.
     Aborted(AbortReason),
 }
 
-/// Identification of the tile while the station is armed: settles the display, measures the baseline, and applies
-/// current pulses. From their effect on the reading the tile's parameters are computed afterwards.
+/// Identification of the tile, which runs while the station is armed: brings the display to the operating point,
+/// measures the baseline, applies current pulses, and adds up the normal equations of the display's response. The
+/// tile's parameters are computed from them afterwards, by the task that serves the host.
 #[derive(Clone, Debug)]
 pub struct Identification {
     phase: IdentificationPhase,
-    /// Temperature about which the pulses move the display, °C.
+    /// Temperature around which the pulses move the display, 22 to 35 °C.
     operating_point: Setpoint,
-    /// Loop that holds the display at the operating point before and after the pulses.
+    /// PI loop whose current holds the display at the operating point: while the display settles, in the first half of
+    /// the baseline, and after the pulses.
     pi: Pi,
-    /// Current demanded before the pulses, in 2^-24 A: total over [`BASELINE_TICKS`].
+    /// Total of the currents demanded in the first half of the baseline, in 2^-24 A; positive cools. Divided by
+    /// [`HALF_BASELINE_TICKS`], it is the baseline current.
     baseline_demand: i64,
-    /// Display's reading before the pulses, in 2^-22 °C: total over the second [`BASELINE_TICKS`], and their mean from
-    /// the first pulse on.
+    /// Until the baseline ends: total of the display's readings in its second half, in 2^-22 °C. During the pulses: the
+    /// mean of these readings.
     baseline_reading: i64,
-    /// Measured current before the pulses, in 2^-24 A, with the sign of the demanded one: total over the second
-    /// [`BASELINE_TICKS`], and their mean from the first pulse on.
+    /// Until the baseline ends: total of the measured currents in its second half, in 2^-24 A, with the sign of the
+    /// demanded current (positive cools). During the pulses: the mean of these currents.
     baseline_measured: i64,
-    /// Current demanded in the tick before, A, to which this tick's measured current belongs.
+    /// Current demanded in the previous tick, A (positive cools), to which the current measured in the present tick
+    /// responds. Kept up to date only in the second half of the baseline and during the pulses; zero before.
     previous_demand: Current,
 }
 
 impl Identification {
-    /// An identification that begins to settle in the next tick, at the temperature of the sink, °C, limited to 22 to
-    /// 35 °C. Created by the host's command `tune`.
+    /// An identification that begins in the next tick. Its operating point is `sink`, the heat sink's temperature in
+    /// °C, limited to 22 to 35 °C. Created by the host's command `tune`.
     #[must_use]
     pub fn new(sink: Celsius) -> Self {
         let operating_point = sink.clamp(OPERATING_POINT_MIN, OPERATING_POINT_MAX);
@@ -185,13 +209,15 @@ impl Identification {
         }
     }
 
-    /// Temperature about which the pulses move the display, 22 to 35 °C.
+    /// Temperature around which the pulses move the display, 22 to 35 °C; the display's set-point while the
+    /// identification runs.
     #[must_use]
     pub const fn operating_point(&self) -> Setpoint {
         self.operating_point
     }
 
-    /// Ends the identification early, for the first reason that occurs; no effect after its end.
+    /// Ends a running identification early, for this reason. Has no effect on an identification that has already ended,
+    /// so the first reason stays.
     fn abort(&mut self, reason: AbortReason) {
         if self.outcome().is_none() {
             self.phase = IdentificationPhase::Aborted(reason);
@@ -201,7 +227,7 @@ impl Identification {
     /// `None` while the identification is running; `Ok` once the normal equations are complete.
     ///
     /// # Errors
-    /// Why the identification ended early.
+    /// The identification has ended early, for this reason.
     #[must_use]
     pub const fn outcome(&self) -> Option<Result<(), AbortReason>> {
         match self.phase {
@@ -213,9 +239,13 @@ impl Identification {
         }
     }
 
-    /// Chooses the current to demand in this tick, A (positive cools), and adds the tick to `equations`, which must be
-    /// empty when the identification starts. `None` once the identification has ended early.
-    pub fn choose_current(
+    /// Runs one tick of the identification, and returns the current to demand in this tick, A (positive cools). During
+    /// the pulses the tick is added to `equations`, which must be empty when the identification begins. `touching` is
+    /// true while a finger touches the display, which ends the identification early.
+    ///
+    /// `None` in the tick that ends the identification early and in all later ticks; but in the tick that ends it with
+    /// [`AbortReason::NotSettled`], still the current of the PI loop.
+    pub fn step(
         &mut self,
         equations: &mut NormalEquations,
         readings: &ValidReadings,
@@ -228,11 +258,11 @@ impl Identification {
         if readings.sink > SINK_MAX_IDENTIFICATION {
             self.abort(AbortReason::SinkHot);
         }
-        // While it settles, the display may come from any temperature.
+        // While the display settles, it may come from any temperature.
         if matches!(
             self.phase,
             IdentificationPhase::Baseline { .. } | IdentificationPhase::Pulses { .. }
-        ) && excursion.abs() > EXCURSION_MAX
+        ) && excursion.abs() > OPERATING_POINT_DEVIATION_MAX
         {
             self.abort(AbortReason::TooFar);
         }
@@ -241,9 +271,9 @@ impl Identification {
             IdentificationPhase::Aborted(_) => return None,
             IdentificationPhase::Done => {}
             IdentificationPhase::Settling { ticks, near } => {
-                let is_near = excursion.abs() < SETTLED_WITHIN;
+                let is_near = excursion.abs() < SETTLED_DEVIATION_MAX;
                 let near = if is_near { near + 1 } else { 0 };
-                self.phase = if near == SETTLED_TICKS {
+                self.phase = if near == SETTLED_TICKS_MIN {
                     IdentificationPhase::Baseline { ticks: 0 }
                 } else if ticks == SETTLING_TIMEOUT_TICKS {
                     IdentificationPhase::Aborted(AbortReason::NotSettled)
@@ -254,7 +284,7 @@ impl Identification {
                     }
                 };
             }
-            IdentificationPhase::Baseline { ticks } if ticks < BASELINE_TICKS => {
+            IdentificationPhase::Baseline { ticks } if ticks < HALF_BASELINE_TICKS => {
                 let current = self
                     .pi
                     .update_output(self.operating_point, readings.display);
@@ -262,33 +292,33 @@ impl Identification {
                 self.phase = IdentificationPhase::Baseline { ticks: ticks + 1 };
                 return Some(current);
             }
-            IdentificationPhase::Baseline { ticks } if ticks < 2 * BASELINE_TICKS => {
+            IdentificationPhase::Baseline { ticks } if ticks < 2 * HALF_BASELINE_TICKS => {
                 self.baseline_reading += reading;
-                self.previous_demand = self.pulse_demand(0);
-                let measured = signed_measurement(readings.current, self.previous_demand);
+                self.previous_demand = self.demanded_pulse_current(0);
+                let measured = signed_measured_current(readings.current, self.previous_demand);
                 self.baseline_measured += i64::from(measured.to_bits());
                 self.phase = IdentificationPhase::Baseline { ticks: ticks + 1 };
-                return Some(self.pulse_demand(0));
+                return Some(self.demanded_pulse_current(0));
             }
             IdentificationPhase::Baseline { .. } => {
-                self.baseline_reading /= i64::from(BASELINE_TICKS);
-                self.baseline_measured /= i64::from(BASELINE_TICKS);
+                self.baseline_reading /= i64::from(HALF_BASELINE_TICKS);
+                self.baseline_measured /= i64::from(HALF_BASELINE_TICKS);
                 self.phase = IdentificationPhase::Pulses { pulse: 0, ticks: 0 };
-                return Some(self.pulse_demand(0));
+                return Some(self.demanded_pulse_current(0));
             }
             IdentificationPhase::Pulses { pulse, ticks } => {
                 let Some((eighths, length)) = EXCITATION_PULSES.get(pulse) else {
                     self.phase = IdentificationPhase::Done;
-                    return Some(self.pulse_demand(0));
+                    return Some(self.demanded_pulse_current(0));
                 };
-                let demand = self.pulse_demand(*eighths);
-                let measured = signed_measurement(readings.current, self.previous_demand);
-                if self.previous_demand.abs() > CURRENTS_COMPARED_ABOVE {
+                let demand = self.demanded_pulse_current(*eighths);
+                let measured = signed_measured_current(readings.current, self.previous_demand);
+                if self.previous_demand.abs() > CURRENT_COMPARISON_MIN {
                     equations.add_current_comparison(self.previous_demand, measured);
                 }
                 let change = reading - self.baseline_reading;
-                let turned = certain_direction(self.previous_demand)
-                    - certain_direction(self.pulse_demand(0));
+                let turned = certain_current_direction(self.previous_demand)
+                    - certain_current_direction(self.demanded_pulse_current(0));
                 equations.add_tick(change, measured, self.baseline_measured, turned);
                 self.previous_demand = demand;
                 let (pulse, ticks) = if ticks + 1 < *length {
@@ -306,27 +336,27 @@ impl Identification {
         )
     }
 
-    /// Current, A: the baseline current plus this number of eighths of the pulses' amplitude.
-    fn pulse_demand(&self, eighths: i32) -> Current {
-        let baseline = self.baseline_demand / i64::from(BASELINE_TICKS);
-        Current::from_bits(baseline as i32).saturating_add(PULSE_AMPLITUDE * eighths / 8)
+    /// Current to demand, A (positive cools): the baseline current plus `eighths` eighths of [`NOMINAL_PULSE_CURRENT`].
+    fn demanded_pulse_current(&self, eighths: i32) -> Current {
+        let baseline = self.baseline_demand / i64::from(HALF_BASELINE_TICKS);
+        Current::from_bits(baseline as i32).saturating_add(NOMINAL_PULSE_CURRENT * eighths / 8)
     }
 }
 
-/// Direction in which a demanded current certainly flows: 1 if it cools, -1 if it heats, 0 if it is below 0.25 A in
-/// magnitude.
-fn certain_direction(demanded: Current) -> i64 {
-    if demanded.abs() < CURRENT_DIRECTION_CERTAIN_FROM {
+/// Direction in which the module's current certainly flows if this current, A, is demanded: 1 if it cools, -1 if it
+/// heats, 0 (uncertain) if its magnitude is below 0.25 A.
+fn certain_current_direction(demanded: Current) -> i64 {
+    if demanded.abs() < CERTAIN_DIRECTION_CURRENT_MIN {
         0
     } else {
         demanded.signum().to_num()
     }
 }
 
-/// Measured current, A, with the sign of the demanded one; the demanded current itself if that is below 0.25 A in
-/// magnitude.
-fn signed_measurement(measured: Current, demanded: Current) -> Current {
-    match certain_direction(demanded) {
+/// The measured current, A, with the sign of the demanded one, because the current mirror shows only the magnitude. The
+/// demanded current itself if its magnitude is below 0.25 A.
+fn signed_measured_current(measured: Current, demanded: Current) -> Current {
+    match certain_current_direction(demanded) {
         0 => demanded,
         1.. => measured,
         _ => -measured,

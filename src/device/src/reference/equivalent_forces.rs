@@ -1,30 +1,32 @@
-//! How far a force may move until Eq. 6-12 is evaluated again.
+//! The range in which a force may change until Eq. 6-12 is evaluated again.
 
 use core::ops::RangeInclusive;
 
 use contact_model::fixed_point::{Celsius, Force};
 
-/// Largest change of the set-point, K, that a new mean force may cause before Eq. 6-12 is evaluated again for it.
-const EQUIVALENT_FORCE_TOLERANCE: Celsius = Celsius::lit("0.0001");
+/// Largest difference of the set-points of two forces, K, up to which they count as equivalent: 0.1 mK. Eq. 6-12 is
+/// evaluated again only for a mean force that changes the set-point by more.
+const EQUIVALENT_SETPOINT_TOLERANCE: Celsius = Celsius::lit("0.0001");
 
-/// Forces, N, around `force` for which the set-point stays within 0.1 mK ([`EQUIVALENT_FORCE_TOLERANCE`]), so that Eq.
-/// 6-12 need not be evaluated again. `amplitude` is the factor of `E` in Eq. 6-12, K: by how much the set-point changes
-/// during the whole contact.
+/// Forces, N, for which the set-point is within 0.1 mK of that for `force`, N, so that Eq. 6-12 need not be evaluated
+/// again. `amplitude`, K, is by how much the set-point changes during the whole contact. In Eq. 6-12 it is the factor
+/// of `E`, a function of time and contact resistance that falls from 1 to 0.
 ///
-/// R changes by 0.95 of the force's relative change (Eq. 6-8), `E` by at most 0.277 of R's, and the set-point by
-/// `amplitude` times as much: 0.264 in all, rounded up to 17/64.
+/// A relative change of the force changes the contact resistance by 0.95 times as much (Eq. 6-8), which changes `E` by
+/// at most 0.277 times the relative change of the resistance. So the set-point changes by at most `amplitude` times
+/// 0.264 times the relative change of the force; 0.264 is rounded up to 17/64.
 pub fn equivalent_forces(force: Force, amplitude: Celsius) -> RangeInclusive<Force> {
-    // Relative change of the force in 2^-29, for an amplitude in 2^-14 K that is rounded up, so that one division of 32 bits
-    // is enough.
-    const RELATIVE_TOLERANCE: u32 = (((EQUIVALENT_FORCE_TOLERANCE.to_bits() as u64 * 64)
-        << (29 - AMPLITUDE_SHIFT))
-        / 17) as u32;
+    // Allowed relative change of the force, in 2^-29, times the amplitude in 2^-14 K, which is rounded up. In these
+    // units one division of 32 bits is enough.
+    const RELATIVE_FORCE_CHANGE_TIMES_AMPLITUDE: u32 =
+        (((EQUIVALENT_SETPOINT_TOLERANCE.to_bits() as u64 * 64) << (29 - AMPLITUDE_SHIFT)) / 17)
+            as u32;
     const AMPLITUDE_SHIFT: u32 = 8;
     let amplitude = amplitude
         .to_bits()
         .unsigned_abs()
         .div_ceil(1 << AMPLITUDE_SHIFT);
-    let allowed = RELATIVE_TOLERANCE
+    let allowed = RELATIVE_FORCE_CHANGE_TIMES_AMPLITUDE
         .checked_div(amplitude)
         .and_then(|relative| {
             u32::try_from((u64::from(force.to_bits()) * u64::from(relative)) >> 29).ok()

@@ -1,8 +1,8 @@
 //! The reference of the control loop: the display temperature that makes the finger feel the object.
 //!
-//! Before contact the display waits at its preset, Eq. 6-12 at `t = 0`, from the skin's and the object's temperatures. From
-//! landing on it follows Eq. 6-12, and returns to the preset when the finger lifts. In the semi-infinite mode (chapter 4 of
-//! the thesis) it stays at the interface temperature of Eq. 3-1.
+//! Before contact the display waits at its preset, which is Eq. 6-12 at `t = 0` for the temperatures of skin and
+//! object. From landing on, the reference follows Eq. 6-12; when the finger lifts, it becomes the preset again. In the
+//! semi-infinite mode (chapter 4 of the thesis) the reference is always the interface temperature of Eq. 3-1.
 
 mod equivalent_forces;
 mod skin_on_object;
@@ -14,57 +14,71 @@ use contact_model::fixed_point::{Celsius, ChordInterpolation, ContactPair, Force
 use crate::estimate::{FingerContact, FingerEstimator, ForceChange, PreContactTemperatures};
 use crate::safety::Setpoint;
 use equivalent_forces::equivalent_forces;
-use skin_on_object::{PairFactors, SkinOnObject};
+use skin_on_object::{ContactPairFactors, SkinOnObject};
 
-/// Largest error, K, of the interpolated set-point against Eq. 6-12 at the force for which the contact resistance was
-/// computed. Noise of the force adds up to 0.1 mK to it, 0.5 mK in all.
-pub const INTERPOLATION_TOLERANCE: Celsius = Celsius::lit("0.0004");
-/// Error of the display's surface at landing, K, beyond the range from its preset to where it waits below the preset,
-/// from which the closed form of Eq. 6-12 is not used for the contact.
-const LATE_DISPLAY_ERROR: Celsius = Celsius::lit("0.1");
-/// A display waits below its preset by 1/128 (this power of two) of the difference between skin and preset temperature.
-const WAITING_LEAD_SHIFT: u32 = 7;
+/// Largest error, K, of the set-point by interpolation in time, compared with Eq. 6-12 for the same force: 0.4 mK. The
+/// smaller it is, the more often Eq. 6-12 must be evaluated. Noise of the force may add up to 0.1 mK before the
+/// interpolation is computed again, which gives 0.5 mK in all.
+pub const SETPOINT_INTERPOLATION_TOLERANCE: Celsius = Celsius::lit("0.0004");
+/// Largest distance, K, of the display's surface temperature in the first tick of a contact from the range in which the
+/// display should wait: from the preset (the set-point before contact) to the waiting temperature below it. After a
+/// larger error the law `model` does not use the closed form of Eq. 6-12 for this contact, because the closed form
+/// assumes a start at the preset.
+const WAITING_RANGE_ERROR_MAX: Celsius = Celsius::lit("0.1");
+/// Divisor of the waiting offset as a power of two: 2^7 = 128. While a display waits for a finger, the law `model`
+/// keeps it below its preset, the set-point before contact, by the difference of skin temperature and preset divided by
+/// 128.
+const WAITING_OFFSET_DIVISOR_LOG2: u32 = 7;
 
-/// Which contact model of the thesis gives the set-point; chosen by the host's command `mode`.
+/// Contact model that gives the set-point while an object is presented; chosen by the host's command `mode`. The
+/// equations are those of Ho's thesis (MIT 2006).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mode {
-    /// Eq. 6-12, with contact resistance between skin and object: the set-point changes during contact.
+pub enum ContactModel {
+    /// Command `mode contact`: Eq. 6-12, two semi-infinite bodies with a thermal contact resistance between skin and
+    /// object. The set-point before contact, the preset, is Eq. 6-12 at `t = 0`; during contact the set-point changes
+    /// with time and force.
     #[default]
     ContactResistance,
-    /// Eq. 3-1, perfect contact of two half-spaces: the set-point is their constant interface temperature, before and
-    /// during contact.
+    /// Command `mode semi-infinite`: Eq. 3-1, two semi-infinite bodies in perfect contact. The set-point is their
+    /// constant interface temperature, before and during contact.
     SemiInfinite,
 }
 
-/// The object that the host has chosen to present, with the model of the contact: all that the reference generator
-/// needs beside finger and display.
+/// The object that the host has chosen to present, and the contact model. The reference generator computes the
+/// set-point from a scene, the state of the finger, and the temperature of the display's surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Scene<'a> {
-    /// Thermal properties of skin, presented material and display surface, from which contact conductances and
-    /// set-points follow.
+pub struct PresentedObject<'a> {
+    /// Constants of the contact of a finger's skin with the presented material, and of its contact with the display's
+    /// surface. Contact conductances and set-points are computed from them.
     pub pair: &'a ContactPair,
-    /// Temperature of the object before contact, °C; `None` stands for that of the room.
+    /// Temperature of the object before contact, °C; `None` takes the temperature of the room.
     pub object: Option<Celsius>,
-    /// Contact model of the set-point: with contact resistance (Eq. 6-12) or perfect contact (Eq. 3-1). Independent of the
-    /// control law.
-    pub mode: Mode,
+    /// Contact model that gives the set-point: with contact resistance (Eq. 6-12) or perfect contact (Eq. 3-1).
+    pub mode: ContactModel,
 }
 
-/// The temperatures to which the control loop brings the display in one tick.
+/// Desired temperatures of the display in one tick: the set-point, to which the control laws `pi` and `pi-10hz`
+/// control, and the target, to which the law `model` controls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reference {
-    /// Set-point in °C that is reported to the host and checked by the fault detectors, and to which the laws `pi` and
-    /// `pi-10hz` control.
+    /// Set-point, 15 to 42 °C. The laws `pi` and `pi-10hz` control the display's reading to it, the fault detectors
+    /// check the reading against it, and the host gets it in status and telemetry. With the law `model`, in a contact
+    /// for which the closed form of Eq. 6-12 is not valid, it contains the correction of the target, so both are equal.
     pub setpoint: Setpoint,
-    /// Whether the wanted set-point was outside the safe range and had to be limited to it; reported to the host.
+    /// Whether the set-point had to be limited, because the computed one was outside the safe range of 15 to 42 °C;
+    /// reported to the host. A limited target does not count.
     pub limited: bool,
-    /// Temperature in °C to which the law `model` controls: the set-point, plus what brings a skin that is too warm or
-    /// too cold back to where the object would have it; while no finger touches, less the lead below the preset.
+    /// Target, 15 to 42 °C, to which the law `model` controls. It differs from the set-point only with this law and the
+    /// contact model with contact resistance. During contact it is the temperature by Eq. 6-12 plus a correction, which
+    /// brings a skin that is too warm or too cold to the temperature that it would have on the object. While the
+    /// display waits for a finger, it is below the set-point by 1/128 of the difference from the set-point to the
+    /// skin's temperature.
     pub target: Setpoint,
 }
 
 impl Reference {
-    /// A reference from a set-point and a target, °C, each limited to the safe range of 15 to 42 °C.
+    /// A reference from a set-point and a target, °C, each limited to the safe range of 15 to 42 °C. `limited` is set
+    /// if the set-point was outside this range.
     #[must_use]
     pub fn new(setpoint: Celsius, target: Celsius) -> Self {
         let (setpoint, limited) = Setpoint::saturating_celsius(setpoint);
@@ -76,35 +90,45 @@ impl Reference {
         }
     }
 
-    /// A reference whose target is the set-point itself, °C, limited to the safe range: for a display that presents no
-    /// object, and for the semi-infinite model.
+    /// A reference whose set-point and target are the same temperature, °C, limited to 15 to 42 °C. Used while no
+    /// object is presented, for the semi-infinite contact model, and, with the laws `pi` and `pi-10hz`, while no finger
+    /// touches.
     #[must_use]
     pub fn at(setpoint: Celsius) -> Self {
         Self::new(setpoint, setpoint)
     }
 }
 
-/// The contact of a finger with the presented object: its time, and the interpolation of its set-points. It begins at
-/// landing, or when an object is first presented, or another one, under a finger.
+/// One contact of a finger with the presented object: its time, and the interpolation of its set-points. It begins when
+/// the finger lands. While a finger rests on the display, a new one begins at `start`, and when the host chooses a
+/// material, object temperature or contact model.
 #[derive(Clone, Debug, PartialEq, Eq)]
-struct ObjectContact {
-    /// Ticks of 1 ms since the contact with the object began.
+struct ContactSetpoints {
+    /// Time `t` of Eq. 6-12, ticks of 1 ms since the finger landed. If the host has sent `start` or chosen another
+    /// material, object temperature or contact model under a resting finger: ticks since then, because the transient of
+    /// Eq. 6-12 begins anew with the new object.
     elapsed: u64,
-    /// Forces, N, for which the interpolation holds within 0.1 mK, so that Eq. 6-12 need not be evaluated again.
+    /// Forces, N, for which the set-point by Eq. 6-12 differs by at most 0.1 mK from that of the present interpolation.
+    /// While the mean force stays in this range, noise of the force causes no new interpolation.
     equivalent_forces: RangeInclusive<Force>,
-    /// Interpolation of Eq. 6-12 in closed form. `None` before the first one, while the closed form does not describe
-    /// the contact, and with the law `model` after a new force until the next one is computed.
+    /// Interpolation of the closed form of Eq. 6-12. `None` until the first one is computed. With the law `model` it is
+    /// also `None` while the closed form is not valid for the contact, and from a jump of the force until the
+    /// interpolation for the new force is computed. Without an interpolation the set-point follows from the simulated
+    /// skin on the object.
     interpolation: Option<ChordInterpolation>,
-    /// Whether the interpolation must be computed again for the present mean force. The conductances that it needs are
-    /// computed one tick earlier, so that no tick pays for both.
-    rebuild: bool,
-    /// Whether the conductances for the new interpolation have been computed in an earlier tick.
-    prepared: bool,
+    /// Whether the interpolation must be computed for the present mean force. With the law `model` the contact
+    /// conductances are computed in one tick and the interpolation in the next, so that no tick takes the time of both;
+    /// the other laws compute both in one tick.
+    interpolation_due: bool,
+    /// Whether an earlier tick has computed the contact conductances for the interpolation that is due. With the law
+    /// `model` the interpolation is computed only in a tick in which this is true; the other laws do not use it.
+    conductances_ready: bool,
 }
 
-impl ObjectContact {
-    /// A contact with the object, in its first tick. If the finger has just landed, the time counts from its landing;
-    /// if it rested on the display already when the object appeared, the time counts from now.
+impl ContactSetpoints {
+    /// A contact with the object in its first tick. If the finger has just landed, so that its force is new in this
+    /// tick, the contact's time is that since landing. Otherwise, as when the object is exchanged under a resting
+    /// finger, the time is 0 in this tick.
     fn begin_contact(finger: &FingerContact) -> Self {
         let has_just_landed = finger.force_change() == ForceChange::New;
         Self {
@@ -115,16 +139,18 @@ impl ObjectContact {
             },
             equivalent_forces: Force::ZERO..=Force::ZERO,
             interpolation: None,
-            rebuild: false,
-            prepared: false,
+            interpolation_due: false,
+            conductances_ready: false,
         }
     }
 
-    /// Decides whether the interpolation must be computed again: without one, after a new or drifting force, or when
-    /// the mean force has left the equivalent forces. Then makes the mean force the one for set-points, in the tick
-    /// before. `closed_form`: the closed form of Eq. 6-12 describes the contact. `follow_skin`: as in
-    /// [`ReferenceGenerator::next_reference`].
-    fn schedule_rebuild(
+    /// Decides whether the interpolation of Eq. 6-12 must be computed: if there is none yet, after a jump or drift of
+    /// the force, or if the mean force has left `equivalent_forces`, which is checked each time the number of averaged
+    /// ticks has doubled. If so, the mean force becomes the one for set-points, and the contact conductances are
+    /// computed for it. `closed_form` is whether the set-point is to be computed by the closed form of Eq. 6-12; if
+    /// not, the interpolation is discarded. With `follow_skin` (law `model`) the interpolation itself is computed in
+    /// the next tick.
+    fn schedule_interpolation(
         &mut self,
         finger: &mut FingerContact,
         pair: &ContactPair,
@@ -132,27 +158,28 @@ impl ObjectContact {
         follow_skin: bool,
     ) {
         let is_new = finger.force_change() == ForceChange::New;
-        let force = finger.force_mean();
-        let is_equivalent =
-            !force.has_doubled_ticks() || self.equivalent_forces.contains(&force.mean());
+        let force = finger.force_means();
+        let is_equivalent = !force.has_doubled_sample_count()
+            || self.equivalent_forces.contains(&force.long_mean());
         if !closed_form || (is_new && follow_skin) {
             self.interpolation = None;
         }
-        let was_scheduled = self.rebuild && closed_form && !is_new;
-        self.rebuild = closed_form
+        let was_scheduled = self.interpolation_due && closed_form && !is_new;
+        self.interpolation_due = closed_form
             && (finger.force_change() != ForceChange::Noise
                 || !is_equivalent
                 || was_scheduled
                 || self.interpolation.is_none());
-        self.prepared = was_scheduled && finger.contact_at_force_in_use().is_some();
-        if self.rebuild && !self.prepared {
-            finger.use_mean_force(pair);
+        self.conductances_ready = was_scheduled && finger.contact_at_mean_for_setpoints().is_some();
+        if self.interpolation_due && !self.conductances_ready {
+            finger.adopt_mean_force_for_setpoints(pair);
         }
     }
 
-    /// The set-point, °C, of this tick by the interpolation of Eq. 6-12 between skin and object temperature, after
-    /// computing the interpolation again if that is due. Adds the evaluations of `erfcx` to `evaluations`. `None`
-    /// without an interpolation.
+    /// The set-point of this tick, °C, by the interpolation of Eq. 6-12. Computes the interpolation first if it is due;
+    /// with `follow_skin` (law `model`) only if an earlier tick has computed the conductances. `skin` and `object` are
+    /// the temperatures before contact, °C. Adds the number of evaluations of `erfcx`, the costly function in Eq. 6-12,
+    /// to `evaluations`. Returns `None` if there is no interpolation.
     fn interpolated_setpoint(
         &mut self,
         finger: &FingerContact,
@@ -160,22 +187,24 @@ impl ObjectContact {
         follow_skin: bool,
         evaluations: &mut u32,
     ) -> Option<Celsius> {
-        match finger.contact_at_force_in_use() {
+        match finger.contact_at_mean_for_setpoints() {
             // While the skin is followed, conductances and interpolation are not computed in the same tick.
-            Some(contact) if self.rebuild && (self.prepared || !follow_skin) => {
+            Some(contact)
+                if self.interpolation_due && (self.conductances_ready || !follow_skin) =>
+            {
                 let (interpolation, count) = ChordInterpolation::new(
                     contact,
                     skin,
                     object,
                     self.elapsed,
-                    INTERPOLATION_TOLERANCE,
+                    SETPOINT_INTERPOLATION_TOLERANCE,
                 );
                 *evaluations = evaluations.wrapping_add(count);
                 self.equivalent_forces = equivalent_forces(
-                    finger.force_mean().mean_in_use(),
+                    finger.force_means().mean_for_setpoints(),
                     interpolation.transient_amplitude(),
                 );
-                self.rebuild = false;
+                self.interpolation_due = false;
                 Some(self.interpolation.insert(interpolation).setpoint())
             }
             _ => {
@@ -189,99 +218,116 @@ impl ObjectContact {
     }
 }
 
-/// Generates the reference of each tick while an object is presented: the display temperature by which the finger feels
-/// the object.
+/// Generates the reference (set-point and target) of each tick while an object is presented: the display temperature at
+/// which the finger's skin cools or warms as it would on the object.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct ReferenceGenerator {
-    /// Simulated cooling of the skin as it would be on the presented object.
     skin_on_object: SkinOnObject,
-    /// Factors of Eq. 6-12 for the object that was presented last.
-    factors: PairFactors,
-    /// The present contact with the object; `None` while no finger touches, and in the semi-infinite model.
-    contact: Option<ObjectContact>,
-    /// Evaluations of `erfcx`, the costly function in Eq. 6-12, since reset; wraps.
+    /// Constants of Eq. 6-12 for the object that was presented last; computed again when another one is presented.
+    factors: ContactPairFactors,
+    /// The present contact with the object. `None` while an object is presented and no finger touches, in the
+    /// semi-infinite model, and from [`Self::restart_contact`] or [`Self::discard_contact`] until the next reference is
+    /// generated. Without an object it has no meaning.
+    contact: Option<ContactSetpoints>,
+    /// Number of evaluations of `erfcx`, the costly function in Eq. 6-12, since start-up; wraps at 2^32. For the
+    /// telemetry.
     evaluations: u32,
 }
 
-/// How far below its preset a display waits for a finger, K; negative, so above it, for a skin that is colder than the
-/// preset.
+/// How far below its preset (the set-point before contact) a display waits for a finger with the law `model`, K: the
+/// skin's temperature minus the preset, divided by 128. Negative, so that the display waits above its preset, if the
+/// skin is colder than the preset.
 ///
-/// In the first 10 ms of contact the finger brings heat that the bridge needs 50 ms to remove; removing half of it in
-/// advance halves the trace on the skin. That heat is proportional to the flux for every material, and so to the
-/// difference between skin and display.
-fn waiting_lead(skin: Celsius, preset: Celsius) -> Celsius {
-    skin.saturating_sub(preset) >> WAITING_LEAD_SHIFT
+/// In the first 10 ms of a contact the finger brings heat that the bridge needs 50 ms to remove. The offset removes
+/// half of this heat before the contact, which halves the error of the skin's temperature. For every material this heat
+/// is proportional to the difference between skin and display.
+fn waiting_offset_below_preset(skin: Celsius, preset: Celsius) -> Celsius {
+    skin.saturating_sub(preset) >> WAITING_OFFSET_DIVISOR_LOG2
 }
 
 impl ReferenceGenerator {
-    /// Forgets the contact and the skin on the object, but not the number of evaluations. Called in a tick whose
-    /// readings are invalid, because then the finger may have landed or lifted unseen.
-    pub fn invalidate(&mut self) {
+    /// Discards the contact with the object and the simulation of the skin; only the number of evaluations of `erfcx`
+    /// is kept. Called in a tick with invalid readings or a detected fault, because the finger may have landed or
+    /// lifted unnoticed in it.
+    pub fn discard_contact(&mut self) {
         *self = Self {
             evaluations: self.evaluations,
             ..Self::default()
         };
     }
 
-    /// Number of evaluations of `erfcx` since reset, for the telemetry: the costly part of the set-point's computation.
-    /// Wraps.
+    /// Number of evaluations since start-up of `erfcx`, the scaled complementary error function, which is the costly
+    /// part of Eq. 6-12. For the telemetry; wraps at 2^32.
     #[must_use]
     pub const fn erfcx_evaluations(&self) -> u32 {
         self.evaluations
     }
 
-    /// Lets the next tick begin a new contact by a finger that rests on the display, with the skin as the display has
-    /// left it. Called when the host changes material, temperature or model of the object, and at `start`.
+    /// Lets a finger that touches the display begin a new contact with the object in the next tick. The simulated skin
+    /// starts with the temperature that the real skin has on the display. Called when the host chooses another
+    /// material, object temperature or contact model, and at `start`.
     pub fn restart_contact(&mut self, finger: &mut FingerEstimator) {
         self.contact = None;
         self.skin_on_object
-            .restart_contact(finger.skin_on_display());
+            .restart_contact(finger.skin_state_on_display());
         finger.forget_conductances();
     }
 
-    /// Set-point and target of this tick; `None` before skin and room have been read.
+    /// Set-point and target of this tick. `None` if the finger's estimator has no temperatures of skin and room, that
+    /// is before its first tick with valid readings and after [`FingerEstimator::invalidate`].
     ///
-    /// In the semi-infinite mode both are the constant temperature of Eq. 3-1. Otherwise they follow Eq. 6-12: without
-    /// `follow_skin` in closed form, as for a first contact under a constant force; with it (law `model`) in closed form
-    /// only while that describes the contact, else from the simulated skin on the object, and the target also corrects the
-    /// difference between the skin on the display and that on the object. `surface`, °C, is the display's surface
-    /// temperature; it only decides at landing whether the display was late, which excludes the closed form.
+    /// In the semi-infinite mode both are the constant temperature of Eq. 3-1. In the mode with contact resistance both
+    /// follow Eq. 6-12:
+    ///
+    /// - Without `follow_skin` (laws `pi` and `pi-10hz`) the target equals the set-point. While no finger touches, it
+    ///   is the preset, Eq. 6-12 at landing. During contact it is computed by the closed form, as for a first contact
+    ///   under a constant force.
+    /// - With `follow_skin` (law `model`), while no finger touches, the set-point is the preset for the skin's present
+    ///   temperature, which the last contact may still have changed, and the target lies below it by the waiting
+    ///   offset. During contact the set-point is computed by the closed form while this is valid
+    ///   ([`FingerContact::closed_form_is_valid`]) and its interpolation is computed, else from the simulated skin on
+    ///   the object. The target adds a correction, by which the skin on the display follows the simulated skin; if the
+    ///   closed form is not valid, the set-point contains this correction, too.
+    ///
+    /// `surface` is the temperature of the display's surface, °C. It is used only in the first tick of a contact: if it
+    /// is more than 0.1 K outside the range from the preset to the waiting temperature, the closed form is excluded for
+    /// this contact with the law `model`.
     pub fn next_reference(
         &mut self,
-        scene: &Scene<'_>,
+        object_presented: &PresentedObject<'_>,
         finger: &mut FingerEstimator,
         surface: Celsius,
         follow_skin: bool,
     ) -> Option<Reference> {
         let PreContactTemperatures { skin, room } = finger.temperatures_before_contact()?;
-        let object = scene.object.unwrap_or(room);
-        if scene.mode == Mode::SemiInfinite {
+        let object = object_presented.object.unwrap_or(room);
+        if object_presented.mode == ContactModel::SemiInfinite {
             self.contact = None;
             return Some(Reference::at(
-                scene.pair.interface_temperature(skin, object),
+                object_presented.pair.interface_temperature(skin, object),
             ));
         }
         let skin_above_object = skin.saturating_sub(object);
-        if !self.factors.are_those_of(scene.pair) {
-            self.factors = PairFactors::new(scene.pair);
+        if !self.factors.were_computed_for(object_presented.pair) {
+            self.factors = ContactPairFactors::new(object_presented.pair);
         }
         let factors = &self.factors;
-        let (contact, skin_on_display) = finger.contact_and_skin_on_display();
+        let (contact, skin_state_on_display) = finger.contact_and_skin_state();
         let Some(finger) = contact else {
             self.contact = None;
             self.skin_on_object.step(None, factors, skin_above_object);
             if !follow_skin {
-                return Some(Reference::at(scene.pair.preset(skin, object)));
+                return Some(Reference::at(object_presented.pair.preset(skin, object)));
             }
             let setpoint = self.skin_on_object.setpoint(
                 factors,
                 skin,
                 skin_above_object,
-                Some(skin_on_display),
+                Some(skin_state_on_display),
             );
             return Some(Reference::new(
                 setpoint,
-                setpoint.saturating_sub(waiting_lead(skin, setpoint)),
+                setpoint.saturating_sub(waiting_offset_below_preset(skin, setpoint)),
             ));
         };
         let contact = match &mut self.contact {
@@ -290,17 +336,21 @@ impl ReferenceGenerator {
                 contact
             }
             none => {
-                let preset = scene.pair.preset(skin, object);
-                if is_display_late(surface, preset, waiting_lead(skin, preset)) {
-                    finger.note_late_display();
+                let preset = object_presented.pair.preset(skin, object);
+                if is_display_outside_waiting_range(
+                    surface,
+                    preset,
+                    waiting_offset_below_preset(skin, preset),
+                ) {
+                    finger.exclude_closed_form();
                 }
-                none.insert(ObjectContact::begin_contact(finger))
+                none.insert(ContactSetpoints::begin_contact(finger))
             }
         };
         let conductance = finger.conductances().map(|both| &both.object);
         (self.skin_on_object).step(conductance, factors, skin_above_object);
-        let closed_form = finger.has_closed_form() || !follow_skin;
-        contact.schedule_rebuild(finger, scene.pair, closed_form, follow_skin);
+        let closed_form = finger.closed_form_is_valid() || !follow_skin;
+        contact.schedule_interpolation(finger, object_presented.pair, closed_form, follow_skin);
         let interpolated = contact.interpolated_setpoint(
             finger,
             (skin, object),
@@ -312,7 +362,7 @@ impl ReferenceGenerator {
         });
         let correction = match finger.conductances() {
             Some(both) if follow_skin => {
-                (self.skin_on_object).setpoint_correction(skin_on_display, &both.display)
+                (self.skin_on_object).setpoint_correction(skin_state_on_display, &both.display)
             }
             _ => Celsius::ZERO,
         };
@@ -323,12 +373,17 @@ impl ReferenceGenerator {
     }
 }
 
-/// Whether the display's surface at landing is more than 0.1 K outside the range between the preset and the preset less
-/// `lead`, K. A contact that begins so does not follow the closed form of Eq. 6-12.
-fn is_display_late(surface: Celsius, preset: Celsius, lead: Celsius) -> bool {
-    let half_lead = lead >> 1u32;
-    let error = surface.saturating_sub(preset).saturating_add(half_lead);
-    error.abs() > LATE_DISPLAY_ERROR.saturating_add(half_lead.abs())
+/// Whether the temperature of the display's surface, °C, is more than 0.1 K outside the range from the preset, °C, to
+/// the temperature `waiting_offset`, K, below the preset. If so in the first tick of a contact, the law `model` does
+/// not use the closed form of Eq. 6-12 for this contact.
+fn is_display_outside_waiting_range(
+    surface: Celsius,
+    preset: Celsius,
+    waiting_offset: Celsius,
+) -> bool {
+    let half_offset = waiting_offset >> 1u32;
+    let error = surface.saturating_sub(preset).saturating_add(half_offset);
+    error.abs() > WAITING_RANGE_ERROR_MAX.saturating_add(half_offset.abs())
 }
 
 #[cfg(test)]

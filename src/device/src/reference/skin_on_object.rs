@@ -1,29 +1,33 @@
-//! The skin as it would be on the object, followed from the heat that would flow, whatever force and timing did to it.
+//! Simulation of the skin on the presented object, from the heat that would flow into the object at the measured force.
 //!
-//! From it follows Eq. 6-12 where its closed form does not hold: under a changing force, or in a second contact.
+//! With the law `model`, the set-point follows from the simulated skin where the closed form of Eq. 6-12 does not hold:
+//! under a changing force, and in a contact that begins soon after another one.
 
 use contact_model::fixed_point::{
     Celsius, ContactConductance, ContactPair, Fraction, HalfSpace, Ratio, saturating_product,
 };
 use fixed::types::U16F16;
 
-/// Constants of Eq. 6-12 for one pair of skin and object. The default, for no pair, has zeros, with which no heat
-/// flows.
+/// Constants of Eq. 6-12 for the contacts of a finger with one object and with the display. The default, before any
+/// object, is zero throughout; no heat flows with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PairFactors {
-    /// Part of the initial temperature difference by which a long contact cools the skin: `e_object / (e_object +
-    /// e_skin)`, with effusivities `e`.
+pub struct ContactPairFactors {
+    /// Fraction of the difference between skin and object temperature by which the skin's surface cools in a long
+    /// contact: `e_object / (e_object + e_skin)`, with the thermal effusivities `e`.
     weight: Fraction,
-    /// Reciprocal of the weight, `(e_object + e_skin) / e_object`; turns the skin's cooling into the change at the
-    /// interface.
+    /// Reciprocal of `weight`, `(e_object + e_skin) / e_object`. The cooling of the skin's surface times this factor is
+    /// the decrease of the temperature difference between skin and object surface, because the object's surface warms
+    /// at the same time.
     inverse_weight: U16F16,
-    /// Contact resistance of skin to display divided by that of skin to object, `R_display / R_object`. It scales the
-    /// temperature drop across the object's contact to the drop that the same heat flow causes across the display's contact.
+    /// Contact resistance of skin to display divided by that of skin to object, `R_display / R_object`. The temperature
+    /// drop across the object's contact times this ratio is the drop that the same heat flow causes across the
+    /// display's contact.
     ratio: Ratio,
 }
 
-impl PairFactors {
-    /// Computes the factors of a pair, with one 64-bit division; only when the presented object has changed.
+impl ContactPairFactors {
+    /// Computes the factors for the contacts of `pair`. It takes a 64-bit division, so it is done only when the
+    /// presented object has changed.
     #[must_use]
     pub fn new(pair: &ContactPair) -> Self {
         // 1 in 2^-48 over the weight in 2^-32.
@@ -35,37 +39,41 @@ impl PairFactors {
         }
     }
 
-    /// Whether these factors were computed for this pair.
+    /// Whether these factors hold for `pair`, so that they need not be computed again: its weight and its ratio are
+    /// equal to theirs.
     #[must_use]
-    pub fn are_those_of(&self, pair: &ContactPair) -> bool {
+    pub fn were_computed_for(&self, pair: &ContactPair) -> bool {
         self.weight == pair.weight() && self.ratio == pair.ratio()
     }
 }
 
-/// Simulates the skin as it would be on the presented object, tick by tick, from the heat that would flow into the
-/// object under the measured force.
+/// Simulates, tick by tick, how the finger's skin would cool or warm if it touched the presented object instead of the
+/// display, under the measured force.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SkinOnObject {
-    /// Temperature change of the skin's surface by that heat, K, counted positive when it cools.
+    /// Thermal state of the simulated skin. Its output is the decrease of the skin's surface temperature since before
+    /// contact, K; negative if the object has warmed the skin. It decays towards zero while no finger touches.
     cooling: HalfSpace,
-    /// Heat flow of this tick, as the temperature step, K, that it causes at the skin's surface.
+    /// Heat flux of this tick from the simulated skin into the object, positive out of the skin. It is counted as `q
+    /// sqrt(dt) / e_skin`, K, with the flux `q`, the tick `dt` and the skin's effusivity `e_skin`.
     scaled_flux: Celsius,
 }
 
 impl SkinOnObject {
-    /// Starts a contact with an object at its initial temperature, by a skin that is as warm or cold as the display has
-    /// left it.
-    pub fn restart_contact(&mut self, skin_on_display: &HalfSpace) {
-        self.cooling = skin_on_display.staggered();
+    /// Makes the simulated skin start a new contact with the presented object: it starts with the cooling that the
+    /// display has caused in the real skin, `skin_state_on_display`, and without heat flux.
+    pub fn restart_contact(&mut self, skin_state_on_display: &HalfSpace) {
+        self.cooling = skin_state_on_display.staggered();
         self.scaled_flux = Celsius::ZERO;
     }
 
-    /// Advances the skin by one tick. `skin_above_object` is the temperature difference before contact, K. With
-    /// `conductance` `None` no finger touches, and the skin recovers.
+    /// Advances the simulated skin by one tick of 1 ms. `conductance` is that of the contact of skin and object. It is
+    /// `None` while no finger touches; then no heat flows, and the cooling of the skin decays towards zero.
+    /// `skin_above_object` is the skin's temperature minus the object's, both before contact, K.
     pub fn step(
         &mut self,
         conductance: Option<&ContactConductance>,
-        factors: &PairFactors,
+        factors: &ContactPairFactors,
         skin_above_object: Celsius,
     ) {
         self.scaled_flux = conductance.map_or(Celsius::ZERO, |conductance| {
@@ -75,48 +83,54 @@ impl SkinOnObject {
         self.cooling.step(self.scaled_flux);
     }
 
-    /// The display temperature by Eq. 6-12, °C, for the simulated skin. Between contacts `skin_on_display` is given,
-    /// because the skin that will land is the one that the display has left, which need not be the simulated one.
+    /// The set-point by Eq. 6-12, °C: the temperature of the simulated skin's surface, less the temperature drop that
+    /// the simulated heat flow would cause across the display's contact. `skin_above_object` is the skin's temperature
+    /// minus the object's, both before contact, K. `skin_state_on_display` is `None` during contact. While no finger
+    /// touches, it is the state of the real skin, whose surface temperature is then used in place of the simulated one,
+    /// because the real skin is the one that lands next.
     #[must_use]
     pub fn setpoint(
         &self,
-        factors: &PairFactors,
+        factors: &ContactPairFactors,
         skin_before_contact: Celsius,
         skin_above_object: Celsius,
-        skin_on_display: Option<&HalfSpace>,
+        skin_state_on_display: Option<&HalfSpace>,
     ) -> Celsius {
         let cooling = self.cooling.response_to(self.scaled_flux);
         // Temperature steps in 2^-22 K; the product has 38 places and up to 63 bits.
         let step_at_interface = (i64::from(cooling.to_bits())
             * i64::from(factors.inverse_weight.to_bits()))
             >> U16F16::FRAC_NBITS;
-        let step_at_object =
-            saturating_celsius(i64::from(skin_above_object.to_bits()) - step_at_interface);
+        let step_at_object = saturating_celsius_from_bits(
+            i64::from(skin_above_object.to_bits()) - step_at_interface,
+        );
         let step_at_display = (i64::from(step_at_object.to_bits())
             * i64::from(factors.ratio.to_bits()))
             >> Ratio::FRAC_NBITS;
-        let skin_cooling = skin_on_display.map_or(cooling, HalfSpace::free_response);
-        saturating_celsius(
+        let skin_cooling = skin_state_on_display.map_or(cooling, HalfSpace::free_response);
+        saturating_celsius_from_bits(
             i64::from(skin_before_contact.to_bits())
                 - i64::from(skin_cooling.to_bits())
                 - step_at_display,
         )
     }
 
-    /// What must be added to the set-point, K, for the skin on the display to reach the temperature that it would have
-    /// on the object within the matching horizon of the half-space.
+    /// Correction to be added to the set-point, K, so that in 20 ticks of 1 ms the real skin on the display has the
+    /// temperature of the simulated skin on the object, if the correction stays; negative if the display must cool the
+    /// real skin more. It is computed again in each tick of a contact. `display` is the conductance of the contact of
+    /// skin and display.
     #[must_use]
     pub fn setpoint_correction(
         &self,
-        skin_on_display: &HalfSpace,
+        skin_state_on_display: &HalfSpace,
         display: &ContactConductance,
     ) -> Celsius {
-        let scaled_flux = skin_on_display.scaled_flux_to_match(&self.cooling);
+        let scaled_flux = skin_state_on_display.scaled_flux_to_match(&self.cooling);
         display.temperature_drop(scaled_flux).saturating_neg()
     }
 }
 
-/// A temperature from 64 bits in units of 2^-22 K, limited to the range of its type (±512 °C).
-fn saturating_celsius(bits: i64) -> Celsius {
+/// A temperature from its bits, in units of 2^-22 K, limited to the range of [`Celsius`], ±512 °C.
+fn saturating_celsius_from_bits(bits: i64) -> Celsius {
     Celsius::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
 }

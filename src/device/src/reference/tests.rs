@@ -31,21 +31,21 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
     let object = &MATERIALS[material].1;
     let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S).expect("pair");
     let object_c = Celsius::from_num(OBJECT_C);
-    let scene = Scene {
+    let scene = PresentedObject {
         pair: &pair,
         object: Some(object_c),
-        mode: Mode::ContactResistance,
+        mode: ContactModel::ContactResistance,
     };
     let mut finger_estimator = FingerEstimator::default();
     let mut generator = ReferenceGenerator::default();
-    finger_estimator.observe(Celsius::from_num(SKIN_C), object_c, None, 0);
+    finger_estimator.update_by_readings(Celsius::from_num(SKIN_C), object_c, None, 0);
     let (mut worst_k, mut step_k, mut before) = (0.0f64, 0.0f64, None);
     for tick in 0..ticks {
         let t_s = f64::from(tick) * TICK_S;
         let noise_n =
             NOISE_N * (f64::from(tick.wrapping_mul(2_654_435_761) >> 8) / 2f64.powi(23) - 1.0);
         let force = Force::from_num(force_n(t_s) + noise_n);
-        finger_estimator.observe(Celsius::from_num(SKIN_C), object_c, Some(force), 0);
+        finger_estimator.update_by_readings(Celsius::from_num(SKIN_C), object_c, Some(force), 0);
         let reference = generator
             .next_reference(&scene, &mut finger_estimator, Celsius::ZERO, false)
             .expect("observed");
@@ -90,7 +90,8 @@ fn steady_force_is_within_half_a_millikelvin_in_few_evaluations() {
     assert_figure("render.evaluations", evaluations.into());
 }
 
-/// A step too small to be told from noise at once is followed as fast as the mean of the last ticks is.
+/// A step of the force that is too small to be distinguished from noise at once is followed as fast as the mean of the
+/// last ticks follows it.
 #[test]
 fn small_steps_are_followed_within_half_a_second() {
     const GRANITE: usize = 3;

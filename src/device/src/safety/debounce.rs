@@ -1,13 +1,15 @@
 //! A debounce counter.
 
-/// Counts up by one in each tick in which a condition holds, and down by one, to zero at least, in each in which it
-/// does not. So a condition that comes and goes is detected too, if it holds in more than half of the ticks.
+/// Counter that rises by one in each tick of 1 ms in which a condition holds, and falls by one in each other tick. It
+/// stays between zero and the limit given to [`Self::count_tick`]. Unlike a counter that restarts at zero, it also
+/// reaches the limit if the condition comes and goes but holds in more than half of the ticks. At the limit, one tick
+/// without the condition ends the detection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DebounceCounter(i32);
 
 impl DebounceCounter {
-    /// Counts one tick of 1 ms, up if `condition` holds in it and down if not. Returns whether the count has reached
-    /// `ticks`, where it stops.
+    /// Counts one tick of 1 ms: up by one, to `ticks` at most, if `condition` holds; else down by one, to zero at
+    /// least. Returns whether the count is now `ticks`.
     pub fn count_tick(&mut self, condition: bool, ticks: u8) -> bool {
         let ticks = i32::from(ticks);
         self.0 = if condition {

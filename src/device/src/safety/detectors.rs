@@ -4,52 +4,58 @@ use contact_model::fixed_point::Celsius;
 
 use super::current_mismatch::CurrentMismatchDetector;
 use super::debounce::DebounceCounter;
-use super::frozen::FrozenDetector;
-use super::jump::JumpDetector;
+use super::frozen_detector::FrozenDetector;
+use super::jump_detector::JumpDetector;
 use super::thermal_dose::ThermalDose;
-use super::validity::ValidReadings;
-use super::wrong_way::WrongWayDetector;
+use super::validate_readings::ValidReadings;
+use super::wrong_way_detector::WrongWayDetector;
 use super::{Fault, Setpoint};
 use crate::drive::Current;
 use crate::sense::{Readings, Samples};
 
-/// Difference between the readings of the display's two thermistors, K, above which one of them counts as wrong.
-/// Thermistors whose lags differ by 0.1 s differ by 1.6 K while the bridge at its current limit moves a display without
-/// a finger.
-const DISPLAY_DIFFERENCE_MAX: Celsius = Celsius::lit("3");
-/// Net ticks of 1 ms at which [`Fault::DisplaysApart`] trips the station: counted up in each tick in which the display's
-/// thermistors differ by more than [`DISPLAY_DIFFERENCE_MAX`], and down in each other one, so that noise does not trip.
-const DISPLAY_DIFFERENCE_TICKS: u8 = 40;
-/// Excess of the room's reading over the skin's, K, above which their thermistors count as swapped or misplaced. The
-/// skin of a finger is warmer than the room, except for cold hands of 17 °C in a warm room; without a finger its
-/// thermistor reads the room.
+/// Difference between the readings of the display's two thermistors, K, above which one of them counts as wrong. A
+/// correct pair whose thermal lags differ by 0.1 s differs by 1.6 K while the bridge at its current limit moves a
+/// display without a finger.
+const DISPLAY_THERMISTOR_DIFFERENCE_MAX: Celsius = Celsius::lit("3");
+/// Net ticks of 1 ms at which [`Fault::DisplaysApart`] trips the station: each tick in which the display's two
+/// thermistors differ by more than [`DISPLAY_THERMISTOR_DIFFERENCE_MAX`] counts up, each other tick counts down, so
+/// that noise does not trip the station.
+const DISPLAY_DIFFERENCE_TRIP_TICKS: u8 = 40;
+/// Excess of the room's reading over the skin's, K, above which the two thermistors count as swapped or misplaced. A
+/// finger's skin is warmer than the room, except for cold hands of 17 °C in a warm room; if the skin's thermistor is on
+/// no finger, it reads the room's air.
 const ROOM_ABOVE_SKIN_MAX: Celsius = Celsius::lit("8");
-/// Net ticks of 1 ms at which [`Fault::RoomAboveSkin`] trips the station: counted up in each tick in which the room reads
-/// more than [`ROOM_ABOVE_SKIN_MAX`] above the skin, and down in each other one.
-const ROOM_ABOVE_SKIN_TICKS: u8 = 40;
-/// Net ticks of 1 ms at which [`Fault::UnlikeModel`] trips the station: counted up in each tick in which the plate
-/// observer's residual exceeds that of a sound tile, and down in each other one.
-const RESIDUAL_TICKS: u8 = 30;
+/// Net ticks of 1 ms at which [`Fault::RoomAboveSkin`] trips the station: each tick in which the room reads more than
+/// [`ROOM_ABOVE_SKIN_MAX`] above the skin counts up, each other tick counts down.
+const ROOM_ABOVE_SKIN_TRIP_TICKS: u8 = 40;
+/// Net ticks of 1 ms at which [`Fault::UnlikeModel`] trips the station: each tick in which the display follows a
+/// set-point and the plate observer's residual is larger than a sound tile can cause counts up, each other tick counts
+/// down.
+const UNLIKE_MODEL_TRIP_TICKS: u8 = 30;
 /// Ticks of 1 ms without a line from the host, while telemetry streams and a set-point is followed, that trip the
 /// station by [`Fault::HostSilent`].
 const HOST_SILENT_TICKS: u16 = 2000;
 
-/// What the tick before demanded of the bridge, and found: the detectors compare this tick's readings with it, because
-/// they are the first that respond to it.
+/// What one tick demanded of the bridge, and whether the residual of the display's model was too large in that tick.
+/// The fault detectors compare the next tick's readings with these values, because those readings are the first that
+/// respond to that current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PreviousActuation {
-    /// Current that the tick before demanded of the bridge, A; positive cools the display; zero if the bridge was off.
+    /// Current that the previous tick demanded of the bridge, A; positive cools the display; zero if the bridge was
+    /// off.
     pub demanded: Current,
-    /// Set-point that the display followed in the tick before; `None` if the bridge was off or the self-test ran, when
-    /// neither the residual nor a silent host trips the station.
+    /// Set-point that the display followed in the previous tick. `None` if the bridge was off or the self-test ran;
+    /// then neither [`Fault::UnlikeModel`] nor [`Fault::HostSilent`] can trip the station.
     pub setpoint: Option<Setpoint>,
-    /// The plate observer's residual exceeded 3.75 K (8 K on a tile that was never identified) in the tick before. The
-    /// residual of the present tick is computed only after the detectors have seen its readings.
+    /// Whether the plate observer's residual exceeded 3.75 K (8 K on a tile that was never identified) in the previous
+    /// tick; the residual is the prediction error of the display's model, K, plus 0.5 K for each ampere of the
+    /// observer's correction. The detectors use it one tick late, because the residual of the present tick is computed
+    /// after them.
     pub residual_is_large: bool,
 }
 
-/// The detectors of one station that remember earlier ticks, and the thermal dose of its display. What a single tick
-/// shows is checked by [`validate_readings`](super::validate_readings) instead.
+/// The fault detectors of one station that need the readings of several ticks, and the thermal dose of the station's
+/// display. Faults that a single tick shows are found by [`validate_readings`](super::validate_readings()) instead.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FaultDetectors {
     frozen: FrozenDetector,
@@ -64,49 +70,56 @@ pub struct FaultDetectors {
 }
 
 impl FaultDetectors {
-    /// Restarts the 2 s after which a host that has asked for telemetry counts as silent. To be called for each line
-    /// from the host.
+    /// Restarts the 2 s after which a silent host trips the station by [`Fault::HostSilent`]. To be called for each
+    /// line from the host, even a blank one.
     pub const fn note_host_activity(&mut self) {
         self.host_silent_ticks = 0;
     }
 
-    /// Thermal dose that the display would have given to skin that always touched it. The board stores it after every
-    /// tick, so that a reset does not erase it.
+    /// Thermal dose (CEM43) that skin would have received so far if it had always touched this station's display. The
+    /// board saves it after every tick, so that a reset does not erase it.
     #[must_use]
     pub const fn dose(&self) -> &ThermalDose {
         &self.dose
     }
 
-    /// Continues from the thermal dose that was stored before a reset. To be called once, at the start.
+    /// Continues from `dose`, the thermal dose that was stored before a reset. To be called once, at the start.
     pub const fn restore_dose(&mut self, dose: ThermalDose) {
         self.dose = dose;
     }
 
-    /// Compares the samples of this tick with those before, even if they are no valid readings.
+    /// Compares the samples of this tick with those of the tick before, even if their readings are invalid. To be
+    /// called in every tick.
     ///
     /// # Errors
-    /// The samples of one thermistor, of the force sensor or of all channels have repeated unchanged for 46 ticks.
-    pub fn check_samples(&mut self, samples: &Samples) -> Result<(), Fault> {
+    /// The sum of one thermistor or of the force sensor has repeated unchanged for 46 ticks: the frozen fault of that
+    /// channel, or [`Fault::SamplesFrozen`] if by then all channels have repeated for 30 ticks.
+    pub fn check_frozen_samples(&mut self, samples: &Samples) -> Result<(), Fault> {
         self.frozen.check_samples(samples)
     }
 
-    /// Counts the tick in the thermal dose, at the temperature that the warmer of the display's two thermistors reads;
-    /// if both are invalid, the dose stays. To be called in every tick, even if other readings are invalid.
+    /// Counts this tick in the thermal dose; every 256th tick adds the interval's dose at the higher valid reading of
+    /// the two display thermistors. If both readings are invalid, the dose stays. To be called in every tick, even if
+    /// other readings are invalid.
     ///
     /// # Errors
-    /// [`Fault::Dose`]: the dose is half a minute at 43 °C or more.
+    /// [`Fault::Dose`]: the dose has reached 30 s at 43 °C.
     pub fn add_to_dose(&mut self, readings: &Readings) -> Result<(), Fault> {
         let display = [readings.display, readings.display_check];
         self.dose.add_tick(|| display.into_iter().flatten().max())
     }
 
-    /// Shows the valid readings of this tick, and what the tick before demanded, to every detector that needs valid
-    /// readings. `streams` tells whether the host has asked for telemetry.
+    /// Runs all detectors that compare several ticks and need valid readings, once per tick. `readings` are those of
+    /// this tick, `previous` is what the tick before demanded of the bridge; `streams` is true while telemetry is sent
+    /// to the host.
     ///
     /// # Errors
-    /// The first detected fault in this order: jump, display thermistors apart, current, wrong direction, residual,
-    /// room above skin, silent host. The detectors after it have counted the tick, too.
-    pub fn check_readings(
+    /// The first fault in this order: a jump of the first or second display reading or of the sink's (0.5 K in 4 ms),
+    /// [`Fault::DisplaysApart`] (3 K for 40 ms), [`Fault::CurrentHigh`] or [`Fault::CurrentLow`] (1 A plus a quarter of
+    /// the demanded current for 30 ms), [`Fault::Polarity`] or [`Fault::Runaway`] (2.5 K against the current),
+    /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms),
+    /// [`Fault::HostSilent`] (2 s). All these detectors count the tick, even when an earlier one has a fault.
+    pub fn run_multi_tick_detectors(
         &mut self,
         readings: &ValidReadings,
         previous: &PreviousActuation,
@@ -117,17 +130,17 @@ impl FaultDetectors {
         });
         let difference = readings.display.saturating_sub(readings.check);
         let displays_differ = self.display_difference.count_tick(
-            difference.saturating_abs() > DISPLAY_DIFFERENCE_MAX,
-            DISPLAY_DIFFERENCE_TICKS,
+            difference.saturating_abs() > DISPLAY_THERMISTOR_DIFFERENCE_MAX,
+            DISPLAY_DIFFERENCE_TRIP_TICKS,
         );
         let room_above_skin = self.room_above_skin.count_tick(
             readings.room.saturating_sub(readings.skin) > ROOM_ABOVE_SKIN_MAX,
-            ROOM_ABOVE_SKIN_TICKS,
+            ROOM_ABOVE_SKIN_TRIP_TICKS,
         );
         let follows_setpoint = previous.setpoint.is_some();
         let unlike_model = self.residual.count_tick(
             follows_setpoint && previous.residual_is_large,
-            RESIDUAL_TICKS,
+            UNLIKE_MODEL_TRIP_TICKS,
         );
         self.host_silent_ticks = if streams && follows_setpoint {
             self.host_silent_ticks.saturating_add(1)
@@ -138,7 +151,7 @@ impl FaultDetectors {
         let current = (self.current_mismatch).check_current(previous.demanded, readings.current);
         let wrong_way =
             (self.wrong_way).check_direction(previous.demanded, readings.display, above_setpoint);
-        (self.jump.check_movement(readings))
+        (self.jump.check_jumps(readings))
             .and(fault_if(displays_differ, Fault::DisplaysApart))
             .and(current)
             .and(wrong_way)
@@ -147,10 +160,9 @@ impl FaultDetectors {
             .and(fault_if(host_silent, Fault::HostSilent))
     }
 
-    /// Lets the detectors of jumps and of movement against the current start again with the next readings. To be called
-    /// when readings were invalid, or when a new calibration changes them, because neither change is a movement of the
-    /// display.
-    pub fn forget_motion(&mut self) {
+    /// Restarts the jump and wrong-direction detectors with the next readings. To be called in a tick with invalid
+    /// readings, and after a new calibration, which shifts the readings without any movement of the display.
+    pub fn restart_motion_detectors(&mut self) {
         self.jump = JumpDetector::default();
         self.wrong_way = WrongWayDetector::default();
     }

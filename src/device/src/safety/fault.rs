@@ -1,21 +1,25 @@
 //! The faults that switch the bridge off.
 
-use crate::sense::SensorFault;
+use crate::sense::ThermistorFault;
 
-/// Declares [`Fault`] with the words of the protocol.
+/// Declares the enum [`Fault`], the list [`Fault::ALL`] and [`Fault::name`] from pairs of a fault and its word on the
+/// serial line to the host.
 macro_rules! faults {
     ($($(#[$doc:meta])+ $fault:ident = $word:literal,)+) => {
-        /// Why a station trips: its bridge is switched off, and stays off until the host sends `clear`.
+        /// The reason of a trip. A station with a fault switches its bridge off and keeps it off until the host sends
+        /// `clear`.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
         pub enum Fault { $($(#[$doc])+ $fault,)+ }
 
         impl Fault {
-            /// All faults. Their order may not change: a fault's index is the number by which it is stored through a
-            /// reset.
+            /// All faults in the order of their numbers, which start at 0. A trip cause that is kept in RAM through
+            /// a reset holds its fault as this number. [`TripCause::LAYOUT_HASH`](super::TripCause::LAYOUT_HASH) includes
+            /// names and order of the faults, so that firmware with other faults rejects the kept cause.
             pub const ALL: &'static [Self] = &[$(Self::$fault,)+];
 
-            /// The word by which lines to the host name the fault, such as `display-open`.
+            /// Word of the fault on the serial line to the host, in states, replies and telemetry, such as
+            /// `display-open`.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$fault => $word,)+ }
@@ -25,125 +29,148 @@ macro_rules! faults {
 }
 
 faults! {
-    /// The first display thermistor, which the control uses, is open: thermistor or wire broken.
+    /// The display's first thermistor, whose reading the control uses, is an open circuit: thermistor or wire broken.
     DisplayOpen = "display-open",
-    /// The first display thermistor, which the control uses, or its wires are shorted.
+    /// The display's first thermistor, whose reading the control uses, or its wires are shorted.
     DisplayShort = "display-short",
-    /// The second display thermistor, which checks the first, is open: thermistor or wire broken.
+    /// The display's second thermistor, which cross-checks the first, is an open circuit: thermistor or wire broken.
     CheckOpen = "check-open",
-    /// The second display thermistor, which checks the first, or its wires are shorted.
+    /// The display's second thermistor, which cross-checks the first, or its wires are shorted.
     CheckShort = "check-short",
-    /// The sink's thermistor is open: thermistor or wire broken.
+    /// The heat sink's thermistor is an open circuit: the thermistor or its wire is broken.
     SinkOpen = "sink-open",
-    /// The sink's thermistor or its wires are shorted.
+    /// The heat sink's thermistor or its wires are shorted.
     SinkShort = "sink-short",
-    /// The skin's thermistor is open: thermistor or wire broken.
+    /// The skin's thermistor, at the edge of the contact, is an open circuit: thermistor or wire broken.
     SkinOpen = "skin-open",
-    /// The skin's thermistor or its wires are shorted.
+    /// The skin's thermistor, at the edge of the contact, or its wires are shorted.
     SkinShort = "skin-short",
-    /// The room's thermistor is open: thermistor or wire broken.
+    /// The room's thermistor is an open circuit: thermistor or wire broken.
     RoomOpen = "room-open",
     /// The room's thermistor or its wires are shorted.
     RoomShort = "room-short",
-    /// All five thermistors read as shorted in one tick: their common supply has failed.
+    /// All five thermistors read as shorted in one tick: the supply that they share has failed.
     Excitation = "excitation",
-    /// The first display thermistor's reading has changed by more than 0.5 K in 4 ms, faster than a display can.
+    /// The reading of the display's first thermistor has changed by more than 0.5 K in 4 ms, faster than the display
+    /// can.
     DisplayJump = "display-jump",
-    /// The second display thermistor's reading has changed by more than 0.5 K in 4 ms, faster than a display can.
+    /// The reading of the display's second thermistor has changed by more than 0.5 K in 4 ms, faster than the display
+    /// can.
     CheckJump = "check-jump",
-    /// The sink's reading has changed by more than 0.5 K in 4 ms, faster than a sink can.
+    /// The reading of the heat sink's thermistor has changed by more than 0.5 K in 4 ms, faster than the sink can.
     SinkJump = "sink-jump",
-    /// The sample of the first display thermistor has repeated unchanged, without noise, for 46 ticks.
+    /// The sum of 16 conversions of the display's first thermistor has not changed for 46 ticks (46 ms). Noise would
+    /// change a live signal, so the wire or the converter delivers a constant.
     DisplayFrozen = "display-frozen",
-    /// The sample of the second display thermistor has repeated unchanged, without noise, for 46 ticks.
+    /// The sum of 16 conversions of the display's second thermistor has not changed for 46 ticks (46 ms). Noise would
+    /// change a live signal, so the wire or the converter delivers a constant.
     CheckFrozen = "check-frozen",
-    /// The sample of the sink's thermistor has repeated unchanged, without noise, for 46 ticks.
+    /// The sum of 16 conversions of the heat sink's thermistor has not changed for 46 ticks (46 ms). Noise would change
+    /// a live signal, so the wire or the converter delivers a constant.
     SinkFrozen = "sink-frozen",
-    /// The sample of the skin's thermistor has repeated unchanged, without noise, for 46 ticks.
+    /// The sum of 16 conversions of the skin's thermistor has not changed for 46 ticks (46 ms). Noise would change a
+    /// live signal, so the wire or the converter delivers a constant.
     SkinFrozen = "skin-frozen",
-    /// The sample of the room's thermistor has repeated unchanged, without noise, for 46 ticks.
+    /// The sum of 16 conversions of the room's thermistor has not changed for 46 ticks (46 ms). Noise would change a
+    /// live signal, so the wire or the converter delivers a constant.
     RoomFrozen = "room-frozen",
-    /// The sample of the force sensor has repeated unchanged, without noise, for 46 ticks.
+    /// The sum of 16 conversions of the force sensor has not changed for 46 ticks (46 ms). Noise would change a live
+    /// signal, so the wire or the converter delivers a constant.
     ForceFrozen = "force-frozen",
-    /// The samples of one channel have repeated for 46 ticks, and those of all thermistors and the force sensor for 30:
-    /// the converter has stopped.
+    /// The analogue-to-digital converter has stopped: the sum of one channel has not changed for 46 ticks (46 ms), and
+    /// the sums of all five thermistors and the force sensor have not changed for 30 ticks.
     SamplesFrozen = "samples-frozen",
-    /// The two display thermistors have differed by more than 3 K for 40 ms, so one of them is wrong.
+    /// The readings of the two display thermistors have differed by more than 3 K for 40 ms (debounced), so one of them
+    /// is wrong.
     DisplaysApart = "displays-apart",
-    /// The room has read more than 8 K above the skin for 40 ms: their thermistors are swapped, or one is misplaced.
+    /// The room's thermistor has read more than 8 K above the skin's thermistor for 40 ms (debounced): the two are
+    /// swapped, or one is misplaced.
     RoomAboveSkin = "room-above-skin",
-    /// The force signal is below half of its live zero, or at the end of its range: its wire is broken or shorted.
+    /// The force signal is below half of its live zero (the signal at no force), or at the upper end of the converter's
+    /// range: the sensor's wire is broken or shorted.
     ForceSensor = "force-sensor",
-    /// One of the two display thermistors reads above 43 °C.
+    /// A display thermistor, the first or the second, reads above 43 °C in one tick.
     DisplayHot = "display-hot",
-    /// One of the two display thermistors reads below 13.5 °C.
+    /// A display thermistor, the first or the second, reads below 13.5 °C in one tick.
     DisplayCold = "display-cold",
-    /// The sink's thermistor reads above 42 °C.
+    /// The heat sink's thermistor reads above 42 °C in one tick.
     SinkHot = "sink-hot",
-    /// The display has moved by 2.5 K against the current within 2 s, or against the cooling pulse of the self-test:
-    /// the module's polarity is wrong, or a thermistor is misplaced.
+    /// The display has moved by 2.5 K against the current from its best reading (the lowest while cooled, the highest
+    /// while warmed), less than 2 s after that reading, or has warmed by more than 0.05 K by the self-test's cooling
+    /// pulse: the module's polarity is wrong, or a thermistor is misplaced.
     Polarity = "polarity",
-    /// The display has moved by 2.5 K against the current in more than 2 s: the current warms the sink more than it
-    /// cools the display.
+    /// The display has moved by 2.5 K against the current from its best reading (the lowest while cooled, the highest
+    /// while warmed), 2 s or more after that reading: typically, the current warms the sink more than it cools the
+    /// display.
     Runaway = "runaway",
-    /// The display has been 3.75 K (8 K on a tile that was never identified) from what its internal model predicts for
-    /// 30 ms, each ampere of the correction counted as 0.5 K: the module or its thermal contact has changed, or heat
-    /// enters that no sensor measures.
+    /// For 30 ms (debounced), while the display followed a set-point, its reading has differed too much from what its
+    /// internal model predicts: the residual (prediction error, K, plus 0.5 K for each ampere by which the observer
+    /// corrects the model) exceeded 3.75 K, or 8 K on a tile that was never identified. The module or its thermal
+    /// contact has changed, or heat enters that no sensor measures.
     UnlikeModel = "unlike-model",
     /// The measured current is more than 3 A above the controller's limit of 6 A in one tick.
     OverCurrent = "over-current",
-    /// The measured current has exceeded the demanded one by more than 1 A plus a quarter of it for 30 ms, or
-    /// its mean has exceeded 2 A in a pulse of 1 A of the self-test.
+    /// For 30 ms (debounced) the measured current has differed from the demanded one, in magnitude, by more than 1 A
+    /// plus a quarter of the demanded one, and was the larger one in the last tick; or its mean in a self-test pulse of
+    /// 1 A was more than 2 A.
     CurrentHigh = "current-high",
-    /// The measured current has been less than the demanded one by more than 1 A plus a quarter of it for 30 ms, or
-    /// below 0.4 A in a pulse of the self-test: a leg of the bridge, a wire or the supply has failed.
+    /// For 30 ms (debounced) the measured current has differed from the demanded one, in magnitude, by more than 1 A
+    /// plus a quarter of the demanded one, and was the smaller one in the last tick; or its mean in a self-test pulse
+    /// of 1 A was less than 0.4 A. A bridge leg, a wire or the supply has failed.
     CurrentLow = "current-low",
-    /// The bridge's fault line is pulled: the driver reports a fault, or the comparator has cut the supply because the
-    /// second display thermistor was outside of 10 to 45 °C. Ignored while the bridge is off before a self-test.
+    /// The bridge's fault line is pulled: the bridge driver reports a fault, or the comparator has cut the supply
+    /// because the second display thermistor was outside of 10 to 45 °C. Ignored while the station is off or tripped,
+    /// and in the first 40 ms of the self-test.
     Bridge = "bridge",
-    /// The thermal dose that the display could have given to skin has reached half a minute at 43 °C.
+    /// The thermal dose that skin would have received from the display has reached the equivalent of 30 s at 43 °C.
     Dose = "dose",
-    /// A host that has asked for telemetry has sent no line for 2 s while the display followed a set-point.
+    /// The host has sent no line for 2 s while telemetry streams to it and the display follows a set-point.
     HostSilent = "host-silent",
-    /// In the self-test, the comparator has not cut the bridge's supply, or not released it, within 10 ms after it was
-    /// told to.
+    /// In the self-test, the comparator has not cut the bridge's supply within 10 ms after its test line was set, or
+    /// not released it within 10 ms after the line was cleared.
     Comparator = "comparator",
-    /// In the self-test, one of the display's readings has not fallen by 0.05 to 1.5 K under the cooling pulse, or
-    /// fingers have disturbed the test for 20 s.
+    /// In the self-test, a display thermistor's reading has not fallen by 0.05 to 1.5 K under the cooling pulse, or
+    /// fingers that landed and lifted have delayed the baseline by 20 s in all.
     NoResponse = "no-response",
-    /// Samples were lost because a tick took too long or they could not be stored, or a tick was early or late by a
-    /// quarter of its period; the device stops sampling, and the watchdogs reset it.
+    /// Samples were lost, because a tick took too long or the DMA controller failed, or a tick was early or late by
+    /// more than a quarter of its period. The board then stops sampling for good and a watchdog resets the device.
     Sampling = "sampling",
-    /// The words that guard the end of the stack were overwritten: the stack has outgrown its memory.
+    /// The stack has overflowed: the guard words at its end were overwritten. Checked in every tick and at the start.
     Stack = "stack",
-    /// The program has panicked. The panic handler turns the bridges off and stores this fault; the device is tripped
-    /// by it after the reset that follows.
+    /// The program has panicked. The panic handler turns the bridges off and stores this fault, unless the cause of an
+    /// earlier trip is stored; the device starts tripped by the stored fault after the watchdog's reset.
     Panic = "panic",
-    /// The processor met an instruction or an access that it cannot execute, or an interrupt without a handler. Stored
-    /// by the handler; the device is tripped by it after the reset that follows.
+    /// The processor met an instruction or a memory access that it cannot execute, or an interrupt that no handler
+    /// serves. The exception handler turns the bridges off and stores this fault, unless the cause of an earlier trip
+    /// is stored; the device starts tripped by the stored fault after the watchdog's reset.
     HardFault = "hard-fault",
-    /// The external 8 MHz clock has failed or was missing at the start, or the registers of the clocks have changed.
+    /// The external 8 MHz clock has failed or was missing at the start, or the clock configuration register has
+    /// changed.
     Clock = "clock",
-    /// The window watchdog has reset the device, because the control tick did not run for 47 ms; found after that
-    /// reset.
+    /// The window watchdog has reset the device, because the control tick did not run for 47 ms; detected at the start
+    /// after that reset.
     TickLost = "tick-lost",
-    /// The independent watchdog has reset the device, because a task did not check in for 68 to 188 ms; found after
-    /// that reset.
+    /// The independent watchdog has reset the device, because a task did not report to it for 68 to 188 ms (the time
+    /// varies with the watchdog's oscillator); detected at the start after that reset.
     Watchdog = "watchdog",
-    /// The program has reset the device though neither `save` nor `forget` was sent; found after that reset.
+    /// A reset by the program (or on entry to a low-power mode) that the host did not order by `save` or `forget`;
+    /// detected at the start after that reset.
     UnaskedReset = "unasked-reset",
-    /// The stored settings are invalid, found at the start; the device uses the default settings of its class instead.
+    /// The settings stored in flash are invalid, which is detected at the start; the device then uses the factory
+    /// defaults.
     SettingsCorrupt = "settings-corrupt",
 }
 
-/// One of the five thermistors of a finger's station, by what it measures, as [`Fault::of_thermistor`] needs it.
+/// One of the five thermistors of a finger's station, by the place where it measures; selects the fault that
+/// [`Fault::of_thermistor`] returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThermistorId {
     /// First thermistor in the display surface, whose reading the control uses.
     Display,
-    /// Second thermistor in the display surface, which checks the first and feeds the comparator.
+    /// Second thermistor in the display surface, which checks the first and is also read by the independent comparator
+    /// that cuts the bridge's supply.
     Check,
-    /// Thermistor on the heat sink.
+    /// Thermistor on the Peltier module's heat sink.
     Sink,
     /// Thermistor on the finger's skin, at the edge of the contact.
     Skin,
@@ -154,18 +181,18 @@ pub enum ThermistorId {
 impl Fault {
     /// The fault that names both which thermistor fails and whether it is open or shorted.
     #[must_use]
-    pub const fn of_thermistor(thermistor: ThermistorId, fault: SensorFault) -> Self {
+    pub const fn of_thermistor(thermistor: ThermistorId, fault: ThermistorFault) -> Self {
         match (thermistor, fault) {
-            (ThermistorId::Display, SensorFault::Open) => Self::DisplayOpen,
-            (ThermistorId::Display, SensorFault::Short) => Self::DisplayShort,
-            (ThermistorId::Check, SensorFault::Open) => Self::CheckOpen,
-            (ThermistorId::Check, SensorFault::Short) => Self::CheckShort,
-            (ThermistorId::Sink, SensorFault::Open) => Self::SinkOpen,
-            (ThermistorId::Sink, SensorFault::Short) => Self::SinkShort,
-            (ThermistorId::Skin, SensorFault::Open) => Self::SkinOpen,
-            (ThermistorId::Skin, SensorFault::Short) => Self::SkinShort,
-            (ThermistorId::Room, SensorFault::Open) => Self::RoomOpen,
-            (ThermistorId::Room, SensorFault::Short) => Self::RoomShort,
+            (ThermistorId::Display, ThermistorFault::Open) => Self::DisplayOpen,
+            (ThermistorId::Display, ThermistorFault::Short) => Self::DisplayShort,
+            (ThermistorId::Check, ThermistorFault::Open) => Self::CheckOpen,
+            (ThermistorId::Check, ThermistorFault::Short) => Self::CheckShort,
+            (ThermistorId::Sink, ThermistorFault::Open) => Self::SinkOpen,
+            (ThermistorId::Sink, ThermistorFault::Short) => Self::SinkShort,
+            (ThermistorId::Skin, ThermistorFault::Open) => Self::SkinOpen,
+            (ThermistorId::Skin, ThermistorFault::Short) => Self::SkinShort,
+            (ThermistorId::Room, ThermistorFault::Open) => Self::RoomOpen,
+            (ThermistorId::Room, ThermistorFault::Short) => Self::RoomShort,
         }
     }
 }

@@ -1,24 +1,25 @@
 //! What keeps a finger safe: faults, their detectors, the limits of what may be commanded, and the self-test.
 //!
 //! The bridge is driven in the states self-test, armed, preset and contact. In all others, and in the tick that sees a
-//! fault, both of its legs are high-impedance; only that is called "off". Off is safe as long as the sink is, because heat
-//! flows back from the sink to the display; so the sink's limit is the lowest of all.
+//! fault, both of its legs are high-impedance; only that is called "off". Off is safe only while the sink is cool
+//! enough, because heat flows back from the sink to the display; so the sink has the lowest upper limit of all.
 //!
-//! **Detection.** Every detector sees every tick in every state, so that a fault that was present before `arm` refuses it,
-//! and one that is still present after a trip refuses `clear`. Faults that one tick does not show have detectors that count
-//! ticks; these need valid readings, except for frozen signals and the thermal dose. Only the bridge's fault line is ignored
-//! while the bridge is off and untested, or tripped: the comparator pulls it, too, until the next self-test.
+//! **Detection.** Every detector sees every tick in every state, so that a fault that was present before `arm` refuses
+//! it, and one that is still present after a trip refuses `clear`. Faults that one tick does not show have detectors
+//! that count ticks; these need valid readings, except for frozen signals and the thermal dose. Only the bridge's fault
+//! line is ignored while the bridge is off and untested, or tripped: the comparator pulls it, too, until the next
+//! self-test.
 //!
-//! **Latch.** The first fault latches, with the readings of its tick, as [`TripCause`]; later ones do not replace it. A second
-//! fault that the board has raised is reported when the first is cleared. The cause and the dose survive every reset except
-//! the loss of power. The comparator latches by itself, in hardware.
+//! **Latch.** The first fault latches, with the readings of its tick, as [`TripCause`]; later ones do not replace it. A
+//! second fault that the board has raised is reported when the first is cleared. The cause and the dose survive every
+//! reset except the loss of power. The comparator latches by itself, in hardware.
 //!
-//! **Clear.** `clear` is accepted once no fault is present, and leads to off, not to ready: the self-test comes next. Faults of
-//! the program and resets clear the same way.
+//! **Clear.** `clear` is accepted once no fault is present, and leads to off, not to ready: the self-test comes next.
+//! Faults of the program and resets clear the same way.
 //!
 //! | detector                     | faults                                 | trips when                                    |
 //! |------------------------------|----------------------------------------|-----------------------------------------------|
-//! | [`validate_readings`]        | open, short, excitation, force sensor  | the last conversion of a tick is at an end    |
+//! | [`validate_readings()`]       | open, short, excitation, force sensor  | a signal is outside of its possible range     |
 //! |                              | display hot, display cold              | 43 °C, 13.5 °C by either thermistor           |
 //! |                              | sink hot                               | 42 °C                                         |
 //! |                              | over-current                           | 3 A above the largest demand                  |
@@ -43,24 +44,24 @@ mod current_mismatch;
 mod debounce;
 mod detectors;
 mod fault;
-mod frozen;
-mod jump;
-mod latch;
+mod fault_latch;
+mod frozen_detector;
+mod jump_detector;
 pub mod limits;
 mod self_test;
 mod setpoint;
 mod thermal_dose;
 mod tick_rate;
 mod trip_cause;
-mod validity;
-mod wrong_way;
+mod validate_readings;
+mod wrong_way_detector;
 
 pub use detectors::{FaultDetectors, PreviousActuation};
 pub use fault::{Fault, ThermistorId};
-pub use latch::FaultLatch;
+pub use fault_latch::FaultLatch;
 pub use self_test::{SelfTest, SelfTestStep};
 pub use setpoint::Setpoint;
 pub use thermal_dose::ThermalDose;
 pub use tick_rate::TickRateMonitor;
 pub use trip_cause::TripCause;
-pub use validity::{ValidReadings, validate_readings};
+pub use validate_readings::{ValidReadings, validate_readings};

@@ -7,11 +7,11 @@
 //!       cuts       releases
 //! ```
 //!
-//! The bridge is off for the first 40 ms, so the comparator cuts and releases a supply that nobody uses. Then 1 A moves the
-//! display by 0.2 to 0.5 K, and both of its thermistors must show that against the line through their baseline. A response
-//! with the wrong sign, or none, trips. Nothing but a display responds within 0.2 s: a thermistor on the sink moves by a
-//! hundredth of it, with the opposite sign. The mirror is checked for both signs of the current. A finger that lands or
-//! lifts restarts the baseline one second later.
+//! The bridge is off for the first 40 ms, so the comparator cuts and releases a supply that nobody uses. Then 1 A moves
+//! the display by 0.2 to 0.5 K, and both of its thermistors must show that against the line through their baseline. A
+//! response with the wrong sign, or none, trips. Nothing but a display responds within 0.2 s: a thermistor on the sink
+//! moves by a hundredth of it, with the opposite sign. The mirror is checked for both signs of the current. A finger
+//! that lands or lifts restarts the baseline one second later.
 
 use core::mem;
 use core::ops::RangeInclusive;
@@ -19,107 +19,123 @@ use core::ops::RangeInclusive;
 use contact_model::fixed_point::Celsius;
 
 use super::Fault;
-use super::validity::ValidReadings;
+use super::validate_readings::ValidReadings;
 use crate::drive::Current;
 
-/// Length of each half of the baseline, ticks of 1 ms. The means of both halves give the line that the display's
-/// temperature would follow without current.
+/// Length of each half of the self-test's baseline, in ticks of 1 ms. In the baseline the bridge is off; the straight
+/// line through the mean readings of its two halves predicts the temperature that the display would have without the
+/// cooling pulse.
 const HALF_BASELINE_TICKS: u16 = 32;
-/// Length of the cooling pulse, of the pause after it and of the warming pulse, ticks of 1 ms each.
+/// Length of the self-test's cooling pulse, of the pause after it and of the warming pulse, each in ticks of 1 ms.
 const PULSE_TICKS: u16 = 200;
-/// Tick of the self-test, from 0, from which on the comparator must release the bridge's supply; before, it is told to
-/// cut it.
+/// Tick of the self-test (the first is 0) in which the comparator's test line is cleared, so that the comparator must
+/// release the bridge's supply. In the ticks before, the line is set and the comparator must cut the supply.
 const COMPARATOR_CUT_END_TICK: u16 = 20;
-/// Tick of the self-test in which the comparator's test is over, and the baseline begins unless a finger has disturbed
-/// it.
+/// Tick of the self-test in which the comparator's test is over and the baseline begins; after a finger's landing or
+/// lifting the self-test waits at this tick for 1 s first.
 const COMPARATOR_RELEASE_END_TICK: u16 = 40;
-/// Tick of the self-test in which the baseline is complete, and the cooling pulse begins.
+/// Tick of the self-test in which the baseline is complete and the cooling pulse begins.
 const BASELINE_END_TICK: u16 = COMPARATOR_RELEASE_END_TICK + 2 * HALF_BASELINE_TICKS;
-/// Tick of the self-test in which the cooling pulse ends, its measured current is checked, and zero current is driven.
+/// Tick of the self-test in which the cooling pulse ends, the measured current of the pulse is checked, and the
+/// demanded current becomes zero.
 const COOLING_PULSE_END_TICK: u16 = BASELINE_END_TICK + PULSE_TICKS;
-/// Tick of the self-test in which the display's response to the cooling pulse is checked, and the warming pulse begins.
-const RESPONSE_END_TICK: u16 = COOLING_PULSE_END_TICK + PULSE_TICKS;
-/// Tick of the self-test in which the warming pulse's measured current is checked, and the self-test has passed.
-const WARMING_PULSE_END_TICK: u16 = RESPONSE_END_TICK + PULSE_TICKS;
-/// Ticks of 1 ms after which the comparator must have obeyed its test line: have cut the supply, or have released it.
-/// Otherwise [`Fault::Comparator`] trips the station.
+/// Tick of the self-test in which the display's response to the cooling pulse is checked and the warming pulse begins.
+const RESPONSE_CHECK_TICK: u16 = COOLING_PULSE_END_TICK + PULSE_TICKS;
+/// Tick of the self-test in which the measured current of the warming pulse is checked; if it is in range, the
+/// self-test has passed.
+const WARMING_PULSE_END_TICK: u16 = RESPONSE_CHECK_TICK + PULSE_TICKS;
+/// Ticks of 1 ms within which the comparator must have followed its test line: cut the bridge's supply after the line
+/// was set, or released it after the line was cleared. A slower response trips the station by [`Fault::Comparator`].
 const COMPARATOR_DELAY_MAX_TICKS: u16 = 10;
-/// Magnitude of the current of the cooling and of the warming pulse, A.
+/// Magnitude of the current of the self-test's cooling and warming pulses: 1 A.
 const PULSE_CURRENT: Current = Current::ONE;
-/// Smallest mean of the measured current over the second half of a pulse of 1 A, A; less trips by
-/// [`Fault::CurrentLow`].
-const MEASURED_CURRENT_MIN: Current = Current::lit("0.4");
-/// Largest mean of the measured current over the second half of a pulse of 1 A, A; more trips by
-/// [`Fault::CurrentHigh`].
-const MEASURED_CURRENT_MAX: Current = Current::lit("2");
-/// Smallest fall of each display reading by the cooling pulse, 0.2 s after its end, K; less trips by
-/// [`Fault::NoResponse`]. A typical display responds by 0.54 K; a thermistor of 0.5 s lag sees a third of that in time,
-/// and a finger that rests on the display takes as much.
-const RESPONSE_MIN: Celsius = Celsius::lit("0.05");
-/// Largest fall of each display reading 0.2 s after the end of the cooling pulse, K. A typical display falls by 0.54 K; more
-/// than this is no response to the pulse but another disturbance, and trips by [`Fault::NoResponse`], too.
-const RESPONSE_MAX: Celsius = Celsius::lit("1.5");
-/// Ticks of 1 ms to wait after a finger has landed or lifted before the baseline begins, because the display's
-/// temperature then follows no straight line.
-const UNDISTURBED_TICKS: u16 = 1000;
-/// Ticks of 1 ms that a self-test may wait in all for fingers that land and lift; then [`Fault::NoResponse`] trips the
-/// station.
-const TOTAL_WAIT_MAX_TICKS: u16 = 20 * UNDISTURBED_TICKS;
-/// Ticks of 1 ms without a felt finger after which it counts as lifted. A force just above the threshold falls below it
-/// by noise now and then.
+/// Smallest mean of the measured current over the second half of a self-test pulse of 1 A, A; a smaller mean trips the
+/// station by [`Fault::CurrentLow`].
+const PULSE_MEAN_CURRENT_MIN: Current = Current::lit("0.4");
+/// Largest mean of the measured current over the second half of a self-test pulse of 1 A, A; a larger mean trips the
+/// station by [`Fault::CurrentHigh`].
+const PULSE_MEAN_CURRENT_MAX: Current = Current::lit("2");
+/// Smallest fall of each display thermistor's reading, K, 0.2 s after the end of the self-test's cooling pulse; a
+/// smaller one trips the station by [`Fault::NoResponse`]. A typical display falls by 0.54 K; a thermistor with a lag
+/// of 0.5 s shows only a third of that by then, and a resting finger reduces the fall by a similar factor.
+const DISPLAY_RESPONSE_MIN: Celsius = Celsius::lit("0.05");
+/// Largest fall of each display thermistor's reading, K, 0.2 s after the end of the self-test's cooling pulse; a larger
+/// one trips by [`Fault::NoResponse`]. A typical display falls by 0.54 K, so more than this is caused by something else
+/// than the pulse.
+const DISPLAY_RESPONSE_MAX: Celsius = Celsius::lit("1.5");
+/// Ticks of 1 ms that the self-test waits after a finger has landed or lifted before its baseline begins, because the
+/// display's temperature then does not follow a straight line.
+const WAIT_AFTER_LANDING_OR_LIFTING_TICKS: u16 = 1000;
+/// Ticks of 1 ms that one self-test may wait in all for fingers that land and lift; then [`Fault::NoResponse`] trips
+/// the station.
+const FINGER_WAIT_MAX_TICKS: u16 = 20 * WAIT_AFTER_LANDING_OR_LIFTING_TICKS;
+/// Ticks of 1 ms in a row in which the force sensor detects no finger, after which a finger counts as lifted. A force
+/// just above the contact threshold falls below the threshold by noise now and then.
 const LIFTED_AFTER_TICKS: u8 = 32;
 
-/// Sums of the readings of the first and the second display thermistor over one half of the baseline, in units of 2^-22
-/// °C.
+/// Sums of the readings of the first and the second display thermistor, in units of 2^-22 °C, over one half of the
+/// self-test's baseline.
 type DisplayReadingSums = [i64; 2];
 
-/// What the self-test demands of the bridge in one tick; `step` of the station turns it into outputs.
+/// What the self-test demands in one tick. The station turns it into the outputs to bridge and comparator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelfTestStep {
-    /// The bridge is off in this tick, for the comparator's test, the baseline, or while a finger disturbs.
+    /// The bridge is off in this tick: during the comparator's test, the baseline, or the wait after a finger's landing
+    /// or lifting.
     Off {
-        /// Level of the comparator's test line: true makes the comparator cut the bridge's supply.
+        /// Level of the comparator's test line: true makes the comparator cut the bridge's supply; clearing it again
+        /// releases the supply.
         comparator_test: bool,
     },
-    /// The bridge drives this current in this tick, A: 1 A of either sign, or zero; positive cools.
+    /// The bridge drives this current in this tick: 1 A (cools), -1 A (warms) or 0 A.
     Drive(Current),
-    /// All parts of the self-test have passed: the station becomes armed. The bridge is off in this tick.
+    /// All parts of the self-test have passed, so the station becomes armed. The bridge is off in this tick.
     Passed,
 }
 
-/// A self-test that is running: how far it is, and what it has measured so far. Created by `arm` from off.
+/// State of a running self-test: position in its sequence, measurements so far, and the waiting for fingers. The
+/// command `arm` starts it when the station is off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelfTest {
-    /// Ticks of the self-test so far, without the waiting for fingers.
+    /// Next tick of the self-test's sequence, 0 to 704. It stays at the end of the comparator's test, 40, while the
+    /// self-test waits for fingers, and is set back to 40 when a finger lands or lifts later.
     tick: u16,
     first_half: DisplayReadingSums,
     second_half: DisplayReadingSums,
-    /// Sum of the measured current over the second half of the present pulse, in units of 2^-24 A.
+    /// Sum of the measured current, as magnitude, over the second half (100 ticks) of the present pulse so far, in
+    /// units of 2^-24 A. At the end of the pulse the mean is checked.
     current_sum: i64,
-    /// Whether a finger counts as being on the display, after the debouncing of its lifting.
+    /// Whether a finger counts as on the display: true at once when the force shows a finger, or one that may be
+    /// landing; false after 32 ticks of 1 ms in a row without. After each change the self-test waits for 1 s before a
+    /// new baseline.
     touched: bool,
-    /// Ticks since a finger was felt last; stops at 255.
+    /// Ticks of 1 ms since the force last showed a finger, or one that may be landing; stops at 255.
     untouched_ticks: u8,
-    /// Ticks still to wait before the baseline may begin, because a finger has landed or lifted.
+    /// Ticks of 1 ms that remain to wait before the baseline begins, because a finger has landed or lifted.
     wait_ticks: u16,
-    /// Ticks that this self-test has waited for fingers so far, up to [`TOTAL_WAIT_MAX_TICKS`].
+    /// Ticks of 1 ms that this self-test has waited for fingers in all, up to [`FINGER_WAIT_MAX_TICKS`].
     waited_ticks: u16,
 }
 
 impl SelfTest {
-    /// Whether the comparator's test is still running, in the first 40 ticks. The comparator then pulls the bridge's
-    /// fault line, which must not trip the station by [`Fault::Bridge`].
+    /// Whether the self-test is in its first 40 ticks, in which it makes the comparator cut and release the bridge's
+    /// supply. The comparator then pulls the bridge's fault line, which does not trip the station by [`Fault::Bridge`]
+    /// while this is true.
     #[must_use]
     pub const fn expects_bridge_fault(&self) -> bool {
         self.tick < COMPARATOR_RELEASE_END_TICK
     }
 
-    /// Runs one tick of the self-test with its readings, and returns what the bridge must do. `bridge_fault` is true if
-    /// the bridge's fault line is pulled, `touched` if the force shows a finger.
+    /// Runs one tick of the self-test with `readings`, and returns what the bridge must do in this tick. `bridge_fault`
+    /// is true if the bridge's fault line is pulled; `touched` is true if the force shows a finger, or one that may be
+    /// landing.
     ///
     /// # Errors
-    /// The fault of the part that has failed: comparator, measured current too low or too high, polarity, or no
-    /// response, also if fingers have disturbed the baseline for 20 s.
+    /// [`Fault::Comparator`]: the comparator has not cut or not released the bridge's supply within 10 ms.
+    /// [`Fault::CurrentLow`], [`Fault::CurrentHigh`]: the mean measured current of a pulse is below 0.4 A or above 2 A.
+    /// [`Fault::Polarity`]: the cooling pulse has warmed the display. [`Fault::NoResponse`]: a display reading has not
+    /// fallen by 0.05 to 1.5 K after the cooling pulse, or fingers that landed and lifted have delayed the baseline by
+    /// 20 s in all.
     pub fn step(
         &mut self,
         readings: &ValidReadings,
@@ -138,7 +154,7 @@ impl SelfTest {
             self.restart_baseline(touched);
         }
         if self.tick == COMPARATOR_RELEASE_END_TICK && self.wait_ticks > 0 {
-            if self.waited_ticks >= TOTAL_WAIT_MAX_TICKS {
+            if self.waited_ticks >= FINGER_WAIT_MAX_TICKS {
                 return Err(Fault::NoResponse);
             }
             self.wait_ticks -= 1;
@@ -170,28 +186,29 @@ impl SelfTest {
         if tick == COOLING_PULSE_END_TICK {
             self.check_pulse_current()?;
         }
-        if tick < RESPONSE_END_TICK {
+        if tick < RESPONSE_CHECK_TICK {
             return Ok(SelfTestStep::Drive(Current::ZERO));
         }
-        if tick == RESPONSE_END_TICK {
+        if tick == RESPONSE_CHECK_TICK {
             self.check_display_response(display)?;
         }
         if tick < WARMING_PULSE_END_TICK {
-            self.add_measured_current(tick - RESPONSE_END_TICK, readings.current);
+            self.add_measured_current(tick - RESPONSE_CHECK_TICK, readings.current);
             return Ok(SelfTestStep::Drive(PULSE_CURRENT.saturating_neg()));
         }
         self.check_pulse_current()?;
         Ok(SelfTestStep::Passed)
     }
 
-    /// Goes back to the end of the comparator's test, unless that is still running, and lets the baseline begin 1 s
-    /// later, because a finger has landed (`touched`) or lifted.
+    /// Restarts the self-test at the end of the comparator's test (a comparator test that is still running goes on),
+    /// because a finger has landed (`touched` true) or lifted. The self-test then waits for 1000 ticks of 1 ms before
+    /// its baseline, as that needs an undisturbed display.
     fn restart_baseline(&mut self, touched: bool) {
         *self = Self {
             tick: self.tick.min(COMPARATOR_RELEASE_END_TICK),
             touched,
             untouched_ticks: self.untouched_ticks,
-            wait_ticks: UNDISTURBED_TICKS,
+            wait_ticks: WAIT_AFTER_LANDING_OR_LIFTING_TICKS,
             waited_ticks: self.waited_ticks,
             ..Self::default()
         };
@@ -203,35 +220,40 @@ impl SelfTest {
         }
     }
 
-    /// Checks that the measured current of the pulse that has ended was 0.4 to 2 A on average over its second half, and
-    /// clears its sum for the next pulse.
+    /// Checks at the end of a pulse the mean of the measured current over the second half of that pulse, and resets the
+    /// sum of the measured current to zero for the next pulse.
+    ///
+    /// # Errors
+    /// [`Fault::CurrentLow`] below 0.4 A, [`Fault::CurrentHigh`] above 2 A.
     fn check_pulse_current(&mut self) -> Result<(), Fault> {
         let mean = mem::take(&mut self.current_sum) / i64::from(PULSE_TICKS / 2);
-        if mean < i64::from(MEASURED_CURRENT_MIN.to_bits()) {
+        if mean < i64::from(PULSE_MEAN_CURRENT_MIN.to_bits()) {
             Err(Fault::CurrentLow)
-        } else if mean > i64::from(MEASURED_CURRENT_MAX.to_bits()) {
+        } else if mean > i64::from(PULSE_MEAN_CURRENT_MAX.to_bits()) {
             Err(Fault::CurrentHigh)
         } else {
             Ok(())
         }
     }
 
-    /// Checks that both readings in `display`, in units of 2^-22 °C, are 0.05 to 1.5 K below the line through the means
-    /// of both halves of the baseline.
+    /// Checks the display's response to the cooling pulse: both thermistors must read 0.05 to 1.5 K below the straight
+    /// line through the means of the baseline's two halves. `display` holds the present readings of the first and the
+    /// second display thermistor, in units of 2^-22 °C. A reading more than 0.05 K above the line is
+    /// [`Fault::Polarity`]; any other failure is [`Fault::NoResponse`].
     fn check_display_response(&self, display: [i64; 2]) -> Result<(), Fault> {
-        const RESPONSE_MIN_BITS: i64 = RESPONSE_MIN.to_bits() as i64;
-        const RESPONSE_RANGE_BITS: RangeInclusive<i64> =
-            RESPONSE_MIN_BITS..=RESPONSE_MAX.to_bits() as i64;
+        const DISPLAY_RESPONSE_MIN_BITS: i64 = DISPLAY_RESPONSE_MIN.to_bits() as i64;
+        const DISPLAY_RESPONSE_RANGE_BITS: RangeInclusive<i64> =
+            DISPLAY_RESPONSE_MIN_BITS..=DISPLAY_RESPONSE_MAX.to_bits() as i64;
         let half = i64::from(HALF_BASELINE_TICKS);
-        let ticks = i64::from(RESPONSE_END_TICK - (BASELINE_END_TICK - HALF_BASELINE_TICKS / 2));
+        let ticks = i64::from(RESPONSE_CHECK_TICK - (BASELINE_END_TICK - HALF_BASELINE_TICKS / 2));
         let halves = self.first_half.iter().zip(&self.second_half);
         for ((first, second), reading) in halves.zip(display) {
             let expected = second / half + (second - first) * ticks / (half * half);
             let response = expected - reading;
-            if response < -RESPONSE_MIN_BITS {
+            if response < -DISPLAY_RESPONSE_MIN_BITS {
                 return Err(Fault::Polarity);
             }
-            if !RESPONSE_RANGE_BITS.contains(&response) {
+            if !DISPLAY_RESPONSE_RANGE_BITS.contains(&response) {
                 return Err(Fault::NoResponse);
             }
         }
@@ -239,8 +261,9 @@ impl SelfTest {
     }
 }
 
-/// Tests the comparator in tick 0 to 39 of the self-test, with the bridge off: sets its test line for 20 ticks, then
-/// clears it for 20, and checks from the tenth tick of each part on that the fault line is pulled, or released.
+/// Tests the comparator in ticks 0 to 39 of the self-test, with the bridge off: sets the comparator's test line for 20
+/// ticks, then clears it for 20 ticks. From 10 ticks after each change the fault line must be pulled (test line set) or
+/// released (test line cleared); otherwise the result is [`Fault::Comparator`].
 fn test_comparator(tick: u16, bridge_fault: bool) -> Result<SelfTestStep, Fault> {
     let comparator_test = tick < COMPARATOR_CUT_END_TICK;
     let elapsed = if comparator_test {
@@ -248,7 +271,7 @@ fn test_comparator(tick: u16, bridge_fault: bool) -> Result<SelfTestStep, Fault>
     } else {
         tick - COMPARATOR_CUT_END_TICK
     };
-    // Before its time is over, either level is allowed.
+    // Within the allowed delay, the fault line may have either level.
     if elapsed >= COMPARATOR_DELAY_MAX_TICKS && bridge_fault != comparator_test {
         return Err(Fault::Comparator);
     }

@@ -4,8 +4,8 @@ use contact_model::fixed_point::Celsius;
 
 use super::limits::{SETPOINT_MAX, SETPOINT_MIN};
 
-/// A display temperature that may be commanded, 15 to 42 °C. The type can hold no other, so the controller needs no
-/// check.
+/// A display temperature that may be commanded, 15 to 42 °C. No other value can be constructed
+/// ([`Setpoint::saturating_celsius`] clamps), so the controller need not check the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Setpoint(Celsius);
 
@@ -15,7 +15,8 @@ impl Setpoint {
     /// Hottest set-point that can be commanded, 42 °C.
     pub const MAX: Self = Self(SETPOINT_MAX);
 
-    /// Clamps `demanded`, °C, to 15 to 42 °C; the second value is true if that has changed it.
+    /// A set-point from `demanded`, °C, clamped to 15 to 42 °C; the second value is true if the clamping has changed
+    /// it.
     #[must_use]
     pub fn saturating_celsius(demanded: Celsius) -> (Self, bool) {
         let allowed = demanded.clamp(Self::MIN.0, Self::MAX.0);

@@ -1,8 +1,9 @@
 //! Thermal dose of the skin.
 //!
-//! Cumulative equivalent minutes at 43 °C, CEM43 (Sapareto and Dewey 1984): each minute at `T` counts as `R^(43 - T)` minutes,
-//! with `R` 0.5 above 43 °C and 0.25 below it; below 39 °C none. The warmer of the display's readings stands for the skin,
-//! which is never warmer than the display. Contact is not considered, because the force sensor may be what failed.
+//! Cumulative equivalent minutes at 43 °C, CEM43 (Sapareto and Dewey 1984): each minute at `T` counts as `R^(43 - T)`
+//! minutes, with `R` 0.5 above 43 °C and 0.25 below it; below 39 °C none. The warmer of the display's readings stands
+//! for the skin, which is never warmer than the display. Contact is not considered, because the force sensor may be
+//! what failed.
 
 use contact_model::fixed_point::{Celsius, exp2};
 
@@ -11,49 +12,54 @@ use super::limits::{DOSE_COUNTED_FROM, DOSE_REFERENCE_TEMPERATURE};
 
 /// Ticks of 1 ms from one evaluation of the display's temperature to the next; the dose of the whole interval is
 /// computed from the temperature at its end.
-const EVALUATION_INTERVAL_TICKS: u16 = 256;
-/// Dose from which on the station trips, in ticks of 1 ms at 43 °C: half a minute. Skin burns after hundreds of minutes
-/// at 43 °C, and may hurt after some.
+const DOSE_INTERVAL_TICKS: u16 = 256;
+/// Thermal dose at which the station trips by [`Fault::Dose`], in ticks of 1 ms at 43 °C: 30 s. This is far below the
+/// dose that burns skin, hundreds of minutes at 43 °C, and below the few minutes that may hurt.
 const DOSE_LIMIT_TICKS: u32 = 30_000;
-/// Largest sum, in 2^-8 ticks at 43 °C: twice the limit. So even after a long time above the limit, or after a bit has
-/// flipped, 32 minutes below 39 °C bring the sum back to the limit.
-const DOSE_SUM_MAX: u32 = (2 * DOSE_LIMIT_TICKS) << 8;
-/// Decay of the dose below 39 °C, as a shift to the right of the elapsed time: 6 takes 1/64 of the time, about a minute
-/// an hour.
+/// Upper limit of the stored dose, in units of 2^-8 ticks of 1 ms at 43 °C: twice the trip limit. Thus after a long
+/// time above the limit, or after a bit error in the stored dose, 32 minutes below 39 °C are enough to bring it back to
+/// the trip limit.
+const STORED_DOSE_MAX: u32 = (2 * DOSE_LIMIT_TICKS) << 8;
+/// Decay of the dose below 39 °C, as a right shift of the elapsed time: 6 subtracts 1/64 of it, about one minute per
+/// hour.
 const DOSE_DECAY_SHIFT: u32 = 6;
 
-/// Thermal dose (CEM43) that skin would have received if it had always touched the display. It grows with the time at
-/// 39 °C and above, decays below, and trips the station at half a minute.
+/// Thermal dose (CEM43) that skin would have received if it had always touched the display: the time at 39 °C and
+/// above, weighted by temperature, with slow decay below 39 °C. The station trips by [`Fault::Dose`] when the dose
+/// reaches the equivalent of 30 s at 43 °C.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ThermalDose {
-    /// The dose, in 2^-8 ticks of 1 ms at 43 °C, up to [`DOSE_SUM_MAX`] after each evaluation.
+    /// The dose, in units of 2^-8 ticks of 1 ms at 43 °C; at most [`STORED_DOSE_MAX`] after each evaluation.
     sum: u32,
-    /// Ticks since the last evaluation of the temperature, below [`EVALUATION_INTERVAL_TICKS`].
+    /// Ticks of 1 ms since the display's temperature was last evaluated, 0 to 255. At [`DOSE_INTERVAL_TICKS`] (256) the
+    /// temperature is evaluated again, and this count restarts at 0.
     ticks: u16,
 }
 
 impl ThermalDose {
-    /// The dose in 2^-8 ms at 43 °C, as the word that the board keeps in RAM through a reset.
+    /// The dose in units of 2^-8 ms at 43 °C, as one 32-bit word, in which the board keeps it in RAM through a reset.
     #[must_use]
     pub const fn to_word(&self) -> u32 {
         self.sum
     }
 
-    /// The dose from the word that [`to_word`](Self::to_word) gave before a reset; every word is accepted.
+    /// The dose from the word that [`to_word`](Self::to_word) returned before a reset; any word is accepted, because
+    /// the next evaluation limits the dose.
     #[must_use]
     pub const fn from_word(sum: u32) -> Self {
         Self { sum, ticks: 0 }
     }
 
-    /// Counts one tick of 1 ms. Every 256th tick calls `warmest` for the higher of both display readings, °C, and adds
-    /// the dose of the interval; `None`, if no reading is valid, leaves the dose as it is.
+    /// Counts one tick of 1 ms. Every 256th tick, `warmest` is called for the higher reading of the two display
+    /// thermistors, °C, and the dose of the interval is added at that temperature (below 39 °C the dose decays
+    /// instead). If `warmest` returns `None`, because no reading is valid, the dose stays.
     ///
     /// # Errors
-    /// [`Fault::Dose`]: the dose is half a minute at 43 °C or more.
+    /// [`Fault::Dose`]: the dose has reached 30 s at 43 °C; returned in every tick while that holds.
     pub fn add_tick(&mut self, warmest: impl FnOnce() -> Option<Celsius>) -> Result<(), Fault> {
-        const DECAY_PER_INTERVAL: u32 = (EVALUATION_INTERVAL_TICKS as u32) << 8 >> DOSE_DECAY_SHIFT;
+        const DECAY_PER_INTERVAL: u32 = (DOSE_INTERVAL_TICKS as u32) << 8 >> DOSE_DECAY_SHIFT;
         self.ticks += 1;
-        if self.ticks >= EVALUATION_INTERVAL_TICKS {
+        if self.ticks >= DOSE_INTERVAL_TICKS {
             self.ticks = 0;
             self.sum = match warmest() {
                 None => self.sum,
@@ -61,11 +67,11 @@ impl ThermalDose {
                     self.sum.saturating_sub(DECAY_PER_INTERVAL)
                 }
                 Some(warmest) => {
-                    let dose = dose_rate(warmest).saturating_mul(EVALUATION_INTERVAL_TICKS.into());
+                    let dose = dose_rate(warmest).saturating_mul(DOSE_INTERVAL_TICKS.into());
                     self.sum.saturating_add(dose)
                 }
             }
-            .min(DOSE_SUM_MAX);
+            .min(STORED_DOSE_MAX);
         }
         if self.sum >> 8 >= DOSE_LIMIT_TICKS {
             Err(Fault::Dose)
@@ -75,8 +81,9 @@ impl ThermalDose {
     }
 }
 
-/// Minutes at 43 °C that one minute at the temperature `t`, °C, is equivalent to, in units of 2^-8: 1 at 39 °C, 256 at
-/// 43 °C, doubled by every kelvin above, and below 2^17 for any temperature.
+/// Weight of one minute at the temperature `t`, °C, in the thermal dose (equivalent minutes at 43 °C), in units of
+/// 2^-8: 1 at 39 °C, 256 at 43 °C, doubled by each kelvin above 43 °C and quartered by each kelvin below it, always
+/// below 2^17. Called for 39 °C and above.
 fn dose_rate(t: Celsius) -> u32 {
     let above = t.saturating_sub(DOSE_REFERENCE_TEMPERATURE);
     // Exponent of two with 32 binary places: once or twice the difference.

@@ -1,47 +1,50 @@
 //! Monitors the rate of the control ticks by a second counter.
 
-/// Width of the counter that ticks are compared with, bits: that of SysTick, the core's timer.
-const COUNTER_BITS: u32 = 24;
+/// Width in bits of SysTick, the core's timer, with whose count the time of each tick is compared.
+const SYSTICK_BITS: u32 = 24;
 /// Divisor of the tick's period that gives how early or late a tick may be: 4 allows a quarter of a period.
-const TOLERANCE_DIVISOR: u32 = 4;
+const TICK_TOLERANCE_DIVISOR: u32 = 4;
 
-/// Predicts when each control tick is due, by a hardware counter that counts down and wraps, and that shares no timer
-/// with the ticks. A tick that is not on time stops the sampling and trips all fingers by
+/// Checks that each control tick comes on time, by SysTick: a 24-bit hardware counter that counts the core clock down
+/// and wraps, independent of the timer that generates the ticks. If a tick is early or late by more than a quarter of
+/// its period, the board stops sampling and trips the stations of all fingers by
 /// [`Fault::Sampling`](super::Fault::Sampling).
 ///
-/// Counter and ticks derive from one oscillator, so the jitter of single ticks never adds up, but a wrong rate does:
-/// half a percent becomes a quarter of a period after 50 ticks, and a rate that is wrong by a factor of ten is detected
-/// at once.
+/// Each tick is due a whole number of periods after the first, and SysTick and the ticks derive from one oscillator. So
+/// the jitter of single ticks does not accumulate, but a wrong rate does: 0.5 % becomes a quarter of a period after 50
+/// ticks, and a rate that is wrong by a factor of ten is detected at the next tick.
 #[derive(Clone, Copy, Debug)]
 pub struct TickRateMonitor {
-    /// Counts from tick to tick, in the upper 24 bits of the word, so that sums wrap where the counter does.
+    /// SysTick counts from one tick to the next, in the upper 24 bits of the word, so that its arithmetic wraps where
+    /// SysTick wraps.
     period: u32,
-    /// Value of the counter at which the last tick was due, negated and in the upper 24 bits; `None` before the first
-    /// tick, which is due when it comes.
+    /// SysTick's value at which the last tick was due, negated because SysTick counts down, and in the upper 24 bits of
+    /// the word. `None` before the first tick, which is always on time.
     due: Option<u32>,
 }
 
 impl TickRateMonitor {
-    /// A monitor of ticks that are `period` counts of the counter apart, below 2^24; created at the start, before the
-    /// first tick.
+    /// A monitor for ticks that are `period` counts of SysTick apart (below 2^24; 180 000 for 1 ms at 180 MHz). Created
+    /// before the first tick.
     #[must_use]
     pub const fn new(period: u32) -> Self {
         Self {
-            period: period << (u32::BITS - COUNTER_BITS),
+            period: period << (u32::BITS - SYSTICK_BITS),
             due: None,
         }
     }
 
-    /// Compares a tick with its due time, by `count`, the counter's value when the tick came; returns whether the tick
-    /// was early or late by a quarter of a period at most. To be called once in each tick.
+    /// Returns whether this tick has come within a quarter of a period of the time at which it was due: the time of the
+    /// first tick plus a whole number of periods. `count` is the present value of SysTick, which counts down. To be
+    /// called once in each tick; the first call sets the schedule and returns true.
     ///
-    /// A tick that is off by half a turn of the counter or more may be taken for another one; the watchdogs detect
-    /// that.
-    pub fn tick_is_due(&mut self, count: u32) -> bool {
-        let now = (count << (u32::BITS - COUNTER_BITS)).wrapping_neg();
+    /// A tick that is late by a whole turn of SysTick (2^24 counts, 93 ms at 180 MHz) seems to be on time; the window
+    /// watchdog has reset the device by then, after 47 ms.
+    pub fn tick_is_on_time(&mut self, count: u32) -> bool {
+        let now = (count << (u32::BITS - SYSTICK_BITS)).wrapping_neg();
         let due = self.due.map_or(now, |due| due.wrapping_add(self.period));
         self.due = Some(due);
-        now.wrapping_sub(due).cast_signed().unsigned_abs() <= self.period / TOLERANCE_DIVISOR
+        now.wrapping_sub(due).cast_signed().unsigned_abs() <= self.period / TICK_TOLERANCE_DIVISOR
     }
 }
 
@@ -57,7 +60,7 @@ mod tests {
     fn first_off(ticks: u64, cycle: impl Fn(u64) -> u64) -> Option<u64> {
         let mut monitor = TickRateMonitor::new(PERIOD);
         let shown = |cycle: u64| (ROUND - 1 - (cycle + 123_456) % ROUND) as u32;
-        (0..ticks).find(|n| !monitor.tick_is_due(shown(cycle(*n))))
+        (0..ticks).find(|n| !monitor.tick_is_on_time(shown(cycle(*n))))
     }
 
     #[test]

@@ -6,41 +6,47 @@ use super::Fault;
 use crate::drive::Current;
 use crate::sense::Readings;
 
-/// Why and when a station tripped: the fault, the number of the tick, and the temperatures and currents of that tick.
-/// It is kept in RAM through a reset, and the command `cause` reports it.
+/// Why and when a station tripped: the fault, the tick's number, and the temperatures and currents of that tick. A trip
+/// cause is kept in RAM through a reset, and the host's command `cause` returns it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TripCause {
     /// The fault that tripped the station.
     pub fault: Fault,
-    /// Number of the tick, of 1 ms since the last reset before the trip; 0 if the trip came before the first tick, or
-    /// was found by the start-up code or an exception handler.
+    /// Number of the tick of the trip, in ticks of 1 ms since the start of the program run in which the station
+    /// tripped; 0 if the trip came before the first tick, or was recorded by the start-up code or an exception handler.
     pub tick: u32,
-    /// Reading of the first display thermistor, °C; `None` if it was invalid or no tick saw the fault.
+    /// Reading of the display's first thermistor in the tick that detected the fault, °C; `None` if the reading was
+    /// invalid or the fault was detected outside of a tick.
     pub display: Option<Celsius>,
-    /// Reading of the second display thermistor, °C; `None` if it was invalid or no tick saw the fault.
+    /// Reading of the display's second thermistor in the tick that detected the fault, °C; `None` if the reading was
+    /// invalid or the fault was detected outside of a tick.
     pub check: Option<Celsius>,
-    /// Reading of the sink's thermistor, °C; `None` if it was invalid or no tick saw the fault.
+    /// Reading of the heat sink's thermistor in the tick that detected the fault, °C; `None` if the reading was invalid
+    /// or the fault was detected outside of a tick.
     pub sink: Option<Celsius>,
-    /// Magnitude of the measured module current in that tick, A; zero if no tick saw the fault.
+    /// Magnitude of the measured module current in the tick that detected the fault, A; zero if the fault was detected
+    /// outside of a tick.
     pub current: Current,
-    /// Current that the tick before had demanded of the bridge, A; positive cools; zero if no tick saw the fault.
+    /// Current that the tick before the detection demanded of the bridge, A; positive cools. Zero if the fault was
+    /// detected outside of a tick.
     pub demanded: Current,
 }
 
 impl TripCause {
-    /// Number of 32-bit words in which a trip cause is stored in RAM through a reset.
+    /// Number of 32-bit words in which a trip cause is kept in RAM through a reset.
     pub const WORD_COUNT: usize = 7;
 
-    /// Hash of the meaning of the stored words: their number, their order, and the numbers and names of the faults. It
-    /// is part of the record's checksum, so that a record stored by a firmware with another layout counts as invalid.
+    /// Hash of the meaning of the stored words: their number, their order, and the numbers and names of the faults. The
+    /// board includes it in the checksum of a stored trip cause, so that one stored by firmware with another layout
+    /// counts as invalid.
     pub const LAYOUT_HASH: u32 = layout_hash(
         "fault tick display check sink current asked",
         Self::WORD_COUNT,
         Fault::ALL,
     );
 
-    /// The cause of a trip by a fault that was detected in tick number `tick` with these readings; `demanded` is the
-    /// current that the tick before demanded, A.
+    /// The cause of a trip by `fault`, which tick number `tick` has detected with `readings`. `demanded` is the current
+    /// that the tick before demanded of the bridge, A; positive cools.
     #[must_use]
     pub fn new(fault: Fault, tick: u32, readings: &Readings, demanded: Current) -> Self {
         Self {
@@ -54,8 +60,8 @@ impl TripCause {
         }
     }
 
-    /// The cause of a trip by a fault that no tick has detected, such as a reset by a watchdog: tick number and
-    /// currents are zero, and all temperatures are `None`.
+    /// The cause of a trip by a fault that was detected outside of a tick, such as a watchdog reset: the tick number
+    /// and the currents are zero, all temperatures are `None`.
     #[must_use]
     pub const fn without_readings(fault: Fault) -> Self {
         Self {
@@ -69,8 +75,8 @@ impl TripCause {
         }
     }
 
-    /// Converts the cause to the words in which the board keeps it in RAM through a reset. A change here must change
-    /// [`Self::LAYOUT_HASH`].
+    /// Converts the trip cause to the words in which the board keeps it in RAM through a reset. Whoever changes the
+    /// words here must also change the list of their names in [`Self::LAYOUT_HASH`].
     #[must_use]
     pub fn to_words(&self) -> [u32; Self::WORD_COUNT] {
         // Stands for an invalid reading: no thermistor reads the lowest representable temperature.
@@ -86,8 +92,8 @@ impl TripCause {
         ]
     }
 
-    /// The cause from the words of [`to_words`](Self::to_words) that were kept through a reset; `None` if the first
-    /// word is not the number of a fault.
+    /// The trip cause that [`to_words`](Self::to_words) converted before a reset; `None` if the first word is not the
+    /// number of a fault.
     #[must_use]
     pub fn from_words(
         [fault, tick, display, check, sink, measured, demanded]: [u32; Self::WORD_COUNT],
@@ -109,8 +115,8 @@ impl TripCause {
     }
 }
 
-/// FNV-1a hash over the number of words of a stored cause, their `order`, and the names of all faults in the order of
-/// their numbers.
+/// FNV-1a hash over what a stored trip cause consists of: the number of its words (`words`), their names in `order`,
+/// and the names of all faults in the order of their numbers.
 const fn layout_hash(order: &str, words: usize, faults: &[Fault]) -> u32 {
     let mut sum = continue_hash(0x811c_9dc5 ^ words as u32, order);
     let mut number = 0;
@@ -121,7 +127,8 @@ const fn layout_hash(order: &str, words: usize, faults: &[Fault]) -> u32 {
     sum
 }
 
-/// Continues an FNV-1a hash, `sum`, with the bytes of `word` and then with 0xff, so that "a b" and "ab" differ.
+/// Continues the FNV-1a hash `sum` with the bytes of `word` and then with 0xff as separator, so that the words "a", "b"
+/// hash differently from the word "ab".
 const fn continue_hash(mut sum: u32, word: &str) -> u32 {
     let bytes = word.as_bytes();
     let mut at = 0;

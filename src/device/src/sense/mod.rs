@@ -1,66 +1,75 @@
-//! Sensing: sums of conversions to temperatures, force and current.
+//! Sensing: converts each tick's sums of analogue-to-digital conversions to temperatures, force and current.
 
-mod average;
-mod correction;
-mod force;
+mod calibration_tables;
+mod force_sensor;
 mod thermistor;
+mod thermistor_average;
 
-pub use average::{ThermistorAverage, ThermistorAverages};
-pub use correction::CalibrationTables;
-pub use force::ContactDetector;
-pub use thermistor::SensorFault;
+pub use calibration_tables::CalibrationTables;
+pub use force_sensor::ContactDetector;
+pub use thermistor::ThermistorFault;
+pub use thermistor_average::{ThermistorAverage, ThermistorAverages};
 
 use core::array;
 
 use contact_model::fixed_point::{Celsius, Force};
 
 use crate::drive::Current;
-use correction::ThermistorCorrection;
-use force::ForceChannel;
+use calibration_tables::ThermistorCorrection;
+use force_sensor::ForceChannel;
 use thermal_settings::Settings;
 use thermistor::ThermistorTable;
 
-/// Analogue signals of one finger: five thermistors, force sensor, and current mirror. [`Samples`] lists them in the
-/// order in which the converter scans them.
-pub const CHANNELS: usize = 7;
+/// Number of analogue signals of one finger, 7: five thermistors, force sensor and current mirror of the bridge. The
+/// converter scans them in the order of the fields of [`Samples`].
+pub const CHANNEL_COUNT: usize = 7;
 
-/// The first channels are thermistors: display, second display, sink, skin, room.
-pub use thermal_settings::THERMISTORS;
+/// Number of thermistors of one finger, 5: display, second display, sink, skin, room. They are the first channels of a
+/// [`Scan`], in this order.
+pub use thermal_settings::THERMISTOR_COUNT;
 
-/// Oversampling: scans of all channels whose conversions are summed into the [`Samples`] of one control tick of 1 ms.
+/// Oversampling: number of scans of all channels in each control tick of 1 ms. The 16 conversions of a channel are
+/// added up to one sum in [`Samples`].
 pub const SCANS_PER_TICK: usize = 16;
 
-/// One scan of a finger's signals: a 12-bit count (0 to 4095) for each channel, in the order of the fields of
-/// [`Samples`].
-pub type Scan = [u16; CHANNELS];
+/// One conversion of each channel of one finger: 12-bit codes (0 to 4095), in the order of the fields of [`Samples`].
+pub type Scan = [u16; CHANNEL_COUNT];
 
-/// Input of one control tick: for each channel the sum of [`SCANS_PER_TICK`] conversions of 12 bits, 0 to 65520.
+/// One finger's input of one control tick of 1 ms: for each analogue channel the sum of its 16 conversions of 12 bits,
+/// 0 to 65520, and the state of the bridge's fault line. The sum of a thermistor falls as its temperature rises.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Samples {
-    /// Display thermistor in the contact patch, to whose reading the display is controlled.
+    /// Sum of 16 conversions, 0 to 65520, of the display's first thermistor, in the contact patch; the control law
+    /// controls its temperature.
     pub display: u16,
-    /// Second display thermistor, which checks the first, and which the independent comparator reads, too.
+    /// Sum of 16 conversions, 0 to 65520, of the display's second thermistor, which checks the first one. This second
+    /// thermistor is also connected to the comparator that cuts the bridge's supply without the program.
     pub display_check: u16,
-    /// Sum of the thermistor on the Peltier module's heat sink, 0 to 65520.
+    /// Sum of 16 conversions, 0 to 65520, of the thermistor on the Peltier module's heat sink.
     pub sink: u16,
-    /// Sum of the thermistor on the skin at the edge of the contact, 0 to 65520; it reads the skin while no finger
-    /// touches.
+    /// Sum of 16 conversions, 0 to 65520, of the thermistor on the finger's skin at the edge of the contact. It shows
+    /// the skin's own temperature only while the finger does not touch the display, and the room's if no finger is
+    /// there.
     pub skin: u16,
-    /// Sum of the thermistor in the air of the room, 0 to 65520.
+    /// Sum of 16 conversions, 0 to 65520, of the thermistor in the room's air.
     pub room: u16,
-    /// Sum of the force sensor under the display, 0 to 65520; well above 0 without force, so that a broken wire shows.
+    /// Sum of 16 conversions, 0 to 65520, of the force sensor under the display. Nominally 6560 without force (410
+    /// counts a conversion), so that a broken wire, which reads 0, is detected.
     pub force: u16,
-    /// Current mirror of the bridge, which shows the magnitude of the module's current.
+    /// Sum of 16 conversions, 0 to 65520, of the bridge's current mirror, nominally 6400 per ampere. It shows the
+    /// magnitude of the Peltier module's current, but not the direction.
     pub current: u16,
-    /// The bridge driver pulls its fault pin, or a comparator that has cut the supply does; except where that is
-    /// expected, the station trips.
+    /// Whether the bridge's fault line is pulled: by the bridge driver, or by the comparator after it has cut the
+    /// bridge's supply. The station then trips, except in the states off and tripped, and while the self-test makes the
+    /// comparator cut the supply.
     pub bridge_fault: bool,
 }
 
 impl Samples {
-    /// The sums of the five thermistors: display, second display, sink, skin, room.
+    /// Sums of 16 conversions, 0 to 65520, of the five thermistors, in the order display, second display, sink, skin,
+    /// room.
     #[must_use]
-    pub const fn thermistor_sums(&self) -> [u16; THERMISTORS] {
+    pub const fn thermistor_sums(&self) -> [u16; THERMISTOR_COUNT] {
         [
             self.display,
             self.display_check,
@@ -70,16 +79,18 @@ impl Samples {
         ]
     }
 
-    /// Sums the scans of one tick, channel by channel; `bridge_fault` is the level of the fault pin.
+    /// Adds up the 16 scans of one tick, channel by channel. `bridge_fault` is true if the bridge's fault line is
+    /// pulled.
     ///
-    /// If the last conversion of a thermistor is that of an open or shorted wire, its sum becomes 16 times that
-    /// conversion, because the plain sum over a tick in which a wire breaks would pass for a temperature.
+    /// If the last conversion of a thermistor is that of an open or shorted wire, the thermistor's sum becomes 16 times
+    /// that conversion. The plain sum of a tick in which a wire breaks mixes valid and invalid conversions, and could
+    /// pass for a temperature.
     #[must_use]
     pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], bridge_fault: bool) -> Self {
         let mut sums = channel_sums(scans);
         let [.., last] = scans;
-        for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTORS) {
-            if thermistor::is_code_out_of_range(code) {
+        for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTOR_COUNT) {
+            if thermistor::is_open_or_short_code(code) {
                 *sum = code.saturating_mul(SCANS_PER_TICK as u16);
             }
         }
@@ -97,11 +108,11 @@ impl Samples {
     }
 }
 
-/// The sum of every channel over 16 scans. One addition of 32-bit words adds the codes of two channels, because sums of
-/// 8 codes, and of 16, stay within half a word.
-fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNELS] {
-    // A scan has an odd number of half-words: two scans are a whole number of words, as many as there are channels.
-    let mut words = [0u32; CHANNELS];
+/// Sum of each channel over the 16 scans of a tick. One addition of 32-bit words adds two codes at once: a sum of 16
+/// codes of 12 bits is at most 65520, so it fits in half a word and never carries into the other half.
+fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNEL_COUNT] {
+    // A scan is seven half-words, so two scans are a whole number of words: seven, as many as there are channels.
+    let mut words = [0u32; CHANNEL_COUNT];
     let (pairs, _) = scans.as_chunks::<2>();
     for pair in pairs {
         let (halves, _) = pair.as_flattened().as_chunks::<2>();
@@ -109,68 +120,80 @@ fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNELS] {
             *word += u32::from(*low) | u32::from(*high) << 16;
         }
     }
-    let half = |i: usize| (words[i / 2 % CHANNELS] >> (16 * (i % 2))) as u16;
-    core::array::from_fn(|channel| half(channel).wrapping_add(half(channel + CHANNELS)))
+    let half = |i: usize| (words[i / 2 % CHANNEL_COUNT] >> (16 * (i % 2))) as u16;
+    core::array::from_fn(|channel| half(channel).wrapping_add(half(channel + CHANNEL_COUNT)))
 }
 
-/// One control tick's samples in physical units, not yet checked against any limit.
+/// One finger's readings of one control tick in physical units. Open or shorted sensors are marked by `Err` or `None`;
+/// no other limit has been checked yet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Readings {
-    /// Temperature, °C, of the display's thermistor in the contact patch, to which the display is controlled; `Err` if
+    /// Temperature, °C, of the display's first thermistor, in the contact patch, which the control law controls; `Err`
+    /// if the thermistor or its wire is open or shorted.
+    pub display: Result<Celsius, ThermistorFault>,
+    /// Temperature, °C, of the display's second thermistor, which checks the first one; `Err` if the thermistor or its
+    /// wire is open or shorted.
+    pub display_check: Result<Celsius, ThermistorFault>,
+    /// Temperature, °C, of the Peltier module's heat sink; `Err` if the thermistor or its wire is open or shorted.
+    pub sink: Result<Celsius, ThermistorFault>,
+    /// Temperature, °C, of the thermistor on the finger's skin at the edge of the contact; `Err` if the thermistor or
     /// its wire is open or shorted.
-    pub display: Result<Celsius, SensorFault>,
-    /// Temperature, °C, of the display's second thermistor, which checks the first; `Err` if its wire is open or
-    /// shorted.
-    pub display_check: Result<Celsius, SensorFault>,
-    /// Temperature of the Peltier module's heat sink, °C; `Err` if the thermistor's wire is open or shorted.
-    pub sink: Result<Celsius, SensorFault>,
-    /// Temperature of the skin at the edge of the contact, °C; `Err` if the thermistor's wire is open or shorted.
-    pub skin: Result<Celsius, SensorFault>,
-    /// Temperature of the room's air, °C; `Err` if the thermistor's wire is open or shorted.
-    pub room: Result<Celsius, SensorFault>,
-    /// Force on the display, N, 0 below the tracked zero; `None` if the sensor's wire is broken or shorted.
+    pub skin: Result<Celsius, ThermistorFault>,
+    /// Temperature, °C, of the room's air; `Err` if the thermistor or its wire is open or shorted.
+    pub room: Result<Celsius, ThermistorFault>,
+    /// Force on the display, N; 0 if the signal is below the force sensor's tracked zero; `None` if the sensor's wire
+    /// is broken or shorted.
     pub force: Option<Force>,
-    /// Magnitude of the module's current, A, from the bridge's current mirror, which does not tell the direction.
+    /// Magnitude of the Peltier module's current, A, 0 or more, from the bridge's current mirror, which does not show
+    /// the direction.
     pub current: Current,
-    /// The bridge driver pulls its fault pin, or a comparator that has cut the supply does.
+    /// Whether the bridge's fault line is pulled: by the bridge driver, or by the comparator after it has cut the
+    /// bridge's supply.
     pub bridge_fault: bool,
 }
 
 impl Readings {
-    /// Readings before the first tick: every thermistor open, no force, no current.
+    /// Placeholder before the first tick: every thermistor is open, the force sensor is broken, the current is 0 A, and
+    /// the bridge has no fault.
     pub const ALL_OPEN: Self = Self {
-        display: Err(SensorFault::Open),
-        display_check: Err(SensorFault::Open),
-        sink: Err(SensorFault::Open),
-        skin: Err(SensorFault::Open),
-        room: Err(SensorFault::Open),
+        display: Err(ThermistorFault::Open),
+        display_check: Err(ThermistorFault::Open),
+        sink: Err(ThermistorFault::Open),
+        skin: Err(ThermistorFault::Open),
+        room: Err(ThermistorFault::Open),
         force: None,
         current: Current::ZERO,
         bridge_fault: false,
     };
 }
 
-/// Number of the slow thermistors, skin and room. Their temperatures change by less than a millikelvin in two ticks, so
-/// each tick converts only one of the two. Every tick checks the wires of both.
-const SLOW_THERMISTORS: usize = 2;
+/// Number of slow thermistors, 2: skin and room. Their temperatures change by less than 1 mK in two ticks of 1 ms. To
+/// save time, each tick converts the sum of only one of them to °C, in turn, after one tick has converted both. Every
+/// tick checks the wires of both.
+const SLOW_THERMISTOR_COUNT: usize = 2;
 
-/// Converts one finger's samples to °C, N and A, with its calibration; keeps the force sensor's zero and the last
-/// temperatures of skin and room.
+/// Converts one finger's [`Samples`] of each tick to [`Readings`] with the finger's calibration. Stores the zero of the
+/// force sensor, which it tracks while no finger touches, and the last temperatures of skin and room.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Sensors {
+pub struct SampleConverter {
     thermistor: ThermistorTable,
     calibration: CalibrationTables,
     force: ForceChannel,
-    /// Module current, A, that one unit of the current mirror's sum of 16 conversions stands for.
+    /// Current of the Peltier module, A, per unit of the current mirror's sum of 16 conversions; nominally 1/6400 A.
     current_per_unit: Current,
-    /// Last temperatures of skin and room, °C; `None` before a first tick has had both.
-    slow_temperatures: Option<[Celsius; SLOW_THERMISTORS]>,
-    /// Which slow thermistor the next tick converts: 0 for the skin, 1 for the room, modulo 2.
+    /// Last converted temperatures of skin and room, °C, in this order. Stored because each tick converts only one of
+    /// the two, to save computing time; the other one keeps its last value, and its reading is this value while its
+    /// wire is intact. `None` until both thermistors were connected in the same tick; until then each tick converts
+    /// both.
+    slow_temperatures: Option<[Celsius; SLOW_THERMISTOR_COUNT]>,
+    /// Selects the slow thermistor that the next tick converts to °C: the skin's if this number is even, the room's if
+    /// it is odd. Not used while `slow_temperatures` is `None`, because each tick then converts both.
     next_slow: usize,
 }
 
-impl Sensors {
-    /// Converts the settings of one finger from `f64`, so it is for start-up and not for the tick.
+impl SampleConverter {
+    /// SampleConverter of one finger with these settings, before the first tick. Computes in `f64`, so it is for
+    /// start-up and not for the control tick.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let per_unit = 1.0 / (settings.current_counts_per_a * SCANS_PER_TICK as f64);
@@ -184,23 +207,27 @@ impl Sensors {
         }
     }
 
-    /// Lets the force sensor's zero follow the signal while nothing touches. Called once a tick, after `contact` has
-    /// been updated by the force of this tick.
-    pub fn track_zero(&mut self, samples: &Samples, contact: &ContactDetector) {
+    /// Moves the stored zero of the force sensor towards this tick's force signal, unless a finger touches the display
+    /// or the signal is more than 0.06 N from the zero in the settings. To be called in each tick with valid readings,
+    /// after `contact` has been updated by this tick's force.
+    pub fn track_force_zero(&mut self, samples: &Samples, contact: &ContactDetector) {
         if !contact.touching() {
             self.force.track_zero(samples.force, contact.is_off_zero());
         }
     }
 
-    /// Uses another calibration of the thermistors from the next tick on; the force sensor's zero stays.
+    /// Replaces the calibration of converter and thermistors from the next tick on. The force sensor's zero is not
+    /// changed.
     pub fn recalibrate(&mut self, calibration: &CalibrationTables) {
         self.calibration = *calibration;
     }
 
-    /// Converts the samples of one tick to readings. Of skin and room it converts only one in each tick, once both have
-    /// been read; the other one keeps its last temperature, unless its wire is open or shorted.
+    /// Converts the samples of one tick to °C, N and A. To save computing time, each tick converts only one of skin and
+    /// room, in turn, and gives the last temperature of the other one, because both change slowly; until one tick has
+    /// found both thermistors connected, each tick converts both. A thermistor's reading is `Err` in every tick in
+    /// which its own wire is open or shorted.
     #[must_use]
-    pub fn read_samples(&mut self, samples: &Samples) -> Readings {
+    pub fn convert_samples(&mut self, samples: &Samples) -> Readings {
         let CalibrationTables {
             converter,
             thermistors: [display, display_check, sink, slow_corrections @ ..],
@@ -212,7 +239,7 @@ impl Sensors {
         };
         let slow_sums = [samples.skin, samples.room];
         let slow = if let Some(last) = &mut self.slow_temperatures {
-            let converted = self.next_slow % SLOW_THERMISTORS;
+            let converted = self.next_slow % SLOW_THERMISTOR_COUNT;
             self.next_slow = converted + 1;
             if let Ok(now) = temperature(slow_sums[converted], &slow_corrections[converted]) {
                 last[converted] = now;
@@ -234,7 +261,7 @@ impl Sensors {
             skin,
             room,
             force: self.force.force_of_sum(samples.force),
-            // On the bits: `saturating_mul_int` takes more instructions.
+            // Multiplies the bits, because `saturating_mul_int` takes more instructions.
             current: Current::from_bits(
                 (self.current_per_unit.to_bits()).saturating_mul(samples.current.into()),
             ),

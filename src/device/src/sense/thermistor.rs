@@ -1,63 +1,71 @@
-//! Thermistor sums to temperature.
+//! Conversion of the thermistors' sums to temperatures, and detection of open and shorted thermistors.
 
 use contact_model::fixed_point::{Celsius, product};
 use fixed::types::I0F32;
 
-use super::correction::CorrectedSum;
+use super::calibration_tables::CorrectedSum;
 use thermal_settings as settings;
 
-/// Sum of 16 conversions below which a thermistor counts as shorted: 40 counts, above 125 °C of a 10 kΩ thermistor with
-/// a beta of 3950 K under 10 kΩ.
-const SHORT_BELOW: u16 = 40 * 16;
-/// Sum of 16 conversions above which a thermistor counts as open: 4060 of 4095 counts, below -40 °C of a 10 kΩ
-/// thermistor with a beta of 3950 K under 10 kΩ.
-const OPEN_ABOVE: u16 = 4060 * 16;
+/// Smallest valid sum of 16 conversions of a thermistor: 40 of 4095 counts a conversion. Below it the thermistor counts
+/// as shorted. A 10 kΩ thermistor with a beta of 3950 K and a 10 kΩ pull-up gives 40 counts at 185 °C.
+const SHORT_BELOW_SUM: u16 = 40 * 16;
+/// Largest valid sum of 16 conversions of a thermistor: 4060 of 4095 counts a conversion. Above it the thermistor
+/// counts as open. A 10 kΩ thermistor with a beta of 3950 K and a 10 kΩ pull-up gives 4060 counts at -53 °C.
+const OPEN_ABOVE_SUM: u16 = 4060 * 16;
 
-/// Whether the 12-bit code of one conversion is that of a shorted or open thermistor.
-pub(super) const fn is_code_out_of_range(code: u16) -> bool {
-    code < SHORT_BELOW / 16 || code > OPEN_ABOVE / 16
+/// Whether the 12-bit code of one conversion is that of a shorted thermistor (below 40) or of an open one (above 4060).
+pub(super) const fn is_open_or_short_code(code: u16) -> bool {
+    code < SHORT_BELOW_SUM / 16 || code > OPEN_ABOVE_SUM / 16
 }
 
-/// Checks that the sum of 16 conversions is within the range of a connected thermistor.
+/// Checks that a thermistor's sum of 16 conversions is that of a connected thermistor: 40 to 4060 counts a conversion.
 ///
 /// # Errors
-/// The thermistor is open or shorted; the station then trips.
-pub(super) const fn check_wiring(sum: u16) -> Result<(), SensorFault> {
+/// [`ThermistorFault::Short`] if `sum` is below this range, [`ThermistorFault::Open`] if it is above; the station then
+/// trips.
+pub(super) const fn check_wiring(sum: u16) -> Result<(), ThermistorFault> {
     match sum {
-        ..SHORT_BELOW => Err(SensorFault::Short),
-        SHORT_BELOW..=OPEN_ABOVE => Ok(()),
-        _ => Err(SensorFault::Open),
+        ..SHORT_BELOW_SUM => Err(ThermistorFault::Short),
+        SHORT_BELOW_SUM..=OPEN_ABOVE_SUM => Ok(()),
+        _ => Err(ThermistorFault::Open),
     }
 }
 
-/// Number of equal intervals of the range of sums, as a power of two; each has a cubic of its own.
-const CURVE_INTERVALS_LOG2: u32 = 6;
-/// Number of equal intervals of the range of sums: 64.
-const CURVE_INTERVALS: usize = 1 << CURVE_INTERVALS_LOG2;
+/// Number of equal intervals into which the range of sums (0 to 65535) is divided, as a power of two: 2^6. In each
+/// interval a cubic of its own approximates the thermistors' curve.
+const CURVE_INTERVAL_COUNT_LOG2: u32 = 6;
+/// Number of equal intervals, 64, into which the range of sums (0 to 65535) is divided. In each interval a cubic of its
+/// own approximates the thermistors' curve.
+const CURVE_INTERVAL_COUNT: usize = 1 << CURVE_INTERVAL_COUNT_LOG2;
 
-/// Why a thermistor has no temperature; the station trips with a fault that names thermistor and reason.
+/// Why a thermistor gives no temperature. The station then trips with a fault that names the thermistor and this
+/// reason; if all five thermistors are shorted, the fault is [`Excitation`](crate::safety::Fault::Excitation).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SensorFault {
-    /// The wire or the thermistor is broken: no current flows, so the converter reads its upper end.
+pub enum ThermistorFault {
+    /// The thermistor or its wire is broken: no current flows, so the converter reads the upper end of its range, above
+    /// 4060 of 4095 counts.
     Open,
-    /// The wires or the thermistor are shorted: no voltage drops, so the converter reads its lower end.
+    /// The thermistor or its wires are shorted: no voltage drops across the thermistor, so the converter reads the
+    /// lower end of its range, below 40 of 4095 counts.
     Short,
 }
 
-/// The curve from sum to temperature as one cubic for each of 64 equal intervals: a tick pays three multiplications a
-/// sensor, no logarithm and no division, whatever the thermistor's curve. All five thermistors share it.
+/// The curve from a thermistor's sum to its temperature: one cubic for each of 64 equal intervals of the sum. A tick
+/// needs three multiplications per thermistor, but no logarithm and no division, whatever the thermistors' curve is.
+/// All five thermistors share this table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct ThermistorTable {
-    /// Coefficients in °C, lowest power first, of the position in the interval, which runs from 0 to 1/2.
-    cubics: [[Celsius; 4]; CURVE_INTERVALS],
+    /// Coefficients of the cubic of each interval, °C, lowest power first. The variable of a cubic is the position in
+    /// its interval, from 0 at the lower end to 1/2 at the upper one: the positive range of [`I0F32`].
+    cubics: [[Celsius; 4]; CURVE_INTERVAL_COUNT],
 }
 
 impl ThermistorTable {
-    /// Fits each cubic through four points of the thermistor's curve, in `f64`, so it is for start-up and not for the
-    /// tick.
+    /// Computes each cubic from four points of the thermistors' curve. Computes in `f64`, so it is for start-up and not
+    /// for the control tick.
     #[must_use]
     pub fn new(settings: &settings::ThermistorDivider) -> Self {
-        let width = 65536.0 / CURVE_INTERVALS as f64;
+        let width = 65536.0 / CURVE_INTERVAL_COUNT as f64;
         Self {
             cubics: core::array::from_fn(|interval| {
                 let at =
@@ -67,25 +75,27 @@ impl ThermistorTable {
         }
     }
 
-    /// Temperature, °C, for the sum of 16 conversions of 12 bits (0 to 65520), which is also given corrected for the
-    /// converter's error. The error against the thermistor's curve is below 0.1 mK from -20 to 80 °C (test
+    /// Temperature, °C, of a thermistor by its nominal curve, without the thermistor's own correction. `sum` is the sum
+    /// of 16 conversions of 12 bits, 0 to 65520; `corrected` is this sum minus the converter's error. The table
+    /// deviates from the curve by less than 0.1 mK from -20 to 80 °C (test
     /// `the_table_inverts_the_beta_equation_within_0_1_mk`).
     ///
     /// # Errors
-    /// The thermistor is open or shorted, by the uncorrected sum.
+    /// [`ThermistorFault::Short`] if `sum` is below 40 counts a conversion, [`ThermistorFault::Open`] if it is above
+    /// 4060 counts a conversion.
     pub fn temperature_of_sum(
         &self,
         sum: u16,
         corrected: CorrectedSum,
-    ) -> Result<Celsius, SensorFault> {
+    ) -> Result<Celsius, ThermistorFault> {
         check_wiring(sum)?;
-        let position_bits = u16::BITS + CorrectedSum::FRAC_NBITS - CURVE_INTERVALS_LOG2;
+        let position_bits = u16::BITS + CorrectedSum::FRAC_NBITS - CURVE_INTERVAL_COUNT_LOG2;
         let units = corrected.to_bits();
         let within = units & ((1 << position_bits) - 1);
-        // From 0 to 1/2.
+        // Position in the interval, from 0 to 1/2.
         let position = I0F32::from_bits((within << (u32::BITS - 1 - position_bits)) as i32);
         let [constant, others @ ..] =
-            self.cubics[(units >> position_bits) as usize % CURVE_INTERVALS];
+            self.cubics[(units >> position_bits) as usize % CURVE_INTERVAL_COUNT];
         let mut change = Celsius::ZERO;
         for &coefficient in others.iter().rev() {
             change = product(change.saturating_add(coefficient), position);
@@ -94,7 +104,8 @@ impl ThermistorTable {
     }
 }
 
-/// Coefficients in °C, lowest power first, of the cubic through the values, °C, at 0, 1/6, 1/3 and 1/2.
+/// Coefficients, °C, lowest power first, of the cubic that has the four given values, °C, at the positions 0, 1/6, 1/3
+/// and 1/2.
 fn cubic_through([a, b, c, d]: [f64; 4]) -> [Celsius; 4] {
     [
         a,
@@ -108,10 +119,10 @@ fn cubic_through([a, b, c, d]: [f64; 4]) -> [Celsius; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use thermal_settings::{Curve, Settings};
+    use thermal_settings::{Settings, ThermistorCurve};
 
     /// Temperature of a sum from a converter without error.
-    fn temperature(table: &ThermistorTable, sum: u16) -> Result<Celsius, SensorFault> {
+    fn temperature(table: &ThermistorTable, sum: u16) -> Result<Celsius, ThermistorFault> {
         table.temperature_of_sum(sum, CorrectedSum::from(sum))
     }
 
@@ -140,7 +151,7 @@ mod tests {
     /// A published set of coefficients of a 10 k thermistor: 25 °C at 10 kohm, 0 °C at 32.65 kohm, 50 °C at 3.603 kohm.
     #[test]
     fn the_table_agrees_with_a_published_steinhart_hart_thermistor() {
-        let curve = Curve::SteinhartHart {
+        let curve = ThermistorCurve::SteinhartHart {
             a: 1.129_148e-3,
             b: 2.341_25e-4,
             c: 8.767_41e-8,
@@ -159,8 +170,8 @@ mod tests {
     #[test]
     fn sums_at_the_ends_of_the_range_are_open_and_short_circuits() {
         let table = ThermistorTable::new(&Settings::default().thermistor);
-        assert_eq!(temperature(&table, 65520), Err(SensorFault::Open));
-        assert_eq!(temperature(&table, 0), Err(SensorFault::Short));
+        assert_eq!(temperature(&table, 65520), Err(ThermistorFault::Open));
+        assert_eq!(temperature(&table, 0), Err(ThermistorFault::Short));
         for t_c in [-40.0, 125.0] {
             assert!(temperature(&table, sum_at(t_c) as u16).is_ok());
         }

@@ -1,4 +1,4 @@
-//! One finger's device, without its hardware: samples in, bridge command out, once per tick.
+//! The control of one finger, without its hardware: samples in, bridge command out, once per tick of 1 ms.
 //!
 //! ```text
 //! samples -> sense -> detect -> estimate -> reference -> control -> actuate -> outputs
@@ -6,13 +6,14 @@
 //!                                                                   report -> telemetry
 //! ```
 //!
-//! Each stage takes values and returns a value. Values of the tick before that are used on purpose are called `previous_…`.
+//! Each stage takes values and returns a value. A name that begins with `previous_` stands for a value of the tick
+//! before.
 //!
-//! The `inline` attributes here and in `estimate` were found by measurement with the recorded compiler: without them a tick costs
-//! 3 % more instructions (`cargo hil-sim run scenes/copper.toml --json`, `instructions_per_tick`).
+//! The `inline` attributes here and in `estimate` were found by measurement with the recorded compiler: without them a
+//! tick costs 3 % more instructions (`cargo hil-sim run scenes/copper.toml --json`, `instructions_per_tick`).
 
-mod execute;
-mod object;
+mod chosen_object;
+mod execute_command;
 mod state;
 
 use thermal_settings::Settings;
@@ -22,7 +23,7 @@ pub use state::{ArmedTask, Event, State};
 use crate::control::{ControlParameters, Controller, Law, VoltageFeedforward};
 use crate::drive::{BoardOutputs, Current, Drive, SafeCurrent};
 use crate::estimate::{
-    Estimator, FingerEstimator, LegTemperatures, PlateObserver, UncorrectedEstimate,
+    Estimator, FingerEstimator, LegTemperatures, PlateObserver, UncorrectedPlateTemperatures,
 };
 use crate::identification::{AbortReason, NormalEquations};
 use crate::reference::{Reference, ReferenceGenerator};
@@ -31,61 +32,63 @@ use crate::safety::{
     TripCause, ValidReadings,
 };
 use crate::sense::{
-    CalibrationTables, ContactDetector, Readings, Samples, Sensors, ThermistorAverages,
+    CalibrationTables, ContactDetector, Readings, SampleConverter, Samples, ThermistorAverages,
 };
 use crate::{StateName, Telemetry};
-use object::PresentedObject;
+use chosen_object::ChosenObject;
 
-/// The control of one finger without its hardware: takes the samples of each tick of 1 ms and returns what the bridge
+/// The control of one finger without its hardware. Takes the samples of each tick of 1 ms and returns what the bridge
 /// must do, and executes the host's commands between ticks. Independent of the stations of other fingers.
 #[derive(Clone, Debug)]
 pub struct Station {
-    sensors: Sensors,
+    sensors: SampleConverter,
     averages: ThermistorAverages,
     contact: ContactDetector,
     detectors: FaultDetectors,
     latch: FaultLatch,
     estimator: Estimator,
-    object: PresentedObject,
+    object: ChosenObject,
     reference: ReferenceGenerator,
     controller: Controller,
     voltage: VoltageFeedforward,
     state: State,
     identified: IdentificationResult,
-    /// Number of the last tick, of 1 ms since the start of the program; wraps after 49 days.
+    /// Number of the last tick: ticks of 1 ms since the start of the program; wraps after 49 days.
     tick: u32,
-    /// Ticks of 1 ms from one telemetry to the next; 0 while the host wants none.
+    /// Ticks of 1 ms from one line of telemetry to the next; 0 while telemetry is off.
     telemetry_ticks: u32,
-    last: LastTick,
+    last: LastTickValues,
 }
 
-/// Normal equations and outcome of the last identification of the tile. They stay when the station leaves that task,
-/// until the host has read them or starts another.
+/// Normal equations and outcome of the last identification of the tile. The host can request them, unless the station
+/// is tripped, also after the station has left that task, until the host sends `arm`, `hold` or `tune`.
 #[derive(Clone, Debug, Default)]
 struct IdentificationResult {
     equations: NormalEquations,
-    /// Whether the normal equations are complete, or why the identification has ended early; `None` while it runs, and
-    /// if none was started since the last `arm` or `hold`.
+    /// `Ok` once the normal equations are complete, or why the identification has ended early. `None` while an
+    /// identification runs, and if none was started since the last `arm` or `hold`.
     outcome: Option<Result<(), AbortReason>>,
 }
 
-/// Readings, reference and demanded current of the last tick: for telemetry and `status`, and for the detectors of the
-/// next tick, whose readings respond to that current.
+/// Readings, reference (set-point and target; `None` if none was followed) and demanded current, A, of the last tick.
+/// Telemetry reports readings, set-point and current, status reports the set-point, `hold` and `tune` start from the
+/// readings, and the fault detectors check the readings of the next tick against set-point and current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct LastTick {
+struct LastTickValues {
     readings: Readings,
     reference: Option<Reference>,
     demanded: Current,
 }
 
-/// What a tick demands of the bridge before the current is clamped and converted to a voltage.
+/// What one control tick demands of the bridge: off, or a current that is not yet clamped to -6 to 6 A and not yet
+/// converted to a voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum BridgeDemand {
-    /// Both half-bridges high-impedance; `comparator_test` is the level of the line that makes the comparator cut the
-    /// supply.
+    /// Both half-bridges are high-impedance. `comparator_test` is the level of the comparator's test line; true, which
+    /// only the self-test demands, makes the comparator cut the bridge supply.
     Off { comparator_test: bool },
-    /// Drive `current`, A, positive cools. The voltage for it is computed from the temperatures of the module's legs as
-    /// the model predicted them before this tick's reading corrected it.
+    /// Drive `current`, A; positive cools. The bridge voltage for it is computed from `previous_legs`, the temperatures
+    /// of the module's legs by the plate's model before this tick's reading has corrected the model.
     Drive {
         current: Current,
         previous_legs: LegTemperatures,
@@ -99,14 +102,14 @@ impl BridgeDemand {
 }
 
 impl Station {
-    /// A station in the state off, with these settings, without material, and before its first tick. Converts the
-    /// settings from `f64`, so it is for the start only.
+    /// A station with these settings in the state off, before its first tick, with no material chosen. Converts the
+    /// settings from `f64`, which takes about a millisecond, so it is for the start only.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
         let parameters = ControlParameters::new(settings);
         let limit = Current::saturating_from_num(settings.module.current_limit_a);
         Self {
-            sensors: Sensors::new(settings),
+            sensors: SampleConverter::new(settings),
             averages: ThermistorAverages::default(),
             contact: ContactDetector::default(),
             detectors: FaultDetectors::default(),
@@ -115,7 +118,7 @@ impl Station {
                 plate: PlateObserver::new(&parameters.observer, limit),
                 finger: FingerEstimator::default(),
             },
-            object: PresentedObject::new(&settings.display),
+            object: ChosenObject::new(&settings.display),
             reference: ReferenceGenerator::default(),
             controller: Controller::new(&parameters, limit),
             voltage: VoltageFeedforward::new(&settings.module),
@@ -123,7 +126,7 @@ impl Station {
             identified: IdentificationResult::default(),
             tick: 0,
             telemetry_ticks: 0,
-            last: LastTick {
+            last: LastTickValues {
                 readings: Readings::ALL_OPEN,
                 reference: None,
                 demanded: Current::ZERO,
@@ -131,8 +134,9 @@ impl Station {
         }
     }
 
-    /// Takes calibration and tile from `settings`, converted from `f64`; the rest stays as the settings given to `new`
-    /// have it. Called at the start, with the finger's stored settings.
+    /// Replaces the thermistor calibration, the gains and the tile's model by those of `settings`, converted from
+    /// `f64`; everything else stays as [`Station::new`] has made it. Called at the start, with the finger's stored
+    /// settings.
     pub(crate) fn apply_settings(&mut self, settings: &Settings) {
         self.sensors.recalibrate(&CalibrationTables::new(settings));
         self.set_control_parameters(&ControlParameters::new(settings));
@@ -143,19 +147,19 @@ impl Station {
         self.estimator.plate.set_parameters(&parameters.observer);
     }
 
-    /// Runs one control tick, to be called every millisecond: takes the sums of the 16 scans since the last tick, and
-    /// returns what bridge and comparator's test line must do until the next one. In a tick that detects a fault the
+    /// Runs one control tick; to be called every millisecond, with the sums of the 16 scans since the last tick.
+    /// Returns what the board must set at bridge and comparator until the next tick. In a tick that detects a fault the
     /// bridge is off.
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples) -> BoardOutputs {
         self.tick = self.tick.wrapping_add(1);
-        let readings = self.sense(samples);
-        let valid = self.detect_faults(samples, &readings);
+        let readings = self.convert_and_average_samples(samples);
+        let valid = self.valid_readings_or_fault(samples, &readings);
         let (demand, reference) = match valid {
             Ok(valid) => {
-                let estimate = self.estimate(samples, &valid);
+                let estimate = self.update_estimates(samples, &valid);
                 let reference = self.generate_reference(&estimate);
-                let demand = self.choose_demand(
+                let demand = self.choose_bridge_demand(
                     &valid,
                     readings.bridge_fault,
                     &estimate,
@@ -169,8 +173,8 @@ impl Station {
             }
         };
         let demand = self.trip_on_fault(demand, &readings);
-        let (outputs, demanded) = self.actuate(demand);
-        self.last = LastTick {
+        let (outputs, demanded) = self.apply_demand(demand);
+        self.last = LastTickValues {
             readings,
             reference,
             demanded,
@@ -178,44 +182,45 @@ impl Station {
         outputs
     }
 
-    /// Converts the tick's samples to °C, N and A. Also adds those of the thermistors to the half-second means that a
-    /// calibration uses, unless an object is presented.
+    /// Converts the tick's samples to °C, N and A. Unless an object is presented, also adds the thermistors' samples to
+    /// the half-second means from which calibrations are computed.
     #[inline(never)]
-    fn sense(&mut self, samples: &Samples) -> Readings {
-        // An object is never presented during a calibration.
-        if !self.state.is_presenting() {
+    fn convert_and_average_samples(&mut self, samples: &Samples) -> Readings {
+        // Calibrations are refused while an object is presented.
+        if !self.state.is_presenting_object() {
             self.averages.add_tick(&samples.thermistor_sums());
         }
-        self.sensors.read_samples(samples)
+        self.sensors.convert_samples(samples)
     }
 
-    /// Shows the tick to every detector, and returns the valid readings.
+    /// Checks the tick by all fault detectors, and returns its readings as valid if none has found a fault.
     ///
     /// # Errors
-    /// The first fault in this order: what this tick's readings show alone, bridge fault line, what shows over several
-    /// ticks, thermal dose, frozen samples.
+    /// The first fault in this order: sensor faults and limits that a single tick shows, bridge fault line, detectors
+    /// that count over several ticks, thermal dose, frozen samples.
     #[inline(never)]
-    fn detect_faults(
+    fn valid_readings_or_fault(
         &mut self,
         samples: &Samples,
         readings: &Readings,
     ) -> Result<ValidReadings, Fault> {
-        // The bridge's command of the tick before, to which this tick's readings respond.
+        // What the tick before demanded of the bridge; this tick's readings respond to it.
         let previous = PreviousActuation {
             demanded: self.last.demanded,
             setpoint: self.last.reference.map(|reference| reference.setpoint),
             residual_is_large: self.estimator.plate.residual_is_large(),
         };
-        let frozen = self.detectors.check_samples(samples);
+        let frozen = self.detectors.check_frozen_samples(samples);
         let dose = self.detectors.add_to_dose(readings);
         let valid = safety::validate_readings(readings, self.controller.current_limit());
         let over_ticks = match &valid {
             Ok(valid) => {
                 let streams = self.telemetry_ticks != 0;
-                self.detectors.check_readings(valid, &previous, streams)
+                self.detectors
+                    .run_multi_tick_detectors(valid, &previous, streams)
             }
             Err(_) => {
-                self.detectors.forget_motion();
+                self.detectors.restart_motion_detectors();
                 Ok(())
             }
         };
@@ -227,12 +232,12 @@ impl Station {
         Ok(valid)
     }
 
-    /// Checks the bridge's fault line. It is ignored in off and tripped, because a comparator that has cut the supply
-    /// pulls it until the next self-test, and in the first 40 ticks of the self-test, which makes the comparator pull
-    /// it.
+    /// Checks the bridge's fault line, which the bridge driver or the comparator pulls. A pulled line is ignored in off
+    /// and tripped, because a comparator that has cut the supply pulls the line until the next self-test, and in the
+    /// first 40 ticks of the self-test, which makes the comparator pull the line.
     ///
     /// # Errors
-    /// [`Fault::Bridge`]: the line is pulled in another state.
+    /// [`Fault::Bridge`]: the line is pulled at any other time.
     fn check_bridge_fault_line(&self, readings: &Readings) -> Result<(), Fault> {
         let ignored = match &self.state {
             State::Off | State::Tripped(_) => true,
@@ -246,14 +251,19 @@ impl Station {
         }
     }
 
-    /// Detects whether a finger touches, tracks the force sensor's zero, reports contact to the state, and corrects the
-    /// estimates of plate and finger by this tick's readings. Returns the estimates from before the correction.
-    fn estimate(&mut self, samples: &Samples, valid: &ValidReadings) -> UncorrectedEstimate {
+    /// Detects whether a finger touches, and changes from preset to contact or back accordingly; tracks the force
+    /// sensor's zero while no finger touches; corrects the estimates of plate and finger by this tick's readings.
+    /// Returns the plate's temperatures as they were estimated before this correction.
+    fn update_estimates(
+        &mut self,
+        samples: &Samples,
+        valid: &ValidReadings,
+    ) -> UncorrectedPlateTemperatures {
         let previously_touching = self.contact.touching();
         self.contact.update_contact(valid.force);
-        self.sensors.track_zero(samples, &self.contact);
+        self.sensors.track_force_zero(samples, &self.contact);
         let touching = self.contact.touching();
-        self.change_state(if touching { Event::Land } else { Event::Lift });
+        self.apply_event(if touching { Event::Land } else { Event::Lift });
         let landed_ticks = if previously_touching {
             0
         } else {
@@ -265,9 +275,9 @@ impl Station {
             .update_estimates(valid, force, landed_ticks, pair)
     }
 
-    /// Temperature that the display is to have in this tick; `None`, which leads to the bridge off, in the states off,
-    /// self-test (which chooses its own current), ready and tripped, and before skin and room were read.
-    fn generate_reference(&mut self, estimate: &UncorrectedEstimate) -> Option<Reference> {
+    /// Set-point and target temperature that the display must follow in this tick. `None` in off, ready and tripped,
+    /// where the bridge is off, and in the self-test, which chooses its own current.
+    fn generate_reference(&mut self, estimate: &UncorrectedPlateTemperatures) -> Option<Reference> {
         let finger = &mut self.estimator.finger;
         let setpoint = match &mut self.state {
             State::Off | State::SelfTest(_) | State::Ready | State::Tripped(_) => return None,
@@ -275,7 +285,7 @@ impl Station {
             State::Armed(ArmedTask::Hold(hold)) => hold.next_setpoint().celsius(),
             State::Armed(ArmedTask::Identify(tile)) => tile.operating_point().celsius(),
             State::Preset | State::Contact => {
-                let scene = self.object.scene()?;
+                let scene = self.object.reference_input()?;
                 let surface = estimate.previous_surface;
                 let follow_skin = self.controller.law() == Law::Model;
                 return self
@@ -286,16 +296,18 @@ impl Station {
         Some(Reference::at(setpoint))
     }
 
-    /// Chooses what the bridge must do in this tick: what the self-test or the identification demands while one runs,
-    /// else the current of the control law; off without a reference.
+    /// Chooses what the bridge must do in this tick. In the self-test: what the self-test demands, and off in the tick
+    /// in which the self-test passes. Else off if `reference` is `None`, as in off, ready and tripped. Else the current
+    /// of an identification of the tile or, if none demands a current, that of the control law.
     ///
     /// # Errors
+    /// The fault that the self-test has found in this tick.
     #[inline(always)]
-    fn choose_demand(
+    fn choose_bridge_demand(
         &mut self,
         valid: &ValidReadings,
         bridge_fault: bool,
-        estimate: &UncorrectedEstimate,
+        estimate: &UncorrectedPlateTemperatures,
         reference: Option<&Reference>,
     ) -> Result<BridgeDemand, Fault> {
         let drive = |current| BridgeDemand::Drive {
@@ -311,7 +323,7 @@ impl Station {
                     drive(current)
                 }
                 SelfTestStep::Passed => {
-                    self.change_state(Event::Pass);
+                    self.apply_event(Event::Pass);
                     BridgeDemand::BRIDGE_OFF
                 }
             });
@@ -319,7 +331,7 @@ impl Station {
         let Some(reference) = reference else {
             return Ok(BridgeDemand::BRIDGE_OFF);
         };
-        let current = match self.identification_current(valid) {
+        let current = match self.step_identification(valid) {
             Some(current) => {
                 self.controller.track_current(current);
                 current
@@ -332,14 +344,16 @@ impl Station {
         Ok(drive(current))
     }
 
-    /// Current that the identification of the tile demands in this tick, A; `None` if none runs, or if it ends early in
-    /// this tick: then the task becomes neutral, and the control law chooses the current.
-    fn identification_current(&mut self, valid: &ValidReadings) -> Option<Current> {
+    /// Runs one tick of an identification of the tile, and returns the current that it demands, A (positive cools); a
+    /// complete identification demands the current that holds its operating point. `None` in every other state or task,
+    /// and in the tick of an early end (except for [`AbortReason::NotSettled`]): then the control law chooses the
+    /// current. An early end changes the armed task to neutral.
+    fn step_identification(&mut self, valid: &ValidReadings) -> Option<Current> {
         let State::Armed(ArmedTask::Identify(tile)) = &mut self.state else {
             return None;
         };
         let touching = self.contact.touching();
-        let current = tile.choose_current(&mut self.identified.equations, valid, touching);
+        let current = tile.step(&mut self.identified.equations, valid, touching);
         self.identified.outcome = tile.outcome();
         if let Some(Err(_)) = self.identified.outcome {
             self.state = State::Armed(ArmedTask::Neutral);
@@ -347,8 +361,10 @@ impl Station {
         current
     }
 
-    /// If the tick has found a fault, trips the station with the tick's readings as its cause, and demands the bridge
-    /// off; otherwise passes the demand on. In both cases tells the latch which fault is present now.
+    /// Returns the tick's demand. If the tick has found a fault instead, returns the demand for a bridge that is off
+    /// and, unless the station is already tripped, trips it, with the tick's readings in the trip's cause. In both
+    /// cases the fault latch stores which fault is present now, if any, because `clear` is refused while a fault is
+    /// present.
     fn trip_on_fault(
         &mut self,
         demand: Result<BridgeDemand, Fault>,
@@ -367,11 +383,12 @@ impl Station {
         })
     }
 
-    /// Converts the demand to the outputs, and advances the plate's model by one tick under the demanded current. Also
-    /// returns the current clamped to -6 to 6 A, zero if the bridge is off. Off interrupts an identification, and lets
-    /// the control laws start from zero current.
+    /// Converts the demand to the board's outputs, and advances the plate's model by one tick under the demanded
+    /// current. Returns the outputs, and the demanded current, A, clamped to -6 to 6 A; zero if the bridge is off. A
+    /// bridge that is off also interrupts an identification of the tile, and makes the laws `pi` and `pi-10hz` start
+    /// from zero current; the law `model` continues from the plate's observer.
     #[inline(always)]
-    fn actuate(&mut self, demand: BridgeDemand) -> (BoardOutputs, Current) {
+    fn apply_demand(&mut self, demand: BridgeDemand) -> (BoardOutputs, Current) {
         match demand {
             BridgeDemand::Drive {
                 current,
@@ -398,15 +415,15 @@ impl Station {
         }
     }
 
-    /// Lets the estimates of plate, skin and contact start again with the next valid readings, because this tick's
-    /// readings are invalid or a detector has found a fault.
+    /// Discards the estimates of plate, skin and contact, so that they start again from the next valid readings. Called
+    /// in a tick whose readings are invalid or in which a detector has found a fault.
     fn invalidate_estimates(&mut self) {
         self.estimator.invalidate();
-        self.reference.invalidate();
+        self.reference.discard_contact();
     }
 
-    /// Ends an identification that is still running with the outcome "interrupted", and makes the task neutral. The
-    /// normal equations of one that is complete stay, and so does its task.
+    /// Ends an identification of the tile that is still running, with the outcome [`AbortReason::Interrupted`], and
+    /// changes the armed task to neutral. A complete identification keeps its normal equations and its task.
     fn interrupt_identification(&mut self) {
         if let State::Armed(task @ ArmedTask::Identify(_)) = &mut self.state
             && self.identified.outcome.is_none()
@@ -416,9 +433,9 @@ impl Station {
         }
     }
 
-    /// Changes the state by the transition table, and interrupts a running identification if it does; returns whether
-    /// the event has changed the state.
-    fn change_state(&mut self, event: Event) -> bool {
+    /// Moves the station to the state that [`State::state_after`] gives for `event`, and ends an identification of the
+    /// tile that is still running. Returns false, and does nothing, if the event has no effect in the present state.
+    fn apply_event(&mut self, event: Event) -> bool {
         let Some(state) = self.state.state_after(event) else {
             return false;
         };
@@ -427,8 +444,9 @@ impl Station {
         true
     }
 
-    /// Trips the station by a fault that the board has found outside of the tick. If another fault is latched, that one
-    /// stays, and `clear` then trips the station by this one.
+    /// Trips the station by a fault that no reading shows and that the board has found outside of the control tick,
+    /// such as an overrun stack. If a different fault has already tripped the station, that fault stays latched; this
+    /// one is stored, unless one is stored already, and trips the station when `clear` has cleared the latched one.
     pub fn raise_external_fault(&mut self, fault: Fault) {
         self.latch
             .raise_external_fault(fault, self.state.latched_fault());
@@ -442,65 +460,68 @@ impl Station {
         });
     }
 
-    /// Trips the station with this cause, which switches the bridge off in the next tick. Has no effect on a station
-    /// that is tripped, so that the first cause stays.
+    /// Trips the station with this cause. The bridge is off from the tick on that has detected the fault or, if the
+    /// fault was found between two ticks, from the next tick on. Has no effect on a station that is tripped already, so
+    /// that the first cause stays.
     pub fn trip(&mut self, cause: TripCause) {
-        if self.change_state(Event::Trip(cause.fault)) {
+        if self.apply_event(Event::Trip(cause.fault)) {
             self.latch.latch_cause(cause, self.tick);
         }
     }
 
-    /// Name of the station's present state, with the fault if it is tripped.
+    /// The station's present state, without its internal data; with the fault if the station is tripped.
     #[must_use]
     pub const fn state(&self) -> StateName {
-        self.state.name()
+        self.state.state_name()
     }
 
-    /// Whether the station is tripped, so that its bridge stays off until `clear`.
+    /// Whether the station is tripped, so that its bridge stays off until the host sends `clear`.
     #[must_use]
     pub const fn is_tripped(&self) -> bool {
         self.state.latched_fault().is_some()
     }
 
-    /// The fault latch, from which the device reads cause and tick of the present or the last trip.
+    /// The station's fault latch, which stores the cause and the tick of the last trip. The device compares the latches
+    /// of all fingers to find the cause of the earliest trip.
     #[must_use]
-    pub const fn latch(&self) -> &FaultLatch {
+    pub const fn fault_latch(&self) -> &FaultLatch {
         &self.latch
     }
 
-    /// Thermal dose that the display would have given to skin that always touched it, so far; the board stores it after
-    /// every tick.
+    /// Thermal dose (CEM43, equivalent time at 43 °C) that skin would have received if it had always touched this
+    /// finger's display. The board stores the dose after every tick, so that a reset does not erase it. At half a
+    /// minute the station trips by [`Fault::Dose`].
     #[must_use]
-    pub const fn dose(&self) -> &ThermalDose {
+    pub const fn thermal_dose(&self) -> &ThermalDose {
         self.detectors.dose()
     }
 
-    /// Continues from the thermal dose that was stored before a reset. Called once, at the start.
-    pub const fn restore_dose(&mut self, dose: ThermalDose) {
+    /// Sets the thermal dose to that which the board stored before the last reset. To be called once, at the start.
+    pub const fn restore_thermal_dose(&mut self, dose: ThermalDose) {
         self.detectors.restore_dose(dose);
     }
 
-    /// Restarts the 2 s after which a host that has asked for telemetry counts as silent; called for each line from the
-    /// host.
+    /// Restarts the 2 s of silence of the host after which the station trips if telemetry is on and the display follows
+    /// a set-point. To be called for each line from the host.
     pub const fn note_host_activity(&mut self) {
         self.detectors.note_host_activity();
     }
 
-    /// Telemetry of the last tick; `None` unless the host has asked for telemetry and this tick's number is a multiple
-    /// of the interval.
+    /// Telemetry of the last tick. `None` if the host has not switched telemetry on, or if the tick's number is not a
+    /// multiple of the interval that the host has chosen.
     #[must_use]
     pub fn telemetry(&self) -> Option<Telemetry> {
         if self.telemetry_ticks == 0 || !self.tick.is_multiple_of(self.telemetry_ticks) {
             return None;
         }
-        let LastTick {
+        let LastTickValues {
             readings,
             reference,
             demanded,
         } = &self.last;
         Some(Telemetry {
             tick: self.tick,
-            state: self.state.name(),
+            state: self.state.state_name(),
             setpoint: reference.map(|reference| reference.setpoint.celsius()),
             limited: reference.is_some_and(|reference| reference.limited),
             display: readings.display.ok(),

@@ -1,67 +1,81 @@
 //! The states of a station and the transitions between them.
 
 use crate::StateName;
-use crate::hold::TemperatureHold;
 use crate::identification::Identification;
 use crate::safety::{Fault, SelfTest};
+use crate::temperature_hold::TemperatureHold;
 
-/// State of one finger's station, with the data that the station has in this state only.
+/// State of one finger's station, with the data that exist only in that state.
 #[derive(Clone, Debug)]
 pub enum State {
-    /// The bridge is off after power-up, after `clear`, or after `abort` of the self-test; `arm` starts the self-test.
+    /// The bridge is off: after a start of the program without a trip, after `clear`, or after `abort` of the
+    /// self-test. `arm` leads to the self-test.
     Off,
-    /// The self-test runs: the comparator is tested with the bridge off, then 1 A cools and warms; leads to armed if it
-    /// passes.
+    /// The self-test runs: the comparator is tested with the bridge off, then 1 A cools and 1 A warms the display.
+    /// Leads to armed if all checks pass, else to tripped.
     SelfTest(SelfTest),
-    /// The bridge is off after `abort`. The self-test has passed before, so `arm` leads to armed at once.
+    /// The bridge is off after `abort` in armed, preset or contact. The self-test was passed before, so `arm` leads to
+    /// armed at once.
     Ready,
-    /// The bridge drives the display for this task, and no object is presented.
+    /// The bridge drives the display, and no object is presented. The [`ArmedTask`] says what the display does: stay at
+    /// skin temperature, hold a temperature, or be identified.
     Armed(ArmedTask),
-    /// An object is presented: the display waits at its preset temperature, and no finger touches it.
+    /// An object is presented and no finger touches the display, which waits at the preset: the temperature at which a
+    /// contact with the object begins.
     Preset,
-    /// An object is presented, and a finger touches the display, whose temperature follows the contact model.
+    /// An object is presented and a finger touches the display, whose temperature follows the contact model.
     Contact,
-    /// The bridge is off because of this fault, the first since the last `clear`, until the host sends `clear` and the
-    /// fault is gone.
+    /// The bridge is off because of this fault, the first since the last `clear`. The bridge stays off until the host
+    /// sends `clear` when no fault is present any more.
     Tripped(Fault),
 }
 
-/// What the display does while the station is armed, with the data of that task.
+/// What the display does while the station is armed, with the data that each task needs.
 #[derive(Clone, Debug)]
 pub enum ArmedTask {
-    /// Stay at the temperature that the finger's skin had before contact, whether a finger touches or not.
+    /// Stay at the temperature of the finger's skin, so that the finger feels no object. That temperature is the
+    /// filtered reading of the skin's thermistor, kept constant from landing until 2 s after lifting, and for 2 s after
+    /// the estimates have started or restarted.
     Neutral,
-    /// Move to a temperature that the host has chosen, by 1 K/s, and stay there.
+    /// Move the set-point by 1 K/s to a temperature that the host has chosen, and stay there.
     Hold(TemperatureHold),
-    /// Identify the tile by current pulses about an operating point, and stay there until the result is used.
+    /// Identify the tile: move to an operating point near the sink's temperature and apply current pulses there. Then
+    /// stay at the operating point until a command, such as `arm`, or a fault ends this task. An identification that
+    /// ends early changes the task to neutral.
     Identify(Identification),
 }
 
-/// What may move a station from one state to another; [`State::state_after`] says where.
+/// What changes a station's state: a command of the host (except those that only change the task within armed), a finger
+/// that lands or lifts, the passing of the self-test, or a fault.
+/// [`State::state_after`] is the table of the transitions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The host has sent `arm`: from off to the self-test, from ready, preset and contact to armed.
+    /// The host has sent `arm`: leads from off to the self-test, and from ready, armed, preset and contact to armed, at
+    /// skin temperature.
     Arm,
-    /// The self-test has passed, and leads to armed.
+    /// The self-test has passed: leads from the self-test to armed, at skin temperature.
     Pass,
     /// The host has sent `start` in the state armed, and a material is chosen: leads to preset.
     Start,
-    /// A finger touches the display, reported in every tick of a contact: leads from preset to contact.
+    /// A finger touches the display; reported in every fault-free tick of a contact. Leads from preset to contact.
     Land,
-    /// No finger touches the display, reported in every such tick: leads from contact to preset.
+    /// No finger touches the display; reported in every fault-free tick without contact. Leads from contact to preset.
     Lift,
-    /// The host has sent `abort`, which switches the bridge off: from the self-test to off, else to ready.
+    /// The host has sent `abort`, which switches the bridge off: leads from the self-test to off, and from armed,
+    /// preset and contact to ready. No effect in off, ready and tripped.
     Abort,
     /// The host has sent `clear`, and no fault is present any more: leads from tripped to off.
     Clear,
-    /// This fault is detected in a tick, or raised by the board: leads to tripped from every other state.
+    /// A tick has detected this fault, or the board has raised it: leads to tripped from every other state. No effect
+    /// in tripped, so that the first fault stays.
     Trip(Fault),
 }
 
 impl State {
-    /// Name of the state as status and telemetry report it; with the fault if it is tripped.
+    /// The state without its internal data, as status and telemetry report it; with the fault if the station is
+    /// tripped.
     #[must_use]
-    pub const fn name(&self) -> StateName {
+    pub const fn state_name(&self) -> StateName {
         match self {
             Self::Off => StateName::Off,
             Self::SelfTest(_) => StateName::SelfTest,
@@ -73,8 +87,8 @@ impl State {
         }
     }
 
-    /// The transition table: the state that `event` leads to from this one, at the beginning of its data; `None` if the
-    /// event changes nothing. docs/safety.md has the same table, and a unit test compares both.
+    /// The transition table: the state to which `event` leads from this state, with the initial data of the new state;
+    /// `None` if the event has no effect here. docs/safety.md shows the same table, and a unit test compares the two.
     #[must_use]
     pub fn state_after(&self, event: Event) -> Option<Self> {
         Some(match (self, event) {
@@ -95,14 +109,14 @@ impl State {
         })
     }
 
-    /// Whether an object is presented, with or without a finger: in preset and contact. Calibration and new parameters
-    /// are refused then, because the finger would feel them.
+    /// Whether an object is presented, with or without a finger on the display: true in preset and contact.
+    /// Calibrations and new control parameters are refused in these states, because the finger would feel the change.
     #[must_use]
-    pub const fn is_presenting(&self) -> bool {
+    pub const fn is_presenting_object(&self) -> bool {
         matches!(self, Self::Preset | Self::Contact)
     }
 
-    /// The fault by which the station is tripped; `None` in every other state.
+    /// The fault that has tripped the station; `None` in every state other than tripped.
     #[must_use]
     pub const fn latched_fault(&self) -> Option<Fault> {
         match self {

@@ -4,7 +4,7 @@ use std::hint::black_box;
 use anyhow::bail;
 use thermal_display::device::drive::Drive;
 use thermal_display::device::sense::{SCANS_PER_TICK, Samples, Scan};
-use thermal_display::device::{Device, Finger as FingerIndex};
+use thermal_display::device::{Device, FingerIndex};
 use thermal_display::protocol::CommandHandler;
 use thermal_display::settings::Settings;
 use thermal_plant::Plant;

@@ -71,7 +71,7 @@ pub fn tables(figures: &Figures) -> String {
          Errors are the largest of the surfaces of skin and object, of the skin at its receptors (0.16 and 0.45 \
          mm deep) and of the flux, over {objects} at {forces} N for {CONTACT_S} s at a step of 10 K, against \
          Eq. 6-5 to 6-7, and 6-5 continued into the skin, at the end of every step and sub-step from {counts} \
-         ms on; \"before\": from {told} ms to {counts} ms. The aim is 1 mK at the surfaces and 1e-4 of the flux \
+         ms on; \"before\": from {reported} ms to {counts} ms. The aim is 1 mK at the surfaces and 1e-4 of the flux \
          from {counts} ms on. The first sub-step is the step halved seven times.\n",
         power = figures.fingers_power,
         host = figures.host,
@@ -82,7 +82,7 @@ pub fn tables(figures: &Figures) -> String {
         cells = figures.cells,
         objects = OBJECTS.join(", "),
         counts = COUNTS_FROM_S * 1e3,
-        told = REPORTED_FROM_S * 1e3,
+        reported = REPORTED_FROM_S * 1e3,
     )
 }
 

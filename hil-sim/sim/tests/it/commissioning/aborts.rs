@@ -118,7 +118,7 @@ fn other_commands_end_tuning() {
     }
 }
 
-/// An answer that was lost can be asked for again, and the display is let go with the first.
+/// A lost answer can be requested again; the first request already releases the display.
 #[test]
 fn what_tuning_has_found_can_be_asked_for_again() {
     tuning(in_use(), |bench| {
@@ -177,7 +177,7 @@ fn what_does_not_fit_the_state_is_refused() {
     );
 }
 
-/// A result that nobody has asked for does not hold the display when an object is presented.
+/// A result that nobody has requested does not hold the display when an object is presented.
 #[test]
 fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
     tuning(in_use(), |bench| {
@@ -186,13 +186,13 @@ fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
             bench.command(line).expect("obeyed");
         }
         bench.wait(3000).expect("it runs");
-        let told = ask(bench, "state");
-        let setpoint = told.split("setpoint_c=").nth(1).expect("a set-point");
+        let reply = ask(bench, "state");
+        let setpoint = reply.split("setpoint_c=").nth(1).expect("a set-point");
         let setpoint_c: f64 = setpoint.trim().parse().expect("degrees");
         let display_c = bench.world().plant().display_c();
         assert!(
             setpoint_c < 26.0 && (display_c - setpoint_c).abs() < 0.3,
-            "{told}: {display_c}"
+            "{reply}: {display_c}"
         );
     });
 }

@@ -70,7 +70,7 @@ fn sweep(plants: &CommissioningSetup, seed: u64, settings: &[String]) -> [Vec<f6
 }
 
 /// With a perfect reference thermometer. Where noise mixes both sides of one of the converter's steps, in two codes on
-/// either side, the device does not know how far it is across: up to half of the step is left there.
+/// either side, its distance across is unknown to the device: up to half of the step is left there.
 #[test]
 fn calibrated_readings_are_within_millikelvins() {
     let devices = [
@@ -122,7 +122,7 @@ fn calibrated_readings_are_within_millikelvins() {
     }
 }
 
-/// The device is as good as the thermometer that the host believes.
+/// The device is as good as the host's reference thermometer.
 #[test]
 fn what_the_reference_shows_too_much_the_device_reads_too_much() {
     let mut params = device(None, 1).params().clone();

@@ -1,4 +1,4 @@
-//! The comparator on the plant: what it sees, what it cuts.
+//! The comparator on the plant: its input, and the supply that it cuts.
 
 use thermal_sim::scene::FaultKind;
 
@@ -90,7 +90,7 @@ fn stuck_comparator_keeps_the_supply_off() {
     assert_eq!(world.plant().current_a(), 0.0);
 }
 
-/// It sees the check thermistor's pin: what breaks there, and nothing of the other four or of the converter.
+/// Its input is the check thermistor's pin: faults there act on it, those of the other four or of the converter do not.
 #[test]
 fn it_sees_the_second_thermistors_pin_alone() {
     let swapped = ActiveFault {

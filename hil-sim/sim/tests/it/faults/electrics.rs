@@ -64,8 +64,8 @@ fn high_supply_overloads_the_driver() {
 
 #[test]
 fn stuck_leg_drives_against_the_other_one() {
-    // Each: what is asked for, and what 12 V times the difference of the legs' duties then drive.
-    for (kind, asked, difference) in [
+    // Each: the commanded duties, and the difference of the legs' duties, which times 12 V drives the current.
+    for (kind, commanded, difference) in [
         (FaultKind::BridgeStuckHigh, COOLING, 0.4),
         (FaultKind::BridgeStuckHigh, HEATING, 0.0),
         (FaultKind::BridgeBStuckHigh, COOLING, 0.0),
@@ -77,12 +77,12 @@ fn stuck_leg_drives_against_the_other_one() {
         (FaultKind::PolaritySwapped, COOLING, -0.4),
         (FaultKind::PolaritySwapped, HEATING, 0.4),
     ] {
-        let amperes = current_a(legs(asked), &[kind.into()]);
+        let amperes = current_a(legs(commanded), &[kind.into()]);
         let expected_a = 12.0 * difference / 1.25;
         // Dead time takes some 0.3 V.
         assert!(
             (amperes - expected_a).abs() < 0.4,
-            "{kind:?}, asked {asked:?}: {amperes} A instead of {expected_a}"
+            "{kind:?}, commanded {commanded:?}: {amperes} A instead of {expected_a}"
         );
     }
 }

@@ -67,7 +67,7 @@ fn run(world: &mut World, ms: u32, legs: BridgeOutputs, all: &[ActiveFault]) {
     }
 }
 
-/// The codes that the last scan of a tick sees.
+/// The codes of the last scan of a tick.
 fn codes(world: &mut World) -> [u16; Channel::ALL.len()] {
     let mut codes = [0; Channel::ALL.len()];
     for _ in 0..16 {

@@ -2,10 +2,17 @@
 
 use contact_model::material::{average_slope_rad, find};
 use contact_model::reference::fourier_number;
+use documented_figures::run_generator;
 use serde::Deserialize;
 use thermal_thesis::d_prime;
 
 use super::{NAMES, all_rows, computed, name, table};
+
+#[test]
+fn committed_golden_values_are_those_that_the_generator_writes() {
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/generate.py");
+    run_generator(script, &["--check"]);
+}
 
 #[test]
 fn sensitivities_meet_golden_values() {

@@ -32,10 +32,10 @@ fn the_documented_transitions_are_those_of_the_code() {
     }
     table += &format!("\n|{}\n", vec!["---|"; 1 + events.len()].concat());
     for state in states {
-        table += &format!("| `{}` |", state.name().name());
+        table += &format!("| `{}` |", state.state_name().name());
         for (_, event) in events {
             match state.state_after(event) {
-                Some(next) => table += &format!(" `{}` |", next.name().name()),
+                Some(next) => table += &format!(" `{}` |", next.state_name().name()),
                 None => table += " |",
             }
         }

@@ -1,0 +1,246 @@
+//! The power stages: TIM1, TIM8, TIM10 and TIM11, which generate the PWM signals of five bridges,
+//! and the fault lines.
+
+use core::convert::Infallible;
+
+use embedded_hal::pwm::{ErrorType, SetDutyCycle};
+use stm32f4xx_hal::gpio::{
+    ErasedPin, Input, Output, PA8, PA9, PA10, PA11, PB8, PB9, PC6, PC7, PC8, PC9, Pin,
+};
+use stm32f4xx_hal::pac::{TIM1, TIM8, TIM10, TIM11};
+use stm32f4xx_hal::prelude::*;
+use stm32f4xx_hal::rcc::Rcc;
+use stm32f4xx_hal::timer::ErasedChannel;
+use thermal_display::device::drive::{BoardOutputs, Drive};
+
+use super::FINGERS;
+use thermal_display::bridge::Bridge;
+
+/// PWM frequency of all bridges, kHz: that of the one-finger wiring, for which the LC filters and
+/// the dead-time compensation are designed. A period has 1875 steps of 5.6 ns.
+const PWM_KHZ: u32 = 96;
+
+/// One finger's bridge, with its fault line and the test line of its comparator.
+///
+/// Turning the bridge off takes effect at once; a new duty takes effect at the next PWM period,
+/// because the compare registers are preloaded.
+pub struct PowerStage {
+    bridge: Bridge<PwmOutput, PwmOutput, ErasedPin<Output>>,
+    fault: ErasedPin<Input>,
+    test: ErasedPin<Output>,
+    on: bool,
+}
+
+/// Timers and pins of all bridges. `first` to `fifth` are the PWM pins IN1 and IN2 of fingers 0 to
+/// 4, and `lines` their other pins.
+pub struct BridgePeripherals {
+    pub timers: (TIM1, TIM8, TIM10, TIM11),
+    pub first: (PA8<Input>, PA9<Input>),
+    pub second: (PA10<Input>, PA11<Input>),
+    pub third: (PC6<Input>, PC7<Input>),
+    pub fourth: (PC8<Input>, PC9<Input>),
+    pub fifth: (PB8<Input>, PB9<Input>),
+    pub lines: [BridgeAndComparatorPins; FINGERS],
+}
+
+/// The pins of one finger's bridge and comparator, except for the bridge's PWM inputs: the bridge's
+/// enable line, the fault line, which bridge and comparator pull low, and the comparator's test
+/// line.
+pub struct BridgeAndComparatorPins {
+    enable: ErasedPin<Output>,
+    fault: ErasedPin<Input>,
+    test: ErasedPin<Output>,
+}
+
+impl BridgeAndComparatorPins {
+    /// Sets up the pins of one finger: enable line of the bridge and test line of the comparator as
+    /// outputs, fault line as input.
+    pub fn new<
+        const ENABLE_PORT: char,
+        const ENABLE_PIN: u8,
+        const FAULT_LINE_PORT: char,
+        const FAULT_LINE_PIN: u8,
+        const COMPARATOR_TEST_PORT: char,
+        const COMPARATOR_TEST_PIN: u8,
+    >(
+        enable: Pin<ENABLE_PORT, ENABLE_PIN>,
+        fault: Pin<FAULT_LINE_PORT, FAULT_LINE_PIN>,
+        test: Pin<COMPARATOR_TEST_PORT, COMPARATOR_TEST_PIN>,
+    ) -> Self {
+        Self {
+            enable: enable.into_push_pull_output().erase(),
+            // The weak internal pull-down loses against the external pull-up; a broken wire
+            // therefore reads as a fault.
+            fault: fault.into_pull_down_input().erase(),
+            test: test.into_push_pull_output().erase(),
+        }
+    }
+}
+
+impl BridgePeripherals {
+    /// Sets up the timers for PWM and returns the power stages of all fingers, in the order of the
+    /// fingers, with all bridges off.
+    pub fn into_power_stages(self, rcc: &mut Rcc) -> [PowerStage; FINGERS] {
+        let (tim1, tim8, tim10, tim11) = self.timers;
+        let (_, (a0, b0, a1, b1)) = tim1.pwm_hz(PWM_KHZ.kHz(), rcc);
+        let (_, (a2, b2, a3, b3)) = tim8.pwm_hz(PWM_KHZ.kHz(), rcc);
+        let (_, (a4, ..)) = tim10.pwm_hz(PWM_KHZ.kHz(), rcc);
+        let (_, (b4, ..)) = tim11.pwm_hz(PWM_KHZ.kHz(), rcc);
+        let (first, second, third, fourth, fifth) =
+            (self.first, self.second, self.third, self.fourth, self.fifth);
+        let [
+            first_lines,
+            second_lines,
+            third_lines,
+            fourth_lines,
+            fifth_lines,
+        ] = self.lines;
+        let stages = [
+            PowerStage::new(
+                PwmOutput::Tim1(a0.with(first.0).erase()),
+                PwmOutput::Tim1(b0.with(first.1).erase()),
+                first_lines,
+            ),
+            PowerStage::new(
+                PwmOutput::Tim1(a1.with(second.0).erase()),
+                PwmOutput::Tim1(b1.with(second.1).erase()),
+                second_lines,
+            ),
+            PowerStage::new(
+                PwmOutput::Tim8(a2.with(third.0).erase()),
+                PwmOutput::Tim8(b2.with(third.1).erase()),
+                third_lines,
+            ),
+            PowerStage::new(
+                PwmOutput::Tim8(a3.with(fourth.0).erase()),
+                PwmOutput::Tim8(b3.with(fourth.1).erase()),
+                fourth_lines,
+            ),
+            PowerStage::new(
+                PwmOutput::Tim10(a4.with(fifth.0).erase()),
+                PwmOutput::Tim11(b4.with(fifth.1).erase()),
+                fifth_lines,
+            ),
+        ];
+        enable_and_lock_timer_outputs();
+        stages
+    }
+}
+
+/// Lets TIM1 and TIM8 drive their PWM pins until the 8 MHz clock fails: that failure acts as a
+/// break, which disables the PWM outputs without any code (RM0390, 17.3.12). No pin is connected to
+/// the break inputs; their polarity makes them inactive. The lock prevents faulty code from
+/// changing these settings or the PWM mode before the next reset.
+fn enable_and_lock_timer_outputs() {
+    // SAFETY: `pwm_hz` has consumed the handles of the timers. Their channels write only the
+    // compare and enable registers; the break and dead-time registers are written here and by
+    // `disable_bridges` only.
+    let (tim1, tim8) = unsafe { (TIM1::steal(), TIM8::steal()) };
+    for timer in [&*tim1, &*tim8] {
+        timer.bdtr().write(|w| {
+            w.bke().enabled();
+            w.bkp().active_high();
+            w.ossi().idle_level();
+            w.aoe().manual();
+            w.moe().enabled();
+            w.lock().level3()
+        });
+    }
+}
+
+impl PowerStage {
+    fn new(
+        mut in1: PwmOutput,
+        mut in2: PwmOutput,
+        BridgeAndComparatorPins {
+            enable,
+            fault,
+            test,
+        }: BridgeAndComparatorPins,
+    ) -> Self {
+        in1.enable();
+        in2.enable();
+        Self {
+            bridge: Bridge::new(in1, in2, enable),
+            fault,
+            test,
+            on: false,
+        }
+    }
+
+    /// Whether the fault line is low at this moment: the bridge or the comparator reports a fault,
+    /// or the line is broken.
+    pub fn reports_fault(&mut self) -> bool {
+        self.fault.is_low()
+    }
+
+    /// Applies the outputs of a control tick: turns the bridge off or drives it with the demanded
+    /// duty, and sets the level of the comparator's test line. While that line is high, the
+    /// comparator cuts the bridge's supply, which the self-test checks.
+    pub fn apply_outputs(&mut self, outputs: &BoardOutputs) {
+        self.test.set_state(outputs.comparator_test.into());
+        match outputs.drive {
+            Drive::Off => self.off(),
+            Drive::On(duty) => {
+                self.bridge.drive(duty);
+                if !self.on {
+                    self.on = true;
+                    defmt::info!("bridge on");
+                }
+            }
+        }
+    }
+
+    /// Makes both outputs of the bridge high-impedance at once, without waiting for the next PWM
+    /// period.
+    pub fn off(&mut self) {
+        self.bridge.off();
+        if self.on {
+            self.on = false;
+            defmt::info!("bridge off");
+        }
+    }
+}
+
+/// The PWM channel of one input of a bridge, IN1 or IN2. It may belong to any of the four timers.
+enum PwmOutput {
+    Tim1(ErasedChannel<TIM1>),
+    Tim8(ErasedChannel<TIM8>),
+    Tim10(ErasedChannel<TIM10>),
+    Tim11(ErasedChannel<TIM11>),
+}
+
+impl PwmOutput {
+    fn enable(&mut self) {
+        match self {
+            Self::Tim1(channel) => channel.enable(),
+            Self::Tim8(channel) => channel.enable(),
+            Self::Tim10(channel) => channel.enable(),
+            Self::Tim11(channel) => channel.enable(),
+        }
+    }
+}
+
+impl ErrorType for PwmOutput {
+    type Error = Infallible;
+}
+
+impl SetDutyCycle for PwmOutput {
+    fn max_duty_cycle(&self) -> u16 {
+        match self {
+            Self::Tim1(channel) => channel.max_duty_cycle(),
+            Self::Tim8(channel) => channel.max_duty_cycle(),
+            Self::Tim10(channel) => channel.max_duty_cycle(),
+            Self::Tim11(channel) => channel.max_duty_cycle(),
+        }
+    }
+
+    fn set_duty_cycle(&mut self, duty: u16) -> Result<(), Infallible> {
+        match self {
+            Self::Tim1(channel) => channel.set_duty_cycle(duty),
+            Self::Tim8(channel) => channel.set_duty_cycle(duty),
+            Self::Tim10(channel) => channel.set_duty_cycle(duty),
+            Self::Tim11(channel) => channel.set_duty_cycle(duty),
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Checks the readings of one tick: sensors first, then the limits of what they measure.
+
+use contact_model::fixed_point::{Celsius, Force};
+
+use super::limits::{DISPLAY_TRIP_ABOVE, DISPLAY_TRIP_BELOW, OVER_CURRENT_MARGIN, SINK_TRIP_ABOVE};
+use super::{Fault, ThermistorId};
+use crate::drive::Current;
+use crate::sense::{Readings, ThermistorFault};
+
+/// Readings of one tick that have passed [`validate_readings`]: no thermistor and no force sensor is open or shorted,
+/// and temperatures and current are within the limits beyond which the station trips.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ValidReadings {
+    /// Display surface temperature by the display's first thermistor, which the control uses, °C, 13.5 to 43 °C.
+    pub display: Celsius,
+    /// Display surface temperature by the display's second thermistor, °C, 13.5 to 43 °C. Only the
+    /// fault detectors and the self-test use it, to check the first thermistor; the control does not.
+    pub check: Celsius,
+    /// Temperature of the Peltier module's heat sink, °C; at most 42 °C, above which the station trips.
+    pub sink: Celsius,
+    /// Temperature of the finger's skin at the edge of the contact, °C, by the skin's thermistor; if the thermistor is
+    /// on no finger, it reads the room's air.
+    pub skin: Celsius,
+    /// Air temperature of the room, °C, by the room's thermistor.
+    pub room: Celsius,
+    /// Force of the finger on the display, N; 0 if the sensor's signal is below the signal of no force.
+    pub force: Force,
+    /// Magnitude of the measured module current, A; at most 3 A above the largest current that the controller demands,
+    /// 6 A.
+    pub current: Current,
+}
+
+/// Checks what the readings of one tick alone can show: broken sensors, and temperatures and current beyond their
+/// limits. `current_limit` is the largest current that the controller demands, 6 A.
+///
+/// # Errors
+/// The first of these faults: [`Fault::Excitation`] (all five thermistors shorted), the fault of one open or shorted
+/// thermistor, [`Fault::ForceSensor`] (signal invalid), [`Fault::DisplayHot`] and [`Fault::DisplayCold`] (a display
+/// thermistor above 43 °C, or below 13.5 °C), [`Fault::SinkHot`] (above 42 °C), [`Fault::OverCurrent`] (more than 3 A
+/// above `current_limit`). Broken sensors come first, because their readings mean no temperature.
+pub fn validate_readings(
+    readings: &Readings,
+    current_limit: Current,
+) -> Result<ValidReadings, Fault> {
+    let thermistors = [
+        readings.display,
+        readings.display_check,
+        readings.sink,
+        readings.skin,
+        readings.room,
+    ];
+    if thermistors == [Err(ThermistorFault::Short); 5] {
+        return Err(Fault::Excitation);
+    }
+    let temperature = |reading: Result<Celsius, ThermistorFault>, thermistor| {
+        reading.map_err(|fault| Fault::of_thermistor(thermistor, fault))
+    };
+    let valid = ValidReadings {
+        display: temperature(readings.display, ThermistorId::Display)?,
+        check: temperature(readings.display_check, ThermistorId::Check)?,
+        sink: temperature(readings.sink, ThermistorId::Sink)?,
+        skin: temperature(readings.skin, ThermistorId::Skin)?,
+        room: temperature(readings.room, ThermistorId::Room)?,
+        force: readings.force.ok_or(Fault::ForceSensor)?,
+        current: readings.current,
+    };
+    if valid.display.max(valid.check) > DISPLAY_TRIP_ABOVE {
+        return Err(Fault::DisplayHot);
+    }
+    if valid.display.min(valid.check) < DISPLAY_TRIP_BELOW {
+        return Err(Fault::DisplayCold);
+    }
+    if valid.sink > SINK_TRIP_ABOVE {
+        return Err(Fault::SinkHot);
+    }
+    if valid.current > current_limit.saturating_add(OVER_CURRENT_MARGIN) {
+        return Err(Fault::OverCurrent);
+    }
+    Ok(valid)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn valid() -> Readings {
+        let t = |t: i32| Ok(Celsius::from_num(t));
+        Readings {
+            display: t(30),
+            display_check: t(30),
+            sink: t(25),
+            skin: t(34),
+            room: t(24),
+            force: Some(Force::ZERO),
+            current: Current::ZERO,
+            bridge_fault: false,
+        }
+    }
+
+    fn fault_of(change: impl Fn(&mut Readings)) -> Option<&'static str> {
+        let mut readings = valid();
+        change(&mut readings);
+        validate_readings(&readings, Current::lit("6"))
+            .err()
+            .map(Fault::name)
+    }
+
+    #[test]
+    fn each_invalid_reading_has_its_fault() {
+        let t = |t: f64| Ok(Celsius::from_num(t));
+        let short = Err(ThermistorFault::Short);
+        assert_eq!(fault_of(|_| ()), None);
+        assert_eq!(
+            fault_of(|r| r.display = Err(ThermistorFault::Open)),
+            Some("display-open")
+        );
+        assert_eq!(fault_of(|r| r.display_check = short), Some("check-short"));
+        assert_eq!(
+            fault_of(|r| r.sink = Err(ThermistorFault::Open)),
+            Some("sink-open")
+        );
+        assert_eq!(fault_of(|r| r.skin = short), Some("skin-short"));
+        assert_eq!(
+            fault_of(|r| r.room = Err(ThermistorFault::Open)),
+            Some("room-open")
+        );
+        let all = |r: &mut Readings| {
+            (r.display, r.display_check, r.sink, r.skin, r.room) =
+                (short, short, short, short, short);
+        };
+        assert_eq!(fault_of(all), Some("excitation"));
+        assert_eq!(fault_of(|r| r.force = None), Some("force-sensor"));
+        assert_eq!(fault_of(|r| r.display = t(43.01)), Some("display-hot"));
+        assert_eq!(
+            fault_of(|r| r.display_check = t(43.01)),
+            Some("display-hot")
+        );
+        assert_eq!(fault_of(|r| r.display = t(42.99)), None);
+        assert_eq!(
+            fault_of(|r| r.display_check = t(13.49)),
+            Some("display-cold")
+        );
+        assert_eq!(fault_of(|r| r.sink = t(42.1)), Some("sink-hot"));
+        assert_eq!(
+            fault_of(|r| r.current = Current::lit("9.1")),
+            Some("over-current")
+        );
+    }
+}

@@ -1,0 +1,62 @@
+//! The object that the host has chosen to present.
+
+use contact_model::fixed_point::{Celsius, ContactPair};
+use contact_model::material::{MATERIALS, SKIN, Surface};
+
+use crate::TICK_HZ;
+use crate::reference::{ContactModel, PresentedObject};
+
+/// What the host has chosen to present: material and temperature of the object, and the contact model that gives the
+/// set-point. The choice is kept in every state, and `start` presents it.
+#[derive(Clone, Debug)]
+pub struct ChosenObject {
+    /// Name of the chosen material, and the constants of its contact with the finger; `None` before the host has chosen
+    /// one.
+    pub material: Option<(&'static str, ContactPair)>,
+    /// Temperature of the object before contact, °C; `None` takes the room's temperature.
+    pub temperature: Option<Celsius>,
+    /// Contact model that gives the set-point while the object is presented: with contact resistance, or perfect
+    /// contact of two semi-infinite bodies.
+    pub mode: ContactModel,
+    /// Contact constants for the time before the host chooses a material: those of the first material in [`MATERIALS`].
+    /// They serve only to compute the heat flow between skin and display, for which all materials give the same result.
+    /// `None` if the display's surface in the settings is outside of the domain of the contact model.
+    default_pair: Option<ContactPair>,
+}
+
+impl ChosenObject {
+    /// Nothing chosen yet: no material, the object at the room's temperature, the model with contact resistance.
+    /// Computes the default contact constants for the display's surface in `f64`, so it is for the start only.
+    #[must_use]
+    pub fn new(display: &Surface) -> Self {
+        let [(_, any), ..] = &MATERIALS;
+        Self {
+            material: None,
+            temperature: None,
+            mode: ContactModel::default(),
+            default_pair: ContactPair::new(&SKIN, any, display, 1.0 / f64::from(TICK_HZ)).ok(),
+        }
+    }
+
+    /// Contact constants of skin, display and object, from which the estimator computes the heat flow between skin and
+    /// display: those of the chosen material or, before a choice, those of the first material in [`MATERIALS`]. Their
+    /// part for skin and display is the same for all materials. `None` if no material is chosen and the display's
+    /// surface in the settings is outside of the domain of the contact model.
+    #[must_use]
+    pub fn contact_pair(&self) -> Option<&ContactPair> {
+        let chosen = self.material.as_ref().map(|(_, pair)| pair);
+        chosen.or(self.default_pair.as_ref())
+    }
+
+    /// Input of the reference generator, which computes set-point and target in the states preset and contact: contact
+    /// constants, object temperature and contact model. `None` before a material is chosen.
+    #[must_use]
+    pub fn reference_input(&self) -> Option<PresentedObject<'_>> {
+        let (_, pair) = self.material.as_ref()?;
+        Some(PresentedObject {
+            pair,
+            object: self.temperature,
+            mode: self.mode,
+        })
+    }
+}

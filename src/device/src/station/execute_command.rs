@@ -1,0 +1,213 @@
+//! Execution of the host's commands by one station.
+
+use super::{ArmedTask, Event, State, Station};
+use crate::TICK_HZ;
+use crate::command::{Command, Refused, Reply, Status};
+use crate::identification::Identification;
+use crate::sense::ThermistorAverages;
+use crate::temperature_hold::TemperatureHold;
+
+impl Station {
+    /// Executes a command of the host between two ticks, in bounded and short time; its effect begins in the next tick.
+    ///
+    /// # Errors
+    /// Why the station's state does not permit the command; nothing has changed then. One exception: if the board has
+    /// raised a second fault while a first one was latched, `clear` clears the first, trips the station by the second,
+    /// and returns the second as [`Refused::StillFaulty`].
+    pub fn execute(&mut self, command: Command) -> Result<Reply, Refused> {
+        match command {
+            Command::Status => return Ok(Reply::Status(self.status())),
+            Command::Cause => return Ok(Reply::Cause(self.latch.cause().copied())),
+            Command::Law(None) => return Ok(Reply::Law(self.controller.law())),
+            Command::Average(thermistor) => return self.thermistor_average(thermistor),
+            Command::NormalEquation(row) => return self.normal_equation_row(row),
+            Command::Law(Some(law)) => self.controller.select_law(law),
+            Command::Stream { interval_ms } => {
+                self.telemetry_ticks = interval_ms * (TICK_HZ / 1000);
+            }
+            Command::Material { name, pair } => {
+                self.object.material = Some((name, pair));
+                self.restart_contact();
+            }
+            Command::Object(temperature) => {
+                self.object.temperature = temperature;
+                self.restart_contact();
+            }
+            Command::Mode(mode) => {
+                if mode != self.object.mode {
+                    self.restart_contact();
+                }
+                self.object.mode = mode;
+            }
+            Command::Arm => self.execute_arm()?,
+            Command::Hold(setpoint) => {
+                self.require_armed("hold")?;
+                self.identified.outcome = None;
+                self.state = State::Armed(match self.last.readings.display {
+                    Ok(reading) => ArmedTask::Hold(TemperatureHold::new(setpoint, reading)),
+                    Err(_) => ArmedTask::Neutral,
+                });
+            }
+            Command::Start => self.execute_start()?,
+            // Never refused: the bridge is off afterwards.
+            Command::Abort => {
+                self.apply_event(Event::Abort);
+            }
+            Command::Clear => self.execute_clear()?,
+            Command::Tune => self.execute_tune()?,
+            Command::Calibrate(tables) => {
+                self.require_calibration_allowed()?;
+                // The reading changes with the calibration, which neither the identification nor the detectors may take
+                // for a movement of the display.
+                self.interrupt_identification();
+                self.sensors.recalibrate(&tables);
+                self.estimator.plate.note_recalibration();
+                self.detectors.restart_motion_detectors();
+            }
+            Command::Retune(parameters) => {
+                self.require_no_object_presented()?;
+                self.set_control_parameters(&parameters);
+                self.interrupt_identification();
+                // The result has been used, so the display is neutral again.
+                if let State::Armed(task @ ArmedTask::Identify(_)) = &mut self.state {
+                    *task = ArmedTask::Neutral;
+                }
+            }
+        }
+        Ok(Reply::Done)
+    }
+
+    fn status(&self) -> Status {
+        let reference = self.last.reference;
+        Status {
+            state: self.state.state_name(),
+            material: self.object.material.map(|(name, _)| name),
+            object: self.object.temperature,
+            mode: self.object.mode,
+            setpoint: reference.map(|reference| reference.setpoint.celsius()),
+            limited: reference.is_some_and(|reference| reference.limited),
+        }
+    }
+
+    /// Makes the next tick begin a new contact for a finger that already touches. Called when the host has chosen
+    /// another object or contact model, and when `start` presents the object.
+    fn restart_contact(&mut self) {
+        self.reference.restart_contact(&mut self.estimator.finger);
+    }
+
+    /// Returns [`Refused::Presenting`] while an object is presented. For the commands that change parameters or
+    /// calibration, because the finger would feel the change, and for the query of a thermistor's average, which the
+    /// finger would disturb.
+    fn require_no_object_presented(&self) -> Result<(), Refused> {
+        if self.state.is_presenting_object() {
+            Err(Refused::Presenting)
+        } else {
+            Ok(())
+        }
+    }
+
+    /// Refuses a calibration, or a request for the average that a calibration needs, while an object is presented and
+    /// in the self-test. The self-test would mistake the step of the calibrated readings for the display's response to
+    /// the test current.
+    fn require_calibration_allowed(&self) -> Result<(), Refused> {
+        self.require_no_object_presented()?;
+        if matches!(self.state, State::SelfTest(_)) {
+            Err(Refused::Testing)
+        } else {
+            Ok(())
+        }
+    }
+
+    fn thermistor_average(&self, thermistor: usize) -> Result<Reply, Refused> {
+        self.require_calibration_allowed()?;
+        let average = self.averages.of(thermistor).ok_or(Refused::TooEarly)?;
+        Ok(Reply::Average(average))
+    }
+
+    fn normal_equation_row(&self, row: usize) -> Result<Reply, Refused> {
+        if let State::Tripped(fault) = self.state {
+            return Err(Refused::Tripped(fault));
+        }
+        match (&self.state, self.identified.outcome) {
+            (State::Armed(ArmedTask::Identify(_)), None) => Err(Refused::Tuning),
+            (_, None) => Err(Refused::NotTuned),
+            (_, Some(Err(reason))) => Err(Refused::TuneAborted(reason)),
+            (_, Some(Ok(()))) => {
+                let row = self.identified.equations.rows().get(row);
+                row.map(|row| Reply::NormalEquation(*row))
+                    .ok_or(Refused::NotTuned)
+            }
+        }
+    }
+
+    fn execute_arm(&mut self) -> Result<(), Refused> {
+        match self.state {
+            State::Tripped(fault) => return Err(Refused::Tripped(fault)),
+            State::SelfTest(_) => return Ok(()),
+            // In off the observer runs, but nobody acts on its residual: what no current explains (heat that no sensor
+            // measures, thermistors that disagree, the cleared fault) adds up in its disturbance and correction. That
+            // must not count against the tile that is armed now, so the model starts from the next reading with both at
+            // zero; the self-test gives it 0.7 s before a set-point is followed and the residual can trip.
+            State::Off => self.estimator.plate.invalidate(),
+            _ => {}
+        }
+        self.apply_event(Event::Arm);
+        self.identified.outcome = None;
+        Ok(())
+    }
+
+    fn execute_start(&mut self) -> Result<(), Refused> {
+        match (&self.state, self.object.material) {
+            (State::Tripped(fault), _) => return Err(Refused::Tripped(*fault)),
+            (State::Off | State::Ready, _) => return Err(Refused::NotArmed),
+            (State::SelfTest(_), _) => return Err(Refused::Testing),
+            (_, None) => return Err(Refused::NoMaterial),
+            (State::Preset | State::Contact, Some(_)) => return Err(Refused::AlreadyStarted),
+            (State::Armed(_), Some(_)) => {}
+        }
+        self.restart_contact();
+        self.averages = ThermistorAverages::default();
+        self.apply_event(Event::Start);
+        Ok(())
+    }
+
+    fn execute_clear(&mut self) -> Result<(), Refused> {
+        if !self.is_tripped() {
+            return Err(Refused::NothingToClear);
+        }
+        if let Some(fault) = self.latch.present_fault() {
+            return Err(Refused::StillFaulty(fault));
+        }
+        self.apply_event(Event::Clear);
+        match self.latch.take_pending_fault() {
+            None => Ok(()),
+            Some(fault) => {
+                self.trip_without_readings(fault);
+                Err(Refused::StillFaulty(fault))
+            }
+        }
+    }
+
+    fn require_armed(&self, command: &'static str) -> Result<(), Refused> {
+        match self.state {
+            State::Tripped(fault) => Err(Refused::Tripped(fault)),
+            State::Armed(_) => Ok(()),
+            _ => Err(Refused::NeedsArmed(command)),
+        }
+    }
+
+    fn execute_tune(&mut self) -> Result<(), Refused> {
+        self.require_armed("tune")?;
+        if self.contact.touching() {
+            return Err(Refused::Touched);
+        }
+        let sink = self
+            .last
+            .readings
+            .sink
+            .map_err(|_| Refused::NeedsArmed("tune"))?;
+        self.identified = super::IdentificationResult::default();
+        self.state = State::Armed(ArmedTask::Identify(Identification::new(sink)));
+        Ok(())
+    }
+}

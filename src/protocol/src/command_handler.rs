@@ -1,0 +1,206 @@
+//! Execution of the host's lines for all fingers of a device.
+
+use core::array;
+
+use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
+use thermal_device::command::{self, Command, Refused, WithFingerIndex};
+use thermal_device::{FingerIndex, StateName};
+use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode};
+
+use crate::finger_address::split_address;
+use crate::{Error, Reply, Request};
+
+/// A function that executes a command in the station (the control) of the given finger, or in the stations of all
+/// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
+/// calls it.
+pub trait ExecuteOnStations<const FINGERS: usize>:
+    FnMut(Option<FingerIndex<FINGERS>>, Command) -> ExecutionResult
+{
+}
+
+impl<const FINGERS: usize, F> ExecuteOnStations<FINGERS> for F where
+    F: FnMut(Option<FingerIndex<FINGERS>>, Command) -> ExecutionResult
+{
+}
+
+/// Result of a command in the station (the control) of one finger or in the stations of all fingers: a station's reply,
+/// or the reason why a station refuses the command. For the answer to the host, the result contains the index of that
+/// station's finger, or no index if the result is for all fingers or the device has only one.
+pub type ExecutionResult = Result<WithFingerIndex<command::Reply>, WithFingerIndex<Refused>>;
+
+/// Executes the host's lines on a device with one to ten fingers, and returns the answers. It holds the commissioning
+/// session of each finger, which is its settings and calibration points; lines that command the control of a finger are
+/// passed on to the finger's station.
+#[derive(Clone, Debug)]
+pub struct CommandHandler<const FINGERS: usize> {
+    sessions: [CommissioningSession; FINGERS],
+}
+
+impl<const FINGERS: usize> CommandHandler<FINGERS> {
+    /// A handler for a device whose fingers all have the same `settings`, such as the factory defaults.
+    #[must_use]
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            sessions: array::from_fn(|_| CommissioningSession::new(settings)),
+        }
+    }
+
+    /// A handler for a device whose fingers have the calibration and the tile that were loaded from flash, one element
+    /// for each finger, and factory defaults for all other settings.
+    #[must_use]
+    pub fn from_stored(stored: &[StoredSettings; FINGERS]) -> Self {
+        let session =
+            |stored: &StoredSettings| CommissioningSession::new(stored.to_complete_settings());
+        Self {
+            sessions: stored.each_ref().map(session),
+        }
+    }
+
+    /// The bytes to be written to flash for the command `save` (the present settings of all fingers) or `forget`
+    /// (factory defaults).
+    #[must_use]
+    pub fn settings_record(&self, order: StorageOrder) -> SettingsRecord {
+        match order {
+            StorageOrder::Save => {
+                let sessions = self.sessions.each_ref();
+                let stored = sessions.map(|one| StoredSettings::from_settings(one.settings()));
+                encode(Some(&stored))
+            }
+            StorageOrder::Forget => encode::<FINGERS>(None),
+        }
+    }
+
+    /// Parses a line from the host, executes it, and returns the answer. A line with an address is for one finger. A
+    /// line without an address is for all fingers: a query is answered by the first finger that does not refuse it, a
+    /// change is made by each finger. For `save` and `forget` the caller must do the rest ([`Reply::Restart`]).
+    ///
+    /// Time-consuming computations are done here, outside of `execute`, which runs with the control tick locked out.
+    ///
+    /// # Errors
+    /// No finger executes a line that is not valid, a line whose command requires or forbids an address, or a rejected
+    /// `save` or `forget`. Otherwise the error is that of the first finger that rejects the line, and the other fingers
+    /// have executed the line if their state permits it. For `clear` without an address, a finger that is not tripped
+    /// gives an error only if no finger is tripped.
+    pub fn answer(
+        &mut self,
+        line: &str,
+        mut execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Error>> {
+        const { assert!(FINGERS > 0 && FINGERS <= 10) };
+        let (finger, line) = split_address(line)?;
+        let number = finger.map(FingerIndex::index_u8);
+        let addressed = |content| WithFingerIndex {
+            finger: number,
+            content,
+        };
+        let request = Request::parse(line, self.sessions[0].settings()).map_err(|content| {
+            WithFingerIndex {
+                finger: number,
+                content,
+            }
+        })?;
+        match request {
+            Request::Identify => Ok(addressed(Reply::Identity {
+                fingers: FINGERS as u8,
+            })),
+            Request::Station(command) => match execute(finger, command) {
+                Ok(reply) => Ok(reply.map_content(Reply::Station)),
+                Err(refused) => Err(refused.map_content(Error::from)),
+            },
+            Request::Commissioning(request) => self.execute_in_sessions(request, finger, execute),
+            Request::Storage(order) => match Self::storage_rejection(order, finger, execute) {
+                None => Ok(addressed(Reply::Restart(order))),
+                Some(error) => Err(error),
+            },
+        }
+    }
+
+    /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With
+    /// `None` on a device with several fingers, the queries `settings` and `margins` are answered by the first finger;
+    /// a new calibration point and `tune result`, which are computed for milliseconds, are rejected.
+    fn execute_in_sessions(
+        &mut self,
+        request: SessionRequest,
+        finger: Option<FingerIndex<FINGERS>>,
+        mut execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Error>> {
+        let finger = match request {
+            SessionRequest::CountSettingsLines
+            | SessionRequest::SettingsLine(_)
+            | SessionRequest::Margins
+                if FINGERS > 1 =>
+            {
+                finger.or(Some(FingerIndex::FIRST))
+            }
+            // Each of these requests takes milliseconds of `f64`; for all fingers this would exceed the watchdog's
+            // period.
+            SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
+                if finger.is_none() && FINGERS > 1 =>
+            {
+                return Err(WithFingerIndex::from_whole_device(Error::Missing(
+                    "finger (as @0)",
+                )));
+            }
+            _ => finger,
+        };
+        let (mut reply, mut first_error) = (SessionReply::Done, None);
+        for (one, session) in FingerIndex::all().zip(&mut self.sessions) {
+            if finger.is_some_and(|finger| finger != one) {
+                continue;
+            }
+            let answer = session.answer(request.clone(), |command| {
+                match execute(Some(one), command) {
+                    Ok(reply) => Ok(reply.content),
+                    Err(refused) => Err(refused.content),
+                }
+            });
+            match answer {
+                // A request to several fingers has no other reply than `Done`.
+                Ok(answer) => reply = answer,
+                Err(error) => {
+                    first_error.get_or_insert(WithFingerIndex {
+                        finger: finger.map(FingerIndex::index_u8).or(one.reply_address()),
+                        content: Error::from(error),
+                    });
+                }
+            }
+        }
+        let content = Reply::Commissioning(reply);
+        let finger = finger.map(FingerIndex::index_u8);
+        first_error.map_or(Ok(WithFingerIndex { finger, content }), Err)
+    }
+
+    /// The error that rejects `save` or `forget`, or `None` if the command may be executed. Rejected are a line that
+    /// addresses one of several fingers, and any line while a bridge is on or a self-test runs: the device restarts to
+    /// store settings, and would switch off a display that a finger may feel.
+    fn storage_rejection(
+        order: StorageOrder,
+        finger: Option<FingerIndex<FINGERS>>,
+        mut execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Option<WithFingerIndex<Error>> {
+        if finger.is_some() && FINGERS > 1 {
+            let content = Error::WholeDevice(order.name());
+            let finger = finger.map(FingerIndex::index_u8);
+            return Some(WithFingerIndex { finger, content });
+        }
+        for one in FingerIndex::all() {
+            match execute(Some(one), Command::Status) {
+                Err(refused) => return Some(refused.map_content(Error::from)),
+                Ok(WithFingerIndex {
+                    content: command::Reply::Status(status),
+                    ..
+                }) if matches!(
+                    status.state,
+                    StateName::Off | StateName::Ready | StateName::Tripped(_)
+                ) => {}
+                Ok(_) => {
+                    return Some(WithFingerIndex {
+                        finger: one.reply_address().or(finger.map(FingerIndex::index_u8)),
+                        content: Error::NeedsOff(order.name()),
+                    });
+                }
+            }
+        }
+        None
+    }
+}

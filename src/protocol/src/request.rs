@@ -1,0 +1,232 @@
+//! Parsing of a line from the host to a request.
+
+use contact_model::fixed_point::{Celsius, ContactPair};
+use contact_model::material::{MATERIALS, Material, SKIN, Surface};
+
+use thermal_commissioning::{SessionRequest, StorageOrder};
+use thermal_device::TICK_HZ;
+use thermal_device::command::Command;
+use thermal_device::control::Law;
+use thermal_device::reference::ContactModel;
+use thermal_device::safety::Setpoint;
+use thermal_device::safety::limits::{SETPOINT_MAX_C, SETPOINT_MIN_C};
+use thermal_settings::{Range, Settings};
+
+use crate::Error;
+use crate::arguments::{
+    Words, find_entry_by_word, read_number, read_numbers, read_word, skip_if_next_is,
+};
+use crate::commissioning_commands::{parse_calibrate, parse_set_arguments, parse_settings_query};
+
+/// A line from the host after parsing: a command with its arguments, which are within their ranges.
+#[allow(
+    clippy::large_enum_variant,
+    reason = "no heap to box the larger one in"
+)]
+#[derive(Clone, Debug, PartialEq)]
+pub enum Request {
+    /// The line `id`: report name and version of the firmware, number of fingers, tick rate and scan rate.
+    Identify,
+    /// A line that the stations (the control) of the addressed fingers execute as this command, such as `arm` or
+    /// `material`.
+    Station(Command),
+    /// A line about settings or calibration, which the commissioning sessions of the addressed fingers execute:
+    /// `calibrate`, `tune result`, `margins`, `settings` or `set`.
+    Commissioning(SessionRequest),
+    /// The line `save` or `forget`: store the present settings of all fingers, or factory defaults, in flash.
+    Storage(StorageOrder),
+}
+
+/// Generates the parser of the commands' arguments, and the list of commands in the answer to an unknown command, from
+/// one list: each entry is the first word of a command and the expression that reads its arguments.
+macro_rules! commands {
+    (|$words:ident, $display:ident| { $($name:literal => $request:expr,)* }) => {
+        /// First words of all commands, which the answer to an unknown command lists.
+        pub const COMMAND_WORDS: &[&str] = &[$($name),*];
+
+        fn parse_arguments(
+            name: &str,
+            $words: &mut Words<'_>,
+            $display: &Surface,
+        ) -> Result<Self, Error> {
+            Ok(match name {
+                $($name => $request,)*
+                unknown => return Err(Error::UnknownCommand(unknown.into())),
+            })
+        }
+    };
+}
+
+impl Request {
+    commands!(|words, display| {
+        "id" => Self::Identify,
+        "state" => Self::Station(Command::Status),
+        "stream" => Self::Station(parse_stream(words)?),
+        "material" => Self::Station(parse_material(words, display)?),
+        "object" => Self::Station(Command::Object(parse_object_temperature(words)?)),
+        "mode" => Self::Station(Command::Mode(parse_mode(words)?)),
+        "law" => Self::Station(Command::Law(words.next().map(parse_law).transpose()?)),
+        "arm" => Self::Station(Command::Arm),
+        "hold" => Self::Station(Command::Hold(parse_hold(words)?)),
+        "start" => Self::Station(Command::Start),
+        "abort" => Self::Station(Command::Abort),
+        "clear" => Self::Station(Command::Clear),
+        "cause" => Self::Station(Command::Cause),
+        "calibrate" => Self::Commissioning(parse_calibrate(words)?),
+        "tune" => match skip_if_next_is(words, "result") {
+            true => Self::Commissioning(SessionRequest::TuneResult),
+            false => Self::Station(Command::Tune),
+        },
+        "margins" => Self::Commissioning(SessionRequest::Margins),
+        "settings" => Self::Commissioning(parse_settings_query(words)?),
+        "set" => Self::Commissioning(SessionRequest::Set(parse_set_arguments(words)?)),
+        "save" => Self::Storage(StorageOrder::Save),
+        "forget" => Self::Storage(StorageOrder::Forget),
+    });
+
+    /// Parses a line from the host without its address. `settings` give the surface of the display, on which the
+    /// contact with a material depends. The floating-point constants of that contact take long to compute, so they are
+    /// computed here and not when the request is executed, while the control tick is locked out.
+    ///
+    /// # Errors
+    /// The line is no valid request; the error says what is wrong with it and what is allowed.
+    pub fn parse(line: &str, settings: &Settings) -> Result<Self, Error> {
+        let mut words = line.split_ascii_whitespace();
+        let name = read_word(&mut words, "command")?;
+        let request = Self::parse_arguments(name, &mut words, &settings.display)?;
+        match words.next() {
+            None => Ok(request),
+            Some(extra) => Err(Error::Extra(extra.into())),
+        }
+    }
+}
+
+/// Arguments of the command `mode`, each with the contact model that it selects: `contact` takes the thermal contact
+/// resistance between skin and object into account, `semi-infinite` does not. The contact model gives the set-point.
+pub const MODE_WORDS: [(&str, ContactModel); 2] = [
+    ("contact", ContactModel::ContactResistance),
+    ("semi-infinite", ContactModel::SemiInfinite),
+];
+/// Argument of the command `material` in place of a material's name. The properties of the material follow:
+/// conductivity (W/mK), density (kg/m³), specific heat (J/kgK), roughness (µm) and slope of the asperities (rad).
+pub const CUSTOM_MATERIAL_WORD: &str = "custom";
+
+static STREAM_INTERVAL_RANGE: Range = Range {
+    name: "interval",
+    unit: "ms",
+    min: 0.0,
+    max: 60_000.0,
+};
+static HOLD_TEMPERATURE_RANGE: Range = Range {
+    name: "temperature",
+    unit: "C",
+    min: SETPOINT_MIN_C,
+    max: SETPOINT_MAX_C,
+};
+static OBJECT_TEMPERATURE_RANGE: Range = Range {
+    name: "object temperature",
+    unit: "C",
+    min: -20.0,
+    max: 60.0,
+};
+/// Allowed ranges of the properties of a material in the line `material custom ...`, in their order on the line:
+/// thermal conductivity, density, specific heat, roughness and slope of the asperities.
+static MATERIAL_PROPERTY_RANGES: [Range; 5] = [
+    Range {
+        name: "conductivity",
+        unit: "W/mK",
+        min: 0.001,
+        max: 5000.0,
+    },
+    Range {
+        name: "density",
+        unit: "kg/m3",
+        min: 1.0,
+        max: 30_000.0,
+    },
+    Range {
+        name: "specific heat",
+        unit: "J/kgK",
+        min: 10.0,
+        max: 10_000.0,
+    },
+    Range {
+        name: "roughness",
+        unit: "um",
+        min: 0.001,
+        max: 1000.0,
+    },
+    Range {
+        name: "slope",
+        unit: "rad",
+        min: 0.0001,
+        max: 1.5,
+    },
+];
+
+fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
+    // Rounds a fraction of a millisecond up, so that only 0 ends the stream.
+    let interval_ms = read_number(words, &STREAM_INTERVAL_RANGE)?
+        .saturating_ceil()
+        .to_num::<i64>();
+    Ok(Command::Stream {
+        interval_ms: interval_ms.unsigned_abs() as u32,
+    })
+}
+
+fn parse_object_temperature(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
+    if skip_if_next_is(words, "room") {
+        return Ok(None);
+    }
+    Ok(Some(
+        read_number(words, &OBJECT_TEMPERATURE_RANGE)?.to_num(),
+    ))
+}
+
+fn parse_mode(words: &mut Words<'_>) -> Result<ContactModel, Error> {
+    let name = read_word(words, "mode")?;
+    let (_, mode) = find_entry_by_word(&MODE_WORDS, name).ok_or(Error::UnknownMode(name.into()))?;
+    Ok(mode)
+}
+
+fn parse_law(name: &str) -> Result<Law, Error> {
+    let (_, law) =
+        find_entry_by_word(&Law::PROTOCOL_WORDS, name).ok_or(Error::UnknownLaw(name.into()))?;
+    Ok(law)
+}
+
+fn parse_hold(words: &mut Words<'_>) -> Result<Setpoint, Error> {
+    let celsius = read_number(words, &HOLD_TEMPERATURE_RANGE)?.to_num();
+    Ok(Setpoint::saturating_celsius(celsius).0)
+}
+
+fn parse_material(words: &mut Words<'_>, display: &Surface) -> Result<Command, Error> {
+    let name = read_word(words, "material")?;
+    let (name, material) = if name == CUSTOM_MATERIAL_WORD {
+        (CUSTOM_MATERIAL_WORD, parse_custom_material(words)?)
+    } else {
+        find_entry_by_word(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
+    };
+    let pair = ContactPair::new(&SKIN, &material, display, 1.0 / f64::from(TICK_HZ))
+        .map_err(Error::ContactPair)?;
+    Ok(Command::Material { name, pair })
+}
+
+fn parse_custom_material(words: &mut Words<'_>) -> Result<Material, Error> {
+    let [
+        conductivity_w_mk,
+        density_kg_m3,
+        specific_heat_j_kgk,
+        roughness_um,
+        slope_rad,
+    ] = read_numbers(words, &MATERIAL_PROPERTY_RANGES)?;
+    Ok(Material {
+        surface: Surface {
+            conductivity_w_mk,
+            roughness_um,
+            slope_rad,
+        },
+        density_kg_m3,
+        specific_heat_j_kgk,
+    })
+}

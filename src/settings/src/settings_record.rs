@@ -1,0 +1,257 @@
+//! The record of the stored settings, as bytes.
+//!
+//! | bytes | content                                                                             |
+//! |-------|-------------------------------------------------------------------------------------|
+//! | 2     | version of the layout                                                               |
+//! | 1     | kind: 0 for factory defaults, 1 for settings                                        |
+//! | 1     | number of fingers, 0 for factory defaults                                           |
+//! | 132   | each finger: 13 steps, 5 times offset, slope and curvature, 5 parameters of the tile |
+//! | 4     | CRC-32 (ISO-HDLC) of all bytes before it, in every version                          |
+//!
+//! All fields are little-endian. Each value is an `i32` in units of its last decimal on a `set` line, so that a record
+//! holds exactly what the line does.
+
+use core::fmt;
+
+use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
+use heapless::Vec;
+
+use super::calibration::power_of_ten;
+use super::{CALIBRATED_BORDER_COUNT, Calibration, Correction, Range, Settings, Tile};
+
+const RECORD_LAYOUT_VERSION: u16 = 1;
+const KIND_FACTORY_DEFAULTS: u8 = 0;
+const KIND_SETTINGS: u8 = 1;
+const HEADER_BYTES: usize = 4;
+const CHECKSUM_BYTES: usize = 4;
+const CORRECTIONS_PER_FINGER: usize = 5;
+const VALUES_PER_FINGER: usize = CALIBRATED_BORDER_COUNT + 3 * CORRECTIONS_PER_FINGER + 5;
+const BYTES_PER_FINGER: usize = 4 * VALUES_PER_FINGER;
+/// Largest number of fingers that a device can have.
+const FINGERS_MAX: usize = 10;
+/// Length of the longest record, that of a device with ten fingers: 1328 bytes.
+pub const RECORD_MAX_BYTES: usize = HEADER_BYTES + FINGERS_MAX * BYTES_PER_FINGER + CHECKSUM_BYTES;
+
+const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+
+/// The bytes of one record as they are written to flash: the stored settings of all fingers, or the order to use
+/// factory defaults, between a header and a checksum.
+pub type SettingsRecord = Vec<u8, RECORD_MAX_BYTES>;
+
+/// The part of one finger's settings that is stored in flash, because commissioning determines it for each device:
+/// calibration and tile. All other settings always have their factory defaults.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StoredSettings {
+    /// Steps of the converter's error and corrections of the finger's five thermistors, from the commands `calibrate`
+    /// and `set`.
+    pub calibration: Calibration,
+    /// Thermal parameters of the finger's tile, from the commands `tune` and `set`.
+    pub tile: Tile,
+}
+
+impl StoredSettings {
+    /// Takes calibration and tile, the part that is stored in flash, from a finger's complete `settings`.
+    #[must_use]
+    pub const fn from_settings(settings: &Settings) -> Self {
+        Self {
+            calibration: settings.calibration,
+            tile: settings.tile,
+        }
+    }
+
+    /// Complete settings of the finger: the stored calibration and tile, the gains that follow from this tile, and
+    /// factory defaults for everything else.
+    #[must_use]
+    #[inline(never)]
+    pub fn to_complete_settings(&self) -> Settings {
+        let mut settings = Settings {
+            calibration: self.calibration,
+            ..Settings::default()
+        };
+        settings.set_tile(self.tile);
+        settings
+    }
+
+    /// This finger's values in the order of the record, each with the number of decimals that the record holds.
+    fn record_values(&self) -> impl Iterator<Item = (f64, i32)> {
+        let steps = self.calibration.steps_counts.into_iter();
+        let corrections = self.calibration.corrections.into_iter();
+        let tile = self.tile.to_array().into_iter();
+        steps
+            .map(|step| (step, Calibration::CONVERTER_STEP_DECIMALS))
+            .chain(corrections.flat_map(|correction| {
+                let values = correction.to_array().into_iter();
+                values.zip(Calibration::CORRECTION_DECIMALS)
+            }))
+            .chain(tile.map(|value| (value, Tile::DECIMALS as i32)))
+    }
+
+    /// Converts the 33 integers that a record holds for one finger to the stored settings of that finger. The integers
+    /// have the order of the record, and each is a value in units of its last decimal. A missing integer would count as
+    /// 0, but [`decode`] has checked the length of the record.
+    fn from_record_values(mut values: impl Iterator<Item = i32>) -> Self {
+        let mut next =
+            |decimals| f64::from(values.next().unwrap_or_default()) / power_of_ten(decimals);
+        Self {
+            calibration: Calibration {
+                steps_counts: core::array::from_fn(|_| next(Calibration::CONVERTER_STEP_DECIMALS)),
+                corrections: core::array::from_fn(|_| {
+                    Correction::from_array(Calibration::CORRECTION_DECIMALS.map(&mut next))
+                }),
+            },
+            tile: Tile::from_array([(); 5].map(|()| next(Tile::DECIMALS as i32))),
+        }
+    }
+
+    /// The first value of calibration or tile that is outside its allowed range, with that range; `None` if all are
+    /// inside.
+    fn first_value_out_of_range(&self) -> Option<(&'static Range, f64)> {
+        self.calibration
+            .first_value_out_of_range()
+            .or_else(|| self.tile.first_value_out_of_range())
+    }
+}
+
+/// Why bytes from the flash are not a valid record of this device. The device then starts with factory defaults, and
+/// all fingers are tripped by the fault `settings-corrupt`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RecordError {
+    /// The record has this length, bytes, which is too short for header and checksum, or does not match the number of
+    /// fingers in its header.
+    Length(usize),
+    /// The CRC-32 at the end of the record does not match the bytes before it.
+    Checksum,
+    /// The header of the record names this version of the layout, but this firmware reads only version 1.
+    Version(u16),
+    /// The header of the record names this kind of content, which is neither 0 (factory defaults) nor 1 (settings).
+    Kind(u8),
+    /// The header of the record names this number of fingers, but the device has another number; or the number is not 0
+    /// although the record stands for factory defaults.
+    Fingers(u8),
+    /// A value in the record lies outside its allowed range.
+    OutOfRange {
+        /// Index, from 0, of the finger whose value in the record is out of range.
+        finger: u8,
+        /// Name, unit and allowed range of the value that is out of range.
+        allowed: &'static Range,
+        /// The value in the record that is out of range, in the unit of `allowed`.
+        value: f64,
+    },
+}
+
+impl fmt::Display for RecordError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("stored ")?;
+        match self {
+            Self::Length(bytes) => write!(f, "settings have a wrong length of {bytes} bytes"),
+            Self::Checksum => f.write_str("settings do not fit their checksum"),
+            Self::Version(version) => {
+                write!(
+                    f,
+                    "settings have the unknown version {version}; known: {RECORD_LAYOUT_VERSION}"
+                )
+            }
+            Self::Kind(kind) => write!(f, "settings have the unknown kind {kind}; known: 0 1"),
+            Self::Fingers(fingers) => write!(f, "settings are those of {fingers} fingers"),
+            Self::OutOfRange {
+                finger,
+                allowed,
+                value,
+            } => {
+                let name = allowed.name;
+                write!(
+                    f,
+                    "{name} {value} of finger {finger} out of range; {allowed}"
+                )
+            }
+        }
+    }
+}
+
+/// Encodes the stored settings of all fingers as the bytes of a record; `None` gives the record that stands for factory
+/// defaults.
+#[must_use]
+#[inline(never)]
+pub fn encode<const FINGERS: usize>(
+    settings: Option<&[StoredSettings; FINGERS]>,
+) -> SettingsRecord {
+    const { assert!(FINGERS <= FINGERS_MAX) };
+    let mut record = SettingsRecord::new();
+    // Never fails: the capacity is that of FINGERS_MAX fingers.
+    let mut append = |bytes: &[u8]| {
+        let _fits = record.extend_from_slice(bytes);
+    };
+    append(&RECORD_LAYOUT_VERSION.to_le_bytes());
+    append(&match settings {
+        Some(_) => [KIND_SETTINGS, FINGERS as u8],
+        None => [KIND_FACTORY_DEFAULTS, 0],
+    });
+    for (value, decimals) in settings
+        .into_iter()
+        .flatten()
+        .flat_map(StoredSettings::record_values)
+    {
+        append(&(libm::round(value * power_of_ten(decimals)) as i32).to_le_bytes());
+    }
+    let checksum = CRC.checksum(&record);
+    let _fits = record.extend_from_slice(&checksum.to_le_bytes());
+    record
+}
+
+/// Decodes the bytes of a record to the stored settings of all fingers; `None` if the record stands for factory
+/// defaults.
+///
+/// # Errors
+/// The bytes are not a valid record of a device with `FINGERS` fingers.
+#[inline(never)]
+pub fn decode<const FINGERS: usize>(
+    bytes: &[u8],
+) -> Result<Option<[StoredSettings; FINGERS]>, RecordError> {
+    let wrong_length = RecordError::Length(bytes.len());
+    let (content, checksum) = bytes
+        .split_last_chunk::<CHECKSUM_BYTES>()
+        .ok_or(wrong_length)?;
+    let (header, values) = content
+        .split_first_chunk::<HEADER_BYTES>()
+        .ok_or(wrong_length)?;
+    if CRC.checksum(content) != u32::from_le_bytes(*checksum) {
+        return Err(RecordError::Checksum);
+    }
+    let [version_low, version_high, kind, fingers] = *header;
+    match u16::from_le_bytes([version_low, version_high]) {
+        RECORD_LAYOUT_VERSION => {}
+        version => return Err(RecordError::Version(version)),
+    }
+    let expected_fingers = match kind {
+        KIND_FACTORY_DEFAULTS => 0,
+        KIND_SETTINGS => FINGERS,
+        kind => return Err(RecordError::Kind(kind)),
+    };
+    if usize::from(fingers) != expected_fingers {
+        return Err(RecordError::Fingers(fingers));
+    }
+    if values.len() != expected_fingers * BYTES_PER_FINGER {
+        return Err(wrong_length);
+    }
+    if kind == KIND_FACTORY_DEFAULTS {
+        return Ok(None);
+    }
+    let (words, _) = values.as_chunks::<4>();
+    let mut words = words.iter().map(|word| i32::from_le_bytes(*word));
+    let settings = core::array::from_fn(|_| {
+        StoredSettings::from_record_values(words.by_ref().take(VALUES_PER_FINGER))
+    });
+    for (finger, one) in (0..).zip(&settings) {
+        if let Some((allowed, value)) = one.first_value_out_of_range() {
+            return Err(RecordError::OutOfRange {
+                finger,
+                allowed,
+                value,
+            });
+        }
+    }
+    Ok(Some(settings))
+}
+
+#[cfg(test)]
+mod tests;

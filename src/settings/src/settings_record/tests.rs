@@ -1,0 +1,151 @@
+use std::string::ToString;
+
+use proptest::prelude::*;
+
+use super::*;
+
+/// Any settings within their ranges, in units of their last decimals.
+fn stored_settings() -> impl Strategy<Value = StoredSettings> {
+    let correction = (
+        -1_200_000..=1_200_000,
+        -500_000..=500_000,
+        -200_000..=200_000,
+    );
+    let tile = (
+        100_000..=15_000_000,
+        0..=500_000,
+        0..=5_000_000,
+        1000..=5_000_000,
+        0..=1_000_000,
+    );
+    let steps = proptest::array::uniform13(-4000..=4000);
+    (steps, proptest::array::uniform5(correction), tile).prop_map(|(steps, corrections, tile)| {
+        let scaled = |units: i32, per: f64| f64::from(units) / per;
+        StoredSettings {
+            calibration: Calibration {
+                steps_counts: steps.map(|step| scaled(step, 1e3)),
+                corrections: corrections.map(|(offset, slope, curvature)| Correction {
+                    offset_k: scaled(offset, 1e6),
+                    slope: scaled(slope, 1e7),
+                    curvature_1_k: scaled(curvature, 1e8),
+                }),
+            },
+            tile: Tile::from_array(
+                [tile.0, tile.1, tile.2, tile.3, tile.4].map(|value| scaled(value, 1e6)),
+            ),
+        }
+    })
+}
+
+/// Appends the checksum.
+fn with_checksum(content: &[u8]) -> std::vec::Vec<u8> {
+    // Bit by bit, as the polynomial 0xedb88320 is defined.
+    let crc = content.iter().fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(*byte), |crc, _| {
+            (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg())
+        })
+    });
+    [content, &(!crc).to_le_bytes()].concat()
+}
+
+proptest! {
+    #[test]
+    fn decode_restores_what_encode_wrote_bit_for_bit(stored in proptest::array::uniform5(stored_settings())) {
+        prop_assert_eq!(decode::<5>(&encode(Some(&stored))), Ok(Some(stored)));
+    }
+
+    #[test]
+    fn decode_accepts_any_bytes_without_panicking_and_checks_ranges(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        prop_assert!(decode::<1>(&bytes).is_err());
+        // Bytes with a valid checksum, then with a valid header too.
+        let _any_content = decode::<1>(&with_checksum(&bytes));
+        let mut content = std::vec![1, 0, 1, 1];
+        content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { BYTES_PER_FINGER }));
+        if let Ok(Some([stored])) = decode::<1>(&with_checksum(&content)) {
+            prop_assert_eq!(stored.first_value_out_of_range(), None);
+        }
+    }
+
+    #[test]
+    fn the_checksum_detects_any_flipped_bit(stored in stored_settings(), bit in 0..8 * (HEADER_BYTES + BYTES_PER_FINGER + CHECKSUM_BYTES)) {
+        let mut bytes = encode(Some(&[stored]));
+        bytes[bit / 8] ^= 1 << (bit % 8);
+        prop_assert_eq!(decode::<1>(&bytes), Err(RecordError::Checksum));
+    }
+}
+
+#[test]
+fn the_record_has_the_documented_layout() {
+    let stored = StoredSettings::from_settings(&Settings::default());
+    let bytes = encode(Some(&[stored]));
+    assert_eq!(bytes.len(), 140);
+    assert_eq!(bytes[..4], [1, 0, 1, 1]);
+    // 28 zeros, then the nominal tile in millionths.
+    let tile = [2_910_000, 58_500, 103_000, 100_000, 16_000]
+        .map(i32::to_le_bytes)
+        .concat();
+    assert_eq!(
+        (&bytes[4..116], &bytes[116..136]),
+        (&[0; 112][..], &tile[..])
+    );
+    assert_eq!(with_checksum(&bytes[..136]), bytes[..]);
+    assert_eq!(encode::<1>(None)[..], with_checksum(&[1, 0, 0, 0])[..]);
+    assert_eq!(decode::<1>(&with_checksum(&[1, 0, 0, 0])), Ok(None));
+}
+
+#[test]
+fn each_invalid_record_has_its_error_message() {
+    let good = encode(Some(&[StoredSettings::from_settings(&Settings::default())]));
+    let content = &good[..good.len() - CHECKSUM_BYTES];
+    let changed = |at: usize, value: &[u8]| {
+        let mut content = content.to_vec();
+        content[at..at + value.len()].copy_from_slice(value);
+        decode::<1>(&with_checksum(&content))
+            .expect_err("changed")
+            .to_string()
+    };
+    assert_eq!(
+        changed(0, &[2]),
+        "stored settings have the unknown version 2; known: 1"
+    );
+    assert_eq!(
+        changed(2, &[9]),
+        "stored settings have the unknown kind 9; known: 0 1"
+    );
+    assert_eq!(changed(3, &[5]), "stored settings are those of 5 fingers");
+    // The first step, counts; the third value of the first correction, 1/K; the tile's gain, K/s/A.
+    assert_eq!(
+        changed(4, &4001i32.to_le_bytes()),
+        "stored step 4.001 of finger 0 out of range; -4 to 4 counts"
+    );
+    assert_eq!(
+        changed(4 + 4 * 15, &(-200_001i32).to_le_bytes()),
+        "stored curvature -0.00200001 of finger 0 out of range; -0.002 to 0.002 1/K"
+    );
+    assert_eq!(
+        changed(4 + 4 * 28, &99_999i32.to_le_bytes()),
+        "stored gain 0.099999 of finger 0 out of range; 0.1 to 15 K/s/A"
+    );
+    assert_eq!(
+        decode::<1>(&with_checksum(&content[..100])),
+        Err(RecordError::Length(104))
+    );
+    assert_eq!(decode::<1>(&[]), Err(RecordError::Length(0)));
+    assert_eq!(decode::<5>(&good), Err(RecordError::Fingers(1)));
+}
+
+#[test]
+fn stored_settings_determine_the_gains() {
+    let mut tile = Tile::NOMINAL;
+    tile.gain_k_s_a = 5.0;
+    let stored = StoredSettings {
+        calibration: Calibration::default(),
+        tile,
+    };
+    let settings = stored.to_complete_settings();
+    assert_eq!(StoredSettings::from_settings(&settings), stored);
+    assert_eq!(
+        [settings.gains, settings.gains_10hz],
+        super::super::Gains::for_both_loop_rates(&tile)
+    );
+}
