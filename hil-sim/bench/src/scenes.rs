@@ -191,6 +191,7 @@ fn reference_step(station: &mut Station, force: Force) -> u32 {
         .update_by_readings(station.skin, station.object, Some(force), 1);
     let scene = reference::PresentedObject {
         pair: &station.fixed[0].pair,
+        bodies: None,
         object: Some(station.object),
         mode: ContactModel::ContactResistance,
     };

@@ -7,8 +7,10 @@ use fixed::types::{I0F32, I1F31, I12F20};
 use super::relaxation_bank::{
     FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation, WINDOW,
 };
-use super::to_fixed;
+use super::{Fraction, to_fixed};
+use crate::finger::{AssumedFinger, THESIS};
 use crate::impedance::{Impedance, Relaxation};
+use crate::material::SKIN;
 
 /// Most fast relaxations of a body.
 pub const FAST_MAX: usize = 8;
@@ -76,6 +78,29 @@ pub struct Body {
     tick_gain: I12F20,
     inverse_horizon_gain: I0F32,
     state_shift: u32,
+}
+
+/// A finger in fixed point: its tissue, and the film of air on its skin before contact.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FingerBody {
+    /// Relaxations of the tissue in contact.
+    pub tissue: Body,
+    /// Scaled flux from the skin into the air per kelvin between skin and room.
+    pub air: Fraction,
+}
+
+impl FingerBody {
+    /// The finger for ticks of `tick_s` seconds, with the flux scaled by the effusivity of the thesis's skin.
+    ///
+    /// # Errors
+    /// The tissue's impedance has a rate or gain outside its range, or too many of them.
+    pub fn new(finger: &AssumedFinger, tick_s: f64) -> Result<Self, BodyError> {
+        let effusivity = SKIN.effusivity();
+        Ok(Self {
+            tissue: Body::new(&finger.impedance, effusivity, tick_s)?,
+            air: to_fixed(finger.air_w_m2k * libm::sqrt(tick_s) / effusivity),
+        })
+    }
 }
 
 /// State of a body.
@@ -174,6 +199,21 @@ impl Body {
         body.slow_input_gain = scaled(slow_input_gain);
         body.inverse_horizon_gain = to_fixed(1.0 / horizon_gain);
         Ok(body)
+    }
+
+    /// A half-space of this effusivity, J/(m² s^½ K), for ticks of `tick_s` seconds: the thesis's skin with other gains. An
+    /// effusivity below 1/200 of the skin's counts as that, because both take hardly any heat from a finger.
+    ///
+    /// # Errors
+    /// The effusivity is not a number.
+    pub fn half_space(effusivity: f64, tick_s: f64) -> Result<Self, BodyError> {
+        // The gains of the thesis's skin are scaled by the flux instead: Z is as 1 / effusivity.
+        let skin = SKIN.effusivity();
+        Self::new(
+            &THESIS.impedance,
+            skin * skin / effusivity.max(skin / 200.0),
+            tick_s,
+        )
     }
 
     /// The coefficients, for [`BodyState`].

@@ -4,14 +4,103 @@
 
 use core::fmt;
 
-use contact_model::fixed_point::{Celsius, ContactPair};
+use contact_model::finger::{MEAN, THESIS};
+use contact_model::fixed_point::{
+    Body, BodyError, Celsius, ContactPair, ContactPairError, FingerBody,
+};
+use contact_model::material::{Material, SKIN, Surface};
 
-use crate::StateName;
 use crate::control::{ControlParameters, Law};
 use crate::identification::{AbortReason, NormalEquationRow};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, ThermistorAverage};
+use crate::{StateName, TICK_HZ};
+
+/// Ticks last this long, s.
+const TICK_S: f64 = 1.0 / TICK_HZ as f64;
+
+/// A material that the host has chosen, with all that a contact with it needs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ChosenMaterial {
+    /// Name of the material, or `custom` if the host has given its properties; [`Command::Status`] reports this name.
+    pub name: &'static str,
+    /// Its properties.
+    pub properties: Material,
+    /// Contact constants of the finger's skin, this material and the display's surface, from which set-points and the
+    /// finger's heat flow are computed.
+    pub pair: ContactPair,
+    /// A half-space of it, for a finger that is none.
+    pub half_space: Body,
+}
+
+impl ChosenMaterial {
+    /// The material under a display of this surface. In `f64`, which takes long.
+    ///
+    /// # Errors
+    /// The contact model or the relaxations cannot represent a property.
+    pub fn new(
+        name: &'static str,
+        properties: &Material,
+        display: &Surface,
+    ) -> Result<Self, ContactPairError> {
+        let effusivity = properties.effusivity();
+        let unrepresentable = |_: BodyError| ContactPairError::OutOfRange(effusivity);
+        Ok(Self {
+            name,
+            properties: *properties,
+            pair: ContactPair::new(&SKIN, properties, display, TICK_S)?,
+            half_space: Body::half_space(effusivity, TICK_S).map_err(unrepresentable)?,
+        })
+    }
+}
+
+/// The finger that the device assumes for the one that touches. `None` in place of its body, which cannot occur for the
+/// fingers of the contact model, stands for the half-space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AssumedFinger {
+    /// The thesis's half-space of skin.
+    Thesis(Option<FingerBody>),
+    /// The mean layered finger: the device's default.
+    Mean(Option<FingerBody>),
+}
+
+impl AssumedFinger {
+    /// The thesis's finger. Computed in `f64`, which takes long.
+    #[must_use]
+    pub fn thesis() -> Self {
+        Self::Thesis(FingerBody::new(&THESIS, TICK_S).ok())
+    }
+
+    /// The mean finger. Computed in `f64`, which takes long.
+    #[must_use]
+    pub fn mean() -> Self {
+        Self::Mean(FingerBody::new(&MEAN, TICK_S).ok())
+    }
+
+    /// Its word in the protocol.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Thesis(_) => "thesis",
+            Self::Mean(_) => "mean",
+        }
+    }
+
+    /// Relaxations of its tissue.
+    #[must_use]
+    pub const fn body(&self) -> Option<&FingerBody> {
+        match self {
+            Self::Thesis(body) | Self::Mean(body) => body.as_ref(),
+        }
+    }
+}
+
+impl Default for AssumedFinger {
+    fn default() -> Self {
+        Self::mean()
+    }
+}
 
 /// A command or query of the host to one finger's station. All values are within their ranges; whether the station's
 /// state permits the command is decided only when the station executes it.
@@ -27,16 +116,17 @@ pub enum Command {
         /// Time from one line of telemetry to the next, ms, up to 60000; 0 switches telemetry off.
         interval_ms: u32,
     },
-    /// Choose the material of the object that `start` presents. If an object is presented already, the new one replaces
-    /// it at once; if a finger touches, a new contact begins.
-    Material {
-        /// Name of the material, or `custom` if the host has given its properties; [`Command::Status`] reports this
-        /// name.
-        name: &'static str,
-        /// Contact constants of the finger's skin, this material and the display's surface, from which set-points and
-        /// the finger's heat flow are computed.
-        pair: ContactPair,
-    },
+    /// Choose the material of the object that `start` presents, as a half-space. If an object is presented already, the
+    /// new one replaces it at once; if a finger touches, a new contact begins.
+    Material(ChosenMaterial),
+    /// Report the properties of the chosen material. Never refused.
+    MaterialProperties,
+    /// Choose how the object conducts heat behind its touched face: by these relaxations, or as a half-space of its
+    /// material (`None`). If a finger touches, a new contact begins.
+    Body(Option<Body>),
+    /// Choose the finger that is assumed for the one that touches; a finger that touches then begins a new contact.
+    /// `None` changes nothing: the answer is the assumed finger.
+    Finger(Option<AssumedFinger>),
     /// Choose the object's temperature before contact, °C; `None` takes the room's. If a finger touches, a new contact
     /// begins.
     Object(Option<Celsius>),
@@ -96,6 +186,10 @@ pub enum Reply {
     Status(Status),
     /// Answer to [`Command::Law`] with `None`: the control law in use.
     Law(Law),
+    /// Answer to [`Command::MaterialProperties`]; `None` before a material is chosen.
+    Material(Option<Material>),
+    /// Answer to [`Command::Finger`] with `None`: the assumed finger's word in the protocol.
+    Finger(&'static str),
     /// Answer to [`Command::Cause`]: cause of the present trip or, after `clear`, of the last one. `None` if the
     /// station has not tripped since the start of the program, and was not tripped when it started.
     Cause(Option<TripCause>),

@@ -18,6 +18,16 @@ pub fn read_word<'a>(words: &mut Words<'a>, name: &'static str) -> Result<&'a st
     words.next().ok_or(Error::Missing(name))
 }
 
+/// Checks that no word is left on a line.
+///
+/// # Errors
+/// [`Error::Extra`] with the word that follows.
+pub fn expect_end(words: &mut Words<'_>) -> Result<(), Error> {
+    words
+        .next()
+        .map_or(Ok(()), |extra| Err(Error::Extra(extra.into())))
+}
+
 /// Skips the next word of a line if it is `expected`, and returns whether it is. Otherwise the word stays the next one.
 pub fn skip_if_next_is(words: &mut Words<'_>, expected: &str) -> bool {
     let mut rest = words.clone();

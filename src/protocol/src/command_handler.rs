@@ -2,13 +2,18 @@
 
 use core::array;
 
+use contact_model::fixed_point::Body;
+use contact_model::material::{Material, SKIN};
+use contact_model::slab::{Back, Slab};
 use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
 use thermal_device::command::{self, Command, Refused, WithFingerIndex};
-use thermal_device::{FingerIndex, StateName};
+use thermal_device::{FingerIndex, StateName, TICK_HZ};
 use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode};
 
+use crate::arguments::{expect_end, read_word};
 use crate::finger_address::split_address;
-use crate::{Error, Reply, Request};
+use crate::upload::Upload;
+use crate::{Error, Reply, Request, UploadError};
 
 /// A function that executes a command in the station (the control) of the given finger, or in the stations of all
 /// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
@@ -34,6 +39,8 @@ pub type ExecutionResult = Result<WithFingerIndex<command::Reply>, WithFingerInd
 #[derive(Clone, Debug)]
 pub struct CommandHandler<const FINGERS: usize> {
     sessions: [CommissioningSession; FINGERS],
+    /// The upload that has begun and is not committed yet.
+    upload: Option<Upload>,
 }
 
 impl<const FINGERS: usize> CommandHandler<FINGERS> {
@@ -42,6 +49,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     pub fn new(settings: Settings) -> Self {
         Self {
             sessions: array::from_fn(|_| CommissioningSession::new(settings)),
+            upload: None,
         }
     }
 
@@ -53,6 +61,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             |stored: &StoredSettings| CommissioningSession::new(stored.to_complete_settings());
         Self {
             sessions: stored.each_ref().map(session),
+            upload: None,
         }
     }
 
@@ -93,19 +102,26 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             finger: number,
             content,
         };
-        let request = Request::parse(line, self.sessions[0].settings()).map_err(|content| {
-            WithFingerIndex {
-                finger: number,
-                content,
-            }
-        })?;
+        let rejected = |content| WithFingerIndex {
+            finger: number,
+            content,
+        };
+        let request = Request::parse(line, self.sessions[0].settings()).map_err(rejected)?;
         match request {
             Request::Identify => Ok(addressed(Reply::Identity {
                 fingers: FINGERS as u8,
             })),
-            Request::Station(command) => match execute(finger, command) {
-                Ok(reply) => Ok(reply.map_content(Reply::Station)),
-                Err(refused) => Err(refused.map_content(Error::from)),
+            Request::Station(command) => Self::execute_in_stations(command, finger, execute),
+            Request::Slab { thickness_mm, back } => {
+                let material = Self::chosen_material(finger, &mut execute);
+                let material = material.ok_or(Error::SlabNeedsMaterial);
+                let body = material.and_then(|material| slab_body(&material, thickness_mm, back));
+                let command = Command::Body(Some(body.map_err(rejected)?));
+                Self::execute_in_stations(command, finger, execute)
+            }
+            Request::Upload => match self.continue_upload(line).map_err(rejected)? {
+                None => Ok(addressed(Reply::DONE)),
+                Some(body) => Self::execute_in_stations(Command::Body(Some(body)), finger, execute),
             },
             Request::Commissioning(request) => self.execute_in_sessions(request, finger, execute),
             Request::Storage(order) => match Self::storage_rejection(order, finger, execute) {
@@ -113,6 +129,59 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 Some(error) => Err(error),
             },
         }
+    }
+
+    /// Executes a command in the station of `finger`, or in all stations for `None`.
+    fn execute_in_stations(
+        command: Command,
+        finger: Option<FingerIndex<FINGERS>>,
+        mut execute: impl ExecuteOnStations<FINGERS>,
+    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Error>> {
+        match execute(finger, command) {
+            Ok(reply) => Ok(reply.map_content(Reply::Station)),
+            Err(refused) => Err(refused.map_content(Error::from)),
+        }
+    }
+
+    /// Properties of the material that the station of `finger`, or the first one, presents.
+    fn chosen_material(
+        finger: Option<FingerIndex<FINGERS>>,
+        execute: &mut impl ExecuteOnStations<FINGERS>,
+    ) -> Option<Material> {
+        let reply = execute(
+            finger.or(Some(FingerIndex::FIRST)),
+            Command::MaterialProperties,
+        );
+        match reply.map(|reply| reply.content) {
+            Ok(command::Reply::Material(material)) => material,
+            _ => None,
+        }
+    }
+
+    /// Takes one line of an upload; the uploaded object after the last one. After an error in `commit` there is no upload
+    /// any more.
+    fn continue_upload(&mut self, line: &str) -> Result<Option<Body>, Error> {
+        let mut words = line.split_ascii_whitespace();
+        words.next();
+        let step = read_word(&mut words, "begin, row or commit")?;
+        match (step, &mut self.upload) {
+            ("begin", upload) => {
+                *upload = None;
+                *upload = Some(Upload::begin(line, &mut words)?);
+            }
+            ("row", Some(upload)) => upload.add_row(line, &mut words)?,
+            ("commit", upload @ Some(_)) => {
+                let checksum = read_word(&mut words, "checksum")?;
+                expect_end(&mut words)?;
+                return upload
+                    .take()
+                    .map(|upload| upload.commit(checksum))
+                    .transpose();
+            }
+            ("row" | "commit", None) => return Err(Error::Upload(UploadError::NotBegun)),
+            (unknown, _) => return Err(Error::UnknownUpload(unknown.into())),
+        }
+        Ok(None)
     }
 
     /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With
@@ -203,4 +272,17 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
         None
     }
+}
+
+/// Relaxations of a slab of a material.
+fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<Body, Error> {
+    let slab = Slab {
+        thickness_m: 1e-3 * thickness_mm,
+        conductivity_w_mk: material.surface.conductivity_w_mk,
+        capacity_j_m3k: material.volumetric_heat_j_m3k(),
+        back,
+    };
+    let relaxations = slab.relaxations();
+    let tick_s = 1.0 / f64::from(TICK_HZ);
+    Body::new(&relaxations.impedance(), SKIN.effusivity(), tick_s).map_err(Error::Body)
 }

@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use contact_model::fixed_point::ContactPairError;
+use contact_model::fixed_point::{BodyError, ContactPairError};
 use contact_model::material::MATERIALS;
 
 use thermal_commissioning::{
@@ -14,7 +14,9 @@ use thermal_device::control::Law;
 use thermal_settings::Range;
 
 use crate::commissioning_commands::SETTING_WORDS;
+use crate::object::BACK_WORDS;
 use crate::request::{CUSTOM_MATERIAL_WORD, MODE_WORDS};
+use crate::upload::UploadError;
 use crate::{LINE_MAX_BYTES, LineError, Request};
 
 /// The first 20 bytes of a word from the host; `Display` writes them in single quotes, as part of an error message.
@@ -69,6 +71,18 @@ pub enum Error {
     UnknownFinger(WordExcerpt, usize),
     /// The argument of `material`, quoted here, is neither the name of a material nor `custom`.
     UnknownMaterial(WordExcerpt),
+    /// The argument of `finger`, quoted here, is neither `mean` nor `thesis`.
+    UnknownAssumedFinger(WordExcerpt),
+    /// The word after the thickness of a slab, quoted here, is none of `insulated`, `held` and `film`.
+    UnknownBack(WordExcerpt),
+    /// A word of a line `upload`, quoted here, is none of `begin`, `row`, `commit` and the kind `object`.
+    UnknownUpload(WordExcerpt),
+    /// `object slab` before a material is chosen, of which the slab would be.
+    SlabNeedsMaterial,
+    /// A line of an upload is rejected, for this reason.
+    Upload(UploadError),
+    /// The device cannot follow the object, for this reason; the present object stays.
+    Body(BodyError),
     /// The argument of `mode`, quoted here, is neither `contact` nor `semi-infinite`.
     UnknownMode(WordExcerpt),
     /// The argument of `law`, quoted here, is none of the control laws `pi-10hz`, `pi` and `model`.
@@ -147,6 +161,19 @@ impl fmt::Display for Error {
                 let names = MATERIALS.iter().map(|(name, _)| *name);
                 write_unknown_word(f, "material", word, names.chain([CUSTOM_MATERIAL_WORD]))
             }
+            Self::UnknownAssumedFinger(word) => {
+                write_unknown_word(f, "finger", word, ["mean", "thesis"].into_iter())
+            }
+            Self::UnknownBack(word) => write_unknown_word(f, "back", word, BACK_WORDS.into_iter()),
+            Self::UnknownUpload(word) => write_unknown_word(
+                f,
+                "upload",
+                word,
+                ["begin", "row", "commit", "object"].into_iter(),
+            ),
+            Self::SlabNeedsMaterial => f.write_str("a slab needs a material first"),
+            Self::Upload(error) => write_upload_error(f, *error),
+            Self::Body(error) => error.fmt(f),
             Self::UnknownMode(word) => {
                 write_unknown_word(f, "mode", word, MODE_WORDS.iter().map(|(name, _)| *name))
             }
@@ -214,6 +241,30 @@ fn write_line_error(f: &mut fmt::Formatter<'_>, error: LineError) -> fmt::Result
         LineError::NotText(byte) => write!(f, "byte 0x{byte:02x} is not printable ASCII"),
         LineError::Reception => f.write_str("a byte was damaged or lost; send the line again"),
         LineError::QueueFull => f.write_str("busy; wait for the answer before the next line"),
+    }
+}
+
+fn write_upload_error(f: &mut fmt::Formatter<'_>, error: UploadError) -> fmt::Result {
+    match error {
+        UploadError::NotBegun => {
+            f.write_str("no upload has begun; upload begin object COUNT DIRECT first")
+        }
+        UploadError::NextRow(next) => write!(f, "not the next row, which is {next}"),
+        UploadError::Incomplete(there, count) => {
+            write!(
+                f,
+                "{there} of {count} rows; nothing is changed, upload again"
+            )
+        }
+        UploadError::Checksum(actual) => {
+            write!(
+                f,
+                "checksum is {actual:08x}; nothing is changed, upload again"
+            )
+        }
+        UploadError::NotAChecksum => {
+            f.write_str("checksum must have 8 hexadecimal digits; nothing is changed, upload again")
+        }
     }
 }
 

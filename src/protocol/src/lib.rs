@@ -12,9 +12,11 @@ mod error;
 mod finger_address;
 mod line_buffer;
 mod line_reader;
+mod object;
 mod reply;
 mod request;
 mod telemetry;
+mod upload;
 
 pub use command_handler::{CommandHandler, ExecuteOnStations, ExecutionResult};
 pub use error::{Error, StorageFailureText, WordExcerpt};
@@ -22,6 +24,7 @@ pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineRea
 pub use reply::Reply;
 pub use request::Request;
 pub use telemetry::{TelemetryLine, telemetry_line};
+pub use upload::UploadError;
 
 #[cfg(test)]
 mod tests;

@@ -58,6 +58,9 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
         command::Reply::Law(law) => write!(f, "ok law={}", law.name()),
         command::Reply::Cause(cause) => trip_cause_line(cause.as_ref()).fmt(f),
         // No line from the host requests averages and normal equations, which commissioning sessions evaluate.
+        command::Reply::Finger(name) => write!(f, "ok finger={name}"),
+        // No line from the host requests a material's properties.
+        command::Reply::Material(_) => f.write_str("ok"),
         command::Reply::Done | command::Reply::Average(_) | command::Reply::NormalEquation(_) => {
             f.write_str("ok")
         }

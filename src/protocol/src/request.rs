@@ -1,11 +1,10 @@
 //! Parsing of a line from the host to a request.
 
-use contact_model::fixed_point::{Celsius, ContactPair};
-use contact_model::material::{MATERIALS, Material, SKIN, Surface};
+use contact_model::material::{MATERIALS, Material, Surface};
+use contact_model::slab::Back;
 
 use thermal_commissioning::{SessionRequest, StorageOrder};
-use thermal_device::TICK_HZ;
-use thermal_device::command::Command;
+use thermal_device::command::{AssumedFinger, ChosenMaterial, Command};
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::Setpoint;
@@ -14,9 +13,10 @@ use thermal_settings::{Range, Settings};
 
 use crate::Error;
 use crate::arguments::{
-    Words, find_entry_by_word, read_number, read_numbers, read_word, skip_if_next_is,
+    Words, expect_end, find_entry_by_word, read_number, read_numbers, read_word, skip_if_next_is,
 };
 use crate::commissioning_commands::{parse_calibrate, parse_set_arguments, parse_settings_query};
+use crate::object::parse_object;
 
 /// A line from the host after parsing: a command with its arguments, which are within their ranges.
 #[allow(
@@ -30,6 +30,15 @@ pub enum Request {
     /// A line that the stations (the control) of the addressed fingers execute as this command, such as `arm` or
     /// `material`.
     Station(Command),
+    /// The line `object slab ...`: the object is a slab of the chosen material.
+    Slab {
+        /// Its thickness, mm.
+        thickness_mm: f64,
+        /// What is behind it.
+        back: Back,
+    },
+    /// A line `upload`: begin, a row, or commit.
+    Upload,
     /// A line about settings or calibration, which the commissioning sessions of the addressed fingers execute:
     /// `calibrate`, `tune result`, `margins`, `settings` or `set`.
     Commissioning(SessionRequest),
@@ -63,7 +72,9 @@ impl Request {
         "state" => Self::Station(Command::Status),
         "stream" => Self::Station(parse_stream(words)?),
         "material" => Self::Station(parse_material(words, display)?),
-        "object" => Self::Station(Command::Object(parse_object_temperature(words)?)),
+        "object" => parse_object(words)?,
+        "finger" => Self::Station(Command::Finger(words.next().map(parse_finger).transpose()?)),
+        "upload" => Self::Upload,
         "mode" => Self::Station(Command::Mode(parse_mode(words)?)),
         "law" => Self::Station(Command::Law(words.next().map(parse_law).transpose()?)),
         "arm" => Self::Station(Command::Arm),
@@ -94,10 +105,12 @@ impl Request {
         let mut words = line.split_ascii_whitespace();
         let name = read_word(&mut words, "command")?;
         let request = Self::parse_arguments(name, &mut words, &settings.display)?;
-        match words.next() {
-            None => Ok(request),
-            Some(extra) => Err(Error::Extra(extra.into())),
+        if request == Self::Upload {
+            // Its arguments depend on the upload so far.
+            return Ok(request);
         }
+        expect_end(&mut words)?;
+        Ok(request)
     }
 }
 
@@ -122,12 +135,6 @@ static HOLD_TEMPERATURE_RANGE: Range = Range {
     unit: "C",
     min: SETPOINT_MIN_C,
     max: SETPOINT_MAX_C,
-};
-static OBJECT_TEMPERATURE_RANGE: Range = Range {
-    name: "object temperature",
-    unit: "C",
-    min: -20.0,
-    max: 60.0,
 };
 /// Allowed ranges of the properties of a material in the line `material custom ...`, in their order on the line:
 /// thermal conductivity, density, specific heat, roughness and slope of the asperities.
@@ -174,13 +181,12 @@ fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
     })
 }
 
-fn parse_object_temperature(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
-    if skip_if_next_is(words, "room") {
-        return Ok(None);
+fn parse_finger(name: &str) -> Result<AssumedFinger, Error> {
+    match name {
+        "mean" => Ok(AssumedFinger::mean()),
+        "thesis" => Ok(AssumedFinger::thesis()),
+        unknown => Err(Error::UnknownAssumedFinger(unknown.into())),
     }
-    Ok(Some(
-        read_number(words, &OBJECT_TEMPERATURE_RANGE)?.to_num(),
-    ))
 }
 
 fn parse_mode(words: &mut Words<'_>) -> Result<ContactModel, Error> {
@@ -207,9 +213,8 @@ fn parse_material(words: &mut Words<'_>, display: &Surface) -> Result<Command, E
     } else {
         find_entry_by_word(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
     };
-    let pair = ContactPair::new(&SKIN, &material, display, 1.0 / f64::from(TICK_HZ))
-        .map_err(Error::ContactPair)?;
-    Ok(Command::Material { name, pair })
+    let chosen = ChosenMaterial::new(name, &material, display).map_err(Error::ContactPair)?;
+    Ok(Command::Material(chosen))
 }
 
 fn parse_custom_material(words: &mut Words<'_>) -> Result<Material, Error> {

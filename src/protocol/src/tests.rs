@@ -10,6 +10,7 @@ use super::{
     ANSWER_MAX_BYTES, Error, LINE_MAX_BYTES, LineError, LineReader, Reply, Request, TelemetryLine,
 };
 use thermal_commissioning::IdentificationError;
+use thermal_device::command::AssumedFinger;
 use thermal_device::command::{self, Command, Status};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
@@ -41,6 +42,12 @@ fn every_command_is_parsed() {
             },
         ),
         ("object room", Command::Object(None)),
+        ("object half-space", Command::Body(None)),
+        ("finger", Command::Finger(None)),
+        (
+            "finger thesis",
+            Command::Finger(Some(AssumedFinger::thesis())),
+        ),
         ("object -20", Command::Object(Some(Celsius::lit("-20")))),
         ("object 23.25", Command::Object(Some(Celsius::lit("23.25")))),
         ("law", Command::Law(None)),
@@ -63,7 +70,7 @@ fn every_command_is_parsed() {
     }
     // Copper by its name and by its properties.
     let pair_of = |line| match parse(line) {
-        Ok(Request::Station(Command::Material { pair, .. })) => pair,
+        Ok(Request::Station(Command::Material(material))) => material.pair,
         other => panic!("{line}: {other:?}"),
     };
     let (named, custom) = (
@@ -89,7 +96,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id state stream material object mode law arm hold start abort clear cause \
+            "err unknown command 'fly'; known: id state stream material object finger upload mode law arm hold start abort clear cause \
              calibrate tune margins settings set save forget",
         ),
         (

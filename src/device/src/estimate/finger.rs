@@ -1,13 +1,14 @@
 //! The finger: its temperature before contact, its force, and by how much the display has cooled its skin.
 
 use contact_model::fixed_point::{
-    Celsius, Contact, ContactConductance, ContactPair, Force, HalfSpace, contact_area,
-    log2_relative_pressure, product, saturating_product,
+    Celsius, Contact, ContactConductance, ContactPair, Force, contact_area, log2_relative_pressure,
+    product, saturating_product,
 };
 use fixed::types::{I2F30, I10F22};
 
 use super::Watt;
 use super::force_means::{ForceChange, ForceMeans};
+use super::skin_state::{Bodies, SkinState, flux_beyond_air};
 
 /// Time constant of the low-pass filters of skin and room temperature while no finger touches, as an exponent of two:
 /// 2^8 ticks of 1 ms, 0.26 s.
@@ -33,7 +34,7 @@ const CONSTANT_FORCE_TOLERANCE_SHIFT: u32 = 6;
 /// of two) since they were computed. A smaller change of the force has no noticeable effect on the skin's temperature.
 const CONDUCTANCE_FORCE_TOLERANCE_SHIFT: u32 = 10;
 /// `e_skin / sqrt(dt)`, W/(K mm²), with the effusivity of the skin (1170 J/(m² K s^½)) and the tick `dt` of 1 ms.
-/// [`HalfSpace`] represents a heat flux as a scaled flux, K; multiplied by this constant, the scaled flux is the heat
+/// [`HalfSpace`](contact_model::fixed_point::HalfSpace) represents a heat flux as a scaled flux, K; multiplied by this constant, the scaled flux is the heat
 /// flux into the display in W/mm².
 const SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2: I2F30 = I2F30::from_bits(39_728_000);
 
@@ -71,13 +72,20 @@ pub struct ContactConductances {
 }
 
 impl ContactConductances {
-    fn new(pair: &ContactPair, force: Force) -> Self {
+    fn new(pair: &ContactPair, bodies: Option<Bodies<'_>>, force: Force) -> Self {
         let contact = pair.at_pressure(log2_relative_pressure(force));
+        let (display, object) = match bodies {
+            None => (contact.display_conductance(), contact.object_conductance()),
+            Some(Bodies { finger, object }) => (
+                contact.display_conductance_of(&finger.tissue),
+                contact.conductance_of(&finger.tissue, object),
+            ),
+        };
         Self {
             force,
             contact,
-            display: contact.display_conductance(),
-            object: contact.object_conductance(),
+            display,
+            object,
         }
     }
 
@@ -196,6 +204,7 @@ impl FingerContact {
         if self.contact_at_mean_for_setpoints().is_none() {
             self.conductances = Some(ContactConductances::new(
                 pair,
+                None,
                 self.force.mean_for_setpoints(),
             ));
         }
@@ -225,7 +234,7 @@ pub struct FingerEstimator {
     contact: Option<FingerContact>,
     /// Thermal state of the skin. Its output is the cooling of the skin's surface, K, by the heat that the skin has
     /// given to the display: positive where the skin is colder than before contact. Decays to zero after lifting.
-    skin_state_on_display: HalfSpace,
+    skin_state_on_display: SkinState,
 }
 
 impl FingerEstimator {
@@ -297,7 +306,7 @@ impl FingerEstimator {
     /// generator chooses the force for which set-points are computed. Second, the thermal state of the skin, whose
     /// output is the cooling of the skin's surface by the display, K: positive where the skin is colder than before
     /// contact.
-    pub const fn contact_and_skin_state(&mut self) -> (Option<&mut FingerContact>, &HalfSpace) {
+    pub const fn contact_and_skin_state(&mut self) -> (Option<&mut FingerContact>, &SkinState) {
         (self.contact.as_mut(), &self.skin_state_on_display)
     }
 
@@ -305,7 +314,7 @@ impl FingerEstimator {
     /// with the display so far: positive where the skin is colder than before contact, negative where the display has
     /// warmed it. Decays to zero after lifting.
     #[must_use]
-    pub const fn skin_state_on_display(&self) -> &HalfSpace {
+    pub const fn skin_state_on_display(&self) -> &SkinState {
         &self.skin_state_on_display
     }
 
@@ -322,23 +331,45 @@ impl FingerEstimator {
     /// display is warmer than the skin's surface, 0 without contact. Computes the contact conductances again if the
     /// mean force has changed by more than 1/1024. Of `pair` only the properties of skin and display matter here, so
     /// the caller may give a pair with any object.
-    pub fn step_skin_heat_flow(&mut self, pair: &ContactPair, surface: Celsius) -> Watt {
-        let Some(PreContactTemperatures { skin, .. }) = self.before_contact else {
+    pub fn step_skin_heat_flow(
+        &mut self,
+        pair: &ContactPair,
+        bodies: Option<Bodies<'_>>,
+        surface: Celsius,
+    ) -> Watt {
+        let Some(PreContactTemperatures { skin, room }) = self.before_contact else {
             return Watt::ZERO;
         };
+        self.skin_state_on_display.make_fit(bodies);
         let Some(contact) = &mut self.contact else {
-            self.skin_state_on_display.step(Celsius::ZERO);
+            match (&mut self.skin_state_on_display, bodies) {
+                (SkinState::HalfSpace(state), _) => state.step(Celsius::ZERO),
+                (SkinState::Body(state), Some(Bodies { finger, .. })) => {
+                    let flux = flux_beyond_air(finger, None, state.free_response(), Celsius::ZERO);
+                    state.step(flux, &finger.tissue.relaxations());
+                }
+                (SkinState::Body(_), None) => {}
+            }
             return Watt::ZERO;
         };
         let force = contact.force.long_mean();
         let conductances = match &mut contact.conductances {
             Some(conductances) if conductances.are_valid_for_force(force) => conductances,
-            outdated => outdated.insert(ContactConductances::new(pair, force)),
+            outdated => outdated.insert(ContactConductances::new(pair, bodies, force)),
         };
-        let scaled_flux = conductances
-            .display
-            .scaled_flux(skin.saturating_sub(surface), &self.skin_state_on_display);
-        self.skin_state_on_display.step(scaled_flux);
+        let above_display = skin.saturating_sub(surface);
+        let cooling = self.skin_state_on_display.free_response();
+        let scaled_flux =
+            (conductances.display).scaled_flux_by(above_display.saturating_sub(cooling));
+        match (&mut self.skin_state_on_display, bodies) {
+            (SkinState::HalfSpace(state), _) => state.step(scaled_flux),
+            (SkinState::Body(state), Some(Bodies { finger, .. })) => {
+                let above_room = skin.saturating_sub(room);
+                let flux = flux_beyond_air(finger, Some(scaled_flux), cooling, above_room);
+                state.step(flux, &finger.tissue.relaxations());
+            }
+            (SkinState::Body(_), None) => {}
+        }
         let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
         saturating_product(flux_w_mm2, contact_area(force))
     }

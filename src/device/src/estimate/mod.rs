@@ -5,11 +5,13 @@ mod finger;
 mod force_means;
 mod plate_model;
 mod plate_observer;
+mod skin_state;
 
 pub use finger::{FingerContact, FingerEstimator, PreContactTemperatures};
 pub use force_means::{ForceChange, ForceMeans};
 pub use plate_model::{LegTemperatures, PlateModel, Watt};
 pub use plate_observer::{ObserverParameters, PlateObserver};
+pub use skin_state::{Bodies, SkinState, flux_beyond_air};
 
 use contact_model::fixed_point::{Celsius, ContactPair, Force};
 
@@ -47,7 +49,7 @@ impl Estimator {
     /// temperatures as estimated before this update. `touch` is the force, N, of a finger that touches, or `None`.
     /// `landed_ticks` is the number of ticks of 1 ms since the force rose from zero, at most 32; it is used only in the
     /// first tick of a contact. `pair` holds the thermal properties of finger, object and display; without `pair` the
-    /// finger's heat is taken as zero.
+    /// finger's heat is taken as zero. `bodies` are given if finger and object are not both half-spaces.
     #[inline(always)]
     pub fn update_estimates(
         &mut self,
@@ -55,6 +57,7 @@ impl Estimator {
         touch: Option<Force>,
         landed_ticks: u32,
         pair: Option<&ContactPair>,
+        bodies: Option<Bodies<'_>>,
     ) -> UncorrectedPlateTemperatures {
         let ValidReadings {
             display,
@@ -71,7 +74,7 @@ impl Estimator {
         self.finger
             .update_by_readings(skin, room, touch, landed_ticks);
         let heat = pair.map_or(Watt::ZERO, |pair| {
-            (self.finger).step_skin_heat_flow(pair, estimate.previous_surface)
+            (self.finger).step_skin_heat_flow(pair, bodies, estimate.previous_surface)
         });
         self.plate.correct_by_reading(display, sink, heat);
         estimate

@@ -11,10 +11,12 @@ use core::ops::RangeInclusive;
 
 use contact_model::fixed_point::{Celsius, ChordInterpolation, ContactPair, Force};
 
-use crate::estimate::{FingerContact, FingerEstimator, ForceChange, PreContactTemperatures};
+use crate::estimate::{
+    Bodies, FingerContact, FingerEstimator, ForceChange, PreContactTemperatures,
+};
 use crate::safety::Setpoint;
 use equivalent_forces::equivalent_forces;
-use skin_on_object::{ContactPairFactors, SkinOnObject};
+use skin_on_object::{ContactPairFactors, SkinInput, SkinOnObject};
 
 /// Largest error, K, of the set-point by interpolation in time, compared with Eq. 6-12 for the same force: 0.4 mK. The
 /// smaller it is, the more often Eq. 6-12 must be evaluated. Noise of the force may add up to 0.1 mK before the
@@ -51,6 +53,9 @@ pub struct PresentedObject<'a> {
     /// Constants of the contact of a finger's skin with the presented material, and of its contact with the display's
     /// surface. Contact conductances and set-points are computed from them.
     pub pair: &'a ContactPair,
+    /// Assumed finger and presented object, if they are not both half-spaces; Eq. 6-12 then does not hold, and the
+    /// set-point follows from the simulated skin on the object with every control law.
+    pub bodies: Option<Bodies<'a>>,
     /// Temperature of the object before contact, °C; `None` takes the temperature of the room.
     pub object: Option<Celsius>,
     /// Contact model that gives the set-point: with contact resistance (Eq. 6-12) or perfect contact (Eq. 3-1).
@@ -266,10 +271,10 @@ impl ReferenceGenerator {
     /// Lets a finger that touches the display begin a new contact with the object in the next tick. The simulated skin
     /// starts with the temperature that the real skin has on the display. Called when the host chooses another
     /// material, object temperature or contact model, and at `start`.
-    pub fn restart_contact(&mut self, finger: &mut FingerEstimator) {
+    pub fn restart_contact(&mut self, finger: &mut FingerEstimator, bodies: Option<Bodies<'_>>) {
         self.contact = None;
         self.skin_on_object
-            .restart_contact(finger.skin_state_on_display());
+            .restart_contact(finger.skin_state_on_display(), bodies);
         finger.forget_conductances();
     }
 
@@ -307,24 +312,25 @@ impl ReferenceGenerator {
                 object_presented.pair.interface_temperature(skin, object),
             ));
         }
-        let skin_above_object = skin.saturating_sub(object);
         if !self.factors.were_computed_for(object_presented.pair) {
             self.factors = ContactPairFactors::new(object_presented.pair);
         }
-        let factors = &self.factors;
+        let bodies = object_presented.bodies;
+        let input = SkinInput {
+            factors: &self.factors,
+            bodies,
+            skin_above_object: skin.saturating_sub(object),
+            skin_above_room: skin.saturating_sub(room),
+        };
         let (contact, skin_state_on_display) = finger.contact_and_skin_state();
         let Some(finger) = contact else {
             self.contact = None;
-            self.skin_on_object.step(None, factors, skin_above_object);
+            self.skin_on_object.step(None, &input);
             if !follow_skin {
                 return Some(Reference::at(object_presented.pair.preset(skin, object)));
             }
-            let setpoint = self.skin_on_object.setpoint(
-                factors,
-                skin,
-                skin_above_object,
-                Some(skin_state_on_display),
-            );
+            let setpoint =
+                (self.skin_on_object).setpoint(&input, skin, Some(skin_state_on_display));
             return Some(Reference::new(
                 setpoint,
                 setpoint.saturating_sub(waiting_offset_below_preset(skin, setpoint)),
@@ -348,8 +354,8 @@ impl ReferenceGenerator {
             }
         };
         let conductance = finger.conductances().map(|both| &both.object);
-        (self.skin_on_object).step(conductance, factors, skin_above_object);
-        let closed_form = finger.closed_form_is_valid() || !follow_skin;
+        (self.skin_on_object).step(conductance, &input);
+        let closed_form = bodies.is_none() && (finger.closed_form_is_valid() || !follow_skin);
         contact.schedule_interpolation(finger, object_presented.pair, closed_form, follow_skin);
         let interpolated = contact.interpolated_setpoint(
             finger,
@@ -357,13 +363,14 @@ impl ReferenceGenerator {
             follow_skin,
             &mut self.evaluations,
         );
-        let setpoint = interpolated.unwrap_or_else(|| {
-            (self.skin_on_object).setpoint(factors, skin, skin_above_object, None)
-        });
+        let setpoint =
+            interpolated.unwrap_or_else(|| (self.skin_on_object).setpoint(&input, skin, None));
         let correction = match finger.conductances() {
-            Some(both) if follow_skin => {
-                (self.skin_on_object).setpoint_correction(skin_state_on_display, &both.display)
-            }
+            Some(both) if follow_skin => (self.skin_on_object).setpoint_correction(
+                skin_state_on_display,
+                &both.display,
+                bodies,
+            ),
             _ => Celsius::ZERO,
         };
         let target = setpoint.saturating_add(correction);

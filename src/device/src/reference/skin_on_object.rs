@@ -4,9 +4,11 @@
 //! under a changing force, and in a contact that begins soon after another one.
 
 use contact_model::fixed_point::{
-    Celsius, ContactConductance, ContactPair, Fraction, HalfSpace, Ratio, saturating_product,
+    BodyState, Celsius, ContactConductance, ContactPair, Fraction, Ratio, saturating_product,
 };
 use fixed::types::U16F16;
+
+use crate::estimate::{Bodies, SkinState, flux_beyond_air};
 
 /// Constants of Eq. 6-12 for the contacts of a finger with one object and with the display. The default, before any
 /// object, is zero throughout; no heat flows with it.
@@ -47,13 +49,28 @@ impl ContactPairFactors {
     }
 }
 
+/// What one tick of the simulation takes, for a skin on an object.
+#[derive(Clone, Copy, Debug)]
+pub struct SkinInput<'a> {
+    /// Constants of Eq. 6-12.
+    pub factors: &'a ContactPairFactors,
+    /// Finger and object, if they are not both half-spaces.
+    pub bodies: Option<Bodies<'a>>,
+    /// The skin's temperature minus the object's, both before contact, K.
+    pub skin_above_object: Celsius,
+    /// The skin's temperature minus the room's, both before contact, K.
+    pub skin_above_room: Celsius,
+}
+
 /// Simulates, tick by tick, how the finger's skin would cool or warm if it touched the presented object instead of the
 /// display, under the measured force.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SkinOnObject {
     /// Thermal state of the simulated skin. Its output is the decrease of the skin's surface temperature since before
     /// contact, K; negative if the object has warmed the skin. It decays towards zero while no finger touches.
-    cooling: HalfSpace,
+    skin: SkinState,
+    /// Warming of the object's surface by the simulated heat, K; not used while both are half-spaces.
+    object: BodyState,
     /// Heat flux of this tick from the simulated skin into the object, positive out of the skin. It is counted as `q
     /// sqrt(dt) / e_skin`, K, with the flux `q`, the tick `dt` and the skin's effusivity `e_skin`.
     scaled_flux: Celsius,
@@ -61,53 +78,98 @@ pub struct SkinOnObject {
 
 impl SkinOnObject {
     /// Makes the simulated skin start a new contact with the presented object: it starts with the cooling that the
-    /// display has caused in the real skin, `skin_state_on_display`, and without heat flux.
-    pub fn restart_contact(&mut self, skin_state_on_display: &HalfSpace) {
-        self.cooling = skin_state_on_display.staggered();
+    /// display has caused in the real skin, `skin_state_on_display`, and without heat flux. An object that is no
+    /// half-space starts at its temperature before contact.
+    pub fn restart_contact(
+        &mut self,
+        skin_state_on_display: &SkinState,
+        bodies: Option<Bodies<'_>>,
+    ) {
+        self.skin = skin_state_on_display.staggered(bodies);
+        self.object = BodyState::default();
         self.scaled_flux = Celsius::ZERO;
     }
 
     /// Advances the simulated skin by one tick of 1 ms. `conductance` is that of the contact of skin and object. It is
-    /// `None` while no finger touches; then no heat flows, and the cooling of the skin decays towards zero.
-    /// `skin_above_object` is the skin's temperature minus the object's, both before contact, K.
-    pub fn step(
-        &mut self,
-        conductance: Option<&ContactConductance>,
-        factors: &ContactPairFactors,
-        skin_above_object: Celsius,
-    ) {
-        self.scaled_flux = conductance.map_or(Celsius::ZERO, |conductance| {
-            let without_resistance = saturating_product(skin_above_object, factors.weight);
-            conductance.scaled_flux(without_resistance, &self.cooling)
-        });
-        self.cooling.step(self.scaled_flux);
+    /// `None` while no finger touches; then no heat flows between them, and the cooling of the skin decays towards zero.
+    pub fn step(&mut self, conductance: Option<&ContactConductance>, input: &SkinInput<'_>) {
+        self.skin.make_fit(input.bodies);
+        let cooling = self.skin.free_response();
+        match (&mut self.skin, input.bodies) {
+            (SkinState::HalfSpace(state), _) => {
+                self.scaled_flux = conductance.map_or(Celsius::ZERO, |conductance| {
+                    let without_resistance =
+                        saturating_product(input.skin_above_object, input.factors.weight);
+                    conductance.scaled_flux(without_resistance, state)
+                });
+                state.step(self.scaled_flux);
+            }
+            (SkinState::Body(state), Some(Bodies { finger, object })) => {
+                let into_object = conductance.map(|conductance| {
+                    let difference = (input.skin_above_object)
+                        .saturating_sub(cooling)
+                        .saturating_sub(self.object.free_response());
+                    conductance.scaled_flux_by(difference)
+                });
+                let flux = flux_beyond_air(finger, into_object, cooling, input.skin_above_room);
+                state.step(flux, &finger.tissue.relaxations());
+                self.scaled_flux = into_object.unwrap_or(Celsius::ZERO);
+                self.object.step(self.scaled_flux, &object.relaxations());
+            }
+            (SkinState::Body(_), None) => {}
+        }
     }
 
     /// The set-point by Eq. 6-12, °C: the temperature of the simulated skin's surface, less the temperature drop that
-    /// the simulated heat flow would cause across the display's contact. `skin_above_object` is the skin's temperature
-    /// minus the object's, both before contact, K. `skin_state_on_display` is `None` during contact. While no finger
-    /// touches, it is the state of the real skin, whose surface temperature is then used in place of the simulated one,
-    /// because the real skin is the one that lands next.
+    /// the simulated heat flow would cause across the display's contact. `skin_state_on_display` is `None` during
+    /// contact. While no finger touches, it is the state of the real skin, whose surface temperature is then used in
+    /// place of the simulated one, because the real skin is the one that lands next.
     #[must_use]
     pub fn setpoint(
         &self,
-        factors: &ContactPairFactors,
+        input: &SkinInput<'_>,
         skin_before_contact: Celsius,
-        skin_above_object: Celsius,
-        skin_state_on_display: Option<&HalfSpace>,
+        skin_state_on_display: Option<&SkinState>,
     ) -> Celsius {
-        let cooling = self.cooling.response_to(self.scaled_flux);
-        // Temperature steps in 2^-22 K; the product has 38 places and up to 63 bits.
-        let step_at_interface = (i64::from(cooling.to_bits())
-            * i64::from(factors.inverse_weight.to_bits()))
-            >> U16F16::FRAC_NBITS;
-        let step_at_object = saturating_celsius_from_bits(
-            i64::from(skin_above_object.to_bits()) - step_at_interface,
-        );
+        let skin_above_object = input.skin_above_object;
+        let (cooling, step_at_object) = match (&self.skin, input.bodies) {
+            (SkinState::HalfSpace(state), _) => {
+                let cooling = state.response_to(self.scaled_flux);
+                // Temperature steps in 2^-22 K; the product has 38 places and up to 63 bits.
+                let step_at_interface = (i64::from(cooling.to_bits())
+                    * i64::from(input.factors.inverse_weight.to_bits()))
+                    >> U16F16::FRAC_NBITS;
+                let step_at_object = saturating_celsius_from_bits(
+                    i64::from(skin_above_object.to_bits()) - step_at_interface,
+                );
+                (cooling, step_at_object)
+            }
+            (SkinState::Body(state), Some(Bodies { finger, object })) => {
+                let in_contact = skin_state_on_display.is_none();
+                let flux = flux_beyond_air(
+                    finger,
+                    in_contact.then_some(self.scaled_flux),
+                    state.free_response(),
+                    input.skin_above_room,
+                );
+                let cooling = state.response_to(flux, &finger.tissue.relaxations());
+                let now = skin_state_on_display.map_or(cooling, SkinState::free_response);
+                let warming = self
+                    .object
+                    .response_to(self.scaled_flux, &object.relaxations());
+                (
+                    cooling,
+                    skin_above_object
+                        .saturating_sub(now)
+                        .saturating_sub(warming),
+                )
+            }
+            (SkinState::Body(state), None) => (state.free_response(), Celsius::ZERO),
+        };
         let step_at_display = (i64::from(step_at_object.to_bits())
-            * i64::from(factors.ratio.to_bits()))
+            * i64::from(input.factors.ratio.to_bits()))
             >> Ratio::FRAC_NBITS;
-        let skin_cooling = skin_state_on_display.map_or(cooling, HalfSpace::free_response);
+        let skin_cooling = skin_state_on_display.map_or(cooling, SkinState::free_response);
         saturating_celsius_from_bits(
             i64::from(skin_before_contact.to_bits())
                 - i64::from(skin_cooling.to_bits())
@@ -122,10 +184,19 @@ impl SkinOnObject {
     #[must_use]
     pub fn setpoint_correction(
         &self,
-        skin_state_on_display: &HalfSpace,
+        skin_state_on_display: &SkinState,
         display: &ContactConductance,
+        bodies: Option<Bodies<'_>>,
     ) -> Celsius {
-        let scaled_flux = skin_state_on_display.scaled_flux_to_match(&self.cooling);
+        let scaled_flux = match (skin_state_on_display, &self.skin, bodies) {
+            (SkinState::HalfSpace(from), SkinState::HalfSpace(to), _) => {
+                from.scaled_flux_to_match(to)
+            }
+            (SkinState::Body(from), SkinState::Body(to), Some(Bodies { finger, .. })) => {
+                from.scaled_flux_to_match(to, &finger.tissue.relaxations())
+            }
+            _ => Celsius::ZERO,
+        };
         display.temperature_drop(scaled_flux).saturating_neg()
     }
 }

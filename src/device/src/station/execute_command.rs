@@ -25,8 +25,23 @@ impl Station {
             Command::Stream { interval_ms } => {
                 self.telemetry_ticks = interval_ms * (TICK_HZ / 1000);
             }
-            Command::Material { name, pair } => {
-                self.object.material = Some((name, pair));
+            Command::MaterialProperties => {
+                let material = self.object.material.as_ref();
+                return Ok(Reply::Material(
+                    material.map(|material| material.properties),
+                ));
+            }
+            Command::Finger(None) => return Ok(Reply::Finger(self.object.finger.name())),
+            Command::Finger(Some(finger)) => {
+                self.object.finger = finger;
+                self.restart_contact();
+            }
+            Command::Material(material) => {
+                (self.object.material, self.object.body) = (Some(material), None);
+                self.restart_contact();
+            }
+            Command::Body(body) => {
+                self.object.body = body;
                 self.restart_contact();
             }
             Command::Object(temperature) => {
@@ -81,7 +96,7 @@ impl Station {
         let reference = self.last.reference;
         Status {
             state: self.state.state_name(),
-            material: self.object.material.map(|(name, _)| name),
+            material: self.object.material.map(|material| material.name),
             object: self.object.temperature,
             mode: self.object.mode,
             setpoint: reference.map(|reference| reference.setpoint.celsius()),
@@ -92,7 +107,8 @@ impl Station {
     /// Makes the next tick begin a new contact for a finger that already touches. Called when the host has chosen
     /// another object or contact model, and when `start` presents the object.
     fn restart_contact(&mut self) {
-        self.reference.restart_contact(&mut self.estimator.finger);
+        let bodies = self.object.bodies();
+        (self.reference).restart_contact(&mut self.estimator.finger, bodies);
     }
 
     /// Returns [`Refused::Presenting`] while an object is presented. For the commands that change parameters or

@@ -1,0 +1,65 @@
+//! The arguments of `object`: its temperature before contact, and what is behind its face.
+
+use contact_model::slab::Back;
+use fixed::types::I32F32;
+use thermal_device::command::Command;
+use thermal_settings::Range;
+
+use crate::arguments::{Words, read_number, read_word, skip_if_next_is};
+use crate::{Error, Request};
+
+static OBJECT_TEMPERATURE_RANGE: Range = Range {
+    name: "object temperature",
+    unit: "C",
+    min: -20.0,
+    max: 60.0,
+};
+static THICKNESS_RANGE: Range = Range {
+    name: "thickness",
+    unit: "mm",
+    min: 0.1,
+    max: 1000.0,
+};
+static FILM_RANGE: Range = Range {
+    name: "film",
+    unit: "W/m2K",
+    min: 0.1,
+    max: 100_000.0,
+};
+/// Words for what is behind a slab.
+pub const BACK_WORDS: [&str; 3] = ["insulated", "held", "film"];
+
+/// Reads `CELSIUS`, `room`, `half-space`, or `slab 3mm insulated`, in which `held` or `film W/m2K` may stand for
+/// `insulated`, and a space before the unit.
+///
+/// # Errors
+/// An argument is missing, unknown, no number, or out of range.
+pub fn parse_object(words: &mut Words<'_>) -> Result<Request, Error> {
+    if skip_if_next_is(words, "room") {
+        return Ok(Request::Station(Command::Object(None)));
+    }
+    if skip_if_next_is(words, "half-space") {
+        return Ok(Request::Station(Command::Body(None)));
+    }
+    if !skip_if_next_is(words, "slab") {
+        let celsius = read_number(words, &OBJECT_TEMPERATURE_RANGE)?.to_num();
+        return Ok(Request::Station(Command::Object(Some(celsius))));
+    }
+    let word = read_word(words, "thickness in mm")?;
+    let mut number = word
+        .strip_suffix("mm")
+        .unwrap_or(word)
+        .split_ascii_whitespace();
+    let thickness_mm: I32F32 = read_number(&mut number, &THICKNESS_RANGE)?;
+    skip_if_next_is(words, "mm");
+    let back = match read_word(words, "back")? {
+        "insulated" => Back::Insulated,
+        "held" => Back::Held,
+        "film" => Back::Film(read_number(words, &FILM_RANGE)?.to_num()),
+        unknown => return Err(Error::UnknownBack(unknown.into())),
+    };
+    Ok(Request::Slab {
+        thickness_mm: thickness_mm.to_num(),
+        back,
+    })
+}

@@ -1,0 +1,156 @@
+//! The one upload of bulk data: begin, rows, commit with a checksum. Nothing changes before the commit.
+
+use core::fmt;
+
+use contact_model::fixed_point::{Body, FAST_MAX, SLOW_MAX};
+use contact_model::impedance::{Impedance, Relaxation};
+use contact_model::material::SKIN;
+use crc::{CRC_32_ISO_HDLC, Crc, Digest, NoTable};
+use heapless::Vec;
+use thermal_device::TICK_HZ;
+use thermal_settings::Range;
+
+use crate::Error;
+use crate::arguments::{Words, expect_end, read_number, read_whole_number, read_word};
+
+/// Most rows of an upload.
+const ROWS_MAX: usize = FAST_MAX + SLOW_MAX;
+/// Square metres in the unit of gains and direct terms, mm².
+const MM2: f64 = 1e-6;
+
+static ROW_COUNT_RANGE: Range = Range {
+    name: "number of rows",
+    unit: "",
+    min: 0.0,
+    max: ROWS_MAX as f64,
+};
+static ROW_INDEX_RANGE: Range = Range {
+    name: "row",
+    unit: "",
+    min: 0.0,
+    max: (ROWS_MAX - 1) as f64,
+};
+static DIRECT_RANGE: Range = Range {
+    name: "direct",
+    unit: "mm2K/W",
+    min: 0.0,
+    max: 1e6,
+};
+static RATE_RANGE: Range = Range {
+    name: "rate",
+    unit: "1/s",
+    min: 0.0,
+    max: 690.0,
+};
+static GAIN_RANGE: Range = Range {
+    name: "gain",
+    unit: "mm2K/J",
+    min: 1e-6,
+    max: 1e9,
+};
+
+/// Checksum of the lines of an upload, from `upload begin` to the last `upload row`, each followed by a line feed.
+static CHECKSUM: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+
+/// Why a line of an upload is rejected.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UploadError {
+    /// `upload row` or `upload commit` without `upload begin` before it.
+    NotBegun,
+    /// Another row than the next one, whose index this is, or a row too many; the upload goes on.
+    NextRow(usize),
+    /// `commit` before all rows have come: how many have, and how many there are.
+    Incomplete(usize, usize),
+    /// The lines were not received as they were sent: their checksum.
+    Checksum(u32),
+    /// The checksum is not a hexadecimal number of eight digits.
+    NotAChecksum,
+}
+
+/// An upload of an object's relaxations that has begun.
+#[derive(Clone)]
+pub struct Upload {
+    count: usize,
+    direct_m2k_w: f64,
+    rows: Vec<Relaxation, ROWS_MAX>,
+    digest: Digest<'static, u32, NoTable>,
+}
+
+impl fmt::Debug for Upload {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Upload {{ {} of {} rows }}", self.rows.len(), self.count)
+    }
+}
+
+impl Upload {
+    /// Reads the line `upload begin object COUNT DIRECT`, after its second word: an object of `COUNT` relaxations and a direct
+    /// term, mm² K/W.
+    ///
+    /// # Errors
+    /// An argument is missing, no number, or out of range.
+    pub fn begin(line: &str, words: &mut Words<'_>) -> Result<Self, Error> {
+        let kind = read_word(words, "kind of upload")?;
+        if kind != "object" {
+            return Err(Error::UnknownUpload(kind.into()));
+        }
+        let count = read_whole_number(words, &ROW_COUNT_RANGE)?;
+        let direct_m2k_w = MM2 * read_number(words, &DIRECT_RANGE)?.to_num::<f64>();
+        expect_end(words)?;
+        let mut upload = Self {
+            count,
+            direct_m2k_w,
+            rows: Vec::new(),
+            digest: CHECKSUM.digest(),
+        };
+        upload.add_to_checksum(line);
+        Ok(upload)
+    }
+
+    fn add_to_checksum(&mut self, line: &str) {
+        self.digest.update(line.as_bytes());
+        self.digest.update(b"\n");
+    }
+
+    /// Reads the line `upload row INDEX RATE GAIN`, after its second word: rate, 1/s, and gain, mm² K/J.
+    ///
+    /// # Errors
+    /// An argument is missing, no number, or out of range, or it is not the next row; the upload is unchanged.
+    pub fn add_row(&mut self, line: &str, words: &mut Words<'_>) -> Result<(), Error> {
+        let index = read_whole_number(words, &ROW_INDEX_RANGE)?;
+        if index != self.rows.len() || index >= self.count {
+            return Err(Error::Upload(UploadError::NextRow(self.rows.len())));
+        }
+        let rate_1_s = read_number(words, &RATE_RANGE)?.to_num();
+        let gain_m2k_j = MM2 * read_number(words, &GAIN_RANGE)?.to_num::<f64>();
+        expect_end(words)?;
+        let row = Relaxation {
+            rate_1_s,
+            gain_m2k_j,
+        };
+        (self.rows.push(row)).map_err(|_| Error::Upload(UploadError::NextRow(index)))?;
+        self.add_to_checksum(line);
+        Ok(())
+    }
+
+    /// The object of a complete upload whose lines have this checksum, given in eight hexadecimal digits.
+    ///
+    /// # Errors
+    /// Rows are missing, the checksum is another one, or the device cannot follow such an object.
+    pub fn commit(self, checksum: &str) -> Result<Body, Error> {
+        let failed = |error| Err(Error::Upload(error));
+        if self.rows.len() != self.count {
+            return failed(UploadError::Incomplete(self.rows.len(), self.count));
+        }
+        let actual = self.digest.finalize();
+        match u32::from_str_radix(checksum, 16) {
+            Ok(expected) if checksum.len() == 8 && expected == actual => {}
+            Ok(_) if checksum.len() == 8 => return failed(UploadError::Checksum(actual)),
+            _ => return failed(UploadError::NotAChecksum),
+        }
+        let impedance = Impedance {
+            direct_m2k_w: self.direct_m2k_w,
+            relaxations: &self.rows,
+        };
+        Body::new(&impedance, SKIN.effusivity(), 1.0 / f64::from(TICK_HZ)).map_err(Error::Body)
+    }
+}
