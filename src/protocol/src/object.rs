@@ -5,7 +5,7 @@ use fixed::types::I32F32;
 use thermal_device::command::Command;
 use thermal_settings::Range;
 
-use crate::arguments::{Words, read_number, read_word, skip_if_next_is};
+use crate::arguments::{Words, read_fixed_point_in_range, read_word, skip_if_next_is};
 use crate::{Error, Request};
 
 static OBJECT_TEMPERATURE_RANGE: Range = Range {
@@ -42,7 +42,7 @@ pub fn parse_object(words: &mut Words<'_>) -> Result<Request, Error> {
         return Ok(Request::Station(Command::Body(None)));
     }
     if !skip_if_next_is(words, "slab") {
-        let celsius = read_number(words, &OBJECT_TEMPERATURE_RANGE)?.to_num();
+        let celsius = read_fixed_point_in_range(words, &OBJECT_TEMPERATURE_RANGE)?.to_num();
         return Ok(Request::Station(Command::Object(Some(celsius))));
     }
     let word = read_word(words, "thickness in mm")?;
@@ -50,12 +50,12 @@ pub fn parse_object(words: &mut Words<'_>) -> Result<Request, Error> {
         .strip_suffix("mm")
         .unwrap_or(word)
         .split_ascii_whitespace();
-    let thickness_mm: I32F32 = read_number(&mut number, &THICKNESS_RANGE)?;
+    let thickness_mm: I32F32 = read_fixed_point_in_range(&mut number, &THICKNESS_RANGE)?;
     skip_if_next_is(words, "mm");
     let back = match read_word(words, "back")? {
         "insulated" => Back::Insulated,
         "held" => Back::Held,
-        "film" => Back::Film(read_number(words, &FILM_RANGE)?.to_num()),
+        "film" => Back::Film(read_fixed_point_in_range(words, &FILM_RANGE)?.to_num()),
         unknown => return Err(Error::UnknownBack(unknown.into())),
     };
     Ok(Request::Slab {

@@ -11,7 +11,9 @@ use thermal_device::TICK_HZ;
 use thermal_settings::Range;
 
 use crate::Error;
-use crate::arguments::{Words, expect_end, read_number, read_whole_number, read_word};
+use crate::arguments::{
+    Words, expect_end, read_fixed_point_in_range, read_whole_number_in_range, read_word,
+};
 
 /// Most rows of an upload.
 const ROWS_MAX: usize = FAST_MAX + SLOW_MAX;
@@ -93,8 +95,8 @@ impl Upload {
         if kind != "object" {
             return Err(Error::UnknownUpload(kind.into()));
         }
-        let count = read_whole_number(words, &ROW_COUNT_RANGE)?;
-        let direct_m2k_w = MM2 * read_number(words, &DIRECT_RANGE)?.to_num::<f64>();
+        let count = read_whole_number_in_range(words, &ROW_COUNT_RANGE)?;
+        let direct_m2k_w = MM2 * read_fixed_point_in_range(words, &DIRECT_RANGE)?.to_num::<f64>();
         expect_end(words)?;
         let mut upload = Self {
             count,
@@ -116,12 +118,12 @@ impl Upload {
     /// # Errors
     /// An argument is missing, no number, or out of range, or it is not the next row; the upload is unchanged.
     pub fn add_row(&mut self, line: &str, words: &mut Words<'_>) -> Result<(), Error> {
-        let index = read_whole_number(words, &ROW_INDEX_RANGE)?;
+        let index = read_whole_number_in_range(words, &ROW_INDEX_RANGE)?;
         if index != self.rows.len() || index >= self.count {
             return Err(Error::Upload(UploadError::NextRow(self.rows.len())));
         }
-        let rate_1_s = read_number(words, &RATE_RANGE)?.to_num();
-        let gain_m2k_j = MM2 * read_number(words, &GAIN_RANGE)?.to_num::<f64>();
+        let rate_1_s = read_fixed_point_in_range(words, &RATE_RANGE)?.to_num();
+        let gain_m2k_j = MM2 * read_fixed_point_in_range(words, &GAIN_RANGE)?.to_num::<f64>();
         expect_end(words)?;
         let row = Relaxation {
             rate_1_s,

@@ -182,7 +182,7 @@ impl SkinOnObject {
     /// real skin more. It is computed again in each tick of a contact. `display` is the conductance of the contact of
     /// skin and display.
     #[must_use]
-    pub fn setpoint_correction(
+    pub fn skin_matching_correction(
         &self,
         skin_state_on_display: &SkinState,
         display: &ContactConductance,

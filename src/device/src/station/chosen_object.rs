@@ -67,7 +67,7 @@ impl ChosenObject {
     /// Input of the reference generator, which computes set-point and target in the states preset and contact: contact
     /// constants, bodies, object temperature and contact model. `None` before a material is chosen.
     #[must_use]
-    pub fn reference_input(&self) -> Option<PresentedObject<'_>> {
+    pub fn presented_object_if_chosen(&self) -> Option<PresentedObject<'_>> {
         Some(PresentedObject {
             pair: &self.material.as_ref()?.pair,
             bodies: self.bodies(),
