@@ -38,13 +38,13 @@ where
     /// bridge off.
     pub fn new(in1: In1, in2: In2, enable: Enable) -> Self {
         let mut bridge = Self { in1, in2, enable };
-        bridge.off();
+        bridge.make_outputs_high_impedance();
         bridge
     }
 
     /// Turns the bridge off: makes both outputs high-impedance, so that the bridge drives no
     /// current through the Peltier module.
-    pub fn off(&mut self) {
+    pub fn make_outputs_high_impedance(&mut self) {
         let Ok(()) = self.enable.set_low();
         let Ok(()) = self.in1.set_duty_cycle_fully_off();
         let Ok(()) = self.in2.set_duty_cycle_fully_off();

@@ -33,7 +33,7 @@
 //! use thermal_display::settings::Settings;
 //!
 //! let mut device = Device::<1>::new(&Settings::default());
-//! let outputs = device.step(FingerIndex::FIRST, &Samples::default());
+//! let outputs = device.step_finger(FingerIndex::FIRST, &Samples::default());
 //! assert_eq!(outputs.drive, Drive::Off);
 //! ```
 #![no_std]

@@ -15,26 +15,26 @@ use thermal_protocol::{Line, LineError};
 pub const LINE_QUEUE_CAPACITY: usize = 4;
 
 /// A line from the host, or the reason why the received bytes form no valid line.
-type ReceivedLine = Result<Line, LineError>;
+type ReceivedLineOrError = Result<Line, LineError>;
 
 /// The queue of lines that were received and wait for their answers. [`split`](Self::split) divides
 /// it into a writing end for the receiving interrupt and a reading end for the answering task.
 #[derive(Default)]
 pub struct LineQueue {
     // The queue always keeps one slot free, to distinguish full from empty.
-    lines: Queue<ReceivedLine, { LINE_QUEUE_CAPACITY + 1 }>,
+    lines: Queue<ReceivedLineOrError, { LINE_QUEUE_CAPACITY + 1 }>,
     refused: AtomicU32,
 }
 
 /// The writing end of a [`LineQueue`], for the interrupt that receives lines from the host.
 pub struct LineProducer<'a> {
-    lines: Producer<'a, ReceivedLine>,
+    lines: Producer<'a, ReceivedLineOrError>,
     refused: &'a AtomicU32,
 }
 
 /// The reading end of a [`LineQueue`], for the task that answers the lines.
 pub struct LineConsumer<'a> {
-    lines: Consumer<'a, ReceivedLine>,
+    lines: Consumer<'a, ReceivedLineOrError>,
     refused: &'a AtomicU32,
 }
 
@@ -67,10 +67,10 @@ impl LineQueue {
 
 impl LineProducer<'_> {
     /// Appends a line from the host to the queue. If the queue is full, the line is refused: it is
-    /// dropped and counted, and [`LineConsumer::dequeue`] returns [`LineError::QueueFull`] in its
+    /// dropped and counted, and [`LineConsumer::dequeue_line_or_refusal`] returns [`LineError::QueueFull`] in its
     /// place. All further lines are also refused until every refused line has its error answer, so
     /// that the answers keep the order of the lines.
-    pub fn enqueue(&mut self, line: ReceivedLine) {
+    pub fn enqueue_or_count_refused(&mut self, line: ReceivedLineOrError) {
         if self.refused.load(Ordering::Acquire) > 0 || self.lines.enqueue(line).is_err() {
             self.refused.fetch_add(1, Ordering::Release);
         }
@@ -80,7 +80,7 @@ impl LineProducer<'_> {
 impl LineConsumer<'_> {
     /// Removes and returns the next line to be answered, or [`LineError::QueueFull`] in place of a
     /// line that was refused. `None` if no line waits for an answer.
-    pub fn dequeue(&mut self) -> Option<ReceivedLine> {
+    pub fn dequeue_line_or_refusal(&mut self) -> Option<ReceivedLineOrError> {
         // The count is read before the queue. While it is above zero no line enters the queue, so
         // if the queue is empty then the refused lines are next.
         let refused = self.refused.load(Ordering::Acquire);

@@ -28,8 +28,8 @@ mod app {
     use thermal_display::task_liveness::{HostTaskTimer, Task, TaskLiveness};
 
     use crate::board::{
-        Board, CompletedLineKind, Console, ControlLoop, FINGERS, IndependentWatchdog, Receiver,
-        SampleError, SampleTrigger, StaticMemory, Transmitter,
+        BlankOrToBeAnsweredLine, Board, Console, ControlLoop, FINGERS, IndependentWatchdog,
+        Receiver, SampleError, SampleTrigger, StaticMemory, Transmitter,
     };
 
     #[shared]
@@ -93,11 +93,12 @@ mod app {
         binds = DMA2_STREAM0,
         priority = 3,
         shared = [device, control_loop, &task_liveness, &host_is_active],
-        local = [host_task_timer: HostTaskTimer = HostTaskTimer::new()],
+        local = [host_task_timer: HostTaskTimer = HostTaskTimer::new_due_at_first_tick()],
     )]
     fn tick(mut cx: tick::Context) {
         let (control_loop, host_is_active) = (cx.shared.control_loop, cx.shared.host_is_active);
-        let done = (cx.shared.device).lock(|device| control_loop.tick(device, host_is_active));
+        let done =
+            (cx.shared.device).lock(|device| control_loop.run_finger_tick(device, host_is_active));
         let Ok(telemetry_is_due) = done else {
             // Sampling has stopped; the watchdogs reset the device, because no task checks in any
             // more.
@@ -108,7 +109,7 @@ mod app {
         if cx
             .local
             .host_task_timer
-            .count_tick_and_check_due(telemetry_is_due)
+            .count_tick_and_check_due_or_telemetry(telemetry_is_due)
             && host::spawn().is_ok()
         {
             cx.local.host_task_timer.restart();
@@ -118,16 +119,17 @@ mod app {
     #[task(binds = ADC, priority = 3, shared = [device, control_loop])]
     fn adc_overrun(mut cx: adc_overrun::Context) {
         let control_loop = cx.shared.control_loop;
-        (cx.shared.device).lock(|device| control_loop.stop(device, SampleError::Overrun));
+        (cx.shared.device)
+            .lock(|device| control_loop.stop_and_trip_all(device, SampleError::Overrun));
     }
 
     #[task(binds = USART2, priority = 4, shared = [&host_is_active], local = [receiver])]
     fn receive(cx: receive::Context) {
-        let Some(completed) = cx.local.receiver.receive_byte() else {
+        let Some(completed) = cx.local.receiver.receive_byte_and_queue_line() else {
             return;
         };
         cx.shared.host_is_active.store(true, Ordering::Relaxed);
-        if completed == CompletedLineKind::ToBeAnswered {
+        if completed == BlankOrToBeAnsweredLine::ToBeAnswered {
             let _ = host::spawn();
         }
     }
@@ -143,7 +145,9 @@ mod app {
         let device = &mut cx.shared.device;
         cx.local
             .console
-            .serve(|finger, command| device.lock(|device| device.execute(finger, command)));
+            .answer_lines_and_send_telemetry(|finger, command| {
+                device.lock(|device| device.execute(finger, command))
+            });
         cx.shared.task_liveness.check_in(Task::Host);
     }
 }

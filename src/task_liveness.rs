@@ -56,17 +56,17 @@ impl HostTaskTimer {
     /// Number of control ticks after which the host task is called again if no telemetry is due
     /// before: 9 ms with one finger, 1.8 ms with five. This is far below 68 ms, the shortest period
     /// of the independent watchdog, within which the host task must check in.
-    const INTERVAL_TICKS: u8 = 9;
+    const MAX_INTERVAL_TICKS: u8 = 9;
 
     /// Creates the timer; the host task is due at the first tick.
-    pub const fn new() -> Self {
+    pub const fn new_due_at_first_tick() -> Self {
         Self { ticks_left: 0 }
     }
 
     /// Counts one tick and returns whether the host task must be called: at once if
     /// `telemetry_is_due`, else when the interval has elapsed. The result stays `true` until
     /// [`restart`](Self::restart).
-    pub const fn count_tick_and_check_due(&mut self, telemetry_is_due: bool) -> bool {
+    pub const fn count_tick_and_check_due_or_telemetry(&mut self, telemetry_is_due: bool) -> bool {
         self.ticks_left = match telemetry_is_due {
             true => 0,
             false => self.ticks_left.saturating_sub(1),
@@ -77,6 +77,6 @@ impl HostTaskTimer {
     /// Starts a new interval of nine ticks, at the end of which the host task is due again. To be
     /// called when the host task has been called.
     pub const fn restart(&mut self) {
-        self.ticks_left = Self::INTERVAL_TICKS;
+        self.ticks_left = Self::MAX_INTERVAL_TICKS;
     }
 }

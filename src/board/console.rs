@@ -3,9 +3,11 @@
 use heapless::spsc::Consumer;
 use thermal_display::commissioning::StorageOrder;
 use thermal_display::device::Telemetry;
-use thermal_display::device::command::WithFingerIndex;
+use thermal_display::device::command::WithSourceFinger;
 use thermal_display::line_queue::LineConsumer;
-use thermal_display::protocol::{CommandHandler, Error, ExecuteOnStations, Reply, telemetry_line};
+use thermal_display::protocol::{
+    CommandHandler, Error, ExecuteOnStations, Reply, wrap_as_telemetry_line,
+};
 
 use super::{FINGERS, Outbox, restart_to_save};
 
@@ -13,7 +15,7 @@ use super::{FINGERS, Outbox, restart_to_save};
 /// the host.
 pub struct Console {
     pub lines: LineConsumer<'static>,
-    pub telemetry: Consumer<'static, WithFingerIndex<Telemetry>>,
+    pub telemetry: Consumer<'static, WithSourceFinger<Telemetry>>,
     pub outbox: Outbox,
     pub handler: &'static mut CommandHandler<FINGERS>,
     /// The answer to `save` or `forget` after the restart that either of them requests: whether the
@@ -34,37 +36,41 @@ impl Console {
     /// checked and computed without locking the device, because that takes long; only `execute`,
     /// which executes the resulting command, locks it. After `save` or `forget` no more lines are
     /// answered, and the device restarts once the outbox is empty.
-    pub fn serve(&mut self, mut execute: impl ExecuteOnStations<FINGERS>) {
+    pub fn answer_lines_and_send_telemetry(
+        &mut self,
+        mut execute: impl ExecuteOnStations<FINGERS>,
+    ) {
         while self.outbox.has_room() {
             if let Some(order) = self.storage_order {
                 if self.outbox.is_empty() {
-                    restart_to_save(&self.handler.settings_record(order));
+                    restart_to_save(&self.handler.record_to_save_or_forget(order));
                 }
                 // The task is called again whenever a line has been sent.
                 return;
             }
             if let Some(first_answer) = self.first_answer.take() {
                 match first_answer {
-                    Ok(reply) => self.outbox.enqueue(&reply),
-                    Err(error) => self.outbox.enqueue(&error),
+                    Ok(reply) => self.outbox.enqueue_or_drop(&reply),
+                    Err(error) => self.outbox.enqueue_or_drop(&error),
                 }
-            } else if let Some(line) = self.lines.dequeue() {
+            } else if let Some(line) = self.lines.dequeue_line_or_refusal() {
                 let answer = line
-                    .map_err(|error| WithFingerIndex::from_whole_device(Error::from(error)))
+                    .map_err(|error| WithSourceFinger::from_whole_device(Error::from(error)))
                     .and_then(|line| self.handler.answer(&line, &mut execute));
                 match answer {
-                    Ok(WithFingerIndex {
+                    Ok(WithSourceFinger {
                         content: Reply::Restart(order),
                         ..
                     }) => self.storage_order = Some(order),
-                    Ok(reply) => self.outbox.enqueue(&reply),
+                    Ok(reply) => self.outbox.enqueue_or_drop(&reply),
                     Err(error) => {
                         defmt::warn!("line refused: {}", defmt::Display2Format(&error));
-                        self.outbox.enqueue(&error);
+                        self.outbox.enqueue_or_drop(&error);
                     }
                 }
             } else if let Some(telemetry) = self.telemetry.dequeue() {
-                self.outbox.enqueue(&telemetry_line(telemetry));
+                self.outbox
+                    .enqueue_or_drop(&wrap_as_telemetry_line(telemetry));
             } else {
                 break;
             }

@@ -3,23 +3,23 @@
 use core::sync::atomic::{AtomicBool, Ordering};
 
 use heapless::spsc::Producer;
-use thermal_display::device::command::WithFingerIndex;
+use thermal_display::device::command::WithSourceFinger;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, Telemetry};
 
 use super::{
-    FINGERS, PowerStage, SampleError, Sampler, TripCauseRecorder, WindowWatchdog, save_dose,
-    stack_is_overrun,
+    FINGERS, FingerPowerStage, SampleError, Sampler, TripCauseRecorder, WindowWatchdog,
+    save_dose_if_changed, stack_is_overrun,
 };
 
 /// Executes the control ticks of all fingers: samples the sensors, computes each finger's outputs,
 /// and drives the bridges. Owns the hardware that this needs.
 pub struct ControlLoop {
     pub sampler: Sampler,
-    pub stages: [PowerStage; FINGERS],
+    pub stages: [FingerPowerStage; FINGERS],
     pub trip_cause_recorder: TripCauseRecorder,
-    pub telemetry: Producer<'static, WithFingerIndex<Telemetry>>,
+    pub telemetry: Producer<'static, WithSourceFinger<Telemetry>>,
     pub window_watchdog: WindowWatchdog,
     /// Whether the 8 MHz clock of the debug probe was stable at the start. If not, the ticks come
     /// from the internal oscillator, whose tolerance of 1 % makes their period inaccurate, so every
@@ -42,8 +42,8 @@ impl ControlLoop {
     ///
     /// # Errors
     /// [`SampleError`] if there are no valid samples; the control loop has then
-    /// [stopped](Self::stop).
-    pub fn tick(
+    /// [stopped](Self::stop_and_trip_all).
+    pub fn run_finger_tick(
         &mut self,
         device: &mut Device<FINGERS>,
         host_is_active: &AtomicBool,
@@ -51,13 +51,13 @@ impl ControlLoop {
         let (finger, scans) = match self.sampler.take_block_and_select_next_finger() {
             Ok(block) => block,
             Err(error) => {
-                self.stop(device, error);
+                self.stop_and_trip_all(device, error);
                 return Err(error);
             }
         };
         self.window_watchdog.feed();
         let stage = &mut self.stages[finger.index()];
-        let samples = Samples::from_scans(scans, stage.reports_fault());
+        let samples = Samples::from_scans(scans, stage.poll_fault_line_low());
         if host_is_active.swap(false, Ordering::Relaxed) {
             device.note_host_activity();
         }
@@ -67,15 +67,15 @@ impl ControlLoop {
         if !self.has_clock {
             device.trip_all(Fault::Clock);
         }
-        let outputs = device.step(finger, &samples);
+        let outputs = device.step_finger(finger, &samples);
         // Scan all fingers only when one has tripped or a cause is stored.
-        if self.trip_cause_recorder.has_stored_cause() || device.is_tripped(finger) {
+        if self.trip_cause_recorder.has_stored_cause() || device.is_finger_tripped(finger) {
             self.trip_cause_recorder
                 .store_or_erase(device.earliest_trip_cause());
         }
-        save_dose(finger, device.thermal_dose(finger));
-        stage.apply_outputs(&outputs);
-        let telemetry = device.telemetry(finger);
+        save_dose_if_changed(finger, device.finger_thermal_dose(finger));
+        stage.apply_drive_and_comparator_test(&outputs);
+        let telemetry = device.finger_telemetry_if_due(finger);
         let is_due = telemetry.is_some();
         if let Some(telemetry) = telemetry {
             // A full queue means that the link to the host is too slow; this line of telemetry is
@@ -88,8 +88,8 @@ impl ControlLoop {
     /// Turns all bridges off, stops sampling until the next reset, trips all fingers by the fault
     /// of `error`, and stores the earliest trip cause of all fingers for the next start. The
     /// watchdogs then reset the device, because no tick runs any more.
-    pub fn stop(&mut self, device: &mut Device<FINGERS>, error: SampleError) {
-        self.stages.iter_mut().for_each(PowerStage::off);
+    pub fn stop_and_trip_all(&mut self, device: &mut Device<FINGERS>, error: SampleError) {
+        self.stages.iter_mut().for_each(FingerPowerStage::off);
         self.sampler.stop();
         device.trip_all(error.fault());
         self.trip_cause_recorder

@@ -110,7 +110,7 @@ fn off_makes_the_outputs_high_impedance_by_the_enable_line_and_by_the_inputs() {
     assert!(is_off(), "a new bridge is off");
     for bits in [i16::MAX, 0, i16::MIN] {
         bridge.drive(Duty::saturating(I1F15::from_bits(bits)));
-        bridge.off();
+        bridge.make_outputs_high_impedance();
         assert!(is_off(), "off after duty {bits}");
     }
 }

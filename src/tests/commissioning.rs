@@ -67,7 +67,7 @@ impl<const FINGERS: usize> Bench<FINGERS> {
                     current: 0,
                     bridge_fault: false,
                 };
-                self.device.step(finger, &samples);
+                self.device.step_finger(finger, &samples);
             }
         }
     }

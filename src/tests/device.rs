@@ -6,7 +6,7 @@ use std::string::{String, ToString};
 use crate::device::drive::Drive;
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, FingerIndex};
-use crate::protocol::{CommandHandler, telemetry_line};
+use crate::protocol::{CommandHandler, wrap_as_telemetry_line};
 use crate::settings::Settings;
 
 const FIVE: usize = 5;
@@ -44,7 +44,7 @@ pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: FingerInd
         tick += 1;
         let sound = samples(tick % 2);
         let moved = (cooler * 46.0 * 16.0) as i16;
-        let outputs = device.step(
+        let outputs = device.step_finger(
             finger,
             &Samples {
                 display: sound.display.wrapping_add_signed(moved),
@@ -118,7 +118,7 @@ fn a_fault_at_one_finger_does_not_affect_the_others() {
     FingerIndex::all().for_each(|finger| arm(&mut device, finger));
     for finger in FingerIndex::all() {
         let bridge_fault = finger.index() == 1;
-        let drive = device.step(
+        let drive = device.step_finger(
             finger,
             &Samples {
                 bridge_fault,
@@ -135,12 +135,12 @@ fn a_fault_at_one_finger_does_not_affect_the_others() {
     assert_eq!(host(&mut device, "abort"), "ok");
     for finger in [0, 2, 3, 4].map(finger) {
         assert_eq!(
-            device.step(finger, &samples(1)).drive,
+            device.step_finger(finger, &samples(1)).drive,
             Drive::Off,
             "{finger:?}"
         );
     }
-    device.step(finger(1), &samples(1));
+    device.step_finger(finger(1), &samples(1));
     assert_eq!(host(&mut device, "clear"), "ok");
     assert_eq!(state_of(&mut device, 1), "off");
     assert_eq!(host(&mut device, "clear"), "@0 err no fault to clear");
@@ -169,10 +169,10 @@ fn answers_and_telemetry_have_the_address_of_their_finger() {
     assert_eq!(host(&mut device, "@2"), "@2 err command missing");
     assert_eq!(host(&mut device, "@2 stream 1"), "@2 ok");
     for finger in FingerIndex::all() {
-        device.step(finger, &samples(0));
+        device.step_finger(finger, &samples(0));
         let line = device
-            .telemetry(finger)
-            .map(|telemetry| telemetry_line(telemetry).to_string());
+            .finger_telemetry_if_due(finger)
+            .map(|telemetry| wrap_as_telemetry_line(telemetry).to_string());
         assert_eq!(line.is_some(), finger.index() == 2, "{finger:?}");
         assert!(line.is_none_or(|line| line.starts_with("@2 T 1 off ")));
     }
@@ -191,7 +191,12 @@ fn lines_of_a_single_finger_have_no_address() {
         host(&mut device, "@1 arm"),
         "err unknown finger '1' after @; known: 0 to 0"
     );
-    device.step(FingerIndex::FIRST, &samples(0));
-    let line = telemetry_line(device.telemetry(FingerIndex::FIRST).expect("telemetry")).to_string();
+    device.step_finger(FingerIndex::FIRST, &samples(0));
+    let line = wrap_as_telemetry_line(
+        device
+            .finger_telemetry_if_due(FingerIndex::FIRST)
+            .expect("telemetry"),
+    )
+    .to_string();
     assert!(line.contains(" armed "), "{line}");
 }

@@ -8,7 +8,7 @@ use crate::device::Device;
 use crate::device::safety::Fault;
 use crate::protocol::CommandHandler;
 use crate::protocol::Reply;
-use crate::settings::{Settings, decode};
+use crate::settings::{Settings, decode_settings_record};
 
 fn answer<const FINGERS: usize>(
     handler: &mut CommandHandler<FINGERS>,
@@ -81,7 +81,7 @@ fn the_record_holds_the_settings_of_each_finger_and_restores_them() {
     ] {
         answer(&mut handler, &mut device, line);
     }
-    let stored = decode::<2>(&handler.settings_record(StorageOrder::Save))
+    let stored = decode_settings_record::<2>(&handler.record_to_save_or_forget(StorageOrder::Save))
         .expect("a valid record")
         .expect("settings rather than factory defaults");
     assert_eq!(stored[0].calibration.corrections[3].offset_k, 0.125);
@@ -99,7 +99,7 @@ fn the_record_holds_the_settings_of_each_finger_and_restores_them() {
         );
     }
     assert_eq!(
-        decode::<2>(&handler.settings_record(StorageOrder::Forget)),
+        decode_settings_record::<2>(&handler.record_to_save_or_forget(StorageOrder::Forget)),
         Ok(None)
     );
 }

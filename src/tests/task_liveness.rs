@@ -27,10 +27,10 @@ fn the_watchdog_is_fed_only_after_every_task_has_checked_in_again() {
 
 #[test]
 fn the_host_task_is_called_every_nine_ticks_and_at_once_for_telemetry() {
-    let mut poll = HostTaskTimer::new();
+    let mut poll = HostTaskTimer::new_due_at_first_tick();
     let mut called_at = |telemetry_tick: usize| {
         let mut due = |tick: &usize| {
-            let is_due = poll.count_tick_and_check_due(*tick == telemetry_tick);
+            let is_due = poll.count_tick_and_check_due_or_telemetry(*tick == telemetry_tick);
             if is_due {
                 poll.restart();
             }
@@ -44,6 +44,6 @@ fn the_host_task_is_called_every_nine_ticks_and_at_once_for_telemetry() {
 
 #[test]
 fn a_call_stays_due_until_it_is_made() {
-    let mut poll = HostTaskTimer::new();
-    assert!((0..30).all(|_| poll.count_tick_and_check_due(false)));
+    let mut poll = HostTaskTimer::new_due_at_first_tick();
+    assert!((0..30).all(|_| poll.count_tick_and_check_due_or_telemetry(false)));
 }

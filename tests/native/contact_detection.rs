@@ -49,7 +49,8 @@ impl Bench {
             .force
             .expect("a sound sensor");
         self.touch.update_contact(force);
-        self.sensors.track_force_zero(&samples, &self.touch);
+        self.sensors
+            .track_force_zero_unless_touching(&samples, &self.touch);
         self.sum = 0;
         self.scan(SCANS_BEFORE);
     }

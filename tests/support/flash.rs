@@ -10,8 +10,8 @@ use embedded_storage::nor_flash::{
 use sequential_storage::cache::Cache;
 use sequential_storage::map::{MapConfig, MapStorage};
 use thermal_display::settings::{
-    Calibration, Correction, RECORD_MAX_BYTES, RedundantSectors, SettingsStore, StoredSettings,
-    Tile,
+    Calibration, Correction, RECORD_MAX_BYTES, SettingsStore, StoredSettings, Tile,
+    TriplicatedSealedFlash,
 };
 use thermal_sim::FlashCells;
 
@@ -121,7 +121,7 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FI
                     curvature_1_k: of(finger + 23 + i as u32, 1e8),
                 }),
             },
-            tile: Tile::from_array(
+            tile: Tile::from_array_rounded(
                 [1.0, 0.0, 0.0, 0.1, 0.0].map(|base| base + of(finger + 28, 1e6)),
             ),
         }
@@ -131,10 +131,10 @@ pub fn numbered<const FINGERS: usize>(number: u32) -> Option<[StoredSettings; FI
 /// Appends any bytes as the newest record; whether that succeeded.
 pub fn append(cells: &mut FlashCells, record: &[u8]) -> bool {
     let flash = Flash::new(cells.clone());
-    let end = (3 * RedundantSectors::<Flash>::DATA_BYTES_PER_SECTOR) as u32;
+    let end = (3 * TriplicatedSealedFlash::<Flash>::DATA_BYTES_PER_SECTOR) as u32;
     let config = MapConfig::new(0..end);
     let mut map = MapStorage::<(), _, _>::new(
-        RedundantSectors::new(flash.clone()),
+        TriplicatedSealedFlash::new(flash.clone()),
         config,
         Cache::new_uncached(),
     );

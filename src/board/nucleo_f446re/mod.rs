@@ -21,12 +21,11 @@
 //! an inverting transistor. nSLEEP stays high, because a bridge that wakes up may report a fault
 //! until its charge pump runs.
 
-mod clock_monitor;
+mod defmt_rtt_log;
 mod fatal_errors;
 #[cfg(feature = "five-fingers")]
 mod five_fingers;
 mod independent_watchdog;
-mod log;
 #[cfg(not(feature = "five-fingers"))]
 mod one_finger;
 mod reset_cause;
@@ -37,6 +36,7 @@ mod serial;
 mod settings_flash;
 mod settings_storage;
 mod stack_guard;
+mod tick_rate_and_rcc_monitor;
 mod trip_cause_recorder;
 mod window_watchdog;
 
@@ -45,7 +45,7 @@ use heapless::spsc::Queue;
 use stm32f4xx_hal::dma::StreamsTuple;
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
-use thermal_display::device::command::WithFingerIndex;
+use thermal_display::device::command::WithSourceFinger;
 use thermal_display::device::safety::{Fault, TripCause};
 use thermal_display::device::{Device, FingerIndex, Telemetry};
 use thermal_display::line_queue::LineQueue;
@@ -59,19 +59,19 @@ pub use independent_watchdog::IndependentWatchdog;
 use one_finger as wiring;
 pub use sample_error::SampleError;
 pub use sampler::{SampleTrigger, Sampler};
-pub use saved_dose::save_dose;
-pub use serial::{CompletedLineKind, Outbox, Receiver, Transmitter};
+pub use saved_dose::save_dose_if_changed;
+pub use serial::{BlankOrToBeAnsweredLine, Outbox, Receiver, Transmitter};
 pub use settings_storage::restart_to_save;
 pub use stack_guard::stack_is_overrun;
 pub use stm32f4xx_hal::pac;
 pub use trip_cause_recorder::TripCauseRecorder;
 pub use window_watchdog::WindowWatchdog;
-pub use wiring::{FINGERS, PowerStage};
+pub use wiring::{FINGERS, FingerPowerStage};
 
 use super::{Console, ControlLoop};
-use clock_monitor::ClockMonitor;
 use reset_cause::ResetCause;
 use settings_storage::SaveAndLoadResult;
+use tick_rate_and_rcc_monitor::TickRateAndRccMonitor;
 
 /// Capacity of the telemetry queue, in lines: those of eight ticks of 1 ms, one line a tick for
 /// each finger.
@@ -81,11 +81,11 @@ const TELEMETRY_QUEUE_CAPACITY: usize = 8 * FINGERS;
 /// handler of the host task. `main.rs` allocates them statically, because they must live as long as
 /// the program.
 pub struct StaticMemory {
-    scans: [sampler::ScanBlock; sampler::BLOCK_COUNT],
-    frames: [serial::FrameBuffer; serial::FRAME_COUNT],
-    frame_queues: serial::FrameQueues,
+    scans: [sampler::ScanBlock; sampler::TRIPLE_BUFFER_BLOCK_COUNT],
+    frames: [serial::TxLineBuffer; serial::FRAME_COUNT],
+    frame_queues: serial::FullAndEmptyFrameQueues,
     line_queue: LineQueue,
-    telemetry: Queue<WithFingerIndex<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
+    telemetry: Queue<WithSourceFinger<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
     // Created in place, because moving it while sampling runs would delay the first tick.
     handler: Option<CommandHandler<FINGERS>>,
 }
@@ -94,9 +94,9 @@ impl StaticMemory {
     /// Creates the memory with empty buffers and queues, as [`Board::set_up`] expects it.
     pub const fn new() -> Self {
         Self {
-            scans: [sampler::EMPTY_BLOCK; sampler::BLOCK_COUNT],
-            frames: [const { serial::FrameBuffer::new() }; serial::FRAME_COUNT],
-            frame_queues: serial::FrameQueues::new(),
+            scans: [sampler::EMPTY_BLOCK; sampler::TRIPLE_BUFFER_BLOCK_COUNT],
+            frames: [const { serial::TxLineBuffer::new() }; serial::FRAME_COUNT],
+            frame_queues: serial::FullAndEmptyFrameQueues::new(),
             line_queue: LineQueue::new(),
             telemetry: Queue::new(),
             handler: None,
@@ -115,10 +115,12 @@ fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
     stack_guard::init_guard();
     let reset = ResetCause::read(rcc);
     if reset == ResetCause::PowerOn {
-        saved_dose::clear_saved_doses();
+        saved_dose::zero_saved_doses();
     }
-    let mut cause =
-        trip_cause_recorder::trip_cause_after_reset(reset, settings_storage::save_is_pending());
+    let mut cause = trip_cause_recorder::store_reset_fault_and_load_cause(
+        reset,
+        settings_storage::save_is_pending(),
+    );
     // A fault that no tick has recorded is a consequence of the overrun. The first start of another
     // version of the firmware is excepted, because its predecessor may have used the words of the
     // guard.
@@ -137,19 +139,19 @@ fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
 /// Creates the device in `place`, with the settings from the flash and with the thermal doses that
 /// were saved in RAM before the reset. All fingers are tripped by `cause` if there is one, and by
 /// [`Fault::SettingsCorrupt`] if the settings cannot be read.
-fn restore_device(
+fn create_and_restore_device(
     place: &'static mut Option<Device<FINGERS>>,
     cause: Option<TripCause>,
     storage: &SaveAndLoadResult,
 ) -> &'static mut Device<FINGERS> {
-    let device = place.insert(Device::with_trip_cause(cause, &Settings::default()));
+    let device = place.insert(Device::new_optionally_tripped(cause, &Settings::default()));
     match &storage.settings {
         Ok(Some(settings)) => device.restore_settings(settings),
         Ok(None) => {}
         Err(_) => device.trip_all(Fault::SettingsCorrupt),
     }
     for finger in FingerIndex::all() {
-        device.restore_thermal_dose(finger, saved_dose::saved_dose(finger));
+        device.restore_finger_thermal_dose(finger, saved_dose::saved_dose_or_zero(finger));
     }
     device
 }
@@ -194,15 +196,17 @@ impl Board {
         let storage = settings_storage::save_pending_and_load(&peripherals.FLASH);
         // Creating the device takes 0.2 s at 16 MHz, so it comes before the watchdogs and the
         // sampling start.
-        let device = restore_device(device, cause, &storage);
+        let device = create_and_restore_device(device, cause, &storage);
         // A fault of the settings is not stored, because every start finds it again until other
         // settings are stored.
         let trip_cause_recorder = TripCauseRecorder::new(device.earliest_trip_cause().copied());
 
         // Before the clocks are set up, because this watchdog has its own oscillator.
         let watchdog = IndependentWatchdog::start(peripherals.IWDG);
-        let has_clock = start_probe_clock(&peripherals.RCC);
-        let mut rcc = peripherals.RCC.freeze(clock_config(has_clock));
+        let has_clock = try_start_hse_from_probe(&peripherals.RCC);
+        let mut rcc = peripherals
+            .RCC
+            .freeze(clock_config_from_hse_or_hsi(has_clock));
         if has_clock {
             enable_clock_security(&mut rcc);
         }
@@ -213,7 +217,7 @@ impl Board {
 
         #[cfg(not(feature = "five-fingers"))]
         let (stages, multiplexer) = {
-            let stage = PowerStage::new(
+            let stage = FingerPowerStage::new(
                 peripherals.TIM1,
                 (gpioa.pa8, gpioa.pa9),
                 gpiob.pb10,
@@ -288,10 +292,10 @@ impl Board {
             current: gpioc.pc2.into_analog(),
         };
         let dma2 = StreamsTuple::new(peripherals.DMA2, &mut rcc);
-        let (sampler, trigger) = Sampler::new(
-            sampler::Converter::new(peripherals.ADC1, pins, &mut rcc),
+        let (sampler, trigger) = Sampler::new_with_trigger(
+            sampler::SensorAdc::new(peripherals.ADC1, pins, &mut rcc),
             peripherals.TIM2,
-            ClockMonitor::new(systick, rcc.clocks.hclk().raw()),
+            TickRateAndRccMonitor::new(systick, rcc.clocks.hclk().raw()),
             dma2.0,
             multiplexer,
             &mut memory.scans,
@@ -319,7 +323,7 @@ impl Board {
 
 /// Turns on the input of the 8 MHz clock that the debug probe provides, and returns whether this
 /// clock has become stable. Gives up after at least 20 ms, at a core clock of 16 MHz.
-fn start_probe_clock(rcc: &pac::RCC) -> bool {
+fn try_start_hse_from_probe(rcc: &pac::RCC) -> bool {
     rcc.cr().modify(|_, w| w.hsebyp().bypassed().hseon().on());
     (0..1 << 16).any(|_| rcc.cr().read().hserdy().is_ready())
 }
@@ -332,7 +336,7 @@ fn start_probe_clock(rcc: &pac::RCC) -> bool {
 ///
 /// All rates are exact: the USART's 45 MHz are a multiple of the baud rate, the sample timer's 90
 /// MHz a multiple of the scan rate, and the PWM timers' 180 MHz a multiple of the PWM frequency.
-fn clock_config(has_clock: bool) -> Config {
+fn clock_config_from_hse_or_hsi(has_clock: bool) -> Config {
     let source = if has_clock {
         Config::hse(8.MHz()).bypass_hse_oscillator()
     } else {

@@ -17,12 +17,12 @@ use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, DMA2, TIM2, tim2};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
 use stm32f4xx_hal::timer::{CounterHz, Timer};
-use thermal_display::device::sense::{CHANNEL_COUNT, SCANS_PER_TICK, Scan};
+use thermal_display::device::sense::{ADC_CHANNELS_PER_FINGER, SCANS_PER_TICK, Scan};
 use thermal_display::device::{FingerIndex, TICK_HZ};
 
-use super::clock_monitor::ClockMonitor;
 use super::log;
 use super::sample_error::SampleError;
+use super::tick_rate_and_rcc_monitor::TickRateAndRccMonitor;
 use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME_CODE};
 
 /// Number of scans in one block: 16 with one finger, 18 with five. A control tick uses the last 16;
@@ -35,10 +35,10 @@ pub type ScanBlock = [Scan; SCANS_PER_BLOCK];
 
 /// Number of blocks: the DMA stream fills one and has the next one ready, and the tick reads the
 /// third.
-pub const BLOCK_COUNT: usize = 3;
+pub const TRIPLE_BUFFER_BLOCK_COUNT: usize = 3;
 
 /// Initial content of a block, before the DMA stream first fills it: all counts are zero.
-pub const EMPTY_BLOCK: ScanBlock = [[0; CHANNEL_COUNT]; SCANS_PER_BLOCK];
+pub const EMPTY_BLOCK: ScanBlock = [[0; ADC_CHANNELS_PER_FINGER]; SCANS_PER_BLOCK];
 
 /// The analog input pins of the seven signals that ADC1 converts. The fields have the same names as
 /// those of `Samples`.
@@ -55,7 +55,7 @@ pub struct SensorPins {
 /// Samples the sensors of all fingers in turn: one block of scans for each finger and control tick,
 /// stored by DMA.
 pub struct Sampler {
-    transfer: Transfer<Stream0<DMA2>, 0, Converter, PeripheralToMemory, &'static mut ScanBlock>,
+    transfer: Transfer<Stream0<DMA2>, 0, SensorAdc, PeripheralToMemory, &'static mut ScanBlock>,
     /// The block that the last
     /// [`take_block_and_select_next_finger`](Self::take_block_and_select_next_finger) returned or,
     /// before the first call, one that was never filled. The next call gives this block to the DMA
@@ -70,7 +70,7 @@ pub struct Sampler {
     multiplexer: Multiplexer,
     /// The finger whose samples the DMA stream stores now. The next tick takes that finger's block.
     finger: FingerIndex<FINGERS>,
-    clock_monitor: ClockMonitor,
+    tick_rate_and_rcc_monitor: TickRateAndRccMonitor,
 }
 
 /// The timer TIM2, which triggers the scans of the sensors.
@@ -95,13 +95,13 @@ impl SampleTrigger {
 impl Sampler {
     /// Sets up the DMA stream and the timer of the scans. Sampling begins with finger 0 when the
     /// returned trigger is started.
-    pub fn new(
-        converter: Converter,
+    pub fn new_with_trigger(
+        converter: SensorAdc,
         timer: TIM2,
-        clock_monitor: ClockMonitor,
+        tick_rate_and_rcc_monitor: TickRateAndRccMonitor,
         stream: Stream0<DMA2>,
         multiplexer: Multiplexer,
-        blocks: &'static mut [ScanBlock; BLOCK_COUNT],
+        blocks: &'static mut [ScanBlock; TRIPLE_BUFFER_BLOCK_COUNT],
         rcc: &mut Rcc,
     ) -> (Self, SampleTrigger) {
         let [first, second, spare] = blocks;
@@ -123,7 +123,7 @@ impl Sampler {
             last_buffer: CurrentBuffer::SecondBuffer,
             multiplexer,
             finger: FingerIndex::FIRST,
-            clock_monitor,
+            tick_rate_and_rcc_monitor,
         };
         (sampler, SampleTrigger(timer.counter_hz()))
     }
@@ -142,7 +142,9 @@ impl Sampler {
     ) -> Result<(FingerIndex<FINGERS>, &[Scan; SCANS_PER_TICK]), SampleError> {
         // Checked first, because the start of the tick is measured; reported last, because the
         // other errors are more specific.
-        let clock_check = self.clock_monitor.check_clocks_and_tick_rate();
+        let clock_check = self
+            .tick_rate_and_rcc_monitor
+            .check_rcc_cfgr_and_tick_rate();
         let finger = self.finger;
         self.finger = finger.next_cyclic();
         self.multiplexer.select(self.finger);
@@ -166,7 +168,7 @@ impl Sampler {
         self.last_buffer = which;
         clock_check?;
         if finger == FingerIndex::FIRST {
-            log::advance_time_stamp();
+            log::advance_uptime_by_1_ms();
         }
         let scans = self
             .spare
@@ -179,13 +181,15 @@ impl Sampler {
     /// Whether the DMA stream has already stored the first scan of the block that it is filling.
     /// The multiplexers must be switched before that.
     fn first_scan_of_block_is_stored(&self) -> bool {
-        usize::from(self.transfer.number_of_transfers()) <= (SCANS_PER_BLOCK - 1) * CHANNEL_COUNT
+        usize::from(self.transfer.number_of_transfers())
+            <= (SCANS_PER_BLOCK - 1) * ADC_CHANNELS_PER_FINGER
     }
 
     /// Stops sampling until the next reset. No control tick follows, so the watchdogs are no longer
     /// fed and reset the device.
     pub fn stop(&mut self) {
-        self.transfer.pause(Converter::stop);
+        self.transfer
+            .pause(SensorAdc::disable_adc_and_overrun_interrupt);
     }
 }
 
@@ -194,12 +198,12 @@ impl Sampler {
 /// The driver of `stm32f4xx-hal` is not used: it measures the supply voltage during its set-up,
 /// which is of no use here because all sensors are ratiometric to the supply, and it does not
 /// support the overrun interrupt.
-pub struct Converter {
+pub struct SensorAdc {
     adc: ADC1,
     _inputs: SensorPins,
 }
 
-impl Converter {
+impl SensorAdc {
     /// Sets up ADC1 with a clock of 90 MHz / 4 = 22.5 MHz (the maximum is 36 MHz) and with the
     /// sampling time [`SAMPLE_TIME_CODE`] for each of the seven channels.
     pub fn new(adc: ADC1, inputs: SensorPins, rcc: &mut Rcc) -> Self {
@@ -230,7 +234,8 @@ impl Converter {
         });
         // SAFETY: ADC1 has this channel.
         adc.sqr2().write(|w| unsafe { w.sq7().bits(12) }); // current, PC2
-        adc.sqr1().write(|w| w.l().set(CHANNEL_COUNT as u8 - 1));
+        adc.sqr1()
+            .write(|w| w.l().set(ADC_CHANNELS_PER_FINGER as u8 - 1));
         adc.cr1().write(|w| w.scan().enabled().ovrie().enabled());
         adc.cr2().write(|w| {
             w.dma().enabled();
@@ -249,14 +254,14 @@ impl Converter {
 
     /// Switches ADC1 off and disables its overrun interrupt, which the conversions would raise once
     /// the DMA stream no longer fetches them.
-    fn stop(&mut self) {
+    fn disable_adc_and_overrun_interrupt(&mut self) {
         self.adc.cr1().write(|w| w.ovrie().disabled());
         self.adc.cr2().write(|w| w.adon().disabled());
     }
 }
 
 // SAFETY: the address is that of the data register of ADC1, which may be read as half-words.
-unsafe impl PeriAddress for Converter {
+unsafe impl PeriAddress for SensorAdc {
     type MemSize = u16;
 
     fn address(&self) -> u32 {
@@ -265,4 +270,4 @@ unsafe impl PeriAddress for Converter {
 }
 
 // SAFETY: channel 0 of stream 0 of DMA2 serves the requests of ADC1 (RM0390, table 29).
-unsafe impl DMASet<Stream0<DMA2>, 0, PeripheralToMemory> for Converter {}
+unsafe impl DMASet<Stream0<DMA2>, 0, PeripheralToMemory> for SensorAdc {}

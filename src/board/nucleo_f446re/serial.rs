@@ -31,21 +31,21 @@ pub const FRAME_COUNT: usize = 4;
 
 /// Bytes of the longest line to the host: the address of a finger, the longest answer, and the line
 /// feed.
-const FRAME_MAX_BYTES: usize = "@0 ".len() + ANSWER_MAX_BYTES + 1;
+const TX_LINE_MAX_BYTES: usize = "@0 ".len() + ANSWER_MAX_BYTES + 1;
 
 /// Memory of one frame: the bytes of one line to the host, with its line feed.
-pub type FrameBuffer = Vec<u8, FRAME_MAX_BYTES>;
+pub type TxLineBuffer = Vec<u8, TX_LINE_MAX_BYTES>;
 
 /// One line to the host, in memory that the DMA stream can read.
-struct TxFrame(&'static mut FrameBuffer);
+struct TxFrame(&'static mut TxLineBuffer);
 
 impl TxFrame {
     /// Replaces the content of the frame by `line` and a line feed.
-    fn fill(&mut self, line: &impl fmt::Display) {
+    fn overwrite_with_line_and_lf(&mut self, line: &impl fmt::Display) {
         self.0.clear();
         // All lines of the protocol fit; a longer one would be truncated.
         let _ = write!(self.0, "{line}");
-        self.0.truncate(FRAME_MAX_BYTES - 1);
+        self.0.truncate(TX_LINE_MAX_BYTES - 1);
         let _ = self.0.push(b'\n');
     }
 }
@@ -62,12 +62,12 @@ unsafe impl ReadBuffer for TxFrame {
 
 /// The two queues between [`Outbox`] and [`Transmitter`]: `full` with the lines to be sent, `empty`
 /// with the free frames. Each has room for all frames, so none is ever full.
-pub struct FrameQueues {
+pub struct FullAndEmptyFrameQueues {
     full: Queue<TxFrame, { FRAME_COUNT + 1 }>,
     empty: Queue<TxFrame, { FRAME_COUNT + 1 }>,
 }
 
-impl FrameQueues {
+impl FullAndEmptyFrameQueues {
     /// Creates both queues without frames; [`set_up`] then puts the free frames into `empty`.
     pub const fn new() -> Self {
         Self {
@@ -85,7 +85,7 @@ pub struct Outbox {
 }
 
 impl Outbox {
-    /// Whether a frame is free, so that [`enqueue`](Self::enqueue) can accept another line.
+    /// Whether a frame is free, so that [`enqueue_or_drop`](Self::enqueue_or_drop) can accept another line.
     pub fn has_room(&self) -> bool {
         self.empty.ready()
     }
@@ -97,11 +97,11 @@ impl Outbox {
 
     /// Writes `line` into a free frame and queues it to be sent; drops the line if no frame is
     /// free, so callers check [`has_room`](Self::has_room) first.
-    pub fn enqueue(&mut self, line: &impl fmt::Display) {
+    pub fn enqueue_or_drop(&mut self, line: &impl fmt::Display) {
         let Some(mut frame) = self.empty.dequeue() else {
             return;
         };
-        frame.fill(line);
+        frame.overwrite_with_line_and_lf(line);
         let _ = self.full.enqueue(frame);
         // The interrupt otherwise occurs only at the end of a line, so an idle transmitter would
         // not start.
@@ -145,7 +145,7 @@ impl Transmitter {
 
 /// The kind of line that a received byte, a carriage return or line feed, has ended.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum CompletedLineKind {
+pub enum BlankOrToBeAnsweredLine {
     /// A line with content, valid or not. It waits for its answer in the queue of received lines
     /// or, if that queue is full, is refused, and its answer is an error.
     ToBeAnswered,
@@ -164,14 +164,14 @@ pub struct Receiver {
 impl Receiver {
     /// Reads the byte that has arrived. Returns the kind of line that this byte has ended, `None`
     /// if it has ended no line.
-    pub fn receive_byte(&mut self) -> Option<CompletedLineKind> {
+    pub fn receive_byte_and_queue_line(&mut self) -> Option<BlankOrToBeAnsweredLine> {
         match self.rx.read() {
             Ok(byte) => match self.reader.push(byte) {
                 Some(line) => {
-                    self.line_queue.enqueue(line);
-                    Some(CompletedLineKind::ToBeAnswered)
+                    self.line_queue.enqueue_or_count_refused(line);
+                    Some(BlankOrToBeAnsweredLine::ToBeAnswered)
                 }
-                None => LineReader::is_line_end(byte).then_some(CompletedLineKind::Blank),
+                None => LineReader::is_line_end(byte).then_some(BlankOrToBeAnsweredLine::Blank),
             },
             Err(nb::Error::WouldBlock) => None,
             Err(nb::Error::Other(_)) => {
@@ -189,8 +189,8 @@ pub fn set_up(
     usart: USART2,
     (tx, rx): (PA2<Input>, PA3<Input>),
     stream: Stream6<DMA1>,
-    buffers: &'static mut [FrameBuffer; FRAME_COUNT],
-    queues: &'static mut FrameQueues,
+    buffers: &'static mut [TxLineBuffer; FRAME_COUNT],
+    queues: &'static mut FullAndEmptyFrameQueues,
     line_queue: LineProducer<'static>,
     rcc: &mut Rcc,
 ) -> (Receiver, Transmitter, Outbox) {

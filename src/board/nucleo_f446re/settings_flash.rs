@@ -93,7 +93,7 @@ impl<'a> SettingsFlash<'a> {
         &mut self,
         work: impl FnOnce(&mut Self) -> Result<(), FlashError>,
     ) -> Result<(), FlashError> {
-        self.wait_until_idle()?;
+        self.wait_until_idle_and_read_errors()?;
         if self.0.cr().read().lock().bit_is_set() {
             for key in UNLOCK_KEYS {
                 // SAFETY: any value may be written; a wrong one locks the register until the next
@@ -118,7 +118,7 @@ impl<'a> SettingsFlash<'a> {
     /// # Errors
     /// [`FlashError::Busy`] if the flash is still busy after [`BUSY_READS_MAX`] reads of the busy
     /// flag, more than 500 ms.
-    fn wait_until_idle(&self) -> Result<u32, FlashError> {
+    fn wait_until_idle_and_read_errors(&self) -> Result<u32, FlashError> {
         for _ in 0..BUSY_READS_MAX {
             let status = self.0.sr().read();
             if status.bsy().bit_is_clear() {
@@ -135,7 +135,7 @@ impl<'a> SettingsFlash<'a> {
     /// [`FlashError::Protected`] if the sector is write-protected, [`FlashError::Flags`] if only
     /// other error flags are set.
     fn wait_and_check(&self) -> Result<(), FlashError> {
-        match self.wait_until_idle()? {
+        match self.wait_until_idle_and_read_errors()? {
             0 => Ok(()),
             flags if flags & WRITE_PROTECTION_FLAG != 0 => Err(FlashError::Protected),
             flags => Err(FlashError::Flags(flags)),

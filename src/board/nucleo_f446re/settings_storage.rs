@@ -15,7 +15,8 @@ use core::sync::atomic::{AtomicU8, AtomicU32};
 use cortex_m::peripheral::SCB;
 use stm32f4xx_hal::pac::FLASH;
 use thermal_display::settings::{
-    RECORD_MAX_BYTES, SettingsRecord, SettingsStore, StoreError, StoredSettings, decode,
+    RECORD_MAX_BYTES, SettingsRecord, SettingsStore, StoreError, StoredSettings,
+    decode_settings_record,
 };
 
 use super::FINGERS;
@@ -57,17 +58,17 @@ impl PendingSave {
     }
 
     /// Begins an attempt to store the waiting settings: counts it and returns their bytes. `None`
-    /// if no settings wait; [`SaveError::Interrupted`] if both attempts are used up,
-    /// [`SaveError::Damaged`] if the length is damaged.
-    fn begin_attempt(&self) -> Option<Result<SettingsRecord, SaveError>> {
+    /// if no settings wait; [`PendingSaveError::Interrupted`] if both attempts are used up,
+    /// [`PendingSaveError::Damaged`] if the length is damaged.
+    fn count_attempt_and_read_settings(&self) -> Option<Result<SettingsRecord, PendingSaveError>> {
         let begun = self.attempts_begun()?;
         if begun == MAX_SAVE_ATTEMPTS {
-            return Some(Err(SaveError::Interrupted));
+            return Some(Err(PendingSaveError::Interrupted));
         }
         self.state.store(SAVE_PENDING_MAGIC + begun + 1, Relaxed);
         let bytes = self.bytes.get(..self.length_bytes.load(Relaxed) as usize);
         let bytes = bytes.map(|bytes| bytes.iter().map(|byte| byte.load(Relaxed)).collect());
-        Some(bytes.ok_or(SaveError::Damaged))
+        Some(bytes.ok_or(PendingSaveError::Damaged))
     }
 
     fn write_to_ram(&self, bytes: &SettingsRecord) {
@@ -87,7 +88,7 @@ impl PendingSave {
 type SettingsStoreError = StoreError<FlashError>;
 
 /// Why the settings that waited in RAM were not stored in flash.
-pub enum SaveError {
+pub enum PendingSaveError {
     /// The flash could not be written, for the reason given.
     Failed(SettingsStoreError),
     /// Resets have interrupted both attempts to store the settings, and there is no third attempt.
@@ -98,7 +99,7 @@ pub enum SaveError {
     Damaged,
 }
 
-impl fmt::Display for SaveError {
+impl fmt::Display for PendingSaveError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Failed(error) => error.fmt(f),
@@ -116,7 +117,7 @@ pub struct SaveAndLoadResult {
     pub settings: Result<Option<[StoredSettings; FINGERS]>, SettingsStoreError>,
     /// Whether the settings that waited in RAM were stored in flash at this start; `None` if none
     /// waited.
-    pub save_result: Option<Result<(), SaveError>>,
+    pub save_result: Option<Result<(), PendingSaveError>>,
 }
 
 /// Whether settings wait in RAM to be stored in flash. A reset by the program is then no fault: the
@@ -131,9 +132,12 @@ pub fn save_is_pending() -> bool {
 #[inline(never)]
 pub fn save_pending_and_load(registers: &FLASH) -> SaveAndLoadResult {
     let mut store = SettingsStore::<_, FINGERS>::new(SettingsFlash::new(registers));
-    let save_result = PENDING_SAVE.begin_attempt().map(|bytes| {
-        let settings = decode::<FINGERS>(&bytes?).map_err(|_| SaveError::Damaged)?;
-        store.save(settings.as_ref()).map_err(SaveError::Failed)
+    let save_result = PENDING_SAVE.count_attempt_and_read_settings().map(|bytes| {
+        let settings =
+            decode_settings_record::<FINGERS>(&bytes?).map_err(|_| PendingSaveError::Damaged)?;
+        store
+            .save(settings.as_ref())
+            .map_err(PendingSaveError::Failed)
     });
     PENDING_SAVE.clear();
     let settings = store.load();

@@ -34,7 +34,7 @@ pub fn stored_trip_cause() -> Option<TripCause> {
         core::array::from_fn(|i| STORED_TRIP_CAUSE[i].load(Ordering::Relaxed));
     let [cause @ .., sum] = words;
     if checksum_of_words(&cause) == sum {
-        TripCause::from_words(cause)
+        TripCause::from_retained_words(cause)
     } else {
         None
     }
@@ -46,7 +46,7 @@ pub fn store_trip_cause_if_none(cause: &TripCause) {
     if stored_trip_cause().is_some() {
         return;
     }
-    let words = cause.to_words();
+    let words = cause.to_retained_words();
     for (place, word) in STORED_TRIP_CAUSE
         .iter()
         .zip(words.into_iter().chain([checksum_of_words(&words)]))
@@ -71,7 +71,10 @@ pub fn erase_stored_trip_cause() {
 /// cause or, if none is stored, the fault that the reset itself indicates, which is then stored
 /// too. After power-on the old cause is erased first. `restart_is_planned`: settings wait in RAM to
 /// be stored, so a reset by the program is no fault.
-pub fn trip_cause_after_reset(reset: ResetCause, restart_is_planned: bool) -> Option<TripCause> {
+pub fn store_reset_fault_and_load_cause(
+    reset: ResetCause,
+    restart_is_planned: bool,
+) -> Option<TripCause> {
     if reset == ResetCause::PowerOn {
         // The content of the RAM is arbitrary.
         erase_stored_trip_cause();

@@ -8,8 +8,9 @@ use super::calibration_points::{CalibrationPoint, CalibrationPoints};
 use super::cholesky::solve_by_cholesky;
 use thermal_device::sense::THERMISTOR_COUNT;
 use thermal_settings::{
-    CALIBRATED_BORDER_COUNT, CODES_PER_CONVERTER_SEGMENT, CORRECTION_CENTER_C,
-    CORRECTION_HALF_SPAN_K, Calibration, Correction, FIRST_CALIBRATED_BORDER, Settings,
+    CALIBRATED_ADC_BORDER_COUNT, CODES_PER_ADC_SEGMENT, CORRECTION_POLYNOMIAL_CENTER_C,
+    CORRECTION_POLYNOMIAL_CLAMP_K, Calibration, Correction, FIRST_CALIBRATED_ADC_BORDER_INDEX,
+    Settings,
 };
 
 /// Number of the display's thermistors, which have the indices 0 and 1. Only their calibration points determine the
@@ -18,7 +19,7 @@ pub const DISPLAY_THERMISTOR_COUNT: usize = 2;
 const COEFFICIENTS_PER_CORRECTION: usize = 3;
 /// Number of unknowns of the joint fit, 19: three coefficients of the correction of each of the two display
 /// thermistors, then the converter's steps at 13 borders of its segments.
-const JOINT_FIT_UNKNOWN_COUNT: usize = FIRST_STEP_UNKNOWN_INDEX + CALIBRATED_BORDER_COUNT;
+const JOINT_FIT_UNKNOWN_COUNT: usize = FIRST_STEP_UNKNOWN_INDEX + CALIBRATED_ADC_BORDER_COUNT;
 const FIRST_STEP_UNKNOWN_INDEX: usize = DISPLAY_THERMISTOR_COUNT * COEFFICIENTS_PER_CORRECTION;
 /// Assumed standard deviation, K, of the error of a calibration point: 0.5 mK. The fit weights each point by the
 /// inverse of its square.
@@ -36,7 +37,7 @@ const JOINT_FIT_ITERATIONS: usize = 2;
 
 /// Self-heating, K, of the thermistor with the index `sensor`, from the settings: how much warmer its measuring current
 /// makes it than what it measures. 0 for an index above 4.
-fn self_heating_k(settings: &Settings, sensor: usize) -> f64 {
+fn self_heating_setting_k(settings: &Settings, sensor: usize) -> f64 {
     let self_heating_k = settings.self_heating_k.get(sensor);
     self_heating_k.copied().unwrap_or(0.0)
 }
@@ -44,17 +45,19 @@ fn self_heating_k(settings: &Settings, sensor: usize) -> f64 {
 /// Number of the 13 calibrated segment borders of the converter (codes 1280 to 2816 in steps of 128) at or below a
 /// reading, which is a mean sum of 16 conversions, 0 to 65520.
 fn calibrated_border_count_below(sum: f64) -> usize {
-    let segment = (sum / f64::from(16 * CODES_PER_CONVERTER_SEGMENT)) as usize;
+    let segment = (sum / f64::from(16 * CODES_PER_ADC_SEGMENT)) as usize;
     (segment + 1)
-        .saturating_sub(FIRST_CALIBRATED_BORDER)
-        .min(CALIBRATED_BORDER_COUNT)
+        .saturating_sub(FIRST_CALIBRATED_ADC_BORDER_INDEX)
+        .min(CALIBRATED_ADC_BORDER_COUNT)
 }
 
 /// The factors `1`, `u` and `u²` of a correction's offset, slope and curvature for a thermistor at `thermistor_c`, °C:
 /// `u` is the difference from 29 °C, limited to ±16 K.
 fn polynomial_terms(thermistor_c: f64) -> [f64; COEFFICIENTS_PER_CORRECTION] {
-    let u =
-        (thermistor_c - CORRECTION_CENTER_C).clamp(-CORRECTION_HALF_SPAN_K, CORRECTION_HALF_SPAN_K);
+    let u = (thermistor_c - CORRECTION_POLYNOMIAL_CENTER_C).clamp(
+        -CORRECTION_POLYNOMIAL_CLAMP_K,
+        CORRECTION_POLYNOMIAL_CLAMP_K,
+    );
     [1.0, u, u * u]
 }
 
@@ -62,7 +65,7 @@ fn polynomial_terms(thermistor_c: f64) -> [f64; COEFFICIENTS_PER_CORRECTION] {
 /// mean sum of 16 conversions, 0 to 65520. It is not valid within two codes of a segment border, where the device
 /// interpolates the converter's step, nor if the steps add up to more than 8 counts, to which the device limits them.
 #[must_use]
-pub fn thermistor_reading_c(settings: &Settings, sensor: usize, sum: f64) -> f64 {
+pub fn calibrated_temperature_c(settings: &Settings, sensor: usize, sum: f64) -> f64 {
     let Calibration {
         steps_counts,
         corrections,
@@ -71,7 +74,7 @@ pub fn thermistor_reading_c(settings: &Settings, sensor: usize, sum: f64) -> f64
         .iter()
         .take(calibrated_border_count_below(sum))
         .sum();
-    let self_heating_k = self_heating_k(settings, sensor);
+    let self_heating_k = self_heating_setting_k(settings, sensor);
     let uncorrected_c = settings.thermistor.temperature_c(sum - 16.0 * steps) - self_heating_k;
     let correction = corrections.get(sensor).copied().unwrap_or_default();
     let [one, u, square] = polynomial_terms(uncorrected_c + self_heating_k);
@@ -83,7 +86,7 @@ pub fn thermistor_reading_c(settings: &Settings, sensor: usize, sum: f64) -> f64
 
 /// The linear equation that a calibration point adds to the least squares: `polynomial_terms` times the coefficients of
 /// the correction, plus `k_per_count` times the change of each converter step below the reading, equals `deviation_k`.
-struct ObservationEquation {
+struct CalibrationPointEquation {
     /// Temperature of the reference thermometer minus the uncorrected temperature, K. The uncorrected temperature is
     /// that of the calibration point's reading minus the present converter steps at all borders below the reading, less
     /// the thermistor's self-heating.
@@ -99,10 +102,10 @@ struct ObservationEquation {
     k_per_count: f64,
 }
 
-impl ObservationEquation {
+impl CalibrationPointEquation {
     fn new(
         settings: &Settings,
-        steps: &[f64; CALIBRATED_BORDER_COUNT],
+        steps: &[f64; CALIBRATED_ADC_BORDER_COUNT],
         sensor: usize,
         point: &CalibrationPoint,
     ) -> Self {
@@ -111,7 +114,8 @@ impl ObservationEquation {
         let sum = point.sum - 16.0 * step_counts;
         let thermistor_c = settings.thermistor.temperature_c(sum);
         Self {
-            deviation_k: point.reference_c - (thermistor_c - self_heating_k(settings, sensor)),
+            deviation_k: point.reference_c
+                - (thermistor_c - self_heating_setting_k(settings, sensor)),
             polynomial_terms: polynomial_terms(thermistor_c),
             borders,
             // One count less, 16 in the sum, is a higher temperature.
@@ -157,7 +161,7 @@ impl<const N: usize> NormalEquations<N> {
 
     /// Adds three equations that state the prior of one correction: its offset, slope and curvature, which are the
     /// unknowns `first` to `first + 2`, equal those of `correction`, with [`COEFFICIENT_PRIOR_STANDARD_DEVIATIONS`].
-    fn add_correction_prior(&mut self, first: usize, correction: &Correction) {
+    fn add_prior_correction_equations(&mut self, first: usize, correction: &Correction) {
         let coefficients = correction.to_array().into_iter();
         for (i, (value, deviation)) in coefficients
             .zip(COEFFICIENT_PRIOR_STANDARD_DEVIATIONS)
@@ -189,7 +193,7 @@ pub fn fit_calibration(
     let mut calibration = *prior;
     if (0..DISPLAY_THERMISTOR_COUNT).any(|sensor| !points.of_sensor(sensor).is_empty()) {
         for _ in 0..JOINT_FIT_ITERATIONS {
-            fit_display_thermistors_and_steps(settings, prior, points, &mut calibration)?;
+            iterate_display_and_steps_fit(settings, prior, points, &mut calibration)?;
         }
     }
     for sensor in DISPLAY_THERMISTOR_COUNT..THERMISTOR_COUNT {
@@ -201,7 +205,7 @@ pub fn fit_calibration(
 /// One iteration of the joint fit: replaces in `calibration` the converter's 13 steps and the corrections of those
 /// display thermistors that have points. The points are evaluated with the steps that `calibration` had before. Returns
 /// `None` if the equations are numerically singular.
-fn fit_display_thermistors_and_steps(
+fn iterate_display_and_steps_fit(
     settings: &Settings,
     prior: &Calibration,
     points: &CalibrationPoints,
@@ -211,9 +215,9 @@ fn fit_display_thermistors_and_steps(
     let steps = calibration.steps_counts;
     for sensor in 0..DISPLAY_THERMISTOR_COUNT {
         let first = sensor * COEFFICIENTS_PER_CORRECTION;
-        equations.add_correction_prior(first, &prior.corrections[sensor]);
+        equations.add_prior_correction_equations(first, &prior.corrections[sensor]);
         for point in points.of_sensor(sensor) {
-            let observation = ObservationEquation::new(settings, &steps, sensor, point);
+            let observation = CalibrationPointEquation::new(settings, &steps, sensor, point);
             let mut terms = heapless::Vec::<_, JOINT_FIT_UNKNOWN_COUNT>::new();
             for (i, term) in observation.polynomial_terms.into_iter().enumerate() {
                 let _ = terms.push((first + i, term));
@@ -261,13 +265,13 @@ fn fit_thermistor_with_fixed_steps(
         return Some(());
     }
     let mut equations = NormalEquations::<COEFFICIENTS_PER_CORRECTION>::new();
-    equations.add_correction_prior(0, &calibration.corrections[sensor]);
+    equations.add_prior_correction_equations(0, &calibration.corrections[sensor]);
     for point in points.of_sensor(sensor) {
-        let ObservationEquation {
+        let CalibrationPointEquation {
             deviation_k,
             polynomial_terms: [one, u, square],
             ..
-        } = ObservationEquation::new(settings, &calibration.steps_counts, sensor, point);
+        } = CalibrationPointEquation::new(settings, &calibration.steps_counts, sensor, point);
         equations.add_equation(
             &[(0, one), (1, u), (2, square)],
             deviation_k,

@@ -4,7 +4,7 @@ use contact_model::fixed_point::Celsius;
 use heapless::Vec;
 
 use thermal_device::sense::{THERMISTOR_COUNT, ThermistorAverage};
-use thermal_settings::CODES_PER_CONVERTER_SEGMENT;
+use thermal_settings::CODES_PER_ADC_SEGMENT;
 
 /// Largest number of calibration points of one thermistor; a further one is rejected with [`PointError::Full`].
 pub const POINTS_PER_THERMISTOR_MAX: usize = 24;
@@ -92,9 +92,9 @@ impl CalibrationPoints {
         if !average.is_steady() {
             return Err(PointError::Unsteady);
         }
-        let segments = average.mean_sum() / f64::from(16 * CODES_PER_CONVERTER_SEGMENT);
+        let segments = average.mean_sum() / f64::from(16 * CODES_PER_ADC_SEGMENT);
         let from_border_codes =
-            (segments - libm::round(segments)) * f64::from(CODES_PER_CONVERTER_SEGMENT);
+            (segments - libm::round(segments)) * f64::from(CODES_PER_ADC_SEGMENT);
         if libm::fabs(from_border_codes) < SEGMENT_BORDER_MARGIN_CODES {
             return Err(PointError::AtBorder);
         }

@@ -17,7 +17,8 @@ mod tile_identification;
 pub use calibration_points::{POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K};
 pub use session::{CommissioningSession, ExecuteOnStation, SETTINGS_LINE_COUNT};
 pub use session_messages::{
-    CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SessionError, SessionReply, SessionRequest, Setting,
+    CONVERTER_STEPS_PER_LINE_MAX, SessionError, SessionReply, SessionRequest, Setting,
+    THERMISTOR_WORDS,
 };
 pub use stability_margins::StabilityMargins;
 pub use storage_order::StorageOrder;

@@ -2,28 +2,30 @@
 
 use core::ops::Range;
 
-use super::calibration_fit::{DISPLAY_THERMISTOR_COUNT, fit_calibration, thermistor_reading_c};
+use super::calibration_fit::{DISPLAY_THERMISTOR_COUNT, calibrated_temperature_c, fit_calibration};
 use super::calibration_points::{CalibrationPoints, PointError};
 use super::session_messages::{
-    CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SessionError, SessionReply, SessionRequest, Setting,
+    CONVERTER_STEPS_PER_LINE_MAX, SessionError, SessionReply, SessionRequest, Setting,
+    THERMISTOR_WORDS,
 };
 use super::stability_margins::StabilityMargins;
 use super::tile_identification::tile_from_normal_equations;
 use thermal_device::command::{self, Command, Refused};
 use thermal_device::control::ControlParameters;
-use thermal_device::identification::{NORMAL_EQUATION_ROWS, NormalEquationRow};
+use thermal_device::identification::{NORMAL_EQUATION_AND_STATISTICS_ROWS, NormalEquationRow};
 use thermal_device::sense::CalibrationTables;
 use thermal_settings::{
-    CALIBRATED_BORDER_COUNT, Calibration, Correction, FIRST_CALIBRATED_BORDER, Settings, Tile,
+    CALIBRATED_ADC_BORDER_COUNT, Calibration, Correction, FIRST_CALIBRATED_ADC_BORDER_INDEX,
+    Settings, Tile,
 };
 
 /// Number of lines of the settings that hold the converter's steps at 13 borders of its segments, up to seven in each
 /// line: 2.
 const CONVERTER_STEPS_LINE_COUNT: usize =
-    CALIBRATED_BORDER_COUNT.div_ceil(CONVERTER_STEPS_PER_LINE);
+    CALIBRATED_ADC_BORDER_COUNT.div_ceil(CONVERTER_STEPS_PER_LINE_MAX);
 /// Number of lines that hold all commissioned settings of a finger, 8: two for the converter's 13 steps, one for the
 /// correction of each of the five thermistors, and one for the tile.
-pub const SETTINGS_LINE_COUNT: usize = CONVERTER_STEPS_LINE_COUNT + SENSOR_WORDS.len() + 1;
+pub const SETTINGS_LINE_COUNT: usize = CONVERTER_STEPS_LINE_COUNT + THERMISTOR_WORDS.len() + 1;
 
 /// A function that executes a command on the station of the session's finger, and returns the station's reply or
 /// refusal. The control tick may be locked out while it runs, so it must end after a bounded, short time.
@@ -81,15 +83,18 @@ impl CommissioningSession {
                 reference_c,
             } => return self.add_point_and_refit(sensor, reference_c, &mut execute),
             SessionRequest::ClearCalibration { sensor } => {
-                self.clear_calibration(sensor, &mut execute)?;
+                self.clear_thermistor_calibration(sensor, &mut execute)?;
             }
             SessionRequest::Set(Setting::Steps { first, counts }) => {
                 let mut calibration = self.settings.calibration;
                 let steps = calibration.steps_counts.iter_mut();
-                for (step, count) in steps.skip(first - FIRST_CALIBRATED_BORDER).zip(&counts) {
+                for (step, count) in steps
+                    .skip(first - FIRST_CALIBRATED_ADC_BORDER_INDEX)
+                    .zip(&counts)
+                {
                     *step = *count;
                 }
-                self.replace_calibration_and_prior(
+                self.replace_calibration_and_clear_points(
                     calibration,
                     calibration,
                     0..DISPLAY_THERMISTOR_COUNT,
@@ -98,8 +103,8 @@ impl CommissioningSession {
             }
             SessionRequest::Set(Setting::Correction(sensor, correction)) => {
                 let (calibration, prior) =
-                    self.calibration_and_prior_with_correction(sensor, correction);
-                self.replace_calibration_and_prior(
+                    self.calibration_and_fit_prior_with_correction(sensor, correction);
+                self.replace_calibration_and_clear_points(
                     calibration,
                     prior,
                     sensor..sensor + 1,
@@ -108,7 +113,7 @@ impl CommissioningSession {
             }
             SessionRequest::Set(Setting::Tile(tile)) => self.set_tile(tile, &mut execute)?,
             SessionRequest::TuneResult => {
-                self.identify_tile(&mut execute)?;
+                self.identify_and_set_tile(&mut execute)?;
                 return Ok(self.tile_and_margins_reply());
             }
             SessionRequest::Margins => return Ok(self.tile_and_margins_reply()),
@@ -125,8 +130,11 @@ impl CommissioningSession {
     /// Computes the tile's parameters from the response that the station has recorded during `tune`, and makes them the
     /// tile of the settings and of the station. Without a complete `tune`, if the response gives no tile, or if the
     /// station refuses the parameters, nothing changes.
-    fn identify_tile(&mut self, execute: &mut impl ExecuteOnStation) -> Result<(), SessionError> {
-        let mut rows = [NormalEquationRow::default(); NORMAL_EQUATION_ROWS];
+    fn identify_and_set_tile(
+        &mut self,
+        execute: &mut impl ExecuteOnStation,
+    ) -> Result<(), SessionError> {
+        let mut rows = [NormalEquationRow::default(); NORMAL_EQUATION_AND_STATISTICS_ROWS];
         for (i, row) in rows.iter_mut().enumerate() {
             let command::Reply::NormalEquation(sums) = execute(Command::NormalEquation(i))? else {
                 return Err(Refused::NotTuned.into());
@@ -174,7 +182,7 @@ impl CommissioningSession {
     /// Replaces the calibration in use and the prior of the calibration fit, and removes the calibration points of the
     /// thermistors with the indices `sensors`, because the new prior replaces what they contributed. If the station
     /// refuses the calibration, because it presents an object or runs the self-test, nothing changes.
-    fn replace_calibration_and_prior(
+    fn replace_calibration_and_clear_points(
         &mut self,
         calibration: Calibration,
         prior: Calibration,
@@ -189,7 +197,7 @@ impl CommissioningSession {
 
     /// Copies of the calibration in use and of the prior of the calibration fit, in this order, both with `correction`
     /// as the correction of the thermistor with the index `sensor`.
-    fn calibration_and_prior_with_correction(
+    fn calibration_and_fit_prior_with_correction(
         &self,
         sensor: usize,
         correction: Correction,
@@ -207,22 +215,22 @@ impl CommissioningSession {
     /// the corrections of both display thermistors are zero then, the converter's steps at its segment borders are set
     /// to zero, too, because only these two thermistors determine them. If the station refuses the calibration, nothing
     /// changes.
-    fn clear_calibration(
+    fn clear_thermistor_calibration(
         &mut self,
         sensor: usize,
         execute: &mut impl ExecuteOnStation,
     ) -> Result<(), Refused> {
         let (mut calibration, mut prior) =
-            self.calibration_and_prior_with_correction(sensor, Correction::default());
+            self.calibration_and_fit_prior_with_correction(sensor, Correction::default());
         let mut display = calibration
             .corrections
             .iter()
             .take(DISPLAY_THERMISTOR_COUNT);
         if display.all(|correction| *correction == Correction::default()) {
-            calibration.steps_counts = [0.0; CALIBRATED_BORDER_COUNT];
-            prior.steps_counts = [0.0; CALIBRATED_BORDER_COUNT];
+            calibration.steps_counts = [0.0; CALIBRATED_ADC_BORDER_COUNT];
+            prior.steps_counts = [0.0; CALIBRATED_ADC_BORDER_COUNT];
         }
-        self.replace_calibration_and_prior(calibration, prior, sensor..sensor + 1, execute)
+        self.replace_calibration_and_clear_points(calibration, prior, sensor..sensor + 1, execute)
     }
 
     /// Adds a calibration point: the mean of the thermistor's converter sums over half a second, and the temperature of
@@ -238,7 +246,7 @@ impl CommissioningSession {
         let command::Reply::Average(average) = execute(Command::Average(sensor))? else {
             return Err(Refused::TooEarly.into());
         };
-        let present_c = thermistor_reading_c(&self.settings, sensor, average.mean_sum());
+        let present_c = calibrated_temperature_c(&self.settings, sensor, average.mean_sum());
         self.points
             .add(sensor, &average, present_c, reference_c)
             .map_err(SessionError::Point)?;
@@ -252,7 +260,9 @@ impl CommissioningSession {
         applied?;
         let points = self.points.of_sensor(sensor);
         let errors_k = points.iter().map(|point| {
-            libm::fabs(thermistor_reading_c(&self.settings, sensor, point.sum) - point.reference_c)
+            libm::fabs(
+                calibrated_temperature_c(&self.settings, sensor, point.sum) - point.reference_c,
+            )
         });
         Ok(SessionReply::PointAdded {
             points: points.len(),
@@ -266,11 +276,11 @@ impl CommissioningSession {
         let calibration = &self.settings.calibration;
         if let Some(steps) = calibration
             .steps_counts
-            .chunks(CONVERTER_STEPS_PER_LINE)
+            .chunks(CONVERTER_STEPS_PER_LINE_MAX)
             .nth(index)
         {
             return Setting::Steps {
-                first: FIRST_CALIBRATED_BORDER + index * CONVERTER_STEPS_PER_LINE,
+                first: FIRST_CALIBRATED_ADC_BORDER_INDEX + index * CONVERTER_STEPS_PER_LINE_MAX,
                 counts: heapless::Vec::from_slice(steps).unwrap_or_default(),
             };
         }

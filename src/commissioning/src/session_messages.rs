@@ -8,10 +8,10 @@ use crate::{IdentificationError, PointError, StabilityMargins};
 
 /// Words for the five thermistors in lines from and to the host, in the order of their indices. `check` is the
 /// display's second thermistor.
-pub const SENSOR_WORDS: [&str; THERMISTOR_COUNT] = ["display", "check", "sink", "skin", "room"];
+pub const THERMISTOR_WORDS: [&str; THERMISTOR_COUNT] = ["display", "check", "sink", "skin", "room"];
 /// Largest number of converter steps on one line of the settings. The converter has a calibrated step at each of 13
 /// borders of its segments, so the steps take two lines.
-pub const CONVERTER_STEPS_PER_LINE: usize = 7;
+pub const CONVERTER_STEPS_PER_LINE_MAX: usize = 7;
 
 /// A request of the host to the commissioning session of one finger. Each variant begins with the line of text from
 /// which `thermal-protocol` reads it.
@@ -21,7 +21,7 @@ pub enum SessionRequest {
     /// half a second and the temperature of the reference thermometer. The calibration that fits all points is used
     /// from then on.
     AddPoint {
-        /// Index of the thermistor to calibrate, 0 to 4, in the order of [`SENSOR_WORDS`].
+        /// Index of the thermistor to calibrate, 0 to 4, in the order of [`THERMISTOR_WORDS`].
         sensor: usize,
         /// Temperature that the reference thermometer shows at the thermistor, °C.
         reference_c: f64,
@@ -29,7 +29,7 @@ pub enum SessionRequest {
     /// `calibrate SENSOR clear`: removes a thermistor's calibration points, and sets its correction to zero. If the
     /// corrections of both display thermistors are zero then, the converter's steps are set to zero, too.
     ClearCalibration {
-        /// Index of the thermistor whose calibration is removed, 0 to 4, in the order of [`SENSOR_WORDS`].
+        /// Index of the thermistor whose calibration is removed, 0 to 4, in the order of [`THERMISTOR_WORDS`].
         sensor: usize,
     },
     /// `settings`: reports the number of lines that hold the settings, which [`Self::SettingsLine`] reports one by one.
@@ -84,9 +84,9 @@ pub enum Setting {
         first: usize,
         /// Steps at the border `first` and at the borders after it, converter counts; positive if the code above the
         /// border is too high.
-        counts: heapless::Vec<f64, CONVERTER_STEPS_PER_LINE>,
+        counts: heapless::Vec<f64, CONVERTER_STEPS_PER_LINE_MAX>,
     },
-    /// `correction SENSOR OFFSET SLOPE CURVATURE`: index of a thermistor (0 to 4, in the order of [`SENSOR_WORDS`]),
+    /// `correction SENSOR OFFSET SLOPE CURVATURE`: index of a thermistor (0 to 4, in the order of [`THERMISTOR_WORDS`]),
     /// and the correction that is added to its temperature, with offset (K), slope (K/K) and curvature (1/K).
     Correction(usize, Correction),
     /// `tile GAIN JOULE LEAK LAG DEAD`: the tile's gain (cooling rate per ampere, K/s per A), Joule term (Joule heating

@@ -3,7 +3,7 @@
 use core::f64::consts::PI;
 
 use thermal_device::TICK_HZ;
-use thermal_settings::{Gains, Tile};
+use thermal_settings::{PiGains, Tile};
 
 /// Phase margin and gain margin of the loop by which the law `pi` controls the display's temperature: how far the loop
 /// is from instability.
@@ -35,7 +35,7 @@ impl StabilityMargins {
     /// Ti`, so bisection finds both crossings. If a tile is so fast that the phase stays above -180° up to the Nyquist
     /// frequency, the gain margin is that at the Nyquist frequency.
     #[must_use]
-    pub fn new(tile: &Tile, gains: &Gains) -> Self {
+    pub fn new(tile: &Tile, gains: &PiGains) -> Self {
         let magnitude = |w: f64| {
             let loop_gain = gains.proportional_a_k * tile.gain_k_s_a;
             let integral = libm::hypot(1.0, 1.0 / (gains.integral_s * w));

@@ -6,7 +6,8 @@ use core::ops::RangeInclusive;
 use super::cholesky::solve_by_cholesky;
 use thermal_device::TICK_HZ;
 use thermal_device::identification::{
-    NORMAL_EQUATION_ROWS, NormalEquationRow, StatisticIndex, TIME_UNIT_TICKS_LOG2, UNKNOWN_COUNT,
+    NORMAL_EQUATION_AND_STATISTICS_ROWS, NormalEquationRow, StatisticIndex, TIME_UNIT_TICKS_LOG2,
+    UNKNOWN_COUNT,
 };
 use thermal_settings::{Range, Tile};
 
@@ -26,12 +27,12 @@ const DEAD_TIME_PRIOR_WEIGHT: f64 = 1e14;
 // Indices of six of the eight unknowns of the normal equations. The equation with their signs stands in
 // `thermal_device::identification`; each unknown is divided by `1 + leak lag`. The unknowns 5 and 6 represent the error
 // of the baseline reading and a drift, and are not used.
-const LAG_INDEX: usize = 0;
+const SENSOR_LAG_INDEX: usize = 0;
 const GAIN_INDEX: usize = 1;
 const GAIN_TIMES_DEAD_TIME_INDEX: usize = 2;
 const GAIN_TIMES_JOULE_INDEX: usize = 3;
 const LEAK_INDEX: usize = 4;
-const GAIN_TIMES_MIRROR_ZERO_INDEX: usize = 7;
+const GAIN_TIMES_CURRENT_SENSE_OFFSET_INDEX: usize = 7;
 
 /// One ampere in units of 2^-16 A, in which the station adds up the currents whose ratio is computed.
 const CURRENT_UNITS_PER_AMPERE: f64 = 65_536.0;
@@ -42,7 +43,7 @@ const RATIO_EVALUATION_CURRENT: f64 = 4.5 * CURRENT_UNITS_PER_AMPERE;
 
 /// Ratios of measured to demanded current that a sound bridge, module and current mirror can have; another ratio ends
 /// the identification with [`IdentificationError::CurrentRatio`].
-const PLAUSIBLE_CURRENT_RATIOS: RangeInclusive<f64> = 0.5..=1.5;
+const PLAUSIBLE_MEASURED_TO_DEMANDED_RATIOS: RangeInclusive<f64> = 0.5..=1.5;
 /// Dead times, 0.004 to 0.04 s, that an identified tile can have; another ends the identification with
 /// [`IdentificationError::OutOfRange`]. A disturbance of the display, such as a touch too light for the force sensor,
 /// distorts the dead time before the other parameters.
@@ -82,12 +83,12 @@ pub enum IdentificationError {
 /// - [`IdentificationError::ModelMismatch`]: the residual of the fit is above 2 % of the fitted signal.
 /// - [`IdentificationError::OutOfRange`]: a parameter of the tile is outside its allowed range.
 pub fn tile_from_normal_equations(
-    rows: &[NormalEquationRow; NORMAL_EQUATION_ROWS],
+    rows: &[NormalEquationRow; NORMAL_EQUATION_AND_STATISTICS_ROWS],
 ) -> Result<Tile, IdentificationError> {
     let [.., totals] = rows;
     let total = |place: StatisticIndex| totals[place as usize] as f64;
-    let measured_ratio = current_ratio(total, 0.0);
-    if !PLAUSIBLE_CURRENT_RATIOS.contains(&measured_ratio) {
+    let measured_ratio = measured_to_demanded_current_ratio(total, 0.0);
+    if !PLAUSIBLE_MEASURED_TO_DEMANDED_RATIOS.contains(&measured_ratio) {
         return Err(IdentificationError::CurrentRatio(measured_ratio));
     }
     // The prior is one of gain times dead time, so a fit without it determines the gain first.
@@ -101,18 +102,18 @@ pub fn tile_from_normal_equations(
     if residual.is_nan() || residual > RELATIVE_RESIDUAL_MAX {
         return Err(IdentificationError::ModelMismatch(residual));
     }
-    let flowing_ratio = current_ratio(
+    let flowing_ratio = measured_to_demanded_current_ratio(
         total,
-        -fitted[GAIN_TIMES_MIRROR_ZERO_INDEX] / fitted[GAIN_INDEX],
+        -fitted[GAIN_TIMES_CURRENT_SENSE_OFFSET_INDEX] / fitted[GAIN_INDEX],
     );
     let (lag, gain, leak) = (
-        -fitted[LAG_INDEX] * EQUATION_TIME_UNIT_S,
+        -fitted[SENSOR_LAG_INDEX] * EQUATION_TIME_UNIT_S,
         -fitted[GAIN_INDEX] / EQUATION_TIME_UNIT_S,
         -fitted[LEAK_INDEX] / EQUATION_TIME_UNIT_S,
     );
     // All unknowns are divided by m = 1 + leak lag, so m is a root of m = 1 + (leak / m) (lag / m) m^2.
     let m = 2.0 / (1.0 + libm::sqrt((1.0 - 4.0 * leak * lag).max(0.0)));
-    let tile = Tile::from_array([
+    let tile = Tile::from_array_rounded([
         gain * m * flowing_ratio,
         fitted[GAIN_TIMES_JOULE_INDEX] / EQUATION_TIME_UNIT_S / gain * flowing_ratio,
         leak * m,
@@ -130,7 +131,10 @@ pub fn tile_from_normal_equations(
 /// Ratio of measured to demanded current at [`RATIO_EVALUATION_CURRENT`] (4.5 A), from a linear regression over all
 /// ticks in which more than 1 A was demanded. `total` returns the station's sum with the given index. `mirror_zero_a`
 /// is the current, A, that the current mirror shows while none flows; it is subtracted from the measured current.
-fn current_ratio(total: impl Fn(StatisticIndex) -> f64, mirror_zero_a: f64) -> f64 {
+fn measured_to_demanded_current_ratio(
+    total: impl Fn(StatisticIndex) -> f64,
+    mirror_zero_a: f64,
+) -> f64 {
     let (ticks, demanded, measured) = (
         total(StatisticIndex::ComparedTicks),
         total(StatisticIndex::Demanded),
@@ -146,7 +150,7 @@ fn current_ratio(total: impl Fn(StatisticIndex) -> f64, mirror_zero_a: f64) -> f
 /// which is the time integral of the change of the display's reading. `response_squared` is the sum of the squares of
 /// this signal, in the unit of the rows, 2^-44.
 fn relative_residual(
-    rows: &[NormalEquationRow; NORMAL_EQUATION_ROWS],
+    rows: &[NormalEquationRow; NORMAL_EQUATION_AND_STATISTICS_ROWS],
     fitted: &[f64; UNKNOWN_COUNT],
     response_squared: f64,
 ) -> f64 {
@@ -162,7 +166,7 @@ fn relative_residual(
 /// `gain_dead_time`, K/A. `prior_weight` is added to its diagonal element of the normal matrix, in units of 2^-44; a
 /// weight of 0 leaves the prior out. Returns `None` if the equations are numerically singular.
 fn solve_with_dead_time_prior(
-    rows: &[NormalEquationRow; NORMAL_EQUATION_ROWS],
+    rows: &[NormalEquationRow; NORMAL_EQUATION_AND_STATISTICS_ROWS],
     prior_weight: f64,
     gain_dead_time: f64,
 ) -> Option<[f64; UNKNOWN_COUNT]> {

@@ -172,7 +172,7 @@ pub struct Status {
 /// A reply, refusal or telemetry together with the finger that it comes from, so that the line to the host can name the
 /// finger.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WithFingerIndex<T> {
+pub struct WithSourceFinger<T> {
     /// Index of the finger, from 0. `None` if the content concerns the device as a whole. On a device with one finger
     /// also `None`, except in the answer to a line of the host that has named the finger.
     pub finger: Option<u8>,
@@ -180,7 +180,7 @@ pub struct WithFingerIndex<T> {
     pub content: T,
 }
 
-impl<T> WithFingerIndex<T> {
+impl<T> WithSourceFinger<T> {
     /// Content that belongs to the device as a whole, so that its line to the host names no finger.
     pub const fn from_whole_device(content: T) -> Self {
         Self {
@@ -190,8 +190,8 @@ impl<T> WithFingerIndex<T> {
     }
 
     /// Converts the content by `function`, for example a refusal to the error that the host receives; the finger stays.
-    pub fn map_content<U>(self, function: impl FnOnce(T) -> U) -> WithFingerIndex<U> {
-        WithFingerIndex {
+    pub fn map_content<U>(self, function: impl FnOnce(T) -> U) -> WithSourceFinger<U> {
+        WithSourceFinger {
             finger: self.finger,
             content: function(self.content),
         }
@@ -199,7 +199,7 @@ impl<T> WithFingerIndex<T> {
 }
 
 /// Writes the line to the host: the address of the finger, such as `@3 `, if there is a finger, and then the content.
-impl<T: fmt::Display> fmt::Display for WithFingerIndex<T> {
+impl<T: fmt::Display> fmt::Display for WithSourceFinger<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(finger) = self.finger {
             write!(f, "@{finger} ")?;

@@ -2,7 +2,7 @@
 
 use core::array;
 
-use crate::command::{Command, Refused, Reply, WithFingerIndex};
+use crate::command::{Command, Refused, Reply, WithSourceFinger};
 use crate::drive::BoardOutputs;
 use crate::safety::{Fault, ThermalDose, TripCause};
 use crate::sense::Samples;
@@ -22,7 +22,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// Converts the settings from `f64`, about a millisecond, so it is for the start only.
     #[must_use]
     pub fn new(settings: &Settings) -> Self {
-        Self::with_trip_cause(None, settings)
+        Self::new_optionally_tripped(None, settings)
     }
 
     /// A device with the same settings for every finger. With a `cause` all stations start tripped by it: a trip that
@@ -30,7 +30,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// Converts the settings from `f64`, so it is for the start only.
     #[must_use]
     #[inline(never)]
-    pub fn with_trip_cause(cause: Option<TripCause>, settings: &Settings) -> Self {
+    pub fn new_optionally_tripped(cause: Option<TripCause>, settings: &Settings) -> Self {
         let mut station = Station::new(settings);
         if let Some(cause) = cause {
             station.trip(cause);
@@ -45,26 +45,30 @@ impl<const FINGERS: usize> Device<FINGERS> {
     #[inline(never)]
     pub fn restore_settings(&mut self, stored: &[StoredSettings; FINGERS]) {
         for (station, stored) in self.stations.iter_mut().zip(stored) {
-            station.apply_settings(&stored.to_complete_settings());
+            station.apply_settings(&stored.to_settings_with_factory_defaults());
         }
     }
 
     /// Thermal dose (CEM43, equivalent time at 43 °C) that skin would have received if it had always touched this
     /// finger's display. The board stores the dose after every tick, so that a reset does not erase it.
     #[must_use]
-    pub const fn thermal_dose(&self, finger: FingerIndex<FINGERS>) -> &ThermalDose {
+    pub const fn finger_thermal_dose(&self, finger: FingerIndex<FINGERS>) -> &ThermalDose {
         self.stations[finger.index()].thermal_dose()
     }
 
     /// Sets a finger's thermal dose to `dose`, which the board stored before the last reset. To be called once, at the
     /// start.
-    pub const fn restore_thermal_dose(&mut self, finger: FingerIndex<FINGERS>, dose: ThermalDose) {
+    pub const fn restore_finger_thermal_dose(
+        &mut self,
+        finger: FingerIndex<FINGERS>,
+        dose: ThermalDose,
+    ) {
         self.stations[finger.index()].restore_thermal_dose(dose);
     }
 
     /// Runs one control tick of a finger's station with the samples of the last millisecond. Returns what the board
     /// must set at the finger's bridge and comparator until the next tick.
-    pub fn step(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
+    pub fn step_finger(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
         self.stations[finger.index()].step(samples)
     }
 
@@ -74,12 +78,12 @@ impl<const FINGERS: usize> Device<FINGERS> {
     pub fn trip_all(&mut self, fault: Fault) {
         self.stations
             .iter_mut()
-            .for_each(|station| station.raise_external_fault(fault));
+            .for_each(|station| station.trip_or_store_external_fault(fault));
     }
 
     /// Whether this finger's station is tripped, so that its bridge stays off until the host sends `clear`.
     #[must_use]
-    pub const fn is_tripped(&self, finger: FingerIndex<FINGERS>) -> bool {
+    pub const fn is_finger_tripped(&self, finger: FingerIndex<FINGERS>) -> bool {
         self.stations[finger.index()].is_tripped()
     }
 
@@ -89,9 +93,9 @@ impl<const FINGERS: usize> Device<FINGERS> {
     pub fn earliest_trip_cause(&self) -> Option<&TripCause> {
         let tripped = self.stations.iter().filter(|station| station.is_tripped());
         tripped
-            .min_by_key(|station| station.fault_latch().tripped_at_tick())?
+            .min_by_key(|station| station.fault_latch().last_trip_tick_or_zero())?
             .fault_latch()
-            .cause()
+            .last_trip_cause()
     }
 
     /// Restarts, for all fingers, the 2 s of silence of the host after which a station trips if its telemetry is on and
@@ -106,10 +110,13 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// the host has not switched telemetry on, or if the number of that tick is not a multiple of the interval that the
     /// host has chosen. To be called once after each tick.
     #[must_use]
-    pub fn telemetry(&self, finger: FingerIndex<FINGERS>) -> Option<WithFingerIndex<Telemetry>> {
-        let content = self.stations[finger.index()].telemetry()?;
-        Some(WithFingerIndex {
-            finger: finger.reply_address(),
+    pub fn finger_telemetry_if_due(
+        &self,
+        finger: FingerIndex<FINGERS>,
+    ) -> Option<WithSourceFinger<Telemetry>> {
+        let content = self.stations[finger.index()].telemetry_if_due()?;
+        Some(WithSourceFinger {
+            finger: finger.index_unless_single_finger(),
             content,
         })
     }
@@ -127,28 +134,28 @@ impl<const FINGERS: usize> Device<FINGERS> {
         &mut self,
         finger: Option<FingerIndex<FINGERS>>,
         command: Command,
-    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Refused>> {
+    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Refused>> {
         if let Some(one) = finger {
             let finger = Some(one.index_u8());
             return match self.stations[one.index()].execute(command) {
-                Ok(content) => Ok(WithFingerIndex { finger, content }),
-                Err(content) => Err(WithFingerIndex { finger, content }),
+                Ok(content) => Ok(WithSourceFinger { finger, content }),
+                Err(content) => Err(WithSourceFinger { finger, content }),
             };
         }
         let (mut refused, mut nothing_to_clear, mut executed) = (None, None, false);
         for (finger, station) in FingerIndex::<FINGERS>::all().zip(&mut self.stations) {
-            let finger = finger.reply_address();
+            let finger = finger.index_unless_single_finger();
             match station.execute(command) {
                 Ok(Reply::Done) => executed = true,
-                Ok(content) => return Ok(WithFingerIndex { finger, content }),
+                Ok(content) => return Ok(WithSourceFinger { finger, content }),
                 Err(content @ Refused::NothingToClear) => {
                     nothing_to_clear =
-                        nothing_to_clear.or(Some(WithFingerIndex { finger, content }))
+                        nothing_to_clear.or(Some(WithSourceFinger { finger, content }))
                 }
-                Err(content) => refused = refused.or(Some(WithFingerIndex { finger, content })),
+                Err(content) => refused = refused.or(Some(WithSourceFinger { finger, content })),
             }
         }
         let refused = refused.or(nothing_to_clear.filter(|_| !executed));
-        refused.map_or(Ok(WithFingerIndex::from_whole_device(Reply::Done)), Err)
+        refused.map_or(Ok(WithSourceFinger::from_whole_device(Reply::Done)), Err)
     }
 }

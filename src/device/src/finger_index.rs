@@ -61,7 +61,7 @@ impl<const FINGERS: usize> FingerIndex<FINGERS> {
     /// Index of this finger at the start of its telemetry lines, and of its replies to a command that names no finger,
     /// as in `@3 `. `None` on a device with a single finger, where these lines begin without an index.
     #[must_use]
-    pub const fn reply_address(self) -> Option<u8> {
+    pub const fn index_unless_single_finger(self) -> Option<u8> {
         if FINGERS > 1 { Some(self.0) } else { None }
     }
 }

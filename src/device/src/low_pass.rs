@@ -65,7 +65,7 @@ impl LowPass {
 
     /// Moves the output toward `input`, °C or K, by one tick: by their distance, saturated at ±512 K, times the
     /// coefficient. The output never passes the input, so no sum overflows.
-    pub fn filter(&mut self, input: Celsius) {
+    pub fn update_by_input(&mut self, input: Celsius) {
         let distance = input.saturating_sub(self.output());
         self.state += distance.wide_mul(self.coefficient.0);
     }

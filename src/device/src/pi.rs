@@ -2,7 +2,7 @@
 
 use contact_model::fixed_point::Celsius;
 use fixed::types::{I2F30, I12F52, I16F16};
-use thermal_settings::Gains;
+use thermal_settings::PiGains;
 
 use crate::TICK_HZ;
 use crate::drive::Current;
@@ -49,7 +49,7 @@ impl PiCoefficients {
     /// gain saturates at 32768 A/K, the integral gain at 2 A/K per update, where their fixed-point types end. Computed
     /// in `f64`, so it is for start-up and the task that serves the host, not for the tick.
     #[must_use]
-    pub fn new(gains: &Gains, period: UpdatePeriod) -> Self {
+    pub fn new(gains: &PiGains, period: UpdatePeriod) -> Self {
         let per_update = gains.proportional_a_k * f64::from(period.period_ticks())
             / (gains.integral_s * f64::from(TICK_HZ));
         let bits = |value: f64, places: u32| libm::ldexp(value, places as i32) as i32;
@@ -115,10 +115,10 @@ impl Pi {
     /// Runs the controller for one tick, and returns the current, A (positive cools), that is to bring the reading
     /// `display`, °C, to the set-point: the warmer the display, the larger the current. With the period
     /// [`UpdatePeriod::TenthOfASecond`] only every 100th tick changes the current.
-    pub fn update_output(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
+    pub fn update_output_when_due(&mut self, setpoint: Setpoint, display: Celsius) -> Current {
         if self.ticks_to_update == 0 {
             self.ticks_to_update = self.coefficients.period.period_ticks();
-            self.output = self.current_for_error(display.saturating_sub(setpoint.celsius()));
+            self.output = self.update_current_by_error(display.saturating_sub(setpoint.celsius()));
         }
         self.ticks_to_update -= 1;
         self.output
@@ -126,9 +126,9 @@ impl Pi {
 
     /// Runs one update for the temperature `error`, K (positive while the display is too warm): adds the error times
     /// the integral gain to the integral, and returns the current, A (positive cools): the sum of proportional part and
-    /// integral, limited in magnitude. Every call is an update; [`Self::update_output`] calls this only when an update
+    /// integral, limited in magnitude. Every call is an update; [`Self::update_output_when_due`] calls this only when an update
     /// is due by the [`UpdatePeriod`].
-    pub fn current_for_error(&mut self, error: Celsius) -> Current {
+    pub fn update_current_by_error(&mut self, error: Celsius) -> Current {
         // Nothing overflows 64 bits: with 52 binary places the integral is within 2^7 A and its step within 2^10 A;
         // with 38 binary places the proportional part is within 2^24 A.
         let PiCoefficients {
@@ -156,7 +156,7 @@ mod tests {
     use super::*;
 
     fn pi() -> Pi {
-        let gains = Gains {
+        let gains = PiGains {
             proportional_a_k: 2.0,
             integral_s: 0.5,
         };
@@ -172,10 +172,12 @@ mod tests {
 
     #[test]
     fn a_constant_error_gives_kp_e_times_1_plus_t_over_ti() {
-        let (setpoint, mut pi) = (Setpoint::saturating_celsius(at(25.0)).0, pi());
+        let (setpoint, mut pi) = (Setpoint::clamp_celsius_with_flag(at(25.0)).0, pi());
         for tick in 1..=1000 {
             let expected = 2.0 * 0.5 * (1.0 + f64::from(tick) * 1e-3 / 0.5);
-            let output = pi.update_output(setpoint, at(25.5)).to_num::<f64>();
+            let output = pi
+                .update_output_when_due(setpoint, at(25.5))
+                .to_num::<f64>();
             assert!(
                 (output - expected).abs() < 1e-4,
                 "tick {tick}: {output}, expected {expected}"
@@ -185,22 +187,26 @@ mod tests {
 
     #[test]
     fn the_output_leaves_its_limit_as_soon_as_the_error_changes_sign() {
-        let (setpoint, mut pi) = (Setpoint::saturating_celsius(at(25.0)).0, pi());
+        let (setpoint, mut pi) = (Setpoint::clamp_celsius_with_flag(at(25.0)).0, pi());
         for _ in 0..10_000 {
-            assert_eq!(pi.update_output(setpoint, at(40.0)), Current::lit("6"));
+            assert_eq!(
+                pi.update_output_when_due(setpoint, at(40.0)),
+                Current::lit("6")
+            );
         }
         // Without anti-windup the integral would hold 600 A by now.
-        let output = pi.update_output(setpoint, at(24.0));
+        let output = pi.update_output_when_due(setpoint, at(24.0));
         assert!(output <= Current::lit("4"), "{output}");
     }
 
     #[test]
     fn opposite_errors_give_opposite_currents() {
-        let (setpoint, mut up, mut down) = (Setpoint::saturating_celsius(at(30.0)).0, pi(), pi());
+        let (setpoint, mut up, mut down) =
+            (Setpoint::clamp_celsius_with_flag(at(30.0)).0, pi(), pi());
         for _ in 0..100 {
             let (a, b) = (
-                up.update_output(setpoint, at(30.25)),
-                down.update_output(setpoint, at(29.75)),
+                up.update_output_when_due(setpoint, at(30.25)),
+                down.update_output_when_due(setpoint, at(29.75)),
             );
             assert!((a + b).abs() <= Current::from_bits(4));
         }

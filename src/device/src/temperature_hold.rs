@@ -27,7 +27,7 @@ impl TemperatureHold {
     /// to `target`. Created when the host sends `hold`.
     #[must_use]
     pub fn new(target: Setpoint, reading: Celsius) -> Self {
-        let (setpoint, _) = Setpoint::saturating_celsius(reading);
+        let (setpoint, _) = Setpoint::clamp_celsius_with_flag(reading);
         Self { target, setpoint }
     }
 
@@ -36,7 +36,7 @@ impl TemperatureHold {
     pub fn next_setpoint(&mut self) -> Setpoint {
         let now = self.setpoint.celsius();
         let distance = self.target.celsius().saturating_sub(now);
-        (self.setpoint, _) = Setpoint::saturating_celsius(
+        (self.setpoint, _) = Setpoint::clamp_celsius_with_flag(
             now.saturating_add(distance.clamp(-SETPOINT_SLEW_PER_TICK, SETPOINT_SLEW_PER_TICK)),
         );
         self.setpoint
@@ -50,7 +50,7 @@ mod tests {
     #[test]
     fn the_set_point_moves_to_the_target_by_1_k_per_second_and_stays() {
         for (from_c, target_c) in [(30.0, 42.0), (42.0, 15.0), (20.0, 20.0)] {
-            let (target, _) = Setpoint::saturating_celsius(Celsius::from_num(target_c));
+            let (target, _) = Setpoint::clamp_celsius_with_flag(Celsius::from_num(target_c));
             let mut hold = TemperatureHold::new(target, Celsius::from_num(from_c));
             let way_k: f64 = target_c - from_c;
             for tick in 1..60_000 {
@@ -72,6 +72,6 @@ mod tests {
         let mut hold = TemperatureHold::new(Setpoint::MAX, Celsius::lit("42.6"));
         assert_eq!(hold.next_setpoint(), Setpoint::MAX);
         let mut hold = TemperatureHold::new(Setpoint::MAX, Celsius::lit("-20"));
-        assert!(hold.next_setpoint() < Setpoint::saturating_celsius(Celsius::lit("15.01")).0);
+        assert!(hold.next_setpoint() < Setpoint::clamp_celsius_with_flag(Celsius::lit("15.01")).0);
     }
 }

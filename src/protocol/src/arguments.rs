@@ -30,7 +30,7 @@ pub fn skip_if_next_is(words: &mut Words<'_>, expected: &str) -> bool {
 
 /// Returns the entry of `table` whose word is `word`: the word with its value, such as the name of a material with its
 /// properties. `None` if no entry has this word.
-pub fn find_entry_by_word<T: Copy>(
+pub fn table_entry_for_word_or_none<T: Copy>(
     table: &[(&'static str, T)],
     word: &str,
 ) -> Option<(&'static str, T)> {
@@ -42,7 +42,10 @@ pub fn find_entry_by_word<T: Copy>(
 /// # Errors
 /// [`Error::Missing`]: no word is left. [`Error::NotANumber`]: the word is not a decimal number. [`Error::OutOfRange`]:
 /// the number lies outside `range`.
-pub fn read_number(words: &mut Words<'_>, range: &'static Range) -> Result<I32F32, Error> {
+pub fn read_fixed_point_in_range(
+    words: &mut Words<'_>,
+    range: &'static Range,
+) -> Result<I32F32, Error> {
     let word = read_word(words, range.name)?;
     // A number with too many digits becomes the largest `I32F32`, which is outside of all ranges.
     let value =
@@ -55,23 +58,26 @@ pub fn read_number(words: &mut Words<'_>, range: &'static Range) -> Result<I32F3
 }
 
 /// Reads the next words of a line as decimal numbers, one for each of `ranges`, and returns them in this order. Each
-/// number must lie within its range; the errors are those of [`read_number`].
-pub fn read_numbers<const N: usize>(
+/// number must lie within its range; the errors are those of [`read_fixed_point_in_range`].
+pub fn read_numbers_in_ranges<const N: usize>(
     words: &mut Words<'_>,
     ranges: &'static [Range; N],
 ) -> Result<[f64; N], Error> {
     let mut values = [0.0; N];
     for (value, range) in values.iter_mut().zip(ranges) {
-        *value = read_number(words, range)?.to_num();
+        *value = read_fixed_point_in_range(words, range)?.to_num();
     }
     Ok(values)
 }
 
 /// Reads the next word of a line as a whole number within `range`, both limits included. The errors are those of
-/// [`read_number`]; a number that is not whole gives [`Error::OutOfRange`], too.
-pub fn read_whole_number(words: &mut Words<'_>, range: &'static Range) -> Result<usize, Error> {
+/// [`read_fixed_point_in_range`]; a number that is not whole gives [`Error::OutOfRange`], too.
+pub fn read_whole_number_in_range(
+    words: &mut Words<'_>,
+    range: &'static Range,
+) -> Result<usize, Error> {
     let word = words.clone().next().unwrap_or_default();
-    let value = read_number(words, range)?;
+    let value = read_fixed_point_in_range(words, range)?;
     if value.frac() == 0 {
         Ok(value.to_num())
     } else {

@@ -3,9 +3,9 @@
 use core::array;
 
 use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
-use thermal_device::command::{self, Command, Refused, WithFingerIndex};
+use thermal_device::command::{self, Command, Refused, WithSourceFinger};
 use thermal_device::{FingerIndex, StateName};
-use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode};
+use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings_record};
 
 use crate::finger_address::split_address;
 use crate::{Error, Reply, Request};
@@ -26,7 +26,7 @@ impl<const FINGERS: usize, F> ExecuteOnStations<FINGERS> for F where
 /// Result of a command in the station (the control) of one finger or in the stations of all fingers: a station's reply,
 /// or the reason why a station refuses the command. For the answer to the host, the result contains the index of that
 /// station's finger, or no index if the result is for all fingers or the device has only one.
-pub type ExecutionResult = Result<WithFingerIndex<command::Reply>, WithFingerIndex<Refused>>;
+pub type ExecutionResult = Result<WithSourceFinger<command::Reply>, WithSourceFinger<Refused>>;
 
 /// Executes the host's lines on a device with one to ten fingers, and returns the answers. It holds the commissioning
 /// session of each finger, which is its settings and calibration points; lines that command the control of a finger are
@@ -49,8 +49,9 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// for each finger, and factory defaults for all other settings.
     #[must_use]
     pub fn from_stored(stored: &[StoredSettings; FINGERS]) -> Self {
-        let session =
-            |stored: &StoredSettings| CommissioningSession::new(stored.to_complete_settings());
+        let session = |stored: &StoredSettings| {
+            CommissioningSession::new(stored.to_settings_with_factory_defaults())
+        };
         Self {
             sessions: stored.each_ref().map(session),
         }
@@ -59,14 +60,14 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// The bytes to be written to flash for the command `save` (the present settings of all fingers) or `forget`
     /// (factory defaults).
     #[must_use]
-    pub fn settings_record(&self, order: StorageOrder) -> SettingsRecord {
+    pub fn record_to_save_or_forget(&self, order: StorageOrder) -> SettingsRecord {
         match order {
             StorageOrder::Save => {
                 let sessions = self.sessions.each_ref();
                 let stored = sessions.map(|one| StoredSettings::from_settings(one.settings()));
-                encode(Some(&stored))
+                encode_settings_record(Some(&stored))
             }
-            StorageOrder::Forget => encode::<FINGERS>(None),
+            StorageOrder::Forget => encode_settings_record::<FINGERS>(None),
         }
     }
 
@@ -85,16 +86,16 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         &mut self,
         line: &str,
         mut execute: impl ExecuteOnStations<FINGERS>,
-    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Error>> {
+    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         const { assert!(FINGERS > 0 && FINGERS <= 10) };
         let (finger, line) = split_address(line)?;
         let number = finger.map(FingerIndex::index_u8);
-        let addressed = |content| WithFingerIndex {
+        let addressed = |content| WithSourceFinger {
             finger: number,
             content,
         };
         let request = Request::parse(line, self.sessions[0].settings()).map_err(|content| {
-            WithFingerIndex {
+            WithSourceFinger {
                 finger: number,
                 content,
             }
@@ -107,8 +108,11 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 Ok(reply) => Ok(reply.map_content(Reply::Station)),
                 Err(refused) => Err(refused.map_content(Error::from)),
             },
-            Request::Commissioning(request) => self.execute_in_sessions(request, finger, execute),
-            Request::Storage(order) => match Self::storage_rejection(order, finger, execute) {
+            Request::Commissioning(request) => {
+                self.execute_in_commissioning_sessions(request, finger, execute)
+            }
+            Request::Storage(order) => match Self::save_or_forget_rejection(order, finger, execute)
+            {
                 None => Ok(addressed(Reply::Restart(order))),
                 Some(error) => Err(error),
             },
@@ -118,12 +122,12 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// Executes a commissioning request in the session of `finger`, or in the sessions of all fingers for `None`. With
     /// `None` on a device with several fingers, the queries `settings` and `margins` are answered by the first finger;
     /// a new calibration point and `tune result`, which are computed for milliseconds, are rejected.
-    fn execute_in_sessions(
+    fn execute_in_commissioning_sessions(
         &mut self,
         request: SessionRequest,
         finger: Option<FingerIndex<FINGERS>>,
         mut execute: impl ExecuteOnStations<FINGERS>,
-    ) -> Result<WithFingerIndex<Reply>, WithFingerIndex<Error>> {
+    ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         let finger = match request {
             SessionRequest::CountSettingsLines
             | SessionRequest::SettingsLine(_)
@@ -137,7 +141,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             SessionRequest::AddPoint { .. } | SessionRequest::TuneResult
                 if finger.is_none() && FINGERS > 1 =>
             {
-                return Err(WithFingerIndex::from_whole_device(Error::Missing(
+                return Err(WithSourceFinger::from_whole_device(Error::Missing(
                     "finger (as @0)",
                 )));
             }
@@ -158,8 +162,10 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 // A request to several fingers has no other reply than `Done`.
                 Ok(answer) => reply = answer,
                 Err(error) => {
-                    first_error.get_or_insert(WithFingerIndex {
-                        finger: finger.map(FingerIndex::index_u8).or(one.reply_address()),
+                    first_error.get_or_insert(WithSourceFinger {
+                        finger: finger
+                            .map(FingerIndex::index_u8)
+                            .or(one.index_unless_single_finger()),
                         content: Error::from(error),
                     });
                 }
@@ -167,26 +173,26 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
         let content = Reply::Commissioning(reply);
         let finger = finger.map(FingerIndex::index_u8);
-        first_error.map_or(Ok(WithFingerIndex { finger, content }), Err)
+        first_error.map_or(Ok(WithSourceFinger { finger, content }), Err)
     }
 
     /// The error that rejects `save` or `forget`, or `None` if the command may be executed. Rejected are a line that
     /// addresses one of several fingers, and any line while a bridge is on or a self-test runs: the device restarts to
     /// store settings, and would switch off a display that a finger may feel.
-    fn storage_rejection(
+    fn save_or_forget_rejection(
         order: StorageOrder,
         finger: Option<FingerIndex<FINGERS>>,
         mut execute: impl ExecuteOnStations<FINGERS>,
-    ) -> Option<WithFingerIndex<Error>> {
+    ) -> Option<WithSourceFinger<Error>> {
         if finger.is_some() && FINGERS > 1 {
             let content = Error::WholeDevice(order.name());
             let finger = finger.map(FingerIndex::index_u8);
-            return Some(WithFingerIndex { finger, content });
+            return Some(WithSourceFinger { finger, content });
         }
         for one in FingerIndex::all() {
             match execute(Some(one), Command::Status) {
                 Err(refused) => return Some(refused.map_content(Error::from)),
-                Ok(WithFingerIndex {
+                Ok(WithSourceFinger {
                     content: command::Reply::Status(status),
                     ..
                 }) if matches!(
@@ -194,8 +200,10 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                     StateName::Off | StateName::Ready | StateName::Tripped(_)
                 ) => {}
                 Ok(_) => {
-                    return Some(WithFingerIndex {
-                        finger: one.reply_address().or(finger.map(FingerIndex::index_u8)),
+                    return Some(WithSourceFinger {
+                        finger: one
+                            .index_unless_single_finger()
+                            .or(finger.map(FingerIndex::index_u8)),
                         content: Error::NeedsOff(order.name()),
                     });
                 }

@@ -7,21 +7,21 @@ use contact_model::material::MATERIALS;
 
 use thermal_commissioning::{
     IdentificationError, POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K,
-    SENSOR_WORDS, SessionError,
+    SessionError, THERMISTOR_WORDS,
 };
 use thermal_device::command::Refused;
 use thermal_device::control::Law;
 use thermal_settings::Range;
 
-use crate::commissioning_commands::SETTING_WORDS;
-use crate::request::{CUSTOM_MATERIAL_WORD, MODE_WORDS};
+use crate::calibrate_settings_set_commands::SET_COMMAND_TARGET_WORDS;
+use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
 use crate::{LINE_MAX_BYTES, LineError, Request};
 
 /// The first 20 bytes of a word from the host; `Display` writes them in single quotes, as part of an error message.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct WordExcerpt(heapless::String<20>);
+pub struct QuotedWordExcerpt(heapless::String<20>);
 
-impl From<&str> for WordExcerpt {
+impl From<&str> for QuotedWordExcerpt {
     #[inline(never)]
     fn from(word: &str) -> Self {
         let mut excerpt = heapless::String::new();
@@ -34,7 +34,7 @@ impl From<&str> for WordExcerpt {
     }
 }
 
-impl fmt::Display for WordExcerpt {
+impl fmt::Display for QuotedWordExcerpt {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "'{}'", self.0)
     }
@@ -63,32 +63,32 @@ pub enum Error {
     /// The bytes that were received from the host form no valid line, for this reason.
     Line(LineError),
     /// The first word of the line, quoted here, is no command.
-    UnknownCommand(WordExcerpt),
+    UnknownCommand(QuotedWordExcerpt),
     /// The word after `@`, quoted here, is not the index of a finger, which counts from 0; the second value is the
     /// number of fingers of the device.
-    UnknownFinger(WordExcerpt, usize),
+    UnknownFinger(QuotedWordExcerpt, usize),
     /// The argument of `material`, quoted here, is neither the name of a material nor `custom`.
-    UnknownMaterial(WordExcerpt),
+    UnknownMaterial(QuotedWordExcerpt),
     /// The argument of `mode`, quoted here, is neither `contact` nor `semi-infinite`.
-    UnknownMode(WordExcerpt),
+    UnknownMode(QuotedWordExcerpt),
     /// The argument of `law`, quoted here, is none of the control laws `pi-10hz`, `pi` and `model`.
-    UnknownLaw(WordExcerpt),
+    UnknownLaw(QuotedWordExcerpt),
     /// The word after `calibrate` or `set correction`, quoted here, is none of the thermistors `display`, `check`,
     /// `sink`, `skin` and `room`.
-    UnknownSensor(WordExcerpt),
+    UnknownSensor(QuotedWordExcerpt),
     /// The word after `set`, quoted here, is none of `steps`, `correction` and `tile`.
-    UnknownSetting(WordExcerpt),
+    UnknownSetting(QuotedWordExcerpt),
     /// The line lacks the argument with this name. The name is `command` if the line has no command, and
     /// `finger (as @0)` if the line must address a single finger but has no address.
     Missing(&'static str),
     /// The word quoted here follows the last argument of the command, where the line should end.
-    Extra(WordExcerpt),
+    Extra(QuotedWordExcerpt),
     /// The word quoted here is not a decimal number, but stands where the argument with this name and range is
     /// expected.
-    NotANumber(&'static Range, WordExcerpt),
+    NotANumber(&'static Range, QuotedWordExcerpt),
     /// The number quoted here is outside the range of its argument, or is not whole where only a whole number is
     /// allowed.
-    OutOfRange(&'static Range, WordExcerpt),
+    OutOfRange(&'static Range, QuotedWordExcerpt),
     /// The properties of a custom material are outside the domain in which the contact model can compute set-points,
     /// for this reason.
     ContactPair(ContactPairError),
@@ -136,9 +136,12 @@ impl fmt::Display for Error {
         f.write_str("err ")?;
         match self {
             Self::Line(error) => write_line_error(f, *error),
-            Self::UnknownCommand(word) => {
-                write_unknown_word(f, "command", word, Request::COMMAND_WORDS.iter().copied())
-            }
+            Self::UnknownCommand(word) => write_unknown_word(
+                f,
+                "command",
+                word,
+                Request::KNOWN_COMMAND_WORDS.iter().copied(),
+            ),
             Self::UnknownFinger(word, fingers) => {
                 let last = fingers.saturating_sub(1);
                 write!(f, "unknown finger {word} after @; known: 0 to {last}")
@@ -147,9 +150,12 @@ impl fmt::Display for Error {
                 let names = MATERIALS.iter().map(|(name, _)| *name);
                 write_unknown_word(f, "material", word, names.chain([CUSTOM_MATERIAL_WORD]))
             }
-            Self::UnknownMode(word) => {
-                write_unknown_word(f, "mode", word, MODE_WORDS.iter().map(|(name, _)| *name))
-            }
+            Self::UnknownMode(word) => write_unknown_word(
+                f,
+                "mode",
+                word,
+                CONTACT_MODEL_WORDS.iter().map(|(name, _)| *name),
+            ),
             Self::UnknownLaw(word) => write_unknown_word(
                 f,
                 "law",
@@ -157,10 +163,10 @@ impl fmt::Display for Error {
                 Law::PROTOCOL_WORDS.iter().map(|(name, _)| *name),
             ),
             Self::UnknownSensor(word) => {
-                write_unknown_word(f, "sensor", word, SENSOR_WORDS.iter().copied())
+                write_unknown_word(f, "sensor", word, THERMISTOR_WORDS.iter().copied())
             }
             Self::UnknownSetting(word) => {
-                write_unknown_word(f, "setting", word, SETTING_WORDS.iter().copied())
+                write_unknown_word(f, "setting", word, SET_COMMAND_TARGET_WORDS.iter().copied())
             }
             Self::Missing(argument) => write!(f, "{argument} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
@@ -174,7 +180,7 @@ impl fmt::Display for Error {
             Self::NeedsOff(command) => write!(f, "{command} needs the bridge off: abort first"),
             Self::WholeDevice(command) => write!(f, "{command} is for all fingers at once"),
             Self::NotStored(StorageFailureText(failure)) => write!(f, "not stored: {failure}"),
-            Self::Refused(refused) => write_refusal(f, refused),
+            Self::Refused(refused) => write_station_refusal(f, refused),
             Self::Identification(error) => write_identification_error(f, error),
             Self::Point(error) => write_calibration_point_error(f, error),
         }
@@ -186,7 +192,7 @@ impl fmt::Display for Error {
 fn write_unknown_word<'a>(
     f: &mut fmt::Formatter<'_>,
     kind: &str,
-    word: &WordExcerpt,
+    word: &QuotedWordExcerpt,
     known: impl Iterator<Item = &'a str>,
 ) -> fmt::Result {
     write_unknown_word_prefix(f, kind, word)?;
@@ -203,7 +209,7 @@ fn write_unknown_word<'a>(
 fn write_unknown_word_prefix(
     f: &mut fmt::Formatter<'_>,
     kind: &str,
-    word: &WordExcerpt,
+    word: &QuotedWordExcerpt,
 ) -> fmt::Result {
     write!(f, "unknown {kind} {word}; known:")
 }
@@ -217,7 +223,7 @@ fn write_line_error(f: &mut fmt::Formatter<'_>, error: LineError) -> fmt::Result
     }
 }
 
-fn write_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::Result {
+fn write_station_refusal(f: &mut fmt::Formatter<'_>, refused: &Refused) -> fmt::Result {
     f.write_str(match refused {
         Refused::NotArmed => "start needs arm first",
         Refused::Testing => "the self-test goes on; ask again in a second",

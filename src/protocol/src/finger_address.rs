@@ -4,7 +4,7 @@
 //! same. A line without an address is for all fingers. Telemetry has an address if there is more than one finger.
 
 use thermal_device::FingerIndex;
-use thermal_device::command::WithFingerIndex;
+use thermal_device::command::WithSourceFinger;
 
 use crate::Error;
 
@@ -16,7 +16,7 @@ use crate::Error;
 /// [`Error::UnknownFinger`]: what follows `@` is not a single digit, or the device has no finger with this index.
 pub fn split_address<const FINGERS: usize>(
     line: &str,
-) -> Result<(Option<FingerIndex<FINGERS>>, &str), WithFingerIndex<Error>> {
+) -> Result<(Option<FingerIndex<FINGERS>>, &str), WithSourceFinger<Error>> {
     let line = line.trim_ascii_start();
     let Some(addressed) = line.strip_prefix('@') else {
         return Ok((None, line));
@@ -28,7 +28,7 @@ pub fn split_address<const FINGERS: usize>(
     };
     match known {
         Some(finger) => Ok((Some(finger), rest)),
-        None => Err(WithFingerIndex::from_whole_device(Error::UnknownFinger(
+        None => Err(WithSourceFinger::from_whole_device(Error::UnknownFinger(
             number.into(),
             FINGERS,
         ))),

@@ -6,8 +6,8 @@
 extern crate std;
 
 mod arguments;
+mod calibrate_settings_set_commands;
 mod command_handler;
-mod commissioning_commands;
 mod error;
 mod finger_address;
 mod line_buffer;
@@ -17,11 +17,11 @@ mod request;
 mod telemetry;
 
 pub use command_handler::{CommandHandler, ExecuteOnStations, ExecutionResult};
-pub use error::{Error, StorageFailureText, WordExcerpt};
+pub use error::{Error, QuotedWordExcerpt, StorageFailureText};
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use reply::Reply;
 pub use request::Request;
-pub use telemetry::{TelemetryLine, telemetry_line};
+pub use telemetry::{TelemetryLine, wrap_as_telemetry_line};
 
 #[cfg(test)]
 mod tests;

@@ -27,14 +27,14 @@ impl LineBuffer {
         }
     }
 
-    fn push_byte(&mut self, byte: u8) {
+    fn push_byte_if_fits(&mut self, byte: u8) {
         if let Some(place) = self.bytes.get_mut(self.length) {
             *place = byte;
             self.length += 1;
         }
     }
 
-    pub(super) fn push_str(&mut self, ascii: &str) {
+    pub(super) fn push_str_if_fits(&mut self, ascii: &str) {
         let end = self.length + ascii.len();
         if let Some(place) = self.bytes.get_mut(self.length..end) {
             for (place, byte) in place.iter_mut().zip(ascii.bytes()) {
@@ -45,24 +45,24 @@ impl LineBuffer {
     }
 
     /// Appends a temperature in °C with `DIGITS` decimals, or `-` for `None`.
-    pub(super) fn push_celsius<const DIGITS: usize>(&mut self, value: Option<Celsius>) {
+    pub(super) fn push_celsius_or_dash<const DIGITS: usize>(&mut self, value: Option<Celsius>) {
         match value {
-            Some(value) => self.push_fixed_point::<22, DIGITS>(value.to_bits().into()),
-            None => self.push_byte(b'-'),
+            Some(value) => self.push_fixed_point_bits::<22, DIGITS>(value.to_bits().into()),
+            None => self.push_byte_if_fits(b'-'),
         }
     }
 
     /// Appends a force in N with three decimals, or `-` for `None`.
-    pub(super) fn push_force(&mut self, value: Option<Force>) {
+    pub(super) fn push_force_or_dash(&mut self, value: Option<Force>) {
         match value {
-            Some(value) => self.push_fixed_point::<24, 3>(value.to_bits().into()),
-            None => self.push_byte(b'-'),
+            Some(value) => self.push_fixed_point_bits::<24, 3>(value.to_bits().into()),
+            None => self.push_byte_if_fits(b'-'),
         }
     }
 
     /// Appends a current in A with three decimals, after a `-` if it is negative.
     pub(super) fn push_current(&mut self, value: Current) {
-        self.push_fixed_point::<24, 3>(value.to_bits().into());
+        self.push_fixed_point_bits::<24, 3>(value.to_bits().into());
     }
 
     pub(super) fn push_integer(&mut self, value: u32) {
@@ -71,13 +71,13 @@ impl LineBuffer {
 
     /// Appends the fixed-point number `bits / 2^FRACTION` as a decimal number with `DIGITS` decimals, rounded to the
     /// nearest.
-    fn push_fixed_point<const FRACTION: u32, const DIGITS: usize>(&mut self, bits: i64) {
+    fn push_fixed_point_bits<const FRACTION: u32, const DIGITS: usize>(&mut self, bits: i64) {
         let scale = const { 10u64.pow(DIGITS as u32) };
         let scaled = (bits.unsigned_abs() * scale + (1 << (FRACTION - 1))) >> FRACTION;
         // All fixed-point types are below 2^10, so a `u32` holds five decimals.
         let scaled = u32::try_from(scaled).unwrap_or(u32::MAX);
         if bits < 0 && scaled != 0 {
-            self.push_byte(b'-');
+            self.push_byte_if_fits(b'-');
         }
         self.push_scaled_integer::<DIGITS>(scaled);
     }
@@ -138,7 +138,7 @@ mod tests {
             .chain([i32::MIN, -1, 0, 1, i32::MAX])
         {
             let exact = f64::from(bits) / f64::from(1 << 22);
-            let text = text(|text| text.push_celsius::<5>(Some(Celsius::from_bits(bits))));
+            let text = text(|text| text.push_celsius_or_dash::<5>(Some(Celsius::from_bits(bits))));
             let value: f64 = text.parse().expect("a number");
             assert!(
                 (value - exact).abs() <= 0.5e-5 + 1e-12,
@@ -151,8 +151,11 @@ mod tests {
             );
             assert_ne!(text, "-0.00000");
         }
-        assert_eq!(text(|text| text.push_celsius::<2>(None)), "-");
-        assert_eq!(text(|text| text.push_force(Some(Force::MAX))), "256.000");
+        assert_eq!(text(|text| text.push_celsius_or_dash::<2>(None)), "-");
+        assert_eq!(
+            text(|text| text.push_force_or_dash(Some(Force::MAX))),
+            "256.000"
+        );
         assert_eq!(
             text(|text| text.push_current(Current::lit("-1.25"))),
             "-1.250"
@@ -165,7 +168,7 @@ mod tests {
     #[test]
     fn a_word_or_number_that_does_not_fit_is_left_out() {
         assert_eq!(
-            text(|text| (0..100).for_each(|_| text.push_str("ab "))).len(),
+            text(|text| (0..100).for_each(|_| text.push_str_if_fits("ab "))).len(),
             LINE_CAPACITY_BYTES / 3 * 3
         );
         assert_eq!(

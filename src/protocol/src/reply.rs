@@ -2,14 +2,16 @@
 
 use core::fmt::{self, Display as _};
 
-use thermal_commissioning::{SENSOR_WORDS, SessionReply, Setting, StabilityMargins, StorageOrder};
+use thermal_commissioning::{
+    SessionReply, Setting, StabilityMargins, StorageOrder, THERMISTOR_WORDS,
+};
 use thermal_device::command::{self, Status};
 use thermal_device::safety::TripCause;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, Tile};
 
 use crate::line_buffer::LineBuffer;
-use crate::request::MODE_WORDS;
+use crate::request::CONTACT_MODEL_WORDS;
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -54,9 +56,9 @@ impl fmt::Display for Reply {
 
 fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fmt::Result {
     match reply {
-        command::Reply::Status(status) => status_line(status).fmt(f),
+        command::Reply::Status(status) => state_answer_line(status).fmt(f),
         command::Reply::Law(law) => write!(f, "ok law={}", law.name()),
-        command::Reply::Cause(cause) => trip_cause_line(cause.as_ref()).fmt(f),
+        command::Reply::Cause(cause) => trip_cause_answer_line(cause.as_ref()).fmt(f),
         // No line from the host requests averages and normal equations, which commissioning sessions evaluate.
         command::Reply::Done | command::Reply::Average(_) | command::Reply::NormalEquation(_) => {
             f.write_str("ok")
@@ -87,49 +89,51 @@ fn write_session_reply(f: &mut fmt::Formatter<'_>, reply: &SessionReply) -> fmt:
     }
 }
 
-fn status_line(status: &Status) -> LineBuffer {
+fn state_answer_line(status: &Status) -> LineBuffer {
     let mut line = LineBuffer::new();
-    line.push_str("ok state=");
-    line.push_str(status.state.name());
-    line.push_str(" fault=");
-    line.push_str(status.state.fault().map_or("-", |fault| fault.name()));
-    line.push_str(" material=");
-    line.push_str(status.material.unwrap_or("-"));
-    line.push_str(" object_c=");
+    line.push_str_if_fits("ok state=");
+    line.push_str_if_fits(status.state.name());
+    line.push_str_if_fits(" fault=");
+    line.push_str_if_fits(status.state.fault().map_or("-", |fault| fault.name()));
+    line.push_str_if_fits(" material=");
+    line.push_str_if_fits(status.material.unwrap_or("-"));
+    line.push_str_if_fits(" object_c=");
     match status.object {
-        Some(_) => line.push_celsius::<2>(status.object),
-        None => line.push_str("room"),
+        Some(_) => line.push_celsius_or_dash::<2>(status.object),
+        None => line.push_str_if_fits("room"),
     }
-    line.push_str(" mode=");
-    let mode = MODE_WORDS.iter().find(|(_, mode)| *mode == status.mode);
-    line.push_str(mode.map_or("-", |(name, _)| name));
-    line.push_str(" setpoint_c=");
-    line.push_celsius::<2>(status.setpoint);
-    line.push_str(if status.limited { " limited" } else { "" });
+    line.push_str_if_fits(" mode=");
+    let mode = CONTACT_MODEL_WORDS
+        .iter()
+        .find(|(_, mode)| *mode == status.mode);
+    line.push_str_if_fits(mode.map_or("-", |(name, _)| name));
+    line.push_str_if_fits(" setpoint_c=");
+    line.push_celsius_or_dash::<2>(status.setpoint);
+    line.push_str_if_fits(if status.limited { " limited" } else { "" });
     line
 }
 
-fn trip_cause_line(cause: Option<&TripCause>) -> LineBuffer {
+fn trip_cause_answer_line(cause: Option<&TripCause>) -> LineBuffer {
     let mut line = LineBuffer::new();
-    line.push_str("ok cause=");
+    line.push_str_if_fits("ok cause=");
     let Some(cause) = cause else {
-        line.push_str("-");
+        line.push_str_if_fits("-");
         return line;
     };
-    line.push_str(cause.fault.name());
-    line.push_str(" tick=");
+    line.push_str_if_fits(cause.fault.name());
+    line.push_str_if_fits(" tick=");
     line.push_integer(cause.tick);
     for (name, temperature) in [
         (" display_c=", cause.display),
         (" check_c=", cause.check),
         (" sink_c=", cause.sink),
     ] {
-        line.push_str(name);
-        line.push_celsius::<2>(temperature);
+        line.push_str_if_fits(name);
+        line.push_celsius_or_dash::<2>(temperature);
     }
-    line.push_str(" current_a=");
+    line.push_str_if_fits(" current_a=");
     line.push_current(cause.current);
-    line.push_str(" asked_a=");
+    line.push_str_if_fits(" asked_a=");
     line.push_current(cause.demanded);
     line
 }
@@ -141,7 +145,7 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
     match setting {
         Setting::Steps { first, counts } => {
             write!(f, "steps {first}")?;
-            let decimals = Calibration::CONVERTER_STEP_DECIMALS as usize;
+            let decimals = Calibration::ADC_ERROR_STEP_DECIMALS as usize;
             counts
                 .iter()
                 .try_for_each(|count| write!(f, " {count:.decimals$}"))
@@ -150,7 +154,7 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
             write!(
                 f,
                 "correction {}",
-                SENSOR_WORDS[sensor % SENSOR_WORDS.len()]
+                THERMISTOR_WORDS[sensor % THERMISTOR_WORDS.len()]
             )?;
             let values = correction.to_array().into_iter();
             values

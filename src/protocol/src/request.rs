@@ -14,9 +14,12 @@ use thermal_settings::{Range, Settings};
 
 use crate::Error;
 use crate::arguments::{
-    Words, find_entry_by_word, read_number, read_numbers, read_word, skip_if_next_is,
+    Words, read_fixed_point_in_range, read_numbers_in_ranges, read_word, skip_if_next_is,
+    table_entry_for_word_or_none,
 };
-use crate::commissioning_commands::{parse_calibrate, parse_set_arguments, parse_settings_query};
+use crate::calibrate_settings_set_commands::{
+    parse_calibration_point_or_clear, parse_set_arguments, parse_settings_query,
+};
 
 /// A line from the host after parsing: a command with its arguments, which are within their ranges.
 #[allow(
@@ -42,7 +45,7 @@ pub enum Request {
 macro_rules! commands {
     (|$words:ident, $display:ident| { $($name:literal => $request:expr,)* }) => {
         /// First words of all commands, which the answer to an unknown command lists.
-        pub const COMMAND_WORDS: &[&str] = &[$($name),*];
+        pub const KNOWN_COMMAND_WORDS: &[&str] = &[$($name),*];
 
         fn parse_arguments(
             name: &str,
@@ -62,17 +65,17 @@ impl Request {
         "id" => Self::Identify,
         "state" => Self::Station(Command::Status),
         "stream" => Self::Station(parse_stream(words)?),
-        "material" => Self::Station(parse_material(words, display)?),
-        "object" => Self::Station(Command::Object(parse_object_temperature(words)?)),
-        "mode" => Self::Station(Command::Mode(parse_mode(words)?)),
-        "law" => Self::Station(Command::Law(words.next().map(parse_law).transpose()?)),
+        "material" => Self::Station(parse_material_and_compute_contact(words, display)?),
+        "object" => Self::Station(Command::Object(parse_object_temperature_or_room(words)?)),
+        "mode" => Self::Station(Command::Mode(parse_contact_model(words)?)),
+        "law" => Self::Station(Command::Law(words.next().map(parse_control_law_word).transpose()?)),
         "arm" => Self::Station(Command::Arm),
-        "hold" => Self::Station(Command::Hold(parse_hold(words)?)),
+        "hold" => Self::Station(Command::Hold(parse_hold_setpoint(words)?)),
         "start" => Self::Station(Command::Start),
         "abort" => Self::Station(Command::Abort),
         "clear" => Self::Station(Command::Clear),
         "cause" => Self::Station(Command::Cause),
-        "calibrate" => Self::Commissioning(parse_calibrate(words)?),
+        "calibrate" => Self::Commissioning(parse_calibration_point_or_clear(words)?),
         "tune" => match skip_if_next_is(words, "result") {
             true => Self::Commissioning(SessionRequest::TuneResult),
             false => Self::Station(Command::Tune),
@@ -103,7 +106,7 @@ impl Request {
 
 /// Arguments of the command `mode`, each with the contact model that it selects: `contact` takes the thermal contact
 /// resistance between skin and object into account, `semi-infinite` does not. The contact model gives the set-point.
-pub const MODE_WORDS: [(&str, ContactModel); 2] = [
+pub const CONTACT_MODEL_WORDS: [(&str, ContactModel); 2] = [
     ("contact", ContactModel::ContactResistance),
     ("semi-infinite", ContactModel::SemiInfinite),
 ];
@@ -166,7 +169,7 @@ static MATERIAL_PROPERTY_RANGES: [Range; 5] = [
 
 fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
     // Rounds a fraction of a millisecond up, so that only 0 ends the stream.
-    let interval_ms = read_number(words, &STREAM_INTERVAL_RANGE)?
+    let interval_ms = read_fixed_point_in_range(words, &STREAM_INTERVAL_RANGE)?
         .saturating_ceil()
         .to_num::<i64>();
     Ok(Command::Stream {
@@ -174,52 +177,59 @@ fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
     })
 }
 
-fn parse_object_temperature(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
+fn parse_object_temperature_or_room(words: &mut Words<'_>) -> Result<Option<Celsius>, Error> {
     if skip_if_next_is(words, "room") {
         return Ok(None);
     }
     Ok(Some(
-        read_number(words, &OBJECT_TEMPERATURE_RANGE)?.to_num(),
+        read_fixed_point_in_range(words, &OBJECT_TEMPERATURE_RANGE)?.to_num(),
     ))
 }
 
-fn parse_mode(words: &mut Words<'_>) -> Result<ContactModel, Error> {
+fn parse_contact_model(words: &mut Words<'_>) -> Result<ContactModel, Error> {
     let name = read_word(words, "mode")?;
-    let (_, mode) = find_entry_by_word(&MODE_WORDS, name).ok_or(Error::UnknownMode(name.into()))?;
+    let (_, mode) = table_entry_for_word_or_none(&CONTACT_MODEL_WORDS, name)
+        .ok_or(Error::UnknownMode(name.into()))?;
     Ok(mode)
 }
 
-fn parse_law(name: &str) -> Result<Law, Error> {
-    let (_, law) =
-        find_entry_by_word(&Law::PROTOCOL_WORDS, name).ok_or(Error::UnknownLaw(name.into()))?;
+fn parse_control_law_word(name: &str) -> Result<Law, Error> {
+    let (_, law) = table_entry_for_word_or_none(&Law::PROTOCOL_WORDS, name)
+        .ok_or(Error::UnknownLaw(name.into()))?;
     Ok(law)
 }
 
-fn parse_hold(words: &mut Words<'_>) -> Result<Setpoint, Error> {
-    let celsius = read_number(words, &HOLD_TEMPERATURE_RANGE)?.to_num();
-    Ok(Setpoint::saturating_celsius(celsius).0)
+fn parse_hold_setpoint(words: &mut Words<'_>) -> Result<Setpoint, Error> {
+    let celsius = read_fixed_point_in_range(words, &HOLD_TEMPERATURE_RANGE)?.to_num();
+    Ok(Setpoint::clamp_celsius_with_flag(celsius).0)
 }
 
-fn parse_material(words: &mut Words<'_>, display: &Surface) -> Result<Command, Error> {
+fn parse_material_and_compute_contact(
+    words: &mut Words<'_>,
+    display: &Surface,
+) -> Result<Command, Error> {
     let name = read_word(words, "material")?;
     let (name, material) = if name == CUSTOM_MATERIAL_WORD {
-        (CUSTOM_MATERIAL_WORD, parse_custom_material(words)?)
+        (
+            CUSTOM_MATERIAL_WORD,
+            parse_custom_material_properties(words)?,
+        )
     } else {
-        find_entry_by_word(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
+        table_entry_for_word_or_none(&MATERIALS, name).ok_or(Error::UnknownMaterial(name.into()))?
     };
     let pair = ContactPair::new(&SKIN, &material, display, 1.0 / f64::from(TICK_HZ))
         .map_err(Error::ContactPair)?;
     Ok(Command::Material { name, pair })
 }
 
-fn parse_custom_material(words: &mut Words<'_>) -> Result<Material, Error> {
+fn parse_custom_material_properties(words: &mut Words<'_>) -> Result<Material, Error> {
     let [
         conductivity_w_mk,
         density_kg_m3,
         specific_heat_j_kgk,
         roughness_um,
         slope_rad,
-    ] = read_numbers(words, &MATERIAL_PROPERTY_RANGES)?;
+    ] = read_numbers_in_ranges(words, &MATERIAL_PROPERTY_RANGES)?;
     Ok(Material {
         surface: Surface {
             conductivity_w_mk,

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use thermal_device::Telemetry;
-use thermal_device::command::WithFingerIndex;
+use thermal_device::command::WithSourceFinger;
 
 use crate::line_buffer::LineBuffer;
 
@@ -23,7 +23,9 @@ pub struct TelemetryLine(pub Telemetry);
 /// Wraps one finger's telemetry in a [`TelemetryLine`], whose `Display` writes the line to the host. The address of the
 /// finger, which precedes the line on a device with several fingers, does not change.
 #[must_use]
-pub fn telemetry_line(telemetry: WithFingerIndex<Telemetry>) -> WithFingerIndex<TelemetryLine> {
+pub fn wrap_as_telemetry_line(
+    telemetry: WithSourceFinger<Telemetry>,
+) -> WithSourceFinger<TelemetryLine> {
     telemetry.map_content(TelemetryLine)
 }
 
@@ -31,28 +33,28 @@ impl fmt::Display for TelemetryLine {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mut line = LineBuffer::new();
         let telemetry = &self.0;
-        line.push_str("T ");
+        line.push_str_if_fits("T ");
         line.push_integer(telemetry.tick);
-        line.push_str(" ");
-        line.push_str(telemetry.state.name());
-        line.push_str(" ");
-        line.push_celsius::<5>(telemetry.setpoint);
-        line.push_str(" ");
-        line.push_celsius::<4>(telemetry.display);
+        line.push_str_if_fits(" ");
+        line.push_str_if_fits(telemetry.state.name());
+        line.push_str_if_fits(" ");
+        line.push_celsius_or_dash::<5>(telemetry.setpoint);
+        line.push_str_if_fits(" ");
+        line.push_celsius_or_dash::<4>(telemetry.display);
         for temperature in [telemetry.sink, telemetry.skin, telemetry.room] {
-            line.push_str(" ");
-            line.push_celsius::<2>(temperature);
+            line.push_str_if_fits(" ");
+            line.push_celsius_or_dash::<2>(temperature);
         }
-        line.push_str(" ");
-        line.push_force(telemetry.force);
+        line.push_str_if_fits(" ");
+        line.push_force_or_dash(telemetry.force);
         for current in [telemetry.demand, telemetry.current] {
-            line.push_str(" ");
+            line.push_str_if_fits(" ");
             line.push_current(current);
         }
-        line.push_str(" ");
+        line.push_str_if_fits(" ");
         line.push_integer(telemetry.evaluations);
-        line.push_str(" ");
-        line.push_str(match telemetry.state.fault() {
+        line.push_str_if_fits(" ");
+        line.push_str_if_fits(match telemetry.state.fault() {
             Some(fault) => fault.name(),
             None if telemetry.limited => "limited",
             None => "-",

@@ -7,22 +7,24 @@ extern crate std;
 
 mod calibration;
 mod range;
-mod redundant_sectors;
 mod settings_record;
 mod settings_store;
 mod tile;
+mod triplicated_sealed_flash;
 
 pub use calibration::{
-    CALIBRATED_BORDER_COUNT, CODES_PER_CONVERTER_SEGMENT, CORRECTION_CENTER_C,
-    CORRECTION_HALF_SPAN_K, Calibration, Correction, FIRST_CALIBRATED_BORDER, round_to_decimals,
+    CALIBRATED_ADC_BORDER_COUNT, CODES_PER_ADC_SEGMENT, CORRECTION_POLYNOMIAL_CENTER_C,
+    CORRECTION_POLYNOMIAL_CLAMP_K, Calibration, Correction, FIRST_CALIBRATED_ADC_BORDER_INDEX,
+    round_to_decimals,
 };
-pub use range::{CONVERTER_STEP_RANGE, CORRECTION_RANGES, Range, TILE_RANGES};
-pub use redundant_sectors::{RedundantSectors, SectorError};
+pub use range::{ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, Range, TILE_RANGES};
 pub use settings_record::{
-    RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode, encode,
+    RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode_settings_record,
+    encode_settings_record,
 };
 pub use settings_store::{SettingsStore, StoreError};
 pub use tile::Tile;
+pub use triplicated_sealed_flash::{TriplicatedSealedFlash, TriplicatedSealedFlashError};
 
 use contact_model::material::{REFERENCE_DISPLAY, Surface};
 
@@ -55,10 +57,10 @@ pub struct Settings {
     pub module: PeltierModule,
     /// Gains of the control law `pi`, which updates the module's current at every tick of 1 ms, and of the observer of
     /// the plate's temperature; [`Self::set_tile`] computes them.
-    pub gains: Gains,
+    pub gains: PiGains,
     /// Gains of the control law `pi-10hz`, which updates the module's current ten times a second; [`Self::set_tile`]
     /// computes them.
-    pub gains_10hz: Gains,
+    pub gains_10hz: PiGains,
     /// Surface of the display: thermal conductivity (W/mK), RMS roughness (µm) and mean slope of the asperities (rad).
     /// The thermal contact resistance between display and skin is computed from these properties.
     pub display: Surface,
@@ -75,7 +77,7 @@ impl Settings {
     #[inline(never)]
     pub fn set_tile(&mut self, tile: Tile) {
         self.tile = tile;
-        [self.gains, self.gains_10hz] = Gains::for_both_loop_rates(&tile);
+        [self.gains, self.gains_10hz] = PiGains::for_1khz_and_10hz_laws(&tile);
     }
 }
 
@@ -188,7 +190,7 @@ pub struct PeltierModule {
 /// Gains of a proportional-integral controller: its input is the display's reading minus the set-point, K, its output
 /// the module's current, A; positive cools.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gains {
+pub struct PiGains {
     /// Proportional gain, A/K: cooling current per kelvin by which the display's reading is above the set-point.
     pub proportional_a_k: f64,
     /// Integral time, s: in this time, a constant error adds as much current through the integral part as the
@@ -200,7 +202,7 @@ impl Default for Settings {
     /// Factory defaults, for the nominal components of `docs/hardware.md`: 10 kΩ thermistors with a beta of 3950 K and
     /// 10 kΩ pull-up resistors, a Peltier module of 30 mm and 6 A on 12 V, and its nominal tile. No calibration.
     fn default() -> Self {
-        let [gains, gains_10hz] = Gains::for_both_loop_rates(&Tile::NOMINAL);
+        let [gains, gains_10hz] = PiGains::for_1khz_and_10hz_laws(&Tile::FACTORY_DEFAULT);
         Self {
             thermistor: ThermistorDivider {
                 pull_up_ohm: 10e3,
@@ -231,7 +233,7 @@ impl Default for Settings {
             gains_10hz,
             display: REFERENCE_DISPLAY,
             calibration: Calibration::default(),
-            tile: Tile::NOMINAL,
+            tile: Tile::FACTORY_DEFAULT,
         }
     }
 }

@@ -34,7 +34,7 @@ impl fmt::Display for Range {
 
 /// Allowed range of the step of the analogue-to-digital converter's error at a border between two of its segments,
 /// counts (of 4096).
-pub static CONVERTER_STEP_RANGE: Range = Range {
+pub static ADC_ERROR_STEP_RANGE: Range = Range {
     name: "step",
     unit: "counts",
     min: -4.0,
@@ -108,7 +108,7 @@ impl Calibration {
         let steps = self
             .steps_counts
             .iter()
-            .map(|step| (&CONVERTER_STEP_RANGE, *step));
+            .map(|step| (&ADC_ERROR_STEP_RANGE, *step));
         let corrections = self
             .corrections
             .iter()

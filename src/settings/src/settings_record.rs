@@ -17,7 +17,7 @@ use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use heapless::Vec;
 
 use super::calibration::power_of_ten;
-use super::{CALIBRATED_BORDER_COUNT, Calibration, Correction, Range, Settings, Tile};
+use super::{CALIBRATED_ADC_BORDER_COUNT, Calibration, Correction, Range, Settings, Tile};
 
 const RECORD_LAYOUT_VERSION: u16 = 1;
 const KIND_FACTORY_DEFAULTS: u8 = 0;
@@ -25,14 +25,16 @@ const KIND_SETTINGS: u8 = 1;
 const HEADER_BYTES: usize = 4;
 const CHECKSUM_BYTES: usize = 4;
 const CORRECTIONS_PER_FINGER: usize = 5;
-const VALUES_PER_FINGER: usize = CALIBRATED_BORDER_COUNT + 3 * CORRECTIONS_PER_FINGER + 5;
-const BYTES_PER_FINGER: usize = 4 * VALUES_PER_FINGER;
+const RECORD_INTEGERS_PER_FINGER: usize =
+    CALIBRATED_ADC_BORDER_COUNT + 3 * CORRECTIONS_PER_FINGER + 5;
+const RECORD_BYTES_PER_FINGER: usize = 4 * RECORD_INTEGERS_PER_FINGER;
 /// Largest number of fingers that a device can have.
 const FINGERS_MAX: usize = 10;
 /// Length of the longest record, that of a device with ten fingers: 1328 bytes.
-pub const RECORD_MAX_BYTES: usize = HEADER_BYTES + FINGERS_MAX * BYTES_PER_FINGER + CHECKSUM_BYTES;
+pub const RECORD_MAX_BYTES: usize =
+    HEADER_BYTES + FINGERS_MAX * RECORD_BYTES_PER_FINGER + CHECKSUM_BYTES;
 
-const CRC: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
+const RECORD_CRC_32: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// The bytes of one record as they are written to flash: the stored settings of all fingers, or the order to use
 /// factory defaults, between a header and a checksum.
@@ -63,7 +65,7 @@ impl StoredSettings {
     /// factory defaults for everything else.
     #[must_use]
     #[inline(never)]
-    pub fn to_complete_settings(&self) -> Settings {
+    pub fn to_settings_with_factory_defaults(&self) -> Settings {
         let mut settings = Settings {
             calibration: self.calibration,
             ..Settings::default()
@@ -73,12 +75,12 @@ impl StoredSettings {
     }
 
     /// This finger's values in the order of the record, each with the number of decimals that the record holds.
-    fn record_values(&self) -> impl Iterator<Item = (f64, i32)> {
+    fn record_values_with_decimals(&self) -> impl Iterator<Item = (f64, i32)> {
         let steps = self.calibration.steps_counts.into_iter();
         let corrections = self.calibration.corrections.into_iter();
         let tile = self.tile.to_array().into_iter();
         steps
-            .map(|step| (step, Calibration::CONVERTER_STEP_DECIMALS))
+            .map(|step| (step, Calibration::ADC_ERROR_STEP_DECIMALS))
             .chain(corrections.flat_map(|correction| {
                 let values = correction.to_array().into_iter();
                 values.zip(Calibration::CORRECTION_DECIMALS)
@@ -88,18 +90,18 @@ impl StoredSettings {
 
     /// Converts the 33 integers that a record holds for one finger to the stored settings of that finger. The integers
     /// have the order of the record, and each is a value in units of its last decimal. A missing integer would count as
-    /// 0, but [`decode`] has checked the length of the record.
-    fn from_record_values(mut values: impl Iterator<Item = i32>) -> Self {
+    /// 0, but [`decode_settings_record`] has checked the length of the record.
+    fn from_record_integers(mut values: impl Iterator<Item = i32>) -> Self {
         let mut next =
             |decimals| f64::from(values.next().unwrap_or_default()) / power_of_ten(decimals);
         Self {
             calibration: Calibration {
-                steps_counts: core::array::from_fn(|_| next(Calibration::CONVERTER_STEP_DECIMALS)),
+                steps_counts: core::array::from_fn(|_| next(Calibration::ADC_ERROR_STEP_DECIMALS)),
                 corrections: core::array::from_fn(|_| {
                     Correction::from_array(Calibration::CORRECTION_DECIMALS.map(&mut next))
                 }),
             },
-            tile: Tile::from_array([(); 5].map(|()| next(Tile::DECIMALS as i32))),
+            tile: Tile::from_array_rounded([(); 5].map(|()| next(Tile::DECIMALS as i32))),
         }
     }
 
@@ -172,7 +174,7 @@ impl fmt::Display for RecordError {
 /// defaults.
 #[must_use]
 #[inline(never)]
-pub fn encode<const FINGERS: usize>(
+pub fn encode_settings_record<const FINGERS: usize>(
     settings: Option<&[StoredSettings; FINGERS]>,
 ) -> SettingsRecord {
     const { assert!(FINGERS <= FINGERS_MAX) };
@@ -189,11 +191,11 @@ pub fn encode<const FINGERS: usize>(
     for (value, decimals) in settings
         .into_iter()
         .flatten()
-        .flat_map(StoredSettings::record_values)
+        .flat_map(StoredSettings::record_values_with_decimals)
     {
         append(&(libm::round(value * power_of_ten(decimals)) as i32).to_le_bytes());
     }
-    let checksum = CRC.checksum(&record);
+    let checksum = RECORD_CRC_32.checksum(&record);
     let _fits = record.extend_from_slice(&checksum.to_le_bytes());
     record
 }
@@ -204,7 +206,7 @@ pub fn encode<const FINGERS: usize>(
 /// # Errors
 /// The bytes are not a valid record of a device with `FINGERS` fingers.
 #[inline(never)]
-pub fn decode<const FINGERS: usize>(
+pub fn decode_settings_record<const FINGERS: usize>(
     bytes: &[u8],
 ) -> Result<Option<[StoredSettings; FINGERS]>, RecordError> {
     let wrong_length = RecordError::Length(bytes.len());
@@ -214,7 +216,7 @@ pub fn decode<const FINGERS: usize>(
     let (header, values) = content
         .split_first_chunk::<HEADER_BYTES>()
         .ok_or(wrong_length)?;
-    if CRC.checksum(content) != u32::from_le_bytes(*checksum) {
+    if RECORD_CRC_32.checksum(content) != u32::from_le_bytes(*checksum) {
         return Err(RecordError::Checksum);
     }
     let [version_low, version_high, kind, fingers] = *header;
@@ -230,7 +232,7 @@ pub fn decode<const FINGERS: usize>(
     if usize::from(fingers) != expected_fingers {
         return Err(RecordError::Fingers(fingers));
     }
-    if values.len() != expected_fingers * BYTES_PER_FINGER {
+    if values.len() != expected_fingers * RECORD_BYTES_PER_FINGER {
         return Err(wrong_length);
     }
     if kind == KIND_FACTORY_DEFAULTS {
@@ -239,7 +241,7 @@ pub fn decode<const FINGERS: usize>(
     let (words, _) = values.as_chunks::<4>();
     let mut words = words.iter().map(|word| i32::from_le_bytes(*word));
     let settings = core::array::from_fn(|_| {
-        StoredSettings::from_record_values(words.by_ref().take(VALUES_PER_FINGER))
+        StoredSettings::from_record_integers(words.by_ref().take(RECORD_INTEGERS_PER_FINGER))
     });
     for (finger, one) in (0..).zip(&settings) {
         if let Some((allowed, value)) = one.first_value_out_of_range() {

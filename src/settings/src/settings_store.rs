@@ -12,18 +12,19 @@ use sequential_storage::cache::page_states::ArrayPageStates;
 use sequential_storage::map::{MapConfig, MapStorage};
 
 use super::{
-    RECORD_MAX_BYTES, RecordError, RedundantSectors, SectorError, StoredSettings, decode, encode,
+    RECORD_MAX_BYTES, RecordError, StoredSettings, TriplicatedSealedFlash,
+    TriplicatedSealedFlashError, decode_settings_record, encode_settings_record,
 };
 
 /// Number of flash sectors that the log of records fills one after the other, in a circle.
-const LOG_SECTOR_COUNT: usize = 3;
+const RECORD_LOG_SECTOR_COUNT: usize = 3;
 
 /// Cache in RAM of the position of the newest record in the flash, used during one operation. Without this cache,
 /// erasing a full sector for reuse would search the whole flash once for every record in that sector, which takes
 /// seconds.
-type RecordLogCache = Cache<
-    ArrayPageStates<LOG_SECTOR_COUNT>,
-    ArrayPagePointers<LOG_SECTOR_COUNT>,
+type RecordLogPositionCache = Cache<
+    ArrayPageStates<RECORD_LOG_SECTOR_COUNT>,
+    ArrayPagePointers<RECORD_LOG_SECTOR_COUNT>,
     ArrayKeyPointers<(), 1>,
     (),
 >;
@@ -33,7 +34,7 @@ type RecordLogCache = Cache<
 /// Every operation blocks until the flash has finished. After a power failure the flash holds either the previous
 /// settings or the new ones; [`Self::save`] describes the exception, a flash that was damaged before.
 pub struct SettingsStore<F: NorFlash, const FINGERS: usize> {
-    flash: RedundantSectors<F>,
+    flash: TriplicatedSealedFlash<F>,
     buffer: [u8; RECORD_MAX_BYTES],
 }
 
@@ -41,7 +42,7 @@ pub struct SettingsStore<F: NorFlash, const FINGERS: usize> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum StoreError<E> {
     /// Reading, programming or erasing the flash failed, for this reason.
-    Flash(SectorError<E>),
+    Flash(TriplicatedSealedFlashError<E>),
     /// The log of records in the flash is damaged: its newest record cannot be found, or no record can be appended.
     Corrupt,
     /// The newest record in the flash holds no valid settings of this device, for this reason.
@@ -62,8 +63,8 @@ impl<E: fmt::Display> fmt::Display for StoreError<E> {
     }
 }
 
-impl<E: fmt::Debug> From<Error<SectorError<E>>> for StoreError<E> {
-    fn from(error: Error<SectorError<E>>) -> Self {
+impl<E: fmt::Debug> From<Error<TriplicatedSealedFlashError<E>>> for StoreError<E> {
+    fn from(error: Error<TriplicatedSealedFlashError<E>>) -> Self {
         match error {
             Error::Storage { value } => Self::Flash(value),
             _ => Self::Corrupt,
@@ -75,7 +76,7 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
     /// A store of settings in the first three sectors of `flash`, which is neither read nor written yet.
     pub const fn new(flash: F) -> Self {
         Self {
-            flash: RedundantSectors::new(flash),
+            flash: TriplicatedSealedFlash::new(flash),
             buffer: [0; RECORD_MAX_BYTES],
         }
     }
@@ -85,10 +86,11 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
     fn record_log_and_buffer(
         &mut self,
     ) -> (
-        MapStorage<(), &mut RedundantSectors<F>, RecordLogCache>,
+        MapStorage<(), &mut TriplicatedSealedFlash<F>, RecordLogPositionCache>,
         &mut [u8],
     ) {
-        let end = (LOG_SECTOR_COUNT * RedundantSectors::<F>::DATA_BYTES_PER_SECTOR) as u32;
+        let end =
+            (RECORD_LOG_SECTOR_COUNT * TriplicatedSealedFlash::<F>::DATA_BYTES_PER_SECTOR) as u32;
         let empty_cache = Cache::new(
             ArrayPageStates::new(),
             ArrayPagePointers::new(),
@@ -109,7 +111,9 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
     pub fn load(&mut self) -> Result<Option<[StoredSettings; FINGERS]>, StoreError<F::Error>> {
         let (mut log, buffer) = self.record_log_and_buffer();
         let record = block_on(log.fetch_item::<&[u8]>(buffer, &()))?;
-        record.map_or(Ok(None), |bytes| decode(bytes).map_err(StoreError::Record))
+        record.map_or(Ok(None), |bytes| {
+            decode_settings_record(bytes).map_err(StoreError::Record)
+        })
     }
 
     /// Saves the settings of all fingers, or factory defaults for `None`, as the newest record, and verifies the record
@@ -128,7 +132,7 @@ impl<F: NorFlash, const FINGERS: usize> SettingsStore<F, FINGERS> {
         &mut self,
         settings: Option<&[StoredSettings; FINGERS]>,
     ) -> Result<(), StoreError<F::Error>> {
-        let bytes = encode(settings);
+        let bytes = encode_settings_record(settings);
         let mut saved = self.append_and_verify(&bytes);
         if matches!(saved, Err(StoreError::VerifyFailed)) {
             // Some bits at that place were no longer erased; the next place may be intact.

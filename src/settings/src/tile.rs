@@ -1,6 +1,6 @@
 //! Parameters of the tile, and the controller gains that follow from them.
 
-use super::{Gains, TICK_HZ, round_to_decimals};
+use super::{PiGains, TICK_HZ, round_to_decimals};
 
 /// Thermal dynamics of the tile, the Peltier module with its display plate: how the module's demanded current `I`, A,
 /// positive if it cools, changes the plate's temperature `T`, K, and the reading `y`, K, of the thermistor in the
@@ -30,7 +30,7 @@ pub struct Tile {
 impl Tile {
     /// Nominal tile, the factory default: a Peltier module of 30 mm and 6 A with a thermistor in its display plate. Its
     /// parameters were identified on the simulated device, by `cargo hil-sim commission scenes/copper.toml`.
-    pub const NOMINAL: Self = Self {
+    pub const FACTORY_DEFAULT: Self = Self {
         gain_k_s_a: 2.91,
         joule_per_a: 0.0585,
         leak_1_s: 0.103,
@@ -58,7 +58,7 @@ impl Tile {
     /// A tile with this gain (K/s per A), Joule term (1/A), leak (1/s), sensor lag (s) and dead time (s), each rounded
     /// to [`Self::DECIMALS`].
     #[must_use]
-    pub fn from_array(values: [f64; 5]) -> Self {
+    pub fn from_array_rounded(values: [f64; 5]) -> Self {
         let [gain_k_s_a, joule_per_a, leak_1_s, sensor_lag_s, dead_time_s] =
             values.map(|value| round_to_decimals(value, Self::DECIMALS as i32));
         Self {
@@ -71,13 +71,13 @@ impl Tile {
     }
 }
 
-impl Gains {
+impl PiGains {
     /// Gains for a tile by the SIMC tuning rule for an integrating process (Skogestad 2003). The proportional gain is
     /// `1 / (gain (tauc + theta))`, A/K, the integral time `4 (tauc + theta)`, s, with the tile's gain, K/s per A, and
     /// the time constant of the closed loop `tauc = theta`. The effective dead time `theta`, s, is the sum of the
     /// sensor's lag, the tile's dead time and half of `hold_s`, the time in seconds between two updates of the current.
     #[must_use]
-    pub fn from_simc_rule(tile: &Tile, hold_s: f64) -> Self {
+    pub fn simc_for_update_interval(tile: &Tile, hold_s: f64) -> Self {
         let theta_s = tile.sensor_lag_s + tile.dead_time_s + 0.5 * hold_s;
         let closed_s = 2.0 * theta_s;
         Self {
@@ -89,7 +89,7 @@ impl Gains {
     /// Gains for a tile, first those of the control law `pi`, which updates the module's current every 1 ms, then those
     /// of the law `pi-10hz`, which updates it every 100 ms.
     #[must_use]
-    pub fn for_both_loop_rates(tile: &Tile) -> [Self; 2] {
-        [1.0 / f64::from(TICK_HZ), 0.1].map(|hold_s| Self::from_simc_rule(tile, hold_s))
+    pub fn for_1khz_and_10hz_laws(tile: &Tile) -> [Self; 2] {
+        [1.0 / f64::from(TICK_HZ), 0.1].map(|hold_s| Self::simc_for_update_interval(tile, hold_s))
     }
 }

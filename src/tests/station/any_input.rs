@@ -135,7 +135,10 @@ impl TickCount {
         let (outputs, telemetry) = match samples {
             Some(samples) => (
                 bench.station.step(samples),
-                bench.station.telemetry().expect("streamed on every tick"),
+                bench
+                    .station
+                    .telemetry_if_due()
+                    .expect("streamed on every tick"),
             ),
             None => bench.step_with_outputs(),
         };
@@ -158,7 +161,7 @@ impl TickCount {
         }
         if let Some(setpoint) = telemetry.setpoint {
             prop_assert!((15.0..=42.0).contains(&setpoint.to_num::<f64>()));
-            prop_assert_eq!(Setpoint::saturating_celsius(setpoint).1, false);
+            prop_assert_eq!(Setpoint::clamp_celsius_with_flag(setpoint).1, false);
         }
         // The display responds to the self-test.
         if telemetry.state == StateName::SelfTest {

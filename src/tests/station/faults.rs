@@ -122,7 +122,7 @@ fn the_first_fault_stays_latched_and_clear_is_refused_while_a_later_one_is_prese
 fn clear_reports_an_external_fault_that_was_raised_while_tripped() {
     let mut bench = TestBench::presenting("copper");
     for fault in [Fault::SinkHot, Fault::SettingsCorrupt] {
-        bench.station.raise_external_fault(fault);
+        bench.station.trip_or_store_external_fault(fault);
     }
     bench.steps(2);
     assert_eq!(bench.state().fault(), Some(Fault::SinkHot));
@@ -140,7 +140,7 @@ fn clear_reports_an_external_fault_that_was_raised_while_tripped() {
 fn clear_is_refused_until_a_tick_passes_without_the_external_fault() {
     let mut bench = TestBench::new();
     for _ in 0..3 {
-        bench.station.raise_external_fault(Fault::Clock);
+        bench.station.trip_or_store_external_fault(Fault::Clock);
         bench.step();
         assert_eq!(bench.send("clear"), "err fault clock is still present");
     }

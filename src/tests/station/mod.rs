@@ -12,7 +12,7 @@ use std::mem;
 use std::string::{String, ToString};
 
 use crate::device::Telemetry;
-use crate::device::command::WithFingerIndex;
+use crate::device::command::WithSourceFinger;
 use crate::device::drive::BoardOutputs;
 use crate::device::drive::Drive;
 use crate::device::sense::Samples;
@@ -83,8 +83,8 @@ impl TestBench {
             let content = self
                 .station
                 .execute(command)
-                .map_err(WithFingerIndex::from_whole_device)?;
-            Ok(WithFingerIndex::from_whole_device(content))
+                .map_err(WithSourceFinger::from_whole_device)?;
+            Ok(WithSourceFinger::from_whole_device(content))
         });
         answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
     }
@@ -179,7 +179,10 @@ impl TestBench {
             self.station.note_host_activity();
         }
         let outputs = self.station.step(&samples);
-        let telemetry = self.station.telemetry().expect("streamed on every tick");
+        let telemetry = self
+            .station
+            .telemetry_if_due()
+            .expect("streamed on every tick");
         self.tick = telemetry.tick;
         self.demanded_a = telemetry.demand.to_num::<f64>().abs();
         if self.plate_responds {
@@ -189,7 +192,7 @@ impl TestBench {
                 joule_per_a,
                 leak_1_s,
                 ..
-            } = Tile::NOMINAL;
+            } = Tile::FACTORY_DEFAULT;
             let pumped_k_s = gain_k_s_a * (demand_a - joule_per_a * demand_a * demand_a);
             let leak_k_s = leak_1_s * (self.plate_c - self.sink_c);
             self.plate_c -= 1e-3 * (pumped_k_s + leak_k_s);

@@ -5,12 +5,12 @@
 //! from the samples by the thermistor class's nominal curve. A wrong constant or conversion of the
 //! firmware therefore cannot confirm itself.
 
-use thermal_display::device::command::{self, Command, Status, WithFingerIndex};
+use thermal_display::device::command::{self, Command, Status, WithSourceFinger};
 use thermal_display::device::drive::{BoardOutputs, Drive};
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, FingerIndex, StateName};
-use thermal_display::protocol::{CommandHandler, Error, LineReader, telemetry_line};
+use thermal_display::protocol::{CommandHandler, Error, LineReader, wrap_as_telemetry_line};
 use thermal_display::settings::Settings;
 
 use crate::tile::{FULL_SCALE, Tile, sum_at};
@@ -62,7 +62,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
 
     fn status(&mut self, finger: FingerIndex<FINGERS>) -> Status {
         match self.device.execute(Some(finger), Command::Status) {
-            Ok(WithFingerIndex {
+            Ok(WithSourceFinger {
                 content: command::Reply::Status(status),
                 ..
             }) => status,
@@ -78,7 +78,10 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
 
     /// Display temperature of the first finger, °C, if it streams telemetry and has a reading.
     pub fn display_c(&self) -> Option<f64> {
-        let telemetry = self.device.telemetry(FingerIndex::FIRST)?.content;
+        let telemetry = self
+            .device
+            .finger_telemetry_if_due(FingerIndex::FIRST)?
+            .content;
         telemetry.display.map(|celsius| celsius.to_num())
     }
 
@@ -117,7 +120,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
     /// Runs one tick and checks the outputs, the change of state and the telemetry.
     pub fn step(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
         let before = self.state(finger);
-        let outputs = self.device.step(finger, samples);
+        let outputs = self.device.step_finger(finger, samples);
         let Status {
             state, setpoint, ..
         } = self.status(finger);
@@ -138,12 +141,15 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
                 "set-point {setpoint_c} C"
             );
         }
-        if let Some(telemetry) = self.device.telemetry(finger) {
+        if let Some(telemetry) = self.device.finger_telemetry_if_due(finger) {
             let demand_a: f64 = telemetry.content.demand.to_num();
             assert!(demand_a.abs() <= 6.0, "demand {demand_a} A");
             let off = outputs.drive == Drive::Off;
             assert!(!off || demand_a == 0.0, "demand {demand_a} A while off");
-            check_text(&telemetry_line(telemetry).to_string(), TELEMETRY_MAX);
+            check_text(
+                &wrap_as_telemetry_line(telemetry).to_string(),
+                TELEMETRY_MAX,
+            );
         }
         outputs
     }
@@ -153,7 +159,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
         match reader.push(byte) {
             None => {}
             Some(Err(error)) => {
-                let error = WithFingerIndex::from_whole_device(Error::from(error));
+                let error = WithSourceFinger::from_whole_device(Error::from(error));
                 check_answer(&error.to_string(), false);
             }
             Some(Ok(line)) => {

@@ -204,7 +204,7 @@ impl<const FINGERS: usize> History<FINGERS> {
                         curvature_1_k: next(),
                     }),
                 },
-                tile: Tile::from_array(std::array::from_fn(|_| next())),
+                tile: Tile::from_array_rounded(std::array::from_fn(|_| next())),
             };
             self.written.push(Some([settings; FINGERS]));
         }

@@ -1,7 +1,7 @@
 //! Settings within the ranges of the `set` lines, and the readings that follow from them.
 
 use arbitrary::{Arbitrary, Unstructured};
-use thermal_display::commissioning::SENSOR_WORDS;
+use thermal_display::commissioning::THERMISTOR_WORDS;
 use thermal_display::device::FingerIndex;
 
 use crate::device::{CheckedDevice, READING_ERROR_MAX_K};
@@ -35,7 +35,7 @@ impl Input {
                 steps.collect::<String>()
             ));
         }
-        for (name, [offset, slope, curvature]) in SENSOR_WORDS.iter().zip(self.corrections) {
+        for (name, [offset, slope, curvature]) in THERMISTOR_WORDS.iter().zip(self.corrections) {
             let (offset, slope) = (fraction(offset, 1.2), fraction(slope, 0.05));
             let curvature = fraction(curvature, 0.002);
             lines.push(format!(

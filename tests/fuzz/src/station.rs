@@ -1,11 +1,11 @@
 //! A device with one finger under samples of any kind, with lines and faults in between.
 
 use arbitrary::{Arbitrary, Unstructured};
-use thermal_display::commissioning::SENSOR_WORDS;
+use thermal_display::commissioning::THERMISTOR_WORDS;
 use thermal_display::device::FingerIndex;
 use thermal_display::device::drive::Drive;
 use thermal_display::device::safety::Fault;
-use thermal_display::device::sense::{CHANNEL_COUNT, SCANS_PER_TICK, Samples, Scan};
+use thermal_display::device::sense::{ADC_CHANNELS_PER_FINGER, SCANS_PER_TICK, Samples, Scan};
 
 use crate::start::StartDevices;
 
@@ -28,9 +28,12 @@ enum Event {
     /// Ticks on the tile.
     Run(u8),
     /// A tick with these sums and bridge fault.
-    Sums([u16; CHANNEL_COUNT], bool),
+    Sums([u16; ADC_CHANNELS_PER_FINGER], bool),
     /// A tick with these conversions, the second ones in the last scan.
-    Scans([u16; CHANNEL_COUNT], [u16; CHANNEL_COUNT]),
+    Scans(
+        [u16; ADC_CHANNELS_PER_FINGER],
+        [u16; ADC_CHANNELS_PER_FINGER],
+    ),
     /// Ticks on the tile in which one channel is stuck at a sum.
     Stuck { channel: u8, sum: u16, ticks: u8 },
     /// Ticks on the tile in which one channel has an offset that grows.
@@ -147,7 +150,7 @@ impl Line {
                 let fraction = |value: &i16, max: f64| max * f64::from(*value) / 32768.0;
                 format!(
                     "set correction {} {:.6} {:.7} {:.8}",
-                    element(&SENSOR_WORDS, *sensor),
+                    element(&THERMISTOR_WORDS, *sensor),
                     fraction(offset, 1.2),
                     fraction(slope, 0.05),
                     fraction(curvature, 0.002)
@@ -164,7 +167,7 @@ impl Line {
             Self::Point(sensor, celsius) => {
                 format!(
                     "calibrate {} {:.3}",
-                    element(&SENSOR_WORDS, *sensor),
+                    element(&THERMISTOR_WORDS, *sensor),
                     fraction(*celsius, 60.0)
                 )
             }
@@ -174,7 +177,7 @@ impl Line {
 
 /// The sum of the channel with this index, modulo their number.
 fn channel(samples: &mut Samples, index: u8) -> &mut u16 {
-    match usize::from(index) % CHANNEL_COUNT {
+    match usize::from(index) % ADC_CHANNELS_PER_FINGER {
         0 => &mut samples.display,
         1 => &mut samples.display_check,
         2 => &mut samples.sink,
@@ -217,8 +220,9 @@ pub fn run(input: &[u8]) -> bool {
                 device.step(FINGER, &samples);
             }
             Event::Scans(counts, last) => {
-                let scan =
-                    |counts: [u16; CHANNEL_COUNT]| -> Scan { counts.map(|count| count & 0x0fff) };
+                let scan = |counts: [u16; ADC_CHANNELS_PER_FINGER]| -> Scan {
+                    counts.map(|count| count & 0x0fff)
+                };
                 let mut scans = [scan(counts); SCANS_PER_TICK];
                 scans[SCANS_PER_TICK - 1] = scan(last);
                 let broken = scan(last)[..5]

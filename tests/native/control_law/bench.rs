@@ -24,7 +24,7 @@ pub fn celsius(t_c: f64) -> Celsius {
 }
 
 pub fn setpoint(t_c: f64) -> Setpoint {
-    let (setpoint, limited) = Setpoint::saturating_celsius(celsius(t_c));
+    let (setpoint, limited) = Setpoint::clamp_celsius_with_flag(celsius(t_c));
     assert!(!limited, "{t_c} C is not allowed");
     setpoint
 }
@@ -48,7 +48,7 @@ pub fn settings(sensor_lag_s: f64) -> Settings {
 
 /// Settings with the gains that follow from an identified tile.
 pub fn settings_of(tile: settings::Tile) -> Settings {
-    let [gains, gains_10hz] = settings::Gains::for_both_loop_rates(&tile);
+    let [gains, gains_10hz] = settings::PiGains::for_1khz_and_10hz_laws(&tile);
     Settings {
         gains,
         gains_10hz,
@@ -102,7 +102,7 @@ impl ControlLoop {
 
     pub fn set_parameters(&mut self, settings: &Settings) {
         let parameters = ControlParameters::new(settings);
-        self.controller.set_parameters(&parameters);
+        self.controller.set_pi_gains(&parameters);
         self.observer.set_parameters(&parameters.observer);
     }
 
@@ -110,7 +110,7 @@ impl ControlLoop {
     pub fn step(&mut self, target_c: f64, (reading_c, sink_c): (f64, f64), load_w: f64) -> f64 {
         let (display, sink) = (celsius(reading_c), celsius(sink_c));
         self.observer
-            .correct_by_reading(display, sink, Watt::from_num(load_w));
+            .update_disturbance_and_correction(display, sink, Watt::from_num(load_w));
         let reference = Reference::at(setpoint(target_c).celsius());
         let current = (self.controller).choose_current(&reference, display, sink, &self.observer);
         self.observer.advance_model(current);

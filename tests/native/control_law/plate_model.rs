@@ -50,7 +50,7 @@ fn responses(current_a: f64, load_w: f64, seconds: f64) -> Vec<(f64, f64, f64)> 
         advance(&mut tile, given_a, load_w);
         let legs = control
             .observer
-            .leg_temperatures()
+            .leg_end_and_mean_temperatures()
             .expect("after the first reading");
         let model_c: f64 = legs.cold.to_num();
         predicted.update(model_c);

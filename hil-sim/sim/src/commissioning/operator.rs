@@ -1,6 +1,6 @@
 //! The steps of the operator.
 
-use thermal_settings::{CODES_PER_CONVERTER_SEGMENT, Settings};
+use thermal_settings::{CODES_PER_ADC_SEGMENT, Settings};
 
 use super::bench::CommissioningBench;
 use super::record::{CalibrationPoint, CommissioningEvent, CommissioningRecord, IdentifiedTile};
@@ -120,12 +120,12 @@ struct Operator<'a, E> {
 fn hold_temperatures_c() -> Vec<f64> {
     let thermistor = Settings::default().thermistor;
     let (coldest_c, warmest_c) = DISPLAY_C;
-    (0..4096 / CODES_PER_CONVERTER_SEGMENT)
+    (0..4096 / CODES_PER_ADC_SEGMENT)
         .flat_map(|segment| {
-            let border = segment * CODES_PER_CONVERTER_SEGMENT;
+            let border = segment * CODES_PER_ADC_SEGMENT;
             [
                 border + FROM_BORDER_CODES,
-                border + CODES_PER_CONVERTER_SEGMENT - FROM_BORDER_CODES,
+                border + CODES_PER_ADC_SEGMENT - FROM_BORDER_CODES,
             ]
         })
         .map(|code| thermistor.temperature_c(f64::from(code) * 16.0))

@@ -5,15 +5,15 @@ use std::convert::Infallible;
 use std::fmt::Display;
 
 use thermal_commissioning::StorageOrder;
-use thermal_device::command::WithFingerIndex;
+use thermal_device::command::WithSourceFinger;
 use thermal_device::drive::{BoardOutputs, Drive};
 use thermal_device::safety::{Fault, ThermalDose, TripCause};
 use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_device::{Device, FingerIndex};
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::sensors::Channel;
-use thermal_protocol::{CommandHandler, Error, LineReader, Reply, telemetry_line};
-use thermal_settings::{Settings, StoredSettings, decode};
+use thermal_protocol::{CommandHandler, Error, LineReader, Reply, wrap_as_telemetry_line};
+use thermal_settings::{Settings, StoredSettings, decode_settings_record};
 
 use super::{BAUD, DeviceReset, Engine};
 use crate::World;
@@ -131,10 +131,10 @@ impl NativeEngine {
         self.execute_received_lines((self.halves - 1) * HALF_NS + TICK_NS);
         let samples = Samples::from_scans(&self.scans, self.fault);
         self.fault = self.world.bridge_fault();
-        self.outputs = self.device.step(FingerIndex::FIRST, &samples);
+        self.outputs = self.device.step_finger(FingerIndex::FIRST, &samples);
         self.world.comparator_test(self.outputs.comparator_test);
-        if let Some(telemetry) = self.device.telemetry(FingerIndex::FIRST) {
-            self.send_line(&telemetry_line(telemetry));
+        if let Some(telemetry) = self.device.finger_telemetry_if_due(FingerIndex::FIRST) {
+            self.send_line(&wrap_as_telemetry_line(telemetry));
         }
     }
 
@@ -151,11 +151,16 @@ impl NativeEngine {
         };
         let dose = match cause {
             ResetCause::PowerOn => ThermalDose::default(),
-            _ => ThermalDose::from_word(self.device.thermal_dose(FingerIndex::FIRST).to_word()),
+            _ => ThermalDose::from_any_retained_word(
+                self.device
+                    .finger_thermal_dose(FingerIndex::FIRST)
+                    .to_retained_word(),
+            ),
         };
         let settings = Settings::default();
-        self.device = Device::with_trip_cause(cause_retained, &settings);
-        self.device.restore_thermal_dose(FingerIndex::FIRST, dose);
+        self.device = Device::new_optionally_tripped(cause_retained, &settings);
+        self.device
+            .restore_finger_thermal_dose(FingerIndex::FIRST, dose);
         self.handler = match &self.stored {
             Some(stored) => {
                 self.device.restore_settings(stored);
@@ -177,7 +182,9 @@ impl NativeEngine {
 
     /// Writes the settings and restarts; the time that this takes is not modelled.
     fn store_and_restart(&mut self, order: StorageOrder) {
-        self.stored = decode(&self.handler.settings_record(order)).ok().flatten();
+        self.stored = decode_settings_record(&self.handler.record_to_save_or_forget(order))
+            .ok()
+            .flatten();
         self.restart(ResetCause::Software);
     }
 
@@ -191,13 +198,13 @@ impl NativeEngine {
                 continue;
             };
             let executed = line
-                .map_err(|error| WithFingerIndex::from_whole_device(Error::from(error)))
+                .map_err(|error| WithSourceFinger::from_whole_device(Error::from(error)))
                 .and_then(|line| {
                     self.handler.answer(&line, |finger, command| {
                         self.device.execute(finger, command)
                     })
                 });
-            if let Ok(WithFingerIndex {
+            if let Ok(WithSourceFinger {
                 content: Reply::Restart(order),
                 ..
             }) = &executed

@@ -54,7 +54,7 @@ mod power_stage;
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1, TIM8};
 
 pub use multiplexer::Multiplexer;
-pub use power_stage::{BridgeAndComparatorPins, BridgePeripherals, PowerStage};
+pub use power_stage::{BridgeAndComparatorPins, BridgePeripherals, FingerPowerStage};
 
 /// Number of fingers that this wiring controls, each with its own bridge and sensors.
 pub const FINGERS: usize = 5;

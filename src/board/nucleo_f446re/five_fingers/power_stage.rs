@@ -24,8 +24,8 @@ const PWM_KHZ: u32 = 96;
 ///
 /// Turning the bridge off takes effect at once; a new duty takes effect at the next PWM period,
 /// because the compare registers are preloaded.
-pub struct PowerStage {
-    bridge: Bridge<PwmOutput, PwmOutput, ErasedPin<Output>>,
+pub struct FingerPowerStage {
+    bridge: Bridge<BridgeInputPwmChannel, BridgeInputPwmChannel, ErasedPin<Output>>,
     fault: ErasedPin<Input>,
     test: ErasedPin<Output>,
     on: bool,
@@ -80,7 +80,7 @@ impl BridgeAndComparatorPins {
 impl BridgePeripherals {
     /// Sets up the timers for PWM and returns the power stages of all fingers, in the order of the
     /// fingers, with all bridges off.
-    pub fn into_power_stages(self, rcc: &mut Rcc) -> [PowerStage; FINGERS] {
+    pub fn into_power_stages(self, rcc: &mut Rcc) -> [FingerPowerStage; FINGERS] {
         let (tim1, tim8, tim10, tim11) = self.timers;
         let (_, (a0, b0, a1, b1)) = tim1.pwm_hz(PWM_KHZ.kHz(), rcc);
         let (_, (a2, b2, a3, b3)) = tim8.pwm_hz(PWM_KHZ.kHz(), rcc);
@@ -96,33 +96,33 @@ impl BridgePeripherals {
             fifth_lines,
         ] = self.lines;
         let stages = [
-            PowerStage::new(
-                PwmOutput::Tim1(a0.with(first.0).erase()),
-                PwmOutput::Tim1(b0.with(first.1).erase()),
+            FingerPowerStage::new(
+                BridgeInputPwmChannel::Tim1(a0.with(first.0).erase()),
+                BridgeInputPwmChannel::Tim1(b0.with(first.1).erase()),
                 first_lines,
             ),
-            PowerStage::new(
-                PwmOutput::Tim1(a1.with(second.0).erase()),
-                PwmOutput::Tim1(b1.with(second.1).erase()),
+            FingerPowerStage::new(
+                BridgeInputPwmChannel::Tim1(a1.with(second.0).erase()),
+                BridgeInputPwmChannel::Tim1(b1.with(second.1).erase()),
                 second_lines,
             ),
-            PowerStage::new(
-                PwmOutput::Tim8(a2.with(third.0).erase()),
-                PwmOutput::Tim8(b2.with(third.1).erase()),
+            FingerPowerStage::new(
+                BridgeInputPwmChannel::Tim8(a2.with(third.0).erase()),
+                BridgeInputPwmChannel::Tim8(b2.with(third.1).erase()),
                 third_lines,
             ),
-            PowerStage::new(
-                PwmOutput::Tim8(a3.with(fourth.0).erase()),
-                PwmOutput::Tim8(b3.with(fourth.1).erase()),
+            FingerPowerStage::new(
+                BridgeInputPwmChannel::Tim8(a3.with(fourth.0).erase()),
+                BridgeInputPwmChannel::Tim8(b3.with(fourth.1).erase()),
                 fourth_lines,
             ),
-            PowerStage::new(
-                PwmOutput::Tim10(a4.with(fifth.0).erase()),
-                PwmOutput::Tim11(b4.with(fifth.1).erase()),
+            FingerPowerStage::new(
+                BridgeInputPwmChannel::Tim10(a4.with(fifth.0).erase()),
+                BridgeInputPwmChannel::Tim11(b4.with(fifth.1).erase()),
                 fifth_lines,
             ),
         ];
-        enable_and_lock_timer_outputs();
+        enable_outputs_with_clock_break_and_lock();
         stages
     }
 }
@@ -131,7 +131,7 @@ impl BridgePeripherals {
 /// break, which disables the PWM outputs without any code (RM0390, 17.3.12). No pin is connected to
 /// the break inputs; their polarity makes them inactive. The lock prevents faulty code from
 /// changing these settings or the PWM mode before the next reset.
-fn enable_and_lock_timer_outputs() {
+fn enable_outputs_with_clock_break_and_lock() {
     // SAFETY: `pwm_hz` has consumed the handles of the timers. Their channels write only the
     // compare and enable registers; the break and dead-time registers are written here and by
     // `disable_bridges` only.
@@ -148,10 +148,10 @@ fn enable_and_lock_timer_outputs() {
     }
 }
 
-impl PowerStage {
+impl FingerPowerStage {
     fn new(
-        mut in1: PwmOutput,
-        mut in2: PwmOutput,
+        mut in1: BridgeInputPwmChannel,
+        mut in2: BridgeInputPwmChannel,
         BridgeAndComparatorPins {
             enable,
             fault,
@@ -170,14 +170,14 @@ impl PowerStage {
 
     /// Whether the fault line is low at this moment: the bridge or the comparator reports a fault,
     /// or the line is broken.
-    pub fn reports_fault(&mut self) -> bool {
+    pub fn poll_fault_line_low(&mut self) -> bool {
         self.fault.is_low()
     }
 
     /// Applies the outputs of a control tick: turns the bridge off or drives it with the demanded
     /// duty, and sets the level of the comparator's test line. While that line is high, the
     /// comparator cuts the bridge's supply, which the self-test checks.
-    pub fn apply_outputs(&mut self, outputs: &BoardOutputs) {
+    pub fn apply_drive_and_comparator_test(&mut self, outputs: &BoardOutputs) {
         self.test.set_state(outputs.comparator_test.into());
         match outputs.drive {
             Drive::Off => self.off(),
@@ -194,7 +194,7 @@ impl PowerStage {
     /// Makes both outputs of the bridge high-impedance at once, without waiting for the next PWM
     /// period.
     pub fn off(&mut self) {
-        self.bridge.off();
+        self.bridge.make_outputs_high_impedance();
         if self.on {
             self.on = false;
             defmt::info!("bridge off");
@@ -203,14 +203,14 @@ impl PowerStage {
 }
 
 /// The PWM channel of one input of a bridge, IN1 or IN2. It may belong to any of the four timers.
-enum PwmOutput {
+enum BridgeInputPwmChannel {
     Tim1(ErasedChannel<TIM1>),
     Tim8(ErasedChannel<TIM8>),
     Tim10(ErasedChannel<TIM10>),
     Tim11(ErasedChannel<TIM11>),
 }
 
-impl PwmOutput {
+impl BridgeInputPwmChannel {
     fn enable(&mut self) {
         match self {
             Self::Tim1(channel) => channel.enable(),
@@ -221,11 +221,11 @@ impl PwmOutput {
     }
 }
 
-impl ErrorType for PwmOutput {
+impl ErrorType for BridgeInputPwmChannel {
     type Error = Infallible;
 }
 
-impl SetDutyCycle for PwmOutput {
+impl SetDutyCycle for BridgeInputPwmChannel {
     fn max_duty_cycle(&self) -> u16 {
         match self {
             Self::Tim1(channel) => channel.max_duty_cycle(),

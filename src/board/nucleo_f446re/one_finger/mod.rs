@@ -18,7 +18,7 @@ mod power_stage;
 use stm32f4xx_hal::pac::{GPIOB, RCC, TIM1};
 use thermal_display::device::FingerIndex;
 
-pub use power_stage::PowerStage;
+pub use power_stage::FingerPowerStage;
 
 /// Number of fingers that this wiring controls, each with its own bridge and sensors.
 pub const FINGERS: usize = 1;

@@ -24,7 +24,7 @@ type FaultLinePin = Pin<'A', 6, Alternate<1>>;
 /// because the compare registers are preloaded. If a PWM period ends between the writes to the
 /// compare registers of IN1 and IN2, the next period combines an old and a new value. The bridge's
 /// voltage is then wrong for one period of 10 us, which the LC filter suppresses.
-pub struct PowerStage {
+pub struct FingerPowerStage {
     bridge: Bridge<PwmChannel<TIM1, C1>, PwmChannel<TIM1, C2>, PB10<Output>>,
     timer: TIM1,
     fault: FaultLinePin,
@@ -33,7 +33,7 @@ pub struct PowerStage {
     on: bool,
 }
 
-impl PowerStage {
+impl FingerPowerStage {
     /// Sets up TIM1, for PWM with the fault line as its break input, and the pins, with the bridge
     /// off.
     pub fn new(
@@ -84,7 +84,7 @@ impl PowerStage {
     /// Whether the fault line is low, or was low for a moment since the last call: the bridge or
     /// the comparator reports a fault, or the line is broken. The break flag of TIM1 stores pulses
     /// that are shorter than a tick.
-    pub fn reports_fault(&mut self) -> bool {
+    pub fn poll_fault_line_low(&mut self) -> bool {
         let pulsed = self.timer.sr().read().bif().bit_is_set();
         if pulsed {
             self.timer.sr().write(|w| w.bif().clear());
@@ -99,7 +99,7 @@ impl PowerStage {
     /// The PWM outputs of TIM1 are enabled only when the bridge changes from off to on. A break, by
     /// a low fault line or a failure of the 8 MHz clock, disables the PWM outputs; they stay
     /// disabled until the station has detected the fault and has switched the bridge off itself.
-    pub fn apply_outputs(&mut self, outputs: &BoardOutputs) {
+    pub fn apply_drive_and_comparator_test(&mut self, outputs: &BoardOutputs) {
         self.test.set_state(outputs.comparator_test.into());
         match outputs.drive {
             Drive::Off => self.off(),
@@ -119,7 +119,7 @@ impl PowerStage {
     /// period, and switches the LED off.
     pub fn off(&mut self) {
         self.timer.bdtr().modify(|_, w| w.moe().disabled_idle());
-        self.bridge.off();
+        self.bridge.make_outputs_high_impedance();
         if self.on {
             self.led.set_low();
             self.on = false;

@@ -8,7 +8,7 @@ use crate::SessionError;
 use crate::tile_identification::{IdentificationError, tile_from_normal_equations};
 use thermal_device::command::Refused;
 use thermal_device::drive::Current;
-use thermal_device::identification::{AbortReason, Identification, NormalEquations};
+use thermal_device::identification::{AbortReason, Identification, NormalEquationAccumulator};
 use thermal_device::safety::ValidReadings;
 use thermal_settings::Tile;
 
@@ -84,13 +84,14 @@ impl Plant {
 
     /// Runs the pulses and the identification; a finger touches the display from one tick on.
     fn identify(mut self, touched_from: u32) -> Result<Tile, SessionError> {
-        let mut equations = NormalEquations::default();
-        let mut identification = Identification::new(Celsius::saturating_from_num(self.sink_c));
+        let mut equations = NormalEquationAccumulator::default();
+        let mut identification =
+            Identification::begin_at_sink_temperature(Celsius::saturating_from_num(self.sink_c));
         let mut measured = Current::ZERO;
         for tick in 0..80_000 {
             match identification.outcome() {
                 Some(Ok(())) => {
-                    return tile_from_normal_equations(equations.rows())
+                    return tile_from_normal_equations(equations.rows_and_statistics())
                         .map_err(SessionError::Identification);
                 }
                 Some(Err(why)) => return Err(Refused::TuneAborted(why).into()),

@@ -5,7 +5,7 @@ use core::f64::consts::PI;
 use proptest::prelude::*;
 
 use crate::StabilityMargins;
-use thermal_settings::{Gains, Tile};
+use thermal_settings::{PiGains, Tile};
 
 /// Skogestad 2003, table 1: SIMC with `tauc = theta` on an integrator behind a dead time has a gain margin of 2.96 and
 /// a phase margin of 46.9 degrees.
@@ -19,7 +19,7 @@ fn simc_on_an_integrator_has_the_published_margins() {
         dead_time_s: 0.1,
     };
     let StabilityMargins { phase_deg, gain } =
-        StabilityMargins::new(&tile, &Gains::from_simc_rule(&tile, 0.0));
+        StabilityMargins::new(&tile, &PiGains::simc_for_update_interval(&tile, 0.0));
     assert!((gain - 2.96).abs() < 0.005, "{gain}");
     assert!((phase_deg - 46.9).abs() < 0.05, "{phase_deg}");
 }
@@ -36,7 +36,7 @@ fn quotient(a: Complex, (c, d): Complex) -> Complex {
 }
 
 /// The complex gain of the open loop at `s = jw`, by its transfer function.
-fn open_loop(tile: &Tile, gains: &Gains, w: f64) -> Complex {
+fn open_loop(tile: &Tile, gains: &PiGains, w: f64) -> Complex {
     let controller = (
         gains.proportional_a_k,
         -gains.proportional_a_k / (gains.integral_s * w),
@@ -49,7 +49,7 @@ fn open_loop(tile: &Tile, gains: &Gains, w: f64) -> Complex {
 
 /// Margins by a sweep: the phase margin, degrees, where the magnitude passes one, and the gain margin where the locus
 /// crosses the negative real axis.
-fn margins_by_sweep(tile: &Tile, gains: &Gains) -> (f64, Option<f64>) {
+fn margins_by_sweep(tile: &Tile, gains: &PiGains) -> (f64, Option<f64>) {
     let (mut phase, mut margin) = (f64::NAN, None);
     let mut previous = open_loop(tile, gains, 1e-6);
     let mut w = 1e-6;
@@ -90,7 +90,7 @@ proptest! {
             sensor_lag_s: lag,
             dead_time_s: dead,
         };
-        let [gains, _] = Gains::for_both_loop_rates(&tile);
+        let [gains, _] = PiGains::for_1khz_and_10hz_laws(&tile);
         let found = StabilityMargins::new(&tile, &gains);
         let (phase_deg, margin) = margins_by_sweep(&tile, &gains);
         prop_assert!((found.phase_deg - phase_deg).abs() < 0.05, "{found:?}, {phase_deg}");

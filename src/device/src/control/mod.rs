@@ -12,11 +12,11 @@ use crate::drive::Current;
 use crate::estimate::PlateObserver;
 use crate::pi::Pi;
 use crate::reference::Reference;
-use crate::safety::limits::SINK_DERATING_FROM;
+use crate::safety::limits::COOLING_DERATING_SINK_TEMPERATURE;
 
-/// Slope by which the law `model` reduces its largest cooling current while the sink is above [`SINK_DERATING_FROM`]
+/// Slope by which the law `model` reduces its largest cooling current while the sink is above [`COOLING_DERATING_SINK_TEMPERATURE`]
 /// (39.5 °C): by 1/2 (2^-1, this power of two) of the current limit per kelvin, so to zero at 41.5 °C.
-const COOLING_LIMIT_REDUCTION_PER_K_SHIFT: u32 = 1;
+const COOLING_LIMIT_FRACTION_LOST_PER_K_SHIFT: u32 = 1;
 
 /// Control law that chooses the module's current from the reference and the readings of the display's thermistor;
 /// selected by the host's command `law`.
@@ -83,7 +83,7 @@ impl Controller {
     /// Replaces the gains of the two proportional-integral laws: at the start by those of the settings in flash, later
     /// when the host sets a new tile (commands `tune result`, `set tile`). The integral parts of the currents stay. The
     /// plate's observer must be given its own constants separately ([`PlateObserver::set_parameters`]).
-    pub fn set_parameters(&mut self, parameters: &ControlParameters) {
+    pub fn set_pi_gains(&mut self, parameters: &ControlParameters) {
         self.pi.set_coefficients(parameters.pi);
         self.pi_10hz.set_coefficients(parameters.pi_10hz);
     }
@@ -131,22 +131,26 @@ impl Controller {
         plate: &PlateObserver,
     ) -> Current {
         self.current = match self.law {
-            Law::Pi10Hz => self.pi_10hz.update_output(reference.setpoint, display),
-            Law::Pi => self.pi.update_output(reference.setpoint, display),
+            Law::Pi10Hz => self
+                .pi_10hz
+                .update_output_when_due(reference.setpoint, display),
+            Law::Pi => self.pi.update_output_when_due(reference.setpoint, display),
             Law::Model => plate
                 .current_to_target(reference.target.celsius())
-                .min(self.cooling_current_limit(sink))
+                .min(self.sink_derated_cooling_limit(sink))
                 .max(-self.current_limit()),
         };
         self.current
     }
 
     /// Largest cooling current of the law `model`, A, when the sink has the temperature `sink`, °C: the current limit
-    /// up to [`SINK_DERATING_FROM`] (39.5 °C), falling linearly to zero 2 K above it. At such temperatures more
+    /// up to [`COOLING_DERATING_SINK_TEMPERATURE`] (39.5 °C), falling linearly to zero 2 K above it. At such temperatures more
     /// current would warm the sink more than cool the display.
-    fn cooling_current_limit(&self, sink: Celsius) -> Current {
-        let excess = sink.saturating_sub(SINK_DERATING_FROM).max(Celsius::ZERO)
-            >> COOLING_LIMIT_REDUCTION_PER_K_SHIFT;
+    fn sink_derated_cooling_limit(&self, sink: Celsius) -> Current {
+        let excess = sink
+            .saturating_sub(COOLING_DERATING_SINK_TEMPERATURE)
+            .max(Celsius::ZERO)
+            >> COOLING_LIMIT_FRACTION_LOST_PER_K_SHIFT;
         let part = Celsius::ONE.saturating_sub(excess).max(Celsius::ZERO);
         product(self.current_limit(), part)
     }

@@ -45,7 +45,7 @@ impl ControlParameters {
                 plate: PlateModel::new(&settings.module, &settings.tile),
                 sensor: Coefficient::from_time_constant_s(settings.tile.sensor_lag_s),
                 correction: pi,
-                largest_residual: if settings.tile == Tile::NOMINAL {
+                largest_residual: if settings.tile == Tile::FACTORY_DEFAULT {
                     OBSERVER_RESIDUAL_MAX_NOMINAL_TILE
                 } else {
                     OBSERVER_RESIDUAL_MAX_IDENTIFIED_TILE

@@ -14,7 +14,8 @@ type SupplyFraction = I8F24;
 /// Limit, in either direction, of the difference between the dead-time loss and half of the largest dead-time loss, as
 /// a fraction of the supply voltage. It only keeps a division in the computation of the loss within 32 bits; the loss
 /// itself is limited afterwards, to between zero and the largest loss.
-const LARGEST_OFFSET_FROM_HALF_DEAD_TIME_LOSS: SupplyFraction = SupplyFraction::lit("0.0625");
+const SYMMETRIC_OFFSET_FROM_HALF_DEAD_TIME_LOSS_CLAMP: SupplyFraction =
+    SupplyFraction::lit("0.0625");
 /// Fractional bits of the divisor in the computation of the dead-time loss, by which the dividend is also shifted; so
 /// few that a 32-bit division is enough.
 const DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS: u32 = 10;
@@ -119,8 +120,8 @@ impl VoltageFeedforward {
         let ripple_per_width = times(self.ripple_a, FIXED_POINT_ONE - 2 * middle);
         let feedback = times(ripple_per_width, self.dead_time_per_a).max(SupplyFraction::ZERO);
         let offset = line.saturating_sub(half).clamp(
-            -LARGEST_OFFSET_FROM_HALF_DEAD_TIME_LOSS,
-            LARGEST_OFFSET_FROM_HALF_DEAD_TIME_LOSS,
+            -SYMMETRIC_OFFSET_FROM_HALF_DEAD_TIME_LOSS_CLAMP,
+            SYMMETRIC_OFFSET_FROM_HALF_DEAD_TIME_LOSS_CLAMP,
         );
         let divisor = FIXED_POINT_ONE.saturating_add(feedback)
             >> (SupplyFraction::FRAC_NBITS - DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS);

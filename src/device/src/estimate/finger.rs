@@ -113,7 +113,7 @@ impl FingerContact {
     /// Begins a contact in the tick in which it is detected, `landed_ticks` (2 to 32) ticks after the force rose from
     /// zero (to 3 mN); `force`, N, is the force in this tick. `skin_recovered` means that the estimator has run without
     /// contact for at least 2 s; else the closed-form set-point of Eq. 6-12 is not valid for the contact.
-    fn new_at_landing(force: Force, landed_ticks: u32, skin_recovered: bool) -> Self {
+    fn new_at_contact_detection(force: Force, landed_ticks: u32, skin_recovered: bool) -> Self {
         Self {
             force: ForceMeans::new(force),
             change: ForceChange::New,
@@ -183,7 +183,7 @@ impl FingerContact {
     /// Contact conductances for a force within 1/1024 of the present mean force. `None` if no tick has computed them
     /// since landing, or since another object was presented.
     #[must_use]
-    pub const fn conductances(&self) -> Option<&ContactConductances> {
+    pub const fn stored_conductances(&self) -> Option<&ContactConductances> {
         self.conductances.as_ref()
     }
 
@@ -191,9 +191,9 @@ impl FingerContact {
     /// conductances for exactly this force. The reference generator calls this when its interpolation of the set-point
     /// (Eq. 6-12) must be computed. With the law `model` the interpolation then normally follows in the next tick, to
     /// spread the computing time over two ticks; with the other laws in the same tick.
-    pub fn adopt_mean_force_for_setpoints(&mut self, pair: &ContactPair) {
-        self.force.adopt_mean_for_setpoints();
-        if self.contact_at_mean_for_setpoints().is_none() {
+    pub fn adopt_setpoint_force_and_conductances(&mut self, pair: &ContactPair) {
+        self.force.use_long_mean_for_setpoints();
+        if self.contact_if_computed_for_setpoint_force().is_none() {
             self.conductances = Some(ContactConductances::new(
                 pair,
                 self.force.mean_for_setpoints(),
@@ -205,7 +205,7 @@ impl FingerContact {
     /// conductances were computed for another force or not at all; then the interpolation of the set-point (Eq. 6-12)
     /// cannot be computed in this tick.
     #[must_use]
-    pub fn contact_at_mean_for_setpoints(&self) -> Option<&Contact> {
+    pub fn contact_if_computed_for_setpoint_force(&self) -> Option<&Contact> {
         let conductances = self.conductances.as_ref()?;
         (self.force.mean_for_setpoints() == conductances.force).then_some(&conductances.contact)
     }
@@ -256,7 +256,7 @@ impl FingerEstimator {
         match (touch, &mut self.contact) {
             (None, contact) => *contact = None,
             (Some(force), contact @ None) => {
-                *contact = Some(FingerContact::new_at_landing(
+                *contact = Some(FingerContact::new_at_contact_detection(
                     force,
                     landed_ticks,
                     recovered,

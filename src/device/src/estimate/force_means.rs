@@ -6,17 +6,19 @@ use contact_model::fixed_point::Force;
 
 /// Threshold of a jump: a tick's force that differs from the mean of the last 64 ticks by more than 1/16 of that mean,
 /// and by more than 10 mN, is a new force, and the means start again from it. A smaller difference is no jump.
-const FORCE_JUMP_THRESHOLD: ForceThreshold = ForceThreshold {
-    shift: 4,
-    floor: Force::lit("0.01"),
-};
+const FORCE_JUMP_FROM_RECENT_MEAN: RelativeForceThresholdWithFloor =
+    RelativeForceThresholdWithFloor {
+        shift: 4,
+        floor: Force::lit("0.01"),
+    };
 /// Threshold of drift: the mean of the last 64 ticks has drifted if it differs from the mean for which the set-points
 /// were computed by more than 1/2048 of that mean, and by more than 0.25 mN. Smaller than the threshold of a jump,
 /// because a mean has less noise than the force of a single tick.
-const FORCE_DRIFT_THRESHOLD: ForceThreshold = ForceThreshold {
-    shift: 11,
-    floor: Force::lit("0.00025"),
-};
+const RECENT_MEAN_DRIFT_THRESHOLD: RelativeForceThresholdWithFloor =
+    RelativeForceThresholdWithFloor {
+        shift: 11,
+        floor: Force::lit("0.00025"),
+    };
 /// Ticks of 1 ms (64 ms) over which the recent mean of the force averages. Jumps and drift of the force are detected by
 /// comparison with the recent mean.
 const RECENT_MEAN_TICKS: u32 = 64;
@@ -33,14 +35,14 @@ const MIN_TICKS_SINCE_JUMP_FOR_NEW_SETPOINT: u32 = 16;
 
 /// Threshold for the difference between a force and a force of comparison: a fraction of the force of comparison, but
 /// at least a constant number of newtons.
-struct ForceThreshold {
+struct RelativeForceThresholdWithFloor {
     /// Fraction of the force of comparison, as a right shift in bits: 4 stands for 1/16.
     shift: u32,
     /// Smallest threshold, N; used where the fraction of the force of comparison is smaller.
     floor: Force,
 }
 
-impl ForceThreshold {
+impl RelativeForceThresholdWithFloor {
     /// Whether the forces `force` and `from`, N, differ by more than the threshold, in either direction. The threshold
     /// is a fraction of `from`, the force of comparison, but at least the constant `floor`.
     fn is_exceeded(&self, force: Force, from: Force) -> bool {
@@ -102,14 +104,14 @@ impl ForceMeans {
     }
 
     /// Mean force, N, for which the present set-points are computed. A landing or a jump of the force sets it to the
-    /// force of that tick; [`Self::adopt_mean_for_setpoints`] sets it to the long mean.
+    /// force of that tick; [`Self::use_long_mean_for_setpoints`] sets it to the long mean.
     #[must_use]
     pub const fn mean_for_setpoints(&self) -> Force {
         self.mean_for_setpoints
     }
 
     /// Sets the mean force for which set-points are computed to the present long mean.
-    pub const fn adopt_mean_for_setpoints(&mut self) {
+    pub const fn use_long_mean_for_setpoints(&mut self) {
         self.mean_for_setpoints = self.long_mean;
     }
 
@@ -117,14 +119,14 @@ impl ForceMeans {
     /// from 16 on: 16, 32, 64 … 16384, where the number stops. The mean has then become more accurate, so new
     /// set-points may be worth the computing time. True also in the tick of a drift, which sets the number back to 64.
     #[must_use]
-    pub const fn has_doubled_sample_count(&self) -> bool {
+    pub const fn ticks_since_jump_are_power_of_two(&self) -> bool {
         self.ticks >= MIN_TICKS_SINCE_JUMP_FOR_NEW_SETPOINT && self.ticks.is_power_of_two()
     }
 
     /// Adds the force of one tick, N, to the running means, or starts them again if the force has jumped. Returns
     /// whether the force has jumped, has drifted, or shows only noise.
     pub fn add_force(&mut self, force: Force) -> ForceChange {
-        if FORCE_JUMP_THRESHOLD.is_exceeded(force, self.recent_mean) {
+        if FORCE_JUMP_FROM_RECENT_MEAN.is_exceeded(force, self.recent_mean) {
             *self = Self::new(force);
             return ForceChange::New;
         }
@@ -133,7 +135,7 @@ impl ForceMeans {
         self.recent_mean = updated_mean(self.recent_mean, force, self.ticks.min(RECENT_MEAN_TICKS));
         self.long_mean = updated_mean(self.long_mean, force, self.ticks.min(reach_ticks));
         if self.ticks >= RECENT_MEAN_TICKS
-            && FORCE_DRIFT_THRESHOLD.is_exceeded(self.recent_mean, self.mean_for_setpoints)
+            && RECENT_MEAN_DRIFT_THRESHOLD.is_exceeded(self.recent_mean, self.mean_for_setpoints)
         {
             self.long_mean = self.recent_mean;
             self.ticks = RECENT_MEAN_TICKS;

@@ -19,7 +19,7 @@ use crate::safety::ValidReadings;
 /// of the display's temperature at landing, and the bridge voltage are computed from them, because the correction
 /// itself needs the finger's heat flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct UncorrectedPlateTemperatures {
+pub struct PlateEstimateBeforeReading {
     /// Temperature of the display's surface under the finger, °C, at the end of the previous tick. The finger's heat
     /// flow is computed from this temperature, and in the first tick of a contact the reference generator checks
     /// whether the display was near its preset. It is the reading of the display's thermistor if the observer has no
@@ -55,7 +55,7 @@ impl Estimator {
         touch: Option<Force>,
         landed_ticks: u32,
         pair: Option<&ContactPair>,
-    ) -> UncorrectedPlateTemperatures {
+    ) -> PlateEstimateBeforeReading {
         let ValidReadings {
             display,
             sink,
@@ -63,9 +63,9 @@ impl Estimator {
             room,
             ..
         } = *readings;
-        let estimate = UncorrectedPlateTemperatures {
+        let estimate = PlateEstimateBeforeReading {
             previous_surface: self.plate.surface().unwrap_or(display),
-            previous_legs: (self.plate.leg_temperatures())
+            previous_legs: (self.plate.leg_end_and_mean_temperatures())
                 .unwrap_or_else(|| LegTemperatures::between_display_and_sink(display, sink)),
         };
         self.finger
@@ -73,7 +73,8 @@ impl Estimator {
         let heat = pair.map_or(Watt::ZERO, |pair| {
             (self.finger).step_skin_heat_flow(pair, estimate.previous_surface)
         });
-        self.plate.correct_by_reading(display, sink, heat);
+        self.plate
+            .update_disturbance_and_correction(display, sink, heat);
         estimate
     }
 

@@ -33,7 +33,7 @@ type ModelTemperature = I12F20;
 /// One first-order lag of the plate model, whose surface temperature is the sum of five such lags: its time constant, s,
 /// and its steady-state gains, K/W, for the three heat inputs in the order heat pumped out of the plate, Joule heat in
 /// the legs, heat from the finger. The gain for pumped heat is the fall of the temperature, positive if pumping cools;
-/// [`HeatInputGains::temperature_change`] subtracts it.
+/// [`HeatInputGains::temperature_change_by_heats`] subtracts it.
 #[derive(Clone, Copy)]
 struct FirstOrderLagParameters {
     time_constant_s: f64,
@@ -87,18 +87,18 @@ const GAIN_RATIO_TO_FINGER_RATIO_EXPONENT: f64 = 0.4;
 /// Largest ratio of an identified parameter of a tile (gain, Joule heat, leak) to that of the class tile; the smallest
 /// is its reciprocal, 1/2. The limits keep the fixed-point gains in range, whatever values the identification has
 /// found.
-const LARGEST_TILE_TO_CLASS_RATIO: f64 = 2.0;
+const TILE_TO_CLASS_RATIO_OR_INVERSE_CLAMP: f64 = 2.0;
 /// Limit, W, of the pumped heat and of the Joule heat in the model, in either direction; keeps the model's fixed-point
 /// states from overflowing.
-const LARGEST_PUMPED_OR_JOULE_HEAT: Watt = Watt::lit("64");
+const SYMMETRIC_PUMPED_OR_JOULE_HEAT_CLAMP: Watt = Watt::lit("64");
 /// Limit of the finger's heat flow in the model, W, in either direction; keeps the model's fixed-point states from
 /// overflowing.
-const LARGEST_FINGER_HEAT: Watt = Watt::lit("8");
+const SYMMETRIC_FINGER_HEAT_CLAMP: Watt = Watt::lit("8");
 /// Limit of the sink's temperature in the model, -100 to 100 °C; keeps the model's fixed-point states from overflowing.
-const LARGEST_SINK_TEMPERATURE: Celsius = Celsius::lit("100");
+const SYMMETRIC_SINK_TEMPERATURE_CLAMP: Celsius = Celsius::lit("100");
 /// Limit, K, of the difference between the legs' mean temperature and the data sheet's 27 °C, in either direction. The
 /// legs' resistance and Seebeck coefficient are corrected for this difference; the limit keeps the products in range.
-const LARGEST_LEG_DEVIATION_FROM_27_C: Celsius = Celsius::lit("100");
+const SYMMETRIC_LEG_DEVIATION_FROM_27_C_CLAMP: Celsius = Celsius::lit("100");
 
 /// Horizon of the law `model`, ticks of 1 ms: the law chooses the current which, if held constant, brings the surface
 /// to its target after this time. 12 ms are about the delay with which the display's surface responds to a current.
@@ -110,7 +110,7 @@ const _: () = assert!(CONTROL_HORIZON_TICKS <= MATCH_HORIZON_TICKS as f64);
 /// Change, K/W, of the display's surface temperature, or of one relaxation's contribution to it, per watt of each heat
 /// input: heat pumped out of the plate by the Peltier effect, Joule heat in the legs, heat from the finger. Each value
 /// of this type is for heat that acts constantly for one time: one tick of 1 ms, the control horizon of 12 ms, or until
-/// the steady state. [`Self::temperature_change`] subtracts the pumped heat, because it leaves the plate.
+/// the steady state. [`Self::temperature_change_by_heats`] subtracts the pumped heat, because it leaves the plate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct HeatInputGains<Gain> {
     pumped: Gain,
@@ -130,7 +130,10 @@ impl<Frac: LeEqU32> HeatInputGains<FixedI32<Frac>> {
     /// Change, K, of the display's surface temperature, or of one relaxation's contribution to it, by the three heat
     /// inputs of the plate together: pumped heat, Joule heat, and heat from the finger. Pumped heat leaves the plate,
     /// so it is subtracted.
-    fn temperature_change(&self, inputs: &PlateInputs) -> FixedI64<<U24 as Add<Frac>>::Output>
+    fn temperature_change_by_heats(
+        &self,
+        inputs: &PlateInputs,
+    ) -> FixedI64<<U24 as Add<Frac>>::Output>
     where
         U24: Add<Frac, Output: LeEqU64>,
     {
@@ -154,16 +157,16 @@ impl TileToClassRatios {
     fn of(tile: &Tile) -> Self {
         let ratio = |identified: f64, class: f64| {
             (identified / class).clamp(
-                1.0 / LARGEST_TILE_TO_CLASS_RATIO,
-                LARGEST_TILE_TO_CLASS_RATIO,
+                1.0 / TILE_TO_CLASS_RATIO_OR_INVERSE_CLAMP,
+                TILE_TO_CLASS_RATIO_OR_INVERSE_CLAMP,
             )
         };
-        let gain = ratio(tile.gain_k_s_a, Tile::NOMINAL.gain_k_s_a);
+        let gain = ratio(tile.gain_k_s_a, Tile::FACTORY_DEFAULT.gain_k_s_a);
         Self {
             pumped: gain,
-            joule: ratio(gain * tile.joule_per_a, Tile::NOMINAL.joule_per_a),
+            joule: ratio(gain * tile.joule_per_a, Tile::FACTORY_DEFAULT.joule_per_a),
             finger: libm::pow(gain, GAIN_RATIO_TO_FINGER_RATIO_EXPONENT),
-            leak: ratio(tile.leak_1_s, Tile::NOMINAL.leak_1_s),
+            leak: ratio(tile.leak_1_s, Tile::FACTORY_DEFAULT.leak_1_s),
         }
     }
 
@@ -395,7 +398,9 @@ impl PlateModel {
             .saturating_sub(product(inputs.finger, self.finger_feedthrough));
         let [slowest, others @ ..] = &mut self.relaxations;
         for relaxation in others {
-            relaxation.state = relaxation.steady_state_gains.temperature_change(&inputs);
+            relaxation.state = relaxation
+                .steady_state_gains
+                .temperature_change_by_heats(&inputs);
             remainder -= relaxation.state_temperature();
         }
         slowest.set_state_temperature(remainder);
@@ -432,7 +437,7 @@ impl PlateModel {
 
     /// Modelled temperatures of the legs' two ends and their mean, °C, after the last step of the model.
     #[must_use]
-    pub fn leg_temperatures(&self) -> LegTemperatures {
+    pub fn leg_end_and_mean_temperatures(&self) -> LegTemperatures {
         let LegTemperatures { cold, hot, mean } =
             LegTemperatures::between_display_and_sink(self.surface, self.hot);
         LegTemperatures {
@@ -450,25 +455,31 @@ impl PlateModel {
     #[inline(always)]
     pub fn inputs_of_tick(&self, current: Current, finger: Watt, sink: Celsius) -> PlateInputs {
         let above_data_sheet = self
-            .leg_temperatures()
+            .leg_end_and_mean_temperatures()
             .mean
             .saturating_sub(DATA_SHEET_TEMPERATURE)
             .clamp(
-                -LARGEST_LEG_DEVIATION_FROM_27_C,
-                LARGEST_LEG_DEVIATION_FROM_27_C,
+                -SYMMETRIC_LEG_DEVIATION_FROM_27_C_CLAMP,
+                SYMMETRIC_LEG_DEVIATION_FROM_27_C_CLAMP,
             );
         let surface_k = self.surface.saturating_add(ZERO_C_IN_K);
         let peltier_v: I8F24 = product(self.seebeck.at(above_data_sheet), surface_k);
         let current_squared: I8F24 = saturating_product(current, current);
         let heat = |volts_or_ohms: I8F24, factor: I8F24| -> Watt {
             let heat: Watt = saturating_product(volts_or_ohms, factor);
-            heat.clamp(-LARGEST_PUMPED_OR_JOULE_HEAT, LARGEST_PUMPED_OR_JOULE_HEAT)
+            heat.clamp(
+                -SYMMETRIC_PUMPED_OR_JOULE_HEAT_CLAMP,
+                SYMMETRIC_PUMPED_OR_JOULE_HEAT_CLAMP,
+            )
         };
         PlateInputs {
             pumped: heat(peltier_v, current),
             joule: heat(self.resistance.at(above_data_sheet), current_squared),
-            finger: finger.clamp(-LARGEST_FINGER_HEAT, LARGEST_FINGER_HEAT),
-            sink: sink.clamp(-LARGEST_SINK_TEMPERATURE, LARGEST_SINK_TEMPERATURE),
+            finger: finger.clamp(-SYMMETRIC_FINGER_HEAT_CLAMP, SYMMETRIC_FINGER_HEAT_CLAMP),
+            sink: sink.clamp(
+                -SYMMETRIC_SINK_TEMPERATURE_CLAMP,
+                SYMMETRIC_SINK_TEMPERATURE_CLAMP,
+            ),
         }
     }
 
@@ -479,7 +490,7 @@ impl PlateModel {
     pub fn additional_current_to_target(&self, target: Celsius, inputs: &PlateInputs) -> Current {
         const FIXED_POINT_ONE: I4F28 = I4F28::ONE;
         let [slowest, ..] = &self.relaxations;
-        let mut change = self.horizon_gains.temperature_change(inputs)
+        let mut change = self.horizon_gains.temperature_change_by_heats(inputs)
             + to_model_temperature(inputs.sink).wide_mul(slowest.horizon_decay);
         for relaxation in &self.relaxations {
             change -= relaxation
@@ -499,7 +510,7 @@ impl PlateModel {
         let [slowest, ..] = &mut self.relaxations;
         slowest.state += to_model_temperature(inputs.sink).wide_mul(slowest.tick_decay);
         for relaxation in &mut self.relaxations {
-            relaxation.state += relaxation.tick_gains.temperature_change(inputs)
+            relaxation.state += relaxation.tick_gains.temperature_change_by_heats(inputs)
                 - relaxation
                     .state_temperature()
                     .wide_mul(relaxation.tick_decay);
@@ -507,7 +518,7 @@ impl PlateModel {
         }
         self.surface = surface.saturating_to_num();
         self.leg_heating
-            .filter(product(inputs.joule, LEG_MEAN_RISE_PER_JOULE_HEAT_K_W));
+            .update_by_input(product(inputs.joule, LEG_MEAN_RISE_PER_JOULE_HEAT_K_W));
         let heat_out = inputs.joule.saturating_add(inputs.pumped);
         let hot_side_rise = product(heat_out, HOT_SIDE_THERMAL_RESISTANCE_K_W);
         self.hot = inputs.sink.saturating_add(hot_side_rise);

@@ -17,7 +17,7 @@ const DISTURBANCE_FILTER_TIME_CONSTANT_S: f64 = 0.02;
 /// so the disturbance alone would be small even with a wrong model. With this weight a module that is too weak is
 /// detected even while the current is at its limit; for a sound tile the correcting current adds little, compared with
 /// the permitted residual.
-const RESIDUAL_PER_AMPERE_SHIFT: u32 = 1;
+const CORRECTION_CURRENT_WEIGHT_IN_RESIDUAL_SHIFT: u32 = 1;
 /// Margin by which the current in the model may exceed the controller's limit: 1/4 of the limit (2^-2, this power of
 /// two). If the real tile responds more strongly than its model, the correcting current is opposite to the real
 /// current. The current in the model, the real current minus the correcting current, is then larger in magnitude than
@@ -138,8 +138,9 @@ impl PlateObserver {
     /// Modelled temperatures of the legs' cold and hot ends and their mean, °C. `None` until a reading has started the
     /// model, also after [`Self::invalidate`].
     #[must_use]
-    pub fn leg_temperatures(&self) -> Option<LegTemperatures> {
-        self.valid.then(|| self.plate.leg_temperatures())
+    pub fn leg_end_and_mean_temperatures(&self) -> Option<LegTemperatures> {
+        self.valid
+            .then(|| self.plate.leg_end_and_mean_temperatures())
     }
 
     /// Whether the residual exceeds [`ObserverParameters::largest_residual`] in magnitude; false until a reading has
@@ -149,7 +150,8 @@ impl PlateObserver {
     /// `unlike-model`.
     #[must_use]
     pub fn residual_is_large(&self) -> bool {
-        let correction: Celsius = (self.correction >> RESIDUAL_PER_AMPERE_SHIFT).lossy_into();
+        let correction: Celsius =
+            (self.correction >> CORRECTION_CURRENT_WEIGHT_IN_RESIDUAL_SHIFT).lossy_into();
         let residual = self.disturbance.output().saturating_add(correction);
         self.valid && residual.saturating_abs() > self.largest_residual
     }
@@ -157,7 +159,12 @@ impl PlateObserver {
     /// Computes the disturbance and the correcting current from this tick's `reading` of the display's thermistor, °C,
     /// minus the modelled reading. Stores the temperature of the sink, °C, and the heat flow from the finger, W, as
     /// inputs of the model. The first reading, also after [`Self::invalidate`], starts the model in its steady state.
-    pub fn correct_by_reading(&mut self, reading: Celsius, sink: Celsius, finger: Watt) {
+    pub fn update_disturbance_and_correction(
+        &mut self,
+        reading: Celsius,
+        sink: Celsius,
+        finger: Watt,
+    ) {
         if !self.valid {
             self.inputs = self
                 .plate
@@ -178,8 +185,8 @@ impl PlateObserver {
             innovation = self.disturbance.output();
             self.recalibrated = false;
         }
-        self.disturbance.filter(innovation);
-        self.correction = self.correction_loop.current_for_error(innovation);
+        self.disturbance.update_by_input(innovation);
+        self.correction = self.correction_loop.update_current_by_error(innovation);
     }
 
     /// Current, A (positive cools), with which the modelled surface of the display reaches `target`, °C, in 12 ms: the
@@ -215,6 +222,6 @@ impl PlateObserver {
         self.plate.step(&self.inputs);
         // The modelled thermistor responds to the mean surface temperature over the tick.
         let surface = (previous_surface >> 1u32).saturating_add(self.plate.surface() >> 1u32);
-        self.sensor.filter(surface);
+        self.sensor.update_by_input(surface);
     }
 }

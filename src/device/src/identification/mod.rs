@@ -11,7 +11,7 @@
 //! current's change, and `V2` of its square. Integration averages noise, and nothing is differentiated. `a` and `b`
 //! absorb the error of the baseline reading and a drift. `zero`, with the second integral `D2` of the change of the
 //! current's direction, is what the current mirror shows when no current flows: up to 0.05 A, which is a large part of
-//! a small pulse. Each tick adds to the [`NormalEquations`] in integers; the task that serves the host solves them.
+//! a small pulse. Each tick adds to the [`NormalEquationAccumulator`] in integers; the task that serves the host solves them.
 //!
 //! Two effects would bias lag and leak if they were neglected. The module's legs take up heat later than the plate, so
 //! a part of the current acts late; and Joule's heat reaches the plate late, through the legs. Each effect is modelled
@@ -29,10 +29,10 @@ use crate::pi::{Pi, PiCoefficients, UpdatePeriod};
 use crate::safety::limits::SINK_MAX_IDENTIFICATION;
 use crate::safety::{Setpoint, ValidReadings};
 pub use normal_equations::{
-    NORMAL_EQUATION_ROWS, NormalEquationRow, NormalEquations, StatisticIndex, TIME_UNIT_TICKS_LOG2,
-    UNKNOWN_COUNT,
+    NORMAL_EQUATION_AND_STATISTICS_ROWS, NormalEquationAccumulator, NormalEquationRow,
+    StatisticIndex, TIME_UNIT_TICKS_LOG2, UNKNOWN_COUNT,
 };
-use thermal_settings::Gains;
+use thermal_settings::PiGains;
 
 /// Magnitude of the demanded current, A, from which on the module's current certainly flows in the demanded direction.
 /// Below it the demanded current is used instead of the measured one, because the current mirror does not show the
@@ -81,7 +81,7 @@ const EXCITATION_TICKS: u32 = {
 
 /// Gains of the PI loop that brings the display to the operating point. They are stable for any tile of the class and
 /// any thermistor lag up to 0.5 s, because the parameters of this tile are not known yet.
-const SETTLING_GAINS: Gains = Gains {
+const SETTLING_GAINS: PiGains = PiGains {
     proportional_a_k: 0.3,
     integral_s: 5.0,
 };
@@ -102,12 +102,12 @@ const SETTLING_TIMEOUT_TICKS: u32 = 60 * TICK_HZ;
 /// Length of each half of the baseline, ticks of 1 ms. In the first half the PI loop runs, and the mean of its current
 /// becomes the baseline current. In the second half the baseline current is demanded, and the display's reading and the
 /// measured current are averaged.
-const HALF_BASELINE_TICKS: u32 = 512;
+const TICKS_PER_BASELINE_HALF: u32 = 512;
 /// Lowest operating point, °C, used if the sink is colder than this. Otherwise the operating point is the sink's
 /// temperature, at which the display needs no current.
-const OPERATING_POINT_MIN: Celsius = Celsius::lit("22");
+const OPERATING_POINT_CLAMP_MIN: Celsius = Celsius::lit("22");
 /// Highest operating point, °C, used if the sink is hotter than this.
-const OPERATING_POINT_MAX: Celsius = Celsius::lit("35");
+const OPERATING_POINT_CLAMP_MAX: Celsius = Celsius::lit("35");
 /// Largest deviation of the display's reading from the operating point, K, during baseline and pulses. Beyond it the
 /// identification ends early with [`AbortReason::TooFar`]; the pulses alone move the display by 2.3 K at most.
 const OPERATING_POINT_DEVIATION_MAX: Celsius = Celsius::lit("7");
@@ -178,7 +178,7 @@ pub struct Identification {
     /// the baseline, and after the pulses.
     pi: Pi,
     /// Total of the currents demanded in the first half of the baseline, in 2^-24 A; positive cools. Divided by
-    /// [`HALF_BASELINE_TICKS`], it is the baseline current.
+    /// [`TICKS_PER_BASELINE_HALF`], it is the baseline current.
     baseline_demand: i64,
     /// Until the baseline ends: total of the display's readings in its second half, in 2^-22 °C. During the pulses: the
     /// mean of these readings.
@@ -195,12 +195,12 @@ impl Identification {
     /// An identification that begins in the next tick. Its operating point is `sink`, the heat sink's temperature in
     /// °C, limited to 22 to 35 °C. Created by the host's command `tune`.
     #[must_use]
-    pub fn new(sink: Celsius) -> Self {
-        let operating_point = sink.clamp(OPERATING_POINT_MIN, OPERATING_POINT_MAX);
+    pub fn begin_at_sink_temperature(sink: Celsius) -> Self {
+        let operating_point = sink.clamp(OPERATING_POINT_CLAMP_MIN, OPERATING_POINT_CLAMP_MAX);
         let coefficients = PiCoefficients::new(&SETTLING_GAINS, UpdatePeriod::EveryTick);
         Self {
             phase: IdentificationPhase::Settling { ticks: 0, near: 0 },
-            operating_point: Setpoint::saturating_celsius(operating_point).0,
+            operating_point: Setpoint::clamp_celsius_with_flag(operating_point).0,
             pi: Pi::new(coefficients, SETTLING_CURRENT_LIMIT),
             baseline_demand: 0,
             baseline_reading: 0,
@@ -218,7 +218,7 @@ impl Identification {
 
     /// Ends a running identification early, for this reason. Has no effect on an identification that has already ended,
     /// so the first reason stays.
-    fn abort(&mut self, reason: AbortReason) {
+    fn abort_if_running(&mut self, reason: AbortReason) {
         if self.outcome().is_none() {
             self.phase = IdentificationPhase::Aborted(reason);
         }
@@ -247,16 +247,16 @@ impl Identification {
     /// [`AbortReason::NotSettled`], still the current of the PI loop.
     pub fn step(
         &mut self,
-        equations: &mut NormalEquations,
+        equations: &mut NormalEquationAccumulator,
         readings: &ValidReadings,
         touching: bool,
     ) -> Option<Current> {
         let excursion = (readings.display).saturating_sub(self.operating_point.celsius());
         if touching {
-            self.abort(AbortReason::Touched);
+            self.abort_if_running(AbortReason::Touched);
         }
         if readings.sink > SINK_MAX_IDENTIFICATION {
-            self.abort(AbortReason::SinkHot);
+            self.abort_if_running(AbortReason::SinkHot);
         }
         // While the display settles, it may come from any temperature.
         if matches!(
@@ -264,7 +264,7 @@ impl Identification {
             IdentificationPhase::Baseline { .. } | IdentificationPhase::Pulses { .. }
         ) && excursion.abs() > OPERATING_POINT_DEVIATION_MAX
         {
-            self.abort(AbortReason::TooFar);
+            self.abort_if_running(AbortReason::TooFar);
         }
         let reading = i64::from(readings.display.to_bits());
         match self.phase {
@@ -284,41 +284,43 @@ impl Identification {
                     }
                 };
             }
-            IdentificationPhase::Baseline { ticks } if ticks < HALF_BASELINE_TICKS => {
+            IdentificationPhase::Baseline { ticks } if ticks < TICKS_PER_BASELINE_HALF => {
                 let current = self
                     .pi
-                    .update_output(self.operating_point, readings.display);
+                    .update_output_when_due(self.operating_point, readings.display);
                 self.baseline_demand += i64::from(current.to_bits());
                 self.phase = IdentificationPhase::Baseline { ticks: ticks + 1 };
                 return Some(current);
             }
-            IdentificationPhase::Baseline { ticks } if ticks < 2 * HALF_BASELINE_TICKS => {
+            IdentificationPhase::Baseline { ticks } if ticks < 2 * TICKS_PER_BASELINE_HALF => {
                 self.baseline_reading += reading;
-                self.previous_demand = self.demanded_pulse_current(0);
-                let measured = signed_measured_current(readings.current, self.previous_demand);
+                self.previous_demand = self.baseline_current_plus_eighths(0);
+                let measured =
+                    measured_with_sign_or_demanded(readings.current, self.previous_demand);
                 self.baseline_measured += i64::from(measured.to_bits());
                 self.phase = IdentificationPhase::Baseline { ticks: ticks + 1 };
-                return Some(self.demanded_pulse_current(0));
+                return Some(self.baseline_current_plus_eighths(0));
             }
             IdentificationPhase::Baseline { .. } => {
-                self.baseline_reading /= i64::from(HALF_BASELINE_TICKS);
-                self.baseline_measured /= i64::from(HALF_BASELINE_TICKS);
+                self.baseline_reading /= i64::from(TICKS_PER_BASELINE_HALF);
+                self.baseline_measured /= i64::from(TICKS_PER_BASELINE_HALF);
                 self.phase = IdentificationPhase::Pulses { pulse: 0, ticks: 0 };
-                return Some(self.demanded_pulse_current(0));
+                return Some(self.baseline_current_plus_eighths(0));
             }
             IdentificationPhase::Pulses { pulse, ticks } => {
                 let Some((eighths, length)) = EXCITATION_PULSES.get(pulse) else {
                     self.phase = IdentificationPhase::Done;
-                    return Some(self.demanded_pulse_current(0));
+                    return Some(self.baseline_current_plus_eighths(0));
                 };
-                let demand = self.demanded_pulse_current(*eighths);
-                let measured = signed_measured_current(readings.current, self.previous_demand);
+                let demand = self.baseline_current_plus_eighths(*eighths);
+                let measured =
+                    measured_with_sign_or_demanded(readings.current, self.previous_demand);
                 if self.previous_demand.abs() > CURRENT_COMPARISON_MIN {
                     equations.add_current_comparison(self.previous_demand, measured);
                 }
                 let change = reading - self.baseline_reading;
                 let turned = certain_current_direction(self.previous_demand)
-                    - certain_current_direction(self.demanded_pulse_current(0));
+                    - certain_current_direction(self.baseline_current_plus_eighths(0));
                 equations.add_tick(change, measured, self.baseline_measured, turned);
                 self.previous_demand = demand;
                 let (pulse, ticks) = if ticks + 1 < *length {
@@ -332,13 +334,13 @@ impl Identification {
         }
         Some(
             self.pi
-                .update_output(self.operating_point, readings.display),
+                .update_output_when_due(self.operating_point, readings.display),
         )
     }
 
     /// Current to demand, A (positive cools): the baseline current plus `eighths` eighths of [`NOMINAL_PULSE_CURRENT`].
-    fn demanded_pulse_current(&self, eighths: i32) -> Current {
-        let baseline = self.baseline_demand / i64::from(HALF_BASELINE_TICKS);
+    fn baseline_current_plus_eighths(&self, eighths: i32) -> Current {
+        let baseline = self.baseline_demand / i64::from(TICKS_PER_BASELINE_HALF);
         Current::from_bits(baseline as i32).saturating_add(NOMINAL_PULSE_CURRENT * eighths / 8)
     }
 }
@@ -355,7 +357,7 @@ fn certain_current_direction(demanded: Current) -> i64 {
 
 /// The measured current, A, with the sign of the demanded one, because the current mirror shows only the magnitude. The
 /// demanded current itself if its magnitude is below 0.25 A.
-fn signed_measured_current(measured: Current, demanded: Current) -> Current {
+fn measured_with_sign_or_demanded(measured: Current, demanded: Current) -> Current {
     match certain_current_direction(demanded) {
         0 => demanded,
         1.. => measured,

@@ -13,7 +13,7 @@ pub const UNKNOWN_COUNT: usize = 8;
 pub const NORMAL_EQUATION_COLUMNS: usize = UNKNOWN_COUNT + 1;
 /// Number of rows of sums that an identification adds up: one for each of the eight unknowns, and one for the
 /// [statistics](StatisticIndex).
-pub const NORMAL_EQUATION_ROWS: usize = UNKNOWN_COUNT + 1;
+pub const NORMAL_EQUATION_AND_STATISTICS_ROWS: usize = UNKNOWN_COUNT + 1;
 
 /// One row of sums. A row for one unknown of the fit contains the products of its regressor with each regressor and
 /// with the regressand, added up over all equations, in units of 2^-44 (22 fractional bits of each factor). The last
@@ -31,9 +31,9 @@ const JOULE_HEAT_FILTER_COEFFICIENT: i64 = 220;
 /// Fraction of the pumped heat that, behind the low-pass filter of the legs, changes the temperature of the module's
 /// legs instead of the plate's, in 2^-15: 5.9 %. It is a third of the legs' heat capacity, divided by the sum of this
 /// third and the heat capacity of the plate with its tabs.
-const LEGS_HEAT_FRACTION: i64 = 1933;
-/// Fractional bits of the coefficients of the low-pass filters, and of [`LEGS_HEAT_FRACTION`].
-const FILTER_FRACTION_BITS: u32 = 15;
+const LEGS_PUMPED_HEAT_FRACTION: i64 = 1933;
+/// Fractional bits of the coefficients of the low-pass filters, and of [`LEGS_PUMPED_HEAT_FRACTION`].
+const FILTER_COEFFICIENT_FRACTION_BITS: u32 = 15;
 
 /// Ticks of 1 ms from one equation of the least-squares fit to the next. Each equation adds the products of its
 /// regressors and its regressand to the normal equations; the pulses give 1010 equations.
@@ -77,14 +77,14 @@ pub enum StatisticIndex {
 /// First and second integral of a signal over time since the pulses began, as sums over ticks of 1 ms: in the signal's
 /// unit times ticks and times ticks squared.
 #[derive(Clone, Copy, Debug, Default)]
-struct TickIntegrals {
+struct FirstAndSecondIntegral {
     first: i64,
     second: i64,
 }
 
-impl TickIntegrals {
+impl FirstAndSecondIntegral {
     /// Adds one tick: the signal's value to the first integral, and then the first integral to the second.
-    fn add(&mut self, value: i64) {
+    fn integrate_tick(&mut self, value: i64) {
         self.first += value;
         self.second += self.first;
     }
@@ -93,23 +93,23 @@ impl TickIntegrals {
 /// Sums of the least-squares fit of the tile's parameters, and the integrals and low-pass filters from which the
 /// regressors of each equation are computed. All values are integers.
 #[derive(Clone, Debug, Default)]
-pub struct NormalEquations {
+pub struct NormalEquationAccumulator {
     /// Ticks of 1 ms since the pulses began.
     ticks: u32,
     /// First and second integral, over ticks of 1 ms, of the display's reading minus its baseline (each reading in
     /// 2^-22 K).
-    reading: TickIntegrals,
+    reading: FirstAndSecondIntegral,
     /// First and second integral, over ticks of 1 ms, of the current's change: the measured current minus its baseline,
-    /// in 2^-24 A (positive cools), less [`LEGS_HEAT_FRACTION`] of `filtered_current`, which changes the temperature of
+    /// in 2^-24 A (positive cools), less [`LEGS_PUMPED_HEAT_FRACTION`] of `filtered_current`, which changes the temperature of
     /// the module's legs instead of the plate's.
-    current: TickIntegrals,
+    current: FirstAndSecondIntegral,
     /// First and second integral, over ticks of 1 ms, of the change of the current's direction: the direction (1 cools,
-    /// -1 heats, 0 uncertain) minus its baseline, in 2^-24, less [`LEGS_HEAT_FRACTION`] of `filtered_direction`. The
+    /// -1 heats, 0 uncertain) minus its baseline, in 2^-24, less [`LEGS_PUMPED_HEAT_FRACTION`] of `filtered_direction`. The
     /// fit finds from the second integral the zero error of the current mirror.
-    direction: TickIntegrals,
+    direction: FirstAndSecondIntegral,
     /// First and second integral, over ticks of 1 ms, of `filtered_squared_current`: the squared measured current minus
     /// the squared baseline current, in 2^-24 A², delayed as Joule's heat is on its way to the plate.
-    squared_current: TickIntegrals,
+    squared_current: FirstAndSecondIntegral,
     /// Output of the low-pass filter that models how late the module's legs take up heat, in 2^-24 A; its input is the
     /// measured current minus its baseline.
     filtered_current: i64,
@@ -120,14 +120,16 @@ pub struct NormalEquations {
     /// squared measured current minus the square of its baseline.
     filtered_squared_current: i64,
     /// One row of sums for each of the eight unknowns, then the row of [statistics](StatisticIndex).
-    rows: [NormalEquationRow; NORMAL_EQUATION_ROWS],
+    rows: [NormalEquationRow; NORMAL_EQUATION_AND_STATISTICS_ROWS],
 }
 
-impl NormalEquations {
+impl NormalEquationAccumulator {
     /// All sums: one row for each of the eight unknowns, then the row of [statistics](StatisticIndex). They are
     /// complete once the identification has succeeded.
     #[must_use]
-    pub const fn rows(&self) -> &[NormalEquationRow; NORMAL_EQUATION_ROWS] {
+    pub const fn rows_and_statistics(
+        &self,
+    ) -> &[NormalEquationRow; NORMAL_EQUATION_AND_STATISTICS_ROWS] {
         &self.rows
     }
 
@@ -167,19 +169,20 @@ impl NormalEquations {
         let squared_change = (current * current - baseline * baseline) >> CURRENT_FRACTION_BITS;
         let direction = direction << CURRENT_FRACTION_BITS;
         let through_legs = |state: &mut i64, input| {
-            (step_low_pass(state, input, LEGS_HEAT_FILTER_COEFFICIENT) * LEGS_HEAT_FRACTION)
-                >> FILTER_FRACTION_BITS
+            (step_low_pass(state, input, LEGS_HEAT_FILTER_COEFFICIENT) * LEGS_PUMPED_HEAT_FRACTION)
+                >> FILTER_COEFFICIENT_FRACTION_BITS
         };
         self.ticks += 1;
-        (self.current).add(change - through_legs(&mut self.filtered_current, change));
-        (self.direction).add(direction - through_legs(&mut self.filtered_direction, direction));
+        (self.current).integrate_tick(change - through_legs(&mut self.filtered_current, change));
+        (self.direction)
+            .integrate_tick(direction - through_legs(&mut self.filtered_direction, direction));
         let joule_state = &mut self.filtered_squared_current;
-        (self.squared_current).add(step_low_pass(
+        (self.squared_current).integrate_tick(step_low_pass(
             joule_state,
             squared_change,
             JOULE_HEAT_FILTER_COEFFICIENT,
         ));
-        self.reading.add(reading);
+        self.reading.integrate_tick(reading);
         if self.ticks.is_multiple_of(EQUATION_INTERVAL_TICKS) {
             self.add_equation(reading);
         }
@@ -219,6 +222,6 @@ impl NormalEquations {
 /// Runs one tick of a first-order low-pass filter: moves `state`, the output of the filter, towards `input` by the
 /// fraction `coefficient` (in 2^-15) of their difference, and returns the new output.
 const fn step_low_pass(state: &mut i64, input: i64, coefficient: i64) -> i64 {
-    *state += ((input - *state) * coefficient) >> FILTER_FRACTION_BITS;
+    *state += ((input - *state) * coefficient) >> FILTER_COEFFICIENT_FRACTION_BITS;
     *state
 }

@@ -24,7 +24,7 @@ pub const SETPOINT_INTERPOLATION_TOLERANCE: Celsius = Celsius::lit("0.0004");
 /// display should wait: from the preset (the set-point before contact) to the waiting temperature below it. After a
 /// larger error the law `model` does not use the closed form of Eq. 6-12 for this contact, because the closed form
 /// assumes a start at the preset.
-const WAITING_RANGE_ERROR_MAX: Celsius = Celsius::lit("0.1");
+const PRESET_TO_WAITING_RANGE_MARGIN: Celsius = Celsius::lit("0.1");
 /// Divisor of the waiting offset as a power of two: 2^7 = 128. While a display waits for a finger, the law `model`
 /// keeps it below its preset, the set-point before contact, by the difference of skin temperature and preset divided by
 /// 128.
@@ -80,9 +80,9 @@ impl Reference {
     /// A reference from a set-point and a target, °C, each limited to the safe range of 15 to 42 °C. `limited` is set
     /// if the set-point was outside this range.
     #[must_use]
-    pub fn new(setpoint: Celsius, target: Celsius) -> Self {
-        let (setpoint, limited) = Setpoint::saturating_celsius(setpoint);
-        let (target, _) = Setpoint::saturating_celsius(target);
+    pub fn limited_to_safe_range(setpoint: Celsius, target: Celsius) -> Self {
+        let (setpoint, limited) = Setpoint::clamp_celsius_with_flag(setpoint);
+        let (target, _) = Setpoint::clamp_celsius_with_flag(target);
         Self {
             setpoint,
             limited,
@@ -95,7 +95,7 @@ impl Reference {
     /// touches.
     #[must_use]
     pub fn at(setpoint: Celsius) -> Self {
-        Self::new(setpoint, setpoint)
+        Self::limited_to_safe_range(setpoint, setpoint)
     }
 }
 
@@ -129,7 +129,7 @@ impl ContactSetpoints {
     /// A contact with the object in its first tick. If the finger has just landed, so that its force is new in this
     /// tick, the contact's time is that since landing. Otherwise, as when the object is exchanged under a resting
     /// finger, the time is 0 in this tick.
-    fn begin_contact(finger: &FingerContact) -> Self {
+    fn new_since_landing_or_now(finger: &FingerContact) -> Self {
         let has_just_landed = finger.force_change() == ForceChange::New;
         Self {
             elapsed: if has_just_landed {
@@ -150,7 +150,7 @@ impl ContactSetpoints {
     /// computed for it. `closed_form` is whether the set-point is to be computed by the closed form of Eq. 6-12; if
     /// not, the interpolation is discarded. With `follow_skin` (law `model`) the interpolation itself is computed in
     /// the next tick.
-    fn schedule_interpolation(
+    fn update_interpolation_due_and_conductances(
         &mut self,
         finger: &mut FingerContact,
         pair: &ContactPair,
@@ -159,7 +159,7 @@ impl ContactSetpoints {
     ) {
         let is_new = finger.force_change() == ForceChange::New;
         let force = finger.force_means();
-        let is_equivalent = !force.has_doubled_sample_count()
+        let is_equivalent = !force.ticks_since_jump_are_power_of_two()
             || self.equivalent_forces.contains(&force.long_mean());
         if !closed_form || (is_new && follow_skin) {
             self.interpolation = None;
@@ -170,9 +170,10 @@ impl ContactSetpoints {
                 || !is_equivalent
                 || was_scheduled
                 || self.interpolation.is_none());
-        self.conductances_ready = was_scheduled && finger.contact_at_mean_for_setpoints().is_some();
+        self.conductances_ready =
+            was_scheduled && finger.contact_if_computed_for_setpoint_force().is_some();
         if self.interpolation_due && !self.conductances_ready {
-            finger.adopt_mean_force_for_setpoints(pair);
+            finger.adopt_setpoint_force_and_conductances(pair);
         }
     }
 
@@ -187,7 +188,7 @@ impl ContactSetpoints {
         follow_skin: bool,
         evaluations: &mut u32,
     ) -> Option<Celsius> {
-        match finger.contact_at_mean_for_setpoints() {
+        match finger.contact_if_computed_for_setpoint_force() {
             // While the skin is followed, conductances and interpolation are not computed in the same tick.
             Some(contact)
                 if self.interpolation_due && (self.conductances_ready || !follow_skin) =>
@@ -226,7 +227,7 @@ pub struct ReferenceGenerator {
     /// Constants of Eq. 6-12 for the object that was presented last; computed again when another one is presented.
     factors: ContactPairFactors,
     /// The present contact with the object. `None` while an object is presented and no finger touches, in the
-    /// semi-infinite model, and from [`Self::restart_contact`] or [`Self::discard_contact`] until the next reference is
+    /// semi-infinite model, and from [`Self::restart_contact`] or [`Self::discard_contact_and_skin_simulation`] until the next reference is
     /// generated. Without an object it has no meaning.
     contact: Option<ContactSetpoints>,
     /// Number of evaluations of `erfcx`, the costly function in Eq. 6-12, since start-up; wraps at 2^32. For the
@@ -249,7 +250,7 @@ impl ReferenceGenerator {
     /// Discards the contact with the object and the simulation of the skin; only the number of evaluations of `erfcx`
     /// is kept. Called in a tick with invalid readings or a detected fault, because the finger may have landed or
     /// lifted unnoticed in it.
-    pub fn discard_contact(&mut self) {
+    pub fn discard_contact_and_skin_simulation(&mut self) {
         *self = Self {
             evaluations: self.evaluations,
             ..Self::default()
@@ -269,7 +270,7 @@ impl ReferenceGenerator {
     pub fn restart_contact(&mut self, finger: &mut FingerEstimator) {
         self.contact = None;
         self.skin_on_object
-            .restart_contact(finger.skin_state_on_display());
+            .start_from_skin_on_display(finger.skin_state_on_display());
         finger.forget_conductances();
     }
 
@@ -325,7 +326,7 @@ impl ReferenceGenerator {
                 skin_above_object,
                 Some(skin_state_on_display),
             );
-            return Some(Reference::new(
+            return Some(Reference::limited_to_safe_range(
                 setpoint,
                 setpoint.saturating_sub(waiting_offset_below_preset(skin, setpoint)),
             ));
@@ -337,20 +338,25 @@ impl ReferenceGenerator {
             }
             none => {
                 let preset = object_presented.pair.preset(skin, object);
-                if is_display_outside_waiting_range(
+                if is_display_outside_preset_to_waiting_range(
                     surface,
                     preset,
                     waiting_offset_below_preset(skin, preset),
                 ) {
                     finger.exclude_closed_form();
                 }
-                none.insert(ContactSetpoints::begin_contact(finger))
+                none.insert(ContactSetpoints::new_since_landing_or_now(finger))
             }
         };
-        let conductance = finger.conductances().map(|both| &both.object);
+        let conductance = finger.stored_conductances().map(|both| &both.object);
         (self.skin_on_object).step(conductance, factors, skin_above_object);
         let closed_form = finger.closed_form_is_valid() || !follow_skin;
-        contact.schedule_interpolation(finger, object_presented.pair, closed_form, follow_skin);
+        contact.update_interpolation_due_and_conductances(
+            finger,
+            object_presented.pair,
+            closed_form,
+            follow_skin,
+        );
         let interpolated = contact.interpolated_setpoint(
             finger,
             (skin, object),
@@ -360,30 +366,30 @@ impl ReferenceGenerator {
         let setpoint = interpolated.unwrap_or_else(|| {
             (self.skin_on_object).setpoint(factors, skin, skin_above_object, None)
         });
-        let correction = match finger.conductances() {
+        let correction = match finger.stored_conductances() {
             Some(both) if follow_skin => {
-                (self.skin_on_object).setpoint_correction(skin_state_on_display, &both.display)
+                (self.skin_on_object).skin_matching_correction(skin_state_on_display, &both.display)
             }
             _ => Celsius::ZERO,
         };
         let target = setpoint.saturating_add(correction);
         // A skin that is followed tick by tick has its correction in the reported set-point, too.
         let setpoint = if closed_form { setpoint } else { target };
-        Some(Reference::new(setpoint, target))
+        Some(Reference::limited_to_safe_range(setpoint, target))
     }
 }
 
 /// Whether the temperature of the display's surface, °C, is more than 0.1 K outside the range from the preset, °C, to
 /// the temperature `waiting_offset`, K, below the preset. If so in the first tick of a contact, the law `model` does
 /// not use the closed form of Eq. 6-12 for this contact.
-fn is_display_outside_waiting_range(
+fn is_display_outside_preset_to_waiting_range(
     surface: Celsius,
     preset: Celsius,
     waiting_offset: Celsius,
 ) -> bool {
     let half_offset = waiting_offset >> 1u32;
     let error = surface.saturating_sub(preset).saturating_add(half_offset);
-    error.abs() > WAITING_RANGE_ERROR_MAX.saturating_add(half_offset.abs())
+    error.abs() > PRESET_TO_WAITING_RANGE_MARGIN.saturating_add(half_offset.abs())
 }
 
 #[cfg(test)]

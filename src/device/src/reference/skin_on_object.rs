@@ -62,7 +62,7 @@ pub struct SkinOnObject {
 impl SkinOnObject {
     /// Makes the simulated skin start a new contact with the presented object: it starts with the cooling that the
     /// display has caused in the real skin, `skin_state_on_display`, and without heat flux.
-    pub fn restart_contact(&mut self, skin_state_on_display: &HalfSpace) {
+    pub fn start_from_skin_on_display(&mut self, skin_state_on_display: &HalfSpace) {
         self.cooling = skin_state_on_display.staggered();
         self.scaled_flux = Celsius::ZERO;
     }
@@ -120,7 +120,7 @@ impl SkinOnObject {
     /// real skin more. It is computed again in each tick of a contact. `display` is the conductance of the contact of
     /// skin and display.
     #[must_use]
-    pub fn setpoint_correction(
+    pub fn skin_matching_correction(
         &self,
         skin_state_on_display: &HalfSpace,
         display: &ContactConductance,

@@ -1,7 +1,7 @@
 //! Detects a measured current that differs from the demanded one.
 
 use super::Fault;
-use super::debounce::DebounceCounter;
+use super::debounce::UpDownDebounceCounter;
 use crate::drive::Current;
 
 /// Part of the tolerated difference between measured and demanded current that does not depend on the demand, A. At
@@ -15,13 +15,13 @@ const PROPORTIONAL_TOLERANCE_SHIFT: u32 = 2;
 /// measured and demanded current differ too much counts up, each other tick counts down. It is long enough for an
 /// overloaded bridge driver, which switches off and retries every 4 ms, to pull its fault line first, which trips the
 /// station by [`Fault::Bridge`].
-const CURRENT_MISMATCH_TRIP_TICKS: u8 = 30;
+const MISMATCH_TRIP_NET_TICKS: u8 = 30;
 
 /// Detects a measured current that differs from the demanded one in magnitude. One counter serves both too much and too
 /// little current, because a leg of the bridge that is stuck causes one or the other, depending on the sign of the
 /// demand.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct CurrentMismatchDetector(DebounceCounter);
+pub struct CurrentMismatchDetector(UpDownDebounceCounter);
 
 impl CurrentMismatchDetector {
     /// Compares the magnitude of `measured`, A, the current of this tick, with that of `demanded`, A (positive cools,
@@ -38,7 +38,7 @@ impl CurrentMismatchDetector {
             CONSTANT_CURRENT_TOLERANCE.saturating_add(demanded >> PROPORTIONAL_TOLERANCE_SHIFT);
         let high = measured > demanded.saturating_add(tolerance);
         let low = measured < demanded.saturating_sub(tolerance);
-        if !self.0.count_tick(high || low, CURRENT_MISMATCH_TRIP_TICKS) {
+        if !self.0.count_tick(high || low, MISMATCH_TRIP_NET_TICKS) {
             Ok(())
         } else if high {
             Err(Fault::CurrentHigh)

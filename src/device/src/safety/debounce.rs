@@ -5,9 +5,9 @@
 /// reaches the limit if the condition comes and goes but holds in more than half of the ticks. At the limit, one tick
 /// without the condition ends the detection.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct DebounceCounter(i32);
+pub struct UpDownDebounceCounter(i32);
 
-impl DebounceCounter {
+impl UpDownDebounceCounter {
     /// Counts one tick of 1 ms: up by one, to `ticks` at most, if `condition` holds; else down by one, to zero at
     /// least. Returns whether the count is now `ticks`.
     pub fn count_tick(&mut self, condition: bool, ticks: u8) -> bool {

@@ -3,8 +3,8 @@
 use contact_model::fixed_point::Celsius;
 
 use super::current_mismatch::CurrentMismatchDetector;
-use super::debounce::DebounceCounter;
-use super::frozen_detector::FrozenDetector;
+use super::debounce::UpDownDebounceCounter;
+use super::frozen_sample_detector::FrozenSampleDetector;
 use super::jump_detector::JumpDetector;
 use super::thermal_dose::ThermalDose;
 use super::validate_readings::ValidReadings;
@@ -20,18 +20,18 @@ const DISPLAY_THERMISTOR_DIFFERENCE_MAX: Celsius = Celsius::lit("3");
 /// Net ticks of 1 ms at which [`Fault::DisplaysApart`] trips the station: each tick in which the display's two
 /// thermistors differ by more than [`DISPLAY_THERMISTOR_DIFFERENCE_MAX`] counts up, each other tick counts down, so
 /// that noise does not trip the station.
-const DISPLAY_DIFFERENCE_TRIP_TICKS: u8 = 40;
+const DISPLAY_DIFFERENCE_TRIP_NET_TICKS: u8 = 40;
 /// Excess of the room's reading over the skin's, K, above which the two thermistors count as swapped or misplaced. A
 /// finger's skin is warmer than the room, except for cold hands of 17 °C in a warm room; if the skin's thermistor is on
 /// no finger, it reads the room's air.
 const ROOM_ABOVE_SKIN_MAX: Celsius = Celsius::lit("8");
 /// Net ticks of 1 ms at which [`Fault::RoomAboveSkin`] trips the station: each tick in which the room reads more than
 /// [`ROOM_ABOVE_SKIN_MAX`] above the skin counts up, each other tick counts down.
-const ROOM_ABOVE_SKIN_TRIP_TICKS: u8 = 40;
+const ROOM_ABOVE_SKIN_TRIP_NET_TICKS: u8 = 40;
 /// Net ticks of 1 ms at which [`Fault::UnlikeModel`] trips the station: each tick in which the display follows a
 /// set-point and the plate observer's residual is larger than a sound tile can cause counts up, each other tick counts
 /// down.
-const UNLIKE_MODEL_TRIP_TICKS: u8 = 30;
+const UNLIKE_MODEL_TRIP_NET_TICKS: u8 = 30;
 /// Ticks of 1 ms without a line from the host, while telemetry streams and a set-point is followed, that trip the
 /// station by [`Fault::HostSilent`].
 const HOST_SILENT_TICKS: u16 = 2000;
@@ -40,7 +40,7 @@ const HOST_SILENT_TICKS: u16 = 2000;
 /// The fault detectors compare the next tick's readings with these values, because those readings are the first that
 /// respond to that current.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct PreviousActuation {
+pub struct PreviousDemandAndResidual {
     /// Current that the previous tick demanded of the bridge, A; positive cools the display; zero if the bridge was
     /// off.
     pub demanded: Current,
@@ -58,13 +58,13 @@ pub struct PreviousActuation {
 /// display. Faults that a single tick shows are found by [`validate_readings`](super::validate_readings()) instead.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FaultDetectors {
-    frozen: FrozenDetector,
+    frozen: FrozenSampleDetector,
     jump: JumpDetector,
-    display_difference: DebounceCounter,
-    room_above_skin: DebounceCounter,
+    display_difference: UpDownDebounceCounter,
+    room_above_skin: UpDownDebounceCounter,
     current_mismatch: CurrentMismatchDetector,
     wrong_way: WrongWayDetector,
-    residual: DebounceCounter,
+    residual: UpDownDebounceCounter,
     dose: ThermalDose,
     host_silent_ticks: u16,
 }
@@ -104,9 +104,10 @@ impl FaultDetectors {
     ///
     /// # Errors
     /// [`Fault::Dose`]: the dose has reached 30 s at 43 °C.
-    pub fn add_to_dose(&mut self, readings: &Readings) -> Result<(), Fault> {
+    pub fn update_and_check_dose(&mut self, readings: &Readings) -> Result<(), Fault> {
         let display = [readings.display, readings.display_check];
-        self.dose.add_tick(|| display.into_iter().flatten().max())
+        self.dose
+            .count_tick_and_evaluate_if_due(|| display.into_iter().flatten().max())
     }
 
     /// Runs all detectors that compare several ticks and need valid readings, once per tick. `readings` are those of
@@ -119,10 +120,10 @@ impl FaultDetectors {
     /// the demanded current for 30 ms), [`Fault::Polarity`] or [`Fault::Runaway`] (2.5 K against the current),
     /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms),
     /// [`Fault::HostSilent`] (2 s). All these detectors count the tick, even when an earlier one has a fault.
-    pub fn run_multi_tick_detectors(
+    pub fn run_detectors_of_valid_readings(
         &mut self,
         readings: &ValidReadings,
-        previous: &PreviousActuation,
+        previous: &PreviousDemandAndResidual,
         streams: bool,
     ) -> Result<(), Fault> {
         let above_setpoint = previous.setpoint.map_or(Celsius::ZERO, |setpoint| {
@@ -131,16 +132,16 @@ impl FaultDetectors {
         let difference = readings.display.saturating_sub(readings.check);
         let displays_differ = self.display_difference.count_tick(
             difference.saturating_abs() > DISPLAY_THERMISTOR_DIFFERENCE_MAX,
-            DISPLAY_DIFFERENCE_TRIP_TICKS,
+            DISPLAY_DIFFERENCE_TRIP_NET_TICKS,
         );
         let room_above_skin = self.room_above_skin.count_tick(
             readings.room.saturating_sub(readings.skin) > ROOM_ABOVE_SKIN_MAX,
-            ROOM_ABOVE_SKIN_TRIP_TICKS,
+            ROOM_ABOVE_SKIN_TRIP_NET_TICKS,
         );
         let follows_setpoint = previous.setpoint.is_some();
         let unlike_model = self.residual.count_tick(
             follows_setpoint && previous.residual_is_large,
-            UNLIKE_MODEL_TRIP_TICKS,
+            UNLIKE_MODEL_TRIP_NET_TICKS,
         );
         self.host_silent_ticks = if streams && follows_setpoint {
             self.host_silent_ticks.saturating_add(1)
@@ -152,12 +153,12 @@ impl FaultDetectors {
         let wrong_way =
             (self.wrong_way).check_direction(previous.demanded, readings.display, above_setpoint);
         (self.jump.check_jumps(readings))
-            .and(fault_if(displays_differ, Fault::DisplaysApart))
+            .and(err_if(displays_differ, Fault::DisplaysApart))
             .and(current)
             .and(wrong_way)
-            .and(fault_if(unlike_model, Fault::UnlikeModel))
-            .and(fault_if(room_above_skin, Fault::RoomAboveSkin))
-            .and(fault_if(host_silent, Fault::HostSilent))
+            .and(err_if(unlike_model, Fault::UnlikeModel))
+            .and(err_if(room_above_skin, Fault::RoomAboveSkin))
+            .and(err_if(host_silent, Fault::HostSilent))
     }
 
     /// Restarts the jump and wrong-direction detectors with the next readings. To be called in a tick with invalid
@@ -168,6 +169,6 @@ impl FaultDetectors {
     }
 }
 
-const fn fault_if(condition: bool, fault: Fault) -> Result<(), Fault> {
+const fn err_if(condition: bool, fault: Fault) -> Result<(), Fault> {
     if condition { Err(fault) } else { Ok(()) }
 }

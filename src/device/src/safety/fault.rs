@@ -162,7 +162,7 @@ faults! {
 }
 
 /// One of the five thermistors of a finger's station, by the place where it measures; selects the fault that
-/// [`Fault::of_thermistor`] returns.
+/// [`Fault::of_open_or_shorted_thermistor`] returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ThermistorId {
     /// First thermistor in the display surface, whose reading the control uses.
@@ -181,7 +181,10 @@ pub enum ThermistorId {
 impl Fault {
     /// The fault that names both which thermistor fails and whether it is open or shorted.
     #[must_use]
-    pub const fn of_thermistor(thermistor: ThermistorId, fault: ThermistorFault) -> Self {
+    pub const fn of_open_or_shorted_thermistor(
+        thermistor: ThermistorId,
+        fault: ThermistorFault,
+    ) -> Self {
         match (thermistor, fault) {
             (ThermistorId::Display, ThermistorFault::Open) => Self::DisplayOpen,
             (ThermistorId::Display, ThermistorFault::Short) => Self::DisplayShort,

@@ -7,7 +7,7 @@ use super::{Fault, TripCause};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FaultLatch {
     cause: Option<TripCause>,
-    tripped_at_tick: u32,
+    last_trip_tick_or_zero: u32,
     present: Option<Fault>,
     /// Last fault that the board has raised, outside of a tick, since the last tick. At the end of the next tick it
     /// becomes the present fault, unless that tick detects a fault itself.
@@ -21,22 +21,22 @@ impl FaultLatch {
     /// Cause of the present trip or, after `clear`, of the last one; `None` if the station has never tripped since the
     /// start.
     #[must_use]
-    pub const fn cause(&self) -> Option<&TripCause> {
+    pub const fn last_trip_cause(&self) -> Option<&TripCause> {
         self.cause.as_ref()
     }
 
     /// Number of the tick (of 1 ms since the start) in which the station tripped last; 0 if it has never tripped or was
     /// tripped before the first tick. The device compares these numbers to report the earliest trip of all fingers.
     #[must_use]
-    pub const fn tripped_at_tick(&self) -> u32 {
-        self.tripped_at_tick
+    pub const fn last_trip_tick_or_zero(&self) -> u32 {
+        self.last_trip_tick_or_zero
     }
 
     /// Stores the cause of a trip and the number `tick` of the present tick. To be called only when the station's state
     /// changes to tripped, so that a later fault does not replace the first one.
-    pub const fn latch_cause(&mut self, cause: TripCause, tick: u32) {
+    pub const fn store_trip_cause_and_tick(&mut self, cause: TripCause, tick: u32) {
         self.cause = Some(cause);
-        self.tripped_at_tick = tick;
+        self.last_trip_tick_or_zero = tick;
     }
 
     /// Records `fault`, which the board has found outside of a tick. At the end of the next tick `fault` becomes the
@@ -52,7 +52,7 @@ impl FaultLatch {
     /// Ends a tick: the present fault becomes `detected`, the fault that the tick has detected. If that is `None`, the
     /// fault that the board has raised since the tick before becomes the present fault; `None` if there is neither. A
     /// fault that the board has raised counts for this one tick only.
-    pub const fn set_present_fault(&mut self, detected: Option<Fault>) {
+    pub const fn set_present_to_detected_or_take_external(&mut self, detected: Option<Fault>) {
         let external = self.external.take();
         self.present = match detected {
             Some(fault) => Some(fault),
@@ -70,7 +70,7 @@ impl FaultLatch {
     /// Removes and returns the pending fault: the first that the board raised while the station was tripped by another
     /// one; `None` if there is none. To be called when `clear` has cleared the latched fault; `clear` then trips the
     /// station by the returned fault.
-    pub const fn take_pending_fault(&mut self) -> Option<Fault> {
+    pub const fn take_fault_raised_while_tripped(&mut self) -> Option<Fault> {
         self.pending.take()
     }
 }

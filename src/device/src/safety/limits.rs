@@ -37,7 +37,7 @@ pub const SINK_TRIP_ABOVE: Celsius = fixed_celsius(42.0);
 pub const SINK_MAX_IDENTIFICATION: Celsius = fixed_celsius(41.5);
 /// Sink temperature, °C, above which the control law `model` reduces its largest cooling current, linearly to zero at
 /// 2 K above. More current would warm the sink towards its trip limit of 42 °C more than it cools the display.
-pub const SINK_DERATING_FROM: Celsius = fixed_celsius(39.5);
+pub const COOLING_DERATING_SINK_TEMPERATURE: Celsius = fixed_celsius(39.5);
 /// Display temperature, °C, from which on the thermal dose grows. Below it the dose decays.
 pub const DOSE_COUNTED_FROM: Celsius = fixed_celsius(39.0);
 /// Reference temperature of the thermal dose CEM43, °C: each minute at this temperature adds one minute to the dose.
@@ -49,8 +49,9 @@ pub const OVER_CURRENT_MARGIN: Current = Current::lit("3");
 
 const _: () = assert!(DISPLAY_TRIP_BELOW.to_bits() < SETPOINT_MIN.to_bits());
 const _: () = assert!(SETPOINT_MIN.to_bits() < SETPOINT_MAX.to_bits());
-const _: () = assert!(DOSE_COUNTED_FROM.to_bits() < SINK_DERATING_FROM.to_bits());
-const _: () = assert!(SINK_DERATING_FROM.to_bits() < SINK_MAX_IDENTIFICATION.to_bits());
+const _: () = assert!(DOSE_COUNTED_FROM.to_bits() < COOLING_DERATING_SINK_TEMPERATURE.to_bits());
+const _: () =
+    assert!(COOLING_DERATING_SINK_TEMPERATURE.to_bits() < SINK_MAX_IDENTIFICATION.to_bits());
 const _: () = assert!(SINK_MAX_IDENTIFICATION.to_bits() < SINK_TRIP_ABOVE.to_bits());
 const _: () = assert!(SINK_TRIP_ABOVE.to_bits() < DISPLAY_TRIP_ABOVE.to_bits());
 const _: () = assert!(SETPOINT_MAX.to_bits() < DISPLAY_TRIP_ABOVE.to_bits());

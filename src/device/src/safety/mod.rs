@@ -24,7 +24,7 @@
 //! |                              | sink hot                               | 42 °C                                         |
 //! |                              | over-current                           | 3 A above the largest demand                  |
 //! | bridge fault line            | bridge                                 | the driver or the comparator pulls it         |
-//! | `FrozenDetector`             | one channel frozen, or all             | a sum repeats 46 times                        |
+//! | `FrozenSampleDetector`             | one channel frozen, or all             | a sum repeats 46 times                        |
 //! | `JumpDetector`               | display, second display or sink jump   | 0.5 K in 4 ms                                 |
 //! | [`FaultDetectors`]           | display thermistors disagree           | 3 K for 40 ms                                 |
 //! |                              | room above skin                        | 8 K for 40 ms                                 |
@@ -45,7 +45,7 @@ mod debounce;
 mod detectors;
 mod fault;
 mod fault_latch;
-mod frozen_detector;
+mod frozen_sample_detector;
 mod jump_detector;
 pub mod limits;
 mod self_test;
@@ -56,7 +56,7 @@ mod trip_cause;
 mod validate_readings;
 mod wrong_way_detector;
 
-pub use detectors::{FaultDetectors, PreviousActuation};
+pub use detectors::{FaultDetectors, PreviousDemandAndResidual};
 pub use fault::{Fault, ThermistorId};
 pub use fault_latch::FaultLatch;
 pub use self_test::{SelfTest, SelfTestStep};

@@ -25,17 +25,17 @@ use crate::drive::Current;
 /// Length of each half of the self-test's baseline, in ticks of 1 ms. In the baseline the bridge is off; the straight
 /// line through the mean readings of its two halves predicts the temperature that the display would have without the
 /// cooling pulse.
-const HALF_BASELINE_TICKS: u16 = 32;
+const TICKS_PER_BASELINE_HALF: u16 = 32;
 /// Length of the self-test's cooling pulse, of the pause after it and of the warming pulse, each in ticks of 1 ms.
 const PULSE_TICKS: u16 = 200;
 /// Tick of the self-test (the first is 0) in which the comparator's test line is cleared, so that the comparator must
 /// release the bridge's supply. In the ticks before, the line is set and the comparator must cut the supply.
-const COMPARATOR_CUT_END_TICK: u16 = 20;
+const COMPARATOR_TEST_LINE_CLEAR_TICK: u16 = 20;
 /// Tick of the self-test in which the comparator's test is over and the baseline begins; after a finger's landing or
 /// lifting the self-test waits at this tick for 1 s first.
-const COMPARATOR_RELEASE_END_TICK: u16 = 40;
+const COMPARATOR_TEST_END_TICK: u16 = 40;
 /// Tick of the self-test in which the baseline is complete and the cooling pulse begins.
-const BASELINE_END_TICK: u16 = COMPARATOR_RELEASE_END_TICK + 2 * HALF_BASELINE_TICKS;
+const BASELINE_END_TICK: u16 = COMPARATOR_TEST_END_TICK + 2 * TICKS_PER_BASELINE_HALF;
 /// Tick of the self-test in which the cooling pulse ends, the measured current of the pulse is checked, and the
 /// demanded current becomes zero.
 const COOLING_PULSE_END_TICK: u16 = BASELINE_END_TICK + PULSE_TICKS;
@@ -46,7 +46,7 @@ const RESPONSE_CHECK_TICK: u16 = COOLING_PULSE_END_TICK + PULSE_TICKS;
 const WARMING_PULSE_END_TICK: u16 = RESPONSE_CHECK_TICK + PULSE_TICKS;
 /// Ticks of 1 ms within which the comparator must have followed its test line: cut the bridge's supply after the line
 /// was set, or released it after the line was cleared. A slower response trips the station by [`Fault::Comparator`].
-const COMPARATOR_DELAY_MAX_TICKS: u16 = 10;
+const COMPARATOR_TEST_LINE_DELAY_MAX_TICKS: u16 = 10;
 /// Magnitude of the current of the self-test's cooling and warming pulses: 1 A.
 const PULSE_CURRENT: Current = Current::ONE;
 /// Smallest mean of the measured current over the second half of a self-test pulse of 1 A, A; a smaller mean trips the
@@ -68,7 +68,7 @@ const DISPLAY_RESPONSE_MAX: Celsius = Celsius::lit("1.5");
 const WAIT_AFTER_LANDING_OR_LIFTING_TICKS: u16 = 1000;
 /// Ticks of 1 ms that one self-test may wait in all for fingers that land and lift; then [`Fault::NoResponse`] trips
 /// the station.
-const FINGER_WAIT_MAX_TICKS: u16 = 20 * WAIT_AFTER_LANDING_OR_LIFTING_TICKS;
+const FINGER_WAITS_TOTAL_TRIP_TICKS: u16 = 20 * WAIT_AFTER_LANDING_OR_LIFTING_TICKS;
 /// Ticks of 1 ms in a row in which the force sensor detects no finger, after which a finger counts as lifted. A force
 /// just above the contact threshold falls below the threshold by noise now and then.
 const LIFTED_AFTER_TICKS: u8 = 32;
@@ -113,7 +113,7 @@ pub struct SelfTest {
     untouched_ticks: u8,
     /// Ticks of 1 ms that remain to wait before the baseline begins, because a finger has landed or lifted.
     wait_ticks: u16,
-    /// Ticks of 1 ms that this self-test has waited for fingers in all, up to [`FINGER_WAIT_MAX_TICKS`].
+    /// Ticks of 1 ms that this self-test has waited for fingers in all, up to [`FINGER_WAITS_TOTAL_TRIP_TICKS`].
     waited_ticks: u16,
 }
 
@@ -122,8 +122,8 @@ impl SelfTest {
     /// supply. The comparator then pulls the bridge's fault line, which does not trip the station by [`Fault::Bridge`]
     /// while this is true.
     #[must_use]
-    pub const fn expects_bridge_fault(&self) -> bool {
-        self.tick < COMPARATOR_RELEASE_END_TICK
+    pub const fn is_testing_comparator(&self) -> bool {
+        self.tick < COMPARATOR_TEST_END_TICK
     }
 
     /// Runs one tick of the self-test with `readings`, and returns what the bridge must do in this tick. `bridge_fault`
@@ -142,7 +142,7 @@ impl SelfTest {
         bridge_fault: bool,
         touched: bool,
     ) -> Result<SelfTestStep, Fault> {
-        const BRIDGE_OFF_STEP: SelfTestStep = SelfTestStep::Off {
+        const BRIDGE_OFF_WITHOUT_COMPARATOR_TEST: SelfTestStep = SelfTestStep::Off {
             comparator_test: false,
         };
         self.untouched_ticks = if touched {
@@ -153,22 +153,22 @@ impl SelfTest {
         if touched != self.touched && (touched || self.untouched_ticks >= LIFTED_AFTER_TICKS) {
             self.restart_baseline(touched);
         }
-        if self.tick == COMPARATOR_RELEASE_END_TICK && self.wait_ticks > 0 {
-            if self.waited_ticks >= FINGER_WAIT_MAX_TICKS {
+        if self.tick == COMPARATOR_TEST_END_TICK && self.wait_ticks > 0 {
+            if self.waited_ticks >= FINGER_WAITS_TOTAL_TRIP_TICKS {
                 return Err(Fault::NoResponse);
             }
             self.wait_ticks -= 1;
             self.waited_ticks += 1;
-            return Ok(BRIDGE_OFF_STEP);
+            return Ok(BRIDGE_OFF_WITHOUT_COMPARATOR_TEST);
         }
         let tick = self.tick;
         self.tick += 1;
         let display = [readings.display, readings.check].map(|reading| reading.to_bits().into());
-        if tick < COMPARATOR_RELEASE_END_TICK {
-            return test_comparator(tick, bridge_fault);
+        if tick < COMPARATOR_TEST_END_TICK {
+            return test_temperature_comparator(tick, bridge_fault);
         }
         if tick < BASELINE_END_TICK {
-            let is_first = tick < COMPARATOR_RELEASE_END_TICK + HALF_BASELINE_TICKS;
+            let is_first = tick < COMPARATOR_TEST_END_TICK + TICKS_PER_BASELINE_HALF;
             let half = if is_first {
                 &mut self.first_half
             } else {
@@ -177,10 +177,10 @@ impl SelfTest {
             for (sum, reading) in half.iter_mut().zip(display) {
                 *sum += reading;
             }
-            return Ok(BRIDGE_OFF_STEP);
+            return Ok(BRIDGE_OFF_WITHOUT_COMPARATOR_TEST);
         }
         if tick < COOLING_PULSE_END_TICK {
-            self.add_measured_current(tick - BASELINE_END_TICK, readings.current);
+            self.add_current_in_second_pulse_half(tick - BASELINE_END_TICK, readings.current);
             return Ok(SelfTestStep::Drive(PULSE_CURRENT));
         }
         if tick == COOLING_PULSE_END_TICK {
@@ -193,7 +193,7 @@ impl SelfTest {
             self.check_display_response(display)?;
         }
         if tick < WARMING_PULSE_END_TICK {
-            self.add_measured_current(tick - RESPONSE_CHECK_TICK, readings.current);
+            self.add_current_in_second_pulse_half(tick - RESPONSE_CHECK_TICK, readings.current);
             return Ok(SelfTestStep::Drive(PULSE_CURRENT.saturating_neg()));
         }
         self.check_pulse_current()?;
@@ -205,7 +205,7 @@ impl SelfTest {
     /// its baseline, as that needs an undisturbed display.
     fn restart_baseline(&mut self, touched: bool) {
         *self = Self {
-            tick: self.tick.min(COMPARATOR_RELEASE_END_TICK),
+            tick: self.tick.min(COMPARATOR_TEST_END_TICK),
             touched,
             untouched_ticks: self.untouched_ticks,
             wait_ticks: WAIT_AFTER_LANDING_OR_LIFTING_TICKS,
@@ -214,7 +214,7 @@ impl SelfTest {
         };
     }
 
-    fn add_measured_current(&mut self, pulse_tick: u16, measured: Current) {
+    fn add_current_in_second_pulse_half(&mut self, pulse_tick: u16, measured: Current) {
         if pulse_tick >= PULSE_TICKS / 2 {
             self.current_sum += i64::from(measured.to_bits());
         }
@@ -241,19 +241,20 @@ impl SelfTest {
     /// second display thermistor, in units of 2^-22 °C. A reading more than 0.05 K above the line is
     /// [`Fault::Polarity`]; any other failure is [`Fault::NoResponse`].
     fn check_display_response(&self, display: [i64; 2]) -> Result<(), Fault> {
-        const DISPLAY_RESPONSE_MIN_BITS: i64 = DISPLAY_RESPONSE_MIN.to_bits() as i64;
-        const DISPLAY_RESPONSE_RANGE_BITS: RangeInclusive<i64> =
-            DISPLAY_RESPONSE_MIN_BITS..=DISPLAY_RESPONSE_MAX.to_bits() as i64;
-        let half = i64::from(HALF_BASELINE_TICKS);
-        let ticks = i64::from(RESPONSE_CHECK_TICK - (BASELINE_END_TICK - HALF_BASELINE_TICKS / 2));
+        const DISPLAY_RESPONSE_MIN_RAW: i64 = DISPLAY_RESPONSE_MIN.to_bits() as i64;
+        const DISPLAY_RESPONSE_RAW_MIN_TO_MAX: RangeInclusive<i64> =
+            DISPLAY_RESPONSE_MIN_RAW..=DISPLAY_RESPONSE_MAX.to_bits() as i64;
+        let half = i64::from(TICKS_PER_BASELINE_HALF);
+        let ticks =
+            i64::from(RESPONSE_CHECK_TICK - (BASELINE_END_TICK - TICKS_PER_BASELINE_HALF / 2));
         let halves = self.first_half.iter().zip(&self.second_half);
         for ((first, second), reading) in halves.zip(display) {
             let expected = second / half + (second - first) * ticks / (half * half);
             let response = expected - reading;
-            if response < -DISPLAY_RESPONSE_MIN_BITS {
+            if response < -DISPLAY_RESPONSE_MIN_RAW {
                 return Err(Fault::Polarity);
             }
-            if !DISPLAY_RESPONSE_RANGE_BITS.contains(&response) {
+            if !DISPLAY_RESPONSE_RAW_MIN_TO_MAX.contains(&response) {
                 return Err(Fault::NoResponse);
             }
         }
@@ -264,15 +265,15 @@ impl SelfTest {
 /// Tests the comparator in ticks 0 to 39 of the self-test, with the bridge off: sets the comparator's test line for 20
 /// ticks, then clears it for 20 ticks. From 10 ticks after each change the fault line must be pulled (test line set) or
 /// released (test line cleared); otherwise the result is [`Fault::Comparator`].
-fn test_comparator(tick: u16, bridge_fault: bool) -> Result<SelfTestStep, Fault> {
-    let comparator_test = tick < COMPARATOR_CUT_END_TICK;
+fn test_temperature_comparator(tick: u16, bridge_fault: bool) -> Result<SelfTestStep, Fault> {
+    let comparator_test = tick < COMPARATOR_TEST_LINE_CLEAR_TICK;
     let elapsed = if comparator_test {
         tick
     } else {
-        tick - COMPARATOR_CUT_END_TICK
+        tick - COMPARATOR_TEST_LINE_CLEAR_TICK
     };
     // Within the allowed delay, the fault line may have either level.
-    if elapsed >= COMPARATOR_DELAY_MAX_TICKS && bridge_fault != comparator_test {
+    if elapsed >= COMPARATOR_TEST_LINE_DELAY_MAX_TICKS && bridge_fault != comparator_test {
         return Err(Fault::Comparator);
     }
     Ok(SelfTestStep::Off { comparator_test })

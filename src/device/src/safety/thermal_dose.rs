@@ -12,26 +12,26 @@ use super::limits::{DOSE_COUNTED_FROM, DOSE_REFERENCE_TEMPERATURE};
 
 /// Ticks of 1 ms from one evaluation of the display's temperature to the next; the dose of the whole interval is
 /// computed from the temperature at its end.
-const DOSE_INTERVAL_TICKS: u16 = 256;
+const DOSE_EVALUATION_INTERVAL_TICKS: u16 = 256;
 /// Thermal dose at which the station trips by [`Fault::Dose`], in ticks of 1 ms at 43 °C: 30 s. This is far below the
 /// dose that burns skin, hundreds of minutes at 43 °C, and below the few minutes that may hurt.
 const DOSE_LIMIT_TICKS: u32 = 30_000;
 /// Upper limit of the stored dose, in units of 2^-8 ticks of 1 ms at 43 °C: twice the trip limit. Thus after a long
 /// time above the limit, or after a bit error in the stored dose, 32 minutes below 39 °C are enough to bring it back to
 /// the trip limit.
-const STORED_DOSE_MAX: u32 = (2 * DOSE_LIMIT_TICKS) << 8;
+const ACCUMULATED_DOSE_CLAMP: u32 = (2 * DOSE_LIMIT_TICKS) << 8;
 /// Decay of the dose below 39 °C, as a right shift of the elapsed time: 6 subtracts 1/64 of it, about one minute per
 /// hour.
-const DOSE_DECAY_SHIFT: u32 = 6;
+const DOSE_DECAY_ELAPSED_TIME_SHIFT: u32 = 6;
 
 /// Thermal dose (CEM43) that skin would have received if it had always touched the display: the time at 39 °C and
 /// above, weighted by temperature, with slow decay below 39 °C. The station trips by [`Fault::Dose`] when the dose
 /// reaches the equivalent of 30 s at 43 °C.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ThermalDose {
-    /// The dose, in units of 2^-8 ticks of 1 ms at 43 °C; at most [`STORED_DOSE_MAX`] after each evaluation.
+    /// The dose, in units of 2^-8 ticks of 1 ms at 43 °C; at most [`ACCUMULATED_DOSE_CLAMP`] after each evaluation.
     sum: u32,
-    /// Ticks of 1 ms since the display's temperature was last evaluated, 0 to 255. At [`DOSE_INTERVAL_TICKS`] (256) the
+    /// Ticks of 1 ms since the display's temperature was last evaluated, 0 to 255. At [`DOSE_EVALUATION_INTERVAL_TICKS`] (256) the
     /// temperature is evaluated again, and this count restarts at 0.
     ticks: u16,
 }
@@ -39,14 +39,14 @@ pub struct ThermalDose {
 impl ThermalDose {
     /// The dose in units of 2^-8 ms at 43 °C, as one 32-bit word, in which the board keeps it in RAM through a reset.
     #[must_use]
-    pub const fn to_word(&self) -> u32 {
+    pub const fn to_retained_word(&self) -> u32 {
         self.sum
     }
 
-    /// The dose from the word that [`to_word`](Self::to_word) returned before a reset; any word is accepted, because
+    /// The dose from the word that [`to_retained_word`](Self::to_retained_word) returned before a reset; any word is accepted, because
     /// the next evaluation limits the dose.
     #[must_use]
-    pub const fn from_word(sum: u32) -> Self {
+    pub const fn from_any_retained_word(sum: u32) -> Self {
         Self { sum, ticks: 0 }
     }
 
@@ -56,10 +56,14 @@ impl ThermalDose {
     ///
     /// # Errors
     /// [`Fault::Dose`]: the dose has reached 30 s at 43 °C; returned in every tick while that holds.
-    pub fn add_tick(&mut self, warmest: impl FnOnce() -> Option<Celsius>) -> Result<(), Fault> {
-        const DECAY_PER_INTERVAL: u32 = (DOSE_INTERVAL_TICKS as u32) << 8 >> DOSE_DECAY_SHIFT;
+    pub fn count_tick_and_evaluate_if_due(
+        &mut self,
+        warmest: impl FnOnce() -> Option<Celsius>,
+    ) -> Result<(), Fault> {
+        const DECAY_PER_INTERVAL: u32 =
+            (DOSE_EVALUATION_INTERVAL_TICKS as u32) << 8 >> DOSE_DECAY_ELAPSED_TIME_SHIFT;
         self.ticks += 1;
-        if self.ticks >= DOSE_INTERVAL_TICKS {
+        if self.ticks >= DOSE_EVALUATION_INTERVAL_TICKS {
             self.ticks = 0;
             self.sum = match warmest() {
                 None => self.sum,
@@ -67,11 +71,12 @@ impl ThermalDose {
                     self.sum.saturating_sub(DECAY_PER_INTERVAL)
                 }
                 Some(warmest) => {
-                    let dose = dose_rate(warmest).saturating_mul(DOSE_INTERVAL_TICKS.into());
+                    let dose =
+                        cem43_weight(warmest).saturating_mul(DOSE_EVALUATION_INTERVAL_TICKS.into());
                     self.sum.saturating_add(dose)
                 }
             }
-            .min(STORED_DOSE_MAX);
+            .min(ACCUMULATED_DOSE_CLAMP);
         }
         if self.sum >> 8 >= DOSE_LIMIT_TICKS {
             Err(Fault::Dose)
@@ -84,7 +89,7 @@ impl ThermalDose {
 /// Weight of one minute at the temperature `t`, °C, in the thermal dose (equivalent minutes at 43 °C), in units of
 /// 2^-8: 1 at 39 °C, 256 at 43 °C, doubled by each kelvin above 43 °C and quartered by each kelvin below it, always
 /// below 2^17. Called for 39 °C and above.
-fn dose_rate(t: Celsius) -> u32 {
+fn cem43_weight(t: Celsius) -> u32 {
     let above = t.saturating_sub(DOSE_REFERENCE_TEMPERATURE);
     // Exponent of two with 32 binary places: once or twice the difference.
     let exponent = i64::from(above.to_bits()) << (33 - Celsius::FRAC_NBITS - u32::from(above > 0));
@@ -107,7 +112,7 @@ mod tests {
             (41.5, 0.125),
             (40.0, 0.015_625),
         ] {
-            let rate = f64::from(dose_rate(Celsius::from_num(t_c))) / 256.0;
+            let rate = f64::from(cem43_weight(Celsius::from_num(t_c))) / 256.0;
             assert!((rate - worth).abs() < 1.0 / 256.0, "{t_c} C: {rate}");
         }
     }
@@ -119,7 +124,10 @@ mod tests {
             let mut dose = ThermalDose::default();
             let display = Celsius::from_num(t_c);
             let ticks = (1..)
-                .find(|_| dose.add_tick(|| Some(display)).is_err())
+                .find(|_| {
+                    dose.count_tick_and_evaluate_if_due(|| Some(display))
+                        .is_err()
+                })
                 .expect("a tick");
             assert!(
                 (f64::from(ticks) - 1e3 * seconds).abs() < 300.0,
@@ -128,7 +136,7 @@ mod tests {
         }
         let mut dose = ThermalDose::default();
         let cool = Celsius::lit("38.9");
-        assert!((0..1_000_000).all(|_| dose.add_tick(|| Some(cool)).is_ok()));
+        assert!((0..1_000_000).all(|_| dose.count_tick_and_evaluate_if_due(|| Some(cool)).is_ok()));
     }
 
     /// The same holds for a sum in which a bit has flipped.
@@ -138,13 +146,14 @@ mod tests {
         let hot = Celsius::lit("60");
         assert!(
             (0..600_000)
-                .filter(|_| dose.add_tick(|| Some(hot)).is_err())
+                .filter(|_| dose.count_tick_and_evaluate_if_due(|| Some(hot)).is_err())
                 .count()
                 > 0
         );
-        for mut dose in [dose, ThermalDose::from_word(u32::MAX)] {
+        for mut dose in [dose, ThermalDose::from_any_retained_word(u32::MAX)] {
             let cool = Celsius::lit("38.9");
-            let forgotten = (0..3_600_000).position(|_| dose.add_tick(|| Some(cool)).is_ok());
+            let forgotten = (0..3_600_000)
+                .position(|_| dose.count_tick_and_evaluate_if_due(|| Some(cool)).is_ok());
             assert!(forgotten.is_some());
         }
     }

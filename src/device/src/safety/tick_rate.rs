@@ -40,7 +40,7 @@ impl TickRateMonitor {
     ///
     /// A tick that is late by a whole turn of SysTick (2^24 counts, 93 ms at 180 MHz) seems to be on time; the window
     /// watchdog has reset the device by then, after 47 ms.
-    pub fn tick_is_on_time(&mut self, count: u32) -> bool {
+    pub fn tick_is_on_schedule(&mut self, count: u32) -> bool {
         let now = (count << (u32::BITS - SYSTICK_BITS)).wrapping_neg();
         let due = self.due.map_or(now, |due| due.wrapping_add(self.period));
         self.due = Some(due);
@@ -60,7 +60,7 @@ mod tests {
     fn first_off(ticks: u64, cycle: impl Fn(u64) -> u64) -> Option<u64> {
         let mut monitor = TickRateMonitor::new(PERIOD);
         let shown = |cycle: u64| (ROUND - 1 - (cycle + 123_456) % ROUND) as u32;
-        (0..ticks).find(|n| !monitor.tick_is_on_time(shown(cycle(*n))))
+        (0..ticks).find(|n| !monitor.tick_is_on_schedule(shown(cycle(*n))))
     }
 
     #[test]

@@ -78,7 +78,7 @@ impl TripCause {
     /// Converts the trip cause to the words in which the board keeps it in RAM through a reset. Whoever changes the
     /// words here must also change the list of their names in [`Self::LAYOUT_HASH`].
     #[must_use]
-    pub fn to_words(&self) -> [u32; Self::WORD_COUNT] {
+    pub fn to_retained_words(&self) -> [u32; Self::WORD_COUNT] {
         // Stands for an invalid reading: no thermistor reads the lowest representable temperature.
         let word = |t: Option<Celsius>| t.unwrap_or(Celsius::MIN).to_bits().cast_unsigned();
         [
@@ -92,10 +92,10 @@ impl TripCause {
         ]
     }
 
-    /// The trip cause that [`to_words`](Self::to_words) converted before a reset; `None` if the first word is not the
+    /// The trip cause that [`to_retained_words`](Self::to_retained_words) converted before a reset; `None` if the first word is not the
     /// number of a fault.
     #[must_use]
-    pub fn from_words(
+    pub fn from_retained_words(
         [fault, tick, display, check, sink, measured, demanded]: [u32; Self::WORD_COUNT],
     ) -> Option<Self> {
         let celsius = |word: u32| {

@@ -53,7 +53,7 @@ pub fn validate_readings(
         return Err(Fault::Excitation);
     }
     let temperature = |reading: Result<Celsius, ThermistorFault>, thermistor| {
-        reading.map_err(|fault| Fault::of_thermistor(thermistor, fault))
+        reading.map_err(|fault| Fault::of_open_or_shorted_thermistor(thermistor, fault))
     };
     let valid = ValidReadings {
         display: temperature(readings.display, ThermistorId::Display)?,

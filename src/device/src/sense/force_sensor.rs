@@ -7,9 +7,9 @@ use thermal_settings::ForceSensor;
 
 /// Smallest force, N, that counts as off zero: a finger may be landing. Noise is smaller: 0.7 to 1.2 counts RMS a
 /// conversion make about 0.6 to 1 mN RMS in the force of a tick.
-const OFF_ZERO_FORCE_MIN: Force = Force::lit("0.003");
+const NONZERO_FORCE_MIN: Force = Force::lit("0.003");
 /// Smallest force, N, at which a contact begins. The force must also have been off zero, at least
-/// [`OFF_ZERO_FORCE_MIN`], for [`CONTACT_DEBOUNCE_TICKS`] ticks in a row, so that one noisy tick begins no contact.
+/// [`NONZERO_FORCE_MIN`], for [`CONTACT_DEBOUNCE_TICKS`] ticks in a row, so that one noisy tick begins no contact.
 const CONTACT_BEGIN_FORCE: Force = Force::lit("0.02");
 /// Force, N, below which a contact ends. It is half of the force at which a contact begins (hysteresis), so that noise
 /// does not end a light contact.
@@ -28,7 +28,7 @@ const COUNTED_DETECTION_DELAY_MAX_TICKS: u32 = 32;
 /// Largest difference, N, between the force sensor's tracked zero and the zero in the settings. Covers a sensor whose
 /// zero of 410 counts is off by 2 % (0.027 N), and a reference voltage that is off by 2 % (as much again). A smaller
 /// force that is present from switch-on is taken for the zero.
-const FORCE_ZERO_CHANGE_MAX_N: f64 = 0.06;
+const FORCE_ZERO_TRACKING_RANGE_N: f64 = 0.06;
 /// Ticks of 1 ms after switch-on over which the force sensor's zero is the plain mean of its sums; afterwards the zero
 /// is tracked by a low-pass filter. Only ticks count in which no finger touches and the signal is within 0.06 N of the
 /// zero in the settings.
@@ -73,7 +73,7 @@ impl ForceChannel {
     #[must_use]
     pub fn new(settings: &ForceSensor) -> Self {
         let zero = settings.zero_counts * 16.0;
-        let max_change = FORCE_ZERO_CHANGE_MAX_N * settings.counts_per_n * 16.0;
+        let max_change = FORCE_ZERO_TRACKING_RANGE_N * settings.counts_per_n * 16.0;
         let fine =
             |sum| FineForceSum::from_bits(libm::ldexp(sum, FineForceSum::FRAC_NBITS as i32) as i32);
         Self {
@@ -99,9 +99,9 @@ impl ForceChannel {
     }
 
     /// Moves the zero towards `sum`, the sum of 16 conversions of a tick in which no finger touches: the first 256
-    /// times as their plain mean, later with a time constant of 1 s, or of 16 s if the force `is_off_zero`. Ignores a
+    /// times as their plain mean, later with a time constant of 1 s, or of 16 s if the force `is_force_nonzero`. Ignores a
     /// sum that is more than 0.06 N from the zero in the settings.
-    pub fn track_zero(&mut self, sum: u16, is_off_zero: bool) {
+    pub fn track_zero(&mut self, sum: u16, is_force_nonzero: bool) {
         let sum = FineForceSum::from(sum);
         if !(self.min_zero..=self.max_zero).contains(&sum) {
             return;
@@ -112,7 +112,7 @@ impl ForceChannel {
             error.checked_div_int(self.initial_ticks).unwrap_or(error)
         } else {
             let shifts = [FAST_ZERO_TRACKING_TICKS_LOG2, SLOW_ZERO_TRACKING_TICKS_LOG2];
-            error >> shifts[usize::from(is_off_zero)]
+            error >> shifts[usize::from(is_force_nonzero)]
         };
     }
 }
@@ -143,12 +143,12 @@ impl ContactDetector {
                 *self = Self::default();
             }
         } else {
-            self.off_zero_ticks = if force >= OFF_ZERO_FORCE_MIN {
+            self.off_zero_ticks = if force >= NONZERO_FORCE_MIN {
                 (self.off_zero_ticks + 1).min(COUNTED_DETECTION_DELAY_MAX_TICKS)
             } else {
                 0
             };
-            self.touching = self.may_be_landing() && force >= CONTACT_BEGIN_FORCE;
+            self.touching = self.is_force_nonzero_debounced() && force >= CONTACT_BEGIN_FORCE;
         }
     }
 
@@ -162,7 +162,7 @@ impl ContactDetector {
     /// contact; false in the call that ends a contact. While it is true without a contact, the force may be that of a
     /// finger, so the zero of the force sensor is tracked with a time constant of 16 s instead of 1 s.
     #[must_use]
-    pub const fn is_off_zero(&self) -> bool {
+    pub const fn is_force_nonzero(&self) -> bool {
         self.off_zero_ticks > 0
     }
 
@@ -170,7 +170,7 @@ impl ContactDetector {
     /// finger may be landing. Stays true during a contact. The self-test treats this like a contact, and measures its
     /// baseline again.
     #[must_use]
-    pub const fn may_be_landing(&self) -> bool {
+    pub const fn is_force_nonzero_debounced(&self) -> bool {
         self.off_zero_ticks >= CONTACT_DEBOUNCE_TICKS
     }
 

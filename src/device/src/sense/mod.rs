@@ -22,7 +22,7 @@ use thermistor::ThermistorTable;
 
 /// Number of analogue signals of one finger, 7: five thermistors, force sensor and current mirror of the bridge. The
 /// converter scans them in the order of the fields of [`Samples`].
-pub const CHANNEL_COUNT: usize = 7;
+pub const ADC_CHANNELS_PER_FINGER: usize = 7;
 
 /// Number of thermistors of one finger, 5: display, second display, sink, skin, room. They are the first channels of a
 /// [`Scan`], in this order.
@@ -33,7 +33,7 @@ pub use thermal_settings::THERMISTOR_COUNT;
 pub const SCANS_PER_TICK: usize = 16;
 
 /// One conversion of each channel of one finger: 12-bit codes (0 to 4095), in the order of the fields of [`Samples`].
-pub type Scan = [u16; CHANNEL_COUNT];
+pub type Scan = [u16; ADC_CHANNELS_PER_FINGER];
 
 /// One finger's input of one control tick of 1 ms: for each analogue channel the sum of its 16 conversions of 12 bits,
 /// 0 to 65520, and the state of the bridge's fault line. The sum of a thermistor falls as its temperature rises.
@@ -110,9 +110,9 @@ impl Samples {
 
 /// Sum of each channel over the 16 scans of a tick. One addition of 32-bit words adds two codes at once: a sum of 16
 /// codes of 12 bits is at most 65520, so it fits in half a word and never carries into the other half.
-fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNEL_COUNT] {
+fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; ADC_CHANNELS_PER_FINGER] {
     // A scan is seven half-words, so two scans are a whole number of words: seven, as many as there are channels.
-    let mut words = [0u32; CHANNEL_COUNT];
+    let mut words = [0u32; ADC_CHANNELS_PER_FINGER];
     let (pairs, _) = scans.as_chunks::<2>();
     for pair in pairs {
         let (halves, _) = pair.as_flattened().as_chunks::<2>();
@@ -120,8 +120,10 @@ fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; CHANNEL_COUNT] {
             *word += u32::from(*low) | u32::from(*high) << 16;
         }
     }
-    let half = |i: usize| (words[i / 2 % CHANNEL_COUNT] >> (16 * (i % 2))) as u16;
-    core::array::from_fn(|channel| half(channel).wrapping_add(half(channel + CHANNEL_COUNT)))
+    let half = |i: usize| (words[i / 2 % ADC_CHANNELS_PER_FINGER] >> (16 * (i % 2))) as u16;
+    core::array::from_fn(|channel| {
+        half(channel).wrapping_add(half(channel + ADC_CHANNELS_PER_FINGER))
+    })
 }
 
 /// One finger's readings of one control tick in physical units. Open or shorted sensors are marked by `Err` or `None`;
@@ -170,7 +172,7 @@ impl Readings {
 /// Number of slow thermistors, 2: skin and room. Their temperatures change by less than 1 mK in two ticks of 1 ms. To
 /// save time, each tick converts the sum of only one of them to °C, in turn, after one tick has converted both. Every
 /// tick checks the wires of both.
-const SLOW_THERMISTOR_COUNT: usize = 2;
+const ALTERNATELY_CONVERTED_THERMISTOR_COUNT: usize = 2;
 
 /// Converts one finger's [`Samples`] of each tick to [`Readings`] with the finger's calibration. Stores the zero of the
 /// force sensor, which it tracks while no finger touches, and the last temperatures of skin and room.
@@ -185,7 +187,7 @@ pub struct SampleConverter {
     /// the two, to save computing time; the other one keeps its last value, and its reading is this value while its
     /// wire is intact. `None` until both thermistors were connected in the same tick; until then each tick converts
     /// both.
-    slow_temperatures: Option<[Celsius; SLOW_THERMISTOR_COUNT]>,
+    slow_temperatures: Option<[Celsius; ALTERNATELY_CONVERTED_THERMISTOR_COUNT]>,
     /// Selects the slow thermistor that the next tick converts to °C: the skin's if this number is even, the room's if
     /// it is odd. Not used while `slow_temperatures` is `None`, because each tick then converts both.
     next_slow: usize,
@@ -210,15 +212,20 @@ impl SampleConverter {
     /// Moves the stored zero of the force sensor towards this tick's force signal, unless a finger touches the display
     /// or the signal is more than 0.06 N from the zero in the settings. To be called in each tick with valid readings,
     /// after `contact` has been updated by this tick's force.
-    pub fn track_force_zero(&mut self, samples: &Samples, contact: &ContactDetector) {
+    pub fn track_force_zero_unless_touching(
+        &mut self,
+        samples: &Samples,
+        contact: &ContactDetector,
+    ) {
         if !contact.touching() {
-            self.force.track_zero(samples.force, contact.is_off_zero());
+            self.force
+                .track_zero(samples.force, contact.is_force_nonzero());
         }
     }
 
     /// Replaces the calibration of converter and thermistors from the next tick on. The force sensor's zero is not
     /// changed.
-    pub fn recalibrate(&mut self, calibration: &CalibrationTables) {
+    pub fn replace_calibration_tables(&mut self, calibration: &CalibrationTables) {
         self.calibration = *calibration;
     }
 
@@ -239,7 +246,7 @@ impl SampleConverter {
         };
         let slow_sums = [samples.skin, samples.room];
         let slow = if let Some(last) = &mut self.slow_temperatures {
-            let converted = self.next_slow % SLOW_THERMISTOR_COUNT;
+            let converted = self.next_slow % ALTERNATELY_CONVERTED_THERMISTOR_COUNT;
             self.next_slow = converted + 1;
             if let Ok(now) = temperature(slow_sums[converted], &slow_corrections[converted]) {
                 last[converted] = now;

@@ -24,7 +24,7 @@ impl ThermistorAverage {
     /// Largest magnitude of the difference between the totals of the two blocks for a steady reading, in units of a sum
     /// of 16 conversions. It stands for a change of 0.12 counts a conversion (3 mK) in a quarter of a second: more than
     /// four standard deviations if the converter's noise is 1.2 counts.
-    const STEADY_CHANGE_MAX: u32 = AVERAGED_BLOCK_TICKS * 16 * 12 / 100;
+    const STEADY_BLOCK_TOTALS_CHANGE_MAX: u32 = AVERAGED_BLOCK_TICKS * 16 * 12 / 100;
 
     /// Mean, over 512 ticks of 1 ms, of the sum of 16 conversions of 12 bits: 0 to 65520.
     #[must_use]
@@ -36,7 +36,7 @@ impl ThermistorAverage {
     /// accepts only a steady reading.
     #[must_use]
     pub const fn is_steady(&self) -> bool {
-        self.change.unsigned_abs() <= Self::STEADY_CHANGE_MAX
+        self.change.unsigned_abs() <= Self::STEADY_BLOCK_TOTALS_CHANGE_MAX
     }
 }
 

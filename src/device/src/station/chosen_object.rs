@@ -51,7 +51,7 @@ impl ChosenObject {
     /// Input of the reference generator, which computes set-point and target in the states preset and contact: contact
     /// constants, object temperature and contact model. `None` before a material is chosen.
     #[must_use]
-    pub fn reference_input(&self) -> Option<PresentedObject<'_>> {
+    pub fn presented_object_if_chosen(&self) -> Option<PresentedObject<'_>> {
         let (_, pair) = self.material.as_ref()?;
         Some(PresentedObject {
             pair,

@@ -17,7 +17,7 @@ impl Station {
     pub fn execute(&mut self, command: Command) -> Result<Reply, Refused> {
         match command {
             Command::Status => return Ok(Reply::Status(self.status())),
-            Command::Cause => return Ok(Reply::Cause(self.latch.cause().copied())),
+            Command::Cause => return Ok(Reply::Cause(self.latch.last_trip_cause().copied())),
             Command::Law(None) => return Ok(Reply::Law(self.controller.law())),
             Command::Average(thermistor) => return self.thermistor_average(thermistor),
             Command::NormalEquation(row) => return self.normal_equation_row(row),
@@ -39,7 +39,7 @@ impl Station {
                 }
                 self.object.mode = mode;
             }
-            Command::Arm => self.execute_arm()?,
+            Command::Arm => self.execute_arm_by_self_test_if_off()?,
             Command::Hold(setpoint) => {
                 self.require_armed("hold")?;
                 self.identified.outcome = None;
@@ -48,19 +48,19 @@ impl Station {
                     Err(_) => ArmedTask::Neutral,
                 });
             }
-            Command::Start => self.execute_start()?,
+            Command::Start => self.execute_start_presentation()?,
             // Never refused: the bridge is off afterwards.
             Command::Abort => {
                 self.apply_event(Event::Abort);
             }
             Command::Clear => self.execute_clear()?,
-            Command::Tune => self.execute_tune()?,
+            Command::Tune => self.execute_tune_identification()?,
             Command::Calibrate(tables) => {
-                self.require_calibration_allowed()?;
+                self.require_no_object_and_no_self_test()?;
                 // The reading changes with the calibration, which neither the identification nor the detectors may take
                 // for a movement of the display.
                 self.interrupt_identification();
-                self.sensors.recalibrate(&tables);
+                self.sensors.replace_calibration_tables(&tables);
                 self.estimator.plate.note_recalibration();
                 self.detectors.restart_motion_detectors();
             }
@@ -109,7 +109,7 @@ impl Station {
     /// Refuses a calibration, or a request for the average that a calibration needs, while an object is presented and
     /// in the self-test. The self-test would mistake the step of the calibrated readings for the display's response to
     /// the test current.
-    fn require_calibration_allowed(&self) -> Result<(), Refused> {
+    fn require_no_object_and_no_self_test(&self) -> Result<(), Refused> {
         self.require_no_object_presented()?;
         if matches!(self.state, State::SelfTest(_)) {
             Err(Refused::Testing)
@@ -119,7 +119,7 @@ impl Station {
     }
 
     fn thermistor_average(&self, thermistor: usize) -> Result<Reply, Refused> {
-        self.require_calibration_allowed()?;
+        self.require_no_object_and_no_self_test()?;
         let average = self.averages.of(thermistor).ok_or(Refused::TooEarly)?;
         Ok(Reply::Average(average))
     }
@@ -133,14 +133,14 @@ impl Station {
             (_, None) => Err(Refused::NotTuned),
             (_, Some(Err(reason))) => Err(Refused::TuneAborted(reason)),
             (_, Some(Ok(()))) => {
-                let row = self.identified.equations.rows().get(row);
+                let row = self.identified.equations.rows_and_statistics().get(row);
                 row.map(|row| Reply::NormalEquation(*row))
                     .ok_or(Refused::NotTuned)
             }
         }
     }
 
-    fn execute_arm(&mut self) -> Result<(), Refused> {
+    fn execute_arm_by_self_test_if_off(&mut self) -> Result<(), Refused> {
         match self.state {
             State::Tripped(fault) => return Err(Refused::Tripped(fault)),
             State::SelfTest(_) => return Ok(()),
@@ -156,7 +156,7 @@ impl Station {
         Ok(())
     }
 
-    fn execute_start(&mut self) -> Result<(), Refused> {
+    fn execute_start_presentation(&mut self) -> Result<(), Refused> {
         match (&self.state, self.object.material) {
             (State::Tripped(fault), _) => return Err(Refused::Tripped(*fault)),
             (State::Off | State::Ready, _) => return Err(Refused::NotArmed),
@@ -179,7 +179,7 @@ impl Station {
             return Err(Refused::StillFaulty(fault));
         }
         self.apply_event(Event::Clear);
-        match self.latch.take_pending_fault() {
+        match self.latch.take_fault_raised_while_tripped() {
             None => Ok(()),
             Some(fault) => {
                 self.trip_without_readings(fault);
@@ -196,7 +196,7 @@ impl Station {
         }
     }
 
-    fn execute_tune(&mut self) -> Result<(), Refused> {
+    fn execute_tune_identification(&mut self) -> Result<(), Refused> {
         self.require_armed("tune")?;
         if self.contact.touching() {
             return Err(Refused::Touched);
@@ -207,7 +207,9 @@ impl Station {
             .sink
             .map_err(|_| Refused::NeedsArmed("tune"))?;
         self.identified = super::IdentificationResult::default();
-        self.state = State::Armed(ArmedTask::Identify(Identification::new(sink)));
+        self.state = State::Armed(ArmedTask::Identify(
+            Identification::begin_at_sink_temperature(sink),
+        ));
         Ok(())
     }
 }

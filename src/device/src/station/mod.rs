@@ -23,12 +23,12 @@ pub use state::{ArmedTask, Event, State};
 use crate::control::{ControlParameters, Controller, Law, VoltageFeedforward};
 use crate::drive::{BoardOutputs, Current, Drive, SafeCurrent};
 use crate::estimate::{
-    Estimator, FingerEstimator, LegTemperatures, PlateObserver, UncorrectedPlateTemperatures,
+    Estimator, FingerEstimator, LegTemperatures, PlateEstimateBeforeReading, PlateObserver,
 };
-use crate::identification::{AbortReason, NormalEquations};
+use crate::identification::{AbortReason, NormalEquationAccumulator};
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
-    self, Fault, FaultDetectors, FaultLatch, PreviousActuation, SelfTestStep, ThermalDose,
+    self, Fault, FaultDetectors, FaultLatch, PreviousDemandAndResidual, SelfTestStep, ThermalDose,
     TripCause, ValidReadings,
 };
 use crate::sense::{
@@ -64,7 +64,7 @@ pub struct Station {
 /// is tripped, also after the station has left that task, until the host sends `arm`, `hold` or `tune`.
 #[derive(Clone, Debug, Default)]
 struct IdentificationResult {
-    equations: NormalEquations,
+    equations: NormalEquationAccumulator,
     /// `Ok` once the normal equations are complete, or why the identification has ended early. `None` while an
     /// identification runs, and if none was started since the last `arm` or `hold`.
     outcome: Option<Result<(), AbortReason>>,
@@ -96,7 +96,7 @@ enum BridgeDemand {
 }
 
 impl BridgeDemand {
-    const BRIDGE_OFF: Self = Self::Off {
+    const OFF_WITHOUT_COMPARATOR_TEST: Self = Self::Off {
         comparator_test: false,
     };
 }
@@ -138,12 +138,13 @@ impl Station {
     /// `f64`; everything else stays as [`Station::new`] has made it. Called at the start, with the finger's stored
     /// settings.
     pub(crate) fn apply_settings(&mut self, settings: &Settings) {
-        self.sensors.recalibrate(&CalibrationTables::new(settings));
+        self.sensors
+            .replace_calibration_tables(&CalibrationTables::new(settings));
         self.set_control_parameters(&ControlParameters::new(settings));
     }
 
     fn set_control_parameters(&mut self, parameters: &ControlParameters) {
-        self.controller.set_parameters(parameters);
+        self.controller.set_pi_gains(parameters);
         self.estimator.plate.set_parameters(&parameters.observer);
     }
 
@@ -153,12 +154,12 @@ impl Station {
     #[inline(never)]
     pub fn step(&mut self, samples: &Samples) -> BoardOutputs {
         self.tick = self.tick.wrapping_add(1);
-        let readings = self.convert_and_average_samples(samples);
+        let readings = self.convert_samples_and_add_calibration_means(samples);
         let valid = self.valid_readings_or_fault(samples, &readings);
         let (demand, reference) = match valid {
             Ok(valid) => {
-                let estimate = self.update_estimates(samples, &valid);
-                let reference = self.generate_reference(&estimate);
+                let estimate = self.detect_touch_and_update_estimates(samples, &valid);
+                let reference = self.reference_for_present_state(&estimate);
                 let demand = self.choose_bridge_demand(
                     &valid,
                     readings.bridge_fault,
@@ -185,7 +186,7 @@ impl Station {
     /// Converts the tick's samples to °C, N and A. Unless an object is presented, also adds the thermistors' samples to
     /// the half-second means from which calibrations are computed.
     #[inline(never)]
-    fn convert_and_average_samples(&mut self, samples: &Samples) -> Readings {
+    fn convert_samples_and_add_calibration_means(&mut self, samples: &Samples) -> Readings {
         // Calibrations are refused while an object is presented.
         if !self.state.is_presenting_object() {
             self.averages.add_tick(&samples.thermistor_sums());
@@ -205,19 +206,19 @@ impl Station {
         readings: &Readings,
     ) -> Result<ValidReadings, Fault> {
         // What the tick before demanded of the bridge; this tick's readings respond to it.
-        let previous = PreviousActuation {
+        let previous = PreviousDemandAndResidual {
             demanded: self.last.demanded,
             setpoint: self.last.reference.map(|reference| reference.setpoint),
             residual_is_large: self.estimator.plate.residual_is_large(),
         };
         let frozen = self.detectors.check_frozen_samples(samples);
-        let dose = self.detectors.add_to_dose(readings);
+        let dose = self.detectors.update_and_check_dose(readings);
         let valid = safety::validate_readings(readings, self.controller.current_limit());
         let over_ticks = match &valid {
             Ok(valid) => {
                 let streams = self.telemetry_ticks != 0;
                 self.detectors
-                    .run_multi_tick_detectors(valid, &previous, streams)
+                    .run_detectors_of_valid_readings(valid, &previous, streams)
             }
             Err(_) => {
                 self.detectors.restart_motion_detectors();
@@ -225,7 +226,7 @@ impl Station {
             }
         };
         let valid = valid?;
-        self.check_bridge_fault_line(readings)
+        self.bridge_line_fault_unless_expected(readings)
             .and(over_ticks)
             .and(dose)
             .and(frozen)?;
@@ -238,10 +239,10 @@ impl Station {
     ///
     /// # Errors
     /// [`Fault::Bridge`]: the line is pulled at any other time.
-    fn check_bridge_fault_line(&self, readings: &Readings) -> Result<(), Fault> {
+    fn bridge_line_fault_unless_expected(&self, readings: &Readings) -> Result<(), Fault> {
         let ignored = match &self.state {
             State::Off | State::Tripped(_) => true,
-            State::SelfTest(test) => test.expects_bridge_fault(),
+            State::SelfTest(test) => test.is_testing_comparator(),
             _ => false,
         };
         if readings.bridge_fault && !ignored {
@@ -254,14 +255,15 @@ impl Station {
     /// Detects whether a finger touches, and changes from preset to contact or back accordingly; tracks the force
     /// sensor's zero while no finger touches; corrects the estimates of plate and finger by this tick's readings.
     /// Returns the plate's temperatures as they were estimated before this correction.
-    fn update_estimates(
+    fn detect_touch_and_update_estimates(
         &mut self,
         samples: &Samples,
         valid: &ValidReadings,
-    ) -> UncorrectedPlateTemperatures {
+    ) -> PlateEstimateBeforeReading {
         let previously_touching = self.contact.touching();
         self.contact.update_contact(valid.force);
-        self.sensors.track_force_zero(samples, &self.contact);
+        self.sensors
+            .track_force_zero_unless_touching(samples, &self.contact);
         let touching = self.contact.touching();
         self.apply_event(if touching { Event::Land } else { Event::Lift });
         let landed_ticks = if previously_touching {
@@ -277,7 +279,10 @@ impl Station {
 
     /// Set-point and target temperature that the display must follow in this tick. `None` in off, ready and tripped,
     /// where the bridge is off, and in the self-test, which chooses its own current.
-    fn generate_reference(&mut self, estimate: &UncorrectedPlateTemperatures) -> Option<Reference> {
+    fn reference_for_present_state(
+        &mut self,
+        estimate: &PlateEstimateBeforeReading,
+    ) -> Option<Reference> {
         let finger = &mut self.estimator.finger;
         let setpoint = match &mut self.state {
             State::Off | State::SelfTest(_) | State::Ready | State::Tripped(_) => return None,
@@ -285,7 +290,7 @@ impl Station {
             State::Armed(ArmedTask::Hold(hold)) => hold.next_setpoint().celsius(),
             State::Armed(ArmedTask::Identify(tile)) => tile.operating_point().celsius(),
             State::Preset | State::Contact => {
-                let scene = self.object.reference_input()?;
+                let scene = self.object.presented_object_if_chosen()?;
                 let surface = estimate.previous_surface;
                 let follow_skin = self.controller.law() == Law::Model;
                 return self
@@ -307,7 +312,7 @@ impl Station {
         &mut self,
         valid: &ValidReadings,
         bridge_fault: bool,
-        estimate: &UncorrectedPlateTemperatures,
+        estimate: &PlateEstimateBeforeReading,
         reference: Option<&Reference>,
     ) -> Result<BridgeDemand, Fault> {
         let drive = |current| BridgeDemand::Drive {
@@ -315,7 +320,7 @@ impl Station {
             previous_legs: estimate.previous_legs,
         };
         if let State::SelfTest(test) = &mut self.state {
-            let touched = self.contact.may_be_landing() || self.contact.touching();
+            let touched = self.contact.is_force_nonzero_debounced() || self.contact.touching();
             return Ok(match test.step(valid, bridge_fault, touched)? {
                 SelfTestStep::Off { comparator_test } => BridgeDemand::Off { comparator_test },
                 SelfTestStep::Drive(current) => {
@@ -324,12 +329,12 @@ impl Station {
                 }
                 SelfTestStep::Passed => {
                     self.apply_event(Event::Pass);
-                    BridgeDemand::BRIDGE_OFF
+                    BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
                 }
             });
         }
         let Some(reference) = reference else {
-            return Ok(BridgeDemand::BRIDGE_OFF);
+            return Ok(BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST);
         };
         let current = match self.step_identification(valid) {
             Some(current) => {
@@ -370,7 +375,8 @@ impl Station {
         demand: Result<BridgeDemand, Fault>,
         readings: &Readings,
     ) -> BridgeDemand {
-        self.latch.set_present_fault(demand.err());
+        self.latch
+            .set_present_to_detected_or_take_external(demand.err());
         demand.unwrap_or_else(|fault| {
             let previously_demanded = self.last.demanded;
             self.trip(TripCause::new(
@@ -379,7 +385,7 @@ impl Station {
                 readings,
                 previously_demanded,
             ));
-            BridgeDemand::BRIDGE_OFF
+            BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
         })
     }
 
@@ -419,7 +425,7 @@ impl Station {
     /// in a tick whose readings are invalid or in which a detector has found a fault.
     fn invalidate_estimates(&mut self) {
         self.estimator.invalidate();
-        self.reference.discard_contact();
+        self.reference.discard_contact_and_skin_simulation();
     }
 
     /// Ends an identification of the tile that is still running, with the outcome [`AbortReason::Interrupted`], and
@@ -447,7 +453,7 @@ impl Station {
     /// Trips the station by a fault that no reading shows and that the board has found outside of the control tick,
     /// such as an overrun stack. If a different fault has already tripped the station, that fault stays latched; this
     /// one is stored, unless one is stored already, and trips the station when `clear` has cleared the latched one.
-    pub fn raise_external_fault(&mut self, fault: Fault) {
+    pub fn trip_or_store_external_fault(&mut self, fault: Fault) {
         self.latch
             .raise_external_fault(fault, self.state.latched_fault());
         self.trip_without_readings(fault);
@@ -465,7 +471,7 @@ impl Station {
     /// that the first cause stays.
     pub fn trip(&mut self, cause: TripCause) {
         if self.apply_event(Event::Trip(cause.fault)) {
-            self.latch.latch_cause(cause, self.tick);
+            self.latch.store_trip_cause_and_tick(cause, self.tick);
         }
     }
 
@@ -510,7 +516,7 @@ impl Station {
     /// Telemetry of the last tick. `None` if the host has not switched telemetry on, or if the tick's number is not a
     /// multiple of the interval that the host has chosen.
     #[must_use]
-    pub fn telemetry(&self) -> Option<Telemetry> {
+    pub fn telemetry_if_due(&self) -> Option<Telemetry> {
         if self.telemetry_ticks == 0 || !self.tick.is_multiple_of(self.telemetry_ticks) {
             return None;
         }

@@ -30,7 +30,7 @@ fn stored_settings() -> impl Strategy<Value = StoredSettings> {
                     curvature_1_k: scaled(curvature, 1e8),
                 }),
             },
-            tile: Tile::from_array(
+            tile: Tile::from_array_rounded(
                 [tile.0, tile.1, tile.2, tile.3, tile.4].map(|value| scaled(value, 1e6)),
             ),
         }
@@ -51,33 +51,33 @@ fn with_checksum(content: &[u8]) -> std::vec::Vec<u8> {
 proptest! {
     #[test]
     fn decode_restores_what_encode_wrote_bit_for_bit(stored in proptest::array::uniform5(stored_settings())) {
-        prop_assert_eq!(decode::<5>(&encode(Some(&stored))), Ok(Some(stored)));
+        prop_assert_eq!(decode_settings_record::<5>(&encode_settings_record(Some(&stored))), Ok(Some(stored)));
     }
 
     #[test]
     fn decode_accepts_any_bytes_without_panicking_and_checks_ranges(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
-        prop_assert!(decode::<1>(&bytes).is_err());
+        prop_assert!(decode_settings_record::<1>(&bytes).is_err());
         // Bytes with a valid checksum, then with a valid header too.
-        let _any_content = decode::<1>(&with_checksum(&bytes));
+        let _any_content = decode_settings_record::<1>(&with_checksum(&bytes));
         let mut content = std::vec![1, 0, 1, 1];
-        content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { BYTES_PER_FINGER }));
-        if let Ok(Some([stored])) = decode::<1>(&with_checksum(&content)) {
+        content.extend(bytes.iter().cycle().take(if bytes.is_empty() { 0 } else { RECORD_BYTES_PER_FINGER }));
+        if let Ok(Some([stored])) = decode_settings_record::<1>(&with_checksum(&content)) {
             prop_assert_eq!(stored.first_value_out_of_range(), None);
         }
     }
 
     #[test]
-    fn the_checksum_detects_any_flipped_bit(stored in stored_settings(), bit in 0..8 * (HEADER_BYTES + BYTES_PER_FINGER + CHECKSUM_BYTES)) {
-        let mut bytes = encode(Some(&[stored]));
+    fn the_checksum_detects_any_flipped_bit(stored in stored_settings(), bit in 0..8 * (HEADER_BYTES + RECORD_BYTES_PER_FINGER + CHECKSUM_BYTES)) {
+        let mut bytes = encode_settings_record(Some(&[stored]));
         bytes[bit / 8] ^= 1 << (bit % 8);
-        prop_assert_eq!(decode::<1>(&bytes), Err(RecordError::Checksum));
+        prop_assert_eq!(decode_settings_record::<1>(&bytes), Err(RecordError::Checksum));
     }
 }
 
 #[test]
 fn the_record_has_the_documented_layout() {
     let stored = StoredSettings::from_settings(&Settings::default());
-    let bytes = encode(Some(&[stored]));
+    let bytes = encode_settings_record(Some(&[stored]));
     assert_eq!(bytes.len(), 140);
     assert_eq!(bytes[..4], [1, 0, 1, 1]);
     // 28 zeros, then the nominal tile in millionths.
@@ -89,18 +89,24 @@ fn the_record_has_the_documented_layout() {
         (&[0; 112][..], &tile[..])
     );
     assert_eq!(with_checksum(&bytes[..136]), bytes[..]);
-    assert_eq!(encode::<1>(None)[..], with_checksum(&[1, 0, 0, 0])[..]);
-    assert_eq!(decode::<1>(&with_checksum(&[1, 0, 0, 0])), Ok(None));
+    assert_eq!(
+        encode_settings_record::<1>(None)[..],
+        with_checksum(&[1, 0, 0, 0])[..]
+    );
+    assert_eq!(
+        decode_settings_record::<1>(&with_checksum(&[1, 0, 0, 0])),
+        Ok(None)
+    );
 }
 
 #[test]
 fn each_invalid_record_has_its_error_message() {
-    let good = encode(Some(&[StoredSettings::from_settings(&Settings::default())]));
+    let good = encode_settings_record(Some(&[StoredSettings::from_settings(&Settings::default())]));
     let content = &good[..good.len() - CHECKSUM_BYTES];
     let changed = |at: usize, value: &[u8]| {
         let mut content = content.to_vec();
         content[at..at + value.len()].copy_from_slice(value);
-        decode::<1>(&with_checksum(&content))
+        decode_settings_record::<1>(&with_checksum(&content))
             .expect_err("changed")
             .to_string()
     };
@@ -127,25 +133,31 @@ fn each_invalid_record_has_its_error_message() {
         "stored gain 0.099999 of finger 0 out of range; 0.1 to 15 K/s/A"
     );
     assert_eq!(
-        decode::<1>(&with_checksum(&content[..100])),
+        decode_settings_record::<1>(&with_checksum(&content[..100])),
         Err(RecordError::Length(104))
     );
-    assert_eq!(decode::<1>(&[]), Err(RecordError::Length(0)));
-    assert_eq!(decode::<5>(&good), Err(RecordError::Fingers(1)));
+    assert_eq!(
+        decode_settings_record::<1>(&[]),
+        Err(RecordError::Length(0))
+    );
+    assert_eq!(
+        decode_settings_record::<5>(&good),
+        Err(RecordError::Fingers(1))
+    );
 }
 
 #[test]
 fn stored_settings_determine_the_gains() {
-    let mut tile = Tile::NOMINAL;
+    let mut tile = Tile::FACTORY_DEFAULT;
     tile.gain_k_s_a = 5.0;
     let stored = StoredSettings {
         calibration: Calibration::default(),
         tile,
     };
-    let settings = stored.to_complete_settings();
+    let settings = stored.to_settings_with_factory_defaults();
     assert_eq!(StoredSettings::from_settings(&settings), stored);
     assert_eq!(
         [settings.gains, settings.gains_10hz],
-        super::super::Gains::for_both_loop_rates(&tile)
+        super::super::PiGains::for_1khz_and_10hz_laws(&tile)
     );
 }

@@ -41,7 +41,7 @@ impl Replay {
                     bail!("the device refuses {line:?}: {error}");
                 }
             }
-            device.step(FingerIndex::FIRST, &samples(ms));
+            device.step_finger(FingerIndex::FIRST, &samples(ms));
         }
         let samples = (READY_MS..).take(ticks).map(samples).collect();
         let replay = Self {
@@ -59,7 +59,7 @@ impl Replay {
         let mut device = self.start.clone();
         let mut drive = Drive::Off;
         for samples in &self.samples {
-            drive = black_box(device.step(FingerIndex::FIRST, black_box(samples))).drive;
+            drive = black_box(device.step_finger(FingerIndex::FIRST, black_box(samples))).drive;
         }
         drive
     }

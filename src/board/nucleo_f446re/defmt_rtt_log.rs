@@ -11,6 +11,6 @@ defmt::timestamp!("{=u32:ms}", UPTIME_MS.load(Ordering::Relaxed));
 
 /// Advances the time stamp of the log by one millisecond; called in every control tick of the first
 /// finger.
-pub fn advance_time_stamp() {
+pub fn advance_uptime_by_1_ms() {
     UPTIME_MS.fetch_add(1, Ordering::Relaxed);
 }

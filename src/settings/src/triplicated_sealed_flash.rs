@@ -29,7 +29,7 @@ const COPIES_PER_WORD: usize = 3;
 const FLASH_BYTES_PER_DATA_WORD: usize = COPIES_PER_WORD * WORD_BYTES;
 /// The first two words of a valid sector; a sector without this seal reads as erased. It differs in many bits from
 /// erased flash (0xff) and from zeros, so that an interrupted erasure is unlikely to form it.
-const SECTOR_SEAL: [u8; 2 * WORD_BYTES] = *b"settings";
+const VALID_SECTOR_SEAL: [u8; 2 * WORD_BYTES] = *b"settings";
 /// Programmed over the first word of a sector's seal to make the sector invalid before its erasure; zeros, because
 /// programming can only clear bits.
 const BROKEN_SEAL_WORD: [u8; WORD_BYTES] = [0; WORD_BYTES];
@@ -41,11 +41,11 @@ const BLANK_CHECK_CHUNK_BYTES: usize = 32;
 /// built on the flash `F`, whose sectors all have one size. Each word is stored three times, so each sector holds a
 /// third of the data of a sector of `F`, less a seal of two words that marks the sector as valid.
 #[derive(Debug)]
-pub struct RedundantSectors<F>(F);
+pub struct TriplicatedSealedFlash<F>(F);
 
 /// Why redundant sectors could not be read, written or erased.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SectorError<E> {
+pub enum TriplicatedSealedFlashError<E> {
     /// The driver of the flash reported this error when it read, programmed or erased.
     Flash(E),
     /// A sector of the flash is not blank (all bytes 0xff) after it was erased.
@@ -55,7 +55,7 @@ pub enum SectorError<E> {
     OutOfBounds,
 }
 
-impl<E: fmt::Display> fmt::Display for SectorError<E> {
+impl<E: fmt::Display> fmt::Display for TriplicatedSealedFlashError<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Flash(error) => error.fmt(f),
@@ -65,7 +65,7 @@ impl<E: fmt::Display> fmt::Display for SectorError<E> {
     }
 }
 
-impl<E: fmt::Debug> NorFlashError for SectorError<E> {
+impl<E: fmt::Debug> NorFlashError for TriplicatedSealedFlashError<E> {
     fn kind(&self) -> NorFlashErrorKind {
         match self {
             Self::OutOfBounds => NorFlashErrorKind::OutOfBounds,
@@ -74,11 +74,11 @@ impl<E: fmt::Debug> NorFlashError for SectorError<E> {
     }
 }
 
-impl<F: BlockingNorFlash> RedundantSectors<F> {
+impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
     /// Bytes of data that one sector holds: a third of the size of the flash's sector, because each word is stored
     /// three times, less the seal of 8 bytes that marks a valid sector.
     pub const DATA_BYTES_PER_SECTOR: usize =
-        F::ERASE_SIZE / FLASH_BYTES_PER_DATA_WORD * WORD_BYTES - SECTOR_SEAL.len();
+        F::ERASE_SIZE / FLASH_BYTES_PER_DATA_WORD * WORD_BYTES - VALID_SECTOR_SEAL.len();
 
     /// Makes redundant sectors of all sectors of `flash`. Compiling fails if `flash` is read or written in units of
     /// more than 4 bytes.
@@ -91,13 +91,13 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
     /// without seals and copies: the start of the sector, and the first copy of the first word.
     ///
     /// # Errors
-    /// [`SectorError::OutOfBounds`]: `offset` is not a multiple of 4 bytes from the start of the sector's data, or the
+    /// [`TriplicatedSealedFlashError::OutOfBounds`]: `offset` is not a multiple of 4 bytes from the start of the sector's data, or the
     /// access does not lie within one sector of the flash.
-    fn sector_and_word_addresses(
+    fn checked_sector_and_word_addresses(
         &self,
         offset: u32,
         bytes: usize,
-    ) -> Result<(u32, u32), SectorError<F::Error>> {
+    ) -> Result<(u32, u32), TriplicatedSealedFlashError<F::Error>> {
         let offset = offset as usize;
         let (sector, within) = (
             offset / Self::DATA_BYTES_PER_SECTOR,
@@ -108,20 +108,21 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
             && within + bytes <= Self::DATA_BYTES_PER_SECTOR
             && start + F::ERASE_SIZE <= self.0.capacity();
         if fits {
-            let from_start = (SECTOR_SEAL.len() + within) / WORD_BYTES * FLASH_BYTES_PER_DATA_WORD;
+            let from_start =
+                (VALID_SECTOR_SEAL.len() + within) / WORD_BYTES * FLASH_BYTES_PER_DATA_WORD;
             Ok((start as u32, (start + from_start) as u32))
         } else {
-            Err(SectorError::OutOfBounds)
+            Err(TriplicatedSealedFlashError::OutOfBounds)
         }
     }
 
     /// Fills `bytes` with the words whose copies begin at `address` in the flash. Each bit is read as what two of its
     /// three copies hold.
-    fn read_majority(
+    fn read_words_by_bit_majority(
         &mut self,
         address: u32,
         bytes: &mut [u8],
-    ) -> Result<(), SectorError<F::Error>> {
+    ) -> Result<(), TriplicatedSealedFlashError<F::Error>> {
         for (word, at) in bytes
             .chunks_mut(WORD_BYTES)
             .zip((address..).step_by(FLASH_BYTES_PER_DATA_WORD))
@@ -129,7 +130,7 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
             let mut copies = [[0; WORD_BYTES]; COPIES_PER_WORD];
             self.0
                 .read(at, copies.as_flattened_mut())
-                .map_err(SectorError::Flash)?;
+                .map_err(TriplicatedSealedFlashError::Flash)?;
             let [first, second, third] = copies.map(u32::from_ne_bytes);
             let majority = first & second | second & third | third & first;
             word.iter_mut()
@@ -142,11 +143,15 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
     /// Programs the words of `bytes` in their order from `address` in the flash on, each word three times in a row.
     ///
     /// # Errors
-    /// [`SectorError::OutOfBounds`]: `bytes` are not whole words of 4 bytes. [`SectorError::Flash`]: programming
+    /// [`TriplicatedSealedFlashError::OutOfBounds`]: `bytes` are not whole words of 4 bytes. [`TriplicatedSealedFlashError::Flash`]: programming
     /// failed.
-    fn program_copies(&mut self, address: u32, bytes: &[u8]) -> Result<(), SectorError<F::Error>> {
+    fn program_words_in_triplicate(
+        &mut self,
+        address: u32,
+        bytes: &[u8],
+    ) -> Result<(), TriplicatedSealedFlashError<F::Error>> {
         let (words, []) = bytes.as_chunks() else {
-            return Err(SectorError::OutOfBounds);
+            return Err(TriplicatedSealedFlashError::OutOfBounds);
         };
         for (word, at) in words
             .iter()
@@ -155,46 +160,50 @@ impl<F: BlockingNorFlash> RedundantSectors<F> {
             let copies: [[u8; WORD_BYTES]; COPIES_PER_WORD] = [*word; COPIES_PER_WORD];
             self.0
                 .write(at, copies.as_flattened())
-                .map_err(SectorError::Flash)?;
+                .map_err(TriplicatedSealedFlashError::Flash)?;
         }
         Ok(())
     }
 
     #[inline(never)]
-    fn is_sealed(&mut self, start: u32) -> Result<bool, SectorError<F::Error>> {
-        let mut seal = [0; SECTOR_SEAL.len()];
-        self.read_majority(start, &mut seal)?;
-        Ok(seal == SECTOR_SEAL)
+    fn is_sealed(&mut self, start: u32) -> Result<bool, TriplicatedSealedFlashError<F::Error>> {
+        let mut seal = [0; VALID_SECTOR_SEAL.len()];
+        self.read_words_by_bit_majority(start, &mut seal)?;
+        Ok(seal == VALID_SECTOR_SEAL)
     }
 
     /// Erases the flash sector at `start`, checks that it is blank, and seals it. Even a sector that reads as blank is
     /// erased: bits that an interrupted erasure left half-erased may read as erased now and not later.
     #[inline(never)]
-    fn erase_and_seal(&mut self, start: u32) -> Result<(), SectorError<F::Error>> {
+    fn erase_and_seal(&mut self, start: u32) -> Result<(), TriplicatedSealedFlashError<F::Error>> {
         let end = start + F::ERASE_SIZE as u32;
-        self.0.erase(start, end).map_err(SectorError::Flash)?;
+        self.0
+            .erase(start, end)
+            .map_err(TriplicatedSealedFlashError::Flash)?;
         for at in (start..end).step_by(BLANK_CHECK_CHUNK_BYTES) {
             let mut read = [0; BLANK_CHECK_CHUNK_BYTES];
-            self.0.read(at, &mut read).map_err(SectorError::Flash)?;
+            self.0
+                .read(at, &mut read)
+                .map_err(TriplicatedSealedFlashError::Flash)?;
             if read != [ERASED_BYTE; BLANK_CHECK_CHUNK_BYTES] {
-                return Err(SectorError::NotErased);
+                return Err(TriplicatedSealedFlashError::NotErased);
             }
         }
-        self.program_copies(start, &SECTOR_SEAL)
+        self.program_words_in_triplicate(start, &VALID_SECTOR_SEAL)
     }
 }
 
-impl<F: BlockingNorFlash> ErrorType for RedundantSectors<F> {
-    type Error = SectorError<F::Error>;
+impl<F: BlockingNorFlash> ErrorType for TriplicatedSealedFlash<F> {
+    type Error = TriplicatedSealedFlashError<F::Error>;
 }
 
-impl<F: BlockingNorFlash> ReadNorFlash for RedundantSectors<F> {
+impl<F: BlockingNorFlash> ReadNorFlash for TriplicatedSealedFlash<F> {
     const READ_SIZE: usize = WORD_BYTES;
 
     async fn read(&mut self, offset: u32, bytes: &mut [u8]) -> Result<(), Self::Error> {
-        let (start, address) = self.sector_and_word_addresses(offset, bytes.len())?;
+        let (start, address) = self.checked_sector_and_word_addresses(offset, bytes.len())?;
         if self.is_sealed(start)? {
-            return self.read_majority(address, bytes);
+            return self.read_words_by_bit_majority(address, bytes);
         }
         bytes.fill(ERASED_BYTE);
         Ok(())
@@ -205,25 +214,25 @@ impl<F: BlockingNorFlash> ReadNorFlash for RedundantSectors<F> {
     }
 }
 
-impl<F: BlockingNorFlash> NorFlash for RedundantSectors<F> {
+impl<F: BlockingNorFlash> NorFlash for TriplicatedSealedFlash<F> {
     const WRITE_SIZE: usize = WORD_BYTES;
     const ERASE_SIZE: usize = Self::DATA_BYTES_PER_SECTOR;
 
     async fn erase(&mut self, from: u32, to: u32) -> Result<(), Self::Error> {
         for offset in (from..to).step_by(Self::DATA_BYTES_PER_SECTOR) {
-            let (start, _) = self.sector_and_word_addresses(offset, 0)?;
+            let (start, _) = self.checked_sector_and_word_addresses(offset, 0)?;
             if self.is_sealed(start)? {
-                self.program_copies(start, &BROKEN_SEAL_WORD)?;
+                self.program_words_in_triplicate(start, &BROKEN_SEAL_WORD)?;
             }
         }
         Ok(())
     }
 
     async fn write(&mut self, offset: u32, bytes: &[u8]) -> Result<(), Self::Error> {
-        let (start, address) = self.sector_and_word_addresses(offset, bytes.len())?;
+        let (start, address) = self.checked_sector_and_word_addresses(offset, bytes.len())?;
         if !self.is_sealed(start)? {
             self.erase_and_seal(start)?;
         }
-        self.program_copies(address, bytes)
+        self.program_words_in_triplicate(address, bytes)
     }
 }

@@ -26,23 +26,23 @@ const SYSTICK_RELOAD: u32 = 0xff_ffff;
 /// Checks in every tick, with the counter SysTick, that the ticks come at the right rate, and that
 /// the clock settings are still those of the start. An error turns all bridges off and stops
 /// sampling.
-pub struct ClockMonitor {
+pub struct TickRateAndRccMonitor {
     tick_rate: TickRateMonitor,
     /// Value of the register RCC_CFGR when the monitor was created. If the register changes
     /// afterwards, sampling stops with [`SampleError::Clocks`].
-    clock_settings: u32,
+    rcc_cfgr_at_start: u32,
 }
 
 /// Reads the register RCC_CFGR: source and prescalers of the clocks.
-fn clock_settings() -> u32 {
+fn read_rcc_cfgr() -> u32 {
     // SAFETY: a load without side effects, from a register that is written at the start only.
     unsafe { &*RCC::ptr() }.cfgr().read().bits()
 }
 
-impl ClockMonitor {
+impl TickRateAndRccMonitor {
     /// Starts SysTick on the core clock, whose frequency is `hclk_hz` (Hz), and stores the present
     /// clock settings for later comparison.
-    /// [`check_clocks_and_tick_rate`](Self::check_clocks_and_tick_rate) must then be called once
+    /// [`check_rcc_cfgr_and_tick_rate`](Self::check_rcc_cfgr_and_tick_rate) must then be called once
     /// for each finger and tick of 1 ms.
     pub fn new(mut counter: SYST, hclk_hz: u32) -> Self {
         counter.set_clock_source(SystClkSource::Core);
@@ -51,7 +51,7 @@ impl ClockMonitor {
         counter.enable_counter();
         Self {
             tick_rate: TickRateMonitor::new(hclk_hz / (TICK_HZ * FINGERS as u32)),
-            clock_settings: clock_settings(),
+            rcc_cfgr_at_start: read_rcc_cfgr(),
         }
     }
 
@@ -63,11 +63,11 @@ impl ClockMonitor {
     /// # Errors
     /// [`SampleError::Clocks`] if the register RCC_CFGR has changed since the start,
     /// [`SampleError::TickRate`] if the call is early or late by more than a quarter of a period.
-    pub fn check_clocks_and_tick_rate(&mut self) -> Result<(), SampleError> {
-        if clock_settings() != self.clock_settings {
+    pub fn check_rcc_cfgr_and_tick_rate(&mut self) -> Result<(), SampleError> {
+        if read_rcc_cfgr() != self.rcc_cfgr_at_start {
             return Err(SampleError::Clocks);
         }
-        if !self.tick_rate.tick_is_on_time(SYST::get_current()) {
+        if !self.tick_rate.tick_is_on_schedule(SYST::get_current()) {
             return Err(SampleError::TickRate);
         }
         Ok(())

@@ -10,12 +10,12 @@ pub const FROZEN_TICKS: u8 = 46;
 /// When one channel has repeated for [`FROZEN_TICKS`], all channels must have repeated for this number of ticks of 1 ms
 /// for the converter, and not that one sensor, to be named as frozen. It is smaller than [`FROZEN_TICKS`], because by
 /// chance one channel may have begun to repeat earlier than the others.
-const ALL_FROZEN_TICKS: u8 = 30;
+const CONVERTER_BLAMED_IF_ALL_FROZEN_TICKS: u8 = 30;
 /// Number of signals that are monitored: five thermistors and the force sensor. The current mirror is not monitored,
 /// because its sum is zero, and thus repeats, while the bridge is off.
 const MONITORED_CHANNEL_COUNT: usize = 6;
 /// The fault of each monitored channel when that channel is frozen, in the order in which
-/// [`FrozenDetector::check_samples`] compares the channels.
+/// [`FrozenSampleDetector::check_samples`] compares the channels.
 const FROZEN_CHANNEL_FAULTS: [Fault; MONITORED_CHANNEL_COUNT] = [
     Fault::DisplayFrozen,
     Fault::CheckFrozen,
@@ -28,12 +28,12 @@ const FROZEN_CHANNEL_FAULTS: [Fault; MONITORED_CHANNEL_COUNT] = [
 /// Detects a wire or a converter that delivers a constant. Keeps, for each of the five thermistors and the force
 /// sensor, the last sum of 16 conversions, and the number of ticks in a row for which the sum has not changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct FrozenDetector {
+pub struct FrozenSampleDetector {
     previous: [u16; MONITORED_CHANNEL_COUNT],
     repeats: [u8; MONITORED_CHANNEL_COUNT],
 }
 
-impl FrozenDetector {
+impl FrozenSampleDetector {
     /// Compares the samples of this tick with those of the tick before. To be called in every tick.
     ///
     /// # Errors
@@ -58,7 +58,12 @@ impl FrozenDetector {
         }
         match frozen {
             None => Ok(()),
-            Some(_) if self.repeats.iter().all(|ticks| *ticks >= ALL_FROZEN_TICKS) => {
+            Some(_)
+                if self
+                    .repeats
+                    .iter()
+                    .all(|ticks| *ticks >= CONVERTER_BLAMED_IF_ALL_FROZEN_TICKS) =>
+            {
                 Err(Fault::SamplesFrozen)
             }
             Some(one) => Err(one),

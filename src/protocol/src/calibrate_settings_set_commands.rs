@@ -1,16 +1,17 @@
 //! Parsing of the commands `calibrate`, `settings` and `set`.
 
 use thermal_commissioning::{
-    CONVERTER_STEPS_PER_LINE, SENSOR_WORDS, SETTINGS_LINE_COUNT, SessionRequest, Setting,
+    CONVERTER_STEPS_PER_LINE_MAX, SETTINGS_LINE_COUNT, SessionRequest, Setting, THERMISTOR_WORDS,
 };
 use thermal_settings::{
-    CALIBRATED_BORDER_COUNT, CONVERTER_STEP_RANGE, CORRECTION_RANGES, Calibration, Correction,
-    FIRST_CALIBRATED_BORDER, Range, TILE_RANGES, Tile, round_to_decimals,
+    ADC_ERROR_STEP_RANGE, CALIBRATED_ADC_BORDER_COUNT, CORRECTION_RANGES, Calibration, Correction,
+    FIRST_CALIBRATED_ADC_BORDER_INDEX, Range, TILE_RANGES, Tile, round_to_decimals,
 };
 
 use crate::Error;
 use crate::arguments::{
-    Words, read_number, read_numbers, read_whole_number, read_word, skip_if_next_is,
+    Words, read_fixed_point_in_range, read_numbers_in_ranges, read_whole_number_in_range,
+    read_word, skip_if_next_is,
 };
 
 static REFERENCE_TEMPERATURE_RANGE: Range = Range {
@@ -25,33 +26,33 @@ static SETTINGS_LINE_NUMBER_RANGE: Range = Range {
     min: 1.0,
     max: SETTINGS_LINE_COUNT as f64,
 };
-static CONVERTER_BORDER_INDEX_RANGE: Range = Range {
+static ADC_SEGMENT_BORDER_INDEX_RANGE: Range = Range {
     name: "border",
     unit: "(whole)",
-    min: FIRST_CALIBRATED_BORDER as f64,
-    max: (FIRST_CALIBRATED_BORDER + CALIBRATED_BORDER_COUNT - 1) as f64,
+    min: FIRST_CALIBRATED_ADC_BORDER_INDEX as f64,
+    max: (FIRST_CALIBRATED_ADC_BORDER_INDEX + CALIBRATED_ADC_BORDER_COUNT - 1) as f64,
 };
 
 /// First arguments of the command `set`, which name what it replaces: steps of the converter, the correction of a
 /// thermistor, or the parameters of the tile.
-pub const SETTING_WORDS: [&str; 3] = ["steps", "correction", "tile"];
+pub const SET_COMMAND_TARGET_WORDS: [&str; 3] = ["steps", "correction", "tile"];
 
-fn parse_thermistor_index(words: &mut Words<'_>) -> Result<usize, Error> {
+fn parse_thermistor_name_to_index(words: &mut Words<'_>) -> Result<usize, Error> {
     let name = read_word(words, "sensor")?;
-    let known = SENSOR_WORDS.iter().position(|known| *known == name);
+    let known = THERMISTOR_WORDS.iter().position(|known| *known == name);
     known.ok_or(Error::UnknownSensor(name.into()))
 }
 
 /// Reads the arguments of the command `calibrate`: a thermistor, then either the temperature of the reference
 /// thermometer, °C, which adds a calibration point, or `clear`, which removes the thermistor's calibration.
-pub fn parse_calibrate(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
-    let sensor = parse_thermistor_index(words)?;
+pub fn parse_calibration_point_or_clear(words: &mut Words<'_>) -> Result<SessionRequest, Error> {
+    let sensor = parse_thermistor_name_to_index(words)?;
     if skip_if_next_is(words, "clear") {
         return Ok(SessionRequest::ClearCalibration { sensor });
     }
     Ok(SessionRequest::AddPoint {
         sensor,
-        reference_c: read_number(words, &REFERENCE_TEMPERATURE_RANGE)?.to_num(),
+        reference_c: read_fixed_point_in_range(words, &REFERENCE_TEMPERATURE_RANGE)?.to_num(),
     })
 }
 
@@ -62,7 +63,7 @@ pub fn parse_settings_query(words: &mut Words<'_>) -> Result<SessionRequest, Err
         return Ok(SessionRequest::CountSettingsLines);
     }
     Ok(SessionRequest::SettingsLine(
-        read_whole_number(words, &SETTINGS_LINE_NUMBER_RANGE)? - 1,
+        read_whole_number_in_range(words, &SETTINGS_LINE_NUMBER_RANGE)? - 1,
     ))
 }
 
@@ -73,26 +74,30 @@ pub fn parse_settings_query(words: &mut Words<'_>) -> Result<SessionRequest, Err
 pub fn parse_set_arguments(words: &mut Words<'_>) -> Result<Setting, Error> {
     Ok(match read_word(words, "setting")? {
         "steps" => {
-            let first = read_whole_number(words, &CONVERTER_BORDER_INDEX_RANGE)?;
-            let room = CONVERTER_STEPS_PER_LINE
-                .min(FIRST_CALIBRATED_BORDER + CALIBRATED_BORDER_COUNT - first);
+            let first = read_whole_number_in_range(words, &ADC_SEGMENT_BORDER_INDEX_RANGE)?;
+            let room = CONVERTER_STEPS_PER_LINE_MAX
+                .min(FIRST_CALIBRATED_ADC_BORDER_INDEX + CALIBRATED_ADC_BORDER_COUNT - first);
             let mut counts = heapless::Vec::new();
             // At least one step. Words that follow the last possible step are left to the caller, who reports them.
             while counts.is_empty() || counts.len() < room && words.clone().next().is_some() {
-                let step = read_number(words, &CONVERTER_STEP_RANGE)?.to_num();
+                let step = read_fixed_point_in_range(words, &ADC_ERROR_STEP_RANGE)?.to_num();
                 let _ = counts.push(round_to_decimals(
                     step,
-                    Calibration::CONVERTER_STEP_DECIMALS,
+                    Calibration::ADC_ERROR_STEP_DECIMALS,
                 ));
             }
             Setting::Steps { first, counts }
         }
         "correction" => {
-            let sensor = parse_thermistor_index(words)?;
-            let correction = Correction::from_array(read_numbers(words, &CORRECTION_RANGES)?);
+            let sensor = parse_thermistor_name_to_index(words)?;
+            let correction =
+                Correction::from_array(read_numbers_in_ranges(words, &CORRECTION_RANGES)?);
             Setting::Correction(sensor, correction.rounded())
         }
-        "tile" => Setting::Tile(Tile::from_array(read_numbers(words, &TILE_RANGES)?)),
+        "tile" => Setting::Tile(Tile::from_array_rounded(read_numbers_in_ranges(
+            words,
+            &TILE_RANGES,
+        )?)),
         other => return Err(Error::UnknownSetting(other.into())),
     })
 }
