@@ -80,7 +80,7 @@ impl SkinOnObject {
     /// Makes the simulated skin start a new contact with the presented object: it starts with the cooling that the
     /// display has caused in the real skin, `skin_state_on_display`, and without heat flux. An object that is no
     /// half-space starts at its temperature before contact.
-    pub fn restart_contact(
+    pub fn start_from_skin_on_display(
         &mut self,
         skin_state_on_display: &SkinState,
         bodies: Option<Bodies<'_>>,
