@@ -87,7 +87,7 @@ impl Plant {
         let mesh =
             |layers: &[slab::Layer], back| Slab::new(layers, back, simulated_s, &Grading::STANDARD);
         let finger = mesh(&params.finger.layers, params.finger.back());
-        let object = mesh(&[config.object.layer()], config.object.back);
+        let object = mesh(&config.object.layers, config.object.back);
         let air_w_m2k = params.finger.air_w_m2k;
         let steady = steady_state(
             &finger,
@@ -123,7 +123,7 @@ impl Plant {
             surfaces: Surfaces {
                 skin: params.finger.surface,
                 display: params.display,
-                object: config.object.material.surface,
+                object: config.object.surface,
             },
             vessels: params.finger.vessels,
             bridge: Bridge::new(params.bridge, params.tile.resistance_ohm()),

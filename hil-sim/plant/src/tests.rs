@@ -1,5 +1,6 @@
 //! The whole plant with the mesh and the steps of every simulation.
 
+mod layered;
 mod reference;
 
 use contact_model::material::find;
@@ -138,11 +139,11 @@ fn bad_configuration_is_named() {
         "skin temperature in deg C is -300; allowed is -40 to 100"
     );
     let mut hollow = config("abs");
-    hollow.object.material.density_kg_m3 = 0.0;
+    hollow.object.layers[0].medium.capacity_j_m3k = 0.0;
     let message = Plant::new(&hollow).expect_err("no mass").to_string();
     assert_eq!(
         message,
-        "object density in kg/m3 is 0; allowed is a finite number above 0"
+        "heat capacity of an object's layer in J/(m3 K) is 0; allowed is a finite number above 0"
     );
     let endless = PlantConfig {
         duration_s: f64::NAN,
@@ -156,7 +157,7 @@ fn bad_configuration_is_named() {
 fn object_keeps_its_start_temperature_until_it_appears() {
     let after = |settle_s: f64, duration_s: f64| {
         let mut config = config("abs");
-        config.object.thickness_m = 0.01;
+        config.object.layers[0].thickness_m = 0.01;
         config.object.back = BackBoundary::Film {
             film_w_m2k: f64::INFINITY,
             temperature_c: 40.0,

@@ -18,7 +18,7 @@ use contact_model::reference::{Contact, interface_temperature};
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_plant::object::ObjectConfig;
-use thermal_plant::slab::BackBoundary;
+use thermal_plant::slab::{BackBoundary, Layer};
 use thermal_plant::{Params, PlantConfig};
 
 use crate::processor::Injection;
@@ -58,6 +58,8 @@ pub struct Scene {
     pub law: Option<Law>,
     /// The object that the display imitates.
     pub object: Object,
+    /// Whether the device is told a half-space of the object's material, whatever the object is.
+    pub object_as_half_space: bool,
     /// Parameters of finger, display and electronics.
     pub params: Params,
     /// The infrared camera that observes the finger on the real object, if any.
@@ -77,15 +79,15 @@ pub struct Scene {
 pub struct Object {
     /// Name of the material, or `custom`.
     pub name: String,
-    /// Its properties.
+    /// Its properties; of a layered object they determine the contact resistance, and what a half-space would be.
     pub material: Material,
     /// Temperature before contact, °C, which the device is given; the room's if absent.
     pub start_c: Option<f64>,
     /// Time at which it appears, s.
     pub appears_t_s: f64,
-    /// Thickness, m; infinite for a half-space. The device is not given it.
-    pub thickness_m: f64,
-    /// Boundary condition at its back.
+    /// Its layers, from the touched face down; one for an object of one material, endless for a half-space.
+    pub layers: Vec<Layer>,
+    /// Boundary condition behind the last layer.
     pub back: BackBoundary,
 }
 
@@ -159,9 +161,9 @@ impl Scene {
             skin_c: self.skin_c,
             room_c: self.room_c,
             object: ObjectConfig {
-                material: self.object.material,
+                surface: self.object.material.surface,
+                layers: self.object.layers.clone(),
                 start_c: self.object_c(),
-                thickness_m: self.object.thickness_m,
                 back: self.object.back,
             },
             start_s: -self.settle_s,

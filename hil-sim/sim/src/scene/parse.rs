@@ -51,6 +51,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             .map(|name| law(&source, name))
             .transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,
+        object_as_half_space: file.object.get_ref().told.is_some(),
         params: params(&source, file.finger.as_ref(), file.plant.as_ref())?,
         infrared: match &file.infrared {
             Some(file) => Some(infrared(&source, file, room_c)?),

@@ -36,7 +36,7 @@ impl Bench {
         let cut = |layers: &[_], back| Slab::new(layers, back, 100.0, &Grading::STANDARD);
         let (slab, object_slab) = (
             cut(&finger.layers, finger.back()),
-            cut(&[object.layer()], object.back),
+            cut(&object.layers, object.back),
         );
         let loss_w_m2 = finger.air_w_m2k * (SKIN_C - ROOM_C);
         let steady = steady_state(&slab, SKIN_C, loss_w_m2).expect("a steady state");

@@ -1,6 +1,8 @@
 //! What keys of a scene come to.
 
+use contact_model::material::find;
 use thermal_plant::finger::{FingerParams, Vessels};
+use thermal_plant::object::ObjectConfig;
 use thermal_plant::{Params, parameters};
 use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::{Injection, MachineFault};
@@ -78,6 +80,30 @@ fn layers_of_a_scene_are_those_of_the_nominal_fingers() {
     let drawn = params(&format!("{layered}[plant]\ndraw = 1\n")).finger;
     assert_eq!(drawn.layers, FingerParams::layered().layers);
     assert_ne!(drawn.vessels, Some(Vessels::THESIS));
+}
+
+#[test]
+fn layers_of_an_object_conduct_and_its_material_is_the_touched_surface() {
+    let text = |rest: &str| format!("{HEAD}{rest}");
+    let copper = "[[object.layer]]\nk_w_mk = 398\nrho_kg_m3 = 8954\nc_j_kgk = 384\n";
+    let plain = scene(&text(""));
+    assert!(!plain.object_as_half_space);
+    assert_eq!(scene(&text(copper)).plant_config(), plain.plant_config());
+    let thin = scene(&text("thickness_m = 3e-3\nback = \"held\"\n"));
+    let layer = format!("back = \"held\"\n{copper}thickness_m = 3e-3\n");
+    assert_eq!(scene(&text(&layer)).plant_config(), thin.plant_config());
+    let foam = "[[object.layer]]\nk_w_mk = 0.029\nrho_kg_m3 = 24\nc_j_kgk = 1210\n";
+    let on_foam = text(&format!(
+        "told = \"half-space\"\n{copper}thickness_m = 1e-3\n{foam}"
+    ));
+    let on_foam = scene(&on_foam);
+    assert!(on_foam.object_as_half_space);
+    assert_eq!(on_foam.object.material, plain.object.material);
+    let layers = &on_foam.plant_config().object.layers;
+    let foam = ObjectConfig::half_space(*find("foam").expect("known"), 24.0);
+    assert_eq!(layers[1..], foam.layers);
+    assert_eq!(layers[0].thickness_m, 1e-3);
+    assert_eq!(layers[0].medium, plain.object.layers[0].medium);
 }
 
 /// By their kinds: the sampler's stream unless another is named, and noise of the scene's seed.

@@ -5,6 +5,7 @@ use std::path::Path;
 use thermal_sim::scene::Scene;
 
 const HEAD: &str = "duration_s = 1\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\n";
+const COPPER: &str = "[[object.layer]]\nk_w_mk = 398\nrho_kg_m3 = 8954\nc_j_kgk = 384\n";
 const LAYER: &str = "[[finger.layer]]\nk_w_mk = 0.37\nrho_kg_m3 = 1000\nc_j_kgk = 3700\n";
 
 #[test]
@@ -44,6 +45,41 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
             "thickness_m = 0.1\nback = \"held\"\nback_c = 99",
             8,
             "object.back_c = 99; allowed is -20 to 60",
+        ),
+        (
+            &format!("thickness_m = 0.1\n{COPPER}"),
+            6,
+            "object.thickness_m beside object.layer; allowed is either one thickness or layers",
+        ),
+        (
+            &format!("{COPPER}{COPPER}"),
+            6,
+            "object.layer.0.thickness_m is missing; only the last layer may be endless",
+        ),
+        (
+            &format!("back = \"held\"\n{COPPER}"),
+            6,
+            "object.back has no meaning here; allowed is back beside thickness_m of the last object.layer",
+        ),
+        (
+            &format!("{COPPER}thickness_m = 1e-6"),
+            10,
+            "object.layer.0.thickness_m = 0.000001; allowed is 0.00001 to 10",
+        ),
+        (
+            &COPPER.replace("398", "inf"),
+            7,
+            "object.layer.0.k_w_mk = inf; allowed is 0.001 to 5000",
+        ),
+        (
+            &COPPER.replace("c_j_kgk = 384\n", ""),
+            6,
+            "missing field `c_j_kgk`",
+        ),
+        (
+            "told = \"slab\"",
+            6,
+            "unknown variant `slab`, expected `half-space`",
         ),
         (
             "[plant]\ntile.imx_a = 5",
