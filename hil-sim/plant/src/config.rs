@@ -4,6 +4,7 @@ use contact_model::material::{REFERENCE_DISPLAY, Surface};
 
 use super::bridge::BridgeParams;
 use super::comparator::ComparatorParams;
+use super::contact::ContactLaw;
 use super::finger::{FingerParams, Vessels};
 use super::object::ObjectConfig;
 use super::parameters::{self, ParameterError};
@@ -39,6 +40,8 @@ pub struct Params {
     pub finger: FingerParams,
     /// The display's surface.
     pub display: Surface,
+    /// The contact of skin and surfaces.
+    pub contact: ContactLaw,
     /// Tile and sink.
     pub tile: TileParams,
     /// Sensors and converter.
@@ -75,6 +78,7 @@ impl Params {
         Self {
             finger: FingerParams::homogeneous(),
             display: REFERENCE_DISPLAY,
+            contact: ContactLaw::NOMINAL,
             tile: TileParams::NOMINAL,
             sensors: SensorParams::NOMINAL,
             bridge: BridgeParams::NOMINAL,

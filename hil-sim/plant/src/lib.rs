@@ -21,7 +21,7 @@ mod tr_bdf2;
 use bridge::{Bridge, BridgeOutputs};
 use comparator::Comparator;
 pub use config::{ConfigError, HostParams, Params, PlantConfig};
-use contact::SkinContact;
+use contact::{ContactLaw, SkinContact};
 use contact_model::material::Surface;
 pub use defects::Defects;
 use energy::Energy;
@@ -47,6 +47,7 @@ pub struct Plant {
     skin_before_c: f64,
     room_c: f64,
     surfaces: Surfaces,
+    contact_law: ContactLaw,
     vessels: Option<Vessels>,
     bridge: Bridge,
     /// Nominal supply of the bridge, V.
@@ -125,6 +126,7 @@ impl Plant {
                 display: params.display,
                 object: config.object.surface,
             },
+            contact_law: params.contact,
             vessels: params.finger.vessels,
             bridge: Bridge::new(params.bridge, params.tile.resistance_ohm()),
             supply_v: params.bridge.supply_v,
@@ -222,8 +224,8 @@ impl Plant {
             display,
             object,
         } = &self.surfaces;
-        let on_display = SkinContact::at_force(self.force_n, skin, display);
-        let on_object = SkinContact::at_force(self.force_n, skin, object).filter(|_| present);
+        let at_force = |other| self.contact_law.at_force(self.force_n, skin, other);
+        let (on_display, on_object) = (at_force(display), at_force(object).filter(|_| present));
         if contact::is_abrupt(self.on_display, on_display)
             || contact::is_abrupt(self.on_object, on_object)
         {

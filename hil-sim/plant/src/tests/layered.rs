@@ -5,7 +5,7 @@ use documented_figures::assert_figure;
 
 use super::{config, run};
 use crate::bridge::BridgeOutputs;
-use crate::contact::SkinContact;
+use crate::contact::ContactLaw;
 use crate::finger::FingerParams;
 use crate::object::ObjectConfig;
 use crate::reference::ReferenceSolution;
@@ -112,7 +112,9 @@ fn layered_objects_and_fingers_follow_their_transmission_lines() {
 /// Skin, deg C, at the times of a contact from 0.2 to 10 s, with a mesh and a step, s.
 fn skin_c(golden: &Golden, grading: &Grading, step_s: f64) -> Vec<f64> {
     let surface = &golden.object.surface;
-    let touch = SkinContact::at_force(golden.force_n, &SKIN.surface, surface).expect("pressed");
+    let touch = ContactLaw::NOMINAL
+        .at_force(golden.force_n, &SKIN.surface, surface)
+        .expect("pressed");
     let mut reference =
         ReferenceSolution::on_mesh(34.0, &golden.object, touch, 10.0, (grading, step_s));
     let at = |t_s: f64| {

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Sensor;
-pub(super) use super::parameter_node::ParameterNode;
+pub(super) use super::parameter_node::{NodeNumber, ParameterNode};
 
 /// A number with its position in the file; whole numbers are accepted.
 pub(super) type Number = Spanned<f64>;

@@ -8,7 +8,7 @@ use thermal_plant::slab::{Layer, Medium};
 use thermal_plant::{Params, parameters};
 use toml::Spanned;
 
-use super::file::{self, ParameterNode};
+use super::file::{self, NodeNumber, ParameterNode};
 use super::source::{SceneError, Source};
 
 /// The parameters: nominal or drawn, then overridden by the values of the scene.
@@ -31,46 +31,56 @@ pub(super) fn params(
             "plant is a number; allowed is a table of parameters",
         ));
     };
-    let (draws, values): (Vec<_>, Vec<_>) =
-        entries.iter().partition(|(key, _)| key.get_ref() == "draw");
-    for (_, seed) in draws {
+    let mut values = Vec::new();
+    for (key, node) in entries {
+        collect(key.get_ref().clone(), node, &mut values);
+    }
+    if let Some(seed) = values.iter().find(|(key, ..)| key == DRAW) {
         parameters::draw(&mut params, seed_of(source, seed)?);
         if let Some(finger) = finger {
             finger_values(source, finger.get_ref(), &mut params)?;
         }
     }
-    for (key, node) in values {
-        set(source, &mut params, key.get_ref().clone(), node)?;
+    if let Some(seed) = values.iter().find(|(key, ..)| key == CONTACT_DRAW) {
+        parameters::draw_contact(&mut params, seed_of(source, seed)?);
+    }
+    for (key, value, span) in values {
+        if key != DRAW && key != CONTACT_DRAW {
+            source.set(&mut params, &key, value.real(), span)?;
+        }
     }
     Ok(params)
 }
 
-fn seed_of(source: &Source<'_>, seed: &Spanned<ParameterNode>) -> Result<u64, SceneError> {
-    match seed.get_ref() {
-        ParameterNode::Whole(seed) if *seed >= 0 => Ok(seed.unsigned_abs()),
+/// Keys of the seeds.
+const DRAW: &str = "draw";
+const CONTACT_DRAW: &str = "contact.draw";
+
+/// A number below `plant`: its key, value, and position.
+type Value = (String, NodeNumber, Range<usize>);
+
+fn seed_of(source: &Source<'_>, (key, seed, span): &Value) -> Result<u64, SceneError> {
+    match seed {
+        NodeNumber::Whole(seed) if *seed >= 0 => Ok(seed.unsigned_abs()),
         _ => {
             let problem = format!(
-                "plant.draw is the seed of a draw; allowed is a whole number, 0 to {}",
+                "plant.{key} is the seed of a draw; allowed is a whole number, 0 to {}",
                 i64::MAX
             );
-            Err(source.error(Some(seed.span()), problem))
+            Err(source.error(Some(span.clone()), problem))
         }
     }
 }
 
-/// Sets the parameters below a key.
-fn set(
-    source: &Source<'_>,
-    params: &mut Params,
-    key: String,
-    node: &Spanned<ParameterNode>,
-) -> Result<(), SceneError> {
+/// Collects the numbers at and below a key.
+fn collect(key: String, node: &Spanned<ParameterNode>, values: &mut Vec<Value>) {
     match node.get_ref() {
-        ParameterNode::Number(value) => source.set(params, &key, *value, node.span()),
-        ParameterNode::Whole(value) => source.set(params, &key, *value as f64, node.span()),
-        ParameterNode::Table(entries) => entries.iter().try_for_each(|(name, node)| {
-            set(source, params, format!("{key}.{}", name.get_ref()), node)
-        }),
+        ParameterNode::Number(value) => values.push((key, *value, node.span())),
+        ParameterNode::Table(entries) => {
+            for (name, node) in entries {
+                collect(format!("{key}.{}", name.get_ref()), node, values);
+            }
+        }
     }
 }
 

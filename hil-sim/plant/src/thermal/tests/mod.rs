@@ -12,6 +12,7 @@ use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN};
 
 use super::*;
 use crate::bridge::{BridgeParams, Leg};
+use crate::contact::ContactLaw;
 use crate::finger::FingerParams;
 use crate::object::ObjectConfig;
 use crate::slab::{Grading, steady_state};
@@ -87,6 +88,6 @@ impl Bench {
 }
 
 fn touch(material: &Material, force_n: f64) -> (Option<SkinContact>, Option<SkinContact>) {
-    let under = |surface| SkinContact::at_force(force_n, &SKIN.surface, surface);
+    let under = |surface| ContactLaw::NOMINAL.at_force(force_n, &SKIN.surface, surface);
     (under(&REFERENCE_DISPLAY), under(&material.surface))
 }

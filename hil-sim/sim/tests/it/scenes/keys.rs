@@ -1,6 +1,7 @@
 //! What keys of a scene come to.
 
 use contact_model::material::find;
+use thermal_plant::contact::ContactLaw;
 use thermal_plant::finger::{FingerParams, Vessels};
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::{Params, parameters};
@@ -63,6 +64,19 @@ fn own_values_override_a_draw_wherever_they_stand() {
         params("[finger]\ntissue = \"layered\"\nair_w_m2k = 7\n[plant]\ndraw = 3\n").finger;
     assert_eq!(finger.air_w_m2k, 7.0);
     assert_ne!(finger.layers, FingerParams::layered().layers);
+}
+
+#[test]
+fn contact_is_drawn_only_by_its_own_seed() {
+    let mut expected = Params::nominal();
+    parameters::draw(&mut expected, 3);
+    assert_eq!(expected.contact, ContactLaw::NOMINAL);
+    assert_eq!(params("[plant]\ndraw = 3\n"), expected);
+    parameters::draw_contact(&mut expected, 4);
+    assert_eq!(params("[plant]\ncontact.draw = 4\ndraw = 3\n"), expected);
+    expected.contact.exponent = 0.9;
+    let nested = "[plant]\ndraw = 3\n[plant.contact]\nexponent = 0.9\ndraw = 4\n";
+    assert_eq!(params(nested), expected);
 }
 
 #[test]

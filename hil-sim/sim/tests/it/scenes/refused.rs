@@ -123,6 +123,16 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
         ),
         ("[plant]\ndraw = 1.5", 7, "plant.draw is the seed of a draw"),
         (
+            "[plant]\ncontact.draw = -1",
+            7,
+            "plant.contact.draw is the seed of a draw; allowed is a whole number",
+        ),
+        (
+            "[plant]\ncontact.gap_w_m2k = -1",
+            7,
+            "contact.gap_w_m2k = -1 W/(m2 K); allowed is 0 to 100000",
+        ),
+        (
             "[plant]\ntile.plate_m = 0.016\ntile.patch_m2 = 3e-4",
             6,
             "tile.patch_m2 is 0.0003; allowed is below the plate's area",
