@@ -48,6 +48,7 @@ pub struct Plant {
     room_c: f64,
     surfaces: Surfaces,
     contact_law: ContactLaw,
+    resistance_factor: f64,
     vessels: Option<Vessels>,
     bridge: Bridge,
     /// Nominal supply of the bridge, V.
@@ -127,6 +128,7 @@ impl Plant {
                 object: config.object.surface,
             },
             contact_law: params.contact,
+            resistance_factor: params.finger.resistance_factor,
             vessels: params.finger.vessels,
             bridge: Bridge::new(params.bridge, params.tile.resistance_ohm()),
             supply_v: params.bridge.supply_v,
@@ -224,7 +226,13 @@ impl Plant {
             display,
             object,
         } = &self.surfaces;
-        let at_force = |other| self.contact_law.at_force(self.force_n, skin, other);
+        let at_force = |other| {
+            let contact = self.contact_law.at_force(self.force_n, skin, other)?;
+            Some(SkinContact {
+                resistance_m2k_w: self.resistance_factor * contact.resistance_m2k_w,
+                ..contact
+            })
+        };
         let (on_display, on_object) = (at_force(display), at_force(object).filter(|_| present));
         if contact::is_abrupt(self.on_display, on_display)
             || contact::is_abrupt(self.on_object, on_object)

@@ -9,6 +9,7 @@ mod comparator;
 mod contact;
 mod entry;
 mod finger;
+mod finger_draw;
 mod host;
 mod sensors;
 mod surface;
@@ -19,6 +20,7 @@ use serde::Serialize;
 
 use super::Params;
 use entry::Entry;
+pub use finger_draw::{Before, Blood, Epidermis, FingerDraw, TissueDraw, draw_finger};
 pub use tolerance::{Distribution, Tolerance, absolute, between, relative, stream_seed};
 
 /// Source of a nominal value and its tolerance.

@@ -102,6 +102,7 @@ pub(super) enum Back {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Finger {
+    pub draw: Option<Spanned<NodeNumber>>,
     pub tissue: Option<Spanned<Tissue>>,
     pub core_w_m2k: Option<Number>,
     pub air_w_m2k: Option<Number>,

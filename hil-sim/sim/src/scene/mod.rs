@@ -18,6 +18,7 @@ use contact_model::reference::{Contact, interface_temperature};
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_plant::object::ObjectConfig;
+use thermal_plant::parameters::FingerDraw;
 use thermal_plant::slab::{BackBoundary, Layer};
 use thermal_plant::{Params, PlantConfig};
 
@@ -62,6 +63,8 @@ pub struct Scene {
     pub object_as_half_space: bool,
     /// Parameters of finger, display and electronics.
     pub params: Params,
+    /// Which of them were drawn.
+    pub draws: Draws,
     /// The infrared camera that observes the finger on the real object, if any.
     pub infrared: Option<Infrared>,
     /// Changes of the force, in order of time.
@@ -89,6 +92,17 @@ pub struct Object {
     pub layers: Vec<Layer>,
     /// Boundary condition behind the last layer.
     pub back: BackBoundary,
+}
+
+/// Random draws of a scene's plant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Draws {
+    /// Seed of all parameters but those of the contact.
+    pub plant: Option<u64>,
+    /// Seed of the contact law.
+    pub contact: Option<u64>,
+    /// The finger.
+    pub finger: Option<FingerDraw>,
 }
 
 /// A change to a force that is then held.

@@ -13,6 +13,15 @@ pub(super) enum NodeNumber {
     Real(f64),
 }
 
+impl<'de> Deserialize<'de> for NodeNumber {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        match ParameterNode::deserialize(deserializer)? {
+            ParameterNode::Number(number) => Ok(number),
+            ParameterNode::Table(_) => Err(de::Error::custom("a table, expected a number")),
+        }
+    }
+}
+
 impl NodeNumber {
     pub fn real(self) -> f64 {
         match self {

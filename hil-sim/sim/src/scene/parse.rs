@@ -37,6 +37,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         file::Mode::SemiInfinite => ContactModel::SemiInfinite,
     };
     let (faults, injections) = faults(&source, &file.fault, duration_s, file.seed)?;
+    let (params, draws) = params(&source, file.finger.as_ref(), file.plant.as_ref())?;
     let scene = Scene {
         duration_s,
         settle_s,
@@ -52,7 +53,8 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             .transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,
         object_as_half_space: file.object.get_ref().told.is_some(),
-        params: params(&source, file.finger.as_ref(), file.plant.as_ref())?,
+        params,
+        draws,
         infrared: match &file.infrared {
             Some(file) => Some(infrared(&source, file, room_c)?),
             None => None,

@@ -5,8 +5,12 @@ use thermal_plant::contact::ContactLaw;
 use thermal_plant::finger::{FingerParams, Vessels};
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::{Params, parameters};
+use thermal_sim::World;
+use thermal_sim::engine::NativeEngine;
+use thermal_sim::metrics::figures;
 use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::{Injection, MachineFault};
+use thermal_sim::run::run;
 
 use super::scene;
 
@@ -77,6 +81,45 @@ fn contact_is_drawn_only_by_its_own_seed() {
     expected.contact.exponent = 0.9;
     let nested = "[plant]\ndraw = 3\n[plant.contact]\nexponent = 0.9\ndraw = 4\n";
     assert_eq!(params(nested), expected);
+}
+
+#[test]
+fn drawn_finger_keeps_what_the_scene_gives_and_is_reported() {
+    let of = |mut finger: FingerParams, layered| {
+        parameters::draw_finger(&mut finger, 5, layered);
+        finger
+    };
+    let plain = params("[finger]\ndraw = 5\n");
+    assert_eq!(plain.finger, of(FingerParams::homogeneous(), false));
+    let layered = "[finger]\ndraw = 5\ntissue = \"layered\"\n";
+    let expected = of(FingerParams::layered(), true);
+    assert_eq!(params(layered).finger, expected);
+    // The plant's draw has the surface; nothing of the tissue is drawn twice.
+    let both = params(&format!("{layered}[plant]\ndraw = 3\n"));
+    let plant_only = params("[finger]\ntissue = \"layered\"\n[plant]\ndraw = 3\n");
+    assert_eq!(both.finger.layers, expected.layers);
+    assert_eq!(both.finger.surface, plant_only.finger.surface);
+    assert_eq!(both.tile, plant_only.tile);
+    let own = params(&format!("{layered}air_w_m2k = 7\nvessels = true\n")).finger;
+    assert_eq!((own.air_w_m2k, own.vessels), (7.0, Some(Vessels::THESIS)));
+    assert_eq!(own.layers, expected.layers);
+    // Of own layers effusivity and resistance are drawn.
+    let skin = "[[finger.layer]]\nk_w_mk = 0.37\nrho_kg_m3 = 1000\nc_j_kgk = 3700\n";
+    assert_eq!(params(&format!("[finger]\ndraw = 5\n{skin}")), plain);
+
+    let drawn = scene(&format!("{HEAD}{layered}[plant]\ncontact.draw = 4\n"));
+    let mut engine = NativeEngine::new(World::new(&drawn).expect("a plant"));
+    let outcome = run(&drawn, &mut engine, |_| ()).expect("the device takes the scene");
+    let draws = figures(&drawn, &outcome).draws.expect("draws");
+    assert_eq!((draws.contact, draws.finger), (Some(4), drawn.draws.finger));
+    let tissue = draws.finger.and_then(|finger| finger.tissue);
+    assert!(tissue.is_some());
+    for parameter in parameters::all(&drawn.params) {
+        let reported = draws.parameters.get(&parameter.key);
+        let part = parameter.key.split('.').next();
+        let expected = matches!(part, Some("contact" | "finger")).then_some(&parameter.value);
+        assert_eq!(reported, expected, "{}", parameter.key);
+    }
 }
 
 #[test]

@@ -143,6 +143,16 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
             "bridge.dead_time_s is 0.000001; allowed is up to half a period",
         ),
         (
+            "[finger]\ndraw = 1.5",
+            7,
+            "finger.draw is the seed of a draw; allowed is a whole number",
+        ),
+        (
+            "[finger]\ndraw = { a = 1 }",
+            7,
+            "a table, expected a number",
+        ),
+        (
             "[finger]\nair_w_m2k = 10",
             6,
             "a finger without blood or core has air_w_m2k 10",
