@@ -1,14 +1,15 @@
 //! Configuration of a plant.
 
-use contact_model::material::{Material, REFERENCE_DISPLAY, Surface};
+use contact_model::material::{REFERENCE_DISPLAY, Surface};
 
 use super::bridge::BridgeParams;
 use super::comparator::ComparatorParams;
+use super::contact::ContactLaw;
 use super::finger::{FingerParams, Vessels};
 use super::object::ObjectConfig;
 use super::parameters::{self, ParameterError};
 use super::sensors::SensorParams;
-use super::slab::BackBoundary;
+use super::slab::{BackBoundary, Layer};
 use super::tile::TileParams;
 
 /// One finger, its display and the real object that the display stands for.
@@ -39,6 +40,8 @@ pub struct Params {
     pub finger: FingerParams,
     /// The display's surface.
     pub display: Surface,
+    /// The contact of skin and surfaces.
+    pub contact: ContactLaw,
     /// Tile and sink.
     pub tile: TileParams,
     /// Sensors and converter.
@@ -75,6 +78,7 @@ impl Params {
         Self {
             finger: FingerParams::homogeneous(),
             display: REFERENCE_DISPLAY,
+            contact: ContactLaw::NOMINAL,
             tile: TileParams::NOMINAL,
             sensors: SensorParams::NOMINAL,
             bridge: BridgeParams::NOMINAL,
@@ -162,31 +166,40 @@ impl PlantConfig {
 
 fn check_object(object: &ObjectConfig) -> Result<(), ConfigError> {
     let (coldest, warmest) = TEMPERATURE_C;
-    let Material {
-        surface,
-        density_kg_m3,
-        specific_heat_j_kgk,
-    } = object.material;
+    let surface = &object.surface;
     for (what, value) in [
         ("object conductivity in W/(m K)", surface.conductivity_w_mk),
         ("object roughness in um", surface.roughness_um),
         ("object asperity slope in rad", surface.slope_rad),
-        ("object density in kg/m3", density_kg_m3),
-        ("object specific heat in J/(kg K)", specific_heat_j_kgk),
     ] {
         positive(what, value)?;
     }
+    for layer in &object.layers {
+        positive(
+            "conductivity of an object's layer in W/(m K)",
+            layer.medium.conductivity_w_mk,
+        )?;
+        positive(
+            "heat capacity of an object's layer in J/(m3 K)",
+            layer.medium.capacity_j_m3k,
+        )?;
+        within(
+            "thickness of an object's layer in m",
+            layer.thickness_m,
+            ObjectConfig::THINNEST_M,
+            f64::INFINITY,
+        )?;
+    }
+    check_order(
+        &object.layers,
+        "number of the object's layers",
+        "thickness of an object's layer above another in m",
+    )?;
     within(
         "object temperature in deg C",
         object.start_c,
         coldest,
         warmest,
-    )?;
-    within(
-        "object thickness in m",
-        object.thickness_m,
-        ObjectConfig::THINNEST_M,
-        f64::INFINITY,
     )?;
     if let BackBoundary::Film {
         film_w_m2k,
@@ -236,17 +249,11 @@ fn check_consistency(params: &Params) -> Result<(), ConfigError> {
             allowed,
         ));
     }
-    let Some((last, above)) = finger.layers.split_last() else {
-        return Err(ConfigError::value(
-            "number of the finger's layers",
-            0.0,
-            "1 or more",
-        ));
-    };
-    if above.iter().any(|layer| layer.thickness_m.is_infinite()) {
-        let what = "thickness of a finger's layer above another in m";
-        return Err(ConfigError::value(what, f64::INFINITY, "a finite number"));
-    }
+    let last = check_order(
+        &finger.layers,
+        "number of the finger's layers",
+        "thickness of a finger's layer above another in m",
+    )?;
     if let Some(core_w_m2k) = finger.core_w_m2k
         && last.thickness_m.is_infinite()
     {
@@ -261,6 +268,25 @@ fn check_consistency(params: &Params) -> Result<(), ConfigError> {
         return Err(ConfigError::cold_finger(finger.air_w_m2k));
     }
     Ok(())
+}
+
+/// The last of one or more layers, of which no other is endless.
+fn check_order<'a>(
+    layers: &'a [Layer],
+    number: &'static str,
+    above_another: &'static str,
+) -> Result<&'a Layer, ConfigError> {
+    let Some((last, above)) = layers.split_last() else {
+        return Err(ConfigError::value(number, 0.0, "1 or more"));
+    };
+    if above.iter().any(|layer| layer.thickness_m.is_infinite()) {
+        return Err(ConfigError::value(
+            above_another,
+            f64::INFINITY,
+            "a finite number",
+        ));
+    }
+    Ok(last)
 }
 
 /// Whether the finger has a steady state: core or blood hold its temperature, or it exchanges and produces no heat.

@@ -1,8 +1,48 @@
 //! Contact area and contact resistance of skin pressed on a surface.
 
-use contact_model::material::Surface;
-use contact_model::pressure::{contact_area_m2, pressure_pa};
-use contact_model::reference::contact_resistance;
+use contact_model::material::{SKIN_MICROHARDNESS_PA, Surface};
+use contact_model::pressure::contact_area_m2;
+use contact_model::reference::{Real, mean_conductance};
+
+/// The law of the contact: Eq. 6-8 and the area of section 6.4.2 with parameters of the plant's own, and what they lack.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactLaw {
+    /// Conductance of air and sweat in the gap, parallel to that of the spots in contact (Eq. 6-8), W/(m2 K).
+    pub gap_w_m2k: f64,
+    /// Microhardness of the skin in Eq. 6-8, Pa.
+    pub hardness_pa: f64,
+    /// Exponent of the relative pressure in Eq. 6-8.
+    pub exponent: f64,
+    /// Factor on the contact area of section 6.4.2; the pressure is that on the true area.
+    pub area_factor: f64,
+}
+
+impl ContactLaw {
+    /// Eq. 6-8 and section 6.4.2 as the thesis has them.
+    pub const NOMINAL: Self = Self {
+        gap_w_m2k: 0.0,
+        hardness_pa: SKIN_MICROHARDNESS_PA,
+        exponent: 0.95,
+        area_factor: 1.0,
+    };
+
+    /// Skin pressed on another surface by a force, N. None without force.
+    #[must_use]
+    pub fn at_force(&self, force_n: f64, skin: &Surface, other: &Surface) -> Option<SkinContact> {
+        if force_n <= 0.0 {
+            return None;
+        }
+        let area_m2 = self.area_factor * contact_area_m2(force_n);
+        let relative = force_n / area_m2 / self.hardness_pa;
+        // Not the inherent method: the power of the contact model has the same result on every host.
+        let spots_w_m2k =
+            mean_conductance::<f64>(skin, other) * Real::powf(relative, self.exponent);
+        Some(SkinContact {
+            area_m2,
+            resistance_m2k_w: 1.0 / (spots_w_m2k + self.gap_w_m2k),
+        })
+    }
+}
 
 /// A closed contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,18 +51,6 @@ pub struct SkinContact {
     pub area_m2: f64,
     /// Thermal contact resistance, m2 K/W.
     pub resistance_m2k_w: f64,
-}
-
-impl SkinContact {
-    /// Skin pressed on another surface by a force, N: area interpolated between the thesis's five measurements,
-    /// resistance by Eq. 6-8 to 6-11 at the mean pressure. None without force.
-    #[must_use]
-    pub fn at_force(force_n: f64, skin: &Surface, other: &Surface) -> Option<Self> {
-        (force_n > 0.0).then(|| Self {
-            area_m2: contact_area_m2(force_n),
-            resistance_m2k_w: contact_resistance(skin, other, pressure_pa(force_n)),
-        })
-    }
 }
 
 /// Largest relative change of the contact resistance that a full step resolves.
@@ -39,3 +67,6 @@ pub fn is_abrupt(before: Option<SkinContact>, after: Option<SkinContact>) -> boo
         _ => true,
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -9,6 +9,8 @@ use super::slab::{BackBoundary, Layer, Medium};
 pub struct FingerParams {
     /// Contact properties of the skin.
     pub surface: Surface,
+    /// Factor on its contact resistance, on display and object alike.
+    pub resistance_factor: f64,
     /// Layers of tissue, the outermost first.
     pub layers: Vec<Layer>,
     /// Conductance from the deepest layer to the core, W/(m2 K); none if the back is insulated.
@@ -51,6 +53,7 @@ impl FingerParams {
     pub fn homogeneous() -> Self {
         Self {
             surface: SKIN.surface,
+            resistance_factor: 1.0,
             layers: vec![Layer {
                 thickness_m: f64::INFINITY,
                 medium: Medium::without_blood(&SKIN),
@@ -79,6 +82,7 @@ impl FingerParams {
             };
         Self {
             surface: SKIN.surface,
+            resistance_factor: 1.0,
             layers: vec![
                 layer(0.65e-3, 0.21, 1110.0 * 3600.0, 0.0, 0.0),
                 layer(1.2e-3, 0.37, 1116.0 * 3224.0, 5e-3, 370.0),

@@ -21,7 +21,7 @@ mod tr_bdf2;
 use bridge::{Bridge, BridgeOutputs};
 use comparator::Comparator;
 pub use config::{ConfigError, HostParams, Params, PlantConfig};
-use contact::SkinContact;
+use contact::{ContactLaw, SkinContact};
 use contact_model::material::Surface;
 pub use defects::Defects;
 use energy::Energy;
@@ -47,6 +47,8 @@ pub struct Plant {
     skin_before_c: f64,
     room_c: f64,
     surfaces: Surfaces,
+    contact_law: ContactLaw,
+    resistance_factor: f64,
     vessels: Option<Vessels>,
     bridge: Bridge,
     /// Nominal supply of the bridge, V.
@@ -87,7 +89,7 @@ impl Plant {
         let mesh =
             |layers: &[slab::Layer], back| Slab::new(layers, back, simulated_s, &Grading::STANDARD);
         let finger = mesh(&params.finger.layers, params.finger.back());
-        let object = mesh(&[config.object.layer()], config.object.back);
+        let object = mesh(&config.object.layers, config.object.back);
         let air_w_m2k = params.finger.air_w_m2k;
         let steady = steady_state(
             &finger,
@@ -123,8 +125,10 @@ impl Plant {
             surfaces: Surfaces {
                 skin: params.finger.surface,
                 display: params.display,
-                object: config.object.material.surface,
+                object: config.object.surface,
             },
+            contact_law: params.contact,
+            resistance_factor: params.finger.resistance_factor,
             vessels: params.finger.vessels,
             bridge: Bridge::new(params.bridge, params.tile.resistance_ohm()),
             supply_v: params.bridge.supply_v,
@@ -222,8 +226,14 @@ impl Plant {
             display,
             object,
         } = &self.surfaces;
-        let on_display = SkinContact::at_force(self.force_n, skin, display);
-        let on_object = SkinContact::at_force(self.force_n, skin, object).filter(|_| present);
+        let at_force = |other| {
+            let contact = self.contact_law.at_force(self.force_n, skin, other)?;
+            Some(SkinContact {
+                resistance_m2k_w: self.resistance_factor * contact.resistance_m2k_w,
+                ..contact
+            })
+        };
+        let (on_display, on_object) = (at_force(display), at_force(object).filter(|_| present));
         if contact::is_abrupt(self.on_display, on_display)
             || contact::is_abrupt(self.on_object, on_object)
         {

@@ -1,43 +1,43 @@
 //! The real object that the display reproduces.
 
-use contact_model::material::Material;
+use contact_model::material::{Material, Surface};
 
 use super::slab::{BackBoundary, Layer, Medium};
 
 /// Configuration of the real object.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ObjectConfig {
-    /// Material.
-    pub material: Material,
+    /// The touched surface, which determines the contact resistance.
+    pub surface: Surface,
+    /// Layers, from the touched face down, which determine the conduction; only the last may be endless.
+    pub layers: Vec<Layer>,
     /// Temperature before contact, deg C.
     pub start_c: f64,
-    /// Thickness, m; infinite for the thesis's half-space.
-    pub thickness_m: f64,
-    /// Boundary condition at the back.
+    /// Boundary condition behind the last layer.
     pub back: BackBoundary,
 }
 
 impl ObjectConfig {
-    /// Least thickness, m; a thinner object is a coating of the body behind it.
+    /// Least thickness of a layer, m.
     pub const THINNEST_M: f64 = 1e-5;
 
     /// The thesis's assumption: a half-space.
     #[must_use]
-    pub const fn half_space(material: Material, start_c: f64) -> Self {
+    pub fn half_space(material: Material, start_c: f64) -> Self {
         Self {
-            material,
+            surface: material.surface,
+            layers: vec![Self::layer(&material, f64::INFINITY)],
             start_c,
-            thickness_m: f64::INFINITY,
             back: BackBoundary::Insulated,
         }
     }
 
-    /// The object as one layer of a slab.
+    /// A layer of a material and a thickness, m.
     #[must_use]
-    pub fn layer(&self) -> Layer {
+    pub fn layer(material: &Material, thickness_m: f64) -> Layer {
         Layer {
-            thickness_m: self.thickness_m,
-            medium: Medium::without_blood(&self.material),
+            thickness_m,
+            medium: Medium::without_blood(material),
         }
     }
 }

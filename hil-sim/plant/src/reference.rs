@@ -51,7 +51,7 @@ impl ReferenceSolution {
         let skin = mesh(&finger.layers, finger.back());
         let mut heat = ThermalModel::new(
             (&skin, skin_c),
-            (&mesh(&[object.layer()], object.back), object.start_c),
+            (&mesh(&object.layers, object.back), object.start_c),
             Tile::new(TileParams::NOMINAL, skin_c),
             (finger.air_w_m2k, skin_c),
             step_s,

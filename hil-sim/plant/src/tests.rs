@@ -1,8 +1,10 @@
 //! The whole plant with the mesh and the steps of every simulation.
 
+mod layered;
 mod reference;
 
-use contact_model::material::find;
+use contact_model::material::{SKIN, find};
+use contact_model::reference::erfcx;
 
 use super::bridge::Leg;
 use super::object::ObjectConfig;
@@ -138,11 +140,11 @@ fn bad_configuration_is_named() {
         "skin temperature in deg C is -300; allowed is -40 to 100"
     );
     let mut hollow = config("abs");
-    hollow.object.material.density_kg_m3 = 0.0;
+    hollow.object.layers[0].medium.capacity_j_m3k = 0.0;
     let message = Plant::new(&hollow).expect_err("no mass").to_string();
     assert_eq!(
         message,
-        "object density in kg/m3 is 0; allowed is a finite number above 0"
+        "heat capacity of an object's layer in J/(m3 K) is 0; allowed is a finite number above 0"
     );
     let endless = PlantConfig {
         duration_s: f64::NAN,
@@ -156,7 +158,7 @@ fn bad_configuration_is_named() {
 fn object_keeps_its_start_temperature_until_it_appears() {
     let after = |settle_s: f64, duration_s: f64| {
         let mut config = config("abs");
-        config.object.thickness_m = 0.01;
+        config.object.layers[0].thickness_m = 0.01;
         config.object.back = BackBoundary::Film {
             film_w_m2k: f64::INFINITY,
             temperature_c: 40.0,
@@ -181,6 +183,34 @@ fn object_keeps_its_start_temperature_until_it_appears() {
             "{settle_s} s of settling, {duration_s} s simulated: {off_mk} mK"
         );
     }
+}
+
+/// Skin on the object by Eq. 6-5 with twice the resistance, and the flux into the display reduced as much.
+#[test]
+fn resistance_factor_acts_on_object_and_display() {
+    let granite = find("granite").expect("known");
+    let landed = |factor: f64| {
+        let mut config = config("granite");
+        config.params.finger.resistance_factor = factor;
+        let mut plant = Plant::new(&config).expect("good");
+        plant.set_force(2.0);
+        plant.step(&BridgeOutputs::default());
+        plant
+    };
+    let surface = &granite.surface;
+    let contact = ContactLaw::NOMINAL.at_force(2.0, &SKIN.surface, surface);
+    let doubled_m2k_w = 2.0 * contact.expect("pressed").resistance_m2k_w;
+    let mut plant = landed(2.0);
+    let ratio = |finger| landed(1.0).heat.flux_w_m2(finger) / plant.heat.flux_w_m2(finger);
+    // After 1 ms the resistance limits the flux.
+    for finger in [Finger::OnObject, Finger::OnDisplay] {
+        assert!((1.8..2.0).contains(&ratio(finger)), "{}", ratio(finger));
+    }
+    run(&mut plant, 0.999, &BridgeOutputs::default());
+    let (es, eo) = (SKIN.effusivity(), granite.effusivity());
+    let progress = 1.0 - erfcx((1.0 / es + 1.0 / eo) / doubled_m2k_w);
+    let exact_c = 34.0 - 10.0 * eo / (eo + es) * progress;
+    assert!((plant.skin_real_c() - exact_c).abs() < 1e-3);
 }
 
 /// Behind a good insulation the core would have to be at 1000 deg C to keep the skin warm.

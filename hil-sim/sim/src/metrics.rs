@@ -1,11 +1,14 @@
 //! Figures of a run.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 use thermal_plant::STEP_S;
+use thermal_plant::parameters::{self, FingerDraw};
 
 use crate::dose::cem43_min;
 use crate::run::Outcome;
-use crate::scene::Scene;
+use crate::scene::{Draws, Scene};
 
 /// Time after landing from which the largest error counts, s.
 const AFTER_S: f64 = 0.05;
@@ -64,6 +67,17 @@ pub struct ResetRecord {
     pub cause: String,
 }
 
+/// What was drawn of contact and finger, with the values that the run has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DrawFigures {
+    /// Seed of the contact law.
+    pub contact: Option<u64>,
+    /// The finger's draw.
+    pub finger: Option<FingerDraw>,
+    /// Parameters of what was drawn, by key.
+    pub parameters: BTreeMap<String, f64>,
+}
+
 /// The figures of a run, as `--json` prints them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
@@ -103,6 +117,9 @@ pub struct Figures {
     pub faults: Vec<TripRecord>,
     /// Resets of the device after its power-up.
     pub resets: Vec<ResetRecord>,
+    /// Draws of contact and finger; absent if there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub draws: Option<DrawFigures>,
 }
 
 impl Figures {
@@ -186,6 +203,7 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
         real_time_factor: outcome.real_time_factor,
         faults: faults(outcome),
         resets: resets(outcome),
+        draws: draws(scene),
     }
 }
 
@@ -233,6 +251,24 @@ fn errors(samples: impl Iterator<Item = (f64, f64)>) -> Option<ErrorFigures> {
     (count > 0).then_some(ErrorFigures {
         max_after_50ms: max_k.map(|error_k| error_k * 1e3),
         rms,
+    })
+}
+
+fn draws(scene: &Scene) -> Option<DrawFigures> {
+    let Draws {
+        contact, finger, ..
+    } = scene.draws;
+    let parts = [contact.map(|_| "contact."), finger.map(|_| "finger.")];
+    let drawn = |key: &str| parts.iter().flatten().any(|part| key.starts_with(part));
+    let parameters: BTreeMap<_, _> = parameters::all(&scene.params)
+        .into_iter()
+        .filter(|parameter| drawn(&parameter.key))
+        .map(|parameter| (parameter.key, parameter.value))
+        .collect();
+    (!parameters.is_empty()).then_some(DrawFigures {
+        contact,
+        finger,
+        parameters,
     })
 }
 

@@ -55,6 +55,11 @@ impl Entry<'_> {
         }
     }
 
+    /// Whether the parameter belongs to a part.
+    pub fn is_of(&self, part: &str) -> bool {
+        self.key.split('.').next() == Some(part)
+    }
+
     fn is_infinite(&self) -> bool {
         self.may_be_infinite && *self.value == f64::INFINITY
     }

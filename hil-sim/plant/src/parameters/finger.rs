@@ -1,21 +1,34 @@
 //! Parameters of the finger. `skin` is its surface, `finger` the rest.
 
-use super::Source::{ClassValue, Literature, Thesis};
+use super::Source::{ClassValue, Estimate, Literature, Thesis};
 use super::entry::{Entry, entry, prefixed};
 use super::surface;
 use super::tolerance::{FIXED, factor, relative};
 use crate::finger::{FingerParams, Vessels};
 use crate::slab::{Layer, Medium};
 
+/// Name of the finger's surface.
+pub const SKIN: &str = "skin";
+
 pub fn entries(finger: &mut FingerParams) -> Vec<Entry<'_>> {
     let FingerParams {
         surface,
+        resistance_factor,
         layers,
         core_w_m2k,
         air_w_m2k,
         vessels,
     } = finger;
-    let mut all: Vec<_> = surface::entries("skin", surface, surface::SKIN).collect();
+    let mut all: Vec<_> = surface::entries(SKIN, surface, surface::SKIN).collect();
+    let resistance = entry!(
+        resistance_factor,
+        "1",
+        "factor on its contact resistance, on display and object alike; finger.draw draws it",
+        FIXED,
+        (0.01, 100.0),
+        Estimate("0.5 to 2 between people and moist and dry skin"),
+    );
+    all.extend(prefixed("finger", [resistance]));
     for (i, one) in layers.iter_mut().enumerate() {
         all.extend(prefixed(&format!("finger.layer.{i}"), layer(one)));
     }

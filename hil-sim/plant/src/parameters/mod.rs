@@ -6,8 +6,10 @@
 
 mod bridge;
 mod comparator;
+mod contact;
 mod entry;
 mod finger;
+mod finger_draw;
 mod host;
 mod sensors;
 mod surface;
@@ -18,6 +20,7 @@ use serde::Serialize;
 
 use super::Params;
 use entry::Entry;
+pub use finger_draw::{Before, Blood, Epidermis, FingerDraw, TissueDraw, draw_finger};
 pub use tolerance::{Distribution, Tolerance, absolute, between, relative, stream_seed};
 
 /// Source of a nominal value and its tolerance.
@@ -31,6 +34,8 @@ pub enum Source {
     DataSheet,
     /// Typical of the class of part, or estimated from its size.
     ClassValue,
+    /// Estimated for the stated reason.
+    Estimate(&'static str),
     /// Stated from memory, not looked up.
     Recalled,
     /// Chosen for the reference design; the tolerance is that of the class of part.
@@ -41,6 +46,7 @@ impl std::fmt::Display for Source {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Thesis(place) => return write!(f, "thesis {place}"),
+            Self::Estimate(reason) => return write!(f, "estimate: {reason}"),
             Self::Literature => "literature",
             Self::DataSheet => "data sheet",
             Self::ClassValue => "class value",
@@ -134,10 +140,22 @@ pub fn set(params: &mut Params, key: &str, value: f64) -> Result<(), ParameterEr
     entry.check().inspect_err(|_| *entry.value = before)
 }
 
-/// Draws every parameter within its tolerance around the given values. Each parameter has its own random stream, given by
-/// seed and key, so additional parameters do not change the draws of the others.
+/// Draws every parameter but those of the [contact](draw_contact) within its tolerance around the given values. Each
+/// parameter has its own random stream, given by seed and key, so additional parameters do not change the draws of the
+/// others.
 pub fn draw(params: &mut Params, seed: u64) {
-    for entry in &mut entries(params) {
+    let mut entries = entries(params);
+    for entry in entries
+        .iter_mut()
+        .filter(|entry| !entry.is_of(contact::PART))
+    {
+        entry.draw(seed);
+    }
+}
+
+/// Draws the parameters of the contact in the same way.
+pub fn draw_contact(params: &mut Params, seed: u64) {
+    for mut entry in contact::entries(&mut params.contact) {
         entry.draw(seed);
     }
 }
@@ -156,6 +174,7 @@ fn entries(params: &mut Params) -> Vec<Entry<'_>> {
     let Params {
         finger,
         display,
+        contact,
         tile,
         sensors,
         bridge,
@@ -164,6 +183,7 @@ fn entries(params: &mut Params) -> Vec<Entry<'_>> {
     } = params;
     let mut all = finger::entries(finger);
     all.extend(surface::entries("display", display, surface::DISPLAY));
+    all.extend(contact::entries(contact));
     all.extend(tile::entries(tile));
     all.extend(bridge::entries(bridge));
     all.extend(comparator::entries(comparator));

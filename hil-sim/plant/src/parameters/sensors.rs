@@ -10,6 +10,9 @@ use crate::sensors::{
 
 /// Time constant of a thermistor on the display: range in the literature for such thermistors.
 const DISPLAY_LAG: Tolerance = between(0.02, 0.5).logarithmic();
+/// Share of the contact at the skin thermistor: from a few millimetres beside the contact (section 6.4.3) to its perimeter
+/// (sections 3.2 and 4.4).
+const SEES_CONTACT: Tolerance = between(0.002, 0.35).logarithmic();
 /// Time constant of the other thermistors.
 const LAG: Tolerance = factor(2.0);
 
@@ -37,9 +40,9 @@ pub fn entries(sensors: &mut SensorParams) -> Vec<Entry<'_>> {
         skin_sees_contact,
         "1",
         "share of the contact's skin in what the skin thermistor at its edge sees",
-        between(0.0, 0.05),
+        SEES_CONTACT,
         (0.0, 1.0),
-        Thesis("6.4.3"),
+        Thesis("6.4.3; 3.2 and 4.4 on the perimeter, 0.22 to 0.32"),
     ));
     all.extend(prefixed("force", self::force(force)));
     all.extend(prefixed("mirror", self::mirror(mirror)));

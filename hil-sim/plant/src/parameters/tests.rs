@@ -1,6 +1,7 @@
 use std::collections::HashSet;
 
 use super::*;
+use crate::contact::ContactLaw;
 use crate::finger::FingerParams;
 
 fn layered() -> Params {
@@ -92,6 +93,7 @@ fn draws_follow_their_distribution_within_the_tolerance() {
         .map(|seed| {
             let mut params = nominal.clone();
             draw(&mut params, seed);
+            draw_contact(&mut params, seed);
             check(&params).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
             all(&params).iter().map(|p| p.value).collect()
         })
@@ -149,6 +151,12 @@ fn draws_depend_on_seed_and_key_only() {
         draw(&mut params, seed);
         params
     };
+    let mut contact = layered();
+    draw_contact(&mut contact, 7);
+    let contact = contact.contact;
+    let nominal = ContactLaw::NOMINAL;
+    assert_eq!(draw_of(layered(), 7).contact, nominal);
+    assert!(contact.gap_w_m2k != nominal.gap_w_m2k && contact.exponent != nominal.exponent);
     assert_eq!(draw_of(layered(), 7), draw_of(layered(), 7));
     assert_ne!(draw_of(layered(), 7), draw_of(layered(), 8));
     // A finger of more layers does not change the other draws.

@@ -62,7 +62,8 @@ pub struct SensorParams {
     pub thermistors: [ThermistorParams; THERMISTORS],
     /// Weight of the skin under the contact in the temperature at the skin thermistor on its edge, 0 to 1; the remaining
     /// weight has the skin temperature before contact. Section 6.4.3 of the thesis measured a change of 0.05 deg C, 2 to
-    /// 3 mm from a contact that changed by 3 to 5 deg C in 10 s; at the edge itself the weight is larger.
+    /// 3 mm from a contact that changed by 3 to 5 deg C in 10 s; on the perimeter itself (sections 3.2 and 4.4) it is 0.22
+    /// to 0.32.
     pub skin_sees_contact: f64,
     /// Force sensor.
     pub force: ForceParams,

@@ -9,7 +9,7 @@ use documented_figures::assert_figure;
 
 use super::{plant, run};
 use crate::bridge::BridgeOutputs;
-use crate::contact::{SkinContact, is_abrupt};
+use crate::contact::{ContactLaw, is_abrupt};
 use crate::{Finger, Plant, STEP_S};
 
 /// Rows of `tests/data/contact.csv`: material, force and numbers.
@@ -128,7 +128,7 @@ fn force_steps_lifting_and_landing_again_follow_the_integral_equation() {
         let mut plant = plant(material);
         for span in script.windows(2) {
             let ((from_s, force_n), (to_s, _)) = (span[0], span[1]);
-            let touch = SkinContact::at_force(force_n, &SKIN.surface, &object.surface);
+            let touch = ContactLaw::NOMINAL.at_force(force_n, &SKIN.surface, &object.surface);
             plant.set_force(force_n);
             for after_s in [0.02, 0.05, 0.2, to_s - from_s] {
                 let t_s = from_s + after_s;
@@ -152,7 +152,7 @@ fn force_steps_lifting_and_landing_again_follow_the_integral_equation() {
 #[test]
 fn slow_force_ramp_needs_no_sub_steps() {
     let object: &Material = find("copper").expect("known");
-    let touch = |force_n| SkinContact::at_force(force_n, &SKIN.surface, &object.surface);
+    let touch = |force_n| ContactLaw::NOMINAL.at_force(force_n, &SKIN.surface, &object.surface);
     let per_skin = 1.0 / (SKIN.effusivity() * PI.sqrt());
     let kappa = per_skin + 1.0 / (object.effusivity() * PI.sqrt());
     let mut exact = Volterra { pieces: Vec::new() };

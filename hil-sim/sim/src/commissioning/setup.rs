@@ -1,6 +1,7 @@
 //! The environments in which a device is commissioned.
 
 use contact_model::material::MATERIALS;
+use thermal_plant::contact::ContactLaw;
 use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::parameters::stream_seed;
@@ -28,6 +29,7 @@ impl CommissioningSetup {
         Self {
             params: Params {
                 finger: FingerParams::homogeneous(),
+                contact: ContactLaw::NOMINAL,
                 ..params.clone()
             },
             room_c,

@@ -77,6 +77,11 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
     ));
     rows.push(("faults", list(faults.collect())));
     rows.push(("resets", list(resets.collect())));
+    if let Some(draws) = &figures.draws {
+        let values = draws.parameters.iter();
+        let values = values.map(|(key, value)| format!("{key} = {value:.4e}"));
+        rows.push(("drawn", list(values.collect())));
+    }
     rows
 }
 

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use toml::Spanned;
 
 use super::Sensor;
-pub(super) use super::parameter_node::ParameterNode;
+pub(super) use super::parameter_node::{NodeNumber, ParameterNode};
 
 /// A number with its position in the file; whole numbers are accepted.
 pub(super) type Number = Spanned<f64>;
@@ -70,6 +70,25 @@ pub(super) struct Object {
     pub back: Option<Spanned<Back>>,
     pub back_c: Option<Number>,
     pub back_film_w_m2k: Option<Number>,
+    pub told: Option<Told>,
+    #[serde(default)]
+    pub layer: Vec<Spanned<ObjectLayer>>,
+}
+
+/// What the device is told of an object that is no half-space.
+#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum Told {
+    HalfSpace,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ObjectLayer {
+    pub thickness_m: Option<Number>,
+    pub k_w_mk: Number,
+    pub rho_kg_m3: Number,
+    pub c_j_kgk: Number,
 }
 
 #[derive(Clone, Copy, Deserialize)]
@@ -83,6 +102,7 @@ pub(super) enum Back {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Finger {
+    pub draw: Option<Spanned<NodeNumber>>,
     pub tissue: Option<Spanned<Tissue>>,
     pub core_w_m2k: Option<Number>,
     pub air_w_m2k: Option<Number>,

@@ -18,7 +18,8 @@ use contact_model::reference::{Contact, interface_temperature};
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_plant::object::ObjectConfig;
-use thermal_plant::slab::BackBoundary;
+use thermal_plant::parameters::FingerDraw;
+use thermal_plant::slab::{BackBoundary, Layer};
 use thermal_plant::{Params, PlantConfig};
 
 use crate::processor::Injection;
@@ -58,8 +59,12 @@ pub struct Scene {
     pub law: Option<Law>,
     /// The object that the display imitates.
     pub object: Object,
+    /// Whether the device is told a half-space of the object's material, whatever the object is.
+    pub object_as_half_space: bool,
     /// Parameters of finger, display and electronics.
     pub params: Params,
+    /// Which of them were drawn.
+    pub draws: Draws,
     /// The infrared camera that observes the finger on the real object, if any.
     pub infrared: Option<Infrared>,
     /// Changes of the force, in order of time.
@@ -77,16 +82,27 @@ pub struct Scene {
 pub struct Object {
     /// Name of the material, or `custom`.
     pub name: String,
-    /// Its properties.
+    /// Its properties; of a layered object they determine the contact resistance, and what a half-space would be.
     pub material: Material,
     /// Temperature before contact, °C, which the device is given; the room's if absent.
     pub start_c: Option<f64>,
     /// Time at which it appears, s.
     pub appears_t_s: f64,
-    /// Thickness, m; infinite for a half-space. The device is not given it.
-    pub thickness_m: f64,
-    /// Boundary condition at its back.
+    /// Its layers, from the touched face down; one for an object of one material, endless for a half-space.
+    pub layers: Vec<Layer>,
+    /// Boundary condition behind the last layer.
     pub back: BackBoundary,
+}
+
+/// Random draws of a scene's plant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Draws {
+    /// Seed of all parameters but those of the contact.
+    pub plant: Option<u64>,
+    /// Seed of the contact law.
+    pub contact: Option<u64>,
+    /// The finger.
+    pub finger: Option<FingerDraw>,
 }
 
 /// A change to a force that is then held.
@@ -159,9 +175,9 @@ impl Scene {
             skin_c: self.skin_c,
             room_c: self.room_c,
             object: ObjectConfig {
-                material: self.object.material,
+                surface: self.object.material.surface,
+                layers: self.object.layers.clone(),
                 start_c: self.object_c(),
-                thickness_m: self.object.thickness_m,
                 back: self.object.back,
             },
             start_s: -self.settle_s,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use contact_model::material::{Material, Surface, find};
 use thermal_plant::object::ObjectConfig;
-use thermal_plant::slab::BackBoundary;
+use thermal_plant::slab::{BackBoundary, Layer, Medium};
 use thermal_protocol::Request;
 use thermal_settings::Settings;
 use toml::Spanned;
@@ -12,6 +12,12 @@ use toml::Spanned;
 use super::file::{self, Number};
 use super::source::{SceneError, Source};
 use super::{Object, known_materials};
+
+/// Largest thickness, m.
+const THICKEST_M: f64 = 10.0;
+/// Ranges of a layer's conductivity, W/(m K), density, kg/m3, and specific heat, J/(kg K): those that the device accepts
+/// of a material.
+const LAYER_RANGES: [(f64, f64); 3] = [(1e-3, 5e3), (1.0, 30e3), (10.0, 10e3)];
 
 /// Reads and checks the object's table.
 pub(super) fn object(
@@ -62,37 +68,83 @@ pub(super) fn object(
         0.0,
         duration_s,
     )?;
-    let (thickness_m, back) = shape(source, object, room_c, start_c.unwrap_or(room_c))?;
+    let layers = layers(source, object, &material)?;
+    let back = back(source, object, (&layers, room_c, start_c.unwrap_or(room_c)))?;
     Ok(Object {
         name,
         material,
         start_c,
         appears_t_s,
-        thickness_m,
+        layers,
         back,
     })
 }
 
-/// Thickness and boundary condition at the back; a half-space has none.
-fn shape(
+/// The layers that the scene gives, or the one of the object's material.
+fn layers(
     source: &Source<'_>,
     object: &file::Object,
-    room_c: f64,
-    start_c: f64,
-) -> Result<(f64, BackBoundary), SceneError> {
+    material: &Material,
+) -> Result<Vec<Layer>, SceneError> {
+    let thickness_m = |key: &str, number: &Option<Number>| {
+        let (least, most) = (ObjectConfig::THINNEST_M, THICKEST_M);
+        source.within_or(f64::INFINITY, key, number, least, most)
+    };
+    let Some(last) = object.layer.len().checked_sub(1) else {
+        let thickness_m = thickness_m("object.thickness_m", &object.thickness_m)?;
+        return Ok(vec![ObjectConfig::layer(material, thickness_m)]);
+    };
+    if let Some(number) = &object.thickness_m {
+        let problem =
+            "object.thickness_m beside object.layer; allowed is either one thickness or layers";
+        return Err(source.error(Some(number.span()), problem));
+    }
+    let layer = |(i, layer): (usize, &Spanned<file::ObjectLayer>)| {
+        let key = |field: &str| format!("object.layer.{i}.{field}");
+        let (file, [k, rho, c]) = (layer.get_ref(), &LAYER_RANGES);
+        if file.thickness_m.is_none() && i < last {
+            let problem = format!(
+                "{} is missing; only the last layer may be endless",
+                key("thickness_m")
+            );
+            return Err(source.error(Some(layer.span()), problem));
+        }
+        let number =
+            |field: &str, number, (least, most)| source.within(&key(field), number, least, most);
+        Ok(Layer {
+            thickness_m: thickness_m(&key("thickness_m"), &file.thickness_m)?,
+            medium: Medium {
+                conductivity_w_mk: number("k_w_mk", &file.k_w_mk, *k)?,
+                capacity_j_m3k: number("rho_kg_m3", &file.rho_kg_m3, *rho)?
+                    * number("c_j_kgk", &file.c_j_kgk, *c)?,
+                perfusion_w_m3k: 0.0,
+                metabolism_w_m3: 0.0,
+            },
+        })
+    };
+    object.layer.iter().enumerate().map(layer).collect()
+}
+
+/// Boundary condition behind the last layer; an endless one has none.
+fn back(
+    source: &Source<'_>,
+    object: &file::Object,
+    (layers, room_c, start_c): (&[Layer], f64, f64),
+) -> Result<BackBoundary, SceneError> {
     let meaningless = |key: &str, span, needed: &str| {
         let problem = format!("object.{key} has no meaning here; allowed is {key} beside {needed}");
         Err(source.error(Some(span), problem))
     };
-    let thickness_m = source.within_or(
-        f64::INFINITY,
-        "object.thickness_m",
-        &object.thickness_m,
-        ObjectConfig::THINNEST_M,
-        10.0,
-    )?;
-    if let (None, Some(back)) = (&object.thickness_m, &object.back) {
-        return meaningless("back", back.span(), "object.thickness_m");
+    let endless = layers
+        .last()
+        .is_some_and(|last| last.thickness_m.is_infinite());
+    if let (true, Some(back)) = (endless, &object.back) {
+        let needed = if object.layer.is_empty() {
+            "object.thickness_m"
+        } else {
+            "thickness_m of the last object.layer"
+        };
+        return meaningless("back", back.span(), needed);
     }
     let kind = object
         .back
@@ -118,7 +170,7 @@ fn shape(
         }
         (_, None) => None,
     };
-    let back = match (kind, film) {
+    Ok(match (kind, film) {
         (file::Back::Insulated, _) => BackBoundary::Insulated,
         (_, Some(film_w_m2k)) => BackBoundary::Film {
             film_w_m2k,
@@ -128,8 +180,7 @@ fn shape(
             film_w_m2k: f64::INFINITY,
             temperature_c: back_c(start_c)?,
         },
-    };
-    Ok((thickness_m, back))
+    })
 }
 
 /// A material given by its properties; they must be within the ranges that the device accepts.

@@ -37,6 +37,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         file::Mode::SemiInfinite => ContactModel::SemiInfinite,
     };
     let (faults, injections) = faults(&source, &file.fault, duration_s, file.seed)?;
+    let (params, draws) = params(&source, file.finger.as_ref(), file.plant.as_ref())?;
     let scene = Scene {
         duration_s,
         settle_s,
@@ -51,7 +52,9 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             .map(|name| law(&source, name))
             .transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,
-        params: params(&source, file.finger.as_ref(), file.plant.as_ref())?,
+        object_as_half_space: file.object.get_ref().told.is_some(),
+        params,
+        draws,
         infrared: match &file.infrared {
             Some(file) => Some(infrared(&source, file, room_c)?),
             None => None,

@@ -1,29 +1,94 @@
-//! The plant parameters of a scene: its finger, a random draw, and single values.
+//! The plant parameters of a scene: its finger, random draws, and single values.
 
 use std::ops::Range;
 
 use contact_model::material::SKIN;
+use thermal_plant::Params;
 use thermal_plant::finger::{BLOOD_J_M3K, FingerParams, Vessels};
+use thermal_plant::parameters::{self, FingerDraw};
 use thermal_plant::slab::{Layer, Medium};
-use thermal_plant::{Params, parameters};
 use toml::Spanned;
 
-use super::file::{self, ParameterNode};
+use super::Draws;
+use super::file::{self, NodeNumber, ParameterNode};
 use super::source::{SceneError, Source};
 
-/// The parameters: nominal or drawn, then overridden by the values of the scene.
+/// The parameters: nominal or drawn, then overridden by the values of the scene; and what was drawn.
 pub(super) fn params(
     source: &Source<'_>,
     finger: Option<&Spanned<file::Finger>>,
     plant: Option<&Spanned<ParameterNode>>,
-) -> Result<Params, SceneError> {
-    let mut params = Params::nominal();
+) -> Result<(Params, Draws), SceneError> {
+    let (mut params, mut draws) = (Params::nominal(), Draws::default());
     if let Some(finger) = finger {
         tissue(source, finger.get_ref(), &mut params)?;
         finger_values(source, finger.get_ref(), &mut params)?;
     }
+    let undrawn = params.finger.clone();
+    let values = values(source, plant)?;
+    let seed = |wanted: &str| {
+        let value = values.iter().find(|(key, ..)| key == wanted);
+        let value = value.map(|(key, seed, span)| (format!("plant.{key}"), *seed, span.clone()));
+        value.map(|value| seed_of(source, &value)).transpose()
+    };
+    draws.plant = seed(DRAW)?;
+    draws.contact = seed(CONTACT_DRAW)?;
+    if let Some(seed) = draws.plant {
+        parameters::draw(&mut params, seed);
+        if let Some(finger) = finger {
+            finger_values(source, finger.get_ref(), &mut params)?;
+        }
+    }
+    if let Some(seed) = draws.contact {
+        parameters::draw_contact(&mut params, seed);
+    }
+    if let Some(finger) = finger {
+        draws.finger = drawn_finger(source, finger.get_ref(), undrawn, &mut params)?;
+    }
+    for (key, value, span) in values {
+        if key != DRAW && key != CONTACT_DRAW {
+            source.set(&mut params, &key, value.real(), span)?;
+        }
+    }
+    Ok((params, draws))
+}
+
+/// Draws the finger around what the scene gives of it, and keeps the surface, which is drawn with the plant.
+fn drawn_finger(
+    source: &Source<'_>,
+    finger: &file::Finger,
+    undrawn: FingerParams,
+    params: &mut Params,
+) -> Result<Option<FingerDraw>, SceneError> {
+    let Some(seed) = &finger.draw else {
+        return Ok(None);
+    };
+    let seed = seed_of(
+        source,
+        &("finger.draw".into(), *seed.get_ref(), seed.span()),
+    )?;
+    params.finger = FingerParams {
+        surface: params.finger.surface,
+        ..undrawn
+    };
+    let layered = matches!(
+        finger.tissue.as_ref().map(Spanned::get_ref),
+        Some(file::Tissue::Layered)
+    );
+    let draw = parameters::draw_finger(&mut params.finger, seed, layered);
+    vessels(finger, params);
+    films(source, finger, params)?;
+    Ok(Some(draw))
+}
+
+/// The numbers below `plant`.
+fn values(
+    source: &Source<'_>,
+    plant: Option<&Spanned<ParameterNode>>,
+) -> Result<Vec<Value>, SceneError> {
+    let mut values = Vec::new();
     let Some(plant) = plant else {
-        return Ok(params);
+        return Ok(values);
     };
     let ParameterNode::Table(entries) = plant.get_ref() else {
         return Err(source.error(
@@ -31,46 +96,41 @@ pub(super) fn params(
             "plant is a number; allowed is a table of parameters",
         ));
     };
-    let (draws, values): (Vec<_>, Vec<_>) =
-        entries.iter().partition(|(key, _)| key.get_ref() == "draw");
-    for (_, seed) in draws {
-        parameters::draw(&mut params, seed_of(source, seed)?);
-        if let Some(finger) = finger {
-            finger_values(source, finger.get_ref(), &mut params)?;
-        }
+    for (key, node) in entries {
+        collect(key.get_ref().clone(), node, &mut values);
     }
-    for (key, node) in values {
-        set(source, &mut params, key.get_ref().clone(), node)?;
-    }
-    Ok(params)
+    Ok(values)
 }
 
-fn seed_of(source: &Source<'_>, seed: &Spanned<ParameterNode>) -> Result<u64, SceneError> {
-    match seed.get_ref() {
-        ParameterNode::Whole(seed) if *seed >= 0 => Ok(seed.unsigned_abs()),
+/// Keys of the seeds.
+const DRAW: &str = "draw";
+const CONTACT_DRAW: &str = "contact.draw";
+
+/// A number: its key, value, and position.
+type Value = (String, NodeNumber, Range<usize>);
+
+fn seed_of(source: &Source<'_>, (key, seed, span): &Value) -> Result<u64, SceneError> {
+    match seed {
+        NodeNumber::Whole(seed) if *seed >= 0 => Ok(seed.unsigned_abs()),
         _ => {
             let problem = format!(
-                "plant.draw is the seed of a draw; allowed is a whole number, 0 to {}",
+                "{key} is the seed of a draw; allowed is a whole number, 0 to {}",
                 i64::MAX
             );
-            Err(source.error(Some(seed.span()), problem))
+            Err(source.error(Some(span.clone()), problem))
         }
     }
 }
 
-/// Sets the parameters below a key.
-fn set(
-    source: &Source<'_>,
-    params: &mut Params,
-    key: String,
-    node: &Spanned<ParameterNode>,
-) -> Result<(), SceneError> {
+/// Collects the numbers at and below a key.
+fn collect(key: String, node: &Spanned<ParameterNode>, values: &mut Vec<Value>) {
     match node.get_ref() {
-        ParameterNode::Number(value) => source.set(params, &key, *value, node.span()),
-        ParameterNode::Whole(value) => source.set(params, &key, *value as f64, node.span()),
-        ParameterNode::Table(entries) => entries.iter().try_for_each(|(name, node)| {
-            set(source, params, format!("{key}.{}", name.get_ref()), node)
-        }),
+        ParameterNode::Number(value) => values.push((key, *value, node.span())),
+        ParameterNode::Table(entries) => {
+            for (name, node) in entries {
+                collect(format!("{key}.{}", name.get_ref()), node, values);
+            }
+        }
     }
 }
 
@@ -89,12 +149,16 @@ fn tissue(
         Some(file::Tissue::Layered) => FingerParams::layered(),
         Some(file::Tissue::Homogeneous) | None => FingerParams::homogeneous(),
     };
+    vessels(finger, params);
+    Ok(())
+}
+
+fn vessels(finger: &file::Finger, params: &mut Params) {
     match finger.vessels {
         Some(true) => params.finger.vessels = Some(Vessels::THESIS),
         Some(false) => params.finger.vessels = None,
         None => {}
     }
-    Ok(())
 }
 
 /// Sets the finger's values that the scene gives.
@@ -114,6 +178,15 @@ fn finger_values(
             layer_values(source, params, &format!("finger.layer.{i}"), layer, last)?;
         }
     }
+    films(source, finger, params)
+}
+
+/// Sets core and air film as far as the scene gives them.
+fn films(
+    source: &Source<'_>,
+    finger: &file::Finger,
+    params: &mut Params,
+) -> Result<(), SceneError> {
     if let Some(core_w_m2k) = &finger.core_w_m2k {
         params.finger.core_w_m2k = Some(0.0);
         number(source, params, "finger.core_w_m2k", core_w_m2k)?;

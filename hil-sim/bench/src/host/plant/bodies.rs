@@ -4,7 +4,7 @@ use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN, find};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
 use serde::Serialize;
-use thermal_plant::contact::SkinContact;
+use thermal_plant::contact::{ContactLaw, SkinContact};
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::reference::ReferenceSolution;
 use thermal_plant::slab::{BackBoundary, Grading, Layer, Medium, Slab};
@@ -128,7 +128,8 @@ impl Cut {
 
 fn touch(object: &str, force_n: f64) -> anyhow::Result<(&'static Material, SkinContact)> {
     let object: &Material = find(object).with_context(|| format!("no material {object}"))?;
-    let touch = SkinContact::at_force(force_n, &SKIN.surface, &object.surface)
+    let touch = ContactLaw::NOMINAL
+        .at_force(force_n, &SKIN.surface, &object.surface)
         .with_context(|| format!("{force_n} N is no contact"))?;
     Ok((object, touch))
 }

@@ -17,7 +17,7 @@ fn stored_j_m2(bench: &Bench, index: usize, slab: &Slab) -> f64 {
 fn only_surfaces_without_contact_lose_heat_to_the_air() {
     let granite = find("granite").expect("known");
     let object = ObjectConfig {
-        thickness_m: 5e-3,
+        layers: vec![ObjectConfig::layer(granite, 5e-3)],
         ..ObjectConfig::half_space(*granite, 40.0)
     };
     let mut bench = Bench::new(&FingerParams::homogeneous(), &object, TileParams::NOMINAL);

@@ -15,7 +15,9 @@ fn display_plate_follows_a_ceramic_half_space_after_contact() {
         &ObjectConfig::half_space(SKIN, ROOM_C),
         tile,
     );
-    let touch = SkinContact::at_force(2.0, &SKIN.surface, &REFERENCE_DISPLAY).expect("pressed");
+    let touch = ContactLaw::NOMINAL
+        .at_force(2.0, &SKIN.surface, &REFERENCE_DISPLAY)
+        .expect("pressed");
     let exact = |t_s: f64| {
         let (finger, plate) = (
             SKIN.effusivity(),

@@ -12,6 +12,7 @@ use contact_model::material::{Material, REFERENCE_DISPLAY, SKIN};
 
 use super::*;
 use crate::bridge::{BridgeParams, Leg};
+use crate::contact::ContactLaw;
 use crate::finger::FingerParams;
 use crate::object::ObjectConfig;
 use crate::slab::{Grading, steady_state};
@@ -36,7 +37,7 @@ impl Bench {
         let cut = |layers: &[_], back| Slab::new(layers, back, 100.0, &Grading::STANDARD);
         let (slab, object_slab) = (
             cut(&finger.layers, finger.back()),
-            cut(&[object.layer()], object.back),
+            cut(&object.layers, object.back),
         );
         let loss_w_m2 = finger.air_w_m2k * (SKIN_C - ROOM_C);
         let steady = steady_state(&slab, SKIN_C, loss_w_m2).expect("a steady state");
@@ -87,6 +88,6 @@ impl Bench {
 }
 
 fn touch(material: &Material, force_n: f64) -> (Option<SkinContact>, Option<SkinContact>) {
-    let under = |surface| SkinContact::at_force(force_n, &SKIN.surface, surface);
+    let under = |surface| ContactLaw::NOMINAL.at_force(force_n, &SKIN.surface, surface);
     (under(&REFERENCE_DISPLAY), under(&material.surface))
 }

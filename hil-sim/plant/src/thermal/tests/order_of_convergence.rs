@@ -15,7 +15,7 @@ fn bodies_in_contact_converge_at_second_order_in_time() {
     let finger = FingerParams::layered();
     let slab = cut(&finger.layers, finger.back());
     let object = cut(
-        &[ObjectConfig::half_space(*material, ROOM_C).layer()],
+        &ObjectConfig::half_space(*material, ROOM_C).layers,
         crate::slab::BackBoundary::Insulated,
     );
     let mut heat = ThermalModel::new(

@@ -26,7 +26,7 @@ fn skin_c(
     }
     let touch = SkinContact {
         area_m2: 135e-6,
-        resistance_m2k_w: contact_resistance(&SKIN.surface, &object.material.surface, PRESSURE_PA),
+        resistance_m2k_w: contact_resistance(&SKIN.surface, &object.surface, PRESSURE_PA),
     };
     bench.touch(None, Some(touch));
     let mut steps = 0;
@@ -86,13 +86,10 @@ fn epidermis_changes_only_the_first_second() {
 #[test]
 fn thin_copper_warms_up() {
     let object = half_space("copper");
-    let thin = ObjectConfig {
-        thickness_m: 10e-3,
-        back: BackBoundary::Insulated,
-        ..object
-    };
+    let mut thin = object.clone();
+    thin.layers[0].thickness_m = 10e-3;
     let finger = FingerParams::homogeneous();
-    let [plain, with] = [object, thin].map(|o| skin_c(&finger, &o, None, &[10.0])[0]);
+    let [plain, with] = [&object, &thin].map(|o| skin_c(&finger, o, None, &[10.0])[0]);
     assert_figure("variants.slab", with - plain);
     // With its back held at the start temperature it stays colder than a half-space.
     let held = ObjectConfig {

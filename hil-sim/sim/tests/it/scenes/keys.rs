@@ -1,9 +1,16 @@
 //! What keys of a scene come to.
 
+use contact_model::material::find;
+use thermal_plant::contact::ContactLaw;
 use thermal_plant::finger::{FingerParams, Vessels};
+use thermal_plant::object::ObjectConfig;
 use thermal_plant::{Params, parameters};
+use thermal_sim::World;
+use thermal_sim::engine::NativeEngine;
+use thermal_sim::metrics::figures;
 use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::{Injection, MachineFault};
+use thermal_sim::run::run;
 
 use super::scene;
 
@@ -64,6 +71,58 @@ fn own_values_override_a_draw_wherever_they_stand() {
 }
 
 #[test]
+fn contact_is_drawn_only_by_its_own_seed() {
+    let mut expected = Params::nominal();
+    parameters::draw(&mut expected, 3);
+    assert_eq!(expected.contact, ContactLaw::NOMINAL);
+    assert_eq!(params("[plant]\ndraw = 3\n"), expected);
+    parameters::draw_contact(&mut expected, 4);
+    assert_eq!(params("[plant]\ncontact.draw = 4\ndraw = 3\n"), expected);
+    expected.contact.exponent = 0.9;
+    let nested = "[plant]\ndraw = 3\n[plant.contact]\nexponent = 0.9\ndraw = 4\n";
+    assert_eq!(params(nested), expected);
+}
+
+#[test]
+fn drawn_finger_keeps_what_the_scene_gives_and_is_reported() {
+    let of = |mut finger: FingerParams, layered| {
+        parameters::draw_finger(&mut finger, 5, layered);
+        finger
+    };
+    let plain = params("[finger]\ndraw = 5\n");
+    assert_eq!(plain.finger, of(FingerParams::homogeneous(), false));
+    let layered = "[finger]\ndraw = 5\ntissue = \"layered\"\n";
+    let expected = of(FingerParams::layered(), true);
+    assert_eq!(params(layered).finger, expected);
+    // The plant's draw has the surface; nothing of the tissue is drawn twice.
+    let both = params(&format!("{layered}[plant]\ndraw = 3\n"));
+    let plant_only = params("[finger]\ntissue = \"layered\"\n[plant]\ndraw = 3\n");
+    assert_eq!(both.finger.layers, expected.layers);
+    assert_eq!(both.finger.surface, plant_only.finger.surface);
+    assert_eq!(both.tile, plant_only.tile);
+    let own = params(&format!("{layered}air_w_m2k = 7\nvessels = true\n")).finger;
+    assert_eq!((own.air_w_m2k, own.vessels), (7.0, Some(Vessels::THESIS)));
+    assert_eq!(own.layers, expected.layers);
+    // Of own layers effusivity and resistance are drawn.
+    let skin = "[[finger.layer]]\nk_w_mk = 0.37\nrho_kg_m3 = 1000\nc_j_kgk = 3700\n";
+    assert_eq!(params(&format!("[finger]\ndraw = 5\n{skin}")), plain);
+
+    let drawn = scene(&format!("{HEAD}{layered}[plant]\ncontact.draw = 4\n"));
+    let mut engine = NativeEngine::new(World::new(&drawn).expect("a plant"));
+    let outcome = run(&drawn, &mut engine, |_| ()).expect("the device takes the scene");
+    let draws = figures(&drawn, &outcome).draws.expect("draws");
+    assert_eq!((draws.contact, draws.finger), (Some(4), drawn.draws.finger));
+    let tissue = draws.finger.and_then(|finger| finger.tissue);
+    assert!(tissue.is_some());
+    for parameter in parameters::all(&drawn.params) {
+        let reported = draws.parameters.get(&parameter.key);
+        let part = parameter.key.split('.').next();
+        let expected = matches!(part, Some("contact" | "finger")).then_some(&parameter.value);
+        assert_eq!(reported, expected, "{}", parameter.key);
+    }
+}
+
+#[test]
 fn layers_of_a_scene_are_those_of_the_nominal_fingers() {
     let skin = "[[finger.layer]]\nk_w_mk = 0.37\nrho_kg_m3 = 1000\nc_j_kgk = 3700\n";
     assert_eq!(params(skin).finger, FingerParams::homogeneous());
@@ -78,6 +137,30 @@ fn layers_of_a_scene_are_those_of_the_nominal_fingers() {
     let drawn = params(&format!("{layered}[plant]\ndraw = 1\n")).finger;
     assert_eq!(drawn.layers, FingerParams::layered().layers);
     assert_ne!(drawn.vessels, Some(Vessels::THESIS));
+}
+
+#[test]
+fn layers_of_an_object_conduct_and_its_material_is_the_touched_surface() {
+    let text = |rest: &str| format!("{HEAD}{rest}");
+    let copper = "[[object.layer]]\nk_w_mk = 398\nrho_kg_m3 = 8954\nc_j_kgk = 384\n";
+    let plain = scene(&text(""));
+    assert!(!plain.object_as_half_space);
+    assert_eq!(scene(&text(copper)).plant_config(), plain.plant_config());
+    let thin = scene(&text("thickness_m = 3e-3\nback = \"held\"\n"));
+    let layer = format!("back = \"held\"\n{copper}thickness_m = 3e-3\n");
+    assert_eq!(scene(&text(&layer)).plant_config(), thin.plant_config());
+    let foam = "[[object.layer]]\nk_w_mk = 0.029\nrho_kg_m3 = 24\nc_j_kgk = 1210\n";
+    let on_foam = text(&format!(
+        "told = \"half-space\"\n{copper}thickness_m = 1e-3\n{foam}"
+    ));
+    let on_foam = scene(&on_foam);
+    assert!(on_foam.object_as_half_space);
+    assert_eq!(on_foam.object.material, plain.object.material);
+    let layers = &on_foam.plant_config().object.layers;
+    let foam = ObjectConfig::half_space(*find("foam").expect("known"), 24.0);
+    assert_eq!(layers[1..], foam.layers);
+    assert_eq!(layers[0].thickness_m, 1e-3);
+    assert_eq!(layers[0].medium, plain.object.layers[0].medium);
 }
 
 /// By their kinds: the sampler's stream unless another is named, and noise of the scene's seed.

@@ -5,6 +5,7 @@ use std::path::Path;
 use thermal_sim::scene::Scene;
 
 const HEAD: &str = "duration_s = 1\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\n";
+const COPPER: &str = "[[object.layer]]\nk_w_mk = 398\nrho_kg_m3 = 8954\nc_j_kgk = 384\n";
 const LAYER: &str = "[[finger.layer]]\nk_w_mk = 0.37\nrho_kg_m3 = 1000\nc_j_kgk = 3700\n";
 
 #[test]
@@ -44,6 +45,41 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
             "thickness_m = 0.1\nback = \"held\"\nback_c = 99",
             8,
             "object.back_c = 99; allowed is -20 to 60",
+        ),
+        (
+            &format!("thickness_m = 0.1\n{COPPER}"),
+            6,
+            "object.thickness_m beside object.layer; allowed is either one thickness or layers",
+        ),
+        (
+            &format!("{COPPER}{COPPER}"),
+            6,
+            "object.layer.0.thickness_m is missing; only the last layer may be endless",
+        ),
+        (
+            &format!("back = \"held\"\n{COPPER}"),
+            6,
+            "object.back has no meaning here; allowed is back beside thickness_m of the last object.layer",
+        ),
+        (
+            &format!("{COPPER}thickness_m = 1e-6"),
+            10,
+            "object.layer.0.thickness_m = 0.000001; allowed is 0.00001 to 10",
+        ),
+        (
+            &COPPER.replace("398", "inf"),
+            7,
+            "object.layer.0.k_w_mk = inf; allowed is 0.001 to 5000",
+        ),
+        (
+            &COPPER.replace("c_j_kgk = 384\n", ""),
+            6,
+            "missing field `c_j_kgk`",
+        ),
+        (
+            "told = \"slab\"",
+            6,
+            "unknown variant `slab`, expected `half-space`",
         ),
         (
             "[plant]\ntile.imx_a = 5",
@@ -87,6 +123,16 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
         ),
         ("[plant]\ndraw = 1.5", 7, "plant.draw is the seed of a draw"),
         (
+            "[plant]\ncontact.draw = -1",
+            7,
+            "plant.contact.draw is the seed of a draw; allowed is a whole number",
+        ),
+        (
+            "[plant]\ncontact.gap_w_m2k = -1",
+            7,
+            "contact.gap_w_m2k = -1 W/(m2 K); allowed is 0 to 100000",
+        ),
+        (
             "[plant]\ntile.plate_m = 0.016\ntile.patch_m2 = 3e-4",
             6,
             "tile.patch_m2 is 0.0003; allowed is below the plate's area",
@@ -95,6 +141,16 @@ fn wrong_tables_are_refused_with_line_value_and_what_is_allowed() {
             "[plant]\nbridge.pwm_hz = 1e6\nbridge.dead_time_s = 1e-6",
             6,
             "bridge.dead_time_s is 0.000001; allowed is up to half a period",
+        ),
+        (
+            "[finger]\ndraw = 1.5",
+            7,
+            "finger.draw is the seed of a draw; allowed is a whole number",
+        ),
+        (
+            "[finger]\ndraw = { a = 1 }",
+            7,
+            "a table, expected a number",
         ),
         (
             "[finger]\nair_w_m2k = 10",
