@@ -6,6 +6,7 @@ use thermal_device::reference::ContactModel;
 use thermal_protocol::LINE_MAX_BYTES;
 
 use crate::scene::{FaultKind, Scene, custom_line};
+use crate::upload;
 
 /// Milliseconds after the device's start at which it is armed, and between two lines.
 const ARM_MS: u64 = 10;
@@ -33,6 +34,18 @@ pub struct Host {
     silences: Vec<Range<u64>>,
 }
 
+/// The lines by which the operator chooses the finger that the device assumes, and describes an object that is no
+/// half-space.
+fn assumptions(scene: &Scene) -> Vec<String> {
+    let mut lines = vec![format!("finger {}", scene.assumed_finger.word())];
+    let object = &scene.object;
+    if !scene.object_as_half_space && !object.is_half_space() {
+        let fit = upload::object_fit(&object.material, &object.layers, &object.back);
+        lines.extend(upload::upload_lines(&fit));
+    }
+    lines
+}
+
 impl Host {
     /// Queues the lines that restore the settings of the device, set up the scene and request telemetry every
     /// `stream_ms`, the lines of the scene itself, and blank lines as heartbeat.
@@ -55,7 +68,8 @@ impl Host {
         };
         let law = scene.law.map(|law| format!("law {}", law.name()));
         let set_up = [material, object, mode.into()].into_iter().chain(law);
-        let set_up = set_up.chain(["arm".into()]);
+        // What the device assumes follows the command that arms it, which so is sent at the same time for all scenes.
+        let set_up = set_up.chain(["arm".into()]).chain(assumptions(scene));
         let arm_ms = ARM_MS + SPACING_MS * settings.len() as u64;
         let mut queue: Vec<_> = (settings.iter().cloned().chain(set_up).zip(0..))
             .map(|(line, i)| (ARM_MS + i * SPACING_MS, line))

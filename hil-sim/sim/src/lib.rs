@@ -18,6 +18,7 @@ pub mod scene;
 mod scene_recording;
 pub mod telemetry;
 pub mod trace;
+pub mod upload;
 mod world;
 
 pub use flash_cells::FlashCells;

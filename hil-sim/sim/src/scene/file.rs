@@ -39,11 +39,23 @@ pub(super) struct File {
 #[serde(default, deny_unknown_fields)]
 pub(super) struct Device {
     pub commissioned: bool,
+    pub finger: Option<AssumedFinger>,
+}
+
+/// The finger that the simulated operator lets the device assume.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum AssumedFinger {
+    Thesis,
+    Mean,
 }
 
 impl Default for Device {
     fn default() -> Self {
-        Self { commissioned: true }
+        Self {
+            commissioned: true,
+            finger: None,
+        }
     }
 }
 

@@ -38,6 +38,26 @@ pub fn known_materials() -> String {
     MATERIALS.map(|(name, _)| name).join(", ")
 }
 
+/// A finger that the device can assume for the one that touches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AssumedFinger {
+    /// The thesis's half-space.
+    Thesis,
+    /// The mean layered finger.
+    Mean,
+}
+
+impl AssumedFinger {
+    /// Its word in the protocol.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Thesis => "thesis",
+            Self::Mean => "mean",
+        }
+    }
+}
+
 /// A scene that has passed every check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
@@ -59,7 +79,9 @@ pub struct Scene {
     pub law: Option<Law>,
     /// The object that the display imitates.
     pub object: Object,
-    /// Whether the device is told a half-space of the object's material, whatever the object is.
+    /// The finger that the operator lets the device assume.
+    pub assumed_finger: AssumedFinger,
+    /// Whether the device is given a half-space of the object's material, whatever the object is.
     pub object_as_half_space: bool,
     /// Parameters of finger, display and electronics.
     pub params: Params,
@@ -92,6 +114,14 @@ pub struct Object {
     pub layers: Vec<Layer>,
     /// Boundary condition behind the last layer.
     pub back: BackBoundary,
+}
+
+impl Object {
+    /// Whether it is a half-space of its material.
+    #[must_use]
+    pub fn is_half_space(&self) -> bool {
+        self.layers == ObjectConfig::half_space(self.material, 0.0).layers
+    }
 }
 
 /// Random draws of a scene's plant.

@@ -6,6 +6,7 @@ use std::path::Path;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::Setpoint;
+use thermal_plant::finger::FingerParams;
 use thermal_plant::{ConfigError, Plant};
 use toml::Spanned;
 
@@ -16,7 +17,7 @@ use super::nesting;
 use super::object::object;
 use super::plant::params;
 use super::source::{SceneError, Source};
-use super::{Force, HostLine, Scene};
+use super::{AssumedFinger, Force, HostLine, Scene};
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
@@ -52,6 +53,12 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             .map(|name| law(&source, name))
             .transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,
+        assumed_finger: match file.device.finger {
+            Some(file::AssumedFinger::Thesis) => AssumedFinger::Thesis,
+            Some(file::AssumedFinger::Mean) => AssumedFinger::Mean,
+            None if is_homogeneous(&params.finger) => AssumedFinger::Thesis,
+            None => AssumedFinger::Mean,
+        },
         object_as_half_space: file.object.get_ref().told.is_some(),
         params,
         draws,
@@ -142,4 +149,9 @@ fn setpoint(source: &Source<'_>, scene: &Scene, span: Range<usize>) -> Result<()
         scene.object_c()
     );
     Err(source.error(Some(span), problem))
+}
+
+/// Whether the finger is a half-space, as the thesis's.
+fn is_homogeneous(finger: &FingerParams) -> bool {
+    matches!(finger.layers.as_slice(), [one] if one.thickness_m.is_infinite())
 }

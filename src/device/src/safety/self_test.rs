@@ -68,7 +68,7 @@ const DISPLAY_RESPONSE_MAX: Celsius = Celsius::lit("1.5");
 const WAIT_AFTER_LANDING_OR_LIFTING_TICKS: u16 = 1000;
 /// Ticks of 1 ms that one self-test may wait in all for fingers that land and lift; then [`Fault::NoResponse`] trips
 /// the station.
-const FINGER_WAITS_TOTAL_TRIP_TICKS: u16 = 20 * WAIT_AFTER_LANDING_OR_LIFTING_TICKS;
+const SETTLING_WAITS_TOTAL_TRIP_TICKS: u16 = 20 * WAIT_AFTER_LANDING_OR_LIFTING_TICKS;
 /// Ticks of 1 ms in a row in which the force sensor detects no finger, after which a finger counts as lifted. A force
 /// just above the contact threshold falls below the threshold by noise now and then.
 const LIFTED_AFTER_TICKS: u8 = 32;
@@ -113,7 +113,7 @@ pub struct SelfTest {
     untouched_ticks: u8,
     /// Ticks of 1 ms that remain to wait before the baseline begins, because a finger has landed or lifted.
     wait_ticks: u16,
-    /// Ticks of 1 ms that this self-test has waited for fingers in all, up to [`FINGER_WAITS_TOTAL_TRIP_TICKS`].
+    /// Ticks of 1 ms that this self-test has waited for fingers in all, up to [`SETTLING_WAITS_TOTAL_TRIP_TICKS`].
     waited_ticks: u16,
 }
 
@@ -154,7 +154,7 @@ impl SelfTest {
             self.restart_baseline(touched);
         }
         if self.tick == COMPARATOR_TEST_END_TICK && self.wait_ticks > 0 {
-            if self.waited_ticks >= FINGER_WAITS_TOTAL_TRIP_TICKS {
+            if self.waited_ticks >= SETTLING_WAITS_TOTAL_TRIP_TICKS {
                 return Err(Fault::NoResponse);
             }
             self.wait_ticks -= 1;

@@ -1,0 +1,65 @@
+//! How the host describes an object that is no half-space: as an upload of its relaxations.
+
+use contact_model::material::{Material, SKIN};
+use contact_model::pressure::pressure_pa;
+use contact_model::reference::contact_resistance;
+use crc::{CRC_32_ISO_HDLC, Crc};
+use relaxation_fit::{Back, Fit, Layer, fit, impedance};
+use thermal_plant::slab::{self, BackBoundary};
+
+/// Most relaxations that are fitted to an object.
+const RELAXATIONS_MAX: usize = 14;
+/// Force at whose contact resistance an error of the object's impedance counts, N.
+const TYPICAL_FORCE_N: f64 = 2.0;
+/// Units of the protocol in a square metre: mm².
+const MM2_PER_M2: f64 = 1e6;
+
+/// Relaxations of an object of these layers, fitted such that the skin's error on it is least.
+#[must_use]
+pub fn object_fit(material: &Material, layers: &[slab::Layer], back: &BackBoundary) -> Fit {
+    let layers: Vec<_> = (layers.iter())
+        .map(|layer| Layer {
+            thickness_m: layer.thickness_m,
+            conductivity_w_mk: layer.medium.conductivity_w_mk,
+            capacity_j_m3k: layer.medium.capacity_j_m3k,
+            perfusion_w_m3k: 0.0,
+        })
+        .collect();
+    let back = match back {
+        BackBoundary::Insulated => Back::Insulated,
+        BackBoundary::Film { film_w_m2k, .. } => Back::Film(*film_w_m2k),
+    };
+    let pressure = pressure_pa(TYPICAL_FORCE_N);
+    let resistance_m2k_w = contact_resistance(&SKIN.surface, &material.surface, pressure);
+    // The skin's error per error of the object's impedance, for a contact of 1 K.
+    let weight = |s_1_s: f64, object_m2k_w: f64| {
+        let skin_m2k_w = 1.0 / (SKIN.effusivity() * s_1_s.sqrt());
+        skin_m2k_w / (skin_m2k_w + resistance_m2k_w + object_m2k_w).powi(2)
+    };
+    fit(
+        |s_1_s| impedance(&layers, back, s_1_s),
+        weight,
+        RELAXATIONS_MAX,
+    )
+}
+
+/// The lines that upload an object of these relaxations.
+#[must_use]
+pub fn upload_lines(object: &Fit) -> Vec<String> {
+    let direct = MM2_PER_M2 * object.direct_m2k_w;
+    let mut lines = vec![format!(
+        "upload begin object {} {direct:.9}",
+        object.relaxations.len()
+    )];
+    lines.extend(object.relaxations.iter().enumerate().map(|(index, one)| {
+        let (rate, gain) = (one.rate_1_s, MM2_PER_M2 * one.gain_m2k_j);
+        format!("upload row {index} {rate:.9} {gain:.9}")
+    }));
+    let crc = Crc::<u32>::new(&CRC_32_ISO_HDLC);
+    let sent: String = lines.iter().flat_map(|line| [line, "\n"]).collect();
+    lines.push(format!(
+        "upload commit {:08x}",
+        crc.checksum(sent.as_bytes())
+    ));
+    lines
+}
