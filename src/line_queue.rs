@@ -67,7 +67,7 @@ impl LineQueue {
 
 impl LineProducer<'_> {
     /// Appends a line from the host to the queue. If the queue is full, the line is refused: it is
-    /// dropped and counted, and [`LineConsumer::dequeue_line_or_refusal`] returns [`LineError::QueueFull`] in its
+    /// dropped and counted, and [`LineConsumer::dequeue_line_or_queue_full`] returns [`LineError::QueueFull`] in its
     /// place. All further lines are also refused until every refused line has its error answer, so
     /// that the answers keep the order of the lines.
     pub fn enqueue_or_count_refused(&mut self, line: ReceivedLineOrError) {
@@ -80,7 +80,7 @@ impl LineProducer<'_> {
 impl LineConsumer<'_> {
     /// Removes and returns the next line to be answered, or [`LineError::QueueFull`] in place of a
     /// line that was refused. `None` if no line waits for an answer.
-    pub fn dequeue_line_or_refusal(&mut self) -> Option<ReceivedLineOrError> {
+    pub fn dequeue_line_or_queue_full(&mut self) -> Option<ReceivedLineOrError> {
         // The count is read before the queue. While it is above zero no line enters the queue, so
         // if the queue is empty then the refused lines are next.
         let refused = self.refused.load(Ordering::Acquire);

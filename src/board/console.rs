@@ -53,7 +53,7 @@ impl Console {
                     Ok(reply) => self.outbox.enqueue_or_drop(&reply),
                     Err(error) => self.outbox.enqueue_or_drop(&error),
                 }
-            } else if let Some(line) = self.lines.dequeue_line_or_refusal() {
+            } else if let Some(line) = self.lines.dequeue_line_or_queue_full() {
                 let answer = line
                     .map_err(|error| WithSourceFinger::from_whole_device(Error::from(error)))
                     .and_then(|line| self.handler.answer(&line, &mut execute));

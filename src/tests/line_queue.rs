@@ -22,15 +22,15 @@ fn lines_beyond_the_depth_are_taken_as_refused() {
         put(&mut inlet, &mut sent);
     }
     for line in &sent[..LINE_QUEUE_CAPACITY] {
-        assert_eq!(outlet.dequeue_line_or_refusal(), Some(Ok(line.clone())));
+        assert_eq!(outlet.dequeue_line_or_queue_full(), Some(Ok(line.clone())));
     }
     for _ in 0..3 {
         assert_eq!(
-            outlet.dequeue_line_or_refusal(),
+            outlet.dequeue_line_or_queue_full(),
             Some(Err(LineError::QueueFull))
         );
     }
-    assert_eq!(outlet.dequeue_line_or_refusal(), None);
+    assert_eq!(outlet.dequeue_line_or_queue_full(), None);
 }
 
 /// Tries every sequence of 18 steps, each of which puts or takes one line.
@@ -44,10 +44,10 @@ fn lines_are_taken_in_the_order_in_which_they_were_put() {
             if sequence >> step & 1 == 1 {
                 put(&mut inlet, &mut sent);
             } else {
-                answered.extend(outlet.dequeue_line_or_refusal());
+                answered.extend(outlet.dequeue_line_or_queue_full());
             }
         }
-        answered.extend(std::iter::from_fn(|| outlet.dequeue_line_or_refusal()));
+        answered.extend(std::iter::from_fn(|| outlet.dequeue_line_or_queue_full()));
         assert_eq!(answered.len(), sent.len(), "sequence {sequence:#b}");
         for (answer, line) in answered.iter().zip(&sent) {
             match answer {

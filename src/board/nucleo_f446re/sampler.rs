@@ -20,7 +20,7 @@ use stm32f4xx_hal::timer::{CounterHz, Timer};
 use thermal_display::device::sense::{ADC_CHANNELS_PER_FINGER, SCANS_PER_TICK, Scan};
 use thermal_display::device::{FingerIndex, TICK_HZ};
 
-use super::log;
+use super::defmt_rtt_log;
 use super::sample_error::SampleError;
 use super::tick_rate_and_rcc_monitor::TickRateAndRccMonitor;
 use super::wiring::{FINGERS, Multiplexer, SAMPLE_TIME_CODE};
@@ -168,7 +168,7 @@ impl Sampler {
         self.last_buffer = which;
         clock_check?;
         if finger == FingerIndex::FIRST {
-            log::advance_uptime_by_1_ms();
+            defmt_rtt_log::advance_uptime_by_1_ms();
         }
         let scans = self
             .spare

@@ -44,8 +44,9 @@ pub type SettingsRecord = Vec<u8, RECORD_MAX_BYTES>;
 /// calibration and tile. All other settings always have their factory defaults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSettings {
-    /// Steps of the converter's error and corrections of the finger's five thermistors, from the commands `calibrate`
-    /// and `set`.
+    /// Calibration of the finger's sensors, from the commands `calibrate` and `set`: the jumps of the converter's error at
+    /// the 13 calibrated borders between its segments, counts, and for each of the five thermistors the correction that
+    /// is added to its temperature, K.
     pub calibration: Calibration,
     /// Thermal parameters of the finger's tile, from the commands `tune` and `set`.
     pub tile: Tile,
@@ -75,7 +76,7 @@ impl StoredSettings {
     }
 
     /// This finger's values in the order of the record, each with the number of decimals that the record holds.
-    fn record_values_with_decimals(&self) -> impl Iterator<Item = (f64, i32)> {
+    fn values_and_decimals_to_encode(&self) -> impl Iterator<Item = (f64, i32)> {
         let steps = self.calibration.steps_counts.into_iter();
         let corrections = self.calibration.corrections.into_iter();
         let tile = self.tile.to_array().into_iter();
@@ -191,7 +192,7 @@ pub fn encode_settings_record<const FINGERS: usize>(
     for (value, decimals) in settings
         .into_iter()
         .flatten()
-        .flat_map(StoredSettings::record_values_with_decimals)
+        .flat_map(StoredSettings::values_and_decimals_to_encode)
     {
         append(&(libm::round(value * power_of_ten(decimals)) as i32).to_le_bytes());
     }

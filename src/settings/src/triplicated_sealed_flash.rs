@@ -29,7 +29,7 @@ const COPIES_PER_WORD: usize = 3;
 const FLASH_BYTES_PER_DATA_WORD: usize = COPIES_PER_WORD * WORD_BYTES;
 /// The first two words of a valid sector; a sector without this seal reads as erased. It differs in many bits from
 /// erased flash (0xff) and from zeros, so that an interrupted erasure is unlikely to form it.
-const VALID_SECTOR_SEAL: [u8; 2 * WORD_BYTES] = *b"settings";
+const COMPLETE_ERASURE_SEAL: [u8; 2 * WORD_BYTES] = *b"settings";
 /// Programmed over the first word of a sector's seal to make the sector invalid before its erasure; zeros, because
 /// programming can only clear bits.
 const BROKEN_SEAL_WORD: [u8; WORD_BYTES] = [0; WORD_BYTES];
@@ -78,7 +78,7 @@ impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
     /// Bytes of data that one sector holds: a third of the size of the flash's sector, because each word is stored
     /// three times, less the seal of 8 bytes that marks a valid sector.
     pub const DATA_BYTES_PER_SECTOR: usize =
-        F::ERASE_SIZE / FLASH_BYTES_PER_DATA_WORD * WORD_BYTES - VALID_SECTOR_SEAL.len();
+        F::ERASE_SIZE / FLASH_BYTES_PER_DATA_WORD * WORD_BYTES - COMPLETE_ERASURE_SEAL.len();
 
     /// Makes redundant sectors of all sectors of `flash`. Compiling fails if `flash` is read or written in units of
     /// more than 4 bytes.
@@ -109,7 +109,7 @@ impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
             && start + F::ERASE_SIZE <= self.0.capacity();
         if fits {
             let from_start =
-                (VALID_SECTOR_SEAL.len() + within) / WORD_BYTES * FLASH_BYTES_PER_DATA_WORD;
+                (COMPLETE_ERASURE_SEAL.len() + within) / WORD_BYTES * FLASH_BYTES_PER_DATA_WORD;
             Ok((start as u32, (start + from_start) as u32))
         } else {
             Err(TriplicatedSealedFlashError::OutOfBounds)
@@ -167,9 +167,9 @@ impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
 
     #[inline(never)]
     fn is_sealed(&mut self, start: u32) -> Result<bool, TriplicatedSealedFlashError<F::Error>> {
-        let mut seal = [0; VALID_SECTOR_SEAL.len()];
+        let mut seal = [0; COMPLETE_ERASURE_SEAL.len()];
         self.read_words_by_bit_majority(start, &mut seal)?;
-        Ok(seal == VALID_SECTOR_SEAL)
+        Ok(seal == COMPLETE_ERASURE_SEAL)
     }
 
     /// Erases the flash sector at `start`, checks that it is blank, and seals it. Even a sector that reads as blank is
@@ -189,7 +189,7 @@ impl<F: BlockingNorFlash> TriplicatedSealedFlash<F> {
                 return Err(TriplicatedSealedFlashError::NotErased);
             }
         }
-        self.program_words_in_triplicate(start, &VALID_SECTOR_SEAL)
+        self.program_words_in_triplicate(start, &COMPLETE_ERASURE_SEAL)
     }
 }
 

@@ -9,13 +9,13 @@ use crate::drive::{Current, Duty, SafeCurrent};
 use crate::estimate::LegTemperatures;
 
 /// Voltage as a fraction of the bridge's supply voltage; 1 is the whole supply.
-type SupplyFraction = I8F24;
+type VoltagePerSupply = I8F24;
 
 /// Limit, in either direction, of the difference between the dead-time loss and half of the largest dead-time loss, as
 /// a fraction of the supply voltage. It only keeps a division in the computation of the loss within 32 bits; the loss
 /// itself is limited afterwards, to between zero and the largest loss.
-const SYMMETRIC_OFFSET_FROM_HALF_DEAD_TIME_LOSS_CLAMP: SupplyFraction =
-    SupplyFraction::lit("0.0625");
+const OFFSET_FROM_HALF_DEAD_TIME_LOSS_MAX_MAGNITUDE: VoltagePerSupply =
+    VoltagePerSupply::lit("0.0625");
 /// Fractional bits of the divisor in the computation of the dead-time loss, by which the dividend is also shifted; so
 /// few that a 32-bit division is enough.
 const DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS: u32 = 10;
@@ -49,7 +49,7 @@ pub struct VoltageFeedforward {
     /// Seebeck voltage per kelvin between the legs' hot and cold ends, as a fraction of the supply voltage, 1/K.
     per_k: I0F32,
     /// Largest voltage that the bridge loses in its dead times, `V_dead`, as a fraction of the supply voltage.
-    dead_time: SupplyFraction,
+    dead_time: VoltagePerSupply,
     /// Amplitude factor of the inductor's ripple current, A: half of the peak-to-peak ripple is `ripple_a w (1 - w)`
     /// for pulses of a fraction `w` of the PWM period.
     ripple_a: Current,
@@ -57,7 +57,7 @@ pub struct VoltageFeedforward {
     dead_time_a: Current,
     /// Rise of the dead-time loss per ampere of the module's current, in the range of currents in which the loss rises
     /// from zero to its largest value, as a fraction of the supply voltage, 1/A.
-    dead_time_per_a: SupplyFraction,
+    dead_time_per_a: VoltagePerSupply,
 }
 
 impl VoltageFeedforward {
@@ -66,7 +66,8 @@ impl VoltageFeedforward {
     #[must_use]
     pub fn new(module: &PeltierModule) -> Self {
         let bits = |value: f64, places: u32| libm::round(libm::ldexp(value, places as i32)) as i32;
-        let part = |value: f64| SupplyFraction::from_bits(bits(value, SupplyFraction::FRAC_NBITS));
+        let part =
+            |value: f64| VoltagePerSupply::from_bits(bits(value, VoltagePerSupply::FRAC_NBITS));
         let resistance =
             |ohm: f64| I4F28::from_bits(bits(ohm / module.supply_v, I4F28::FRAC_NBITS));
         let dead_time = module.dead_time_v / module.supply_v;
@@ -93,7 +94,7 @@ impl VoltageFeedforward {
         let difference: Celsius = legs.hot.saturating_sub(legs.cold);
         let above_data_sheet = legs.mean.saturating_sub(DATA_SHEET_TEMPERATURE);
         let rise = product(above_data_sheet, self.rise_per_k);
-        let resistive: SupplyFraction = product(current, self.per_ampere.saturating_add(rise));
+        let resistive: VoltagePerSupply = product(current, self.per_ampere.saturating_add(rise));
         let needed = resistive.saturating_add(product(difference, self.per_k));
         let voltage = if needed < 0 {
             needed.saturating_sub(
@@ -109,27 +110,27 @@ impl VoltageFeedforward {
     /// loss, `V_dead`. The fraction `needed` (0 or more) must remain for the module after the loss. `current`, A, is
     /// positive in the direction of the pulses. The loss makes wider pulses necessary, and wider pulses change the
     /// ripple and thereby the loss; the solution is of first order around half of `V_dead`.
-    fn dead_time_loss(&self, needed: SupplyFraction, current: Current) -> SupplyFraction {
-        const FIXED_POINT_ONE: SupplyFraction = SupplyFraction::ONE;
-        let times = product::<SupplyFraction, _>;
+    fn dead_time_loss(&self, needed: VoltagePerSupply, current: Current) -> VoltagePerSupply {
+        const FIXED_POINT_ONE: VoltagePerSupply = VoltagePerSupply::ONE;
+        let times = product::<VoltagePerSupply, _>;
         let half = self.dead_time >> 1u32;
         let middle = needed.saturating_add(half).min(FIXED_POINT_ONE);
         let from = times(self.ripple_a, times(middle, FIXED_POINT_ONE - middle)) - self.dead_time_a;
         let line = times(current.saturating_sub(from), self.dead_time_per_a);
         // A wider pulse (below half of the period) has more ripple, which reduces the loss.
         let ripple_per_width = times(self.ripple_a, FIXED_POINT_ONE - 2 * middle);
-        let feedback = times(ripple_per_width, self.dead_time_per_a).max(SupplyFraction::ZERO);
+        let feedback = times(ripple_per_width, self.dead_time_per_a).max(VoltagePerSupply::ZERO);
         let offset = line.saturating_sub(half).clamp(
-            -SYMMETRIC_OFFSET_FROM_HALF_DEAD_TIME_LOSS_CLAMP,
-            SYMMETRIC_OFFSET_FROM_HALF_DEAD_TIME_LOSS_CLAMP,
+            -OFFSET_FROM_HALF_DEAD_TIME_LOSS_MAX_MAGNITUDE,
+            OFFSET_FROM_HALF_DEAD_TIME_LOSS_MAX_MAGNITUDE,
         );
         let divisor = FIXED_POINT_ONE.saturating_add(feedback)
-            >> (SupplyFraction::FRAC_NBITS - DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS);
+            >> (VoltagePerSupply::FRAC_NBITS - DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS);
         let quotient =
             (offset.to_bits() << DEAD_TIME_LOSS_DIVISOR_FRACTION_BITS) / divisor.to_bits();
-        (half + SupplyFraction::from_bits(quotient))
+        (half + VoltagePerSupply::from_bits(quotient))
             .min(self.dead_time)
-            .max(SupplyFraction::ZERO)
+            .max(VoltagePerSupply::ZERO)
     }
 }
 

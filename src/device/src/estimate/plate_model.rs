@@ -30,12 +30,13 @@ pub type Watt = I8F24;
 /// Temperature in °C or temperature difference in K within the plate model: ±2048 with a resolution of 1 µK.
 type ModelTemperature = I12F20;
 
-/// One first-order lag of the plate model, whose surface temperature is the sum of five such lags: its time constant, s,
-/// and its steady-state gains, K/W, for the three heat inputs in the order heat pumped out of the plate, Joule heat in
-/// the legs, heat from the finger. The gain for pumped heat is the fall of the temperature, positive if pumping cools;
+/// One first-order relaxation of the plate model: its time constant, s, and its steady-state gains, K/W, for the three heat
+/// inputs in the order heat pumped out of the plate, Joule heat in the legs, heat from the finger. The surface temperature
+/// is the sum of five relaxations and of the finger's immediate effect, [`FINGER_FEEDTHROUGH_K_W`]. The gain for pumped
+/// heat is the fall of the temperature, positive if pumping cools;
 /// [`HeatInputGains::temperature_change_by_heats`] subtracts it.
 #[derive(Clone, Copy)]
-struct FirstOrderLagParameters {
+struct RelaxationParameters {
     time_constant_s: f64,
     gains_k_w: [f64; 3],
 }
@@ -47,20 +48,20 @@ const fn class_relaxation_row(
     pumped: f64,
     joule: f64,
     finger: f64,
-) -> FirstOrderLagParameters {
-    FirstOrderLagParameters {
+) -> RelaxationParameters {
+    RelaxationParameters {
         time_constant_s,
         gains_k_w: [pumped, joule, finger],
     }
 }
 
-/// Number of relaxations in the plate model; the surface temperature is their sum.
+/// Number of relaxations in the plate model; the surface temperature is their sum and the finger's immediate effect.
 const RELAXATION_COUNT: usize = 5;
 
 /// Relaxations of the class module (the nominal module), slowest first: the plate relative to the sink, the patch under
 /// the finger relative to the rest of the plate, the legs, the hot plate, and the temperature difference across the
 /// thickness of the ceramic. Without heat flow the first decays to the sink's temperature, the others to zero.
-const CLASS_RELAXATIONS: [FirstOrderLagParameters; RELAXATION_COUNT] = [
+const CLASS_RELAXATIONS: [RelaxationParameters; RELAXATION_COUNT] = [
     class_relaxation_row(10.241_19, 3.540_82, 1.813_82, 3.555_85),
     class_relaxation_row(2.361_25, 0.0, 0.0, 3.203_31),
     class_relaxation_row(0.186_38, 0.002_51, -0.029_89, 0.018_41),
@@ -90,15 +91,15 @@ const GAIN_RATIO_TO_FINGER_RATIO_EXPONENT: f64 = 0.4;
 const TILE_TO_CLASS_RATIO_OR_INVERSE_CLAMP: f64 = 2.0;
 /// Limit, W, of the pumped heat and of the Joule heat in the model, in either direction; keeps the model's fixed-point
 /// states from overflowing.
-const SYMMETRIC_PUMPED_OR_JOULE_HEAT_CLAMP: Watt = Watt::lit("64");
+const PUMPED_OR_JOULE_HEAT_MAX_MAGNITUDE: Watt = Watt::lit("64");
 /// Limit of the finger's heat flow in the model, W, in either direction; keeps the model's fixed-point states from
 /// overflowing.
-const SYMMETRIC_FINGER_HEAT_CLAMP: Watt = Watt::lit("8");
+const FINGER_HEAT_MAX_MAGNITUDE: Watt = Watt::lit("8");
 /// Limit of the sink's temperature in the model, -100 to 100 °C; keeps the model's fixed-point states from overflowing.
-const SYMMETRIC_SINK_TEMPERATURE_CLAMP: Celsius = Celsius::lit("100");
+const SINK_TEMPERATURE_MAX_MAGNITUDE: Celsius = Celsius::lit("100");
 /// Limit, K, of the difference between the legs' mean temperature and the data sheet's 27 °C, in either direction. The
 /// legs' resistance and Seebeck coefficient are corrected for this difference; the limit keeps the products in range.
-const SYMMETRIC_LEG_DEVIATION_FROM_27_C_CLAMP: Celsius = Celsius::lit("100");
+const LEG_DEVIATION_FROM_27_C_MAX_MAGNITUDE: Celsius = Celsius::lit("100");
 
 /// Horizon of the law `model`, ticks of 1 ms: the law chooses the current which, if held constant, brings the surface
 /// to its target after this time. 12 ms are about the delay with which the display's surface responds to a current.
@@ -174,14 +175,10 @@ impl TileToClassRatios {
     /// for pumped heat, Joule heat and the finger's heat. `slowest` marks the relaxation towards the sink; its time
     /// constant and its gains are also divided by the ratio of the leak. The initial rate of change per watt then does
     /// not depend on the leak.
-    fn scale_relaxation(
-        &self,
-        slowest: bool,
-        class: FirstOrderLagParameters,
-    ) -> FirstOrderLagParameters {
+    fn scale_relaxation(&self, slowest: bool, class: RelaxationParameters) -> RelaxationParameters {
         let leak = if slowest { self.leak } else { 1.0 };
         let [pumped, joule, finger] = class.gains_k_w;
-        FirstOrderLagParameters {
+        RelaxationParameters {
             time_constant_s: class.time_constant_s / leak,
             gains_k_w: [
                 pumped * self.pumped / leak,
@@ -215,7 +212,9 @@ struct FixedPointRelaxation {
 impl FixedPointRelaxation {
     /// State of the relaxation, K or °C, rounded down to the resolution of [`ModelTemperature`] (1 µK).
     fn state_temperature(&self) -> ModelTemperature {
-        ModelTemperature::from_bits((self.state.to_bits() >> STATE_TO_TEMPERATURE_SHIFT) as i32)
+        ModelTemperature::from_bits(
+            (self.state.to_bits() >> STATE_TO_MODEL_TEMPERATURE_SHIFT) as i32,
+        )
     }
 
     fn set_state_temperature(&mut self, temperature: ModelTemperature) {
@@ -223,10 +222,10 @@ impl FixedPointRelaxation {
     }
 }
 
-const STATE_TO_TEMPERATURE_SHIFT: u32 = I12F52::FRAC_NBITS - ModelTemperature::FRAC_NBITS;
+const STATE_TO_MODEL_TEMPERATURE_SHIFT: u32 = I12F52::FRAC_NBITS - ModelTemperature::FRAC_NBITS;
 
 fn temperature_to_state(temperature: ModelTemperature) -> I12F52 {
-    I12F52::from_bits(i64::from(temperature.to_bits()) << STATE_TO_TEMPERATURE_SHIFT)
+    I12F52::from_bits(i64::from(temperature.to_bits()) << STATE_TO_MODEL_TEMPERATURE_SHIFT)
 }
 
 /// Heat flows that act on the plate in one tick, W, and the temperature of the heat sink, °C.
@@ -349,7 +348,7 @@ impl PlateModel {
         let [pumped_k_w, ..] = horizon_gains;
         Self {
             relaxations: relaxations.map(|relaxation| {
-                let FirstOrderLagParameters {
+                let RelaxationParameters {
                     time_constant_s,
                     gains_k_w,
                 } = relaxation;
@@ -459,8 +458,8 @@ impl PlateModel {
             .mean
             .saturating_sub(DATA_SHEET_TEMPERATURE)
             .clamp(
-                -SYMMETRIC_LEG_DEVIATION_FROM_27_C_CLAMP,
-                SYMMETRIC_LEG_DEVIATION_FROM_27_C_CLAMP,
+                -LEG_DEVIATION_FROM_27_C_MAX_MAGNITUDE,
+                LEG_DEVIATION_FROM_27_C_MAX_MAGNITUDE,
             );
         let surface_k = self.surface.saturating_add(ZERO_C_IN_K);
         let peltier_v: I8F24 = product(self.seebeck.at(above_data_sheet), surface_k);
@@ -468,17 +467,17 @@ impl PlateModel {
         let heat = |volts_or_ohms: I8F24, factor: I8F24| -> Watt {
             let heat: Watt = saturating_product(volts_or_ohms, factor);
             heat.clamp(
-                -SYMMETRIC_PUMPED_OR_JOULE_HEAT_CLAMP,
-                SYMMETRIC_PUMPED_OR_JOULE_HEAT_CLAMP,
+                -PUMPED_OR_JOULE_HEAT_MAX_MAGNITUDE,
+                PUMPED_OR_JOULE_HEAT_MAX_MAGNITUDE,
             )
         };
         PlateInputs {
             pumped: heat(peltier_v, current),
             joule: heat(self.resistance.at(above_data_sheet), current_squared),
-            finger: finger.clamp(-SYMMETRIC_FINGER_HEAT_CLAMP, SYMMETRIC_FINGER_HEAT_CLAMP),
+            finger: finger.clamp(-FINGER_HEAT_MAX_MAGNITUDE, FINGER_HEAT_MAX_MAGNITUDE),
             sink: sink.clamp(
-                -SYMMETRIC_SINK_TEMPERATURE_CLAMP,
-                SYMMETRIC_SINK_TEMPERATURE_CLAMP,
+                -SINK_TEMPERATURE_MAX_MAGNITUDE,
+                SINK_TEMPERATURE_MAX_MAGNITUDE,
             ),
         }
     }

@@ -52,7 +52,7 @@ impl FaultLatch {
     /// Ends a tick: the present fault becomes `detected`, the fault that the tick has detected. If that is `None`, the
     /// fault that the board has raised since the tick before becomes the present fault; `None` if there is neither. A
     /// fault that the board has raised counts for this one tick only.
-    pub const fn set_present_to_detected_or_take_external(&mut self, detected: Option<Fault>) {
+    pub const fn set_present_to_detected_else_external(&mut self, detected: Option<Fault>) {
         let external = self.external.take();
         self.present = match detected {
             Some(fault) => Some(fault),
@@ -70,7 +70,7 @@ impl FaultLatch {
     /// Removes and returns the pending fault: the first that the board raised while the station was tripped by another
     /// one; `None` if there is none. To be called when `clear` has cleared the latched fault; `clear` then trips the
     /// station by the returned fault.
-    pub const fn take_fault_raised_while_tripped(&mut self) -> Option<Fault> {
+    pub const fn take_deferred_board_fault(&mut self) -> Option<Fault> {
         self.pending.take()
     }
 }

@@ -179,7 +179,7 @@ impl Station {
             return Err(Refused::StillFaulty(fault));
         }
         self.apply_event(Event::Clear);
-        match self.latch.take_fault_raised_while_tripped() {
+        match self.latch.take_deferred_board_fault() {
             None => Ok(()),
             Some(fault) => {
                 self.trip_without_readings(fault);

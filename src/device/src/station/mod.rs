@@ -376,7 +376,7 @@ impl Station {
         readings: &Readings,
     ) -> BridgeDemand {
         self.latch
-            .set_present_to_detected_or_take_external(demand.err());
+            .set_present_to_detected_else_external(demand.err());
         demand.unwrap_or_else(|fault| {
             let previously_demanded = self.last.demanded;
             self.trip(TripCause::new(
