@@ -44,8 +44,9 @@ pub type SettingsRecord = Vec<u8, RECORD_MAX_BYTES>;
 /// calibration and tile. All other settings always have their factory defaults.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StoredSettings {
-    /// Steps of the converter's error and corrections of the finger's five thermistors, from the commands `calibrate`
-    /// and `set`.
+    /// Calibration of the finger's sensors, from the commands `calibrate` and `set`: the jumps of the converter's error at
+    /// the 13 calibrated borders between its segments, counts, and for each of the five thermistors the correction that
+    /// is added to its temperature, K.
     pub calibration: Calibration,
     /// Thermal parameters of the finger's tile, from the commands `tune` and `set`.
     pub tile: Tile,

@@ -30,9 +30,10 @@ pub type Watt = I8F24;
 /// Temperature in °C or temperature difference in K within the plate model: ±2048 with a resolution of 1 µK.
 type ModelTemperature = I12F20;
 
-/// One first-order lag of the plate model, whose surface temperature is the sum of five such lags: its time constant, s,
-/// and its steady-state gains, K/W, for the three heat inputs in the order heat pumped out of the plate, Joule heat in
-/// the legs, heat from the finger. The gain for pumped heat is the fall of the temperature, positive if pumping cools;
+/// One first-order relaxation of the plate model: its time constant, s, and its steady-state gains, K/W, for the three heat
+/// inputs in the order heat pumped out of the plate, Joule heat in the legs, heat from the finger. The surface temperature
+/// is the sum of five relaxations and of the finger's immediate effect, [`FINGER_FEEDTHROUGH_K_W`]. The gain for pumped
+/// heat is the fall of the temperature, positive if pumping cools;
 /// [`HeatInputGains::temperature_change_by_heats`] subtracts it.
 #[derive(Clone, Copy)]
 struct RelaxationParameters {
@@ -54,7 +55,7 @@ const fn class_relaxation_row(
     }
 }
 
-/// Number of relaxations in the plate model; the surface temperature is their sum.
+/// Number of relaxations in the plate model; the surface temperature is their sum and the finger's immediate effect.
 const RELAXATION_COUNT: usize = 5;
 
 /// Relaxations of the class module (the nominal module), slowest first: the plate relative to the sink, the patch under

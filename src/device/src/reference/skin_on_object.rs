@@ -28,8 +28,9 @@ pub struct ContactPairFactors {
 }
 
 impl ContactPairFactors {
-    /// Computes the factors for the contacts of `pair`. It takes a 64-bit division, so it is done only when the
-    /// presented object has changed.
+    /// Computes the constants of Eq. 6-12 for the contacts of the skin with object and display in `pair`: the weight of
+    /// the object, its reciprocal, and the ratio of the contact resistances. The reciprocal takes a 64-bit division, for
+    /// which the processor has no instruction, so it is computed only when another object is presented.
     #[must_use]
     pub fn new(pair: &ContactPair) -> Self {
         // 1 in 2^-48 over the weight in 2^-32.

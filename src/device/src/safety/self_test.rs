@@ -66,8 +66,8 @@ const DISPLAY_RESPONSE_MAX: Celsius = Celsius::lit("1.5");
 /// Ticks of 1 ms that the self-test waits after a finger has landed or lifted before its baseline begins, because the
 /// display's temperature then does not follow a straight line.
 const WAIT_AFTER_LANDING_OR_LIFTING_TICKS: u16 = 1000;
-/// Ticks of 1 ms that one self-test may wait in all for fingers that land and lift; then [`Fault::NoResponse`] trips
-/// the station.
+/// Total of the waits of 1 s after landings and liftings in one self-test, ticks of 1 ms (20 s), at which
+/// [`Fault::NoResponse`] trips the station, because no undisturbed baseline was possible.
 const SETTLING_WAITS_TOTAL_TRIP_TICKS: u16 = 20 * WAIT_AFTER_LANDING_OR_LIFTING_TICKS;
 /// Ticks of 1 ms in a row in which the force sensor detects no finger, after which a finger counts as lifted. A force
 /// just above the contact threshold falls below the threshold by noise now and then.
@@ -98,7 +98,7 @@ pub enum SelfTestStep {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelfTest {
     /// Next tick of the self-test's sequence, 0 to 704. It stays at the end of the comparator's test, 40, while the
-    /// self-test waits for fingers, and is set back to 40 when a finger lands or lifts later.
+    /// display settles after a landing or lifting, and is set back to 40 when a finger lands or lifts later.
     tick: u16,
     first_half: DisplayReadingSums,
     second_half: DisplayReadingSums,
@@ -113,7 +113,7 @@ pub struct SelfTest {
     untouched_ticks: u8,
     /// Ticks of 1 ms that remain to wait before the baseline begins, because a finger has landed or lifted.
     wait_ticks: u16,
-    /// Ticks of 1 ms that this self-test has waited for fingers in all, up to [`SETTLING_WAITS_TOTAL_TRIP_TICKS`].
+    /// Ticks of 1 ms that this self-test has waited in all after landings and liftings, up to [`SETTLING_WAITS_TOTAL_TRIP_TICKS`].
     waited_ticks: u16,
 }
 

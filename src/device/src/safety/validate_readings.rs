@@ -13,8 +13,9 @@ use crate::sense::{Readings, ThermistorFault};
 pub struct ValidReadings {
     /// Display surface temperature by the display's first thermistor, which the control uses, °C, 13.5 to 43 °C.
     pub display: Celsius,
-    /// Display surface temperature by the display's second thermistor, °C, 13.5 to 43 °C. Only the
-    /// fault detectors and the self-test use it, to check the first thermistor; the control does not.
+    /// Display surface temperature by the display's second thermistor, °C, 13.5 to 43 °C. Used only by the self-test and
+    /// for fault detection: it must agree with the first thermistor, and it has the same temperature limits, so that one
+    /// wrong thermistor cannot hide a display that is too hot or too cold. The control does not use it.
     pub check: Celsius,
     /// Temperature of the Peltier module's heat sink, °C; at most 42 °C, above which the station trips.
     pub sink: Celsius,
