@@ -61,6 +61,7 @@ impl SlabRelaxations {
 
 impl Slab {
     /// Root `x_n` of mode `n`, from 0.
+    #[inline(never)]
     fn root(&self, n: u32) -> f64 {
         let whole = PI * f64::from(n);
         match self.back {
@@ -76,14 +77,19 @@ impl Slab {
         }
     }
 
-    /// Rate, 1/s, and gain, m² K/J, of mode `n`.
+    /// Rate, 1/s, and gain, m² K/J, of mode `n`. Not inlined: `f64` takes much code on a microcontroller.
+    #[inline(never)]
     fn mode(&self, n: u32) -> Relaxation {
         let x = self.root(n);
         let unit = 1.0 / (self.capacity_j_m3k * self.thickness_m);
         let gain_m2k_j = match self.back {
             Back::Insulated if n == 0 => unit,
             Back::Insulated | Back::Held => 2.0 * unit,
-            Back::Film(_) => 2.0 * unit / (1.0 + libm::sin(2.0 * x) / (2.0 * x)),
+            // sin 2x / 2x, by x tan x = B.
+            Back::Film(film_w_m2k) => {
+                let biot = film_w_m2k * self.thickness_m / self.conductivity_w_mk;
+                2.0 * unit / (1.0 + biot / (x * x + biot * biot))
+            }
         };
         let diffusion_1_s =
             self.conductivity_w_mk / (self.capacity_j_m3k * self.thickness_m * self.thickness_m);
@@ -96,6 +102,7 @@ impl Slab {
     /// The relaxations: at most [`COUNT_MAX`]; a thicker slab of more than that is one of which the slowest modes are
     /// exact and the fastest missing.
     #[must_use]
+    #[inline(never)]
     pub fn relaxations(&self) -> SlabRelaxations {
         let mut all = SlabRelaxations {
             direct_m2k_w: 0.0,

@@ -117,6 +117,7 @@ impl Body {
     ///
     /// # Errors
     /// A rate or gain outside its range, or too many of them.
+    #[inline(never)]
     pub fn new(impedance: &Impedance<'_>, effusivity: f64, tick_s: f64) -> Result<Self, BodyError> {
         // A scaled flux of 1 K for one tick, J/m².
         let dose_j_m2 = effusivity * libm::sqrt(tick_s);

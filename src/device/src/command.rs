@@ -39,6 +39,7 @@ impl ChosenMaterial {
     ///
     /// # Errors
     /// The contact model or the relaxations cannot represent a property.
+    #[inline(never)]
     pub fn new(
         name: &'static str,
         properties: &Material,

@@ -108,9 +108,11 @@ impl Upload {
         Ok(upload)
     }
 
+    #[inline(never)]
     fn add_to_checksum(&mut self, line: &str) {
-        self.digest.update(line.as_bytes());
-        self.digest.update(b"\n");
+        for part in [line, "\n"] {
+            self.digest.update(part.as_bytes());
+        }
     }
 
     /// Reads the line `upload row INDEX RATE GAIN`, after its second word: rate, 1/s, and gain, mm² K/J.

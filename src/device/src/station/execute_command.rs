@@ -106,6 +106,7 @@ impl Station {
 
     /// Makes the next tick begin a new contact for a finger that already touches. Called when the host has chosen
     /// another object or contact model, and when `start` presents the object.
+    #[inline(never)]
     fn restart_contact(&mut self) {
         let bodies = self.object.bodies();
         (self.reference).restart_contact(&mut self.estimator.finger, bodies);
