@@ -23,6 +23,7 @@ pub use conductance::ContactConductance;
 use fixed::types::{I0F32, I1F31, I12F20};
 
 use super::Celsius;
+use super::body::BodyState;
 use super::relaxation_bank::{FastRelaxation, RelaxationBank, Relaxations, SlowRelaxation};
 
 /// Number of fast modes. Mode `k`, from 0, has the rate `r = 2^-(2 k + 1)` per tick and the gain
@@ -94,6 +95,18 @@ impl HalfSpace {
     #[must_use]
     pub fn staggered(&self) -> Self {
         Self(self.0.staggered(&RELAXATIONS))
+    }
+
+    /// A uniform half-space whose windows end with those of a body.
+    #[must_use]
+    pub fn uniform_in_step_with(body: &BodyState) -> Self {
+        Self(RelaxationBank::uniform_in_step_with(body))
+    }
+
+    /// A uniform body whose windows end with those of this half-space.
+    #[must_use]
+    pub fn uniform_body(&self) -> BodyState {
+        RelaxationBank::uniform_in_step_with(&self.0)
     }
 
     /// Change of the surface temperature at the end of the coming tick if no flux flows, K.

@@ -130,6 +130,18 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
         other
     }
 
+    /// A uniform body whose windows end with those of another one.
+    #[must_use]
+    pub fn uniform_in_step_with<const F: usize, const S: usize>(
+        other: &RelaxationBank<F, S>,
+    ) -> Self {
+        Self {
+            window: other.window,
+            ticks_left: other.ticks_left,
+            ..Self::default()
+        }
+    }
+
     /// Change of the surface temperature at the end of the coming tick if no flux flows, K.
     #[must_use]
     pub const fn free_response(&self) -> Celsius {

@@ -35,10 +35,12 @@ impl SkinState {
     /// the kind changes: the skin then counts as recovered.
     #[inline]
     pub fn make_fit(&mut self, bodies: Option<Bodies<'_>>) {
-        match (&self, bodies) {
+        match (&*self, bodies) {
             (Self::HalfSpace(_), None) | (Self::Body(_), Some(_)) => {}
-            (_, None) => *self = Self::default(),
-            (_, Some(_)) => *self = Self::Body(BodyState::default()),
+            (Self::Body(state), None) => {
+                *self = Self::HalfSpace(HalfSpace::uniform_in_step_with(state));
+            }
+            (Self::HalfSpace(state), Some(_)) => *self = Self::Body(state.uniform_body()),
         }
     }
 
