@@ -5,7 +5,7 @@ use contact_model::material::SKIN;
 use crate::{Back, Fit, Layer, fit, impedance};
 
 /// Most relaxations of a finger.
-const COUNT_MAX: usize = 16;
+const COUNT_MAX: usize = 9;
 
 fn fit_relative(layers: &[Layer], back: Back) -> Fit {
     fit(|s| impedance(layers, back, s), |_, z| 1.0 / z, COUNT_MAX)

@@ -8,7 +8,7 @@ use fixed::types::{I2F30, I10F22};
 
 use super::Watt;
 use super::force_means::{ForceChange, ForceMeans};
-use super::skin_state::{Bodies, SkinState, flux_beyond_air};
+use super::skin_state::{Bodies, SkinState};
 
 /// Time constant of the low-pass filters of skin and room temperature while no finger touches, as an exponent of two:
 /// 2^8 ticks of 1 ms, 0.26 s.
@@ -340,16 +340,9 @@ impl FingerEstimator {
         let Some(PreContactTemperatures { skin, room }) = self.before_contact else {
             return Watt::ZERO;
         };
-        self.skin_state_on_display.make_fit(bodies);
+        let skin_above_room = skin.saturating_sub(room);
         let Some(contact) = &mut self.contact else {
-            match (&mut self.skin_state_on_display, bodies) {
-                (SkinState::HalfSpace(state), _) => state.step(Celsius::ZERO),
-                (SkinState::Body(state), Some(Bodies { finger, .. })) => {
-                    let flux = flux_beyond_air(finger, None, state.free_response(), Celsius::ZERO);
-                    state.step(flux, &finger.tissue.relaxations());
-                }
-                (SkinState::Body(_), None) => {}
-            }
+            (self.skin_state_on_display).step(None, bodies, skin_above_room);
             return Watt::ZERO;
         };
         let force = contact.force.long_mean();
@@ -361,15 +354,7 @@ impl FingerEstimator {
         let cooling = self.skin_state_on_display.free_response();
         let scaled_flux =
             (conductances.display).scaled_flux_by(above_display.saturating_sub(cooling));
-        match (&mut self.skin_state_on_display, bodies) {
-            (SkinState::HalfSpace(state), _) => state.step(scaled_flux),
-            (SkinState::Body(state), Some(Bodies { finger, .. })) => {
-                let above_room = skin.saturating_sub(room);
-                let flux = flux_beyond_air(finger, Some(scaled_flux), cooling, above_room);
-                state.step(flux, &finger.tissue.relaxations());
-            }
-            (SkinState::Body(_), None) => {}
-        }
+        (self.skin_state_on_display).step(Some(scaled_flux), bodies, skin_above_room);
         let flux_w_mm2: I10F22 = product(scaled_flux, SKIN_EFFUSIVITY_PER_ROOT_TICK_W_K_MM2);
         saturating_product(flux_w_mm2, contact_area(force))
     }

@@ -31,16 +31,45 @@ impl Default for SkinState {
 }
 
 impl SkinState {
-    /// Uniform skin of the kind that these bodies need, unless it is of that kind. The history of the contact is lost when
-    /// the kind changes: the skin then counts as recovered.
+    /// Advances the skin by one tick, in contact with the scaled flux `into_object`, or without contact for `None`.
+    /// `skin_above_room` is the temperature difference before contact, K.
     #[inline]
-    pub fn make_fit(&mut self, bodies: Option<Bodies<'_>>) {
+    pub fn step(
+        &mut self,
+        into_object: Option<Celsius>,
+        bodies: Option<Bodies<'_>>,
+        skin_above_room: Celsius,
+    ) {
+        match (&mut *self, bodies) {
+            (Self::HalfSpace(state), None) => state.step(into_object.unwrap_or(Celsius::ZERO)),
+            _ => self.step_body(into_object, bodies, skin_above_room),
+        }
+    }
+
+    /// As [`Self::step`], for a skin that is no half-space or was none in the tick before. A skin of another kind starts
+    /// uniform: the history of the contact is lost, as if the skin had recovered.
+    #[inline(never)]
+    fn step_body(
+        &mut self,
+        into_object: Option<Celsius>,
+        bodies: Option<Bodies<'_>>,
+        skin_above_room: Celsius,
+    ) {
         match (&*self, bodies) {
-            (Self::HalfSpace(_), None) | (Self::Body(_), Some(_)) => {}
             (Self::Body(state), None) => {
                 *self = Self::HalfSpace(HalfSpace::uniform_in_step_with(state));
             }
             (Self::HalfSpace(state), Some(_)) => *self = Self::Body(state.uniform_body()),
+            _ => {}
+        }
+        match (self, bodies) {
+            (Self::Body(state), Some(Bodies { finger, .. })) => {
+                let flux =
+                    flux_beyond_air(finger, into_object, state.free_response(), skin_above_room);
+                state.step(flux, &finger.tissue.relaxations());
+            }
+            (Self::HalfSpace(state), _) => state.step(into_object.unwrap_or(Celsius::ZERO)),
+            (Self::Body(_), None) => {}
         }
     }
 

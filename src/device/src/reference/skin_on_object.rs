@@ -93,11 +93,10 @@ impl SkinOnObject {
 
     /// Advances the simulated skin by one tick of 1 ms. `conductance` is that of the contact of skin and object. It is
     /// `None` while no finger touches; then no heat flows between them, and the cooling of the skin decays towards zero.
+    #[inline]
     pub fn step(&mut self, conductance: Option<&ContactConductance>, input: &SkinInput<'_>) {
-        self.skin.make_fit(input.bodies);
-        let cooling = self.skin.free_response();
         match (&mut self.skin, input.bodies) {
-            (SkinState::HalfSpace(state), _) => {
+            (SkinState::HalfSpace(state), None) => {
                 self.scaled_flux = conductance.map_or(Celsius::ZERO, |conductance| {
                     let without_resistance =
                         saturating_product(input.skin_above_object, input.factors.weight);
@@ -105,19 +104,23 @@ impl SkinOnObject {
                 });
                 state.step(self.scaled_flux);
             }
-            (SkinState::Body(state), Some(Bodies { finger, object })) => {
-                let into_object = conductance.map(|conductance| {
-                    let difference = (input.skin_above_object)
-                        .saturating_sub(cooling)
-                        .saturating_sub(self.object.free_response());
-                    conductance.scaled_flux_by(difference)
-                });
-                let flux = flux_beyond_air(finger, into_object, cooling, input.skin_above_room);
-                state.step(flux, &finger.tissue.relaxations());
-                self.scaled_flux = into_object.unwrap_or(Celsius::ZERO);
-                self.object.step(self.scaled_flux, &object.relaxations());
-            }
-            (SkinState::Body(_), None) => {}
+            _ => self.step_bodies(conductance, input),
+        }
+    }
+
+    /// As [`Self::step`], for a finger and an object that are not both half-spaces, or were not in the tick before.
+    #[inline(never)]
+    fn step_bodies(&mut self, conductance: Option<&ContactConductance>, input: &SkinInput<'_>) {
+        let into_object = conductance.map(|conductance| {
+            let difference = (input.skin_above_object)
+                .saturating_sub(self.skin.free_response())
+                .saturating_sub(self.object.free_response());
+            conductance.scaled_flux_by(difference)
+        });
+        self.scaled_flux = into_object.unwrap_or(Celsius::ZERO);
+        (self.skin).step(into_object, input.bodies, input.skin_above_room);
+        if let Some(Bodies { object, .. }) = input.bodies {
+            self.object.step(self.scaled_flux, &object.relaxations());
         }
     }
 
@@ -132,40 +135,19 @@ impl SkinOnObject {
         skin_before_contact: Celsius,
         skin_state_on_display: Option<&SkinState>,
     ) -> Celsius {
-        let skin_above_object = input.skin_above_object;
         let (cooling, step_at_object) = match (&self.skin, input.bodies) {
-            (SkinState::HalfSpace(state), _) => {
+            (SkinState::HalfSpace(state), None) => {
                 let cooling = state.response_to(self.scaled_flux);
                 // Temperature steps in 2^-22 K; the product has 38 places and up to 63 bits.
                 let step_at_interface = (i64::from(cooling.to_bits())
                     * i64::from(input.factors.inverse_weight.to_bits()))
                     >> U16F16::FRAC_NBITS;
                 let step_at_object = saturating_celsius_from_bits(
-                    i64::from(skin_above_object.to_bits()) - step_at_interface,
+                    i64::from(input.skin_above_object.to_bits()) - step_at_interface,
                 );
                 (cooling, step_at_object)
             }
-            (SkinState::Body(state), Some(Bodies { finger, object })) => {
-                let in_contact = skin_state_on_display.is_none();
-                let flux = flux_beyond_air(
-                    finger,
-                    in_contact.then_some(self.scaled_flux),
-                    state.free_response(),
-                    input.skin_above_room,
-                );
-                let cooling = state.response_to(flux, &finger.tissue.relaxations());
-                let now = skin_state_on_display.map_or(cooling, SkinState::free_response);
-                let warming = self
-                    .object
-                    .response_to(self.scaled_flux, &object.relaxations());
-                (
-                    cooling,
-                    skin_above_object
-                        .saturating_sub(now)
-                        .saturating_sub(warming),
-                )
-            }
-            (SkinState::Body(state), None) => (state.free_response(), Celsius::ZERO),
+            _ => self.cooling_and_step_of_bodies(input, skin_state_on_display),
         };
         let step_at_display = (i64::from(step_at_object.to_bits())
             * i64::from(input.factors.ratio.to_bits()))
@@ -176,6 +158,33 @@ impl SkinOnObject {
                 - i64::from(skin_cooling.to_bits())
                 - step_at_display,
         )
+    }
+
+    /// Cooling of the simulated skin, and temperature difference of skin and object surface, K, in the coming tick, for
+    /// a finger and an object that are not both half-spaces.
+    #[inline(never)]
+    fn cooling_and_step_of_bodies(
+        &self,
+        input: &SkinInput<'_>,
+        skin_state_on_display: Option<&SkinState>,
+    ) -> (Celsius, Celsius) {
+        let (SkinState::Body(state), Some(Bodies { finger, object })) = (&self.skin, input.bodies)
+        else {
+            return (self.skin.free_response(), Celsius::ZERO);
+        };
+        let flux = flux_beyond_air(
+            finger,
+            skin_state_on_display.is_none().then_some(self.scaled_flux),
+            state.free_response(),
+            input.skin_above_room,
+        );
+        let cooling = state.response_to(flux, &finger.tissue.relaxations());
+        let now = skin_state_on_display.map_or(cooling, SkinState::free_response);
+        let warming = (self.object).response_to(self.scaled_flux, &object.relaxations());
+        let step_at_object = (input.skin_above_object)
+            .saturating_sub(now)
+            .saturating_sub(warming);
+        (cooling, step_at_object)
     }
 
     /// Correction to be added to the set-point, K, so that in 20 ticks of 1 ms the real skin on the display has the

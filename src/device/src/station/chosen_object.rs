@@ -54,14 +54,24 @@ impl ChosenObject {
 
     /// The assumed finger and the object, unless both are half-spaces.
     #[must_use]
+    #[inline]
     pub fn bodies(&self) -> Option<Bodies<'_>> {
-        let finger = self.finger.body()?;
-        let object = match (&self.body, &self.finger) {
-            (Some(body), _) => body,
-            (None, AssumedFinger::Thesis(_)) => return None,
-            (None, AssumedFinger::Mean(_)) => &self.material_or_default()?.half_space,
+        match (&self.body, &self.finger) {
+            (None, AssumedFinger::Thesis(_)) => None,
+            _ => self.chosen_bodies(),
+        }
+    }
+
+    #[inline(never)]
+    fn chosen_bodies(&self) -> Option<Bodies<'_>> {
+        let object = match &self.body {
+            Some(body) => body,
+            None => &self.material_or_default()?.half_space,
         };
-        Some(Bodies { finger, object })
+        Some(Bodies {
+            finger: self.finger.body()?,
+            object,
+        })
     }
 
     /// Input of the reference generator, which computes set-point and target in the states preset and contact: contact
