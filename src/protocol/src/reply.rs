@@ -159,10 +159,9 @@ fn write_set_line(f: &mut fmt::Formatter<'_>, setting: &Setting) -> fmt::Result 
                 "correction {}",
                 THERMISTOR_WORDS[sensor % THERMISTOR_WORDS.len()]
             )?;
-            let values = correction.to_array().into_iter();
-            values
-                .zip(Calibration::CORRECTION_DECIMALS.map(|decimals| decimals as usize))
-                .try_for_each(|(value, decimals)| write!(f, " {value:.decimals$}"))
+            const { assert!(matches!(Calibration::CORRECTION_DECIMALS, [6, 7, 8])) };
+            let [offset, slope, curvature] = correction.to_array();
+            write!(f, " {offset:.6} {slope:.7} {curvature:.8}")
         }
         Setting::Tile(tile) => {
             f.write_str("tile")?;

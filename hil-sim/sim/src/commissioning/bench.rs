@@ -11,7 +11,7 @@ use crate::engine::{Engine, LineSplitter};
 use crate::host::sending_half;
 
 /// Timeout of an answer, ms.
-const ANSWER_TIMEOUT_MS: u64 = 500;
+const ANSWER_TIMEOUT_MS: u64 = 2000;
 /// Timeout of a self-test, and the interval at which its end is polled, ms.
 const SELF_TEST_MS: u64 = 1000;
 const POLL_MS: u64 = 50;
