@@ -2,13 +2,13 @@
 
 use core::fmt;
 
-use fixed::types::{I0F32, I1F31, I12F20};
+use fixed::types::{I0F32, I1F31, I12F20, U16F16};
 
 use super::relaxation_bank::{
     FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation, WINDOW,
 };
-use super::{Fraction, to_fixed};
-use crate::finger::{AssumedFinger, THESIS};
+use super::{Celsius, Fraction, saturating_product, to_fixed};
+use crate::finger::AssumedFinger;
 use crate::impedance::{Impedance, Relaxation};
 use crate::material::SKIN;
 
@@ -80,6 +80,71 @@ pub struct Body {
     state_shift: u32,
 }
 
+impl Body {
+    /// Coefficients that were computed before: of the fast relaxations input gain, decay and horizon factor, of the slow
+    /// ones input gain and decay, then slow input gain, tick gain, inverse horizon gain and shift of the states.
+    const fn from_bits<const FAST: usize, const SLOW: usize>(
+        fast: [[i32; 3]; FAST],
+        slow: [[i32; 2]; SLOW],
+        [slow_input_gain, tick_gain, inverse_horizon_gain]: [i32; 3],
+        state_shift: u32,
+    ) -> Self {
+        let mut body = Self {
+            fast: [FastRelaxation::ZERO; FAST_MAX],
+            fast_count: FAST,
+            slow: [SlowRelaxation::ZERO; SLOW_MAX],
+            slow_count: SLOW,
+            slow_input_gain: I0F32::from_bits(slow_input_gain),
+            tick_gain: I12F20::from_bits(tick_gain),
+            inverse_horizon_gain: I0F32::from_bits(inverse_horizon_gain),
+            state_shift,
+        };
+        let mut i = 0;
+        while i < FAST {
+            let [input_gain, decay, horizon_factor] = fast[i];
+            body.fast[i] = FastRelaxation {
+                input_gain: I0F32::from_bits(input_gain),
+                decay: I0F32::from_bits(decay),
+                horizon_factor: I1F31::from_bits(horizon_factor),
+            };
+            i += 1;
+        }
+        let mut i = 0;
+        while i < SLOW {
+            let [input_gain, decay] = slow[i];
+            body.slow[i] = SlowRelaxation {
+                input_gain: I0F32::from_bits(input_gain),
+                decay: I0F32::from_bits(decay),
+            };
+            i += 1;
+        }
+        body
+    }
+}
+
+/// A body whose impedance is that of another one times a factor: a half-space is one of another effusivity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ScaledBody<'a> {
+    /// The other body.
+    pub body: &'a Body,
+    /// The factor.
+    pub factor: U16F16,
+}
+
+impl ScaledBody<'_> {
+    /// Response of the surface to a scaled flux of 1 at the end of its tick.
+    #[must_use]
+    pub fn tick_gain(&self) -> I12F20 {
+        saturating_product(self.body.tick_gain, self.factor)
+    }
+
+    /// The scaled flux that moves the surface of the other body as `flux` does that of this one.
+    #[must_use]
+    pub fn scaled(&self, flux: Celsius) -> Celsius {
+        saturating_product(flux, self.factor)
+    }
+}
+
 /// A finger in fixed point: its tissue, and the film of air on its skin before contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FingerBody {
@@ -101,6 +166,51 @@ impl FingerBody {
             air: to_fixed(finger.air_w_m2k * libm::sqrt(tick_s) / effusivity),
         })
     }
+}
+
+impl FingerBody {
+    /// The thesis's finger, for ticks of 1 ms.
+    pub const THESIS: Self = Self {
+        tissue: Body::from_bits(
+            [
+                [133519533, 67115811, 1592088634],
+                [327191715, 336317759, 456127803],
+                [973907793, 1937839267, 24042],
+            ],
+            [
+                [2779116, 33443],
+                [3927909, 386042],
+                [7011152, 1781660],
+                [13464488, 7125755],
+                [27476765, 28146196],
+                [59789914, 116960620],
+            ],
+            [113410214, 1139790, 850566125],
+            1,
+        ),
+        air: Fraction::from_bits(0),
+    };
+    /// The mean finger, for ticks of 1 ms.
+    pub const MEAN: Self = Self {
+        tissue: Body::from_bits(
+            [
+                [170456910, 67297604, 1590788429],
+                [417676942, 336498666, 455731919],
+                [1243977993, 1937839267, 24042],
+            ],
+            [
+                [11309, 0],
+                [8455106, 133065],
+                [5709694, 1833882],
+                [23118334, 7568341],
+                [32318120, 28550193],
+                [76904616, 117361355],
+            ],
+            [145180051, 1455803, 665935421],
+            1,
+        ),
+        air: Fraction::from_bits(1160802),
+    };
 }
 
 /// State of a body.
@@ -152,9 +262,9 @@ impl Body {
         let scaled = |gain: f64| to_fixed::<I0F32>(libm::ldexp(gain, -state_shift));
         let (mut horizon_gain, mut slow_input_gain) = (tick_gain, 0.0);
         let mut body = Self {
-            fast: [FastRelaxation::default(); FAST_MAX],
+            fast: [FastRelaxation::ZERO; FAST_MAX],
             fast_count: 0,
-            slow: [SlowRelaxation::default(); SLOW_MAX],
+            slow: [SlowRelaxation::ZERO; SLOW_MAX],
             slow_count: 0,
             slow_input_gain: I0F32::ZERO,
             tick_gain: to_fixed(tick_gain),
@@ -200,21 +310,6 @@ impl Body {
         body.slow_input_gain = scaled(slow_input_gain);
         body.inverse_horizon_gain = to_fixed(1.0 / horizon_gain);
         Ok(body)
-    }
-
-    /// A half-space of this effusivity, J/(m² s^½ K), for ticks of `tick_s` seconds: the thesis's skin with other gains. An
-    /// effusivity below 1/200 of the skin's counts as that, because both take hardly any heat from a finger.
-    ///
-    /// # Errors
-    /// The effusivity is not a number.
-    pub fn half_space(effusivity: f64, tick_s: f64) -> Result<Self, BodyError> {
-        // The gains of the thesis's skin are scaled by the flux instead: Z is as 1 / effusivity.
-        let skin = SKIN.effusivity();
-        Self::new(
-            &THESIS.impedance,
-            skin * skin / effusivity.max(skin / 200.0),
-            tick_s,
-        )
     }
 
     /// The coefficients, for [`BodyState`].

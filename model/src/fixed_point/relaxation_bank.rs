@@ -20,7 +20,7 @@ pub(super) const WINDOW: u32 = 8;
 pub const MATCH_HORIZON_TICKS: u32 = 20;
 
 /// Coefficients of a fast relaxation of rate `r` per tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FastRelaxation {
     /// Response to a scaled flux of 1 in one tick.
     pub(super) input_gain: I0F32,
@@ -30,14 +30,31 @@ pub struct FastRelaxation {
     pub(super) horizon_factor: I1F31,
 }
 
+impl FastRelaxation {
+    /// One that answers nothing, for unused places.
+    pub(super) const ZERO: Self = Self {
+        input_gain: I0F32::ZERO,
+        decay: I0F32::ZERO,
+        horizon_factor: I1F31::ZERO,
+    };
+}
+
 /// Coefficients of a slow relaxation of rate `r` per tick.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SlowRelaxation {
     /// Response to the sum of a window's scaled fluxes: that of one tick, times the mean of `e^(r j)` for `j` from 0
     /// to 7, because a flux decays only from its own tick to the end of the window.
     pub(super) input_gain: I0F32,
     /// Fraction of the state that decays in a window, `1 - e^(-8 r)`.
     pub(super) decay: I0F32,
+}
+
+impl SlowRelaxation {
+    /// One that answers nothing, for unused places.
+    pub(super) const ZERO: Self = Self {
+        input_gain: I0F32::ZERO,
+        decay: I0F32::ZERO,
+    };
 }
 
 /// Coefficients of all relaxations of a body.
@@ -110,6 +127,14 @@ fn limited(state: I10F54) -> I10F54 {
     I10F54::from(high) | (state & I10F54::from_bits(u32::MAX as i64))
 }
 
+/// A sum of states as a temperature; saturates.
+fn scaled_up(sum: Celsius, state_shift: u32) -> Celsius {
+    match state_shift {
+        0 => sum,
+        shift => saturated(I42F22::from(sum) << shift),
+    }
+}
+
 /// A scaled flux limited to ±32 K.
 fn bounded(scaled_flux: Celsius) -> Celsius {
     const BOUND: Celsius = Celsius::const_from_int(32);
@@ -173,10 +198,7 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
             self.end_window(WINDOW, relaxations.slow);
         }
         let sum = fast_sum.saturating_add(self.slow_response());
-        self.free_response = match relaxations.state_shift {
-            0 => sum,
-            shift => saturated(I42F22::from(sum) << shift),
-        };
+        self.free_response = scaled_up(sum, relaxations.state_shift);
     }
 
     /// Sum of the slow relaxations, extrapolated from the start of the window.
@@ -219,6 +241,7 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
             .saturating_add(half_of_fast)
             .saturating_add(slow)
             .saturating_sub(celsius(slow_decay));
+        let difference = scaled_up(difference, relaxations.state_shift);
         product(difference, relaxations.inverse_horizon_gain)
     }
 }

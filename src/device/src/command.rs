@@ -4,11 +4,11 @@
 
 use core::fmt;
 
-use contact_model::finger::{MEAN, THESIS};
 use contact_model::fixed_point::{
-    Body, BodyError, Celsius, ContactPair, ContactPairError, FingerBody,
+    Body, Celsius, ContactPair, ContactPairError, FingerBody, to_fixed,
 };
 use contact_model::material::{Material, SKIN, Surface};
+use fixed::types::U16F16;
 
 use crate::control::{ControlParameters, Law};
 use crate::identification::{AbortReason, NormalEquationRow};
@@ -20,6 +20,9 @@ use crate::{StateName, TICK_HZ};
 /// Ticks last this long, s.
 const TICK_S: f64 = 1.0 / TICK_HZ as f64;
 
+/// Largest factor by which the skin's effusivity exceeds an object's: beyond it an object takes hardly any heat.
+const EFFUSIVITY_RATIO_MAX: f64 = 200.0;
+
 /// A material that the host has chosen, with all that a contact with it needs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChosenMaterial {
@@ -30,76 +33,60 @@ pub struct ChosenMaterial {
     /// Contact constants of the finger's skin, this material and the display's surface, from which set-points and the
     /// finger's heat flow are computed.
     pub pair: ContactPair,
-    /// A half-space of it, for a finger that is none.
-    pub half_space: Body,
+    /// Impedance of a half-space of it over that of the thesis's skin: the ratio of their effusivities, skin to material.
+    pub impedance_ratio: U16F16,
 }
 
 impl ChosenMaterial {
     /// The material under a display of this surface. In `f64`, which takes long.
     ///
     /// # Errors
-    /// The contact model or the relaxations cannot represent a property.
-    #[inline(never)]
+    /// The contact model cannot represent a property.
     pub fn new(
         name: &'static str,
         properties: &Material,
         display: &Surface,
     ) -> Result<Self, ContactPairError> {
-        let effusivity = properties.effusivity();
-        let unrepresentable = |_: BodyError| ContactPairError::OutOfRange(effusivity);
+        let ratio = SKIN.effusivity() / properties.effusivity();
         Ok(Self {
             name,
             properties: *properties,
             pair: ContactPair::new(&SKIN, properties, display, TICK_S)?,
-            half_space: Body::half_space(effusivity, TICK_S).map_err(unrepresentable)?,
+            impedance_ratio: to_fixed(ratio.min(EFFUSIVITY_RATIO_MAX)),
         })
     }
 }
 
-/// The finger that the device assumes for the one that touches. `None` in place of its body, which cannot occur for the
-/// fingers of the contact model, stands for the half-space.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The finger that the device assumes for the one that touches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AssumedFinger {
     /// The thesis's half-space of skin.
-    Thesis(Option<FingerBody>),
+    Thesis,
     /// The mean layered finger: the device's default.
-    Mean(Option<FingerBody>),
+    #[default]
+    Mean,
 }
 
 impl AssumedFinger {
-    /// The thesis's finger. Computed in `f64`, which takes long.
-    #[must_use]
-    pub fn thesis() -> Self {
-        Self::Thesis(FingerBody::new(&THESIS, TICK_S).ok())
-    }
-
-    /// The mean finger. Computed in `f64`, which takes long.
-    #[must_use]
-    pub fn mean() -> Self {
-        Self::Mean(FingerBody::new(&MEAN, TICK_S).ok())
-    }
+    /// The fingers with their words in the protocol.
+    pub const PROTOCOL_WORDS: [(&str, Self); 2] = [("mean", Self::Mean), ("thesis", Self::Thesis)];
 
     /// Its word in the protocol.
     #[must_use]
-    pub const fn name(&self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
-            Self::Thesis(_) => "thesis",
-            Self::Mean(_) => "mean",
+            Self::Thesis => "thesis",
+            Self::Mean => "mean",
         }
     }
 
-    /// Relaxations of its tissue.
+    /// Its tissue, and the film of air before contact.
     #[must_use]
-    pub const fn body(&self) -> Option<&FingerBody> {
+    pub const fn body(self) -> &'static FingerBody {
         match self {
-            Self::Thesis(body) | Self::Mean(body) => body.as_ref(),
+            Self::Thesis => &FingerBody::THESIS,
+            Self::Mean => &FingerBody::MEAN,
         }
-    }
-}
-
-impl Default for AssumedFinger {
-    fn default() -> Self {
-        Self::mean()
     }
 }
 

@@ -9,7 +9,7 @@ use thermal_commissioning::{
     IdentificationError, POINTS_PER_THERMISTOR_MAX, PointError, REFERENCE_DIFFERENCE_MAX_K,
     SessionError, THERMISTOR_WORDS,
 };
-use thermal_device::command::Refused;
+use thermal_device::command::{AssumedFinger, Refused};
 use thermal_device::control::Law;
 use thermal_settings::Range;
 
@@ -164,9 +164,12 @@ impl fmt::Display for Error {
                 let names = MATERIALS.iter().map(|(name, _)| *name);
                 write_unknown_word(f, "material", word, names.chain([CUSTOM_MATERIAL_WORD]))
             }
-            Self::UnknownAssumedFinger(word) => {
-                write_unknown_word(f, "finger", word, ["mean", "thesis"].into_iter())
-            }
+            Self::UnknownAssumedFinger(word) => write_unknown_word(
+                f,
+                "finger",
+                word,
+                AssumedFinger::PROTOCOL_WORDS.iter().map(|(name, _)| *name),
+            ),
             Self::UnknownBack(word) => write_unknown_word(f, "back", word, BACK_WORDS.into_iter()),
             Self::UnknownUpload(word) => write_unknown_word(
                 f,

@@ -185,11 +185,9 @@ fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
 }
 
 fn parse_finger(name: &str) -> Result<AssumedFinger, Error> {
-    match name {
-        "mean" => Ok(AssumedFinger::mean()),
-        "thesis" => Ok(AssumedFinger::thesis()),
-        unknown => Err(Error::UnknownAssumedFinger(unknown.into())),
-    }
+    let found = table_entry_for_word_or_none(&AssumedFinger::PROTOCOL_WORDS, name);
+    let (_, finger) = found.ok_or(Error::UnknownAssumedFinger(name.into()))?;
+    Ok(finger)
 }
 
 fn parse_contact_model(words: &mut Words<'_>) -> Result<ContactModel, Error> {

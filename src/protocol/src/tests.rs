@@ -46,7 +46,7 @@ fn every_command_is_parsed() {
         ("finger", Command::Finger(None)),
         (
             "finger thesis",
-            Command::Finger(Some(AssumedFinger::thesis())),
+            Command::Finger(Some(AssumedFinger::Thesis)),
         ),
         ("object -20", Command::Object(Some(Celsius::lit("-20")))),
         ("object 23.25", Command::Object(Some(Celsius::lit("23.25")))),

@@ -117,3 +117,38 @@ fn what_cannot_be_followed_is_refused() {
     );
     assert_eq!(with(&[one(0.1, 1e-6); SLOW_MAX], 0.0), None);
 }
+
+/// The constants of a finger as they stand in the source.
+fn source(finger: &FingerBody) -> std::string::String {
+    let tissue = &finger.tissue;
+    let fast: Vec<_> = (tissue.fast[..tissue.fast_count].iter())
+        .map(|one| {
+            [
+                one.input_gain.to_bits(),
+                one.decay.to_bits(),
+                one.horizon_factor.to_bits(),
+            ]
+        })
+        .collect();
+    let slow: Vec<_> = (tissue.slow[..tissue.slow_count].iter())
+        .map(|one| [one.input_gain.to_bits(), one.decay.to_bits()])
+        .collect();
+    let sums = [
+        tissue.slow_input_gain.to_bits(),
+        tissue.tick_gain.to_bits(),
+        tissue.inverse_horizon_gain.to_bits(),
+    ];
+    let (shift, air) = (tissue.state_shift, finger.air.to_bits());
+    std::format!("Body::from_bits({fast:?}, {slow:?}, {sums:?}, {shift}), air {air}")
+}
+
+#[test]
+fn committed_fingers_are_those_of_their_impedances() {
+    for (committed, finger) in [
+        (FingerBody::THESIS, crate::finger::THESIS),
+        (FingerBody::MEAN, crate::finger::MEAN),
+    ] {
+        let computed = FingerBody::new(&finger, TICK_S).expect("a valid finger");
+        assert_eq!(source(&committed), source(&computed));
+    }
+}

@@ -4,7 +4,8 @@ use fixed::types::{I12F20, U0F32, U16F16};
 
 use super::{HalfSpace, TICK_GAIN};
 use crate::fixed_point::{
-    Body, Celsius, Contact, Fraction, MantissaExponent, Ratio, product, saturating_product,
+    Body, Celsius, Contact, Fraction, MantissaExponent, Ratio, ScaledBody, product,
+    saturating_product,
 };
 
 /// A contact resistance in series with a [`HalfSpace`], for one tick: gives the scaled flux for a temperature
@@ -127,7 +128,7 @@ impl Contact {
     /// Conductance between the bodies of skin and object. Its target is `T_skin,i - T_object,i`, less the free responses
     /// of both.
     #[must_use]
-    pub fn conductance_of(&self, skin: &Body, object: &Body) -> ContactConductance {
+    pub fn conductance_of(&self, skin: &Body, object: &ScaledBody<'_>) -> ContactConductance {
         ContactConductance::new(
             resistance(Ratio::ONE, self.root_rate_per_tick, self.weight),
             skin.tick_gain().saturating_add(object.tick_gain()),

@@ -78,7 +78,7 @@ impl ContactConductances {
             None => (contact.display_conductance(), contact.object_conductance()),
             Some(Bodies { finger, object }) => (
                 contact.display_conductance_of(&finger.tissue),
-                contact.conductance_of(&finger.tissue, object),
+                contact.conductance_of(&finger.tissue, &object),
             ),
         };
         Self {

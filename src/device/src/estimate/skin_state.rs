@@ -1,7 +1,7 @@
 //! Thermal state of the skin: the thesis's half-space, or the tissue of another finger.
 
 use contact_model::fixed_point::{
-    Body, BodyState, Celsius, FingerBody, HalfSpace, saturating_product,
+    BodyState, Celsius, FingerBody, HalfSpace, ScaledBody, saturating_product,
 };
 
 /// Assumed finger and presented object, where they are not both half-spaces. The thesis's equations then do not hold, and
@@ -11,7 +11,7 @@ pub struct Bodies<'a> {
     /// The assumed finger.
     pub finger: &'a FingerBody,
     /// The presented object.
-    pub object: &'a Body,
+    pub object: ScaledBody<'a>,
 }
 
 /// Thermal state of a finger's skin. Its output is the cooling of the skin's surface since before the contact, K: positive

@@ -120,7 +120,8 @@ impl SkinOnObject {
         self.scaled_flux = into_object.unwrap_or(Celsius::ZERO);
         (self.skin).step(into_object, input.bodies, input.skin_above_room);
         if let Some(Bodies { object, .. }) = input.bodies {
-            self.object.step(self.scaled_flux, &object.relaxations());
+            let flux = object.scaled(self.scaled_flux);
+            self.object.step(flux, &object.body.relaxations());
         }
     }
 
@@ -180,7 +181,8 @@ impl SkinOnObject {
         );
         let cooling = state.response_to(flux, &finger.tissue.relaxations());
         let now = skin_state_on_display.map_or(cooling, SkinState::free_response);
-        let warming = (self.object).response_to(self.scaled_flux, &object.relaxations());
+        let warming =
+            (self.object).response_to(object.scaled(self.scaled_flux), &object.body.relaxations());
         let step_at_object = (input.skin_above_object)
             .saturating_sub(now)
             .saturating_sub(warming);

@@ -1,8 +1,10 @@
 //! The object that the host has chosen to present.
 
-use contact_model::fixed_point::{Body, Celsius};
-use contact_model::material::{MATERIALS, Surface};
+use contact_model::fixed_point::{Body, Celsius, ContactPair, FingerBody, ScaledBody};
+use contact_model::material::{MATERIALS, SKIN, Surface};
+use fixed::types::U16F16;
 
+use crate::TICK_HZ;
 use crate::command::{AssumedFinger, ChosenMaterial};
 use crate::estimate::Bodies;
 use crate::reference::{ContactModel, PresentedObject};
@@ -22,10 +24,10 @@ pub struct ChosenObject {
     /// Contact model that gives the set-point while the object is presented: with contact resistance, or perfect
     /// contact of two semi-infinite bodies.
     pub mode: ContactModel,
-    /// The first of [`MATERIALS`], for the time before the host chooses a material: it serves only to compute the heat
-    /// flow between skin and display, for which all materials give the same result. `None` if the display's surface in
-    /// the settings is outside of the domain of the contact model.
-    default_material: Option<ChosenMaterial>,
+    /// Contact constants for the time before the host chooses a material: those of the first material in [`MATERIALS`].
+    /// They serve only to compute the heat flow between skin and display, for which all materials give the same result.
+    /// `None` if the display's surface in the settings is outside of the domain of the contact model.
+    default_pair: Option<ContactPair>,
 }
 
 impl ChosenObject {
@@ -33,43 +35,46 @@ impl ChosenObject {
     /// Computes the default contact constants for the display's surface in `f64`, so it is for the start only.
     #[must_use]
     pub fn new(display: &Surface) -> Self {
-        let [(name, any), ..] = &MATERIALS;
+        let [(_, any), ..] = &MATERIALS;
         Self {
             material: None,
             body: None,
             finger: AssumedFinger::default(),
             temperature: None,
             mode: ContactModel::default(),
-            default_material: ChosenMaterial::new(name, any, display).ok(),
+            default_pair: ContactPair::new(&SKIN, any, display, 1.0 / f64::from(TICK_HZ)).ok(),
         }
     }
 
-    /// The chosen material or, before a choice, the first in [`MATERIALS`], from which the estimator computes the heat
-    /// flow between skin and display; that part is the same for all materials. `None` if no material is chosen and the
-    /// display's surface in the settings is outside of the domain of the contact model.
+    /// Contact constants of skin, display and object, from which the estimator computes the heat flow between skin and
+    /// display: those of the chosen material or, before a choice, those of the first material in [`MATERIALS`]. Their
+    /// part for skin and display is the same for all materials. `None` if no material is chosen and the display's
+    /// surface in the settings is outside of the domain of the contact model.
     #[must_use]
-    pub fn material_or_default(&self) -> Option<&ChosenMaterial> {
-        self.material.as_ref().or(self.default_material.as_ref())
+    pub fn contact_pair(&self) -> Option<&ContactPair> {
+        let chosen = self.material.as_ref().map(|material| &material.pair);
+        chosen.or(self.default_pair.as_ref())
     }
 
-    /// The assumed finger and the object, unless both are half-spaces.
+    /// The assumed finger and the object, unless both are half-spaces. Before a material is chosen, the object is the
+    /// skin's half-space.
     #[must_use]
     #[inline]
     pub fn bodies(&self) -> Option<Bodies<'_>> {
-        match (&self.body, &self.finger) {
-            (None, AssumedFinger::Thesis(_)) => None,
-            _ => self.chosen_bodies(),
-        }
-    }
-
-    #[inline(never)]
-    fn chosen_bodies(&self) -> Option<Bodies<'_>> {
-        let object = match &self.body {
-            Some(body) => body,
-            None => &self.material_or_default()?.half_space,
+        let object = match (&self.body, self.finger) {
+            (None, AssumedFinger::Thesis) => return None,
+            (Some(body), _) => ScaledBody {
+                body,
+                factor: U16F16::ONE,
+            },
+            (None, AssumedFinger::Mean) => ScaledBody {
+                body: &FingerBody::THESIS.tissue,
+                factor: (self.material.as_ref())
+                    .map_or(U16F16::ONE, |material| material.impedance_ratio),
+            },
         };
         Some(Bodies {
-            finger: self.finger.body()?,
+            finger: self.finger.body(),
             object,
         })
     }

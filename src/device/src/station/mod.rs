@@ -272,10 +272,7 @@ impl Station {
             self.contact.detection_delay_ticks()
         };
         let force = touching.then_some(valid.force);
-        let pair = self
-            .object
-            .material_or_default()
-            .map(|material| &material.pair);
+        let pair = self.object.contact_pair();
         let bodies = self.object.bodies();
         self.estimator
             .update_estimates(valid, force, landed_ticks, pair, bodies)
