@@ -66,7 +66,9 @@ fn fault_case(row: &Row, table: &Table) -> anyhow::Result<FaultCase> {
     let causes = expand(&row.causes, &table.causes, named(Fault::ALL, Fault::name))?;
     Ok(FaultCase {
         fault: InjectedFault::from_text(row.fault.clone().leak()).context("is unknown")?,
-        symptoms: expand(&row.symptoms, &table.symptoms, |word| word.try_into().ok())?,
+        symptoms: expand(&row.symptoms, &table.symptoms, |word| {
+            Symptom::deserialize(word).ok()
+        })?,
         expected: match row.restarts {
             true => ExpectedReaction::Restart,
             false => ExpectedReaction::Trip(causes),
