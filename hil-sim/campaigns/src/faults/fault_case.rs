@@ -33,6 +33,35 @@ impl InjectedFault {
             Self::HostLine(_) => "host-line".into(),
         }
     }
+
+    /// The fault that is printed as this text.
+    pub(super) fn from_text(text: &'static str) -> Option<Self> {
+        let fault = if let Some(line) = text.strip_prefix("host-line '") {
+            Self::HostLine(line.strip_suffix('\'')?)
+        } else if let Ok(fault) = text.parse() {
+            Self::Processor(fault)
+        } else {
+            let mut words = text.split(' ');
+            let sensor = |word| Sensor::ALL.into_iter().find(|sensor| sensor.name() == word);
+            let kind = words.next()?;
+            let kind = FaultKind::ALL
+                .into_iter()
+                .find(|known| known.name() == kind)?;
+            let mut fault = ActiveFault::from(kind);
+            if kind.has_sensor() {
+                fault.sensor = sensor(words.next()?)?;
+                fault.with = fault.sensor;
+            }
+            if kind.needs_second_sensor() {
+                fault.with = sensor(words.next()?)?;
+            }
+            if kind.value().is_some() {
+                fault.value = words.next()?.trim_start_matches('x').parse().ok()?;
+            }
+            Self::Hardware(fault)
+        };
+        (fault.to_string() == text).then_some(fault)
+    }
 }
 
 impl fmt::Display for InjectedFault {
@@ -87,103 +116,4 @@ pub struct FaultCase {
     pub never_at: &'static [FaultScene],
     /// Duration of the scene after the fault, s.
     pub after_s: f64,
-}
-
-/// Default duration of the scene after a fault, s: long enough for the heat of the sink to return.
-const AFTER_S: f64 = 24.0;
-
-impl FaultCase {
-    /// Allows these trip causes, too.
-    pub(super) const fn or_trips(self, reasons: &'static [Fault]) -> Self {
-        Self {
-            expected: ExpectedReaction::Trip(reasons),
-            ..self
-        }
-    }
-
-    /// Marks it as latent.
-    pub(super) const fn latent(self) -> Self {
-        Self {
-            latent: true,
-            ..self
-        }
-    }
-
-    /// Sets the scenes in which it is worst.
-    pub(super) const fn at(self, scenes: &'static [FaultScene]) -> Self {
-        Self { scenes, ..self }
-    }
-
-    /// Sets the scenes in which it is meaningless.
-    pub(super) const fn never_at(self, scenes: &'static [FaultScene]) -> Self {
-        Self {
-            never_at: scenes,
-            ..self
-        }
-    }
-
-    /// Sets the duration of the scene after the fault, s.
-    pub(super) const fn watched(self, after_s: f64) -> Self {
-        Self { after_s, ..self }
-    }
-}
-
-/// A fault with these symptoms, after which the device must trip with one of these causes.
-pub(super) const fn trips(
-    fault: InjectedFault,
-    symptoms: &'static [Symptom],
-    reasons: &'static [Fault],
-) -> FaultCase {
-    FaultCase {
-        fault,
-        symptoms,
-        expected: ExpectedReaction::Trip(reasons),
-        latent: false,
-        scenes: &[],
-        never_at: &[],
-        after_s: AFTER_S,
-    }
-}
-
-/// A harmless fault, after which the device must continue unless [causes](FaultCase::or_trips) are allowed.
-pub(super) const fn harmless(fault: InjectedFault) -> FaultCase {
-    trips(fault, &[], &[])
-}
-
-/// A fault after which the device restarts without a fault.
-pub(super) const fn restarts(fault: InjectedFault) -> FaultCase {
-    FaultCase {
-        expected: ExpectedReaction::Restart,
-        ..trips(fault, &[Symptom::Injection], &[])
-    }
-}
-
-/// A fault without a value.
-pub(super) const fn broken(kind: FaultKind) -> InjectedFault {
-    thermistor(kind, Sensor::Display, 0.0)
-}
-
-/// A fault with a value.
-pub(super) const fn valued(kind: FaultKind, value: f64) -> InjectedFault {
-    thermistor(kind, Sensor::Display, value)
-}
-
-/// A fault of one thermistor.
-pub(super) const fn thermistor(kind: FaultKind, sensor: Sensor, value: f64) -> InjectedFault {
-    InjectedFault::Hardware(ActiveFault {
-        kind,
-        sensor,
-        with: sensor,
-        value,
-    })
-}
-
-/// Two exchanged thermistors.
-pub(super) const fn swapped(sensor: Sensor, with: Sensor) -> InjectedFault {
-    InjectedFault::Hardware(ActiveFault {
-        kind: FaultKind::SensorsSwapped,
-        sensor,
-        with,
-        value: 0.0,
-    })
 }

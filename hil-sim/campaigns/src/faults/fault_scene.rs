@@ -93,9 +93,6 @@ pub struct InjectionPoint {
 }
 
 impl FaultScene {
-    /// Scenes with a self-test after time zero.
-    pub(super) const TESTED: &'static [Self] = &[Self::SelfTest, Self::Off];
-
     const fn object(self) -> (&'static str, f64) {
         match self {
             Self::Granite => ("granite", 24.0),

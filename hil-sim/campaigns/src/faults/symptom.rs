@@ -10,12 +10,14 @@
 //! ones. A dose is computed from readings reduced by 0.1 K, which is an eighth less at 42 °C. A deviation that must last to
 //! be detectable counts from its start, if it lasts as long as the device must wait.
 
+use serde::Deserialize;
 use thermal_plant::STEP_S;
 use thermal_sim::dose::cem43_rate;
 use thermal_sim::trace::TraceRow;
 
 /// A deviation that makes a fault detectable.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Symptom {
     /// The injection itself.
     Injection,

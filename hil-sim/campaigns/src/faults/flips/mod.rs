@@ -23,8 +23,8 @@ pub use region::{FlipRegion, FlippableMemory};
 pub use table::flip_table;
 
 use super::{
-    Breach, FaultScene, InjectedFault, InjectionPoint, RunAssessment, Symptom, fault_case,
-    fault_run,
+    Breach, ExpectedReaction, FaultCase, FaultScene, InjectedFault, InjectionPoint, RunAssessment,
+    Symptom, fault_run,
 };
 use thermal_sim::SceneRunner;
 use thermal_sim::processor::NotInjected;
@@ -116,7 +116,15 @@ impl BitFlip {
         let reference = (references.iter().find(|reference| reference.place == place))
             .with_context(|| format!("no reference of {}", place.name()))?;
         let scene = Scene::parse(&self.text(), place.name().as_ref())?;
-        let fault_case = fault_case::trips(self.injected(), SIGNS, &[]);
+        let fault_case = FaultCase {
+            fault: self.injected(),
+            symptoms: SIGNS,
+            expected: ExpectedReaction::Trip(&[]),
+            latent: false,
+            scenes: &[],
+            never_at: &[],
+            after_s: WATCHED_S,
+        };
         let (class, assessment, deviation_k) = match device.run(&scene) {
             Ok((outcome, figures)) => {
                 let mut assessment =
