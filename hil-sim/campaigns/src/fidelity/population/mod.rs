@@ -5,8 +5,11 @@ mod chart;
 mod object;
 mod statistics;
 
-use thermal_plant::parameters::stream_seed;
+use thermal_plant::Params;
+use thermal_plant::parameters::{self, stream_seed};
 use thermal_sim::named_enum;
+
+use super::plant_draws::SAME_VALUE;
 
 pub use case::{PopulationCase, Way};
 pub use chart::{SVG, draw as chart};
@@ -90,11 +93,8 @@ impl Population {
             // A scene file holds 63 bits.
             let own = stream_seed(seed, &format!("{} {number}", self.scenario())) >> 1;
             let (of_device, tables) = match self {
-                Self::FingerBox => (own, layered("") + &format!("[plant]\ndraw = {own}\n")),
-                Self::DrawnFingers => {
-                    let finger = layered(&format!("draw = {own}\n"));
-                    (own, finger + &format!("[plant]\ndraw = {own}\n"))
-                }
+                Self::FingerBox => (own, layered("") + &device(own)),
+                Self::DrawnFingers => (own, layered(&format!("draw = {own}\n")) + &device(own)),
                 _ => (
                     seed,
                     layered("") + &format!("[plant]\ncontact.draw = {own}\n"),
@@ -112,6 +112,20 @@ impl Population {
 /// A layered finger with further keys.
 fn layered(keys: &str) -> String {
     format!("[finger]\ntissue = \"layered\"\n{keys}")
+}
+
+/// A device of the parameter box. Its display thermistors are bonded alike ([`SAME_VALUE`]): with lags that are drawn apart,
+/// a device of eight trips while it presets itself.
+fn device(seed: u64) -> String {
+    let mut params = Params::nominal();
+    parameters::draw(&mut params, seed);
+    let (key, same) = SAME_VALUE;
+    let drawn = parameters::all(&params).into_iter();
+    let lags = drawn.filter(|parameter| parameter.key == key);
+    let lags: String = lags
+        .map(|lag| format!("{same} = {:?}\n", lag.value))
+        .collect();
+    format!("[plant]\ndraw = {seed}\n{lags}")
 }
 
 /// So many items, evenly spread over a list; all if there are fewer.

@@ -49,6 +49,8 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
         }
         assert_ne!(scenes[0].params, scenes[6].params);
         assert_ne!(scenes[0].params.tile, scenes[6].params.tile);
+        let [display, check, ..] = &scenes[0].params.sensors.thermistors;
+        assert_eq!(display.lag_s, check.lag_s);
         assert!(scenes[0].commissioned);
         assert_eq!(scenes[0].assumed_finger, AssumedFinger::Mean);
         let old = cases[0].scene(Way::Version01).expect("a scene");
