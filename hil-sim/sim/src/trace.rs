@@ -1,6 +1,7 @@
 //! The trace of a run: one row per millisecond.
 
 use std::collections::VecDeque;
+use std::fs::File;
 use std::io;
 use std::path::Path;
 
@@ -118,13 +119,21 @@ impl Trace {
     /// # Errors
     /// The file cannot be written.
     pub fn write(&self, path: &Path) -> io::Result<()> {
+        self.write_to(File::create(path)?)
+    }
+
+    /// Writes the same CSV to any writer.
+    ///
+    /// # Errors
+    /// The writer's.
+    pub fn write_to(&self, writer: impl io::Write) -> io::Result<()> {
         let has_camera = self.rows.iter().any(|row| row.camera.is_some());
         let columns = || {
             COLUMNS
                 .iter()
                 .chain(CAMERA_COLUMNS.iter().filter(|_| has_camera))
         };
-        let mut csv = csv::Writer::from_path(path)?;
+        let mut csv = csv::Writer::from_writer(writer);
         csv.write_record(columns().map(|(name, _)| name))?;
         for row in &self.rows {
             csv.write_record(columns().map(|(_, cell)| cell(row)))?;

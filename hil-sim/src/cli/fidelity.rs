@@ -7,7 +7,8 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use serde::Serialize;
 use thermal_campaigns::fidelity::{
-    self, BoxReport, DrawResult, FidelityCase, FidelityRow, PlantDraw, RemovedLimit, Scenario,
+    self, BoxReport, DrawResult, FidelityCase, FidelityRow, ImageSample, PlantDraw, Population,
+    PopulationCase, PopulationReport, PopulationResult, RemovedLimit, Scenario, Way,
 };
 use thermal_campaigns::parallel_map;
 use thermal_device::control::Law;
@@ -21,7 +22,17 @@ pub struct Arguments {
     /// What the finger does; several, or all [default: A, or none with --box]
     #[arg(long, num_args = 1.., value_parser = scenarios())]
     scenario: Vec<Chosen>,
-    /// Laws to compare [default: all]
+    /// Fingers, or contact laws, that are drawn in scenarios F and I
+    #[arg(long, value_name = "N", default_value_t = 36)]
+    draws: u64,
+    /// Run so many cases of each of E, F and I only, evenly spread
+    #[arg(long, value_name = "N")]
+    sample: Option<usize>,
+    /// Run so many cases of each of E, F and I on the image, too; its traces must be the same
+    #[cfg(feature = "emulator")]
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    image_sample: usize,
+    /// Laws to compare in A to D and the box [default: all]
     #[arg(long, num_args = 1.., value_parser = laws())]
     law: Vec<Law>,
     /// Cases of these names only, as the table has them
@@ -35,14 +46,14 @@ pub struct Arguments {
     without: Vec<Removed>,
     /// Draw so many plants from the box
     #[arg(long = "box", value_name = "N", num_args = 0..=1, default_missing_value = "100")]
-    draws: Option<u64>,
+    boxed: Option<u64>,
     /// Run the draw of this number again; with --out its scenes are written, law by law
-    #[arg(long, value_name = "DRAW", conflicts_with = "draws")]
+    #[arg(long, value_name = "DRAW", conflicts_with = "boxed")]
     replay: Option<u64>,
     /// Of the converter, and of the box
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
     seed: u64,
-    /// What runs the device's logic [default: image for scenarios, native for the box]
+    /// What runs the device's logic [default: image for A to D, native for E, F, I and the box]
     #[arg(long, value_enum)]
     engine: Option<EngineKind>,
     /// Image to run instead of the one of the current sources
@@ -57,13 +68,50 @@ pub struct Arguments {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-    /// Folder for fidelity.html, fidelity.svg, fidelity.csv, box.csv and scenes
+    /// Folder for fidelity.html, its pictures, fidelity.csv, box.csv, populations.csv and scenes
     #[arg(long)]
     out: Option<PathBuf>,
 }
 
-/// A chosen scenario, or `None` for `all`.
-type Chosen = Option<Scenario>;
+/// What `--scenario` chooses.
+#[derive(Clone, Copy, PartialEq)]
+enum Chosen {
+    /// A scenario by its cases.
+    Cases(Scenario),
+    /// A scenario by its populations.
+    Populations(&'static str),
+    All,
+}
+
+impl Chosen {
+    /// All scenarios.
+    const EACH: [Self; 8] = [
+        Self::Cases(Scenario::A),
+        Self::Cases(Scenario::B),
+        Self::Cases(Scenario::C),
+        Self::Cases(Scenario::D),
+        Self::Cases(Scenario::Unseen),
+        Self::Populations("E"),
+        Self::Populations("F"),
+        Self::Populations("I"),
+    ];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Cases(scenario) => scenario.name(),
+            Self::Populations(name) => name,
+            Self::All => "all",
+        }
+    }
+
+    fn scenario(self) -> Option<Scenario> {
+        match self {
+            Self::Cases(scenario) => Some(scenario),
+            _ => None,
+        }
+    }
+}
+
 type Removed = Option<RemovedLimit>;
 
 fn choice<T: Copy + Send + Sync + 'static>(
@@ -76,7 +124,11 @@ fn choice<T: Copy + Send + Sync + 'static>(
 }
 
 fn scenarios() -> impl TypedValueParser<Value = Chosen> {
-    choice(&Scenario::ALL, Scenario::name)
+    let names = Chosen::EACH.map(Chosen::name).into_iter().chain(["all"]);
+    PossibleValuesParser::new(names).map(|word| {
+        let each = Chosen::EACH.into_iter().find(|one| one.name() == word);
+        each.unwrap_or(Chosen::All)
+    })
 }
 
 fn removals() -> impl TypedValueParser<Value = Removed> {
@@ -106,6 +158,8 @@ struct Report<'a> {
     rows: &'a [FidelityRow],
     #[serde(rename = "box")]
     boxed: Option<&'a BoxReport>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    populations: &'a [PopulationReport],
 }
 
 /// Runs, prints, writes.
@@ -114,7 +168,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         [] => Law::PROTOCOL_WORDS.map(|(_, law)| law).to_vec(),
         chosen => chosen.to_vec(),
     };
-    let cases = cases(arguments)?;
+    let (cases, populations) = cases(arguments)?;
     output::create(arguments.out.as_deref())?;
     let usual = if cases.is_empty() {
         EngineKind::Native
@@ -122,9 +176,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         EngineKind::DEFAULT
     };
     let kind = arguments.engine.unwrap_or(usual);
+    let image = image(arguments)?;
+    // An image that repeats a sample has the file.
+    let elf = arguments.elf.as_deref().filter(|_| image.is_none());
     let campaign = Campaign {
         arguments,
-        device: engine::runner(kind, arguments.elf.as_deref())?,
+        device: engine::runner(kind, elf)?,
         laws,
     };
     let rows = campaign.rows(&cases).map_err(Failure::run)?;
@@ -135,9 +192,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         seed: arguments.seed,
         laws: fidelity::statistics_by_law(&drawn),
     });
+    let results = campaign.populations(&populations).map_err(Failure::run)?;
+    let reports = campaign
+        .population_reports(&populations, &results, image.as_deref())
+        .map_err(Failure::run)?;
     if let Some(folder) = &arguments.out {
-        campaign
-            .write(folder, &rows, &drawn, boxed.as_ref())
+        let charts = write_populations(folder, &populations, &results, &reports);
+        charts
+            .and_then(|chart| {
+                let reports = (boxed.as_ref(), reports.as_slice());
+                campaign.write(folder, &rows, &drawn, reports, chart)
+            })
             .map_err(Failure::run)?;
     }
     let report = Report {
@@ -145,10 +210,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         laws: campaign.laws.iter().map(|law| law.name()).collect(),
         rows: &rows,
         boxed: boxed.as_ref(),
+        populations: &reports,
     };
     let table = || {
         fidelity::table(&rows, arguments.all)
             + &boxed.as_ref().map_or(String::new(), fidelity::box_table)
+            + &fidelity::population_table(&reports)
     };
     let page = arguments.out.as_ref();
     output::print_report(
@@ -159,40 +226,71 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     )
 }
 
-/// The chosen cases.
-fn cases(arguments: &Arguments) -> Result<Vec<FidelityCase>, Failure> {
-    let boxed = arguments.draws.is_some() || arguments.replay.is_some();
-    let scenarios = match arguments.scenario.as_slice() {
-        [] if boxed => Vec::new(),
-        [] => vec![Scenario::A],
-        chosen => expand(chosen, &Scenario::ALL),
+/// The image that repeats a sample, if one is to.
+#[cfg(feature = "emulator")]
+fn image(arguments: &Arguments) -> Result<Option<Box<dyn SceneRunner>>, Failure> {
+    let wanted = arguments.image_sample > 0;
+    let image = wanted.then(|| engine::runner(EngineKind::Image, arguments.elf.as_deref()));
+    image.transpose()
+}
+
+/// This build has no emulator.
+#[cfg(not(feature = "emulator"))]
+fn image(_arguments: &Arguments) -> Result<Option<Box<dyn SceneRunner>>, Failure> {
+    Ok(None)
+}
+
+/// The chosen cases of A to D and of the populations.
+fn cases(arguments: &Arguments) -> Result<(Vec<FidelityCase>, Vec<PopulationCase>), Failure> {
+    let boxed = arguments.boxed.is_some() || arguments.replay.is_some();
+    let chosen: &[Chosen] = match arguments.scenario.as_slice() {
+        [] if boxed => &[],
+        [] => &[Chosen::Cases(Scenario::A)],
+        chosen if chosen.contains(&Chosen::All) => &Chosen::EACH,
+        chosen => chosen,
     };
-    let mut cases: Vec<_> = scenarios
-        .iter()
-        .flat_map(|scenario| scenario.cases())
+    let mut cases: Vec<_> = (chosen.iter())
+        .filter_map(|chosen| chosen.scenario())
+        .flat_map(Scenario::cases)
         .collect();
+    let mut populations: Vec<_> = (Population::ALL.into_iter())
+        .filter(|population| chosen.contains(&Chosen::Populations(population.scenario())))
+        .flat_map(|population| {
+            let cases = population.cases(arguments.seed, arguments.draws);
+            let sample = arguments.sample.unwrap_or(cases.len());
+            fidelity::spread(&cases, sample)
+        })
+        .collect();
+    let all = || {
+        let populations = populations.iter();
+        let populations =
+            populations.map(|case| (case.object.name.as_str(), PopulationCase::FORCE_N));
+        (cases.iter().map(|case| (case.name.as_str(), case.force_n))).chain(populations)
+    };
     for name in &arguments.material {
-        if !cases.is_empty() && !cases.iter().any(|case| case.name == *name) {
-            let mut known: Vec<_> = cases.iter().map(|case| case.name.as_str()).collect();
+        if all().next().is_some() && !all().any(|(known, _)| known == *name) {
+            let mut known: Vec<_> = all().map(|(name, _)| name).collect();
             known.dedup();
             let problem = anyhow!("--material {name:?}; known are {}", known.join("; "));
             return Err(Failure::input(problem));
         }
     }
     for force_n in &arguments.force {
-        if !cases.is_empty() && !cases.iter().any(|case| case.force_n == *force_n) {
-            let mut known: Vec<_> = cases.iter().map(|case| case.force_n).collect();
+        if all().next().is_some() && !all().any(|(_, known)| known == *force_n) {
+            let mut known: Vec<_> = all().map(|(_, force_n)| force_n).collect();
             known.sort_by(f64::total_cmp);
             known.dedup();
             let problem = anyhow!("--force {force_n}; known are {known:?}");
             return Err(Failure::input(problem));
         }
     }
-    cases.retain(|case| {
-        (arguments.material.is_empty() || arguments.material.contains(&case.name))
-            && (arguments.force.is_empty() || arguments.force.contains(&case.force_n))
-    });
-    Ok(cases)
+    let wanted = |name: &String, force_n: f64| {
+        (arguments.material.is_empty() || arguments.material.contains(name))
+            && (arguments.force.is_empty() || arguments.force.contains(&force_n))
+    };
+    cases.retain(|case| wanted(&case.name, case.force_n));
+    populations.retain(|case| wanted(&case.object.name, PopulationCase::FORCE_N));
+    Ok((cases, populations))
 }
 
 struct Campaign<'a> {
@@ -233,7 +331,7 @@ impl Campaign<'_> {
 
     /// Runs the draws, or the one to replay, with every law.
     fn draws(&self) -> anyhow::Result<Vec<DrawResult>> {
-        let numbers = match (self.arguments.replay, self.arguments.draws) {
+        let numbers = match (self.arguments.replay, self.arguments.boxed) {
             (Some(number), _) => number..number.saturating_add(1),
             (None, draws) => 0..draws.unwrap_or(0),
         };
@@ -247,6 +345,56 @@ impl Campaign<'_> {
                 .run(device, *law)
                 .with_context(|| format!("draw {number} of seed {}", self.arguments.seed))
         })
+    }
+
+    /// Runs every case of the populations in every way.
+    fn populations(&self, cases: &[PopulationCase]) -> anyhow::Result<Vec<PopulationResult>> {
+        let mut jobs = Vec::new();
+        for case in cases {
+            jobs.extend(Way::ALL.map(|way| (case, way)));
+        }
+        let device = self.device_of_draws();
+        self.map("populations", &jobs, |(case, way)| {
+            case.run(device, *way).with_context(|| context(case, *way))
+        })
+    }
+
+    /// Statistics of the populations; a sample of each is run on the image.
+    fn population_reports(
+        &self,
+        cases: &[PopulationCase],
+        results: &[PopulationResult],
+        image: Option<&dyn SceneRunner>,
+    ) -> anyhow::Result<Vec<PopulationReport>> {
+        let device = self.device_of_draws();
+        let mut reports = Vec::new();
+        for population in Population::ALL {
+            let mut sample = None;
+            if let Some(image) = image {
+                let own = cases.iter().filter(|case| case.population == population);
+                let own: Vec<_> = own.collect();
+                let jobs = fidelity::spread(&own, self.image_sample());
+                self.map("image", &jobs, |case| {
+                    let same = case.check_same(device, image, Way::AsItIs);
+                    same.with_context(|| context(case, Way::AsItIs))
+                })?;
+                let identical = jobs.len();
+                sample = Some(ImageSample { identical });
+            }
+            let engine = device.name();
+            reports.extend(PopulationReport::new(population, results, engine, sample));
+        }
+        Ok(reports)
+    }
+
+    #[cfg(feature = "emulator")]
+    fn image_sample(&self) -> usize {
+        self.arguments.image_sample
+    }
+
+    #[cfg(not(feature = "emulator"))]
+    fn image_sample(&self) -> usize {
+        0
     }
 
     fn map<T: Sync, R: Send>(
@@ -267,10 +415,12 @@ impl Campaign<'_> {
         folder: &Path,
         rows: &[FidelityRow],
         drawn: &[DrawResult],
-        boxed: Option<&BoxReport>,
+        (boxed, populations): (Option<&BoxReport>, &[PopulationReport]),
+        chart: Option<String>,
     ) -> anyhow::Result<()> {
         let svg = fidelity::plot(rows)?;
-        let page = fidelity::page(rows, boxed, svg.as_deref());
+        let charts: Vec<_> = svg.iter().chain(&chart).map(String::as_str).collect();
+        let page = fidelity::page(rows, boxed, populations, &charts);
         output::write(folder, fidelity::HTML, page)?;
         if let Some(svg) = &svg {
             output::write(folder, fidelity::SVG, svg)?;
@@ -291,4 +441,38 @@ impl Campaign<'_> {
         }
         Ok(())
     }
+}
+
+fn context(case: &PopulationCase, way: Way) -> String {
+    format!("{} {}, {}", case.population.name(), case.name, way.name())
+}
+
+/// Writes the populations' chart, which is returned, their CSV, and the scenes of the worst cases.
+fn write_populations(
+    folder: &Path,
+    cases: &[PopulationCase],
+    results: &[PopulationResult],
+    reports: &[PopulationReport],
+) -> anyhow::Result<Option<String>> {
+    let chart = fidelity::population_chart(results)?;
+    let Some(svg) = &chart else { return Ok(None) };
+    output::write(folder, fidelity::POPULATIONS_SVG, svg)?;
+    output::write(
+        folder,
+        "populations.csv",
+        fidelity::populations_csv(results)?,
+    )?;
+    for report in reports {
+        let told = report.ways.iter().filter(|way| way.way == Way::AsItIs);
+        for (rank, worst) in (1..).zip(told.flat_map(|way| &way.worst)) {
+            let same = |case: &&PopulationCase| {
+                (case.population, &case.name) == (worst.population, &worst.case)
+            };
+            if let Some(case) = cases.iter().find(same) {
+                let name = format!("{}-worst-{rank}.toml", report.population.name());
+                output::write(folder, &name, case.text(Way::AsItIs))?;
+            }
+        }
+    }
+    Ok(chart)
 }

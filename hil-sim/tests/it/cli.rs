@@ -403,8 +403,8 @@ fn fidelity_compares_laws_and_is_reproducible_by_seed() {
 fn fidelity_refuses_what_it_does_not_know() {
     for (line, expected) in [
         (
-            &["fidelity", "--scenario", "E"][..],
-            "[possible values: A, B, C, D, unseen, all]",
+            &["fidelity", "--scenario", "G"][..],
+            "[possible values: A, B, C, D, unseen, E, F, I, all]",
         ),
         (
             &["fidelity", "--law", "pid"],

@@ -5,6 +5,8 @@ use std::path::Path;
 use image_tests::{image, on, on_image};
 use stm32_emulator::Firmware;
 use system_tests::{between, forces, host, natively, scene};
+use thermal_campaigns::fidelity::{Population, Way};
+use thermal_sim::NativeRunner;
 use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
@@ -62,6 +64,19 @@ fn a_shorted_bridge_trips_both_engines_in_the_same_tick() {
     assert_eq!(state_at(1.65).as_deref(), Some("self-test"));
     assert_eq!(state_at(2.65).as_deref(), Some("self-test"));
     assert_eq!(state_at(2.75).as_deref(), Some("tripped"));
+}
+
+/// An object with most relaxations, which is uploaded, and a drawn finger on a drawn device.
+#[test]
+fn both_engines_write_the_same_trace_of_a_layered_object_and_of_a_drawn_finger() {
+    let objects = Population::Objects.cases(1, 0);
+    let layers = objects.iter().find(|case| case.name == "5 x copper, foam");
+    let drawn = Population::DrawnFingers.cases(1, 1);
+    for case in [layers, drawn.get(4)] {
+        let case = case.expect("a case");
+        let same = case.check_same(&NativeRunner, image(), Way::AsItIs);
+        same.unwrap_or_else(|error| panic!("{}: {error:#}", case.name));
+    }
 }
 
 /// A layered finger, repeated contacts, a plant of the parameter box, and random draws by an infrared camera.

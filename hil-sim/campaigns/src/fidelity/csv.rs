@@ -1,6 +1,6 @@
 //! The figures as CSV, for other programs.
 
-use super::{DrawResult, FidelityRow};
+use super::{DrawResult, FidelityRow, PopulationResult};
 
 /// A column: its name and the text of its cells.
 type Column<T> = (&'static str, fn(&T) -> String);
@@ -64,6 +64,17 @@ const DRAWS: [Column<DrawResult>; 7] = [
     ("faults", |one| one.faults.join(" ")),
 ];
 
+const POPULATIONS: [Column<PopulationResult>; 6] = [
+    ("population", |one| one.population.name().into()),
+    ("case", |one| one.case.clone()),
+    ("told", |one| one.way.name().into()),
+    ("skin_max_after_50ms_mk", |one| {
+        one.max_after_50ms_mk.to_string()
+    }),
+    ("skin_rms_mk", |one| one.rms_mk.to_string()),
+    ("faults", |one| one.faults.join(" ")),
+];
+
 fn some<T: ToString>(value: Option<T>) -> String {
     value.map_or(String::new(), |value| value.to_string())
 }
@@ -91,6 +102,14 @@ pub fn box_csv(drawn: &[DrawResult]) -> anyhow::Result<Vec<u8>> {
             .collect()
     };
     write(&DRAWS, drawn, values, &keys)
+}
+
+/// One line per case of a population and what the device was told.
+///
+/// # Errors
+/// Out of memory.
+pub fn populations_csv(results: &[PopulationResult]) -> anyhow::Result<Vec<u8>> {
+    write(&POPULATIONS, results, |_| Vec::new(), &[])
 }
 
 fn write<T>(

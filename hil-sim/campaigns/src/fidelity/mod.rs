@@ -13,6 +13,7 @@ mod csv;
 mod measure;
 mod plant_draws;
 mod plot;
+mod population;
 mod removed_limit;
 mod report;
 mod row;
@@ -21,12 +22,17 @@ mod table;
 mod touched_object;
 
 pub use case::FidelityCase;
-pub use csv::{box_csv, rows_csv};
+pub use csv::{box_csv, populations_csv, rows_csv};
 pub use measure::{JudgedFigure, Measure};
 pub use plant_draws::{
     BoxReport, DrawResult, LawStatistics, Percentiles, PlantDraw, statistics_by_law,
 };
 pub use plot::draw as plot;
+pub use population::{
+    ImageSample, Population, PopulationCase, PopulationReport, PopulationResult,
+    SVG as POPULATIONS_SVG, Way, WayStatistics, chart as population_chart, spread,
+    table as population_table,
+};
 pub use removed_limit::RemovedLimit;
 pub use report::{HTML, SVG, page};
 pub use row::FidelityRow;

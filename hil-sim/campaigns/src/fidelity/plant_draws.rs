@@ -34,7 +34,7 @@ const BOX: [(&str, Tolerance); 12] = [
 ];
 
 /// Two parameters with the same value: both thermistors of the display are of one type and bonded alike.
-const SAME_VALUE: (&str, &str) = ("sensors.display.lag_s", "sensors.check.lag_s");
+pub(super) const SAME_VALUE: (&str, &str) = ("sensors.display.lag_s", "sensors.check.lag_s");
 
 /// Parameters, or prefixes of their keys, that are also drawn for a device in use, within their own tolerances: those that a
 /// builder cannot choose. Other sensor errors are calibrated, the finger belongs to the scene, and dead time and filter of

@@ -10,18 +10,18 @@ use super::{FidelityRow, Scenario};
 const SIZE: (u32, u32) = (1100, 1060);
 const TITLE: i32 = 34;
 const OVER_TIME: i32 = 640;
-const FONT: (&str, i32) = ("sans-serif", 15);
-const MARGIN: i32 = 14;
+pub(super) const FONT: (&str, i32) = ("sans-serif", 15);
+pub(super) const MARGIN: i32 = 14;
 const DOT: i32 = 5;
 
 /// Colours of the laws, in the order in which they occur.
-const COLORS: [RGBColor; 4] = [
+pub(super) const COLORS: [RGBColor; 4] = [
     RGBColor(0x7f, 0x7f, 0x7f),
     RGBColor(0x1f, 0x77, 0xb4),
     RGBColor(0xd6, 0x27, 0x28),
     RGBColor(0x2c, 0xa0, 0x2c),
 ];
-const BOUND: RGBColor = RGBColor(0x22, 0x22, 0x22);
+pub(super) const BOUND: RGBColor = RGBColor(0x22, 0x22, 0x22);
 
 /// Times, s, and errors, mK, that are drawn; smaller errors lie on the lower edge.
 const TIMES_S: Range<f64> = 1e-3..12.0;
@@ -218,6 +218,6 @@ fn color(laws: &[&str], law: &str) -> RGBColor {
 }
 
 /// A power of ten in decimal notation.
-fn plain(value: f64) -> String {
+pub(super) fn plain(value: f64) -> String {
     format!("{}", (value * 1e6).round() / 1e6)
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use thermal_charts::{document, escape, svg_element};
 
-use super::{BoxReport, FidelityRow, box_table, table};
+use super::{BoxReport, FidelityRow, PopulationReport, box_table, population_table, table};
 
 /// File name of the page.
 pub const HTML: &str = "fidelity.html";
@@ -13,16 +13,22 @@ pub const SVG: &str = "fidelity.svg";
 
 /// A self-contained page.
 #[must_use]
-pub fn page(rows: &[FidelityRow], boxed: Option<&BoxReport>, svg: Option<&str>) -> String {
+pub fn page(
+    rows: &[FidelityRow],
+    boxed: Option<&BoxReport>,
+    populations: &[PopulationReport],
+    charts: &[&str],
+) -> String {
     let mut body =
         "<p>Everything here is simulated; instructions are emulated, cycles estimated.</p>"
             .to_owned();
-    if let Some(svg) = svg {
+    for svg in charts {
         body += svg_element(svg);
     }
     for text in [
         (!rows.is_empty()).then(|| table(rows, true)),
         boxed.map(box_table),
+        (!populations.is_empty()).then(|| population_table(populations)),
     ]
     .into_iter()
     .flatten()

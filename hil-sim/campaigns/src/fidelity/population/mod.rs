@@ -1,0 +1,141 @@
+//! Populations: many objects, fingers or contact laws, each run as the device is now told of it, and as version 0.1 was.
+
+mod case;
+mod chart;
+mod object;
+mod statistics;
+
+use thermal_plant::Params;
+use thermal_plant::parameters::{self, stream_seed};
+use thermal_sim::named_enum;
+
+use super::plant_draws::SAME_VALUE;
+
+pub use case::{PopulationCase, Way};
+pub use chart::{SVG, draw as chart};
+pub use object::{BodyObject, every_object, six_objects};
+pub use statistics::{ImageSample, PopulationReport, PopulationResult, WayStatistics, table};
+
+named_enum! {
+    /// A population.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+    pub enum Population {
+        /// Slabs, half-spaces and layered objects under the thesis's finger, on the nominal plant.
+        #[serde(rename = "E")]
+        Objects = "E",
+        /// Layered fingers of the parameter box, on drawn devices.
+        #[serde(rename = "F-box")]
+        FingerBox = "F-box",
+        /// Fingers that differ as people do, on the same devices.
+        #[serde(rename = "F-draw")]
+        DrawnFingers = "F-draw",
+        /// Contact laws under the nominal layered finger, on an otherwise nominal plant.
+        #[serde(rename = "I")]
+        ContactLaws = "I",
+    }
+}
+
+impl Population {
+    /// The scenario's name on the command line; F has two populations.
+    #[must_use]
+    pub const fn scenario(self) -> &'static str {
+        match self {
+            Self::Objects => "E",
+            Self::FingerBox | Self::DrawnFingers => "F",
+            Self::ContactLaws => "I",
+        }
+    }
+
+    /// Description of the population.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Objects => {
+                "objects: slabs, half-spaces, layers; the thesis's finger, nominal plant"
+            }
+            Self::FingerBox => "layered fingers and devices of the parameter box, six objects",
+            Self::DrawnFingers => "fingers of finger.draw, devices of the box, six objects",
+            Self::ContactLaws => {
+                "contact laws of contact.draw; nominal layered finger, six objects"
+            }
+        }
+    }
+
+    /// Percentiles of the largest skin error from 50 ms on, %, and their aims, mK; none of drawn contact laws.
+    #[must_use]
+    pub const fn aims(self) -> &'static [(f64, f64)] {
+        match self {
+            Self::Objects => &[(95.0, 10.0), (100.0, 20.0)],
+            Self::FingerBox => &[(50.0, 40.0), (95.0, 130.0)],
+            Self::DrawnFingers => &[(50.0, 100.0), (95.0, 370.0)],
+            Self::ContactLaws => &[],
+        }
+    }
+
+    /// The cases: all objects, or six objects for each of a number of draws.
+    #[must_use]
+    pub fn cases(self, seed: u64, draws: u64) -> Vec<PopulationCase> {
+        let case = |object, (name, own): (String, u64), tables: String| PopulationCase {
+            population: self,
+            name,
+            object,
+            seed: own,
+            tables,
+        };
+        if self == Self::Objects {
+            return every_object()
+                .into_iter()
+                .map(|object| case(object.clone(), (object.name, seed), String::new()))
+                .collect();
+        }
+        let mut cases = Vec::new();
+        for number in 0..draws {
+            // A scene file holds 63 bits.
+            let own = stream_seed(seed, &format!("{} {number}", self.scenario())) >> 1;
+            let (of_device, tables) = match self {
+                Self::FingerBox => (own, layered("") + &device(own)),
+                Self::DrawnFingers => (own, layered(&format!("draw = {own}\n")) + &device(own)),
+                _ => (
+                    seed,
+                    layered("") + &format!("[plant]\ncontact.draw = {own}\n"),
+                ),
+            };
+            for object in six_objects() {
+                let name = format!("{}, draw {number}", object.name);
+                cases.push(case(object, (name, of_device), tables.clone()));
+            }
+        }
+        cases
+    }
+}
+
+/// A layered finger with further keys.
+fn layered(keys: &str) -> String {
+    format!("[finger]\ntissue = \"layered\"\n{keys}")
+}
+
+/// A device of the parameter box. Its display thermistors are bonded alike ([`SAME_VALUE`]): with lags that are drawn apart,
+/// a device of eight trips while it presets itself.
+fn device(seed: u64) -> String {
+    let mut params = Params::nominal();
+    parameters::draw(&mut params, seed);
+    let (key, same) = SAME_VALUE;
+    let drawn = parameters::all(&params).into_iter();
+    let lags = drawn.filter(|parameter| parameter.key == key);
+    let lags: String = lags
+        .map(|lag| format!("{same} = {:?}\n", lag.value))
+        .collect();
+    format!("[plant]\ndraw = {seed}\n{lags}")
+}
+
+/// So many items, evenly spread over a list; all if there are fewer.
+#[must_use]
+pub fn spread<T: Clone>(items: &[T], count: usize) -> Vec<T> {
+    let count = count.min(items.len());
+    (0..count)
+        .filter_map(|i| items.get((2 * i + 1) * items.len() / (2 * count)).cloned())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,205 @@
+//! Statistics of a population.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::{Population, Way};
+use crate::fidelity::Percentiles;
+use crate::percentile;
+
+/// Result of a case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PopulationResult {
+    /// The population.
+    pub population: Population,
+    /// Name of the case.
+    pub case: String,
+    /// What the device was told.
+    pub way: Way,
+    /// Largest skin error from 50 ms on, mK.
+    pub max_after_50ms_mk: f64,
+    /// Its root mean square over the contact, mK.
+    pub rms_mk: f64,
+    /// Faults that the device reported.
+    pub faults: Vec<String>,
+}
+
+/// Statistics of a population for what the device was told.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WayStatistics {
+    /// What the device was told.
+    pub way: Way,
+    /// Largest skin error from 50 ms on, mK.
+    pub max_after_50ms_mk: Percentiles,
+    /// Its root mean square, mK.
+    pub rms_mk: Percentiles,
+    /// Runs in which the device reported a fault.
+    pub faulty: usize,
+    /// The worst runs, worst first.
+    pub worst: Vec<PopulationResult>,
+}
+
+/// Runs of a population that the image has repeated with the same traces.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ImageSample {
+    /// Number of runs.
+    pub identical: usize,
+}
+
+/// A percentile of the largest skin error, compared with its aim.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AimedPercentile {
+    /// Percentile, %.
+    pub percent: f64,
+    /// Aim, mK.
+    pub aim_mk: f64,
+    /// Value for the object as it is, mK.
+    pub value_mk: f64,
+}
+
+/// Statistics of a population.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PopulationReport {
+    /// The population.
+    pub population: Population,
+    /// Name of the engine.
+    pub engine: &'static str,
+    /// Number of cases.
+    pub cases: usize,
+    /// The aims; none of drawn contact laws.
+    pub aims: Vec<AimedPercentile>,
+    /// What the image has repeated, if it has.
+    pub image: Option<ImageSample>,
+    /// Statistics by what the device was told.
+    pub ways: Vec<WayStatistics>,
+}
+
+/// Number of worst runs that are listed.
+const WORST: usize = 5;
+
+impl PopulationReport {
+    /// Statistics of a population's results, of each way that was run; `None` if there are none of the object as it is.
+    #[must_use]
+    pub fn new(
+        population: Population,
+        results: &[PopulationResult],
+        engine: &'static str,
+        image: Option<ImageSample>,
+    ) -> Option<Self> {
+        let of = |way| -> Vec<&PopulationResult> {
+            (results.iter())
+                .filter(|one| (one.population, one.way) == (population, way))
+                .collect()
+        };
+        let told = of(Way::AsItIs);
+        let errors: Vec<_> = told.iter().map(|one| one.max_after_50ms_mk).collect();
+        percentile(&errors, 50.0)?;
+        let ways = Way::ALL.map(|way| statistics(way, of(way)));
+        Some(Self {
+            population,
+            engine,
+            cases: told.len(),
+            aims: (population.aims().iter())
+                .map(|&(percent, aim_mk)| {
+                    let value_mk = percentile(&errors, percent)?;
+                    Some(AimedPercentile {
+                        percent,
+                        aim_mk,
+                        value_mk,
+                    })
+                })
+                .collect::<Option<_>>()?,
+            image,
+            ways: ways.into_iter().flatten().collect(),
+        })
+    }
+}
+
+fn statistics(way: Way, mut own: Vec<&PopulationResult>) -> Option<WayStatistics> {
+    own.sort_by(|a, b| b.max_after_50ms_mk.total_cmp(&a.max_after_50ms_mk));
+    let column = |value: fn(&PopulationResult) -> f64| -> Option<Percentiles> {
+        Percentiles::of(&own.iter().map(|one| value(one)).collect::<Vec<_>>())
+    };
+    Some(WayStatistics {
+        way,
+        max_after_50ms_mk: column(|one| one.max_after_50ms_mk)?,
+        rms_mk: column(|one| one.rms_mk)?,
+        faulty: own.iter().filter(|one| !one.faults.is_empty()).count(),
+        worst: own.into_iter().take(WORST).cloned().collect(),
+    })
+}
+
+/// The statistics as text.
+#[must_use]
+pub fn table(reports: &[PopulationReport]) -> String {
+    let mut text = String::new();
+    for report in reports {
+        let PopulationReport {
+            population,
+            engine,
+            cases,
+            aims,
+            image,
+            ways,
+        } = report;
+        // Writing to a String cannot fail.
+        let _ = write!(
+            text,
+            "\n{}: {}\n{cases} cases, engine {engine}",
+            population.name(),
+            population.title()
+        );
+        if let Some(ImageSample { identical }) = image {
+            let _ = write!(
+                text,
+                "; {identical} runs repeated by the image, traces identical"
+            );
+        }
+        let _ = writeln!(
+            text,
+            "\nmK, skin error{:6}largest after 50 ms, 50/95/99 %, max     rms, 50/95 %    faulty",
+            ""
+        );
+        for way in ways {
+            let (max, rms) = (way.max_after_50ms_mk, way.rms_mk);
+            let _ = writeln!(
+                text,
+                "{:20}{:>8.1}{:>8.1}{:>8.1}{:>10.1}      {:>8.1}{:>8.1}{:>8}",
+                way.way.name(),
+                max.p50,
+                max.p95,
+                max.p99,
+                max.max,
+                rms.p50,
+                rms.p95,
+                way.faulty
+            );
+        }
+        for aim in aims {
+            let _ = writeln!(
+                text,
+                "{} %: {:.1} mK, aim {} mK: {}",
+                aim.percent,
+                aim.value_mk,
+                aim.aim_mk,
+                if aim.value_mk <= aim.aim_mk {
+                    "ok"
+                } else {
+                    "over"
+                }
+            );
+        }
+        for one in ways.iter().flat_map(|way| &way.worst) {
+            let _ = writeln!(
+                text,
+                "{:12} {:>8.1} mK, {} {}",
+                one.way.name(),
+                one.max_after_50ms_mk,
+                one.case,
+                one.faults.join(", ")
+            );
+        }
+    }
+    text
+}

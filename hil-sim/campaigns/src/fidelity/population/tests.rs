@@ -1,0 +1,118 @@
+//! The populations are those that they promise.
+
+use std::collections::HashSet;
+
+use thermal_plant::slab::BackBoundary;
+use thermal_sim::scene::AssumedFinger;
+
+use super::*;
+
+#[test]
+fn there_are_234_different_objects_and_each_is_a_scene() {
+    let cases = Population::Objects.cases(1, 36);
+    assert_eq!(cases.len(), 234);
+    let names: HashSet<_> = cases.iter().map(|case| case.name.as_str()).collect();
+    assert_eq!(names.len(), cases.len());
+    let (mut half_spaces, mut insulated, mut layered) = (0, 0, 0);
+    for case in &cases {
+        let scene = case.scene(Way::AsItIs).expect("a scene");
+        assert_eq!(scene.assumed_finger, AssumedFinger::Thesis);
+        let Some(old) = case.scene(Way::Version01).ok() else {
+            panic!("{}", case.name);
+        };
+        assert_eq!(old.object, scene.object, "{}", case.name);
+        assert!(old.object_as_half_space && !scene.object_as_half_space);
+        half_spaces += usize::from(scene.object.is_half_space());
+        layered += usize::from(scene.object.layers.len() > 1);
+        insulated += usize::from(
+            scene.object.layers.len() == 1
+                && !scene.object.is_half_space()
+                && scene.object.back == BackBoundary::Insulated,
+        );
+    }
+    assert_eq!((half_spaces, insulated, layered), (9, 72, 9));
+}
+
+#[test]
+fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
+    for population in [Population::FingerBox, Population::DrawnFingers] {
+        let cases = population.cases(1, 2);
+        assert_eq!(cases.len(), 12);
+        let scenes: Vec<_> = (cases.iter())
+            .map(|case| case.scene(Way::AsItIs).expect("a scene"))
+            .collect();
+        for pair in scenes[..6].windows(2) {
+            assert_eq!(
+                (&pair[0].params, pair[0].seed),
+                (&pair[1].params, pair[1].seed)
+            );
+        }
+        assert_ne!(scenes[0].params, scenes[6].params);
+        assert_ne!(scenes[0].params.tile, scenes[6].params.tile);
+        let [display, check, ..] = &scenes[0].params.sensors.thermistors;
+        assert_eq!(display.lag_s, check.lag_s);
+        assert!(scenes[0].commissioned);
+        assert_eq!(scenes[0].assumed_finger, AssumedFinger::Mean);
+        let old = cases[0].scene(Way::Version01).expect("a scene");
+        assert_eq!(old.assumed_finger, AssumedFinger::Thesis);
+        let drawn = scenes[0].draws.finger.is_some();
+        assert_eq!(drawn, population == Population::DrawnFingers);
+    }
+}
+
+#[test]
+fn drawn_contact_laws_leave_all_else_nominal() {
+    let scenes: Vec<_> = (Population::ContactLaws.cases(1, 3).iter())
+        .map(|case| case.scene(Way::AsItIs).expect("a scene"))
+        .collect();
+    assert_eq!(scenes.len(), 18);
+    for scene in &scenes {
+        assert_eq!(scene.params.tile, scenes[0].params.tile);
+        assert_eq!(scene.params.finger, scenes[0].params.finger);
+        assert_eq!(scene.params.sensors, scenes[0].params.sensors);
+    }
+    assert_ne!(scenes[0].params.contact, scenes[6].params.contact);
+}
+
+#[test]
+fn a_spread_sample_has_both_halves_of_a_list() {
+    assert_eq!(spread(&[1, 2, 3, 4, 5, 6, 7, 8], 2), [3, 7]);
+    assert_eq!(spread(&[1, 2], 5), [1, 2]);
+    assert_eq!(spread(&[1, 2, 3], 0), [0; 0]);
+}
+
+/// Two of three draws have errors of 1 and 3 mK as told, and ten times these in version 0.1's way.
+#[test]
+fn statistics_are_by_way_and_compare_with_the_aims() {
+    let result = |way, max_after_50ms_mk| PopulationResult {
+        population: Population::Objects,
+        case: "copper".into(),
+        way,
+        max_after_50ms_mk,
+        rms_mk: 1.0,
+        faults: Vec::new(),
+    };
+    let results = [
+        result(Way::AsItIs, 1.0),
+        result(Way::Version01, 10.0),
+        result(Way::AsItIs, 3.0),
+        result(Way::Version01, 30.0),
+    ];
+    let report =
+        PopulationReport::new(Population::Objects, &results, "native", None).expect("a report");
+    let medians: Vec<_> = report
+        .ways
+        .iter()
+        .map(|way| way.max_after_50ms_mk.p50)
+        .collect();
+    assert_eq!((report.cases, medians), (2, vec![2.0, 20.0]));
+    let aims: Vec<_> = (report.aims.iter())
+        .map(|aim| (aim.percent, aim.aim_mk, aim.value_mk))
+        .collect();
+    assert_eq!(aims, [(95.0, 10.0, 2.9), (100.0, 20.0, 3.0)]);
+    assert_eq!(report.ways[1].worst[0].max_after_50ms_mk, 30.0);
+    assert_eq!(
+        PopulationReport::new(Population::ContactLaws, &results, "native", None),
+        None
+    );
+}
