@@ -1,8 +1,6 @@
 //! Thermal state of the skin: the thesis's half-space, or the tissue of another finger.
 
-use contact_model::fixed_point::{
-    BodyState, Celsius, FingerBody, HalfSpace, ScaledBody, saturating_product,
-};
+use contact_model::fixed_point::{BodyState, Celsius, FingerBody, HalfSpace, ScaledBody, product};
 
 /// Assumed finger and presented object, where they are not both half-spaces. The thesis's equations then do not hold, and
 /// finger and object are each followed by relaxations of their own.
@@ -106,7 +104,7 @@ pub fn flux_beyond_air(
     skin_above_room: Celsius,
 ) -> Celsius {
     match into_object {
-        Some(flux) => flux.saturating_sub(saturating_product(skin_above_room, finger.air)),
-        None => saturating_product(cooling.saturating_neg(), finger.air),
+        Some(flux) => flux.saturating_sub(product(skin_above_room, finger.air)),
+        None => product(cooling.saturating_neg(), finger.air),
     }
 }
