@@ -6,7 +6,8 @@ use std::vec::Vec;
 
 use contact_model::finger::{AssumedFinger, MEAN, THESIS};
 use contact_model::fixed_point::{
-    Body, ContactPair, FingerBody, Force, contact_area, log2_relative_pressure,
+    Body, ContactPair, FingerBody, Force, ScaledBody, contact_area, log2_relative_pressure,
+    to_fixed,
 };
 use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
@@ -34,6 +35,14 @@ fn pair(object: &Material) -> ContactPair {
     ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S).expect("a valid pair")
 }
 
+/// The body itself.
+fn whole(body: &Body) -> ScaledBody<'_> {
+    ScaledBody {
+        body,
+        factor: U16F16::ONE,
+    }
+}
+
 fn body(impedance: &Impedance<'_>) -> Body {
     Body::new(impedance, SKIN.effusivity(), TICK_S).expect("a valid body")
 }
@@ -42,12 +51,12 @@ fn body(impedance: &Impedance<'_>) -> Body {
 fn simulated(
     material: &Material,
     finger: &FingerBody,
-    object: &Body,
+    object: ScaledBody<'_>,
     ticks: usize,
 ) -> Vec<(f64, f64)> {
     let pair = pair(material);
     let contact = pair.at_pressure(log2_relative_pressure(Force::from_num(FORCE_N)));
-    let conductance = contact.conductance_of(&finger.tissue, object);
+    let conductance = contact.conductance_of(&finger.tissue, &object);
     let bodies = Some(Bodies { finger, object });
     let factors = ContactPairFactors::new(&pair);
     let input = SkinInput {
@@ -73,7 +82,8 @@ fn simulated(
                 SkinState::HalfSpace(state) => state.uniform_body(),
             };
             let cooling = cooling.response_to(into_skin, &finger.tissue.relaxations());
-            let warming = warming.response_to(skin.scaled_flux, &object.relaxations());
+            let warming =
+                warming.response_to(object.scaled(skin.scaled_flux), &object.body.relaxations());
             (cooling.to_num(), warming.to_num())
         })
         .collect()
@@ -138,14 +148,17 @@ fn half_spaces_as_bodies_agree_with_equation_6_5() {
     let finger = FingerBody::new(&THESIS, TICK_S).expect("the thesis's finger");
     let mut worst_k = (0.0f64, 0.0f64);
     for (name, material) in &MATERIALS {
-        let object = Body::half_space(material.effusivity(), TICK_S).expect("a half-space");
+        let object = ScaledBody {
+            body: &FingerBody::THESIS.tissue,
+            factor: to_fixed(SKIN.effusivity() / material.effusivity()),
+        };
         let contact = Contact::new(
             (&SKIN, SKIN_C),
             (material, OBJECT_C),
             &REFERENCE_DISPLAY,
             pressure_pa(FORCE_N),
         );
-        let simulated = simulated(material, &finger, &object, 20_000);
+        let simulated = simulated(material, &finger, object, 20_000);
         for (tick, (cooling_k, warming_k)) in simulated.iter().enumerate().skip(FROM_TICK) {
             let exact = contact.at((tick + 1) as f64 * TICK_S);
             let skin_k = (SKIN_C - cooling_k - exact.skin_c).abs();
@@ -181,7 +194,8 @@ fn bodies_agree_with_their_impedances_in_f64() {
                 }
                 .relaxations();
                 let impedance = slab.impedance();
-                let simulated = simulated(material, &in_fixed_point, &body(&impedance), 3000);
+                let simulated =
+                    simulated(material, &in_fixed_point, whole(&body(&impedance)), 3000);
                 let exact = exact(finger, &impedance, resistance_m2k_w(material), 3000);
                 for (tick, (is, should)) in simulated.iter().zip(exact).enumerate().skip(FROM_TICK)
                 {
@@ -237,7 +251,7 @@ proptest! {
     ) {
         let finger = FingerBody { tissue: finger, air: Fraction::ZERO };
         let small_k = 4e-3 * DIFFERENCE_K;
-        for (cooling_k, warming_k) in simulated(&MATERIALS[material].1, &finger, &object, 3000) {
+        for (cooling_k, warming_k) in simulated(&MATERIALS[material].1, &finger, whole(&object), 3000) {
             prop_assert!(cooling_k > -small_k && warming_k > -small_k, "{cooling_k}, {warming_k}");
             prop_assert!(cooling_k + warming_k < DIFFERENCE_K + small_k, "{cooling_k}, {warming_k}");
         }
@@ -264,7 +278,7 @@ proptest! {
         for (skin_c, room_c, other, force, finger, object, restart, ticks) in events {
             let force = force.map(Force::from_bits);
             // The third finger stands for the thesis's path without bodies.
-            let bodies = fingers.get(finger).map(|finger| Bodies { finger, object: &objects[object] });
+            let bodies = fingers.get(finger).map(|finger| Bodies { finger, object: whole(&objects[object]) });
             if restart {
                 skin.start_from_skin_on_display(estimator.skin_state_on_display(), bodies);
                 estimator.forget_conductances();
