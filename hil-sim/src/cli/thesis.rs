@@ -24,14 +24,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output::create(arguments.out.as_deref())?;
     let closed = figures(&ClosedForm).map_err(Failure::run)?;
     let apart = differences(&closed, &figures(&FiniteVolumes).map_err(Failure::run)?);
+    let measured = thermal_thesis::measurements().map_err(Failure::run)?;
     if let Some(folder) = &arguments.out {
-        thermal_thesis::write(folder, &chapters, &closed, &apart).map_err(Failure::run)?;
+        thermal_thesis::write(folder, &chapters, &closed, &apart, &measured)
+            .map_err(Failure::run)?;
     }
     let page = arguments.out.as_ref();
     output::print_report(
         arguments.json,
-        &thermal_thesis::json(&chapters, &apart),
-        || thermal_thesis::table(&chapters, &apart),
+        &thermal_thesis::json(&chapters, &apart, &measured),
+        || thermal_thesis::table(&chapters, &apart, &measured),
         page.map(|folder| folder.join(thermal_thesis::HTML)),
     )
 }

@@ -28,7 +28,7 @@ fn the_table_ends_with_the_counts_of_its_lines() {
         text.lines()
             .filter(|line| line.starts_with("Chapter "))
             .count(),
-        5
+        9
     );
     let count = |word: &str| count_of(&rows, word);
     let last = text.lines().last().expect("a last line");
@@ -57,6 +57,17 @@ fn json_is_one_object_with_all_rows() {
         let found = rows.iter().filter(|row| row["verdict"] == word).count();
         assert_eq!(object["counts"][word], found, "{word}");
     }
+    let measured = object["measured"].as_array().expect("measurements");
+    assert!(measured.len() > 40);
+    assert!(measured.iter().all(|row| {
+        let plants = row["plant"].as_array().map(Vec::len);
+        plants
+            == Some(if row["verdict"] == "not-modelled" {
+                0
+            } else {
+                4
+            })
+    }));
     let g10 = rows
         .iter()
         .find(|row| row["place"] == "Table 3-1" && row["quantity"] == "G10, interface")

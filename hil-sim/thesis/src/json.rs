@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::figure::FigureDifference;
+use super::measured::{Measurement, VARIANTS};
 use super::{Chapter, Counts};
 
 /// The object that `--json` prints.
@@ -12,6 +13,53 @@ pub struct Json<'a> {
     rows: Vec<JsonRow<'a>>,
     /// Differences of the model figures between the plant's finite volumes and the closed forms.
     figures: &'a [FigureDifference],
+    /// Measurements of the thesis beside the plant.
+    measured: Vec<JsonMeasurement<'a>>,
+}
+
+#[derive(Serialize)]
+struct JsonMeasurement<'a> {
+    place: &'a str,
+    quantity: &'a str,
+    unit: &'a str,
+    measured: String,
+    /// Empty if the plant has no such quantity.
+    plant: Vec<JsonPlant>,
+    verdict: &'static str,
+    /// Why the plant does not show it, or not with Eq. 6-8 alone.
+    why: Option<&'a str>,
+}
+
+#[derive(Serialize)]
+struct JsonPlant {
+    finger: &'static str,
+    contact: &'static str,
+    value: f64,
+    agrees: bool,
+}
+
+impl<'a> JsonMeasurement<'a> {
+    fn new(measurement: &'a Measurement) -> Self {
+        let values = measurement.plant.iter().flatten();
+        let plant = VARIANTS
+            .iter()
+            .zip(values)
+            .map(|(variant, &value)| JsonPlant {
+                finger: variant.finger(),
+                contact: variant.contact(),
+                value,
+                agrees: measurement.measured.agrees(value),
+            });
+        Self {
+            place: measurement.place,
+            quantity: &measurement.quantity,
+            unit: measurement.unit,
+            measured: measurement.measured.to_string(),
+            plant: plant.collect(),
+            verdict: measurement.shown().word(),
+            why: Some(measurement.why()).filter(|why| !why.is_empty()),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -30,7 +78,11 @@ struct JsonRow<'a> {
 
 /// Collects the object that `--json` prints.
 #[must_use]
-pub fn json<'a>(chapters: &'a [Chapter], figures: &'a [FigureDifference]) -> Json<'a> {
+pub fn json<'a>(
+    chapters: &'a [Chapter],
+    figures: &'a [FigureDifference],
+    measured: &'a [Measurement],
+) -> Json<'a> {
     let rows = chapters.iter().flat_map(|chapter| {
         chapter.rows.iter().map(|row| JsonRow {
             chapter: chapter.number,
@@ -48,5 +100,6 @@ pub fn json<'a>(chapters: &'a [Chapter], figures: &'a [FigureDifference]) -> Jso
         counts: Counts::of(chapters),
         rows: rows.collect(),
         figures,
+        measured: measured.iter().map(JsonMeasurement::new).collect(),
     }
 }

@@ -6,26 +6,31 @@ mod chapter4;
 mod chapter5;
 mod chapter6;
 mod contact_case;
+mod experiments;
 pub mod figure;
 mod finite_volumes;
 mod json;
+pub mod measured;
 mod page;
 pub mod roughness;
 pub mod row;
 mod sensitivity;
 mod stated_value;
 mod statement;
+mod statistics;
 mod table;
 
 pub use contact_case::{Case, ClosedForm, ContactSolver, Surfaces};
 pub use finite_volumes::FiniteVolumes;
 pub use json::{Json, json};
+pub use measured::measurements;
 pub use page::{CSV, HTML, write};
-pub use sensitivity::d_prime;
+pub use sensitivity::{d_prime, d_prime_oddity};
 pub use stated_value::Stated;
 pub use table::{Counts, table};
 
 use row::Row;
+use statement::{EXPERIMENTS, STATEMENTS, Statement};
 
 /// The rows of one chapter.
 #[derive(Clone, Debug, PartialEq)]
@@ -38,20 +43,35 @@ pub struct Chapter {
     pub rows: Vec<Row>,
 }
 
-/// All numbers of the thesis that can be recomputed.
+/// All numbers of the thesis that can be recomputed: first tables, model and instruments, then the experiments.
 #[must_use]
 pub fn chapters() -> Vec<Chapter> {
-    [
-        (2, "Thermal sensation"),
-        (3, "Thermal cues in discrimination and localization"),
-        (4, "Thermal display"),
-        (5, "Infrared thermal measurement"),
-        (6, "Contact resistance"),
-    ]
-    .map(|(number, title)| Chapter {
-        number,
-        title,
-        rows: statement::rows(number),
-    })
-    .into()
+    let of = |statements: &'static [Statement], chapters: &[(u8, &'static str)]| -> Vec<_> {
+        let chapter = |&(number, title): &(u8, &'static str)| Chapter {
+            number,
+            title,
+            rows: statement::rows(statements, number),
+        };
+        chapters.iter().map(chapter).collect()
+    };
+    let mut chapters = of(
+        &STATEMENTS,
+        &[
+            (2, "Thermal sensation"),
+            (3, "Thermal cues in discrimination and localization"),
+            (4, "Thermal display"),
+            (5, "Infrared thermal measurement"),
+            (6, "Contact resistance"),
+        ],
+    );
+    chapters.extend(of(
+        &EXPERIMENTS,
+        &[
+            (2, "Thickness of the skin"),
+            (3, "Experiments"),
+            (4, "Experiments"),
+            (6, "Experiments"),
+        ],
+    ));
+    chapters
 }

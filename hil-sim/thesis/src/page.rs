@@ -7,6 +7,7 @@ use plotters::prelude::*;
 use thermal_charts::{Curve, Legend, Panel, Stroke, document, escape, svg_element};
 
 use super::figure::{Figure, FigureDifference, Kind};
+use super::measured::{Measurement, VARIANTS};
 use super::row::Row;
 use super::{Chapter, Counts};
 
@@ -29,7 +30,7 @@ const COLORS: [RGBColor; 7] = [
 ];
 const STYLE: &str = "body{max-width:76rem}table{font-size:.85rem;width:100%}td.n{text-align:right}td.n,td.w{white-space:nowrap}\
 td.v{white-space:nowrap;font-weight:600}.agrees{color:#1a7f37}.cut{color:#7a5c00}.differs{color:#b35900}\
-.damaged{color:#6639ba}.wrong{color:#cf222e}figure{margin:2rem 0}figcaption{font-weight:600}";
+.damaged{color:#6639ba}.wrong{color:#cf222e}.shows{color:#1a7f37}.shows-with-gap{color:#7a5c00}.cannot{color:#cf222e}figure{margin:2rem 0}figcaption{font-weight:600}";
 
 /// Writes [`HTML`] and [`CSV`] into `folder`, which exists.
 ///
@@ -40,8 +41,10 @@ pub fn write(
     chapters: &[Chapter],
     figures: &[Figure],
     differences: &[FigureDifference],
+    measured: &[Measurement],
 ) -> anyhow::Result<()> {
-    thermal_charts::write(folder, HTML, page(chapters, figures, differences)?)?;
+    let page = page(chapters, figures, differences, measured)?;
+    thermal_charts::write(folder, HTML, page)?;
     thermal_charts::write(folder, CSV, csv(chapters)?)
 }
 
@@ -49,13 +52,14 @@ fn page(
     chapters: &[Chapter],
     figures: &[Figure],
     differences: &[FigureDifference],
+    measured: &[Measurement],
 ) -> anyhow::Result<String> {
     let mut body = format!(
         "<p>Every number of H.-N. Ho's thesis (MIT, 2006) that a program can recompute, beside what the contact model \
          and the infrared instrument give. A tolerance (±), a range or a limit is how words of the text are read. {}.</p>",
         Counts::of(chapters).text()
     );
-    for chapter in chapters {
+    for (i, chapter) in chapters.iter().enumerate() {
         // Writing to a String cannot fail.
         let _ = write!(
             body,
@@ -69,9 +73,10 @@ fn page(
         }
         body.push_str("</table>");
         let prefix = format!("{}-", chapter.number);
+        let first = chapters.iter().position(|one| one.number == chapter.number);
         for figure in figures
             .iter()
-            .filter(|figure| figure.number.starts_with(&prefix))
+            .filter(|figure| first == Some(i) && figure.number.starts_with(&prefix))
         {
             let svg = draw(figure)?;
             let compared = differences
@@ -92,7 +97,45 @@ fn page(
             );
         }
     }
+    body.push_str(&measured_table(measured));
     Ok(document("The thesis recomputed", STYLE, &body))
+}
+
+/// The measurements beside what each plant gives.
+fn measured_table(measured: &[Measurement]) -> String {
+    let mut table = String::from(
+        "<h2>Measurements beside the plant</h2><table><tr><th>place</th><th>quantity</th><th>measured</th>",
+    );
+    for variant in VARIANTS {
+        // Writing to a String cannot fail.
+        let _ = write!(
+            table,
+            "<th>finger {}, {}</th>",
+            variant.finger(),
+            variant.contact()
+        );
+    }
+    table.push_str("<th>unit</th><th>verdict</th><th>why</th></tr>");
+    for row in measured {
+        let plants = row
+            .plant_texts()
+            .map(|text| format!("<td class=\"n\">{text}</td>"));
+        let _ = write!(
+            table,
+            "<tr><td class=\"w\">{}</td><td>{}</td><td class=\"n\">{}</td>{}<td class=\"w\">{}</td>\
+             <td class=\"w {}\">{}</td><td>{}</td></tr>",
+            row.place,
+            escape(&row.quantity),
+            escape(&row.measured.to_string()),
+            plants.concat(),
+            row.unit,
+            row.shown().word(),
+            row.shown().text(),
+            escape(row.why()),
+        );
+    }
+    table.push_str("</table>");
+    table
 }
 
 fn line(row: &Row) -> String {

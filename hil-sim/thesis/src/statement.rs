@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 use super::contact_case::{material, tabulated_effusivity};
 use super::row::{Correction, Remark, Row};
 use super::stated_value::Stated;
-use super::{chapter3, chapter4, chapter5, chapter6};
+use super::{chapter3, chapter4, chapter5, chapter6, experiments};
 
 /// A line of the file.
 #[derive(Deserialize)]
@@ -49,6 +49,12 @@ pub(super) static STATEMENTS: LazyLock<Vec<Statement>> = LazyLock::new(|| {
     read("statements.csv", include_str!("../data/statements.csv")).expect("a table of the program")
 });
 
+/// What the thesis states on its experiments.
+pub(super) static EXPERIMENTS: LazyLock<Vec<Statement>> = LazyLock::new(|| {
+    let text = include_str!("../data/experiments.csv");
+    read("experiments.csv", text).expect("a table of the program")
+});
+
 /// The lines of a table.
 ///
 /// # Errors
@@ -58,9 +64,9 @@ pub(super) fn read<T: DeserializeOwned>(file: &'static str, text: &str) -> anyho
     rows.collect::<Result<_, _>>().context(file)
 }
 
-/// The rows of a chapter.
-pub(super) fn rows(chapter: u8) -> Vec<Row> {
-    let statements = STATEMENTS.iter().filter(|row| row.chapter == chapter);
+/// The rows of a chapter in a table of statements.
+pub(super) fn rows(statements: &'static [Statement], chapter: u8) -> Vec<Row> {
+    let statements = statements.iter().filter(|row| row.chapter == chapter);
     statements.map(Statement::row).collect()
 }
 
@@ -110,7 +116,9 @@ impl Statement {
             6 => chapter6::compute(self, quantity),
             _ => None,
         };
-        of_chapter.unwrap_or_else(|| self.in_any_chapter(quantity))
+        of_chapter
+            .or_else(|| experiments::compute(self, quantity))
+            .unwrap_or_else(|| self.in_any_chapter(quantity))
     }
 
     /// Properties of a material, and quantities that several chapters state.
@@ -137,7 +145,7 @@ impl Statement {
 impl std::fmt::Display for Statement {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { place, of, .. } = self;
-        write!(f, "statements.csv, {place}, {of}, {}", self.quantity)
+        write!(f, "{place}, {of}, {}", self.quantity)
     }
 }
 
@@ -147,8 +155,10 @@ mod tests {
 
     #[test]
     fn every_statement_is_computed() {
-        let rows = STATEMENTS.iter().map(Statement::row);
-        assert_eq!(rows.filter(|row| row.computed.is_finite()).count(), 293);
+        for (statements, count) in [(&STATEMENTS, 293), (&EXPERIMENTS, 74)] {
+            let rows = statements.iter().map(Statement::row);
+            assert_eq!(rows.filter(|row| row.computed.is_finite()).count(), count);
+        }
     }
 
     #[test]

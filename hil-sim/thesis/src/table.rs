@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::Chapter;
 use super::figure::FigureDifference;
+use super::measured::{Measurement, VARIANTS};
 use super::row::{Row, Verdict};
 
 /// Number of rows by verdict.
@@ -62,7 +63,11 @@ impl Counts {
 
 /// The report: one line for each row and each figure, and the counts.
 #[must_use]
-pub fn table(chapters: &[Chapter], figures: &[FigureDifference]) -> String {
+pub fn table(
+    chapters: &[Chapter],
+    figures: &[FigureDifference],
+    measured: &[Measurement],
+) -> String {
     let rows = || chapters.iter().flat_map(|chapter| &chapter.rows);
     let width = |text: fn(&Row) -> String| {
         rows()
@@ -104,6 +109,45 @@ pub fn table(chapters: &[Chapter], figures: &[FigureDifference]) -> String {
     for figure in figures {
         let _ = writeln!(text, "{}", figure.text());
     }
+    text.push('\n');
+    text.push_str(&measured_table(measured));
     let _ = writeln!(text, "\n{}", Counts::of(chapters).text());
+    text
+}
+
+/// One line for each measurement, with what each plant gives.
+fn measured_table(measured: &[Measurement]) -> String {
+    let mut text = String::from("Measurements beside the plant\n");
+    for (i, variant) in VARIANTS.iter().enumerate() {
+        let _ = writeln!(
+            text,
+            "Plant {}: finger {}, contact {}",
+            i + 1,
+            variant.finger(),
+            variant.contact()
+        );
+    }
+    let width = measured
+        .iter()
+        .map(|row| row.quantity.chars().count())
+        .max()
+        .unwrap_or(0);
+    for row in measured {
+        let plants = row.plant_texts().map(|text| format!("{text:>9}")).concat();
+        let why = if row.why().is_empty() {
+            String::new()
+        } else {
+            format!(": {}", row.why())
+        };
+        let _ = writeln!(
+            text,
+            "- {:<13}  {:<width$}  {:>13}{plants}  {:<2}  {}{why}",
+            row.place,
+            row.quantity,
+            row.measured.to_string(),
+            row.unit,
+            row.shown().text(),
+        );
+    }
     text
 }

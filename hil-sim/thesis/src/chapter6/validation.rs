@@ -58,13 +58,15 @@ fn fall_k(window: &str, pressure_pa: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::stated_value::{Stated, cut};
-    use crate::statement::rows;
+    use crate::statement::{STATEMENTS, rows};
 
     #[test]
     fn limit_at_1680_pa_is_1_k_below_the_model_at_5900_pa() {
         for window in ["BaF2", "ZnS"] {
             let quantity = format!("{window}, 1.68 kPa, model below the measured");
-            let row = rows(6).into_iter().find(|row| row.quantity == quantity);
+            let row = rows(&STATEMENTS, 6)
+                .into_iter()
+                .find(|row| row.quantity == quantity);
             let limit = Stated::Below(cut(fall_k(window, 5900.0) - 1.0, 2));
             assert_eq!(row.expect("the statement").stated, limit);
         }

@@ -2,6 +2,7 @@
 
 mod figures;
 mod known;
+mod measured;
 mod rows;
 mod verdicts;
 

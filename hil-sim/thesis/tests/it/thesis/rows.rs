@@ -4,7 +4,7 @@ use contact_model::material::{average_slope_rad, find};
 use contact_model::reference::fourier_number;
 use documented_figures::run_generator;
 use serde::Deserialize;
-use thermal_thesis::d_prime;
+use thermal_thesis::{d_prime, d_prime_oddity};
 
 use super::{NAMES, all_rows, computed, name, table};
 
@@ -169,4 +169,12 @@ fn fourier_numbers_bound_the_characteristic_lengths() {
             assert!(!agree(place, t_s, length_m), "{place}: {length_m} m");
         }
     }
+}
+
+/// One third is chance; a half is the value of tables of the triangular method.
+#[test]
+fn sensitivity_to_the_different_one_of_three_starts_at_chance() {
+    assert!(d_prime_oddity(1.0 / 3.0 + 1e-6) < 1e-2);
+    assert!((d_prime_oddity(0.5) - 1.47).abs() < 5e-3);
+    assert!((d_prime_oddity(0.9) - 4.03).abs() < 5e-3);
 }
