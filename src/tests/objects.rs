@@ -67,22 +67,20 @@ impl Bench {
         for _ in 0..ticks {
             self.tick += 1;
             self.device.note_host_activity();
-            for (slot, (setpoint, current)) in
-                setpoints.iter_mut().zip(&mut self.currents).enumerate()
-            {
+            for (slot, setpoint_c) in setpoints.iter_mut().enumerate() {
                 let finger = finger(slot + 1);
                 let untouched = samples(self.tick % 2);
                 let touched = Samples {
                     force: untouched.force + 450 * SCANS_PER_TICK as u16,
-                    current: *current,
+                    current: self.currents[slot],
                     ..untouched
                 };
                 self.device.step_finger(finger, &touched);
                 let telemetry = self.device.finger_telemetry_if_due(finger);
                 let telemetry = telemetry.expect("streamed on every tick").content;
                 assert_eq!(telemetry.state.fault(), None);
-                *current = (6400.0 * telemetry.demand.to_num::<f64>().abs()) as u16;
-                *setpoint = telemetry.setpoint.expect("driven").to_num();
+                self.currents[slot] = (6400.0 * telemetry.demand.to_num::<f64>().abs()) as u16;
+                *setpoint_c = telemetry.setpoint.expect("driven").to_num();
             }
         }
         setpoints
