@@ -25,17 +25,17 @@ fn errors_mk(population: Population, draws: u64, sample: usize) -> Percentiles {
 
 #[test]
 fn skin_follows_slabs_half_spaces_and_layers() {
-    let errors = errors_mk(Population::Objects, 0, 45);
-    assert_figure("populations.sampled_objects_median", errors.p50);
-    assert_figure("populations.sampled_objects_most", errors.max);
+    let errors = errors_mk(Population::Objects, 0, 30);
+    assert_figure("population_sample.objects_median", errors.p50);
+    assert_figure("population_sample.objects_most", errors.max);
 }
 
 #[test]
 fn skin_follows_with_fingers_that_the_device_does_not_know() {
-    let of_box = errors_mk(Population::FingerBox, 4, 24);
-    let drawn = errors_mk(Population::DrawnFingers, 4, 24);
-    assert_figure("populations.sampled_box_median", of_box.p50);
-    assert_figure("populations.sampled_box_most", of_box.max);
-    assert_figure("populations.sampled_drawn_median", drawn.p50);
-    assert_figure("populations.sampled_drawn_most", drawn.max);
+    let of_box = errors_mk(Population::FingerBox, 3, 18);
+    let drawn = errors_mk(Population::DrawnFingers, 3, 18);
+    assert_figure("population_sample.box_median", of_box.p50);
+    assert_figure("population_sample.box_most", of_box.max);
+    assert_figure("population_sample.drawn_median", drawn.p50);
+    assert_figure("population_sample.drawn_most", drawn.max);
 }

@@ -16,6 +16,7 @@ named_enum! {
         /// The object as it is, and a finger like the one that touches: the thesis's, or the mean layered one.
         AsItIs = "as-it-is",
         /// A half-space of the touched material, and the thesis's finger.
+        #[serde(rename = "version-0.1")]
         Version01 = "version-0.1",
     }
 }
