@@ -16,8 +16,9 @@ use crate::material::SKIN;
 pub const FAST_MAX: usize = 8;
 /// Most slow relaxations of a body.
 pub const SLOW_MAX: usize = 14;
-/// Largest rate of a relaxation, per tick: a state then loses less than half of its value in a tick.
-const RATE_PER_TICK_MAX: f64 = 0.69;
+/// Largest rate of a relaxation, per tick: a state then loses less than half of its value in a tick. A little more than
+/// 690 1/s in ticks of 1 ms, because that product is rounded.
+const RATE_PER_TICK_MAX: f64 = 0.691;
 /// Rate, per tick, from which a relaxation is fast: in a window of 8 ticks it decays by a tenth, up to which the straight
 /// line of the slow ones is good.
 const FAST_RATE_PER_TICK: f64 = 0.0125;

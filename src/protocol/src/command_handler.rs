@@ -115,9 +115,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             Request::Station(command) => Self::execute_in_stations(command, finger, execute),
             Request::Slab { thickness_mm, back } => {
                 let material = Self::chosen_material(finger, &mut execute);
-                let material = material.ok_or(Error::SlabNeedsMaterial);
                 let body = material.and_then(|material| slab_body(&material, thickness_mm, back));
-                let command = Command::Body(Some(body.map_err(rejected)?));
+                let command = Command::Body(body.map_err(rejected)?);
                 Self::execute_in_stations(command, finger, execute)
             }
             Request::Upload => match self.continue_upload(line).map_err(rejected)? {
@@ -147,23 +146,33 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// Properties of the material that the station of `finger`, or the first one, presents.
+    /// Properties of the material that the station of `finger` presents, or, for `None`, all stations.
+    ///
+    /// # Errors
+    /// No material is chosen, or stations that present different materials are not addressed one by one: the slab of
+    /// each would be another one, and takes milliseconds of `f64`.
     fn chosen_material(
         finger: Option<FingerIndex<FINGERS>>,
         execute: &mut impl ExecuteOnStations<FINGERS>,
-    ) -> Option<Material> {
-        let reply = execute(
-            finger.or(Some(FingerIndex::FIRST)),
-            Command::MaterialProperties,
-        );
-        match reply.map(|reply| reply.content) {
-            Ok(command::Reply::Material(material)) => material,
-            _ => None,
+    ) -> Result<Material, Error> {
+        let mut material_of = |one| match execute(Some(one), Command::MaterialProperties) {
+            Ok(WithSourceFinger {
+                content: command::Reply::Material(Some(material)),
+                ..
+            }) => Ok(material),
+            _ => Err(Error::SlabNeedsMaterial),
+        };
+        let material = material_of(finger.unwrap_or(FingerIndex::FIRST))?;
+        for one in FingerIndex::all() {
+            if finger.is_none() && material_of(one)? != material {
+                return Err(Error::Missing("finger (as @0)"));
+            }
         }
+        Ok(material)
     }
 
-    /// Takes one line of an upload; the uploaded object after the last one. After an error in `commit` there is no upload
-    /// any more.
+    /// Takes one line of an upload; the uploaded object after the last one. After a `commit` with one argument there is
+    /// no upload any more, whether it succeeded or not.
     fn continue_upload(&mut self, line: &str) -> Result<Option<Body>, Error> {
         let mut words = line.split_ascii_whitespace();
         words.next();
@@ -282,15 +291,24 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     }
 }
 
-/// Relaxations of a slab of a material.
-fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<Body, Error> {
+/// Time in which heat spreads through a slab, s, from which it counts as a half-space: in an hour its back then changes
+/// the temperature of its face by less than a thousandth. Such a slab would also have more relaxations than a body may.
+const HALF_SPACE_FROM_S: f64 = 2e4;
+
+/// Relaxations of a slab of a material; `None` for one so thick that it is a half-space to a finger.
+fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<Option<Body>, Error> {
     let slab = Slab {
         thickness_m: 1e-3 * thickness_mm,
         conductivity_w_mk: material.surface.conductivity_w_mk,
         capacity_j_m3k: material.volumetric_heat_j_m3k(),
         back,
     };
+    let spreads_in_s = slab.thickness_m * slab.thickness_m / material.diffusivity_m2_s();
+    if spreads_in_s > HALF_SPACE_FROM_S {
+        return Ok(None);
+    }
     let relaxations = slab.relaxations();
     let tick_s = 1.0 / f64::from(TICK_HZ);
-    Body::new(&relaxations.impedance(), SKIN.effusivity(), tick_s).map_err(Error::Body)
+    let body = Body::new(&relaxations.impedance(), SKIN.effusivity(), tick_s);
+    body.map(Some).map_err(Error::Body)
 }

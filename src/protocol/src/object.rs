@@ -46,12 +46,12 @@ pub fn parse_object(words: &mut Words<'_>) -> Result<Request, Error> {
         return Ok(Request::Station(Command::Object(Some(celsius))));
     }
     let word = read_word(words, "thickness in mm")?;
-    let mut number = word
-        .strip_suffix("mm")
-        .unwrap_or(word)
-        .split_ascii_whitespace();
-    let thickness_mm: I32F32 = read_fixed_point_in_range(&mut number, &THICKNESS_RANGE)?;
-    skip_if_next_is(words, "mm");
+    let number = word.strip_suffix("mm").unwrap_or(word);
+    let thickness_mm: I32F32 =
+        read_fixed_point_in_range(&mut number.split_ascii_whitespace(), &THICKNESS_RANGE)?;
+    if number == word {
+        skip_if_next_is(words, "mm");
+    }
     let back = match read_word(words, "back")? {
         "insulated" => Back::Insulated,
         "held" => Back::Held,

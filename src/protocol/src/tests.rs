@@ -1,5 +1,7 @@
 //! Parsing of lines, error messages and the lengths of answers.
 
+mod objects;
+
 use proptest::prelude::*;
 use std::string::{String, ToString};
 use std::vec::Vec;

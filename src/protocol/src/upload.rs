@@ -146,9 +146,11 @@ impl Upload {
             return failed(UploadError::Incomplete(self.rows.len(), self.count));
         }
         let actual = self.digest.finalize();
+        // `from_str_radix` alone would take a sign for a digit.
+        let digits = checksum.len() == 8 && !checksum.starts_with('+');
         match u32::from_str_radix(checksum, 16) {
-            Ok(expected) if checksum.len() == 8 && expected == actual => {}
-            Ok(_) if checksum.len() == 8 => return failed(UploadError::Checksum(actual)),
+            Ok(expected) if digits && expected == actual => {}
+            Ok(_) if digits => return failed(UploadError::Checksum(actual)),
             _ => return failed(UploadError::NotAChecksum),
         }
         let impedance = Impedance {

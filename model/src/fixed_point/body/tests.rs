@@ -96,6 +96,7 @@ fn what_cannot_be_followed_is_refused() {
         gain_m2k_j,
     };
     assert_eq!(with(&[one(700.0, 1e-6)], 0.0), Some(BodyError::Rate(700.0)));
+    assert_eq!(with(&[one(690.0, 1e-6)], 0.0), None);
     assert_eq!(with(&[one(-1.0, 1e-6)], 0.0), Some(BodyError::Rate(-1.0)));
     assert!(matches!(
         with(&[one(f64::NAN, 1e-6)], 0.0),
