@@ -5,6 +5,7 @@ mod bridge;
 mod commissioning;
 mod device;
 mod line_queue;
+mod objects;
 mod station;
 mod storage;
 mod task_liveness;

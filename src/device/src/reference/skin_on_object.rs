@@ -217,3 +217,6 @@ impl SkinOnObject {
 fn saturating_celsius_from_bits(bits: i64) -> Celsius {
     Celsius::from_bits(bits.clamp(i32::MIN.into(), i32::MAX.into()) as i32)
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,198 @@
+//! Objects that are no half-space, by the lines that describe them: what a finger on the display then gets.
+
+use std::format;
+use std::string::{String, ToString};
+use std::vec::Vec;
+
+use super::device::{arm, samples};
+use crate::device::sense::{SCANS_PER_TICK, Samples};
+use crate::device::{Device, FingerIndex, StateName};
+use crate::protocol::CommandHandler;
+use crate::settings::Settings;
+
+const FIVE: usize = 5;
+
+/// An object of one relaxation that warms as fast as foam, and its checksum by Python's `zlib.crc32`.
+const UPLOAD: [&str; 3] = [
+    "upload begin object 1 0.5",
+    "upload row 0 2 40000",
+    "upload commit 185a2d42",
+];
+
+/// A device, and the handler that keeps an upload from line to line.
+#[derive(Clone)]
+struct Bench {
+    device: Device<FIVE>,
+    handler: CommandHandler<FIVE>,
+    tick: u16,
+}
+
+impl Bench {
+    /// Fingers 1 and 2 rest on the same object, copper.
+    fn presenting() -> Self {
+        let mut device = Device::new(&Settings::default());
+        let fingers = [finger(1), finger(2)];
+        fingers.into_iter().for_each(|one| arm(&mut device, one));
+        let handler = CommandHandler::new(Settings::default());
+        let mut bench = Self {
+            device,
+            handler,
+            tick: 0,
+        };
+        bench.send_ok(&["material copper", "@1 start", "@2 start", "stream 1"]);
+        bench.run(5);
+        bench
+    }
+
+    fn send(&mut self, line: &str) -> String {
+        let device = &mut self.device;
+        let answer = (self.handler).answer(line, |finger, command| device.execute(finger, command));
+        answer.map_or_else(|error| error.to_string(), |reply| reply.to_string())
+    }
+
+    fn send_ok(&mut self, lines: &[&str]) {
+        for line in lines {
+            let answer = self.send(line);
+            assert!(answer.ends_with("ok"), "{line}: {answer}");
+        }
+    }
+
+    /// Set-points of fingers 1 and 2 after these ticks of a contact under 1.5 N, °C.
+    fn run(&mut self, ticks: u16) -> [f64; 2] {
+        let mut setpoints = [0.0; 2];
+        for _ in 0..ticks {
+            self.tick += 1;
+            self.device.note_host_activity();
+            for (index, setpoint_c) in [1, 2].into_iter().zip(&mut setpoints) {
+                let sound = samples(self.tick % 2);
+                let force = sound.force + 450 * SCANS_PER_TICK as u16;
+                self.device
+                    .step_finger(finger(index), &Samples { force, ..sound });
+                let telemetry = self.device.finger_telemetry_if_due(finger(index));
+                let telemetry = telemetry.expect("streamed on every tick").content;
+                assert_eq!(telemetry.state, StateName::Contact);
+                *setpoint_c = telemetry.setpoint.expect("driven").to_num();
+            }
+        }
+        setpoints
+    }
+}
+
+fn finger(index: usize) -> FingerIndex<FIVE> {
+    FingerIndex::new(index).expect("one of five fingers")
+}
+
+/// Set-points after 100 ticks in which the device was first sent these lines.
+fn after(bench: &Bench, lines: &[&str]) -> [f64; 2] {
+    let mut bench = bench.clone();
+    bench.send_ok(lines);
+    bench.run(100)
+}
+
+#[test]
+fn a_slab_is_refused_before_a_material_is_chosen() {
+    let mut bench = Bench {
+        device: Device::new(&Settings::default()),
+        handler: CommandHandler::new(Settings::default()),
+        tick: 0,
+    };
+    let line = "object slab 3mm insulated";
+    assert_eq!(bench.send(line), "err a slab needs a material first");
+    bench.send_ok(&["@1 material copper"]);
+    let refused = "@2 err a slab needs a material first";
+    assert_eq!(bench.send(&format!("@2 {line}")), refused);
+    assert_eq!(bench.send(&format!("@1 {line}")), "@1 ok");
+    bench.send_ok(&[
+        "material copper",
+        "@2 material custom 398 8954 384 0.31 0.045",
+    ]);
+    assert_eq!(bench.send(line), "ok");
+    bench.send_ok(&["@2 material foam"]);
+    assert_eq!(bench.send(line), "err finger (as @0) missing");
+}
+
+#[test]
+fn an_addressed_object_is_that_of_its_finger_only() {
+    let bench = Bench::presenting();
+    let half_space = after(&bench, &["object half-space"]);
+    assert_eq!(half_space[0], half_space[1]);
+    let slab = after(
+        &bench,
+        &["@1 object slab 0.1mm insulated", "@2 object half-space"],
+    );
+    assert_eq!(slab[1], half_space[1]);
+    assert!(
+        slab[0] > half_space[0] + 0.1,
+        "a foil soon is as warm as the finger: {slab:?}"
+    );
+    // The commit's address is the upload's.
+    let [begin, row, commit] = UPLOAD;
+    let commit = format!("@1 {commit}");
+    let uploaded = after(
+        &bench,
+        &[&format!("@2 {begin}"), row, &commit, "@2 object half-space"],
+    );
+    assert_eq!(uploaded[1], half_space[1]);
+    assert!(uploaded[0] > half_space[0] + 0.1, "{uploaded:?}");
+    let both = after(&bench, &UPLOAD);
+    assert_eq!(both, [uploaded[0]; 2]);
+}
+
+#[test]
+fn a_material_and_half_space_end_a_slab_or_an_upload() {
+    let bench = Bench::presenting();
+    let half_space = after(&bench, &["object half-space"]);
+    for last in ["material copper", "object half-space"] {
+        let slab = after(&bench, &["object slab 0.1mm insulated", last]);
+        assert_eq!(slab, half_space);
+        let lines: Vec<_> = UPLOAD.into_iter().chain([last]).collect();
+        assert_eq!(after(&bench, &lines), half_space);
+    }
+    // A temperature is no shape.
+    let slab = after(&bench, &["object slab 0.1mm insulated"]);
+    assert_eq!(
+        after(&bench, &["object slab 0.1mm insulated", "object room"]),
+        slab
+    );
+}
+
+#[test]
+fn an_upload_that_is_not_committed_changes_nothing_that_a_finger_feels() {
+    let [begin, row, commit] = UPLOAD;
+    let bench = Bench::presenting();
+    let undisturbed = bench.clone().run(100);
+    for lines in [
+        &[begin][..],
+        &[begin, row],
+        &[begin, commit],
+        &[begin, row, row, "upload commit 185a2d43"],
+        &[begin, "upload row 0 2 40001", commit],
+        &[row, commit],
+        &[begin, row, "upload commit", "@7 upload commit 185a2d42"],
+        // Foam's gain times a thousand.
+        &[begin, "upload row 0 2 1000000000", "upload commit 4b4f4ab5"],
+    ] {
+        let mut bench = bench.clone();
+        let answers: Vec<_> = lines.iter().map(|line| bench.send(line)).collect();
+        let refused = answers.iter().any(|answer| answer.starts_with("err "));
+        assert!(
+            refused || lines.last() != Some(&commit),
+            "{lines:?}: {answers:?}"
+        );
+        assert_eq!(bench.run(100), undisturbed, "{lines:?}");
+    }
+}
+
+#[test]
+fn another_assumed_finger_is_another_set_point() {
+    let bench = Bench::presenting();
+    let mean = after(&bench, &["finger mean"]);
+    let thesis = after(&bench, &["@1 finger thesis", "@2 finger mean"]);
+    assert_eq!(thesis[1], mean[1]);
+    assert!((thesis[0] - mean[0]).abs() > 0.01, "{thesis:?}");
+    let mut bench = bench;
+    assert_eq!(bench.send("@1 finger"), "@1 ok finger=mean");
+    bench.send_ok(&["@1 finger thesis"]);
+    assert_eq!(bench.send("@1 finger"), "@1 ok finger=thesis");
+    assert_eq!(bench.send("finger"), "@0 ok finger=mean");
+}
