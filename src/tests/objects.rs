@@ -6,7 +6,7 @@ use std::vec::Vec;
 
 use super::device::{arm, samples};
 use crate::device::sense::{SCANS_PER_TICK, Samples};
-use crate::device::{Device, FingerIndex, StateName};
+use crate::device::{Device, FingerIndex};
 use crate::protocol::CommandHandler;
 use crate::settings::Settings;
 
@@ -25,6 +25,8 @@ struct Bench {
     device: Device<FIVE>,
     handler: CommandHandler<FIVE>,
     tick: u16,
+    /// Sum of the current mirror at the current that each finger demanded in the last tick.
+    currents: [u16; 2],
 }
 
 impl Bench {
@@ -38,9 +40,11 @@ impl Bench {
             device,
             handler,
             tick: 0,
+            currents: [0; 2],
         };
         bench.send_ok(&["material copper", "@1 start", "@2 start", "stream 1"]);
         bench.run(5);
+        assert!(bench.send("@1 state").contains("state=contact"));
         bench
     }
 
@@ -63,15 +67,20 @@ impl Bench {
         for _ in 0..ticks {
             self.tick += 1;
             self.device.note_host_activity();
-            for (index, setpoint_c) in [1, 2].into_iter().zip(&mut setpoints) {
-                let sound = samples(self.tick % 2);
-                let force = sound.force + 450 * SCANS_PER_TICK as u16;
-                self.device
-                    .step_finger(finger(index), &Samples { force, ..sound });
-                let telemetry = self.device.finger_telemetry_if_due(finger(index));
+            for slot in 0..2 {
+                let finger = finger(slot + 1);
+                let untouched = samples(self.tick % 2);
+                let touched = Samples {
+                    force: untouched.force + 450 * SCANS_PER_TICK as u16,
+                    current: self.currents[slot],
+                    ..untouched
+                };
+                self.device.step_finger(finger, &touched);
+                let telemetry = self.device.finger_telemetry_if_due(finger);
                 let telemetry = telemetry.expect("streamed on every tick").content;
-                assert_eq!(telemetry.state, StateName::Contact);
-                *setpoint_c = telemetry.setpoint.expect("driven").to_num();
+                assert_eq!(telemetry.state.fault(), None);
+                self.currents[slot] = (6400.0 * telemetry.demand.to_num::<f64>().abs()) as u16;
+                setpoints[slot] = telemetry.setpoint.expect("driven").to_num();
             }
         }
         setpoints
@@ -95,6 +104,7 @@ fn a_slab_is_refused_before_a_material_is_chosen() {
         device: Device::new(&Settings::default()),
         handler: CommandHandler::new(Settings::default()),
         tick: 0,
+        currents: [0; 2],
     };
     let line = "object slab 3mm insulated";
     assert_eq!(bench.send(line), "err a slab needs a material first");
@@ -102,10 +112,7 @@ fn a_slab_is_refused_before_a_material_is_chosen() {
     let refused = "@2 err a slab needs a material first";
     assert_eq!(bench.send(&format!("@2 {line}")), refused);
     assert_eq!(bench.send(&format!("@1 {line}")), "@1 ok");
-    bench.send_ok(&[
-        "material copper",
-        "@2 material custom 398 8954 384 0.31 0.045",
-    ]);
+    bench.send_ok(&["material copper"]);
     assert_eq!(bench.send(line), "ok");
     bench.send_ok(&["@2 material foam"]);
     assert_eq!(bench.send(line), "err finger (as @0) missing");
@@ -170,7 +177,7 @@ fn an_upload_that_is_not_committed_changes_nothing_that_a_finger_feels() {
         &[row, commit],
         &[begin, row, "upload commit", "@7 upload commit 185a2d42"],
         // Foam's gain times a thousand.
-        &[begin, "upload row 0 2 1000000000", "upload commit 4b4f4ab5"],
+        &[begin, "upload row 0 2 1000000000", "upload commit cb3d4a3b"],
     ] {
         let mut bench = bench.clone();
         let answers: Vec<_> = lines.iter().map(|line| bench.send(line)).collect();
