@@ -9,8 +9,8 @@ use clap::Parser;
 #[cfg(feature = "emulator")]
 use cli::profile;
 use cli::{
-    Failure, commission, erfcx, faults, fidelity, five_fingers, infrared, model, parameters,
-    roughness, run, thesis,
+    Failure, commission, erfcx, faults, fidelity, five_fingers, infrared, model, object,
+    parameters, roughness, run, thesis,
 };
 
 /// Simulated plant and emulated microcontroller of the thermal display.
@@ -30,6 +30,8 @@ enum Cli {
     Model(model::Arguments),
     /// Evaluate the fixed-point kernel: one z a line on standard input, prints z and the bits of E
     Erfcx,
+    /// Print the lines that describe the object of a scene to a device
+    Object(object::Arguments),
     /// What the thesis's infrared camera shows of a target, and the way back (Eq. 5-3 and 5-4), as CSV
     Infrared(infrared::Arguments),
     /// Roughness, slopes and spacing of a measured profile (Appendix A), as CSV
@@ -53,6 +55,7 @@ fn main() -> ExitCode {
         Cli::Profile(arguments) => profile::run(&arguments),
         Cli::Model(arguments) => model::run(&arguments),
         Cli::Erfcx => erfcx::run(),
+        Cli::Object(arguments) => object::run(&arguments),
         Cli::Infrared(arguments) => infrared::run(&arguments),
         Cli::Roughness(arguments) => roughness::run(&arguments),
         Cli::Parameters(arguments) => parameters::run(&arguments),

@@ -34,16 +34,36 @@ pub struct Host {
     silences: Vec<Range<u64>>,
 }
 
-/// The lines by which the operator chooses the finger that the device assumes, and describes an object that is no
-/// half-space.
-fn assumptions(scene: &Scene) -> Vec<String> {
-    let mut lines = vec![format!("finger {}", scene.assumed_finger.word())];
-    let object = &scene.object;
-    if !scene.object_as_half_space && !object.is_half_space() {
-        let fit = upload::object_fit(&object.material, &object.layers, &object.back);
-        lines.extend(upload::upload_lines(&fit));
-    }
+/// The lines by which the operator chooses the object of a scene: its material, its temperature and, if it is no
+/// half-space, its relaxations.
+#[must_use]
+pub fn object_lines(scene: &Scene) -> Vec<String> {
+    let mut lines = material_and_temperature(scene).to_vec();
+    lines.extend(relaxations(scene));
     lines
+}
+
+fn material_and_temperature(scene: &Scene) -> [String; 2] {
+    let object = &scene.object;
+    let material = match object.name.as_str() {
+        "custom" => custom_line(&object.material),
+        name => format!("material {name}"),
+    };
+    let start_c = object.start_c;
+    [
+        material,
+        start_c.map_or("object room".into(), |c| format!("object {c}")),
+    ]
+}
+
+/// The upload of an object that is no half-space; nothing for one that is.
+fn relaxations(scene: &Scene) -> Vec<String> {
+    let object = &scene.object;
+    if scene.object_as_half_space || object.is_half_space() {
+        return Vec::new();
+    }
+    let fit = upload::object_fit(&object.material, &object.layers, &object.back);
+    upload::upload_lines(&fit)
 }
 
 impl Host {
@@ -54,22 +74,18 @@ impl Host {
         let zero_ms = scene.settle_ms();
         // An infinite time saturates.
         let at = |t_s: f64| zero_ms.saturating_add((t_s * 1e3).round() as u64);
-        let material = match scene.object.name.as_str() {
-            "custom" => custom_line(&scene.object.material),
-            name => format!("material {name}"),
-        };
-        let object = scene
-            .object
-            .start_c
-            .map_or("object room".into(), |c| format!("object {c}"));
         let mode = match scene.mode {
             ContactModel::ContactResistance => "mode contact",
             ContactModel::SemiInfinite => "mode semi-infinite",
         };
         let law = scene.law.map(|law| format!("law {}", law.name()));
-        let set_up = [material, object, mode.into()].into_iter().chain(law);
+        let set_up = material_and_temperature(scene).into_iter();
+        let set_up = set_up.chain([mode.into()]).chain(law);
         // What the device assumes follows the command that arms it, which so is sent at the same time for all scenes.
-        let set_up = set_up.chain(["arm".into()]).chain(assumptions(scene));
+        let finger = format!("finger {}", scene.assumed_finger.word());
+        let set_up = set_up
+            .chain(["arm".into(), finger])
+            .chain(relaxations(scene));
         let arm_ms = ARM_MS + SPACING_MS * settings.len() as u64;
         let mut queue: Vec<_> = (settings.iter().cloned().chain(set_up).zip(0..))
             .map(|(line, i)| (ARM_MS + i * SPACING_MS, line))

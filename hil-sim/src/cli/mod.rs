@@ -10,6 +10,7 @@ pub mod five_fingers;
 mod image;
 pub mod infrared;
 pub mod model;
+pub mod object;
 mod output;
 pub mod parameters;
 #[cfg(feature = "emulator")]

@@ -42,4 +42,10 @@ pub const FAULT_CASES: &[FaultCase] = &[
             Fault::DisplayCold,
         ],
     ),
+    // Another object or assumed finger under a finger is a step of the set-point, as another temperature is.
+    harmless(InjectedFault::HostLine("object slab 0.1mm insulated")).at(&[FaultScene::Touched]),
+    harmless(InjectedFault::HostLine("finger thesis")).at(&[FaultScene::Touched]),
+    // Lines of an upload that never ends, or is not the one that began.
+    harmless(InjectedFault::HostLine("upload begin object 1 0.5")),
+    harmless(InjectedFault::HostLine("upload commit 00000000")),
 ];
