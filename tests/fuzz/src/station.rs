@@ -55,6 +55,8 @@ enum Event {
     HostActivity,
     /// A line from the host.
     Line(Line),
+    /// The lines of an upload.
+    Upload(Upload),
 }
 
 /// A line of the protocol whose numbers are within their ranges most of the time.
@@ -70,10 +72,45 @@ enum Line {
     Correction(u8, [i16; 3]),
     Tile([u16; 5]),
     Point(u8, u16),
+    Slab { tenths_mm: u16, back: u8, film: u16 },
+}
+
+/// An upload of an object, whole most of the time.
+#[derive(Arbitrary, Debug)]
+struct Upload {
+    direct: u16,
+    /// Rate and gain of each row.
+    rows: Vec<(u16, u16)>,
+    /// Place and value of a byte that is changed on its way.
+    damage: Option<(u16, u8)>,
+}
+
+impl Upload {
+    fn lines(&self) -> Vec<String> {
+        // Logarithmic, from those of copper to those of foam and beyond.
+        let decades = |value: u16| 10f64.powf(f64::from(value) / 65535.0 * 9.0 - 3.0);
+        let mut text = format!(
+            "upload begin object {} {}\n",
+            self.rows.len(),
+            16 * u32::from(self.direct)
+        );
+        for (index, (rate, gain)) in self.rows.iter().take(24).enumerate() {
+            let rate = f64::from(*rate) * f64::from(*rate) / 6.2e6;
+            text += &format!("upload row {index} {rate:.6} {:.6}\n", decades(*gain));
+        }
+        let checksum = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC).checksum(text.as_bytes());
+        text += &format!("upload commit {checksum:08x}");
+        if let Some((place, byte)) = self.damage {
+            let place = usize::from(place) % text.len();
+            let byte = char::from(b' ' + byte % 95);
+            text.replace_range(place..=place, &byte.to_string());
+        }
+        text.lines().map(String::from).collect()
+    }
 }
 
 /// Lines without numbers.
-const WORDS: [&str; 21] = [
+const WORDS: [&str; 25] = [
     "arm",
     "start",
     "abort",
@@ -95,6 +132,10 @@ const WORDS: [&str; 21] = [
     "calibrate display clear",
     "calibrate check clear",
     "calibrate sink clear",
+    "finger",
+    "finger mean",
+    "finger thesis",
+    "object half-space",
 ];
 
 const MATERIALS: [&str; 9] = [
@@ -163,6 +204,15 @@ impl Line {
                     .zip(max)
                     .map(|(value, max)| format!(" {:.6}", fraction(*value, max)));
                 format!("set tile{}", values.collect::<String>())
+            }
+            Self::Slab {
+                tenths_mm,
+                back,
+                film,
+            } => {
+                let film = format!("film {film}");
+                let back = element(&["insulated", "held", &film], *back);
+                format!("object slab {:.1}mm {back}", f64::from(*tenths_mm) / 10.0)
             }
             Self::Point(sensor, celsius) => {
                 format!(
@@ -269,6 +319,11 @@ pub fn run(input: &[u8]) -> bool {
             Event::Line(ref line) => {
                 let _ = device.line(&line.text());
             }
+            Event::Upload(ref upload) => {
+                for line in upload.lines() {
+                    let _ = device.line(&line);
+                }
+            }
         }
     }
     true
@@ -280,6 +335,7 @@ pub fn show(input: &[u8]) -> String {
         Ok(input) => {
             let events = input.events.iter().map(|event| match event {
                 Event::Line(line) => format!("Line({:?})\n", line.text()),
+                Event::Upload(upload) => format!("Upload({:?})\n", upload.lines()),
                 event => format!("{event:?}\n"),
             });
             format!("start {}\n{}", input.start, events.collect::<String>())
