@@ -52,7 +52,7 @@ struct TestBench {
 }
 
 impl TestBench {
-    /// Untouched and without a fault, with telemetry on every tick and the law `pi`.
+    /// Untouched and without a fault, with telemetry on every tick, the law `pi` and the thesis's finger.
     fn new() -> Self {
         let mut bench = Self {
             station: Station::new(&Settings::default()),
@@ -74,6 +74,7 @@ impl TestBench {
         };
         assert_eq!(bench.send("stream 1"), "ok");
         assert_eq!(bench.send("law pi"), "ok");
+        assert_eq!(bench.send("finger thesis"), "ok");
         bench
     }
 
