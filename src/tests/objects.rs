@@ -67,7 +67,7 @@ impl Bench {
         for _ in 0..ticks {
             self.tick += 1;
             self.device.note_host_activity();
-            for slot in 0..2 {
+            for (slot, setpoint_c) in setpoints.iter_mut().enumerate() {
                 let finger = finger(slot + 1);
                 let untouched = samples(self.tick % 2);
                 let touched = Samples {
@@ -80,7 +80,7 @@ impl Bench {
                 let telemetry = telemetry.expect("streamed on every tick").content;
                 assert_eq!(telemetry.state.fault(), None);
                 self.currents[slot] = (6400.0 * telemetry.demand.to_num::<f64>().abs()) as u16;
-                setpoints[slot] = telemetry.setpoint.expect("driven").to_num();
+                *setpoint_c = telemetry.setpoint.expect("driven").to_num();
             }
         }
         setpoints

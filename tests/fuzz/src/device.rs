@@ -16,7 +16,7 @@ use thermal_display::settings::Settings;
 use crate::tile::{FULL_SCALE, Tile, sum_at};
 
 /// Longest answer and telemetry line, bytes: the text, and `@n ` before it.
-const ANSWER_MAX: usize = 172 + 3;
+const ANSWER_MAX: usize = thermal_display::protocol::ANSWER_MAX_BYTES + 3;
 const TELEMETRY_MAX: usize = 128 + 3;
 /// Largest error of a display's reading, whatever settings lines have set, K: 2.52 of its
 /// correction, 0.18 of the converter's steps, 0.04 of its self-heating.
