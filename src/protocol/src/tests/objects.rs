@@ -128,8 +128,8 @@ fn one_finger() -> Host<1> {
 fn finger_chooses_the_assumed_finger_or_asks_for_it() {
     for (line, finger) in [
         ("finger", None),
-        ("finger mean", Some(AssumedFinger::mean())),
-        ("finger thesis", Some(AssumedFinger::thesis())),
+        ("finger mean", Some(AssumedFinger::Mean)),
+        ("finger thesis", Some(AssumedFinger::Thesis)),
     ] {
         assert_eq!(
             parse(line),
