@@ -565,7 +565,7 @@ proptest! {
             let (commit, before) = taken.split_last().expect("a commit");
             // Lines before the last `upload begin` belong to an upload that was given up.
             let begin = before.iter().rposition(|line| line.contains("begin")).expect("a beginning");
-            prop_assert_eq!(before[begin..].iter().copied().collect::<Vec<_>>(), lines[..lines.len() - 1].iter().collect::<Vec<_>>());
+            prop_assert_eq!(before[begin..].to_vec(), lines[..lines.len() - 1].iter().collect::<Vec<_>>());
             let words = |line: &String| line.to_ascii_lowercase().split_ascii_whitespace().map(String::from).collect::<Vec<_>>();
             prop_assert_eq!(words(commit), words(&lines[lines.len() - 1]));
         }

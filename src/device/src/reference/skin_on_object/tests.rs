@@ -35,14 +35,6 @@ fn pair(object: &Material) -> ContactPair {
     ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S).expect("a valid pair")
 }
 
-/// The body itself.
-fn whole(body: &Body) -> ScaledBody<'_> {
-    ScaledBody {
-        body,
-        factor: U16F16::ONE,
-    }
-}
-
 fn body(impedance: &Impedance<'_>) -> Body {
     Body::new(impedance, SKIN.effusivity(), TICK_S).expect("a valid body")
 }
@@ -82,8 +74,8 @@ fn simulated(
                 SkinState::HalfSpace(state) => state.uniform_body(),
             };
             let cooling = cooling.response_to(into_skin, &finger.tissue.relaxations());
-            let warming =
-                warming.response_to(object.scaled(skin.scaled_flux), &object.body.relaxations());
+            let flux = object.scaled(skin.scaled_flux);
+            let warming = warming.response_to(flux, &object.body.relaxations());
             (cooling.to_num(), warming.to_num())
         })
         .collect()
@@ -139,6 +131,13 @@ fn exact(
     (0..ticks).map(|_| tick()).collect()
 }
 
+fn unscaled(body: &Body) -> ScaledBody<'_> {
+    ScaledBody {
+        body,
+        factor: U16F16::ONE,
+    }
+}
+
 fn resistance_m2k_w(object: &Material) -> f64 {
     contact_resistance(&SKIN.surface, &object.surface, pressure_pa(FORCE_N))
 }
@@ -149,7 +148,7 @@ fn half_spaces_as_bodies_agree_with_equation_6_5() {
     let mut worst_k = (0.0f64, 0.0f64);
     for (name, material) in &MATERIALS {
         let object = ScaledBody {
-            body: &FingerBody::THESIS.tissue,
+            body: &finger.tissue,
             factor: to_fixed(SKIN.effusivity() / material.effusivity()),
         };
         let contact = Contact::new(
@@ -195,7 +194,7 @@ fn bodies_agree_with_their_impedances_in_f64() {
                 .relaxations();
                 let impedance = slab.impedance();
                 let simulated =
-                    simulated(material, &in_fixed_point, whole(&body(&impedance)), 3000);
+                    simulated(material, &in_fixed_point, unscaled(&body(&impedance)), 3000);
                 let exact = exact(finger, &impedance, resistance_m2k_w(material), 3000);
                 for (tick, (is, should)) in simulated.iter().zip(exact).enumerate().skip(FROM_TICK)
                 {
@@ -251,7 +250,7 @@ proptest! {
     ) {
         let finger = FingerBody { tissue: finger, air: Fraction::ZERO };
         let small_k = 4e-3 * DIFFERENCE_K;
-        for (cooling_k, warming_k) in simulated(&MATERIALS[material].1, &finger, whole(&object), 3000) {
+        for (cooling_k, warming_k) in simulated(&MATERIALS[material].1, &finger, unscaled(&object), 3000) {
             prop_assert!(cooling_k > -small_k && warming_k > -small_k, "{cooling_k}, {warming_k}");
             prop_assert!(cooling_k + warming_k < DIFFERENCE_K + small_k, "{cooling_k}, {warming_k}");
         }
@@ -264,7 +263,7 @@ proptest! {
         objects in prop::collection::vec(any_body(), 2),
         material in 0..MATERIALS.len(),
         events in prop::collection::vec(
-            (any_celsius(), any_celsius(), any_celsius(), prop::option::of(any::<u32>()), 0..3usize, 0..2usize, any::<bool>(), 1..300u32),
+            (any_celsius(), any_celsius(), any_celsius(), prop::option::of(any::<u32>()), 0..3usize, (0..2usize, any::<u32>()), any::<bool>(), 1..300u32),
             1..20,
         ),
     ) {
@@ -275,10 +274,10 @@ proptest! {
         let factors = ContactPairFactors::new(&pair);
         let mut estimator = FingerEstimator::default();
         let mut skin = SkinOnObject::default();
-        for (skin_c, room_c, other, force, finger, object, restart, ticks) in events {
+        for (skin_c, room_c, other, force, finger, (object, factor), restart, ticks) in events {
             let force = force.map(Force::from_bits);
             // The third finger stands for the thesis's path without bodies.
-            let bodies = fingers.get(finger).map(|finger| Bodies { finger, object: whole(&objects[object]) });
+            let bodies = fingers.get(finger).map(|finger| Bodies { finger, object: ScaledBody { body: &objects[object], factor: U16F16::from_bits(factor) } });
             if restart {
                 skin.start_from_skin_on_display(estimator.skin_state_on_display(), bodies);
                 estimator.forget_conductances();
