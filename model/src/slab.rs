@@ -11,8 +11,9 @@ use crate::impedance::{Impedance, Relaxation};
 
 /// Most relaxations of a slab.
 pub const COUNT_MAX: usize = 20;
-/// Rate, 1/s, from which a group is part of the direct term.
-const RATE_MAX_1_S: f64 = 600.0;
+/// Fastest rate, 1/s, of relaxations that stand for a body: the device's tick of 1 ms follows no faster one, and what is
+/// faster becomes part of the direct term.
+pub const RATE_MAX_1_S: f64 = 600.0;
 /// Modes that are not joined.
 const EXACT_MODES: u32 = 3;
 

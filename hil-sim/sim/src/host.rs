@@ -82,7 +82,7 @@ impl Host {
         let set_up = material_and_temperature(scene).into_iter();
         let set_up = set_up.chain([mode.into()]).chain(law);
         // What the device assumes follows the command that arms it, which so is sent at the same time for all scenes.
-        let finger = format!("finger {}", scene.assumed_finger.word());
+        let finger = format!("finger {}", scene.assumed_finger.name());
         let set_up = set_up
             .chain(["arm".into(), finger])
             .chain(relaxations(scene));

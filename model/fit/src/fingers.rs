@@ -37,5 +37,5 @@ pub fn mean() -> Fit {
         layer(1.2e-3, 0.37, 1116.0 * 3224.0),
         layer(4.0e-3, 0.16, 970.0 * 2303.0),
     ];
-    fit_relative(&layers, Back::Film(f64::INFINITY))
+    fit_relative(&layers, Back::Held)
 }

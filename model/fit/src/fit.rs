@@ -1,12 +1,11 @@
 //! Fit of relaxations to an exact surface impedance.
 
 use contact_model::impedance::{Impedance, Relaxation};
+use contact_model::slab::RATE_MAX_1_S;
 use nalgebra::{DMatrix, DVector};
 
 use crate::nonnegative;
 
-/// Fastest rate, 1/s: the device's tick of 1 ms follows no faster one, and what is faster becomes part of the direct term.
-pub const RATE_MAX_1_S: f64 = 600.0;
 /// Slowest rate, 1/s; an integrator stands for slower ones.
 const RATE_MIN_1_S: f64 = 2e-4;
 /// Rates offered to the fit, evenly spaced in the logarithm.

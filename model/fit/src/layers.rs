@@ -1,5 +1,7 @@
 //! Exact surface impedance of layers in one dimension.
 
+use contact_model::slab::Back;
+
 /// A layer of a body, with the conduction of heat in one dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
@@ -13,21 +15,13 @@ pub struct Layer {
     pub perfusion_w_m3k: f64,
 }
 
-/// What is behind the last layer.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Back {
-    /// No heat passes.
-    Insulated,
-    /// A fixed temperature behind a film of this coefficient, W/(m² K); infinite for a back that is held.
-    Film(f64),
-}
-
 /// Surface impedance of layers, from the touched face down, at the real Laplace variable `s_1_s` in 1/s, above 0;
 /// m² K/W. Exact: each layer is a transmission line.
 #[must_use]
 pub fn impedance(layers: &[Layer], back: Back, s_1_s: f64) -> f64 {
     let behind = match back {
         Back::Insulated => f64::INFINITY,
+        Back::Held => 0.0,
         Back::Film(film_w_m2k) => 1.0 / film_w_m2k,
     };
     layers.iter().rev().fold(behind, |behind, layer| {

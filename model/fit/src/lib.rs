@@ -6,5 +6,6 @@ mod fit;
 mod layers;
 mod nonnegative;
 
-pub use fit::{Fit, RATE_MAX_1_S, fit};
-pub use layers::{Back, Layer, impedance};
+pub use contact_model::slab::Back;
+pub use fit::{Fit, fit};
+pub use layers::{Layer, impedance};

@@ -1,9 +1,9 @@
 //! The committed fingers are those that the fit gives.
 
-use contact_model::finger::{AssumedFinger, MEAN, THESIS};
+use contact_model::finger::{FingerProperties, MEAN, THESIS};
 use relaxation_fit::{Fit, fingers};
 
-fn assert_same(committed: &AssumedFinger, fit: &Fit) {
+fn assert_same(committed: &FingerProperties, fit: &Fit) {
     let close = |a: f64, b: f64| (a - b).abs() <= 1e-5 * b.abs();
     let (ours, fitted) = (&committed.impedance, fit.impedance());
     assert!(close(ours.direct_m2k_w, fitted.direct_m2k_w));

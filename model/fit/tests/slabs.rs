@@ -11,11 +11,7 @@ fn closed_form_of_slabs_gives_their_impedance() {
     let (mut worst_k, mut fast, mut slow) = (0f64, 0, 0);
     for (name, material) in MATERIALS {
         for thickness_m in [0.5e-3, 1e-3, 2e-3, 3e-3, 5e-3, 10e-3, 20e-3, 50e-3] {
-            for (back, exact_back) in [
-                (Back::Insulated, relaxation_fit::Back::Insulated),
-                (Back::Held, relaxation_fit::Back::Film(f64::INFINITY)),
-                (Back::Film(10.0), relaxation_fit::Back::Film(10.0)),
-            ] {
+            for back in [Back::Insulated, Back::Held, Back::Film(10.0)] {
                 let (conductivity_w_mk, capacity_j_m3k) = (
                     material.surface.conductivity_w_mk,
                     material.volumetric_heat_j_m3k(),
@@ -43,7 +39,7 @@ fn closed_form_of_slabs_gives_their_impedance() {
                 for i in 0..60 {
                     let s = 0.1 * 10f64.powf(f64::from(i) / 17.0);
                     let zf = 1.0 / (SKIN.effusivity() * s.sqrt());
-                    let exact = impedance(&[layer], exact_back, s);
+                    let exact = impedance(&[layer], back, s);
                     let error = slab.impedance().at(s) - exact;
                     let error_k = (10.0 * zf / (zf + resistance + exact).powi(2) * error).abs();
                     worst_k = worst_k.max(error_k);

@@ -8,7 +8,7 @@ use super::relaxation_bank::{
     FastRelaxation, MATCH_HORIZON_TICKS, RelaxationBank, Relaxations, SlowRelaxation, WINDOW,
 };
 use super::{Celsius, Fraction, saturating_product, to_fixed};
-use crate::finger::AssumedFinger;
+use crate::finger::FingerProperties;
 use crate::impedance::{Impedance, Relaxation};
 use crate::material::SKIN;
 
@@ -102,21 +102,12 @@ impl Body {
         };
         let mut i = 0;
         while i < FAST {
-            let [input_gain, decay, horizon_factor] = fast[i];
-            body.fast[i] = FastRelaxation {
-                input_gain: I0F32::from_bits(input_gain),
-                decay: I0F32::from_bits(decay),
-                horizon_factor: I1F31::from_bits(horizon_factor),
-            };
+            body.fast[i] = FastRelaxation::from_bits(fast[i]);
             i += 1;
         }
         let mut i = 0;
         while i < SLOW {
-            let [input_gain, decay] = slow[i];
-            body.slow[i] = SlowRelaxation {
-                input_gain: I0F32::from_bits(input_gain),
-                decay: I0F32::from_bits(decay),
-            };
+            body.slow[i] = SlowRelaxation::from_bits(slow[i]);
             i += 1;
         }
         body
@@ -160,7 +151,7 @@ impl FingerBody {
     ///
     /// # Errors
     /// The tissue's impedance has a rate or gain outside its range, or too many of them.
-    pub fn new(finger: &AssumedFinger, tick_s: f64) -> Result<Self, BodyError> {
+    pub fn new(finger: &FingerProperties, tick_s: f64) -> Result<Self, BodyError> {
         let effusivity = SKIN.effusivity();
         Ok(Self {
             tissue: Body::new(&finger.impedance, effusivity, tick_s)?,

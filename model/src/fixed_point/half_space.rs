@@ -20,7 +20,7 @@ mod conductance;
 
 pub use conductance::ContactConductance;
 
-use fixed::types::{I0F32, I1F31, I12F20};
+use fixed::types::{I0F32, I12F20};
 
 use super::Celsius;
 use super::body::BodyState;
@@ -32,40 +32,25 @@ const FAST: usize = 5;
 /// Number of slow modes, which continue the fast ones, with the integrator as the last.
 const SLOW: usize = 9;
 
-const fn fast(input_gain: i32, decay: i32, horizon_factor: i32) -> FastRelaxation {
-    FastRelaxation {
-        input_gain: I0F32::from_bits(input_gain),
-        decay: I0F32::from_bits(decay),
-        horizon_factor: I1F31::from_bits(horizon_factor),
-    }
-}
-
 const FAST_MODES: [FastRelaxation; FAST] = [
-    fast(1_054_608_677, 1_689_937_949, 160_743),
-    fast(629_882_806, 504_671_961, 199_747_095),
-    fast(329_854_396, 132_142_252, 1_185_953_106),
-    fast(166_864_942, 33_423_701, 1_851_246_619),
-    fast(83_677_061, 8_380_421, 2_069_252_406),
+    FastRelaxation::from_bits([1_054_608_677, 1_689_937_949, 160_743]),
+    FastRelaxation::from_bits([629_882_806, 504_671_961, 199_747_095]),
+    FastRelaxation::from_bits([329_854_396, 132_142_252, 1_185_953_106]),
+    FastRelaxation::from_bits([166_864_942, 33_423_701, 1_851_246_619]),
+    FastRelaxation::from_bits([83_677_061, 8_380_421, 2_069_252_406]),
 ];
 
-const fn slow(input_gain: i32, decay: i32) -> SlowRelaxation {
-    SlowRelaxation {
-        input_gain: I0F32::from_bits(input_gain),
-        decay: I0F32::from_bits(decay),
-    }
-}
-
 const SLOW_MODES: [SlowRelaxation; SLOW] = [
-    slow(41_940_820, 16_744_491),
-    slow(20_947_371, 4_192_257),
-    slow(10_470_809, 1_048_448),
-    slow(5_235_045, 262_136),
-    slow(2_617_478, 65_536),
-    slow(1_308_733, 16_384),
-    slow(654_366, 4_096),
-    slow(327_183, 1_024),
+    SlowRelaxation::from_bits([41_940_820, 16_744_491]),
+    SlowRelaxation::from_bits([20_947_371, 4_192_257]),
+    SlowRelaxation::from_bits([10_470_809, 1_048_448]),
+    SlowRelaxation::from_bits([5_235_045, 262_136]),
+    SlowRelaxation::from_bits([2_617_478, 65_536]),
+    SlowRelaxation::from_bits([1_308_733, 16_384]),
+    SlowRelaxation::from_bits([654_366, 4_096]),
+    SlowRelaxation::from_bits([327_183, 1_024]),
     // The integrator: the integral of the sum above over all slower modes, `(2 / pi) sqrt(2^-26)`.
-    slow(333_772, 0),
+    SlowRelaxation::from_bits([333_772, 0]),
 ];
 /// Response to a scaled flux of 1 at the end of its tick: the sum of all `g`, and `2 / pi` for the feed-through.
 const TICK_GAIN: I12F20 = I12F20::from_bits(1_240_943);

@@ -32,11 +32,16 @@ pub struct FastRelaxation {
 
 impl FastRelaxation {
     /// One that answers nothing, for unused places.
-    pub(super) const ZERO: Self = Self {
-        input_gain: I0F32::ZERO,
-        decay: I0F32::ZERO,
-        horizon_factor: I1F31::ZERO,
-    };
+    pub(super) const ZERO: Self = Self::from_bits([0; 3]);
+
+    /// From the bits of input gain, decay and horizon factor.
+    pub(super) const fn from_bits([input_gain, decay, horizon_factor]: [i32; 3]) -> Self {
+        Self {
+            input_gain: I0F32::from_bits(input_gain),
+            decay: I0F32::from_bits(decay),
+            horizon_factor: I1F31::from_bits(horizon_factor),
+        }
+    }
 }
 
 /// Coefficients of a slow relaxation of rate `r` per tick.
@@ -51,10 +56,15 @@ pub struct SlowRelaxation {
 
 impl SlowRelaxation {
     /// One that answers nothing, for unused places.
-    pub(super) const ZERO: Self = Self {
-        input_gain: I0F32::ZERO,
-        decay: I0F32::ZERO,
-    };
+    pub(super) const ZERO: Self = Self::from_bits([0; 2]);
+
+    /// From the bits of input gain and decay.
+    pub(super) const fn from_bits([input_gain, decay]: [i32; 2]) -> Self {
+        Self {
+            input_gain: I0F32::from_bits(input_gain),
+            decay: I0F32::from_bits(decay),
+        }
+    }
 }
 
 /// Coefficients of all relaxations of a body.

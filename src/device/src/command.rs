@@ -15,10 +15,7 @@ use crate::identification::{AbortReason, NormalEquationRow};
 use crate::reference::ContactModel;
 use crate::safety::{Fault, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, ThermistorAverage};
-use crate::{StateName, TICK_HZ};
-
-/// Ticks last this long, s.
-const TICK_S: f64 = 1.0 / TICK_HZ as f64;
+use crate::{StateName, TICK_S};
 
 /// Largest factor by which the skin's effusivity exceeds an object's: beyond it an object takes hardly any heat.
 const EFFUSIVITY_RATIO_MAX: f64 = 200.0;

@@ -28,7 +28,7 @@ pub use finger_index::FingerIndex;
 pub use state_name::StateName;
 pub use station::Station;
 pub use telemetry::Telemetry;
-pub use thermal_settings::TICK_HZ;
+pub use thermal_settings::{TICK_HZ, TICK_S};
 
 /// Scans of all seven analogue signals of one finger per second: 16 000, of which 16 are summed for each control tick.
 pub const SCANS_PER_SECOND: u32 = TICK_HZ * sense::SCANS_PER_TICK as u32;

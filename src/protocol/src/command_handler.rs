@@ -7,7 +7,7 @@ use contact_model::material::{Material, SKIN};
 use contact_model::slab::{Back, Slab};
 use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
 use thermal_device::command::{self, Command, Refused, WithSourceFinger};
-use thermal_device::{FingerIndex, StateName, TICK_HZ};
+use thermal_device::{FingerIndex, StateName, TICK_S};
 use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings_record};
 
 use crate::arguments::{expect_end, read_word};
@@ -308,7 +308,6 @@ fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<Optio
         return Ok(None);
     }
     let relaxations = slab.relaxations();
-    let tick_s = 1.0 / f64::from(TICK_HZ);
-    let body = Body::new(&relaxations.impedance(), SKIN.effusivity(), tick_s);
+    let body = Body::new(&relaxations.impedance(), SKIN.effusivity(), TICK_S);
     body.map(Some).map_err(Error::Body)
 }

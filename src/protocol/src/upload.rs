@@ -7,7 +7,7 @@ use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::SKIN;
 use crc::{CRC_32_ISO_HDLC, Crc, Digest, NoTable};
 use heapless::Vec;
-use thermal_device::TICK_HZ;
+use thermal_device::TICK_S;
 use thermal_settings::Range;
 
 use crate::Error;
@@ -157,6 +157,6 @@ impl Upload {
             direct_m2k_w: self.direct_m2k_w,
             relaxations: &self.rows,
         };
-        Body::new(&impedance, SKIN.effusivity(), 1.0 / f64::from(TICK_HZ)).map_err(Error::Body)
+        Body::new(&impedance, SKIN.effusivity(), TICK_S).map_err(Error::Body)
     }
 }

@@ -30,6 +30,8 @@ use contact_model::material::{REFERENCE_DISPLAY, Surface};
 
 /// Control ticks per second of each finger: a tick is 1 ms.
 pub const TICK_HZ: u32 = 1000;
+/// Length of a control tick, s.
+pub const TICK_S: f64 = 1.0 / TICK_HZ as f64;
 
 /// Number of thermistors of one finger. Arrays with one element for each thermistor have this order: display, second
 /// display, sink, skin, room.

@@ -1,6 +1,6 @@
 //! Parameters of the tile, and the controller gains that follow from them.
 
-use super::{PiGains, TICK_HZ, round_to_decimals};
+use super::{PiGains, TICK_S, round_to_decimals};
 
 /// Thermal dynamics of the tile, the Peltier module with its display plate: how the module's demanded current `I`, A,
 /// positive if it cools, changes the plate's temperature `T`, K, and the reading `y`, K, of the thermistor in the
@@ -90,6 +90,6 @@ impl PiGains {
     /// of the law `pi-10hz`, which updates it every 100 ms.
     #[must_use]
     pub fn for_1khz_and_10hz_laws(tile: &Tile) -> [Self; 2] {
-        [1.0 / f64::from(TICK_HZ), 0.1].map(|hold_s| Self::simc_for_update_interval(tile, hold_s))
+        [TICK_S, 0.1].map(|hold_s| Self::simc_for_update_interval(tile, hold_s))
     }
 }

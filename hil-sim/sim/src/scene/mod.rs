@@ -15,6 +15,7 @@ use std::path::Path;
 use contact_model::material::{MATERIALS, Material, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::{Contact, interface_temperature};
+pub use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_plant::object::ObjectConfig;
@@ -36,26 +37,6 @@ pub use source::SceneError;
 #[must_use]
 pub fn known_materials() -> String {
     MATERIALS.map(|(name, _)| name).join(", ")
-}
-
-/// A finger that the device can assume for the one that touches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AssumedFinger {
-    /// The thesis's half-space.
-    Thesis,
-    /// The mean layered finger.
-    Mean,
-}
-
-impl AssumedFinger {
-    /// Its word in the protocol.
-    #[must_use]
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Thesis => "thesis",
-            Self::Mean => "mean",
-        }
-    }
 }
 
 /// A scene that has passed every check.

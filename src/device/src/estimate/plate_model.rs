@@ -17,7 +17,7 @@ use fixed::types::{I0F32, I1F31, I2F30, I4F28, I6F26, I8F24, I12F20, I12F52, I20
 use fixed::{FixedI32, FixedI64};
 use thermal_settings::{PeltierModule, Tile};
 
-use crate::TICK_HZ;
+use crate::TICK_S;
 use crate::bismuth_telluride::{
     DATA_SHEET_TEMPERATURE, RESISTIVITY_RISE_PER_K, SEEBECK_RISE_PER_K,
 };
@@ -331,9 +331,8 @@ impl PlateModel {
     /// tick: for start-up and the task that serves the host.
     #[must_use]
     pub fn new(module: &PeltierModule, tile: &Tile) -> Self {
-        let tick_s = 1.0 / f64::from(TICK_HZ);
         let decay =
-            |ticks: f64, time_constant_s: f64| 1.0 - libm::exp(-ticks * tick_s / time_constant_s);
+            |ticks: f64, time_constant_s: f64| 1.0 - libm::exp(-ticks * TICK_S / time_constant_s);
         let ratios = TileToClassRatios::of(tile);
         let mut slowest = true;
         let relaxations = CLASS_RELAXATIONS

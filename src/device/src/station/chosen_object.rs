@@ -4,7 +4,7 @@ use contact_model::fixed_point::{Body, Celsius, ContactPair, FingerBody, ScaledB
 use contact_model::material::{MATERIALS, SKIN, Surface};
 use fixed::types::U16F16;
 
-use crate::TICK_HZ;
+use crate::TICK_S;
 use crate::command::{AssumedFinger, ChosenMaterial};
 use crate::estimate::Bodies;
 use crate::reference::{ContactModel, PresentedObject};
@@ -42,7 +42,7 @@ impl ChosenObject {
             finger: AssumedFinger::default(),
             temperature: None,
             mode: ContactModel::default(),
-            default_pair: ContactPair::new(&SKIN, any, display, 1.0 / f64::from(TICK_HZ)).ok(),
+            default_pair: ContactPair::new(&SKIN, any, display, TICK_S).ok(),
         }
     }
 

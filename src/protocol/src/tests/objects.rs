@@ -10,7 +10,7 @@ use contact_model::material::{MATERIALS, Material, SKIN, Surface};
 use contact_model::slab::{Back, Slab};
 use proptest::prelude::*;
 use thermal_device::command::{self, AssumedFinger, Command, WithSourceFinger};
-use thermal_device::{FingerIndex, TICK_HZ};
+use thermal_device::{FingerIndex, TICK_S};
 use thermal_settings::Settings;
 
 use super::{parse, refusal};
@@ -56,7 +56,7 @@ fn body(direct: f64, rows: &[(f64, f64)]) -> Result<Body, BodyError> {
         direct_m2k_w: 1e-6 * direct,
         relaxations: &relaxations,
     };
-    Body::new(&impedance, SKIN.effusivity(), 1.0 / f64::from(TICK_HZ))
+    Body::new(&impedance, SKIN.effusivity(), TICK_S)
 }
 
 const ROWS: [(f64, f64); 3] = [(0.0, 87.5), (4.25, 175.0), (17.0, 350.5)];
@@ -225,7 +225,7 @@ fn a_slab_is_of_the_material_that_its_finger_presents() {
             capacity_j_m3k: material.volumetric_heat_j_m3k(),
             back: Back::Held,
         };
-        let (relaxations, tick_s) = (slab.relaxations(), 1.0 / f64::from(TICK_HZ));
+        let (relaxations, tick_s) = (slab.relaxations(), TICK_S);
         Body::new(&relaxations.impedance(), SKIN.effusivity(), tick_s).ok()
     };
     let line = "object slab 3mm held";

@@ -4,7 +4,7 @@ extern crate std;
 
 use std::vec::Vec;
 
-use contact_model::finger::{AssumedFinger, MEAN, THESIS};
+use contact_model::finger::{FingerProperties, MEAN, THESIS};
 use contact_model::fixed_point::{
     Body, ContactPair, FingerBody, Force, ScaledBody, contact_area, log2_relative_pressure,
     to_fixed,
@@ -83,7 +83,7 @@ fn simulated(
 
 /// The same of the impedances in `f64`, implicitly in steps of a twentieth of a tick.
 fn exact(
-    finger: &AssumedFinger,
+    finger: &FingerProperties,
     object: &Impedance<'_>,
     resistance_m2k_w: f64,
     ticks: usize,
