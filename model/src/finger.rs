@@ -1,14 +1,15 @@
-//! Fingers that the device may assume: surface impedance of the tissue, and its film of air before contact.
+//! Fingers that the device may assume: surface impedance of the tissue, and film of air on the skin before contact.
+//!
+//! `cargo run -p relaxation-fit --example fingers` prints the constants and the errors of the fits.
 
 use crate::impedance::{Impedance, Relaxation};
 
-/// A finger that the device assumes for the one that it does not know.
+/// Thermal properties of a finger that the device may assume for the one that touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FingerProperties {
     /// Surface impedance of the tissue in contact.
     pub impedance: Impedance<'static>,
-    /// Film coefficient of the air on the skin before contact, W/(m² K). The contact takes the film away, and the skin that
-    /// is no longer cooled by it becomes warmer.
+    /// Film coefficient of the air on the skin before contact, W/(m² K). In contact the air no longer cools the skin.
     pub air_w_m2k: f64,
 }
 
@@ -20,7 +21,7 @@ const fn relaxation(rate_1_s: f64, gain_m2k_j: f64) -> Relaxation {
 }
 
 /// The thesis's finger: a half-space of skin (section 2.1), insulated before contact. Its impedance is within 1.2e-4 of the
-/// exact one from 0.01 to 600 1/s, a time of some 2 ms to 100 s.
+/// exact one at Laplace variables from 0.01 to 600 1/s, which are times of 2 ms to 100 s.
 pub const THESIS: FingerProperties = FingerProperties {
     impedance: Impedance {
         direct_m2k_w: 9.89256e-6,
@@ -41,7 +42,7 @@ pub const THESIS: FingerProperties = FingerProperties {
 
 /// The mean finger: epidermis (0.65 mm), dermis (1.2 mm) and fat (4 mm) of literature values over a core that keeps its
 /// temperature, in a film of air of 10 W/(m² K) before contact; without blood, which a touch of 1 N or more stops (section
-/// 6.4.3). Accuracy as of [`THESIS`].
+/// 6.4.3). Its impedance has the accuracy of [`THESIS`].
 pub const MEAN: FingerProperties = FingerProperties {
     impedance: Impedance {
         direct_m2k_w: 1.26345e-5,

@@ -13,14 +13,14 @@ pub struct Relaxation {
 /// its surface moves that surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impedance<'a> {
-    /// What follows the flux without delay, m² K/W.
+    /// Direct term, m² K/W: the rise that follows the flux without delay.
     pub direct_m2k_w: f64,
-    /// The relaxations.
+    /// Relaxations, in any order.
     pub relaxations: &'a [Relaxation],
 }
 
 impl Impedance<'_> {
-    /// The impedance at a real Laplace variable, 1/s, above 0; m² K/W.
+    /// Impedance, m² K/W, at the real Laplace variable `s_1_s`, 1/s, which must be above 0.
     #[must_use]
     pub fn at(&self, s_1_s: f64) -> f64 {
         let terms = self.relaxations.iter();
@@ -30,7 +30,7 @@ impl Impedance<'_> {
                 .sum::<f64>()
     }
 
-    /// Rise of the surface, m² K/W, `t_s` seconds after a constant flux of 1 W/m² has begun.
+    /// Rise of the surface per flux, m² K/W, `t_s` seconds after a constant flux has begun.
     #[must_use]
     pub fn step_response(&self, t_s: f64) -> f64 {
         let term = |one: &Relaxation| {

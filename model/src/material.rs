@@ -20,7 +20,7 @@ pub fn average_slope_rad(rms_slope_rad: f64) -> f64 {
     rms_slope_rad / 1.25
 }
 
-/// A homogeneous solid, modelled as a half-space.
+/// A homogeneous solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
     /// Conductivity and surface finish.

@@ -1,4 +1,4 @@
-//! Prints the relaxations of the device's virtual fingers, `contact_model::finger`.
+//! Prints the relaxations of the fingers that the device may assume, as in `contact_model::finger`.
 
 use relaxation_fit::{Fit, fingers};
 

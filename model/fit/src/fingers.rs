@@ -5,10 +5,14 @@ use contact_model::material::SKIN;
 use crate::{Back, Fit, Layer, fit, impedance};
 
 /// Most relaxations of a finger.
-const COUNT_MAX: usize = 9;
+const RELAXATIONS_MAX: usize = 9;
 
 fn fit_relative(layers: &[Layer], back: Back) -> Fit {
-    fit(|s| impedance(layers, back, s), |_, z| 1.0 / z, COUNT_MAX)
+    fit(
+        |s| impedance(layers, back, s),
+        |_, z| 1.0 / z,
+        RELAXATIONS_MAX,
+    )
 }
 
 /// The thesis's finger: a half-space of skin.

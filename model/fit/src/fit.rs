@@ -8,26 +8,26 @@ use crate::nonnegative;
 
 /// Slowest rate, 1/s; an integrator stands for slower ones.
 const RATE_MIN_1_S: f64 = 2e-4;
-/// Rates offered to the fit, evenly spaced in the logarithm.
+/// Number of rates offered to the fit, evenly spaced in the logarithm.
 const RATES: usize = 150;
-/// Laplace variables at which the impedance is compared, evenly spaced in the logarithm from [`S_MIN_1_S`] to
+/// Number of Laplace variables at which the impedance is compared, evenly spaced in the logarithm from [`S_MIN_1_S`] to
 /// [`S_MAX_1_S`].
 const SAMPLES: usize = 200;
 const S_MIN_1_S: f64 = 0.01;
 const S_MAX_1_S: f64 = 600.0;
-/// Neighbouring rates within this factor are one relaxation.
+/// Neighbouring relaxations whose rates differ by less than this factor are merged.
 const MERGED_FACTOR: f64 = 1.25;
-/// A relaxation whose largest weighted part in the impedance is below this is left out.
+/// A relaxation is left out if its weighted part of the impedance is below this at every sample.
 const NEGLIGIBLE: f64 = 1e-7;
 
 /// Relaxations of a body, fitted to its impedance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// Part without delay, m² K/W.
+    /// Direct term, m² K/W.
     pub direct_m2k_w: f64,
     /// Relaxations, the slowest first.
     pub relaxations: Vec<Relaxation>,
-    /// Largest weighted error over the samples.
+    /// Largest weighted error of the impedance over the samples.
     pub weighted_error: f64,
 }
 
@@ -46,11 +46,11 @@ fn logarithmic(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
     (0..count).map(move |i| from * (to / from).powf(i as f64 / (count - 1) as f64))
 }
 
-/// The samples of an impedance and the weight of its error at each.
+/// Samples of an impedance: Laplace variable, impedance, and weight of the error.
 struct Samples(Vec<(f64, f64, f64)>);
 
 impl Samples {
-    /// One column of the least-squares problem.
+    /// Weighted values of `term` at the samples: one column of the least-squares problem.
     fn column(&self, term: impl Fn(f64) -> f64) -> Vec<f64> {
         self.0
             .iter()
@@ -58,7 +58,7 @@ impl Samples {
             .collect()
     }
 
-    /// Gains of the direct term and of these rates, with the largest weighted error.
+    /// Direct term, gain of each rate, and largest weighted error of the least-squares fit.
     fn solve(&self, rates: &[f64]) -> (f64, Vec<f64>, f64) {
         let mut columns = vec![self.column(|_| 1.0)];
         columns.extend(rates.iter().map(|rate| self.column(|s| 1.0 / (s + rate))));
@@ -76,9 +76,9 @@ impl Samples {
     }
 }
 
-/// Joins relaxations `i` and `i + 1` into one of the same gain and the same impedance at `s = 0` (or at the slowest sample,
-/// if one is an integrator).
-fn join(relaxations: &mut Vec<Relaxation>, i: usize) {
+/// Merges relaxations `i` and `i + 1` into one with the sum of their gains and, at the slowest sample, the same impedance. An
+/// integrator stays one if the merged rate is below [`RATE_MIN_1_S`].
+fn merge(relaxations: &mut Vec<Relaxation>, i: usize) {
     let (a, b) = (relaxations[i], relaxations.remove(i + 1));
     let gain = a.gain_m2k_j + b.gain_m2k_j;
     let part = |one: Relaxation| one.gain_m2k_j / (one.rate_1_s + S_MIN_1_S);
@@ -93,8 +93,8 @@ fn join(relaxations: &mut Vec<Relaxation>, i: usize) {
     };
 }
 
-/// Fits at most `count_max` relaxations to the impedance `exact(s)`, m² K/W, at real `s` in 1/s, so that `weight(s, Z)` times
-/// the error of the impedance is least in the squares.
+/// Fits at most `count_max` relaxations to the impedance `exact(s)`, m² K/W, at real `s` in 1/s, by least squares of the
+/// error of the impedance times `weight(s, exact(s))`.
 #[must_use]
 pub fn fit(exact: impl Fn(f64) -> f64, weight: impl Fn(f64, f64) -> f64, count_max: usize) -> Fit {
     let samples = Samples(
@@ -122,7 +122,7 @@ pub fn fit(exact: impl Fn(f64) -> f64, weight: impl Fn(f64, f64) -> f64, count_m
     while i + 1 < relaxations.len() {
         let (a, b) = (relaxations[i].rate_1_s, relaxations[i + 1].rate_1_s);
         if a > 0.0 && b < MERGED_FACTOR * a {
-            join(&mut relaxations, i);
+            merge(&mut relaxations, i);
         } else {
             i += 1;
         }
@@ -145,12 +145,12 @@ pub fn fit(exact: impl Fn(f64) -> f64, weight: impl Fn(f64, f64) -> f64, count_m
     };
     let mut best = solve(&relaxations);
     while best.relaxations.len() > count_max {
-        let joined = (0..best.relaxations.len() - 1).map(|i| {
+        let merged = (0..best.relaxations.len() - 1).map(|i| {
             let mut fewer = best.relaxations.clone();
-            join(&mut fewer, i);
+            merge(&mut fewer, i);
             solve(&fewer)
         });
-        let Some(least) = joined.min_by(|a, b| a.weighted_error.total_cmp(&b.weighted_error))
+        let Some(least) = merged.min_by(|a, b| a.weighted_error.total_cmp(&b.weighted_error))
         else {
             break;
         };

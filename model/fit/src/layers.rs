@@ -2,21 +2,21 @@
 
 use contact_model::slab::Back;
 
-/// A layer of a body, with the conduction of heat in one dimension.
+/// A layer of a body. Heat is conducted across its thickness only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layer {
-    /// Thickness, m; infinite for the last layer of a body without a back.
+    /// Thickness, m; the last layer may be infinitely thick.
     pub thickness_m: f64,
     /// Conductivity, W/(m K).
     pub conductivity_w_mk: f64,
-    /// Heat capacity of a volume, J/(m³ K).
+    /// Heat capacity per volume, J/(m³ K).
     pub capacity_j_m3k: f64,
-    /// Exchange with the blood in a volume, W/(m³ K) (Pennes); 0 for an object.
+    /// Perfusion times heat capacity of the blood, W/(m³ K), as in Pennes' equation; 0 for an object.
     pub perfusion_w_m3k: f64,
 }
 
-/// Surface impedance of layers, from the touched face down, at the real Laplace variable `s_1_s` in 1/s, above 0;
-/// m² K/W. Exact: each layer is a transmission line.
+/// Exact surface impedance, m² K/W, of layers from the touched face down, at the real Laplace variable `s_1_s`, 1/s, which
+/// must be above 0. Each layer is a transmission line.
 #[must_use]
 pub fn impedance(layers: &[Layer], back: Back, s_1_s: f64) -> f64 {
     let behind = match back {

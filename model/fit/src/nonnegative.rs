@@ -2,16 +2,17 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Largest number of changes of the set of positive unknowns.
-const CHANGES_MAX: usize = 2000;
+/// Largest number of iterations, each of which lets one more unknown be positive.
+const ITERATIONS_MAX: usize = 2000;
 
-/// The `x >= 0` that minimises `|a x - b|`, by the active-set method of Lawson and Hanson (1974).
+/// The `x >= 0` that minimises `|a x - b|`, by the active-set method of Lawson and Hanson (1974). After [`ITERATIONS_MAX`]
+/// iterations it returns the latest `x >= 0`.
 pub fn solve(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
     let unknowns = a.ncols();
     let mut x = DVector::zeros(unknowns);
     let mut positive: Vec<usize> = Vec::new();
     let scale = (a.transpose() * b).amax();
-    for _ in 0..CHANGES_MAX {
+    for _ in 0..ITERATIONS_MAX {
         let gradient = a.transpose() * (b - a * &x);
         let entering = (0..unknowns)
             .filter(|column| !positive.contains(column))
@@ -32,7 +33,7 @@ pub fn solve(a: &DMatrix<f64>, b: &DVector<f64>) -> DVector<f64> {
                 }
                 break;
             }
-            // Go towards the solution until the first unknown becomes zero, and take it out.
+            // Moves towards the solution until an unknown becomes zero, and takes that unknown out.
             let step = (positive.iter().zip(solution.iter()))
                 .filter(|(_, value)| **value <= 0.0)
                 .map(|(&column, &value)| x[column] / (x[column] - value))
