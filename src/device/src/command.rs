@@ -17,7 +17,7 @@ use crate::safety::{Fault, Setpoint, TripCause};
 use crate::sense::{CalibrationTables, ThermistorAverage};
 use crate::{StateName, TICK_S};
 
-/// Largest factor by which the skin's effusivity exceeds an object's: beyond it an object takes hardly any heat.
+/// Upper limit of [`ChosenMaterial::impedance_ratio`]. An object at this limit takes hardly any heat.
 const EFFUSIVITY_RATIO_MAX: f64 = 200.0;
 
 /// A material that the host has chosen, with all that a contact with it needs.
@@ -25,17 +25,19 @@ const EFFUSIVITY_RATIO_MAX: f64 = 200.0;
 pub struct ChosenMaterial {
     /// Name of the material, or `custom` if the host has given its properties; [`Command::Status`] reports this name.
     pub name: &'static str,
-    /// Its properties.
+    /// Conductivity, density, specific heat and surface finish.
     pub properties: Material,
     /// Contact constants of the finger's skin, this material and the display's surface, from which set-points and the
     /// finger's heat flow are computed.
     pub pair: ContactPair,
-    /// Impedance of a half-space of it over that of the thesis's skin: the ratio of their effusivities, skin to material.
+    /// Impedance of a half-space of this material divided by that of the thesis's skin, which is the effusivity of the skin
+    /// divided by that of the material; limited to 200.
     pub impedance_ratio: U16F16,
 }
 
 impl ChosenMaterial {
-    /// The material under a display of this surface. In `f64`, which takes long.
+    /// Computes the constants of a contact with this material, on a display with this surface. Uses `f64`, which is slow
+    /// on the microcontroller.
     ///
     /// # Errors
     /// The contact model cannot represent a property.
@@ -54,7 +56,7 @@ impl ChosenMaterial {
     }
 }
 
-/// The finger that the device assumes for the one that touches.
+/// The finger that the device assumes for the unknown one that touches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AssumedFinger {
     /// The thesis's half-space of skin.
@@ -77,7 +79,7 @@ impl AssumedFinger {
         }
     }
 
-    /// Its tissue, and the film of air before contact.
+    /// Its tissue and its film of air before contact, in fixed point.
     #[must_use]
     pub const fn body(self) -> &'static FingerBody {
         match self {

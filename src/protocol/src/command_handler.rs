@@ -146,11 +146,11 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
-    /// Properties of the material that the station of `finger` presents, or, for `None`, all stations.
+    /// Properties of the material that is chosen in the station of `finger` or, for `None`, in all stations.
     ///
     /// # Errors
-    /// No material is chosen, or stations that present different materials are not addressed one by one: the slab of
-    /// each would be another one, and takes milliseconds of `f64`.
+    /// A station has no material, or the stations have different ones: the slab would have to be computed for each, which
+    /// takes milliseconds of `f64`.
     fn chosen_material(
         finger: Option<FingerIndex<FINGERS>>,
         execute: &mut impl ExecuteOnStations<FINGERS>,
@@ -171,8 +171,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         Ok(material)
     }
 
-    /// Takes one line of an upload; the uploaded object after the last one. After a `commit` with one argument there is
-    /// no upload any more, whether it succeeded or not.
+    /// Executes one line of an upload, and returns the object if the line is a valid commit. A commit with one argument
+    /// ends the upload even if it is refused, and so does a `begin` that is refused.
     fn continue_upload(&mut self, line: &str) -> Result<Option<Body>, Error> {
         let mut words = line.split_ascii_whitespace();
         words.next();
@@ -291,11 +291,12 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     }
 }
 
-/// Time in which heat spreads through a slab, s, from which it counts as a half-space: in an hour its back then changes
-/// the temperature of its face by less than a thousandth. Such a slab would also have more relaxations than a body may.
-const HALF_SPACE_FROM_S: f64 = 2e4;
+/// Diffusion time of a slab, `thickness² / diffusivity`, s, above which it counts as a half-space: its back then changes the
+/// temperature of its face by less than a thousandth in an hour under a constant flux. From 1.2e5 s on, a slab would
+/// also have more slow relaxations than a body may.
+const SLAB_DIFFUSION_MAX_S: f64 = 2e4;
 
-/// Relaxations of a slab of a material; `None` for one so thick that it is a half-space to a finger.
+/// A slab of a material; `None` if it counts as a half-space.
 fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<Option<Body>, Error> {
     let slab = Slab {
         thickness_m: 1e-3 * thickness_mm,
@@ -303,8 +304,8 @@ fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<Optio
         capacity_j_m3k: material.volumetric_heat_j_m3k(),
         back,
     };
-    let spreads_in_s = slab.thickness_m * slab.thickness_m / material.diffusivity_m2_s();
-    if spreads_in_s > HALF_SPACE_FROM_S {
+    let diffusion_s = slab.thickness_m * slab.thickness_m / material.diffusivity_m2_s();
+    if diffusion_s > SLAB_DIFFUSION_MAX_S {
         return Ok(None);
     }
     let relaxations = slab.relaxations();

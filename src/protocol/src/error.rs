@@ -77,7 +77,7 @@ pub enum Error {
     UnknownBack(QuotedWordExcerpt),
     /// A word of a line `upload`, quoted here, is none of `begin`, `row`, `commit` and the kind `object`.
     UnknownUpload(QuotedWordExcerpt),
-    /// `object slab` before a material is chosen, of which the slab would be.
+    /// `object slab` was sent before a material was chosen; the slab would be of that material.
     SlabNeedsMaterial,
     /// A line of an upload is rejected, for this reason.
     Upload(UploadError),
@@ -258,7 +258,7 @@ fn write_upload_error(f: &mut fmt::Formatter<'_>, error: UploadError) -> fmt::Re
         UploadError::NotBegun => {
             f.write_str("no upload has begun; upload begin object COUNT DIRECT first")
         }
-        UploadError::NextRow(next) => write!(f, "not the next row, which is {next}"),
+        UploadError::NotNextRow(next) => write!(f, "not the next row, which is {next}"),
         UploadError::Incomplete(there, count) => {
             write!(
                 f,
@@ -271,7 +271,7 @@ fn write_upload_error(f: &mut fmt::Formatter<'_>, error: UploadError) -> fmt::Re
                 "checksum is {actual:08x}; nothing is changed, upload again"
             )
         }
-        UploadError::NotAChecksum => {
+        UploadError::MalformedChecksum => {
             f.write_str("checksum must have 8 hexadecimal digits; nothing is changed, upload again")
         }
     }

@@ -1,4 +1,4 @@
-//! The arguments of `object`: its temperature before contact, and what is behind its face.
+//! The arguments of `object`: temperature before contact, half-space, or slab with its back.
 
 use contact_model::slab::Back;
 use fixed::types::I32F32;
@@ -26,11 +26,11 @@ static FILM_RANGE: Range = Range {
     min: 0.1,
     max: 100_000.0,
 };
-/// Words for what is behind a slab.
+/// Words for the back of a slab, which the answer to an unknown one lists.
 pub const BACK_WORDS: [&str; 3] = ["insulated", "held", "film"];
 
-/// Reads `CELSIUS`, `room`, `half-space`, or `slab 3mm insulated`, in which `held` or `film W/m2K` may stand for
-/// `insulated`, and a space before the unit.
+/// Reads `CELSIUS`, `room`, `half-space`, or a slab such as `slab 3mm insulated`. The unit may be left out or follow after a
+/// space; `held`, or `film` with its coefficient in W/(m² K), may stand in place of `insulated`.
 ///
 /// # Errors
 /// An argument is missing, unknown, no number, or out of range.

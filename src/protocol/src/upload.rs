@@ -1,4 +1,5 @@
-//! The one upload of bulk data: begin, rows, commit with a checksum. Nothing changes before the commit.
+//! Upload of an object's relaxations in several lines: begin, rows, and commit with a checksum. The object changes only at
+//! the commit.
 
 use core::fmt;
 
@@ -15,10 +16,10 @@ use crate::arguments::{
     Words, expect_end, read_fixed_point_in_range, read_whole_number_in_range, read_word,
 };
 
-/// Most rows of an upload.
+/// Largest number of rows of an upload.
 const ROWS_MAX: usize = FAST_MAX + SLOW_MAX;
-/// Square metres in the unit of gains and direct terms, mm².
-const MM2: f64 = 1e-6;
+/// Square metres per square millimetre, in which the lines count areas.
+const M2_PER_MM2: f64 = 1e-6;
 
 static ROW_COUNT_RANGE: Range = Range {
     name: "number of rows",
@@ -59,17 +60,17 @@ static CHECKSUM: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 pub enum UploadError {
     /// `upload row` or `upload commit` without `upload begin` before it.
     NotBegun,
-    /// Another row than the next one, whose index this is, or a row too many; the upload goes on.
-    NextRow(usize),
-    /// `commit` before all rows have come: how many have, and how many there are.
+    /// A row with another index than this, which is that of the next row, or a row too many; the upload goes on.
+    NotNextRow(usize),
+    /// `upload commit` before all rows have been received: number of rows received, and number announced.
     Incomplete(usize, usize),
-    /// The lines were not received as they were sent: their checksum.
+    /// The checksum of the received lines, given here, is not that of the commit.
     Checksum(u32),
-    /// The checksum is not a hexadecimal number of eight digits.
-    NotAChecksum,
+    /// The checksum of the commit is not a hexadecimal number of eight digits.
+    MalformedChecksum,
 }
 
-/// An upload of an object's relaxations that has begun.
+/// An upload that has begun and is not committed yet.
 #[derive(Clone)]
 pub struct Upload {
     count: usize,
@@ -96,7 +97,8 @@ impl Upload {
             return Err(Error::UnknownUpload(kind.into()));
         }
         let count = read_whole_number_in_range(words, &ROW_COUNT_RANGE)?;
-        let direct_m2k_w = MM2 * read_fixed_point_in_range(words, &DIRECT_RANGE)?.to_num::<f64>();
+        let direct_m2k_w =
+            M2_PER_MM2 * read_fixed_point_in_range(words, &DIRECT_RANGE)?.to_num::<f64>();
         expect_end(words)?;
         let mut upload = Self {
             count,
@@ -122,21 +124,22 @@ impl Upload {
     pub fn add_row(&mut self, line: &str, words: &mut Words<'_>) -> Result<(), Error> {
         let index = read_whole_number_in_range(words, &ROW_INDEX_RANGE)?;
         if index != self.rows.len() || index >= self.count {
-            return Err(Error::Upload(UploadError::NextRow(self.rows.len())));
+            return Err(Error::Upload(UploadError::NotNextRow(self.rows.len())));
         }
         let rate_1_s = read_fixed_point_in_range(words, &RATE_RANGE)?.to_num();
-        let gain_m2k_j = MM2 * read_fixed_point_in_range(words, &GAIN_RANGE)?.to_num::<f64>();
+        let gain_m2k_j =
+            M2_PER_MM2 * read_fixed_point_in_range(words, &GAIN_RANGE)?.to_num::<f64>();
         expect_end(words)?;
         let row = Relaxation {
             rate_1_s,
             gain_m2k_j,
         };
-        (self.rows.push(row)).map_err(|_| Error::Upload(UploadError::NextRow(index)))?;
+        (self.rows.push(row)).map_err(|_| Error::Upload(UploadError::NotNextRow(index)))?;
         self.add_to_checksum(line);
         Ok(())
     }
 
-    /// The object of a complete upload whose lines have this checksum, given in eight hexadecimal digits.
+    /// Ends the upload, and returns its object if the lines have this checksum, given in eight hexadecimal digits.
     ///
     /// # Errors
     /// Rows are missing, the checksum is another one, or the device cannot follow such an object.
@@ -146,12 +149,12 @@ impl Upload {
             return failed(UploadError::Incomplete(self.rows.len(), self.count));
         }
         let actual = self.digest.finalize();
-        // `from_str_radix` alone would take a sign for a digit.
+        // `from_str_radix` accepts a leading `+`.
         let digits = checksum.len() == 8 && !checksum.starts_with('+');
         match u32::from_str_radix(checksum, 16) {
             Ok(expected) if digits && expected == actual => {}
             Ok(_) if digits => return failed(UploadError::Checksum(actual)),
-            _ => return failed(UploadError::NotAChecksum),
+            _ => return failed(UploadError::MalformedChecksum),
         }
         let impedance = Impedance {
             direct_m2k_w: self.direct_m2k_w,

@@ -247,7 +247,7 @@ fn a_slab_is_of_the_material_that_its_finger_presents() {
 }
 
 #[test]
-fn every_slab_of_the_range_can_be_followed() {
+fn slabs_of_the_known_and_three_custom_materials_are_accepted() {
     let mut host = one_finger();
     // Heat spreads in them as fast as in the thesis's materials, faster, and more slowly.
     let custom = |(name, k, rho, c)| {
