@@ -4,7 +4,8 @@ use contact_model::material::{SKIN_MICROHARDNESS_PA, Surface};
 use contact_model::pressure::contact_area_m2;
 use contact_model::reference::{Real, mean_conductance};
 
-/// The law of the contact: Eq. 6-8 and the area of section 6.4.2 with parameters of the plant's own, and what they lack.
+/// Contact conductance by Eq. 6-8 and contact area by section 6.4.2 with parameters of the plant's own, and in parallel the
+/// conductance of the gap, which the thesis does not model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw {
     /// Conductance of air and sweat in the gap, parallel to that of the spots in contact (Eq. 6-8), W/(m2 K).
@@ -26,7 +27,7 @@ impl ContactLaw {
         area_factor: 1.0,
     };
 
-    /// Skin pressed on another surface by a force, N. None without force.
+    /// Contact of skin pressed on another surface by a force, N; `None` without force.
     #[must_use]
     pub fn at_force(&self, force_n: f64, skin: &Surface, other: &Surface) -> Option<SkinContact> {
         if force_n <= 0.0 {
@@ -34,7 +35,7 @@ impl ContactLaw {
         }
         let area_m2 = self.area_factor * contact_area_m2(force_n);
         let relative = force_n / area_m2 / self.hardness_pa;
-        // Not the inherent method: the power of the contact model has the same result on every host.
+        // `Real::powf` in place of `f64::powf`, because it has the same result on every host.
         let spots_w_m2k =
             mean_conductance::<f64>(skin, other) * Real::powf(relative, self.exponent);
         Some(SkinContact {
@@ -53,10 +54,10 @@ pub struct SkinContact {
     pub resistance_m2k_w: f64,
 }
 
-/// Largest relative change of the contact resistance that a full step resolves.
+/// Largest relative change of the contact resistance that a step of 1 ms resolves without sub-steps.
 const LARGEST_SMOOTH_CHANGE: f64 = 0.05;
 
-/// Whether a change of contact needs the sub-steps: it opens or closes, or its resistance changes by more than 5 %.
+/// Whether a change of contact needs sub-steps: it opens or closes, or its resistance changes by more than 5 %.
 #[must_use]
 pub fn is_abrupt(before: Option<SkinContact>, after: Option<SkinContact>) -> bool {
     match (before, after) {

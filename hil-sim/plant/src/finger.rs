@@ -21,7 +21,7 @@ pub struct FingerParams {
     pub vessels: Option<Vessels>,
 }
 
-/// Blood flow over contact force (section 6.4.3): full below `open_n`, none above `shut_n`, linear between.
+/// Blood flow as a function of the contact force (section 6.4.3): full below `open_n`, none above `shut_n`, linear between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vessels {
     /// Largest force with full flow, N.

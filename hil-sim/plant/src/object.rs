@@ -18,10 +18,10 @@ pub struct ObjectConfig {
 }
 
 impl ObjectConfig {
-    /// Least thickness of a layer, m.
+    /// Smallest thickness of a layer, m.
     pub const THINNEST_M: f64 = 1e-5;
 
-    /// The thesis's assumption: a half-space.
+    /// A half-space of one material, as the thesis assumes.
     #[must_use]
     pub fn half_space(material: Material, start_c: f64) -> Self {
         Self {
@@ -32,7 +32,7 @@ impl ObjectConfig {
         }
     }
 
-    /// A layer of a material and a thickness, m.
+    /// A layer of a material, `thickness_m` metres thick.
     #[must_use]
     pub fn layer(material: &Material, thickness_m: f64) -> Layer {
         Layer {

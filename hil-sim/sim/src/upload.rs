@@ -1,4 +1,4 @@
-//! How the host describes an object that is no half-space: as an upload of its relaxations.
+//! The host's description of an object that is not a half-space: an upload of its relaxations.
 
 use contact_model::material::{Material, SKIN};
 use contact_model::pressure::pressure_pa;
@@ -7,14 +7,15 @@ use crc::{CRC_32_ISO_HDLC, Crc};
 use relaxation_fit::{Back, Fit, Layer, fit, impedance};
 use thermal_plant::slab::{self, BackBoundary};
 
-/// Most relaxations that are fitted to an object.
+/// Largest number of relaxations that are fitted to an object.
 const RELAXATIONS_MAX: usize = 14;
-/// Force at whose contact resistance an error of the object's impedance counts, N.
+/// Force, N, for whose contact resistance the errors of the object's impedance are weighted.
 const TYPICAL_FORCE_N: f64 = 2.0;
-/// Units of the protocol in a square metre: mm².
+/// Square millimetres, in which the protocol counts areas, per square metre.
 const MM2_PER_M2: f64 = 1e6;
 
-/// Relaxations of an object of these layers, fitted such that the skin's error on it is least.
+/// Fits relaxations to an object of these layers by least squares of the error that they cause in the skin's temperature.
+/// `material` is that of the touched surface, which determines the contact resistance.
 #[must_use]
 pub fn object_fit(material: &Material, layers: &[slab::Layer], back: &BackBoundary) -> Fit {
     let layers: Vec<_> = (layers.iter())
@@ -31,7 +32,7 @@ pub fn object_fit(material: &Material, layers: &[slab::Layer], back: &BackBounda
     };
     let pressure = pressure_pa(TYPICAL_FORCE_N);
     let resistance_m2k_w = contact_resistance(&SKIN.surface, &material.surface, pressure);
-    // The skin's error per error of the object's impedance, for a contact of 1 K.
+    // Error of the skin's temperature per error of the object's impedance, in a contact with a difference of 1 K.
     let weight = |s_1_s: f64, object_m2k_w: f64| {
         let skin_m2k_w = 1.0 / (SKIN.effusivity() * s_1_s.sqrt());
         skin_m2k_w / (skin_m2k_w + resistance_m2k_w + object_m2k_w).powi(2)
@@ -43,7 +44,7 @@ pub fn object_fit(material: &Material, layers: &[slab::Layer], back: &BackBounda
     )
 }
 
-/// The lines that upload an object of these relaxations.
+/// The lines of an upload: begin, one row for each relaxation, and commit.
 #[must_use]
 pub fn upload_lines(object: &Fit) -> Vec<String> {
     let direct = MM2_PER_M2 * object.direct_m2k_w;

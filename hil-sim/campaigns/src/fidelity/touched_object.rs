@@ -31,13 +31,13 @@ impl TouchedObject {
 /// temperature; roughness and slope are typical values of such surfaces (float glass, ground metal, planed wood, cut
 /// cork), and have not been measured for this.
 pub const UNKNOWN_MATERIALS: [TouchedObject; 4] = [
-    unseen("glass", [1.0, 2500.0, 840.0, 0.05, 0.01]),
-    unseen("aluminium", [237.0, 2700.0, 897.0, 0.4, 0.05]),
-    unseen("oak", [0.17, 700.0, 2000.0, 5.0, 0.12]),
-    unseen("cork", [0.045, 160.0, 1900.0, 20.0, 0.25]),
+    unknown_material("glass", [1.0, 2500.0, 840.0, 0.05, 0.01]),
+    unknown_material("aluminium", [237.0, 2700.0, 897.0, 0.4, 0.05]),
+    unknown_material("oak", [0.17, 700.0, 2000.0, 5.0, 0.12]),
+    unknown_material("cork", [0.045, 160.0, 1900.0, 20.0, 0.25]),
 ];
 
-const fn unseen(
+const fn unknown_material(
     name: &'static str,
     [
         conductivity_w_mk,

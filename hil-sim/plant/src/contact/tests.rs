@@ -75,6 +75,6 @@ fn resistance_follows_hardness_exponent_and_true_area() {
     };
     assert!(close(
         ratio(linear),
-        ((nominal.hardness_pa / 5900.0).powf(0.05), 1.0)
+        ((nominal.hardness_pa / pressure_pa(1.0)).powf(0.05), 1.0)
     ));
 }

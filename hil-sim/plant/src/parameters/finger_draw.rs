@@ -24,10 +24,10 @@ pub struct FingerDraw {
 pub struct TissueDraw {
     /// Epidermis.
     pub epidermis: Epidermis,
-    /// Blood under force.
-    pub blood: Blood,
+    /// Blood flow under force.
+    pub blood: BloodUnderForce,
     /// Place before the contact.
-    pub before: Before,
+    pub before: PlaceBeforeContact,
 }
 
 /// Shape of an epidermis.
@@ -42,20 +42,20 @@ pub enum Epidermis {
     Thin,
 }
 
-/// What force does to the flow of blood.
+/// Effect of the contact force on the flow of blood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Blood {
-    /// Nothing.
+pub enum BloodUnderForce {
+    /// The flow stays full.
     Open,
-    /// Stops it, as in section 6.4.3.
+    /// The force stops the flow, as in section 6.4.3.
     ShutByForce,
 }
 
 /// Where a finger was before its contact, and between contacts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Before {
+pub enum PlaceBeforeContact {
     /// In air.
     Air,
     /// On a pad that insulates it.
@@ -66,13 +66,15 @@ pub enum Before {
 const EFFUSIVITY: Tolerance = relative(0.2);
 /// Factor on the contact resistance: its spread between people and with moisture.
 const RESISTANCE: Tolerance = factor(2.0);
-/// Thickness, m, of the epidermis where it is thin or a callus; the box lies between.
-const THIN_M: Tolerance = between(0.26e-3, 0.5e-3);
-const CALLUS_M: Tolerance = between(0.8e-3, 1.4e-3);
-/// Conductivity of a callus, W/(m K): dry.
+/// Thickness of a thin epidermis, m: below that of the box.
+const THIN_EPIDERMIS_M: Tolerance = between(0.26e-3, 0.5e-3);
+/// Thickness of a callus, m: above that of the box.
+const CALLUS_THICKNESS_M: Tolerance = between(0.8e-3, 1.4e-3);
+/// Conductivity of a callus, W/(m K), which is dry.
 const CALLUS_W_MK: Tolerance = between(0.14, 0.19);
-/// Film coefficient of the surface before the contact, W/(m2 K): still to moving air, and a pad of 10 to 60 mm of foam.
+/// Film coefficient of a finger in still to moving air, W/(m2 K).
 const AIR_W_M2K: Tolerance = between(5.0, 15.0);
+/// Film coefficient of a finger on a pad of 10 to 60 mm of foam, W/(m2 K).
 const PAD_W_M2K: Tolerance = between(0.5, 3.0);
 
 /// Draws a finger around the given one. Of a homogeneous finger, and of one whose tissue is not to be drawn, that is one
@@ -101,22 +103,22 @@ pub fn draw_finger(finger: &mut FingerParams, seed: u64, with_tissue: bool) -> F
             match epidermis {
                 Epidermis::Box => {}
                 Epidermis::Callus => {
-                    layer.thickness_m = drawn(CALLUS_M, 0.0, "callus_m");
+                    layer.thickness_m = drawn(CALLUS_THICKNESS_M, 0.0, "callus_m");
                     layer.medium.conductivity_w_mk = drawn(CALLUS_W_MK, 0.0, "callus_w_mk");
                 }
-                Epidermis::Thin => layer.thickness_m = drawn(THIN_M, 0.0, "thin_m"),
+                Epidermis::Thin => layer.thickness_m = drawn(THIN_EPIDERMIS_M, 0.0, "thin_m"),
             }
         }
         let blood = if part("blood") < 0.5 {
             finger.vessels = None;
-            Blood::Open
+            BloodUnderForce::Open
         } else {
-            Blood::ShutByForce
+            BloodUnderForce::ShutByForce
         };
         let (before, film) = if part("before") < 0.5 {
-            (Before::Air, AIR_W_M2K)
+            (PlaceBeforeContact::Air, AIR_W_M2K)
         } else {
-            (Before::Pad, PAD_W_M2K)
+            (PlaceBeforeContact::Pad, PAD_W_M2K)
         };
         finger.air_w_m2k = drawn(film, 0.0, "film_w_m2k");
         TissueDraw {

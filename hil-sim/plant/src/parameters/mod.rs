@@ -20,7 +20,9 @@ use serde::Serialize;
 
 use super::Params;
 use entry::Entry;
-pub use finger_draw::{Before, Blood, Epidermis, FingerDraw, TissueDraw, draw_finger};
+pub use finger_draw::{
+    BloodUnderForce, Epidermis, FingerDraw, PlaceBeforeContact, TissueDraw, draw_finger,
+};
 pub use tolerance::{Distribution, Tolerance, absolute, between, relative, stream_seed};
 
 /// Source of a nominal value and its tolerance.

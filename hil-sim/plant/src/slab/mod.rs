@@ -1,4 +1,4 @@
-//! One-dimensional conduction in layers of tissue or in one material, per square metre of surface.
+//! One-dimensional conduction in the layers of a finger or an object, per square metre of surface.
 
 mod batch;
 mod depth_probe;

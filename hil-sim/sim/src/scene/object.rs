@@ -19,7 +19,7 @@ const THICKEST_M: f64 = 10.0;
 /// of a material.
 const LAYER_RANGES: [(f64, f64); 3] = [(1e-3, 5e3), (1.0, 30e3), (10.0, 10e3)];
 
-/// Reads and checks the object's table.
+/// Reads and checks the table `[object]`.
 pub(super) fn object(
     source: &Source<'_>,
     file: &Spanned<file::Object>,
@@ -80,7 +80,7 @@ pub(super) fn object(
     })
 }
 
-/// The layers that the scene gives, or the one of the object's material.
+/// The layers of the scene, or one layer of the object's material if the scene has none.
 fn layers(
     source: &Source<'_>,
     object: &file::Object,
@@ -125,7 +125,7 @@ fn layers(
     object.layer.iter().enumerate().map(layer).collect()
 }
 
-/// Boundary condition behind the last layer; an endless one has none.
+/// Boundary condition behind the last layer. For an infinitely thick layer the scene must give none.
 fn back(
     source: &Source<'_>,
     object: &file::Object,

@@ -65,14 +65,14 @@ fn layered_finger_takes_every_shape_in_its_share() {
         within(epidermis.thickness_m, m);
         within(k_w_mk, w_mk);
         let film = match tissue.before {
-            Before::Air => (5.0, 15.0),
-            Before::Pad => (0.5, 3.0),
+            PlaceBeforeContact::Air => (5.0, 15.0),
+            PlaceBeforeContact::Pad => (0.5, 3.0),
         };
         within(finger.air_w_m2k, film);
         let vessels = finger.vessels;
         match tissue.blood {
-            Blood::Open => assert_eq!(vessels, None),
-            Blood::ShutByForce => {
+            BloodUnderForce::Open => assert_eq!(vessels, None),
+            BloodUnderForce::ShutByForce => {
                 let Vessels { open_n, shut_n } = vessels.expect("vessels");
                 within(open_n, (0.24, 0.36));
                 within(shut_n, (0.8, 1.2));
@@ -82,8 +82,8 @@ fn layered_finger_takes_every_shape_in_its_share() {
             tissue.epidermis == Epidermis::Box,
             tissue.epidermis == Epidermis::Callus,
             tissue.epidermis == Epidermis::Thin,
-            tissue.blood == Blood::Open,
-            tissue.before == Before::Air,
+            tissue.blood == BloodUnderForce::Open,
+            tissue.before == PlaceBeforeContact::Air,
         ];
         for (seen, is) in seen.iter_mut().zip(is) {
             *seen += u32::from(is);
