@@ -58,8 +58,9 @@ impl Samples {
             .collect()
     }
 
-    /// Direct term, gain of each rate, and largest weighted error of the least-squares fit.
-    fn solve(&self, rates: &[f64]) -> (f64, Vec<f64>, f64) {
+    /// Least-squares fit of relaxations of these rates, without those that are negligible.
+    fn fit(&self, rates: impl Iterator<Item = f64>) -> Fit {
+        let rates: Vec<f64> = rates.collect();
         let mut columns = vec![self.column(|_| 1.0)];
         columns.extend(rates.iter().map(|rate| self.column(|s| 1.0 / (s + rate))));
         let norms: Vec<f64> = (columns.iter())
@@ -70,9 +71,23 @@ impl Samples {
         });
         let b = DVector::from_iterator(self.0.len(), self.0.iter().map(|(_, z, w)| z * w));
         let x = nonnegative::solve(&a, &b);
-        let error = (&a * &x - &b).amax();
-        let gain = |i: usize| x[i] / norms[i];
-        (gain(0), (1..columns.len()).map(gain).collect(), error)
+        // The first column is that of the direct term.
+        let terms = x.iter().zip(&columns).zip(&norms).skip(1);
+        let relaxations = (rates.iter().zip(terms))
+            .filter_map(|(&rate_1_s, ((scaled_gain, column), norm))| {
+                let gain_m2k_j = scaled_gain / norm;
+                let largest = column.iter().fold(0.0f64, |largest, x| largest.max(*x));
+                (gain_m2k_j * largest > NEGLIGIBLE).then_some(Relaxation {
+                    rate_1_s,
+                    gain_m2k_j,
+                })
+            })
+            .collect();
+        Fit {
+            direct_m2k_w: x[0] / norms[0],
+            relaxations,
+            weighted_error: (&a * &x - &b).amax(),
+        }
     }
 }
 
@@ -105,19 +120,8 @@ pub fn fit(exact: impl Fn(f64) -> f64, weight: impl Fn(f64, f64) -> f64, count_m
             })
             .collect(),
     );
-    let mut rates: Vec<f64> = vec![0.0];
-    rates.extend(logarithmic(RATE_MIN_1_S, RATE_MAX_1_S, RATES));
-    let (_, gains, _) = samples.solve(&rates);
-    let mut relaxations: Vec<Relaxation> = (rates.iter().zip(gains))
-        .map(|(&rate_1_s, gain_m2k_j)| Relaxation {
-            rate_1_s,
-            gain_m2k_j,
-        })
-        .filter(|one| {
-            let largest = samples.column(|s| one.gain_m2k_j / (s + one.rate_1_s));
-            largest.into_iter().fold(0.0, f64::max) > NEGLIGIBLE
-        })
-        .collect();
+    let offered = core::iter::once(0.0).chain(logarithmic(RATE_MIN_1_S, RATE_MAX_1_S, RATES));
+    let mut relaxations = samples.fit(offered).relaxations;
     let mut i = 0;
     while i + 1 < relaxations.len() {
         let (a, b) = (relaxations[i].rate_1_s, relaxations[i + 1].rate_1_s);
@@ -127,22 +131,8 @@ pub fn fit(exact: impl Fn(f64) -> f64, weight: impl Fn(f64, f64) -> f64, count_m
             i += 1;
         }
     }
-    let solve = |relaxations: &[Relaxation]| {
-        let rates: Vec<f64> = relaxations.iter().map(|one| one.rate_1_s).collect();
-        let (direct_m2k_w, gains, weighted_error) = samples.solve(&rates);
-        let relaxations = (rates.iter().zip(gains))
-            .map(|(&rate_1_s, gain_m2k_j)| Relaxation {
-                rate_1_s,
-                gain_m2k_j,
-            })
-            .filter(|one| one.gain_m2k_j > 0.0)
-            .collect();
-        Fit {
-            direct_m2k_w,
-            relaxations,
-            weighted_error,
-        }
-    };
+    let solve =
+        |relaxations: &[Relaxation]| samples.fit(relaxations.iter().map(|one| one.rate_1_s));
     let mut best = solve(&relaxations);
     while best.relaxations.len() > count_max {
         let merged = (0..best.relaxations.len() - 1).map(|i| {
