@@ -3,9 +3,9 @@
 use contact_model::material::{Material, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::contact_resistance;
-use crc::{CRC_32_ISO_HDLC, Crc};
 use relaxation_fit::{Back, Fit, Layer, fit, impedance};
 use thermal_plant::slab::{self, BackBoundary};
+use thermal_settings::CRC_32;
 
 /// Largest number of relaxations that are fitted to an object.
 const RELAXATIONS_MAX: usize = 14;
@@ -56,11 +56,10 @@ pub fn upload_lines(object: &Fit) -> Vec<String> {
         let (rate, gain) = (one.rate_1_s, MM2_PER_M2 * one.gain_m2k_j);
         format!("upload row {index} {rate:.9} {gain:.9}")
     }));
-    let crc = Crc::<u32>::new(&CRC_32_ISO_HDLC);
     let sent: String = lines.iter().flat_map(|line| [line, "\n"]).collect();
     lines.push(format!(
         "upload commit {:08x}",
-        crc.checksum(sent.as_bytes())
+        CRC_32.checksum(sent.as_bytes())
     ));
     lines
 }

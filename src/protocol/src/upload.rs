@@ -6,10 +6,9 @@ use core::fmt;
 use contact_model::fixed_point::{Body, FAST_MAX, SLOW_MAX};
 use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::SKIN;
-use crc::{CRC_32_ISO_HDLC, Crc, Digest, NoTable};
 use heapless::Vec;
 use thermal_device::TICK_S;
-use thermal_settings::Range;
+use thermal_settings::{CRC_32, Crc32Digest, Range};
 
 use crate::Error;
 use crate::arguments::{
@@ -52,9 +51,6 @@ static GAIN_RANGE: Range = Range {
     max: 1e9,
 };
 
-/// Checksum of the lines of an upload, from `upload begin` to the last `upload row`, each followed by a line feed.
-static CHECKSUM: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
-
 /// Why a line of an upload is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UploadError {
@@ -76,7 +72,8 @@ pub struct Upload {
     count: usize,
     direct_m2k_w: f64,
     rows: Vec<Relaxation, ROWS_MAX>,
-    digest: Digest<'static, u32, NoTable>,
+    /// Checksum of the lines so far, each followed by a line feed.
+    digest: Crc32Digest,
 }
 
 impl fmt::Debug for Upload {
@@ -104,7 +101,7 @@ impl Upload {
             count,
             direct_m2k_w,
             rows: Vec::new(),
-            digest: CHECKSUM.digest(),
+            digest: CRC_32.digest(),
         };
         upload.add_to_checksum(line);
         Ok(upload)

@@ -6,6 +6,7 @@
 extern crate std;
 
 mod calibration;
+mod checksum;
 mod range;
 mod settings_record;
 mod settings_store;
@@ -17,6 +18,7 @@ pub use calibration::{
     CORRECTION_POLYNOMIAL_CLAMP_K, Calibration, Correction, FIRST_CALIBRATED_ADC_BORDER_INDEX,
     round_to_decimals,
 };
+pub use checksum::{CRC_32, Crc32Digest};
 pub use range::{ADC_ERROR_STEP_RANGE, CORRECTION_RANGES, Range, TILE_RANGES};
 pub use settings_record::{
     RECORD_MAX_BYTES, RecordError, SettingsRecord, StoredSettings, decode_settings_record,

@@ -13,11 +13,10 @@
 
 use core::fmt;
 
-use crc::{CRC_32_ISO_HDLC, Crc, NoTable};
 use heapless::Vec;
 
 use super::calibration::power_of_ten;
-use super::{CALIBRATED_ADC_BORDER_COUNT, Calibration, Correction, Range, Settings, Tile};
+use super::{CALIBRATED_ADC_BORDER_COUNT, CRC_32, Calibration, Correction, Range, Settings, Tile};
 
 const RECORD_LAYOUT_VERSION: u16 = 1;
 const KIND_FACTORY_DEFAULTS: u8 = 0;
@@ -33,8 +32,6 @@ const FINGERS_MAX: usize = 10;
 /// Length of the longest record, that of a device with ten fingers: 1328 bytes.
 pub const RECORD_MAX_BYTES: usize =
     HEADER_BYTES + FINGERS_MAX * RECORD_BYTES_PER_FINGER + CHECKSUM_BYTES;
-
-const RECORD_CRC_32: Crc<u32, NoTable> = Crc::<u32, NoTable>::new(&CRC_32_ISO_HDLC);
 
 /// The bytes of one record as they are written to flash: the stored settings of all fingers, or the order to use
 /// factory defaults, between a header and a checksum.
@@ -196,7 +193,7 @@ pub fn encode_settings_record<const FINGERS: usize>(
     {
         append(&(libm::round(value * power_of_ten(decimals)) as i32).to_le_bytes());
     }
-    let checksum = RECORD_CRC_32.checksum(&record);
+    let checksum = CRC_32.checksum(&record);
     let _fits = record.extend_from_slice(&checksum.to_le_bytes());
     record
 }
@@ -217,7 +214,7 @@ pub fn decode_settings_record<const FINGERS: usize>(
     let (header, values) = content
         .split_first_chunk::<HEADER_BYTES>()
         .ok_or(wrong_length)?;
-    if RECORD_CRC_32.checksum(content) != u32::from_le_bytes(*checksum) {
+    if CRC_32.checksum(content) != u32::from_le_bytes(*checksum) {
         return Err(RecordError::Checksum);
     }
     let [version_low, version_high, kind, fingers] = *header;
