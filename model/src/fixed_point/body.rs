@@ -26,8 +26,9 @@ const FAST_RATE_PER_TICK: f64 = 0.0125;
 const FAST_STATE_MAX_K: f64 = 500.0;
 /// Largest scaled flux, K, to which [`RelaxationBank`] limits its input.
 const SCALED_FLUX_MAX_K: f64 = 32.0;
-/// Largest shift of the states, which then have a resolution of 0.24 mK.
-const STATE_SHIFT_MAX: i32 = 10;
+/// Bound, K, of the direct term for a scaled flux of 1 K, of twice the sum of all gains, and of each fast state: the states
+/// are then shifted by at most 10 bits, and have a resolution of 0.24 mK.
+const GAIN_BOUND: f64 = 1024.0;
 
 /// An impedance that the device cannot follow.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,8 +39,33 @@ pub enum BodyError {
     TooManySlow(usize),
     /// A rate, 1/s, that is not from 0 to 690, for ticks of 1 ms.
     Rate(f64),
-    /// A gain, m² K/J, or direct term, m² K/W, that is negative, not a number, or too large.
-    Gain(f64),
+    /// A direct term that is negative, not a number, or too large.
+    Direct {
+        /// The direct term, m² K/W.
+        direct_m2k_w: f64,
+        /// The largest one, m² K/W.
+        max_m2k_w: f64,
+    },
+    /// A gain that is not positive, not a number, or too large.
+    Gain {
+        /// The gain, m² K/J.
+        gain_m2k_j: f64,
+        /// The largest one of its rate beside the gains before it, m² K/J.
+        max_m2k_j: f64,
+        /// Index of its relaxation.
+        index: usize,
+    },
+}
+
+/// A value in the unit in which a host sends it, in which mm² stand for m², without the error of that conversion: with the
+/// six decimals that the smallest gain has.
+fn in_mm2(value: f64) -> f64 {
+    libm::round(value * 1e12) / 1e6
+}
+
+/// A largest value in the same unit: a whole number that is allowed.
+fn floor_in_mm2(value: f64) -> f64 {
+    libm::floor(value * 1e6)
 }
 
 impl fmt::Display for BodyError {
@@ -58,10 +84,24 @@ impl fmt::Display for BodyError {
                 )
             }
             Self::Rate(value) => write!(f, "rate {value} 1/s; it must be 0 to 690"),
-            Self::Gain(value) => write!(
-                f,
-                "gain {value}; it must be positive and not larger than that of foam"
-            ),
+            Self::Direct {
+                direct_m2k_w,
+                max_m2k_w,
+            } => {
+                let (value, max) = (in_mm2(*direct_m2k_w), floor_in_mm2(*max_m2k_w));
+                write!(f, "direct {value} mm2K/W; it must be 0 to {max}")
+            }
+            Self::Gain {
+                gain_m2k_j,
+                max_m2k_j,
+                index,
+            } => {
+                let (value, max) = (in_mm2(*gain_m2k_j), floor_in_mm2(*max_m2k_j));
+                write!(
+                    f,
+                    "gain {value} mm2K/J of relaxation {index}; above 0 to {max} is allowed at its rate beside those before it"
+                )
+            }
         }
     }
 }
@@ -227,30 +267,42 @@ impl Body {
             |one: &Relaxation| one.gain_m2k_j * dose_j_m2 * mean_decay(one.rate_1_s * tick_s);
         let mut all_gains = 0.0;
         let (mut largest, mut tick_gain) = (0.0f64, impedance.direct_m2k_w * dose_j_m2 / tick_s);
-        if !(impedance.direct_m2k_w >= 0.0 && tick_gain < 1024.0) {
-            return Err(BodyError::Gain(impedance.direct_m2k_w));
+        if !(impedance.direct_m2k_w >= 0.0 && tick_gain < GAIN_BOUND) {
+            return Err(BodyError::Direct {
+                direct_m2k_w: impedance.direct_m2k_w,
+                max_m2k_w: GAIN_BOUND * tick_s / dose_j_m2,
+            });
         }
-        for one in impedance.relaxations {
+        for (index, one) in impedance.relaxations.iter().enumerate() {
             let gain = input_gain(one);
             if !(0.0..=RATE_PER_TICK_MAX).contains(&(one.rate_1_s * tick_s)) {
                 return Err(BodyError::Rate(one.rate_1_s));
             }
-            if !(gain > 0.0 && gain < 1024.0) {
-                return Err(BodyError::Gain(one.gain_m2k_j));
-            }
             // The gain of a state is below a half, and no flux takes a fast state out of its range.
-            all_gains += gain;
-            largest = largest.max(2.0 * all_gains);
-            if one.rate_1_s * tick_s >= FAST_RATE_PER_TICK {
+            let fast_factor = if one.rate_1_s * tick_s >= FAST_RATE_PER_TICK {
                 let decay = -libm::expm1(-one.rate_1_s * tick_s);
-                largest = largest.max(gain / decay * SCALED_FLUX_MAX_K / FAST_STATE_MAX_K);
+                SCALED_FLUX_MAX_K / FAST_STATE_MAX_K / decay
+            } else {
+                0.0
+            };
+            let needed = (2.0 * (all_gains + gain)).max(gain * fast_factor);
+            if !(gain > 0.0 && needed < GAIN_BOUND) {
+                let unit = Relaxation {
+                    gain_m2k_j: 1.0,
+                    ..*one
+                };
+                let left = (GAIN_BOUND / 2.0 - all_gains).min(GAIN_BOUND / fast_factor);
+                return Err(BodyError::Gain {
+                    gain_m2k_j: one.gain_m2k_j,
+                    max_m2k_j: left / input_gain(&unit),
+                    index,
+                });
             }
+            all_gains += gain;
+            largest = largest.max(needed);
             tick_gain += gain;
         }
         let state_shift = (libm::ilogb(largest.max(f64::MIN_POSITIVE)) + 1).max(0);
-        if state_shift > STATE_SHIFT_MAX {
-            return Err(BodyError::Gain(largest));
-        }
         let scaled = |gain: f64| to_fixed::<I0F32>(libm::ldexp(gain, -state_shift));
         let (mut horizon_gain, mut slow_input_gain) = (tick_gain, 0.0);
         let mut body = Self {

@@ -102,12 +102,25 @@ fn what_cannot_be_followed_is_refused() {
         with(&[one(f64::NAN, 1e-6)], 0.0),
         Some(BodyError::Rate(_))
     ));
-    assert_eq!(with(&[one(1.0, -1e-6)], 0.0), Some(BodyError::Gain(-1e-6)));
-    assert!(matches!(
-        with(&[one(1.0, f64::NAN)], 0.0),
-        Some(BodyError::Gain(_))
-    ));
-    assert_eq!(with(&[], -1.0), Some(BodyError::Gain(-1.0)));
+    let message = |relaxations: &[Relaxation], direct_m2k_w| {
+        with(relaxations, direct_m2k_w).map(|error| std::format!("{error}"))
+    };
+    for (gain_m2k_j, index, text) in [
+        (-1e-6, 0, "gain -1 mm2K/J of relaxation 0; above 0 to "),
+        (0.0, 2, "gain 0 mm2K/J of relaxation 2; above 0 to "),
+        (14.0, 1, "gain 14000000 mm2K/J of relaxation 1; above 0 to "),
+        (f64::NAN, 1, "gain NaN mm2K/J of relaxation 1; above 0 to "),
+    ] {
+        let mut relaxations = [one(1.0, 1e-6); 3];
+        relaxations[index].gain_m2k_j = gain_m2k_j;
+        let message = message(&relaxations, 0.0).expect("an error");
+        assert!(message.starts_with(text), "{message}");
+    }
+    for direct_m2k_w in [-1.0, 1.0, f64::NAN] {
+        let message = message(&[], direct_m2k_w).expect("an error");
+        let text = std::format!("direct {} mm2K/W; it must be 0 to 27", direct_m2k_w * 1e6);
+        assert!(message.starts_with(&text), "{message}");
+    }
     assert_eq!(
         with(&[one(100.0, 1e-6); FAST_MAX + 1], 0.0),
         Some(BodyError::TooManyFast(FAST_MAX + 1))
@@ -117,6 +130,45 @@ fn what_cannot_be_followed_is_refused() {
         Some(BodyError::TooManySlow(SLOW_MAX + 1))
     );
     assert_eq!(with(&[one(0.1, 1e-6); SLOW_MAX], 0.0), None);
+}
+
+/// The largest gain that an error names is allowed, and hardly more is.
+#[test]
+fn the_gain_that_a_refusal_allows_is_the_limit() {
+    for (before, rate_1_s) in [
+        (1.0, 0.0),
+        (3.5, 5.0),
+        (2.0, 13.0),
+        (0.5, 40.0),
+        (9.0, 690.0),
+    ] {
+        let with = |gain_m2k_j| {
+            let before = Relaxation {
+                rate_1_s: 0.0,
+                gain_m2k_j: before,
+            };
+            let last = Relaxation {
+                rate_1_s,
+                gain_m2k_j,
+            };
+            let impedance = Impedance {
+                direct_m2k_w: 0.0,
+                relaxations: &[before, last],
+            };
+            Body::new(&impedance, SKIN.effusivity(), TICK_S).err()
+        };
+        let Some(BodyError::Gain {
+            gain_m2k_j,
+            max_m2k_j,
+            index: 1,
+        }) = with(20.0)
+        else {
+            panic!("20 m2K/J at {rate_1_s} 1/s: {:?}", with(20.0));
+        };
+        assert_eq!(gain_m2k_j, 20.0);
+        assert_eq!(with(max_m2k_j * (1.0 - 1e-12)), None, "{rate_1_s} 1/s");
+        assert!(with(max_m2k_j * (1.0 + 1e-12)).is_some(), "{rate_1_s} 1/s");
+    }
 }
 
 /// The constants of a finger as they stand in the source.
