@@ -39,8 +39,8 @@ pub type ExecutionResult = Result<WithSourceFinger<command::Reply>, WithSourceFi
 #[derive(Clone, Debug)]
 pub struct CommandHandler<const FINGERS: usize> {
     sessions: [CommissioningSession; FINGERS],
-    /// The upload that has begun and is not committed yet.
-    upload: Option<Upload>,
+    /// The upload that has begun and is not committed yet, with the finger whose address its lines have.
+    upload: Option<(Option<FingerIndex<FINGERS>>, Upload)>,
 }
 
 impl<const FINGERS: usize> CommandHandler<FINGERS> {
@@ -119,7 +119,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
                 let command = Command::Body(body.map_err(rejected)?);
                 Self::execute_in_stations(command, finger, execute)
             }
-            Request::Upload => match self.continue_upload(line).map_err(rejected)? {
+            Request::Upload => match self.continue_upload(finger, line).map_err(rejected)? {
                 None => Ok(addressed(Reply::DONE)),
                 Some(body) => Self::execute_in_stations(Command::Body(Some(body)), finger, execute),
             },
@@ -172,23 +172,35 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     }
 
     /// Executes one line of an upload, and returns the object if the line is a valid commit. A commit with one argument
-    /// ends the upload even if it is refused, and so does a `begin` that is refused.
-    fn continue_upload(&mut self, line: &str) -> Result<Option<Body>, Error> {
+    /// ends the upload even if it is refused, and so does a `begin` that is refused. There is one upload for all fingers,
+    /// which saves the RAM of the others: it belongs to the address that began it last, so that hosts of several fingers
+    /// that upload at the same time get an error and not each other's rows.
+    fn continue_upload(
+        &mut self,
+        finger: Option<FingerIndex<FINGERS>>,
+        line: &str,
+    ) -> Result<Option<Body>, Error> {
+        // The only finger is all fingers.
+        let owner = finger.filter(|_| FINGERS > 1);
         let mut words = line.split_ascii_whitespace();
         words.next();
         let step = read_word(&mut words, "begin, row or commit")?;
         match (step, &mut self.upload) {
             ("begin", upload) => {
                 *upload = None;
-                *upload = Some(Upload::begin(line, &mut words)?);
+                *upload = Some((owner, Upload::begin(line, &mut words)?));
             }
-            ("row", Some(upload)) => upload.add_row(line, &mut words)?,
+            ("row" | "commit", Some((other, _))) if *other != owner => {
+                let other = other.map(FingerIndex::index_u8);
+                return Err(Error::Upload(UploadError::OfAnother(other)));
+            }
+            ("row", Some((_, upload))) => upload.add_row(line, &mut words)?,
             ("commit", upload @ Some(_)) => {
                 let checksum = read_word(&mut words, "checksum")?;
                 expect_end(&mut words)?;
                 return upload
                     .take()
-                    .map(|upload| upload.commit(checksum))
+                    .map(|(_, upload)| upload.commit(checksum))
                     .transpose();
             }
             ("row" | "commit", None) => return Err(Error::Upload(UploadError::NotBegun)),

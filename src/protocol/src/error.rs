@@ -258,6 +258,14 @@ fn write_upload_error(f: &mut fmt::Formatter<'_>, error: UploadError) -> fmt::Re
         UploadError::NotBegun => {
             f.write_str("no upload has begun; upload begin object COUNT DIRECT first")
         }
+        UploadError::OfAnother(finger) => {
+            f.write_str("the open upload is that of ")?;
+            match finger {
+                Some(finger) => write!(f, "@{finger}")?,
+                None => f.write_str("all fingers")?,
+            }
+            f.write_str("; upload begin starts another")
+        }
         UploadError::NotNextRow(next) => write!(f, "not the next row, which is {next}"),
         UploadError::Incomplete(there, count) => {
             write!(

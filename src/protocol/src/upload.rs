@@ -36,7 +36,7 @@ static DIRECT_RANGE: Range = Range {
     name: "direct",
     unit: "mm2K/W",
     min: 0.0,
-    max: 1e6,
+    max: 27e3,
 };
 static RATE_RANGE: Range = Range {
     name: "rate",
@@ -48,7 +48,7 @@ static GAIN_RANGE: Range = Range {
     name: "gain",
     unit: "mm2K/J",
     min: 1e-6,
-    max: 1e9,
+    max: 1.3e7,
 };
 
 /// Why a line of an upload is rejected.
@@ -56,6 +56,9 @@ static GAIN_RANGE: Range = Range {
 pub enum UploadError {
     /// `upload row` or `upload commit` without `upload begin` before it.
     NotBegun,
+    /// `upload row` or `upload commit` with another address than `upload begin` had: the finger of that one, or `None` for
+    /// all fingers. The upload goes on.
+    OfAnother(Option<u8>),
     /// A row with another index than this, which is that of the next row, or a row too many; the upload goes on.
     NotNextRow(usize),
     /// `upload commit` before all rows have been received: number of rows received, and number announced.

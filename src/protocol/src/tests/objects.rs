@@ -308,16 +308,57 @@ fn an_upload_makes_the_object_what_its_rows_say() {
 }
 
 #[test]
-fn an_upload_is_for_the_finger_that_its_commit_addresses() {
+fn an_upload_is_for_the_address_that_began_it() {
     let mut host = Host::<3>::new([None; 3]);
     let lines = upload(12.5, &ROWS);
-    for (line, finger) in lines.iter().zip([0, 2, 0, 0, 1]) {
-        assert_eq!(
-            host.send(&format!("@{finger} {line}")),
-            format!("@{finger} ok")
-        );
+    for address in ["@1 ", ""] {
+        for line in &lines {
+            let answer = host.send(&format!("{address}{line}"));
+            assert_eq!(answer, format!("{address}ok"));
+        }
     }
-    assert_eq!(host.bodies, [(Some(1), body(12.5, &ROWS).ok())]);
+    let object = body(12.5, &ROWS).ok();
+    assert_eq!(host.bodies, [(Some(1), object), (None, object)]);
+    // The only finger may be named or not.
+    let mut host = one_finger();
+    for (line, address) in lines.iter().zip(["@0 ", "", "@0 ", "@0 ", ""]) {
+        let answer = host.send(&format!("{address}{line}"));
+        assert_eq!(answer, format!("{address}ok"));
+    }
+    assert_eq!(host.bodies.len(), 1);
+}
+
+#[test]
+fn rows_and_commits_of_other_addresses_do_not_reach_an_upload() {
+    let lines = upload(12.5, &ROWS);
+    for (address, others, whose) in [
+        ("@1 ", ["@0 ", "@2 ", ""], "@1"),
+        ("", ["@0 ", "@1 ", "@2 "], "all fingers"),
+    ] {
+        let mut host = Host::<3>::new([None; 3]);
+        for line in &lines {
+            for other in others.iter().filter(|_| !line.contains("begin")) {
+                let refused = format!(
+                    "{other}err the open upload is that of {whose}; upload begin starts another"
+                );
+                assert_eq!(host.send(&format!("{other}{line}")), refused);
+            }
+            assert_eq!(
+                host.send(&format!("{address}{line}")),
+                format!("{address}ok")
+            );
+        }
+        assert_eq!(host.bodies.len(), 1);
+        // No address can keep the others from uploading.
+        host.send(&format!("{address}{}", lines[0]));
+        for line in &lines {
+            assert_eq!(
+                host.send(&format!("{}{line}", others[0])),
+                format!("{}ok", others[0])
+            );
+        }
+        assert_eq!(host.bodies[1..], [(Some(0), body(12.5, &ROWS).ok())]);
+    }
 }
 
 #[test]
@@ -353,7 +394,7 @@ fn an_error_before_the_commit_leaves_the_upload_as_it_was() {
             ),
             (
                 "upload row 1 1 0",
-                "err gain '0' out of range; 0.000001 to 1000000000 mm2K/J",
+                "err gain '0' out of range; 0.000001 to 13000000 mm2K/J",
             ),
             (
                 "upload row 1 x 1",
@@ -401,7 +442,11 @@ fn begin_says_what_is_uploaded() {
         ),
         (
             "upload begin object 1 -1",
-            "err direct '-1' out of range; 0 to 1000000 mm2K/W",
+            "err direct '-1' out of range; 0 to 27000 mm2K/W",
+        ),
+        (
+            "upload begin object 1 27001",
+            "err direct '27001' out of range; 0 to 27000 mm2K/W",
         ),
         (
             "upload begin object 1 1 1",
@@ -484,13 +529,13 @@ fn an_object_that_cannot_be_followed_is_refused_at_the_commit() {
         ),
         (
             0.0,
-            &[(1.0, 1e9)],
-            "gain 1000; it must be positive and not larger than that of foam",
+            &[(1.0, 6.5e6), (0.0, 8_000_000.25)],
+            "gain 8000000.25 mm2K/J of relaxation 1; above 0 to 7341086 is allowed at its rate beside those before it",
         ),
         (
-            1e6,
-            &[],
-            "gain 1; it must be positive and not larger than that of foam",
+            0.0,
+            &[(13.0, 9_000_000.5)],
+            "gain 9000000.5 mm2K/J of relaxation 0; above 0 to 5621621 is allowed at its rate beside those before it",
         ),
     ] {
         let mut host = one_finger();
