@@ -132,13 +132,8 @@ fn an_addressed_object_is_that_of_its_finger_only() {
         slab[0] > half_space[0] + 0.1,
         "a foil soon is as warm as the finger: {slab:?}"
     );
-    // The commit's address is the upload's.
-    let [begin, row, commit] = UPLOAD;
-    let commit = format!("@1 {commit}");
-    let uploaded = after(
-        &bench,
-        &[&format!("@2 {begin}"), row, &commit, "@2 object half-space"],
-    );
+    let [begin, row, commit] = UPLOAD.map(|line| format!("@1 {line}"));
+    let uploaded = after(&bench, &[&begin, &row, &commit, "@2 object half-space"]);
     assert_eq!(uploaded[1], half_space[1]);
     assert!(uploaded[0] > half_space[0] + 0.1, "{uploaded:?}");
     let both = after(&bench, &UPLOAD);

@@ -72,7 +72,7 @@ pub fn run_with<E: Engine>(
 ) -> Result<Outcome, RunError<E::Stop>> {
     let settings = commissioning::settings_for_scene(scene).map_err(RunError::Commission)?;
     let began = Instant::now();
-    let recording = SceneRecording::new(scene, &settings, 1);
+    let recording = SceneRecording::new(scene, &settings, 1, 0);
     let (zero_ms, last_ms) = (recording.zero_ms, recording.end_ms + DRAIN_MS);
     let time_s = |ms: f64| (ms - zero_ms as f64) / 1e3;
     let (from_s, to_s) = (time_s(0.0), time_s(recording.end_ms as f64));

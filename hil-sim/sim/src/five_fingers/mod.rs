@@ -7,7 +7,8 @@
 //! the same as on the one-finger board, and the device reads its sensors 0.4 ms older than they would be.
 //!
 //! A line to a finger is sent right after that finger's tick. Lines to later fingers follow one millisecond each later,
-//! because at 1 Mbaud they would delay each other.
+//! because at 1 Mbaud they would delay each other. Objects are uploaded one finger after the other, because the device
+//! keeps one upload.
 
 mod native;
 
@@ -87,8 +88,12 @@ pub fn run<H: FiveFingerEngine>(
         return Err(RunError::SharedProcessor(injection.fault));
     }
     let began = Instant::now();
+    let mut upload_from_ms = 0;
     let mut fingers: [_; FINGERS] = std::array::from_fn(|finger| {
-        SceneRecording::new(&scenes[finger], &settings[finger], STREAM_MS)
+        let (scene, settings) = (&scenes[finger], &settings[finger]);
+        let recording = SceneRecording::new(scene, settings, STREAM_MS, upload_from_ms);
+        upload_from_ms = recording.host.uploaded_ms();
+        recording
     });
     let last = |of: fn(&SceneRecording<'_>) -> u64| fingers.iter().map(of).max().unwrap_or(0);
     let zero_ms = last(|finger| finger.zero_ms);
