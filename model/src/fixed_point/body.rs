@@ -59,11 +59,13 @@ pub enum BodyError {
 
 /// A value in the unit in which a host sends it, in which mm² stand for m², without the error of that conversion: with the
 /// six decimals that the smallest gain has.
+#[inline(never)]
 fn in_mm2(value: f64) -> f64 {
     libm::round(value * 1e12) / 1e6
 }
 
 /// A largest value in the same unit: a whole number that is allowed.
+#[inline(never)]
 fn floor_in_mm2(value: f64) -> f64 {
     libm::floor(value * 1e6)
 }
