@@ -192,6 +192,8 @@ fn another_assumed_finger_is_another_set_point() {
     let thesis = after(&bench, &["@1 finger thesis", "@2 finger mean"]);
     assert_eq!(thesis[1], mean[1]);
     assert!((thesis[0] - mean[0]).abs() > 0.01, "{thesis:?}");
+    // The same one again is no new contact.
+    assert_eq!(mean, bench.clone().run(100));
     let mut bench = bench;
     assert_eq!(bench.send("@1 finger"), "@1 ok finger=mean");
     bench.send_ok(&["@1 finger thesis"]);

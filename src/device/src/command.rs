@@ -111,8 +111,8 @@ pub enum Command {
     /// Choose how the object conducts heat behind its touched face: by these relaxations, or as a half-space of its
     /// material (`None`). If a finger touches, a new contact begins.
     Body(Option<Body>),
-    /// Choose the finger that is assumed for the one that touches; a finger that touches then begins a new contact.
-    /// `None` changes nothing: the answer is the assumed finger.
+    /// Choose the finger that is assumed for the one that touches. If that changes it, a finger that touches begins a new
+    /// contact. `None` changes nothing: the answer is the assumed finger.
     Finger(Option<AssumedFinger>),
     /// Choose the object's temperature before contact, °C; `None` takes the room's. If a finger touches, a new contact
     /// begins.

@@ -33,8 +33,10 @@ impl Station {
             }
             Command::Finger(None) => return Ok(Reply::Finger(self.object.finger.name())),
             Command::Finger(Some(finger)) => {
-                self.object.finger = finger;
-                self.restart_contact();
+                if finger != self.object.finger {
+                    self.object.finger = finger;
+                    self.restart_contact();
+                }
             }
             Command::Material(material) => {
                 (self.object.material, self.object.body) = (Some(material), None);
