@@ -101,7 +101,7 @@ pub enum ParameterError {
         near: Vec<String>,
     },
     /// The value is outside of the allowed range.
-    #[error("{key} = {value} {unit}; allowed is {least} to {most}")]
+    #[error("{key} = {value}{}; allowed is {least} to {most}", after_number(unit))]
     OutOfRange {
         /// The key.
         key: String,
@@ -114,6 +114,14 @@ pub enum ParameterError {
         /// Largest allowed value.
         most: f64,
     },
+}
+
+/// A unit after a number; that of a pure number is not written.
+fn after_number(unit: &str) -> String {
+    match unit {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
+    }
 }
 
 /// Number of similar keys named in the error of an unknown key.

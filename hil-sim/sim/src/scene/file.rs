@@ -1,10 +1,11 @@
 //! The keys of a scene file.
 
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
 use super::Sensor;
 pub(super) use super::parameter_node::{NodeNumber, ParameterNode};
+use super::word::{OneOf, words};
 
 /// A number with its position in the file; whole numbers are accepted.
 pub(super) type Number = Spanned<f64>;
@@ -42,12 +43,12 @@ pub(super) struct Device {
     pub finger: Option<AssumedFinger>,
 }
 
-/// The finger that the simulated operator lets the device assume.
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum AssumedFinger {
-    Thesis,
-    Mean,
+words! {
+    /// The finger that the simulated operator lets the device assume.
+    pub(super) enum AssumedFinger {
+        Thesis = "thesis",
+        Mean = "mean",
+    }
 }
 
 impl Default for Device {
@@ -59,12 +60,13 @@ impl Default for Device {
     }
 }
 
-#[derive(Default, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Mode {
-    #[default]
-    Contact,
-    SemiInfinite,
+words! {
+    #[derive(Default)]
+    pub(super) enum Mode {
+        #[default]
+        Contact = "contact",
+        SemiInfinite = "semi-infinite",
+    }
 }
 
 #[derive(Deserialize)]
@@ -87,11 +89,11 @@ pub(super) struct Object {
     pub layer: Vec<Spanned<ObjectLayer>>,
 }
 
-/// What the device is told of an object that is no half-space.
-#[derive(Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Told {
-    HalfSpace,
+words! {
+    /// What the device is told of an object that is no half-space.
+    pub(super) enum Told {
+        HalfSpace = "half-space",
+    }
 }
 
 #[derive(Deserialize)]
@@ -103,12 +105,12 @@ pub(super) struct ObjectLayer {
     pub c_j_kgk: Number,
 }
 
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Back {
-    Insulated,
-    Held,
-    Film,
+words! {
+    pub(super) enum Back {
+        Insulated = "insulated",
+        Held = "held",
+        Film = "film",
+    }
 }
 
 #[derive(Deserialize)]
@@ -123,11 +125,11 @@ pub(super) struct Finger {
     pub layer: Vec<Spanned<Layer>>,
 }
 
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Tissue {
-    Homogeneous,
-    Layered,
+words! {
+    pub(super) enum Tissue {
+        Homogeneous = "homogeneous",
+        Layered = "layered",
+    }
 }
 
 #[derive(Deserialize)]
@@ -155,12 +157,12 @@ pub(super) struct Infrared {
     pub camera_share: Option<Number>,
 }
 
-#[derive(Clone, Copy, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub(super) enum Glass {
-    None,
-    Baf2,
-    Zns,
+words! {
+    pub(super) enum Glass {
+        None = "none",
+        Baf2 = "baf2",
+        Zns = "zns",
+    }
 }
 
 #[derive(Deserialize)]

@@ -9,6 +9,7 @@ mod parameter_node;
 mod parse;
 mod plant;
 mod source;
+mod word;
 
 use std::path::Path;
 

@@ -25,8 +25,14 @@ const SETTLE_S: f64 = 8.0;
 pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     let source = Source { file: path, text };
     nesting::check(&source)?;
-    let file: File =
-        toml::from_str(text).map_err(|error| source.error(error.span(), error.message()))?;
+    let file: File = toml::from_str(text).map_err(|error| {
+        // The reader names types of its own.
+        let problem = (error.message().replace("expected f64", "expected a number")).replace(
+            "map, expected a sequence",
+            "a table in single brackets, expected double ones",
+        );
+        source.error(error.span(), problem)
+    })?;
     let duration_s = source.within("duration_s", &file.duration_s, 0.001, 86_400.0)?;
     let settle_s = source.within_or(SETTLE_S, "settle_s", &file.settle_s, SETTLE_S, 3600.0)?;
     let (skin_c, room_c) = (

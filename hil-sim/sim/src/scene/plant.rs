@@ -113,8 +113,9 @@ fn seed_of(source: &Source<'_>, (key, seed, span): &Value) -> Result<u64, SceneE
     match seed {
         NodeNumber::Whole(seed) if *seed >= 0 => Ok(seed.unsigned_abs()),
         _ => {
+            let value = seed.real();
             let problem = format!(
-                "{key} is the seed of a draw; allowed is a whole number, 0 to {}",
+                "{key} = {value} is the seed of a draw; allowed is a whole number, 0 to {}",
                 i64::MAX
             );
             Err(source.error(Some(span.clone()), problem))
