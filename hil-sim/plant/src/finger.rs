@@ -94,6 +94,12 @@ impl FingerParams {
         }
     }
 
+    /// Whether it is a half-space of one tissue, as the thesis's.
+    #[must_use]
+    pub fn is_half_space(&self) -> bool {
+        matches!(self.layers.as_slice(), [one] if one.thickness_m.is_infinite())
+    }
+
     /// Boundary condition behind the tissue; the core temperature is set later by the steady state.
     #[must_use]
     pub fn back(&self) -> BackBoundary {

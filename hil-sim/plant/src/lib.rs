@@ -301,10 +301,23 @@ impl Plant {
         self.receptors.map(read)
     }
 
-    /// Surface temperature of the real object, deg C.
+    /// Surface temperature of a display on which the skin would be as warm as it is on the real object, deg C: that skin less
+    /// the heat that flows into the object times the contact resistance of the display, which is the sense of Eq. 6-12 for
+    /// any finger and object. None in the step before a contact and without one.
+    #[must_use]
+    pub fn exact_display_c(&self) -> Option<f64> {
+        let display = self.on_display?;
+        let flux_w_m2 = self.heat.flux_w_m2(Finger::OnObject);
+        Some(self.skin_real_c() - display.resistance_m2k_w * flux_w_m2)
+    }
+
+    /// Surface temperature of the real object, deg C; before it appears, that at which it will.
     #[must_use]
     pub fn object_c(&self) -> f64 {
-        self.heat.object_c()
+        match self.contact_state {
+            Some((_, true)) => self.heat.object_c(),
+            _ => self.object_start_c,
+        }
     }
 
     /// Temperature of the sink, deg C.

@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 
 use serde::Serialize;
-use thermal_plant::STEP_S;
+use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::parameters::{self, FingerDraw};
+use thermal_plant::{Plant, PlantConfig, STEP_S};
 
 use crate::dose::cem43_min;
 use crate::run::Outcome;
 use crate::scene::{Draws, Scene};
+use crate::trace::TraceRow;
 
 /// Time after landing from which the largest error counts, s.
 const AFTER_S: f64 = 0.05;
@@ -89,7 +91,7 @@ pub struct Figures {
     pub ticks: usize,
     /// Skin on the display minus skin on the real object.
     pub skin_error_mk: Option<ErrorFigures>,
-    /// Display minus the exact set-point for a nominal finger.
+    /// Display minus the exact set-point for a nominal finger on the object as it is.
     pub display_error_mk: Option<ErrorFigures>,
     /// Skin on the display, °C.
     pub skin_c: Extremes,
@@ -156,18 +158,6 @@ pub fn contact_times(scene: &Scene, outcome: &Outcome) -> Vec<Option<f64>> {
 #[must_use]
 pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
     let rows = outcome.trace.rows();
-    let contacts = contact_times(scene, outcome);
-    let touching = || {
-        rows.iter()
-            .zip(&contacts)
-            .filter_map(|(row, since)| Some((row, (*since)?)))
-    };
-    let display = touching().map(|(row, since_s)| {
-        (
-            since_s,
-            row.display_c - scene.exact_setpoint_c(since_s, row.force_n),
-        )
-    });
     let evaluations = || {
         rows.iter()
             .filter_map(|row| row.device.as_ref())
@@ -179,7 +169,7 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
         material: scene.object.name.clone(),
         ticks: rows.len().saturating_sub(1),
         skin_error_mk: errors(skin_errors(scene, outcome)),
-        display_error_mk: errors(display),
+        display_error_mk: errors(display_errors(scene, outcome).into_iter().flatten()),
         skin_c: range(skins()),
         // The last row begins no step.
         cem43_min: cem43_min(skins().take(rows.len().saturating_sub(1)), STEP_S),
@@ -205,6 +195,45 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
         resets: resets(outcome),
         draws: draws(scene),
     }
+}
+
+/// Time since the last landing, s, and error of the display, K, for each row; `None` without contact and, where finger or
+/// object is no half-space, in the row of a landing.
+#[must_use]
+pub fn display_errors(scene: &Scene, outcome: &Outcome) -> Vec<Option<(f64, f64)>> {
+    let rows = outcome.trace.rows();
+    let contacts = contact_times(scene, outcome);
+    let exact_c = if scene.has_closed_form() {
+        let rows = rows.iter().zip(&contacts);
+        rows.map(|(row, since_s)| Some(scene.exact_setpoint_c((*since_s)?, row.force_n)))
+            .collect()
+    } else {
+        nominal_setpoints_c(scene, rows)
+    };
+    let rows = rows.iter().zip(contacts).zip(exact_c);
+    rows.map(|((row, since_s), exact_c)| Some((since_s?, row.display_c - exact_c?)))
+        .collect()
+}
+
+/// The exact set-point for the scene's finger with nominal parameters, °C, for each row with a contact: that finger on the
+/// object, as the plant solves it.
+fn nominal_setpoints_c(scene: &Scene, rows: &[TraceRow]) -> Vec<Option<f64>> {
+    let config = PlantConfig {
+        start_s: 0.0,
+        params: scene.nominal.clone(),
+        ..scene.plant_config()
+    };
+    let Ok(mut plant) = Plant::new(&config) else {
+        return vec![None; rows.len()];
+    };
+    rows.iter()
+        .map(|row| {
+            plant.set_force(row.force_n);
+            let exact_c = plant.exact_display_c();
+            plant.step(&BridgeOutputs::default());
+            exact_c
+        })
+        .collect()
 }
 
 /// Time since the last landing, s, and error of the skin, K, at every row in contact.

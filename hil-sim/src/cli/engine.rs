@@ -42,9 +42,18 @@ pub fn runner(kind: EngineKind, elf: Option<&Path>) -> Result<Box<dyn SceneRunne
     }
 }
 
+/// Reads a scene, and says on standard error what of it the device is not told.
+pub fn read(path: &Path) -> Result<Scene, Failure> {
+    let scene = Scene::read(path).map_err(Failure::input)?;
+    if let Some(notice) = scene.untold_back() {
+        eprintln!("hil-sim: {}: {notice}", path.display());
+    }
+    Ok(scene)
+}
+
 /// Reads a scene and builds its world.
 pub fn scene(path: &Path) -> Result<(Scene, World), Failure> {
-    let scene = Scene::read(path).map_err(Failure::input)?;
+    let scene = read(path)?;
     let world = World::new(&scene)
         .with_context(|| path.display().to_string())
         .map_err(Failure::input)?;

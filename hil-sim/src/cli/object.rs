@@ -5,9 +5,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 use thermal_sim::host::object_lines;
-use thermal_sim::scene::Scene;
 
-use super::Failure;
+use super::{Failure, engine};
 
 /// Text after the options in the help.
 const USAGE: &str = "\
@@ -24,7 +23,7 @@ pub struct Arguments {
 
 /// Prints the lines.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let scene = Scene::read(&arguments.scene).map_err(Failure::input)?;
+    let scene = engine::read(&arguments.scene)?;
     let lines = object_lines(&scene).join("\n");
     writeln!(stdout(), "{lines}").map_err(Failure::run)
 }

@@ -233,6 +233,32 @@ fn bad_scenes_are_refused_with_file_line_and_what_is_allowed() {
     }
 }
 
+/// The scene runs, and standard error says what the skin error contains.
+#[test]
+fn a_back_that_the_device_is_not_told_of_is_noticed() {
+    const SLAB: &str = "material = \"copper\"\nthickness_m = 0.01\nback = \"held\"\nback_c = 20";
+    let notice =
+        "the back of the object is at 20 C; the device cannot be told that, and takes it for 24 C";
+    for (object, noticed) in [
+        (SLAB.to_owned(), true),
+        (SLAB.replace("back_c = 20", "back_c = 24"), false),
+        (format!("{SLAB}\ntold = \"half-space\""), false),
+        ("material = \"copper\"".into(), false),
+    ] {
+        let text = SCENE.replacen("material = \"copper\"", &object, 1);
+        let file = File::new("back.toml", &text);
+        for arguments in [
+            &["run", file.path(), "--engine", "native"][..],
+            &["object", file.path()],
+        ] {
+            let output = hil_sim(arguments, "");
+            assert!(output.status.success(), "{object}: {output:?}");
+            let message = String::from_utf8(output.stderr).expect("text");
+            assert_eq!(message.contains(notice), noticed, "{object}: {message}");
+        }
+    }
+}
+
 #[test]
 fn files_that_are_none_are_refused() {
     let message = refused(&["run", "no-such-scene.toml"]);

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 use thermal_charts::{Curve, Legend, Panel, Stroke};
 
-use crate::metrics::contact_times;
+use crate::metrics::{contact_times, display_errors};
 use crate::run::Outcome;
 use crate::scene::Scene;
 use crate::trace::TraceRow;
@@ -60,6 +60,7 @@ fn camera(rows: &[TraceRow]) -> Curve {
 pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
     let rows = outcome.trace.rows();
     let contacts = contact_times(scene, outcome);
+    let display_errors = display_errors(scene, outcome);
     let mut temperatures = vec![
         curve("skin on the display", SKIN, rows, |_, row| Some(row.skin_c)),
         curve("skin on the real object", REAL, rows, |_, row| {
@@ -81,9 +82,8 @@ pub(super) fn draw(scene: &Scene, outcome: &Outcome) -> anyhow::Result<String> {
             rows,
             |i, row| contacts[i].map(|_| (row.skin_c - row.skin_real_c) * 1e3),
         ),
-        curve("display minus exact set-point", DISPLAY, rows, |i, row| {
-            contacts[i]
-                .map(|since_s| (row.display_c - scene.exact_setpoint_c(since_s, row.force_n)) * 1e3)
+        curve("display minus exact set-point", DISPLAY, rows, |i, _| {
+            display_errors[i].map(|(_, error_k)| error_k * 1e3)
         }),
     ];
     let current = [curve(

@@ -65,6 +65,8 @@ pub struct Scene {
     pub assumed_finger: AssumedFinger,
     /// Whether the device is given a half-space of the object's material, whatever the object is.
     pub object_as_half_space: bool,
+    /// Nominal parameters with the scene's finger, neither drawn nor set below `plant`: what the exact set-point is for.
+    pub nominal: Params,
     /// Parameters of finger, display and electronics.
     pub params: Params,
     /// Which of them were drawn.
@@ -162,8 +164,17 @@ impl Scene {
         self.object.start_c.unwrap_or(self.room_c)
     }
 
+    /// Whether Eq. 3-1 or Eq. 6-12 give the exact set-point: Eq. 3-1 in its mode, Eq. 6-12 if finger and object are
+    /// half-spaces.
+    #[must_use]
+    pub fn has_closed_form(&self) -> bool {
+        self.mode == ContactModel::SemiInfinite
+            || (self.object.is_half_space() && self.nominal.finger.is_half_space())
+    }
+
     /// The exact set-point for a nominal finger of known temperature before contact, °C, `since_s` after it landed with
-    /// `force_n`. At landing, and therefore for the preset, the force does not matter.
+    /// `force_n`, if finger and object are half-spaces. At landing, and therefore for the preset, neither these nor the force
+    /// matter.
     #[must_use]
     pub fn exact_setpoint_c(&self, since_s: f64, force_n: f64) -> f64 {
         let object = &self.object.material;
@@ -178,6 +189,22 @@ impl Scene {
                     .display_c
             }
         }
+    }
+
+    /// A notice if no line describes the object to the device as it is: one whose back has another temperature.
+    #[must_use]
+    pub fn untold_back(&self) -> Option<String> {
+        let (BackBoundary::Film { temperature_c, .. }, false, object_c) =
+            (self.object.back, self.object_as_half_space, self.object_c())
+        else {
+            return None;
+        };
+        (temperature_c != object_c).then(|| {
+            format!(
+                "the back of the object is at {temperature_c} C; the device cannot be told that, and takes it for \
+                 {object_c} C like the object"
+            )
+        })
     }
 
     /// Configuration of the plant.

@@ -6,7 +6,6 @@ use std::path::Path;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::Setpoint;
-use thermal_plant::finger::FingerParams;
 use thermal_plant::{ConfigError, Plant};
 use toml::Spanned;
 
@@ -44,7 +43,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         file::Mode::SemiInfinite => ContactModel::SemiInfinite,
     };
     let (faults, injections) = faults(&source, &file.fault, duration_s, file.seed)?;
-    let (params, draws) = params(&source, file.finger.as_ref(), file.plant.as_ref())?;
+    let (nominal, params, draws) = params(&source, file.finger.as_ref(), file.plant.as_ref())?;
     let scene = Scene {
         duration_s,
         settle_s,
@@ -62,10 +61,11 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         assumed_finger: match file.device.finger {
             Some(file::AssumedFinger::Thesis) => AssumedFinger::Thesis,
             Some(file::AssumedFinger::Mean) => AssumedFinger::Mean,
-            None if is_homogeneous(&params.finger) => AssumedFinger::Thesis,
+            None if params.finger.is_half_space() => AssumedFinger::Thesis,
             None => AssumedFinger::Mean,
         },
         object_as_half_space: file.object.get_ref().told.is_some(),
+        nominal,
         params,
         draws,
         infrared: match &file.infrared {
@@ -155,9 +155,4 @@ fn setpoint(source: &Source<'_>, scene: &Scene, span: Range<usize>) -> Result<()
         scene.object_c()
     );
     Err(source.error(Some(span), problem))
-}
-
-/// Whether the finger is a half-space, as the thesis's.
-fn is_homogeneous(finger: &FingerParams) -> bool {
-    matches!(finger.layers.as_slice(), [one] if one.thickness_m.is_infinite())
 }

@@ -13,18 +13,19 @@ use super::Draws;
 use super::file::{self, NodeNumber, ParameterNode};
 use super::source::{SceneError, Source};
 
-/// The parameters: nominal or drawn, then overridden by the values of the scene; and what was drawn.
+/// The nominal parameters, with the scene's finger; the same drawn, then overridden by the values of the scene; and what was
+/// drawn.
 pub(super) fn params(
     source: &Source<'_>,
     finger: Option<&Spanned<file::Finger>>,
     plant: Option<&Spanned<ParameterNode>>,
-) -> Result<(Params, Draws), SceneError> {
+) -> Result<(Params, Params, Draws), SceneError> {
     let (mut params, mut draws) = (Params::nominal(), Draws::default());
     if let Some(finger) = finger {
         tissue(source, finger.get_ref(), &mut params)?;
         finger_values(source, finger.get_ref(), &mut params)?;
     }
-    let undrawn = params.finger.clone();
+    let nominal = params.clone();
     let values = values(source, plant)?;
     let seed = |wanted: &str| {
         let value = values.iter().find(|(key, ..)| key == wanted);
@@ -43,14 +44,19 @@ pub(super) fn params(
         parameters::draw_contact(&mut params, seed);
     }
     if let Some(finger) = finger {
-        draws.finger = drawn_finger(source, finger.get_ref(), undrawn, &mut params)?;
+        draws.finger = drawn_finger(
+            source,
+            finger.get_ref(),
+            nominal.finger.clone(),
+            &mut params,
+        )?;
     }
     for (key, value, span) in values {
         if key != DRAW && key != CONTACT_DRAW {
             source.set(&mut params, &key, value.real(), span)?;
         }
     }
-    Ok((params, draws))
+    Ok((nominal, params, draws))
 }
 
 /// Draws the finger around what the scene gives of it, and keeps the surface, which is drawn with the plant.

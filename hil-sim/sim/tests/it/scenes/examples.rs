@@ -91,6 +91,30 @@ fn slabs_with_every_back_follow_their_exact_solution() {
     }
 }
 
+/// A slab of granite on a colder back: 10 mm let the cold through in a minute, which is known at the skin.
+#[test]
+fn a_colder_back_cools_the_real_object_from_when_it_appears() {
+    let slab = |back: &str| {
+        rows(&format!(
+            "duration_s = 60\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"granite\"\nappears_t_s = 1\n\
+             thickness_m = 0.002\nback = \"held\"\n{back}[[force]]\nt_s = 55\nforce_n = 2\n"
+        ))
+    };
+    let (as_object, colder) = (slab(""), slab("back_c = 20\n"));
+    // Before it appears, and in the step in which it does.
+    for t_s in [0.0, 0.5, 1.0] {
+        assert_eq!(at(&colder, t_s).object_real_c, 24.0, "at {t_s} s");
+    }
+    // Three seconds are L^2 / a, so after fifty it has the temperature of its back.
+    let untouched_c = at(&colder, 54.9).object_real_c;
+    assert!((untouched_c - 20.0).abs() < 1e-3, "{untouched_c}");
+    assert_eq!(at(&as_object, 54.9).object_real_c, 24.0);
+    // A linear problem: all temperatures but the skin's are 4 K lower, so the skin falls by 14/10 of what it did.
+    let fall = |rows: &[_]| 34.0 - at(rows, 60.0).skin_real_c;
+    let ratio = fall(&colder) / fall(&as_object);
+    assert!((ratio - 1.4).abs() < 1e-3, "{ratio}");
+}
+
 #[test]
 fn warm_slab_warms_the_finger_more_with_each_touch() {
     let rows = rows(&example("lift-and-replace", &[]));
