@@ -60,3 +60,9 @@ pub const MEAN: FingerProperties = FingerProperties {
     },
     air_w_m2k: 10.0,
 };
+
+/// The mean finger that rests on an insulating pad before contact: 0.5 to 3 W/(m² K) instead of a film of air.
+pub const MEAN_ON_PAD: FingerProperties = FingerProperties {
+    air_w_m2k: 1.75,
+    ..MEAN
+};

@@ -4,7 +4,11 @@
 use documented_figures::assert_figure;
 use thermal_campaigns::fidelity::{Percentiles, Population, Way, spread};
 use thermal_campaigns::parallel_map;
-use thermal_sim::NativeRunner;
+use thermal_plant::Params;
+use thermal_plant::finger::FingerParams;
+use thermal_plant::parameters::FingerDraw;
+use thermal_sim::scene::AssumedFinger;
+use thermal_sim::{NativeRunner, SceneRunner};
 
 /// Largest skin errors from 50 ms on, mK, of some cases of a population; no device reports a fault.
 fn errors_mk(population: Population, draws: u64, sample: usize) -> Percentiles {
@@ -38,4 +42,81 @@ fn skin_follows_with_fingers_that_the_device_does_not_know() {
     assert_figure("population_sample.box_most", of_box.max);
     assert_figure("population_sample.drawn_median", drawn.p50);
     assert_figure("population_sample.drawn_most", drawn.max);
+}
+
+/// What a finger of `finger.draw` has of its draw; the rest is the nominal layered finger.
+type Part = fn(&mut FingerParams, &FingerParams, &FingerDraw);
+
+/// Median of the largest skin errors from 50 ms on, mK, with six fingers that differ from the device's in one respect, on the
+/// six objects and a nominal, commissioned device. `told` is whether the device is told of a pad.
+fn median_of_part_mk(part: Part, told: bool) -> f64 {
+    let cases = Population::DrawnFingers.cases(1, 6);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let work = |case: &thermal_campaigns::fidelity::PopulationCase| {
+        let mut scene = case.scene(Way::AsItIs)?;
+        let (drawn, draw) = (scene.params.finger.clone(), scene.draws.finger);
+        let mut finger = FingerParams::layered();
+        part(&mut finger, &drawn, &draw.expect("a drawn finger"));
+        if !told {
+            scene.assumed_finger = AssumedFinger::Mean;
+        }
+        scene.seed = 1;
+        scene.params = Params {
+            finger,
+            ..Params::nominal()
+        };
+        let (_, figures) = NativeRunner.run(&scene)?;
+        Ok(figures.skin_max_mk().unwrap_or(f64::INFINITY))
+    };
+    let errors = parallel_map(&cases, threads, work, || ()).expect("every case runs");
+    Percentiles::of(&errors).expect("results").p50
+}
+
+#[test]
+fn each_unknown_of_a_finger_costs_what_is_stated() {
+    let place: Part = |finger, drawn, _| finger.air_w_m2k = drawn.air_w_m2k;
+    let parts: [(&str, Part, bool); 7] = [
+        ("nothing", |_, _, _| (), false),
+        (
+            "effusivity",
+            |finger, _, draw| {
+                for layer in &mut finger.layers {
+                    layer.medium.conductivity_w_mk *= draw.effusivity_factor;
+                    layer.medium.capacity_j_m3k *= draw.effusivity_factor;
+                }
+            },
+            false,
+        ),
+        (
+            "resistance",
+            |finger, drawn, _| finger.resistance_factor = drawn.resistance_factor,
+            false,
+        ),
+        (
+            "shape",
+            |finger, drawn, draw| {
+                for (layer, drawn) in finger.layers.iter_mut().zip(&drawn.layers) {
+                    layer.thickness_m = drawn.thickness_m;
+                    let medium = &mut layer.medium;
+                    medium.conductivity_w_mk =
+                        drawn.medium.conductivity_w_mk / draw.effusivity_factor;
+                    medium.capacity_j_m3k = drawn.medium.capacity_j_m3k / draw.effusivity_factor;
+                }
+            },
+            false,
+        ),
+        (
+            "blood",
+            |finger, drawn, _| finger.vessels = drawn.vessels,
+            false,
+        ),
+        ("place_not_told", place, false),
+        ("place", place, true),
+    ];
+    for (name, part, told) in parts {
+        assert_figure(
+            &format!("finger_part.{name}"),
+            median_of_part_mk(part, told),
+        );
+    }
 }

@@ -245,6 +245,11 @@ impl FingerBody {
         ),
         air: Fraction::from_bits(1160802),
     };
+    /// The mean finger on a pad before contact, for ticks of 1 ms.
+    pub const MEAN_ON_PAD: Self = Self {
+        air: Fraction::from_bits(203140),
+        ..Self::MEAN
+    };
 }
 
 /// State of a body.

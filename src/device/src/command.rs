@@ -61,14 +61,20 @@ impl ChosenMaterial {
 pub enum AssumedFinger {
     /// The thesis's half-space of skin.
     Thesis,
-    /// The mean layered finger: the device's default.
+    /// The mean layered finger, in air before contact: the device's default.
     #[default]
     Mean,
+    /// The mean layered finger, on an insulating pad before contact.
+    MeanOnPad,
 }
 
 impl AssumedFinger {
     /// The fingers with their words in the protocol.
-    pub const PROTOCOL_WORDS: [(&str, Self); 2] = [("mean", Self::Mean), ("thesis", Self::Thesis)];
+    pub const PROTOCOL_WORDS: [(&str, Self); 3] = [
+        ("mean", Self::Mean),
+        ("mean-on-pad", Self::MeanOnPad),
+        ("thesis", Self::Thesis),
+    ];
 
     /// Its word in the protocol.
     #[must_use]
@@ -76,15 +82,17 @@ impl AssumedFinger {
         match self {
             Self::Thesis => "thesis",
             Self::Mean => "mean",
+            Self::MeanOnPad => "mean-on-pad",
         }
     }
 
-    /// Its tissue and its film of air before contact, in fixed point.
+    /// Its tissue, and the film of air or pad before contact.
     #[must_use]
     pub const fn body(self) -> &'static FingerBody {
         match self {
             Self::Thesis => &FingerBody::THESIS,
             Self::Mean => &FingerBody::MEAN,
+            Self::MeanOnPad => &FingerBody::MEAN_ON_PAD,
         }
     }
 }

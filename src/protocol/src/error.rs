@@ -71,7 +71,7 @@ pub enum Error {
     UnknownFinger(QuotedWordExcerpt, usize),
     /// The argument of `material`, quoted here, is neither the name of a material nor `custom`.
     UnknownMaterial(QuotedWordExcerpt),
-    /// The argument of `finger`, quoted here, is neither `mean` nor `thesis`.
+    /// The argument of `finger`, quoted here, is none of its words.
     UnknownAssumedFinger(QuotedWordExcerpt),
     /// The word after the thickness of a slab, quoted here, is none of `insulated`, `held` and `film`.
     UnknownBack(QuotedWordExcerpt),

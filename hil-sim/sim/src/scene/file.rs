@@ -48,6 +48,7 @@ words! {
     pub(super) enum AssumedFinger {
         Thesis = "thesis",
         Mean = "mean",
+        MeanOnPad = "mean-on-pad",
     }
 }
 

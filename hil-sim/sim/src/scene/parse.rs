@@ -6,7 +6,8 @@ use std::path::Path;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
 use thermal_device::safety::Setpoint;
-use thermal_plant::{ConfigError, Plant};
+use thermal_plant::parameters::PlaceBeforeContact;
+use thermal_plant::{ConfigError, Params, Plant};
 use toml::Spanned;
 
 use super::fault::faults;
@@ -16,7 +17,7 @@ use super::nesting;
 use super::object::object;
 use super::plant::params;
 use super::source::{SceneError, Source};
-use super::{AssumedFinger, Force, HostLine, Scene};
+use super::{AssumedFinger, Draws, Force, HostLine, Scene};
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
@@ -58,12 +59,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
             .map(|name| law(&source, name))
             .transpose()?,
         object: object(&source, &file.object, duration_s, room_c)?,
-        assumed_finger: match file.device.finger {
-            Some(file::AssumedFinger::Thesis) => AssumedFinger::Thesis,
-            Some(file::AssumedFinger::Mean) => AssumedFinger::Mean,
-            None if params.finger.is_half_space() => AssumedFinger::Thesis,
-            None => AssumedFinger::Mean,
-        },
+        assumed_finger: assumed_finger(&file, &params, &draws),
         object_as_half_space: file.object.get_ref().told.is_some(),
         nominal,
         params,
@@ -102,6 +98,26 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         source.error(span.or(Some(file.skin_c.span())), error.to_string())
     })?;
     Ok(scene)
+}
+
+/// The finger that the operator lets the device assume; what the scene leaves open follows from what the operator sees: a
+/// finger of layers or the thesis's, in air or on a pad before its contact.
+fn assumed_finger(file: &File, params: &Params, draws: &Draws) -> AssumedFinger {
+    let drawn = draws.finger.and_then(|finger| finger.tissue);
+    let given = file
+        .finger
+        .as_ref()
+        .is_some_and(|finger| finger.get_ref().air_w_m2k.is_some());
+    match file.device.finger {
+        Some(file::AssumedFinger::Thesis) => AssumedFinger::Thesis,
+        Some(file::AssumedFinger::Mean) => AssumedFinger::Mean,
+        Some(file::AssumedFinger::MeanOnPad) => AssumedFinger::MeanOnPad,
+        None if params.finger.is_half_space() => AssumedFinger::Thesis,
+        None if !given && drawn.is_some_and(|tissue| tissue.before == PlaceBeforeContact::Pad) => {
+            AssumedFinger::MeanOnPad
+        }
+        None => AssumedFinger::Mean,
+    }
 }
 
 /// The control law of a name, with the names of the device's protocol.

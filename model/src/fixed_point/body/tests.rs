@@ -200,6 +200,7 @@ fn committed_fingers_are_those_of_their_impedances() {
     for (committed, finger) in [
         (FingerBody::THESIS, crate::finger::THESIS),
         (FingerBody::MEAN, crate::finger::MEAN),
+        (FingerBody::MEAN_ON_PAD, crate::finger::MEAN_ON_PAD),
     ] {
         let computed = FingerBody::new(&finger, TICK_S).expect("a valid finger");
         assert_eq!(source(&committed), source(&computed));

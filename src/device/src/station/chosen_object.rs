@@ -67,7 +67,7 @@ impl ChosenObject {
                 body,
                 factor: U16F16::ONE,
             },
-            (None, AssumedFinger::Mean) => ScaledBody {
+            (None, AssumedFinger::Mean | AssumedFinger::MeanOnPad) => ScaledBody {
                 body: &FingerBody::THESIS.tissue,
                 factor: (self.material.as_ref())
                     .map_or(U16F16::ONE, |material| material.impedance_ratio),

@@ -129,6 +129,7 @@ fn finger_chooses_the_assumed_finger_or_asks_for_it() {
     for (line, finger) in [
         ("finger", None),
         ("finger mean", Some(AssumedFinger::Mean)),
+        ("finger mean-on-pad", Some(AssumedFinger::MeanOnPad)),
         ("finger thesis", Some(AssumedFinger::Thesis)),
     ] {
         assert_eq!(
@@ -139,7 +140,7 @@ fn finger_chooses_the_assumed_finger_or_asks_for_it() {
     }
     assert_eq!(
         refusal("finger thumb"),
-        "err unknown finger 'thumb'; known: mean thesis"
+        "err unknown finger 'thumb'; known: mean mean-on-pad thesis"
     );
     assert_eq!(
         refusal("finger mean thesis"),

@@ -11,6 +11,7 @@ use thermal_sim::metrics::figures;
 use thermal_sim::processor::CoreRegister;
 use thermal_sim::processor::{Injection, MachineFault};
 use thermal_sim::run::run;
+use thermal_sim::scene::AssumedFinger;
 
 use super::scene;
 
@@ -137,6 +138,70 @@ fn layers_of_a_scene_are_those_of_the_nominal_fingers() {
     let drawn = params(&format!("{layered}[plant]\ndraw = 1\n")).finger;
     assert_eq!(drawn.layers, FingerParams::layered().layers);
     assert_ne!(drawn.vessels, Some(Vessels::THESIS));
+}
+
+/// The device's mean finger is the plant's nominal one, without blood; its pad is the middle of the drawn ones.
+#[test]
+fn mean_finger_of_the_device_is_the_nominal_layered_finger() {
+    let FingerParams {
+        layers,
+        core_w_m2k,
+        air_w_m2k,
+        ..
+    } = FingerParams::layered();
+    let tissue: Vec<_> = (layers.iter())
+        .map(|layer| relaxation_fit::Layer {
+            thickness_m: layer.thickness_m,
+            conductivity_w_mk: layer.medium.conductivity_w_mk,
+            capacity_j_m3k: layer.medium.capacity_j_m3k,
+            perfusion_w_m3k: 0.0,
+        })
+        .collect();
+    assert_eq!(tissue, relaxation_fit::fingers::MEAN_LAYERS);
+    assert_eq!(core_w_m2k, Some(f64::INFINITY));
+    assert_eq!(air_w_m2k, contact_model::finger::MEAN.air_w_m2k);
+    let pads: Vec<_> = (0..200)
+        .map(|seed| {
+            scene(&format!(
+                "{HEAD}[finger]\ntissue = \"layered\"\ndraw = {seed}\n"
+            ))
+        })
+        .filter(|scene| scene.assumed_finger == AssumedFinger::MeanOnPad)
+        .map(|scene| scene.params.finger.air_w_m2k)
+        .collect();
+    let mean = pads.iter().sum::<f64>() / pads.len() as f64;
+    // Uniform from 0.5 to 3: three standard errors of the mean of about 100.
+    assert!(
+        (mean - contact_model::finger::MEAN_ON_PAD.air_w_m2k).abs() < 0.22,
+        "{mean}"
+    );
+    assert!((70..130).contains(&pads.len()), "{}", pads.len());
+}
+
+/// The operator sees where a drawn finger rests before its contact; what the scene says goes first.
+#[test]
+fn a_finger_drawn_on_a_pad_is_told_to_the_device() {
+    for seed in 0..20 {
+        let layered = format!("[finger]\ntissue = \"layered\"\ndraw = {seed}\n");
+        let drawn = scene(&format!("{HEAD}{layered}"));
+        let on_pad = drawn.params.finger.air_w_m2k <= 3.0;
+        let expected = if on_pad {
+            AssumedFinger::MeanOnPad
+        } else {
+            AssumedFinger::Mean
+        };
+        assert_eq!(drawn.assumed_finger, expected, "{seed}");
+        let in_air = scene(&format!("{HEAD}{layered}air_w_m2k = 10\n"));
+        assert_eq!(in_air.assumed_finger, AssumedFinger::Mean);
+        for (word, told) in [
+            ("mean", AssumedFinger::Mean),
+            ("mean-on-pad", AssumedFinger::MeanOnPad),
+            ("thesis", AssumedFinger::Thesis),
+        ] {
+            let told_scene = scene(&format!("{HEAD}{layered}[device]\nfinger = \"{word}\"\n"));
+            assert_eq!(told_scene.assumed_finger, told);
+        }
+    }
 }
 
 #[test]
