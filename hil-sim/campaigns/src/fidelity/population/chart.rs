@@ -34,6 +34,8 @@ pub fn draw(results: &[PopulationResult]) -> anyhow::Result<Option<String>> {
             let title = format!("{}: {}", population.name(), population.title());
             let mut chart = ChartBuilder::on(area)
                 .margin(MARGIN)
+                // Room for half of the last label.
+                .margin_right(24)
                 .caption(title, (FONT.0, 13))
                 .x_label_area_size(38)
                 .y_label_area_size(58)
@@ -43,6 +45,7 @@ pub fn draw(results: &[PopulationResult]) -> anyhow::Result<Option<String>> {
                 .x_desc("largest skin error from 50 ms on / mK")
                 .y_desc("runs below it / %")
                 .x_label_formatter(&|mk| plain(*mk))
+                .y_label_formatter(&|percent| plain(*percent))
                 .light_line_style(TRANSPARENT)
                 .label_style(FONT)
                 .draw()?;
