@@ -13,7 +13,8 @@ named_enum! {
     #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum Way {
-        /// The object as it is, and a finger like the one that touches: the thesis's, or the mean layered one.
+        /// The object as it is, and a finger like the one that touches: the thesis's, or the mean layered one, in air or on
+        /// a pad before contact.
         AsItIs = "as-it-is",
         /// A half-space of the touched material, and the thesis's finger.
         #[serde(rename = "version-0.1")]

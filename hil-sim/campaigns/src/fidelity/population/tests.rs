@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use thermal_plant::parameters::Before;
 use thermal_plant::slab::BackBoundary;
 use thermal_sim::scene::AssumedFinger;
 
@@ -52,7 +53,16 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
         let [display, check, ..] = &scenes[0].params.sensors.thermistors;
         assert_eq!(display.lag_s, check.lag_s);
         assert!(scenes[0].commissioned);
-        assert_eq!(scenes[0].assumed_finger, AssumedFinger::Mean);
+        for scene in &scenes {
+            let tissue = scene.draws.finger.and_then(|finger| finger.tissue);
+            let on_pad = tissue.is_some_and(|tissue| tissue.before == Before::Pad);
+            let expected = if on_pad {
+                AssumedFinger::MeanOnPad
+            } else {
+                AssumedFinger::Mean
+            };
+            assert_eq!(scene.assumed_finger, expected);
+        }
         let old = cases[0].scene(Way::Version01).expect("a scene");
         assert_eq!(old.assumed_finger, AssumedFinger::Thesis);
         let drawn = scenes[0].draws.finger.is_some();
