@@ -5,6 +5,7 @@
 //! semi-infinite mode (chapter 4 of the thesis) the reference is always the interface temperature of Eq. 3-1.
 
 mod equivalent_forces;
+mod setpoint_lead;
 mod skin_on_object;
 
 use core::ops::RangeInclusive;
@@ -16,6 +17,7 @@ use crate::estimate::{
 };
 use crate::safety::Setpoint;
 use equivalent_forces::equivalent_forces;
+use setpoint_lead::SetpointLead;
 use skin_on_object::{ContactPairFactors, SkinInput, SkinOnObject};
 
 /// Largest error, K, of the set-point by interpolation in time, compared with Eq. 6-12 for the same force: 0.4 mK. The
@@ -68,14 +70,15 @@ pub struct PresentedObject<'a> {
 pub struct Reference {
     /// Set-point, 15 to 42 °C. The laws `pi` and `pi-10hz` control the display's reading to it, the fault detectors
     /// check the reading against it, and the host gets it in status and telemetry. With the law `model`, in a contact
-    /// for which the closed form of Eq. 6-12 is not valid, it contains the correction of the target, so both are equal.
+    /// for which the closed form of Eq. 6-12 is not valid, it contains the correction of the target.
     pub setpoint: Setpoint,
     /// Whether the set-point had to be limited, because the computed one was outside the safe range of 15 to 42 °C;
     /// reported to the host. A limited target does not count.
     pub limited: bool,
     /// Target, 15 to 42 °C, to which the law `model` controls. It differs from the set-point only with this law and the
     /// contact model with contact resistance. During contact it is the temperature by Eq. 6-12 plus a correction, which
-    /// brings a skin that is too warm or too cold to the temperature that it would have on the object. While the
+    /// brings a skin that is too warm or too cold to the temperature that it would have on the object; where finger and
+    /// object are followed as bodies, it is also ahead of a set-point that rises or falls. While the
     /// display waits for a finger, it is below the set-point by 1/128 of the difference from the set-point to the
     /// skin's temperature.
     pub target: Setpoint,
@@ -128,6 +131,8 @@ struct ContactSetpoints {
     /// Whether an earlier tick has computed the contact conductances for the interpolation that is due. With the law
     /// `model` the interpolation is computed only in a tick in which this is true; the other laws do not use it.
     conductances_ready: bool,
+    /// Lead of the target over the set-point; used only while finger and object are followed as bodies.
+    lead: SetpointLead,
 }
 
 impl ContactSetpoints {
@@ -146,6 +151,7 @@ impl ContactSetpoints {
             interpolation: None,
             interpolation_due: false,
             conductances_ready: false,
+            lead: SetpointLead::default(),
         }
     }
 
@@ -293,7 +299,8 @@ impl ReferenceGenerator {
     ///   offset. During contact the set-point is computed by the closed form while this is valid
     ///   ([`FingerContact::closed_form_is_valid`]) and its interpolation is computed, else from the simulated skin on
     ///   the object. The target adds a correction, by which the skin on the display follows the simulated skin; if the
-    ///   closed form is not valid, the set-point contains this correction, too.
+    ///   closed form is not valid, the set-point contains this correction, too. With bodies the target is also ahead of
+    ///   the set-point by [`SetpointLead`].
     ///
     /// `surface` is the temperature of the display's surface, °C. It is used only in the first tick of a contact: if it
     /// is more than 0.1 K outside the range from the preset to the waiting temperature, the closed form is excluded for
@@ -379,9 +386,13 @@ impl ReferenceGenerator {
             ),
             _ => Celsius::ZERO,
         };
-        let target = setpoint.saturating_add(correction);
+        let corrected = setpoint.saturating_add(correction);
+        let target = match bodies {
+            Some(_) if follow_skin => corrected.saturating_add(contact.lead.next_lead(setpoint)),
+            _ => corrected,
+        };
         // A skin that is followed tick by tick has its correction in the reported set-point, too.
-        let setpoint = if closed_form { setpoint } else { target };
+        let setpoint = if closed_form { setpoint } else { corrected };
         Some(Reference::limited_to_safe_range(setpoint, target))
     }
 }
