@@ -8,7 +8,7 @@ use contact_model::fixed_point::{
     Celsius, ChordInterpolation, ContactPair, ContactPairError, Force, log2_relative_pressure,
 };
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
-use thermal_display::device::estimate::FingerEstimator;
+use thermal_display::device::estimate::{Bodies, FingerEstimator};
 use thermal_display::device::reference::{
     self, ContactModel, ReferenceGenerator, SETPOINT_INTERPOLATION_TOLERANCE,
 };
@@ -191,7 +191,7 @@ fn reference_step(station: &mut Station, force: Force) -> u32 {
         .update_by_readings(station.skin, station.object, Some(force), 1);
     let scene = reference::PresentedObject {
         pair: &station.fixed[0].pair,
-        bodies: None,
+        bodies: &Bodies::HALF_SPACES,
         object: Some(station.object),
         mode: ContactModel::ContactResistance,
     };

@@ -176,7 +176,7 @@ pub static LOOPS: [Entry; 8] = [
     Entry {
         trees: &[TICK],
         names: &[
-            "contact_model::fixed_point::relaxation_bank::RelaxationBank::end_window",
+            "contact_model::fixed_point::relaxation_bank::updated_slow",
             "contact_model::fixed_point::relaxation_bank::RelaxationBank::step",
             "contact_model::fixed_point::relaxation_bank::RelaxationBank::scaled_flux_to_match",
         ],

@@ -120,17 +120,17 @@ pub struct Body {
     slow_input_gain: I0F32,
     tick_gain: I12F20,
     inverse_horizon_gain: I0F32,
-    state_shift: u32,
+    state_scale: i32,
 }
 
 impl Body {
     /// Coefficients that were computed before: of the fast relaxations input gain, decay and horizon factor, of the slow
-    /// ones input gain and decay, then slow input gain, tick gain, inverse horizon gain and shift of the states.
+    /// ones input gain and decay, then slow input gain, tick gain, inverse horizon gain and scale of the states.
     const fn from_bits<const FAST: usize, const SLOW: usize>(
         fast: [[i32; 3]; FAST],
         slow: [[i32; 2]; SLOW],
         [slow_input_gain, tick_gain, inverse_horizon_gain]: [i32; 3],
-        state_shift: u32,
+        state_scale: i32,
     ) -> Self {
         let mut body = Self {
             fast: [FastRelaxation::ZERO; FAST_MAX],
@@ -140,7 +140,7 @@ impl Body {
             slow_input_gain: I0F32::from_bits(slow_input_gain),
             tick_gain: I12F20::from_bits(tick_gain),
             inverse_horizon_gain: I0F32::from_bits(inverse_horizon_gain),
-            state_shift,
+            state_scale,
         };
         let mut i = 0;
         while i < FAST {
@@ -158,14 +158,23 @@ impl Body {
 
 /// A body whose impedance is that of another one times a factor: a half-space is one of another effusivity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ScaledBody<'a> {
+pub struct ScaledBody {
     /// The other body.
-    pub body: &'a Body,
+    pub body: Body,
     /// The factor.
     pub factor: U16F16,
 }
 
-impl ScaledBody<'_> {
+impl ScaledBody {
+    /// The half-space whose impedance is that of the thesis's skin times `factor`, for ticks of 1 ms.
+    #[must_use]
+    pub const fn half_space(factor: U16F16) -> Self {
+        Self {
+            body: FingerBody::THESIS.tissue,
+            factor,
+        }
+    }
+
     /// Response of the surface to a scaled flux of 1 at the end of its tick.
     #[must_use]
     pub fn tick_gain(&self) -> I12F20 {
@@ -220,7 +229,7 @@ impl FingerBody {
                 [59789914, 116960620],
             ],
             [113410214, 1139790, 850566125],
-            1,
+            2,
         ),
         air: Fraction::from_bits(0),
     };
@@ -241,7 +250,7 @@ impl FingerBody {
                 [76904616, 117361355],
             ],
             [145180051, 1455803, 665935421],
-            1,
+            2,
         ),
         air: Fraction::from_bits(1160802),
     };
@@ -320,7 +329,7 @@ impl Body {
             slow_input_gain: I0F32::ZERO,
             tick_gain: to_fixed(tick_gain),
             inverse_horizon_gain: I0F32::ZERO,
-            state_shift: state_shift as u32,
+            state_scale: 1 << state_shift,
         };
         let ticks = f64::from(MATCH_HORIZON_TICKS);
         for one in impedance.relaxations {
@@ -334,7 +343,7 @@ impl Body {
                     .get_mut(count)
                     .ok_or(BodyError::TooManyFast(count + 1))? = FastRelaxation {
                     input_gain: scaled(gain),
-                    decay: to_fixed(-libm::expm1(-r)),
+                    change: to_fixed(libm::expm1(-r)),
                     horizon_factor: to_fixed::<I1F31>(libm::exp(-(ticks - 1.0) * r)),
                 };
                 body.fast_count += 1;
@@ -368,11 +377,12 @@ impl Body {
     pub fn relaxations(&self) -> Relaxations<'_> {
         Relaxations {
             fast: &self.fast[..self.fast_count.min(FAST_MAX)],
-            slow: &self.slow[..self.slow_count.min(SLOW_MAX)],
+            slow: &self.slow,
+            slow_count: self.slow_count,
             slow_input_gain: self.slow_input_gain,
             tick_gain: self.tick_gain,
             inverse_horizon_gain: self.inverse_horizon_gain,
-            state_shift: self.state_shift,
+            state_scale: self.state_scale,
         }
     }
 

@@ -58,11 +58,12 @@ const TICK_GAIN: I12F20 = I12F20::from_bits(1_240_943);
 const RELAXATIONS: Relaxations<'_> = Relaxations {
     fast: &FAST_MODES,
     slow: &SLOW_MODES,
+    slow_count: SLOW,
     slow_input_gain: I0F32::from_bits(83_730_349),
     tick_gain: TICK_GAIN,
     // 1 / 5.060.
     inverse_horizon_gain: I0F32::from_bits(848_800_003),
-    state_shift: 0,
+    state_scale: 1,
 };
 
 /// Change of the surface temperature of a half-space, updated tick by tick; the default is uniform.
@@ -107,6 +108,7 @@ impl HalfSpace {
     }
 
     /// Updates the state by one tick in which `scaled_flux` flows.
+    #[inline(always)]
     pub fn step(&mut self, scaled_flux: Celsius) {
         self.0.step(scaled_flux, &RELAXATIONS);
     }

@@ -34,7 +34,16 @@ macro_rules! word {
             }
             #[inline]
             fn limited(units: i64) -> Self {
-                Self::from_bits(units.clamp(<$bits>::MIN.into(), <$bits>::MAX.into()) as $bits)
+                // Compares high words: half the instructions of a clamp after a shift.
+                let high_word = |number: i64| (number >> 32) as i32;
+                let low = units as $bits;
+                Self::from_bits(if high_word(units) == high_word(low.into()) {
+                    low
+                } else if units < 0 {
+                    <$bits>::MIN
+                } else {
+                    <$bits>::MAX
+                })
             }
         }
     };

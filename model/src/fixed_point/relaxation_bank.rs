@@ -10,9 +10,9 @@
 //! the window's fluxes; within a window their sum is extrapolated along a straight line.
 
 use fixed::traits::LossyFrom;
-use fixed::types::{I0F32, I1F31, I10F54, I11F53, I12F20, I42F22};
+use fixed::types::{I0F32, I1F31, I10F54, I11F53, I12F20};
 
-use super::{Celsius, product, saturated};
+use super::{Celsius, product};
 
 /// Ticks between two updates of the slow relaxations.
 pub(super) const WINDOW: u32 = 8;
@@ -24,8 +24,8 @@ pub const MATCH_HORIZON_TICKS: u32 = 20;
 pub struct FastRelaxation {
     /// Response to a scaled flux of 1 in one tick.
     pub(super) input_gain: I0F32,
-    /// Fraction of the state that decays in a tick, `1 - e^-r`.
-    pub(super) decay: I0F32,
+    /// Change of the state in a tick over the state, `e^-r - 1`: negative, for the processor's multiply and add.
+    pub(super) change: I0F32,
     /// Fraction of the state that remains at the horizon of [`RelaxationBank::scaled_flux_to_match`], `e^(-19 r)`.
     pub(super) horizon_factor: I1F31,
 }
@@ -34,11 +34,11 @@ impl FastRelaxation {
     /// One that answers nothing, for unused places.
     pub(super) const ZERO: Self = Self::from_bits([0; 3]);
 
-    /// From the bits of input gain, decay and horizon factor.
+    /// From the bits of input gain, decay (the negative change) and horizon factor.
     pub(super) const fn from_bits([input_gain, decay, horizon_factor]: [i32; 3]) -> Self {
         Self {
             input_gain: I0F32::from_bits(input_gain),
-            decay: I0F32::from_bits(decay),
+            change: I0F32::from_bits(-decay),
             horizon_factor: I1F31::from_bits(horizon_factor),
         }
     }
@@ -72,41 +72,45 @@ impl SlowRelaxation {
 pub struct Relaxations<'a> {
     /// The fast ones, updated every tick.
     pub(super) fast: &'a [FastRelaxation],
-    /// The slow ones, updated once per window.
+    /// The slow ones, updated once per window, and unused places.
     pub(super) slow: &'a [SlowRelaxation],
+    /// How many slow ones are used.
+    pub(super) slow_count: usize,
     /// Response of all slow relaxations together to a scaled flux of 1, one tick later: the sum of `g e^-r`.
     pub(super) slow_input_gain: I0F32,
     /// Response to a scaled flux of 1 at the end of its tick: the sum of all gains, and the direct term.
     pub(super) tick_gain: I12F20,
     /// Inverse of the response to a constant scaled flux of 1 after [`MATCH_HORIZON_TICKS`].
     pub(super) inverse_horizon_gain: I0F32,
-    /// The states are temperatures divided by two to this power, for bodies whose gains exceed the range of theirs.
-    pub(super) state_shift: u32,
+    /// The states are temperatures divided by this power of two, for bodies whose gains exceed the range of theirs.
+    pub(super) state_scale: i32,
 }
 
 /// Change of the surface temperature of a body, updated tick by tick; the default is uniform. It has room for `FAST` fast
 /// and `SLOW` slow relaxations, of which the coefficients may name fewer.
 ///
 /// No input overflows: a scaled flux is limited to ±32 K, more than any contact gives, and the states saturate.
+// In C order, what all banks have stands at the same place in each, so that reading it takes no look at their size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
 pub struct RelaxationBank<const FAST: usize, const SLOW: usize> {
+    free_response: Celsius,
+    /// Ticks until the end of the window.
+    pub(super) ticks_left: u32,
+    /// Length of the window, ticks.
+    window: u32,
+    /// Sum of the scaled fluxes since the start of the window.
+    flux_sum: Celsius,
+    /// Change of the sum of the slow relaxations since the start of the window, K.
+    slow_change: I10F54,
+    /// Decay of this sum in a tick, K.
+    slow_decay: I10F54,
+    /// Sum of the slow relaxations at the start of the window.
+    slow_sum: Celsius,
     /// States of the fast relaxations at the end of the coming tick if no flux flows, K.
     fast: [I10F54; FAST],
     /// States of the slow relaxations at the start of the window, K; limited to ±256 K.
     slow: [I10F54; SLOW],
-    /// Sum of the slow relaxations at the start of the window.
-    slow_sum: Celsius,
-    /// Change of this sum since, K.
-    slow_change: I10F54,
-    /// Decay of this sum in a tick, K.
-    slow_decay: I10F54,
-    /// Sum of the scaled fluxes since the start of the window.
-    flux_sum: Celsius,
-    /// Length of the window, ticks.
-    window: u32,
-    /// Ticks until its end.
-    pub(super) ticks_left: u32,
-    free_response: Celsius,
 }
 
 impl<const FAST: usize, const SLOW: usize> Default for RelaxationBank<FAST, SLOW> {
@@ -138,17 +142,35 @@ fn limited(state: I10F54) -> I10F54 {
 }
 
 /// A sum of states as a temperature; saturates.
-fn scaled_up(sum: Celsius, state_shift: u32) -> Celsius {
-    match state_shift {
-        0 => sum,
-        shift => saturated(I42F22::from(sum) << shift),
-    }
+fn scaled_up(sum: Celsius, state_scale: i32) -> Celsius {
+    Celsius::from_bits(sum.to_bits().saturating_mul(state_scale))
 }
 
 /// A scaled flux limited to ±32 K.
 fn bounded(scaled_flux: Celsius) -> Celsius {
     const BOUND: Celsius = Celsius::const_from_int(32);
     scaled_flux.clamp(-BOUND, BOUND - Celsius::DELTA)
+}
+
+/// Updates the states of slow relaxations by the flux of the ticks that have passed; their sum, and its decay in a window.
+/// Not inlined: unrolled, the loop has more values than the processor has registers.
+#[inline(never)]
+fn updated_slow(
+    states: &mut [I10F54],
+    relaxations: &[SlowRelaxation],
+    flux_sum: Celsius,
+    passed: i32,
+) -> (Celsius, I10F54) {
+    let (mut sum, mut decay) = (Celsius::ZERO, I10F54::ZERO);
+    for (state, relaxation) in states.iter_mut().zip(relaxations) {
+        let mut updated = *state + flux_sum.wide_mul(relaxation.input_gain);
+        let decay_of_tick = relaxation.decay >> WINDOW.ilog2();
+        updated += celsius(updated).wide_mul(decay_of_tick * -passed);
+        *state = limited(updated);
+        sum = sum.saturating_add(celsius(*state));
+        decay += celsius(*state).wide_mul(relaxation.decay);
+    }
+    (sum, decay)
 }
 
 impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
@@ -158,10 +180,7 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
     #[inline]
     pub fn staggered(&self, relaxations: &Relaxations<'_>) -> Self {
         let mut other = *self;
-        other.end_window(
-            (self.ticks_left + WINDOW / 2 - 1) % WINDOW + 1,
-            relaxations.slow,
-        );
+        other.end_window((self.ticks_left + WINDOW / 2 - 1) % WINDOW + 1, relaxations);
         other
     }
 
@@ -192,23 +211,26 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
     }
 
     /// Updates the state by one tick in which `scaled_flux` flows.
-    #[inline]
+    #[inline(always)]
     pub fn step(&mut self, scaled_flux: Celsius, relaxations: &Relaxations<'_>) {
         let flux = bounded(scaled_flux);
         let mut fast_sum = Celsius::ZERO;
         for (state, relaxation) in self.fast.iter_mut().zip(relaxations.fast) {
-            *state += flux.wide_mul(relaxation.input_gain);
-            *state += celsius(*state).wide_mul(-relaxation.decay);
+            let FastRelaxation {
+                input_gain, change, ..
+            } = *relaxation;
+            let heated = *state + flux.wide_mul(input_gain);
+            *state = heated + celsius(heated).wide_mul(change);
             fast_sum = fast_sum.saturating_add(celsius(*state));
         }
         self.flux_sum += flux;
         self.slow_change += flux.wide_mul(relaxations.slow_input_gain) - self.slow_decay;
         self.ticks_left -= 1;
         if self.ticks_left == 0 {
-            self.end_window(WINDOW, relaxations.slow);
+            self.end_window(WINDOW, relaxations);
         }
         let sum = fast_sum.saturating_add(self.slow_response());
-        self.free_response = scaled_up(sum, relaxations.state_shift);
+        self.free_response = scaled_up(sum, relaxations.state_scale);
     }
 
     /// Sum of the slow relaxations, extrapolated from the start of the window.
@@ -218,16 +240,10 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
 
     /// Updates the slow relaxations by the ticks that have passed of the window, and starts one of `ticks`.
     #[inline]
-    fn end_window(&mut self, ticks: u32, slow: &[SlowRelaxation]) {
-        let passed = (self.window - self.ticks_left) as i32;
-        let (mut sum, mut decay) = (Celsius::ZERO, I10F54::ZERO);
-        for (state, relaxation) in self.slow.iter_mut().zip(slow) {
-            *state += self.flux_sum.wide_mul(relaxation.input_gain);
-            let decayed = celsius(*state).wide_mul(relaxation.decay / WINDOW as i32 * passed);
-            *state = limited(*state - decayed);
-            sum = sum.saturating_add(celsius(*state));
-            decay += celsius(*state).wide_mul(relaxation.decay);
-        }
+    fn end_window(&mut self, ticks: u32, relaxations: &Relaxations<'_>) {
+        let slow = &relaxations.slow[..relaxations.slow_count.min(SLOW)];
+        let passed = self.window - self.ticks_left;
+        let (sum, decay) = updated_slow(&mut self.slow, slow, self.flux_sum, passed as i32);
         (self.slow_sum, self.slow_change) = (sum, I10F54::ZERO);
         self.slow_decay = decay / i64::from(WINDOW);
         (self.flux_sum, self.window, self.ticks_left) = (Celsius::ZERO, ticks, ticks);
@@ -251,7 +267,7 @@ impl<const FAST: usize, const SLOW: usize> RelaxationBank<FAST, SLOW> {
             .saturating_add(half_of_fast)
             .saturating_add(slow)
             .saturating_sub(celsius(slow_decay));
-        let difference = scaled_up(difference, relaxations.state_shift);
+        let difference = scaled_up(difference, relaxations.state_scale);
         product(difference, relaxations.inverse_horizon_gain)
     }
 }

@@ -178,7 +178,7 @@ fn source(finger: &FingerBody) -> std::string::String {
         .map(|one| {
             [
                 one.input_gain.to_bits(),
-                one.decay.to_bits(),
+                -one.change.to_bits(),
                 one.horizon_factor.to_bits(),
             ]
         })
@@ -191,8 +191,8 @@ fn source(finger: &FingerBody) -> std::string::String {
         tissue.tick_gain.to_bits(),
         tissue.inverse_horizon_gain.to_bits(),
     ];
-    let (shift, air) = (tissue.state_shift, finger.air.to_bits());
-    std::format!("Body::from_bits({fast:?}, {slow:?}, {sums:?}, {shift}), air {air}")
+    let (scale, air) = (tissue.state_scale, finger.air.to_bits());
+    std::format!("Body::from_bits({fast:?}, {slow:?}, {sums:?}, {scale}), air {air}")
 }
 
 #[test]

@@ -128,7 +128,7 @@ impl Contact {
     /// Conductance between the bodies of skin and object. Its target is `T_skin,i - T_object,i`, less the free responses
     /// of both.
     #[must_use]
-    pub fn conductance_of(&self, skin: &Body, object: &ScaledBody<'_>) -> ContactConductance {
+    pub fn conductance_of(&self, skin: &Body, object: &ScaledBody) -> ContactConductance {
         ContactConductance::new(
             resistance(Ratio::ONE, self.root_rate_per_tick, self.weight),
             skin.tick_gain().saturating_add(object.tick_gain()),

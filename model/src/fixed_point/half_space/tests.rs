@@ -78,7 +78,7 @@ fn coefficients_are_those_of_the_sum_of_modes() {
             mode.input_gain.to_bits(),
             scaled(Exact::input_gain(exact), 32)
         );
-        assert_eq!(mode.decay.to_bits(), scaled(-(-exact.0).exp_m1(), 32));
+        assert_eq!(mode.change.to_bits(), scaled((-exact.0).exp_m1(), 32));
         let remaining = f64::from(MATCH_HORIZON_TICKS) - 1.0;
         assert_eq!(
             mode.horizon_factor.to_bits(),

@@ -72,13 +72,13 @@ pub struct ContactConductances {
 }
 
 impl ContactConductances {
-    fn new(pair: &ContactPair, bodies: Option<Bodies<'_>>, force: Force) -> Self {
+    fn new(pair: &ContactPair, bodies: Option<&Bodies<'_>>, force: Force) -> Self {
         let contact = pair.at_pressure(log2_relative_pressure(force));
         let (display, object) = match bodies {
             None => (contact.display_conductance(), contact.object_conductance()),
-            Some(Bodies { finger, object }) => (
+            Some(Bodies { finger, object, .. }) => (
                 contact.display_conductance_of(&finger.tissue),
-                contact.conductance_of(&finger.tissue, &object),
+                contact.conductance_of(&finger.tissue, object),
             ),
         };
         Self {
@@ -334,7 +334,7 @@ impl FingerEstimator {
     pub fn step_skin_heat_flow(
         &mut self,
         pair: &ContactPair,
-        bodies: Option<Bodies<'_>>,
+        bodies: &Bodies<'_>,
         surface: Celsius,
     ) -> Watt {
         let Some(PreContactTemperatures { skin, room }) = self.before_contact else {
@@ -348,7 +348,10 @@ impl FingerEstimator {
         let force = contact.force.long_mean();
         let conductances = match &mut contact.conductances {
             Some(conductances) if conductances.are_valid_for_force(force) => conductances,
-            outdated => outdated.insert(ContactConductances::new(pair, bodies, force)),
+            outdated => {
+                let bodies = (!bodies.are_half_spaces).then_some(bodies);
+                outdated.insert(ContactConductances::new(pair, bodies, force))
+            }
         };
         let above_display = skin.saturating_sub(surface);
         let cooling = self.skin_state_on_display.free_response();

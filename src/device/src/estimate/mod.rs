@@ -49,7 +49,7 @@ impl Estimator {
     /// temperatures as estimated before this update. `touch` is the force, N, of a finger that touches, or `None`.
     /// `landed_ticks` is the number of ticks of 1 ms since the force rose from zero, at most 32; it is used only in the
     /// first tick of a contact. `pair` holds the thermal properties of finger, object and display; without `pair` the
-    /// finger's heat is taken as zero. `bodies` are given if finger and object are not both half-spaces.
+    /// finger's heat is taken as zero.
     #[inline(always)]
     pub fn update_estimates(
         &mut self,
@@ -57,7 +57,7 @@ impl Estimator {
         touch: Option<Force>,
         landed_ticks: u32,
         pair: Option<&ContactPair>,
-        bodies: Option<Bodies<'_>>,
+        bodies: &Bodies<'_>,
     ) -> PlateEstimateBeforeReading {
         let ValidReadings {
             display,

@@ -1,15 +1,27 @@
 //! Thermal state of the skin: the thesis's half-space, or the tissue of another finger.
 
 use contact_model::fixed_point::{BodyState, Celsius, FingerBody, HalfSpace, ScaledBody, product};
+use fixed::types::U16F16;
 
-/// Assumed finger and presented object, where they are not both half-spaces. The thesis's equations then do not hold, and
+/// Assumed finger and presented object. Where they are not both half-spaces, the thesis's equations do not hold, and
 /// finger and object are each followed by relaxations of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bodies<'a> {
     /// The assumed finger.
     pub finger: &'a FingerBody,
     /// The presented object.
-    pub object: ScaledBody<'a>,
+    pub object: ScaledBody,
+    /// Whether both are half-spaces.
+    pub are_half_spaces: bool,
+}
+
+impl Bodies<'static> {
+    /// The thesis's finger, and an object of the same effusivity.
+    pub const HALF_SPACES: Self = Self {
+        finger: &FingerBody::THESIS,
+        object: ScaledBody::half_space(U16F16::ONE),
+        are_half_spaces: true,
+    };
 }
 
 /// Thermal state of a finger's skin. Its output is the cooling of the skin's surface since before the contact, K: positive
@@ -35,51 +47,71 @@ impl SkinState {
     pub fn step(
         &mut self,
         into_object: Option<Celsius>,
-        bodies: Option<Bodies<'_>>,
+        bodies: &Bodies<'_>,
         skin_above_room: Celsius,
     ) {
-        match (&mut *self, bodies) {
-            (Self::HalfSpace(state), None) => state.step(into_object.unwrap_or(Celsius::ZERO)),
-            _ => self.step_body(into_object, bodies, skin_above_room),
+        if !bodies.are_half_spaces {
+            self.step_tissue(into_object, bodies.finger, skin_above_room);
+        } else if let Some(state) = self.half_space() {
+            state.step(into_object.unwrap_or(Celsius::ZERO));
         }
     }
 
-    /// As [`Self::step`], for a skin that is no half-space or was none in the tick before. A skin of another kind starts
-    /// uniform: the history of the contact is lost, as if the skin had recovered.
+    /// [`Self::step`] of a finger that is no half-space, apart from the code of the thesis's.
     #[inline(never)]
-    fn step_body(
+    fn step_tissue(
         &mut self,
         into_object: Option<Celsius>,
-        bodies: Option<Bodies<'_>>,
+        finger: &FingerBody,
         skin_above_room: Celsius,
     ) {
-        match (&*self, bodies) {
-            (Self::Body(state), None) => {
-                *self = Self::HalfSpace(HalfSpace::uniform_in_step_with(state));
-            }
-            (Self::HalfSpace(state), Some(_)) => *self = Self::Body(state.uniform_body()),
-            _ => {}
+        if let Some(state) = self.tissue() {
+            let flux = flux_beyond_air(finger, into_object, state.free_response(), skin_above_room);
+            state.step(flux, &finger.tissue.relaxations());
         }
-        match (self, bodies) {
-            (Self::Body(state), Some(Bodies { finger, .. })) => {
-                let flux =
-                    flux_beyond_air(finger, into_object, state.free_response(), skin_above_room);
-                state.step(flux, &finger.tissue.relaxations());
-            }
-            (Self::HalfSpace(state), _) => state.step(into_object.unwrap_or(Celsius::ZERO)),
-            (Self::Body(_), None) => {}
+    }
+
+    /// The state as that of a half-space. A skin that was another kind in the tick before starts uniform: the history of
+    /// the contact is lost, as if the skin had recovered. Never `None`.
+    #[inline(always)]
+    pub fn half_space(&mut self) -> Option<&mut HalfSpace> {
+        if let Self::Body(_) = self {
+            self.change_kind();
         }
+        match self {
+            Self::HalfSpace(state) => Some(state),
+            Self::Body(_) => None,
+        }
+    }
+
+    /// The state as that of an assumed finger's tissue, as [`Self::half_space`].
+    #[inline(always)]
+    pub fn tissue(&mut self) -> Option<&mut BodyState> {
+        if let Self::HalfSpace(_) = self {
+            self.change_kind();
+        }
+        match self {
+            Self::HalfSpace(_) => None,
+            Self::Body(state) => Some(state),
+        }
+    }
+
+    /// A uniform skin of the other kind, with the rhythm of this one's updates.
+    #[cold]
+    #[inline(never)]
+    fn change_kind(&mut self) {
+        *self = match self {
+            Self::HalfSpace(state) => Self::Body(state.uniform_body()),
+            Self::Body(state) => Self::HalfSpace(HalfSpace::uniform_in_step_with(state)),
+        };
     }
 
     /// The same state with updates of its slow relaxations at other ticks, for the simulated skin beside the real one.
     #[must_use]
-    pub fn staggered(&self, bodies: Option<Bodies<'_>>) -> Self {
-        match (self, bodies) {
-            (Self::HalfSpace(state), _) => Self::HalfSpace(state.staggered()),
-            (Self::Body(state), Some(bodies)) => {
-                Self::Body(state.staggered(&bodies.finger.tissue.relaxations()))
-            }
-            (Self::Body(state), None) => Self::Body(*state),
+    pub fn staggered(&self, bodies: &Bodies<'_>) -> Self {
+        match self {
+            Self::HalfSpace(state) => Self::HalfSpace(state.staggered()),
+            Self::Body(state) => Self::Body(state.staggered(&bodies.finger.tissue.relaxations())),
         }
     }
 

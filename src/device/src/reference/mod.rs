@@ -18,7 +18,7 @@ use crate::estimate::{
 use crate::safety::Setpoint;
 use equivalent_forces::equivalent_forces;
 use setpoint_lead::SetpointLead;
-use skin_on_object::{ContactPairFactors, SkinInput, SkinOnObject};
+use skin_on_object::{BodiesBeforeContact, ContactPairFactors, SkinOnObject};
 
 /// Largest error, K, of the set-point by interpolation in time, compared with Eq. 6-12 for the same force: 0.4 mK. The
 /// smaller it is, the more often Eq. 6-12 must be evaluated. Noise of the force may add up to 0.1 mK before the
@@ -55,9 +55,9 @@ pub struct PresentedObject<'a> {
     /// Constants of the contact of a finger's skin with the presented material, and of its contact with the display's
     /// surface. Contact conductances and set-points are computed from them.
     pub pair: &'a ContactPair,
-    /// Assumed finger and presented object, if they are not both half-spaces; Eq. 6-12 then does not hold, and the
-    /// set-point follows from the simulated skin on the object with every control law.
-    pub bodies: Option<Bodies<'a>>,
+    /// Assumed finger and presented object. If they are not both half-spaces, Eq. 6-12 does not hold, and the set-point
+    /// follows from the simulated skin on the object with every control law.
+    pub bodies: &'a Bodies<'a>,
     /// Temperature of the object before contact, °C; `None` takes the temperature of the room.
     pub object: Option<Celsius>,
     /// Contact model that gives the set-point: with contact resistance (Eq. 6-12) or perfect contact (Eq. 3-1).
@@ -131,8 +131,6 @@ struct ContactSetpoints {
     /// Whether an earlier tick has computed the contact conductances for the interpolation that is due. With the law
     /// `model` the interpolation is computed only in a tick in which this is true; the other laws do not use it.
     conductances_ready: bool,
-    /// Lead of the target over the set-point; used only while finger and object are followed as bodies.
-    lead: SetpointLead,
 }
 
 impl ContactSetpoints {
@@ -151,7 +149,6 @@ impl ContactSetpoints {
             interpolation: None,
             interpolation_due: false,
             conductances_ready: false,
-            lead: SetpointLead::default(),
         }
     }
 
@@ -241,6 +238,8 @@ pub struct ReferenceGenerator {
     /// semi-infinite model, and from [`Self::restart_contact`] or [`Self::discard_contact_and_skin_simulation`] until the next reference is
     /// generated. Without an object it has no meaning.
     contact: Option<ContactSetpoints>,
+    /// Lead of the target over the set-point in the present contact with an object that is followed as a body.
+    lead: SetpointLead,
     /// Number of evaluations of `erfcx`, the costly function in Eq. 6-12, since start-up; wraps at 2^32. For the
     /// telemetry.
     evaluations: u32,
@@ -278,8 +277,9 @@ impl ReferenceGenerator {
     /// Lets a finger that touches the display begin a new contact with the object in the next tick. The simulated skin
     /// starts with the temperature that the real skin has on the display. Called when the host chooses another
     /// material, object temperature or contact model, and at `start`.
-    pub fn restart_contact(&mut self, finger: &mut FingerEstimator, bodies: Option<Bodies<'_>>) {
+    pub fn restart_contact(&mut self, finger: &mut FingerEstimator, bodies: &Bodies<'_>) {
         self.contact = None;
+        self.lead = SetpointLead::default();
         self.skin_on_object
             .start_from_skin_on_display(finger.skin_state_on_display(), bodies);
         finger.forget_conductances();
@@ -323,22 +323,34 @@ impl ReferenceGenerator {
         if !self.factors.were_computed_for(object_presented.pair) {
             self.factors = ContactPairFactors::new(object_presented.pair);
         }
-        let bodies = object_presented.bodies;
-        let input = SkinInput {
-            factors: &self.factors,
-            bodies,
-            skin_above_object: skin.saturating_sub(object),
-            skin_above_room: skin.saturating_sub(room),
-        };
+        let skin_above_object = skin.saturating_sub(object);
+        if !object_presented.bodies.are_half_spaces {
+            let before = BodiesBeforeContact {
+                bodies: object_presented.bodies,
+                skin_above_object,
+                skin_above_room: skin.saturating_sub(room),
+            };
+            return Some(self.next_reference_of_bodies(
+                &before,
+                (object_presented.pair, skin, object),
+                finger,
+                follow_skin,
+            ));
+        }
+        let factors = &self.factors;
         let (contact, skin_state_on_display) = finger.contact_and_skin_state();
         let Some(finger) = contact else {
             self.contact = None;
-            self.skin_on_object.step(None, &input);
+            self.skin_on_object.step(None, factors, skin_above_object);
             if !follow_skin {
                 return Some(Reference::at(object_presented.pair.preset(skin, object)));
             }
-            let setpoint =
-                (self.skin_on_object).setpoint(&input, skin, Some(skin_state_on_display));
+            let setpoint = self.skin_on_object.setpoint(
+                factors,
+                skin,
+                skin_above_object,
+                Some(skin_state_on_display),
+            );
             return Some(Reference::limited_to_safe_range(
                 setpoint,
                 setpoint.saturating_sub(waiting_offset_below_preset(skin, setpoint)),
@@ -362,8 +374,8 @@ impl ReferenceGenerator {
             }
         };
         let conductance = finger.stored_conductances().map(|both| &both.object);
-        (self.skin_on_object).step(conductance, &input);
-        let closed_form = bodies.is_none() && (finger.closed_form_is_valid() || !follow_skin);
+        (self.skin_on_object).step(conductance, factors, skin_above_object);
+        let closed_form = finger.closed_form_is_valid() || !follow_skin;
         contact.update_interpolation_due_and_conductances(
             finger,
             object_presented.pair,
@@ -376,24 +388,69 @@ impl ReferenceGenerator {
             follow_skin,
             &mut self.evaluations,
         );
-        let setpoint =
-            interpolated.unwrap_or_else(|| (self.skin_on_object).setpoint(&input, skin, None));
+        let setpoint = interpolated.unwrap_or_else(|| {
+            (self.skin_on_object).setpoint(factors, skin, skin_above_object, None)
+        });
         let correction = match finger.stored_conductances() {
             Some(both) if follow_skin => (self.skin_on_object).skin_matching_correction(
                 skin_state_on_display,
                 &both.display,
-                bodies,
+                None,
             ),
             _ => Celsius::ZERO,
         };
-        let corrected = setpoint.saturating_add(correction);
-        let target = match bodies {
-            Some(_) if follow_skin => corrected.saturating_add(contact.lead.next_lead(setpoint)),
-            _ => corrected,
+        let target = setpoint.saturating_add(correction);
+        // A skin that is followed tick by tick has its correction in the reported set-point, too.
+        let setpoint = if closed_form { setpoint } else { target };
+        Some(Reference::limited_to_safe_range(setpoint, target))
+    }
+
+    /// [`Self::next_reference`] in the mode with contact resistance for a finger and an object that are not both
+    /// half-spaces, apart from the code of the thesis's. `pair`, `skin` and `object` are the contact's constants and the
+    /// temperatures before contact, °C.
+    #[inline(never)]
+    fn next_reference_of_bodies(
+        &mut self,
+        before: &BodiesBeforeContact<'_>,
+        (pair, skin, object): (&ContactPair, Celsius, Celsius),
+        finger: &mut FingerEstimator,
+        follow_skin: bool,
+    ) -> Reference {
+        let (contact, skin_state_on_display) = finger.contact_and_skin_state();
+        self.contact = None;
+        let Some(contact) = contact else {
+            self.lead = SetpointLead::default();
+            let mut changes = self.skin_on_object.step_bodies(None, before);
+            if !follow_skin {
+                return Reference::at(pair.preset(skin, object));
+            }
+            changes.cooling = skin_state_on_display.free_response();
+            let setpoint = changes.setpoint(&self.factors, skin, before.skin_above_object);
+            return Reference::limited_to_safe_range(
+                setpoint,
+                setpoint.saturating_sub(waiting_offset_below_preset(skin, setpoint)),
+            );
+        };
+        let conductances = contact.stored_conductances();
+        let changes =
+            (self.skin_on_object).step_bodies(conductances.map(|both| &both.object), before);
+        let setpoint = changes.setpoint(&self.factors, skin, before.skin_above_object);
+        let correction = match conductances {
+            Some(both) if follow_skin => (self.skin_on_object).skin_matching_correction(
+                skin_state_on_display,
+                &both.display,
+                Some(before.bodies),
+            ),
+            _ => Celsius::ZERO,
         };
         // A skin that is followed tick by tick has its correction in the reported set-point, too.
-        let setpoint = if closed_form { setpoint } else { corrected };
-        Some(Reference::limited_to_safe_range(setpoint, target))
+        let corrected = setpoint.saturating_add(correction);
+        let lead = if follow_skin {
+            self.lead.next_lead(setpoint)
+        } else {
+            Celsius::ZERO
+        };
+        Reference::limited_to_safe_range(corrected, corrected.saturating_add(lead))
     }
 }
 

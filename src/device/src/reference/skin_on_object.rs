@@ -50,17 +50,44 @@ impl ContactPairFactors {
     }
 }
 
-/// What one tick of the simulation takes, for a skin on an object.
+/// Finger and object that are not both half-spaces, before the contact.
 #[derive(Clone, Copy, Debug)]
-pub struct SkinInput<'a> {
-    /// Constants of Eq. 6-12.
-    pub factors: &'a ContactPairFactors,
-    /// Finger and object, if they are not both half-spaces.
-    pub bodies: Option<Bodies<'a>>,
-    /// The skin's temperature minus the object's, both before contact, K.
+pub struct BodiesBeforeContact<'a> {
+    /// Finger and object.
+    pub bodies: &'a Bodies<'a>,
+    /// The skin's temperature minus the object's, K.
     pub skin_above_object: Celsius,
-    /// The skin's temperature minus the room's, both before contact, K.
+    /// The skin's temperature minus the room's, K.
     pub skin_above_room: Celsius,
+}
+
+/// Changes of the surfaces' temperatures since before the contact, K.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SurfaceChanges {
+    /// How much colder the skin's surface is.
+    pub cooling: Celsius,
+    /// How much warmer the object's surface is.
+    pub warming: Celsius,
+}
+
+impl SurfaceChanges {
+    /// The set-point, °C, as [`SkinOnObject::setpoint`].
+    #[must_use]
+    #[inline]
+    pub fn setpoint(
+        &self,
+        factors: &ContactPairFactors,
+        skin_before_contact: Celsius,
+        skin_above_object: Celsius,
+    ) -> Celsius {
+        let step_at_object = skin_above_object
+            .saturating_sub(self.cooling)
+            .saturating_sub(self.warming);
+        let step_at_display: Celsius = saturating_product(step_at_object, factors.ratio);
+        skin_before_contact
+            .saturating_sub(self.cooling)
+            .saturating_sub(step_at_display)
+    }
 }
 
 /// Simulates, tick by tick, how the finger's skin would cool or warm if it touched the presented object instead of the
@@ -84,74 +111,91 @@ impl SkinOnObject {
     pub fn start_from_skin_on_display(
         &mut self,
         skin_state_on_display: &SkinState,
-        bodies: Option<Bodies<'_>>,
+        bodies: &Bodies<'_>,
     ) {
         self.skin = skin_state_on_display.staggered(bodies);
         self.object = BodyState::default();
         self.scaled_flux = Celsius::ZERO;
     }
 
-    /// Advances the simulated skin by one tick of 1 ms. `conductance` is that of the contact of skin and object. It is
-    /// `None` while no finger touches; then no heat flows between them, and the cooling of the skin decays towards zero.
-    #[inline]
-    pub fn step(&mut self, conductance: Option<&ContactConductance>, input: &SkinInput<'_>) {
-        match (&mut self.skin, input.bodies) {
-            (SkinState::HalfSpace(state), None) => {
-                self.scaled_flux = conductance.map_or(Celsius::ZERO, |conductance| {
-                    let without_resistance =
-                        saturating_product(input.skin_above_object, input.factors.weight);
-                    conductance.scaled_flux(without_resistance, state)
-                });
-                state.step(self.scaled_flux);
-            }
-            _ => self.step_bodies(conductance, input),
+    /// Advances the simulated skin by one tick of 1 ms, for two half-spaces. `conductance` is that of the contact of skin
+    /// and object. It is `None` while no finger touches; then no heat flows, and the cooling of the skin decays towards
+    /// zero. `skin_above_object` is the skin's temperature minus the object's, both before contact, K.
+    pub fn step(
+        &mut self,
+        conductance: Option<&ContactConductance>,
+        factors: &ContactPairFactors,
+        skin_above_object: Celsius,
+    ) {
+        if let Some(state) = self.skin.half_space() {
+            self.scaled_flux = conductance.map_or(Celsius::ZERO, |conductance| {
+                let without_resistance = saturating_product(skin_above_object, factors.weight);
+                conductance.scaled_flux(without_resistance, state)
+            });
+            state.step(self.scaled_flux);
         }
     }
 
-    /// As [`Self::step`], for a finger and an object that are not both half-spaces, or were not in the tick before.
-    #[inline(never)]
-    fn step_bodies(&mut self, conductance: Option<&ContactConductance>, input: &SkinInput<'_>) {
+    /// As [`Self::step`], for bodies that are not both half-spaces. The object exchanges no heat before contact, the skin
+    /// with the room. Returns cooling and warming of the two surfaces in the coming tick, if the flux stays.
+    #[inline(always)]
+    pub fn step_bodies(
+        &mut self,
+        conductance: Option<&ContactConductance>,
+        before: &BodiesBeforeContact<'_>,
+    ) -> SurfaceChanges {
+        let Bodies { finger, object, .. } = before.bodies;
+        let Some(skin) = self.skin.tissue() else {
+            return SurfaceChanges::default();
+        };
         let into_object = conductance.map(|conductance| {
-            let difference = (input.skin_above_object)
-                .saturating_sub(self.skin.free_response())
+            let difference = (before.skin_above_object)
+                .saturating_sub(skin.free_response())
                 .saturating_sub(self.object.free_response());
             conductance.scaled_flux_by(difference)
         });
+        let into_skin = flux_beyond_air(
+            finger,
+            into_object,
+            skin.free_response(),
+            before.skin_above_room,
+        );
+        skin.step(into_skin, &finger.tissue.relaxations());
         self.scaled_flux = into_object.unwrap_or(Celsius::ZERO);
-        (self.skin).step(into_object, input.bodies, input.skin_above_room);
-        if let Some(Bodies { object, .. }) = input.bodies {
-            let flux = object.scaled(self.scaled_flux);
-            self.object.step(flux, &object.body.relaxations());
+        let flux = object.scaled(self.scaled_flux);
+        self.object.step(flux, &object.body.relaxations());
+        SurfaceChanges {
+            cooling: skin.response_to(into_skin, &finger.tissue.relaxations()),
+            warming: (self.object).response_to(flux, &object.body.relaxations()),
         }
     }
 
     /// The set-point by Eq. 6-12, °C: the temperature of the simulated skin's surface, less the temperature drop that
-    /// the simulated heat flow would cause across the display's contact. `skin_state_on_display` is `None` during
-    /// contact. While no finger touches, it is the state of the real skin, whose surface temperature is then used in
-    /// place of the simulated one, because the real skin is the one that lands next.
+    /// the simulated heat flow would cause across the display's contact, for two half-spaces. `skin_above_object` is the
+    /// skin's temperature minus the object's, both before contact, K. `skin_state_on_display` is `None` during contact.
+    /// While no finger touches, it is the state of the real skin, whose surface temperature is then used in place of the
+    /// simulated one, because the real skin is the one that lands next.
     #[must_use]
     pub fn setpoint(
         &self,
-        input: &SkinInput<'_>,
+        factors: &ContactPairFactors,
         skin_before_contact: Celsius,
+        skin_above_object: Celsius,
         skin_state_on_display: Option<&SkinState>,
     ) -> Celsius {
-        let (cooling, step_at_object) = match (&self.skin, input.bodies) {
-            (SkinState::HalfSpace(state), None) => {
-                let cooling = state.response_to(self.scaled_flux);
-                // Temperature steps in 2^-22 K; the product has 38 places and up to 63 bits.
-                let step_at_interface = (i64::from(cooling.to_bits())
-                    * i64::from(input.factors.inverse_weight.to_bits()))
-                    >> U16F16::FRAC_NBITS;
-                let step_at_object = saturating_celsius_from_bits(
-                    i64::from(input.skin_above_object.to_bits()) - step_at_interface,
-                );
-                (cooling, step_at_object)
-            }
-            _ => self.cooling_and_step_of_bodies(input, skin_state_on_display),
+        let SkinState::HalfSpace(state) = &self.skin else {
+            return skin_before_contact;
         };
+        let cooling = state.response_to(self.scaled_flux);
+        // Temperature steps in 2^-22 K; the product has 38 places and up to 63 bits.
+        let step_at_interface = (i64::from(cooling.to_bits())
+            * i64::from(factors.inverse_weight.to_bits()))
+            >> U16F16::FRAC_NBITS;
+        let step_at_object = saturating_celsius_from_bits(
+            i64::from(skin_above_object.to_bits()) - step_at_interface,
+        );
         let step_at_display = (i64::from(step_at_object.to_bits())
-            * i64::from(input.factors.ratio.to_bits()))
+            * i64::from(factors.ratio.to_bits()))
             >> Ratio::FRAC_NBITS;
         let skin_cooling = skin_state_on_display.map_or(cooling, SkinState::free_response);
         saturating_celsius_from_bits(
@@ -161,47 +205,20 @@ impl SkinOnObject {
         )
     }
 
-    /// Cooling of the simulated skin, and temperature difference of skin and object surface, K, in the coming tick, for
-    /// a finger and an object that are not both half-spaces.
-    #[inline(never)]
-    fn cooling_and_step_of_bodies(
-        &self,
-        input: &SkinInput<'_>,
-        skin_state_on_display: Option<&SkinState>,
-    ) -> (Celsius, Celsius) {
-        let (SkinState::Body(state), Some(Bodies { finger, object })) = (&self.skin, input.bodies)
-        else {
-            return (self.skin.free_response(), Celsius::ZERO);
-        };
-        let flux = flux_beyond_air(
-            finger,
-            skin_state_on_display.is_none().then_some(self.scaled_flux),
-            state.free_response(),
-            input.skin_above_room,
-        );
-        let cooling = state.response_to(flux, &finger.tissue.relaxations());
-        let now = skin_state_on_display.map_or(cooling, SkinState::free_response);
-        let warming =
-            (self.object).response_to(object.scaled(self.scaled_flux), &object.body.relaxations());
-        let step_at_object = (input.skin_above_object)
-            .saturating_sub(now)
-            .saturating_sub(warming);
-        (cooling, step_at_object)
-    }
-
     /// Correction to be added to the set-point, K, so that in 20 ticks of 1 ms the real skin on the display has the
     /// temperature of the simulated skin on the object, if the correction stays; negative if the display must cool the
     /// real skin more. It is computed again in each tick of a contact. `display` is the conductance of the contact of
     /// skin and display.
     #[must_use]
+    #[inline(always)]
     pub fn skin_matching_correction(
         &self,
         skin_state_on_display: &SkinState,
         display: &ContactConductance,
-        bodies: Option<Bodies<'_>>,
+        bodies: Option<&Bodies<'_>>,
     ) -> Celsius {
         let scaled_flux = match (skin_state_on_display, &self.skin, bodies) {
-            (SkinState::HalfSpace(from), SkinState::HalfSpace(to), _) => {
+            (SkinState::HalfSpace(from), SkinState::HalfSpace(to), None) => {
                 from.scaled_flux_to_match(to)
             }
             (SkinState::Body(from), SkinState::Body(to), Some(Bodies { finger, .. })) => {

@@ -32,7 +32,7 @@ fn contact(material: usize, ticks: u32, from_s: f64, force_n: impl Fn(f64) -> f6
     let pair = ContactPair::new(&SKIN, object, &REFERENCE_DISPLAY, TICK_S).expect("pair");
     let object_c = Celsius::from_num(OBJECT_C);
     let scene = PresentedObject {
-        bodies: None,
+        bodies: &Bodies::HALF_SPACES,
         pair: &pair,
         object: Some(object_c),
         mode: ContactModel::ContactResistance,

@@ -1,6 +1,6 @@
 //! The object that the host has chosen to present.
 
-use contact_model::fixed_point::{Body, Celsius, ContactPair, FingerBody, ScaledBody};
+use contact_model::fixed_point::{Body, Celsius, ContactPair, ScaledBody};
 use contact_model::material::{MATERIALS, SKIN, Surface};
 use fixed::types::U16F16;
 
@@ -15,10 +15,12 @@ use crate::reference::{ContactModel, PresentedObject};
 pub struct ChosenObject {
     /// The chosen material; `None` before the host has chosen one.
     pub material: Option<ChosenMaterial>,
-    /// The object's body, if it is no half-space of its material.
-    pub body: Option<Body>,
     /// The finger that is assumed for the one that touches.
-    pub finger: AssumedFinger,
+    finger: AssumedFinger,
+    /// Whether the object is the half-space of its material.
+    is_half_space: bool,
+    /// The assumed finger and the object as bodies. Before a material is chosen, the object is the skin's half-space.
+    bodies: Bodies<'static>,
     /// Temperature of the object before contact, °C; `None` takes the room's temperature.
     pub temperature: Option<Celsius>,
     /// Contact model that gives the set-point while the object is presented: with contact resistance, or perfect
@@ -31,19 +33,23 @@ pub struct ChosenObject {
 }
 
 impl ChosenObject {
-    /// Nothing chosen yet: no material, the object at the room's temperature, the model with contact resistance.
+    /// Nothing chosen yet: no material, the default finger, the object at the room's temperature, the model with contact
+    /// resistance.
     /// Computes the default contact constants for the display's surface in `f64`, so it is for the start only.
     #[must_use]
     pub fn new(display: &Surface) -> Self {
         let [(_, any), ..] = &MATERIALS;
-        Self {
+        let mut chosen = Self {
             material: None,
-            body: None,
-            finger: AssumedFinger::default(),
+            finger: AssumedFinger::Thesis,
+            is_half_space: true,
+            bodies: Bodies::HALF_SPACES,
             temperature: None,
             mode: ContactModel::default(),
             default_pair: ContactPair::new(&SKIN, any, display, TICK_S).ok(),
-        }
+        };
+        chosen.choose_finger(AssumedFinger::default());
+        chosen
     }
 
     /// Contact constants of skin, display and object, from which the estimator computes the heat flow between skin and
@@ -56,27 +62,43 @@ impl ChosenObject {
         chosen.or(self.default_pair.as_ref())
     }
 
-    /// The assumed finger and the object, unless both are half-spaces. Before a material is chosen, the object is the
-    /// skin's half-space.
-    #[must_use]
-    #[inline]
-    pub fn bodies(&self) -> Option<Bodies<'_>> {
-        let object = match (&self.body, self.finger) {
-            (None, AssumedFinger::Thesis) => return None,
+    /// Presents the half-space of a material from now on.
+    pub fn choose_material(&mut self, material: ChosenMaterial) {
+        self.material = Some(material);
+        self.choose_body(None);
+    }
+
+    /// Presents an object with this body from now on, or for `None` the half-space of its material.
+    pub fn choose_body(&mut self, body: Option<Body>) {
+        self.is_half_space = body.is_none();
+        self.bodies.are_half_spaces = self.is_half_space && self.finger == AssumedFinger::Thesis;
+        self.bodies.object = match (body, &self.material) {
             (Some(body), _) => ScaledBody {
                 body,
                 factor: U16F16::ONE,
             },
-            (None, AssumedFinger::Mean | AssumedFinger::MeanOnPad) => ScaledBody {
-                body: &FingerBody::THESIS.tissue,
-                factor: (self.material.as_ref())
-                    .map_or(U16F16::ONE, |material| material.impedance_ratio),
-            },
+            (None, Some(material)) => ScaledBody::half_space(material.impedance_ratio),
+            (None, None) => ScaledBody::half_space(U16F16::ONE),
         };
-        Some(Bodies {
-            finger: self.finger.body(),
-            object,
-        })
+    }
+
+    /// Assumes this finger from now on.
+    pub fn choose_finger(&mut self, finger: AssumedFinger) {
+        self.finger = finger;
+        self.bodies.finger = finger.body();
+        self.bodies.are_half_spaces = self.is_half_space && finger == AssumedFinger::Thesis;
+    }
+
+    /// The finger that is assumed for the one that touches.
+    #[must_use]
+    pub const fn assumed_finger(&self) -> AssumedFinger {
+        self.finger
+    }
+
+    /// The assumed finger and the object.
+    #[must_use]
+    pub const fn bodies(&self) -> &Bodies<'static> {
+        &self.bodies
     }
 
     /// Input of the reference generator, which computes set-point and target in the states preset and contact: contact

@@ -31,19 +31,19 @@ impl Station {
                     material.map(|material| material.properties),
                 ));
             }
-            Command::Finger(None) => return Ok(Reply::Finger(self.object.finger.name())),
+            Command::Finger(None) => return Ok(Reply::Finger(self.object.assumed_finger().name())),
             Command::Finger(Some(finger)) => {
-                if finger != self.object.finger {
-                    self.object.finger = finger;
+                if finger != self.object.assumed_finger() {
+                    self.object.choose_finger(finger);
                     self.restart_contact();
                 }
             }
             Command::Material(material) => {
-                (self.object.material, self.object.body) = (Some(material), None);
+                self.object.choose_material(material);
                 self.restart_contact();
             }
             Command::Body(body) => {
-                self.object.body = body;
+                self.object.choose_body(body);
                 self.restart_contact();
             }
             Command::Object(temperature) => {

@@ -43,36 +43,35 @@ fn body(impedance: &Impedance<'_>) -> Body {
 fn simulated(
     material: &Material,
     finger: &FingerBody,
-    object: ScaledBody<'_>,
+    object: ScaledBody,
     ticks: usize,
 ) -> Vec<(f64, f64)> {
     let pair = pair(material);
     let contact = pair.at_pressure(log2_relative_pressure(Force::from_num(FORCE_N)));
     let conductance = contact.conductance_of(&finger.tissue, &object);
-    let bodies = Some(Bodies { finger, object });
-    let factors = ContactPairFactors::new(&pair);
-    let input = SkinInput {
-        factors: &factors,
-        bodies,
+    let bodies = Bodies {
+        finger,
+        object,
+        are_half_spaces: false,
+    };
+    let before = BodiesBeforeContact {
+        bodies: &bodies,
         skin_above_object: Celsius::from_num(DIFFERENCE_K),
         skin_above_room: Celsius::from_num(DIFFERENCE_K),
     };
     let mut skin = SkinOnObject::default();
-    skin.start_from_skin_on_display(&SkinState::default(), bodies);
+    skin.start_from_skin_on_display(&SkinState::default(), &bodies);
     (0..ticks)
         .map(|_| {
-            let (before, warming) = (skin.skin, skin.object);
-            skin.step(Some(&conductance), &input);
+            let (mut skin_before, warming) = (skin.skin, skin.object);
+            skin.step_bodies(Some(&conductance), &before);
             let into_skin = flux_beyond_air(
                 finger,
                 Some(skin.scaled_flux),
                 Celsius::ZERO,
-                input.skin_above_room,
+                before.skin_above_room,
             );
-            let cooling = match before {
-                SkinState::Body(state) => state,
-                SkinState::HalfSpace(state) => state.uniform_body(),
-            };
+            let cooling = skin_before.tissue().expect("a finger's tissue");
             let cooling = cooling.response_to(into_skin, &finger.tissue.relaxations());
             let flux = object.scaled(skin.scaled_flux);
             let warming = warming.response_to(flux, &object.body.relaxations());
@@ -131,9 +130,9 @@ fn exact(
     (0..ticks).map(|_| tick()).collect()
 }
 
-fn unscaled(body: &Body) -> ScaledBody<'_> {
+fn unscaled(body: &Body) -> ScaledBody {
     ScaledBody {
-        body,
+        body: *body,
         factor: U16F16::ONE,
     }
 }
@@ -148,7 +147,7 @@ fn half_spaces_as_bodies_agree_with_equation_6_5() {
     let mut worst_k = (0.0f64, 0.0f64);
     for (name, material) in &MATERIALS {
         let object = ScaledBody {
-            body: &finger.tissue,
+            body: finger.tissue,
             factor: to_fixed(SKIN.effusivity() / material.effusivity()),
         };
         let contact = Contact::new(
@@ -277,25 +276,35 @@ proptest! {
         for (skin_c, room_c, other, force, finger, (object, factor), restart, ticks) in events {
             let force = force.map(Force::from_bits);
             // The third finger stands for the thesis's path without bodies.
-            let bodies = fingers.get(finger).map(|finger| Bodies { finger, object: ScaledBody { body: &objects[object], factor: U16F16::from_bits(factor) } });
+            let bodies = Bodies {
+                finger: fingers.get(finger).unwrap_or(&FingerBody::THESIS),
+                object: ScaledBody { body: objects[object], factor: U16F16::from_bits(factor) },
+                are_half_spaces: finger == fingers.len(),
+            };
             if restart {
-                skin.start_from_skin_on_display(estimator.skin_state_on_display(), bodies);
+                skin.start_from_skin_on_display(estimator.skin_state_on_display(), &bodies);
                 estimator.forget_conductances();
             }
-            let input = SkinInput {
-                factors: &factors,
-                bodies,
+            let before = BodiesBeforeContact {
+                bodies: &bodies,
                 skin_above_object: other,
                 skin_above_room: skin_c.saturating_sub(room_c),
             };
             for _ in 0..ticks {
                 estimator.update_by_readings(skin_c, room_c, force, 2);
-                let heat = estimator.step_skin_heat_flow(&pair, bodies, other);
+                let heat = estimator.step_skin_heat_flow(&pair, &bodies, other);
                 let conductance = estimator.contact().and_then(|contact| contact.stored_conductances()).copied();
-                skin.step(conductance.as_ref().map(|both| &both.object), &input);
-                let on_display = force.is_none().then_some(estimator.skin_state_on_display());
-                let _ = skin.setpoint(&input, skin_c, on_display);
+                let object = conductance.as_ref().map(|both| &both.object);
+                if bodies.are_half_spaces {
+                    skin.step(object, &factors, other);
+                    let on_display = force.is_none().then_some(estimator.skin_state_on_display());
+                    let _ = skin.setpoint(&factors, skin_c, other, on_display);
+                } else {
+                    let changes = skin.step_bodies(object, &before);
+                    let _ = changes.setpoint(&factors, skin_c, other);
+                }
                 if let Some(both) = conductance {
+                    let bodies = (!bodies.are_half_spaces).then_some(&bodies);
                     let _ = skin.skin_matching_correction(estimator.skin_state_on_display(), &both.display, bodies);
                 }
                 prop_assert!(force.is_some_and(|force| contact_area(force) > 0) || heat == 0);
