@@ -37,6 +37,8 @@ named_enum! {
         Late = "late",
         /// The device reported a wrong trip cause, or none.
         Reason = "reason",
+        /// The set-point differed from that without the fault, which must not change it.
+        Changed = "changed",
     }
 }
 
@@ -148,11 +150,18 @@ impl RunAssessment {
             breaches: Vec::new(),
             ended: None,
         };
-        assessment.judge(fault_case, &rows[..from], before);
+        let changed = fault_case.unchanged && setpoints_differ(rows, fault_free);
+        assessment.judge(fault_case, &rows[..from], before, changed);
         assessment
     }
 
-    fn judge(&mut self, fault_case: &FaultCase, rows_before: &[TraceRow], before: Option<&str>) {
+    fn judge(
+        &mut self,
+        fault_case: &FaultCase,
+        rows_before: &[TraceRow],
+        before: Option<&str>,
+        changed: bool,
+    ) {
         let early = rows_before.iter().any(|row| {
             let device = row.device.as_ref();
             device.is_some_and(|device| {
@@ -181,6 +190,7 @@ impl RunAssessment {
             (Breach::Dose, self.cem43_min >= DOSE_MIN),
             (Breach::Late, late),
             (Breach::Reason, !right),
+            (Breach::Changed, changed),
         ] {
             if is_so {
                 self.breaches.push(breach);
@@ -203,6 +213,13 @@ fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> O
     let reset = outcome.resets.iter().find(|reset| reset.t_s >= t_s - 1e-6);
     let times = [tripped.map(|row| row.t_s), reset.map(|reset| reset.t_s)];
     times.into_iter().flatten().min_by(f64::total_cmp)
+}
+
+/// Whether a set-point differs from that of the other run, in a tick of which both have telemetry.
+fn setpoints_differ(rows: &[TraceRow], others: &[TraceRow]) -> bool {
+    let both = rows.iter().zip(others);
+    let mut both = both.filter_map(|(row, other)| row.device.as_ref().zip(other.device.as_ref()));
+    others.is_empty() || both.any(|(one, other)| one.setpoint_c != other.setpoint_c)
 }
 
 /// Time after which no current flows; `None` if current flows at the end.

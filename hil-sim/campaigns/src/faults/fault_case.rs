@@ -15,7 +15,7 @@ pub enum InjectedFault {
     Hardware(ActiveFault),
     /// A fault of the processor.
     Processor(MachineFault),
-    /// The host sends a line.
+    /// The host sends a line, or several with `; ` between them.
     HostLine(&'static str),
 }
 
@@ -110,6 +110,8 @@ pub struct FaultCase {
     pub expected: ExpectedReaction,
     /// Whether it has no effect until another fault or the next self-test.
     pub latent: bool,
+    /// Whether the set-point must remain what it is in the same scene without the fault.
+    pub unchanged: bool,
     /// Scenes in which it is worst; they are run before the others.
     pub scenes: &'static [FaultScene],
     /// Scenes in which it is meaningless.

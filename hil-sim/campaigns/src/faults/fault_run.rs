@@ -10,7 +10,7 @@ use thermal_sim::run::Outcome;
 use thermal_sim::scene::Scene;
 
 use super::assessment::RunAssessment;
-use super::{FaultCase, FaultScene, InjectedFault, InjectionPoint, scene_text};
+use super::{FaultCase, FaultScene, InjectedFault, InjectionPoint, Touch, scene_text};
 
 /// Questions at the end and their times before it, s. The state is queried twice because a reset can truncate a line of
 /// telemetry, which then merges with the first answer.
@@ -30,7 +30,7 @@ fn run_if_applicable(
     }
 }
 
-/// The run of the scene without the fault, if a symptom needs it.
+/// The run of the scene without the fault, if a symptom or the comparison of an unchanged set-point needs it.
 fn fault_free_run(
     device: &dyn SceneRunner,
     fault_case: &FaultCase,
@@ -48,6 +48,10 @@ fn fault_free_run(
             fault_free
                 .faults
                 .retain(|fault| fault.fault.kind != broken.kind);
+        }
+        InjectedFault::HostLine(lines) if fault_case.unchanged => {
+            (fault_free.host)
+                .retain(|host| scene_text::host_lines(lines).all(|line| line != host.line));
         }
         _ => return Ok(None),
     }
@@ -84,6 +88,7 @@ impl FaultRun {
             fault_case.after_s,
             seed,
             &[],
+            &Touch::default(),
         );
         Self::run_text(device, fault_case, point, &text)
     }
@@ -123,24 +128,24 @@ impl FaultRun {
 }
 
 /// The text of the scene with faults at their times, s, and with the questions at the end. `plant` has plant parameters
-/// that are not nominal; the seed is that of the converter.
+/// that are not nominal, `touch` what touches; the seed is that of the converter.
 pub(super) fn scene_text(
     faults: &[(InjectedFault, f64)],
     point: InjectionPoint,
     after_s: f64,
     seed: u64,
     plant: &[(String, f64)],
+    touch: &Touch,
 ) -> String {
-    let (mut text, end_s) = point.scene.text(seed, point.t_s, after_s);
+    let (mut text, end_s) = point.scene.text(seed, point.t_s, after_s, touch);
     for (fault, t_s) in faults {
         text += &scene_text::fault_text(fault, *t_s);
     }
     for (before_s, line) in QUESTIONS {
         text += &scene_text::host_line(line, end_s - before_s);
     }
-    if !plant.is_empty() {
-        text += "[plant]\n";
-    }
+    text += "[plant]\n";
+    text += &touch.plant;
     for (key, value) in plant {
         text += &format!("{key} = {value:?}\n");
     }

@@ -7,7 +7,7 @@ use thermal_device::control::Law;
 use thermal_device::safety::Fault;
 use thermal_sim::named_enum;
 
-use super::scene_text;
+use super::{Touch, scene_text};
 
 named_enum! {
     /// A scene, named after its state when the fault comes. At the end of each, the finger rests on the display.
@@ -93,7 +93,8 @@ pub struct InjectionPoint {
 }
 
 impl FaultScene {
-    const fn object(self) -> (&'static str, f64) {
+    /// Material and temperature of the object, °C.
+    pub(super) const fn object(self) -> (&'static str, f64) {
         match self {
             Self::Granite => ("granite", 24.0),
             Self::Foam => ("foam", 24.0),
@@ -201,9 +202,10 @@ impl FaultScene {
         }
     }
 
-    /// The text of the scene that continues for `after_s` after a fault at `t_s`, and the end of the scene, s.
+    /// The text of the scene, with this finger and object, that continues for `after_s` after a fault at `t_s`, and the end of
+    /// the scene, s.
     #[must_use]
-    pub fn text(self, seed: u64, t_s: f64, after_s: f64) -> (String, f64) {
+    pub fn text(self, seed: u64, t_s: f64, after_s: f64, touch: &Touch) -> (String, f64) {
         let duration_s = (t_s + after_s).max(SHORTEST_S);
         let (material, object_c) = self.object();
         let appears_s = match self {
@@ -215,11 +217,14 @@ impl FaultScene {
         };
         let mut text = format!(
             "duration_s = {duration_s:?}\nskin_c = 34\nroom_c = 24\nseed = {seed}\nlaw = \"{}\"\nmode = \"{}\"\n[device]\n\
-             commissioned = {}\n[object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\n\
-             appears_t_s = {appears_s:?}\n",
+             commissioned = {}\n{}[object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\n\
+             appears_t_s = {appears_s:?}\n{}{}",
             self.law().name(),
             self.mode(),
             self.is_commissioned(),
+            touch.device,
+            touch.object,
+            touch.tables,
         );
         for (t_s, force_n) in self.timing().0 {
             text += &format!("[[force]]\nt_s = {t_s:?}\nforce_n = {force_n:?}\n");

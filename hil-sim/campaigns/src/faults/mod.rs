@@ -8,7 +8,8 @@
 //!
 //! [The list](fault_cases) states for each fault, before any run, which deviation of the plant makes it detectable and which
 //! trip causes are then correct. [`RunAssessment`] checks every run: skin between 13 and 45 °C, less than a minute of CEM43,
-//! no current later than 50 ms after the first symptom, a correct cause, and no trip before the fault.
+//! no current later than 50 ms after the first symptom, a correct cause, no trip before the fault, and an unchanged set-point
+//! after lines that may change nothing.
 
 mod assessment;
 mod fault_case;
@@ -24,6 +25,7 @@ mod random_campaign;
 mod scene_text;
 mod symptom;
 mod table;
+mod touch;
 
 pub use assessment::{Breach, RunAssessment};
 pub use fault_case::{ExpectedReaction, FaultCase, InjectedFault};
@@ -40,3 +42,4 @@ pub use pairs::{FaultPair, PairResult, pair_table, pairs};
 pub use random_campaign::{CampaignResult, RandomCampaign, campaign_summary};
 pub use symptom::Symptom;
 pub use table::table;
+pub use touch::Touch;

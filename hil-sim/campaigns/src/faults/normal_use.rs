@@ -12,7 +12,7 @@ use thermal_sim::SceneRunner;
 use thermal_sim::metrics::Extremes;
 use thermal_sim::scene::Scene;
 
-use super::scene_text;
+use super::{Touch, scene_text};
 use crate::fidelity::PlantDraw;
 
 /// Length of a session, s, after the time in which the device is armed and settles.
@@ -62,10 +62,14 @@ impl UseSession {
             None if draw.random_bool(0.25) => draw.random_range(0.0..=20.0),
             None => 0.0,
         };
+        let touch = Touch::new(
+            stream_seed(seed, &format!("session {number} touch")),
+            material,
+        );
         let mut text = format!(
-            "duration_s = {SESSION_S:?}\nskin_c = {skin_c:?}\nroom_c = 24\nseed = {}\nlaw = \"{law}\"\n[object]\n\
-             material = \"{material}\"\nstart_c = {object_c:?}\nappears_t_s = {appears_s:?}\n",
-            device.seed
+            "duration_s = {SESSION_S:?}\nskin_c = {skin_c:?}\nroom_c = 24\nseed = {}\nlaw = \"{law}\"\n[device]\n{}\
+             [object]\nmaterial = \"{material}\"\nstart_c = {object_c:?}\nappears_t_s = {appears_s:?}\n{}{}",
+            device.seed, touch.device, touch.object, touch.tables
         );
         let mut t_s = draw.random_range(0.1..=3.0);
         while t_s < SESSION_S - 1.0 {
@@ -84,7 +88,9 @@ impl UseSession {
         }
         let mut device_draw = Xoshiro256PlusPlus::seed_from_u64(stream_seed(device.seed, "noise"));
         let noise_counts = device_draw.random_range(NOISE_COUNTS);
-        text += &format!("[plant]\nsensors.converter.noise_counts = {noise_counts:?}\n");
+        text += "[plant]\n";
+        text += &touch.plant;
+        text += &format!("sensors.converter.noise_counts = {noise_counts:?}\n");
         for (key, value) in &device.plant {
             text += &format!("{key} = {value:?}\n");
         }

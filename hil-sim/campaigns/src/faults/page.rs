@@ -31,7 +31,7 @@ pub fn page(rows: &[FaultSummary], engine: &str) -> String {
     let mut body = format!(
         "<p>Engine {}; everything here is simulated, nobody has run it on hardware. Worst case of each fault over its \
          runs. Held to: skin within 13 to 45 °C, CEM43 below one minute, no current from 50 ms after the fault is \
-         detectable on, a right reason, no trip before the fault.</p><table><tr>",
+         detectable on, a right reason, no trip before the fault, an unchanged set-point where nothing may change.</p><table><tr>",
         escape(engine)
     );
     for head in HEADS {

@@ -10,7 +10,7 @@ use thermal_sim::scene::FaultKind;
 use super::table::failing_run_text;
 use super::{
     Breach, ExpectedReaction, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint,
-    fault_cases, fault_run,
+    Touch, fault_cases, fault_run,
 };
 
 /// Time of the latent fault, s: after the first self-test and before every injection time.
@@ -81,6 +81,7 @@ impl FaultPair {
             latent.after_s.max(active.after_s),
             seed,
             &[],
+            &Touch::default(),
         )
     }
 

@@ -10,14 +10,15 @@ use thermal_sim::SceneRunner;
 
 use super::table::failing_run_text;
 use super::{
-    Breach, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint, fault_cases, fault_run,
+    Breach, FaultCase, FaultRun, FaultScene, InjectedFault, InjectionPoint, Touch, fault_cases,
+    fault_run,
 };
 use crate::fidelity::PlantDraw;
 
 /// Consecutive campaigns on one device, because commissioning a device takes longer than a campaign.
 const ON_ONE_DEVICE: u64 = 8;
 
-/// One fault at one time of one scene on one drawn device.
+/// One fault at one time of one scene, on one drawn device under one drawn finger.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RandomCampaign {
     /// Number of the campaign, from 0.
@@ -28,6 +29,8 @@ pub struct RandomCampaign {
     pub point: InjectionPoint,
     /// The device and its plant.
     pub device: PlantDraw,
+    /// The finger and the object.
+    pub touch: Touch,
 }
 
 impl RandomCampaign {
@@ -50,6 +53,7 @@ impl RandomCampaign {
             fault_case,
             point: place.injection_point(draw.random(), draw.random()),
             device: PlantDraw::in_use(seed, number / ON_ONE_DEVICE),
+            touch: Touch::new(stream_seed(own, "touch"), place.object().0),
         }
     }
 
@@ -58,7 +62,14 @@ impl RandomCampaign {
     pub fn text(&self) -> String {
         let faults = [(self.fault_case.fault, self.point.t_s)];
         let PlantDraw { seed, plant, .. } = &self.device;
-        fault_run::scene_text(&faults, self.point, self.fault_case.after_s, *seed, plant)
+        fault_run::scene_text(
+            &faults,
+            self.point,
+            self.fault_case.after_s,
+            *seed,
+            plant,
+            &self.touch,
+        )
     }
 
     /// Runs the campaign; `None` if the fault does not apply to the engine.

@@ -13,7 +13,9 @@ const SILENT_S: f64 = 6.0;
 /// The table of a fault at a time, s. The scene's seed draws the noise in the RAM.
 pub(super) fn fault_text(fault: &InjectedFault, t_s: f64) -> String {
     let mut text = match fault {
-        InjectedFault::HostLine(line) => return host_line(line, t_s),
+        InjectedFault::HostLine(lines) => {
+            return host_lines(lines).map(|line| host_line(line, t_s)).collect();
+        }
         _ => format!("[[fault]]\nkind = \"{}\"\nt_s = {t_s:?}\n", fault.kind()),
     };
     // Writing to a String cannot fail.
@@ -49,6 +51,11 @@ pub(super) fn fault_text(fault: &InjectedFault, t_s: f64) -> String {
     text
 }
 
+/// The lines of a fault, which are sent one after the other.
+pub(super) fn host_lines(lines: &str) -> impl Iterator<Item = &str> {
+    lines.split("; ")
+}
+
 /// A line of the host.
 pub(super) fn host_line(line: &str, t_s: f64) -> String {
     format!("[[host]]\nt_s = {t_s:?}\nline = \"{line}\"\n")
@@ -58,7 +65,7 @@ pub(super) fn host_line(line: &str, t_s: f64) -> String {
 mod tests {
     use super::*;
     use crate::faults::fault_cases;
-    use crate::faults::{FaultScene, InjectionPoint};
+    use crate::faults::{FaultScene, InjectionPoint, Touch};
     use thermal_sim::scene::Scene;
 
     #[test]
@@ -74,6 +81,7 @@ mod tests {
                 fault_case.after_s,
                 7,
                 &[],
+                &Touch::default(),
             );
             let scene = Scene::parse(&text, "slew".as_ref())
                 .unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -95,14 +103,10 @@ mod tests {
                     let same = injection.fault == fault || injection.fault == drawn;
                     assert!(same && injection.t_s == 1.25, "{text}");
                 }
-                InjectedFault::HostLine(line) => {
-                    assert!(
-                        scene
-                            .host
-                            .iter()
-                            .any(|host| host.line == line && host.t_s == 1.25),
-                        "{text}"
-                    );
+                InjectedFault::HostLine(lines) => {
+                    let sent = scene.host.iter().filter(|host| host.t_s == 1.25);
+                    let sent: Vec<_> = sent.map(|host| host.line.as_str()).collect();
+                    assert_eq!(sent, host_lines(lines).collect::<Vec<_>>(), "{text}");
                 }
             }
         }

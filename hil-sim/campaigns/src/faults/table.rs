@@ -5,10 +5,14 @@ use std::fmt::Write;
 use super::assessment::MILLISECONDS;
 use super::{Breach, FaultRun, FaultSummary};
 
+/// Largest width of the column of faults, characters; the uploads of objects are longer.
+const FAULT_WIDTH_MAX: usize = 60;
+
 /// One line for each fault, with its worst figures, followed by every run that broke a limit.
 #[must_use]
 pub fn table(rows: &[FaultSummary]) -> String {
-    let width = rows.iter().map(|row| row.fault.len()).max().unwrap_or(0);
+    let widths = rows.iter().map(|row| row.fault.len());
+    let width = widths.max().unwrap_or(0).min(FAULT_WIDTH_MAX);
     let mut text = format!(
         "{:width$}  runs  detectable   to safe ms  skin C         CEM43  display C      reasons\n",
         "fault"

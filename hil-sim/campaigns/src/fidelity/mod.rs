@@ -30,7 +30,7 @@ pub use plant_draws::{
 pub use plot::draw as plot;
 pub use population::{
     ImageSample, Population, PopulationCase, PopulationReport, PopulationResult,
-    SVG as POPULATIONS_SVG, Way, WayStatistics, chart as population_chart, spread,
+    SVG as POPULATIONS_SVG, Way, WayStatistics, chart as population_chart, layer_keys, spread,
     table as population_table,
 };
 pub use removed_limit::RemovedLimit;

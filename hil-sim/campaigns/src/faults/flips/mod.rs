@@ -24,7 +24,7 @@ pub use table::flip_table;
 
 use super::{
     Breach, ExpectedReaction, FaultCase, FaultScene, InjectedFault, InjectionPoint, RunAssessment,
-    Symptom, fault_run,
+    Symptom, Touch, fault_run,
 };
 use thermal_sim::SceneRunner;
 use thermal_sim::processor::NotInjected;
@@ -65,7 +65,7 @@ fn text(place: FaultScene, flip: &[(InjectedFault, f64)]) -> String {
         scene: place,
         t_s: to_s,
     };
-    fault_run::scene_text(flip, end, WATCHED_S, CONVERTER, &[])
+    fault_run::scene_text(flip, end, WATCHED_S, CONVERTER, &[], &Touch::default())
 }
 
 /// The run of a scene without a flip.
@@ -121,6 +121,7 @@ impl BitFlip {
             symptoms: SIGNS,
             expected: ExpectedReaction::Trip(&[]),
             latent: false,
+            unchanged: false,
             scenes: &[],
             never_at: &[],
             after_s: WATCHED_S,

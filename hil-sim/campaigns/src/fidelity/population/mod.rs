@@ -13,7 +13,7 @@ use super::plant_draws::SAME_VALUE;
 
 pub use case::{PopulationCase, Way};
 pub use chart::{SVG, draw as chart};
-pub use object::{BodyObject, every_object, six_objects};
+pub use object::{BodyObject, every_object, layer_keys, six_objects};
 pub use statistics::{ImageSample, PopulationReport, PopulationResult, WayStatistics, table};
 
 named_enum! {

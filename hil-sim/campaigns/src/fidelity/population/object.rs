@@ -131,7 +131,18 @@ fn slab(material: &'static str, thickness_mm: f64, (back, keys): (&str, &str)) -
 }
 
 fn layered((name, layers, back): (&str, Layers, &str)) -> BodyObject {
-    let mut keys = back.to_owned();
+    BodyObject {
+        name: name.into(),
+        material: layers.first().map_or("", |(material, _)| material),
+        keys: back.to_owned() + &layer_keys(layers),
+    }
+}
+
+/// The tables of a scene that describe layers, from the touched face down: material and thickness, mm; the last one may be
+/// endless.
+#[must_use]
+pub fn layer_keys(layers: &[(&str, f64)]) -> String {
+    let mut keys = String::new();
     for (material, thickness_mm) in layers {
         let Some(Material {
             surface,
@@ -152,9 +163,5 @@ fn layered((name, layers, back): (&str, Layers, &str)) -> BodyObject {
             surface.conductivity_w_mk
         );
     }
-    BodyObject {
-        name: name.into(),
-        material: layers.first().map_or("", |(material, _)| material),
-        keys,
-    }
+    keys
 }
