@@ -78,6 +78,74 @@ proptest! {
     }
 }
 
+/// The body of these rates whose gains, all equal, are the largest that are allowed, m² K/J.
+fn largest(rates_1_s: &[f64], direct_m2k_w: f64) -> Body {
+    let with = |gain_m2k_j| {
+        let relaxations: Vec<_> = (rates_1_s.iter())
+            .map(|&rate_1_s| Relaxation {
+                rate_1_s,
+                gain_m2k_j,
+            })
+            .collect();
+        let impedance = Impedance {
+            direct_m2k_w,
+            relaxations: &relaxations,
+        };
+        Body::new(&impedance, SKIN.effusivity(), TICK_S)
+    };
+    let (mut allowed, mut refused) = (1e-12, 1e3);
+    while refused > 1.000_001 * allowed {
+        let gain_m2k_j = libm::sqrt(allowed * refused);
+        match with(gain_m2k_j) {
+            Ok(_) => allowed = gain_m2k_j,
+            Err(_) => refused = gain_m2k_j,
+        }
+    }
+    with(allowed).expect("an allowed body")
+}
+
+#[test]
+fn largest_bodies_under_the_largest_flux_neither_overflow_nor_change_sign() {
+    // Ends of the range of rates: the slowest fast one is 12.5 1/s.
+    for (fast_1_s, slow_1_s) in [
+        (690.0, 12.499),
+        (690.0, 0.0),
+        (12.5, 12.499),
+        (12.5, 1e-6),
+        (100.0, 1.0),
+    ] {
+        let rates_1_s = [[fast_1_s].repeat(FAST_MAX), [slow_1_s].repeat(SLOW_MAX)].concat();
+        for (rates_1_s, direct_m2k_w) in [
+            (&rates_1_s[..], 0.0),
+            (&rates_1_s[..], 0.027),
+            (&rates_1_s[..1], 0.0),
+            (&rates_1_s[FAST_MAX..], 0.0),
+            (&rates_1_s[rates_1_s.len() - 1..], 0.0),
+        ] {
+            let body = largest(rates_1_s, direct_m2k_w);
+            let relaxations = body.relaxations();
+            let mut state = BodyState::default();
+            let mut warmest = Celsius::ZERO;
+            for _ in 0..5000 {
+                warmest = warmest.max(state.response_to(Celsius::MAX, &relaxations));
+                state.step(Celsius::MAX, &relaxations);
+                assert!(state.free_response() >= 0, "{rates_1_s:?}: {state:?}");
+            }
+            assert!(warmest > 511, "{rates_1_s:?}: {warmest}");
+            // The largest step back, which an integrator needs as long for, and a flux that turns in every window.
+            for _ in 0..12_000 {
+                state.step(Celsius::MIN, &relaxations);
+            }
+            assert!(state.free_response() <= 0, "{rates_1_s:?}: {state:?}");
+            for tick in 0..5000 {
+                let flux = [Celsius::MIN, Celsius::MAX][tick / 8 % 2];
+                state.step(flux, &relaxations);
+                let _ = state.response_to(flux, &relaxations);
+            }
+        }
+    }
+}
+
 #[test]
 fn what_cannot_be_followed_is_refused() {
     let with = |relaxations: &[Relaxation], direct_m2k_w| {
