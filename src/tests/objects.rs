@@ -19,6 +19,16 @@ const UPLOAD: [&str; 3] = [
     "upload commit 185a2d42",
 ];
 
+/// CRC-32 (ISO-HDLC) of lines with a line feed after each, bit by bit.
+pub fn checksum(lines: &[String]) -> u32 {
+    let bytes = (lines.iter()).flat_map(|line| line.bytes().chain([b'\n']));
+    !bytes.fold(u32::MAX, |crc, byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| {
+            (crc >> 1) ^ (0xedb8_8320 & (crc & 1).wrapping_neg())
+        })
+    })
+}
+
 /// A device, and the handler that keeps an upload from line to line.
 #[derive(Clone)]
 struct Bench {
@@ -183,6 +193,31 @@ fn an_upload_that_is_not_committed_changes_nothing_that_a_finger_feels() {
         );
         assert_eq!(bench.run(100), undisturbed, "{lines:?}");
     }
+}
+
+/// The temperatures are the ends of what a line may set; both are far beyond the set-point's.
+#[test]
+fn an_object_that_no_display_can_be_is_limited_and_trips_nothing() {
+    let bench = Bench::presenting();
+    for (celsius, limit_c) in [("-20", 15.0), ("60", 42.0)] {
+        // It keeps its temperature: no heat of a finger moves it.
+        let begin = String::from("upload begin object 0 0");
+        let commit = format!("upload commit {:08x}", checksum(&[begin.clone()]));
+        let mut bench = bench.clone();
+        bench.send_ok(&[&format!("object {celsius}"), &begin, &commit]);
+        assert_eq!(bench.run(20), [limit_c; 2], "{celsius} C");
+        let state = bench.send("@1 state");
+        assert!(state.ends_with("limited"), "{celsius} C: {state}");
+    }
+}
+
+#[test]
+fn the_checksum_is_that_of_zip_files() {
+    let [begin, row, commit] = UPLOAD.map(String::from);
+    assert_eq!(
+        format!("upload commit {:08x}", checksum(&[begin, row])),
+        commit
+    );
 }
 
 #[test]

@@ -3,7 +3,11 @@
 use proptest::prelude::*;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
+use std::format;
+use std::string::{String, ToString};
 use std::vec::Vec;
+
+use contact_model::fixed_point::{FAST_MAX, SLOW_MAX};
 
 use super::TestBench;
 use crate::device::StateName;
@@ -11,6 +15,7 @@ use crate::device::drive::{Drive, Duty};
 use crate::device::safety::Setpoint;
 use crate::device::sense::Samples;
 use crate::protocol::ANSWER_MAX_BYTES;
+use crate::tests::objects::checksum;
 
 /// A sum of conversions: mostly a plausible one, sometimes any.
 fn sum(plausible: core::ops::Range<u16>) -> impl Strategy<Value = u16> {
@@ -94,11 +99,37 @@ fn line() -> impl Strategy<Value = &'static str> {
     )
 }
 
+/// The whole upload of an object at an end of what is allowed, or anywhere between: rates and gains that make the device's
+/// relaxations as many, as fast, as slow and as large as they may be.
+fn upload() -> impl Strategy<Value = Vec<String>> {
+    let fast_1_s = prop_oneof![Just(690.0), Just(12.6), 12.6..690.0];
+    let slow_1_s = prop_oneof![Just(0.0), Just(12.4), 1e-6..12.4];
+    let rates_1_s = (
+        prop::collection::vec(fast_1_s, 0..=FAST_MAX),
+        prop::collection::vec(slow_1_s, 0..=SLOW_MAX),
+    );
+    // All gains together, mm² K/J, and the direct term, mm² K/W.
+    let decades = prop_oneof![Just(7.1), -3.0..7.1f64];
+    let direct = prop_oneof![Just(0.0), Just(27_000.0), 0.0..27_000.0];
+    (rates_1_s, decades, direct).prop_map(|((fast, slow), decades, direct)| {
+        let rates_1_s = [fast, slow].concat();
+        let gain = 10f64.powf(decades) / rates_1_s.len().max(1) as f64;
+        let mut lines = Vec::from([format!(
+            "upload begin object {} {direct:.6}",
+            rates_1_s.len()
+        )]);
+        let rows = rates_1_s.iter().enumerate();
+        lines.extend(rows.map(|(i, rate)| format!("upload row {i} {rate:.6} {gain:.6}")));
+        lines.push(format!("upload commit {:08x}", checksum(&lines)));
+        lines
+    })
+}
+
 /// Lines that are sent first; targets that the physical quantities then approach at 0.1 K a tick; samples of one tick
 /// in the middle, with their probability in [`scenario`].
 #[derive(Clone, Debug)]
 struct Phase {
-    lines: Vec<&'static str>,
+    lines: Vec<String>,
     display_c: f64,
     sink_c: f64,
     skin_c: f64,
@@ -111,7 +142,9 @@ struct Phase {
 fn scenario(phases: usize, ticks: u16, outlier: f64) -> impl Strategy<Value = Vec<Phase>> {
     let force = prop_oneof![Just(0.0), 0.0..5.0];
     let quantities = (16.0..41.0, 15.0..38.0, 28.0..38.0, 18.0..30.0, force);
-    let lines = prop::collection::vec(line(), 0..4);
+    let line = line().prop_map(|line| Vec::from([line.to_string()]));
+    let lines = prop::collection::vec(prop_oneof![6 => line, 1 => upload()], 0..4);
+    let lines = lines.prop_map(|lines| lines.concat());
     let outlier = prop::option::weighted(outlier, samples());
     let phase = (lines, quantities, 1..ticks, outlier).prop_map(
         |(lines, (display_c, sink_c, skin_c, room_c, force_n), ticks, outlier)| Phase {
@@ -247,6 +280,39 @@ fn check(cases: u32, plate_responds: bool, scenarios: &impl Strategy<Value = Vec
 #[test]
 fn safety_limits_hold_for_any_samples_and_lines() {
     check(64, false, &scenario(12, 60, 0.3));
+}
+
+#[test]
+fn safety_limits_hold_for_any_object_under_a_finger() {
+    let (accepted, sent) = (Cell::new(0), Cell::new(0));
+    let temperatures = prop_oneof![Just(-20.0), Just(60.0), -20.0..60.0];
+    let scenarios = (upload(), temperatures, 0.05..5.0, any::<bool>());
+    let count = TickCount::default();
+    let mut runner = TestRunner::new(ProptestConfig::with_cases(48));
+    let outcome = runner.run(&scenarios, |(upload, object_c, force_n, mean)| {
+        let mut bench = TestBench::new();
+        bench.plate_responds = true;
+        let finger = if mean { "finger mean" } else { "finger thesis" };
+        bench.send_ok(&["law model", finger, "material granite", "arm", "start"]);
+        send(&mut bench, &format!("object {object_c}"))?;
+        sent.set(sent.get() + 1);
+        let taken = upload.iter().all(|line| bench.send(line) == "ok");
+        accepted.set(accepted.get() + u32::from(taken));
+        for (force_n, ticks) in [(0.0, 50), (force_n, 1500), (0.0, 200), (5.0, 800)] {
+            bench.force_n = force_n;
+            for _ in 0..ticks {
+                count.tick(&mut bench, None)?;
+            }
+        }
+        Ok(())
+    });
+    if let Err(error) = outcome {
+        panic!("{error}");
+    }
+    let (driven, all) = (count.driven.get(), count.all.get());
+    assert!(driven > all / 2, "{driven} of {all} ticks were driven");
+    let (accepted, sent) = (accepted.get(), sent.get());
+    assert!(accepted > sent / 2, "{accepted} of {sent} uploads");
 }
 
 #[test]

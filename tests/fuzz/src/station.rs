@@ -75,6 +75,9 @@ enum Line {
     Slab { tenths_mm: u16, back: u8, film: u16 },
 }
 
+/// Rows of an upload: one more than are allowed.
+const ROWS_MAX: usize = 23;
+
 /// An upload of an object, whole most of the time.
 #[derive(Arbitrary, Debug)]
 struct Upload {
@@ -87,14 +90,15 @@ struct Upload {
 
 impl Upload {
     fn lines(&self) -> Vec<String> {
-        // Logarithmic, from those of copper to those of foam and beyond.
-        let decades = |value: u16| 10f64.powf(f64::from(value) / 65535.0 * 9.0 - 3.0);
+        // Logarithmic, from those of copper to those of foam and beyond the limit, 1.3e7 mm² K/J.
+        let decades = |value: u16| 10f64.powf(f64::from(value) / 65535.0 * 10.2 - 3.0);
         let mut text = format!(
-            "upload begin object {} {}\n",
-            self.rows.len(),
-            16 * u32::from(self.direct)
+            "upload begin object {} {:.3}\n",
+            self.rows.len().min(ROWS_MAX),
+            // A little beyond the limit, 27000 mm² K/W.
+            0.42 * f64::from(self.direct)
         );
-        for (index, (rate, gain)) in self.rows.iter().take(24).enumerate() {
+        for (index, (rate, gain)) in self.rows.iter().take(ROWS_MAX).enumerate() {
             let rate = f64::from(*rate) * f64::from(*rate) / 6.2e6;
             text += &format!("upload row {index} {rate:.6} {:.6}\n", decades(*gain));
         }
