@@ -93,9 +93,10 @@ enum Task {
         set_up: SetUp,
         #[command(flatten)]
         report: report::Options,
-        /// Disable each fault detector in turn in a copy of the sources; the fault matrix must reveal it; takes an hour
-        #[arg(long, exclusive = true)]
-        mutations: bool,
+        /// Disable each fault detector in turn in a copy of the sources; the fault matrix must reveal it; takes an hour. With
+        /// names, only detectors whose name contains one
+        #[arg(long, exclusive = true, num_args = 0.., value_name = "NAME")]
+        mutations: Option<Vec<String>>,
         /// Options of `hil-sim faults`: --only, --scene, --moments and others, see its --help
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
@@ -177,8 +178,9 @@ fn main() -> ExitCode {
             rest,
         } => report::run(set_up.permission(), ("hil-sim", "fidelity"), report, rest),
         Task::Faults {
-            mutations: true, ..
-        } => mutations::run(),
+            mutations: Some(names),
+            ..
+        } => mutations::run(&names),
         Task::Faults {
             set_up,
             report,

@@ -1,7 +1,8 @@
 //! Mutation testing of the fault detectors: each is disabled in turn, and the fault matrix must then fail.
 //!
 //! `table.txt` lists the detectors. One replaced text disables a detector in a copy of the sources, which is built and runs the
-//! faults that the detector is for. A mutation that no fault reveals is a gap in the matrix.
+//! faults that the detector is for. A mutation that no fault reveals is a gap in the matrix. Bounds that no line and no fault can
+//! reach are for unit tests, which run instead.
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
@@ -24,6 +25,8 @@ struct Mutation {
     faults: Vec<&'static str>,
     /// Engine that runs the faults; detectors in the board's code are in the image only.
     engine: &'static str,
+    /// Instead of faults and engine: package and name of unit tests.
+    tests: Option<(&'static str, &'static str)>,
 }
 
 impl Mutation {
@@ -45,6 +48,7 @@ impl Mutation {
 }
 
 const TABLE: &str = "xtask/src/mutations/table.txt";
+const UNCHANGED: &str = "the unchanged sources must pass";
 /// Folder of the copied sources and of their builds.
 const FOLDER: &str = "target/mutations";
 /// Builds that are quick to link, as each runs a few faults only.
@@ -73,15 +77,19 @@ fn mutations() -> Result<Vec<Mutation>> {
             "after" => last.after = value,
             "faults" => last.faults = value.split(' ').collect(),
             "engine" => last.engine = value,
+            "tests" => last.tests = value.split_once(' '),
             _ => bail!("{TABLE}: unknown key in `{line}`"),
         }
     }
     Ok(all)
 }
 
-/// `cargo xtask faults --mutations`; an error names the mutations that no fault reveals.
-pub fn run() -> Result<()> {
-    let mutations = mutations()?;
+/// `cargo xtask faults --mutations`, of detectors whose name contains one of these texts, or of all without texts; an error names
+/// the mutations that nothing reveals.
+pub fn run(names: &[String]) -> Result<()> {
+    let mut mutations = mutations()?;
+    mutations.retain(|one| names.is_empty() || names.iter().any(|it| one.detector.contains(it)));
+    ensure!(!mutations.is_empty(), "no detector has such a name");
     let copy = workspace().join(FOLDER).join("sources");
     copy_sources(&copy)?;
     for engine in ["native", "image"] {
@@ -89,9 +97,19 @@ pub fn run() -> Result<()> {
         let mut faults: Vec<_> = of_engine.flat_map(|one| &one.faults).copied().collect();
         faults.sort_unstable();
         faults.dedup();
-        matrix(&copy, engine, &faults)
+        if !faults.is_empty() {
+            matrix(&copy, engine, &faults)
+                .run_to_stderr()
+                .context(UNCHANGED)?;
+        }
+    }
+    let mut tests: Vec<_> = mutations.iter().filter_map(|one| one.tests).collect();
+    tests.sort_unstable();
+    tests.dedup();
+    for tests in tests {
+        unit_tests(&copy, tests, &[])
             .run_to_stderr()
-            .context("the unchanged sources must pass")?;
+            .context(UNCHANGED)?;
     }
     let mut unrevealed = Vec::new();
     for (number, mutation) in mutations.iter().enumerate() {
@@ -105,16 +123,23 @@ pub fn run() -> Result<()> {
         let text = fs::read_to_string(&path).with_context(|| path.display().to_string())?;
         fs::write(&path, mutation.apply(&text)?)?;
         // A mutation that does not compile would fail the matrix as well, and prove nothing.
-        Invocation::cargo(hil_sim(&copy, "build")).run_to_stderr()?;
+        match mutation.tests {
+            Some(tests) => unit_tests(&copy, tests, &["--no-run"]),
+            None => Invocation::cargo(hil_sim(&copy, "build")),
+        }
+        .run_to_stderr()?;
         if mutation.engine == "image" {
             let manifest = copy.join("Cargo.toml").into();
             let line = ["run", "--package", "xtask", "--manifest-path"].map(OsString::from);
             let firmware = [manifest, "--".into(), "firmware".into()];
             Invocation::cargo(line.into_iter().chain(firmware)).run_to_stderr()?;
         }
-        let revealed = matrix(&copy, mutation.engine, &mutation.faults)
-            .run_to_stderr()
-            .is_err();
+        let revealed = match mutation.tests {
+            Some(tests) => unit_tests(&copy, tests, &[]),
+            None => matrix(&copy, mutation.engine, &mutation.faults),
+        }
+        .run_to_stderr()
+        .is_err();
         fs::write(&path, text)?;
         println!(
             "{:20} {}",
@@ -127,7 +152,7 @@ pub fn run() -> Result<()> {
     }
     ensure!(
         unrevealed.is_empty(),
-        "no fault reveals that these are disabled: {}",
+        "nothing reveals that these are disabled: {}",
         unrevealed.join(", ")
     );
     println!("all {} mutations are revealed", mutations.len());
@@ -164,6 +189,19 @@ fn hil_sim(copy: &Path, command: &str) -> Vec<OsString> {
     line
 }
 
+/// Unit tests of the copy, by package and name, with the overflow checks of their profile.
+fn unit_tests(copy: &Path, (package, name): (&str, &str), options: &[&str]) -> Invocation {
+    let mut line = ["test", "--package", package, "--lib"]
+        .map(OsString::from)
+        .to_vec();
+    line.extend(["--manifest-path".into(), copy.join("Cargo.toml").into()]);
+    let target = workspace().join(FOLDER).join("target");
+    line.extend(["--target-dir".into(), target.into()]);
+    line.extend(options.iter().map(OsString::from));
+    line.push(name.into());
+    Invocation::cargo(line)
+}
+
 /// `hil-sim faults` of the copy, with these kinds of faults.
 fn matrix(copy: &Path, engine: &str, faults: &[&str]) -> Invocation {
     let mut line = hil_sim(copy, "run");
@@ -181,13 +219,14 @@ mod tests {
     #[test]
     fn the_text_of_every_mutation_occurs_once_in_its_file() {
         let mutations = mutations().unwrap();
-        assert!(mutations.len() >= 33, "{}", mutations.len());
+        assert!(mutations.len() >= 42, "{}", mutations.len());
         for mutation in mutations {
             let text = fs::read_to_string(workspace().join(mutation.file)).expect(mutation.file);
             let changed = mutation.apply(&text).unwrap();
             assert_ne!(changed, text, "{}", mutation.detector);
-            assert!(["native", "image"].contains(&mutation.engine));
-            assert!(!mutation.faults.is_empty(), "{}", mutation.detector);
+            let by_faults =
+                ["native", "image"].contains(&mutation.engine) && !mutation.faults.is_empty();
+            assert_ne!(by_faults, mutation.tests.is_some(), "{}", mutation.detector);
         }
     }
 }
