@@ -202,7 +202,10 @@ fn an_object_that_no_display_can_be_is_limited_and_trips_nothing() {
     for (celsius, limit_c) in [("-20", 15.0), ("60", 42.0)] {
         // It keeps its temperature: no heat of a finger moves it.
         let begin = String::from("upload begin object 0 0");
-        let commit = format!("upload commit {:08x}", checksum(&[begin.clone()]));
+        let commit = format!(
+            "upload commit {:08x}",
+            checksum(core::slice::from_ref(&begin))
+        );
         let mut bench = bench.clone();
         bench.send_ok(&[&format!("object {celsius}"), &begin, &commit]);
         assert_eq!(bench.run(20), [limit_c; 2], "{celsius} C");
