@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use thermal_plant::parameters::Before;
+use thermal_plant::parameters::PlaceBeforeContact;
 use thermal_plant::slab::BackBoundary;
 use thermal_sim::scene::AssumedFinger;
 
@@ -55,7 +55,7 @@ fn each_draw_meets_six_objects_with_one_finger_on_one_device() {
         assert!(scenes[0].commissioned);
         for scene in &scenes {
             let tissue = scene.draws.finger.and_then(|finger| finger.tissue);
-            let on_pad = tissue.is_some_and(|tissue| tissue.before == Before::Pad);
+            let on_pad = tissue.is_some_and(|tissue| tissue.before == PlaceBeforeContact::Pad);
             let expected = if on_pad {
                 AssumedFinger::MeanOnPad
             } else {
