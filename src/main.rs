@@ -24,7 +24,7 @@ mod board;
 mod app {
     use core::sync::atomic::{AtomicBool, Ordering};
 
-    use thermal_display::device::Device;
+    use thermal_display::device::{Device, execute_in_turn};
     use thermal_display::task_liveness::{HostTaskTimer, Task, TaskLiveness};
 
     use crate::board::{
@@ -146,7 +146,10 @@ mod app {
         cx.local
             .console
             .answer_lines_and_send_telemetry(|finger, command| {
-                device.lock(|device| device.execute(finger, command))
+                // Locked for one finger at a time, so that the next tick begins in time.
+                execute_in_turn(finger, |one| {
+                    device.lock(|device| device.execute_on_finger(one, &command))
+                })
             });
         cx.shared.task_liveness.check_in(Task::Host);
     }

@@ -8,8 +8,9 @@ use thermal_protocol::LINE_MAX_BYTES;
 use crate::scene::{FaultKind, Scene, custom_line};
 use crate::upload;
 
-/// Milliseconds after the device's start at which it is armed, and between two lines.
-const ARM_MS: u64 = 10;
+/// Time since the start of the device, ms, from which a host may set it up.
+pub(crate) const SET_UP_FROM_MS: u64 = 10;
+/// Time between two lines, in which a device answers the first, ms.
 const SPACING_MS: u64 = 3;
 /// Time for the skin temperature filter of the device to settle before an object is presented, ms: ten time constants.
 const SKIN_SETTLING_MS: u64 = 2600;
@@ -29,8 +30,8 @@ pub struct Host {
     /// Time since the start of the device, ms, and the bytes sent then.
     queue: Vec<(u64, Vec<u8>)>,
     next: usize,
-    /// Time since the start of the device, ms, from which another host may upload.
-    uploaded_ms: u64,
+    /// Time since the start of the device, ms, from which another host may set up its finger.
+    set_up_ms: u64,
     /// Time ranges since the start of the device, ms, in which the host floods the line, and in which it is silent.
     floods: Vec<Range<u64>>,
     silences: Vec<Range<u64>>,
@@ -70,10 +71,10 @@ fn relaxations(scene: &Scene) -> Vec<String> {
 
 impl Host {
     /// Queues the lines that restore the settings of the device, set up the scene and request telemetry every
-    /// `stream_ms`, the lines of the scene itself, and blank lines as heartbeat. The object is uploaded from `upload_from_ms`
-    /// after the device's start on at the earliest, because hosts of several fingers take turns.
+    /// `stream_ms`, the lines of the scene itself, and blank lines as heartbeat. The set-up begins `set_up_from_ms` after the
+    /// device's start: hosts of several fingers take turns.
     #[must_use]
-    pub fn new(scene: &Scene, settings: &[String], stream_ms: u32, upload_from_ms: u64) -> Self {
+    pub fn new(scene: &Scene, settings: &[String], stream_ms: u32, set_up_from_ms: u64) -> Self {
         let zero_ms = scene.settle_ms();
         // An infinite time saturates.
         let at = |t_s: f64| zero_ms.saturating_add((t_s * 1e3).round() as u64);
@@ -86,11 +87,14 @@ impl Host {
         let set_up = set_up.chain([mode.into()]).chain(law);
         // What the device assumes follows the command that arms it, which so is sent at the same time for all scenes.
         let finger = format!("finger {}", scene.assumed_finger.name());
-        let set_up = set_up.chain(["arm".into(), finger]);
-        let arm_ms = ARM_MS + SPACING_MS * settings.len() as u64;
-        let mut queue = spaced(ARM_MS, settings.iter().cloned().chain(set_up));
-        let set_up_ms = ARM_MS + SPACING_MS * queue.len() as u64;
-        queue.extend(spaced(set_up_ms.max(upload_from_ms), relaxations(scene)));
+        let set_up = set_up
+            .chain(["arm".into(), finger])
+            .chain(relaxations(scene));
+        let arm_ms = set_up_from_ms + SPACING_MS * settings.len() as u64;
+        let mut queue: Vec<_> = (settings.iter().cloned().chain(set_up).zip(0..))
+            .map(|(line, i)| (set_up_from_ms + i * SPACING_MS, line))
+            .collect();
+        let set_up_ms = set_up_from_ms + SPACING_MS * queue.len() as u64;
         let start_ms = if scene.object.appears_t_s > 0.0 {
             at(scene.object.appears_t_s)
         } else {
@@ -126,12 +130,8 @@ impl Host {
             .collect();
         queue.sort_by_key(|(ms, _)| *ms);
         space_out(&mut queue);
-        let set_up = queue.iter().take_while(|(ms, _)| *ms < zero_ms);
-        let last = set_up
-            .filter(|(_, line)| line.starts_with(b"upload"))
-            .last();
         Self {
-            uploaded_ms: last.map_or(upload_from_ms, |(ms, _)| ms + SPACING_MS),
+            set_up_ms,
             queue,
             next: 0,
             floods,
@@ -139,11 +139,10 @@ impl Host {
         }
     }
 
-    /// Time since the start of the device, ms, from which another host may upload: after the upload of this one, if it has
-    /// one.
+    /// Time since the start of the device, ms, from which another host may set up its finger: after this one's set-up.
     #[must_use]
-    pub const fn uploaded_ms(&self) -> u64 {
-        self.uploaded_ms
+    pub const fn set_up_ms(&self) -> u64 {
+        self.set_up_ms
     }
 
     /// The bytes sent at a half millisecond since the start of the device, if any.
@@ -158,12 +157,6 @@ impl Host {
         self.next += 1;
         Some(bytes)
     }
-}
-
-/// Lines from a time on, each after the one before it has been answered.
-fn spaced(from_ms: u64, lines: impl IntoIterator<Item = String>) -> Vec<(u64, String)> {
-    let times = (0..).map(|i| from_ms + i * SPACING_MS);
-    times.zip(lines).collect()
 }
 
 fn within(times: &[Range<u64>], ms: u64) -> bool {

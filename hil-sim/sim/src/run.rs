@@ -4,6 +4,7 @@ use std::time::Instant;
 
 use crate::commissioning::{self, CommissionError};
 use crate::engine::{Engine, LineSplitter};
+use crate::host::SET_UP_FROM_MS;
 use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
@@ -72,7 +73,7 @@ pub fn run_with<E: Engine>(
 ) -> Result<Outcome, RunError<E::Stop>> {
     let settings = commissioning::settings_for_scene(scene).map_err(RunError::Commission)?;
     let began = Instant::now();
-    let recording = SceneRecording::new(scene, &settings, 1, 0);
+    let recording = SceneRecording::new(scene, &settings, 1, SET_UP_FROM_MS);
     let (zero_ms, last_ms) = (recording.zero_ms, recording.end_ms + DRAIN_MS);
     let time_s = |ms: f64| (ms - zero_ms as f64) / 1e3;
     let (from_s, to_s) = (time_s(0.0), time_s(recording.end_ms as f64));

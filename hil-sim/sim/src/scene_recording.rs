@@ -41,13 +41,13 @@ pub struct SceneRecording<'a> {
 }
 
 impl<'a> SceneRecording<'a> {
-    /// Prepares the scene for a device with these settings that sends telemetry every `stream_ms`, and that takes an upload
-    /// from `upload_from_ms` on.
-    pub fn new(scene: &'a Scene, settings: &[String], stream_ms: u32, upload_from_ms: u64) -> Self {
+    /// Prepares the scene for a device with these settings that sends telemetry every `stream_ms`, and whose set-up begins
+    /// `set_up_from_ms` after its start.
+    pub fn new(scene: &'a Scene, settings: &[String], stream_ms: u32, set_up_from_ms: u64) -> Self {
         let zero_ms = scene.settle_ms();
         Self {
             scene,
-            host: Host::new(scene, settings, stream_ms, upload_from_ms),
+            host: Host::new(scene, settings, stream_ms, set_up_from_ms),
             zero_ms,
             end_ms: zero_ms + (scene.duration_s * 1e3).round() as u64,
             trace: Trace::default(),

@@ -121,41 +121,64 @@ impl<const FINGERS: usize> Device<FINGERS> {
         })
     }
 
-    /// Executes a command, in bounded and short time: on `finger`, or on all fingers if `finger` is `None`.
-    ///
-    /// A query to all fingers is answered by the one with the lowest index that does not refuse the query. `clear` to
-    /// all fingers succeeds if at least one was tripped, and every tripped one could be cleared.
+    /// Executes a command in the station of one finger, in bounded and short time. With five fingers this must end within
+    /// 11 us, because the next finger's tick cannot begin meanwhile.
     ///
     /// # Errors
-    /// The refusal of `finger`. For all fingers: the refusal of the finger with the lowest index among those that
-    /// refuse, with that index (none on a device with one finger); [`Refused::NothingToClear`] only if no finger was
-    /// tripped. The other fingers, which do not refuse the command, have executed it.
+    /// The station's refusal.
+    pub fn execute_on_finger(
+        &mut self,
+        finger: FingerIndex<FINGERS>,
+        command: &Command,
+    ) -> Result<Reply, Refused> {
+        self.stations[finger.index()].execute(command)
+    }
+
+    /// [`execute_in_turn`] for a caller that need not give way to a tick between two fingers.
+    ///
+    /// # Errors
+    /// As [`execute_in_turn`].
     pub fn execute(
         &mut self,
         finger: Option<FingerIndex<FINGERS>>,
         command: Command,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Refused>> {
-        if let Some(one) = finger {
-            let finger = Some(one.index_u8());
-            return match self.stations[one.index()].execute(command) {
-                Ok(content) => Ok(WithSourceFinger { finger, content }),
-                Err(content) => Err(WithSourceFinger { finger, content }),
-            };
-        }
-        let (mut refused, mut nothing_to_clear, mut executed) = (None, None, false);
-        for (finger, station) in FingerIndex::<FINGERS>::all().zip(&mut self.stations) {
-            let finger = finger.index_unless_single_finger();
-            match station.execute(command) {
-                Ok(Reply::Done) => executed = true,
-                Ok(content) => return Ok(WithSourceFinger { finger, content }),
-                Err(content @ Refused::NothingToClear) => {
-                    nothing_to_clear =
-                        nothing_to_clear.or(Some(WithSourceFinger { finger, content }))
-                }
-                Err(content) => refused = refused.or(Some(WithSourceFinger { finger, content })),
-            }
-        }
-        let refused = refused.or(nothing_to_clear.filter(|_| !executed));
-        refused.map_or(Ok(WithSourceFinger::from_whole_device(Reply::Done)), Err)
+        execute_in_turn(finger, |one| self.execute_on_finger(one, &command))
     }
+}
+
+/// Executes a command by `execute` on `finger`, or on one finger after the other if `finger` is `None`.
+///
+/// A query to all fingers is answered by the one with the lowest index that does not refuse the query. `clear` to all
+/// fingers succeeds if at least one was tripped, and every tripped one could be cleared.
+///
+/// # Errors
+/// The refusal of `finger`. For all fingers: the refusal of the finger with the lowest index among those that refuse, with
+/// that index (none on a device with one finger); [`Refused::NothingToClear`] only if no finger was tripped. The other
+/// fingers, which do not refuse the command, have executed it.
+pub fn execute_in_turn<const FINGERS: usize>(
+    finger: Option<FingerIndex<FINGERS>>,
+    mut execute: impl FnMut(FingerIndex<FINGERS>) -> Result<Reply, Refused>,
+) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Refused>> {
+    if let Some(one) = finger {
+        let finger = Some(one.index_u8());
+        return match execute(one) {
+            Ok(content) => Ok(WithSourceFinger { finger, content }),
+            Err(content) => Err(WithSourceFinger { finger, content }),
+        };
+    }
+    let (mut refused, mut nothing_to_clear, mut executed) = (None, None, false);
+    for one in FingerIndex::<FINGERS>::all() {
+        let finger = one.index_unless_single_finger();
+        match execute(one) {
+            Ok(Reply::Done) => executed = true,
+            Ok(content) => return Ok(WithSourceFinger { finger, content }),
+            Err(content @ Refused::NothingToClear) => {
+                nothing_to_clear = nothing_to_clear.or(Some(WithSourceFinger { finger, content }));
+            }
+            Err(content) => refused = refused.or(Some(WithSourceFinger { finger, content })),
+        }
+    }
+    let refused = refused.or(nothing_to_clear.filter(|_| !executed));
+    refused.map_or(Ok(WithSourceFinger::from_whole_device(Reply::Done)), Err)
 }

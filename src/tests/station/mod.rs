@@ -83,7 +83,7 @@ impl TestBench {
         let answer = self.handler.answer(line, |_, command| {
             let content = self
                 .station
-                .execute(command)
+                .execute(&command)
                 .map_err(WithSourceFinger::from_whole_device)?;
             Ok(WithSourceFinger::from_whole_device(content))
         });

@@ -23,7 +23,7 @@ impl TestBench {
 #[test]
 fn a_new_station_uses_the_law_model() {
     let mut station = Station::new(&Settings::default());
-    let law = station.execute(Command::Law(None));
+    let law = station.execute(&Command::Law(None));
     assert_eq!(law, Ok(Reply::Law(Law::Model)));
 }
 

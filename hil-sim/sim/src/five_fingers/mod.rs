@@ -7,8 +7,8 @@
 //! the same as on the one-finger board, and the device reads its sensors 0.4 ms older than they would be.
 //!
 //! A line to a finger is sent right after that finger's tick. Lines to later fingers follow one millisecond each later,
-//! because at 1 Mbaud they would delay each other. Objects are uploaded one finger after the other, because the device
-//! keeps one upload.
+//! because at 1 Mbaud they would delay each other. The fingers are set up one after the other, because the device takes
+//! up to a millisecond for some lines, and keeps one upload.
 
 mod native;
 
@@ -19,6 +19,7 @@ pub use native::NativeFiveFingers;
 use crate::World;
 use crate::commissioning;
 use crate::engine::{Cost, DeviceReset};
+use crate::host::SET_UP_FROM_MS;
 use crate::run::{Outcome, RunError};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
@@ -88,11 +89,11 @@ pub fn run<H: FiveFingerEngine>(
         return Err(RunError::SharedProcessor(injection.fault));
     }
     let began = Instant::now();
-    let mut upload_from_ms = 0;
+    let mut set_up_from_ms = SET_UP_FROM_MS;
     let mut fingers: [_; FINGERS] = std::array::from_fn(|finger| {
         let (scene, settings) = (&scenes[finger], &settings[finger]);
-        let recording = SceneRecording::new(scene, settings, STREAM_MS, upload_from_ms);
-        upload_from_ms = recording.host.uploaded_ms();
+        let recording = SceneRecording::new(scene, settings, STREAM_MS, set_up_from_ms);
+        set_up_from_ms = recording.host.set_up_ms();
         recording
     });
     let last = |of: fn(&SceneRecording<'_>) -> u64| fingers.iter().map(of).max().unwrap_or(0);

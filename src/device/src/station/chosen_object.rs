@@ -63,23 +63,30 @@ impl ChosenObject {
     }
 
     /// Presents the half-space of a material from now on.
-    pub fn choose_material(&mut self, material: ChosenMaterial) {
-        self.material = Some(material);
+    pub fn choose_material(&mut self, material: &ChosenMaterial) {
+        self.material = Some(*material);
         self.choose_body(None);
     }
 
     /// Presents an object with this body from now on, or for `None` the half-space of its material.
-    pub fn choose_body(&mut self, body: Option<Body>) {
+    pub fn choose_body(&mut self, body: Option<&Body>) {
+        let object = &mut self.bodies.object;
+        match (body, &self.material) {
+            (Some(body), _) => {
+                *object = ScaledBody {
+                    body: *body,
+                    factor: U16F16::ONE,
+                }
+            }
+            // The half-spaces differ by their factor only; the body is not copied again, to save time.
+            (None, Some(material)) if self.is_half_space => {
+                object.factor = material.impedance_ratio
+            }
+            (None, Some(material)) => *object = ScaledBody::half_space(material.impedance_ratio),
+            (None, None) => *object = ScaledBody::half_space(U16F16::ONE),
+        }
         self.is_half_space = body.is_none();
         self.bodies.are_half_spaces = self.is_half_space && self.finger == AssumedFinger::Thesis;
-        self.bodies.object = match (body, &self.material) {
-            (Some(body), _) => ScaledBody {
-                body,
-                factor: U16F16::ONE,
-            },
-            (None, Some(material)) => ScaledBody::half_space(material.impedance_ratio),
-            (None, None) => ScaledBody::half_space(U16F16::ONE),
-        };
     }
 
     /// Assumes this finger from now on.

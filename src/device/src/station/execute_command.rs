@@ -14,8 +14,8 @@ impl Station {
     /// Why the station's state does not permit the command; nothing has changed then. One exception: if the board has
     /// raised a second fault while a first one was latched, `clear` clears the first, trips the station by the second,
     /// and returns the second as [`Refused::StillFaulty`].
-    pub fn execute(&mut self, command: Command) -> Result<Reply, Refused> {
-        match command {
+    pub fn execute(&mut self, command: &Command) -> Result<Reply, Refused> {
+        match *command {
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Cause => return Ok(Reply::Cause(self.latch.last_trip_cause().copied())),
             Command::Law(None) => return Ok(Reply::Law(self.controller.law())),
@@ -38,12 +38,12 @@ impl Station {
                     self.restart_contact();
                 }
             }
-            Command::Material(material) => {
+            Command::Material(ref material) => {
                 self.object.choose_material(material);
                 self.restart_contact();
             }
-            Command::Body(body) => {
-                self.object.choose_body(body);
+            Command::Body(ref body) => {
+                self.object.choose_body(body.as_ref());
                 self.restart_contact();
             }
             Command::Object(temperature) => {
@@ -72,18 +72,18 @@ impl Station {
             }
             Command::Clear => self.execute_clear()?,
             Command::Tune => self.execute_tune_identification()?,
-            Command::Calibrate(tables) => {
+            Command::Calibrate(ref tables) => {
                 self.require_no_object_and_no_self_test()?;
                 // The reading changes with the calibration, which neither the identification nor the detectors may take
                 // for a movement of the display.
                 self.interrupt_identification();
-                self.sensors.replace_calibration_tables(&tables);
+                self.sensors.replace_calibration_tables(tables);
                 self.estimator.plate.note_recalibration();
                 self.detectors.restart_motion_detectors();
             }
-            Command::Retune(parameters) => {
+            Command::Retune(ref parameters) => {
                 self.require_no_object_presented()?;
-                self.set_control_parameters(&parameters);
+                self.set_control_parameters(parameters);
                 self.interrupt_identification();
                 // The result has been used, so the display is neutral again.
                 if let State::Armed(task @ ArmedTask::Identify(_)) = &mut self.state {

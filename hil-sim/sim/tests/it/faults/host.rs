@@ -11,7 +11,7 @@ const BYTES_A_MS: usize = 100;
 
 /// What leaves in each millisecond of a scene's 20 s, set-up included.
 fn sent(tables: &str) -> Vec<Vec<u8>> {
-    let mut host = Host::new(&scene(tables), &[], 1, 0);
+    let mut host = Host::new(&scene(tables), &[], 1, 10);
     let mut send = |half_ms| host.send(half_ms).map_or(Vec::new(), <[u8]>::to_vec);
     (0..ZERO_MS + 20_000)
         .map(|ms| [send(2 * ms), send(2 * ms + 1)].concat())
