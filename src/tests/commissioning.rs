@@ -209,9 +209,9 @@ fn invalid_arguments_are_refused_and_change_nothing() {
             "settings 9",
             "err line of settings '9' out of range; 1 to 8 (whole)",
         ),
-        ("set", "err setting missing"),
-        ("set steps", "err border missing"),
-        ("set steps 10", "err step missing"),
+        ("set", "err setting missing; known: steps correction tile"),
+        ("set steps", "err border missing; 10 to 22 (whole)"),
+        ("set steps 10", "err step missing; -4 to 4 counts"),
         (
             "set steps 10.5 1",
             "err border '10.5' out of range; 10 to 22 (whole)",
@@ -229,8 +229,14 @@ fn invalid_arguments_are_refused_and_change_nothing() {
             "set steps 10 1 2 nan",
             "err step 'nan' is not a decimal number; -4 to 4 counts",
         ),
-        ("set correction", "err sensor missing"),
-        ("set correction skin 0 0", "err curvature missing"),
+        (
+            "set correction",
+            "err sensor missing; known: display check sink skin room",
+        ),
+        (
+            "set correction skin 0 0",
+            "err curvature missing; -0.002 to 0.002 1/K",
+        ),
         (
             "set correction skin 0 inf 0",
             "err slope 'inf' is not a decimal number; -0.05 to 0.05 K/K",
@@ -247,8 +253,14 @@ fn invalid_arguments_are_refused_and_change_nothing() {
             "set tile 1e30 0.06 0.1 0.1 0.01",
             "err gain '1e30' out of range; 0.1 to 15 K/s/A",
         ),
-        ("calibrate", "err sensor missing"),
-        ("calibrate display", "err reference temperature missing"),
+        (
+            "calibrate",
+            "err sensor missing; known: display check sink skin room",
+        ),
+        (
+            "calibrate display",
+            "err reference temperature missing; 0 to 60 C",
+        ),
         (
             "calibrate display 26 C",
             "err unexpected 'C' after the command",

@@ -169,6 +169,34 @@ fn a_material_and_half_space_end_a_slab_or_an_upload() {
 }
 
 #[test]
+fn the_state_ends_with_the_body_of_the_object() {
+    let mut bench = Bench::presenting();
+    for (lines, body) in [
+        (&["object room"][..], "half-space"),
+        (&["object slab 3mm held", "object room"], "slab"),
+        // So thick that it is none.
+        (
+            &["material granite", "object slab 1000mm held"],
+            "half-space",
+        ),
+        (&UPLOAD[..2], "half-space"),
+        (&UPLOAD, "upload"),
+        (&["object slab 3mm held"], "slab"),
+        (&["material copper"], "half-space"),
+        (&["@2 object slab 3mm held"], "half-space"),
+    ] {
+        for line in lines {
+            bench.send(line);
+        }
+        let state = bench.send("@1 state");
+        assert!(
+            state.ends_with(&format!(" body={body}")),
+            "{lines:?}: {state}"
+        );
+    }
+}
+
+#[test]
 fn an_upload_that_is_not_committed_changes_nothing_that_a_finger_feels() {
     let [begin, row, commit] = UPLOAD;
     let bench = Bench::presenting();
@@ -210,7 +238,10 @@ fn an_object_that_no_display_can_be_is_limited_and_trips_nothing() {
         bench.send_ok(&[&format!("object {celsius}"), &begin, &commit]);
         assert_eq!(bench.run(20), [limit_c; 2], "{celsius} C");
         let state = bench.send("@1 state");
-        assert!(state.ends_with("limited"), "{celsius} C: {state}");
+        assert!(
+            state.ends_with(" limited body=upload"),
+            "{celsius} C: {state}"
+        );
     }
 }
 

@@ -56,6 +56,38 @@ impl ChosenMaterial {
     }
 }
 
+/// How an object conducts heat behind its touched face.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ObjectBody {
+    /// As a half-space of its material.
+    HalfSpace,
+    /// As a slab of its material, by these relaxations.
+    Slab(Body),
+    /// By relaxations that the host has uploaded.
+    Upload(Body),
+}
+
+impl ObjectBody {
+    /// Its word in the protocol.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::HalfSpace => "half-space",
+            Self::Slab(_) => "slab",
+            Self::Upload(_) => "upload",
+        }
+    }
+
+    /// Its relaxations, unless it is a half-space.
+    #[must_use]
+    pub const fn relaxations(&self) -> Option<&Body> {
+        match self {
+            Self::HalfSpace => None,
+            Self::Slab(body) | Self::Upload(body) => Some(body),
+        }
+    }
+}
+
 /// The finger that the device assumes for the unknown one that touches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AssumedFinger {
@@ -101,8 +133,8 @@ impl AssumedFinger {
 /// state permits the command is decided only when the station executes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Command {
-    /// Report the state, the chosen material, object temperature and contact model, and the set-point of the last tick,
-    /// by [`Reply::Status`]. Never refused.
+    /// Report the state, the chosen material, body, object temperature and contact model, and the set-point of the last
+    /// tick, by [`Reply::Status`]. Never refused.
     Status,
     /// Send a line of telemetry every `interval_ms` from now on. While telemetry is on and the display follows a
     /// set-point (in armed, preset and contact), 2 s without a line from the host trip the station by
@@ -116,9 +148,8 @@ pub enum Command {
     Material(ChosenMaterial),
     /// Report the properties of the chosen material. Never refused.
     MaterialProperties,
-    /// Choose how the object conducts heat behind its touched face: by these relaxations, or as a half-space of its
-    /// material (`None`). If a finger touches, a new contact begins.
-    Body(Option<Body>),
+    /// Choose how the object conducts heat behind its touched face. If a finger touches, a new contact begins.
+    Body(ObjectBody),
     /// Choose the finger that is assumed for the one that touches. If that changes it, a finger that touches begins a new
     /// contact. `None` changes nothing: the answer is the assumed finger.
     Finger(Option<AssumedFinger>),
@@ -256,6 +287,8 @@ pub struct Status {
     pub setpoint: Option<Celsius>,
     /// Whether the set-point of the last tick would have been outside of 15 to 42 °C, and was clamped to that range.
     pub limited: bool,
+    /// Word for the body of the object that the host has chosen: [`ObjectBody::name`].
+    pub body: &'static str,
 }
 
 /// A reply, refusal or telemetry together with the finger that it comes from, so that the line to the host can name the

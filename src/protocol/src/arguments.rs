@@ -18,6 +18,11 @@ pub fn read_word<'a>(words: &mut Words<'a>, name: &'static str) -> Result<&'a st
     words.next().ok_or(Error::Missing(name))
 }
 
+/// Returns the next word of a line, and an empty one if none is left, for arguments whose error names what is known.
+pub fn word_or_empty<'a>(words: &mut Words<'a>) -> &'a str {
+    words.next().unwrap_or_default()
+}
+
 /// Checks that no word is left on a line.
 ///
 /// # Errors
@@ -50,13 +55,13 @@ pub fn table_entry_for_word_or_none<T: Copy>(
 /// Reads the next word of a line as a decimal number within `range`, both limits included.
 ///
 /// # Errors
-/// [`Error::Missing`]: no word is left. [`Error::NotANumber`]: the word is not a decimal number. [`Error::OutOfRange`]:
-/// the number lies outside `range`.
+/// [`Error::NotANumber`]: the word is not a decimal number, or no word is left. [`Error::OutOfRange`]: the number lies
+/// outside `range`.
 pub fn read_fixed_point_in_range(
     words: &mut Words<'_>,
     range: &'static Range,
 ) -> Result<I32F32, Error> {
-    let word = read_word(words, range.name)?;
+    let word = word_or_empty(words);
     // A number with too many digits becomes the largest `I32F32`, which is outside of all ranges.
     let value =
         I32F32::saturating_from_str(word).map_err(|_| Error::NotANumber(range, word.into()))?;

@@ -11,7 +11,7 @@ use thermal_settings::{
 use crate::Error;
 use crate::arguments::{
     Words, read_fixed_point_in_range, read_numbers_in_ranges, read_whole_number_in_range,
-    read_word, skip_if_next_is,
+    skip_if_next_is, word_or_empty,
 };
 
 static REFERENCE_TEMPERATURE_RANGE: Range = Range {
@@ -38,7 +38,7 @@ static ADC_SEGMENT_BORDER_INDEX_RANGE: Range = Range {
 pub const SET_COMMAND_TARGET_WORDS: [&str; 3] = ["steps", "correction", "tile"];
 
 fn parse_thermistor_name_to_index(words: &mut Words<'_>) -> Result<usize, Error> {
-    let name = read_word(words, "sensor")?;
+    let name = word_or_empty(words);
     let known = THERMISTOR_WORDS.iter().position(|known| *known == name);
     known.ok_or(Error::UnknownSensor(name.into()))
 }
@@ -72,7 +72,7 @@ pub fn parse_settings_query(words: &mut Words<'_>) -> Result<SessionRequest, Err
 /// a thermistor and three coefficients; or `tile` with five parameters.
 #[inline(never)]
 pub fn parse_set_arguments(words: &mut Words<'_>) -> Result<Setting, Error> {
-    Ok(match read_word(words, "setting")? {
+    Ok(match word_or_empty(words) {
         "steps" => {
             let first = read_whole_number_in_range(words, &ADC_SEGMENT_BORDER_INDEX_RANGE)?;
             let room = CONVERTER_STEPS_PER_LINE_MAX

@@ -6,7 +6,7 @@ use contact_model::fixed_point::Body;
 use contact_model::material::{Material, SKIN};
 use contact_model::slab::{Back, Slab};
 use thermal_commissioning::{CommissioningSession, SessionReply, SessionRequest, StorageOrder};
-use thermal_device::command::{self, Command, Refused, WithSourceFinger};
+use thermal_device::command::{self, Command, ObjectBody, Refused, WithSourceFinger};
 use thermal_device::{FingerIndex, StateName, TICK_S};
 use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings_record};
 
@@ -121,7 +121,10 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             }
             Request::Upload => match self.continue_upload(finger, line).map_err(rejected)? {
                 None => Ok(addressed(Reply::DONE)),
-                Some(body) => Self::execute_in_stations(Command::Body(Some(body)), finger, execute),
+                Some(body) => {
+                    let command = Command::Body(ObjectBody::Upload(body));
+                    Self::execute_in_stations(command, finger, execute)
+                }
             },
             Request::Commissioning(request) => {
                 self.execute_in_commissioning_sessions(request, finger, execute)
@@ -308,8 +311,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
 /// also have more slow relaxations than a body may.
 const SLAB_DIFFUSION_MAX_S: f64 = 2e4;
 
-/// A slab of a material; `None` if it counts as a half-space.
-fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<Option<Body>, Error> {
+/// The body of a slab of a material, which may count as a half-space.
+fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<ObjectBody, Error> {
     let slab = Slab {
         thickness_m: 1e-3 * thickness_mm,
         conductivity_w_mk: material.surface.conductivity_w_mk,
@@ -318,9 +321,9 @@ fn slab_body(material: &Material, thickness_mm: f64, back: Back) -> Result<Optio
     };
     let diffusion_s = slab.thickness_m * slab.thickness_m / material.diffusivity_m2_s();
     if diffusion_s > SLAB_DIFFUSION_MAX_S {
-        return Ok(None);
+        return Ok(ObjectBody::HalfSpace);
     }
     let relaxations = slab.relaxations();
     let body = Body::new(&relaxations.impedance(), SKIN.effusivity(), TICK_S);
-    body.map(Some).map_err(Error::Body)
+    body.map(ObjectBody::Slab).map_err(Error::Body)
 }

@@ -14,7 +14,7 @@ use thermal_device::control::Law;
 use thermal_settings::Range;
 
 use crate::calibrate_settings_set_commands::SET_COMMAND_TARGET_WORDS;
-use crate::object::BACK_WORDS;
+use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
 use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
 use crate::upload::UploadError;
 use crate::{LINE_MAX_BYTES, LineError, Request};
@@ -33,6 +33,12 @@ impl From<&str> for QuotedWordExcerpt {
             }
         }
         Self(excerpt)
+    }
+}
+
+impl QuotedWordExcerpt {
+    fn is_empty(&self) -> bool {
+        self.0.is_empty()
     }
 }
 
@@ -64,13 +70,16 @@ impl StorageFailureText {
 pub enum Error {
     /// The bytes that were received from the host form no valid line, for this reason.
     Line(LineError),
-    /// The first word of the line, quoted here, is no command.
+    /// The first word of the line, quoted here, is no command. In this and all other errors of unknown words the quoted
+    /// word is empty if it is missing.
     UnknownCommand(QuotedWordExcerpt),
     /// The word after `@`, quoted here, is not the index of a finger, which counts from 0; the second value is the
     /// number of fingers of the device.
     UnknownFinger(QuotedWordExcerpt, usize),
     /// The argument of `material`, quoted here, is neither the name of a material nor `custom`.
     UnknownMaterial(QuotedWordExcerpt),
+    /// The argument of `object`, quoted here, is none of `slab`, `half-space`, `room`, and no temperature.
+    UnknownObject(QuotedWordExcerpt),
     /// The argument of `finger`, quoted here, is none of its words.
     UnknownAssumedFinger(QuotedWordExcerpt),
     /// The word after the thickness of a slab, quoted here, is none of `insulated`, `held` and `film`.
@@ -92,14 +101,17 @@ pub enum Error {
     UnknownSensor(QuotedWordExcerpt),
     /// The word after `set`, quoted here, is none of `steps`, `correction` and `tile`.
     UnknownSetting(QuotedWordExcerpt),
-    /// The line lacks the argument with this name. The name is `command` if the line has no command, and
+    /// The line lacks the word with this name. The name is `command` if the line has no command, and
     /// `finger (as @0)` if the line must address a single finger but has no address.
     Missing(&'static str),
     /// The word quoted here follows the last argument of the command, where the line should end.
     Extra(QuotedWordExcerpt),
     /// The word quoted here is not a decimal number, but stands where the argument with this name and range is
-    /// expected.
+    /// expected. An empty one: the argument is missing.
     NotANumber(&'static Range, QuotedWordExcerpt),
+    /// The word quoted here is not a number of mm, with or without the unit, but stands where the thickness with this
+    /// range is expected.
+    NotMillimetres(&'static Range, QuotedWordExcerpt),
     /// The number quoted here is outside the range of its argument, or is not whole where only a whole number is
     /// allowed.
     OutOfRange(&'static Range, QuotedWordExcerpt),
@@ -170,6 +182,10 @@ impl fmt::Display for Error {
                 word,
                 AssumedFinger::PROTOCOL_WORDS.iter().map(|(name, _)| *name),
             ),
+            Self::UnknownObject(word) if word.is_empty() => {
+                write!(f, "object missing; {OBJECT_ARGUMENTS}")
+            }
+            Self::UnknownObject(word) => write!(f, "object {word}: {OBJECT_ARGUMENTS}"),
             Self::UnknownBack(word) => write_unknown_word(f, "back", word, BACK_WORDS.into_iter()),
             Self::UnknownUpload(word) => write_unknown_word(
                 f,
@@ -200,6 +216,16 @@ impl fmt::Display for Error {
             }
             Self::Missing(argument) => write!(f, "{argument} missing"),
             Self::Extra(word) => write!(f, "unexpected {word} after the command"),
+            Self::NotANumber(range, word) | Self::NotMillimetres(range, word)
+                if word.is_empty() =>
+            {
+                write!(f, "{} missing; {range}", range.name)
+            }
+            Self::NotMillimetres(range, word) => write!(
+                f,
+                "{} {word}: a number of mm, such as 3 or 3mm; {} to {}",
+                range.name, range.min, range.max
+            ),
             Self::NotANumber(range, word) => {
                 write!(f, "{} {word} is not a decimal number; {range}", range.name)
             }
@@ -233,15 +259,19 @@ fn write_unknown_word<'a>(
     Ok(())
 }
 
-/// Writes the message of [`write_unknown_word`] up to its list of known words, as in `unknown mode 'x'; known:`. Not
-/// part of that generic function, so that the program contains this code only once.
+/// Writes the message of [`write_unknown_word`] up to its list of known words, as in `unknown mode 'x'; known:` or, for
+/// an empty word, `mode missing; known:`. Not part of that generic function, so that the program contains this code only once.
 #[inline(never)]
 fn write_unknown_word_prefix(
     f: &mut fmt::Formatter<'_>,
     kind: &str,
     word: &QuotedWordExcerpt,
 ) -> fmt::Result {
-    write!(f, "unknown {kind} {word}; known:")
+    if word.is_empty() {
+        write!(f, "{kind} missing; known:")
+    } else {
+        write!(f, "unknown {kind} {word}; known:")
+    }
 }
 
 fn write_line_error(f: &mut fmt::Formatter<'_>, error: LineError) -> fmt::Result {

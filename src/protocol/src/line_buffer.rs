@@ -9,10 +9,10 @@ use contact_model::fixed_point::{Celsius, Force};
 
 use thermal_device::drive::Current;
 
-/// Capacity of a [`LineBuffer`], bytes: enough for the longest line of telemetry.
-const LINE_CAPACITY_BYTES: usize = 128;
+/// Capacity of a [`LineBuffer`], bytes: enough for the longest answer to `state`, which is longer than any telemetry.
+const LINE_CAPACITY_BYTES: usize = 144;
 
-/// A line to the host that is being written, of at most 128 ASCII characters. A word or number that does not fit is
+/// A line to the host that is being written, of at most 144 ASCII characters. A word or number that does not fit is
 /// left out as a whole.
 pub(super) struct LineBuffer {
     bytes: [u8; LINE_CAPACITY_BYTES],

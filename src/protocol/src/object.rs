@@ -2,10 +2,10 @@
 
 use contact_model::slab::Back;
 use fixed::types::I32F32;
-use thermal_device::command::Command;
+use thermal_device::command::{Command, ObjectBody};
 use thermal_settings::Range;
 
-use crate::arguments::{Words, read_fixed_point_in_range, read_word, skip_if_next_is};
+use crate::arguments::{Words, read_fixed_point_in_range, skip_if_next_is, word_or_empty};
 use crate::{Error, Request};
 
 static OBJECT_TEMPERATURE_RANGE: Range = Range {
@@ -26,6 +26,8 @@ static FILM_RANGE: Range = Range {
     min: 0.1,
     max: 100_000.0,
 };
+/// What may follow `object`, for the error message. Its range is that of [`OBJECT_TEMPERATURE_RANGE`].
+pub const OBJECT_ARGUMENTS: &str = "slab, half-space, room, or -20 to 60 C";
 /// Words for the back of a slab, which the answer to an unknown one lists.
 pub const BACK_WORDS: [&str; 3] = ["insulated", "held", "film"];
 
@@ -35,24 +37,33 @@ pub const BACK_WORDS: [&str; 3] = ["insulated", "held", "film"];
 /// # Errors
 /// An argument is missing, unknown, no number, or out of range.
 pub fn parse_object(words: &mut Words<'_>) -> Result<Request, Error> {
+    let word = words.clone().next().unwrap_or_default();
     if skip_if_next_is(words, "room") {
         return Ok(Request::Station(Command::Object(None)));
     }
     if skip_if_next_is(words, "half-space") {
-        return Ok(Request::Station(Command::Body(None)));
+        return Ok(Request::Station(Command::Body(ObjectBody::HalfSpace)));
     }
     if !skip_if_next_is(words, "slab") {
-        let celsius = read_fixed_point_in_range(words, &OBJECT_TEMPERATURE_RANGE)?.to_num();
-        return Ok(Request::Station(Command::Object(Some(celsius))));
+        return match read_fixed_point_in_range(words, &OBJECT_TEMPERATURE_RANGE) {
+            Ok(celsius) => Ok(Request::Station(Command::Object(Some(celsius.to_num())))),
+            Err(Error::NotANumber(..)) => Err(Error::UnknownObject(word.into())),
+            Err(error) => Err(error),
+        };
     }
-    let word = read_word(words, "thickness in mm")?;
+    let word = word_or_empty(words);
     let number = word.strip_suffix("mm").unwrap_or(word);
     let thickness_mm: I32F32 =
-        read_fixed_point_in_range(&mut number.split_ascii_whitespace(), &THICKNESS_RANGE)?;
+        read_fixed_point_in_range(&mut number.split_ascii_whitespace(), &THICKNESS_RANGE).map_err(
+            |error| match error {
+                Error::NotANumber(range, _) => Error::NotMillimetres(range, word.into()),
+                error => error,
+            },
+        )?;
     if number == word {
         skip_if_next_is(words, "mm");
     }
-    let back = match read_word(words, "back")? {
+    let back = match word_or_empty(words) {
         "insulated" => Back::Insulated,
         "held" => Back::Held,
         "film" => Back::Film(read_fixed_point_in_range(words, &FILM_RANGE)?.to_num()),

@@ -113,6 +113,8 @@ fn state_answer_line(status: &Status) -> LineBuffer {
     line.push_str_if_fits(" setpoint_c=");
     line.push_celsius_or_dash::<2>(status.setpoint);
     line.push_str_if_fits(if status.limited { " limited" } else { "" });
+    line.push_str_if_fits(" body=");
+    line.push_str_if_fits(status.body);
     line
 }
 

@@ -14,7 +14,7 @@ use thermal_settings::{Range, Settings};
 use crate::Error;
 use crate::arguments::{
     Words, expect_end, read_fixed_point_in_range, read_numbers_in_ranges, read_word,
-    skip_if_next_is, table_entry_for_word_or_none,
+    skip_if_next_is, table_entry_for_word_or_none, word_or_empty,
 };
 use crate::calibrate_settings_set_commands::{
     parse_calibration_point_or_clear, parse_set_arguments, parse_settings_query,
@@ -191,7 +191,7 @@ fn parse_finger(name: &str) -> Result<AssumedFinger, Error> {
 }
 
 fn parse_contact_model(words: &mut Words<'_>) -> Result<ContactModel, Error> {
-    let name = read_word(words, "mode")?;
+    let name = word_or_empty(words);
     let (_, mode) = table_entry_for_word_or_none(&CONTACT_MODEL_WORDS, name)
         .ok_or(Error::UnknownMode(name.into()))?;
     Ok(mode)
@@ -212,7 +212,7 @@ fn parse_material_and_compute_contact(
     words: &mut Words<'_>,
     display: &Surface,
 ) -> Result<Command, Error> {
-    let name = read_word(words, "material")?;
+    let name = word_or_empty(words);
     let (name, material) = if name == CUSTOM_MATERIAL_WORD {
         (
             CUSTOM_MATERIAL_WORD,

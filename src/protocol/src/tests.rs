@@ -13,7 +13,7 @@ use super::{
 };
 use thermal_commissioning::IdentificationError;
 use thermal_device::command::AssumedFinger;
-use thermal_device::command::{self, Command, Status};
+use thermal_device::command::{self, Command, ObjectBody, Status};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
 use thermal_device::reference::ContactModel;
@@ -44,7 +44,7 @@ fn every_command_is_parsed() {
             },
         ),
         ("object room", Command::Object(None)),
-        ("object half-space", Command::Body(None)),
+        ("object half-space", Command::Body(ObjectBody::HalfSpace)),
         ("finger", Command::Finger(None)),
         (
             "finger thesis",
@@ -112,24 +112,50 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
         ),
         ("law x", "err unknown law 'x'; known: pi-10hz pi model"),
         (" ", "err command missing"),
-        ("stream", "err interval missing"),
-        ("object", "err object temperature missing"),
-        ("material", "err material missing"),
-        ("material custom 1 1", "err specific heat missing"),
-        ("mode", "err mode missing"),
+        ("stream", "err interval missing; 0 to 60000 ms"),
+        (
+            "object",
+            "err object missing; slab, half-space, room, or -20 to 60 C",
+        ),
+        (
+            "material",
+            "err material missing; known: copper bronze stainless-steel granite g10 abs foam baf2 zns custom",
+        ),
+        (
+            "material custom 1 1",
+            "err specific heat missing; 10 to 10000 J/kgK",
+        ),
+        (
+            "material custom 1 1 10 1",
+            "err slope missing; 0.0001 to 1.5 rad",
+        ),
+        ("mode", "err mode missing; known: contact semi-infinite"),
+        (
+            "calibrate",
+            "err sensor missing; known: display check sink skin room",
+        ),
+        ("set", "err setting missing; known: steps correction tile"),
         ("arm now", "err unexpected 'now' after the command"),
         ("object room 3", "err unexpected '3' after the command"),
         (
             "object warm",
-            "err object temperature 'warm' is not a decimal number; -20 to 60 C",
+            "err object 'warm': slab, half-space, room, or -20 to 60 C",
+        ),
+        (
+            "object slap 3mm held",
+            "err object 'slap': slab, half-space, room, or -20 to 60 C",
+        ),
+        (
+            "object half space",
+            "err object 'half': slab, half-space, room, or -20 to 60 C",
         ),
         (
             "object nan",
-            "err object temperature 'nan' is not a decimal number; -20 to 60 C",
+            "err object 'nan': slab, half-space, room, or -20 to 60 C",
         ),
         (
             "object inf",
-            "err object temperature 'inf' is not a decimal number; -20 to 60 C",
+            "err object 'inf': slab, half-space, room, or -20 to 60 C",
         ),
         (
             "object 60.001",
@@ -201,10 +227,11 @@ fn the_longest_answers_fit_their_limit() {
         mode: ContactModel::SemiInfinite,
         setpoint: Some(Celsius::MIN),
         limited: true,
+        body: ObjectBody::HalfSpace.name(),
     };
     let answer = Reply::Station(command::Reply::Status(status)).to_string();
     assert!(
-        answer.len() <= ANSWER_MAX_BYTES && answer.ends_with(" limited"),
+        answer.len() <= ANSWER_MAX_BYTES && answer.ends_with(" limited body=half-space"),
         "{answer}"
     );
     let unknown = refusal(&"x".repeat(LINE_MAX_BYTES));

@@ -94,7 +94,7 @@ fn state_and_id_report_the_station_and_the_device() {
     let mut bench = TestBench::new();
     assert_eq!(
         bench.send("state"),
-        "ok state=off fault=- material=- object_c=room mode=contact setpoint_c=-"
+        "ok state=off fault=- material=- object_c=room mode=contact setpoint_c=- body=half-space"
     );
     bench.send_ok(&[
         "material abs",
@@ -108,7 +108,7 @@ fn state_and_id_report_the_station_and_the_device() {
     bench.steps(3000);
     assert_eq!(
         bench.send("state"),
-        "ok state=armed fault=- material=abs object_c=60.00 mode=semi-infinite setpoint_c=42.00 limited"
+        "ok state=armed fault=- material=abs object_c=60.00 mode=semi-infinite setpoint_c=42.00 limited body=half-space"
     );
     assert_eq!(
         bench.send("id"),

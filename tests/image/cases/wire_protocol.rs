@@ -56,13 +56,13 @@ fn each_wrong_line_is_answered_with_its_error_and_the_contact_goes_on() {
         ),
         (
             "object hot",
-            "err object temperature 'hot' is not a decimal number",
+            "err object 'hot': slab, half-space, room, or -20 to 60 C",
         ),
         (
             "object 99",
             "err object temperature '99' out of range; -20 to 60 C",
         ),
-        ("stream", "err interval missing"),
+        ("stream", "err interval missing; 0 to 60000 ms"),
         ("id id", "err unexpected 'id' after the command"),
         ("start", "err already started"),
         ("clear", "err no fault to clear"),

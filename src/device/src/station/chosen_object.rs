@@ -1,11 +1,11 @@
 //! The object that the host has chosen to present.
 
-use contact_model::fixed_point::{Body, Celsius, ContactPair, ScaledBody};
+use contact_model::fixed_point::{Celsius, ContactPair, ScaledBody};
 use contact_model::material::{MATERIALS, SKIN, Surface};
 use fixed::types::U16F16;
 
 use crate::TICK_S;
-use crate::command::{AssumedFinger, ChosenMaterial};
+use crate::command::{AssumedFinger, ChosenMaterial, ObjectBody};
 use crate::estimate::Bodies;
 use crate::reference::{ContactModel, PresentedObject};
 
@@ -19,6 +19,8 @@ pub struct ChosenObject {
     finger: AssumedFinger,
     /// Whether the object is the half-space of its material.
     is_half_space: bool,
+    /// The word of the object's body in the protocol.
+    pub body_name: &'static str,
     /// The assumed finger and the object as bodies. Before a material is chosen, the object is the skin's half-space.
     bodies: Bodies<'static>,
     /// Temperature of the object before contact, °C; `None` takes the room's temperature.
@@ -43,6 +45,7 @@ impl ChosenObject {
             material: None,
             finger: AssumedFinger::Thesis,
             is_half_space: true,
+            body_name: ObjectBody::HalfSpace.name(),
             bodies: Bodies::HALF_SPACES,
             temperature: None,
             mode: ContactModel::default(),
@@ -65,11 +68,13 @@ impl ChosenObject {
     /// Presents the half-space of a material from now on.
     pub fn choose_material(&mut self, material: &ChosenMaterial) {
         self.material = Some(*material);
-        self.choose_body(None);
+        self.choose_body(&ObjectBody::HalfSpace);
     }
 
-    /// Presents an object with this body from now on, or for `None` the half-space of its material.
-    pub fn choose_body(&mut self, body: Option<&Body>) {
+    /// Presents an object with this body from now on.
+    pub fn choose_body(&mut self, body: &ObjectBody) {
+        self.body_name = body.name();
+        let body = body.relaxations();
         let object = &mut self.bodies.object;
         match (body, &self.material) {
             (Some(body), _) => {

@@ -43,7 +43,7 @@ impl Station {
                 self.restart_contact();
             }
             Command::Body(ref body) => {
-                self.object.choose_body(body.as_ref());
+                self.object.choose_body(body);
                 self.restart_contact();
             }
             Command::Object(temperature) => {
@@ -103,6 +103,7 @@ impl Station {
             mode: self.object.mode,
             setpoint: reference.map(|reference| reference.setpoint.celsius()),
             limited: reference.is_some_and(|reference| reference.limited),
+            body: self.object.body_name,
         }
     }
 

@@ -9,7 +9,7 @@ use contact_model::impedance::{Impedance, Relaxation};
 use contact_model::material::{MATERIALS, Material, SKIN, Surface};
 use contact_model::slab::{Back, Slab};
 use proptest::prelude::*;
-use thermal_device::command::{self, AssumedFinger, Command, WithSourceFinger};
+use thermal_device::command::{self, AssumedFinger, Command, ObjectBody, WithSourceFinger};
 use thermal_device::{FingerIndex, TICK_S};
 use thermal_settings::Settings;
 
@@ -59,13 +59,18 @@ fn body(direct: f64, rows: &[(f64, f64)]) -> Result<Body, BodyError> {
     Body::new(&impedance, SKIN.effusivity(), TICK_S)
 }
 
+/// The object of such an upload.
+fn uploaded(direct: f64, rows: &[(f64, f64)]) -> ObjectBody {
+    ObjectBody::Upload(body(direct, rows).expect("a body"))
+}
+
 const ROWS: [(f64, f64); 3] = [(0.0, 87.5), (4.25, 175.0), (17.0, 350.5)];
 
 /// A handler, the material that its stations present, and the bodies that they were given, each with its address.
 struct Host<const FINGERS: usize> {
     handler: CommandHandler<FINGERS>,
     materials: [Option<Material>; FINGERS],
-    bodies: Vec<(Option<usize>, Option<Body>)>,
+    bodies: Vec<(Option<usize>, ObjectBody)>,
 }
 
 impl<const FINGERS: usize> Host<FINGERS> {
@@ -165,19 +170,34 @@ fn a_slab_is_a_thickness_and_what_is_behind_it() {
         assert_eq!(parse(line), request, "{line}");
     }
     for (line, answer) in [
-        ("object slab", "err thickness in mm missing"),
-        ("object slab mm", "err thickness missing"),
-        ("object slab 3", "err back missing"),
-        ("object slab 3mm", "err back missing"),
-        ("object slab 3 mm", "err back missing"),
-        ("object slab 3mm film", "err film missing"),
+        ("object slab", "err thickness missing; 0.1 to 1000 mm"),
+        (
+            "object slab mm",
+            "err thickness 'mm': a number of mm, such as 3 or 3mm; 0.1 to 1000",
+        ),
+        (
+            "object slab 3",
+            "err back missing; known: insulated held film",
+        ),
+        (
+            "object slab 3mm",
+            "err back missing; known: insulated held film",
+        ),
+        (
+            "object slab 3 mm",
+            "err back missing; known: insulated held film",
+        ),
+        (
+            "object slab 3mm film",
+            "err film missing; 0.1 to 100000 W/m2K",
+        ),
         (
             "object slab 3cm held",
-            "err thickness '3cm' is not a decimal number; 0.1 to 1000 mm",
+            "err thickness '3cm': a number of mm, such as 3 or 3mm; 0.1 to 1000",
         ),
         (
             "object slab insulated",
-            "err thickness 'insulated' is not a decimal number; 0.1 to 1000 mm",
+            "err thickness 'insulated': a number of mm, such as 3 or 3mm; 0.1 to 1000",
         ),
         (
             "object slab 0.09mm held",
@@ -227,7 +247,8 @@ fn a_slab_is_of_the_material_that_its_finger_presents() {
             back: Back::Held,
         };
         let (relaxations, tick_s) = (slab.relaxations(), TICK_S);
-        Body::new(&relaxations.impedance(), SKIN.effusivity(), tick_s).ok()
+        let body = Body::new(&relaxations.impedance(), SKIN.effusivity(), tick_s);
+        ObjectBody::Slab(body.expect("a body"))
     };
     let line = "object slab 3mm held";
     assert_eq!(one_finger().send(line), "err a slab needs a material first");
@@ -283,29 +304,29 @@ fn slabs_of_the_known_and_three_custom_materials_are_accepted() {
         }
     }
     // No contact feels the back of a metre of cork or rubber, so it is a half-space.
-    assert_eq!(host.bodies.last(), Some(&(None, None)));
+    assert_eq!(host.bodies.last(), Some(&(None, ObjectBody::HalfSpace)));
 }
 
 #[test]
 fn an_upload_makes_the_object_what_its_rows_say() {
     let mut host = one_finger();
     host.send_ok(&upload(12.5, &ROWS));
-    assert_eq!(host.bodies, [(None, body(12.5, &ROWS).ok())]);
+    assert_eq!(host.bodies, [(None, uploaded(12.5, &ROWS))]);
     // The checksum by `zlib.crc32` of Python, and in capital letters.
     host.send_ok(&[
         "upload begin object 1 0.5".into(),
         "upload row 0 2 40".into(),
         "upload commit 21A54DDA".into(),
     ]);
-    assert_eq!(host.bodies[1..], [(None, body(0.5, &[(2.0, 40.0)]).ok())]);
+    assert_eq!(host.bodies[1..], [(None, uploaded(0.5, &[(2.0, 40.0)]))]);
     // Without a row the object is a thermal resistance.
     host.send_ok(&upload(5000.0, &[]));
-    assert_eq!(host.bodies[2..], [(None, body(5000.0, &[]).ok())]);
+    assert_eq!(host.bodies[2..], [(None, uploaded(5000.0, &[]))]);
     let most: Vec<_> = (0..FAST_MAX + SLOW_MAX)
         .map(|i| (if i < FAST_MAX { 690.0 } else { 0.0 }, 1.0))
         .collect();
     host.send_ok(&upload(0.0, &most));
-    assert_eq!(host.bodies[3..], [(None, body(0.0, &most).ok())]);
+    assert_eq!(host.bodies[3..], [(None, uploaded(0.0, &most))]);
 }
 
 #[test]
@@ -318,7 +339,7 @@ fn an_upload_is_for_the_address_that_began_it() {
             assert_eq!(answer, format!("{address}ok"));
         }
     }
-    let object = body(12.5, &ROWS).ok();
+    let object = uploaded(12.5, &ROWS);
     assert_eq!(host.bodies, [(Some(1), object), (None, object)]);
     // The only finger may be named or not.
     let mut host = one_finger();
@@ -358,7 +379,7 @@ fn rows_and_commits_of_other_addresses_do_not_reach_an_upload() {
                 format!("{}ok", others[0])
             );
         }
-        assert_eq!(host.bodies[1..], [(Some(0), body(12.5, &ROWS).ok())]);
+        assert_eq!(host.bodies[1..], [(Some(0), uploaded(12.5, &ROWS))]);
     }
 }
 
@@ -377,9 +398,12 @@ fn an_error_before_the_commit_leaves_the_upload_as_it_was() {
             ("upload row 1 2 3", "err not the next row, which is 0"),
         ][..],
         &[
-            ("upload row", "err row missing"),
-            ("upload row 1", "err rate missing"),
-            ("upload row 1 1", "err gain missing"),
+            ("upload row", "err row missing; 0 to 21 "),
+            ("upload row 1", "err rate missing; 0 to 690 1/s"),
+            (
+                "upload row 1 1",
+                "err gain missing; 0.000001 to 13000000 mm2K/J",
+            ),
             ("upload row 1 1 1 1", "err unexpected '1' after the command"),
             ("upload row 0 1 1", "err not the next row, which is 1"),
             ("upload row 2 1 1", "err not the next row, which is 1"),
@@ -420,7 +444,7 @@ fn an_error_before_the_commit_leaves_the_upload_as_it_was() {
     }
     assert_eq!(host.bodies, []);
     assert_eq!(host.send(commit), "ok");
-    assert_eq!(host.bodies, [(None, body(12.5, &ROWS).ok())]);
+    assert_eq!(host.bodies, [(None, uploaded(12.5, &ROWS))]);
 }
 
 #[test]
@@ -431,8 +455,14 @@ fn begin_says_what_is_uploaded() {
             "upload begin finger 1 0",
             "err unknown upload 'finger'; known: begin row commit object",
         ),
-        ("upload begin object", "err number of rows missing"),
-        ("upload begin object 1", "err direct missing"),
+        (
+            "upload begin object",
+            "err number of rows missing; 0 to 22 ",
+        ),
+        (
+            "upload begin object 1",
+            "err direct missing; 0 to 27000 mm2K/W",
+        ),
         (
             "upload begin object 23 0",
             "err number of rows '23' out of range; 0 to 22 ",
@@ -472,7 +502,7 @@ fn a_second_begin_starts_again() {
     let (first, second) = (upload(1.0, &ROWS), upload(12.5, &ROWS[..2]));
     host.send_ok(&first[..3]);
     host.send_ok(&second);
-    assert_eq!(host.bodies, [(None, body(12.5, &ROWS[..2]).ok())]);
+    assert_eq!(host.bodies, [(None, uploaded(12.5, &ROWS[..2]))]);
 }
 
 #[test]
@@ -511,7 +541,7 @@ fn a_refused_commit_changes_nothing_and_ends_the_upload() {
         let again = host.send(&commit);
         assert!(again.starts_with("err no upload has begun"), "{again}");
         host.send_ok(&lines);
-        assert_eq!(host.bodies, [(None, body(12.5, &ROWS).ok())]);
+        assert_eq!(host.bodies, [(None, uploaded(12.5, &ROWS))]);
     }
 }
 
@@ -607,7 +637,7 @@ proptest! {
         if host.bodies.is_empty() {
             prop_assert!(ends_early || arrived != lines || body(12.5, &rows).is_err());
         } else {
-            prop_assert_eq!(&host.bodies, &[(None, body(12.5, &rows).ok())]);
+            prop_assert_eq!(&host.bodies, &[(None, uploaded(12.5, &rows))]);
             let (commit, before) = taken.split_last().expect("a commit");
             // Lines before the last `upload begin` belong to an upload that was given up.
             let begin = before.iter().rposition(|line| line.contains("begin")).expect("a beginning");

@@ -187,8 +187,9 @@ fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
         }
         bench.wait(3000).expect("it runs");
         let reply = ask(bench, "state");
-        let setpoint = reply.split("setpoint_c=").nth(1).expect("a set-point");
-        let setpoint_c: f64 = setpoint.trim().parse().expect("degrees");
+        let mut words = reply.split(' ');
+        let setpoint = words.find_map(|word| word.strip_prefix("setpoint_c="));
+        let setpoint_c: f64 = setpoint.expect("a set-point").parse().expect("degrees");
         let display_c = bench.world().plant().display_c();
         assert!(
             setpoint_c < 26.0 && (display_c - setpoint_c).abs() < 0.3,
