@@ -8,7 +8,7 @@ use thermal_plant::parameters::{self, FingerDraw};
 use thermal_plant::{Plant, PlantConfig, STEP_S};
 
 use crate::dose::cem43_min;
-use crate::run::Outcome;
+use crate::run::{Exchange, Outcome};
 use crate::scene::{Draws, Scene};
 use crate::trace::TraceRow;
 
@@ -69,6 +69,17 @@ pub struct ResetRecord {
     pub cause: String,
 }
 
+/// A line of the host that the device has refused.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RefusedLine {
+    /// Time of the answer, s.
+    pub t_s: f64,
+    /// The line; null if none is known that the device may have meant.
+    pub line: Option<String>,
+    /// The answer.
+    pub answer: String,
+}
+
 /// What was drawn of contact and finger, with the values that the run has.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DrawFigures {
@@ -87,6 +98,9 @@ pub struct Figures {
     pub engine: &'static str,
     /// Name of the material.
     pub material: String,
+    /// The object's layers and back ([`Object::description`](crate::scene::Object::description)), and what the device is
+    /// told.
+    pub object: String,
     /// Control ticks of the scene.
     pub ticks: usize,
     /// Skin on the display minus skin on the real object.
@@ -119,6 +133,10 @@ pub struct Figures {
     pub faults: Vec<TripRecord>,
     /// Resets of the device after its power-up.
     pub resets: Vec<ResetRecord>,
+    /// Lines of the host that the device has answered from time zero on.
+    pub answered_lines: usize,
+    /// Those of them that it has refused.
+    pub refused_lines: Vec<RefusedLine>,
     /// Draws of contact and finger; absent if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub draws: Option<DrawFigures>,
@@ -164,9 +182,12 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
             .map(|device| device.evaluations)
     };
     let skins = || rows.iter().map(|row| row.skin_c);
+    let mut exchanges = outcome.exchanges();
+    exchanges.retain(|exchange| exchange.t_s >= 0.0);
     Figures {
         engine: outcome.engine,
         material: scene.object.name.clone(),
+        object: object(scene),
         ticks: rows.len().saturating_sub(1),
         skin_error_mk: errors(skin_errors(scene, outcome)),
         display_error_mk: errors(display_errors(scene, outcome).into_iter().flatten()),
@@ -193,6 +214,8 @@ pub fn figures(scene: &Scene, outcome: &Outcome) -> Figures {
         real_time_factor: outcome.real_time_factor,
         faults: faults(outcome),
         resets: resets(outcome),
+        answered_lines: exchanges.len(),
+        refused_lines: refused(&exchanges),
         draws: draws(scene),
     }
 }
@@ -299,6 +322,29 @@ fn draws(scene: &Scene) -> Option<DrawFigures> {
         finger,
         parameters,
     })
+}
+
+/// The object, and that the device is told of a half-space if it is none.
+fn object(scene: &Scene) -> String {
+    let object = scene.object.description();
+    if scene.object_as_half_space && !scene.object.is_half_space() {
+        object + "; told: half-space"
+    } else {
+        object
+    }
+}
+
+fn refused(exchanges: &[Exchange<'_>]) -> Vec<RefusedLine> {
+    let refused = exchanges
+        .iter()
+        .filter(|exchange| exchange.answer.starts_with("err"));
+    refused
+        .map(|exchange| RefusedLine {
+            t_s: exchange.t_s,
+            line: exchange.line.map(Into::into),
+            answer: exchange.answer.into(),
+        })
+        .collect()
 }
 
 fn resets(outcome: &Outcome) -> Vec<ResetRecord> {

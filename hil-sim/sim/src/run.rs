@@ -9,7 +9,7 @@ use crate::processor::{Injection, MachineFault, NotInjected};
 use crate::scene::Scene;
 use crate::scene_recording::SceneRecording;
 
-pub use crate::scene_recording::Outcome;
+pub use crate::scene_recording::{Exchange, Outcome};
 
 /// Time for the telemetry of the last row to arrive, ms.
 const DRAIN_MS: u64 = 5;
@@ -145,7 +145,7 @@ impl<E: Engine> SceneRun<'_, E> {
 
     /// Sends the bytes of the host at a half millisecond since the start.
     fn send(&mut self, half_ms: u64) {
-        if let Some(bytes) = self.recording.host.send(half_ms) {
+        if let Some(bytes) = self.recording.send(half_ms) {
             self.engine.send(bytes);
         }
     }

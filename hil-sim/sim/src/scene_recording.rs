@@ -16,6 +16,8 @@ pub struct Outcome {
     pub trace: Trace,
     /// Every line of the device except telemetry, with the time of its completion, s.
     pub answers: Vec<(f64, String)>,
+    /// Every line to the device that is not blank, with the time at which it was sent, s.
+    pub sent: Vec<(f64, String)>,
     /// Resets of the device after power-up; times before time zero are negative.
     pub resets: Vec<DeviceReset>,
     /// Electrical energy taken up by the module during the scene, J.
@@ -24,6 +26,42 @@ pub struct Outcome {
     pub cost: Option<Cost>,
     /// Simulated time divided by run time, including settling.
     pub real_time_factor: f64,
+}
+
+/// An answer of the device, and what it answers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exchange<'a> {
+    /// Time at which the answer was complete, s.
+    pub t_s: f64,
+    /// The line that was sent; none is known for an answer that follows no line.
+    pub line: Option<&'a str>,
+    /// The answer.
+    pub answer: &'a str,
+}
+
+impl Outcome {
+    /// The answers with the lines that they answer: each line gets one, in order. A reset loses the lines that wait, except
+    /// that `save` and `forget` restart the device and are answered then.
+    #[must_use]
+    pub fn exchanges(&self) -> Vec<Exchange<'_>> {
+        let mut waiting = self.sent.iter().peekable();
+        let mut exchanges = Vec::new();
+        for (t_s, answer) in &self.answers {
+            let reset = self.resets.iter().rfind(|reset| reset.t_s <= *t_s);
+            let lost = |(sent_s, line): &(f64, String)| {
+                reset.is_some_and(|reset| *sent_s <= reset.t_s)
+                    && !matches!(line.as_str(), "save" | "forget")
+            };
+            while waiting.next_if(|sent| lost(sent)).is_some() {}
+            let sent = waiting.next_if(|(sent_s, _)| sent_s <= t_s);
+            exchanges.push(Exchange {
+                t_s: *t_s,
+                line: sent.map(|(_, line)| line.as_str()),
+                answer,
+            });
+        }
+        exchanges
+    }
 }
 
 /// A scene on one finger from power-up on. Milliseconds count from the first boundary of the finger.
@@ -36,6 +74,7 @@ pub struct SceneRecording<'a> {
     pub end_ms: u64,
     trace: Trace,
     answers: Vec<(f64, String)>,
+    sent: Vec<(f64, String)>,
     /// Electrical energy that the tile had taken up at the first row and at the last one, J.
     energy_j: (f64, f64),
 }
@@ -52,6 +91,7 @@ impl<'a> SceneRecording<'a> {
             end_ms: zero_ms + (scene.duration_s * 1e3).round() as u64,
             trace: Trace::default(),
             answers: Vec::new(),
+            sent: Vec::new(),
             energy_j: (0.0, 0.0),
         }
     }
@@ -59,6 +99,17 @@ impl<'a> SceneRecording<'a> {
     /// Scene time of a millisecond, s.
     fn t_s(&self, ms: u64) -> f64 {
         (ms as f64 - self.zero_ms as f64) / 1e3
+    }
+
+    /// The bytes that the host sends at a half millisecond, if any.
+    pub fn send(&mut self, half_ms: u64) -> Option<&[u8]> {
+        let t_s = self.t_s(0) + half_ms as f64 / 2e3;
+        let bytes = self.host.send(half_ms)?;
+        let lines = bytes.split(|byte| *byte == b'\n');
+        let lines = lines.map(|line| String::from_utf8_lossy(line).into_owned());
+        self.sent
+            .extend((lines.filter(|line| !line.trim().is_empty())).map(|line| (t_s, line)));
+        Some(bytes)
     }
 
     /// Applies force and faults of the scene at a boundary.
@@ -109,6 +160,7 @@ impl<'a> SceneRecording<'a> {
             resets: resets.iter().map(shift).collect(),
             trace: self.trace,
             answers: self.answers,
+            sent: self.sent,
             electrical_j: self.energy_j.1 - self.energy_j.0,
             cost,
             real_time_factor,

@@ -112,7 +112,7 @@ pub fn run<H: FiveFingerEngine>(
             };
             // Each finger is sent its lines a millisecond later than the previous one.
             let finger_ms = previous_ms.and_then(|ms| ms.checked_sub(previous as u64));
-            if let Some(line) = finger_ms.and_then(|ms| fingers[previous].host.send(2 * ms + 1)) {
+            if let Some(line) = finger_ms.and_then(|ms| fingers[previous].send(2 * ms + 1)) {
                 engine.send(previous, line);
             }
             let legs = engine.legs(index);

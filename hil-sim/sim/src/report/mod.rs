@@ -9,7 +9,7 @@ use std::path::Path;
 use thermal_charts::{document, escape, svg_element};
 
 use crate::metrics::Figures;
-use crate::run::Outcome;
+use crate::run::{Exchange, Outcome};
 use crate::scene::Scene;
 
 pub use table::table;
@@ -42,17 +42,18 @@ fn page(scene: &Scene, outcome: &Outcome, figures: &Figures, plots: &str) -> Str
         let _ = write!(rows, "<tr><th>{name}</th><td>{}</td></tr>", escape(&value));
     }
     let mut answers = String::new();
-    for (t_s, line) in &outcome.answers {
+    for Exchange { t_s, line, answer } in outcome.exchanges() {
         let _ = write!(
             answers,
-            "<tr><td>{t_s:.3}</td><td><code>{}</code></td></tr>",
-            escape(line)
+            "<tr><td>{t_s:.3}</td><td><code>{}</code></td><td><code>{}</code></td></tr>",
+            escape(line.unwrap_or("-")),
+            escape(answer)
         );
     }
     let body = format!(
         "<p>Skin {} °C, room {} °C, object {} °C. Everything here is simulated; costs are emulated, cycles \
          estimated.</p>{}<h2>Figures</h2><table>{rows}</table><h2>Answers of the device</h2>\
-         <table><tr><th>t / s</th><th>line</th></tr>{answers}</table>",
+         <table><tr><th>t / s</th><th>line</th><th>answer</th></tr>{answers}</table>",
         scene.skin_c,
         scene.room_c,
         scene.object_c(),

@@ -4,6 +4,9 @@ use std::fmt::Write;
 
 use crate::metrics::{CostPerTick, ErrorFigures, Figures};
 
+/// Refused lines that the table shows.
+const REFUSED_SHOWN: usize = 5;
+
 /// Names and values with units, in the order of the table.
 pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
     let errors = |errors: Option<ErrorFigures>| {
@@ -36,6 +39,7 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
         .map(|reset| at(&reset.cause, reset.t_s));
     let mut rows = vec![
         ("material", figures.material.clone()),
+        ("object", figures.object.clone()),
         ("engine", figures.engine.into()),
         ("control ticks", figures.ticks.to_string()),
         ("skin error", errors(figures.skin_error_mk)),
@@ -77,6 +81,15 @@ pub(super) fn rows(figures: &Figures) -> Vec<(&'static str, String)> {
     ));
     rows.push(("faults", list(faults.collect())));
     rows.push(("resets", list(resets.collect())));
+    if figures.answered_lines > 0 {
+        let (refused, answered) = (figures.refused_lines.len(), figures.answered_lines);
+        rows.push(("host lines refused", format!("{refused} of {answered}")));
+    }
+    for refused in figures.refused_lines.iter().take(REFUSED_SHOWN) {
+        let line = refused.line.as_deref().unwrap_or("-");
+        let (t_s, answer) = (refused.t_s, &refused.answer);
+        rows.push(("", format!("t={t_s:.3} {line:?}: {answer}")));
+    }
     if let Some(draws) = &figures.draws {
         let values = draws.parameters.iter();
         let values = values.map(|(key, value)| format!("{key} = {value:.4e}"));

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use contact_model::material::{Material, Surface, find};
+use contact_model::material::{MATERIALS, Material, Surface, find};
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::slab::{BackBoundary, Layer, Medium};
 use thermal_protocol::Request;
@@ -18,6 +18,76 @@ const THICKEST_M: f64 = 10.0;
 /// Ranges of a layer's conductivity, W/(m K), density, kg/m3, and specific heat, J/(kg K): those that the device accepts
 /// of a material.
 const LAYER_RANGES: [(f64, f64); 3] = [(1e-3, 5e3), (1.0, 30e3), (10.0, 10e3)];
+
+impl Object {
+    /// The line by which a device is told of it, if it is one slab of its material that the device takes.
+    #[must_use]
+    pub fn slab_line(&self) -> Option<String> {
+        let [Layer { thickness_m, .. }] = self.layers[..] else {
+            return None;
+        };
+        if self.layers != [ObjectConfig::layer(&self.material, thickness_m)] {
+            return None;
+        }
+        let back = match self.back {
+            BackBoundary::Insulated => "insulated".into(),
+            BackBoundary::Film { film_w_m2k, .. } if film_w_m2k.is_infinite() => "held".into(),
+            BackBoundary::Film { film_w_m2k, .. } => format!("film {film_w_m2k}"),
+        };
+        let line = format!("object slab {}mm {back}", in_mm(thickness_m));
+        Request::parse(&line, &Settings::default())
+            .is_ok()
+            .then_some(line)
+    }
+
+    /// Its layers, from the touched face down, and its back, on one line: by the name of a material, or by conductivity and
+    /// heat capacity per volume.
+    #[must_use]
+    pub fn description(&self) -> String {
+        let layer = |layer: &Layer| {
+            let medium = &layer.medium;
+            let named = (MATERIALS.iter())
+                .find(|(_, material)| ObjectConfig::layer(material, 0.0).medium == *medium);
+            let of = named.map_or_else(
+                || {
+                    let (k, capacity) = (medium.conductivity_w_mk, medium.capacity_j_m3k);
+                    format!("k={k} W/(m K) rho*c={capacity:.3e} J/(m3 K)")
+                },
+                |(name, _)| (*name).into(),
+            );
+            if layer.thickness_m.is_infinite() {
+                format!("{of}, endless")
+            } else {
+                format!("{of}, {} mm", in_mm(layer.thickness_m))
+            }
+        };
+        let layers: Vec<_> = self.layers.iter().map(layer).collect();
+        let back = match self.back {
+            _ if self
+                .layers
+                .last()
+                .is_some_and(|last| last.thickness_m.is_infinite()) =>
+            {
+                String::new()
+            }
+            BackBoundary::Insulated => "; back insulated".into(),
+            BackBoundary::Film {
+                film_w_m2k,
+                temperature_c,
+            } if film_w_m2k.is_infinite() => format!("; back held at {temperature_c} C"),
+            BackBoundary::Film {
+                film_w_m2k,
+                temperature_c,
+            } => format!("; back film of {film_w_m2k} W/(m2 K) to {temperature_c} C"),
+        };
+        layers.join(" | ") + &back
+    }
+}
+
+/// A thickness in mm, to a nanometre.
+fn in_mm(thickness_m: f64) -> f64 {
+    (1e9 * thickness_m).round() / 1e6
+}
 
 /// Reads and checks the table `[object]`.
 pub(super) fn object(

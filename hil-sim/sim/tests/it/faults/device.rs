@@ -1,24 +1,11 @@
 //! Faults of a scene on the device, natively, and what a run is judged by.
 
-use thermal_sim::World;
-use thermal_sim::engine::NativeEngine;
 use thermal_sim::metrics::{Figures, figures};
-use thermal_sim::run::{Outcome, run};
-use thermal_sim::scene::Scene;
 
-use super::scene;
+use super::ran;
 
 fn fault(text: &str) -> String {
     format!("[[fault]]\n{text}\n")
-}
-
-const TOUCH: &str = "[[force]]\nt_s = 0.5\nforce_n = 2\n";
-
-fn ran(tables: &str) -> (Scene, Outcome) {
-    let scene = scene(&format!("{TOUCH}{tables}"));
-    let mut engine = NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
-    let outcome = run(&scene, &mut engine, |_| ()).expect("the device takes the scene");
-    (scene, outcome)
 }
 
 fn judged(tables: &str) -> Figures {

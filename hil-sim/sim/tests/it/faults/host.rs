@@ -1,8 +1,12 @@
 //! What the host sends, and when.
 
+use thermal_sim::engine::DeviceReset;
 use thermal_sim::host::Host;
+use thermal_sim::metrics::{Figures, figures};
+use thermal_sim::processor::ResetCause;
+use thermal_sim::report::table;
 
-use super::scene;
+use super::{ran, scene};
 
 /// Settling time of a scene, ms.
 const ZERO_MS: u64 = 8000;
@@ -89,4 +93,86 @@ fn flood_is_what_the_line_carries_and_ends() {
 fn garbage_comes_once() {
     let sent = sent(&fault("host-garbage", "t_s = 2"));
     assert_eq!(times(&sent, |bytes| bytes.contains(&0xff)), [2000]);
+}
+
+/// Lines of the scene, and the lines and answers of those that the device refuses.
+#[test]
+fn refused_lines_stand_in_the_results_with_their_answers() {
+    let lines = |lines: &[(f64, &str)]| -> String {
+        lines
+            .iter()
+            .map(|(t_s, line)| format!("[[host]]\nt_s = {t_s}\nline = {line:?}\n"))
+            .collect()
+    };
+    let asked = lines(&[
+        (1.0, "state"),
+        (1.0, "object slap"),
+        (2.0, "id"),
+        (3.0, "mode x"),
+    ]);
+    let refused = |tables: &str| -> (Vec<(Option<String>, String)>, Figures) {
+        let (scene, outcome) = ran(tables);
+        let figures = figures(&scene, &outcome);
+        let lines = figures.refused_lines.iter();
+        let lines = lines.map(|refused| (refused.line.clone(), refused.answer.clone()));
+        (lines.collect(), figures)
+    };
+    let slap = "err object 'slap': slab, half-space, room, or -20 to 60 C";
+    let mode = "err unknown mode 'x'; known: contact semi-infinite";
+    let of = |line: &str, answer: &str| (Some(line.to_owned()), answer.to_owned());
+    let expected = [of("object slap", slap), of("mode x", mode)];
+    let (found, figures) = refused(&asked);
+    assert_eq!(found, expected);
+    let text = table(&figures);
+    assert!(text.contains("host lines refused   2 of 4\n"), "{text}");
+    assert!(
+        text.contains(&format!(" \"object slap\": {slap}\n")),
+        "{text}"
+    );
+    assert!(!table(&refused("").1).contains("refused"));
+    // A garbage line is refused as what was sent.
+    let (found, _) = refused(&format!("{asked}{}", fault("host-garbage", "t_s = 1.5")));
+    assert_eq!((&found[0], found.last()), (&expected[0], expected.last()));
+    assert_eq!(
+        found[1].0.as_deref(),
+        Some("\0\u{fffd}\u{fffd}\u{fffd}arm\u{1}")
+    );
+}
+
+/// A device that restarts answers neither the lines before nor those after as if they were others.
+#[test]
+fn answers_belong_to_the_lines_that_a_reset_has_not_lost() {
+    let (_, mut outcome) = ran("[[host]]\nt_s = 1\nline = \"save\"\n");
+    let at = |t_s, text: &str| (t_s, text.to_owned());
+    let reset = |t_s| DeviceReset {
+        t_s,
+        cause: ResetCause::Software,
+    };
+    outcome.sent = vec![
+        at(0.1, "id"),
+        at(0.3, "lost"),
+        at(0.4, "state"),
+        at(0.6, "save"),
+        at(0.9, "arm"),
+    ];
+    outcome.resets = vec![reset(0.3), reset(0.61)];
+    outcome.answers = vec![
+        at(0.101, "one"),
+        at(0.35, "none"),
+        at(0.401, "two"),
+        at(0.7, "three"),
+        at(0.901, "four"),
+    ];
+    let exchanges = outcome.exchanges();
+    let lines: Vec<_> = (exchanges.iter())
+        .map(|exchange| (exchange.line, exchange.answer))
+        .collect();
+    let expected = [
+        (Some("id"), "one"),
+        (None, "none"),
+        (Some("state"), "two"),
+        (Some("save"), "three"),
+        (Some("arm"), "four"),
+    ];
+    assert_eq!(lines, expected);
 }

@@ -12,6 +12,8 @@ use std::path::Path;
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
+use thermal_sim::engine::NativeEngine;
+use thermal_sim::run::Outcome;
 use thermal_sim::scene::{ActiveFault, FaultKind, Scene, Sensor};
 
 const HEAD: &str = "duration_s = 20\nskin_c = 34\nroom_c = 24\n[object]\nmaterial = \"copper\"\n";
@@ -29,6 +31,17 @@ const OFF: BridgeOutputs = BridgeOutputs {
 fn scene(tables: &str) -> Scene {
     let text = format!("{HEAD}{tables}");
     Scene::parse(&text, Path::new("test scene")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+const TOUCH: &str = "[[force]]\nt_s = 0.5\nforce_n = 2\n";
+
+/// A run under a finger, natively.
+fn ran(tables: &str) -> (Scene, Outcome) {
+    let scene = scene(&format!("{TOUCH}{tables}"));
+    let mut engine = NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
+    let outcome =
+        thermal_sim::run::run(&scene, &mut engine, |_| ()).expect("the device takes the scene");
+    (scene, outcome)
 }
 
 /// A world without errors of its sensors, at rest at 24 deg C.
