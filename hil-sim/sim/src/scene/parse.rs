@@ -27,11 +27,15 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
     nesting::check(&source)?;
     let file: File = toml::from_str(text).map_err(|error| {
         // The reader names types of its own.
-        let problem = (error.message().replace("expected f64", "expected a number")).replace(
-            "map, expected a sequence",
-            "a table in single brackets, expected double ones",
-        );
-        source.error(error.span(), problem)
+        let problem = (error.message().replace("expected f64", "expected a number"))
+            .replace("expected u64", "expected a whole number from 0")
+            .replace("expected u32", "expected a whole number from 0")
+            .replace(
+                "map, expected a sequence",
+                "a table in single brackets, expected double ones",
+            );
+        let wrong = source.wrong_value(error.span(), &problem);
+        source.error(error.span(), wrong.unwrap_or(problem))
     })?;
     let duration_s = source.within("duration_s", &file.duration_s, 0.001, 86_400.0)?;
     let settle_s = source.within_or(SETTLE_S, "settle_s", &file.settle_s, SETTLE_S, 3600.0)?;

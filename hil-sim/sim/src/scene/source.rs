@@ -58,6 +58,35 @@ impl Source<'_> {
         }
     }
 
+    /// The problem of a value of the wrong type or word by key, value and what is allowed, as other problems are told, from the
+    /// file reader's words; `None` if its error is about something else than a value on the line of its key.
+    pub fn wrong_value(&self, span: Option<Range<usize>>, problem: &str) -> Option<String> {
+        let of_values = [
+            "invalid type: ",
+            "invalid value: ",
+            "unknown variant ",
+            "expected ",
+        ];
+        if !of_values.iter().any(|start| problem.starts_with(start)) {
+            return None;
+        }
+        let (span, (_, allowed)) = (span?, problem.split_once("expected ")?);
+        let (value, before) = (self.text.get(span.clone())?, self.text.get(..span.start)?);
+        let (key, _) = before.rsplit('\n').next()?.rsplit_once('=')?;
+        if key.contains(['{', '[']) || value.contains('\n') {
+            return None;
+        }
+        let tables = before.lines().rev().filter_map(|line| {
+            let header = line.trim().strip_prefix('[')?.trim_start_matches('[');
+            header.split(']').next()
+        });
+        let path: Vec<_> = (tables.take(1).chain([key])).map(str::trim).collect();
+        Some(format!(
+            "{} = {value}; allowed is {allowed}",
+            path.join(".")
+        ))
+    }
+
     /// The number, if it lies within the range.
     pub fn within(
         &self,

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::de::{Error, Visitor};
+use serde::de::{Error, Unexpected, Visitor};
 
 /// Declares an enum whose variants are words in a scene.
 macro_rules! words {
@@ -38,6 +38,6 @@ impl Visitor<'_> for OneOf {
 
     fn visit_str<E: Error>(self, word: &str) -> Result<usize, E> {
         let index = self.0.iter().position(|known| *known == word);
-        index.ok_or_else(|| E::unknown_variant(word, self.0))
+        index.ok_or_else(|| E::invalid_value(Unexpected::Str(word), &self))
     }
 }
