@@ -37,12 +37,15 @@ pub struct Host {
     silences: Vec<Range<u64>>,
 }
 
-/// The lines by which the operator chooses the object of a scene: its material, its temperature and, if it is no
-/// half-space, its relaxations.
+/// The lines by which an operator chooses the object of a scene: its material, its temperature and, if it is no half-space,
+/// that it is a slab, or else its relaxations. [`Host`] uploads those of a slab, too.
 #[must_use]
 pub fn object_lines(scene: &Scene) -> Vec<String> {
     let mut lines = material_and_temperature(scene).to_vec();
-    lines.extend(relaxations(scene));
+    match scene.object.slab_line() {
+        Some(slab) if !scene.object_as_half_space => lines.push(slab),
+        _ => lines.extend(relaxations(scene)),
+    }
     lines
 }
 

@@ -10,7 +10,8 @@ use super::{Failure, engine};
 
 /// Text after the options in the help.
 const USAGE: &str = "\
-A material of the scene's object, then its temperature, then, if it is no half-space, its relaxations as an upload.
+The material of the scene's object, then its temperature, then, if it is no half-space, the line `object slab` for a slab of
+that material, or its relaxations as an upload.
 
   hil-sim object scenes/copper-on-foam.toml > object.txt";
 

@@ -260,6 +260,47 @@ fn a_back_that_the_device_is_not_told_of_is_noticed() {
 }
 
 #[test]
+fn the_page_about_objects_shows_the_lines_of_its_example() {
+    let page = include_str!("../../../docs/objects.md");
+    let lines = good(&["object", "../scenes/copper-on-foam.toml"], "");
+    assert!(page.contains(&format!("```text\n{lines}```")), "{lines}");
+}
+
+/// Where the line `object slab` cannot say what the object is, its relaxations are uploaded.
+#[test]
+fn a_slab_of_the_named_material_is_printed_as_one_line() {
+    let layers =
+        "[[object.layer]]\nthickness_m = 0.003\nk_w_mk = 398\nrho_kg_m3 = 8954\nc_j_kgk = ";
+    for (object, line) in [
+        ("thickness_m = 0.003", "object slab 3mm insulated"),
+        (
+            "thickness_m = 0.0015\nback = \"held\"",
+            "object slab 1.5mm held",
+        ),
+        (
+            "thickness_m = 0.0001\nback = \"film\"\nback_film_w_m2k = 12.5",
+            "object slab 0.1mm film 12.5",
+        ),
+        (&format!("{layers}384"), "object slab 3mm insulated"),
+        // Another material below the face, and too thin for a slab.
+        (&format!("{layers}385"), "upload begin object "),
+        ("thickness_m = 0.00005", "upload begin object "),
+    ] {
+        let text = SCENE.replacen("[[force]]", &format!("{object}\n[[force]]"), 1);
+        let file = File::new("slab.toml", &text);
+        let lines = good(&["object", file.path()], "");
+        let lines: Vec<_> = lines.lines().collect();
+        assert_eq!(lines[..2], ["material copper", "object room"], "{object}");
+        assert!(lines[2].starts_with(line), "{object}: {lines:?}");
+        assert_eq!(
+            lines.len() == 3,
+            line.contains("slab"),
+            "{object}: {lines:?}"
+        );
+    }
+}
+
+#[test]
 fn files_that_are_none_are_refused() {
     let message = refused(&["run", "no-such-scene.toml"]);
     assert!(message.contains("no-such-scene.toml"), "{message}");
