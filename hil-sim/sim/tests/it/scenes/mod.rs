@@ -4,6 +4,7 @@ mod display_error;
 mod documented;
 mod examples;
 mod keys;
+mod objects_page;
 mod refused;
 
 use std::path::{Path, PathBuf};
