@@ -23,6 +23,8 @@ const SELECT: [Pin; 3] = [(C, 10), (C, 11), (C, 12)];
 /// Longest settling time of the multiplexers and their followers that the board allows, microseconds. A conversion that ends
 /// earlier has the code of the finger before.
 const SETTLING_US: u64 = 11;
+/// Scans of a finger's block of 18 that are converted after the settling.
+const SETTLED_SCANS: usize = 17;
 
 /// From the end of the first conversion to the first finger's first boundary, and from finger to finger,
 /// picoseconds: the sixth of the 18 scans of a finger's turn ends 63 us after the first conversion, the seventh's first
@@ -139,6 +141,8 @@ struct Pins {
     /// Cycle at which the multiplexers were last switched, and their settling time in cycles.
     switched_at: u64,
     settling: u64,
+    /// Number of conversions of the selected finger that are still to come, of those that belong to its block.
+    conversions_left: usize,
     /// Last code of each input.
     codes: [u16; ADC_INPUTS.len()],
     first_conversion: Option<u64>,
@@ -152,6 +156,8 @@ impl Pins {
             select: [false; SELECT.len()],
             switched_at: 0,
             settling: 0,
+            // At power-up the first finger is selected, and all of its scans are settled.
+            conversions_left: (SETTLED_SCANS + 1) * Channel::ALL.len(),
             codes: [0; ADC_INPUTS.len()],
             first_conversion: None,
             received: Vec::new(),
@@ -173,8 +179,23 @@ impl Wiring for Pins {
                 .iter()
                 .rev()
                 .fold(0, |finger, bit| 2 * finger + usize::from(*bit));
-            let world = self.worlds.get_mut(finger);
-            self.codes[index] = world.map_or(FLOATING, |world| world.convert(Channel::ALL[index]));
+            let Some(world) = self.worlds.get_mut(finger) else {
+                self.codes[index] = FLOATING;
+                return FLOATING;
+            };
+            // The noise of a finger's scans must not depend on when the program has switched, which other tasks delay by some
+            // conversions of the scans that it drops: the first ones after the settling are drawn here, where they were lost;
+            // those after the finger's last scan are not drawn.
+            while self.conversions_left > 0 {
+                let channel = (Channel::ALL.len() - self.conversions_left % Channel::ALL.len())
+                    % Channel::ALL.len();
+                self.conversions_left -= 1;
+                let code = world.convert(Channel::ALL[channel]);
+                if channel == index {
+                    self.codes[index] = code;
+                    break;
+                }
+            }
         }
         self.codes[index]
     }
@@ -195,6 +216,7 @@ impl Wiring for Pins {
             let level = level.unwrap_or(false);
             if self.select[line] != level {
                 (self.select[line], self.switched_at) = (level, at);
+                self.conversions_left = SETTLED_SCANS * Channel::ALL.len();
             }
         }
     }
