@@ -300,7 +300,7 @@ impl ReferenceGenerator {
     ///   ([`FingerContact::closed_form_is_valid`]) and its interpolation is computed, else from the simulated skin on
     ///   the object. The target adds a correction, by which the skin on the display follows the simulated skin; if the
     ///   closed form is not valid, the set-point contains this correction, too. With bodies the target is also ahead of
-    ///   the set-point by [`SetpointLead`].
+    ///   the set-point by `SetpointLead`.
     ///
     /// `surface` is the temperature of the display's surface, °C. It is used only in the first tick of a contact: if it
     /// is more than 0.1 K outside the range from the preset to the waiting temperature, the closed form is excluded for
