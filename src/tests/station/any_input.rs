@@ -1,6 +1,7 @@
 //! Safety properties that hold for any samples and any lines from the host.
 
 use proptest::prelude::*;
+use proptest::sample::select;
 use proptest::test_runner::TestRunner;
 use std::cell::Cell;
 use std::format;
@@ -11,6 +12,7 @@ use contact_model::fixed_point::{FAST_MAX, SLOW_MAX};
 
 use super::TestBench;
 use crate::device::StateName;
+use crate::device::command::AssumedFinger;
 use crate::device::drive::{Drive, Duty};
 use crate::device::safety::Setpoint;
 use crate::device::sense::Samples;
@@ -286,14 +288,19 @@ fn safety_limits_hold_for_any_samples_and_lines() {
 fn safety_limits_hold_for_any_object_under_a_finger() {
     let (accepted, sent) = (Cell::new(0), Cell::new(0));
     let temperatures = prop_oneof![Just(-20.0), Just(60.0), -20.0..60.0];
-    let scenarios = (upload(), temperatures, 0.05..5.0, any::<bool>());
+    let scenarios = (
+        upload(),
+        temperatures,
+        0.05..5.0,
+        select(&AssumedFinger::PROTOCOL_WORDS),
+    );
     let count = TickCount::default();
     let mut runner = TestRunner::new(ProptestConfig::with_cases(48));
-    let outcome = runner.run(&scenarios, |(upload, object_c, force_n, mean)| {
+    let outcome = runner.run(&scenarios, |(upload, object_c, force_n, (finger, _))| {
         let mut bench = TestBench::new();
         bench.plate_responds = true;
-        let finger = if mean { "finger mean" } else { "finger thesis" };
-        bench.send_ok(&["law model", finger, "material granite", "arm", "start"]);
+        send(&mut bench, &format!("finger {finger}"))?;
+        bench.send_ok(&["law model", "material granite", "arm", "start"]);
         send(&mut bench, &format!("object {object_c}"))?;
         sent.set(sent.get() + 1);
         let taken = upload.iter().all(|line| bench.send(line) == "ok");

@@ -70,6 +70,26 @@ fn the_preset_accounts_for_skin_that_has_not_recovered() {
     );
 }
 
+/// The relaxations of one tissue say nothing about another one.
+#[test]
+fn another_tissue_begins_without_the_history_of_the_one_before() {
+    let mut bench = TestBench::settled_presenting("granite");
+    bench.send_ok(&["finger mean", "object slab 3mm insulated"]);
+    let mut untouched = bench.clone();
+    bench.force_n = 2.0;
+    bench.steps(2000);
+    bench.force_n = 0.0;
+    bench.steps(3);
+    let cooled_k = (bench.setpoint_c() - untouched.setpoint_c()).abs();
+    assert!(cooled_k > 0.05, "{cooled_k} K");
+    for one in [&mut bench, &mut untouched] {
+        one.send_ok(&["finger thesis"]);
+        one.steps(2);
+    }
+    let left_k = (bench.setpoint_c() - untouched.setpoint_c()).abs();
+    assert!(left_k < 1e-3, "{left_k} K of {cooled_k} K");
+}
+
 /// The force rises within a few ticks, as the sensor's bandwidth lets it, and has a ripple of 0.6 mN.
 #[test]
 fn a_slowly_rising_noisy_force_gives_the_set_point_of_a_constant_one() {

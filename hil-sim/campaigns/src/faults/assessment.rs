@@ -215,11 +215,13 @@ fn detected(outcome: &Outcome, from: usize, t_s: f64, before: Option<&str>) -> O
     times.into_iter().flatten().min_by(f64::total_cmp)
 }
 
-/// Whether a set-point differs from that of the other run, in a tick of which both have telemetry.
+/// Whether a set-point differs from that of the other run in a tick of which both have telemetry, or there is no such tick.
 fn setpoints_differ(rows: &[TraceRow], others: &[TraceRow]) -> bool {
     let both = rows.iter().zip(others);
-    let mut both = both.filter_map(|(row, other)| row.device.as_ref().zip(other.device.as_ref()));
-    others.is_empty() || both.any(|(one, other)| one.setpoint_c != other.setpoint_c)
+    let mut both = both
+        .filter_map(|(row, other)| row.device.as_ref().zip(other.device.as_ref()))
+        .peekable();
+    both.peek().is_none() || both.any(|(one, other)| one.setpoint_c != other.setpoint_c)
 }
 
 /// Time after which no current flows; `None` if current flows at the end.

@@ -19,6 +19,7 @@ use contact_model::reference::{Contact, interface_temperature};
 pub use thermal_device::command::AssumedFinger;
 use thermal_device::control::Law;
 use thermal_device::reference::ContactModel;
+use thermal_plant::finger::FingerParams;
 use thermal_plant::object::ObjectConfig;
 use thermal_plant::parameters::FingerDraw;
 use thermal_plant::slab::{BackBoundary, Layer};
@@ -164,12 +165,12 @@ impl Scene {
         self.object.start_c.unwrap_or(self.room_c)
     }
 
-    /// Whether Eq. 3-1 or Eq. 6-12 give the exact set-point: Eq. 3-1 in its mode, Eq. 6-12 if finger and object are
-    /// half-spaces.
+    /// Whether Eq. 3-1 or Eq. 6-12 give the exact set-point: Eq. 3-1 in its mode, Eq. 6-12 if the finger is the thesis's,
+    /// without a film of air, and the object a half-space.
     #[must_use]
     pub fn has_closed_form(&self) -> bool {
         self.mode == ContactModel::SemiInfinite
-            || (self.object.is_half_space() && self.nominal.finger.is_half_space())
+            || (self.object.is_half_space() && self.nominal.finger == FingerParams::homogeneous())
     }
 
     /// The exact set-point for a nominal finger of known temperature before contact, °C, `since_s` after it landed with

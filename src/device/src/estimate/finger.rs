@@ -318,6 +318,11 @@ impl FingerEstimator {
         &self.skin_state_on_display
     }
 
+    /// Makes the skin's tissue uniform, as if it had recovered, because another tissue is assumed from now on.
+    pub fn forget_tissue_history(&mut self) {
+        self.skin_state_on_display.forget_tissue_history();
+    }
+
     /// Discards the contact conductances of the present contact, if there is one, because the host presents another
     /// object. The next tick that needs them computes them for the new object.
     pub const fn forget_conductances(&mut self) {

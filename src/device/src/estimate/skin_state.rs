@@ -96,6 +96,13 @@ impl SkinState {
         }
     }
 
+    /// Makes a tissue uniform, because its relaxations are those of another one from now on. A half-space stays.
+    pub fn forget_tissue_history(&mut self) {
+        if let Self::Body(state) = self {
+            *state = BodyState::uniform_in_step_with(state);
+        }
+    }
+
     /// A uniform skin of the other kind, with the rhythm of this one's updates.
     #[cold]
     #[inline(never)]

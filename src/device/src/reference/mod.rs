@@ -445,12 +445,10 @@ impl ReferenceGenerator {
         };
         // A skin that is followed tick by tick has its correction in the reported set-point, too.
         let corrected = setpoint.saturating_add(correction);
-        let lead = if follow_skin {
-            self.lead.next_lead(setpoint)
-        } else {
-            Celsius::ZERO
-        };
-        Reference::limited_to_safe_range(corrected, corrected.saturating_add(lead))
+        // Updated with the other laws, too, so that it is not outdated when `model` is selected during a contact.
+        let lead = self.lead.next_lead(setpoint);
+        let target = corrected.saturating_add(if follow_skin { lead } else { Celsius::ZERO });
+        Reference::limited_to_safe_range(corrected, target)
     }
 }
 

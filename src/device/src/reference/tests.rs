@@ -2,11 +2,13 @@
 
 extern crate std;
 
+use contact_model::fixed_point::FingerBody;
 use contact_model::material::{MATERIALS, REFERENCE_DISPLAY, SKIN};
 use contact_model::pressure::pressure_pa;
 use contact_model::reference::Contact;
 use documented_figures::assert_figure;
 use std::f64::consts::TAU;
+use std::vec::Vec;
 use std::{format, println};
 
 use super::*;
@@ -120,4 +122,44 @@ fn changing_force_is_followed_without_jumps() {
         assert_figure(&format!("render.{name}_error"), 1e3 * seen.worst_k);
         assert_figure(&format!("render.{name}_step"), 1e3 * seen.step_k);
     }
+}
+
+/// Leads of the target in the last ticks of a contact of a mean finger with granite, in which the law `model` follows the
+/// skin in the ticks that `follows` names.
+fn last_leads(follows: impl Fn(u32) -> bool) -> Vec<Celsius> {
+    const TICKS: u32 = 1500;
+    let granite = &MATERIALS[3].1;
+    let pair = ContactPair::new(&SKIN, granite, &REFERENCE_DISPLAY, TICK_S).expect("pair");
+    let (skin, object) = (Celsius::from_num(SKIN_C), Celsius::from_num(OBJECT_C));
+    let bodies = Bodies {
+        finger: &FingerBody::MEAN,
+        are_half_spaces: false,
+        ..Bodies::HALF_SPACES
+    };
+    let scene = PresentedObject {
+        bodies: &bodies,
+        pair: &pair,
+        object: Some(object),
+        mode: ContactModel::ContactResistance,
+    };
+    let (mut finger, mut generator) = (FingerEstimator::default(), ReferenceGenerator::default());
+    finger.update_by_readings(skin, object, None, 0);
+    let mut leads = Vec::new();
+    for tick in 0..TICKS {
+        finger.update_by_readings(skin, object, Some(Force::from_num(2)), 0);
+        finger.step_skin_heat_flow(&pair, &bodies, Celsius::from_num(28));
+        let reference = generator
+            .next_reference(&scene, &mut finger, Celsius::from_num(28), follows(tick))
+            .expect("a finger with temperatures");
+        leads.push(reference.target.celsius() - reference.setpoint.celsius());
+    }
+    leads.split_off(1300)
+}
+
+/// The filter of the lead follows the set-point under every law, so a law that is selected again has no step of the target.
+#[test]
+fn the_lead_is_the_same_after_another_law() {
+    let always = last_leads(|_| true);
+    assert!(always.iter().all(|lead| *lead != 0), "{always:?}");
+    assert_eq!(always, last_leads(|tick| !(300..1300).contains(&tick)));
 }

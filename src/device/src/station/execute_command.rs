@@ -33,7 +33,11 @@ impl Station {
             }
             Command::Finger(None) => return Ok(Reply::Finger(self.object.assumed_finger().name())),
             Command::Finger(Some(finger)) => {
-                if finger != self.object.assumed_finger() {
+                let before = self.object.assumed_finger();
+                if finger != before {
+                    if finger.body().tissue != before.body().tissue {
+                        self.estimator.finger.forget_tissue_history();
+                    }
                     self.object.choose_finger(finger);
                     self.restart_contact();
                 }
