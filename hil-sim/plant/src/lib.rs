@@ -302,8 +302,8 @@ impl Plant {
     }
 
     /// Surface temperature of a display on which the skin would be as warm as it is on the real object, deg C: that skin less
-    /// the heat that flows into the object times the contact resistance of the display, which is the sense of Eq. 6-12 for
-    /// any finger and object. None in the step before a contact and without one.
+    /// the heat that flows into the object times the contact resistance of the display. For half-spaces under a constant
+    /// force this is Eq. 6-12. None in the step before a contact and without one.
     #[must_use]
     pub fn exact_display_c(&self) -> Option<f64> {
         let display = self.on_display?;

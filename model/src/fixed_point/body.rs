@@ -76,13 +76,13 @@ impl fmt::Display for BodyError {
             Self::TooManyFast(count) => {
                 write!(
                     f,
-                    "{count} rates above 12.5 1/s; at most {FAST_MAX} are allowed"
+                    "{count} rates of 12.5 1/s or more; at most {FAST_MAX} are allowed"
                 )
             }
             Self::TooManySlow(count) => {
                 write!(
                     f,
-                    "{count} rates up to 12.5 1/s; at most {SLOW_MAX} are allowed"
+                    "{count} rates below 12.5 1/s; at most {SLOW_MAX} are allowed"
                 )
             }
             Self::Rate(value) => write!(f, "rate {value} 1/s; it must be 0 to 690"),

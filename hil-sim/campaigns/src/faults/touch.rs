@@ -1,4 +1,4 @@
-//! People and things: the finger that touches, the object that is presented, and what the device is told of both, drawn by seed.
+//! The finger that touches, the object that is presented, and what the device is told of both, drawn by seed.
 
 use contact_model::material::MATERIALS;
 use rand::rngs::Xoshiro256PlusPlus;

@@ -238,7 +238,7 @@ pub struct ReferenceGenerator {
     /// semi-infinite model, and from [`Self::restart_contact`] or [`Self::discard_contact_and_skin_simulation`] until the next reference is
     /// generated. Without an object it has no meaning.
     contact: Option<ContactSetpoints>,
-    /// Lead of the target over the set-point in the present contact with an object that is followed as a body.
+    /// Lead of the target over the set-point in the present contact, where finger and object are followed as bodies.
     lead: SetpointLead,
     /// Number of evaluations of `erfcx`, the costly function in Eq. 6-12, since start-up; wraps at 2^32. For the
     /// telemetry.

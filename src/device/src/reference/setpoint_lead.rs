@@ -1,8 +1,9 @@
 //! Lead of the target over the set-point, by which the law `model` follows a set-point that rises or falls steadily.
 //!
-//! The law chooses the current that reaches the present target in 12 ms, so on a ramp the plate stays 12 ms behind. What the
-//! plate model does not know of the finger's heat adds up to as much again. The set-point of a thin plate or of a layered
-//! object changes by up to some 10 K/s, which are then 0.1 to 0.2 K. A target that is 24 ms ahead cancels this.
+//! The law chooses the current that reaches the present target in 12 ms, so on a ramp the plate stays 12 ms behind. The error of
+//! the plate model under the finger adds up to 9 ms (measured on 0.5 mm of ZnS). The set-points of thin plates change by 2 to
+//! 12 K/s (27 K/s for 0.1 mm of copper on foam). Of the leads tried, 12, 20, 24 and 30 ms, 24 ms was the best for the 234
+//! objects of scenario `E` (`docs/fidelity.md`).
 
 use contact_model::fixed_point::Celsius;
 

@@ -551,12 +551,12 @@ fn an_object_that_cannot_be_followed_is_refused_at_the_commit() {
         (
             0.0,
             &[(100.0, 1.0); FAST_MAX + 1][..],
-            "9 rates above 12.5 1/s; at most 8 are allowed",
+            "9 rates of 12.5 1/s or more; at most 8 are allowed",
         ),
         (
             0.0,
             &[(1.0, 1.0); SLOW_MAX + 1],
-            "15 rates up to 12.5 1/s; at most 14 are allowed",
+            "15 rates below 12.5 1/s; at most 14 are allowed",
         ),
         (
             0.0,

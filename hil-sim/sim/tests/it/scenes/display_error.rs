@@ -44,16 +44,20 @@ fn exact_setpoints_of_layers_that_make_a_half_space_are_those_of_eq_6_12() {
 
 /// With the finger and the object that the device is told, what is left is how well the display follows.
 #[test]
-fn a_display_error_of_layers_is_as_small_as_that_of_half_spaces() {
-    for name in ["copper-on-foam", "layered-finger", "lift-and-replace"] {
+fn the_display_error_of_layers_is_bounded() {
+    // Where the set-point rises quickly, as on copper on foam, the target is ahead of it: the display is up to 33 mK too warm in
+    // the first 0.1 s, to the benefit of the skin. The thesis's copper has 16 and 6 mK.
+    for (name, bound_mk) in [
+        ("copper-on-foam", 40.0),
+        ("layered-finger", 20.0),
+        ("lift-and-replace", 20.0),
+    ] {
         let scene = scene(&example(name, &[]));
         let mut engine = NativeEngine::new(World::new(&scene).expect("a plant for the scene"));
         let outcome = run(&scene, &mut engine, |_| ()).expect("the device takes the scene");
         let error = figures(&scene, &outcome).display_error_mk.expect("contact");
         let max_mk = error.max_after_50ms.expect("a contact of more than 50 ms");
-        // The thesis's copper has 16 and 6 mK. Where the set-point rises quickly, as on copper on foam, the target is ahead of
-        // it: the display is up to 33 mK too warm in the first 0.1 s, to the benefit of the skin.
-        assert!(max_mk < 40.0 && error.rms < 8.0, "{name}: {error:?}");
+        assert!(max_mk < bound_mk && error.rms < 8.0, "{name}: {error:?}");
     }
 }
 

@@ -91,7 +91,7 @@ fn slabs_with_every_back_follow_their_exact_solution() {
     }
 }
 
-/// A slab of granite on a colder back: 10 mm let the cold through in a minute, which is known at the skin.
+/// A slab of granite on a colder back: 2 mm of granite take the temperature of their back in some seconds.
 #[test]
 fn a_colder_back_cools_the_real_object_from_when_it_appears() {
     let slab = |back: &str| {
