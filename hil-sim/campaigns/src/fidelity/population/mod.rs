@@ -128,12 +128,16 @@ fn device(seed: u64) -> String {
     format!("[plant]\ndraw = {seed}\n{lags}")
 }
 
-/// So many items, evenly spread over a list; all if there are fewer.
+/// So many items, spread over a list; all if there are fewer. One is taken from each of `count` equal parts of the list, from
+/// one part to the next a place later in it, so that a list in which six objects alternate does not give one of them only.
 #[must_use]
 pub fn spread<T: Clone>(items: &[T], count: usize) -> Vec<T> {
     let count = count.min(items.len());
     (0..count)
-        .filter_map(|i| items.get((2 * i + 1) * items.len() / (2 * count)).cloned())
+        .filter_map(|i| {
+            let place = i % (items.len() / count);
+            items.get(i * items.len() / count + place).cloned()
+        })
         .collect()
 }
 
