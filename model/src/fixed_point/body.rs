@@ -263,6 +263,24 @@ impl FingerBody {
 
 /// State of a body.
 pub type BodyState = RelaxationBank<FAST_MAX, SLOW_MAX>;
+/// State of the tissue of one of the fingers in [`FingerBody`], which have fewer relaxations than a body may have.
+pub type TissueState = RelaxationBank<TISSUE_FAST, TISSUE_SLOW>;
+/// Fast relaxations of a finger's tissue.
+const TISSUE_FAST: usize = 3;
+/// Slow relaxations of a finger's tissue.
+const TISSUE_SLOW: usize = 6;
+const _: () = {
+    let tissues = [
+        &FingerBody::THESIS.tissue,
+        &FingerBody::MEAN.tissue,
+        &FingerBody::MEAN_ON_PAD.tissue,
+    ];
+    let mut i = 0;
+    while i < tissues.len() {
+        assert!(tissues[i].fast_count <= TISSUE_FAST && tissues[i].slow_count <= TISSUE_SLOW);
+        i += 1;
+    }
+};
 
 /// Response of a relaxation of rate `r` per tick to a unit flux of one tick, over its gain: `(1 - e^-r) / r`.
 fn mean_decay(r: f64) -> f64 {

@@ -23,7 +23,7 @@ pub use conductance::ContactConductance;
 use fixed::types::{I0F32, I12F20};
 
 use super::Celsius;
-use super::body::BodyState;
+use super::body::TissueState;
 use super::relaxation_bank::{FastRelaxation, RelaxationBank, Relaxations, SlowRelaxation};
 
 /// Number of fast modes. Mode `k`, from 0, has the rate `r = 2^-(2 k + 1)` per tick and the gain
@@ -83,15 +83,15 @@ impl HalfSpace {
         Self(self.0.staggered(&RELAXATIONS))
     }
 
-    /// A uniform half-space whose windows end with those of a body.
+    /// A uniform half-space whose windows end with those of a tissue.
     #[must_use]
-    pub fn uniform_in_step_with(body: &BodyState) -> Self {
-        Self(RelaxationBank::uniform_in_step_with(body))
+    pub fn uniform_in_step_with(tissue: &TissueState) -> Self {
+        Self(RelaxationBank::uniform_in_step_with(tissue))
     }
 
-    /// A uniform body whose windows end with those of this half-space.
+    /// A uniform tissue whose windows end with those of this half-space.
     #[must_use]
-    pub fn uniform_body(&self) -> BodyState {
+    pub fn uniform_tissue(&self) -> TissueState {
         RelaxationBank::uniform_in_step_with(&self.0)
     }
 

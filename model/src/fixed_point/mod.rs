@@ -19,7 +19,9 @@ mod properties;
 mod relaxation_bank;
 mod ticks;
 
-pub use body::{Body, BodyError, BodyState, FAST_MAX, FingerBody, SLOW_MAX, ScaledBody};
+pub use body::{
+    Body, BodyError, BodyState, FAST_MAX, FingerBody, SLOW_MAX, ScaledBody, TissueState,
+};
 pub use chord_interpolation::ChordInterpolation;
 pub use contact::{Contact, Response};
 pub use contact_pair::ContactPair;

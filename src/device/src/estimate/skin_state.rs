@@ -1,6 +1,8 @@
 //! Thermal state of the skin: the thesis's half-space, or the tissue of another finger.
 
-use contact_model::fixed_point::{BodyState, Celsius, FingerBody, HalfSpace, ScaledBody, product};
+use contact_model::fixed_point::{
+    Celsius, FingerBody, HalfSpace, ScaledBody, TissueState, product,
+};
 use fixed::types::U16F16;
 
 /// Assumed finger and presented object. Where they are not both half-spaces, the thesis's equations do not hold, and
@@ -31,7 +33,7 @@ pub enum SkinState {
     /// The thesis's finger and an object that are both half-spaces: one state stands for both.
     HalfSpace(HalfSpace),
     /// The tissue of an assumed finger.
-    Body(BodyState),
+    Body(TissueState),
 }
 
 impl Default for SkinState {
@@ -86,7 +88,7 @@ impl SkinState {
 
     /// The state as that of an assumed finger's tissue, as [`Self::half_space`].
     #[inline(always)]
-    pub fn tissue(&mut self) -> Option<&mut BodyState> {
+    pub fn tissue(&mut self) -> Option<&mut TissueState> {
         if let Self::HalfSpace(_) = self {
             self.change_kind();
         }
@@ -99,7 +101,7 @@ impl SkinState {
     /// Makes a tissue uniform, because its relaxations are those of another one from now on. A half-space stays.
     pub fn forget_tissue_history(&mut self) {
         if let Self::Body(state) = self {
-            *state = BodyState::uniform_in_step_with(state);
+            *state = TissueState::uniform_in_step_with(state);
         }
     }
 
@@ -108,7 +110,7 @@ impl SkinState {
     #[inline(never)]
     fn change_kind(&mut self) {
         *self = match self {
-            Self::HalfSpace(state) => Self::Body(state.uniform_body()),
+            Self::HalfSpace(state) => Self::Body(state.uniform_tissue()),
             Self::Body(state) => Self::HalfSpace(HalfSpace::uniform_in_step_with(state)),
         };
     }
