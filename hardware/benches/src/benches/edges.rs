@@ -1,0 +1,90 @@
+//! Delay, dead time and losses of the bridge, against what firmware and simulated plant assume.
+
+use anyhow::Result;
+
+use super::Bench;
+use super::transients::OPTIONS;
+use crate::netlist::Netlists;
+use crate::ngspice::{self, Measured};
+use crate::quantity::Quantity;
+
+pub const BENCH: Bench = Bench {
+    name: "edges",
+    title: "propagation delay, effective dead time and loss at 6 A, against 0.3 us of the firmware",
+    run,
+    // The drive current of the smallest strap.
+    broken: |netlists| netlists.with_line("X3 i1 i2 vbr", &format!("{DRIVER} i_src=10m i_snk=20m")),
+};
+
+/// The gate driver's line without parameters.
+const DRIVER: &str = "X3 i1 i2 vbr nfault gh1 o1 gl1 sa gh2 o2 gl2 sb gate_driver";
+
+/// Drives half duty into the tile with a Seebeck voltage that makes this current, and measures the pulse at 199 us.
+fn simulate(netlists: &Netlists, seebeck_v: f64) -> Result<Measured> {
+    let deck = format!(
+        "V3 v3 0 3.3\nVbr vbr 0 12\nVin1 in1 0 3.3\n\
+         Vin2 in2 0 PULSE(3.3 0 1u 5n 5n 5.2033u 10.41667u)\nVen enable 0 3.3\n\
+         X1 vbr v3 in1 in2 enable nfault p n sa sb bridge\nVi p pt 0\nXt pt n tile seebeck={seebeck_v}\n\
+         Bin pin 0 V=-12*I(Vbr)\nBout pout 0 V=V(p,n)*I(Vi)\n\
+         {OPTIONS}\n.tran 5n 230u 0 25n\n\
+         .meas tran command when v(in2)=1.65 fall=1 td=198u\n.meas tran command_end when v(in2)=1.65 rise=1 td=200u\n\
+         .meas tran out when v(x1.o1)=6 rise=1 td=198u\n.meas tran out_end when v(x1.o1)=6 fall=1 td=200u\n\
+         .meas tran current avg i(vi) from=114.5833u to=218.75u\n\
+         .meas tran ripple pp i(vi) from=114.5833u to=218.75u\n\
+         .meas tran input avg v(pin) from=114.5833u to=218.75u\n.meas tran output avg v(pout) from=114.5833u to=218.75u\n"
+    );
+    ngspice::run("edges", netlists, &deck)
+}
+
+/// Time by which the output's pulse is shorter than the commanded one, us.
+fn lost_us(measured: &Measured) -> Result<f64> {
+    let commanded = measured.get("command_end")? - measured.get("command")?;
+    let actual = measured.get("out_end")? - measured.get("out")?;
+    Ok((commanded - actual) * 1e6)
+}
+
+fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
+    let cooling = simulate(netlists, -0.6)?;
+    let against = simulate(netlists, 12.6)?;
+    // 50 % more dead time than recalled, and half of the drive current.
+    let slow = netlists.with_line(
+        "X3 i1 i2 vbr",
+        &format!("{DRIVER} t_dead=360n i_src=75m i_snk=150m"),
+    )?;
+    let slow = simulate(&slow, -0.6)?;
+    let loss_w = cooling.get("input")? - cooling.get("output")?;
+    Ok(vec![
+        Quantity::between("tile current", cooling.get("current")?, "A", (5.5, 6.5)),
+        Quantity::between(
+            "propagation delay, falling edge of the switching input",
+            (cooling.get("out")? - cooling.get("command")?) * 1e6,
+            "us",
+            (0.0, 1.0),
+        ),
+        Quantity::between(
+            "effective dead time at +6 A; the plant has 0.1 to 0.6, tuning fails above 0.53",
+            lost_us(&cooling)?,
+            "us",
+            (0.1, 0.53),
+        ),
+        Quantity::between(
+            "effective dead time at -6 A (the pulse is longer)",
+            -lost_us(&against)?,
+            "us",
+            (0.1, 0.53),
+        ),
+        Quantity::between(
+            "effective dead time at +6 A, 50 % more dead time and half of the drive current",
+            lost_us(&slow)?,
+            "us",
+            (0.1, 0.53),
+        ),
+        Quantity::at_most(
+            "ripple of the tile current at half duty, peak to peak",
+            cooling.get("ripple")?,
+            "A",
+            0.6,
+        ),
+        Quantity::at_most("loss of bridge and filter at 6 A", loss_w, "W", 3.0),
+    ])
+}

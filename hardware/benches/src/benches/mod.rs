@@ -1,0 +1,46 @@
+//! The benches, one for each block of the circuit.
+
+mod current_measurement;
+mod dividers;
+mod edges;
+mod faults;
+mod force;
+mod ground;
+mod leakage;
+mod self_test;
+mod shorts;
+mod thresholds;
+mod transients;
+
+use anyhow::Result;
+
+use crate::netlist::Netlists;
+use crate::quantity::Quantity;
+
+/// One bench.
+#[derive(Clone, Copy)]
+pub struct Bench {
+    /// Its name on the command line.
+    pub name: &'static str,
+    /// What it compares.
+    pub title: &'static str,
+    /// Simulates and returns quantities with what is allowed.
+    pub run: fn(&Netlists) -> Result<Vec<Quantity>>,
+    /// The circuit with one deliberate error that the bench must notice.
+    pub broken: fn(&Netlists) -> Result<Netlists>,
+}
+
+/// All benches.
+pub const ALL: [Bench; 11] = [
+    thresholds::BENCH,
+    self_test::BENCH,
+    faults::BENCH,
+    transients::BENCH,
+    shorts::BENCH,
+    edges::BENCH,
+    current_measurement::BENCH,
+    dividers::BENCH,
+    force::BENCH,
+    ground::BENCH,
+    leakage::BENCH,
+];

@@ -1,0 +1,8 @@
+#![doc = include_str!("../README.md")]
+
+pub mod benches;
+pub mod netlist;
+pub mod ngspice;
+pub mod number;
+pub mod quantity;
+pub mod schematic;

@@ -1,0 +1,45 @@
+//! Every bench holds on the circuits of the repository and fails on a circuit with one deliberate error.
+
+use hardware_benches::benches::ALL;
+use hardware_benches::netlist::Netlists;
+use hardware_benches::ngspice;
+use hardware_benches::quantity::Quantity;
+
+/// Whether ngspice is there; where not, says that nothing is simulated.
+fn can_simulate() -> bool {
+    let installed = ngspice::is_installed();
+    if !installed {
+        println!("skipped: ngspice is not installed, which `cargo xtask hardware` provides");
+    }
+    installed
+}
+
+#[test]
+fn every_simulated_quantity_is_allowed() {
+    if !can_simulate() {
+        return;
+    }
+    let netlists = Netlists::load().unwrap();
+    for bench in ALL {
+        let quantities = (bench.run)(&netlists).unwrap();
+        assert!(!quantities.is_empty(), "{}", bench.name);
+        for quantity in quantities {
+            assert!(quantity.holds(), "{}: {quantity:?}", bench.name);
+        }
+    }
+}
+
+#[test]
+fn every_bench_fails_on_its_broken_circuit() {
+    if !can_simulate() {
+        return;
+    }
+    let netlists = Netlists::load().unwrap();
+    for bench in ALL {
+        let broken = (bench.broken)(&netlists).unwrap();
+        let result = (bench.run)(&broken);
+        // A measurement that fails, because an event never comes, is a failure too.
+        let passes = result.is_ok_and(|quantities| quantities.iter().all(Quantity::holds));
+        assert!(!passes, "{} does not notice its broken circuit", bench.name);
+    }
+}
