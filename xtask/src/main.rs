@@ -8,6 +8,7 @@ mod demo;
 mod docs;
 mod firmware;
 mod fuzz;
+mod hardware;
 mod memory_usage;
 mod mutations;
 mod process;
@@ -101,6 +102,17 @@ enum Task {
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
     },
+    /// Simulate the circuits of hardware/ with ngspice and compare them with what the firmware assumes
+    Hardware {
+        #[command(flatten)]
+        set_up: SetUp,
+        /// Print one JSON object instead of the tables
+        #[arg(long)]
+        json: bool,
+        /// Options of `hardware-benches`: --only and --schematic, see its --help
+        #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
+        rest: Vec<OsString>,
+    },
     /// Check the image's machine code (panics, stack, loops, floating point) and measure its ticks in the emulator
     Proof {
         #[command(flatten)]
@@ -187,6 +199,7 @@ fn main() -> ExitCode {
             rest,
             ..
         } => report::run(set_up.permission(), ("hil-sim", "faults"), report, rest),
+        Task::Hardware { set_up, json, rest } => hardware::run(set_up.permission(), json, rest),
         Task::Proof {
             set_up,
             fingers,

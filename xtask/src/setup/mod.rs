@@ -2,6 +2,7 @@
 mod apt;
 mod compilers;
 mod components;
+mod ngspice;
 mod python;
 mod target;
 mod toolchain;
@@ -9,6 +10,7 @@ mod toolchain;
 use anyhow::{Result, bail};
 
 pub use components::Lints;
+pub use ngspice::install_ngspice;
 pub use toolchain::{Choice, TARGET, Toolchain};
 
 /// The environment variable with the choice of the cross toolchain, inherited by calls of `cargo xtask firmware` from
@@ -35,6 +37,8 @@ pub struct Needs {
     pub lints: bool,
     /// Python with mpmath, for the generators of golden data.
     pub generators: bool,
+    /// ngspice, for the simulated circuits.
+    pub circuits: bool,
 }
 
 impl Needs {
@@ -44,6 +48,7 @@ impl Needs {
         fuzzer: false,
         lints: false,
         generators: false,
+        circuits: false,
     };
 }
 
@@ -97,6 +102,9 @@ pub fn prepare(needs: Needs, permission: Permission) -> Result<Toolchain> {
             (Some(toolchain), true) => {
                 if needs.generators {
                     python::install_mpmath();
+                }
+                if needs.circuits {
+                    install_ngspice(permission);
                 }
                 eprintln!("cross compiler: {toolchain}");
                 return Ok(toolchain);

@@ -183,6 +183,7 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
                 fuzzer: !quick_only,
                 lints: true,
                 generators: true,
+                circuits: !quick_only,
             };
             Ok((setup::prepare(needs, permission)?, setup::lints()?))
         })?;
