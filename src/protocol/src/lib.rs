@@ -22,7 +22,7 @@ pub use command_handler::{CommandHandler, ExecuteOnStations, ExecutionResult};
 pub use error::{Error, QuotedWordExcerpt, StorageFailureText};
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use reply::Reply;
-pub use request::Request;
+pub use request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, Request};
 pub use telemetry::{TelemetryLine, wrap_as_telemetry_line};
 pub use upload::UploadError;
 

@@ -1,0 +1,164 @@
+//! Device ticks against the link's clock.
+//!
+//! A line arrives later than the tick that it names, by the time on the line and by delays of USB and operating system, which
+//! are irregular but never negative. So the earliest arrivals of each span of time tell where the ticks lie:
+//!
+//! ```text
+//! arrival - tick      .    .                 The minimum of each span is kept. Their slope (median of the slopes of all
+//!        |  .    . .     .    .  .  .        pairs) is the drift of the clocks; the line with this slope through their
+//!        | __.______.__.________.____.__     median is the estimate; their distance from it is its error.
+//!        +------------------------------ t
+//! ```
+//!
+//! A delay that all lines have cannot be seen from one end: it stays in the offset, and is not part of the error.
+
+use std::time::Duration;
+
+/// Ticks per second.
+const TICK_S: f64 = thermal_settings::TICK_S;
+/// Length of a span at first, s, and number of spans that are kept; then two become one of twice the length.
+const SPAN_S: f64 = 0.5;
+const SPANS_MAX: usize = 64;
+/// A tick that lies further back than this is of a device that has restarted; telemetry of several fingers may differ by less.
+const BACK_MAX_TICKS: u32 = 200;
+
+/// Estimate of when ticks happen by the link's clock. It begins anew when the device restarts.
+#[derive(Clone, Debug)]
+pub struct DeviceClock {
+    /// Restarts of the device that were seen.
+    restarts: u32,
+    /// The latest tick, and the ticks before it that its 32 bits do not count.
+    latest: Option<u32>,
+    wrapped: u64,
+    span_s: f64,
+    /// The earliest arrival of each span: tick time, s, and how much later it arrived, s.
+    minima: Vec<(f64, f64)>,
+}
+
+/// When a tick happened.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TickTime {
+    /// Time by the link's clock, s, and the delay that all lines have.
+    pub at_s: f64,
+    /// Largest distance of the earliest arrivals from the estimate, s.
+    pub error_s: f64,
+    /// By how much the device's clock is slower than the link's, parts in a million.
+    pub drift_ppm: f64,
+}
+
+impl Default for DeviceClock {
+    fn default() -> Self {
+        Self {
+            restarts: 0,
+            latest: None,
+            wrapped: 0,
+            span_s: SPAN_S,
+            minima: Vec::new(),
+        }
+    }
+}
+
+impl DeviceClock {
+    /// Restarts of the device that its ticks have shown.
+    #[must_use]
+    pub const fn restarts(&self) -> u32 {
+        self.restarts
+    }
+
+    /// Forgets the estimate: the device has restarted.
+    pub fn restart(&mut self) {
+        *self = Self {
+            restarts: self.restarts + 1,
+            ..Self::default()
+        };
+    }
+
+    /// Takes note of a line that names a tick and arrived at a time of the link's clock.
+    pub fn observe(&mut self, tick: u32, at: Duration) {
+        if let Some(latest) = self.latest {
+            let back = latest.wrapping_sub(tick);
+            if back > BACK_MAX_TICKS && back <= u32::MAX / 2 {
+                self.restart();
+            } else if tick < latest && back > u32::MAX / 2 {
+                self.wrapped += 1 << 32;
+            }
+        }
+        if self
+            .latest
+            .is_none_or(|latest| tick.wrapping_sub(latest) <= u32::MAX / 2)
+        {
+            self.latest = Some(tick);
+        }
+        let tick_s = self.tick_s(tick);
+        let late_s = at.as_secs_f64() - tick_s;
+        let span = (tick_s / self.span_s).floor();
+        match self.minima.last_mut() {
+            Some(last) if (last.0 / self.span_s).floor() >= span => {
+                if late_s < last.1 {
+                    *last = (tick_s, late_s);
+                }
+            }
+            _ => self.minima.push((tick_s, late_s)),
+        }
+        if self.minima.len() > SPANS_MAX {
+            self.halve();
+        }
+    }
+
+    /// Makes each two spans one.
+    fn halve(&mut self) {
+        self.span_s *= 2.0;
+        let mut merged: Vec<(f64, f64)> = Vec::new();
+        for &(tick_s, late_s) in &self.minima {
+            match merged.last_mut() {
+                Some(last) if (last.0 / self.span_s).floor() == (tick_s / self.span_s).floor() => {
+                    if late_s < last.1 {
+                        *last = (tick_s, late_s);
+                    }
+                }
+                _ => merged.push((tick_s, late_s)),
+            }
+        }
+        self.minima = merged;
+    }
+
+    fn tick_s(&self, tick: u32) -> f64 {
+        let after_wrap = self.latest.is_some_and(|latest| {
+            tick > latest && tick.wrapping_sub(latest) > u32::MAX / 2 && self.wrapped > 0
+        });
+        let wrapped = self.wrapped - if after_wrap { 1 << 32 } else { 0 };
+        (wrapped + u64::from(tick)) as f64 * TICK_S
+    }
+
+    /// When a tick since the device's last restart happened; `None` before its first telemetry.
+    #[must_use]
+    pub fn time_of(&self, tick: u32) -> Option<TickTime> {
+        let &(last_s, _) = self.minima.last()?;
+        // The span that is not complete has not seen its earliest arrival yet.
+        let complete = match self.minima.as_slice() {
+            [complete @ .., _] if complete.len() >= 2 => complete,
+            all => all,
+        };
+        let slopes = complete.iter().enumerate().flat_map(|(i, a)| {
+            let later = complete.iter().skip(i + 1);
+            later.map(move |b| (b.1 - a.1) / (b.0 - a.0))
+        });
+        let drift = median(slopes.collect()).unwrap_or(0.0);
+        let offsets = complete
+            .iter()
+            .map(|(t_s, late_s)| late_s - drift * (t_s - last_s));
+        let offset_s = median(offsets.clone().collect())?;
+        let errors_s = offsets.map(|one_s| (one_s - offset_s).abs());
+        let tick_s = self.tick_s(tick);
+        Some(TickTime {
+            at_s: tick_s + offset_s + drift * (tick_s - last_s),
+            error_s: errors_s.fold(0.0, f64::max),
+            drift_ppm: 1e6 * drift,
+        })
+    }
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}

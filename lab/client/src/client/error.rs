@@ -1,0 +1,56 @@
+//! Why a command has no reply.
+
+use std::time::Duration;
+
+use super::split_finger;
+use crate::link::LinkError;
+
+/// Why a command has no reply.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ClientError {
+    /// The device refused the line and said why.
+    #[error("the device answers '{line}' with '{answer}'")]
+    Refused {
+        /// The line.
+        line: String,
+        /// The answer, with its `err`.
+        answer: String,
+    },
+    /// The device did not answer.
+    #[error("the device does not answer '{line}' within {} s", timeout.as_secs_f64())]
+    TimedOut {
+        /// The line.
+        line: String,
+        /// How long the client waited.
+        timeout: Duration,
+    },
+    /// The device can no longer be reached, or the wait was interrupted.
+    #[error(transparent)]
+    Link(#[from] LinkError),
+    /// The device sent something that is no answer to the line.
+    #[error("the answer to '{line}' is not understood: '{answer}'")]
+    NotUnderstood {
+        /// The line.
+        line: String,
+        /// What the device sent.
+        answer: String,
+    },
+    /// The line cannot be sent.
+    #[error("'{line}' cannot be sent: a line has 1 to {max} printable ASCII characters", max = thermal_protocol::LINE_MAX_BYTES)]
+    Unsendable {
+        /// The line.
+        line: String,
+    },
+}
+
+impl ClientError {
+    /// The device's reason, without finger and `err`, if it refused the line.
+    #[must_use]
+    pub fn refusal(&self) -> Option<&str> {
+        let Self::Refused { answer, .. } = self else {
+            return None;
+        };
+        let (_, content) = split_finger(answer);
+        content.strip_prefix("err").map(str::trim_start)
+    }
+}

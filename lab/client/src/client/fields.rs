@@ -1,0 +1,108 @@
+//! Words of an answer or of telemetry.
+
+use std::str::FromStr;
+
+use serde::Serializer;
+use thermal_device::StateName;
+use thermal_device::safety::Fault;
+
+/// The words of an answer after `ok`.
+#[derive(Clone, Copy, Debug)]
+pub struct Fields<'a>(&'a str);
+
+impl<'a> Fields<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        Self(text.trim())
+    }
+
+    /// The whole text.
+    #[must_use]
+    pub const fn text(&self) -> &'a str {
+        self.0
+    }
+
+    pub(super) fn words(&self) -> impl Iterator<Item = &'a str> {
+        self.0.split_ascii_whitespace()
+    }
+
+    /// The word behind `name=`; the first one if the name occurs twice.
+    pub(super) fn word(&self, name: &str) -> Option<&'a str> {
+        let mut words = self.words().filter_map(|word| word.split_once('='));
+        words.find_map(|(word, value)| (word == name).then_some(value))
+    }
+
+    /// The number behind `name=`.
+    pub(super) fn number<T: FromStr>(&self, name: &str) -> Option<T> {
+        self.word(name)?.parse().ok()
+    }
+
+    /// The number behind `name=`, or `Some(None)` for `-`.
+    pub(super) fn known_number(&self, name: &str) -> Option<Option<f64>> {
+        known_number(self.word(name)?)
+    }
+
+    /// `0` or `1` behind `name=`.
+    pub(super) fn flag(&self, name: &str) -> Option<bool> {
+        match self.word(name)? {
+            "0" => Some(false),
+            "1" => Some(true),
+            _ => None,
+        }
+    }
+}
+
+/// A number, or `Some(None)` for `-`.
+pub fn known_number(word: &str) -> Option<Option<f64>> {
+    match word {
+        "-" => Some(None),
+        word => finite(word).map(Some),
+    }
+}
+
+/// A finite number.
+pub fn finite(word: &str) -> Option<f64> {
+    word.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// The fault with this word.
+pub fn fault(word: &str) -> Option<Fault> {
+    Fault::ALL
+        .iter()
+        .copied()
+        .find(|fault| fault.name() == word)
+}
+
+/// The state with this word; a tripped one needs the word of its fault.
+pub fn state(word: &str, fault_word: &str) -> Option<StateName> {
+    if let Some(tripped) = fault(fault_word).map(StateName::Tripped)
+        && tripped.name() == word
+    {
+        return Some(tripped);
+    }
+    [
+        StateName::Off,
+        StateName::SelfTest,
+        StateName::Ready,
+        StateName::Armed,
+        StateName::Preset,
+        StateName::Contact,
+    ]
+    .into_iter()
+    .find(|state| state.name() == word)
+}
+
+/// The value with this word in a table of the protocol.
+pub fn in_table<T: Copy>(table: &[(&str, T)], word: &str) -> Option<T> {
+    let found = table.iter().find(|(known, _)| *known == word);
+    found.map(|(_, value)| *value)
+}
+
+/// Serializes a fault as its word.
+pub fn fault_word<S: Serializer>(fault: &Fault, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(fault.name())
+}
+
+/// Serializes a state as its word.
+pub fn state_word<S: Serializer>(state: &StateName, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(state.name())
+}

@@ -1,0 +1,344 @@
+//! Typed client of the serial protocol.
+//!
+//! A [`Command`] writes its line and reads its reply; [`Client`] sends it, waits for its answer, keeps telemetry apart from
+//! answers, and sends the sign of life that a streaming device needs.
+
+mod clock;
+mod error;
+mod fields;
+mod order;
+mod query;
+mod reply;
+mod streams;
+mod telemetry;
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::time::Duration;
+
+use thermal_protocol::LINE_MAX_BYTES;
+
+use crate::link::{Link, LinkError, ReceivedLine};
+use streams::Streams;
+
+pub use clock::{DeviceClock, TickTime};
+pub use error::ClientError;
+pub use fields::Fields;
+pub use order::{Order, thermistor_word, upload};
+pub use query::{
+    Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryIdentity, QueryLaw,
+    QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,
+};
+pub use reply::{
+    BoardReport, CalibrationFit, Cause, IdentifiedTile, Identity, RawReadings, SelfTestReport,
+    SelfTestResult, SettingsLine, Status,
+};
+pub use telemetry::{ReceivedTelemetry, Telemetry};
+
+/// Timeout of an answer.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
+/// Longest silence of the client while the device streams, half of what trips the device.
+const SILENCE_MAX: Duration = Duration::from_secs(1);
+/// Telemetry lines that are kept until they are fetched; then the oldest is dropped.
+const TELEMETRY_KEPT_MAX: usize = 100_000;
+
+/// A command: its `Display` is the line without the address of a finger.
+pub trait Command: fmt::Display {
+    /// What the device reports.
+    type Reply;
+
+    /// Reads the answer after `ok`; `None` if it is not understood.
+    fn read_reply(&self, reply: &Fields<'_>) -> Option<Self::Reply>;
+}
+
+/// Numbers of lines that a client did not receive as they were sent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct LineCounts {
+    /// Telemetry lines that never came, by their ticks.
+    pub lost: u64,
+    /// Lines that are neither telemetry nor an answer.
+    pub damaged: u64,
+    /// Telemetry lines that came and were not fetched in time.
+    pub dropped: u64,
+}
+
+/// A client of the device at the other end of a link. It sends and receives only while one of its functions runs; so
+/// whoever streams telemetry calls [`wait`](Self::wait) or [`next_telemetry`](Self::next_telemetry) at least once a second.
+#[derive(Debug)]
+pub struct Client<L> {
+    link: L,
+    telemetry: VecDeque<ReceivedTelemetry>,
+    streams: Streams,
+    clock: DeviceClock,
+    counts: LineCounts,
+    last_sent: Duration,
+    /// Whether an answer may still come that nobody waits for.
+    out_of_step: bool,
+    synchronizations: u32,
+}
+
+impl<L: Link> Client<L> {
+    /// A client of a device that has sent nothing that is still on its way, as one that was just switched on.
+    pub fn new(link: L) -> Self {
+        Self {
+            last_sent: link.now(),
+            link,
+            telemetry: VecDeque::new(),
+            streams: Streams::default(),
+            clock: DeviceClock::default(),
+            counts: LineCounts::default(),
+            out_of_step: false,
+            synchronizations: 0,
+        }
+    }
+
+    /// A client of a device that may be running: ends a line that another program left unfinished, and discards the
+    /// answers to earlier lines.
+    ///
+    /// # Errors
+    /// The device does not answer, or the link is gone.
+    pub fn attach(link: L) -> Result<Self, ClientError> {
+        let mut client = Self::new(link);
+        client.transmit("")?;
+        client.synchronize()?;
+        Ok(client)
+    }
+
+    /// The link.
+    pub const fn link(&mut self) -> &mut L {
+        &mut self.link
+    }
+
+    /// Lines that were lost, damaged or dropped so far.
+    #[must_use]
+    pub const fn counts(&self) -> LineCounts {
+        self.counts
+    }
+
+    /// Device ticks against the link's clock, from the telemetry so far.
+    #[must_use]
+    pub const fn clock(&self) -> &DeviceClock {
+        &self.clock
+    }
+
+    /// Sends a command to the device and waits for its reply.
+    ///
+    /// # Errors
+    /// The device refuses it, does not answer or answers something else, or the link is gone.
+    pub fn ask<C: Command>(&mut self, command: &C) -> Result<C::Reply, ClientError> {
+        self.ask_finger(None, command)
+    }
+
+    /// Sends a command to one finger of the device, or to all for `None`, and waits for its reply.
+    ///
+    /// # Errors
+    /// As [`ask`](Self::ask).
+    pub fn ask_finger<C: Command>(
+        &mut self,
+        finger: Option<u8>,
+        command: &C,
+    ) -> Result<C::Reply, ClientError> {
+        let line = match finger {
+            Some(finger) => format!("@{finger} {command}"),
+            None => command.to_string(),
+        };
+        let answer = self.query(&line)?;
+        let (answered, content) = split_finger(&answer);
+        if content.split(' ').next() == Some("err") {
+            return Err(ClientError::Refused { line, answer });
+        }
+        let reply = content.strip_prefix("ok").map(Fields::new);
+        let reply = reply.filter(|_| finger.is_none() || finger == answered);
+        match reply.and_then(|reply| command.read_reply(&reply)) {
+            Some(reply) => Ok(reply),
+            None => Err(ClientError::NotUnderstood { line, answer }),
+        }
+    }
+
+    /// Sends a line and waits for its answer, `ok …` or `err …`, perhaps with the finger before it.
+    ///
+    /// # Errors
+    /// The line cannot be sent, the device does not answer, or the link is gone.
+    pub fn query(&mut self, line: &str) -> Result<String, ClientError> {
+        let sendable = |byte: u8| matches!(byte, b' '..=b'~');
+        if line.trim().is_empty() || line.len() > LINE_MAX_BYTES || !line.bytes().all(sendable) {
+            return Err(ClientError::Unsendable { line: line.into() });
+        }
+        if self.out_of_step {
+            self.synchronize()?;
+        }
+        self.transmit(line)?;
+        let answer = self.answer(line)?;
+        self.note_answer(line, &answer);
+        Ok(answer)
+    }
+
+    /// Waits, and receives what comes.
+    ///
+    /// # Errors
+    /// The link is gone, or the wait was interrupted.
+    pub fn wait(&mut self, time: Duration) -> Result<(), LinkError> {
+        let end = self.link.now() + time;
+        while let Some(line) = self.receive_until(end)? {
+            self.sort_line(line);
+        }
+        Ok(())
+    }
+
+    /// The next telemetry line; waits for it at most `timeout`.
+    ///
+    /// # Errors
+    /// The link is gone, or the wait was interrupted.
+    pub fn next_telemetry(
+        &mut self,
+        timeout: Duration,
+    ) -> Result<Option<ReceivedTelemetry>, LinkError> {
+        let end = self.link.now() + timeout;
+        while self.telemetry.is_empty() {
+            match self.receive_until(end)? {
+                Some(line) => self.sort_line(line),
+                None => break,
+            };
+        }
+        Ok(self.telemetry.pop_front())
+    }
+
+    /// Makes sure that the next answer is that of the next line. A line is sent whose answer, an error, repeats a word that
+    /// no other answer has; everything before that answer is discarded.
+    fn synchronize(&mut self) -> Result<(), ClientError> {
+        self.out_of_step = true;
+        self.synchronizations += 1;
+        let line = format!("synchronize-{}", self.synchronizations);
+        self.transmit(&line)?;
+        while !self.answer(&line)?.contains(&format!("'{line}'")) {}
+        self.out_of_step = false;
+        Ok(())
+    }
+
+    fn transmit(&mut self, line: &str) -> Result<(), LinkError> {
+        self.link.send(format!("{line}\n").as_bytes())?;
+        self.last_sent = self.link.now();
+        Ok(())
+    }
+
+    /// The next answer.
+    fn answer(&mut self, line: &str) -> Result<String, ClientError> {
+        let end = self.link.now() + ANSWER_TIMEOUT;
+        let mut damaged = None;
+        loop {
+            let received = self
+                .receive_until(end)
+                .inspect_err(|_| self.out_of_step = true)?;
+            let Some(received) = received else {
+                self.out_of_step = true;
+                let line = line.into();
+                return Err(match damaged {
+                    Some(answer) => ClientError::NotUnderstood { line, answer },
+                    None => ClientError::TimedOut {
+                        line,
+                        timeout: ANSWER_TIMEOUT,
+                    },
+                });
+            };
+            match self.sort_line(received) {
+                Some(Sorted::Answer(answer)) => return Ok(answer),
+                Some(Sorted::Damaged(text)) => damaged = Some(text),
+                None => {}
+            }
+        }
+    }
+
+    /// The next line until a time, with signs of life meanwhile.
+    fn receive_until(&mut self, end: Duration) -> Result<Option<ReceivedLine>, LinkError> {
+        loop {
+            let now = self.link.now();
+            if now >= end {
+                return Ok(None);
+            }
+            let mut wait = end - now;
+            if self.streams.is_on() {
+                let silence = now.saturating_sub(self.last_sent);
+                if silence >= SILENCE_MAX {
+                    self.transmit("")?;
+                }
+                wait = wait.min(
+                    SILENCE_MAX
+                        .saturating_sub(silence)
+                        .max(Duration::from_millis(1)),
+                );
+            }
+            if let Some(line) = self.link.receive(wait)? {
+                return Ok(Some(line));
+            }
+        }
+    }
+
+    /// Keeps telemetry; returns everything else but blank lines.
+    fn sort_line(&mut self, line: ReceivedLine) -> Option<Sorted> {
+        let (finger, content) = split_finger(&line.text);
+        if content.is_empty() {
+            return None;
+        }
+        if is_answer(content) {
+            return Some(Sorted::Answer(line.text));
+        }
+        let Some(telemetry) = Telemetry::parse(content) else {
+            self.counts.damaged += 1;
+            return Some(Sorted::Damaged(line.text));
+        };
+        self.clock.observe(telemetry.tick, line.at);
+        let lost_before = self.streams.lost_before(finger, telemetry.tick);
+        self.counts.lost += u64::from(lost_before);
+        if self.telemetry.len() == TELEMETRY_KEPT_MAX {
+            self.telemetry.pop_front();
+            self.counts.dropped += 1;
+        }
+        self.telemetry.push_back(ReceivedTelemetry {
+            finger,
+            telemetry,
+            at: line.at,
+            lost_before,
+        });
+        None
+    }
+
+    /// Takes note of what a line has changed that the client must know.
+    fn note_answer(&mut self, line: &str, answer: &str) {
+        if !split_finger(answer).1.starts_with("ok") {
+            return;
+        }
+        let (finger, line) = split_finger(line);
+        let mut words = line.split_ascii_whitespace();
+        match (words.next(), words.next()) {
+            (Some("stream"), Some(interval)) => {
+                let interval_ms = interval.parse().map_or(0.0, f64::ceil);
+                self.streams.set(finger, interval_ms as u32);
+            }
+            (Some("save" | "forget"), None) => {
+                self.streams = Streams::default();
+                self.clock.restart();
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A line that is no telemetry.
+enum Sorted {
+    Answer(String),
+    Damaged(String),
+}
+
+fn is_answer(content: &str) -> bool {
+    matches!(content.split(' ').next(), Some("ok" | "err"))
+}
+
+/// The finger at the beginning of a line, and the rest.
+fn split_finger(line: &str) -> (Option<u8>, &str) {
+    let line = line.trim_start();
+    let address = line.strip_prefix('@').and_then(|line| line.split_once(' '));
+    match address.and_then(|(finger, rest)| Some((finger.parse().ok()?, rest))) {
+        Some((finger, rest)) => (Some(finger), rest),
+        None => (None, line),
+    }
+}

@@ -1,0 +1,163 @@
+//! Commands whose answer is `ok` alone.
+
+use std::fmt;
+
+use contact_model::impedance::{Impedance, Relaxation};
+use contact_model::material::Material;
+use contact_model::slab::Back;
+use thermal_commissioning::{StorageOrder, THERMISTOR_WORDS};
+use thermal_device::command::AssumedFinger;
+use thermal_device::control::Law;
+use thermal_device::reference::ContactModel;
+use thermal_device::safety::ThermistorId;
+use thermal_protocol::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
+use thermal_settings::CRC_32;
+
+use super::reply::SettingsLine;
+use super::{Command, Fields};
+
+/// Square millimetres, in which the protocol counts areas, per square metre.
+const MM2_PER_M2: f64 = 1e6;
+
+/// A command whose answer is `ok` alone.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Order {
+    /// Choose the object's material by its name.
+    Material(String),
+    /// Choose the object's material by its properties.
+    CustomMaterial(Material),
+    /// Choose the object's temperature before contact, °C; `None` for that of the room.
+    ObjectTemperature(Option<f64>),
+    /// The object is an endless block of its material.
+    HalfSpace,
+    /// The object is a slab of its material.
+    Slab {
+        /// Thickness, mm.
+        thickness_mm: f64,
+        /// What is behind it.
+        back: Back,
+    },
+    /// Choose the finger that the device assumes for the one that touches.
+    AssumedFinger(AssumedFinger),
+    /// Choose the contact model.
+    Mode(ContactModel),
+    /// Choose the control law.
+    Law(Law),
+    /// Run the self-test if it has not been passed, then drive the display to skin temperature.
+    Arm,
+    /// Present the object.
+    Start,
+    /// Switch the bridge off.
+    Abort,
+    /// Clear a fault that is no longer present.
+    Clear,
+    /// Telemetry at this interval, ms; 0 ends it.
+    Stream(u32),
+    /// Checksums on the lines from the device from now on, or not.
+    Checksum(bool),
+    /// Move the set-point of the armed display to this temperature, °C.
+    Hold(f64),
+    /// Begin to identify the tile.
+    Tune,
+    /// Delete calibration points and correction of a thermistor.
+    ClearCalibration(ThermistorId),
+    /// Replace settings.
+    Set(SettingsLine),
+    /// Restart, and store the settings or the factory defaults.
+    Store(StorageOrder),
+    /// Begin an upload: number of rows, direct term in m² K/W.
+    UploadBegin(usize, f64),
+    /// A row of an upload by its index.
+    UploadRow(usize, Relaxation),
+    /// End an upload with the checksum of its lines.
+    UploadCommit(u32),
+}
+
+/// Word of a thermistor on the line.
+#[must_use]
+pub const fn thermistor_word(thermistor: ThermistorId) -> &'static str {
+    THERMISTOR_WORDS[thermistor as usize]
+}
+
+impl fmt::Display for Order {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Material(name) => write!(f, "material {name}"),
+            Self::CustomMaterial(material) => {
+                let surface = &material.surface;
+                write!(
+                    f,
+                    "material {CUSTOM_MATERIAL_WORD} {} {} {} {} {}",
+                    surface.conductivity_w_mk,
+                    material.density_kg_m3,
+                    material.specific_heat_j_kgk,
+                    surface.roughness_um,
+                    surface.slope_rad
+                )
+            }
+            Self::ObjectTemperature(Some(celsius)) => write!(f, "object {celsius}"),
+            Self::ObjectTemperature(None) => f.write_str("object room"),
+            Self::HalfSpace => f.write_str("object half-space"),
+            Self::Slab { thickness_mm, back } => {
+                write!(f, "object slab {thickness_mm}mm ")?;
+                match back {
+                    Back::Insulated => f.write_str("insulated"),
+                    Back::Held => f.write_str("held"),
+                    Back::Film(film_w_m2k) => write!(f, "film {film_w_m2k}"),
+                }
+            }
+            Self::AssumedFinger(finger) => write!(f, "finger {}", finger.name()),
+            Self::Mode(mode) => {
+                let mut words = CONTACT_MODEL_WORDS.iter();
+                let word = words.find(|(_, known)| known == mode);
+                write!(f, "mode {}", word.map_or("", |(word, _)| *word))
+            }
+            Self::Law(law) => write!(f, "law {}", law.name()),
+            Self::Arm => f.write_str("arm"),
+            Self::Start => f.write_str("start"),
+            Self::Abort => f.write_str("abort"),
+            Self::Clear => f.write_str("clear"),
+            Self::Stream(interval_ms) => write!(f, "stream {interval_ms}"),
+            Self::Checksum(on) => f.write_str(if *on { "checksum on" } else { "checksum off" }),
+            Self::Hold(celsius) => write!(f, "hold {celsius:.2}"),
+            Self::Tune => f.write_str("tune"),
+            Self::ClearCalibration(thermistor) => {
+                write!(f, "calibrate {} clear", thermistor_word(*thermistor))
+            }
+            Self::Set(line) => line.fmt(f),
+            Self::Store(order) => f.write_str(order.name()),
+            Self::UploadBegin(rows, direct_m2k_w) => {
+                write!(
+                    f,
+                    "upload begin object {rows} {:.9}",
+                    MM2_PER_M2 * direct_m2k_w
+                )
+            }
+            Self::UploadRow(index, row) => {
+                let gain_mm2k_j = MM2_PER_M2 * row.gain_m2k_j;
+                write!(f, "upload row {index} {:.9} {gain_mm2k_j:.9}", row.rate_1_s)
+            }
+            Self::UploadCommit(checksum) => write!(f, "upload commit {checksum:08x}"),
+        }
+    }
+}
+
+impl Command for Order {
+    type Reply = ();
+
+    fn read_reply(&self, reply: &Fields<'_>) -> Option<()> {
+        reply.text().is_empty().then_some(())
+    }
+}
+
+/// The commands that upload an object: begin, one row for each relaxation, and commit.
+#[must_use]
+pub fn upload(object: &Impedance<'_>) -> Vec<Order> {
+    let relaxations = object.relaxations;
+    let mut orders = vec![Order::UploadBegin(relaxations.len(), object.direct_m2k_w)];
+    let rows = relaxations.iter().enumerate();
+    orders.extend(rows.map(|(index, row)| Order::UploadRow(index, *row)));
+    let sent: String = orders.iter().map(|order| format!("{order}\n")).collect();
+    orders.push(Order::UploadCommit(CRC_32.checksum(sent.as_bytes())));
+    orders
+}

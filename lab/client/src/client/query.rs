@@ -1,0 +1,110 @@
+//! Commands whose answer reports something.
+
+use std::fmt;
+
+use thermal_device::command::AssumedFinger;
+use thermal_device::control::Law;
+use thermal_device::safety::ThermistorId;
+
+use super::fields::in_table;
+use super::order::thermistor_word;
+use super::reply::{
+    BoardReport, CalibrationFit, Cause, IdentifiedTile, Identity, RawReadings, SelfTestReport,
+    SettingsLine, Status,
+};
+use super::{Command, Fields};
+
+/// Declares the queries without arguments: type, line, type of the reply, and how it is read.
+macro_rules! queries {
+    ($($(#[$doc:meta])+ $query:ident = $line:literal => $reply:ty, $read:expr;)+) => {$(
+        $(#[$doc])+
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct $query;
+
+        impl fmt::Display for $query {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str($line)
+            }
+        }
+
+        impl Command for $query {
+            type Reply = $reply;
+
+            fn read_reply(&self, reply: &Fields<'_>) -> Option<$reply> {
+                $read(reply)
+            }
+        }
+    )+};
+}
+
+queries! {
+    /// Name, version, fingers, rates, protocol and capabilities.
+    QueryIdentity = "id" => Identity, Identity::read;
+    /// State, object and set-point.
+    QueryState = "state" => Status, Status::read;
+    /// Why the device tripped; `None` if it has not.
+    QueryCause = "cause" => Option<Cause>, Cause::read;
+    /// The control law in use.
+    QueryLaw = "law" => Law,
+        |reply: &Fields<'_>| in_table(&Law::PROTOCOL_WORDS, reply.word("law")?);
+    /// The finger that the device assumes.
+    QueryAssumedFinger = "finger" => AssumedFinger,
+        |reply: &Fields<'_>| in_table(&AssumedFinger::PROTOCOL_WORDS, reply.word("finger")?);
+    /// Result of the last identification of the tile, which is in use from then on.
+    TuneResult = "tune result" => IdentifiedTile, IdentifiedTile::read;
+    /// The tile in use.
+    QueryMargins = "margins" => IdentifiedTile, IdentifiedTile::read;
+    /// Number of lines of the settings.
+    CountSettings = "settings" => usize, |reply: &Fields<'_>| reply.number("lines");
+    /// What the last self-test measured.
+    QuerySelfTest = "self-test" => SelfTestReport, SelfTestReport::read;
+    /// The converter's counts and the fault inputs.
+    QueryRaw = "raw" => RawReadings, RawReadings::read;
+    /// State of the board.
+    QueryBoard = "board" => BoardReport, BoardReport::read;
+}
+
+/// A line of the settings, by its number from 1 on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct QuerySettings(pub usize);
+
+impl fmt::Display for QuerySettings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "settings {}", self.0)
+    }
+}
+
+impl Command for QuerySettings {
+    type Reply = SettingsLine;
+
+    fn read_reply(&self, reply: &Fields<'_>) -> Option<SettingsLine> {
+        reply.text().parse().ok()
+    }
+}
+
+/// A calibration point: what the reference thermometer shows at a thermistor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Calibrate {
+    /// The thermistor.
+    pub thermistor: ThermistorId,
+    /// Reading of the reference thermometer, °C.
+    pub reference_c: f64,
+}
+
+impl fmt::Display for Calibrate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = thermistor_word(self.thermistor);
+        write!(f, "calibrate {word} {:.3}", self.reference_c)
+    }
+}
+
+impl Command for Calibrate {
+    type Reply = CalibrationFit;
+
+    fn read_reply(&self, reply: &Fields<'_>) -> Option<CalibrationFit> {
+        Some(CalibrationFit {
+            points: reply.number("points")?,
+            worst_mk: reply.number("worst_mk")?,
+        })
+    }
+}

@@ -1,0 +1,392 @@
+//! What the device reports.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Serialize, Serializer};
+use thermal_commissioning::{SessionRequest, Setting};
+use thermal_device::StateName;
+use thermal_device::reference::ContactModel;
+use thermal_device::safety::Fault;
+use thermal_protocol::{CONTACT_MODEL_WORDS, Request};
+use thermal_settings::Settings;
+
+use super::Fields;
+use super::fields::{fault, fault_word, finite, in_table, state, state_word};
+
+/// Answer to `id`.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Identity {
+    /// Name of the firmware.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// Number of fingers.
+    pub fingers: u8,
+    /// Control ticks per second.
+    pub tick_hz: u32,
+    /// Scans of all sensors per second.
+    pub scan_hz: u32,
+    /// Version of the protocol; `None` from firmware that does not report it.
+    pub protocol: Option<u32>,
+    /// What this firmware can do beyond the first version of the protocol.
+    pub capabilities: Vec<String>,
+}
+
+impl Identity {
+    pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
+        let mut words = reply.words();
+        let capabilities = reply.word("capabilities").unwrap_or_default();
+        let capabilities = capabilities.split(',').filter(|word| !word.is_empty());
+        Some(Self {
+            name: words.next()?.into(),
+            version: words.next()?.into(),
+            fingers: reply.number("fingers")?,
+            tick_hz: reply.number("tick_hz")?,
+            scan_hz: reply.number("scan_hz")?,
+            protocol: reply.number("protocol"),
+            capabilities: capabilities.map(Into::into).collect(),
+        })
+    }
+
+    /// Whether the firmware has this capability.
+    #[must_use]
+    pub fn can(&self, capability: &str) -> bool {
+        self.capabilities.iter().any(|known| known == capability)
+    }
+}
+
+/// Answer to `state`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Status {
+    /// State, with the fault if it is tripped.
+    #[serde(serialize_with = "state_word")]
+    pub state: StateName,
+    /// Material of the object; `None` before one is chosen.
+    pub material: Option<String>,
+    /// Temperature of the object before contact, °C; `None` for that of the room.
+    pub object_c: Option<f64>,
+    /// Contact model.
+    #[serde(serialize_with = "mode_word")]
+    pub mode: ContactModel,
+    /// Set-point, °C.
+    pub setpoint_c: Option<f64>,
+    /// Whether the set-point is limited to its safe range.
+    pub limited: bool,
+    /// Word for the body of the object.
+    pub body: String,
+}
+
+fn mode_word<S: Serializer>(mode: &ContactModel, serializer: S) -> Result<S::Ok, S::Error> {
+    let found = CONTACT_MODEL_WORDS.iter().find(|(_, known)| known == mode);
+    serializer.serialize_str(found.map_or("-", |(word, _)| word))
+}
+
+impl Status {
+    pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
+        let material = reply.word("material")?;
+        Some(Self {
+            state: state(reply.word("state")?, reply.word("fault")?)?,
+            material: (material != "-").then(|| material.into()),
+            object_c: match reply.word("object_c")? {
+                "room" => None,
+                word => Some(finite(word)?),
+            },
+            mode: in_table(&CONTACT_MODEL_WORDS, reply.word("mode")?)?,
+            setpoint_c: reply.known_number("setpoint_c")?,
+            limited: reply.words().any(|word| word == "limited"),
+            body: reply.word("body")?.into(),
+        })
+    }
+}
+
+/// Answer to `cause`: why the device tripped.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Cause {
+    /// The fault.
+    #[serde(serialize_with = "fault_word")]
+    pub fault: Fault,
+    /// Tick of the trip.
+    pub tick: u32,
+    /// First display thermistor, °C.
+    pub display_c: Option<f64>,
+    /// Second display thermistor, °C.
+    pub check_c: Option<f64>,
+    /// Thermistor of the sink, °C.
+    pub sink_c: Option<f64>,
+    /// Magnitude of the measured current, A.
+    pub current_a: f64,
+    /// Demanded current, A; positive cools.
+    pub asked_a: f64,
+}
+
+impl Cause {
+    pub(super) fn read(reply: &Fields<'_>) -> Option<Option<Self>> {
+        let word = reply.word("cause")?;
+        if word == "-" {
+            return Some(None);
+        }
+        Some(Some(Self {
+            fault: fault(word)?,
+            tick: reply.number("tick")?,
+            display_c: reply.known_number("display_c")?,
+            check_c: reply.known_number("check_c")?,
+            sink_c: reply.known_number("sink_c")?,
+            current_a: reply.number("current_a")?,
+            asked_a: reply.number("asked_a")?,
+        }))
+    }
+}
+
+/// Answer to a calibration point.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct CalibrationFit {
+    /// Number of points of this thermistor so far.
+    pub points: u32,
+    /// Largest difference between device and reference at these points, mK.
+    pub worst_mk: f64,
+}
+
+/// The tile as identified by the device, and the stability margins of its control loop.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct IdentifiedTile {
+    /// Rate of change of the plate temperature per demanded current, K/s per A.
+    pub gain_k_s_a: f64,
+    /// Relative loss of this gain by Joule heat per current, 1/A.
+    pub joule_per_a: f64,
+    /// Rate at which the plate relaxes, 1/s.
+    pub leak_1_s: f64,
+    /// Lag of the display's thermistor, s.
+    pub lag_s: f64,
+    /// Dead time from the demanded current to the surface of the plate, s.
+    pub dead_s: f64,
+    /// Phase margin, degrees.
+    pub phase_deg: f64,
+    /// Gain margin, as a factor.
+    pub gain_margin: f64,
+}
+
+impl IdentifiedTile {
+    pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
+        Some(Self {
+            gain_k_s_a: reply.number("gain")?,
+            joule_per_a: reply.number("joule")?,
+            leak_1_s: reply.number("leak")?,
+            lag_s: reply.number("lag_s")?,
+            dead_s: reply.number("dead_s")?,
+            phase_deg: reply.number("phase_deg")?,
+            gain_margin: reply.number("margin")?,
+        })
+    }
+}
+
+/// A line of settings, `set …`, as the device reports it; sent back, it restores them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SettingsLine {
+    text: String,
+    setting: Setting,
+}
+
+impl SettingsLine {
+    /// What the line sets.
+    #[must_use]
+    pub const fn setting(&self) -> &Setting {
+        &self.setting
+    }
+}
+
+impl FromStr for SettingsLine {
+    type Err = String;
+
+    /// Reads a line as the device would.
+    fn from_str(line: &str) -> Result<Self, String> {
+        match Request::parse(line, &Settings::default()) {
+            Ok(Request::Commissioning(SessionRequest::Set(setting))) => Ok(Self {
+                text: line.into(),
+                setting,
+            }),
+            Ok(_) => Err(format!("'{line}'; lines of settings begin with 'set'")),
+            Err(error) => Err(format!("'{line}': {error}")),
+        }
+    }
+}
+
+impl fmt::Display for SettingsLine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// Result of the last self-test.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SelfTestResult {
+    /// There has been none since the start.
+    None,
+    /// It runs.
+    Running,
+    /// It was passed.
+    Passed,
+    /// It found this fault.
+    Failed(Fault),
+}
+
+/// Answer to `self-test`: what the last self-test measured; `None` for what it did not reach.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SelfTestReport {
+    /// Time from the comparator's test at its hot side to nFAULT, ms.
+    pub hot_cut_ms: Option<f64>,
+    /// Sensed supply at the end of that test, V.
+    pub hot_supply_v: Option<f64>,
+    /// Time from the end of that test to the release of nFAULT, ms.
+    pub hot_release_ms: Option<f64>,
+    /// The same at the cold side.
+    pub cold_cut_ms: Option<f64>,
+    /// The same at the cold side.
+    pub cold_supply_v: Option<f64>,
+    /// The same at the cold side.
+    pub cold_release_ms: Option<f64>,
+    /// Sensed supply after both, V.
+    pub supply_v: Option<f64>,
+    /// Current of the cooling pulse, A.
+    pub cool_a: Option<f64>,
+    /// Current of the warming pulse, A.
+    pub warm_a: Option<f64>,
+    /// Change of the first display thermistor by the cooling pulse, K.
+    pub display_k: Option<f64>,
+    /// Change of the second one, K.
+    pub check_k: Option<f64>,
+    /// The result.
+    #[serde(serialize_with = "result_word")]
+    pub result: SelfTestResult,
+}
+
+impl SelfTestResult {
+    /// Its word on the line; of a failed test that of the fault.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Running => "running",
+            Self::Passed => "passed",
+            Self::Failed(fault) => fault.name(),
+        }
+    }
+
+    fn read(word: &str) -> Option<Self> {
+        let known = [Self::None, Self::Running, Self::Passed];
+        let known = known.into_iter().find(|known| known.name() == word);
+        known.or_else(|| fault(word).map(Self::Failed))
+    }
+}
+
+fn result_word<S: Serializer>(result: &SelfTestResult, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_str(result.name())
+}
+
+impl SelfTestReport {
+    pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
+        Some(Self {
+            hot_cut_ms: reply.known_number("hot_cut_ms")?,
+            hot_supply_v: reply.known_number("hot_supply_v")?,
+            hot_release_ms: reply.known_number("hot_release_ms")?,
+            cold_cut_ms: reply.known_number("cold_cut_ms")?,
+            cold_supply_v: reply.known_number("cold_supply_v")?,
+            cold_release_ms: reply.known_number("cold_release_ms")?,
+            supply_v: reply.known_number("supply_v")?,
+            cool_a: reply.known_number("cool_a")?,
+            warm_a: reply.known_number("warm_a")?,
+            display_k: reply.known_number("display_k")?,
+            check_k: reply.known_number("check_k")?,
+            result: SelfTestResult::read(reply.word("result")?)?,
+        })
+    }
+}
+
+/// Answer to `raw`: means of the converter's counts (of 4096) in the last tick, and the fault inputs.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RawReadings {
+    /// First display thermistor, counts.
+    pub display: f64,
+    /// Second display thermistor, counts.
+    pub check: f64,
+    /// Thermistor of the sink, counts.
+    pub sink: f64,
+    /// Thermistor of the skin, counts.
+    pub skin: f64,
+    /// Thermistor of the room, counts.
+    pub room: f64,
+    /// Force sensor, counts.
+    pub force: f64,
+    /// Current mirror, counts.
+    pub current: f64,
+    /// Bridge supply, counts.
+    pub supply: f64,
+    /// Whether the emergency stop is pressed.
+    pub stop: bool,
+    /// Whether the bridge's fault line is pulled.
+    pub fault_line: bool,
+}
+
+impl RawReadings {
+    pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
+        Some(Self {
+            display: reply.number("display")?,
+            check: reply.number("check")?,
+            sink: reply.number("sink")?,
+            skin: reply.number("skin")?,
+            room: reply.number("room")?,
+            force: reply.number("force")?,
+            current: reply.number("current")?,
+            supply: reply.number("supply")?,
+            stop: reply.flag("stop")?,
+            fault_line: reply.flag("fault_line")?,
+        })
+    }
+}
+
+/// Answer to `board`: option bytes, clocks, locks and counters of the serial line.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct BoardReport {
+    /// Brown-out reset level.
+    pub bor: String,
+    /// Whether a debugger has frozen the watchdogs.
+    pub watchdogs_frozen: bool,
+    /// Whether the clock is the external one.
+    pub clock_external: bool,
+    /// Lock level of the PWM timer.
+    pub pwm_lock: String,
+    /// Cause of the last reset.
+    pub reset: String,
+    /// Bytes lost because they were not fetched in time.
+    pub rx_overruns: u32,
+    /// Bytes without a valid stop bit.
+    pub rx_framing: u32,
+    /// Bytes with noise.
+    pub rx_noise: u32,
+    /// Lines to the host that were dropped.
+    pub tx_dropped: u32,
+}
+
+impl BoardReport {
+    pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
+        Some(Self {
+            bor: reply.word("bor")?.into(),
+            watchdogs_frozen: match reply.word("watchdogs")? {
+                "running" => false,
+                "frozen" => true,
+                _ => return None,
+            },
+            clock_external: match reply.word("clock")? {
+                "hse" => true,
+                "hsi" => false,
+                _ => return None,
+            },
+            pwm_lock: reply.word("pwm_lock")?.into(),
+            reset: reply.word("reset")?.into(),
+            rx_overruns: reply.number("rx_overruns")?,
+            rx_framing: reply.number("rx_framing")?,
+            rx_noise: reply.number("rx_noise")?,
+            tx_dropped: reply.number("tx_dropped")?,
+        })
+    }
+}

@@ -1,0 +1,99 @@
+//! Telemetry lines.
+
+use std::time::Duration;
+
+use serde::Serialize;
+use thermal_device::StateName;
+use thermal_device::safety::Fault;
+
+use super::fields::{known_number, state, state_word};
+
+/// All fields of a telemetry line; what the device does not know is `None`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Telemetry {
+    /// Ticks of 1 ms since the device's reset.
+    pub tick: u32,
+    /// State of the device, with its fault if it is tripped.
+    #[serde(serialize_with = "state_word")]
+    pub state: StateName,
+    /// Set-point, °C.
+    pub setpoint_c: Option<f64>,
+    /// First display thermistor, °C.
+    pub display_c: Option<f64>,
+    /// Thermistor of the sink, °C.
+    pub sink_c: Option<f64>,
+    /// Thermistor of the skin, °C.
+    pub skin_c: Option<f64>,
+    /// Thermistor of the room, °C.
+    pub room_c: Option<f64>,
+    /// Force of the finger, N.
+    pub force_n: Option<f64>,
+    /// Demanded current, A; positive cools.
+    pub demand_a: Option<f64>,
+    /// Magnitude of the measured current, A.
+    pub current_a: Option<f64>,
+    /// Evaluations of `erfcx` since the device's reset.
+    pub evaluations: u32,
+    /// Whether the set-point was limited to its safe range.
+    pub limited: bool,
+}
+
+/// A telemetry line as a client received it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ReceivedTelemetry {
+    /// The finger that it names; `None` from a device with one finger.
+    pub finger: Option<u8>,
+    /// Its fields.
+    pub telemetry: Telemetry,
+    /// Time by the link's clock at which it was received.
+    pub at: Duration,
+    /// Lines that are missing between the last one of this finger and this one, by their ticks.
+    pub lost_before: u32,
+}
+
+impl Telemetry {
+    /// Reads a line without its finger; `None` if it is not telemetry. Words after the known ones are ignored.
+    #[must_use]
+    pub fn parse(line: &str) -> Option<Self> {
+        let words: Vec<_> = line.split(' ').collect();
+        let &[
+            "T",
+            tick,
+            state_name,
+            setpoint,
+            display,
+            sink,
+            skin,
+            room,
+            force,
+            demand,
+            current,
+            evaluations,
+            remark,
+            ..,
+        ] = words.as_slice()
+        else {
+            return None;
+        };
+        Some(Self {
+            tick: tick.parse().ok()?,
+            state: state(state_name, remark)?,
+            setpoint_c: known_number(setpoint)?,
+            display_c: known_number(display)?,
+            sink_c: known_number(sink)?,
+            skin_c: known_number(skin)?,
+            room_c: known_number(room)?,
+            force_n: known_number(force)?,
+            demand_a: known_number(demand)?,
+            current_a: known_number(current)?,
+            evaluations: evaluations.parse().ok()?,
+            limited: remark == "limited",
+        })
+    }
+
+    /// The fault by which the device is tripped.
+    #[must_use]
+    pub const fn fault(&self) -> Option<Fault> {
+        self.state.fault()
+    }
+}

@@ -1,0 +1,321 @@
+//! The steps of the procedure.
+
+use std::time::Duration;
+
+use thermal_commissioning::StorageOrder;
+use thermal_device::StateName;
+use thermal_device::safety::ThermistorId;
+use thermal_settings::{CODES_PER_ADC_SEGMENT, Settings};
+
+use super::{
+    CalibrationPoint, CommissionError, CommissioningEvent, CommissioningRecord, Surroundings,
+};
+use crate::client::{
+    Calibrate, Client, ClientError, CountSettings, IdentifiedTile, Order, QueryMargins,
+    QuerySettings, QueryState, SettingsLine, TuneResult, thermistor_word,
+};
+use crate::link::Link;
+
+/// Range of the display's calibration, deg C; it includes the range of use.
+const DISPLAY_C: (f64, f64) = (15.3, 41.7);
+/// Time after power-up in which the device finds the zero of its force sensor, ms.
+const START_MS: u64 = 500;
+/// Distance of the calibration points from the borders of the converter's segments, codes.
+const FROM_BORDER_CODES: u32 = 22;
+/// Time that the display takes for a change of one degree, ms.
+const MS_PER_DEGREE: f64 = 1000.0;
+/// Required number of points of the display.
+const POINTS_REQUIRED: usize = 9;
+/// Settling time of the display at a point, ms, and interval and number of further attempts.
+const SETTLE_MS: u64 = 2500;
+const RETRY_MS: u64 = 800;
+const RETRIES: u64 = 24;
+/// Largest change of the reference between two attempts in the steady state, K: twice its noise and resolution.
+const STEADY_K: f64 = 1.5e-3;
+/// Timeout of tuning, s.
+const TUNE_S: u32 = 70;
+/// Timeout of a self-test, and the interval at which its end is polled, ms.
+const SELF_TEST_MS: u64 = 3000;
+const POLL_MS: u64 = 50;
+/// Time in a bath, ms: the thermistor settles sooner, and the device needs this long to judge that it is steady.
+const BATH_MS: u64 = 900;
+/// Bath temperatures of skin and room thermistor and coolant temperatures of the sink, deg C, away from the converter's
+/// steps.
+const SKIN_C: [f64; 5] = [26.7, 29.3, 32.2, 35.0, 37.3];
+const ROOM_C: [f64; 5] = [17.7, 20.5, 23.5, 26.7, 30.5];
+const SINK_C: [f64; 5] = [17.7, 23.5, 29.3, 35.0, 40.7];
+
+/// Calibrates all sensors of a device, or of one of its fingers, in its place of use, and makes it tune itself and store the
+/// result. If anything fails, the bridge is switched off.
+///
+/// # Errors
+/// The device cannot be commissioned, or the person has ended the procedure.
+pub fn commission<L: Link>(
+    client: &mut Client<L>,
+    finger: Option<u8>,
+    surroundings: &mut dyn Surroundings<L>,
+) -> Result<CommissioningRecord, CommissionError> {
+    let mut procedure = Procedure {
+        client,
+        finger,
+        surroundings,
+        points: Vec::new(),
+    };
+    let done = procedure.run();
+    if done.is_err() {
+        // The reason why it failed is reported; a link that is gone fails here, too.
+        let _ignored = client.ask_finger(finger, &Order::Abort);
+    }
+    done
+}
+
+/// Sends lines of settings to a device, and returns the tile that it then reports. They are in use until it restarts, unless
+/// it is told to `save` them.
+///
+/// # Errors
+/// The device refuses a line, or reports other settings afterwards.
+pub fn restore<L: Link>(
+    client: &mut Client<L>,
+    finger: Option<u8>,
+    lines: &[SettingsLine],
+) -> Result<IdentifiedTile, CommissionError> {
+    for line in lines {
+        client.ask_finger(finger, &Order::Set(line.clone()))?;
+    }
+    let reported = settings(client, finger)?;
+    if let Some(lost) = lines.iter().find(|line| !reported.contains(line)) {
+        return Err(CommissionError::NotRestored(lost.to_string()));
+    }
+    Ok(client.ask_finger(finger, &QueryMargins)?)
+}
+
+/// All settings of a device or of one of its fingers, as lines.
+///
+/// # Errors
+/// The device does not report them.
+pub fn settings<L: Link>(
+    client: &mut Client<L>,
+    finger: Option<u8>,
+) -> Result<Vec<SettingsLine>, ClientError> {
+    let lines = client.ask_finger(finger, &CountSettings)?;
+    (1..=lines)
+        .map(|number| client.ask_finger(finger, &QuerySettings(number)))
+        .collect()
+}
+
+/// Arms a device, which runs its self-test first if it has not yet, and waits until it is armed.
+///
+/// # Errors
+/// The device refuses, trips, or is not armed in time.
+pub fn arm<L: Link>(client: &mut Client<L>, finger: Option<u8>) -> Result<(), CommissionError> {
+    client.ask_finger(finger, &Order::Arm)?;
+    for _ in 0..SELF_TEST_MS / POLL_MS {
+        match client.ask_finger(finger, &QueryState)?.state {
+            StateName::Armed => return Ok(()),
+            StateName::SelfTest => client.wait(Duration::from_millis(POLL_MS))?,
+            other => {
+                let fault = other.fault().map_or("-", |fault| fault.name());
+                return Err(CommissionError::NotArmed {
+                    state: other.name(),
+                    fault,
+                });
+            }
+        }
+    }
+    Err(CommissionError::TooLong("arm"))
+}
+
+struct Procedure<'a, L> {
+    client: &'a mut Client<L>,
+    finger: Option<u8>,
+    surroundings: &'a mut dyn Surroundings<L>,
+    points: Vec<CalibrationPoint>,
+}
+
+/// Display temperatures to hold, deg C, warmest first: near both ends of each segment of the converter.
+fn hold_temperatures_c() -> Vec<f64> {
+    let thermistor = Settings::default().thermistor;
+    let (coldest_c, warmest_c) = DISPLAY_C;
+    (0..4096 / CODES_PER_ADC_SEGMENT)
+        .flat_map(|segment| {
+            let border = segment * CODES_PER_ADC_SEGMENT;
+            [
+                border + FROM_BORDER_CODES,
+                border + CODES_PER_ADC_SEGMENT - FROM_BORDER_CODES,
+            ]
+        })
+        .map(|code| thermistor.temperature_c(f64::from(code) * 16.0))
+        .filter(|t_c| (coldest_c..=warmest_c).contains(t_c))
+        .collect()
+}
+
+impl<L: Link> Procedure<'_, L> {
+    fn run(&mut self) -> Result<CommissioningRecord, CommissionError> {
+        self.wait_ms(START_MS)?;
+        arm(self.client, self.finger)?;
+        self.start_step("tune, as far as sensors from the shelf allow");
+        self.tune()?;
+        self.start_step(
+            "calibrate the display's thermistors, held at temperature after temperature",
+        );
+        self.calibrate_display()?;
+        arm(self.client, self.finger)?;
+        self.start_step("tune again, with calibrated sensors");
+        let tile = self.tune()?;
+        self.client.ask_finger(self.finger, &Order::Abort)?;
+        self.start_step("calibrate the skin's thermistor in a bath");
+        self.calibrate_in_baths(ThermistorId::Skin, SKIN_C)?;
+        self.start_step("calibrate the room's thermistor in a bath");
+        self.calibrate_in_baths(ThermistorId::Room, ROOM_C)?;
+        self.start_step("calibrate the sink's thermistor on coolants");
+        self.calibrate_in_baths(ThermistorId::Sink, SINK_C)?;
+        self.start_step("save what was found");
+        let found = settings(self.client, self.finger)?;
+        self.client.ask(&Order::Store(StorageOrder::Save))?;
+        let stored = settings(self.client, self.finger)?;
+        if let Some(lost) = found.iter().find(|line| !stored.contains(line)) {
+            return Err(CommissionError::NotRestored(lost.to_string()));
+        }
+        Ok(CommissioningRecord {
+            settings: found.iter().map(ToString::to_string).collect(),
+            points: std::mem::take(&mut self.points),
+            tile,
+        })
+    }
+
+    fn start_step(&mut self, what: &'static str) {
+        self.surroundings
+            .notice(&CommissioningEvent::StepStarted(what));
+    }
+
+    fn wait_ms(&mut self, ms: u64) -> Result<(), CommissionError> {
+        Ok(self.client.wait(Duration::from_millis(ms))?)
+    }
+
+    /// Makes the device identify its tile.
+    fn tune(&mut self) -> Result<IdentifiedTile, CommissionError> {
+        self.client.ask_finger(self.finger, &Order::Tune)?;
+        for _ in 0..TUNE_S {
+            self.wait_ms(1000)?;
+            match self.client.ask_finger(self.finger, &TuneResult) {
+                Ok(tile) => {
+                    self.surroundings
+                        .notice(&CommissioningEvent::TileIdentified(tile));
+                    return Ok(tile);
+                }
+                Err(error)
+                    if error
+                        .refusal()
+                        .is_some_and(|why| why.starts_with("tuning goes on")) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Err(CommissionError::TooLong("tune"))
+    }
+
+    /// Calibrates both thermistors of the display, from warm to cold.
+    fn calibrate_display(&mut self) -> Result<(), CommissionError> {
+        let (mut points, mut why) = (0, String::new());
+        for hold_c in hold_temperatures_c() {
+            let distance_k = (hold_c - self.reference_c(ThermistorId::Display)?).abs();
+            self.client.ask_finger(self.finger, &Order::Hold(hold_c))?;
+            self.surroundings
+                .notice(&CommissioningEvent::HoldStarted(hold_c));
+            self.wait_ms((distance_k * MS_PER_DEGREE) as u64 + SETTLE_MS)?;
+            let mut before_c = f64::NAN;
+            for _ in 0..RETRIES {
+                let shown_c = self.reference_c(ThermistorId::Display)?;
+                if (shown_c - before_c).abs() > STEADY_K || before_c.is_nan() {
+                    before_c = shown_c;
+                    why = format!("the reference thermometer shows {shown_c:.3} C, and moves");
+                    self.wait_ms(RETRY_MS)?;
+                    continue;
+                }
+                match self.calibrate_point(ThermistorId::Display)? {
+                    None => {
+                        points += 1;
+                        self.calibrate_point(ThermistorId::Check)?;
+                        break;
+                    }
+                    Some(refused) => why = refused,
+                }
+                self.wait_ms(RETRY_MS)?;
+            }
+        }
+        if points < POINTS_REQUIRED {
+            return Err(CommissionError::FewPoints {
+                points,
+                needed: POINTS_REQUIRED,
+                why,
+            });
+        }
+        Ok(())
+    }
+
+    /// Calibrates a thermistor in one bath after another; a point at a step of the converter may be refused.
+    fn calibrate_in_baths(
+        &mut self,
+        thermistor: ThermistorId,
+        baths_c: [f64; 5],
+    ) -> Result<(), CommissionError> {
+        for bath_c in baths_c {
+            self.surroundings
+                .put_into_bath(self.client, thermistor, bath_c)?;
+            self.wait_ms(BATH_MS)?;
+            while let Some(refused) = self.calibrate_point(thermistor)? {
+                if !self.surroundings.reads_again(&refused) {
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn reference_c(&mut self, thermistor: ThermistorId) -> Result<f64, CommissionError> {
+        Ok(self.surroundings.reference_c(self.client, thermistor)?)
+    }
+
+    /// Sends a calibration point; returns the reason if the device refuses it because the reading moves or lies at a step of
+    /// the converter, or for another reason that another reading may remove.
+    fn calibrate_point(
+        &mut self,
+        thermistor: ThermistorId,
+    ) -> Result<Option<String>, CommissionError> {
+        let reference_c = self.reference_c(thermistor)?;
+        let sensor = thermistor_word(thermistor);
+        let command = Calibrate {
+            thermistor,
+            reference_c,
+        };
+        match self.client.ask_finger(self.finger, &command) {
+            Ok(fit) => {
+                let point = CalibrationPoint {
+                    sensor,
+                    reference_c,
+                    points: fit.points,
+                    worst_mk: fit.worst_mk,
+                };
+                self.surroundings
+                    .notice(&CommissioningEvent::PointAccepted(point.clone()));
+                self.points.push(point);
+                Ok(None)
+            }
+            Err(error) => {
+                let Some(why) = error.refusal() else {
+                    return Err(error.into());
+                };
+                let passes = ["the reading moves", "at a step"];
+                let passes = passes.iter().any(|begin| why.starts_with(begin));
+                if !passes && !self.surroundings.reads_again(why) {
+                    return Err(error.into());
+                }
+                let why = why.to_owned();
+                self.surroundings.notice(&CommissioningEvent::PointRefused {
+                    sensor,
+                    why: why.clone(),
+                });
+                Ok(Some(why))
+            }
+        }
+    }
+}

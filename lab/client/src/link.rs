@@ -1,0 +1,86 @@
+//! The line to a device: bytes to it, lines from it, and a clock.
+
+use std::time::Duration;
+
+/// Longest line from a device that is kept whole, bytes; what is longer is delivered in parts.
+const LINE_MAX_BYTES: usize = 1024;
+
+/// A line to a device. Its clock is its own, so that a simulated device runs in virtual time and a real one in real time.
+pub trait Link {
+    /// Sends bytes.
+    ///
+    /// # Errors
+    /// The device can no longer be reached.
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError>;
+
+    /// Waits for the next line from the device, at most `timeout` by the link's clock; `None` if there is none.
+    ///
+    /// # Errors
+    /// The device can no longer be reached, or the wait was interrupted.
+    fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError>;
+
+    /// Time by the link's clock, from an arbitrary zero on; it never goes back.
+    fn now(&self) -> Duration;
+}
+
+/// A line from a device.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ReceivedLine {
+    /// The line without its end; bytes that are no text are replaced.
+    pub text: String,
+    /// Time by the link's clock at which its end was received.
+    pub at: Duration,
+}
+
+/// Why a link does not work.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LinkError {
+    /// The device can no longer be reached, for this reason.
+    #[error("the link to the device is gone: {0}")]
+    Gone(String),
+    /// The person or program at this end has ended the wait. The link still works.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl<L: Link + ?Sized> Link for Box<L> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        (**self).send(bytes)
+    }
+
+    fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
+        (**self).receive(timeout)
+    }
+
+    fn now(&self) -> Duration {
+        (**self).now()
+    }
+}
+
+/// Splits received bytes into lines.
+#[derive(Clone, Debug, Default)]
+pub struct LineSplitter(Vec<u8>);
+
+impl LineSplitter {
+    /// The buffer to which received bytes are appended.
+    pub const fn received(&mut self) -> &mut Vec<u8> {
+        &mut self.0
+    }
+
+    /// Removes and returns the complete lines, without line ends. A line without an end is returned in parts, so that a
+    /// device that sends none cannot fill the memory.
+    pub fn complete(&mut self) -> Vec<String> {
+        let end = self.0.iter().rposition(|byte| *byte == b'\n');
+        let end = end.map_or(0, |end| end + 1);
+        let end = if self.0.len() - end > LINE_MAX_BYTES {
+            self.0.len()
+        } else {
+            end
+        };
+        let complete: Vec<u8> = self.0.drain(..end).collect();
+        String::from_utf8_lossy(&complete)
+            .lines()
+            .map(|line| line.trim_end().to_owned())
+            .collect()
+    }
+}
