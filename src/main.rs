@@ -24,7 +24,7 @@ mod board;
 mod app {
     use core::sync::atomic::{AtomicBool, Ordering};
 
-    use thermal_display::device::{Device, execute_in_turn};
+    use thermal_display::device::{DeviceInPlace, Station, execute_in_turn};
     use thermal_display::task_liveness::{HostTaskTimer, Task, TaskLiveness};
 
     use crate::board::{
@@ -34,7 +34,7 @@ mod app {
 
     #[shared]
     struct Shared {
-        device: &'static mut Device<FINGERS>,
+        device: DeviceInPlace<FINGERS>,
         #[lock_free]
         control_loop: ControlLoop,
         task_liveness: TaskLiveness,
@@ -53,14 +53,14 @@ mod app {
         trigger: SampleTrigger,
     }
 
-    // `device` is a variable of its own, not a field of `memory`: the compiler then treats its
+    // `stations` is a variable of its own, not a field of `memory`: the compiler then treats its
     // address as a constant, which saves 200 instructions a tick.
     #[init(local = [
         memory: StaticMemory = StaticMemory::new(),
-        device: Option<Device<FINGERS>> = None
+        stations: [Option<Station>; FINGERS] = [const { None }; FINGERS]
     ])]
     fn init(cx: init::Context) -> (Shared, Local) {
-        let board = Board::set_up(cx.core.SYST, cx.device, cx.local.memory, cx.local.device);
+        let board = Board::set_up(cx.core.SYST, cx.device, cx.local.memory, cx.local.stations);
         let shared = Shared {
             device: board.device,
             control_loop: board.control_loop,

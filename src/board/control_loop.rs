@@ -6,7 +6,7 @@ use heapless::spsc::Producer;
 use thermal_display::device::command::WithSourceFinger;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
-use thermal_display::device::{Device, Telemetry};
+use thermal_display::device::{DeviceInPlace, Telemetry};
 
 use super::{
     FINGERS, FingerPowerStage, SampleError, Sampler, TripCauseRecorder, WindowWatchdog,
@@ -45,7 +45,7 @@ impl ControlLoop {
     /// [stopped](Self::stop_and_trip_all).
     pub fn run_finger_tick(
         &mut self,
-        device: &mut Device<FINGERS>,
+        device: &mut DeviceInPlace<FINGERS>,
         host_is_active: &AtomicBool,
     ) -> Result<bool, SampleError> {
         let (finger, scans) = match self.sampler.take_block_and_select_next_finger() {
@@ -88,7 +88,7 @@ impl ControlLoop {
     /// Turns all bridges off, stops sampling until the next reset, trips all fingers by the fault
     /// of `error`, and stores the earliest trip cause of all fingers for the next start. The
     /// watchdogs then reset the device, because no tick runs any more.
-    pub fn stop_and_trip_all(&mut self, device: &mut Device<FINGERS>, error: SampleError) {
+    pub fn stop_and_trip_all(&mut self, device: &mut DeviceInPlace<FINGERS>, error: SampleError) {
         self.stages.iter_mut().for_each(FingerPowerStage::off);
         self.sampler.stop();
         device.trip_all(error.fault());

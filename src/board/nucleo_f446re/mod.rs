@@ -47,7 +47,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Config, Rcc};
 use thermal_display::device::command::WithSourceFinger;
 use thermal_display::device::safety::{Fault, TripCause};
-use thermal_display::device::{Device, FingerIndex, Telemetry};
+use thermal_display::device::{DeviceInPlace, FingerIndex, Station, Telemetry};
 use thermal_display::line_queue::LineQueue;
 use thermal_display::protocol::{CommandHandler, Error, Reply, StorageFailureText};
 use thermal_display::settings::Settings;
@@ -136,15 +136,15 @@ fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
     cause
 }
 
-/// Creates the device in `place`, with the settings from the flash and with the thermal doses that
+/// Creates the device, its stations in `places`, with the settings from the flash and with the thermal doses that
 /// were saved in RAM before the reset. All fingers are tripped by `cause` if there is one, and by
 /// [`Fault::SettingsCorrupt`] if the settings cannot be read.
 fn create_and_restore_device(
-    place: &'static mut Option<Device<FINGERS>>,
+    places: &'static mut [Option<Station>; FINGERS],
     cause: Option<TripCause>,
     storage: &SaveAndLoadResult,
-) -> &'static mut Device<FINGERS> {
-    let device = place.insert(Device::new_optionally_tripped(cause, &Settings::default()));
+) -> DeviceInPlace<FINGERS> {
+    let mut device = DeviceInPlace::new_in_place(places, cause, &Settings::default());
     match &storage.settings {
         Ok(Some(settings)) => device.restore_settings(settings),
         Ok(None) => {}
@@ -156,12 +156,26 @@ fn create_and_restore_device(
     device
 }
 
+/// Creates the command handler in `place`, with the settings from the flash. A function of its own,
+/// so that the copy of the handler that it needs takes stack at the start only, and not in `main`,
+/// which never returns.
+#[inline(never)]
+fn create_handler(
+    place: &'static mut Option<CommandHandler<FINGERS>>,
+    storage: &SaveAndLoadResult,
+) -> &'static mut CommandHandler<FINGERS> {
+    place.insert(match &storage.settings {
+        Ok(Some(settings)) => CommandHandler::from_stored(settings),
+        Ok(None) | Err(_) => CommandHandler::new(Settings::default()),
+    })
+}
+
 /// The parts of the board, set up and ready to sample. `main.rs` moves each part to the task that
 /// owns it.
 pub struct Board {
     /// The control of all fingers, independent of the hardware: one station for each finger, which
     /// computes the outputs of a control tick from the samples.
-    pub device: &'static mut Device<FINGERS>,
+    pub device: DeviceInPlace<FINGERS>,
     /// Sampling, bridges and window watchdog, for the control tick. The window watchdog already
     /// runs, so the first tick must follow within 46.6 ms.
     pub control_loop: ControlLoop,
@@ -183,20 +197,20 @@ impl Board {
     /// Sets up the device and all parts of the board at the start of the program; all bridges are
     /// then off, and sampling has not started. If settings wait in RAM, because the host has
     /// requested the restart by `save` or `forget`, they are stored in flash first. `memory` and
-    /// `device` are static memory: `memory` for buffers, queues and command handler, `device` for
-    /// the device, which is created in it.
+    /// `stations` are static memory: `memory` for buffers, queues and command handler, `stations`
+    /// for those of the device, which are created in it.
     pub fn set_up(
         systick: SYST,
         peripherals: pac::Peripherals,
         memory: &'static mut StaticMemory,
-        device: &'static mut Option<Device<FINGERS>>,
+        stations: &'static mut [Option<Station>; FINGERS],
     ) -> Self {
         let cause = trip_cause_at_start(&peripherals.RCC);
         // Before anything is set up that the flash would delay.
         let storage = settings_storage::save_pending_and_load(&peripherals.FLASH);
         // Creating the device takes 0.2 s at 16 MHz, so it comes before the watchdogs and the
         // sampling start.
-        let device = create_and_restore_device(device, cause, &storage);
+        let device = create_and_restore_device(stations, cause, &storage);
         // A fault of the settings is not stored, because every start finds it again until other
         // settings are stored.
         let trip_cause_recorder = TripCauseRecorder::new(device.earliest_trip_cause().copied());
@@ -266,15 +280,11 @@ impl Board {
             line_producer,
             &mut rcc,
         );
-        let handler = match &storage.settings {
-            Ok(Some(settings)) => CommandHandler::from_stored(settings),
-            Ok(None) | Err(_) => CommandHandler::new(Settings::default()),
-        };
         let console = Console {
             lines: line_consumer,
             telemetry: telemetry_out,
             outbox,
-            handler: memory.handler.insert(handler),
+            handler: create_handler(&mut memory.handler, &storage),
             first_answer: storage.save_result.map(|result| match result {
                 Ok(()) => Ok(Reply::DONE),
                 Err(error) => Err(Error::NotStored(StorageFailureText::new(&error))),

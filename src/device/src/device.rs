@@ -1,6 +1,7 @@
 //! A device with several fingers: one station for each, and commands to one of them or to all.
 
 use core::array;
+use core::borrow::BorrowMut;
 
 use crate::command::{Command, Refused, Reply, WithSourceFinger};
 use crate::drive::BoardOutputs;
@@ -12,10 +13,16 @@ use thermal_settings::{Settings, StoredSettings};
 
 /// The whole device without its hardware: one [`Station`] for each of its `FINGERS` fingers. The stations share no
 /// state, so a fault that one station detects leaves the other fingers running.
+///
+/// `S` is a station or a reference to one that is stored elsewhere ([`DeviceInPlace`]).
 #[derive(Clone, Debug)]
-pub struct Device<const FINGERS: usize> {
-    stations: [Station; FINGERS],
+pub struct Device<const FINGERS: usize, S = Station> {
+    stations: [S; FINGERS],
 }
+
+/// A device whose stations are stored in static memory, as on the board. A station has 5 KB, so five of them together
+/// would need more stack, for the time in which they are created, than everything that runs later.
+pub type DeviceInPlace<const FINGERS: usize> = Device<FINGERS, &'static mut Station>;
 
 impl<const FINGERS: usize> Device<FINGERS> {
     /// A device whose stations are all off and not tripped, with the same settings for every finger.
@@ -29,15 +36,40 @@ impl<const FINGERS: usize> Device<FINGERS> {
     /// the board stored before the last reset, or a fault that the reset itself shows. With `None` they start in off.
     /// Converts the settings from `f64`, so it is for the start only.
     #[must_use]
-    #[inline(never)]
     pub fn new_optionally_tripped(cause: Option<TripCause>, settings: &Settings) -> Self {
-        let mut station = Station::new(settings);
-        if let Some(cause) = cause {
-            station.trip(cause);
-        }
+        let station = Station::new_optionally_tripped(cause, settings);
         Self {
             stations: array::from_fn(|_| station.clone()),
         }
+    }
+}
+
+impl<const FINGERS: usize> DeviceInPlace<FINGERS> {
+    /// A device as [`Device::new_optionally_tripped`] creates it, whose stations are created in `places` one after the
+    /// other.
+    #[must_use]
+    #[inline(never)]
+    pub fn new_in_place(
+        places: &'static mut [Option<Station>; FINGERS],
+        cause: Option<TripCause>,
+        settings: &Settings,
+    ) -> Self {
+        let station = Station::new_optionally_tripped(cause, settings);
+        Self {
+            stations: places
+                .each_mut()
+                .map(|place| place.get_or_insert_with(|| station.clone())),
+        }
+    }
+}
+
+impl<const FINGERS: usize, S: BorrowMut<Station>> Device<FINGERS, S> {
+    fn station(&self, finger: FingerIndex<FINGERS>) -> &Station {
+        self.stations[finger.index()].borrow()
+    }
+
+    fn station_mut(&mut self, finger: FingerIndex<FINGERS>) -> &mut Station {
+        self.stations[finger.index()].borrow_mut()
     }
 
     /// Applies to each finger's station its own thermistor calibration and tile parameters from flash. Converts them
@@ -45,31 +77,29 @@ impl<const FINGERS: usize> Device<FINGERS> {
     #[inline(never)]
     pub fn restore_settings(&mut self, stored: &[StoredSettings; FINGERS]) {
         for (station, stored) in self.stations.iter_mut().zip(stored) {
-            station.apply_settings(&stored.to_settings_with_factory_defaults());
+            station
+                .borrow_mut()
+                .apply_settings(&stored.to_settings_with_factory_defaults());
         }
     }
 
     /// Thermal dose (CEM43, equivalent time at 43 °C) that skin would have received if it had always touched this
     /// finger's display. The board stores the dose after every tick, so that a reset does not erase it.
     #[must_use]
-    pub const fn finger_thermal_dose(&self, finger: FingerIndex<FINGERS>) -> &ThermalDose {
-        self.stations[finger.index()].thermal_dose()
+    pub fn finger_thermal_dose(&self, finger: FingerIndex<FINGERS>) -> &ThermalDose {
+        self.station(finger).thermal_dose()
     }
 
     /// Sets a finger's thermal dose to `dose`, which the board stored before the last reset. To be called once, at the
     /// start.
-    pub const fn restore_finger_thermal_dose(
-        &mut self,
-        finger: FingerIndex<FINGERS>,
-        dose: ThermalDose,
-    ) {
-        self.stations[finger.index()].restore_thermal_dose(dose);
+    pub fn restore_finger_thermal_dose(&mut self, finger: FingerIndex<FINGERS>, dose: ThermalDose) {
+        self.station_mut(finger).restore_thermal_dose(dose);
     }
 
     /// Runs one control tick of a finger's station with the samples of the last millisecond. Returns what the board
     /// must set at the finger's bridge and comparator until the next tick.
     pub fn step_finger(&mut self, finger: FingerIndex<FINGERS>, samples: &Samples) -> BoardOutputs {
-        self.stations[finger.index()].step(samples)
+        self.station_mut(finger).step(samples)
     }
 
     /// Trips the stations of all fingers by a fault that the board has found outside of a control tick, such as an
@@ -78,20 +108,21 @@ impl<const FINGERS: usize> Device<FINGERS> {
     pub fn trip_all(&mut self, fault: Fault) {
         self.stations
             .iter_mut()
-            .for_each(|station| station.trip_or_store_external_fault(fault));
+            .for_each(|station| station.borrow_mut().trip_or_store_external_fault(fault));
     }
 
     /// Whether this finger's station is tripped, so that its bridge stays off until the host sends `clear`.
     #[must_use]
-    pub const fn is_finger_tripped(&self, finger: FingerIndex<FINGERS>) -> bool {
-        self.stations[finger.index()].is_tripped()
+    pub fn is_finger_tripped(&self, finger: FingerIndex<FINGERS>) -> bool {
+        self.station(finger).is_tripped()
     }
 
     /// Cause of the earliest trip among the fingers that are tripped now; `None` if no finger is tripped. The board
     /// stores this cause through a reset.
     #[must_use]
     pub fn earliest_trip_cause(&self) -> Option<&TripCause> {
-        let tripped = self.stations.iter().filter(|station| station.is_tripped());
+        let stations = self.stations.iter().map(S::borrow);
+        let tripped = stations.filter(|station| station.is_tripped());
         tripped
             .min_by_key(|station| station.fault_latch().last_trip_tick_or_zero())?
             .fault_latch()
@@ -103,7 +134,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
     pub fn note_host_activity(&mut self) {
         self.stations
             .iter_mut()
-            .for_each(Station::note_host_activity);
+            .for_each(|station| station.borrow_mut().note_host_activity());
     }
 
     /// Telemetry of a finger's last tick, with the index of the finger (none on a device with one finger). `None` if
@@ -114,7 +145,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
         &self,
         finger: FingerIndex<FINGERS>,
     ) -> Option<WithSourceFinger<Telemetry>> {
-        let content = self.stations[finger.index()].telemetry_if_due()?;
+        let content = self.station(finger).telemetry_if_due()?;
         Some(WithSourceFinger {
             finger: finger.index_unless_single_finger(),
             content,
@@ -131,7 +162,7 @@ impl<const FINGERS: usize> Device<FINGERS> {
         finger: FingerIndex<FINGERS>,
         command: &Command,
     ) -> Result<Reply, Refused> {
-        self.stations[finger.index()].execute(command)
+        self.station_mut(finger).execute(command)
     }
 
     /// [`execute_in_turn`] for a caller that need not give way to a tick between two fingers.

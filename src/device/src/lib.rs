@@ -23,7 +23,7 @@ mod station;
 mod telemetry;
 mod temperature_hold;
 
-pub use device::{Device, execute_in_turn};
+pub use device::{Device, DeviceInPlace, execute_in_turn};
 pub use finger_index::FingerIndex;
 pub use state_name::StateName;
 pub use station::Station;

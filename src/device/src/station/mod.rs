@@ -134,6 +134,15 @@ impl Station {
         }
     }
 
+    /// A station as [`Station::new`] makes it, tripped by `cause` if there is one.
+    pub(crate) fn new_optionally_tripped(cause: Option<TripCause>, settings: &Settings) -> Self {
+        let mut station = Self::new(settings);
+        if let Some(cause) = cause {
+            station.trip(cause);
+        }
+        station
+    }
+
     /// Replaces the thermistor calibration, the gains and the tile's model by those of `settings`, converted from
     /// `f64`; everything else stays as [`Station::new`] has made it. Called at the start, with the finger's stored
     /// settings.
