@@ -1,5 +1,7 @@
 //! The console: answers the host's lines and sends telemetry.
 
+use core::fmt::Display;
+
 use heapless::spsc::Consumer;
 use thermal_display::commissioning::StorageOrder;
 use thermal_display::device::Telemetry;
@@ -50,8 +52,8 @@ impl Console {
             }
             if let Some(first_answer) = self.first_answer.take() {
                 match first_answer {
-                    Ok(reply) => self.outbox.enqueue_or_drop(&reply),
-                    Err(error) => self.outbox.enqueue_or_drop(&error),
+                    Ok(reply) => self.send(&reply),
+                    Err(error) => self.send(&error),
                 }
             } else if let Some(line) = self.lines.dequeue_line_or_queue_full() {
                 let answer = line
@@ -62,18 +64,23 @@ impl Console {
                         content: Reply::Restart(order),
                         ..
                     }) => self.storage_order = Some(order),
-                    Ok(reply) => self.outbox.enqueue_or_drop(&reply),
+                    Ok(reply) => self.send(&reply),
                     Err(error) => {
                         defmt::warn!("line refused: {}", defmt::Display2Format(&error));
-                        self.outbox.enqueue_or_drop(&error);
+                        self.send(&error);
                     }
                 }
             } else if let Some(telemetry) = self.telemetry.dequeue() {
-                self.outbox
-                    .enqueue_or_drop(&wrap_as_telemetry_line(telemetry));
+                self.send(&wrap_as_telemetry_line(telemetry));
             } else {
                 break;
             }
         }
+    }
+
+    fn send(&mut self, content: &dyn Display) {
+        let handler = &self.handler;
+        self.outbox
+            .enqueue_or_drop(|line| handler.write_line(line, content));
     }
 }

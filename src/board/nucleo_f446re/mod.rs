@@ -49,7 +49,7 @@ use thermal_display::device::command::WithSourceFinger;
 use thermal_display::device::safety::{Fault, TripCause};
 use thermal_display::device::{DeviceInPlace, FingerIndex, Station, Telemetry};
 use thermal_display::line_queue::LineQueue;
-use thermal_display::protocol::{CommandHandler, Error, Reply, StorageFailureText};
+use thermal_display::protocol::{CommandHandler, Error, OutgoingLine, Reply, StorageFailureText};
 use thermal_display::settings::Settings;
 
 #[cfg(feature = "five-fingers")]
@@ -82,7 +82,7 @@ const TELEMETRY_QUEUE_CAPACITY: usize = 8 * FINGERS;
 /// the program.
 pub struct StaticMemory {
     scans: [sampler::ScanBlock; sampler::TRIPLE_BUFFER_BLOCK_COUNT],
-    frames: [serial::TxLineBuffer; serial::FRAME_COUNT],
+    frames: [OutgoingLine; serial::FRAME_COUNT],
     frame_queues: serial::FullAndEmptyFrameQueues,
     line_queue: LineQueue,
     telemetry: Queue<WithSourceFinger<Telemetry>, { TELEMETRY_QUEUE_CAPACITY + 1 }>,
@@ -95,7 +95,7 @@ impl StaticMemory {
     pub const fn new() -> Self {
         Self {
             scans: [sampler::EMPTY_BLOCK; sampler::TRIPLE_BUFFER_BLOCK_COUNT],
-            frames: [const { serial::TxLineBuffer::new() }; serial::FRAME_COUNT],
+            frames: [const { OutgoingLine::new() }; serial::FRAME_COUNT],
             frame_queues: serial::FullAndEmptyFrameQueues::new(),
             line_queue: LineQueue::new(),
             telemetry: Queue::new(),

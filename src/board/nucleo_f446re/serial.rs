@@ -3,10 +3,7 @@
 //! Full frames are passed to the transmitter through a queue and empty ones are passed back through
 //! another, so no line is copied and no task waits.
 
-use core::fmt::{self, Write as _};
-
 use embedded_dma::ReadBuffer;
-use heapless::Vec;
 use heapless::spsc::{Consumer, Producer, Queue};
 use stm32f4xx_hal::dma::config::DmaConfig;
 use stm32f4xx_hal::dma::traits::DmaFlagExt;
@@ -17,7 +14,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::serial::{Config, Rx, RxListen, Serial, Tx, config};
 use stm32f4xx_hal::{ClearFlags, ReadFlags, nb};
-use thermal_display::protocol::{ANSWER_MAX_BYTES, LineError, LineReader};
+use thermal_display::protocol::{LineError, LineReader, OutgoingLine};
 
 use thermal_display::line_queue::LineProducer;
 
@@ -29,26 +26,8 @@ const BAUD: u32 = 1_000_000;
 /// has sent last; the other three are free, or wait to be sent.
 pub const FRAME_COUNT: usize = 4;
 
-/// Bytes of the longest line to the host: the address of a finger, the longest answer, and the line
-/// feed.
-const TX_LINE_MAX_BYTES: usize = "@0 ".len() + ANSWER_MAX_BYTES + 1;
-
-/// Memory of one frame: the bytes of one line to the host, with its line feed.
-pub type TxLineBuffer = Vec<u8, TX_LINE_MAX_BYTES>;
-
 /// One line to the host, in memory that the DMA stream can read.
-struct TxFrame(&'static mut TxLineBuffer);
-
-impl TxFrame {
-    /// Replaces the content of the frame by `line` and a line feed.
-    fn overwrite_with_line_and_lf(&mut self, line: &impl fmt::Display) {
-        self.0.clear();
-        // All lines of the protocol fit; a longer one would be truncated.
-        let _ = write!(self.0, "{line}");
-        self.0.truncate(TX_LINE_MAX_BYTES - 1);
-        let _ = self.0.push(b'\n');
-    }
-}
+struct TxFrame(&'static mut OutgoingLine);
 
 // SAFETY: the memory lives as long as the program, and no code writes to a frame that the stream
 // owns.
@@ -95,13 +74,13 @@ impl Outbox {
         self.empty.len() == FRAME_COUNT - 1
     }
 
-    /// Writes `line` into a free frame and queues it to be sent; drops the line if no frame is
-    /// free, so callers check [`has_room`](Self::has_room) first.
-    pub fn enqueue_or_drop(&mut self, line: &impl fmt::Display) {
-        let Some(mut frame) = self.empty.dequeue() else {
+    /// Lets `write` replace the content of a free frame by a line and queues it to be sent; drops
+    /// the line if no frame is free, so callers check [`has_room`](Self::has_room) first.
+    pub fn enqueue_or_drop(&mut self, write: impl FnOnce(&mut OutgoingLine)) {
+        let Some(frame) = self.empty.dequeue() else {
             return;
         };
-        frame.overwrite_with_line_and_lf(line);
+        write(&mut *frame.0);
         let _ = self.full.enqueue(frame);
         // The interrupt otherwise occurs only at the end of a line, so an idle transmitter would
         // not start.
@@ -189,7 +168,7 @@ pub fn set_up(
     usart: USART2,
     (tx, rx): (PA2<Input>, PA3<Input>),
     stream: Stream6<DMA1>,
-    buffers: &'static mut [TxLineBuffer; FRAME_COUNT],
+    buffers: &'static mut [OutgoingLine; FRAME_COUNT],
     queues: &'static mut FullAndEmptyFrameQueues,
     line_queue: LineProducer<'static>,
     rcc: &mut Rcc,

@@ -1,6 +1,6 @@
 //! Execution of the host's lines for all fingers of a device.
 
-use core::array;
+use core::{array, fmt};
 
 use contact_model::fixed_point::Body;
 use contact_model::material::{Material, SKIN};
@@ -12,8 +12,9 @@ use thermal_settings::{Settings, SettingsRecord, StoredSettings, encode_settings
 
 use crate::arguments::{expect_end, read_word};
 use crate::finger_address::split_address;
+use crate::line_checksum::{strip_checksum, write_line};
 use crate::upload::Upload;
-use crate::{Error, Reply, Request, UploadError};
+use crate::{Error, OutgoingLine, Reply, Request, UploadError};
 
 /// A function that executes a command in the station (the control) of the given finger, or in the stations of all
 /// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
@@ -41,6 +42,8 @@ pub struct CommandHandler<const FINGERS: usize> {
     sessions: [CommissioningSession; FINGERS],
     /// The upload that has begun and is not committed yet, with the finger whose address its lines have.
     upload: Option<(Option<FingerIndex<FINGERS>>, Upload)>,
+    /// Whether lines to the host end with a checksum.
+    checksums: bool,
 }
 
 impl<const FINGERS: usize> CommandHandler<FINGERS> {
@@ -50,6 +53,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         Self {
             sessions: array::from_fn(|_| CommissioningSession::new(settings)),
             upload: None,
+            checksums: false,
         }
     }
 
@@ -63,6 +67,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         Self {
             sessions: stored.each_ref().map(session),
             upload: None,
+            checksums: false,
         }
     }
 
@@ -80,6 +85,12 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         }
     }
 
+    /// Replaces `line` by an answer or telemetry, as it is sent to the host. Lines are written in the order in which they are
+    /// sent, so that the answer to `checksum on` is the first one with a checksum.
+    pub fn write_line(&self, line: &mut OutgoingLine, content: &dyn fmt::Display) {
+        write_line(line, content, self.checksums);
+    }
+
     /// Parses a line from the host, executes it, and returns the answer. A line with an address is for one finger. A
     /// line without an address is for all fingers: a query is answered by the first finger that does not refuse it, a
     /// change is made by each finger. For `save` and `forget` the caller must do the rest ([`Reply::Restart`]).
@@ -87,7 +98,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
     /// Time-consuming computations are done here, outside of `execute`, which runs with the control tick locked out.
     ///
     /// # Errors
-    /// No finger executes a line that is not valid, a line whose command requires or forbids an address, or a rejected
+    /// No finger executes a line that is not valid, a line whose checksum is wrong, a line whose command requires or forbids an address, or a rejected
     /// `save` or `forget`. Otherwise the error is that of the first finger that rejects the line, and the other fingers
     /// have executed the line if their state permits it. For `clear` without an address, a finger that is not tripped
     /// gives an error only if no finger is tripped.
@@ -97,6 +108,8 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         mut execute: impl ExecuteOnStations<FINGERS>,
     ) -> Result<WithSourceFinger<Reply>, WithSourceFinger<Error>> {
         const { assert!(FINGERS > 0 && FINGERS <= 10) };
+        let line = strip_checksum(line)
+            .map_err(|error| WithSourceFinger::from_whole_device(Error::Checksum(error)))?;
         let (finger, line) = split_address(line)?;
         let number = finger.map(FingerIndex::index_u8);
         let addressed = |content| WithSourceFinger {
@@ -109,6 +122,13 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
         };
         let request = Request::parse(line, self.sessions[0].settings()).map_err(rejected)?;
         match request {
+            Request::Checksum(_) if finger.is_some() && FINGERS > 1 => {
+                Err(rejected(Error::WholeDevice("checksum")))
+            }
+            Request::Checksum(on) => {
+                self.checksums = on;
+                Ok(addressed(Reply::DONE))
+            }
             Request::Identify => Ok(addressed(Reply::Identity {
                 fingers: FINGERS as u8,
             })),

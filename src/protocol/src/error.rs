@@ -14,10 +14,11 @@ use thermal_device::control::Law;
 use thermal_settings::Range;
 
 use crate::calibrate_settings_set_commands::SET_COMMAND_TARGET_WORDS;
+use crate::line_checksum::TwoHexDigits;
 use crate::object::{BACK_WORDS, OBJECT_ARGUMENTS};
-use crate::request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
+use crate::request::{CHECKSUM_WORDS, CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD};
 use crate::upload::UploadError;
-use crate::{LINE_MAX_BYTES, LineError, Request};
+use crate::{ChecksumError, LINE_MAX_BYTES, LineError, Request};
 
 /// The first 20 bytes of a word from the host; `Display` writes them in single quotes, as part of an error message.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,6 +71,10 @@ impl StorageFailureText {
 pub enum Error {
     /// The bytes that were received from the host form no valid line, for this reason.
     Line(LineError),
+    /// The line is rejected for its checksum, for this reason.
+    Checksum(ChecksumError),
+    /// The argument of `checksum`, quoted here, is neither `on` nor `off`.
+    UnknownChecksumSwitch(QuotedWordExcerpt),
     /// The first word of the line, quoted here, is no command. In this and all other errors of unknown words the quoted
     /// word is empty if it is missing.
     UnknownCommand(QuotedWordExcerpt),
@@ -121,8 +126,8 @@ pub enum Error {
     /// The command named here, `save` or `forget`, was sent while a bridge was on or a self-test ran. It needs all
     /// bridges off, because the device restarts.
     NeedsOff(&'static str),
-    /// The command named here, `save` or `forget`, was sent with the address of one of several fingers, but is for all
-    /// fingers at once.
+    /// The command named here, `save`, `forget` or `checksum`, was sent with the address of one of several fingers, but is
+    /// for all fingers at once.
     WholeDevice(&'static str),
     /// After `save` or `forget`, the settings could not be stored in flash, for this reason; sent after the restart.
     NotStored(StorageFailureText),
@@ -162,6 +167,13 @@ impl fmt::Display for Error {
         f.write_str("err ")?;
         match self {
             Self::Line(error) => write_line_error(f, *error),
+            Self::Checksum(error) => write_checksum_error(f, error),
+            Self::UnknownChecksumSwitch(word) => write_unknown_word(
+                f,
+                "checksum",
+                word,
+                CHECKSUM_WORDS.iter().map(|(name, _)| *name),
+            ),
             Self::UnknownCommand(word) => write_unknown_word(
                 f,
                 "command",
@@ -280,6 +292,19 @@ fn write_line_error(f: &mut fmt::Formatter<'_>, error: LineError) -> fmt::Result
         LineError::NotText(byte) => write!(f, "byte 0x{byte:02x} is not printable ASCII"),
         LineError::Reception => f.write_str("a byte was damaged or lost; send the line again"),
         LineError::QueueFull => f.write_str("busy; wait for the answer before the next line"),
+    }
+}
+
+fn write_checksum_error(f: &mut fmt::Formatter<'_>, error: &ChecksumError) -> fmt::Result {
+    match error {
+        ChecksumError::Wrong(received, actual) => {
+            let (received, actual) = (TwoHexDigits(*received), TwoHexDigits(*actual));
+            write!(
+                f,
+                "checksum {received} is wrong, the line has {actual}; send the line again"
+            )
+        }
+        ChecksumError::Malformed(word) => write!(f, "checksum {word} is not 2 hexadecimal digits"),
     }
 }
 

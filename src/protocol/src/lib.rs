@@ -11,6 +11,7 @@ mod command_handler;
 mod error;
 mod finger_address;
 mod line_buffer;
+mod line_checksum;
 mod line_reader;
 mod object;
 mod reply;
@@ -20,6 +21,7 @@ mod upload;
 
 pub use command_handler::{CommandHandler, ExecuteOnStations, ExecutionResult};
 pub use error::{Error, QuotedWordExcerpt, StorageFailureText};
+pub use line_checksum::{ChecksumError, OutgoingLine, line_checksum, strip_checksum, write_line};
 pub use line_reader::{ANSWER_MAX_BYTES, LINE_MAX_BYTES, Line, LineError, LineReader};
 pub use reply::Reply;
 pub use request::{CONTACT_MODEL_WORDS, CUSTOM_MATERIAL_WORD, Request};

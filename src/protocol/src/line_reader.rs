@@ -2,12 +2,12 @@
 
 use heapless::String;
 
-/// Length of the longest line that is accepted from the host, bytes, without its line ending.
+/// Length of the longest line that is accepted from the host, bytes, with its checksum and without its line ending.
 pub const LINE_MAX_BYTES: usize = 96;
 
-/// Length of the longest line to the host, bytes, without the address of a finger and without its line ending. It is
-/// the answer to an unknown command, which lists all commands.
-pub const ANSWER_MAX_BYTES: usize = 186;
+/// Length of the longest line to the host, bytes, without the address of a finger, its checksum and its line ending. It
+/// is the answer to an unknown command, which lists all commands.
+pub const ANSWER_MAX_BYTES: usize = 195;
 
 /// A complete line from the host, without its line ending: at most 96 characters of printable ASCII.
 pub type Line = String<LINE_MAX_BYTES>;

@@ -13,12 +13,17 @@ use thermal_settings::{Calibration, Tile};
 use crate::line_buffer::LineBuffer;
 use crate::request::CONTACT_MODEL_WORDS;
 
+/// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
+const PROTOCOL_VERSION: u32 = 1;
+/// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
+const CAPABILITIES: &str = "upload,checksum";
+
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Reply {
-    /// Answer to the command `id`: name and version of the firmware, number of fingers, control ticks per second and
-    /// scans of all sensors per second.
+    /// Answer to the command `id`: name and version of the firmware, number of fingers, control ticks per second, scans of
+    /// all sensors per second, version and capabilities of the protocol.
     Identity {
         /// Number of fingers of the device, 1 to 10.
         fingers: u8,
@@ -44,7 +49,8 @@ impl fmt::Display for Reply {
         match self {
             Self::Identity { fingers } => write!(
                 f,
-                "ok thermal-display {} fingers={fingers} tick_hz={TICK_HZ} scan_hz={SCANS_PER_SECOND}",
+                "ok thermal-display {} fingers={fingers} tick_hz={TICK_HZ} scan_hz={SCANS_PER_SECOND} \
+                 protocol={PROTOCOL_VERSION} capabilities={CAPABILITIES}",
                 env!("CARGO_PKG_VERSION"),
             ),
             Self::Station(reply) => write_station_reply(f, reply),

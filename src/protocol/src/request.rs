@@ -30,6 +30,8 @@ use crate::object::parse_object;
 pub enum Request {
     /// The line `id`: report name and version of the firmware, number of fingers, tick rate and scan rate.
     Identify,
+    /// The line `checksum on` or `checksum off`: whether lines end with a checksum.
+    Checksum(bool),
     /// A line that the stations (the control) of the addressed fingers execute as this command, such as `arm` or
     /// `material`.
     Station(Command),
@@ -74,6 +76,7 @@ impl Request {
         "id" => Self::Identify,
         "state" => Self::Station(Command::Status),
         "stream" => Self::Station(parse_stream(words)?),
+        "checksum" => Self::Checksum(parse_checksum_switch(words)?),
         "material" => Self::Station(parse_material_and_compute_contact(words, display)?),
         "object" => parse_object(words)?,
         "finger" => Self::Station(Command::Finger(words.next().map(parse_finger).transpose()?)),
@@ -123,6 +126,8 @@ pub const CONTACT_MODEL_WORDS: [(&str, ContactModel); 2] = [
     ("contact", ContactModel::ContactResistance),
     ("semi-infinite", ContactModel::SemiInfinite),
 ];
+/// Arguments of the command `checksum`.
+pub const CHECKSUM_WORDS: [(&str, bool); 2] = [("on", true), ("off", false)];
 /// Argument of the command `material` in place of a material's name. The properties of the material follow:
 /// conductivity (W/mK), density (kg/m³), specific heat (J/kgK), roughness (µm) and slope of the asperities (rad).
 pub const CUSTOM_MATERIAL_WORD: &str = "custom";
@@ -182,6 +187,13 @@ fn parse_stream(words: &mut Words<'_>) -> Result<Command, Error> {
     Ok(Command::Stream {
         interval_ms: interval_ms.unsigned_abs() as u32,
     })
+}
+
+fn parse_checksum_switch(words: &mut Words<'_>) -> Result<bool, Error> {
+    let name = word_or_empty(words);
+    let (_, on) = table_entry_for_word_or_none(&CHECKSUM_WORDS, name)
+        .ok_or(Error::UnknownChecksumSwitch(name.into()))?;
+    Ok(on)
 }
 
 fn parse_finger(name: &str) -> Result<AssumedFinger, Error> {

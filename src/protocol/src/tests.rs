@@ -1,5 +1,6 @@
 //! Parsing of lines, error messages and the lengths of answers.
 
+mod checksums;
 mod objects;
 
 use proptest::prelude::*;
@@ -98,7 +99,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id state stream material object finger upload mode law arm hold start abort clear cause \
+            "err unknown command 'fly'; known: id state stream checksum material object finger upload mode law arm hold start abort clear cause \
              calibrate tune margins settings set save forget",
         ),
         (

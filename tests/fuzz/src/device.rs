@@ -5,12 +5,16 @@
 //! from the samples by the thermistor class's nominal curve. A wrong constant or conversion of the
 //! firmware therefore cannot confirm itself.
 
+use std::fmt::Display;
+
 use thermal_display::device::command::{self, Command, Status, WithSourceFinger};
 use thermal_display::device::drive::{BoardOutputs, Drive};
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, FingerIndex, StateName};
-use thermal_display::protocol::{CommandHandler, Error, LineReader, wrap_as_telemetry_line};
+use thermal_display::protocol::{
+    CommandHandler, Error, LineReader, OutgoingLine, wrap_as_telemetry_line,
+};
 use thermal_display::settings::Settings;
 
 use crate::tile::{FULL_SCALE, Tile, sum_at};
@@ -147,7 +151,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             let off = outputs.drive == Drive::Off;
             assert!(!off || demand_a == 0.0, "demand {demand_a} A while off");
             check_text(
-                &wrap_as_telemetry_line(telemetry).to_string(),
+                &self.to_host(&wrap_as_telemetry_line(telemetry)),
                 TELEMETRY_MAX,
             );
         }
@@ -160,12 +164,29 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             None => {}
             Some(Err(error)) => {
                 let error = WithSourceFinger::from_whole_device(Error::from(error));
-                check_answer(&error.to_string(), false);
+                check_answer(&self.to_host(&error), false);
             }
             Some(Ok(line)) => {
                 let _ = self.line(&line);
             }
         }
+    }
+
+    /// A line to the host; its checksum is checked and taken away.
+    fn to_host(&self, content: &dyn Display) -> String {
+        let mut line = OutgoingLine::new();
+        self.handler.write_line(&mut line, content);
+        let mut line = String::from_utf8_lossy(&line).into_owned();
+        assert_eq!(line.pop(), Some('\n'));
+        let end = line.len().checked_sub("*00".len());
+        let split = end.and_then(|end| line.split_at_checked(end));
+        let split = split.and_then(|(text, end)| Some((text, end.strip_prefix('*')?)));
+        let Some((text, digits)) = split else {
+            return line;
+        };
+        let checksum = text.bytes().fold(0, |checksum, byte| checksum ^ byte);
+        assert_eq!(digits, format!("{checksum:02X}"), "{line}");
+        text.into()
     }
 
     /// Answers a line, and checks the answer and the changes of state.
@@ -176,8 +197,8 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
             .handler
             .answer(line, |finger, command| device.execute(finger, command));
         let answer = answer
-            .map(|reply| reply.to_string())
-            .map_err(|error| error.to_string());
+            .map(|reply| self.to_host(&reply))
+            .map_err(|error| self.to_host(&error));
         let (Ok(text) | Err(text)) = &answer;
         check_answer(text, answer.is_ok());
         for (finger, before) in before {

@@ -9,6 +9,7 @@
 //! | 0xc0 to 0xcf | all fingers press, in steps of 0.2 N                      |
 //! | 0xd0, 0xd1   | a reception error, a full queue of lines                  |
 //! | 0xd2         | activity of the host                                      |
+//! | 0xd3         | the checksum of the line so far                           |
 //! | others       | sent to the device, as bytes that no line may contain     |
 
 use thermal_display::protocol::{LineError, LineReader};
@@ -39,6 +40,7 @@ pub fn show(input: &[u8]) -> String {
 fn play<const FINGERS: usize>(mut device: CheckedDevice<FINGERS>, bytes: &[u8]) -> bool {
     let mut reader = LineReader::new();
     let mut remaining = TICKS / FINGERS as u32;
+    let mut line = Vec::new();
     for &byte in bytes {
         match byte {
             0x80..=0xbf => {
@@ -50,7 +52,20 @@ fn play<const FINGERS: usize>(mut device: CheckedDevice<FINGERS>, bytes: &[u8]) 
             0xd0 => reader.mark_invalid(LineError::Reception),
             0xd1 => reader.mark_invalid(LineError::QueueFull),
             0xd2 => device.note_host_activity(),
-            byte => device.byte(&mut reader, byte),
+            0xd3 => {
+                let checksum = format!("*{:02X}", line.iter().fold(0, |xor, byte| xor ^ byte));
+                for byte in checksum.bytes() {
+                    device.byte(&mut reader, byte);
+                }
+            }
+            byte => {
+                device.byte(&mut reader, byte);
+                if LineReader::is_line_end(byte) {
+                    line.clear();
+                } else {
+                    line.push(byte);
+                }
+            }
         }
     }
     // Ends the last line.

@@ -12,7 +12,9 @@ use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
 use thermal_device::{Device, FingerIndex};
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::sensors::Channel;
-use thermal_protocol::{CommandHandler, Error, LineReader, Reply, wrap_as_telemetry_line};
+use thermal_protocol::{
+    CommandHandler, Error, LineReader, OutgoingLine, Reply, wrap_as_telemetry_line,
+};
 use thermal_settings::{Settings, StoredSettings, decode_settings_record};
 
 use super::{BAUD, DeviceReset, Engine};
@@ -177,7 +179,9 @@ impl NativeEngine {
     }
 
     fn send_line(&mut self, line: &dyn Display) {
-        self.outgoing.extend(format!("{line}\n").into_bytes());
+        let mut bytes = OutgoingLine::new();
+        self.handler.write_line(&mut bytes, line);
+        self.outgoing.extend_from_slice(&bytes);
     }
 
     /// Writes the settings and restarts; the time that this takes is not modelled.
