@@ -1,23 +1,26 @@
 //! Survey of randomly drawn devices: the tile that each identifies, compared with its plant.
 
 use std::fmt::Write;
+use std::time::Duration;
 
+use anyhow::bail;
 use serde::Serialize;
+use thermal_client::client::{Client, IdentifiedTile, Order, TuneResult};
+use thermal_client::commissioning::arm;
 use thermal_plant::Params;
 use thermal_plant::parameters;
 use thermal_plant::tile::ZERO_C_K;
-use thermal_sim::commissioning::{
-    CommissionError, CommissioningBench, CommissioningSetup, FrequencyResponse, IdentifiedTile,
-    settings_for_device,
-};
+use thermal_sim::commissioning::{CommissioningSetup, FrequencyResponse, settings_for_device};
 use thermal_sim::engine::NativeEngine;
+use thermal_sim::simulated_link::SimulatedLink;
 
 use crate::percentile;
 
 /// Room temperature, deg C.
 const ROOM_C: f64 = 24.0;
-/// Timeout of tuning, ms.
+/// Timeout of tuning and interval of the question for its result, ms.
 const TUNE_MS: u64 = 70_000;
+const QUESTION_MS: u64 = 1000;
 /// Current at which the gains are compared, A, and current above which the actual current is linear in the demand, A.
 const LARGE_A: f64 = 4.5;
 const LINEAR_A: f64 = 1.0;
@@ -25,10 +28,8 @@ const LINEAR_A: f64 = 1.0;
 const CURRENT_DELAY_S: f64 = 1e-3;
 /// Angular frequency at which the dead time of the plate is compared, rad/s.
 const DEAD_TIME_RAD_S: f64 = 20.0;
-/// Time after power-up in which the device finds the zero of its force sensor, ms.
-const ZERO_MS: u64 = 500;
-/// Index of the demanded current among the words of telemetry, from 1.
-const DEMAND: usize = 9;
+/// Time after power-up in which the device finds the zero of its force sensor.
+const ZERO: Duration = Duration::from_millis(500);
 
 /// Names and units of [`IdentificationResult::values`].
 pub const QUANTITIES: [(&str, &str); 10] = [
@@ -62,7 +63,7 @@ pub struct IdentificationResult {
 ///
 /// # Errors
 /// The device cannot be commissioned.
-pub fn survey_device(draw: u64) -> Result<IdentificationResult, CommissionError> {
+pub fn survey_device(draw: u64) -> anyhow::Result<IdentificationResult> {
     let mut params = Params::nominal();
     parameters::draw(&mut params, draw);
     let plants = CommissioningSetup::new(&params, ROOM_C, draw);
@@ -108,10 +109,7 @@ struct Constants {
     leak_1_s: f64,
 }
 
-fn true_constants(
-    params: &Params,
-    plants: &CommissioningSetup,
-) -> Result<Constants, CommissionError> {
+fn true_constants(params: &Params, plants: &CommissioningSetup) -> anyhow::Result<Constants> {
     let tile = &params.tile;
     let cold_k = plants.in_use()?.plant().display_c() + ZERO_C_K;
     let plate_j_k = tile.plate_m2() * tile.ceramic_m * tile.ceramic_j_m3k + tile.tabs_j_k;
@@ -126,47 +124,40 @@ fn true_constants(
 
 /// Tunes a device with settings; returns the tile and the ratio of actual to demanded current at [`LARGE_A`], from a line
 /// fitted above [`LINEAR_A`].
-fn tune(
-    plants: &CommissioningSetup,
-    settings: &[String],
-) -> Result<(IdentifiedTile, f64), CommissionError> {
+fn tune(plants: &CommissioningSetup, settings: &[String]) -> anyhow::Result<(IdentifiedTile, f64)> {
     let mut engine = NativeEngine::new(plants.in_use()?);
-    let mut bench = CommissioningBench::new(&mut engine, plants.params().host, 0);
-    bench.wait(ZERO_MS)?;
+    let mut client = Client::new(SimulatedLink::new(&mut engine));
+    client.wait(ZERO)?;
     for line in settings {
-        bench.command(line)?;
+        client.command(line)?;
     }
-    bench.arm()?;
-    for line in ["tune", "stream 1"] {
-        bench.command(line)?;
-    }
-    let line = "tune result";
+    arm(&mut client, None)?;
+    client.ask(&Order::Tune)?;
+    client.ask(&Order::Stream(1))?;
     let (mut demand_a, mut pairs) = (0.0f64, Vec::new());
     for ms in 1..TUNE_MS {
-        let question = (ms % 1000 == 0).then_some(&b"tune result\n"[..]);
-        for answer in bench.run_1_ms(question)? {
-            if answer.starts_with("ok") {
-                return Ok((
-                    IdentifiedTile::parse(line, &answer)?,
-                    ratio_at_large_current(&pairs),
-                ));
+        // An answer comes in the millisecond in which its line is sent.
+        if ms.is_multiple_of(QUESTION_MS) {
+            match client.ask(&TuneResult) {
+                Ok(tile) => return Ok((tile, ratio_at_large_current(&pairs))),
+                Err(error)
+                    if error
+                        .refusal()
+                        .is_some_and(|why| why.starts_with("tuning goes on")) => {}
+                Err(error) => return Err(error.into()),
             }
-            let current_a = bench.world().plant().current_a();
-            let demand = answer
-                .strip_prefix("T ")
-                .and_then(|rest| rest.split(' ').nth(DEMAND - 1));
-            if let Some(demand) = demand.and_then(|word| word.parse::<f64>().ok()) {
-                if demand_a.abs() > LINEAR_A {
-                    pairs.push((demand_a.abs(), current_a * demand_a.signum()));
-                }
-                demand_a = demand;
-            } else if !answer.starts_with("err tuning goes on") {
-                let line = line.into();
-                return Err(CommissionError::Refused { line, answer });
+        } else {
+            client.wait(Duration::from_millis(1))?;
+        }
+        let current_a = client.link().world().plant().current_a();
+        while let Some(line) = client.next_telemetry(Duration::ZERO)? {
+            if demand_a.abs() > LINEAR_A {
+                pairs.push((demand_a.abs(), current_a * demand_a.signum()));
             }
+            demand_a = line.telemetry.demand_a.unwrap_or_default();
         }
     }
-    Err(CommissionError::Silent(line.into()))
+    bail!("tuning takes longer than {TUNE_MS} ms")
 }
 
 /// Ratio of actual to demanded current at [`LARGE_A`], by a least-squares line through pairs of both, A.

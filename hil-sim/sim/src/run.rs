@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
-use crate::commissioning::{self, CommissionError};
+use thermal_client::commissioning::CommissionError;
+
+use crate::commissioning;
 use crate::engine::{Engine, LineSplitter};
 use crate::host::SET_UP_FROM_MS;
 use crate::processor::{Injection, MachineFault, NotInjected};

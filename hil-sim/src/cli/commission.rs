@@ -94,7 +94,7 @@ fn commission_on<E: Engine>(
 ) -> Result<(), Failure> {
     if let Some(path) = &arguments.restore {
         let settings = lines(path).map_err(Failure::input)?;
-        let tile = restore(plants, engine, &settings).map_err(Failure::run)?;
+        let tile = restore(engine, &settings).map_err(Failure::run)?;
         let text = if arguments.json {
             serde_json::to_string(&tile).map_err(Failure::run)?
         } else {
@@ -137,12 +137,14 @@ fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
 fn print_event(event: &CommissioningEvent) {
     let text = match event {
         CommissioningEvent::StepStarted(what) => format!("{what}\n"),
+        // The next line says it.
+        CommissioningEvent::HoldStarted(_) => return,
         CommissioningEvent::PointAccepted(point) => format!(
             "  {:8} {:7.3} C   point {:2}, fits to {:.2} mK\n",
             point.sensor, point.reference_c, point.points, point.worst_mk
         ),
-        CommissioningEvent::PointRefused { sensor, answer } => {
-            format!("  {sensor:8} not taken: {answer}\n")
+        CommissioningEvent::PointRefused { sensor, why } => {
+            format!("  {sensor:8} not taken: {why}\n")
         }
         CommissioningEvent::TileIdentified(tile) => format!("  {}\n", tile_text(tile)),
     };

@@ -48,6 +48,11 @@ impl CommissioningSetup {
         &self.params
     }
 
+    /// Room of the place of use, deg C.
+    pub(super) const fn room_c(&self) -> f64 {
+        self.room_c
+    }
+
     /// Seed of the reference thermometer's noise.
     pub(super) fn operator_seed(&self) -> u64 {
         stream_seed(self.seed, "reference thermometer")

@@ -14,13 +14,13 @@
 //! So a duty acts 0.27 ms after its tick; an image whose tick takes longer is off by one step, which the comparison
 //! of both engines would show.
 
-mod line_splitter;
 mod native;
 
-pub use line_splitter::LineSplitter;
 pub use native::NativeEngine;
 
 use thermal_plant::bridge::BridgeOutputs;
+
+pub use thermal_client::link::LineSplitter;
 
 use crate::World;
 use crate::processor::{MachineFault, NotInjected, ResetCause};

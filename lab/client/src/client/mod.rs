@@ -24,7 +24,7 @@ use streams::Streams;
 pub use clock::{DeviceClock, TickTime};
 pub use error::ClientError;
 pub use fields::Fields;
-pub use order::{Order, thermistor_word, upload};
+pub use order::{Order, thermistor, thermistor_word, upload};
 pub use query::{
     Calibrate, CountSettings, QueryAssumedFinger, QueryBoard, QueryCause, QueryIdentity, QueryLaw,
     QueryMargins, QueryRaw, QuerySelfTest, QuerySettings, QueryState, TuneResult,
@@ -142,16 +142,38 @@ impl<L: Link> Client<L> {
             Some(finger) => format!("@{finger} {command}"),
             None => command.to_string(),
         };
-        let answer = self.query(&line)?;
-        let (answered, content) = split_finger(&answer);
-        if content.split(' ').next() == Some("err") {
-            return Err(ClientError::Refused { line, answer });
-        }
-        let reply = content.strip_prefix("ok").map(Fields::new);
-        let reply = reply.filter(|_| finger.is_none() || finger == answered);
-        match reply.and_then(|reply| command.read_reply(&reply)) {
+        let (answered, reply) = self.accepted(&line)?;
+        let understood = finger.is_none() || finger == answered;
+        match command
+            .read_reply(&Fields::new(&reply))
+            .filter(|_| understood)
+        {
             Some(reply) => Ok(reply),
-            None => Err(ClientError::NotUnderstood { line, answer }),
+            None => Err(ClientError::NotUnderstood {
+                line,
+                answer: format!("ok {reply}"),
+            }),
+        }
+    }
+
+    /// Sends a line that must be accepted; returns the answer after `ok`.
+    ///
+    /// # Errors
+    /// The device refuses it or does not answer, or the link is gone.
+    pub fn command(&mut self, line: &str) -> Result<String, ClientError> {
+        Ok(self.accepted(line)?.1)
+    }
+
+    /// The finger that has accepted a line, and its answer after `ok`.
+    fn accepted(&mut self, line: &str) -> Result<(Option<u8>, String), ClientError> {
+        let answer = self.query(line)?;
+        let (finger, content) = split_finger(&answer);
+        match content.strip_prefix("ok") {
+            Some(reply) => Ok((finger, reply.trim().into())),
+            None => Err(ClientError::Refused {
+                line: line.into(),
+                answer,
+            }),
         }
     }
 

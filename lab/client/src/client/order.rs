@@ -73,6 +73,22 @@ pub enum Order {
     UploadCommit(u32),
 }
 
+/// The thermistors in the order of their words.
+const THERMISTORS: [ThermistorId; THERMISTOR_WORDS.len()] = [
+    ThermistorId::Display,
+    ThermistorId::Check,
+    ThermistorId::Sink,
+    ThermistorId::Skin,
+    ThermistorId::Room,
+];
+
+/// The thermistor with a word.
+#[must_use]
+pub fn thermistor(word: &str) -> Option<ThermistorId> {
+    let mut all = THERMISTORS.into_iter();
+    all.find(|thermistor| thermistor_word(*thermistor) == word)
+}
+
 /// Word of a thermistor on the line.
 #[must_use]
 pub const fn thermistor_word(thermistor: ThermistorId) -> &'static str {

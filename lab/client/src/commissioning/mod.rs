@@ -4,6 +4,7 @@
 mod procedure;
 mod record;
 mod surroundings;
+mod surroundings_line;
 
 use crate::client::ClientError;
 use crate::link::LinkError;
@@ -11,6 +12,7 @@ use crate::link::LinkError;
 pub use procedure::{arm, commission, restore, settings};
 pub use record::{CalibrationPoint, CommissioningEvent, CommissioningRecord};
 pub use surroundings::{Surroundings, SurroundingsError};
+pub use surroundings_line::SurroundingsRequest;
 
 /// Why a device cannot be commissioned.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -12,7 +12,7 @@ use super::{
 };
 use crate::client::{
     Calibrate, Client, ClientError, CountSettings, IdentifiedTile, Order, QueryMargins,
-    QuerySettings, QueryState, SettingsLine, TuneResult, thermistor_word,
+    QuerySettings, QueryState, TuneResult, thermistor_word,
 };
 use crate::link::Link;
 
@@ -77,16 +77,29 @@ pub fn commission<L: Link>(
 pub fn restore<L: Link>(
     client: &mut Client<L>,
     finger: Option<u8>,
-    lines: &[SettingsLine],
+    lines: &[String],
 ) -> Result<IdentifiedTile, CommissionError> {
     for line in lines {
-        client.ask_finger(finger, &Order::Set(line.clone()))?;
+        match finger {
+            Some(finger) => client.command(&format!("@{finger} {line}"))?,
+            None => client.command(line)?,
+        };
     }
-    let reported = settings(client, finger)?;
-    if let Some(lost) = lines.iter().find(|line| !reported.contains(line)) {
-        return Err(CommissionError::NotRestored(lost.to_string()));
-    }
+    expect_settings(client, finger, lines)?;
     Ok(client.ask_finger(finger, &QueryMargins)?)
+}
+
+/// Checks that a device reports these lines.
+fn expect_settings<L: Link>(
+    client: &mut Client<L>,
+    finger: Option<u8>,
+    lines: &[String],
+) -> Result<(), CommissionError> {
+    let reported = settings(client, finger)?;
+    match lines.iter().find(|line| !reported.contains(line)) {
+        Some(lost) => Err(CommissionError::NotRestored(lost.clone())),
+        None => Ok(()),
+    }
 }
 
 /// All settings of a device or of one of its fingers, as lines.
@@ -96,10 +109,13 @@ pub fn restore<L: Link>(
 pub fn settings<L: Link>(
     client: &mut Client<L>,
     finger: Option<u8>,
-) -> Result<Vec<SettingsLine>, ClientError> {
+) -> Result<Vec<String>, ClientError> {
     let lines = client.ask_finger(finger, &CountSettings)?;
     (1..=lines)
-        .map(|number| client.ask_finger(finger, &QuerySettings(number)))
+        .map(|number| {
+            let line = client.ask_finger(finger, &QuerySettings(number))?;
+            Ok(line.to_string())
+        })
         .collect()
 }
 
@@ -170,14 +186,11 @@ impl<L: Link> Procedure<'_, L> {
         self.start_step("calibrate the sink's thermistor on coolants");
         self.calibrate_in_baths(ThermistorId::Sink, SINK_C)?;
         self.start_step("save what was found");
-        let found = settings(self.client, self.finger)?;
+        let settings = settings(self.client, self.finger)?;
         self.client.ask(&Order::Store(StorageOrder::Save))?;
-        let stored = settings(self.client, self.finger)?;
-        if let Some(lost) = found.iter().find(|line| !stored.contains(line)) {
-            return Err(CommissionError::NotRestored(lost.to_string()));
-        }
+        expect_settings(self.client, self.finger, &settings)?;
         Ok(CommissioningRecord {
-            settings: found.iter().map(ToString::to_string).collect(),
+            settings,
             points: std::mem::take(&mut self.points),
             tile,
         })

@@ -1,20 +1,20 @@
 //! What ends tuning early, and what is refused.
 
+use thermal_client::commissioning::arm;
 use thermal_sim::World;
-use thermal_sim::commissioning::CommissioningBench;
 use thermal_sim::engine::NativeEngine;
 use thermal_sim::scene::FaultKind;
 
-use super::{bench, device};
+use super::{Bench, bench, device, wait};
 
 const STATE_OFF: &str = "state=ready";
 
 /// A device that has just begun to tune in a world.
-fn tuning(world: World, then: impl FnOnce(&mut CommissioningBench<'_, NativeEngine>)) {
+fn tuning(world: World, then: impl FnOnce(&mut Bench<'_>)) {
     let mut engine = NativeEngine::new(world);
     let mut bench = bench(&mut engine, &[]);
-    bench.wait(5).expect("it runs");
-    bench.arm().expect("armed");
+    wait(&mut bench, 5);
+    arm(&mut bench, None).expect("armed");
     bench.command("tune").expect("tuning");
     then(&mut bench);
 }
@@ -23,7 +23,7 @@ fn in_use() -> World {
     device(None, 1).in_use().expect("a plant")
 }
 
-fn ask(bench: &mut CommissioningBench<'_, NativeEngine>, line: &str) -> String {
+fn ask(bench: &mut Bench<'_>, line: &str) -> String {
     bench.query(line).expect("an answer")
 }
 
@@ -32,14 +32,17 @@ fn ask(bench: &mut CommissioningBench<'_, NativeEngine>, line: &str) -> String {
 fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
     for after_ms in (500..9500).step_by(1000) {
         tuning(in_use(), |bench| {
-            bench.wait(after_ms).expect("it runs");
+            wait(bench, after_ms);
             assert_eq!(
                 ask(bench, "tune result"),
                 "err tuning goes on; ask again in a second",
                 "after {after_ms} ms"
             );
-            bench.world().set_force_and_faults(0.5, std::iter::empty());
-            bench.wait(50).expect("it runs");
+            bench
+                .link()
+                .world()
+                .set_force_and_faults(0.5, std::iter::empty());
+            wait(bench, 50);
             assert_eq!(
                 ask(bench, "tune result"),
                 "err tune was ended: a finger touches the display"
@@ -50,8 +53,8 @@ fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
                 "err tune needs a display without a finger on it"
             );
             // Neutral again, under the finger.
-            bench.wait(3000).expect("it runs");
-            let display_c = bench.world().plant().display_c();
+            wait(bench, 3000);
+            let display_c = bench.link().world().plant().display_c();
             assert!((display_c - 33.0).abs() < 0.5, "{display_c}");
         });
     }
@@ -60,19 +63,23 @@ fn finger_that_lands_ends_tuning_at_any_time_and_the_device_stays_armed() {
 #[test]
 fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
     tuning(in_use(), |bench| {
-        bench.wait(4000).expect("it runs");
+        wait(bench, 4000);
         bench
+            .link()
             .world()
             .set_force_and_faults(0.0, std::iter::once(FaultKind::ThermistorOpen.into()));
-        bench.wait(5).expect("it runs");
-        assert_eq!(bench.world().plant().current_a(), 0.0);
+        wait(bench, 5);
+        assert_eq!(bench.link().world().plant().current_a(), 0.0);
         assert_eq!(
             ask(bench, "tune result"),
             "err tripped by display-open; clear it first"
         );
         // Even when the fault is gone, nothing of the experiment is used.
-        bench.world().set_force_and_faults(0.0, std::iter::empty());
-        bench.wait(5).expect("it runs");
+        bench
+            .link()
+            .world()
+            .set_force_and_faults(0.0, std::iter::empty());
+        wait(bench, 5);
         bench.command("clear").expect("cleared");
         assert_eq!(
             ask(bench, "tune result"),
@@ -85,7 +92,7 @@ fn thermistor_that_breaks_while_tuning_trips_and_is_named() {
 fn hot_sink_ends_tuning_before_it_trips() {
     let hot = device(None, 1).sink_on_coolant(41.7).expect("a plant");
     tuning(hot, |bench| {
-        bench.wait(50).expect("it runs");
+        wait(bench, 50);
         assert_eq!(
             ask(bench, "tune result"),
             "err tune was ended: the sink is above 41.5 C"
@@ -103,9 +110,9 @@ fn other_commands_end_tuning() {
         ("set tile 2.9 0.06 0.1 0.1 0.01", "state=armed"),
     ] {
         tuning(in_use(), |bench| {
-            bench.wait(3000).expect("it runs");
+            wait(bench, 3000);
             bench.command(line).expect("obeyed");
-            bench.wait(5).expect("it runs");
+            wait(bench, 5);
             let answer = ask(bench, "tune result");
             assert!(
                 answer.starts_with("err tune was ended")
@@ -113,7 +120,10 @@ fn other_commands_end_tuning() {
                 "{answer}"
             );
             assert!(ask(bench, "state").contains(state));
-            assert_eq!(bench.world().plant().current_a() == 0.0, state == STATE_OFF);
+            assert_eq!(
+                bench.link().world().plant().current_a() == 0.0,
+                state == STATE_OFF
+            );
         });
     }
 }
@@ -124,24 +134,24 @@ fn what_tuning_has_found_can_be_asked_for_again() {
     tuning(in_use(), |bench| {
         let mut first = String::new();
         for _ in 0..70 {
-            bench.wait(1000).expect("it runs");
+            wait(bench, 1000);
             first = ask(bench, "tune result");
             if first.starts_with("ok") {
                 break;
             }
         }
         assert!(first.starts_with("ok gain="), "{first}");
-        let display_c = bench.world().plant().display_c();
+        let display_c = bench.link().world().plant().display_c();
         assert!(
             display_c < 28.0,
             "held at the sink's temperature: {display_c}"
         );
-        bench.wait(3000).expect("it runs");
+        wait(bench, 3000);
         assert_eq!(ask(bench, "tune result"), first);
         assert_eq!(ask(bench, "margins"), first);
-        let display_c = bench.world().plant().display_c();
+        let display_c = bench.link().world().plant().display_c();
         assert!((display_c - 33.0).abs() < 0.5, "{display_c}");
-        bench.arm().expect("armed");
+        arm(bench, None).expect("armed");
         assert!(ask(bench, "tune result").starts_with("err nothing was tuned"));
     });
 }
@@ -150,7 +160,7 @@ fn what_tuning_has_found_can_be_asked_for_again() {
 fn what_does_not_fit_the_state_is_refused() {
     let mut engine = NativeEngine::new(in_use());
     let mut bench = bench(&mut engine, &[]);
-    bench.wait(5).expect("it runs");
+    wait(&mut bench, 5);
     for (line, answer) in [
         ("tune", "err tune needs the state armed"),
         ("hold 30", "err hold needs the state armed"),
@@ -162,9 +172,9 @@ fn what_does_not_fit_the_state_is_refused() {
     ] {
         assert_eq!(ask(&mut bench, line), answer, "{line}");
     }
-    bench.wait(600).expect("it runs");
-    bench.arm().expect("armed");
-    bench.wait(600).expect("it runs");
+    wait(&mut bench, 600);
+    arm(&mut bench, None).expect("armed");
+    wait(&mut bench, 600);
     assert_eq!(
         ask(&mut bench, "calibrate display 33"),
         "err the reading moves; wait until it is steady to 3 mK in a quarter of a second"
@@ -181,16 +191,16 @@ fn what_does_not_fit_the_state_is_refused() {
 #[test]
 fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
     tuning(in_use(), |bench| {
-        bench.wait(40_000).expect("it runs");
+        wait(bench, 40_000);
         for line in ["material copper", "object 24", "start"] {
             bench.command(line).expect("obeyed");
         }
-        bench.wait(3000).expect("it runs");
+        wait(bench, 3000);
         let reply = ask(bench, "state");
         let mut words = reply.split(' ');
         let setpoint = words.find_map(|word| word.strip_prefix("setpoint_c="));
         let setpoint_c: f64 = setpoint.expect("a set-point").parse().expect("degrees");
-        let display_c = bench.world().plant().display_c();
+        let display_c = bench.link().world().plant().display_c();
         assert!(
             setpoint_c < 26.0 && (display_c - setpoint_c).abs() < 0.3,
             "{reply}: {display_c}"
@@ -203,7 +213,7 @@ fn object_that_is_presented_after_tuning_is_what_the_display_shows() {
 fn corrections_cannot_hide_a_hot_display() {
     let mut engine = NativeEngine::new(in_use());
     let mut bench = bench(&mut engine, &[]);
-    bench.wait(5).expect("it runs");
+    wait(&mut bench, 5);
     for sensor in ["display", "check"] {
         let worst = format!("set correction {sensor} -1.2 -0.05 -0.002");
         bench.command(&worst).expect("within limits");
@@ -211,10 +221,10 @@ fn corrections_cannot_hide_a_hot_display() {
             ask(&mut bench, &format!("set correction {sensor} -1.3 0 0")).starts_with("err offset")
         );
     }
-    bench.arm().expect("armed");
+    arm(&mut bench, None).expect("armed");
     bench.command("hold 42").expect("held");
-    bench.wait(30_000).expect("it runs");
+    wait(&mut bench, 30_000);
     assert!(ask(&mut bench, "state").starts_with("ok state=armed"));
-    let display_c = bench.world().plant().display_c();
+    let display_c = bench.link().world().plant().display_c();
     assert!((43.0..45.0).contains(&display_c), "{display_c}");
 }

@@ -4,13 +4,8 @@ use documented_figures::assert_figure;
 use thermal_sim::commissioning::{CommissioningSetup, settings_for_device};
 use thermal_sim::engine::NativeEngine;
 
-use super::{PERFECT, ROOM_C, bench, device, mean};
+use super::{PERFECT, ROOM_C, bench, device, mean, wait};
 
-/// Words of a telemetry line.
-const DISPLAY: usize = 4;
-const SINK: usize = 5;
-const SKIN: usize = 6;
-const ROOM: usize = 7;
 /// Time over which a reading is averaged, and before it, ms: its noise is then 0.3 mK.
 const MEAN_MS: u64 = 250;
 const REST_MS: u64 = 20;
@@ -47,24 +42,32 @@ fn sweep(plants: &CommissioningSetup, seed: u64, settings: &[String]) -> [Vec<f6
     let mut all: [Vec<f64>; 4] = Default::default();
     for t_c in range(15.0, 42.0) {
         // The display rests at the temperature of the sink, in the room that it was calibrated in.
-        bench.move_to(plants.sink_on_coolant(t_c).expect("a plant"));
-        bench.wait(REST_MS).expect("it runs");
-        let (read, truth) = mean(&mut bench, DISPLAY, MEAN_MS, |world| {
-            world.plant().display_c()
-        });
+        *bench.link().world() = plants.sink_on_coolant(t_c).expect("a plant");
+        wait(&mut bench, REST_MS);
+        let (read, truth) = mean(
+            &mut bench,
+            |line| line.display_c,
+            MEAN_MS,
+            |world| world.plant().display_c(),
+        );
         all[0].push(read - truth);
-        let (read, truth) = mean(&mut bench, SINK, MEAN_MS, |world| world.plant().sink_c());
+        let (read, truth) = mean(
+            &mut bench,
+            |line| line.sink_c,
+            MEAN_MS,
+            |world| world.plant().sink_c(),
+        );
         all[3].push(read - truth);
     }
     for t_c in range(27.0, 37.0) {
-        bench.move_to(plants.skin_in_bath(t_c).expect("a plant"));
-        bench.wait(REST_MS).expect("it runs");
-        all[1].push(mean(&mut bench, SKIN, MEAN_MS, |_| 0.0).0 - t_c);
+        *bench.link().world() = plants.skin_in_bath(t_c).expect("a plant");
+        wait(&mut bench, REST_MS);
+        all[1].push(mean(&mut bench, |line| line.skin_c, MEAN_MS, |_| 0.0).0 - t_c);
     }
     for t_c in range(18.0, 30.0) {
-        bench.move_to(plants.room_in_bath(t_c).expect("a plant"));
-        bench.wait(REST_MS).expect("it runs");
-        all[2].push(mean(&mut bench, ROOM, MEAN_MS, |_| 0.0).0 - t_c);
+        *bench.link().world() = plants.room_in_bath(t_c).expect("a plant");
+        wait(&mut bench, REST_MS);
+        all[2].push(mean(&mut bench, |line| line.room_c, MEAN_MS, |_| 0.0).0 - t_c);
     }
     all
 }

@@ -1,9 +1,11 @@
 //! The margins that a device reports, against what its loop does when its gain is raised.
 
-use thermal_sim::commissioning::{IdentifiedTile, settings_for_device};
+use thermal_client::client::{IdentifiedTile, QueryMargins};
+use thermal_client::commissioning::arm;
+use thermal_sim::commissioning::settings_for_device;
 use thermal_sim::engine::NativeEngine;
 
-use super::{ROOM_C, bench, device};
+use super::{ROOM_C, bench, device, wait};
 
 /// Of its gain margin: so much more gain must oscillate, so much of it must not.
 const BEYOND: f64 = 1.3;
@@ -21,7 +23,7 @@ fn moves(
 ) -> f64 {
     let mut engine = NativeEngine::new(plants.in_use().expect("a plant"));
     let mut bench = bench(&mut engine, settings);
-    bench.wait(10).expect("it runs");
+    wait(&mut bench, 10);
     let words: Vec<&str> = settings.last().expect("a tile").split(' ').collect();
     let [set, tile, gain, rest @ ..] = &words[..] else {
         panic!("{words:?}")
@@ -30,22 +32,22 @@ fn moves(
     // The law's gain is the reciprocal of the tile's.
     let line = format!("{set} {tile} {:.6} {}", gain / times, rest.join(" "));
     bench.command("law pi").expect("obeyed");
-    bench.arm().expect("armed");
+    arm(&mut bench, None).expect("armed");
     bench.command("hold 26").expect("obeyed");
-    bench.wait(14_000).expect("it runs");
+    wait(&mut bench, 14_000);
     bench.command(&line).expect("obeyed");
-    bench.wait(3000).expect("it runs");
+    wait(&mut bench, 3000);
     // So wild an oscillation that both thermistors part is one.
     let answer = bench.query("hold 26.2").expect("an answer");
     if answer.starts_with("err tripped by displays-apart") {
         return f64::INFINITY;
     }
     assert_eq!(answer, "ok");
-    bench.wait(6000).expect("it runs");
+    wait(&mut bench, 6000);
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for _ in 0..1000 {
-        bench.wait(1).expect("it runs");
-        let display_c = bench.world().plant().display_c();
+        wait(&mut bench, 1);
+        let display_c = bench.link().world().plant().display_c();
         (low, high) = (low.min(display_c), high.max(display_c));
     }
     high - low
@@ -58,12 +60,9 @@ fn the_loop_oscillates_beyond_its_gain_margin_and_not_within() {
         let plants = device((draw > 0).then_some(draw), draw);
         let settings = settings_for_device(plants.params(), ROOM_C, draw).expect("settings");
         let mut engine = NativeEngine::new(plants.in_use().expect("a plant"));
-        let line = "margins";
-        let answer = bench(&mut engine, &settings)
-            .query(line)
-            .expect("an answer");
-        let IdentifiedTile { gain_margin, .. } =
-            IdentifiedTile::parse(line, &answer).expect("margins");
+        let IdentifiedTile { gain_margin, .. } = bench(&mut engine, &settings)
+            .ask(&QueryMargins)
+            .expect("margins");
         let within = moves(&plants, &settings, WITHIN * gain_margin);
         let beyond = moves(&plants, &settings, BEYOND * gain_margin);
         println!(

@@ -6,10 +6,17 @@ mod margins;
 mod restore;
 mod tile;
 
+use std::time::Duration;
+
+use thermal_client::client::{Client, Order, Telemetry};
 use thermal_plant::{HostParams, Params, parameters};
 use thermal_sim::World;
-use thermal_sim::commissioning::{CommissioningBench, CommissioningSetup};
+use thermal_sim::commissioning::CommissioningSetup;
 use thermal_sim::engine::NativeEngine;
+use thermal_sim::simulated_link::SimulatedLink;
+
+/// A client of a simulated device.
+type Bench<'a> = Client<SimulatedLink<'a, NativeEngine>>;
 
 /// Room in which the devices are used, deg C.
 const ROOM_C: f64 = 24.0;
@@ -30,36 +37,37 @@ fn device(draw: Option<u64>, seed: u64) -> CommissioningSetup {
     CommissioningSetup::new(&params, ROOM_C, seed)
 }
 
-/// A bench with a device on it that has these settings.
-fn bench<'a>(
-    engine: &'a mut NativeEngine,
-    settings: &[String],
-) -> CommissioningBench<'a, NativeEngine> {
-    let mut bench = CommissioningBench::new(engine, PERFECT, 1);
+/// A client of a device that has these settings.
+fn bench<'a>(engine: &'a mut NativeEngine, settings: &[String]) -> Bench<'a> {
+    let mut bench = Client::new(SimulatedLink::new(engine));
     for line in settings {
         bench.command(line).expect("its own settings");
     }
     bench
 }
 
+/// Runs the device for some milliseconds.
+fn wait(bench: &mut Bench<'_>, ms: u64) {
+    bench.wait(Duration::from_millis(ms)).expect("it runs");
+}
+
 /// Mean of a field of telemetry over so many milliseconds, and of a truth.
 fn mean(
-    bench: &mut CommissioningBench<'_, NativeEngine>,
-    field: usize,
+    bench: &mut Bench<'_>,
+    field: impl Fn(&Telemetry) -> Option<f64>,
     ms: u64,
     truth: impl Fn(&World) -> f64,
 ) -> (f64, f64) {
-    bench.command("stream 1").expect("telemetry");
+    bench.ask(&Order::Stream(1)).expect("telemetry");
     let (mut read, mut true_c) = (Vec::new(), 0.0);
     for _ in 0..ms {
-        let lines = bench.run_1_ms(None).expect("the device runs");
-        true_c += truth(bench.world());
-        read.extend(lines.iter().filter_map(|line| {
-            let word = line.strip_prefix("T ")?.split(' ').nth(field - 1)?;
-            word.parse::<f64>().ok()
-        }));
+        wait(bench, 1);
+        true_c += truth(bench.link().world());
+        while let Some(line) = bench.next_telemetry(Duration::ZERO).expect("it runs") {
+            read.extend(field(&line.telemetry));
+        }
     }
-    bench.command("stream 0").expect("no telemetry");
+    bench.ask(&Order::Stream(0)).expect("no telemetry");
     assert!(read.len() as u64 > ms / 2, "telemetry of every tick");
     (
         read.iter().sum::<f64>() / read.len() as f64,

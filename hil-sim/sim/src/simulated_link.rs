@@ -1,0 +1,82 @@
+//! The line to a simulated device, in virtual time.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use thermal_client::link::{LineSplitter, Link, LinkError, ReceivedLine};
+
+use crate::World;
+use crate::engine::Engine;
+use crate::host::sending_half;
+
+/// Runs a device for a millisecond, in which `bytes` are sent to it.
+///
+/// # Errors
+/// The engine stopped.
+pub fn run_1_ms<E: Engine>(engine: &mut E, bytes: &[u8]) -> Result<(), E::Stop> {
+    let legs = engine.legs();
+    for half in 0..2 {
+        if !bytes.is_empty() && sending_half(bytes) == half {
+            engine.send(bytes);
+        }
+        if half == 0 {
+            engine.world().step(legs);
+        }
+        engine.run_half_ms()?;
+    }
+    Ok(())
+}
+
+/// A line to the device of an engine. Time passes only while its owner waits for lines.
+#[derive(Debug)]
+pub struct SimulatedLink<'a, E> {
+    engine: &'a mut E,
+    to_send: Vec<u8>,
+    splitter: LineSplitter,
+    received: VecDeque<ReceivedLine>,
+    ms: u64,
+}
+
+impl<'a, E: Engine> SimulatedLink<'a, E> {
+    /// A line to a device.
+    pub fn new(engine: &'a mut E) -> Self {
+        Self {
+            engine,
+            to_send: Vec::new(),
+            splitter: LineSplitter::default(),
+            received: VecDeque::new(),
+            ms: 0,
+        }
+    }
+
+    /// The world around the device.
+    pub fn world(&mut self) -> &mut World {
+        self.engine.world()
+    }
+}
+
+impl<E: Engine> Link for SimulatedLink<'_, E> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        self.to_send.extend(bytes);
+        Ok(())
+    }
+
+    fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
+        let end = self.now() + timeout;
+        while self.received.is_empty() && self.now() < end {
+            let bytes = std::mem::take(&mut self.to_send);
+            run_1_ms(self.engine, &bytes).map_err(|stop| LinkError::Gone(stop.to_string()))?;
+            self.ms += 1;
+            self.engine.receive(self.splitter.received());
+            let at = self.now();
+            let lines = self.splitter.complete().into_iter();
+            self.received
+                .extend(lines.map(|text| ReceivedLine { text, at }));
+        }
+        Ok(self.received.pop_front())
+    }
+
+    fn now(&self) -> Duration {
+        Duration::from_millis(self.ms)
+    }
+}
