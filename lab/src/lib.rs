@@ -1,4 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![forbid(unsafe_code)]
 
-pub use thermal_client::{client, commissioning, link};
+pub mod link;
+pub mod person;
+
+pub use thermal_client::{client, commissioning};

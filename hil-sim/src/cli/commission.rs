@@ -9,8 +9,7 @@ use serde_json::json;
 use thermal_campaigns::{parallel_map, survey_device, survey_table};
 use thermal_plant::{Params, parameters};
 use thermal_sim::commissioning::{
-    CommissioningEvent, CommissioningRecord, CommissioningSetup, IdentifiedTile, commission,
-    restore,
+    CommissioningEvent, CommissioningRecord, CommissioningSetup, commission, restore,
 };
 use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::scene::Scene;
@@ -98,7 +97,7 @@ fn commission_on<E: Engine>(
         let text = if arguments.json {
             serde_json::to_string(&tile).map_err(Failure::run)?
         } else {
-            format!("{} lines taken; {}", settings.len(), tile_text(&tile))
+            format!("{} lines taken; {tile}", settings.len())
         };
         return print(&text);
     }
@@ -133,36 +132,9 @@ fn lines(path: &Path) -> anyhow::Result<Vec<String>> {
     Ok(lines)
 }
 
-/// Prints an event on standard error.
+/// Prints an event on standard error, which may be closed.
 fn print_event(event: &CommissioningEvent) {
-    let text = match event {
-        CommissioningEvent::StepStarted(what) => format!("{what}\n"),
-        // The next line says it.
-        CommissioningEvent::HoldStarted(_) => return,
-        CommissioningEvent::PointAccepted(point) => format!(
-            "  {:8} {:7.3} C   point {:2}, fits to {:.2} mK\n",
-            point.sensor, point.reference_c, point.points, point.worst_mk
-        ),
-        CommissioningEvent::PointRefused { sensor, why } => {
-            format!("  {sensor:8} not taken: {why}\n")
-        }
-        CommissioningEvent::TileIdentified(tile) => format!("  {}\n", tile_text(tile)),
-    };
-    // Standard error may be closed.
-    let _ignored = stderr().write_all(text.as_bytes());
-}
-
-fn tile_text(tile: &IdentifiedTile) -> String {
-    format!(
-        "gain {:.3} K/s/A, Joule {:.4} 1/A, leak {:.3} 1/s, lag {:.1} ms, dead time {:.1} ms; margins {:.1} deg, {:.2} times",
-        tile.gain_k_s_a,
-        tile.joule_per_a,
-        tile.leak_1_s,
-        1e3 * tile.lag_s,
-        1e3 * tile.dead_s,
-        tile.phase_deg,
-        tile.gain_margin
-    )
+    let _ignored = writeln!(stderr(), "{event}");
 }
 
 fn survey_devices(devices: u64, json: bool) -> Result<(), Failure> {

@@ -1,9 +1,14 @@
 //! The line to a device: bytes to it, lines from it, and a clock.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Longest line from a device that is kept whole, bytes; what is longer is delivered in parts.
 const LINE_MAX_BYTES: usize = 1024;
+
+/// Time within which an interruption ends a wait.
+const INTERRUPTED_WITHIN: Duration = Duration::from_millis(50);
 
 /// A line to a device. Its clock is its own, so that a simulated device runs in virtual time and a real one in real time.
 pub trait Link {
@@ -41,6 +46,44 @@ pub enum LinkError {
     /// The person or program at this end has ended the wait. The link still works.
     #[error("interrupted")]
     Interrupted,
+}
+
+/// A link whose waits a person can end, as by Ctrl-C. It works on afterwards, so that the bridge can be switched off.
+#[derive(Debug)]
+pub struct Interruptible<L> {
+    link: L,
+    requested: Arc<AtomicBool>,
+}
+
+impl<L> Interruptible<L> {
+    /// A link whose present or next wait ends with [`LinkError::Interrupted`] whenever `requested` is set.
+    pub const fn new(link: L, requested: Arc<AtomicBool>) -> Self {
+        Self { link, requested }
+    }
+}
+
+impl<L: Link> Link for Interruptible<L> {
+    fn send(&mut self, bytes: &[u8]) -> Result<(), LinkError> {
+        self.link.send(bytes)
+    }
+
+    fn receive(&mut self, timeout: Duration) -> Result<Option<ReceivedLine>, LinkError> {
+        let end = self.link.now() + timeout;
+        loop {
+            if self.requested.swap(false, Ordering::Relaxed) {
+                return Err(LinkError::Interrupted);
+            }
+            let rest = end.saturating_sub(self.link.now());
+            let received = self.link.receive(rest.min(INTERRUPTED_WITHIN))?;
+            if received.is_some() || self.link.now() >= end {
+                return Ok(received);
+            }
+        }
+    }
+
+    fn now(&self) -> Duration {
+        self.link.now()
+    }
 }
 
 impl<L: Link + ?Sized> Link for Box<L> {

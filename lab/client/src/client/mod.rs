@@ -16,7 +16,7 @@ use std::collections::VecDeque;
 use std::fmt;
 use std::time::Duration;
 
-use thermal_protocol::LINE_MAX_BYTES;
+use thermal_protocol::{LINE_MAX_BYTES, line_checksum, strip_checksum};
 
 use crate::link::{Link, LinkError, ReceivedLine};
 use streams::Streams;
@@ -39,6 +39,8 @@ pub use telemetry::{ReceivedTelemetry, Telemetry};
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(2);
 /// Longest silence of the client while the device streams, half of what trips the device.
 const SILENCE_MAX: Duration = Duration::from_secs(1);
+/// Bytes that a checksum adds to a line.
+const CHECKSUM_BYTES: usize = "*00".len();
 /// Telemetry lines that are kept until they are fetched; then the oldest is dropped.
 const TELEMETRY_KEPT_MAX: usize = 100_000;
 
@@ -72,6 +74,8 @@ pub struct Client<L> {
     clock: DeviceClock,
     counts: LineCounts,
     last_sent: Duration,
+    /// Whether checksums are on: both sides end their lines with one.
+    checksums: bool,
     /// Whether an answer may still come that nobody waits for.
     out_of_step: bool,
     synchronizations: u32,
@@ -87,6 +91,7 @@ impl<L: Link> Client<L> {
             streams: Streams::default(),
             clock: DeviceClock::default(),
             counts: LineCounts::default(),
+            checksums: false,
             out_of_step: false,
             synchronizations: 0,
         }
@@ -183,15 +188,25 @@ impl<L: Link> Client<L> {
     /// The line cannot be sent, the device does not answer, or the link is gone.
     pub fn query(&mut self, line: &str) -> Result<String, ClientError> {
         let sendable = |byte: u8| matches!(byte, b' '..=b'~');
-        if line.trim().is_empty() || line.len() > LINE_MAX_BYTES || !line.bytes().all(sendable) {
+        let max = LINE_MAX_BYTES - if self.checksums { CHECKSUM_BYTES } else { 0 };
+        if line.trim().is_empty() || line.len() > max || !line.bytes().all(sendable) {
             return Err(ClientError::Unsendable { line: line.into() });
         }
         if self.out_of_step {
             self.synchronize()?;
         }
         self.transmit(line)?;
+        let before = self.checksums;
+        if ["checksum off", "save", "forget"].contains(&line) {
+            // The answer has no checksum, unless the line is refused.
+            self.checksums = false;
+        }
         let answer = self.answer(line)?;
-        self.note_answer(line, &answer);
+        if is_ok(&answer) {
+            self.note_accepted(line);
+        } else {
+            self.checksums = before;
+        }
         Ok(answer)
     }
 
@@ -238,7 +253,12 @@ impl<L: Link> Client<L> {
     }
 
     fn transmit(&mut self, line: &str) -> Result<(), LinkError> {
-        self.link.send(format!("{line}\n").as_bytes())?;
+        let line = if self.checksums && !line.is_empty() {
+            format!("{line}*{:02X}\n", line_checksum(line.as_bytes()))
+        } else {
+            format!("{line}\n")
+        };
+        self.link.send(line.as_bytes())?;
         self.last_sent = self.link.now();
         Ok(())
     }
@@ -296,7 +316,16 @@ impl<L: Link> Client<L> {
     }
 
     /// Keeps telemetry; returns everything else but blank lines.
-    fn sort_line(&mut self, line: ReceivedLine) -> Option<Sorted> {
+    fn sort_line(&mut self, mut line: ReceivedLine) -> Option<Sorted> {
+        match strip_checksum(&line.text) {
+            Ok(content) if content.len() < line.text.len() => line.text.truncate(content.len()),
+            _ if self.checksums && !line.text.is_empty() => {
+                self.counts.damaged += 1;
+                return Some(Sorted::Damaged(line.text));
+            }
+            // A star that is no checksum's may be in a word that an error repeats.
+            _ => {}
+        }
         let (finger, content) = split_finger(&line.text);
         if content.is_empty() {
             return None;
@@ -324,11 +353,8 @@ impl<L: Link> Client<L> {
         None
     }
 
-    /// Takes note of what a line has changed that the client must know.
-    fn note_answer(&mut self, line: &str, answer: &str) {
-        if !split_finger(answer).1.starts_with("ok") {
-            return;
-        }
+    /// Takes note of what an accepted line has changed that the client must know.
+    fn note_accepted(&mut self, line: &str) {
         let (finger, line) = split_finger(line);
         let mut words = line.split_ascii_whitespace();
         match (words.next(), words.next()) {
@@ -336,6 +362,7 @@ impl<L: Link> Client<L> {
                 let interval_ms = interval.parse().map_or(0.0, f64::ceil);
                 self.streams.set(finger, interval_ms as u32);
             }
+            (Some("checksum"), Some(switch)) => self.checksums = switch == "on",
             (Some("save" | "forget"), None) => {
                 self.streams = Streams::default();
                 self.clock.restart();
@@ -349,6 +376,11 @@ impl<L: Link> Client<L> {
 enum Sorted {
     Answer(String),
     Damaged(String),
+}
+
+/// Whether an answer is that of an accepted line.
+fn is_ok(answer: &str) -> bool {
+    split_finger(answer).1.split(' ').next() == Some("ok")
 }
 
 fn is_answer(content: &str) -> bool {

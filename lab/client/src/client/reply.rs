@@ -166,6 +166,22 @@ pub struct IdentifiedTile {
     pub gain_margin: f64,
 }
 
+impl fmt::Display for IdentifiedTile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "gain {:.3} K/s/A, Joule {:.4} 1/A, leak {:.3} 1/s, lag {:.1} ms, dead time {:.1} ms; margins {:.1} deg, {:.2} times",
+            self.gain_k_s_a,
+            self.joule_per_a,
+            self.leak_1_s,
+            1e3 * self.lag_s,
+            1e3 * self.dead_s,
+            self.phase_deg,
+            self.gain_margin
+        )
+    }
+}
+
 impl IdentifiedTile {
     pub(super) fn read(reply: &Fields<'_>) -> Option<Self> {
         Some(Self {

@@ -1,4 +1,6 @@
-//! The record of a commissioning.
+//! The record of a commissioning, and what happens in it.
+
+use std::fmt;
 
 use serde::Serialize;
 
@@ -46,4 +48,20 @@ pub enum CommissioningEvent {
     },
     /// The device identified its tile.
     TileIdentified(IdentifiedTile),
+}
+
+impl fmt::Display for CommissioningEvent {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::StepStarted(what) => f.write_str(what),
+            Self::HoldStarted(hold_c) => write!(f, "  the display goes to {hold_c:.2} C"),
+            Self::PointAccepted(point) => write!(
+                f,
+                "  {:8} {:7.3} C   point {:2}, fits to {:.2} mK",
+                point.sensor, point.reference_c, point.points, point.worst_mk
+            ),
+            Self::PointRefused { sensor, why } => write!(f, "  {sensor:8} not taken: {why}"),
+            Self::TileIdentified(tile) => write!(f, "  {tile}"),
+        }
+    }
 }

@@ -1,0 +1,109 @@
+//! The device that a command is for.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, anyhow};
+use clap::Args;
+use thermal_client::client::{Client, Order};
+use thermal_client::link::{Interruptible, Link};
+use thermal_lab::link::{self, SimulatedLink};
+use thermal_plant::Params;
+use thermal_sim::commissioning::CommissioningSetup;
+use thermal_sim::engine::NativeEngine;
+use thermal_sim::scene::Scene;
+
+use super::Failure;
+
+/// Room of the simulated device, C, and the seed of its noise, unless a scene says them.
+const ROOM_C: f64 = 24.0;
+const SEED: u64 = 0;
+
+/// The device: exactly one of the three, for all commands but `ports`.
+#[derive(Args)]
+pub struct Target {
+    /// Serial port of the device; `thermal-lab ports` lists them
+    #[arg(long, value_name = "NAME", global = true, conflicts_with_all = ["tcp", "simulated"])]
+    pub port: Option<PathBuf>,
+    /// Address of a device that is reached by TCP, as `127.0.0.1:4000`
+    #[arg(long, value_name = "ADDR", global = true, conflicts_with = "simulated")]
+    pub tcp: Option<String>,
+    /// A device that is simulated in this program, in virtual time
+    #[arg(long, global = true)]
+    pub simulated: bool,
+    /// Scene whose device is simulated, instead of the nominal one
+    #[arg(long, value_name = "FILE", global = true, requires = "simulated")]
+    pub scene: Option<PathBuf>,
+}
+
+/// A client of whatever device the user chose; Ctrl-C interrupts its waits.
+pub type AnyClient<'a> = Client<Interruptible<Box<dyn Link + 'a>>>;
+
+impl Target {
+    /// Does something with a client of the device. Ctrl-C interrupts it, and the bridge is switched off then.
+    pub fn with_client<T>(
+        &self,
+        work: impl FnOnce(&mut AnyClient<'_>) -> Result<T, Failure>,
+    ) -> Result<T, Failure> {
+        let (requested, interrupted) = interruptions()?;
+        let mut engine;
+        let link: Box<dyn Link + '_> = match (&self.port, &self.tcp, self.simulated) {
+            (Some(port), _, _) => {
+                let link = link::serial(port);
+                let hint = || format!("--port {}: `thermal-lab ports` lists them", port.display());
+                Box::new(link.with_context(hint).map_err(Failure::input)?)
+            }
+            (_, Some(address), _) => {
+                let link = link::tcp(address.as_str());
+                let what = || format!("--tcp {address}");
+                Box::new(link.with_context(what).map_err(Failure::input)?)
+            }
+            (_, _, true) => {
+                let world = self.simulated_setup()?.in_use().map_err(Failure::input)?;
+                engine = NativeEngine::new(world);
+                Box::new(SimulatedLink::new(&mut engine))
+            }
+            _ => {
+                return Err(Failure::input(anyhow!(
+                    "which device? --port NAME (`thermal-lab ports` lists them), --tcp ADDR or --simulated"
+                )));
+            }
+        };
+        let link = Interruptible::new(link, requested);
+        let mut client = Client::attach(link).map_err(Failure::run)?;
+        let done = work(&mut client);
+        if interrupted.load(Ordering::Relaxed) {
+            // Whatever failed is reported; a link that is gone fails here, too.
+            let _ignored = client.ask(&Order::Abort);
+        }
+        done
+    }
+
+    /// Device and surroundings of `--simulated`.
+    pub fn simulated_setup(&self) -> Result<CommissioningSetup, Failure> {
+        let Some(path) = &self.scene else {
+            return Ok(CommissioningSetup::new(&Params::nominal(), ROOM_C, SEED));
+        };
+        let scene = Scene::read(path).map_err(Failure::input)?;
+        Ok(CommissioningSetup::new(
+            &scene.params,
+            scene.room_c,
+            scene.seed,
+        ))
+    }
+}
+
+/// Two flags that Ctrl-C and the signals that end a program set: one that the link takes back when it ends a wait, and one
+/// that stays.
+fn interruptions() -> Result<(Arc<AtomicBool>, Arc<AtomicBool>), Failure> {
+    let flags = <(Arc<AtomicBool>, Arc<AtomicBool>)>::default();
+    let set = flags.clone();
+    ctrlc::set_handler(move || {
+        set.0.store(true, Ordering::Relaxed);
+        set.1.store(true, Ordering::Relaxed);
+    })
+    .context("Ctrl-C cannot be caught")
+    .map_err(Failure::run)?;
+    Ok(flags)
+}

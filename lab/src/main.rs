@@ -1,0 +1,51 @@
+//! The command `thermal-lab`.
+
+mod cli;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use cli::{Failure, Target, commission, info, log, ports, send};
+
+/// The operator's side of a thermal display.
+#[derive(Parser)]
+#[command(name = "thermal-lab", max_term_width = 100)]
+struct Cli {
+    #[command(flatten)]
+    target: Target,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// List the serial ports of this computer
+    Ports(ports::Arguments),
+    /// Say what the device is, its state, and what it measured of itself
+    Info(info::Arguments),
+    /// Send lines to the device and print its answers
+    Send(send::Arguments),
+    /// Write telemetry as CSV, until Ctrl-C or for some time
+    Log(log::Arguments),
+    /// Calibrate and tune a new device, step by step, and store the result
+    Commission(commission::Arguments),
+}
+
+fn main() -> ExitCode {
+    let Cli { target, command } = Cli::parse();
+    let done = match command {
+        Command::Ports(arguments) => ports::run(&arguments),
+        Command::Info(arguments) => info::run(&target, &arguments),
+        Command::Send(arguments) => send::run(&target, &arguments),
+        Command::Log(arguments) => log::run(&target, &arguments),
+        Command::Commission(arguments) => commission::run(&target, &arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure { error, status }) => {
+            eprintln!("thermal-lab: {error:#}");
+            ExitCode::from(status)
+        }
+    }
+}
