@@ -10,7 +10,7 @@ use clap::Parser;
 use cli::profile;
 use cli::{
     Failure, commission, erfcx, faults, fidelity, five_fingers, infrared, model, object,
-    parameters, roughness, run, thesis,
+    parameters, roughness, run, serve, thesis,
 };
 
 /// Simulated plant and emulated microcontroller of the thermal display.
@@ -19,6 +19,8 @@ use cli::{
 enum Cli {
     /// Run a scene
     Run(run::Arguments),
+    /// Be a device on a serial line or a TCP port, for other programs
+    Serve(serve::Arguments),
     /// Calibrate and tune a simulated device as an operator does, and print its settings as lines
     Commission(commission::Arguments),
     /// Run five scenes side by side, on the five fingers of one device
@@ -49,6 +51,7 @@ enum Cli {
 fn main() -> ExitCode {
     let done = match Cli::parse() {
         Cli::Run(arguments) => run::run(&arguments),
+        Cli::Serve(arguments) => serve::run(&arguments),
         Cli::Commission(arguments) => commission::run(&arguments),
         Cli::Hand(arguments) => five_fingers::run(&arguments),
         #[cfg(feature = "emulator")]

@@ -16,6 +16,7 @@ pub mod run;
 mod runner;
 pub mod scene;
 mod scene_recording;
+pub mod serve;
 pub mod simulated_link;
 pub mod telemetry;
 pub mod trace;

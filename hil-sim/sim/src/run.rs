@@ -124,6 +124,25 @@ pub fn run_with<E: Engine>(
     Ok(recording.outcome(E::NAME, &engine.resets(), engine.cost(), real_time_factor))
 }
 
+/// Injects the processor faults of a half millisecond since the start whose offset in it, µs, is accepted by `at`. Time zero
+/// of the scene is `zero_ms` after the start, and no fault is before the start.
+pub(crate) fn inject_due<'a, E: Engine>(
+    engine: &mut E,
+    injections: impl Iterator<Item = &'a Injection>,
+    zero_ms: u64,
+    half_ms: u64,
+    at: impl Fn(u32) -> bool,
+) -> Result<(), NotInjected> {
+    for injection in injections {
+        let us = (injection.t_s * 1e6 + zero_ms as f64 * 1e3).round() as u64;
+        let after_us = (us % HALF_MS_US) as u32;
+        if us / HALF_MS_US == half_ms && at(after_us) {
+            engine.inject(&injection.fault, after_us)?;
+        }
+    }
+    Ok(())
+}
+
 struct SceneRun<'a, E> {
     recording: SceneRecording<'a>,
     injections: Vec<&'a Injection>,
@@ -132,17 +151,9 @@ struct SceneRun<'a, E> {
 }
 
 impl<E: Engine> SceneRun<'_, E> {
-    /// Injects the processor faults of a half millisecond since the start whose offset in it, µs, is accepted by `at`.
     fn inject(&mut self, half_ms: u64, at: impl Fn(u32) -> bool) -> Result<(), NotInjected> {
-        for injection in &self.injections {
-            // Not negative: the time was checked to be within the run.
-            let us = (injection.t_s * 1e6 + self.recording.zero_ms as f64 * 1e3).round() as u64;
-            let after_us = (us % HALF_MS_US) as u32;
-            if us / HALF_MS_US == half_ms && at(after_us) {
-                self.engine.inject(&injection.fault, after_us)?;
-            }
-        }
-        Ok(())
+        let (injections, zero_ms) = (self.injections.iter().copied(), self.recording.zero_ms);
+        inject_due(self.engine, injections, zero_ms, half_ms, at)
     }
 
     /// Sends the bytes of the host at a half millisecond since the start.

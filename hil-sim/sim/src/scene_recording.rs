@@ -114,9 +114,7 @@ impl<'a> SceneRecording<'a> {
 
     /// Applies force and faults of the scene at a boundary.
     pub fn apply_scene(&self, ms: u64, world: &mut World) {
-        let t_s = self.t_s(ms);
-        let faults = self.scene.faults.iter().filter_map(|fault| fault.at(t_s));
-        world.set_force_and_faults(self.scene.force_n(t_s), faults);
+        world.apply_scene(self.scene, self.t_s(ms));
     }
 
     /// Records the state at a boundary within the scene.

@@ -91,6 +91,12 @@ impl World {
         self.plant.set_defects(&self.defects.plant);
     }
 
+    /// Sets force and faults to those of a scene at a time, s.
+    pub fn apply_scene(&mut self, scene: &Scene, t_s: f64) {
+        let faults = scene.faults.iter().filter_map(|fault| fault.at(t_s));
+        self.set_force_and_faults(scene.force_n(t_s), faults);
+    }
+
     /// Sets the level of the line by which the device tests the comparator. The engine sets it after each tick; an
     /// undriven line is pulled low.
     pub fn comparator_test(&mut self, level: bool) {

@@ -17,6 +17,7 @@ pub mod parameters;
 pub mod profile;
 pub mod roughness;
 pub mod run;
+pub mod serve;
 pub mod thesis;
 
 /// Why a command failed, and the exit status that says so.

@@ -3,6 +3,7 @@
 mod cli;
 mod infrared;
 mod roughness;
+mod serve;
 mod thesis;
 
 use std::collections::HashMap;

@@ -4,7 +4,7 @@ use thermal_plant::bridge::BridgeOutputs;
 use thermal_plant::sensors::Channel;
 use thermal_sim::World;
 use thermal_sim::engine::{BAUD, Cost, DeviceReset, Engine as _, LineSplitter};
-use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine};
+use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, OneLine};
 
 use super::meter::Meter;
 use super::one_finger::{ADC_INPUTS, OneFingerBoard, StartError, power_up, resets};
@@ -131,6 +131,16 @@ impl FiveFingerEngine for FiveFingerBoard {
 
     fn cost(&self) -> Option<Cost> {
         self.meter.cost(&self.machine)
+    }
+}
+
+impl OneLine for FiveFingerBoard {
+    fn send_bytes(&mut self, bytes: &[u8]) {
+        self.machine.uart_send(bytes);
+    }
+
+    fn receive_bytes(&mut self, into: &mut Vec<u8>) {
+        into.append(&mut self.machine.wiring_mut().received);
     }
 }
 

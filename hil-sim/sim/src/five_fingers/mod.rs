@@ -71,6 +71,15 @@ pub trait FiveFingerEngine {
     }
 }
 
+/// A device for five fingers with one line, as it is built.
+pub trait OneLine: FiveFingerEngine {
+    /// Sends bytes to the device, starting now.
+    fn send_bytes(&mut self, bytes: &[u8]);
+
+    /// Appends the bytes received from the device since the last call.
+    fn receive_bytes(&mut self, into: &mut Vec<u8>);
+}
+
 /// Runs a scene on each finger and returns their results; `progress` is called with the fraction done.
 ///
 /// # Errors

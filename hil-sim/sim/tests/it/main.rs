@@ -4,3 +4,4 @@ mod commissioning;
 mod faults;
 mod no_allocation;
 mod scenes;
+mod serve;

@@ -1,0 +1,121 @@
+//! A served device's line as a TCP port of this machine.
+
+use std::io::{ErrorKind, Write as _};
+use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+
+use super::ClientLine;
+use super::client::{IncomingBytes, LossNotice, write_or_lose};
+
+/// Why a device cannot be served at an address.
+#[derive(Debug, thiserror::Error)]
+pub enum TcpLineError {
+    /// No address.
+    #[error(
+        "'{0}' is no address; allowed is a loopback address with a port, such as 127.0.0.1:4000, [::1]:4000 or 127.0.0.1:0"
+    )]
+    Malformed(String),
+    /// An address that other machines reach.
+    #[error(
+        "{0} is not a loopback address, and whoever reaches the line drives the device; allowed are 127.0.0.1:PORT and [::1]:PORT"
+    )]
+    NotLoopback(SocketAddr),
+    /// The operating system refuses the address.
+    #[error("cannot listen on {address}: {error}")]
+    Listen {
+        /// The address.
+        address: SocketAddr,
+        /// Its error.
+        error: std::io::Error,
+    },
+}
+
+/// A TCP port with one client at a time. A second one gets a line that says so, and its connection ends.
+#[derive(Debug)]
+pub struct TcpLine {
+    listener: TcpListener,
+    client: Option<(TcpStream, SocketAddr, LossNotice)>,
+    incoming: IncomingBytes,
+    /// The client that was refused last. Its connection is open until the next one is refused: an early end could take the
+    /// line away before the client has read it.
+    refused: Option<TcpStream>,
+}
+
+impl TcpLine {
+    /// Listens on a loopback address; port 0 lets the operating system choose one.
+    ///
+    /// # Errors
+    /// `address` is no loopback address, or is in use.
+    pub fn listen(address: &str) -> Result<Self, TcpLineError> {
+        let numeric = address.replacen("localhost:", "127.0.0.1:", 1);
+        let address: SocketAddr =
+            (numeric.parse()).map_err(|_| TcpLineError::Malformed(address.into()))?;
+        if !address.ip().is_loopback() {
+            return Err(TcpLineError::NotLoopback(address));
+        }
+        let listen = || {
+            let listener = TcpListener::bind(address)?;
+            listener.set_nonblocking(true)?;
+            Ok(listener)
+        };
+        let listener = listen().map_err(|error| TcpLineError::Listen { address, error })?;
+        Ok(Self {
+            listener,
+            client: None,
+            incoming: IncomingBytes::default(),
+            refused: None,
+        })
+    }
+
+    /// The address on which it listens.
+    ///
+    /// # Errors
+    /// The operating system does not say.
+    pub fn address(&self) -> std::io::Result<SocketAddr> {
+        self.listener.local_addr()
+    }
+
+    fn accept(&mut self, mut stream: TcpStream, peer: SocketAddr) -> std::io::Result<()> {
+        stream.set_nonblocking(true)?;
+        if let Some((_, first, _)) = &self.client {
+            let line =
+                format!("err busy: the client {first} is connected, and there is one at a time\n");
+            stream.write_all(line.as_bytes())?;
+            stream.shutdown(Shutdown::Write)?;
+            self.refused = Some(stream);
+        } else {
+            stream.set_nodelay(true)?;
+            self.client = Some((stream, peer, LossNotice::default()));
+        }
+        Ok(())
+    }
+}
+
+impl ClientLine for TcpLine {
+    fn poll(&mut self) -> bool {
+        // First, so that a client that comes right after another one has gone is accepted.
+        if let Some((stream, ..)) = &mut self.client
+            && !self.incoming.receive(stream)
+        {
+            self.client = None;
+        }
+        loop {
+            match self.listener.accept() {
+                // A client that has gone already needs no answer.
+                Ok((stream, peer)) => drop(self.accept(stream, peer)),
+                Err(error) if error.kind() == ErrorKind::Interrupted => {}
+                Err(_) => break,
+            }
+        }
+        self.client.is_some()
+    }
+
+    fn read(&mut self, limit: usize) -> Vec<u8> {
+        self.incoming.take(limit)
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        if let Some((stream, _, notice)) = &mut self.client {
+            notice.note(write_or_lose(stream, bytes));
+        }
+    }
+}

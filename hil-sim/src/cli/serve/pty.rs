@@ -1,0 +1,70 @@
+//! A served device's line as a pseudo-terminal, which programs open as a serial port.
+
+use std::fs::File;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result};
+use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+use thermal_sim::serve::{ClientLine, IncomingBytes, LossNotice, write_or_lose};
+
+/// The end of a pseudo-terminal that no program opens.
+pub struct PtyLine {
+    file: File,
+    incoming: IncomingBytes,
+    connected: bool,
+    notice: LossNotice,
+}
+
+impl PtyLine {
+    /// Opens a pseudo-terminal; also returns the path of the end for programs.
+    pub fn open() -> Result<(Self, PathBuf)> {
+        let file = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)
+            .context("the operating system has no pseudo-terminal")?;
+        grantpt(&file)?;
+        unlockpt(&file)?;
+        let path = ptsname(&file, Vec::new())?;
+        // A program that does not set the terminal up, as `cat`, shall read the bytes as they are and without an echo. The
+        // settings stay after this end is closed.
+        let programs_end = open(
+            path.as_c_str(),
+            OFlags::RDWR | OFlags::NOCTTY,
+            Mode::empty(),
+        )?;
+        let mut settings = tcgetattr(&programs_end)?;
+        settings.make_raw();
+        tcsetattr(&programs_end, OptionalActions::Now, &settings)?;
+        fcntl_setfl(&file, OFlags::RDWR | OFlags::NONBLOCK)?;
+        let line = Self {
+            file: file.into(),
+            incoming: IncomingBytes::default(),
+            connected: false,
+            notice: LossNotice::default(),
+        };
+        Ok((line, PathBuf::from(path.into_string()?)))
+    }
+}
+
+impl ClientLine for PtyLine {
+    fn poll(&mut self) -> bool {
+        // Reading fails while no program has the other end open.
+        let connected = self.incoming.receive(&mut self.file);
+        if connected && !self.connected {
+            self.notice = LossNotice::default();
+        }
+        self.connected = connected;
+        connected
+    }
+
+    fn read(&mut self, limit: usize) -> Vec<u8> {
+        self.incoming.take(limit)
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        // The terminal would keep them for the next program.
+        if self.connected {
+            self.notice.note(write_or_lose(&mut self.file, bytes));
+        }
+    }
+}

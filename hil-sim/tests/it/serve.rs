@@ -1,0 +1,124 @@
+//! `hil-sim serve` as another program meets it.
+
+use std::fs::OpenOptions;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, ChildStdout, Command, Stdio};
+
+use super::refused;
+
+/// A served device, which ends with the test.
+struct Served {
+    child: Child,
+    out: BufReader<ChildStdout>,
+}
+
+impl Served {
+    fn start(arguments: &[&str]) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_hil-sim"))
+            .args(["serve", "--engine", "native"])
+            .args(arguments)
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("hil-sim starts");
+        let out = BufReader::new(child.stdout.take().expect("a pipe"));
+        Self { child, out }
+    }
+
+    /// Where it listens.
+    fn place(&mut self) -> String {
+        let mut line = String::new();
+        self.out.read_line(&mut line).expect("a line");
+        let place = line.strip_prefix("listening on ").expect(&line);
+        place.strip_suffix('\n').expect("a whole line").into()
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Sends a line and returns the next one.
+fn query(stream: impl Read + Write, line: &str) -> String {
+    let mut stream = BufReader::new(stream);
+    stream.get_mut().write_all(line.as_bytes()).expect("a line");
+    let mut answer = String::new();
+    stream.read_line(&mut answer).expect("an answer");
+    answer
+}
+
+const IDENTITY: &str = "ok thermal-display 0.2.0 fingers=1 ";
+
+#[test]
+fn a_device_on_a_tcp_port_is_at_the_printed_address() {
+    for speed in ["1", "max"] {
+        let mut served = Served::start(&["--tcp", "127.0.0.1:0", "--speed", speed]);
+        let stream = TcpStream::connect(served.place()).expect("a connection");
+        let answer = query(stream, "id\n");
+        assert!(answer.starts_with(IDENTITY), "{answer}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_device_on_a_pseudo_terminal_is_at_the_printed_path_for_one_program_after_another() {
+    let mut served = Served::start(&["../scenes/copper.toml", "--pty"]);
+    let path = served.place();
+    for _ in 0..3 {
+        let terminal = OpenOptions::new().read(true).write(true).open(&path);
+        let answer = query(terminal.expect("a terminal"), "id\n");
+        assert!(answer.starts_with(IDENTITY), "{answer}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_and_sigterm_end_it_with_status_0() {
+    for (signal, line) in [("-INT", "--pty"), ("-TERM", "--tcp=127.0.0.1:0")] {
+        let mut served = Served::start(&[line]);
+        served.place();
+        let pid = served.child.id().to_string();
+        let sent = Command::new("kill").args([signal, &pid]).status();
+        assert!(sent.expect("kill").success());
+        assert_eq!(served.child.wait().expect("an end").code(), Some(0));
+        let mut rest = String::new();
+        served.out.read_to_string(&mut rest).expect("text");
+        assert_eq!(rest, "", "more than one line");
+    }
+}
+
+#[test]
+fn what_cannot_be_served_is_refused_with_what_is_allowed() {
+    let serve = |rest: &[&str]| refused(&[&["serve", "--engine", "native"], rest].concat());
+    for (arguments, expected) in [
+        (
+            &["--tcp", "0.0.0.0:4000"][..],
+            "--tcp: 0.0.0.0:4000 is not a loopback address",
+        ),
+        (
+            &["--tcp", "4000"],
+            "--tcp: '4000' is no address; allowed is a loopback address",
+        ),
+        (&[], "<--pty|--tcp <ADDR>>"),
+        (
+            &["--tcp", "127.0.0.1:0", "--fingers", "3"],
+            "invalid value '3' for '--fingers <FINGERS>': devices have 1 or 5 fingers",
+        ),
+        (
+            &["--tcp", "127.0.0.1:0", "--speed", "2"],
+            "[possible values: 1, max]",
+        ),
+        (
+            &["--tcp", "127.0.0.1:0", "--elf", "x.elf"],
+            "--elf is for --engine image",
+        ),
+        (&["nowhere.toml", "--tcp", "127.0.0.1:0"], "nowhere.toml"),
+    ] {
+        let message = serve(arguments);
+        assert!(message.contains(expected), "{arguments:?}: {message}");
+    }
+}
