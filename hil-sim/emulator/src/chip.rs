@@ -15,9 +15,10 @@ use super::timebase::Timebase;
 use super::usart::Usart;
 use super::wwdg::Wwdg;
 use super::{LegState, Wiring};
-use thermal_sim::processor::ResetCause;
+use thermal_sim::processor::{ChipState, ResetCause};
 
 mod bus;
+mod debug_freeze;
 mod failures;
 
 /// Modelled timers, and the indices of those that the chip names: TIM1 to TIM7, TIM8, TIM10, TIM11.
@@ -63,8 +64,12 @@ pub(crate) struct Chip<W> {
     adc: Adc,
     tims: [Tim; TIMERS],
     usart: Usart,
+    /// Rate of the internal low-speed oscillator, which differs from chip to chip.
+    lsi_hz: u32,
     iwdg: Iwdg,
     wwdg: Wwdg,
+    /// A debugger has halted the core.
+    halted_by_debugger: bool,
     pub time: Timebase,
     /// Cycle at which the last clock of the chip stopped; timers and pins keep the state of that cycle.
     stopped_at: Option<u64>,
@@ -80,7 +85,7 @@ pub(crate) struct Chip<W> {
 }
 
 impl<W: Wiring> Chip<W> {
-    pub fn new(wiring: W, flash: Vec<u8>) -> Self {
+    pub fn new(wiring: W, flash: Vec<u8>, state: &ChipState) -> Self {
         let kinds = [
             tim::ADVANCED,
             tim::WIDE,
@@ -97,16 +102,18 @@ impl<W: Wiring> Chip<W> {
             wiring,
             nvic: Nvic::new(),
             ppb: Ppb::new(),
-            rcc: Rcc::new(ResetCause::PowerOn, 0),
-            flash: Flash::new(flash),
+            rcc: Rcc::powered_up(state.external_clock),
+            flash: Flash::new(flash, state.brown_out_code),
             ports: std::array::from_fn(Port::new),
             exti: Exti::default(),
             dma: [Dma::new(1), Dma::new(2)],
             adc: Adc::new(1, HSI_HZ),
             tims: kinds.map(|kind| Tim::new(kind, 1)),
             usart: Usart::new(1, HSI_HZ, HOST_BAUD),
-            iwdg: Iwdg::new(),
+            lsi_hz: state.lsi_hz,
+            iwdg: Iwdg::new(state.lsi_hz),
             wwdg: Wwdg::new(),
+            halted_by_debugger: false,
             time: Timebase::new(HSI_HZ),
             stopped_at: None,
             legs: [LegState::Off; 2],
@@ -327,6 +334,9 @@ impl<W: Wiring> Chip<W> {
                 };
                 match (self.tims[timer].output(channel), self.stopped_at) {
                     (Output::Released, _) => LegState::Off,
+                    (Output::High { .. }, None) if self.tims[timer].is_halted() => {
+                        constant(self.tims[timer].is_high(channel, 0))
+                    }
                     (Output::High { high, period }, None) => LegState::Duty { high, period },
                     (_, Some(at)) => constant(self.tims[timer].is_high(channel, at)),
                 }

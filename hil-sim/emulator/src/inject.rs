@@ -155,7 +155,7 @@ impl<W: Wiring + 'static> Machine<W> {
 
     /// Flips one bit of the device register at a word address by a bus read and a write, with the effects that both have on
     /// the device (a flag that is cleared by writing 0 can be cleared but not set). An interrupt's enable or pending bit is
-    /// flipped through either of its two registers.
+    /// flipped through either of its two registers. BDTR of TIM1 and TIM8 is flipped although it is locked.
     ///
     /// # Errors
     /// [`InjectError::Refused`]: the register or the value is not modelled, or its clock is off; or the flip would stop the
@@ -168,6 +168,10 @@ impl<W: Wiring + 'static> Machine<W> {
         )?;
         let now = self.now();
         let chip = self.chip_mut();
+        // Their LOCK protects from writes, not from radiation.
+        if mask & 0xffff != 0 && chip.flip_bdtr(address, mask, now) {
+            return Ok(());
+        }
         let (load_at, store_at, value) = match address {
             // set- and clear-enable, set- and clear-pending registers of the interrupts (ARMv7-M B3.4)
             0xe000_e100..0xe000_e300 => {
@@ -218,7 +222,27 @@ impl<W: Wiring + 'static> Machine<W> {
         self.halt = Some(Halt::Hung);
     }
 
-    /// Stops the external oscillator permanently, through resets and power cycles. With clock security on (RCC_CR.CSSON) the
+    /// A debugger halts the core. What DBGMCU selects stands still with it; all other devices continue. A reset ends the halt.
+    pub fn halt_by_debugger(&mut self) {
+        let now = self.now();
+        self.chip_mut().set_halted_by_debugger(true, now);
+        self.hang_core();
+    }
+
+    /// The debugger lets the halted core continue.
+    pub fn continue_by_debugger(&mut self) {
+        let now = self.now();
+        self.chip_mut().set_halted_by_debugger(false, now);
+        self.halt = None;
+    }
+
+    /// The external oscillator comes, or comes back after [`stop_hse`](Self::stop_hse).
+    pub fn start_hse(&mut self) {
+        let now = self.now();
+        self.chip_mut().start_hse(now);
+    }
+
+    /// Stops the external oscillator, through resets and power cycles, until [`start_hse`](Self::start_hse). With clock security on (RCC_CR.CSSON) the
     /// system continues on the internal oscillator, the NMI is raised, and enabled breaks of TIM1 and TIM8 act. Without it, a
     /// system clock derived from the oscillator stops: CPU and timers halt, pins keep their present level, and only the
     /// independent watchdog counts.

@@ -1,5 +1,4 @@
-//! Independent watchdog (RM0390 chapter 20), clocked by the LSI at its nominal 32 kHz.
-use super::rcc::LSI_HZ;
+//! Independent watchdog (RM0390 chapter 20), clocked by the LSI of this chip.
 use super::stop::{Answer, Refusal, only};
 
 const KEY_UNLOCK: u32 = 0x5555;
@@ -10,18 +9,22 @@ const UPDATE_LSI_CYCLES: u64 = 5;
 
 #[derive(Default)]
 pub(crate) struct Iwdg {
+    lsi_hz: u32,
     unlocked: bool,
     running: bool,
     prescaler: u32,
     reload: u32,
     updating_until: [u64; 2],
+    /// Cycles that were left when a debugger halted the core and DBGMCU stopped the counter.
+    left_when_halted: Option<u64>,
     /// Cycle at which the counter reaches zero.
     pub due: u64,
 }
 
 impl Iwdg {
-    pub fn new() -> Self {
+    pub fn new(lsi_hz: u32) -> Self {
         Self {
+            lsi_hz,
             reload: 0xfff,
             due: u64::MAX,
             ..Self::default()
@@ -33,8 +36,21 @@ impl Iwdg {
         u64::from(self.reload + 1) << (2 + self.prescaler.min(6))
     }
 
-    fn cycles(lsi: u64, hclk_hz: u32) -> u64 {
-        (u128::from(lsi) * u128::from(hclk_hz)).div_ceil(u128::from(LSI_HZ)) as u64
+    fn cycles(&self, lsi: u64, hclk_hz: u32) -> u64 {
+        (u128::from(lsi) * u128::from(hclk_hz)).div_ceil(u128::from(self.lsi_hz)) as u64
+    }
+
+    /// Stops the counter while a debugger halts the core, or lets it continue.
+    pub fn set_halted(&mut self, halted: bool, now: u64) {
+        match (halted, self.left_when_halted.take()) {
+            (true, None) if self.running => {
+                self.left_when_halted = Some(self.due.saturating_sub(now));
+                self.due = u64::MAX;
+            }
+            (true, left) => self.left_when_halted = left,
+            (false, Some(left)) => self.due = now + left,
+            (false, None) => {}
+        }
     }
 
     /// Keeps the remaining time when the CPU clock, the unit of `due`, changes.
@@ -63,7 +79,7 @@ impl Iwdg {
                 self.unlocked = false;
                 self.running |= value == KEY_START;
                 if self.running {
-                    self.due = now + Self::cycles(self.timeout_lsi(), hclk_hz);
+                    self.due = now + self.cycles(self.timeout_lsi(), hclk_hz);
                 }
             }
             (0x00, _) => self.unlocked = false,
@@ -71,12 +87,12 @@ impl Iwdg {
             (0x04, _) => {
                 only(value, 7, "IWDG_PR reserved bits")?;
                 self.prescaler = value;
-                self.updating_until[0] = now + Self::cycles(UPDATE_LSI_CYCLES, hclk_hz);
+                self.updating_until[0] = now + self.cycles(UPDATE_LSI_CYCLES, hclk_hz);
             }
             (0x08, _) => {
                 only(value, 0xfff, "IWDG_RLR reserved bits")?;
                 self.reload = value;
-                self.updating_until[1] = now + Self::cycles(UPDATE_LSI_CYCLES, hclk_hz);
+                self.updating_until[1] = now + self.cycles(UPDATE_LSI_CYCLES, hclk_hz);
             }
             _ => return Err(Refusal::Offset),
         }
@@ -91,7 +107,7 @@ mod tests {
 
     #[test]
     fn longest_timeout_is_that_of_the_manual() {
-        let mut iwdg = Iwdg::new();
+        let mut iwdg = Iwdg::new(crate::rcc::LSI_HZ);
         iwdg.write(0, KEY_UNLOCK, 0, HCLK).unwrap();
         iwdg.write(4, 6, 0, HCLK).unwrap();
         iwdg.write(0, KEY_START, 0, HCLK).unwrap();
@@ -102,9 +118,33 @@ mod tests {
         );
     }
 
+    /// DS10693: the LSI has 17 to 47 kHz.
+    #[test]
+    fn the_timeout_follows_the_oscillator() {
+        for (lsi_hz, ms) in [(17_000, 188), (47_000, 68)] {
+            let mut iwdg = Iwdg::new(lsi_hz);
+            iwdg.write(0, KEY_UNLOCK, 0, HCLK).unwrap();
+            iwdg.write(4, 3, 0, HCLK).unwrap();
+            iwdg.write(8, 99, 0, HCLK).unwrap();
+            iwdg.write(0, KEY_START, 0, HCLK).unwrap();
+            assert_eq!(iwdg.due / (u64::from(HCLK) / 1000), ms, "{lsi_hz} Hz");
+        }
+    }
+
+    #[test]
+    fn a_halted_counter_keeps_the_time_that_is_left() {
+        let mut iwdg = Iwdg::new(32_000);
+        iwdg.write(0, KEY_START, 0, HCLK).unwrap();
+        let due = iwdg.due;
+        iwdg.set_halted(true, 1000);
+        assert_eq!(iwdg.due, u64::MAX);
+        iwdg.set_halted(false, 51_000);
+        assert_eq!(iwdg.due, due + 50_000);
+    }
+
     #[test]
     fn registers_need_the_key_and_a_reload_restarts_the_counter() {
-        let mut iwdg = Iwdg::new();
+        let mut iwdg = Iwdg::new(crate::rcc::LSI_HZ);
         iwdg.write(8, 31, 0, HCLK).unwrap();
         assert_eq!(iwdg.read(8, 0).unwrap(), 0xfff, "locked");
         iwdg.write(0, KEY_UNLOCK, 0, HCLK).unwrap();

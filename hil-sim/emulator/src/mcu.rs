@@ -13,7 +13,7 @@ use super::stop::Stop;
 use super::{LegState, Wiring};
 use std::sync::Arc;
 use thermal_sim::FlashCells;
-use thermal_sim::processor::ResetCause;
+use thermal_sim::processor::{ChipState, ResetCause};
 use unicorn_engine::uc_error;
 
 /// Byte that fills the RAM at power-up.
@@ -42,13 +42,22 @@ pub struct Machine<W: Wiring + 'static> {
 }
 
 impl<W: Wiring + 'static> Machine<W> {
-    /// Powers the chip up with `firmware` in flash and `wiring` at its pins; nothing has run yet.
+    /// Powers the chip of a prepared board up with `firmware` in flash and `wiring` at its pins; nothing has run yet.
     ///
     /// # Errors
     /// [`Stop::Emulator`] when the CPU emulation cannot be set up.
     pub fn new(firmware: &Firmware, wiring: W) -> Result<Self, Stop> {
+        Self::with_chip(firmware, wiring, &ChipState::default())
+    }
+
+    /// As [`Self::new`], with a chip in another state.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_chip(firmware: &Firmware, wiring: W, chip: &ChipState) -> Result<Self, Stop> {
         let flash: Arc<[u8]> = firmware.flash().into();
-        let state = State::new(Chip::new(wiring, flash.to_vec()), Arc::clone(&flash));
+        let chip = Chip::new(wiring, flash.to_vec(), chip);
+        let state = State::new(chip, Arc::clone(&flash));
         let mut cpu = create_cpu(state, &flash).map_err(emulator)?;
         let initial_ram = vec![PAINT; RAM_SIZE as usize];
         cpu.mem_write(RAM_BASE.into(), &initial_ram)

@@ -1,5 +1,6 @@
 //! The core's own registers on the private peripheral bus: SysTick, system control block, cycle counter, debug and
-//! floating-point control (ARMv7-M Architecture Reference Manual B3, C1; Cortex-M4 TRM), DBGMCU (RM0390 33.16).
+//! floating-point control (ARMv7-M Architecture Reference Manual B3, C1; Cortex-M4 TRM), DBGMCU (RM0390 33.16; which timers
+//! and watchdogs stand still while a debugger halts the core is in `debug_freeze`).
 use super::nvic::{Nvic, exception};
 use super::stop::{Answer, Refusal, only};
 
@@ -24,7 +25,8 @@ pub(crate) struct Ppb {
     cyccnt_offset: u32,
     /// Cycles asleep, which CYCCNT does not count.
     pub slept: u64,
-    dbgmcu: [u32; 3],
+    /// CR, APB1_FZ and APB2_FZ.
+    pub dbgmcu: [u32; 3],
 }
 
 impl Ppb {

@@ -13,7 +13,7 @@ pub(crate) use clock_security::AfterHse;
 pub const HSI_HZ: u32 = 16_000_000;
 /// High-speed external clock: that which the NUCLEO board's debug probe feeds into OSC_IN.
 pub const HSE_HZ: u32 = 8_000_000;
-/// Low-speed internal oscillator, nominal.
+/// Low-speed internal oscillator, nominal; a chip's own rate is [`ChipState::lsi_hz`](thermal_sim::processor::ChipState).
 pub const LSI_HZ: u32 = 32_000;
 
 /// Start-up time in microseconds, of the order the data sheet (DS10693 section 6.3) gives as typical.
@@ -74,6 +74,7 @@ pub(crate) struct Rcc {
     lpenr: [u32; 5],
     csr: u32,
     dckcfgr: u32,
+    /// The external clock is not there.
     hse_failed: bool,
     /// RCC_CIR.CSSF: the clock security system has detected the failure.
     clock_failure: bool,
@@ -112,6 +113,14 @@ impl Rcc {
                 timclk2_hz: hsi,
             },
             ..Self::default()
+        }
+    }
+
+    /// The registers at power-up, with the external clock present or not.
+    pub fn powered_up(external_clock: bool) -> Self {
+        Self {
+            hse_failed: !external_clock,
+            ..Self::new(ResetCause::PowerOn, 0)
         }
     }
 

@@ -42,6 +42,7 @@ const BKP: u32 = 1 << 13;
 const BKE: u32 = 1 << 12;
 const OSSR: u32 = 1 << 11;
 const OSSI: u32 = 1 << 10;
+const LOCK: u32 = 3 << 8;
 
 /// Output of a channel to its pin (RM0390 16.4.9, output control bits).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -68,7 +69,10 @@ pub(crate) struct Tim {
     rcr: u32,
     ccr: [u32; 4],
     bdtr: u32,
-    lock: u32,
+    /// LOCK has been frozen by the first write of BDTR since the reset.
+    bdtr_written: bool,
+    /// A debugger has halted the core and DBGMCU stops this timer: the count stands still.
+    halted: bool,
     /// Active (shadow) registers.
     psc_now: u32,
     arr_now: u32,
@@ -124,7 +128,28 @@ impl Tim {
 
     fn is_counting(&self) -> bool {
         // 17.3.2: with auto-reload 0 the counter is blocked
-        self.cr1 & 1 != 0 && self.arr_now != 0
+        self.cr1 & 1 != 0 && self.arr_now != 0 && !self.halted
+    }
+
+    /// Stops the counter while a debugger halts the core, or lets it continue from the same count.
+    pub fn set_halted(&mut self, halted: bool, now: u64) {
+        if halted != self.halted {
+            self.sync(now);
+            let count = self.count(now);
+            self.halted = halted;
+            self.set_count(count, now);
+            self.schedule();
+        }
+    }
+
+    /// Whether the counter stands still while the core is halted.
+    pub const fn is_halted(&self) -> bool {
+        self.halted
+    }
+
+    /// Level of protection of the settings (LOCK).
+    const fn lock(&self) -> u32 {
+        self.bdtr >> 8 & 3
     }
 
     fn tick(&self) -> u64 {
@@ -323,7 +348,8 @@ impl Tim {
             false => Output::Released,
         };
         let enabled = self.ccer >> (4 * channel) & 1 != 0;
-        if self.kind.advanced && self.bdtr & MOE == 0 {
+        // A halted timer with complementary outputs disables its outputs as if MOE were 0 (RM0090 38.16.2).
+        if self.kind.advanced && (self.bdtr & MOE == 0 || self.halted) {
             let idle = self.cr2 >> (8 + 2 * channel) & 1 != 0;
             return constant_if(self.bdtr & OSSI != 0 && enabled, idle);
         }

@@ -28,6 +28,33 @@ impl fmt::Display for ResetCause {
     }
 }
 
+/// What is set or present before the program starts, and differs between chips and boards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ChipState {
+    /// BOR_LEV of the option bytes: 0 is level 3, as the board's preparation sets it; 3 is off, as delivered.
+    pub brown_out_code: u8,
+    /// Rate of the internal low-speed oscillator, which clocks the independent watchdog, Hz.
+    pub lsi_hz: u32,
+    /// Whether the 8 MHz clock of the debug probe is there at power-up.
+    pub external_clock: bool,
+}
+
+impl ChipState {
+    /// Range of the internal low-speed oscillator, Hz (DS10693).
+    pub const LSI_HZ: std::ops::RangeInclusive<u32> = 17_000..=47_000;
+}
+
+impl Default for ChipState {
+    /// The chip of a prepared board with its nominal oscillator.
+    fn default() -> Self {
+        Self {
+            brown_out_code: 0,
+            lsi_hz: 32_000,
+            external_clock: true,
+        }
+    }
+}
+
 /// A register of the CPU or of its floating-point unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CoreRegister {
@@ -80,7 +107,7 @@ impl CoreRegister {
 /// A fault of the microcontroller.
 ///
 /// Its text, both ways: `ram-bit=0x20000010.3`, `core-bit=r4.7` (r0 to r12, sp, lr, pc, psr, s0 to s31, fpscr),
-/// `register-bit=0x40010044.15`, `hung-core`, `hse-stopped`, `adc-stopped`, `dma-stopped=2.0` (controller, stream),
+/// `register-bit=0x40010044.15`, `hung-core`, `debugger-halt`, `hse-stopped`, `hse-started`, `adc-stopped`, `dma-stopped=2.0` (controller, stream),
 /// `brown-out`, `power-cycle=1` (seed of the noise in RAM), `reset-pin`, `software-reset`, `stack-overflow`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MachineFault {
@@ -107,8 +134,12 @@ pub enum MachineFault {
     },
     /// The core executes no instruction until a reset.
     HungCore,
-    /// The external oscillator stops permanently.
+    /// A debugger halts the core; what it has selected in DBGMCU stands still too.
+    DebuggerHalt,
+    /// The external oscillator stops until it is started.
     HseStopped,
+    /// The external oscillator comes, or comes back.
+    HseStarted,
     /// The converter completes no conversion until a reset.
     AdcStopped,
     /// A bus error ends a DMA stream.
@@ -173,7 +204,9 @@ impl fmt::Display for MachineFault {
             Self::CoreBit { register, bit } => write!(f, "core-bit={register}.{bit}"),
             Self::RegisterBit { address, bit } => write!(f, "register-bit={address:#010x}.{bit}"),
             Self::HungCore => f.write_str("hung-core"),
+            Self::DebuggerHalt => f.write_str("debugger-halt"),
             Self::HseStopped => f.write_str("hse-stopped"),
+            Self::HseStarted => f.write_str("hse-started"),
             Self::AdcStopped => f.write_str("adc-stopped"),
             Self::DmaStopped { controller, stream } => {
                 write!(f, "dma-stopped={controller}.{stream}")
@@ -191,7 +224,7 @@ impl fmt::Display for MachineFault {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "`{0}` is no fault of the machine; allowed are ram-bit=ADDRESS.BIT, core-bit=REGISTER.BIT, \
-     register-bit=ADDRESS.BIT, hung-core, hse-stopped, adc-stopped, dma-stopped=CONTROLLER.STREAM, brown-out, \
+     register-bit=ADDRESS.BIT, hung-core, debugger-halt, hse-stopped, hse-started, adc-stopped, dma-stopped=CONTROLLER.STREAM, brown-out, \
      power-cycle=SEED, reset-pin, software-reset, stack-overflow"
 )]
 pub struct ParseMachineFaultError(String);
@@ -231,7 +264,9 @@ fn parse(text: &str) -> Option<MachineFault> {
         },
         _ if !value.is_empty() => return None,
         "hung-core" => MachineFault::HungCore,
+        "debugger-halt" => MachineFault::DebuggerHalt,
         "hse-stopped" => MachineFault::HseStopped,
+        "hse-started" => MachineFault::HseStarted,
         "adc-stopped" => MachineFault::AdcStopped,
         "brown-out" => MachineFault::BrownOut,
         "reset-pin" => MachineFault::ResetPin,
@@ -277,7 +312,9 @@ mod tests {
             "core-bit=psr.30",
             "register-bit=0x40010044.15",
             "hung-core",
+            "debugger-halt",
             "hse-stopped",
+            "hse-started",
             "adc-stopped",
             "dma-stopped=2.0",
             "brown-out",

@@ -7,6 +7,7 @@ use thermal_plant::infrared::{Camera, ParameterError, Reading};
 use thermal_plant::sensors::Channel;
 use thermal_plant::{ConfigError, Plant, PlantConfig};
 
+use crate::processor::ChipState;
 use crate::scene::{ActiveFault, Infrared, Scene};
 use active_defects::ActiveDefects;
 
@@ -16,6 +17,7 @@ pub struct World {
     plant: Plant,
     defects: ActiveDefects,
     camera: Option<(Infrared, Camera)>,
+    chip: ChipState,
     /// Last code of every channel.
     codes: [u16; Channel::ALL.len()],
 }
@@ -42,7 +44,10 @@ impl World {
             let camera = infrared.camera(scene.seed)?;
             Ok::<_, ParameterError>((infrared, camera))
         });
-        Ok(Self::with(plant, camera.transpose()?))
+        Ok(Self {
+            chip: scene.chip,
+            ..Self::with(plant, camera.transpose()?)
+        })
     }
 
     /// The world of a plant without a camera, with its own seed for the converter's noise.
@@ -60,6 +65,7 @@ impl World {
             plant,
             defects: ActiveDefects::default(),
             camera,
+            chip: ChipState::default(),
             codes: [0; Channel::ALL.len()],
         }
     }
@@ -69,6 +75,12 @@ impl World {
         let (infrared, camera) = self.camera.as_mut()?;
         let skin_c = self.plant.skin_real_c();
         infrared.has_frame(ms).then(|| camera.read(skin_c))
+    }
+
+    /// The microcontroller before its program starts.
+    #[must_use]
+    pub const fn chip(&self) -> ChipState {
+        self.chip
     }
 
     /// The plant, read-only.

@@ -3,6 +3,7 @@
 use stm32_emulator::{Firmware, Machine, Wiring};
 use system_tests::flash::{BYTES, SECTOR};
 use thermal_sim::FlashCells;
+use thermal_sim::processor::ChipState;
 
 /// Offset of the settings' sectors in the flash.
 const BEGIN: usize = SECTOR;
@@ -47,7 +48,17 @@ impl Bare {
     /// The emulation cannot be set up, or the cells have another size.
     #[must_use]
     pub fn switched_on(firmware: &Firmware, settings: &FlashCells) -> Self {
-        let mut machine = Machine::new(firmware, Pins::default()).expect("a machine");
+        Self::with_chip(firmware, settings, &ChipState::default())
+    }
+
+    /// The same, with a chip in this state.
+    ///
+    /// # Panics
+    /// As [`Self::switched_on`].
+    #[must_use]
+    pub fn with_chip(firmware: &Firmware, settings: &FlashCells, chip: &ChipState) -> Self {
+        let machine = Machine::with_chip(firmware, Pins::default(), chip);
+        let mut machine = machine.expect("a machine");
         assert!(machine.flash_mut().load(BEGIN, settings.bytes()));
         machine.set_host_baud(1_000_000);
         Self(machine)

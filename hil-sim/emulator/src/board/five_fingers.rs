@@ -44,12 +44,13 @@ pub struct FiveFingerBoard {
 }
 
 impl FiveFingerBoard {
-    /// Powers the device up and runs it to its first conversion.
+    /// Powers the device up and runs it to its first conversion. The microcontroller is that of the first world.
     ///
     /// # Errors
     /// The image cannot run, or does not start its converter.
     pub fn new(firmware: &Firmware, worlds: [World; FINGERS]) -> Result<Self, StartError> {
-        let mut machine = Machine::new(firmware, Pins::new(worlds))?;
+        let chip = worlds[0].chip();
+        let mut machine = Machine::with_chip(firmware, Pins::new(worlds), &chip)?;
         machine.set_host_baud(BAUD as u32);
         let started = power_up(&mut machine, |pins| pins.first_conversion)?;
         let cycles_per_us = u64::from(machine.clocks().hclk_hz) / 1_000_000;

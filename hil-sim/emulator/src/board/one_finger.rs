@@ -82,7 +82,8 @@ impl OneFingerBoard {
     /// # Errors
     /// The image cannot run, or does not start its converter.
     pub fn new(firmware: &Firmware, world: World) -> Result<Self, StartError> {
-        let mut machine = Machine::new(firmware, Pins::new(world))?;
+        let chip = world.chip();
+        let mut machine = Machine::with_chip(firmware, Pins::new(world), &chip)?;
         machine.set_host_baud(BAUD as u32);
         let started = power_up(&mut machine, |pins| pins.first_conversion)?;
         let first_boundary_ps = machine.ps_at(started) + FIRST_BOUNDARY_PS;
@@ -157,7 +158,15 @@ impl Engine for OneFingerBoard {
                 machine.hang_core();
                 Ok(())
             }
+            MachineFault::DebuggerHalt => {
+                machine.halt_by_debugger();
+                Ok(())
+            }
             MachineFault::HseStopped => machine.stop_hse(),
+            MachineFault::HseStarted => {
+                machine.start_hse();
+                Ok(())
+            }
             MachineFault::AdcStopped => {
                 machine.stop_adc();
                 Ok(())

@@ -93,8 +93,14 @@ impl<W: Wiring> Chip<W> {
     pub fn system_reset(&mut self, cause: ResetCause, now: u64) {
         let slept = self.ppb.slept;
         self.nvic = Nvic::new();
+        // Only a power-on resets DBGMCU (33.16.3).
+        let dbgmcu = match cause {
+            ResetCause::PowerOn => Default::default(),
+            _ => self.ppb.dbgmcu,
+        };
         self.ppb = Ppb::new();
-        self.ppb.slept = slept;
+        (self.ppb.slept, self.ppb.dbgmcu) = (slept, dbgmcu);
+        self.halted_by_debugger = false;
         if cause == ResetCause::PowerOn {
             self.flash.cells.power_up();
         }
@@ -109,7 +115,7 @@ impl<W: Wiring> Chip<W> {
         self.reset_device(Device::Adc, now);
         self.usart.set_clock(1, HSI_HZ);
         self.usart.reset();
-        self.iwdg = Iwdg::new();
+        self.iwdg = Iwdg::new(self.lsi_hz);
         self.wwdg = Wwdg::new();
         self.stopped_at = None;
         self.reset = None;
@@ -188,6 +194,9 @@ impl<W: Wiring> Chip<W> {
             let nvic = &mut self.nvic;
             if self.ppb.write(nvic, address, bytes, value, now)? {
                 self.reset = Some(ResetCause::Software);
+            }
+            if self.halted_by_debugger {
+                self.apply_debug_freeze(now);
             }
             self.refresh_next(now);
             return Ok(());
@@ -279,11 +288,11 @@ impl<W: Wiring> Chip<W> {
     }
 
     /// The window watchdog counts PCLK1 while its own clock is enabled.
-    fn clock_wwdg(&mut self, now: u64) {
+    pub(super) fn clock_wwdg(&mut self, now: u64) {
         let Clocks {
             hclk_hz, pclk1_hz, ..
         } = self.rcc.clocks();
-        let on = self.rcc.check_clock(Enr::Apb1, 11).is_ok();
+        let on = self.rcc.check_clock(Enr::Apb1, 11).is_ok() && !self.window_watchdog_is_halted();
         self.wwdg
             .set_clock(on.then(|| u64::from(hclk_hz / pclk1_hz)), now);
     }

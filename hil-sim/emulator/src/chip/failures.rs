@@ -41,6 +41,24 @@ impl<W: Wiring> Chip<W> {
         Ok(after != AfterHse::Nothing)
     }
 
+    /// The external oscillator comes, or comes back.
+    pub fn start_hse(&mut self, now: u64) {
+        self.rcc.start_hse(now);
+    }
+
+    /// Flips stored bits of BDTR of TIM1 or TIM8. `false`: the address is that of another register.
+    pub fn flip_bdtr(&mut self, address: u32, mask: u32, now: u64) -> bool {
+        let timer = match address {
+            0x4001_0044 => TIM1,
+            0x4001_0444 => TIM8,
+            _ => return false,
+        };
+        self.tims[timer].flip_bdtr(mask, now);
+        self.timer_changed(timer, now);
+        self.sample_inputs(now);
+        true
+    }
+
     /// No conversion ends until the converter is reset.
     pub fn stop_adc(&mut self, now: u64) {
         self.adc.stop_converting();

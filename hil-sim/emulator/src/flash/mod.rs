@@ -22,6 +22,8 @@ const PGSERR: u32 = 1 << 7;
 const PGPERR: u32 = 1 << 6;
 const PGAERR: u32 = 1 << 5;
 const ERRORS: u32 = 0x1f2;
+/// OPTCR with the option bytes as delivered: BOR_LEV (bits 3 and 2) is 11, brown-out reset off (3.8.6).
+const OPTCR_OF_THE_FACTORY: u32 = 0x0fff_aaed;
 
 /// Typical times (DS10693, flash memory programming): a unit of 8, 16 or 32 bits, and a sector of 16 KiB at that
 /// parallelism.
@@ -44,16 +46,20 @@ pub(crate) struct Flash {
     control: u32,
     status: u32,
     busy_until: u64,
+    /// BOR_LEV of the option bytes.
+    brown_out_code: u8,
 }
 
 impl Flash {
-    pub fn new(contents: Vec<u8>) -> Self {
+    /// A flash with these contents and the option bytes of the factory, but for BOR_LEV.
+    pub fn new(contents: Vec<u8>, brown_out_code: u8) -> Self {
         Self {
             cells: FlashCells::new(contents),
             lock: Lock::Locked,
             control: 0,
             status: 0,
             busy_until: 0,
+            brown_out_code: brown_out_code & 3,
         }
     }
 
@@ -76,11 +82,12 @@ impl Flash {
         self.busy_until
     }
 
-    /// KEYR, SR and CR (3.8); option bytes are not modelled.
+    /// KEYR, SR, CR and OPTCR (3.8); option bytes can be read, not programmed.
     pub fn read(&self, offset: u32, now: u64) -> Answer<u32> {
         match offset {
             0x0c => Ok(self.status | if now < self.busy_until { BSY } else { 0 }),
             0x10 => Ok(self.control | if self.lock == Lock::Open { 0 } else { LOCK }),
+            0x14 => Ok(OPTCR_OF_THE_FACTORY & !(3 << 2) | u32::from(self.brown_out_code) << 2),
             _ => Err(Refusal::Offset),
         }
     }

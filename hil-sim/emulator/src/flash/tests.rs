@@ -4,7 +4,7 @@ const HSI: u32 = 16_000_000;
 const PSIZE_32: u32 = 2 << 8;
 
 fn unlocked() -> Flash {
-    let mut flash = Flash::new(vec![0xff; 0x8_0000]);
+    let mut flash = Flash::new(vec![0xff; 0x8_0000], 0);
     for key in KEYS {
         flash.write(4, key, 0, HSI).unwrap();
     }
@@ -14,7 +14,7 @@ fn unlocked() -> Flash {
 
 #[test]
 fn the_keys_unlock_the_control_register_in_their_order_only() {
-    let mut flash = Flash::new(vec![0xff; 0x8_0000]);
+    let mut flash = Flash::new(vec![0xff; 0x8_0000], 0);
     assert_eq!(flash.read(0x10, 0).unwrap(), LOCK);
     assert!(flash.write(0x10, PG, 0, HSI).is_err());
     for key in [KEYS[1], KEYS[0], KEYS[1]] {
@@ -81,4 +81,13 @@ fn a_wrong_store_changes_nothing_and_sets_its_error_flag() {
     }
     assert!(flash.cells.bytes().iter().all(|byte| *byte == 0xff));
     assert_eq!(flash.cells.operations(), 0);
+}
+
+/// 3.8.6: BOR_LEV is in bits 3 and 2; as delivered it is 11.
+#[test]
+fn the_option_register_shows_the_brown_out_level() {
+    for (code, expected) in [(3, 0x0fff_aaed), (0, 0x0fff_aae1), (1, 0x0fff_aae5)] {
+        let flash = Flash::new(vec![0xff; 0x8_0000], code);
+        assert_eq!(flash.read(0x14, 0), Ok(expected));
+    }
 }

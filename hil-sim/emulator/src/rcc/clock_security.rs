@@ -1,5 +1,6 @@
 //! Failure of the external oscillator (RM0390 6.2.7, clock security system), and the reset flags.
-use super::{Clocks, Rcc};
+use super::clock_tree::HSE_START_US;
+use super::{Clocks, HSE, Rcc};
 use crate::stop::Answer;
 use thermal_sim::processor::ResetCause;
 
@@ -20,8 +21,8 @@ pub(crate) enum AfterHse {
 }
 
 impl Rcc {
-    /// The registers after a reset. Flags of earlier resets stay unless the supply was lost (6.3.21); a failed
-    /// external oscillator stays failed.
+    /// The registers after a reset. Flags of earlier resets stay unless the supply was lost (6.3.21); an external clock
+    /// that is absent stays absent.
     pub fn after_reset(&self, cause: ResetCause) -> Self {
         let flags = match cause {
             ResetCause::PowerOn | ResetCause::BrownOut => 0,
@@ -33,7 +34,15 @@ impl Rcc {
         }
     }
 
-    /// Stops the external oscillator permanently.
+    /// The external clock comes, or comes back; the ready flag follows after the start-up time if HSEON is set.
+    pub fn start_hse(&mut self, now: u64) {
+        if self.hse_failed {
+            self.hse_failed = false;
+            self.ready_at[HSE] = self.after(now, HSE_START_US);
+        }
+    }
+
+    /// Stops the external oscillator.
     pub fn stop_hse(&mut self) -> Answer<AfterHse> {
         self.hse_failed = true;
         let pll = self.cr & PLLON != 0 && self.pllcfgr & PLL_BY_HSE != 0;

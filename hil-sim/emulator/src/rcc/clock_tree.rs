@@ -6,7 +6,7 @@ use crate::stop::{Answer, Refusal, only};
 /// Start-up times in microseconds, of the order the data sheet (DS10693 section 6.3) gives as typical; the HSE is an
 /// external clock, not a crystal.
 const HSI_START_US: u64 = 2;
-const HSE_START_US: u64 = 10;
+pub(super) const HSE_START_US: u64 = 10;
 const PLL_LOCK_US: u64 = 100;
 
 impl Rcc {

@@ -1,5 +1,5 @@
 //! Register access of the timers (RM0390 16.4, 17.4, 19.4).
-use super::{AOE, BIF, BKE, BKP, MOE, OSSI, OSSR, Tim, UIF};
+use super::{AOE, BIF, BKE, BKP, LOCK, MOE, OSSI, OSSR, Tim, UIF};
 use crate::stop::{Answer, Refusal, only};
 
 impl Tim {
@@ -74,7 +74,7 @@ impl Tim {
                         "TIM CR2.MMS (trigger output from a compare match)",
                     ));
                 }
-                let protected = if self.lock >= 1 { 0x7f00 } else { 0 };
+                let protected = if self.lock() >= 1 { 0x7f00 } else { 0 };
                 self.cr2 = value & !protected | self.cr2 & protected;
             }
             0x08 => only(value, 0, "TIM SMCR (slave modes)")?,
@@ -115,7 +115,7 @@ impl Tim {
                     allowed |= 0x0888;
                 }
                 only(value, allowed, "TIM CCER reserved bits")?;
-                let protected = if self.lock >= 2 { 0x2aaa } else { 0 };
+                let protected = if self.lock() >= 2 { 0x2aaa } else { 0 };
                 self.ccer = value & !protected | self.ccer & protected;
             }
             0x24 => self.set_count(value & self.kind.counter_max, now),
@@ -160,7 +160,7 @@ impl Tim {
                 ));
             }
         }
-        let protected = if self.lock >= 3 { 0x7878 } else { 0 };
+        let protected = if self.lock() >= 3 { 0x7878 } else { 0 };
         self.ccmr[half] = value & !protected | self.ccmr[half] & protected;
         for channel in 2 * half..2 * half + 2 {
             if self.ccmr[half] >> (8 * (channel % 2) + 3) & 1 == 0 {
@@ -170,17 +170,25 @@ impl Tim {
         Ok(())
     }
 
-    /// Dead time concerns complementary outputs only, which are refused; LOCK can be written once (16.4.18).
+    /// Dead time concerns complementary outputs only, which are refused. LOCK can be written once after a reset: its content
+    /// is frozen once BDTR has been written, whatever that write has put into it (17.4.18).
     fn write_bdtr(&mut self, value: u32) -> Answer<()> {
         only(value, 0xffff, "TIM BDTR reserved bits")?;
-        let protected = match self.lock {
+        let protected = match self.lock() {
             0 => 0,
             1 => BKE | BKP | AOE | 0xff,
             _ => BKE | BKP | AOE | 0xff | OSSR | OSSI,
         };
-        let locked_bits = if self.lock > 0 { 0x300 } else { 0 };
-        self.bdtr = value & !(protected | locked_bits) | self.bdtr & (protected | locked_bits);
-        self.lock = self.bdtr >> 8 & 3;
+        let kept = protected | if self.bdtr_written { LOCK } else { 0 };
+        self.bdtr = value & !kept | self.bdtr & kept;
+        self.bdtr_written = true;
         Ok(())
+    }
+
+    /// Flips stored bits of BDTR, which LOCK does not protect from radiation.
+    pub fn flip_bdtr(&mut self, mask: u32, now: u64) {
+        self.sync(now);
+        self.bdtr ^= mask;
+        self.schedule();
     }
 }

@@ -90,6 +90,40 @@ fn lock_level_1_keeps_the_break_configuration() {
     assert_eq!(tim.read(0x44, 0).unwrap(), MOE | OSSR | BKE | 1 << 8);
 }
 
+/// 17.4.18: the first write of BDTR after a reset freezes LOCK, also if it has written 0 to it.
+#[test]
+fn lock_is_frozen_by_the_first_write() {
+    let mut late = pwm(AOE);
+    late.write(0x44, BKE | 3 << 8, 0).unwrap();
+    assert_eq!(late.read(0x44, 0).unwrap(), BKE, "too late");
+    late.write(0x44, 0, 0).unwrap();
+    assert_eq!(late.read(0x44, 0).unwrap(), 0, "nothing is protected");
+
+    let mut first = pwm(BKE | OSSI | 3 << 8);
+    first.write(0x44, AOE | MOE, 0).unwrap();
+    assert_eq!(first.read(0x44, 0).unwrap(), BKE | OSSI | 3 << 8 | MOE);
+    first.reset();
+    first.write(0x44, AOE, 0).unwrap();
+    assert_eq!(first.read(0x44, 0).unwrap(), AOE, "a reset ends the lock");
+}
+
+#[test]
+fn a_halted_timer_keeps_its_count_and_an_advanced_one_disables_its_outputs() {
+    let mut tim = pwm(MOE | OSSI);
+    tim.set_halted(true, 400);
+    assert_eq!(tim.read(0x24, 1_000_000).unwrap(), 400);
+    assert_eq!(tim.output(0), Output::High { high: 0, period: 1 });
+    tim.set_halted(false, 1_000_000);
+    assert_eq!(tim.read(0x24, 1_000_100).unwrap(), 500);
+    assert_eq!(tim.output(0), high(450));
+
+    let output = [(0x2c, 1799), (0x34, 450), (0x18, 0x68), (0x20, 0x1)];
+    let start = [(0x14, 1), (0x00, 0x81)];
+    let mut single = timer(SINGLE, 1, &[output.as_slice(), &start].concat());
+    single.set_halted(true, 400);
+    assert!(single.is_high(0, 1_000_000), "the level of the count 400");
+}
+
 #[test]
 fn compare_flags_rise_at_the_match() {
     let mut tim = pwm(MOE);

@@ -41,6 +41,9 @@ pub(super) struct File {
 pub(super) struct Device {
     pub commissioned: bool,
     pub finger: Option<AssumedFinger>,
+    pub brown_out_level: Option<Spanned<u32>>,
+    pub lsi_hz: Option<Spanned<u32>>,
+    pub external_clock: bool,
 }
 
 words! {
@@ -57,6 +60,9 @@ impl Default for Device {
         Self {
             commissioned: true,
             finger: None,
+            brown_out_level: None,
+            lsi_hz: None,
+            external_clock: true,
         }
     }
 }

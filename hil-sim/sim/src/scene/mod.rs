@@ -25,7 +25,7 @@ use thermal_plant::parameters::FingerDraw;
 use thermal_plant::slab::{BackBoundary, Layer};
 use thermal_plant::{Params, PlantConfig};
 
-use crate::processor::Injection;
+use crate::processor::{ChipState, Injection};
 
 pub use fault::{
     ActiveFault, DRIFT_K_S, FaultKind, ProcessorKey, ProcessorKind, ScheduledFault, Sensor,
@@ -56,6 +56,8 @@ pub struct Scene {
     pub seed: u64,
     /// Whether the device was calibrated and tuned before the scene.
     pub commissioned: bool,
+    /// The microcontroller before its program starts.
+    pub chip: ChipState,
     /// Contact model that the device uses.
     pub mode: ContactModel,
     /// Control law; `None` for the default of the device.

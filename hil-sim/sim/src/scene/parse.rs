@@ -18,6 +18,7 @@ use super::object::object;
 use super::plant::params;
 use super::source::{SceneError, Source};
 use super::{AssumedFinger, Draws, Force, HostLine, Scene};
+use crate::processor::ChipState;
 
 /// Settling time of a scene that gives none, and the shortest: the slowest preset is reached to a few mK, s.
 const SETTLE_S: f64 = 8.0;
@@ -56,6 +57,7 @@ pub(super) fn scene(text: &str, path: &Path) -> Result<Scene, SceneError> {
         room_c,
         seed: file.seed,
         commissioned: file.device.commissioned,
+        chip: chip(&source, &file.device)?,
         mode,
         law: file
             .law
@@ -122,6 +124,30 @@ fn assumed_finger(file: &File, params: &Params, draws: &Draws) -> AssumedFinger 
         }
         None => AssumedFinger::Mean,
     }
+}
+
+/// The microcontroller before its program starts.
+fn chip(source: &Source<'_>, device: &file::Device) -> Result<ChipState, SceneError> {
+    let whole = |key, value: &Option<Spanned<u32>>, nominal: u32, (least, most): (u32, u32)| {
+        let Some(value) = value else {
+            return Ok(nominal);
+        };
+        let given = *value.get_ref();
+        if (least..=most).contains(&given) {
+            return Ok(given);
+        }
+        let problem = format!("device.{key} = {given}; allowed is {least} to {most}");
+        Err(source.error(Some(value.span()), problem))
+    };
+    let nominal = ChipState::default();
+    let lsi_hz = (*ChipState::LSI_HZ.start(), *ChipState::LSI_HZ.end());
+    let level = whole("brown_out_level", &device.brown_out_level, 3, (0, 3))?;
+    Ok(ChipState {
+        // 00 is level 3, 11 is off.
+        brown_out_code: 3 - level as u8,
+        lsi_hz: whole("lsi_hz", &device.lsi_hz, nominal.lsi_hz, lsi_hz)?,
+        external_clock: device.external_clock,
+    })
 }
 
 /// The control law of a name, with the names of the device's protocol.

@@ -65,9 +65,11 @@ pub struct ProcessorKind {
 
 impl ProcessorKind {
     /// All kinds.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 14] = [
         Self::new("hung-core", &[]),
+        Self::new("debugger-halt", &[]),
         Self::new("hse-stopped", &[]),
+        Self::new("hse-started", &[]),
         Self::new("adc-stopped", &[]),
         Self::new(
             "dma-stopped",
