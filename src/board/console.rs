@@ -8,10 +8,10 @@ use thermal_display::device::Telemetry;
 use thermal_display::device::command::WithSourceFinger;
 use thermal_display::line_queue::LineConsumer;
 use thermal_display::protocol::{
-    CommandHandler, Error, ExecuteOnStations, Reply, wrap_as_telemetry_line,
+    BoardStatus, CommandHandler, Error, ExecuteOnStations, Reply, wrap_as_telemetry_line,
 };
 
-use super::{FINGERS, Outbox, restart_to_save};
+use super::{FINGERS, Outbox, board_status_now, restart_to_save};
 
 /// The host task's part of the serial line: answers received lines, and sends queued telemetry to
 /// the host.
@@ -24,6 +24,8 @@ pub struct Console {
     /// settings were stored. Sent before any other line; `None` after any other start, and once
     /// sent.
     pub first_answer: Option<Result<Reply, Error>>,
+    /// State of the board as the start has found it.
+    pub status_at_start: BoardStatus,
     /// The order of the host to store the present settings (`save`) or factory defaults (`forget`).
     /// Once all lines in the outbox are sent, the console restarts the device to execute this
     /// order. `None` while there is no order.
@@ -56,6 +58,7 @@ impl Console {
                     Err(error) => self.send(&error),
                 }
             } else if let Some(line) = self.lines.dequeue_line_or_queue_full() {
+                self.handler.board = board_status_now(&self.status_at_start);
                 let answer = line
                     .map_err(|error| WithSourceFinger::from_whole_device(Error::from(error)))
                     .and_then(|line| self.handler.answer(&line, &mut execute));

@@ -6,11 +6,11 @@ use heapless::spsc::Producer;
 use thermal_display::device::command::WithSourceFinger;
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
-use thermal_display::device::{DeviceInPlace, Telemetry};
+use thermal_display::device::{DeviceInPlace, FingerIndex, Telemetry};
 
 use super::{
-    FINGERS, FingerPowerStage, SampleError, Sampler, TripCauseRecorder, WindowWatchdog,
-    save_dose_if_changed, stack_is_overrun,
+    ChipMonitor, FINGERS, FingerPowerStage, SampleError, Sampler, TripCauseRecorder,
+    WindowWatchdog, line_losses, save_dose_if_changed, stack_is_overrun,
 };
 
 /// Executes the control ticks of all fingers: samples the sensors, computes each finger's outputs,
@@ -21,10 +21,7 @@ pub struct ControlLoop {
     pub trip_cause_recorder: TripCauseRecorder,
     pub telemetry: Producer<'static, WithSourceFinger<Telemetry>>,
     pub window_watchdog: WindowWatchdog,
-    /// Whether the 8 MHz clock of the debug probe was stable at the start. If not, the ticks come
-    /// from the internal oscillator, whose tolerance of 1 % makes their period inaccurate, so every
-    /// tick trips all fingers by [`Fault::Clock`].
-    pub has_clock: bool,
+    pub chip_monitor: ChipMonitor,
 }
 
 impl ControlLoop {
@@ -64,12 +61,14 @@ impl ControlLoop {
         if stack_is_overrun() {
             device.trip_all(Fault::Stack);
         }
-        if !self.has_clock {
-            device.trip_all(Fault::Clock);
+        if let Some(fault) = self.chip_monitor.present_fault() {
+            device.trip_all(fault);
         }
         let outputs = device.step_finger(finger, &samples);
         // Scan all fingers only when one has tripped or a cause is stored.
-        if self.trip_cause_recorder.has_stored_cause() || device.is_finger_tripped(finger) {
+        if !self.chip_monitor.has_fault_at_start()
+            && (self.trip_cause_recorder.has_stored_cause() || device.is_finger_tripped(finger))
+        {
             self.trip_cause_recorder
                 .store_or_erase(device.earliest_trip_cause());
         }
@@ -80,7 +79,14 @@ impl ControlLoop {
         if let Some(telemetry) = telemetry {
             // A full queue means that the link to the host is too slow; this line of telemetry is
             // then dropped.
-            let _ = self.telemetry.enqueue(telemetry);
+            if self.telemetry.enqueue(telemetry).is_err() {
+                line_losses::DROPPED_TELEMETRY.count();
+            }
+        }
+        if finger == FingerIndex::FIRST
+            && FingerIndex::all().all(|one| device.is_finger_tripped(one))
+        {
+            self.chip_monitor.restart_when_clock_has_come();
         }
         Ok(is_due)
     }

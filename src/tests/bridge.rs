@@ -4,13 +4,14 @@ use std::cell::Cell;
 use std::convert::Infallible;
 
 use crate::bridge::Bridge;
+use crate::device::PWM_PERIOD_STEPS_OF_ONE_FINGER;
 use crate::device::drive::Duty;
 use embedded_hal::digital::{self, OutputPin};
 use embedded_hal::pwm::{self, SetDutyCycle};
 use fixed::types::I1F15;
 
-/// Steps of a PWM period on the NUCLEO-F446RE.
-const STEPS: u16 = 1875;
+/// Steps of a PWM period.
+const STEPS: u16 = PWM_PERIOD_STEPS_OF_ONE_FINGER;
 
 /// Levels of the lines between microcontroller and bridge: compare values of the inputs, in steps,
 /// and the enable line.
@@ -90,11 +91,10 @@ fn mean_voltage_is_the_duty_to_half_a_step() {
         let duty = Duty::saturating(I1F15::from_bits(bits));
         bridge.drive(duty);
         let voltage = lines.mean_voltage().expect("driven throughout the period");
-        let error = voltage - duty.fraction().to_num::<f64>();
-        assert!(
-            error.abs() <= 0.5 / f64::from(STEPS),
-            "duty {duty:?} gives {voltage}"
-        );
+        // In steps, which are exact: a duty may lie in the middle between two of them.
+        let steps = (voltage * f64::from(STEPS)).round();
+        let error = steps - duty.fraction().to_num::<f64>() * f64::from(STEPS);
+        assert!(error.abs() <= 0.5, "duty {duty:?} gives {voltage}");
     }
 }
 

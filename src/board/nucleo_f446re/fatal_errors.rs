@@ -11,7 +11,7 @@ use cortex_m_rt::{ExceptionFrame, exception};
 
 use thermal_display::device::safety::{Fault, TripCause};
 
-use super::{independent_watchdog, trip_cause_recorder, wiring};
+use super::{independent_watchdog, late_clock, trip_cause_recorder, wiring};
 
 /// Disables interrupts, turns all bridges off, and stores `fault` in RAM, unless an earlier cause
 /// is stored there, as the cause by which the next start trips all fingers.
@@ -64,7 +64,10 @@ unsafe fn HardFault(frame: &ExceptionFrame) -> ! {
 
 // SAFETY: `unsafe` because it interrupts critical sections. It accesses no data that they protect.
 #[exception]
-unsafe fn NonMaskableInt() -> ! {
+unsafe fn NonMaskableInt() {
+    if late_clock::acknowledge_failure_while_waiting() {
+        return;
+    }
     disable_bridges_and_store_first_fault(Fault::Clock);
     if is_first_error_to_log() {
         defmt::error!("the 8 MHz clock has failed");

@@ -21,13 +21,20 @@
 //! an inverting transistor. nSLEEP stays high, because a bridge that wakes up may report a fault
 //! until its charge pump runs.
 
+mod brown_out_level;
+mod chip_monitor;
+mod debug_freeze;
 mod defmt_rtt_log;
 mod fatal_errors;
 #[cfg(feature = "five-fingers")]
 mod five_fingers;
 mod independent_watchdog;
+mod late_clock;
+pub mod line_losses;
 #[cfg(not(feature = "five-fingers"))]
 mod one_finger;
+mod ordered_restart;
+mod pwm_settings;
 mod reset_cause;
 mod sample_error;
 mod sampler;
@@ -49,9 +56,12 @@ use thermal_display::device::command::WithSourceFinger;
 use thermal_display::device::safety::{Fault, TripCause};
 use thermal_display::device::{DeviceInPlace, FingerIndex, Station, Telemetry};
 use thermal_display::line_queue::LineQueue;
-use thermal_display::protocol::{CommandHandler, Error, OutgoingLine, Reply, StorageFailureText};
+use thermal_display::protocol::{
+    BoardStatus, CommandHandler, Error, OutgoingLine, Reply, StorageFailureText,
+};
 use thermal_display::settings::Settings;
 
+pub use chip_monitor::{ChipMonitor, status_now as board_status_now};
 #[cfg(feature = "five-fingers")]
 use five_fingers as wiring;
 pub use independent_watchdog::IndependentWatchdog;
@@ -104,22 +114,23 @@ impl StaticMemory {
     }
 }
 
-/// Determines the cause, if any, by which all fingers are tripped before their first tick: the trip
+/// Reads the cause of the reset, and determines the cause, if any, by which all fingers are tripped before their first tick: the trip
 /// cause stored before the reset or, if none is stored, the fault that the reset itself indicates.
 /// If the stack guard was overwritten, [`Fault::Stack`] replaces a cause that no tick has recorded,
 /// except [`Fault::UnaskedReset`]. Stores the cause before the rest of the start-up, which takes
 /// long, so that another reset during the start-up does not lose it. After power-on, also sets the
 /// saved thermal doses to zero.
-fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
+fn reset_and_trip_cause_at_start(rcc: &pac::RCC) -> (ResetCause, Option<TripCause>) {
     let stack_was_overrun = stack_guard::stack_is_overrun();
     stack_guard::init_guard();
     let reset = ResetCause::read(rcc);
     if reset == ResetCause::PowerOn {
         saved_dose::zero_saved_doses();
     }
+    let restart_was_ordered = ordered_restart::was_ordered();
     let mut cause = trip_cause_recorder::store_reset_fault_and_load_cause(
         reset,
-        settings_storage::save_is_pending(),
+        settings_storage::save_is_pending() || restart_was_ordered,
     );
     // A fault that no tick has recorded is a consequence of the overrun. The first start of another
     // version of the firmware is excepted, because its predecessor may have used the words of the
@@ -133,7 +144,7 @@ fn trip_cause_at_start(rcc: &pac::RCC) -> Option<TripCause> {
     // The flags are cleared last: if a reset intervenes, the next start still finds them.
     ResetCause::clear_flags(rcc);
     defmt::info!("start after reset: {}", reset);
-    cause
+    (reset, cause)
 }
 
 /// Creates the device, its stations in `places`, with the settings from the flash and with the thermal doses that
@@ -205,7 +216,9 @@ impl Board {
         memory: &'static mut StaticMemory,
         stations: &'static mut [Option<Station>; FINGERS],
     ) -> Self {
-        let cause = trip_cause_at_start(&peripherals.RCC);
+        debug_freeze::clear_freeze_bits(&peripherals.DBGMCU);
+        let (reset, cause) = reset_and_trip_cause_at_start(&peripherals.RCC);
+        let brown_out_level = brown_out_level::brown_out_level(&peripherals.FLASH);
         // Before anything is set up that the flash would delay.
         let storage = settings_storage::save_pending_and_load(&peripherals.FLASH);
         // Creating the device takes 0.2 s at 16 MHz, so it comes before the watchdogs and the
@@ -290,6 +303,12 @@ impl Board {
                 Err(error) => Err(Error::NotStored(StorageFailureText::new(&error))),
             }),
             storage_order: None,
+            status_at_start: BoardStatus {
+                brown_out_level,
+                clock_is_external: has_clock,
+                reset: reset.name(),
+                ..BoardStatus::default()
+            },
         };
 
         let pins = sampler::SensorPins {
@@ -320,7 +339,7 @@ impl Board {
                 trip_cause_recorder,
                 telemetry: telemetry_in,
                 window_watchdog: WindowWatchdog::start(peripherals.WWDG, &mut rcc),
-                has_clock,
+                chip_monitor: ChipMonitor::new(has_clock, brown_out_level),
             },
             trigger,
             receiver,
@@ -342,10 +361,10 @@ fn try_start_hse_from_probe(rcc: &pac::RCC) -> bool {
 /// `has_clock`, the clocks are derived from the 8 MHz crystal of the debug probe, else from the
 /// internal oscillator. The tolerance of the internal oscillator, 1 %, would falsify the time in
 /// every rendered contact, so all fingers then stay tripped by [`Fault::Clock`], and the device
-/// runs only so that the host can read this fault.
+/// runs only so that the host can read this fault, until the clock [has come](late_clock).
 ///
-/// All rates are exact: the USART's 45 MHz are a multiple of the baud rate, the sample timer's 90
-/// MHz a multiple of the scan rate, and the PWM timers' 180 MHz a multiple of the PWM frequency.
+/// All rates are exact: the USART's 45 MHz are a multiple of the baud rate, and the sample timer's
+/// 90 MHz a multiple of the scan rate.
 fn clock_config_from_hse_or_hsi(has_clock: bool) -> Config {
     let source = if has_clock {
         Config::hse(8.MHz()).bypass_hse_oscillator()

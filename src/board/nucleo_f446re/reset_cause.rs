@@ -15,8 +15,8 @@ pub enum ResetCause {
     /// or idle task did not run, or because a handler of a fatal error waited for the reset while
     /// the window watchdog did not run.
     Watchdog,
-    /// A reset by software. The program resets the device only to store settings; if no settings
-    /// wait in RAM, the reset is a fault.
+    /// A reset by software. The program resets the device only to store settings, or because the
+    /// clock has come for which it waited; any other such reset is a fault.
     Software,
     /// The supply voltage was too low; the RAM has kept its content.
     BrownOut,
@@ -51,6 +51,19 @@ impl ResetCause {
         }
     }
 
+    /// Its name in the answer to `board`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::PowerOn => "power-on",
+            Self::WindowWatchdog => "window-watchdog",
+            Self::Watchdog => "independent-watchdog",
+            Self::Software => "software",
+            Self::BrownOut => "brown-out",
+            Self::Pin => "reset-pin",
+            Self::Other => "low-power",
+        }
+    }
+
     /// Clears the reset flags, so that the next start finds only the flags of the next reset.
     pub fn clear_flags(rcc: &RCC) {
         rcc.csr().modify(|_, w| w.rmvf().clear());
@@ -59,7 +72,7 @@ impl ResetCause {
     /// The fault that this reset indicates: [`Fault::TickLost`] for the window watchdog,
     /// [`Fault::Watchdog`] for the independent watchdog, [`Fault::UnaskedReset`] for a low-power
     /// reset and for an unplanned reset by software. `None` for a planned one
-    /// (`restart_is_planned`: settings wait in RAM to be stored), for power-on, brown-out, and a
+    /// (`restart_is_planned`), for power-on, brown-out, and a
     /// reset by the pin.
     pub const fn indicated_fault(self, restart_is_planned: bool) -> Option<Fault> {
         match self {

@@ -12,11 +12,13 @@ use stm32f4xx_hal::gpio::{Input, PA2, PA3};
 use stm32f4xx_hal::pac::{DMA1, Interrupt, NVIC, USART2};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
-use stm32f4xx_hal::serial::{Config, Rx, RxListen, Serial, Tx, config};
+use stm32f4xx_hal::serial::{Config, Error as SerialError, Rx, RxListen, Serial, Tx, config};
 use stm32f4xx_hal::{ClearFlags, ReadFlags, nb};
 use thermal_display::protocol::{LineError, LineReader, OutgoingLine};
 
 use thermal_display::line_queue::LineProducer;
+
+use super::line_losses;
 
 /// Bits per second of the serial line in both directions. One telemetry line per millisecond does
 /// not fit into the usual 115 200. The clocks of both ends are exact multiples of this rate.
@@ -153,7 +155,12 @@ impl Receiver {
                 None => LineReader::is_line_end(byte).then_some(BlankOrToBeAnsweredLine::Blank),
             },
             Err(nb::Error::WouldBlock) => None,
-            Err(nb::Error::Other(_)) => {
+            Err(nb::Error::Other(error)) => {
+                match error {
+                    SerialError::Overrun => line_losses::OVERRUNS.count(),
+                    SerialError::Noise => line_losses::NOISY_BYTES.count(),
+                    _ => line_losses::FRAMING_ERRORS.count(),
+                }
                 self.reader.mark_invalid(LineError::Reception);
                 None
             }

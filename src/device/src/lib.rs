@@ -15,6 +15,7 @@ mod finger_index;
 pub mod identification;
 mod low_pass;
 pub mod pi;
+mod pwm_period;
 pub mod reference;
 pub mod safety;
 pub mod sense;
@@ -25,6 +26,9 @@ mod temperature_hold;
 
 pub use device::{Device, DeviceInPlace, execute_in_turn};
 pub use finger_index::FingerIndex;
+pub use pwm_period::{
+    PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER, PWM_STEPS_PER_SECOND,
+};
 pub use state_name::StateName;
 pub use station::Station;
 pub use telemetry::Telemetry;

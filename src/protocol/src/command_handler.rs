@@ -14,7 +14,7 @@ use crate::arguments::{expect_end, read_word};
 use crate::finger_address::split_address;
 use crate::line_checksum::{strip_checksum, write_line};
 use crate::upload::Upload;
-use crate::{Error, OutgoingLine, Reply, Request, UploadError};
+use crate::{BoardStatus, Error, OutgoingLine, Reply, Request, UploadError};
 
 /// A function that executes a command in the station (the control) of the given finger, or in the stations of all
 /// fingers for `None`, and returns the reply or the refusal, in bounded and short time. [`CommandHandler::answer`]
@@ -44,6 +44,8 @@ pub struct CommandHandler<const FINGERS: usize> {
     upload: Option<(Option<FingerIndex<FINGERS>>, Upload)>,
     /// Whether lines to the host end with a checksum.
     checksums: bool,
+    /// State of the board, for the answer to `board`. Whoever has a board keeps it up to date.
+    pub board: BoardStatus,
 }
 
 impl<const FINGERS: usize> CommandHandler<FINGERS> {
@@ -54,6 +56,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             sessions: array::from_fn(|_| CommissioningSession::new(settings)),
             upload: None,
             checksums: false,
+            board: BoardStatus::default(),
         }
     }
 
@@ -68,6 +71,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             sessions: stored.each_ref().map(session),
             upload: None,
             checksums: false,
+            board: BoardStatus::default(),
         }
     }
 
@@ -132,6 +136,7 @@ impl<const FINGERS: usize> CommandHandler<FINGERS> {
             Request::Identify => Ok(addressed(Reply::Identity {
                 fingers: FINGERS as u8,
             })),
+            Request::Board => Ok(addressed(Reply::Board(self.board))),
             Request::Station(command) => Self::execute_in_stations(command, finger, execute),
             Request::Slab { thickness_mm, back } => {
                 let material = Self::chosen_material(finger, &mut execute);

@@ -6,6 +6,7 @@
 extern crate std;
 
 mod arguments;
+mod board_status;
 mod calibrate_settings_set_commands;
 mod command_handler;
 mod error;
@@ -19,6 +20,7 @@ mod request;
 mod telemetry;
 mod upload;
 
+pub use board_status::BoardStatus;
 pub use command_handler::{CommandHandler, ExecuteOnStations, ExecutionResult};
 pub use error::{Error, QuotedWordExcerpt, StorageFailureText};
 pub use line_checksum::{ChecksumError, OutgoingLine, line_checksum, strip_checksum, write_line};

@@ -10,13 +10,14 @@ use thermal_device::safety::TripCause;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, Tile};
 
+use crate::BoardStatus;
 use crate::line_buffer::LineBuffer;
 use crate::request::CONTACT_MODEL_WORDS;
 
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str = "upload,checksum";
+const CAPABILITIES: &str = "upload,checksum,board";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -28,6 +29,8 @@ pub enum Reply {
         /// Number of fingers of the device, 1 to 10.
         fingers: u8,
     },
+    /// Answer to the command `board`.
+    Board(BoardStatus),
     /// Answer to a command that was executed by the station (the control) of one finger, or by the stations of all
     /// fingers.
     Station(command::Reply),
@@ -53,6 +56,7 @@ impl fmt::Display for Reply {
                  protocol={PROTOCOL_VERSION} capabilities={CAPABILITIES}",
                 env!("CARGO_PKG_VERSION"),
             ),
+            Self::Board(status) => status.fmt(f),
             Self::Station(reply) => write_station_reply(f, reply),
             Self::Commissioning(reply) => write_session_reply(f, reply),
             Self::Restart(_) => f.write_str("ok"),

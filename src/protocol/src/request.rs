@@ -32,6 +32,8 @@ pub enum Request {
     Identify,
     /// The line `checksum on` or `checksum off`: whether lines end with a checksum.
     Checksum(bool),
+    /// The line `board`: report the state of microcontroller and serial line.
+    Board,
     /// A line that the stations (the control) of the addressed fingers execute as this command, such as `arm` or
     /// `material`.
     Station(Command),
@@ -74,6 +76,7 @@ macro_rules! commands {
 impl Request {
     commands!(|words, display| {
         "id" => Self::Identify,
+        "board" => Self::Board,
         "state" => Self::Station(Command::Status),
         "stream" => Self::Station(parse_stream(words)?),
         "checksum" => Self::Checksum(parse_checksum_switch(words)?),

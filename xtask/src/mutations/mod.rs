@@ -191,9 +191,16 @@ fn hil_sim(copy: &Path, command: &str) -> Vec<OsString> {
 
 /// Unit tests of the copy, by package and name, with the overflow checks of their profile.
 fn unit_tests(copy: &Path, (package, name): (&str, &str), options: &[&str]) -> Invocation {
-    let mut line = ["test", "--package", package, "--lib"]
+    // The tests of the image are no unit tests, and link the emulator.
+    let kind: &[&str] = match package {
+        "image-tests" => &["--release", "--test", "image"],
+        _ => &["--lib"],
+    };
+    let mut line: Vec<_> = [&["test", "--package", package], kind]
+        .concat()
+        .into_iter()
         .map(OsString::from)
-        .to_vec();
+        .collect();
     line.extend(["--manifest-path".into(), copy.join("Cargo.toml").into()]);
     let target = workspace().join(FOLDER).join("target");
     line.extend(["--target-dir".into(), target.into()]);

@@ -9,7 +9,9 @@ use thermal_device::command::WithSourceFinger;
 use thermal_device::drive::{BoardOutputs, Drive};
 use thermal_device::safety::{Fault, ThermalDose, TripCause};
 use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
-use thermal_device::{Device, FingerIndex};
+use thermal_device::{
+    Device, FingerIndex, PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER,
+};
 use thermal_plant::bridge::{BridgeOutputs, Leg};
 use thermal_plant::sensors::Channel;
 use thermal_protocol::{
@@ -26,9 +28,6 @@ use crate::processor::{MachineFault, NotInjected, ResetCause};
 const HALF_NS: u64 = 500_000;
 const BYTE_NS: u64 = 10 * 1_000_000_000 / BAUD;
 const TICK_NS: u64 = 730_000;
-
-/// Steps of the board's PWM period: 180 MHz / 96 kHz.
-const PWM_STEPS: u16 = 1875;
 
 /// Timeout of the window watchdog, ms.
 const WINDOW_MS: u64 = 46;
@@ -57,6 +56,7 @@ pub struct NativeEngine {
     filled: usize,
     /// Number of scans discarded before those of each tick, while the multiplexers settle.
     settling_scans: usize,
+    pwm_period_steps: u16,
     /// Whether the bridge has pulled its fault pin since the last tick, as the board's break flag records.
     fault: bool,
     outputs: BoardOutputs,
@@ -73,7 +73,7 @@ impl NativeEngine {
     /// A device that has just started its first tick.
     #[must_use]
     pub fn new(world: World) -> Self {
-        Self::with_discarded_scans(world, 0, 0)
+        Self::with_discarded_scans(world, PWM_PERIOD_STEPS_OF_ONE_FINGER, 0, 0)
     }
 
     /// One of several fingers that share the converter through multiplexers: one scan is discarded before those of each
@@ -81,10 +81,15 @@ impl NativeEngine {
     /// because no switch precedes the first one.
     #[must_use]
     pub fn multiplexed(world: World, settled: bool) -> Self {
-        Self::with_discarded_scans(world, 1, settled.into())
+        Self::with_discarded_scans(world, PWM_PERIOD_STEPS_OF_FIVE_FINGERS, 1, settled.into())
     }
 
-    fn with_discarded_scans(world: World, settling_scans: usize, more_at_first: usize) -> Self {
+    fn with_discarded_scans(
+        world: World,
+        pwm_period_steps: u16,
+        settling_scans: usize,
+        more_at_first: usize,
+    ) -> Self {
         let settings = Settings::default();
         let mut native = Self {
             world,
@@ -96,6 +101,7 @@ impl NativeEngine {
             scans: [Scan::default(); SCANS_PER_TICK],
             filled: 0,
             settling_scans,
+            pwm_period_steps,
             fault: false,
             outputs: OFF,
             hung_ms: None,
@@ -236,8 +242,9 @@ impl Engine for NativeEngine {
         match self.outputs.drive {
             Drive::Off => BridgeOutputs::default(),
             Drive::On(duty) => {
-                let (a, b) = duty.half_bridge_on_times(PWM_STEPS);
-                let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(PWM_STEPS));
+                let steps = self.pwm_period_steps;
+                let (a, b) = duty.half_bridge_on_times(steps);
+                let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(steps));
                 BridgeOutputs {
                     a: leg(a),
                     b: leg(b),
@@ -283,7 +290,9 @@ impl Engine for NativeEngine {
     /// logic. Other faults do not apply to an engine without a processor.
     fn inject(&mut self, fault: &MachineFault, _after_us: u32) -> Result<(), NotInjected> {
         match fault {
-            MachineFault::HungCore | MachineFault::AdcStopped => self.hung_ms = Some(0),
+            MachineFault::HungCore | MachineFault::DebuggerHalt | MachineFault::AdcStopped => {
+                self.hung_ms = Some(0);
+            }
             MachineFault::DmaStopped { controller: 2, .. } => self.hung_ms = Some(0),
             MachineFault::BrownOut => self.restart(ResetCause::BrownOut),
             MachineFault::PowerCycle { .. } => self.restart(ResetCause::PowerOn),

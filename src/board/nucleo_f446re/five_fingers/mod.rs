@@ -45,8 +45,8 @@
 //! and voltage followers have 11 us to settle. If the program switches too late, the samples may
 //! belong to the wrong finger, and all bridges are turned off.
 //!
-//! At 90 000 scans and 96 000 PWM periods a second, the phase of the ripple repeats every 15 scans.
-//! A sum of 16 scans therefore contains at most a sixteenth of the amplitude of the ripple.
+//! Scans are 2000 steps of the PWM timers apart and PWM periods 1882, so that the 16 scans of a sum
+//! see the ripple at 16 evenly spread phases.
 
 mod multiplexer;
 mod power_stage;

@@ -7,18 +7,20 @@ use embedded_hal::pwm::{ErrorType, SetDutyCycle};
 use stm32f4xx_hal::gpio::{
     ErasedPin, Input, Output, PA8, PA9, PA10, PA11, PB8, PB9, PC6, PC7, PC8, PC9, Pin,
 };
+use stm32f4xx_hal::pac::tim1::bdtr::BKP;
 use stm32f4xx_hal::pac::{TIM1, TIM8, TIM10, TIM11};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
-use stm32f4xx_hal::timer::ErasedChannel;
+use stm32f4xx_hal::timer::{ErasedChannel, Timer};
+use thermal_display::device::PWM_PERIOD_STEPS_OF_FIVE_FINGERS;
 use thermal_display::device::drive::{BoardOutputs, Drive};
 
+use super::super::pwm_settings;
 use super::FINGERS;
 use thermal_display::bridge::Bridge;
 
-/// PWM frequency of all bridges, kHz: that of the one-finger wiring, for which the LC filters and
-/// the dead-time compensation are designed. A period has 1875 steps of 5.6 ns.
-const PWM_KHZ: u32 = 96;
+/// Polarity of the break inputs, at which they are inactive.
+const BREAK_LEVEL: BKP = BKP::ActiveHigh;
 
 /// One finger's bridge, with its fault line and the test line of its comparator.
 ///
@@ -82,10 +84,20 @@ impl BridgePeripherals {
     /// fingers, with all bridges off.
     pub fn into_power_stages(self, rcc: &mut Rcc) -> [FingerPowerStage; FINGERS] {
         let (tim1, tim8, tim10, tim11) = self.timers;
-        let (_, (a0, b0, a1, b1)) = tim1.pwm_hz(PWM_KHZ.kHz(), rcc);
-        let (_, (a2, b2, a3, b3)) = tim8.pwm_hz(PWM_KHZ.kHz(), rcc);
-        let (_, (a4, ..)) = tim10.pwm_hz(PWM_KHZ.kHz(), rcc);
-        let (_, (b4, ..)) = tim11.pwm_hz(PWM_KHZ.kHz(), rcc);
+        let frequency = pwm_settings::frequency_of_period(PWM_PERIOD_STEPS_OF_FIVE_FINGERS);
+        let (first_timer, second_timer) = (Timer::new(tim1, rcc), Timer::new(tim8, rcc));
+        // SAFETY: the channels of `pwm_hz` write only the compare and enable registers; the break
+        // and dead-time registers are written here, below and by `disable_bridges` only.
+        let (tim1, tim8) = unsafe { (TIM1::steal(), TIM8::steal()) };
+        // A failure of the 8 MHz clock acts as a break, which disables the PWM outputs without any
+        // code (RM0390, 17.3.12). No pin is connected to the break inputs.
+        for timer in [&*tim1, &*tim8] {
+            pwm_settings::set_and_lock(timer, BREAK_LEVEL);
+        }
+        let (_, (a0, b0, a1, b1)) = first_timer.pwm_hz(frequency);
+        let (_, (a2, b2, a3, b3)) = second_timer.pwm_hz(frequency);
+        let (_, (a4, ..)) = tim10.pwm_hz(frequency, rcc);
+        let (_, (b4, ..)) = tim11.pwm_hz(frequency, rcc);
         let (first, second, third, fourth, fifth) =
             (self.first, self.second, self.third, self.fourth, self.fifth);
         let [
@@ -122,29 +134,10 @@ impl BridgePeripherals {
                 fifth_lines,
             ),
         ];
-        enable_outputs_with_clock_break_and_lock();
+        for timer in [&*tim1, &*tim8] {
+            timer.bdtr().modify(|_, w| w.moe().enabled());
+        }
         stages
-    }
-}
-
-/// Lets TIM1 and TIM8 drive their PWM pins until the 8 MHz clock fails: that failure acts as a
-/// break, which disables the PWM outputs without any code (RM0390, 17.3.12). No pin is connected to
-/// the break inputs; their polarity makes them inactive. The lock prevents faulty code from
-/// changing these settings or the PWM mode before the next reset.
-fn enable_outputs_with_clock_break_and_lock() {
-    // SAFETY: `pwm_hz` has consumed the handles of the timers. Their channels write only the
-    // compare and enable registers; the break and dead-time registers are written here and by
-    // `disable_bridges` only.
-    let (tim1, tim8) = unsafe { (TIM1::steal(), TIM8::steal()) };
-    for timer in [&*tim1, &*tim8] {
-        timer.bdtr().write(|w| {
-            w.bke().enabled();
-            w.bkp().active_high();
-            w.ossi().idle_level();
-            w.aoe().manual();
-            w.moe().enabled();
-            w.lock().level3()
-        });
     }
 }
 
@@ -166,6 +159,23 @@ impl FingerPowerStage {
             test,
             on: false,
         }
+    }
+
+    /// Whether TIM1 and TIM8 still have the locked settings that switch their outputs off when the
+    /// clock fails. TIM10 and TIM11 have no such settings: what switches the fifth bridge off is its
+    /// enable line.
+    pub fn pwm_settings_are_locked() -> bool {
+        // SAFETY: loads without side effects.
+        let (tim1, tim8) = unsafe { (&*TIM1::ptr(), &*TIM8::ptr()) };
+        pwm_settings::are_set_and_locked(tim1, BREAK_LEVEL)
+            & pwm_settings::are_set_and_locked(tim8, BREAK_LEVEL)
+    }
+
+    /// Level of the lock of the settings of TIM1 and TIM8, 0 (off) to 3: the lower one.
+    pub fn pwm_lock_level() -> u8 {
+        // SAFETY: loads without side effects.
+        let (tim1, tim8) = unsafe { (&*TIM1::ptr(), &*TIM8::ptr()) };
+        pwm_settings::lock_level(tim1).min(pwm_settings::lock_level(tim8))
     }
 
     /// Whether the fault line is low at this moment: the bridge or the comparator reports a fault,

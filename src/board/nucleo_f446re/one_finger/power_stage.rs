@@ -3,17 +3,18 @@
 
 use stm32f4xx_hal::gpio::{Alternate, Input, Output, PA5, PA6, PA8, PA9, PB10, PC3, Pin};
 use stm32f4xx_hal::pac::TIM1;
-use stm32f4xx_hal::prelude::*;
+use stm32f4xx_hal::pac::tim1::bdtr::BKP;
 use stm32f4xx_hal::rcc::Rcc;
-use stm32f4xx_hal::timer::{C1, C2, PwmChannel};
+use stm32f4xx_hal::timer::{C1, C2, PwmChannel, Timer};
+use thermal_display::device::PWM_PERIOD_STEPS_OF_ONE_FINGER;
 use thermal_display::device::drive::{BoardOutputs, Drive};
 
 use thermal_display::bridge::Bridge;
 
-/// PWM frequency of the bridge, kHz. Scans are exactly six PWM periods apart, so every conversion
-/// samples the PWM ripple at the same phase, and no beat frequency enters the control bandwidth. A
-/// period has 1875 steps of 5.6 ns.
-const PWM_KHZ: u32 = 96;
+use super::super::pwm_settings;
+
+/// Level of the fault line that stops the PWM.
+const BREAK_LEVEL: BKP = BKP::ActiveLow;
 
 type FaultLinePin = Pin<'A', 6, Alternate<1>>;
 
@@ -48,25 +49,15 @@ impl FingerPowerStage {
         // The weak internal pull-down loses against the external pull-up; a broken wire therefore
         // reads as a fault.
         let fault = fault.into_pull_down_input().into_alternate();
-        let (_, (in1_channel, in2_channel, ..)) = timer.pwm_hz(PWM_KHZ.kHz(), rcc);
+        let running = Timer::new(timer, rcc);
+        // SAFETY: the channels of `pwm_hz` write only the compare and enable registers; only this
+        // driver writes the break and dead-time register and the status register.
+        let timer = unsafe { TIM1::steal() };
+        pwm_settings::set_and_lock(&timer, BREAK_LEVEL);
+        let frequency = pwm_settings::frequency_of_period(PWM_PERIOD_STEPS_OF_ONE_FINGER);
+        let (_, (in1_channel, in2_channel, ..)) = running.pwm_hz(frequency);
         let mut in1 = in1_channel.with(in1);
         let mut in2 = in2_channel.with(in2);
-        // SAFETY: `pwm_hz` has consumed the handle of the timer. Its channels write only the
-        // compare and enable registers; only this driver writes the break and dead-time register
-        // and the status register.
-        let timer = unsafe { TIM1::steal() };
-        // `pwm_hz` selects automatic output enable, which would turn the bridge on again after a
-        // fault; here the output enable is manual. Disabled outputs are driven to their idle level,
-        // low. The lock prevents faulty code from changing these settings or the PWM mode before
-        // the next reset (RM0390, 17.4.18).
-        timer.bdtr().write(|w| {
-            w.bke().enabled();
-            w.bkp().active_low();
-            w.ossi().idle_level();
-            w.aoe().manual();
-            w.moe().disabled_idle();
-            w.lock().level3()
-        });
         // Enabling the break input may have set its flag.
         timer.sr().write(|w| w.bif().clear());
         in1.enable();
@@ -79,6 +70,18 @@ impl FingerPowerStage {
             led: led.into_push_pull_output(),
             on: false,
         }
+    }
+
+    /// Whether the PWM timer still has the locked settings that switch its outputs off after a fault.
+    pub fn pwm_settings_are_locked() -> bool {
+        // SAFETY: a load without side effects.
+        pwm_settings::are_set_and_locked(unsafe { &*TIM1::ptr() }, BREAK_LEVEL)
+    }
+
+    /// Level of the lock of the PWM timer's settings, 0 (off) to 3.
+    pub fn pwm_lock_level() -> u8 {
+        // SAFETY: a load without side effects.
+        pwm_settings::lock_level(unsafe { &*TIM1::ptr() })
     }
 
     /// Whether the fault line is low, or was low for a moment since the last call: the bridge or

@@ -147,6 +147,15 @@ faults! {
     /// The external 8 MHz clock has failed or was missing at the start, or the clock configuration register has
     /// changed.
     Clock = "clock",
+    /// A debugger has selected that a watchdog or a PWM timer stands still while it halts the core, so that a halted
+    /// core would drive the bridges without end. Checked in every tick; the next start clears the selection.
+    WatchdogsFrozen = "watchdogs-frozen",
+    /// The brown-out level of the microcontroller's option bytes is not the highest, so that the program could run at a
+    /// supply below that of its flash. Present from the start on until the option bytes are set.
+    BrownOutLevel = "brown-out-level",
+    /// The settings of a PWM timer that switch its outputs off after a fault (break, idle level, lock) are not as they
+    /// were set. Checked in every tick.
+    PwmSettings = "pwm-settings",
     /// The window watchdog has reset the device, because the control tick did not run for 47 ms; detected at the start
     /// after that reset.
     TickLost = "tick-lost",
