@@ -29,9 +29,9 @@ const SAVE_PENDING_MAGIC: u32 = 0x7361_7665;
 /// Number of program starts that may try to store the same settings. If a reset interrupts both
 /// attempts, there is no third, because the storing itself may cause the resets.
 const MAX_SAVE_ATTEMPTS: u32 = 2;
-/// Delay before the device restarts to store settings: 2 ms, in cycles of 180 MHz. The longest last
-/// line to the host, and the two bytes before it in the USART, take 1.78 ms at 1 Mbaud.
-const LAST_LINE_DELAY_CYCLES: u32 = 180_000_000 / 1000 * 2;
+/// Delay before the device restarts to store settings: 2.5 ms, in cycles of 180 MHz. The longest last
+/// line to the host, and the two bytes before it in the USART, take 2.3 ms at 1 Mbaud.
+const LAST_LINE_DELAY_CYCLES: u32 = 180_000_000 / 10_000 * 25;
 
 /// Settings in RAM that a reset does not clear, which the next start is to store in flash.
 struct PendingSave {
@@ -153,7 +153,7 @@ pub fn save_pending_and_load(registers: &FLASH) -> SaveAndLoadResult {
     }
 }
 
-/// Waits 2 ms for the end of the last line to the host, copies `bytes`, the record of the settings,
+/// Waits 2.5 ms for the end of the last line to the host, copies `bytes`, the record of the settings,
 /// to RAM that a reset does not clear, and resets the device. The next start stores the settings in
 /// flash. The bridges must be off, and the DMA stream must already have the last line.
 pub fn restart_to_save(bytes: &SettingsRecord) -> ! {

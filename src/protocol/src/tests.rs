@@ -10,7 +10,8 @@ use std::vec::Vec;
 use contact_model::fixed_point::{Celsius, Force};
 
 use super::{
-    ANSWER_MAX_BYTES, Error, LINE_MAX_BYTES, LineError, LineReader, Reply, Request, TelemetryLine,
+    ANSWER_MAX_BYTES, BoardStatus, Error, LINE_MAX_BYTES, LineError, LineReader, Reply, Request,
+    TelemetryLine,
 };
 use thermal_commissioning::IdentificationError;
 use thermal_device::command::AssumedFinger;
@@ -35,6 +36,7 @@ fn refusal(line: &str) -> String {
 #[test]
 fn every_command_is_parsed() {
     assert_eq!(parse("id"), Ok(Request::Identify));
+    assert_eq!(parse("board"), Ok(Request::Board));
     for (line, command) in [
         ("state", Command::Status),
         ("stream 0", Command::Stream { interval_ms: 0 }),
@@ -99,7 +101,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id state stream checksum material object finger upload mode law arm hold start abort clear cause \
+            "err unknown command 'fly'; known: id board state stream checksum material object finger upload mode law arm hold start abort clear cause \
              calibrate tune margins settings set save forget",
         ),
         (
@@ -260,6 +262,20 @@ fn the_longest_answers_fit_their_limit() {
         line.len() <= ANSWER_MAX_BYTES && line.ends_with(" display-short"),
         "{line}"
     );
+}
+
+#[test]
+fn the_longest_status_of_a_board_fits_an_answer() {
+    let status = BoardStatus {
+        reset: "independent-watchdog",
+        receive_overruns: u32::MAX,
+        receive_framing_errors: u32::MAX,
+        receive_noise: u32::MAX,
+        telemetry_dropped: u32::MAX,
+        ..BoardStatus::default()
+    };
+    let answer = Reply::Board(status).to_string();
+    assert!(answer.len() <= ANSWER_MAX_BYTES, "{answer}");
 }
 
 #[test]
