@@ -1,5 +1,5 @@
-//! Driver of an H-bridge with two logic inputs and an enable input, such as the DRV8873 in IN/IN
-//! mode.
+//! Driver of an H-bridge with two logic inputs and an enable input, such as the DRV8702-Q1 with
+//! four MOSFETs and an AND gate in front of each input.
 //!
 //! | enable | IN1 | IN2 | outputs                                    |
 //! |--------|-----|-----|--------------------------------------------|
@@ -7,7 +7,7 @@
 //! | high   | 0   | 0   | high-impedance                             |
 //! | high   | 1   | 0   | OUT1 high, OUT2 low: the display is cooled |
 //! | high   | 0   | 1   | OUT1 low, OUT2 high: the display is warmed |
-//! | high   | 1   | 1   | both at the same level                     |
+//! | high   | 1   | 1   | both low: the current circulates           |
 //!
 //! "Off" means the first two rows and never the last one, which short-circuits the Peltier module:
 //! a module whose faces differ in temperature is a voltage source, and the current through a short
@@ -53,7 +53,7 @@ where
     /// Drives the Peltier module with a mean voltage of `duty` times the supply voltage. `duty` is
     /// -0.9 to 0.9; positive values cool the display, negative ones warm it.
     pub fn drive(&mut self, duty: Duty) {
-        let (in1, in2) = duty.half_bridge_on_times(self.in1.max_duty_cycle());
+        let (in1, in2) = duty.input_high_times(self.in1.max_duty_cycle());
         let Ok(()) = self.in1.set_duty_cycle(in1);
         let Ok(()) = self.in2.set_duty_cycle(in2);
         let Ok(()) = self.enable.set_high();

@@ -5,12 +5,12 @@ use core::sync::atomic::{AtomicBool, Ordering};
 use heapless::spsc::Producer;
 use thermal_display::device::command::WithSourceFinger;
 use thermal_display::device::safety::Fault;
-use thermal_display::device::sense::Samples;
+use thermal_display::device::sense::{DigitalInputs, Samples};
 use thermal_display::device::{DeviceInPlace, FingerIndex, Telemetry};
 
 use super::{
-    ChipMonitor, FINGERS, FingerPowerStage, SampleError, Sampler, TripCauseRecorder,
-    WindowWatchdog, line_losses, save_dose_if_changed, stack_is_overrun,
+    ChipMonitor, ComparatorSide, EmergencyStop, FINGERS, FingerPowerStage, SampleError, Sampler,
+    TripCauseRecorder, WindowWatchdog, line_losses, save_dose_if_changed, stack_is_overrun,
 };
 
 /// Executes the control ticks of all fingers: samples the sensors, computes each finger's outputs,
@@ -18,6 +18,8 @@ use super::{
 pub struct ControlLoop {
     pub sampler: Sampler,
     pub stages: [FingerPowerStage; FINGERS],
+    pub comparator_side: ComparatorSide,
+    pub emergency_stop: EmergencyStop,
     pub trip_cause_recorder: TripCauseRecorder,
     pub telemetry: Producer<'static, WithSourceFinger<Telemetry>>,
     pub window_watchdog: WindowWatchdog,
@@ -54,7 +56,11 @@ impl ControlLoop {
         };
         self.window_watchdog.feed();
         let stage = &mut self.stages[finger.index()];
-        let samples = Samples::from_scans(scans, stage.poll_fault_line_low());
+        let inputs = DigitalInputs {
+            bridge_fault: stage.poll_fault_line_low(),
+            emergency_stop: self.emergency_stop.is_pressed(),
+        };
+        let samples = Samples::from_scans(scans, inputs);
         if host_is_active.swap(false, Ordering::Relaxed) {
             device.note_host_activity();
         }
@@ -73,6 +79,7 @@ impl ControlLoop {
                 .store_or_erase(device.earliest_trip_cause());
         }
         save_dose_if_changed(finger, device.finger_thermal_dose(finger));
+        self.comparator_side.select(outputs.comparator_test);
         stage.apply_drive_and_comparator_test(&outputs);
         let telemetry = device.finger_telemetry_if_due(finger);
         let is_due = telemetry.is_some();

@@ -65,7 +65,9 @@ impl<const FINGERS: usize> Bench<FINGERS> {
                     room: count(2000),
                     force: count(410),
                     current: 0,
+                    supply: count(3464),
                     bridge_fault: false,
+                    emergency_stop: false,
                 };
                 self.device.step_finger(finger, &samples);
             }

@@ -4,7 +4,7 @@ use std::boxed::Box;
 use std::format;
 use std::string::{String, ToString};
 
-use crate::device::drive::Drive;
+use crate::device::drive::{ComparatorTest, Drive};
 use crate::device::safety::{Fault, TripCause};
 use crate::device::sense::{SCANS_PER_TICK, Samples};
 use crate::device::{Device, DeviceInPlace, FingerIndex};
@@ -31,7 +31,10 @@ pub fn samples(noise: u16) -> Samples {
         room: count(2000) + noise,
         force: count(410) + noise,
         current: 0,
+        // 12 V.
+        supply: count(3464),
         bridge_fault: false,
+        emergency_stop: false,
     }
 }
 
@@ -41,7 +44,7 @@ pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: FingerInd
     let number = finger.index_u8();
     host(device, &format!("@{number} arm"));
     // 46 counts per kelvin; 2.7 K/s per ampere.
-    let (mut tick, mut cooler, mut current, mut bridge_fault) = (0, 0.0, 0, false);
+    let (mut tick, mut cooler, mut current, mut test) = (0, 0.0, 0, ComparatorTest::None);
     while host(device, &format!("@{number} state")).contains("state=self-test") {
         tick += 1;
         let sound = samples(tick % 2);
@@ -52,7 +55,12 @@ pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: FingerInd
                 display: sound.display.wrapping_add_signed(moved),
                 display_check: sound.display_check.wrapping_add_signed(moved),
                 current,
-                bridge_fault,
+                supply: if test == ComparatorTest::None {
+                    sound.supply
+                } else {
+                    sound.supply / 3
+                },
+                bridge_fault: test != ComparatorTest::None,
                 ..sound
             },
         );
@@ -63,7 +71,7 @@ pub fn arm<const FINGERS: usize>(device: &mut Device<FINGERS>, finger: FingerInd
         };
         cooler += 2.7e-3 * f64::from(asked);
         current = 6400 * u16::from(asked != 0);
-        bridge_fault = outputs.comparator_test;
+        test = outputs.comparator_test;
     }
 }
 

@@ -76,6 +76,8 @@ fn state(force_n: f64) -> SensorInputs {
         room_c: 24.0,
         force_n,
         mirror_a: 0.0,
+        mirror_ripple_a: 0.0,
+        supply_counts: 0.0,
     }
 }
 

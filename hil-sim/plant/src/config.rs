@@ -10,6 +10,7 @@ use super::object::ObjectConfig;
 use super::parameters::{self, ParameterError};
 use super::sensors::SensorParams;
 use super::slab::{BackBoundary, Layer};
+use super::supply::SupplyParams;
 use super::tile::TileParams;
 
 /// One finger, its display and the real object that the display stands for.
@@ -50,6 +51,8 @@ pub struct Params {
     pub bridge: BridgeParams,
     /// Comparator that cuts the supply of the power stage.
     pub comparator: ComparatorParams,
+    /// Supply of the power stage behind the switch.
+    pub supply: SupplyParams,
     /// Reference thermometer with which the host commissions the device.
     pub host: HostParams,
 }
@@ -83,6 +86,7 @@ impl Params {
             sensors: SensorParams::NOMINAL,
             bridge: BridgeParams::NOMINAL,
             comparator: ComparatorParams::NOMINAL,
+            supply: SupplyParams::NOMINAL,
             host: HostParams::NOMINAL,
         }
     }

@@ -1,8 +1,9 @@
 //! Defects of a plant.
 
 use super::bridge::BridgeDefects;
-use super::comparator::ComparatorDefect;
+use super::comparator::ComparatorDefects;
 use super::sensors::SensorDefects;
+use super::supply::SupplyDefects;
 use super::tile::{CoolingDefects, ModuleDefect};
 
 /// Simulated hardware defects of one finger's plant; none by default.
@@ -13,7 +14,9 @@ pub struct Defects {
     /// Power stage.
     pub bridge: BridgeDefects,
     /// Comparator.
-    pub comparator: ComparatorDefect,
+    pub comparator: ComparatorDefects,
+    /// Supply of the bridge and its switch.
+    pub supply: SupplyDefects,
     /// Cooling of the sink.
     pub cooling: CoolingDefects,
     /// Thermoelectric module.

@@ -14,12 +14,13 @@ pub mod reference;
 pub mod sensors;
 pub mod slab;
 mod substeps;
+pub mod supply;
 pub mod thermal;
 pub mod tile;
 mod tr_bdf2;
 
 use bridge::{Bridge, BridgeOutputs};
-use comparator::Comparator;
+use comparator::{Comparator, ComparatorTest};
 pub use config::{ConfigError, HostParams, Params, PlantConfig};
 use contact::{ContactLaw, SkinContact};
 use contact_model::material::Surface;
@@ -28,6 +29,7 @@ use energy::Energy;
 use finger::Vessels;
 use sensors::{BONDED, Channel, SensorInputs, SensorReadings, Sensors};
 use slab::{DepthProbe, Grading, Slab, steady_state};
+use supply::Supply;
 pub use thermal::Finger;
 use thermal::ThermalModel;
 use tile::Tile;
@@ -51,9 +53,12 @@ pub struct Plant {
     resistance_factor: f64,
     vessels: Option<Vessels>,
     bridge: Bridge,
-    /// Nominal supply of the bridge, V.
-    supply_v: f64,
+    /// Nominal voltage of the source, V.
+    source_v: f64,
+    supply: Supply,
     comparator: Comparator,
+    /// Fraction of the inductors' ripple behind the filters of the current measurement, and its sampling phase.
+    mirror_ripple: (f64, f64),
     defects: Defects,
     heat: ThermalModel,
     receptors: [Option<DepthProbe>; RECEPTORS_M.len()],
@@ -114,6 +119,8 @@ impl Plant {
             room_c: config.room_c,
             force_n: 0.0,
             mirror_a: 0.0,
+            mirror_ripple_a: 0.0,
+            supply_counts: 0.0,
         };
         let sensors = Sensors::new(params.sensors, &at_rest, config.seed);
         Ok(Self {
@@ -131,7 +138,12 @@ impl Plant {
             resistance_factor: params.finger.resistance_factor,
             vessels: params.finger.vessels,
             bridge: Bridge::new(params.bridge, params.tile.resistance_ohm()),
-            supply_v: params.bridge.supply_v,
+            source_v: params.bridge.supply_v,
+            supply: Supply::new(params.supply),
+            mirror_ripple: (
+                params.sensors.mirror.ripple_share(params.bridge.pwm_hz),
+                params.sensors.mirror.sampling_phase,
+            ),
             comparator: Comparator::new(
                 &params.comparator,
                 &BONDED,
@@ -162,16 +174,34 @@ impl Plant {
         }
         self.defects = *defects;
         self.sensors.set_defects(&defects.sensors);
-        self.bridge
-            .set_supply(defects.bridge.supply_v.unwrap_or(self.supply_v));
-        self.comparator.set_defect(defects.comparator);
+        self.supply.set_defects(&defects.supply);
+        self.comparator.set_defects(&defects.comparator);
         self.heat.set_cooling(&defects.cooling);
         self.heat.set_module(defects.module);
     }
 
-    /// Sets the level of the comparator's test line.
-    pub fn comparator_test(&mut self, level: bool) {
-        self.comparator.set_test_line(level);
+    /// Sets the test of the comparator.
+    pub fn comparator_test(&mut self, test: ComparatorTest) {
+        self.comparator.set_test(test);
+    }
+
+    /// Clears the comparator's latch and connects the supply at once, as a passed self-test does in 80 ms. For what uses
+    /// the plant without a device.
+    pub fn connect_supply(&mut self) {
+        self.comparator.clear();
+        self.supply.set_node(self.source_v);
+    }
+
+    /// Whether the emergency stop is pressed.
+    #[must_use]
+    pub const fn emergency_stop(&self) -> bool {
+        self.defects.supply.emergency_stop
+    }
+
+    /// Voltage of the bridge's supply behind its switch, V.
+    #[must_use]
+    pub const fn supply_v(&self) -> f64 {
+        self.supply.node_v()
     }
 
     /// Reseeds the noise of the A/D converter; its non-linearity, which belongs to the device, stays.
@@ -182,17 +212,23 @@ impl Plant {
     /// Advances by [`STEP_S`] under constant bridge outputs.
     pub fn step(&mut self, legs: &BridgeOutputs) {
         self.update_contacts();
-        // Without supply there is no current: the Seebeck voltage stays below that of two diodes.
-        let legs = if self.comparator.tripped() {
-            BridgeOutputs::default()
-        } else {
+        let source_v = self.defects.bridge.supply_v.unwrap_or(self.source_v);
+        let taken_a = self.heat.tile().current().supply_a;
+        (self.supply).step(STEP_S, source_v, self.comparator.tripped(), taken_a);
+        // Without its driver the bridge carries no current: the Seebeck voltage stays below that of two diodes.
+        let legs = if self.supply.driver_is_on() {
+            self.bridge.set_supply(self.supply.node_v());
             self.defects.bridge.apply(legs)
+        } else {
+            BridgeOutputs::default()
         };
         for index in substeps::of_step(self.steps_since_change) {
             self.heat.step(index, &mut self.bridge, &legs);
         }
         self.steps += 1;
         self.steps_since_change = self.steps_since_change.saturating_add(1);
+        let current = self.heat.tile().current();
+        let (share, phase) = self.mirror_ripple;
         let state = SensorInputs {
             display_c: self.display_c(),
             sink_c: self.sink_c(),
@@ -200,11 +236,15 @@ impl Plant {
             skin_c: self.skin_c(),
             room_c: self.room_c,
             force_n: self.force_n,
-            mirror_a: self.heat.tile().current().mirror_a,
+            mirror_a: current.mean_a.abs(),
+            mirror_ripple_a: share * current.inductor.at_phase(phase),
+            supply_counts: self.supply.sensed_counts(),
         };
         self.sensors.step(STEP_S, &state);
-        self.comparator
-            .set_input(self.sensors.pin_ratio(Channel::DisplayCheck as usize));
+        self.comparator.step(
+            STEP_S,
+            self.sensors.pin_ratio(Channel::DisplayCheck as usize),
+        );
     }
 
     /// Updates the contacts for the force and the time of the coming step.
@@ -254,7 +294,8 @@ impl Plant {
     /// Whether driver or comparator pull nFAULT low.
     #[must_use]
     pub fn bridge_fault(&self) -> bool {
-        (self.bridge.fault() || self.comparator.tripped()) && !self.defects.bridge.fault_pin_dead
+        let driver = self.bridge.fault() || self.supply.driver_reports_low();
+        (driver || self.comparator.tripped()) && !self.defects.bridge.fault_pin_dead
     }
 
     /// Whether the comparator has cut the bridge supply.

@@ -27,8 +27,11 @@ fn config(material: &str) -> PlantConfig {
     }
 }
 
+/// With its supply connected.
 fn plant(material: &str) -> Plant {
-    Plant::new(&config(material)).expect("a good configuration")
+    let mut plant = Plant::new(&config(material)).expect("a good configuration");
+    plant.connect_supply();
+    plant
 }
 
 fn legs(a: f64, b: f64) -> BridgeOutputs {
@@ -62,6 +65,50 @@ fn leg_a_above_leg_b_cools_and_leg_b_above_leg_a_heats() {
             (mirror_a - plant.current_a().abs()).abs() < 0.02,
             "{mirror_a}"
         );
+    }
+}
+
+/// The latch is set at power-on; the end of a test of either side clears it.
+#[test]
+fn the_bridge_has_no_supply_until_the_comparator_was_tested() {
+    let driven = legs(1.0, 0.6);
+    for test in [ComparatorTest::Hot, ComparatorTest::Cold] {
+        let mut plant = Plant::new(&config("copper")).expect("good");
+        run(&mut plant, 0.1, &driven);
+        assert_eq!((plant.current_a(), plant.bridge_fault()), (0.0, true));
+        assert_eq!(plant.convert(Channel::Supply), 0);
+        plant.comparator_test(test);
+        run(&mut plant, 0.02, &driven);
+        assert_eq!(plant.current_a(), 0.0);
+        plant.comparator_test(ComparatorTest::None);
+        run(&mut plant, 0.02, &driven);
+        assert!(plant.current_a() > 3.0, "{}", plant.current_a());
+        assert!(!plant.bridge_fault());
+        let supply_v = f64::from(plant.convert(Channel::Supply)) / 288.65;
+        assert!((11.8..12.05).contains(&supply_v), "{supply_v}");
+    }
+}
+
+/// At half duty the ripple of two times 4.7 uH is 3.3 A from peak to peak.
+#[test]
+fn a_board_without_the_filters_of_the_current_measurement_sees_the_ripple_at_its_phase() {
+    let reading_a = |lag_s: f64, phase: f64| {
+        let mut config = config("copper");
+        config.params.sensors.mirror.lag_s = lag_s;
+        config.params.sensors.mirror.sampling_phase = phase;
+        let mut plant = Plant::new(&config).expect("good");
+        plant.connect_supply();
+        run(&mut plant, 0.1, &legs(1.0, 0.5));
+        plant.sensor_readings().mirror_a - plant.current_a().abs()
+    };
+    for (phase, error_a) in [(0.0, -1.66), (0.25, 0.0), (0.5, 1.66)] {
+        let unfiltered_a = reading_a(0.0, phase);
+        assert!(
+            (unfiltered_a - error_a).abs() < 0.02,
+            "{phase}: {unfiltered_a} A"
+        );
+        let filtered_a = reading_a(0.43e-3, phase);
+        assert!(filtered_a.abs() < 0.01, "{phase}: {filtered_a} A");
     }
 }
 

@@ -3,6 +3,7 @@
 mod active_defects;
 
 use thermal_plant::bridge::BridgeOutputs;
+use thermal_plant::comparator::ComparatorTest;
 use thermal_plant::infrared::{Camera, ParameterError, Reading};
 use thermal_plant::sensors::Channel;
 use thermal_plant::{ConfigError, Plant, PlantConfig};
@@ -109,10 +110,21 @@ impl World {
         self.set_force_and_faults(scene.force_n(t_s), faults);
     }
 
-    /// Sets the level of the line by which the device tests the comparator. The engine sets it after each tick; an
-    /// undriven line is pulled low.
-    pub fn comparator_test(&mut self, level: bool) {
-        self.plant.comparator_test(level);
+    /// Sets the test of the comparator by the device. The engine sets it after each tick; undriven lines are pulled low,
+    /// which is no test.
+    pub fn comparator_test(&mut self, test: ComparatorTest) {
+        self.plant.comparator_test(test);
+    }
+
+    /// Connects the bridge's supply without a self-test, for what uses the world without a device.
+    pub fn connect_supply(&mut self) {
+        self.plant.connect_supply();
+    }
+
+    /// Whether the emergency stop is pressed.
+    #[must_use]
+    pub const fn emergency_stop(&self) -> bool {
+        self.plant.emergency_stop()
     }
 
     /// Advances the plant by one step with the bridge legs driven as given.

@@ -1,5 +1,5 @@
-//! NUCLEO-F446RE with DRV8873-class bridges and a sensor front end on its headers, for one finger
-//! or for five.
+//! NUCLEO-F446RE with bridges of a DRV8702-Q1 and four MOSFETs and with a sensor front end on its
+//! headers, for one finger or for five.
 //!
 //! | pin | header | signal                | notes                                     |
 //! |-----|--------|-----------------------|-------------------------------------------|
@@ -9,7 +9,10 @@
 //! | PB0 | A3     | skin thermistor       | ADC1 channel 8                            |
 //! | PC1 | A4     | room thermistor       | ADC1 channel 11                           |
 //! | PC0 | A5     | force                 | ADC1 channel 10                           |
-//! | PC2 | CN7-35 | bridge current mirror | ADC1 channel 12                           |
+//! | PC2 | CN7-35 | bridge current        | ADC1 channel 12                           |
+//! | PC4 | CN10-34 | bridge supply        | ADC1 channel 14, behind its switch        |
+//! | PB2 | CN10-22 | side of the comparators' tests | low hot, high cold; pull-down   |
+//! | PC13 | CN7-23 | emergency stop       | low while pressed                         |
 //! | PA2 | -      | to the host           | USART2 by way of the on-board probe       |
 //! | PA3 | -      | from the host         | USART2 by way of the on-board probe       |
 //! | PH0 | -      | 8 MHz from the probe  | HSE, bypassed oscillator                  |
@@ -17,14 +20,17 @@
 //! The pins of the bridges depend on the number of fingers, which is fixed when the firmware is
 //! built: see `one_finger`, or `five_fingers` for the feature `five-fingers`.
 //!
-//! The line `bridge enable` drives the input DISABLE of the DRV8873, which has a pull-up, through
-//! an inverting transistor. nSLEEP stays high, because a bridge that wakes up may report a fault
-//! until its charge pump runs.
+//! The line `bridge enable` opens AND gates between the PWM pins and the inputs of the driver, so
+//! that low makes both inputs low, which is high-impedance. The driver's nSLEEP stays high, because
+//! a driver that wakes up may report a fault until its charge pump runs. After an over-current it
+//! tries again after 3 ms.
 
 mod brown_out_level;
 mod chip_monitor;
+mod comparator_side;
 mod debug_freeze;
 mod defmt_rtt_log;
+mod emergency_stop;
 mod fatal_errors;
 #[cfg(feature = "five-fingers")]
 mod five_fingers;
@@ -62,6 +68,8 @@ use thermal_display::protocol::{
 use thermal_display::settings::Settings;
 
 pub use chip_monitor::{ChipMonitor, status_now as board_status_now};
+pub use comparator_side::ComparatorSide;
+pub use emergency_stop::EmergencyStop;
 #[cfg(feature = "five-fingers")]
 use five_fingers as wiring;
 pub use independent_watchdog::IndependentWatchdog;
@@ -257,6 +265,7 @@ impl Board {
         };
         #[cfg(feature = "five-fingers")]
         let (stages, multiplexer) = {
+            let gpiod = peripherals.GPIOD.split(&mut rcc);
             let pins = wiring::BridgePeripherals {
                 timers: (
                     peripherals.TIM1,
@@ -271,8 +280,12 @@ impl Board {
                 fifth: (gpiob.pb8, gpiob.pb9),
                 lines: [
                     wiring::BridgeAndComparatorPins::new(gpiob.pb10, gpioa.pa6, gpioc.pc3),
-                    wiring::BridgeAndComparatorPins::new(gpiob.pb13, gpioa.pa7, gpioc.pc4),
-                    wiring::BridgeAndComparatorPins::new(gpiob.pb14, gpioa.pa12, gpioc.pc5),
+                    wiring::BridgeAndComparatorPins::new(
+                        gpiob.pb13,
+                        gpioa.pa7,
+                        gpioa.pa15.into_input(),
+                    ),
+                    wiring::BridgeAndComparatorPins::new(gpiob.pb14, gpioa.pa12, gpiod.pd2),
                     wiring::BridgeAndComparatorPins::new(gpiob.pb15, gpiob.pb5, gpiob.pb6),
                     wiring::BridgeAndComparatorPins::new(gpiob.pb1, gpiob.pb12, gpiob.pb7),
                 ],
@@ -319,6 +332,7 @@ impl Board {
             room: gpioc.pc1.into_analog(),
             force: gpioc.pc0.into_analog(),
             current: gpioc.pc2.into_analog(),
+            supply: gpioc.pc4.into_analog(),
         };
         let dma2 = StreamsTuple::new(peripherals.DMA2, &mut rcc);
         let (sampler, trigger) = Sampler::new_with_trigger(
@@ -336,6 +350,8 @@ impl Board {
             control_loop: ControlLoop {
                 sampler,
                 stages,
+                comparator_side: ComparatorSide::new(gpiob.pb2),
+                emergency_stop: EmergencyStop::new(gpioc.pc13),
                 trip_cause_recorder,
                 telemetry: telemetry_in,
                 window_watchdog: WindowWatchdog::start(peripherals.WWDG, &mut rcc),

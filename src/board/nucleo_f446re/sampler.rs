@@ -12,7 +12,7 @@ use stm32f4xx_hal::ReadFlags;
 use stm32f4xx_hal::dma::config::{DmaConfig, Priority};
 use stm32f4xx_hal::dma::traits::{DMASet, DmaFlagExt, PeriAddress};
 use stm32f4xx_hal::dma::{CurrentBuffer, DMAError, PeripheralToMemory, Stream0, Transfer};
-use stm32f4xx_hal::gpio::{Analog, PA0, PA1, PA4, PB0, PC0, PC1, PC2};
+use stm32f4xx_hal::gpio::{Analog, PA0, PA1, PA4, PB0, PC0, PC1, PC2, PC4};
 use stm32f4xx_hal::pac::{ADC_COMMON, ADC1, DMA2, TIM2, tim2};
 use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::{Enable, Rcc, Reset};
@@ -40,7 +40,7 @@ pub const TRIPLE_BUFFER_BLOCK_COUNT: usize = 3;
 /// Initial content of a block, before the DMA stream first fills it: all counts are zero.
 pub const EMPTY_BLOCK: ScanBlock = [[0; ADC_CHANNELS_PER_FINGER]; SCANS_PER_BLOCK];
 
-/// The analog input pins of the seven signals that ADC1 converts. The fields have the same names as
+/// The analog input pins of the eight signals that ADC1 converts. The fields have the same names as
 /// those of `Samples`.
 pub struct SensorPins {
     pub display: PA0<Analog>,
@@ -50,6 +50,7 @@ pub struct SensorPins {
     pub room: PC1<Analog>,
     pub force: PC0<Analog>,
     pub current: PC2<Analog>,
+    pub supply: PC4<Analog>,
 }
 
 /// Samples the sensors of all fingers in turn: one block of scans for each finger and control tick,
@@ -193,7 +194,7 @@ impl Sampler {
     }
 }
 
-/// ADC1, which converts all seven channels of the sensors once for each trigger by TIM2.
+/// ADC1, which converts all eight channels of the sensors once for each trigger by TIM2.
 ///
 /// The driver of `stm32f4xx-hal` is not used: it measures the supply voltage during its set-up,
 /// which is of no use here because all sensors are ratiometric to the supply, and it does not
@@ -205,7 +206,7 @@ pub struct SensorAdc {
 
 impl SensorAdc {
     /// Sets up ADC1 with a clock of 90 MHz / 4 = 22.5 MHz (the maximum is 36 MHz) and with the
-    /// sampling time [`SAMPLE_TIME_CODE`] for each of the seven channels.
+    /// sampling time [`SAMPLE_TIME_CODE`] for each of the eight channels.
     pub fn new(adc: ADC1, inputs: SensorPins, rcc: &mut Rcc) -> Self {
         ADC1::enable(rcc);
         ADC1::reset(rcc);
@@ -215,7 +216,8 @@ impl SensorAdc {
         adc.smpr1().write(|w| {
             w.smp10().set(SAMPLE_TIME_CODE);
             w.smp11().set(SAMPLE_TIME_CODE);
-            w.smp12().set(SAMPLE_TIME_CODE)
+            w.smp12().set(SAMPLE_TIME_CODE);
+            w.smp14().set(SAMPLE_TIME_CODE)
         });
         adc.smpr2().write(|w| {
             w.smp0().set(SAMPLE_TIME_CODE);
@@ -232,8 +234,11 @@ impl SensorAdc {
             w.sq5().bits(11); // room, PC1
             w.sq6().bits(10) // force, PC0
         });
-        // SAFETY: ADC1 has this channel.
-        adc.sqr2().write(|w| unsafe { w.sq7().bits(12) }); // current, PC2
+        // SAFETY: ADC1 has these channels.
+        adc.sqr2().write(|w| unsafe {
+            w.sq7().bits(12); // current, PC2
+            w.sq8().bits(14) // supply, PC4
+        });
         adc.sqr1()
             .write(|w| w.l().set(ADC_CHANNELS_PER_FINGER as u8 - 1));
         adc.cr1().write(|w| w.scan().enabled().ovrie().enabled());

@@ -13,8 +13,8 @@ use fixed::types::U16F16;
 use crate::control::{ControlParameters, Law};
 use crate::identification::{AbortReason, NormalEquationRow};
 use crate::reference::ContactModel;
-use crate::safety::{Fault, Setpoint, TripCause};
-use crate::sense::{CalibrationTables, ThermistorAverage};
+use crate::safety::{Fault, SelfTestReport, Setpoint, TripCause};
+use crate::sense::{CalibrationTables, Samples, ThermistorAverage};
 use crate::{StateName, TICK_S};
 
 /// Upper limit of [`ChosenMaterial::impedance_ratio`]. An object at this limit takes hardly any heat.
@@ -182,6 +182,10 @@ pub enum Command {
     Clear,
     /// Report the cause of the present trip or, after `clear`, of the last one. Never refused.
     Cause,
+    /// Report what the last self-test has measured. Never refused.
+    SelfTest,
+    /// Report the samples of the last tick. Never refused.
+    Raw,
     /// Report the mean of one thermistor's samples over half a second, for a calibration. Index of the thermistor: 0
     /// first display, 1 second display, 2 sink, 3 skin, 4 room. Refused while an object is presented, in the self-test,
     /// and while too few samples have been added ([`Refused::TooEarly`]).
@@ -219,6 +223,10 @@ pub enum Reply {
     /// Answer to [`Command::Cause`]: cause of the present trip or, after `clear`, of the last one. `None` if the
     /// station has not tripped since the start of the program, and was not tripped when it started.
     Cause(Option<TripCause>),
+    /// Answer to [`Command::SelfTest`]: what the last self-test has measured.
+    SelfTest(SelfTestReport),
+    /// Answer to [`Command::Raw`]: the samples of the last tick.
+    Raw(Samples),
     /// Answer to [`Command::Average`]: mean of one thermistor's sums of 16 conversions over 512 ticks of 1 ms, in
     /// converter counts before any calibration, and whether the thermistor was steady.
     Average(ThermistorAverage),
@@ -232,7 +240,7 @@ pub enum Reply {
 pub enum Refused {
     /// `start` was sent in the state off or ready, in which the bridge is off: `arm` must come first.
     NotArmed,
-    /// The command was `start`, [`Command::Average`] or [`Command::Calibrate`], and the self-test is running: 0.7 s, or
+    /// The command was `start`, [`Command::Average`] or [`Command::Calibrate`], and the self-test is running: 0.8 s, or
     /// longer if a finger disturbs it.
     Testing,
     /// `start` was sent before the first command `material`, so there is no object to present.

@@ -1,4 +1,4 @@
-//! Outputs of a control tick to the board: current, duty cycle and state of the bridge, and the comparator's test line.
+//! Outputs of a control tick to the board: current, duty cycle and state of the bridge, and the comparator's test.
 
 use fixed::types::{I1F15, I8F24};
 
@@ -38,7 +38,7 @@ impl Duty {
     /// Largest magnitude of a duty cycle, as a fraction of the supply voltage. On a supply of 12 V, 0.9 is 10.8 V,
     /// which is more than resistance, Seebeck voltage and dead times together need at the largest current of 6 A.
     pub const DUTY_LIMIT: I1F15 = I1F15::lit("0.9");
-    /// No mean voltage: both half-bridges stay high, so that current can circulate, unlike with [`Drive::Off`].
+    /// No mean voltage: both half-bridges stay low, so that current can circulate, unlike with [`Drive::Off`].
     pub const ZERO: Self = Self(I1F15::ZERO);
 
     /// Duty cycle of this `fraction` of the supply voltage, clamped to -0.9 to 0.9; positive cools the display.
@@ -53,16 +53,16 @@ impl Duty {
         self.0
     }
 
-    /// High times of the bridge's two half-bridges in each PWM period, in steps of the PWM timer; `period` is the
-    /// length of the PWM period in these steps. The first value belongs to the half-bridge that stays high while
-    /// cooling, the second to the one that stays high while warming.
+    /// High times of the bridge's two logic inputs, IN1 and IN2, in each PWM period, in steps of the PWM timer;
+    /// `period` is the length of the PWM period in these steps. IN1 stays high while cooling, IN2 while warming.
     ///
-    /// Slow decay: while one half-bridge stays high, the other one is low for the duty cycle's fraction of the period,
-    /// rounded to the nearest step. Between these pulses both are high and the current circulates, so that the mean
-    /// voltage is this fraction of the supply voltage. With fast decay (both high-impedance between the pulses) the
-    /// mean voltage would also depend on the current.
+    /// Slow decay: while one input stays high, the other one is low for the duty cycle's fraction of the period, rounded
+    /// to the nearest step, and in that time one half-bridge is high and the other one low. While both inputs are high,
+    /// both half-bridges are low and the current circulates, so that the mean voltage is this fraction of the supply
+    /// voltage. With fast decay (both high-impedance between the pulses) the mean voltage would also depend on the
+    /// current.
     #[must_use]
-    pub fn half_bridge_on_times(self, period: u16) -> (u16, u16) {
+    pub fn input_high_times(self, period: u16) -> (u16, u16) {
         // The fraction has 15 binary places; half a step is added to round.
         let fraction = self.0.to_bits();
         let low = (u32::from(period) * u32::from(fraction.unsigned_abs()) + (1 << 14)) >> 15;
@@ -85,13 +85,26 @@ pub enum Drive {
     On(Duty),
 }
 
+/// Test of the comparator that cuts the bridge's supply: what its input is connected to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ComparatorTest {
+    /// No test: the input is the display's second thermistor. The change from a test to none clears the comparator's
+    /// latch if that thermistor is between 10 and 45 °C.
+    #[default]
+    None,
+    /// A level above the window, as of 48 °C: the comparator must cut the supply.
+    Hot,
+    /// A level below the window, as of 5 °C: the comparator must cut the supply.
+    Cold,
+}
+
 /// What a control tick of one finger demands of the board until the next tick, 1 ms later: of the bridge, and of the
-/// comparator's test line.
+/// comparator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BoardOutputs {
     /// Whether the finger's bridge is off (high-impedance) or driven, and with which duty cycle.
     pub drive: Drive,
-    /// Level of the comparator's test line: true (high) makes the comparator cut the bridge supply, and the falling
-    /// edge makes the comparator restore the supply.
-    pub comparator_test: bool,
+    /// Test of the comparator. All fingers share the line that selects the side, hot or cold; never do two fingers
+    /// demand different sides at the same time.
+    pub comparator_test: ComparatorTest,
 }

@@ -34,5 +34,5 @@ pub use station::Station;
 pub use telemetry::Telemetry;
 pub use thermal_settings::{TICK_HZ, TICK_S};
 
-/// Scans of all seven analogue signals of one finger per second: 16 000, of which 16 are summed for each control tick.
+/// Scans of all eight analogue signals of one finger per second: 16 000, of which 16 are summed for each control tick.
 pub const SCANS_PER_SECOND: u32 = TICK_HZ * sense::SCANS_PER_TICK as u32;

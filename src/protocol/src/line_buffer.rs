@@ -8,6 +8,7 @@ use core::fmt;
 use contact_model::fixed_point::{Celsius, Force};
 
 use thermal_device::drive::Current;
+use thermal_device::sense::SupplyVoltage;
 
 /// Capacity of a [`LineBuffer`], bytes: enough for the longest answer to `state`, which is longer than any telemetry.
 const LINE_CAPACITY_BYTES: usize = 144;
@@ -63,6 +64,35 @@ impl LineBuffer {
     /// Appends a current in A with three decimals, after a `-` if it is negative.
     pub(super) fn push_current(&mut self, value: Current) {
         self.push_fixed_point_bits::<24, 3>(value.to_bits().into());
+    }
+
+    /// Appends a current in A with two decimals, or `-` for `None`.
+    pub(super) fn push_current_or_dash(&mut self, value: Option<Current>) {
+        match value {
+            Some(value) => self.push_fixed_point_bits::<24, 2>(value.to_bits().into()),
+            None => self.push_byte_if_fits(b'-'),
+        }
+    }
+
+    /// Appends the bridge's supply in V with one decimal, or `-` for `None`.
+    pub(super) fn push_supply_or_dash(&mut self, value: Option<SupplyVoltage>) {
+        match value {
+            Some(value) => self.push_scaled_integer::<1>(value.decivolts()),
+            None => self.push_byte_if_fits(b'-'),
+        }
+    }
+
+    /// Appends a number, or `-` for `None`.
+    pub(super) fn push_integer_or_dash(&mut self, value: Option<u8>) {
+        match value {
+            Some(value) => self.push_integer(value.into()),
+            None => self.push_byte_if_fits(b'-'),
+        }
+    }
+
+    /// Appends a sum of 16 conversions as their mean with two decimals, 0.00 to 4095.94.
+    pub(super) fn push_mean_of_16(&mut self, sum: u16) {
+        self.push_fixed_point_bits::<4, 2>(sum.into());
     }
 
     pub(super) fn push_integer(&mut self, value: u32) {

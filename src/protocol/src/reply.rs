@@ -6,7 +6,8 @@ use thermal_commissioning::{
     SessionReply, Setting, StabilityMargins, StorageOrder, THERMISTOR_WORDS,
 };
 use thermal_device::command::{self, Status};
-use thermal_device::safety::TripCause;
+use thermal_device::safety::{SelfTestReport, SelfTestResult, TripCause};
+use thermal_device::sense::Samples;
 use thermal_device::{SCANS_PER_SECOND, TICK_HZ};
 use thermal_settings::{Calibration, Tile};
 
@@ -17,7 +18,7 @@ use crate::request::CONTACT_MODEL_WORDS;
 /// Version of the protocol. It rises when a line, an answer or a telemetry field changes its meaning, not when one is added.
 const PROTOCOL_VERSION: u32 = 1;
 /// What was added to the protocol since version 0.1 of the firmware, for hosts that know several devices.
-const CAPABILITIES: &str = "upload,checksum,board";
+const CAPABILITIES: &str = "upload,checksum,board,self-test,raw";
 
 /// Answer to a line that was executed; `Display` writes the answer to the host, `ok` and what is reported, without a
 /// line ending and in at most [`ANSWER_MAX_BYTES`](super::ANSWER_MAX_BYTES) bytes.
@@ -69,6 +70,11 @@ fn write_station_reply(f: &mut fmt::Formatter<'_>, reply: &command::Reply) -> fm
         command::Reply::Status(status) => state_answer_line(status).fmt(f),
         command::Reply::Law(law) => write!(f, "ok law={}", law.name()),
         command::Reply::Cause(cause) => trip_cause_answer_line(cause.as_ref()).fmt(f),
+        command::Reply::SelfTest(report) => {
+            comparator_test_answer_words(report).fmt(f)?;
+            pulse_test_answer_words(report).fmt(f)
+        }
+        command::Reply::Raw(samples) => raw_answer_line(samples).fmt(f),
         // No line from the host requests averages and normal equations, which commissioning sessions evaluate.
         command::Reply::Finger(name) => write!(f, "ok finger={name}"),
         // No line from the host requests a material's properties.
@@ -150,6 +156,89 @@ fn trip_cause_answer_line(cause: Option<&TripCause>) -> LineBuffer {
     line.push_current(cause.current);
     line.push_str_if_fits(" asked_a=");
     line.push_current(cause.demanded);
+    line
+}
+
+/// First words of the answer to `self-test`, which is too long for one buffer.
+fn comparator_test_answer_words(report: &SelfTestReport) -> LineBuffer {
+    let mut line = LineBuffer::new();
+    line.push_str_if_fits("ok");
+    for (cut, supply, release, side) in [
+        (
+            " hot_cut_ms=",
+            " hot_supply_v=",
+            " hot_release_ms=",
+            &report.hot,
+        ),
+        (
+            " cold_cut_ms=",
+            " cold_supply_v=",
+            " cold_release_ms=",
+            &report.cold,
+        ),
+    ] {
+        line.push_str_if_fits(cut);
+        line.push_integer_or_dash(side.cut_ms);
+        line.push_str_if_fits(supply);
+        line.push_supply_or_dash(side.cut_supply);
+        line.push_str_if_fits(release);
+        line.push_integer_or_dash(side.release_ms);
+    }
+    line
+}
+
+/// Last words of the answer to `self-test`.
+fn pulse_test_answer_words(report: &SelfTestReport) -> LineBuffer {
+    let mut line = LineBuffer::new();
+    line.push_str_if_fits(" supply_v=");
+    line.push_supply_or_dash(report.supply);
+    for (name, current) in [
+        (" cool_a=", report.cooling_current),
+        (" warm_a=", report.warming_current),
+    ] {
+        line.push_str_if_fits(name);
+        line.push_current_or_dash(current);
+    }
+    for (name, response) in [" display_k=", " check_k="]
+        .into_iter()
+        .zip(report.responses)
+    {
+        line.push_str_if_fits(name);
+        line.push_celsius_or_dash::<2>(response);
+    }
+    line.push_str_if_fits(" result=");
+    line.push_str_if_fits(match report.result {
+        SelfTestResult::None => "none",
+        SelfTestResult::Running => "running",
+        SelfTestResult::Passed => "passed",
+        SelfTestResult::Failed(fault) => fault.name(),
+    });
+    line
+}
+
+fn raw_answer_line(samples: &Samples) -> LineBuffer {
+    let mut line = LineBuffer::new();
+    line.push_str_if_fits("ok");
+    for (name, sum) in [
+        (" display=", samples.display),
+        (" check=", samples.display_check),
+        (" sink=", samples.sink),
+        (" skin=", samples.skin),
+        (" room=", samples.room),
+        (" force=", samples.force),
+        (" current=", samples.current),
+        (" supply=", samples.supply),
+    ] {
+        line.push_str_if_fits(name);
+        line.push_mean_of_16(sum);
+    }
+    for (name, level) in [
+        (" stop=", samples.emergency_stop),
+        (" fault_line=", samples.bridge_fault),
+    ] {
+        line.push_str_if_fits(name);
+        line.push_str_if_fits(if level { "1" } else { "0" });
+    }
     line
 }
 

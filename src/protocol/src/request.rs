@@ -92,6 +92,8 @@ impl Request {
         "abort" => Self::Station(Command::Abort),
         "clear" => Self::Station(Command::Clear),
         "cause" => Self::Station(Command::Cause),
+        "self-test" => Self::Station(Command::SelfTest),
+        "raw" => Self::Station(Command::Raw),
         "calibrate" => Self::Commissioning(parse_calibration_point_or_clear(words)?),
         "tune" => match skip_if_next_is(words, "result") {
             true => Self::Commissioning(SessionRequest::TuneResult),

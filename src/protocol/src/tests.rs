@@ -19,7 +19,8 @@ use thermal_device::command::{self, Command, ObjectBody, Status};
 use thermal_device::control::Law;
 use thermal_device::drive::Current;
 use thermal_device::reference::ContactModel;
-use thermal_device::safety::Fault;
+use thermal_device::safety::{ComparatorSideReport, Fault, SelfTestReport, SelfTestResult};
+use thermal_device::sense::SupplyVoltage;
 use thermal_device::{StateName, Telemetry};
 use thermal_settings::Settings;
 
@@ -101,7 +102,7 @@ fn every_error_message_names_the_mistake_and_what_is_allowed() {
     for (line, answer) in [
         (
             "fly",
-            "err unknown command 'fly'; known: id board state stream checksum material object finger upload mode law arm hold start abort clear cause \
+            "err unknown command 'fly'; known: id board state stream checksum material object finger upload mode law arm hold start abort clear cause self-test raw \
              calibrate tune margins settings set save forget",
         ),
         (
@@ -242,6 +243,27 @@ fn the_longest_answers_fit_their_limit() {
         unknown.len() == ANSWER_MAX_BYTES && unknown.ends_with(" forget"),
         "{unknown}"
     );
+    let side = ComparatorSideReport {
+        cut_ms: Some(19),
+        cut_supply: Some(SupplyVoltage::from_sum(u16::MAX)),
+        release_ms: Some(19),
+    };
+    let report = SelfTestReport {
+        hot: side,
+        cold: side,
+        supply: Some(SupplyVoltage::from_sum(u16::MAX)),
+        cooling_current: Some(Current::from_num(10.24)),
+        warming_current: Some(Current::from_num(10.24)),
+        responses: [Some(Celsius::from_num(-99)); 2],
+        result: SelfTestResult::Failed(Fault::SettingsCorrupt),
+    };
+    let answer = Reply::Station(command::Reply::SelfTest(report)).to_string();
+    assert_eq!(
+        answer,
+        "ok hot_cut_ms=19 hot_supply_v=14.2 hot_release_ms=19 cold_cut_ms=19 cold_supply_v=14.2 cold_release_ms=19 \
+         supply_v=14.2 cool_a=10.24 warm_a=10.24 display_k=-99.00 check_k=-99.00 result=settings-corrupt"
+    );
+    assert!(answer.len() <= ANSWER_MAX_BYTES);
 
     let longest = Telemetry {
         tick: u32::MAX,

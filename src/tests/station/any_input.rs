@@ -13,7 +13,7 @@ use contact_model::fixed_point::{FAST_MAX, SLOW_MAX};
 use super::TestBench;
 use crate::device::StateName;
 use crate::device::command::AssumedFinger;
-use crate::device::drive::{Drive, Duty};
+use crate::device::drive::{ComparatorTest, Drive, Duty};
 use crate::device::safety::Setpoint;
 use crate::device::sense::Samples;
 use crate::protocol::ANSWER_MAX_BYTES;
@@ -37,10 +37,15 @@ fn samples() -> impl Strategy<Value = Samples> {
     let others = (
         sum(6_560..21_000),
         sum(0..38_400),
+        sum(50_000..60_900),
+        prop::bool::weighted(0.02),
         prop::bool::weighted(0.02),
     );
     (temperatures, others).prop_map(
-        |((display, display_check, sink, skin, room), (force, current, bridge_fault))| Samples {
+        |(
+            (display, display_check, sink, skin, room),
+            (force, current, supply, bridge_fault, emergency_stop),
+        )| Samples {
             display,
             display_check,
             sink,
@@ -48,7 +53,9 @@ fn samples() -> impl Strategy<Value = Samples> {
             room,
             force,
             current,
+            supply,
             bridge_fault,
+            emergency_stop,
         },
     )
 }
@@ -195,10 +202,11 @@ impl TickCount {
         prop_assert!(controls == on || telemetry.state == StateName::SelfTest);
         prop_assert_eq!(controls, telemetry.setpoint.is_some());
         prop_assert!(!tripped || !on);
-        prop_assert!(!on || samples.is_none_or(|samples| !samples.bridge_fault));
+        let forbidden = |samples: &Samples| samples.bridge_fault || samples.emergency_stop;
+        prop_assert!(!on || !samples.is_some_and(forbidden));
         prop_assert!(on || telemetry.demand == 0);
         prop_assert!(telemetry.demand.abs() <= 6);
-        prop_assert!(!(on && outputs.comparator_test));
+        prop_assert!(!on || outputs.comparator_test == ComparatorTest::None);
         if let Drive::On(duty) = outputs.drive {
             prop_assert!(duty.fraction().abs() <= Duty::DUTY_LIMIT);
         }
@@ -211,7 +219,7 @@ impl TickCount {
             bench.display_c -= 2.7e-3 * telemetry.demand.to_num::<f64>();
             bench.check_c = bench.display_c;
         }
-        bench.bridge_fault = outputs.comparator_test;
+        bench.apply_comparator_test(&outputs);
         self.all.set(self.all.get() + 1);
         self.driven.set(self.driven.get() + u32::from(on));
         Ok(())

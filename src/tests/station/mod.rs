@@ -13,8 +13,8 @@ use std::string::{String, ToString};
 
 use crate::device::Telemetry;
 use crate::device::command::WithSourceFinger;
-use crate::device::drive::BoardOutputs;
 use crate::device::drive::Drive;
+use crate::device::drive::{BoardOutputs, ComparatorTest};
 use crate::device::sense::Samples;
 use crate::device::{StateName, Station};
 use crate::protocol::CommandHandler;
@@ -43,6 +43,9 @@ struct TestBench {
     /// Measured current; `None` for the demanded one.
     measured_a: Option<f64>,
     bridge_fault: bool,
+    /// Bridge supply behind its switch.
+    supply_v: f64,
+    emergency_stop: bool,
     /// A byte from the host arrives before every tick.
     host_alive: bool,
     /// The plate responds to the demanded current as the nominal tile does.
@@ -68,6 +71,8 @@ impl TestBench {
             demanded_a: 0.0,
             measured_a: None,
             bridge_fault: false,
+            supply_v: 12.0,
+            emergency_stop: false,
             host_alive: true,
             plate_responds: false,
             noise: 1,
@@ -119,7 +124,13 @@ impl TestBench {
         let (outputs, telemetry) = self.step_with_outputs();
         let moved_k = 2.7e-3 * telemetry.demand.to_num::<f64>();
         (self.display_c, self.check_c) = (self.display_c - moved_k, self.check_c - moved_k);
-        self.bridge_fault = outputs.comparator_test;
+        self.apply_comparator_test(&outputs);
+    }
+
+    /// A comparator that works at once: a test pulls the fault line, and cuts the supply, which falls to 4 V.
+    fn apply_comparator_test(&mut self, outputs: &BoardOutputs) {
+        self.bridge_fault = outputs.comparator_test != ComparatorTest::None;
+        self.supply_v = if self.bridge_fault { 4.0 } else { 12.0 };
     }
 
     /// Steps until the self-test has ended, and restores the temperatures.
@@ -135,7 +146,8 @@ impl TestBench {
     }
 
     /// Sums of sixteen conversions: 10 kΩ thermistors with a beta of 3950 K and self-heating under 10 kΩ, a force
-    /// sensor with 410 counts at zero and 300 counts/N, a current mirror with 400 counts/A.
+    /// sensor with 410 counts at zero and 300 counts/N, a current mirror with 400 counts/A, the supply behind 33 and
+    /// 10 kΩ.
     fn samples(&self) -> Samples {
         let thermistor = |t_c: f64, self_heating_k: f64| {
             let ohm =
@@ -151,7 +163,9 @@ impl TestBench {
             room: thermistor(self.room_c, 0.27),
             force: (16.0 * (410.0 + 300.0 * self.force_n)).round() as u16,
             current: (16.0 * 400.0 * current_a).round() as u16,
+            supply: (16.0 * 4096.0 / 3.3 * 10.0 / 43.0 * self.supply_v).round() as u16,
             bridge_fault: self.bridge_fault,
+            emergency_stop: self.emergency_stop,
         }
     }
 

@@ -8,7 +8,7 @@
 use std::fmt::Display;
 
 use thermal_display::device::command::{self, Command, Status, WithSourceFinger};
-use thermal_display::device::drive::{BoardOutputs, Drive};
+use thermal_display::device::drive::{BoardOutputs, ComparatorTest, Drive};
 use thermal_display::device::safety::Fault;
 use thermal_display::device::sense::Samples;
 use thermal_display::device::{Device, FingerIndex, StateName};
@@ -213,7 +213,7 @@ impl<const FINGERS: usize> CheckedDevice<FINGERS> {
 }
 
 fn check_outputs(outputs: BoardOutputs, state: StateName, samples: &Samples) {
-    if outputs.comparator_test {
+    if outputs.comparator_test != ComparatorTest::None {
         assert_eq!(
             (state, outputs.drive),
             (StateName::SelfTest, Drive::Off),
@@ -231,8 +231,8 @@ fn check_outputs(outputs: BoardOutputs, state: StateName, samples: &Samples) {
     let fraction: f64 = duty.fraction().to_num();
     assert!(fraction.abs() <= 0.9, "duty {fraction}");
     assert!(
-        !samples.bridge_fault,
-        "driven while the bridge reports a fault: {samples:?}"
+        !samples.bridge_fault && !samples.emergency_stop,
+        "driven while the bridge reports a fault or the emergency stop is pressed: {samples:?}"
     );
     let at_rail = samples
         .thermistor_sums()

@@ -5,7 +5,9 @@ use thermal_display::commissioning::THERMISTOR_WORDS;
 use thermal_display::device::FingerIndex;
 use thermal_display::device::drive::Drive;
 use thermal_display::device::safety::Fault;
-use thermal_display::device::sense::{ADC_CHANNELS_PER_FINGER, SCANS_PER_TICK, Samples, Scan};
+use thermal_display::device::sense::{
+    ADC_CHANNELS_PER_FINGER, DigitalInputs, SCANS_PER_TICK, Samples, Scan,
+};
 
 use crate::start::StartDevices;
 
@@ -27,8 +29,8 @@ struct Input {
 enum Event {
     /// Ticks on the tile.
     Run(u8),
-    /// A tick with these sums and bridge fault.
-    Sums([u16; ADC_CHANNELS_PER_FINGER], bool),
+    /// A tick with these sums, bridge fault and emergency stop.
+    Sums([u16; ADC_CHANNELS_PER_FINGER], bool, bool),
     /// A tick with these conversions, the second ones in the last scan.
     Scans(
         [u16; ADC_CHANNELS_PER_FINGER],
@@ -238,7 +240,8 @@ fn channel(samples: &mut Samples, index: u8) -> &mut u16 {
         3 => &mut samples.skin,
         4 => &mut samples.room,
         5 => &mut samples.force,
-        _ => &mut samples.current,
+        6 => &mut samples.current,
+        _ => &mut samples.supply,
     }
 }
 
@@ -258,8 +261,18 @@ pub fn run(input: &[u8]) -> bool {
         match *event {
             Event::Run(ticks) => device.run(limited(ticks)),
             Event::Sums(
-                [display, display_check, sink, skin, room, force, current],
+                [
+                    display,
+                    display_check,
+                    sink,
+                    skin,
+                    room,
+                    force,
+                    current,
+                    supply,
+                ],
                 bridge_fault,
+                emergency_stop,
             ) => {
                 let samples = Samples {
                     display,
@@ -269,7 +282,9 @@ pub fn run(input: &[u8]) -> bool {
                     room,
                     force,
                     current,
+                    supply,
                     bridge_fault,
+                    emergency_stop,
                 };
                 device.step(FINGER, &samples);
             }
@@ -282,7 +297,10 @@ pub fn run(input: &[u8]) -> bool {
                 let broken = scan(last)[..5]
                     .iter()
                     .any(|count| matches!(count, 0 | 4095));
-                let outputs = device.step(FINGER, &Samples::from_scans(&scans, false));
+                let outputs = device.step(
+                    FINGER,
+                    &Samples::from_scans(&scans, DigitalInputs::default()),
+                );
                 assert!(
                     !broken || outputs.drive == Drive::Off,
                     "driven in the tick in which a wire broke"

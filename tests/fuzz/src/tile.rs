@@ -1,6 +1,6 @@
 //! A simulated tile with the class's nominal response, so that a device on it passes its self-test and stays armed.
 
-use thermal_display::device::drive::{BoardOutputs, Drive};
+use thermal_display::device::drive::{BoardOutputs, ComparatorTest, Drive};
 use thermal_display::device::sense::Samples;
 
 /// Tile and sensors of one finger. A first-order model instead of the plant of `hil-sim`, to keep a tick fast.
@@ -18,6 +18,10 @@ pub struct Tile {
     /// State of the noise generator; without noise, the sums would count as frozen.
     noise: u16,
 }
+
+/// Sums of the bridge's supply: 12 V, and 4 V while the comparator cuts it.
+const SUPPLY: u16 = 16 * 3464;
+const CUT_SUPPLY: u16 = 16 * 1155;
 
 /// Sum of 16 conversions of 12 bits at full scale.
 pub const FULL_SCALE: u16 = 16 * 4095;
@@ -82,7 +86,13 @@ impl Tile {
             room: room + noise(8),
             force: self.force + noise(10),
             current: self.current + noise(12),
+            supply: if self.comparator_tripped {
+                CUT_SUPPLY
+            } else {
+                SUPPLY
+            },
             bridge_fault: self.comparator_tripped,
+            emergency_stop: false,
         }
     }
 
@@ -92,17 +102,17 @@ impl Tile {
             Drive::Off => 0.0,
             Drive::On(duty) => {
                 let duty: f64 = duty.fraction().to_num();
-                (12.0 * duty - 0.0273 * (self.sink_c - self.plate_c)) / 1.251
+                (12.0 * duty - 0.0273 * (self.sink_c - self.plate_c)) / 1.111
             }
         };
-        // From 0.5 A on the dead times of the bridge cost 0.4 V.
+        // From 0.5 A on the dead times of the bridge cost 0.21 V.
         let current_a =
-            current_a.signum() * (current_a.abs() - 0.32 * (current_a.abs() / 0.5).min(1.0));
+            current_a.signum() * (current_a.abs() - 0.19 * (current_a.abs() / 0.5).min(1.0));
         let slope_k_s =
             -2.91 * current_a * (1.0 - 0.0585 * current_a) - 0.103 * (self.plate_c - self.sink_c);
         self.plate_c = (self.plate_c + 1e-3 * slope_k_s).clamp(-20.0, 80.0);
         self.display_c += 1e-3 / 0.1 * (self.plate_c - self.display_c);
         self.current = (6400.0 * current_a.abs()).min(f64::from(FULL_SCALE)) as u16 & !3;
-        self.comparator_tripped = outputs.comparator_test;
+        self.comparator_tripped = outputs.comparator_test != ComparatorTest::None;
     }
 }

@@ -8,13 +8,13 @@ use thermal_sim::five_fingers::{FINGERS, FiveFingerEngine, OneLine};
 
 use super::meter::Meter;
 use super::one_finger::{ADC_INPUTS, OneFingerBoard, StartError, power_up, resets};
-use super::{A, B, Bridge, C, FIRST_BRIDGE, Pin, bridge, is_high};
+use super::{A, B, Bridge, C, D, EMERGENCY_STOP, FIRST_BRIDGE, Pin, bridge};
 use crate::{Firmware, Machine, Stop, Wiring};
 
 const BRIDGES: [Bridge; FINGERS] = [
     FIRST_BRIDGE,
-    bridge((A, 10), (A, 11), (B, 13), (A, 7), (C, 4)),
-    bridge((C, 6), (C, 7), (B, 14), (A, 12), (C, 5)),
+    bridge((A, 10), (A, 11), (B, 13), (A, 7), (A, 15)),
+    bridge((C, 6), (C, 7), (B, 14), (A, 12), (D, 2)),
     bridge((C, 8), (C, 9), (B, 15), (B, 5), (B, 6)),
     bridge((B, 8), (B, 9), (B, 1), (B, 12), (B, 7)),
 ];
@@ -27,7 +27,7 @@ const SETTLING_US: u64 = 11;
 const SETTLED_SCANS: usize = 17;
 
 /// From the end of the first conversion to the first finger's first boundary, and from finger to finger,
-/// picoseconds: the sixth of the 18 scans of a finger's turn ends 63 us after the first conversion, the seventh's first
+/// picoseconds: the sixth of the 18 scans of a finger's turn ends 64 us after the first conversion, the seventh's first
 /// conversion 67 us after it.
 const FIRST_BOUNDARY_PS: u64 = 65_000_000;
 const TURN_PS: u64 = 200_000_000;
@@ -78,7 +78,7 @@ impl FiveFingerEngine for FiveFingerBoard {
         self.machine.run_until_ps(at_ps)?;
         let tests = BRIDGES
             .each_ref()
-            .map(|bridge| is_high(&self.machine, bridge.test));
+            .map(|bridge| bridge.comparator_test(&self.machine));
         for (world, test) in self.machine.wiring_mut().worlds.iter_mut().zip(tests) {
             world.comparator_test(test);
         }
@@ -212,6 +212,9 @@ impl Wiring for Pins {
     }
 
     fn pin(&self, port: u8, bit: u8) -> Option<bool> {
+        if (port, bit) == EMERGENCY_STOP {
+            return Some(!self.worlds.iter().any(World::emergency_stop));
+        }
         let finger = BRIDGES
             .iter()
             .position(|bridge| bridge.fault == (port, bit))?;

@@ -1,6 +1,7 @@
 //! Boards around the machine: a NUCLEO-F446RE with one finger, and one with five on multiplexers; their engines.
 
 use thermal_plant::bridge::{BridgeOutputs, Leg};
+use thermal_plant::comparator::ComparatorTest;
 
 use crate::{LegState, Machine, Wiring};
 
@@ -17,6 +18,12 @@ type Pin = (u8, u8);
 const A: u8 = 0;
 const B: u8 = 1;
 const C: u8 = 2;
+const D: u8 = 3;
+
+/// Output that selects the side of the comparators' tests: low hot, high cold. All fingers share it.
+const TEST_SIDE: Pin = (B, 2);
+/// Sense line of the emergency stop, low while it is pressed.
+const EMERGENCY_STOP: Pin = (C, 13);
 
 /// Pins of the bridge of one finger.
 struct Bridge {
@@ -25,7 +32,7 @@ struct Bridge {
     enable: Pin,
     /// Fault line, low is a fault.
     fault: Pin,
-    /// Output that lets the comparator cut the supply, for its test.
+    /// Output that connects the comparator's input to a level outside of its window.
     test: Pin,
 }
 
@@ -50,11 +57,20 @@ impl Bridge {
             enabled: is_high(machine, self.enable),
         }
     }
+
+    fn comparator_test<W: Wiring>(&self, machine: &Machine<W>) -> ComparatorTest {
+        match (is_high(machine, self.test), is_high(machine, TEST_SIDE)) {
+            (false, _) => ComparatorTest::None,
+            (true, false) => ComparatorTest::Hot,
+            (true, true) => ComparatorTest::Cold,
+        }
+    }
 }
 
 impl From<LegState> for Leg {
+    /// An input that nothing drives is pulled down.
     fn from(state: LegState) -> Self {
-        state.duty().map_or(Self::Off, Self::Duty)
+        Self::Duty(state.duty().unwrap_or(0.0))
     }
 }
 

@@ -11,11 +11,11 @@ use thermal_sim::scene::Scene;
 use thermal_sim::{RamLayout, SceneRunner, World, run_scene_on};
 
 use super::meter::{Meter, TICK};
-use super::{FIRST_BRIDGE, is_high};
+use super::{EMERGENCY_STOP, FIRST_BRIDGE};
 use crate::{Firmware, InjectError, Machine, RAM_BASE, RAM_SIZE, Stop, Wiring};
 
-/// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2.
-pub const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12];
+/// ADC1 inputs, in the order of [`Channel::ALL`]: PA0, PA1, PA4, PB0, PC1, PC0, PC2, PC4.
+pub const ADC_INPUTS: [u8; Channel::ALL.len()] = [0, 1, 4, 8, 11, 10, 12, 14];
 /// From the first conversion to the first boundary, and between boundaries, picoseconds.
 const FIRST_BOUNDARY_PS: u64 = 230_000_000;
 const HALF_MS_PS: u64 = 500_000_000;
@@ -126,7 +126,7 @@ impl Engine for OneFingerBoard {
         self.halves += 1;
         self.machine
             .run_until_ps(self.first_boundary_ps + self.halves * HALF_MS_PS)?;
-        let test = is_high(&self.machine, FIRST_BRIDGE.test);
+        let test = FIRST_BRIDGE.comparator_test(&self.machine);
         self.world().comparator_test(test);
         Ok(())
     }
@@ -251,7 +251,11 @@ impl Wiring for Pins {
     }
 
     fn pin(&self, port: u8, bit: u8) -> Option<bool> {
-        ((port, bit) == FIRST_BRIDGE.fault).then(|| !self.world.bridge_fault())
+        match (port, bit) {
+            pin if pin == FIRST_BRIDGE.fault => Some(!self.world.bridge_fault()),
+            EMERGENCY_STOP => Some(!self.world.emergency_stop()),
+            _ => None,
+        }
     }
 
     fn uart_tx(&mut self, byte: u8, _at: u64, _baud: u32) {

@@ -14,7 +14,7 @@ pub enum LegDefect {
     Low,
     /// High-impedance.
     Open,
-    /// Its output is shorted to ground: the driver trips when it drives it high.
+    /// Its output is shorted to ground: the driver trips when it drives it high, in the pulses of one direction.
     Shorted,
 }
 
@@ -50,10 +50,19 @@ pub struct BridgeDefects {
 }
 
 impl BridgeDefects {
-    /// Outputs of the defective bridge for the commanded ones.
+    /// Legs of the defective bridge for its inputs.
     #[must_use]
     pub fn apply(&self, legs: &BridgeOutputs) -> BridgeOutputs {
-        let (a, b) = (self.a.apply(legs.a), self.b.apply(legs.b));
+        let (a, b) = if self.a == LegDefect::None && self.b == LegDefect::None {
+            (legs.a, legs.b)
+        } else {
+            let (a, b) = legs.leg_levels();
+            match (self.a.apply(a), self.b.apply(b)) {
+                // Both low is as good as both high, which does not read as inputs that are low.
+                (Leg::Duty(0.0), Leg::Duty(0.0)) => (Leg::Duty(1.0), Leg::Duty(1.0)),
+                legs => legs,
+            }
+        };
         let (a, b) = if self.swapped { (b, a) } else { (a, b) };
         BridgeOutputs {
             a,

@@ -2,15 +2,17 @@
 //!
 //! ```text
 //!  supply --+---------+
-//!           a         b     legs: two switches each, PWM
+//!           a         b     legs: two MOSFETs each, PWM
 //!           |         |
 //!           +- L, r --+---- tile (Seebeck voltage, resistance) ---- back to b
 //!                     C     across the tile
 //! ```
 //!
 //! The circuit settles within about 0.1 ms, so each 1 ms step of the plant uses its periodic steady state: the mean
-//! current and the mean square of its ripple. Not modelled: finite slew rate, saturation of the inductor, heating of the
-//! switches.
+//! current and the mean square of its ripple. Not modelled: switching transients (10 A at enable, 12 A at a reversal by
+//! the benches of `hardware/`, below every trip level here), finite slew rate, saturation of the inductors. Nor is the
+//! warming of the MOSFETs: 6 A make 0.25 W in each pair, so their 7 milliohm rise by less than 1 milliohm, a thousandth
+//! of the path's resistance, where the leads alone are uncertain by 10.
 
 mod dead_time;
 mod defects;
@@ -36,15 +38,31 @@ pub enum Leg {
     Shorted,
 }
 
-/// Outputs of one bridge; a current from leg `a` to leg `b` cools the display.
+/// Drive of one bridge: its logic inputs IN1 and IN2 or, behind the [defects](BridgeDefects::apply), its legs. Only the
+/// difference of `a` and `b` drives a current, and a positive one cools the display; so inputs that are both high, with
+/// which both legs are low, need no conversion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BridgeOutputs {
-    /// Leg at the positive terminal of the tile.
+    /// IN1, and the leg at the positive terminal of the tile.
     pub a: Leg,
-    /// Leg at the negative terminal of the tile.
+    /// IN2, and the leg at the negative terminal of the tile.
     pub b: Leg,
-    /// Level of the driver's enable pin; low makes both legs high-impedance.
+    /// Level of the enable line; low makes both legs high-impedance.
     pub enabled: bool,
+}
+
+impl BridgeOutputs {
+    /// Fraction of time for which each leg is at the supply, by the driver's truth table for its inputs: 10 and 01 drive
+    /// one leg high and the other low, with 11 both are low, and with 00 throughout both are high-impedance.
+    fn leg_levels(&self) -> (Leg, Leg) {
+        match (self.a, self.b) {
+            (Leg::Duty(in1), Leg::Duty(in2)) if in1 > 0.0 || in2 > 0.0 => (
+                Leg::Duty((in1 - in2).max(0.0)),
+                Leg::Duty((in2 - in1).max(0.0)),
+            ),
+            _ => (Leg::Off, Leg::Off),
+        }
+    }
 }
 
 /// Electrical load that the tile presents to the bridge in one step.
@@ -63,8 +81,35 @@ pub struct Current {
     pub mean_a: f64,
     /// Mean square of the ripple, A^2; it adds Joule heat in the tile.
     pub ripple_a2: f64,
-    /// Mean current out of the high-side switches, which the driver's current mirror measures, A.
-    pub mirror_a: f64,
+    /// Mean current out of the supply, A; negative if the tile feeds it.
+    pub supply_a: f64,
+    /// Ripple of the inductors' current, which the sense resistors see.
+    pub inductor: InductorRipple,
+}
+
+/// Triangular ripple of the inductors' current.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InductorRipple {
+    /// Half of its peak-to-peak value, A.
+    pub half_a: f64,
+    /// Part of the PWM period in which the current rises.
+    pub width: f64,
+}
+
+impl InductorRipple {
+    /// Its value at a phase of the PWM period, 0 to 1 from the begin of the pulses, A.
+    #[must_use]
+    pub fn at_phase(&self, phase: f64) -> f64 {
+        let Self { half_a, width } = *self;
+        let part = if phase < width {
+            -1.0 + 2.0 * phase / width
+        } else if width < 1.0 {
+            1.0 - 2.0 * (phase - width) / (1.0 - width)
+        } else {
+            0.0
+        };
+        half_a * part
+    }
 }
 
 /// The power stage.
@@ -76,8 +121,6 @@ pub struct Bridge {
     params: BridgeParams,
     dead_time: DeadTime,
     ripple: Ripple,
-    /// Approximate resistance of the tile, ohm.
-    load_ohm: f64,
     /// Time until the tripped driver retries, s.
     retry_in_s: f64,
 }
@@ -93,17 +136,15 @@ impl Bridge {
             params,
             dead_time: DeadTime::new(&params),
             ripple: Ripple::new(&params, load_ohm),
-            load_ohm,
             retry_in_s: 0.0,
         }
     }
 
-    /// Changes the supply voltage, V, above 0.
+    /// Changes the supply voltage, V, 0 or more.
     pub fn set_supply(&mut self, supply_v: f64) {
         if supply_v != self.params.supply_v {
             self.params.supply_v = supply_v;
             self.dead_time = DeadTime::new(&self.params);
-            self.ripple = Ripple::new(&self.params, self.load_ohm);
         }
     }
 
@@ -165,13 +206,17 @@ impl Bridge {
         };
         // The ripple follows the effective duty cycle, given by the mean voltage across the legs.
         let applied_v = mean_a * ohm + load.seebeck_v;
-        let ripple_v2 = self
-            .ripple
-            .mean_square_v2((applied_v / params.supply_v).abs());
+        let ripple_v2 = params.supply_v
+            * params.supply_v
+            * self.ripple.mean_square((applied_v / params.supply_v).abs());
         Current {
             mean_a,
             ripple_a2: ripple_v2 / (load.resistance_ohm * load.resistance_ohm),
-            mirror_a: mean_a.abs() * if mean_a > 0.0 { a } else { b },
+            supply_a: mean_a * (a - b),
+            inductor: InductorRipple {
+                half_a: self.dead_time.half_ripple_a(width),
+                width,
+            },
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Parameters of the power stage.
 
-/// Driver, filter and supply of one bridge: a DRV8873 in IN/IN mode with current regulation off (data sheet SLVSDY7B).
+/// Driver, MOSFETs, filter and supply of one bridge: a DRV8702-Q1 with four BSC035N04LS G, as in `hardware/bridge.cir`.
 ///
 /// Tolerances and sources are in [`parameters`](crate::parameters). No value was measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,13 +11,13 @@ pub struct BridgeParams {
     pub pwm_hz: f64,
     /// Time for which both switches of a leg are off at each edge, s, 0 to half a period.
     pub dead_time_s: f64,
-    /// Forward voltage of the switches' body diodes, V.
+    /// Forward voltage of the MOSFETs' body diodes, V.
     pub diode_v: f64,
-    /// On resistance of two switches (nominally 0.15 ohm, more when warm) and of the leads to the tile, ohm.
+    /// On resistance of two MOSFETs (7 milliohm, a third more when hot), sense resistor and leads to the tile, ohm.
     pub on_ohm: f64,
-    /// Filter inductor, H.
+    /// Filter inductors of both legs, H.
     pub filter_h: f64,
-    /// Resistance of the inductor, ohm.
+    /// Resistance of both inductors, ohm.
     pub filter_ohm: f64,
     /// Filter capacitor across the tile, F; a ceramic capacitor loses capacitance under DC bias.
     pub filter_f: f64,
@@ -25,7 +25,7 @@ pub struct BridgeParams {
     pub filter_esr_ohm: f64,
     /// Overcurrent trip level of a switch, A.
     pub trip_a: f64,
-    /// Retry time after an overcurrent trip, s (data sheet, mode 01b: automatic retry).
+    /// Retry time after an overcurrent trip, s.
     pub retry_s: f64,
 }
 
@@ -34,14 +34,14 @@ impl BridgeParams {
     pub const NOMINAL: Self = Self {
         supply_v: 12.0,
         pwm_hz: 96e3,
-        dead_time_s: 0.3e-6,
+        dead_time_s: 0.16e-6,
         diode_v: 0.9,
-        on_ohm: 0.17,
-        filter_h: 10e-6,
-        filter_ohm: 0.02,
+        on_ohm: 0.04,
+        filter_h: 9.4e-6,
+        filter_ohm: 0.01,
         filter_f: 10e-6,
-        filter_esr_ohm: 0.005,
-        trip_a: 10.0,
-        retry_s: 4e-3,
+        filter_esr_ohm: 0.003,
+        trip_a: 49.0,
+        retry_s: 3e-3,
     };
 }

@@ -22,50 +22,50 @@ const NEGLIGIBLE: f64 = 1e-9;
 /// Largest number of harmonics; without a filter their power falls only with the square of their number.
 const MAX_HARMONICS: usize = 4096;
 
-/// Mean square of the ripple of the tile voltage over the duty cycle. A table for one tile resistance serves others near
+/// Mean square of the ripple of the tile voltage over the duty cycle, as a fraction of the square of the supply. A table for one tile resistance serves others near
 /// it, since the capacitor takes most of the ripple: a change of 20 % in resistance changes the ripple by 1 %.
 #[derive(Clone, Debug)]
 pub struct Ripple {
-    /// Mean square divided by `w (1 - w)`, at equal steps of the duty cycle `w` from 0 to 1/2, V^2. The quotient is
+    /// Mean square divided by `w (1 - w)`, at equal steps of the duty cycle `w` from 0 to 1/2, per V^2. The quotient is
     /// smooth with a filter and constant without.
-    shape_v2: [f64; PARTS + 1],
+    shape: [f64; PARTS + 1],
 }
 
 impl Ripple {
     /// The table for a bridge and a tile of about this resistance, ohm.
     pub fn new(params: &BridgeParams, load_ohm: f64) -> Self {
-        let power_v2 = harmonics_v2(params, load_ohm);
-        let mut shape_v2 = std::array::from_fn(|part| {
+        let power = harmonics(params, load_ohm);
+        let mut shape = std::array::from_fn(|part| {
             let width = part as f64 / (2 * PARTS) as f64;
-            mean_square_v2(&power_v2, width) / (width * (1.0 - width))
+            mean_square(&power, width) / (width * (1.0 - width))
         });
         // At zero duty cycle the quotient is 0/0: linear extrapolation.
-        shape_v2[0] = (2.0 * shape_v2[1] - shape_v2[2]).max(0.0);
-        Self { shape_v2 }
+        shape[0] = (2.0 * shape[1] - shape[2]).max(0.0);
+        Self { shape }
     }
 
-    /// Mean square of the ripple of the tile voltage, V^2, at a duty cycle of 0 to 1.
-    pub fn mean_square_v2(&self, width: f64) -> f64 {
+    /// Mean square of the ripple of the tile voltage, per V^2 of the supply, at a duty cycle of 0 to 1.
+    pub fn mean_square(&self, width: f64) -> f64 {
         let narrow = width.min(1.0 - width).max(0.0);
         let position = narrow * (2 * PARTS) as f64;
         let part = (position as usize).min(PARTS - 1);
-        let (low, high) = (self.shape_v2[part], self.shape_v2[part + 1]);
+        let (low, high) = (self.shape[part], self.shape[part + 1]);
         narrow * (1.0 - narrow) * (low + (high - low) * (position - part as f64))
     }
 }
 
-/// Mean square of each harmonic of the tile voltage, V^2, for `sin^2 = 1`.
-fn harmonics_v2(params: &BridgeParams, load_ohm: f64) -> Vec<f64> {
-    let mut power_v2: Vec<f64> = Vec::new();
+/// Mean square of each harmonic of the tile voltage, per V^2 of the supply, for `sin^2 = 1`.
+fn harmonics(params: &BridgeParams, load_ohm: f64) -> Vec<f64> {
+    let mut power: Vec<f64> = Vec::new();
     for n in 1..=MAX_HARMONICS {
-        let pulse_v = 2.0 * params.supply_v / (PI * n as f64);
+        let pulse = 2.0 / (PI * n as f64);
         let omega = 2.0 * PI * n as f64 * params.pwm_hz;
-        power_v2.push(pulse_v * pulse_v * power_gain(params, load_ohm, omega) / 2.0);
-        if power_v2[n - 1] < NEGLIGIBLE * power_v2[0] {
+        power.push(pulse * pulse * power_gain(params, load_ohm, omega) / 2.0);
+        if power[n - 1] < NEGLIGIBLE * power[0] {
             break;
         }
     }
-    power_v2
+    power
 }
 
 /// Power gain of the filter, from the legs to the tile, at an angular frequency, rad/s.
@@ -84,9 +84,9 @@ fn power_gain(params: &BridgeParams, load_ohm: f64, omega: f64) -> f64 {
 }
 
 /// Mean square of all harmonics at a duty cycle.
-fn mean_square_v2(power_v2: &[f64], width: f64) -> f64 {
+fn mean_square(power: &[f64], width: f64) -> f64 {
     let sines = (1..).map(|n| (PI * f64::from(n) * width).sin().powi(2));
-    power_v2
+    power
         .iter()
         .zip(sines)
         .map(|(power, sine)| power * sine)

@@ -1,6 +1,6 @@
 //! Parameters of the power stage.
 
-use super::Source::{ClassValue, DataSheet, Design, Recalled};
+use super::Source::{ClassValue, Design, Netlist, Recalled};
 use super::entry::{Entry, entry, prefixed};
 use super::tolerance::{FIXED, absolute, between, relative};
 use crate::bridge::BridgeParams;
@@ -25,10 +25,10 @@ pub fn entries(bridge: &mut BridgeParams) -> impl Iterator<Item = Entry<'_>> {
         entry!(
             dead_time_s,
             "s",
-            "time for which both switches of a leg are off at an edge",
-            between(0.1e-6, 0.6e-6),
+            "effective time for which both MOSFETs of a leg are off at an edge",
+            between(0.1e-6, 0.3e-6),
             (0.0, 1e-5),
-            Recalled,
+            Netlist,
         ),
         entry!(
             diode_v,
@@ -41,26 +41,26 @@ pub fn entries(bridge: &mut BridgeParams) -> impl Iterator<Item = Entry<'_>> {
         entry!(
             on_ohm,
             "ohm",
-            "both switches that conduct, and the leads to the tile",
-            between(0.12, 0.30),
+            "MOSFETs that conduct, sense resistor, leads to the tile",
+            between(0.025, 0.08),
             (0.0, 10.0),
-            Recalled,
+            Netlist,
         ),
         entry!(
             filter_h,
             "H",
-            "filter inductor",
+            "filter inductors of both legs",
             relative(0.2),
             (1e-7, 1e-2),
-            Design,
+            Netlist,
         ),
         entry!(
             filter_ohm,
             "ohm",
-            "resistance of the inductor",
+            "resistance of the inductors",
             relative(0.5),
             (0.0, 10.0),
-            ClassValue,
+            Netlist,
         ),
         entry!(
             filter_f,
@@ -82,9 +82,9 @@ pub fn entries(bridge: &mut BridgeParams) -> impl Iterator<Item = Entry<'_>> {
             trip_a,
             "A",
             "current at which a switch counts as overloaded",
-            between(10.0, 16.0),
+            between(24.0, 50.0),
             (0.1, 100.0),
-            DataSheet,
+            Netlist,
         ),
         entry!(
             retry_s,

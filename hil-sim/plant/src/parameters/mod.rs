@@ -12,6 +12,7 @@ mod finger;
 mod finger_draw;
 mod host;
 mod sensors;
+mod supply;
 mod surface;
 mod tile;
 mod tolerance;
@@ -38,6 +39,8 @@ pub enum Source {
     ClassValue,
     /// Estimated for the stated reason.
     Estimate(&'static str),
+    /// Simulated by the benches of the circuits in `hardware/`, or a value of their netlists.
+    Netlist,
     /// Stated from memory, not looked up.
     Recalled,
     /// Chosen for the reference design; the tolerance is that of the class of part.
@@ -52,6 +55,7 @@ impl std::fmt::Display for Source {
             Self::Literature => "literature",
             Self::DataSheet => "data sheet",
             Self::ClassValue => "class value",
+            Self::Netlist => "netlist",
             Self::Recalled => "recalled",
             Self::Design => "design",
         })
@@ -189,6 +193,7 @@ fn entries(params: &mut Params) -> Vec<Entry<'_>> {
         sensors,
         bridge,
         comparator,
+        supply,
         host,
     } = params;
     let mut all = finger::entries(finger);
@@ -197,6 +202,7 @@ fn entries(params: &mut Params) -> Vec<Entry<'_>> {
     all.extend(tile::entries(tile));
     all.extend(bridge::entries(bridge));
     all.extend(comparator::entries(comparator));
+    all.extend(supply::entries(supply));
     all.extend(sensors::entries(sensors));
     all.extend(host::entries(host));
     all

@@ -1,6 +1,6 @@
 //! Parameters of sensors and converter.
 
-use super::Source::{ClassValue, DataSheet, Design, Literature, Recalled, Thesis};
+use super::Source::{ClassValue, DataSheet, Design, Literature, Netlist, Recalled, Thesis};
 use super::entry::{Entry, entry, prefixed};
 use super::tolerance::{FIXED, Tolerance, absolute, between, factor, relative};
 use crate::sensors::{
@@ -19,6 +19,7 @@ const LAG: Tolerance = factor(2.0);
 pub fn entries(sensors: &mut SensorParams) -> Vec<Entry<'_>> {
     let SensorParams {
         thermistors,
+        divider_lag_s,
         skin_sees_contact,
         force,
         mirror,
@@ -36,6 +37,14 @@ pub fn entries(sensors: &mut SensorParams) -> Vec<Entry<'_>> {
     ] {
         all.extend(prefixed(name, thermistor(one, lag)));
     }
+    all.push(entry!(
+        divider_lag_s,
+        "s",
+        "lag of the filters between the dividers and the converter",
+        relative(0.15),
+        (0.0, 1.0),
+        Netlist,
+    ));
     all.push(entry!(
         skin_sees_contact,
         "1",
@@ -155,11 +164,13 @@ fn force(force: &mut ForceParams) -> [Entry<'_>; 4] {
     ]
 }
 
-fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 3] {
+fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 5] {
     let MirrorParams {
         counts_per_a,
         gain_error,
         offset_a,
+        lag_s,
+        sampling_phase,
     } = mirror;
     [
         entry!(
@@ -173,10 +184,10 @@ fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 3] {
         entry!(
             gain_error,
             "1",
-            "error of the mirror's ratio",
-            absolute(0.075),
+            "error of sense resistors and amplifiers",
+            absolute(0.02),
             (-0.5, 0.5),
-            Recalled,
+            Netlist,
         ),
         entry!(
             offset_a,
@@ -185,6 +196,22 @@ fn mirror(mirror: &mut MirrorParams) -> [Entry<'_>; 3] {
             absolute(0.05),
             (-1.0, 1.0),
             ClassValue,
+        ),
+        entry!(
+            lag_s,
+            "s",
+            "lag of the current measurement's filters; 0 without them",
+            relative(0.2),
+            (0.0, 1.0),
+            Netlist,
+        ),
+        entry!(
+            sampling_phase,
+            "1",
+            "phase of the PWM period at which the current is sampled",
+            FIXED,
+            (0.0, 1.0),
+            Design,
         ),
     ]
 }

@@ -85,7 +85,7 @@ impl Profile {
 }
 
 /// The nearest integer to a number of 0 to 2^32. A saturating cast after rounding takes several times as long, and there
-/// are 112 conversions in a millisecond.
+/// are 128 conversions in a millisecond.
 #[inline]
 fn nearest(counts: f64) -> u32 {
     /// From this value on the last bit of an f64 has the weight 1.
@@ -105,7 +105,7 @@ pub struct Converter {
 }
 
 /// Noise values in a batch: one for each conversion of a tick.
-const BATCH: usize = 112;
+const BATCH: usize = 128;
 
 impl Converter {
     /// A converter that draws its non-linearity and its noise from `random`.

@@ -1,4 +1,4 @@
-//! Sensors of one finger: thermistors in dividers, force sensor, current mirror, and the A/D converter.
+//! Sensors of one finger: thermistors in dividers, force sensor, current and supply of the bridge, and the A/D converter.
 //!
 //! These are the true characteristics of the simulated parts; those that the device assumes are in its settings.
 
@@ -23,7 +23,7 @@ use lag::FirstOrderLag;
 use thermistor::{Site, Thermistor};
 
 /// Number of signals of one finger that the converter scans.
-pub const CHANNELS: usize = 7;
+pub const CHANNELS: usize = 8;
 /// Number of scans of all channels in one step of the plant, [`STEP_S`](crate::STEP_S).
 pub const SCANS_PER_STEP: usize = 16;
 /// Number of thermistors of one finger; they are the first channels.
@@ -44,8 +44,10 @@ pub enum Channel {
     Room,
     /// Force sensor.
     Force,
-    /// Current mirror of the bridge.
+    /// Current of the bridge.
     Current,
+    /// Supply of the bridge.
+    Supply,
 }
 
 impl Channel {
@@ -58,6 +60,7 @@ impl Channel {
         Self::Room,
         Self::Force,
         Self::Current,
+        Self::Supply,
     ];
 }
 
@@ -76,8 +79,12 @@ pub struct SensorInputs {
     pub room_c: f64,
     /// Force of the finger, N.
     pub force_n: f64,
-    /// Current through the driver's current mirror, A.
+    /// Magnitude of the current that the sense resistors see, A.
     pub mirror_a: f64,
+    /// Ripple of that current behind the filters at the sampling phase, A.
+    pub mirror_ripple_a: f64,
+    /// Sensed supply of the bridge, counts at a nominal reference.
+    pub supply_counts: f64,
 }
 
 /// Readings of the sensors before divider and converter.
@@ -85,7 +92,7 @@ pub struct SensorInputs {
 pub struct SensorReadings {
     /// Thermistors in the order of [`Channel::ALL`], deg C; none for one that is open or shorted.
     pub thermistors_c: [Option<f64>; THERMISTORS],
-    /// Current mirror, A, at the nominal gain.
+    /// Measured current, A, at the nominal gain.
     pub mirror_a: f64,
 }
 
@@ -98,8 +105,15 @@ pub struct Sensors {
     force_lag: FirstOrderLag,
     /// Output of the force sensor behind its lag, N.
     force_n: f64,
-    /// Input of the current mirror in the last step, A.
+    /// Divider ratios behind the filters, and those in front at the end of the last step.
+    divider_lag: FirstOrderLag,
+    filtered_ratios: [f64; THERMISTORS],
+    ratios: [f64; THERMISTORS],
+    /// Output of the current measurement's filters, A, and the ripple on it.
+    mirror_lag: FirstOrderLag,
     mirror_a: f64,
+    mirror_ripple_a: f64,
+    supply_counts: f64,
     defects: SensorDefects,
     /// Noise-free level of each channel at the end of the last step, counts.
     counts: [f64; CHANNELS],
@@ -125,7 +139,13 @@ impl Sensors {
             force_delay: Delay::new(params.force.delay_s, state.force_n),
             force_lag: FirstOrderLag::new(params.force.lag_s),
             force_n: state.force_n,
+            divider_lag: FirstOrderLag::new(params.divider_lag_s),
+            filtered_ratios: [0.0; THERMISTORS],
+            ratios: [0.0; THERMISTORS],
+            mirror_lag: FirstOrderLag::new(params.mirror.lag_s),
             mirror_a: state.mirror_a,
+            mirror_ripple_a: state.mirror_ripple_a,
+            supply_counts: state.supply_counts,
             defects: SensorDefects::NONE,
             counts: [0.0; CHANNELS],
             level: [0.0; CHANNELS],
@@ -133,6 +153,7 @@ impl Sensors {
             remaining: [0; CHANNELS],
             converter: Converter::new(params.converter, Xoshiro256PlusPlus::seed_from_u64(seed)),
         };
+        sensors.skip_divider_filters();
         sensors.update_counts();
         sensors.level = sensors.counts;
         sensors
@@ -157,7 +178,21 @@ impl Sensors {
                 .force_lag
                 .step_response(step_s, self.force_n, delayed_n);
         }
-        self.mirror_a = state.mirror_a;
+        for index in 0..THERMISTORS {
+            let ratio = self.pin_ratio(index);
+            self.filtered_ratios[index] = self.divider_lag.ramp_response(
+                step_s,
+                self.filtered_ratios[index],
+                self.ratios[index],
+                ratio,
+            );
+            self.ratios[index] = ratio;
+        }
+        self.mirror_a = self
+            .mirror_lag
+            .step_response(step_s, self.mirror_a, state.mirror_a);
+        self.mirror_ripple_a = state.mirror_ripple_a;
+        self.supply_counts = state.supply_counts;
         self.level = self.counts;
         self.update_counts();
         // The 16 scans of a tick are spread over the step.
@@ -175,7 +210,14 @@ impl Sensors {
         for (thermistor, defect) in self.thermistors.iter_mut().zip(defects.thermistors) {
             thermistor.set_defect(defect);
         }
+        self.skip_divider_filters();
         self.update_counts();
+    }
+
+    /// Sets the outputs of the dividers' filters to their inputs.
+    fn skip_divider_filters(&mut self) {
+        self.ratios = std::array::from_fn(|index| self.pin_ratio(index));
+        self.filtered_ratios = self.ratios;
     }
 
     /// Divider ratio at a thermistor channel, from 0 (shorted) to 1 (open).
@@ -197,13 +239,14 @@ impl Sensors {
         }
     }
 
-    /// Output of the current mirror, counts.
+    /// Output of the current measurement, counts.
     fn mirror_counts(&self) -> f64 {
-        let current_a = self.defects.mirror_stuck_a.unwrap_or(self.mirror_a);
+        let current_a = (self.defects.mirror_stuck_a)
+            .unwrap_or_else(|| (self.mirror_a + self.mirror_ripple_a).abs());
         self.params.mirror.counts(current_a) * self.reference_scale()
     }
 
-    /// Scale of force and current due to the error of the reference; the ratiometric dividers are unaffected.
+    /// Scale of force, current and supply due to the error of the reference; the ratiometric dividers are unaffected.
     fn reference_scale(&self) -> f64 {
         1.0 / (1.0 + self.params.reference.error)
     }
@@ -223,13 +266,14 @@ impl Sensors {
         let (p, force) = (&self.params, &self.defects.force);
         let mut ideal = [0.0; CHANNELS];
         for (index, counts) in ideal.iter_mut().enumerate().take(THERMISTORS) {
-            *counts = self.pin_ratio(index) * CODES;
+            *counts = self.filtered_ratios[index] * CODES;
         }
         if !force.open {
             ideal[Channel::Force as usize] =
                 p.force.counts(self.force_n + force.offset_n) * self.reference_scale();
         }
         ideal[Channel::Current as usize] = self.mirror_counts();
+        ideal[Channel::Supply as usize] = self.supply_counts * self.reference_scale();
         self.counts = ideal.map(|counts| self.converter.with_offset_and_gain(counts));
     }
 }

@@ -25,18 +25,31 @@ impl ForceParams {
     }
 }
 
-/// Current mirror of the driver and its resistor.
+/// Current measurement: sense resistors below the legs, filters and amplifiers, whose output does not show the sign.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MirrorParams {
-    /// Gain, counts/A: 354 ohm and a mirror ratio of 1/1100, which was not looked up.
+    /// Gain, counts/A.
     pub counts_per_a: f64,
-    /// Error of the mirror's ratio, fraction.
+    /// Error of sense resistors and amplifiers, fraction.
     pub gain_error: f64,
     /// Offset, A; the output is never negative.
     pub offset_a: f64,
+    /// Time constant of its filters, s; 0 for a board without them, whose converter sees the ripple.
+    pub lag_s: f64,
+    /// Phase of the PWM period at which the converter samples, 0 to 1 from the begin of the pulses. With one finger the
+    /// scans are whole numbers of periods apart, so all see the ripple at this phase.
+    pub sampling_phase: f64,
 }
 
 impl MirrorParams {
+    /// Fraction of the inductors' ripple, at a PWM frequency, Hz, that passes the filters.
+    #[must_use]
+    pub fn ripple_share(&self, pwm_hz: f64) -> f64 {
+        (1.0f64)
+            .hypot(std::f64::consts::TAU * pwm_hz * self.lag_s)
+            .recip()
+    }
+
     /// Output at a current, A, in counts.
     #[must_use]
     pub fn counts(&self, mirror_a: f64) -> f64 {
@@ -60,6 +73,9 @@ pub struct ReferenceParams {
 pub struct SensorParams {
     /// Thermistors in the order of [`Channel`](super::Channel): display, second display, sink, skin, room.
     pub thermistors: [ThermistorParams; THERMISTORS],
+    /// Time constant of the filters between the dividers and the converter, s. An open or shorted wire acts at once all
+    /// the same: it is modelled behind the filter.
+    pub divider_lag_s: f64,
     /// Weight of the skin under the contact in the temperature at the skin thermistor on its edge, 0 to 1; the remaining
     /// weight has the skin temperature before contact. Section 6.4.3 of the thesis measured a change of 0.05 deg C, 2 to
     /// 3 mm from a contact that changed by 3 to 5 deg C in 10 s; on the perimeter itself (sections 3.2 and 4.4) it is 0.22
@@ -108,6 +124,7 @@ impl SensorParams {
                 ..BONDED
             },
         ],
+        divider_lag_s: 0.6e-3,
         skin_sees_contact: 0.0125,
         force: ForceParams {
             zero_counts: 410.0,
@@ -119,6 +136,8 @@ impl SensorParams {
             counts_per_a: 400.0,
             gain_error: 0.0,
             offset_a: 0.0,
+            lag_s: 0.43e-3,
+            sampling_phase: 0.0,
         },
         reference: ReferenceParams {
             volt: 3.3,

@@ -10,6 +10,8 @@ const NOMINAL_INPUTS: SensorInputs = SensorInputs {
     room_c: 22.0,
     force_n: 0.0,
     mirror_a: 0.0,
+    mirror_ripple_a: 0.0,
+    supply_counts: 0.0,
 };
 
 /// Parameters without noise, non-linearity, self-heating and lead error.
@@ -39,10 +41,12 @@ fn channels_come_in_scan_order() {
         room_c: 40.0,
         force_n: 2.0,
         mirror_a: 3.0,
+        mirror_ripple_a: 0.0,
+        supply_counts: 3464.0,
     };
-    let [display, check, sink, skin, room, force, current] = counts(ideal(), &state);
+    let [display, check, sink, skin, room, force, current, supply] = counts(ideal(), &state);
     assert!(display == check && display > sink && sink > skin && skin > room);
-    assert_eq!((force, current), (1010, 1200));
+    assert_eq!((force, current, supply), (1010, 1200, 3464));
 }
 
 #[test]
@@ -54,7 +58,7 @@ fn counts_stay_within_twelve_bits() {
         mirror_a: 11.0,
         ..NOMINAL_INPUTS
     };
-    let [display, _, sink, .., force, current] = counts(ideal(), &low);
+    let [display, _, sink, .., force, current, _] = counts(ideal(), &low);
     assert!(display > 4080 && sink < 8);
     assert_eq!((force, current), (4095, 4095));
     let mut noisy = ideal();

@@ -37,6 +37,7 @@ impl FrequencyResponse {
         let half = ((0.5 * TAU / (w * STEP_S)).round() as usize).max(2);
         let period = 2 * half;
         let mut world = setup.in_use()?;
+        world.connect_supply();
         let (mut surface_c, mut current_a) = (Vec::new(), Vec::new());
         for step in 0..(SETTLING_PERIODS + ANALYSED_PERIODS + 1) * period {
             let duty = DUTY_AMPLITUDE * (TAU * step as f64 / period as f64).sin();

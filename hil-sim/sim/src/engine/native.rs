@@ -6,13 +6,14 @@ use std::fmt::Display;
 
 use thermal_commissioning::StorageOrder;
 use thermal_device::command::WithSourceFinger;
-use thermal_device::drive::{BoardOutputs, Drive};
+use thermal_device::drive::{BoardOutputs, ComparatorTest, Drive};
 use thermal_device::safety::{Fault, ThermalDose, TripCause};
-use thermal_device::sense::{SCANS_PER_TICK, Samples, Scan};
+use thermal_device::sense::{DigitalInputs, SCANS_PER_TICK, Samples, Scan};
 use thermal_device::{
     Device, FingerIndex, PWM_PERIOD_STEPS_OF_FIVE_FINGERS, PWM_PERIOD_STEPS_OF_ONE_FINGER,
 };
 use thermal_plant::bridge::{BridgeOutputs, Leg};
+use thermal_plant::comparator::ComparatorTest as PlantTest;
 use thermal_plant::sensors::Channel;
 use thermal_protocol::{
     CommandHandler, Error, LineReader, OutgoingLine, Reply, wrap_as_telemetry_line,
@@ -35,7 +36,7 @@ const WINDOW_MS: u64 = 46;
 /// BoardOutputs after a reset.
 const OFF: BoardOutputs = BoardOutputs {
     drive: Drive::Off,
-    comparator_test: false,
+    comparator_test: ComparatorTest::None,
 };
 
 /// Scans between the boundaries: four end the first step's tick, eight and four follow.
@@ -137,10 +138,19 @@ impl NativeEngine {
 
     fn tick(&mut self) {
         self.execute_received_lines((self.halves - 1) * HALF_NS + TICK_NS);
-        let samples = Samples::from_scans(&self.scans, self.fault);
+        let inputs = DigitalInputs {
+            bridge_fault: self.fault,
+            emergency_stop: self.world.emergency_stop(),
+        };
+        let samples = Samples::from_scans(&self.scans, inputs);
         self.fault = self.world.bridge_fault();
         self.outputs = self.device.step_finger(FingerIndex::FIRST, &samples);
-        self.world.comparator_test(self.outputs.comparator_test);
+        self.world
+            .comparator_test(match self.outputs.comparator_test {
+                ComparatorTest::None => PlantTest::None,
+                ComparatorTest::Hot => PlantTest::Hot,
+                ComparatorTest::Cold => PlantTest::Cold,
+            });
         if let Some(telemetry) = self.device.finger_telemetry_if_due(FingerIndex::FIRST) {
             self.send_line(&wrap_as_telemetry_line(telemetry));
         }
@@ -243,7 +253,7 @@ impl Engine for NativeEngine {
             Drive::Off => BridgeOutputs::default(),
             Drive::On(duty) => {
                 let steps = self.pwm_period_steps;
-                let (a, b) = duty.half_bridge_on_times(steps);
+                let (a, b) = duty.input_high_times(steps);
                 let leg = |part: u16| Leg::Duty(f64::from(part) / f64::from(steps));
                 BridgeOutputs {
                     a: leg(a),

@@ -2,8 +2,9 @@
 
 use thermal_plant::Defects;
 use thermal_plant::bridge::LegDefect;
-use thermal_plant::comparator::ComparatorDefect;
+use thermal_plant::comparator::LatchDefect;
 use thermal_plant::sensors::{Channel, Circuit};
+use thermal_plant::supply::SwitchDefect;
 
 use crate::scene::{ActiveFault, FaultKind};
 
@@ -23,6 +24,7 @@ impl ActiveDefects {
             sensors,
             bridge,
             comparator,
+            supply,
             cooling,
             module,
         } = &mut self.plant;
@@ -55,8 +57,20 @@ impl ActiveDefects {
             FaultKind::PolaritySwapped => bridge.swapped = true,
             FaultKind::FaultPinDead => bridge.fault_pin_dead = true,
             FaultKind::MirrorStuck => sensors.mirror_stuck_a = Some(value),
-            FaultKind::ComparatorDead => *comparator = ComparatorDefect::NeverTrips,
-            FaultKind::ComparatorStuck => *comparator = ComparatorDefect::AlwaysTripped,
+            FaultKind::ComparatorDead | FaultKind::LatchStuckClear => {
+                comparator.latch = LatchDefect::StuckClear;
+            }
+            FaultKind::ComparatorStuck | FaultKind::LatchStuckSet => {
+                comparator.latch = LatchDefect::StuckSet;
+            }
+            FaultKind::WindowDead => (comparator.hot_dead, comparator.cold_dead) = (true, true),
+            FaultKind::WindowHotDead => comparator.hot_dead = true,
+            FaultKind::WindowColdDead => comparator.cold_dead = true,
+            FaultKind::LadderShift => comparator.ladder_shift_k += value,
+            FaultKind::SwitchShorted => supply.switch = SwitchDefect::Shorted,
+            FaultKind::SwitchOpen => supply.switch = SwitchDefect::Open,
+            FaultKind::EmergencyStop => supply.emergency_stop = true,
+            FaultKind::SupplySenseOpen => supply.sense_open = true,
             FaultKind::SupplyLow | FaultKind::SupplyHigh => bridge.supply_v = Some(value),
             FaultKind::ModuleWeak => module.seebeck = value,
             FaultKind::FanOff => cooling.resistance_factor *= value,

@@ -1,31 +1,32 @@
 //! Wiring for five fingers, whose sensors are connected to the converter in turn.
 //!
-//! Each of the seven inputs of the one-finger wiring has an 8:1 analog multiplexer, such as a
-//! 74HC4051, and a voltage follower in front of it. Three lines select the finger for all seven
+//! Each of the eight inputs of the one-finger wiring has an 8:1 analog multiplexer, such as a
+//! 74HC4051, and a voltage follower in front of it. Three lines select the finger for all eight
 //! multiplexers.
 //!
 //! | finger | bridge IN1, IN2               | bridge enable | nFAULT | comparator test |
 //! |--------|-------------------------------|---------------|--------|-----------------|
 //! | 0      | PA8, PA9, TIM1 channel 1, 2   | PB10          | PA6    | PC3             |
-//! | 1      | PA10, PA11, TIM1 channel 3, 4 | PB13          | PA7    | PC4             |
-//! | 2      | PC6, PC7, TIM8 channel 1, 2   | PB14          | PA12   | PC5             |
+//! | 1      | PA10, PA11, TIM1 channel 3, 4 | PB13          | PA7    | PA15            |
+//! | 2      | PC6, PC7, TIM8 channel 1, 2   | PB14          | PA12   | PD2             |
 //! | 3      | PC8, PC9, TIM8 channel 3, 4   | PB15          | PB5    | PB6             |
 //! | 4      | PB8, PB9, TIM10, TIM11        | PB1           | PB12   | PB7             |
 //!
 //! | pin              | signal                                                                    |
 //! |------------------|---------------------------------------------------------------------------|
 //! | PC10, PC11, PC12 | selected finger, bits 0 to 2; external pull-downs                         |
+//! | PB2              | side of the comparators' tests: low hot, high cold; external pull-down    |
 //! | PA5              | not used; each finger's LED is on the enable line of its bridge           |
 //!
 //! IN1, IN2, enable and test have external pull-downs, so all bridges are high-impedance from the
-//! reset on. nFAULT has a 4.7k pull-up; the bridge and the comparator of the second display
+//! reset on; PA15, which has a weak pull-up from the reset on, needs 4.7k. nFAULT has a 4.7k pull-up; the bridge and the comparator of the second display
 //! thermistor pull it low. All four timers run at 180 MHz, so all bridges have the same PWM period.
 //! TIM10 and TIM11 need not be synchronised, because only one input of a bridge switches at a time.
 //!
 //! The fault lines are ordinary inputs, because the two break inputs do not suffice for five
 //! fingers and a break would also stop the finger that shares the timer. A bridge with a fault and
 //! a comparator that trips turn off their own finger without the processor. They hold the fault
-//! line low for at least 4 ms, the retry time of the bridge, and the processor reads the line every
+//! line low for at least 3 ms, the retry time of the bridge, and the processor reads the line every
 //! millisecond. If the clock fails, hardware stops TIM1 and TIM8, and the non-maskable interrupt
 //! turns all five bridges off.
 //!
@@ -63,8 +64,8 @@ pub const FINGERS: usize = 5;
 /// us.
 ///
 /// Behind a voltage follower, the input of the converter (7 pF and 6 kOhm) settles to a quarter of
-/// a count in 0.41 us. With 12 more cycles for each conversion, the seven channels of a scan take
-/// 8.4 us of the 11.1 us between two scans, and the 630 conversions of all fingers take 756 us of
+/// a count in 0.41 us. With 12 more cycles for each conversion, the eight channels of a scan take
+/// 9.6 us of the 11.1 us between two scans, and the 720 conversions of all fingers take 864 us of
 /// each millisecond.
 pub const SAMPLE_TIME_CODE: u8 = 1;
 

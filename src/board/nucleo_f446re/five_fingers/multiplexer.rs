@@ -6,7 +6,7 @@ use thermal_display::device::FingerIndex;
 
 use super::FINGERS;
 
-/// The three select lines PC10 to PC12, which are common to all seven analog multiplexers. They
+/// The three select lines PC10 to PC12, which are common to all eight analog multiplexers. They
 /// select the finger whose sensors the multiplexers connect to the inputs of ADC1.
 pub struct Multiplexer(OutPort3<'C', 10, 11, 12>);
 

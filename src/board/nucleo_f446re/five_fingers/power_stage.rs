@@ -13,7 +13,7 @@ use stm32f4xx_hal::prelude::*;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::timer::{ErasedChannel, Timer};
 use thermal_display::device::PWM_PERIOD_STEPS_OF_FIVE_FINGERS;
-use thermal_display::device::drive::{BoardOutputs, Drive};
+use thermal_display::device::drive::{BoardOutputs, ComparatorTest, Drive};
 
 use super::super::pwm_settings;
 use super::FINGERS;
@@ -186,9 +186,11 @@ impl FingerPowerStage {
 
     /// Applies the outputs of a control tick: turns the bridge off or drives it with the demanded
     /// duty, and sets the level of the comparator's test line. While that line is high, the
-    /// comparator cuts the bridge's supply, which the self-test checks.
+    /// comparator's input is at a level outside of its window, so it cuts the bridge's supply, which
+    /// the self-test checks.
     pub fn apply_drive_and_comparator_test(&mut self, outputs: &BoardOutputs) {
-        self.test.set_state(outputs.comparator_test.into());
+        self.test
+            .set_state((outputs.comparator_test != ComparatorTest::None).into());
         match outputs.drive {
             Drive::Off => self.off(),
             Drive::On(duty) => {

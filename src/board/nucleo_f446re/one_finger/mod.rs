@@ -6,7 +6,7 @@
 //! | PA9  | D8     | bridge IN2    | TIM1 channel 2; external pull-down                      |
 //! | PB10 | D6     | bridge enable | high enables; external pull-down                        |
 //! | PA6  | D12    | bridge nFAULT | TIM1 break input, low is a fault; external 4.7k pull-up |
-//! | PC3  | CN7-37 | comparator test | high: the comparator trips; external pull-down      |
+//! | PC3  | CN7-37 | comparator test | high connects the input to a level; external pull-down |
 //! | PA5  | D13    | LED LD2       | lit while the bridge may drive                          |
 //!
 //! The comparator that monitors the second display thermistor disconnects the supply of the bridge
@@ -29,7 +29,7 @@ pub const FINGERS: usize = 1;
 /// The input of the converter must settle to a quarter of a count, which takes 9.7 time constants:
 /// 0.75 us with 7 pF and 6 kOhm inside the converter and 5 kOhm of a 10k/10k divider. The margin is
 /// for a cold thermistor of 30 kOhm, whose divider has 7.5 kOhm. With 12 more cycles for each
-/// conversion, the seven channels of a scan take 21 us of the 62.5 us between two scans.
+/// conversion, the eight channels of a scan take 24 us of the 62.5 us between two scans.
 pub const SAMPLE_TIME_CODE: u8 = 3;
 
 /// Takes the place of the multiplexers of the five-finger wiring, so that both wirings use the same

@@ -7,7 +7,7 @@ use stm32f4xx_hal::pac::tim1::bdtr::BKP;
 use stm32f4xx_hal::rcc::Rcc;
 use stm32f4xx_hal::timer::{C1, C2, PwmChannel, Timer};
 use thermal_display::device::PWM_PERIOD_STEPS_OF_ONE_FINGER;
-use thermal_display::device::drive::{BoardOutputs, Drive};
+use thermal_display::device::drive::{BoardOutputs, ComparatorTest, Drive};
 
 use thermal_display::bridge::Bridge;
 
@@ -97,13 +97,15 @@ impl FingerPowerStage {
 
     /// Applies the outputs of a control tick: turns the bridge off or drives it with the demanded
     /// duty, and sets the level of the comparator's test line. While that line is high, the
-    /// comparator cuts the bridge's supply, which the self-test checks.
+    /// comparator's input is at a level outside of its window, so it cuts the bridge's supply, which
+    /// the self-test checks.
     ///
     /// The PWM outputs of TIM1 are enabled only when the bridge changes from off to on. A break, by
     /// a low fault line or a failure of the 8 MHz clock, disables the PWM outputs; they stay
     /// disabled until the station has detected the fault and has switched the bridge off itself.
     pub fn apply_drive_and_comparator_test(&mut self, outputs: &BoardOutputs) {
-        self.test.set_state(outputs.comparator_test.into());
+        self.test
+            .set_state((outputs.comparator_test != ComparatorTest::None).into());
         match outputs.drive {
             Drive::Off => self.off(),
             Drive::On(duty) => {

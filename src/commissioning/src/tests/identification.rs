@@ -10,6 +10,7 @@ use thermal_device::command::Refused;
 use thermal_device::drive::Current;
 use thermal_device::identification::{AbortReason, Identification, NormalEquationAccumulator};
 use thermal_device::safety::ValidReadings;
+use thermal_device::sense::SupplyVoltage;
 use thermal_settings::Tile;
 
 /// A simulated tile with its bridge and current mirror.
@@ -79,6 +80,7 @@ impl Plant {
             room: c(24.0),
             force: Force::ZERO,
             current,
+            supply: SupplyVoltage::from_volts(12.0),
         }
     }
 

@@ -155,18 +155,18 @@ mod tests {
     fn the_duty_compensates_the_loss_of_the_dead_times() {
         let voltage = VoltageFeedforward::new(&Settings::default().module);
         for (width, current_a, lost_v) in [
-            (0.1, 0.214, 0.0),
-            (0.1, 0.415, 0.397),
-            (0.2, 0.690, 0.0),
-            (0.2, 0.891, 0.397),
-            (0.3, 1.042, 0.0),
-            (0.3, 1.243, 0.397),
-            (0.06, -0.011, 0.0),
-            (0.06, 0.190, 0.397),
-            (0.4, 3.0, 0.397),
-            (0.6, 6.0, 0.397),
+            (0.1, 0.401, 0.0),
+            (0.1, 0.516, 0.212),
+            (0.2, 0.888, 0.0),
+            (0.2, 1.004, 0.212),
+            (0.3, 1.243, 0.0),
+            (0.3, 1.358, 0.212),
+            (0.06, 0.169, 0.0),
+            (0.06, 0.284, 0.212),
+            (0.4, 3.0, 0.212),
+            (0.6, 6.0, 0.212),
         ] {
-            let seebeck_v = 12.0 * width - lost_v - 1.251 * current_a;
+            let seebeck_v = 12.0 * width - lost_v - 1.111 * current_a;
             for sign in [1.0, -1.0] {
                 let current = Current::saturating_from_num(sign * current_a);
                 let duty = voltage

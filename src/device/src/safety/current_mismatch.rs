@@ -13,7 +13,7 @@ const CONSTANT_CURRENT_TOLERANCE: Current = Current::lit("1");
 const PROPORTIONAL_TOLERANCE_SHIFT: u32 = 2;
 /// Net ticks of 1 ms at which [`Fault::CurrentHigh`] or [`Fault::CurrentLow`] trips the station: each tick in which
 /// measured and demanded current differ too much counts up, each other tick counts down. It is long enough for an
-/// overloaded bridge driver, which switches off and retries every 4 ms, to pull its fault line first, which trips the
+/// overloaded bridge driver, which switches off and retries every 3 ms, to pull its fault line first, which trips the
 /// station by [`Fault::Bridge`].
 const MISMATCH_TRIP_NET_TICKS: u8 = 30;
 

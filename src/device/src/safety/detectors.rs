@@ -6,6 +6,7 @@ use super::current_mismatch::CurrentMismatchDetector;
 use super::debounce::UpDownDebounceCounter;
 use super::frozen_sample_detector::FrozenSampleDetector;
 use super::jump_detector::JumpDetector;
+use super::limits::{SUPPLY_MAX, SUPPLY_MIN};
 use super::thermal_dose::ThermalDose;
 use super::validate_readings::ValidReadings;
 use super::wrong_way_detector::WrongWayDetector;
@@ -32,6 +33,10 @@ const ROOM_ABOVE_SKIN_TRIP_NET_TICKS: u8 = 40;
 /// set-point and the plate observer's residual is larger than a sound tile can cause counts up, each other tick counts
 /// down.
 const UNLIKE_MODEL_TRIP_NET_TICKS: u8 = 30;
+/// Net ticks of 1 ms at which [`Fault::Supply`] trips the station: each tick in which the bridge's supply is outside of
+/// its limits although it should be on counts up, each other tick counts down. Long enough for the emergency stop's
+/// second contact to close after the one in the supply.
+const SUPPLY_TRIP_NET_TICKS: u8 = 10;
 /// Ticks of 1 ms without a line from the host, while telemetry streams and a set-point is followed, that trip the
 /// station by [`Fault::HostSilent`].
 const HOST_SILENT_TICKS: u16 = 2000;
@@ -52,6 +57,9 @@ pub struct PreviousDemandAndResidual {
     /// observer's correction. The detectors use it one tick late, because the residual of the present tick is computed
     /// after them.
     pub residual_is_large: bool,
+    /// Whether the bridge's supply should be on: the comparator's tests of the self-test have passed since the last
+    /// trip. Else [`Fault::Supply`] cannot trip the station.
+    pub supply_should_be_on: bool,
 }
 
 /// The fault detectors of one station that need the readings of several ticks, and the thermal dose of the station's
@@ -65,6 +73,7 @@ pub struct FaultDetectors {
     current_mismatch: CurrentMismatchDetector,
     wrong_way: WrongWayDetector,
     residual: UpDownDebounceCounter,
+    supply: UpDownDebounceCounter,
     dose: ThermalDose,
     host_silent_ticks: u16,
 }
@@ -118,8 +127,8 @@ impl FaultDetectors {
     /// The first fault in this order: a jump of the first or second display reading or of the sink's (0.5 K in 4 ms),
     /// [`Fault::DisplaysApart`] (3 K for 40 ms), [`Fault::CurrentHigh`] or [`Fault::CurrentLow`] (1 A plus a quarter of
     /// the demanded current for 30 ms), [`Fault::Polarity`] or [`Fault::Runaway`] (2.5 K against the current),
-    /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms),
-    /// [`Fault::HostSilent`] (2 s). All these detectors count the tick, even when an earlier one has a fault.
+    /// [`Fault::UnlikeModel`] (large residual for 30 ms), [`Fault::RoomAboveSkin`] (8 K for 40 ms), [`Fault::Supply`]
+    /// (outside of 10.8 to 13.2 V for 10 ms), [`Fault::HostSilent`] (2 s). All these detectors count the tick, even when an earlier one has a fault.
     pub fn run_detectors_of_valid_readings(
         &mut self,
         readings: &ValidReadings,
@@ -137,6 +146,10 @@ impl FaultDetectors {
         let room_above_skin = self.room_above_skin.count_tick(
             readings.room.saturating_sub(readings.skin) > ROOM_ABOVE_SKIN_MAX,
             ROOM_ABOVE_SKIN_TRIP_NET_TICKS,
+        );
+        let supply_is_wrong = self.supply.count_tick(
+            previous.supply_should_be_on && !(SUPPLY_MIN..=SUPPLY_MAX).contains(&readings.supply),
+            SUPPLY_TRIP_NET_TICKS,
         );
         let follows_setpoint = previous.setpoint.is_some();
         let unlike_model = self.residual.count_tick(
@@ -158,6 +171,7 @@ impl FaultDetectors {
             .and(wrong_way)
             .and(err_if(unlike_model, Fault::UnlikeModel))
             .and(err_if(room_above_skin, Fault::RoomAboveSkin))
+            .and(err_if(supply_is_wrong, Fault::Supply))
             .and(err_if(host_silent, Fault::HostSilent))
     }
 

@@ -120,14 +120,14 @@ faults! {
     CurrentLow = "current-low",
     /// The bridge's fault line is pulled: the bridge driver reports a fault, or the comparator has cut the supply
     /// because the second display thermistor was outside of 10 to 45 °C. Ignored while the station is off or tripped,
-    /// and in the first 40 ms of the self-test.
+    /// and while the self-test tests the comparator.
     Bridge = "bridge",
     /// The thermal dose that skin would have received from the display has reached the equivalent of 30 s at 43 °C.
     Dose = "dose",
     /// The host has sent no line for 2 s while telemetry streams to it and the display follows a set-point.
     HostSilent = "host-silent",
-    /// In the self-test, the comparator has not cut the bridge's supply within 10 ms after its test line was set, or
-    /// not released it within 10 ms after the line was cleared.
+    /// In the self-test, the comparator has not pulled the bridge's fault line within 10 ms after its input was
+    /// connected to a level above or below its window, or not released the line within 10 ms after the test.
     Comparator = "comparator",
     /// In the self-test, a display thermistor's reading has not fallen by 0.05 to 1.5 K under the cooling pulse, or
     /// fingers that landed and lifted have delayed the baseline by 20 s in all.
@@ -168,6 +168,14 @@ faults! {
     /// The settings stored in flash are invalid, which is detected at the start; the device then uses the factory
     /// defaults.
     SettingsCorrupt = "settings-corrupt",
+    /// The emergency stop is pressed in one tick, in any state. It also disconnects the bridge's supply.
+    EmergencyStop = "emergency-stop",
+    /// For 10 ms (debounced) the bridge's supply has been outside of 10.8 to 13.2 V although it should be on: since the
+    /// comparator's tests of the self-test have passed. Or it was outside at the end of one of these tests.
+    Supply = "supply",
+    /// In the self-test, the bridge's supply was still above 6 V 19 ms after the comparator was told to cut it: the
+    /// switch of the supply is shorted.
+    SupplySwitch = "supply-switch",
 }
 
 /// One of the five thermistors of a finger's station, by the place where it measures; selects the fault that

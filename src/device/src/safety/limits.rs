@@ -3,6 +3,7 @@
 use contact_model::fixed_point::Celsius;
 
 use crate::drive::Current;
+use crate::sense::SupplyVoltage;
 
 /// Converts a temperature limit, °C, to fixed point at compile time. Fractions below the resolution of 2^-22 °C are
 /// truncated.
@@ -46,6 +47,15 @@ pub const DOSE_REFERENCE_TEMPERATURE: Celsius = fixed_celsius(43.0);
 /// [`Fault::OverCurrent`](super::Fault::OverCurrent). On a tile that was never identified, tolerances of supply, module
 /// and current mirror can cause an excess of 1.8 A.
 pub const OVER_CURRENT_MARGIN: Current = Current::lit("3");
+/// Least voltage of the bridge's supply while the comparator lets it through; less trips the station by
+/// [`Fault::Supply`](super::Fault::Supply). A supply of 12 V less 5 % that gives 6 A still reads 10.9 V with the
+/// tolerances of its divider and of the reference.
+pub const SUPPLY_MIN: SupplyVoltage = SupplyVoltage::from_volts(10.8);
+/// Largest voltage of the bridge's supply; more trips the station by [`Fault::Supply`](super::Fault::Supply).
+pub const SUPPLY_MAX: SupplyVoltage = SupplyVoltage::from_volts(13.2);
+/// Largest voltage of the bridge's supply 19 ms after the comparator was told to cut it, in the self-test; more trips
+/// the station by [`Fault::SupplySwitch`](super::Fault::SupplySwitch). The bleeder discharges it to 4 V by then.
+pub const SUPPLY_CUT_MAX: SupplyVoltage = SupplyVoltage::from_volts(6.0);
 
 const _: () = assert!(DISPLAY_TRIP_BELOW.to_bits() < SETPOINT_MIN.to_bits());
 const _: () = assert!(SETPOINT_MIN.to_bits() < SETPOINT_MAX.to_bits());

@@ -1,14 +1,15 @@
-//! Self-test before the bridge may drive: comparator, places of the thermistors, polarity, gain and current mirror.
+//! Self-test before the bridge may drive: comparator and supply switch, places of the thermistors, polarity, gain and
+//! current measurement.
 //!
 //! ```text
-//! ms    0         20        40                      104          304        504       704
-//!       | test on | test off | baseline of display   | 1 A cools  | none      | 1 A warms |
-//!       comparator comparator  two means, so a slope   mirror       response    mirror
-//!       cuts       releases
+//! ms    0         80                     144          344        544         744
+//!       | tests   | baseline of display   | 1 A cools  | none      | 1 A warms |
+//!       comparator  two means, so a slope   current      response    current
 //! ```
 //!
-//! The bridge is off for the first 40 ms, so the comparator cuts and releases a supply that nobody uses. Then 1 A moves
-//! the display by 0.2 to 0.5 K, and both of its thermistors must show that against the line through their baseline. A
+//! The bridge is off for the first 80 ms, so the comparator cuts and releases a supply that nobody uses; see
+//! [`comparator_test`](super::comparator_test). These begin up to 63 ms after `arm`, in a tick whose number is a multiple
+//! of 64. Then 1 A moves the display by 0.2 to 0.5 K, and both of its thermistors must show that against the line through their baseline. A
 //! response with the wrong sign, or none, trips. Nothing but a display responds within 0.2 s: a thermistor on the sink
 //! moves by a hundredth of it, with the opposite sign. The mirror is checked for both signs of the current. A finger
 //! that lands or lifts restarts the baseline one second later.
@@ -17,10 +18,13 @@ use core::mem;
 use core::ops::RangeInclusive;
 
 use contact_model::fixed_point::Celsius;
+use fixed::types::I42F22;
 
 use super::Fault;
+use super::comparator_test::{self, COMPARATOR_TEST_TICKS};
+use super::self_test_report::SelfTestReport;
 use super::validate_readings::ValidReadings;
-use crate::drive::Current;
+use crate::drive::{ComparatorTest, Current};
 
 /// Length of each half of the self-test's baseline, in ticks of 1 ms. In the baseline the bridge is off; the straight
 /// line through the mean readings of its two halves predicts the temperature that the display would have without the
@@ -28,14 +32,8 @@ use crate::drive::Current;
 const TICKS_PER_BASELINE_HALF: u16 = 32;
 /// Length of the self-test's cooling pulse, of the pause after it and of the warming pulse, each in ticks of 1 ms.
 const PULSE_TICKS: u16 = 200;
-/// Tick of the self-test (the first is 0) in which the comparator's test line is cleared, so that the comparator must
-/// release the bridge's supply. In the ticks before, the line is set and the comparator must cut the supply.
-const COMPARATOR_TEST_LINE_CLEAR_TICK: u16 = 20;
-/// Tick of the self-test in which the comparator's test is over and the baseline begins; after a finger's landing or
-/// lifting the self-test waits at this tick for 1 s first.
-const COMPARATOR_TEST_END_TICK: u16 = 40;
 /// Tick of the self-test in which the baseline is complete and the cooling pulse begins.
-const BASELINE_END_TICK: u16 = COMPARATOR_TEST_END_TICK + 2 * TICKS_PER_BASELINE_HALF;
+const BASELINE_END_TICK: u16 = COMPARATOR_TEST_TICKS + 2 * TICKS_PER_BASELINE_HALF;
 /// Tick of the self-test in which the cooling pulse ends, the measured current of the pulse is checked, and the
 /// demanded current becomes zero.
 const COOLING_PULSE_END_TICK: u16 = BASELINE_END_TICK + PULSE_TICKS;
@@ -44,9 +42,6 @@ const RESPONSE_CHECK_TICK: u16 = COOLING_PULSE_END_TICK + PULSE_TICKS;
 /// Tick of the self-test in which the measured current of the warming pulse is checked; if it is in range, the
 /// self-test has passed.
 const WARMING_PULSE_END_TICK: u16 = RESPONSE_CHECK_TICK + PULSE_TICKS;
-/// Ticks of 1 ms within which the comparator must have followed its test line: cut the bridge's supply after the line
-/// was set, or released it after the line was cleared. A slower response trips the station by [`Fault::Comparator`].
-const COMPARATOR_TEST_LINE_DELAY_MAX_TICKS: u16 = 10;
 /// Magnitude of the current of the self-test's cooling and warming pulses: 1 A.
 const PULSE_CURRENT: Current = Current::ONE;
 /// Smallest mean of the measured current over the second half of a self-test pulse of 1 A, A; a smaller mean trips the
@@ -63,6 +58,8 @@ const DISPLAY_RESPONSE_MIN: Celsius = Celsius::lit("0.05");
 /// one trips by [`Fault::NoResponse`]. A typical display falls by 0.54 K, so more than this is caused by something else
 /// than the pulse.
 const DISPLAY_RESPONSE_MAX: Celsius = Celsius::lit("1.5");
+/// Largest magnitude of a reported response, K: what has two digits.
+const REPORTED_RESPONSE_MAX: Celsius = Celsius::lit("99");
 /// Ticks of 1 ms that the self-test waits after a finger has landed or lifted before its baseline begins, because the
 /// display's temperature then does not follow a straight line.
 const WAIT_AFTER_LANDING_OR_LIFTING_TICKS: u16 = 1000;
@@ -80,13 +77,9 @@ type DisplayReadingSums = [i64; 2];
 /// What the self-test demands in one tick. The station turns it into the outputs to bridge and comparator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SelfTestStep {
-    /// The bridge is off in this tick: during the comparator's test, the baseline, or the wait after a finger's landing
-    /// or lifting.
-    Off {
-        /// Level of the comparator's test line: true makes the comparator cut the bridge's supply; clearing it again
-        /// releases the supply.
-        comparator_test: bool,
-    },
+    /// The bridge is off in this tick, and the comparator is tested in this way: during the comparator's tests, the
+    /// baseline, or the wait after a finger's landing or lifting.
+    Off(ComparatorTest),
     /// The bridge drives this current in this tick: 1 A (cools), -1 A (warms) or 0 A.
     Drive(Current),
     /// All parts of the self-test have passed, so the station becomes armed. The bridge is off in this tick.
@@ -97,8 +90,8 @@ pub enum SelfTestStep {
 /// command `arm` starts it when the station is off.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SelfTest {
-    /// Next tick of the self-test's sequence, 0 to 704. It stays at the end of the comparator's test, 40, while the
-    /// display settles after a landing or lifting, and is set back to 40 when a finger lands or lifts later.
+    /// Next tick of the self-test's sequence, 0 to 744. It stays at the end of the comparator's tests, 80, while the
+    /// display settles after a landing or lifting, and is set back to 80 when a finger lands or lifts later.
     tick: u16,
     first_half: DisplayReadingSums,
     second_half: DisplayReadingSums,
@@ -118,33 +111,34 @@ pub struct SelfTest {
 }
 
 impl SelfTest {
-    /// Whether the self-test is in its first 40 ticks, in which it makes the comparator cut and release the bridge's
-    /// supply. The comparator then pulls the bridge's fault line, which does not trip the station by [`Fault::Bridge`]
-    /// while this is true.
+    /// Whether the comparator's tests have not ended yet, in which the comparator cuts and releases the bridge's supply.
+    /// It then pulls the bridge's fault line, which does not trip the station by [`Fault::Bridge`] while this is true;
+    /// nor does the supply by [`Fault::Supply`], except by the tests themselves.
     #[must_use]
     pub const fn is_testing_comparator(&self) -> bool {
-        self.tick < COMPARATOR_TEST_END_TICK
+        self.tick < COMPARATOR_TEST_TICKS
     }
 
-    /// Runs one tick of the self-test with `readings`, and returns what the bridge must do in this tick. `bridge_fault`
-    /// is true if the bridge's fault line is pulled; `touched` is true if the force shows a finger, or one that may be
-    /// landing.
+    /// Runs one tick of the self-test with `readings`, and returns what the bridge must do in this tick; `report` gets
+    /// what it measures. `station_tick` is the number of the station's tick, `bridge_fault` is true if the bridge's fault
+    /// line is pulled; `touched` is true if the force shows a finger, or one that may be landing.
     ///
     /// # Errors
-    /// [`Fault::Comparator`]: the comparator has not cut or not released the bridge's supply within 10 ms.
+    /// [`Fault::Comparator`], [`Fault::SupplySwitch`], [`Fault::Supply`]: a test of the comparator has failed.
     /// [`Fault::CurrentLow`], [`Fault::CurrentHigh`]: the mean measured current of a pulse is below 0.4 A or above 2 A.
     /// [`Fault::Polarity`]: the cooling pulse has warmed the display. [`Fault::NoResponse`]: a display reading has not
     /// fallen by 0.05 to 1.5 K after the cooling pulse, or fingers that landed and lifted have delayed the baseline by
     /// 20 s in all.
     pub fn step(
         &mut self,
+        report: &mut SelfTestReport,
+        station_tick: u32,
         readings: &ValidReadings,
         bridge_fault: bool,
         touched: bool,
     ) -> Result<SelfTestStep, Fault> {
-        const BRIDGE_OFF_WITHOUT_COMPARATOR_TEST: SelfTestStep = SelfTestStep::Off {
-            comparator_test: false,
-        };
+        const BRIDGE_OFF_WITHOUT_COMPARATOR_TEST: SelfTestStep =
+            SelfTestStep::Off(ComparatorTest::None);
         self.untouched_ticks = if touched {
             0
         } else {
@@ -153,7 +147,10 @@ impl SelfTest {
         if touched != self.touched && (touched || self.untouched_ticks >= LIFTED_AFTER_TICKS) {
             self.restart_baseline(touched);
         }
-        if self.tick == COMPARATOR_TEST_END_TICK && self.wait_ticks > 0 {
+        if self.tick == 0 && !comparator_test::may_begin_in(station_tick) {
+            return Ok(BRIDGE_OFF_WITHOUT_COMPARATOR_TEST);
+        }
+        if self.tick == COMPARATOR_TEST_TICKS && self.wait_ticks > 0 {
             if self.waited_ticks >= SETTLING_WAITS_TOTAL_TRIP_TICKS {
                 return Err(Fault::NoResponse);
             }
@@ -164,11 +161,12 @@ impl SelfTest {
         let tick = self.tick;
         self.tick += 1;
         let display = [readings.display, readings.check].map(|reading| reading.to_bits().into());
-        if tick < COMPARATOR_TEST_END_TICK {
-            return test_temperature_comparator(tick, bridge_fault);
+        if tick < COMPARATOR_TEST_TICKS {
+            let test = comparator_test::run_tick(report, tick, bridge_fault, readings.supply)?;
+            return Ok(SelfTestStep::Off(test));
         }
         if tick < BASELINE_END_TICK {
-            let is_first = tick < COMPARATOR_TEST_END_TICK + TICKS_PER_BASELINE_HALF;
+            let is_first = tick < COMPARATOR_TEST_TICKS + TICKS_PER_BASELINE_HALF;
             let half = if is_first {
                 &mut self.first_half
             } else {
@@ -184,28 +182,27 @@ impl SelfTest {
             return Ok(SelfTestStep::Drive(PULSE_CURRENT));
         }
         if tick == COOLING_PULSE_END_TICK {
-            self.check_pulse_current()?;
+            self.check_pulse_current(&mut report.cooling_current)?;
         }
         if tick < RESPONSE_CHECK_TICK {
             return Ok(SelfTestStep::Drive(Current::ZERO));
         }
         if tick == RESPONSE_CHECK_TICK {
-            self.check_display_response(display)?;
+            self.check_display_response(report, display)?;
         }
         if tick < WARMING_PULSE_END_TICK {
             self.add_current_in_second_pulse_half(tick - RESPONSE_CHECK_TICK, readings.current);
             return Ok(SelfTestStep::Drive(PULSE_CURRENT.saturating_neg()));
         }
-        self.check_pulse_current()?;
+        self.check_pulse_current(&mut report.warming_current)?;
         Ok(SelfTestStep::Passed)
     }
 
-    /// Restarts the self-test at the end of the comparator's test (a comparator test that is still running goes on),
-    /// because a finger has landed (`touched` true) or lifted. The self-test then waits for 1000 ticks of 1 ms before
+    /// Restarts the self-test at the end of the comparator's tests (tests that are still running go on), because a finger has landed (`touched` true) or lifted. The self-test then waits for 1000 ticks of 1 ms before
     /// its baseline, as that needs an undisturbed display.
     fn restart_baseline(&mut self, touched: bool) {
         *self = Self {
-            tick: self.tick.min(COMPARATOR_TEST_END_TICK),
+            tick: self.tick.min(COMPARATOR_TEST_TICKS),
             touched,
             untouched_ticks: self.untouched_ticks,
             wait_ticks: WAIT_AFTER_LANDING_OR_LIFTING_TICKS,
@@ -220,13 +217,14 @@ impl SelfTest {
         }
     }
 
-    /// Checks at the end of a pulse the mean of the measured current over the second half of that pulse, and resets the
-    /// sum of the measured current to zero for the next pulse.
+    /// Checks at the end of a pulse the mean of the measured current over the second half of that pulse, which goes into
+    /// `reported`, and resets the sum of the measured current to zero for the next pulse.
     ///
     /// # Errors
     /// [`Fault::CurrentLow`] below 0.4 A, [`Fault::CurrentHigh`] above 2 A.
-    fn check_pulse_current(&mut self) -> Result<(), Fault> {
+    fn check_pulse_current(&mut self, reported: &mut Option<Current>) -> Result<(), Fault> {
         let mean = mem::take(&mut self.current_sum) / i64::from(PULSE_TICKS / 2);
+        *reported = Some(Current::from_bits(mean as i32));
         if mean < i64::from(PULSE_MEAN_CURRENT_MIN.to_bits()) {
             Err(Fault::CurrentLow)
         } else if mean > i64::from(PULSE_MEAN_CURRENT_MAX.to_bits()) {
@@ -240,7 +238,11 @@ impl SelfTest {
     /// line through the means of the baseline's two halves. `display` holds the present readings of the first and the
     /// second display thermistor, in units of 2^-22 °C. A reading more than 0.05 K above the line is
     /// [`Fault::Polarity`]; any other failure is [`Fault::NoResponse`].
-    fn check_display_response(&self, display: [i64; 2]) -> Result<(), Fault> {
+    fn check_display_response(
+        &self,
+        report: &mut SelfTestReport,
+        display: [i64; 2],
+    ) -> Result<(), Fault> {
         const DISPLAY_RESPONSE_MIN_RAW: i64 = DISPLAY_RESPONSE_MIN.to_bits() as i64;
         const DISPLAY_RESPONSE_RAW_MIN_TO_MAX: RangeInclusive<i64> =
             DISPLAY_RESPONSE_MIN_RAW..=DISPLAY_RESPONSE_MAX.to_bits() as i64;
@@ -248,9 +250,12 @@ impl SelfTest {
         let ticks =
             i64::from(RESPONSE_CHECK_TICK - (BASELINE_END_TICK - TICKS_PER_BASELINE_HALF / 2));
         let halves = self.first_half.iter().zip(&self.second_half);
-        for ((first, second), reading) in halves.zip(display) {
+        let reported = report.responses.iter_mut();
+        for (((first, second), reading), reported) in halves.zip(display).zip(reported) {
             let expected = second / half + (second - first) * ticks / (half * half);
             let response = expected - reading;
+            let response_k = Celsius::saturating_from_num(I42F22::from_bits(response));
+            *reported = Some(response_k.clamp(-REPORTED_RESPONSE_MAX, REPORTED_RESPONSE_MAX));
             if response < -DISPLAY_RESPONSE_MIN_RAW {
                 return Err(Fault::Polarity);
             }
@@ -260,21 +265,4 @@ impl SelfTest {
         }
         Ok(())
     }
-}
-
-/// Tests the comparator in ticks 0 to 39 of the self-test, with the bridge off: sets the comparator's test line for 20
-/// ticks, then clears it for 20 ticks. From 10 ticks after each change the fault line must be pulled (test line set) or
-/// released (test line cleared); otherwise the result is [`Fault::Comparator`].
-fn test_temperature_comparator(tick: u16, bridge_fault: bool) -> Result<SelfTestStep, Fault> {
-    let comparator_test = tick < COMPARATOR_TEST_LINE_CLEAR_TICK;
-    let elapsed = if comparator_test {
-        tick
-    } else {
-        tick - COMPARATOR_TEST_LINE_CLEAR_TICK
-    };
-    // Within the allowed delay, the fault line may have either level.
-    if elapsed >= COMPARATOR_TEST_LINE_DELAY_MAX_TICKS && bridge_fault != comparator_test {
-        return Err(Fault::Comparator);
-    }
-    Ok(SelfTestStep::Off { comparator_test })
 }

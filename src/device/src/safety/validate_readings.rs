@@ -5,7 +5,7 @@ use contact_model::fixed_point::{Celsius, Force};
 use super::limits::{DISPLAY_TRIP_ABOVE, DISPLAY_TRIP_BELOW, OVER_CURRENT_MARGIN, SINK_TRIP_ABOVE};
 use super::{Fault, ThermistorId};
 use crate::drive::Current;
-use crate::sense::{Readings, ThermistorFault};
+use crate::sense::{Readings, SupplyVoltage, ThermistorFault};
 
 /// Readings of one tick that have passed [`validate_readings`]: no thermistor and no force sensor is open or shorted,
 /// and temperatures and current are within the limits beyond which the station trips.
@@ -29,20 +29,26 @@ pub struct ValidReadings {
     /// Magnitude of the measured module current, A; at most 3 A above the largest current that the controller demands,
     /// 6 A.
     pub current: Current,
+    /// Voltage of the bridge's supply behind the switch that the comparator opens.
+    pub supply: SupplyVoltage,
 }
 
-/// Checks what the readings of one tick alone can show: broken sensors, and temperatures and current beyond their
-/// limits. `current_limit` is the largest current that the controller demands, 6 A.
+/// Checks what the readings of one tick alone can show: the emergency stop, broken sensors, and temperatures and current
+/// beyond their limits. `current_limit` is the largest current that the controller demands, 6 A.
 ///
 /// # Errors
-/// The first of these faults: [`Fault::Excitation`] (all five thermistors shorted), the fault of one open or shorted
+/// The first of these faults: [`Fault::EmergencyStop`], [`Fault::Excitation`] (all five thermistors shorted), the fault of one open or shorted
 /// thermistor, [`Fault::ForceSensor`] (signal invalid), [`Fault::DisplayHot`] and [`Fault::DisplayCold`] (a display
 /// thermistor above 43 °C, or below 13.5 °C), [`Fault::SinkHot`] (above 42 °C), [`Fault::OverCurrent`] (more than 3 A
-/// above `current_limit`). Broken sensors come first, because their readings mean no temperature.
+/// above `current_limit`). The emergency stop comes first, because it explains what follows from it; broken sensors come
+/// before limits, because their readings mean no temperature.
 pub fn validate_readings(
     readings: &Readings,
     current_limit: Current,
 ) -> Result<ValidReadings, Fault> {
+    if readings.emergency_stop {
+        return Err(Fault::EmergencyStop);
+    }
     let thermistors = [
         readings.display,
         readings.display_check,
@@ -64,6 +70,7 @@ pub fn validate_readings(
         room: temperature(readings.room, ThermistorId::Room)?,
         force: readings.force.ok_or(Fault::ForceSensor)?,
         current: readings.current,
+        supply: readings.supply,
     };
     if valid.display.max(valid.check) > DISPLAY_TRIP_ABOVE {
         return Err(Fault::DisplayHot);
@@ -94,7 +101,9 @@ mod tests {
             room: t(24),
             force: Some(Force::ZERO),
             current: Current::ZERO,
+            supply: SupplyVoltage::from_volts(12.0),
             bridge_fault: false,
+            emergency_stop: false,
         }
     }
 
@@ -130,6 +139,10 @@ mod tests {
                 (short, short, short, short, short);
         };
         assert_eq!(fault_of(all), Some("excitation"));
+        assert_eq!(
+            fault_of(|r| (r.emergency_stop, r.sink) = (true, short)),
+            Some("emergency-stop")
+        );
         assert_eq!(fault_of(|r| r.force = None), Some("force-sensor"));
         assert_eq!(fault_of(|r| r.display = t(43.01)), Some("display-hot"));
         assert_eq!(

@@ -2,11 +2,13 @@
 
 mod calibration_tables;
 mod force_sensor;
+mod supply_voltage;
 mod thermistor;
 mod thermistor_average;
 
 pub use calibration_tables::CalibrationTables;
 pub use force_sensor::ContactDetector;
+pub use supply_voltage::SupplyVoltage;
 pub use thermistor::ThermistorFault;
 pub use thermistor_average::{ThermistorAverage, ThermistorAverages};
 
@@ -20,9 +22,9 @@ use force_sensor::ForceChannel;
 use thermal_settings::Settings;
 use thermistor::ThermistorTable;
 
-/// Number of analogue signals of one finger, 7: five thermistors, force sensor and current mirror of the bridge. The
+/// Number of analogue signals of one finger, 8: five thermistors, force sensor, current and supply of the bridge. The
 /// converter scans them in the order of the fields of [`Samples`].
-pub const ADC_CHANNELS_PER_FINGER: usize = 7;
+pub const ADC_CHANNELS_PER_FINGER: usize = 8;
 
 /// Number of thermistors of one finger, 5: display, second display, sink, skin, room. They are the first channels of a
 /// [`Scan`], in this order.
@@ -36,7 +38,7 @@ pub const SCANS_PER_TICK: usize = 16;
 pub type Scan = [u16; ADC_CHANNELS_PER_FINGER];
 
 /// One finger's input of one control tick of 1 ms: for each analogue channel the sum of its 16 conversions of 12 bits,
-/// 0 to 65520, and the state of the bridge's fault line. The sum of a thermistor falls as its temperature rises.
+/// 0 to 65520, and the levels of the digital inputs. The sum of a thermistor falls as its temperature rises.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Samples {
     /// Sum of 16 conversions, 0 to 65520, of the display's first thermistor, in the contact patch; the control law
@@ -59,10 +61,24 @@ pub struct Samples {
     /// Sum of 16 conversions, 0 to 65520, of the bridge's current mirror, nominally 6400 per ampere. It shows the
     /// magnitude of the Peltier module's current, but not the direction.
     pub current: u16,
+    /// Sum of 16 conversions, 0 to 65520, of the bridge's supply behind the switch that the comparator opens; nominally
+    /// 4618 per volt.
+    pub supply: u16,
     /// Whether the bridge's fault line is pulled: by the bridge driver, or by the comparator after it has cut the
     /// bridge's supply. The station then trips, except in the states off and tripped, and while the self-test makes the
     /// comparator cut the supply.
     pub bridge_fault: bool,
+    /// Whether the emergency stop is pressed, which also disconnects the bridge's supply. One for all fingers.
+    pub emergency_stop: bool,
+}
+
+/// Levels of the digital inputs in one control tick.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DigitalInputs {
+    /// Whether the finger's bridge or its comparator pulls the bridge's fault line.
+    pub bridge_fault: bool,
+    /// Whether the emergency stop is pressed.
+    pub emergency_stop: bool,
 }
 
 impl Samples {
@@ -79,14 +95,13 @@ impl Samples {
         ]
     }
 
-    /// Adds up the 16 scans of one tick, channel by channel. `bridge_fault` is true if the bridge's fault line is
-    /// pulled.
+    /// Adds up the 16 scans of one tick, channel by channel.
     ///
     /// If the last conversion of a thermistor is that of an open or shorted wire, the thermistor's sum becomes 16 times
     /// that conversion. The plain sum of a tick in which a wire breaks mixes valid and invalid conversions, and could
     /// pass for a temperature.
     #[must_use]
-    pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], bridge_fault: bool) -> Self {
+    pub fn from_scans(scans: &[Scan; SCANS_PER_TICK], inputs: DigitalInputs) -> Self {
         let mut sums = channel_sums(scans);
         let [.., last] = scans;
         for (sum, &code) in sums.iter_mut().zip(last).take(THERMISTOR_COUNT) {
@@ -94,7 +109,20 @@ impl Samples {
                 *sum = code.saturating_mul(SCANS_PER_TICK as u16);
             }
         }
-        let [display, display_check, sink, skin, room, force, current] = sums;
+        let [
+            display,
+            display_check,
+            sink,
+            skin,
+            room,
+            force,
+            current,
+            supply,
+        ] = sums;
+        let DigitalInputs {
+            bridge_fault,
+            emergency_stop,
+        } = inputs;
         Self {
             display,
             display_check,
@@ -103,7 +131,9 @@ impl Samples {
             room,
             force,
             current,
+            supply,
             bridge_fault,
+            emergency_stop,
         }
     }
 }
@@ -111,18 +141,15 @@ impl Samples {
 /// Sum of each channel over the 16 scans of a tick. One addition of 32-bit words adds two codes at once: a sum of 16
 /// codes of 12 bits is at most 65520, so it fits in half a word and never carries into the other half.
 fn channel_sums(scans: &[Scan; SCANS_PER_TICK]) -> [u16; ADC_CHANNELS_PER_FINGER] {
-    // A scan is seven half-words, so two scans are a whole number of words: seven, as many as there are channels.
-    let mut words = [0u32; ADC_CHANNELS_PER_FINGER];
-    let (pairs, _) = scans.as_chunks::<2>();
-    for pair in pairs {
-        let (halves, _) = pair.as_flattened().as_chunks::<2>();
+    let mut words = [0u32; ADC_CHANNELS_PER_FINGER / 2];
+    for scan in scans {
+        let (halves, _) = scan.as_chunks::<2>();
         for (word, [low, high]) in words.iter_mut().zip(halves) {
             *word += u32::from(*low) | u32::from(*high) << 16;
         }
     }
-    let half = |i: usize| (words[i / 2 % ADC_CHANNELS_PER_FINGER] >> (16 * (i % 2))) as u16;
-    core::array::from_fn(|channel| {
-        half(channel).wrapping_add(half(channel + ADC_CHANNELS_PER_FINGER))
+    array::from_fn(|channel| {
+        (words[channel / 2 % (ADC_CHANNELS_PER_FINGER / 2)] >> (16 * (channel % 2))) as u16
     })
 }
 
@@ -149,14 +176,18 @@ pub struct Readings {
     /// Magnitude of the Peltier module's current, A, 0 or more, from the bridge's current mirror, which does not show
     /// the direction.
     pub current: Current,
+    /// Voltage of the bridge's supply behind the switch that the comparator opens.
+    pub supply: SupplyVoltage,
     /// Whether the bridge's fault line is pulled: by the bridge driver, or by the comparator after it has cut the
     /// bridge's supply.
     pub bridge_fault: bool,
+    /// Whether the emergency stop is pressed.
+    pub emergency_stop: bool,
 }
 
 impl Readings {
-    /// Placeholder before the first tick: every thermistor is open, the force sensor is broken, the current is 0 A, and
-    /// the bridge has no fault.
+    /// Placeholder before the first tick: every thermistor is open, the force sensor is broken, current and supply are
+    /// zero, the bridge has no fault and the emergency stop is not pressed.
     pub const ALL_OPEN: Self = Self {
         display: Err(ThermistorFault::Open),
         display_check: Err(ThermistorFault::Open),
@@ -165,7 +196,9 @@ impl Readings {
         room: Err(ThermistorFault::Open),
         force: None,
         current: Current::ZERO,
+        supply: SupplyVoltage::ZERO,
         bridge_fault: false,
+        emergency_stop: false,
     };
 }
 
@@ -272,7 +305,9 @@ impl SampleConverter {
             current: Current::from_bits(
                 (self.current_per_unit.to_bits()).saturating_mul(samples.current.into()),
             ),
+            supply: SupplyVoltage::from_sum(samples.supply),
             bridge_fault: samples.bridge_fault,
+            emergency_stop: samples.emergency_stop,
         }
     }
 }

@@ -4,6 +4,7 @@ use super::{ArmedTask, Event, State, Station};
 use crate::TICK_HZ;
 use crate::command::{Command, Refused, Reply, Status};
 use crate::identification::Identification;
+use crate::safety::{SelfTestReport, SelfTestResult};
 use crate::sense::ThermistorAverages;
 use crate::temperature_hold::TemperatureHold;
 
@@ -18,6 +19,8 @@ impl Station {
         match *command {
             Command::Status => return Ok(Reply::Status(self.status())),
             Command::Cause => return Ok(Reply::Cause(self.latch.last_trip_cause().copied())),
+            Command::SelfTest => return Ok(Reply::SelfTest(self.self_test_report)),
+            Command::Raw => return Ok(Reply::Raw(self.last.samples)),
             Command::Law(None) => return Ok(Reply::Law(self.controller.law())),
             Command::Average(thermistor) => return self.thermistor_average(thermistor),
             Command::NormalEquation(row) => return self.normal_equation_row(row),
@@ -72,6 +75,9 @@ impl Station {
             Command::Start => self.execute_start_presentation()?,
             // Never refused: the bridge is off afterwards.
             Command::Abort => {
+                if matches!(self.state, State::SelfTest(_)) {
+                    self.self_test_report.result = SelfTestResult::None;
+                }
                 self.apply_event(Event::Abort);
             }
             Command::Clear => self.execute_clear()?,
@@ -172,7 +178,13 @@ impl Station {
             // measures, thermistors that disagree, the cleared fault) adds up in its disturbance and correction. That
             // must not count against the tile that is armed now, so the model starts from the next reading with both at
             // zero; the self-test gives it 0.7 s before a set-point is followed and the residual can trip.
-            State::Off => self.estimator.plate.invalidate(),
+            State::Off => {
+                self.estimator.plate.invalidate();
+                self.self_test_report = SelfTestReport {
+                    result: SelfTestResult::Running,
+                    ..SelfTestReport::default()
+                };
+            }
             _ => {}
         }
         self.apply_event(Event::Arm);

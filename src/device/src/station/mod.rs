@@ -21,15 +21,15 @@ use thermal_settings::Settings;
 pub use state::{ArmedTask, Event, State};
 
 use crate::control::{ControlParameters, Controller, Law, VoltageFeedforward};
-use crate::drive::{BoardOutputs, Current, Drive, SafeCurrent};
+use crate::drive::{BoardOutputs, ComparatorTest, Current, Drive, SafeCurrent};
 use crate::estimate::{
     Estimator, FingerEstimator, LegTemperatures, PlateEstimateBeforeReading, PlateObserver,
 };
 use crate::identification::{AbortReason, NormalEquationAccumulator};
 use crate::reference::{Reference, ReferenceGenerator};
 use crate::safety::{
-    self, Fault, FaultDetectors, FaultLatch, PreviousDemandAndResidual, SelfTestStep, ThermalDose,
-    TripCause, ValidReadings,
+    self, Fault, FaultDetectors, FaultLatch, PreviousDemandAndResidual, SelfTestReport,
+    SelfTestResult, SelfTestStep, ThermalDose, TripCause, ValidReadings,
 };
 use crate::sense::{
     CalibrationTables, ContactDetector, Readings, SampleConverter, Samples, ThermistorAverages,
@@ -52,6 +52,8 @@ pub struct Station {
     controller: Controller,
     voltage: VoltageFeedforward,
     state: State,
+    /// What the last self-test has measured.
+    self_test_report: SelfTestReport,
     identified: IdentificationResult,
     /// Number of the last tick: ticks of 1 ms since the start of the program; wraps after 49 days.
     tick: u32,
@@ -70,11 +72,12 @@ struct IdentificationResult {
     outcome: Option<Result<(), AbortReason>>,
 }
 
-/// Readings, reference (set-point and target; `None` if none was followed) and demanded current, A, of the last tick.
-/// Telemetry reports readings, set-point and current, status reports the set-point, `hold` and `tune` start from the
+/// Samples, readings, reference (set-point and target; `None` if none was followed) and demanded current, A, of the last
+/// tick. Telemetry reports readings, set-point and current, the command `raw` the samples, status reports the set-point, `hold` and `tune` start from the
 /// readings, and the fault detectors check the readings of the next tick against set-point and current.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct LastTickValues {
+    samples: Samples,
     readings: Readings,
     reference: Option<Reference>,
     demanded: Current,
@@ -84,9 +87,8 @@ struct LastTickValues {
 /// converted to a voltage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum BridgeDemand {
-    /// Both half-bridges are high-impedance. `comparator_test` is the level of the comparator's test line; true, which
-    /// only the self-test demands, makes the comparator cut the bridge supply.
-    Off { comparator_test: bool },
+    /// Both half-bridges are high-impedance, and the comparator is tested in this way, which only the self-test demands.
+    Off(ComparatorTest),
     /// Drive `current`, A; positive cools. The bridge voltage for it is computed from `previous_legs`, the temperatures
     /// of the module's legs by the plate's model before this tick's reading has corrected the model.
     Drive {
@@ -96,9 +98,7 @@ enum BridgeDemand {
 }
 
 impl BridgeDemand {
-    const OFF_WITHOUT_COMPARATOR_TEST: Self = Self::Off {
-        comparator_test: false,
-    };
+    const OFF_WITHOUT_COMPARATOR_TEST: Self = Self::Off(ComparatorTest::None);
 }
 
 impl Station {
@@ -123,10 +123,12 @@ impl Station {
             controller: Controller::new(&parameters, limit),
             voltage: VoltageFeedforward::new(&settings.module),
             state: State::Off,
+            self_test_report: SelfTestReport::default(),
             identified: IdentificationResult::default(),
             tick: 0,
             telemetry_ticks: 0,
             last: LastTickValues {
+                samples: Samples::default(),
                 readings: Readings::ALL_OPEN,
                 reference: None,
                 demanded: Current::ZERO,
@@ -185,6 +187,7 @@ impl Station {
         let demand = self.trip_on_fault(demand, &readings);
         let (outputs, demanded) = self.apply_demand(demand);
         self.last = LastTickValues {
+            samples: *samples,
             readings,
             reference,
             demanded,
@@ -219,6 +222,7 @@ impl Station {
             demanded: self.last.demanded,
             setpoint: self.last.reference.map(|reference| reference.setpoint),
             residual_is_large: self.estimator.plate.residual_is_large(),
+            supply_should_be_on: !self.comparator_may_keep_the_supply_off(),
         };
         let frozen = self.detectors.check_frozen_samples(samples);
         let dose = self.detectors.update_and_check_dose(readings);
@@ -242,19 +246,23 @@ impl Station {
         Ok(valid)
     }
 
-    /// Checks the bridge's fault line, which the bridge driver or the comparator pulls. A pulled line is ignored in off
-    /// and tripped, because a comparator that has cut the supply pulls the line until the next self-test, and in the
-    /// first 40 ticks of the self-test, which makes the comparator pull the line.
-    ///
-    /// # Errors
-    /// [`Fault::Bridge`]: the line is pulled at any other time.
-    fn bridge_line_fault_unless_expected(&self, readings: &Readings) -> Result<(), Fault> {
-        let ignored = match &self.state {
+    /// Whether a comparator that works may have cut the bridge's supply, and then pulls the bridge's fault line: in off
+    /// and tripped, because a comparator that has cut the supply, or the power-on, keeps it off until the next self-test;
+    /// and until the self-test has tested the comparator.
+    fn comparator_may_keep_the_supply_off(&self) -> bool {
+        match &self.state {
             State::Off | State::Tripped(_) => true,
             State::SelfTest(test) => test.is_testing_comparator(),
             _ => false,
-        };
-        if readings.bridge_fault && !ignored {
+        }
+    }
+
+    /// Checks the bridge's fault line, which the bridge driver or the comparator pulls.
+    ///
+    /// # Errors
+    /// [`Fault::Bridge`]: the line is pulled although the comparator should not have cut the supply.
+    fn bridge_line_fault_unless_expected(&self, readings: &Readings) -> Result<(), Fault> {
+        if readings.bridge_fault && !self.comparator_may_keep_the_supply_off() {
             Err(Fault::Bridge)
         } else {
             Ok(())
@@ -331,17 +339,21 @@ impl Station {
         };
         if let State::SelfTest(test) = &mut self.state {
             let touched = self.contact.is_force_nonzero_debounced() || self.contact.touching();
-            return Ok(match test.step(valid, bridge_fault, touched)? {
-                SelfTestStep::Off { comparator_test } => BridgeDemand::Off { comparator_test },
-                SelfTestStep::Drive(current) => {
-                    self.controller.track_current(current);
-                    drive(current)
-                }
-                SelfTestStep::Passed => {
-                    self.apply_event(Event::Pass);
-                    BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
-                }
-            });
+            let report = &mut self.self_test_report;
+            return Ok(
+                match test.step(report, self.tick, valid, bridge_fault, touched)? {
+                    SelfTestStep::Off(comparator_test) => BridgeDemand::Off(comparator_test),
+                    SelfTestStep::Drive(current) => {
+                        self.controller.track_current(current);
+                        drive(current)
+                    }
+                    SelfTestStep::Passed => {
+                        report.result = SelfTestResult::Passed;
+                        self.apply_event(Event::Pass);
+                        BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST
+                    }
+                },
+            );
         }
         let Some(reference) = reference else {
             return Ok(BridgeDemand::OFF_WITHOUT_COMPARATOR_TEST);
@@ -414,11 +426,11 @@ impl Station {
                 let current = SafeCurrent::saturating(current);
                 let outputs = BoardOutputs {
                     drive: Drive::On(self.voltage.duty_for_current(current, &previous_legs)),
-                    comparator_test: false,
+                    comparator_test: ComparatorTest::None,
                 };
                 (outputs, current.ampere())
             }
-            BridgeDemand::Off { comparator_test } => {
+            BridgeDemand::Off(comparator_test) => {
                 self.interrupt_identification();
                 self.controller.track_current(Current::ZERO);
                 self.estimator.plate.advance_model(Current::ZERO);
@@ -480,7 +492,11 @@ impl Station {
     /// fault was found between two ticks, from the next tick on. Has no effect on a station that is tripped already, so
     /// that the first cause stays.
     pub fn trip(&mut self, cause: TripCause) {
+        let was_testing = matches!(self.state, State::SelfTest(_));
         if self.apply_event(Event::Trip(cause.fault)) {
+            if was_testing {
+                self.self_test_report.result = SelfTestResult::Failed(cause.fault);
+            }
             self.latch.store_trip_cause_and_tick(cause, self.tick);
         }
     }
@@ -531,6 +547,7 @@ impl Station {
             return None;
         }
         let LastTickValues {
+            samples: _,
             readings,
             reference,
             demanded,

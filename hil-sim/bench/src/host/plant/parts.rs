@@ -57,7 +57,7 @@ impl Parts {
                 Box::new(move || (0..ticks).for_each(|_| plant.step(black_box(&legs)))),
             ),
             (
-                "converter: 16 scans of 7 channels",
+                "converter: 16 scans of 8 channels",
                 Box::new(move || {
                     for _ in 0..ticks {
                         black_box(scans(&mut converted));

@@ -3,7 +3,7 @@ use std::hint::black_box;
 
 use anyhow::bail;
 use thermal_display::device::drive::Drive;
-use thermal_display::device::sense::{SCANS_PER_TICK, Samples, Scan};
+use thermal_display::device::sense::{DigitalInputs, SCANS_PER_TICK, Samples, Scan};
 use thermal_display::device::{Device, FingerIndex};
 use thermal_display::protocol::CommandHandler;
 use thermal_display::settings::Settings;
@@ -31,7 +31,11 @@ impl Replay {
         let mut samples = |ms: u64| {
             finger.send_lines_of(ms);
             finger.step(force_n(ms));
-            Samples::from_scans(&scans(&mut finger.plant()), finger.fault())
+            let inputs = DigitalInputs {
+                bridge_fault: finger.fault(),
+                ..DigitalInputs::default()
+            };
+            Samples::from_scans(&scans(&mut finger.plant()), inputs)
         };
         for ms in 0..READY_MS {
             for (_, line) in LINES.iter().filter(|(at, _)| *at == ms) {

@@ -32,11 +32,11 @@ named_enum! {
         BridgeStuckHigh = "bridge-stuck-high",
         /// Leg b stays at the supply; the enable line still takes both legs off.
         BridgeBStuckHigh = "bridge-b-stuck-high",
-        /// Leg a stays at ground, so what should cool heats; the enable line still takes both legs off.
+        /// Leg a stays at ground, so nothing cools; the enable line still takes both legs off.
         BridgeStuckLow = "bridge-stuck-low",
         /// Leg a is high-impedance.
         LegOpen = "leg-open",
-        /// Output a is shorted to ground: the driver trips when it is driven high.
+        /// Output a is shorted to ground: the driver trips when it is driven high, in the pulses that cool.
         BridgeShorted = "bridge-shorted",
         /// The driver stays enabled and follows its PWM inputs. Latent, as PWM ends with enable.
         BridgeEnableStuck = "bridge-enable-stuck",
@@ -44,7 +44,7 @@ named_enum! {
         PolaritySwapped = "polarity-swapped",
         /// The Seebeck coefficient of the module falls to the value times the nominal one: legs aged or bridged by solder.
         ModuleWeak = "module-weak",
-        /// nFAULT never goes low. Latent; the comparator's test shows it.
+        /// nFAULT never goes low. Latent; the comparator's tests show it.
         FaultPinDead = "fault-pin-dead",
         /// The current mirror always reads the value.
         MirrorStuck = "mirror-stuck",
@@ -52,6 +52,27 @@ named_enum! {
         ComparatorDead = "comparator-dead",
         /// The comparator has cut the supply and stays so.
         ComparatorStuck = "comparator-stuck",
+        /// Both sides of the comparator's window never trip. Latent; the comparator's tests show it.
+        WindowDead = "window-dead",
+        /// The hot side of the comparator's window never trips. Latent; its test shows it.
+        WindowHotDead = "window-hot-dead",
+        /// The cold side of the comparator's window never trips. Latent; its test shows it.
+        WindowColdDead = "window-cold-dead",
+        /// The comparator's latch is set and stays so: the same as `comparator-stuck`.
+        LatchStuckSet = "latch-stuck-set",
+        /// The comparator's latch is never set: the same as `comparator-dead`.
+        LatchStuckClear = "latch-stuck-clear",
+        /// Both thresholds of the comparator are too high by the value. Latent; its tests show what is more than 3 K too high
+        /// or 5 K too low.
+        LadderShift = "ladder-shift",
+        /// The switch of the bridge supply never opens. Latent; the comparator's tests show it by the sensed supply.
+        SwitchShorted = "switch-shorted",
+        /// The switch of the bridge supply is open.
+        SwitchOpen = "switch-open",
+        /// The emergency stop is pressed: it disconnects the bridge supply, and the device sees it.
+        EmergencyStop = "emergency-stop",
+        /// The wire of the sensed bridge supply is open: its pin is at ground.
+        SupplySenseOpen = "supply-sense-open",
         /// The bridge supply falls to the value.
         SupplyLow = "supply-low",
         /// The bridge supply rises to the value.
@@ -114,6 +135,7 @@ impl FaultKind {
             Self::ModuleWeak => required("1", 0.0, 1.0),
             Self::ForceOffset => required("N", -10.0, 10.0),
             Self::MirrorStuck => required("A", 0.0, 10.0),
+            Self::LadderShift => required("K", -30.0, 30.0),
             Self::SupplyLow => required("V", 4.5, 12.0),
             Self::SupplyHigh => required("V", 12.0, 38.0),
             Self::FanOff => factor(10.0),

@@ -1,5 +1,6 @@
 //! The comparator on the plant: its input, and the supply that it cuts.
 
+use thermal_plant::comparator::ComparatorTest;
 use thermal_sim::scene::FaultKind;
 
 use super::*;
@@ -40,9 +41,10 @@ fn hot_display_ends_the_current_whatever_the_legs_do() {
     assert!(world.plant().supply_cut());
     assert_eq!(world.plant().current_a(), 0.0);
     // Until the device has tested it.
-    world.comparator_test(true);
+    world.comparator_test(ComparatorTest::Hot);
     assert!(world.bridge_fault());
-    world.comparator_test(false);
+    world.comparator_test(ComparatorTest::None);
+    run(&mut world, 20, OFF, &[]);
     assert!(!world.bridge_fault());
     run(&mut world, 1, driven(HEATING.0, HEATING.1), &[]);
     assert!(world.plant().current_a() < -3.0);
@@ -70,8 +72,10 @@ fn dead_comparator_lets_the_display_burn_and_its_test_shows_that() {
     let dead = [FaultKind::ComparatorDead.into()];
     assert_eq!(heated(&mut world, &dead), None);
     assert!(world.plant().display_c() > 55.0);
-    world.comparator_test(true);
-    assert!(!world.bridge_fault(), "a sound one pulls nFAULT here");
+    for test in [ComparatorTest::Hot, ComparatorTest::Cold] {
+        world.comparator_test(test);
+        assert!(!world.bridge_fault(), "a sound one pulls nFAULT here");
+    }
 }
 
 #[test]
@@ -79,9 +83,9 @@ fn stuck_comparator_keeps_the_supply_off() {
     let mut world = ideal();
     let stuck = [FaultKind::ComparatorStuck.into()];
     run(&mut world, 2, driven(1.0, 0.6), &stuck);
-    world.comparator_test(true);
-    world.comparator_test(false);
-    run(&mut world, 2, driven(1.0, 0.6), &stuck);
+    world.comparator_test(ComparatorTest::Hot);
+    world.comparator_test(ComparatorTest::None);
+    run(&mut world, 20, driven(1.0, 0.6), &stuck);
     assert_eq!(world.plant().current_a(), 0.0);
     assert!(world.bridge_fault());
     let unseen = [FaultKind::ComparatorStuck, FaultKind::FaultPinDead].map(ActiveFault::from);
@@ -154,9 +158,8 @@ fn stuck_code_does_not_hide_the_heat_and_a_loose_thermistor_does() {
 /// A ladder that is 0.3 K off, as the box has it.
 #[test]
 fn threshold_is_a_parameter() {
-    let scene = scene(&format!("{IDEAL}comparator.hot_c = 45.3\n"));
     for (offset_k, cut) in [(21.2, false), (21.4, true)] {
-        let mut world = World::new(&scene).expect("a plant");
+        let mut world = connected(&format!("{IDEAL}comparator.hot_c = 45.3\n"));
         run(
             &mut world,
             2,

@@ -44,9 +44,16 @@ fn ran(tables: &str) -> (Scene, Outcome) {
     (scene, outcome)
 }
 
-/// A world without errors of its sensors, at rest at 24 deg C.
+/// A world without errors of its sensors, at rest at 24 deg C, with its supply connected.
 fn ideal() -> World {
-    World::new(&scene(IDEAL)).expect("a plant for the scene")
+    connected(IDEAL)
+}
+
+/// A world with its supply connected.
+fn connected(tables: &str) -> World {
+    let mut world = World::new(&scene(tables)).expect("a plant for the scene");
+    world.connect_supply();
+    world
 }
 
 fn driven(a: f64, b: f64) -> BridgeOutputs {

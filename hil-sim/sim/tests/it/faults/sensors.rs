@@ -12,10 +12,10 @@ const AT_14_C: u16 = 2557;
 const AT_34_C: u16 = 1655;
 const AT_60_C: u16 = 816;
 
-/// What they read at rest; force and current after them.
-const REST: [u16; 7] = [AT_24_C, AT_24_C, AT_24_C, AT_34_C, AT_24_C, 410, 0];
+/// What they read at rest; force, current and supply (12 V) after them.
+const REST: [u16; 8] = [AT_24_C, AT_24_C, AT_24_C, AT_34_C, AT_24_C, 410, 0, 3464];
 
-fn after(all: &[ActiveFault]) -> [u16; 7] {
+fn after(all: &[ActiveFault]) -> [u16; 8] {
     let mut world = ideal();
     run(&mut world, 1, OFF, all);
     codes(&mut world)
@@ -149,7 +149,7 @@ fn swapped_thermistors_read_each_other() {
 fn dividers_without_reference_all_read_short() {
     assert_eq!(
         after(&[FaultKind::ReferenceOff.into()]),
-        [0, 0, 0, 0, 0, 410, 0]
+        [0, 0, 0, 0, 0, 410, 0, 3464]
     );
 }
 
