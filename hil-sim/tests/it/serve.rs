@@ -117,6 +117,10 @@ fn what_cannot_be_served_is_refused_with_what_is_allowed() {
             "--elf is for --engine image",
         ),
         (&["nowhere.toml", "--tcp", "127.0.0.1:0"], "nowhere.toml"),
+        (
+            &["--tcp", "127.0.0.1:0", "--surroundings", "10.0.0.1:0"],
+            "--surroundings: 10.0.0.1:0 is not a loopback address",
+        ),
     ] {
         let message = serve(arguments);
         assert!(message.contains(expected), "{arguments:?}: {message}");

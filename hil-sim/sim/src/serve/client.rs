@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 use std::io::{ErrorKind, Read, Write};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 /// Bytes that may wait for the device, beyond which a client's bytes wait at the client.
 const WAITING_MAX: usize = 4096;
@@ -35,14 +37,23 @@ impl IncomingBytes {
     }
 }
 
-/// Writes to a stream that does not block, as far as it takes the bytes; returns the number of bytes that are lost. Those of
-/// a stream that is closed are not counted.
-pub fn write_or_lose(stream: &mut impl Write, mut bytes: &[u8]) -> usize {
+/// Interval at which a stream that is full is tried again.
+const RETRY: Duration = Duration::from_millis(1);
+
+/// Writes to a stream that does not block, as far as it takes the bytes within this time. Returns the number of bytes that
+/// are lost; those of a stream that is closed are not counted.
+pub fn write_or_lose(stream: &mut impl Write, mut bytes: &[u8], patience: Duration) -> usize {
+    let begin = Instant::now();
     while !bytes.is_empty() {
         match stream.write(bytes) {
             Ok(written) => bytes = bytes.get(written..).unwrap_or_default(),
             Err(error) if error.kind() == ErrorKind::Interrupted => {}
-            Err(error) if error.kind() == ErrorKind::WouldBlock => return bytes.len(),
+            Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                if begin.elapsed() >= patience {
+                    return bytes.len();
+                }
+                sleep(RETRY);
+            }
             Err(_closed) => return 0,
         }
     }
@@ -54,12 +65,13 @@ pub fn write_or_lose(stream: &mut impl Write, mut bytes: &[u8]) -> usize {
 pub struct LossNotice(bool);
 
 impl LossNotice {
-    /// Notes bytes that a client did not take.
-    pub fn note(&mut self, lost: usize) {
+    /// Notes bytes that a client did not take, and returns their number.
+    pub fn note(&mut self, lost: usize) -> usize {
         if lost > 0 && !std::mem::replace(&mut self.0, true) {
             eprintln!(
                 "hil-sim: the client does not read; what the device sends is lost until it does"
             );
         }
+        lost
     }
 }

@@ -52,6 +52,11 @@ impl Clock {
         self.start
     }
 
+    /// Lets time go on from now, after it has stood still.
+    pub fn resume(&mut self) {
+        self.start = Instant::now() - Duration::from_millis(self.ms);
+    }
+
     /// Waits until the next millisecond is due and returns true; or returns false after a while, because the time of the
     /// device stands still. In real time a millisecond is due at its end, counted from the start, so that there is no drift.
     /// At [`Speed::Max`] time stands still before the first client comes, and 10 s after a client has gone.

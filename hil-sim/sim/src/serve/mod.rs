@@ -8,15 +8,18 @@
 mod client;
 mod clock;
 mod device;
+mod in_step;
 mod tcp;
 
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 pub use client::{IncomingBytes, LossNotice, write_or_lose};
 pub use clock::{Clock, Speed};
 pub use device::{
     FiveFingers, OneFinger, ServeError, ServedDevice, read_scene, scenes_of_five_fingers,
 };
+pub use in_step::serve_in_step;
 pub use tcp::{TcpLine, TcpLineError};
 
 use crate::engine::BAUD;
@@ -26,14 +29,15 @@ const BYTES_PER_MS: usize = (BAUD / 10 / 1000) as usize;
 
 /// A line as the operating system has it, with at most one client at a time.
 pub trait ClientLine {
-    /// Receives what has arrived, accepts and refuses clients. Returns whether a client is connected. Never waits.
-    fn poll(&mut self) -> bool;
+    /// Receives what has arrived, accepts and refuses clients. Returns the number of the client that is connected, counted
+    /// from 1. Never waits.
+    fn poll(&mut self) -> Option<u64>;
 
     /// The next bytes from the clients, at most `limit`.
     fn read(&mut self, limit: usize) -> Vec<u8>;
 
-    /// Sends bytes to the client. What it does not take in is lost.
-    fn write(&mut self, bytes: &[u8]);
+    /// Sends bytes to the client, which has this much time to take them. Returns how many it does not take; these are lost.
+    fn write(&mut self, bytes: &[u8], patience: Duration) -> usize;
 }
 
 /// Serves a device until `stop` is set.
@@ -50,7 +54,7 @@ pub fn serve<D: ServedDevice>(
     let mut connected = false;
     while !stop.load(Ordering::Relaxed) {
         let due = clock.wait_for_next_ms(connected);
-        connected = line.poll();
+        connected = line.poll().is_some();
         if !due {
             continue;
         }
@@ -61,7 +65,7 @@ pub fn serve<D: ServedDevice>(
         device.run_1_ms()?;
         device.receive(&mut sent);
         if !sent.is_empty() {
-            line.write(&sent);
+            line.write(&sent, Duration::ZERO);
             sent.clear();
         }
     }

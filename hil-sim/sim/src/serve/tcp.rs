@@ -2,6 +2,7 @@
 
 use std::io::{ErrorKind, Write as _};
 use std::net::{Shutdown, SocketAddr, TcpListener, TcpStream};
+use std::time::Duration;
 
 use super::ClientLine;
 use super::client::{IncomingBytes, LossNotice, write_or_lose};
@@ -34,6 +35,8 @@ pub enum TcpLineError {
 pub struct TcpLine {
     listener: TcpListener,
     client: Option<(TcpStream, SocketAddr, LossNotice)>,
+    /// Clients so far.
+    clients: u64,
     incoming: IncomingBytes,
     /// The client that was refused last. Its connection is open until the next one is refused: an early end could take the
     /// line away before the client has read it.
@@ -61,6 +64,7 @@ impl TcpLine {
         Ok(Self {
             listener,
             client: None,
+            clients: 0,
             incoming: IncomingBytes::default(),
             refused: None,
         })
@@ -85,13 +89,14 @@ impl TcpLine {
         } else {
             stream.set_nodelay(true)?;
             self.client = Some((stream, peer, LossNotice::default()));
+            self.clients += 1;
         }
         Ok(())
     }
 }
 
 impl ClientLine for TcpLine {
-    fn poll(&mut self) -> bool {
+    fn poll(&mut self) -> Option<u64> {
         // First, so that a client that comes right after another one has gone is accepted.
         if let Some((stream, ..)) = &mut self.client
             && !self.incoming.receive(stream)
@@ -106,16 +111,17 @@ impl ClientLine for TcpLine {
                 Err(_) => break,
             }
         }
-        self.client.is_some()
+        self.client.is_some().then_some(self.clients)
     }
 
     fn read(&mut self, limit: usize) -> Vec<u8> {
         self.incoming.take(limit)
     }
 
-    fn write(&mut self, bytes: &[u8]) {
-        if let Some((stream, _, notice)) = &mut self.client {
-            notice.note(write_or_lose(stream, bytes));
+    fn write(&mut self, bytes: &[u8], patience: Duration) -> usize {
+        match &mut self.client {
+            Some((stream, _, notice)) => notice.note(write_or_lose(stream, bytes, patience)),
+            None => 0,
         }
     }
 }

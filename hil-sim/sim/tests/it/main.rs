@@ -5,3 +5,4 @@ mod faults;
 mod no_allocation;
 mod scenes;
 mod serve;
+mod serve_in_step;

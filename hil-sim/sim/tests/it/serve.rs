@@ -7,6 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
+use std::time::Duration;
 
 use thermal_sim::World;
 use thermal_sim::engine::{Engine, NativeEngine};
@@ -64,12 +65,12 @@ struct Script<'a> {
 }
 
 impl ClientLine for Script<'_> {
-    fn poll(&mut self) -> bool {
+    fn poll(&mut self) -> Option<u64> {
         let due = LINES.iter().filter(|(ms, _)| *ms == self.ms);
         self.waiting.extend(due.flat_map(|(_, line)| line.bytes()));
         self.ms += 1;
         self.stop.store(self.ms == END_MS, Ordering::Relaxed);
-        true
+        Some(1)
     }
 
     fn read(&mut self, limit: usize) -> Vec<u8> {
@@ -78,8 +79,9 @@ impl ClientLine for Script<'_> {
             .collect()
     }
 
-    fn write(&mut self, bytes: &[u8]) {
+    fn write(&mut self, bytes: &[u8], _patience: Duration) -> usize {
         self.received.extend(bytes);
+        0
     }
 }
 
@@ -429,7 +431,10 @@ fn what_a_stream_does_not_take_is_lost_and_what_it_takes_is_in_order() {
         (4, ErrorKind::BrokenPipe, 0),
     ] {
         let mut stream = Slow(room, Vec::new(), end);
-        assert_eq!(write_or_lose(&mut stream, b"0123456789"), lost);
+        assert_eq!(
+            write_or_lose(&mut stream, b"0123456789", Duration::ZERO),
+            lost
+        );
         assert_eq!(stream.1, b"0123456789"[..room]);
     }
 }

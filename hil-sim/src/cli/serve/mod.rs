@@ -12,16 +12,20 @@ use anyhow::{Context, anyhow};
 use clap::{Args, ValueEnum};
 use signal_hook::consts::{SIGINT, SIGTERM};
 use thermal_sim::World;
-use thermal_sim::engine::NativeEngine;
+use thermal_sim::commissioning::{CommissioningSetup, SimulatedSurroundings};
+use thermal_sim::engine::{Engine, NativeEngine};
 use thermal_sim::five_fingers::FINGERS;
+#[cfg(feature = "emulator")]
+use thermal_sim::five_fingers::OneLine;
 use thermal_sim::scene::{FaultKind, Scene};
 use thermal_sim::serve::{
-    ClientLine, Clock, OneFinger, ServedDevice, Speed, TcpLine, read_scene, scenes_of_five_fingers,
-    serve,
+    ClientLine, Clock, OneFinger, ServedDevice, Speed, TcpLine, read_scene, serve, serve_in_step,
 };
+#[cfg(feature = "emulator")]
+use thermal_sim::serve::{FiveFingers, scenes_of_five_fingers};
 
-use super::Failure;
 use super::engine::{self, EngineKind};
+use super::{Failure, output};
 
 /// Text after the options in the help.
 const USAGE: &str = "\
@@ -48,6 +52,11 @@ pub struct Arguments {
     elf: Option<PathBuf>,
     #[command(flatten)]
     line: Line,
+    /// Also take lines to the surroundings of the device on a TCP port of this machine: baths, the reference thermometer,
+    /// the force of the finger. The device then stands in its place of use, without faults, and its time passes as the
+    /// client of the surroundings says
+    #[arg(long, value_name = "ADDR")]
+    surroundings: Option<String>,
     /// Whether the device's time is real time, or passes as fast as it goes while a client is connected
     #[arg(long, value_enum, default_value_t = SpeedArgument::RealTime)]
     speed: SpeedArgument,
@@ -90,53 +99,43 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let scene = read_scene(arguments.scene.as_deref()).map_err(Failure::input)?;
     note_host_lines(&scene);
-    // Refused before an image is built.
-    let (mut line, place) = open(&arguments.line)?;
-    let speed = match arguments.speed {
-        SpeedArgument::RealTime => Speed::RealTime,
-        SpeedArgument::Max => Speed::Max,
-    };
-    let elf = arguments.elf.as_deref();
+    // What cannot be listened on is refused before an image is built.
+    let (line, place) = open(&arguments.line)?;
+    let mut announcement = format!("listening on {place}\n");
+    let mut surroundings = None;
+    if let Some(address) = &arguments.surroundings {
+        let (line, place) = listen("--surroundings", address)?;
+        announcement += &format!("surroundings on {place}\n");
+        surroundings = Some(line);
+    }
     let server = Server {
-        line: &mut *line,
-        place,
-        speed,
+        line,
+        surroundings,
+        announcement,
+        speed: match arguments.speed {
+            SpeedArgument::RealTime => Speed::RealTime,
+            SpeedArgument::Max => Speed::Max,
+        },
         stop: &stop,
     };
+    let elf = arguments.elf.as_deref();
     match (arguments.engine, arguments.fingers) {
         (EngineKind::Native, 1) => {
             engine::refuse_elf(elf)?;
-            let world = world(&scene)?;
-            server.run(OneFinger::new(NativeEngine::new(world), scene))
+            server.one_finger(scene, |world| Ok(NativeEngine::new(world)))
         }
         (EngineKind::Native, _) => Err(Failure::input(anyhow!(
             "--fingers 5 --engine native: the native engine has one finger; allowed is --engine image"
         ))),
         #[cfg(feature = "emulator")]
         (EngineKind::Image, 1) => {
-            let engine = super::image::engine(elf, world(&scene)?)?;
-            server.run(OneFinger::new(engine, scene))
+            server.one_finger(scene, |world| super::image::engine(elf, world))
         }
         #[cfg(feature = "emulator")]
         (EngineKind::Image, _) => {
-            if let Some(injection) = scene.injections.first() {
-                return Err(Failure::input(anyhow!(
-                    "{} is a fault of the processor that five fingers share; such a scene is for one finger",
-                    injection.fault
-                )));
-            }
-            let scenes = scenes_of_five_fingers(&scene);
-            let worlds: Result<Vec<_>, _> = scenes.iter().map(world).collect();
-            let worlds = <[World; FINGERS]>::try_from(worlds?)
-                .map_err(|_| Failure::run(anyhow!("a scene for each finger")))?;
-            let engine = super::image::five_fingers(elf, worlds)?;
-            server.run(thermal_sim::serve::FiveFingers::new(engine, scenes))
+            server.five_fingers(&scene, |worlds| super::image::five_fingers(elf, worlds))
         }
     }
-}
-
-fn world(scene: &Scene) -> Result<World, Failure> {
-    World::new(scene).map_err(Failure::input)
 }
 
 /// Says that the client takes the place of the scene's host.
@@ -153,8 +152,10 @@ fn note_host_lines(scene: &Scene) {
     }
 }
 
-/// The line and where it is.
-fn open(line: &Line) -> Result<(Box<dyn ClientLine>, String), Failure> {
+/// A line and where it is.
+type Place = (Box<dyn ClientLine>, String);
+
+fn open(line: &Line) -> Result<Place, Failure> {
     #[cfg(unix)]
     if line.pty {
         let (line, path) = pty::PtyLine::open()
@@ -162,9 +163,13 @@ fn open(line: &Line) -> Result<(Box<dyn ClientLine>, String), Failure> {
             .map_err(Failure::run)?;
         return Ok((Box::new(line), path.display().to_string()));
     }
-    let address = line.tcp.as_deref().unwrap_or_default();
+    listen("--tcp", line.tcp.as_deref().unwrap_or_default())
+}
+
+/// A TCP port, for this option.
+fn listen(option: &'static str, address: &str) -> Result<Place, Failure> {
     let line = TcpLine::listen(address)
-        .with_context(|| "--tcp")
+        .context(option)
         .map_err(Failure::input)?;
     let place = line.address().map_err(Failure::run)?.to_string();
     Ok((Box::new(line), place))
@@ -172,21 +177,70 @@ fn open(line: &Line) -> Result<(Box<dyn ClientLine>, String), Failure> {
 
 /// What a device is served on.
 struct Server<'a> {
-    line: &'a mut dyn ClientLine,
-    place: String,
+    line: Box<dyn ClientLine>,
+    surroundings: Option<Box<dyn ClientLine>>,
+    /// Where these are, as it is printed when the device runs.
+    announcement: String,
     speed: Speed,
     stop: &'a AtomicBool,
 }
 
 impl Server<'_> {
-    fn run<D: ServedDevice>(self, mut device: D) -> Result<(), Failure> {
-        let listening = format!("listening on {}\n", self.place);
-        let mut out = stdout();
-        (out.write_all(listening.as_bytes()))
-            .and_then(|()| out.flush())
-            .context("standard output")
-            .map_err(Failure::run)?;
+    fn one_finger<E: Engine>(
+        mut self,
+        scene: Scene,
+        start: impl FnOnce(World) -> Result<E, Failure>,
+    ) -> Result<(), Failure> {
+        let Some(mut surroundings_line) = self.surroundings.take() else {
+            let world = World::new(&scene).map_err(Failure::input)?;
+            return self.serve(OneFinger::new(start(world)?, scene));
+        };
+        let setup = CommissioningSetup::new(&scene.params, scene.room_c, scene.seed);
+        let mut engine = start(setup.in_use().map_err(Failure::input)?)?;
+        let mut surroundings = SimulatedSurroundings::new(&setup);
+        self.announce()?;
         let mut clock = Clock::start(self.speed);
-        serve(&mut device, self.line, &mut clock, self.stop).map_err(Failure::run)
+        let lines: [&mut dyn ClientLine; 2] = [&mut *self.line, &mut *surroundings_line];
+        serve_in_step(&mut engine, &mut surroundings, lines, &mut clock, self.stop)
+            .map_err(Failure::run)
+    }
+
+    #[cfg(feature = "emulator")]
+    fn five_fingers<H: OneLine>(
+        self,
+        scene: &Scene,
+        start: impl FnOnce([World; FINGERS]) -> Result<H, Failure>,
+    ) -> Result<(), Failure> {
+        if self.surroundings.is_some() {
+            return Err(Failure::input(anyhow!(
+                "--surroundings are those of one finger; allowed is --fingers 1"
+            )));
+        }
+        if let Some(injection) = scene.injections.first() {
+            return Err(Failure::input(anyhow!(
+                "{} is a fault of the processor that five fingers share; such a scene is for one finger",
+                injection.fault
+            )));
+        }
+        let scenes = scenes_of_five_fingers(scene);
+        let worlds: Result<Vec<_>, _> = scenes.iter().map(World::new).collect();
+        let worlds = worlds.map_err(Failure::input)?;
+        let worlds = <[World; FINGERS]>::try_from(worlds)
+            .map_err(|_| Failure::run(anyhow!("a world for each finger")))?;
+        self.serve(FiveFingers::new(start(worlds)?, scenes))
+    }
+
+    fn serve<D: ServedDevice>(mut self, mut device: D) -> Result<(), Failure> {
+        self.announce()?;
+        let mut clock = Clock::start(self.speed);
+        serve(&mut device, &mut *self.line, &mut clock, self.stop).map_err(Failure::run)
+    }
+
+    fn announce(&self) -> Result<(), Failure> {
+        output::print(&self.announcement)?;
+        stdout()
+            .flush()
+            .context("standard output")
+            .map_err(Failure::run)
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::path::PathBuf;
+use std::time::Duration;
 
 use anyhow::{Context, Result};
 use rustix::fs::{Mode, OFlags, fcntl_setfl, open};
@@ -13,6 +14,8 @@ use thermal_sim::serve::{ClientLine, IncomingBytes, LossNotice, write_or_lose};
 pub struct PtyLine {
     file: File,
     incoming: IncomingBytes,
+    /// Programs that have opened it so far, and whether one has it open.
+    clients: u64,
     connected: bool,
     notice: LossNotice,
 }
@@ -39,6 +42,7 @@ impl PtyLine {
         let line = Self {
             file: file.into(),
             incoming: IncomingBytes::default(),
+            clients: 0,
             connected: false,
             notice: LossNotice::default(),
         };
@@ -47,24 +51,27 @@ impl PtyLine {
 }
 
 impl ClientLine for PtyLine {
-    fn poll(&mut self) -> bool {
+    fn poll(&mut self) -> Option<u64> {
         // Reading fails while no program has the other end open.
         let connected = self.incoming.receive(&mut self.file);
         if connected && !self.connected {
             self.notice = LossNotice::default();
+            self.clients += 1;
         }
         self.connected = connected;
-        connected
+        connected.then_some(self.clients)
     }
 
     fn read(&mut self, limit: usize) -> Vec<u8> {
         self.incoming.take(limit)
     }
 
-    fn write(&mut self, bytes: &[u8]) {
-        // The terminal would keep them for the next program.
-        if self.connected {
-            self.notice.note(write_or_lose(&mut self.file, bytes));
+    fn write(&mut self, bytes: &[u8], patience: Duration) -> usize {
+        if !self.connected {
+            // The terminal would keep them for the next program.
+            return 0;
         }
+        self.notice
+            .note(write_or_lose(&mut self.file, bytes, patience))
     }
 }
