@@ -3,7 +3,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 
+use super::licences;
 use crate::process::{Invocation, workspace};
+use crate::setup::TARGET;
 
 /// The emulator's package of other authors, which needs cmake and libclang.
 const EMULATOR: &str = "unicorn-engine";
@@ -71,23 +73,47 @@ pub fn options(members: &[Member], chosen: fn(&Member) -> bool) -> String {
     options.join(" ")
 }
 
-/// An error names a native member that depends on the emulator.
+/// Checks the dependencies of each member, and their licences; of the command without the emulator, too. An error names a native
+/// member that depends on the emulator, or a dependency whose licence is not allowed.
 pub fn check_dependencies(members: &[Member]) -> Result<()> {
-    for Member { name, .. } in members.iter().filter(|member| member.is_native()) {
-        let line = format!("tree --prefix none --edges normal,build,dev --package {name}");
-        let tree = Invocation::cargo(line.split(' ')).answer();
-        let tree = tree.with_context(|| format!("`cargo {line}` failed"))?;
-        ensure!(
-            !tree.lines().any(|line| line.starts_with(EMULATOR)),
-            "{name} must not depend on {EMULATOR}: cargo tree -p {name} -i {EMULATOR}"
-        );
+    for member in members {
+        let name = &member.name;
+        check_package(
+            &format!("--package {name} --all-features"),
+            member.is_native(),
+        )?;
     }
-    Ok(())
+    check_package("--package hil-sim --no-default-features", true)
+}
+
+/// Checks the dependencies of the package that these options of cargo name, for this computer and for the microcontroller.
+fn check_package(options: &str, is_native: bool) -> Result<()> {
+    let line = format!(
+        "tree {options} --prefix none --edges normal,build,dev --format {} --target host-tuple --target {TARGET}",
+        licences::TREE_FORMAT
+    );
+    let tree = Invocation::cargo(line.split(' ')).answer();
+    let tree = tree.with_context(|| format!("`cargo {line}` failed"))?;
+    ensure!(
+        !is_native || !tree.lines().any(|line| line.starts_with(EMULATOR)),
+        "what cargo selects by {options} must not depend on {EMULATOR}: cargo tree {options} -i {EMULATOR}"
+    );
+    licences::check(&tree, !is_native).with_context(|| format!("cargo tree {options}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Of the dependencies that this workspace has.
+    #[test]
+    fn the_licences_of_all_dependencies_are_allowed_and_that_of_the_emulator_is_found() {
+        check_dependencies(&all().unwrap()).unwrap();
+        let emulator = "--package stm32-emulator";
+        assert!(check_package(emulator, false).is_ok());
+        let error = format!("{:#}", check_package(emulator, true).unwrap_err());
+        assert!(error.contains(EMULATOR), "{error}");
+    }
 
     #[test]
     fn members_are_sorted_by_size_and_need_of_the_emulator() {

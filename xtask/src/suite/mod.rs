@@ -1,5 +1,6 @@
 //! `cargo xtask test`: the whole test suite, or the part that is quick enough to run before each commit.
 mod lanes;
+mod licences;
 mod members;
 
 use anyhow::Result;
@@ -187,7 +188,7 @@ pub fn run(permission: Permission, quick_only: bool) -> Result<()> {
             };
             Ok((setup::prepare(needs, permission)?, setup::lints()?))
         })?;
-        steps.run("dependencies of native packages", "", || {
+        steps.run("dependencies and their licences", "", || {
             members::check_dependencies(&members)
         })?;
         let mut phases = phases(&toolchain, lints).into_iter();
