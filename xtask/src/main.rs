@@ -109,7 +109,7 @@ enum Task {
         /// Print one JSON object instead of the tables
         #[arg(long)]
         json: bool,
-        /// Options of `hardware-benches`: --only and --schematic, see its --help
+        /// Options of `hardware-benches`: --only, --out and --schematic, see its --help
         #[arg(trailing_var_arg = true, allow_hyphen_values = true)]
         rest: Vec<OsString>,
     },

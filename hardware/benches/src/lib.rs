@@ -4,5 +4,6 @@ pub mod benches;
 pub mod netlist;
 pub mod ngspice;
 pub mod number;
+pub mod picture;
 pub mod quantity;
 pub mod schematic;

@@ -1,6 +1,6 @@
 //! `hardware-benches`: simulates the circuits, prints a table or JSON; exit status 1 if a quantity is not allowed.
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
@@ -8,9 +8,11 @@ use clap::Parser;
 use hardware_benches::benches::{ALL, Bench};
 use hardware_benches::netlist::Netlists;
 use hardware_benches::ngspice;
+use hardware_benches::picture;
 use hardware_benches::quantity::{Quantity, Short};
 use hardware_benches::schematic;
 use serde::Serialize;
+use thermal_charts::{document, escape, svg_element};
 
 /// Simulate the circuits of hardware/ with ngspice and compare the results with what the firmware assumes
 #[derive(Parser)]
@@ -21,6 +23,9 @@ struct Cli {
     /// Run the bench of this name only, may be repeated
     #[arg(long, value_name = "NAME")]
     only: Vec<String>,
+    /// Write pictures of the simulated waveforms and a page with all results into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Draw the netlists into this SVG file and simulate nothing
     #[arg(long, value_name = "FILE", exclusive = true)]
     schematic: Option<PathBuf>,
@@ -100,6 +105,9 @@ fn run(cli: &Cli) -> Result<bool> {
         reports.skipped = Some(NO_NGSPICE);
     }
     let passed = reports.passed.unwrap_or(true);
+    if let (Some(folder), None) = (&cli.out, reports.skipped) {
+        write_page(folder, &reports.benches)?;
+    }
     if cli.json {
         if let Some(why) = reports.skipped {
             eprintln!("skipped: {why}");
@@ -116,6 +124,31 @@ fn run(cli: &Cli) -> Result<bool> {
         println!("{verdict}");
     }
     Ok(passed)
+}
+
+/// Draws the pictures of these benches, and writes a page with their quantities.
+fn write_page(folder: &Path, reports: &[Report]) -> Result<()> {
+    fs::create_dir_all(folder).with_context(|| folder.display().to_string())?;
+    let netlists = Netlists::load()?;
+    let mut body = String::from("<p>Simulated with ngspice; nobody has built this.</p>");
+    for report in reports {
+        body += &format!("<h2>{}: {}</h2>", report.bench, escape(report.title));
+        let pictures = ALL.iter().find(|bench| bench.name == report.bench);
+        for (name, scene) in pictures.map_or(&[][..], |bench| bench.pictures) {
+            let svg = picture::draw(name, &netlists, &scene())?;
+            thermal_charts::write(folder, &format!("{name}.svg"), &svg)?;
+            body += svg_element(&svg);
+        }
+        body += "<table><tr><th>quantity</th><th>simulated</th><th>allowed</th></tr>";
+        for quantity in &report.quantities {
+            let (name, allowed) = (escape(&quantity.name), quantity.allowed());
+            let (value, unit) = (Short(quantity.value), quantity.unit);
+            body += &format!("<tr><td>{name}</td><td>{value} {unit}</td><td>{allowed}</td></tr>");
+        }
+        body += "</table>";
+    }
+    let page = document("Circuits", "", &body);
+    thermal_charts::write(folder, "hardware.html", page)
 }
 
 fn print_table(report: &Report) {

@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use crate::number;
 
 /// Files of the folder `hardware/`, in the order in which decks include them.
-pub const FILES: [&str; 10] = [
+pub const FILES: [&str; 12] = [
     "parts",
     "dividers",
     "comparator",
@@ -19,6 +19,8 @@ pub const FILES: [&str; 10] = [
     "force",
     "ground",
     "leakage",
+    "multiplexer",
+    "stop_relay",
 ];
 
 /// The folder of the netlists.

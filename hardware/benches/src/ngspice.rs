@@ -71,6 +71,58 @@ fn deck_folder() -> PathBuf {
 /// # Errors
 /// ngspice does not start, does not converge, or reports an error.
 pub fn run(title: &str, netlists: &Netlists, lines: &str) -> Result<Measured> {
+    Ok(parse(&output(title, netlists, lines)?))
+}
+
+/// Runs the netlists with these lines, which end in a `.tran` line, behind them; points (time in s, value) of each signal,
+/// such as `v(out)`.
+///
+/// # Errors
+/// As [`run`], or a signal does not exist.
+pub fn waveforms(
+    title: &str,
+    netlists: &Netlists,
+    lines: &str,
+    signals: &[&str],
+) -> Result<Vec<Vec<(f64, f64)>>> {
+    let mut deck = lines.to_owned();
+    for signal in signals {
+        deck += &format!("\n.print tran {signal}");
+    }
+    let tables = parse_tables(&output(title, netlists, &deck)?);
+    ensure!(
+        tables.len() == signals.len(),
+        "{title}: {} of the signals {} exist",
+        tables.len(),
+        signals.join(", ")
+    );
+    Ok(tables)
+}
+
+/// Reads the tables that `.print` lines of one signal each write: lines `index time value`, the index from 0 in each table.
+fn parse_tables(output: &str) -> Vec<Vec<(f64, f64)>> {
+    let mut tables: Vec<Vec<_>> = Vec::new();
+    for line in output.lines() {
+        let mut words = line.split_whitespace();
+        let Some(index) = words.next().and_then(|word| word.parse::<usize>().ok()) else {
+            continue;
+        };
+        let mut number = || words.next().and_then(number::parse);
+        let (Some(time_s), Some(value)) = (number(), number()) else {
+            continue;
+        };
+        if index == 0 {
+            tables.push(Vec::new());
+        }
+        if let Some(table) = tables.last_mut() {
+            table.push((time_s, value));
+        }
+    }
+    tables
+}
+
+/// What ngspice prints when it runs the netlists with these lines behind them.
+fn output(title: &str, netlists: &Netlists, lines: &str) -> Result<String> {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     let number = COUNT.fetch_add(1, Ordering::Relaxed);
     let folder = deck_folder();
@@ -114,7 +166,7 @@ pub fn run(title: &str, netlists: &Netlists, lines: &str) -> Result<Measured> {
         "{}: {errors}",
         path.display()
     );
-    Ok(parse(&text))
+    Ok(text.into_owned())
 }
 
 #[cfg(test)]
@@ -139,6 +191,14 @@ late                =   failed
         assert_eq!(measured.find("ipk"), Some(-10.57072));
         assert_eq!(measured.find("late"), None);
         assert!(measured.get("late").is_err());
+    }
+
+    #[test]
+    fn tables_of_printed_signals_are_read_over_page_breaks() {
+        let output = "Index   time    v(a)\n----\n0\t0.0e+00\t1.0e+00\t\nIndex   time    v(a)\n1\t5.0e-10\t2.0e+00\t\n\
+            No. of Data Rows : 2\nIndex   time    v(b)\n0\t0.0e+00\t3.0e+00\t\n";
+        let expected = vec![vec![(0.0, 1.0), (5e-10, 2.0)], vec![(0.0, 3.0)]];
+        assert_eq!(parse_tables(output), expected);
     }
 
     #[test]

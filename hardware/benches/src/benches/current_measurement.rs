@@ -6,6 +6,7 @@ use super::Bench;
 use super::transients::PERIOD_S;
 use crate::netlist::Netlists;
 use crate::ngspice;
+use crate::picture::Scene;
 use crate::quantity::Quantity;
 
 pub const BENCH: Bench = Bench {
@@ -18,6 +19,7 @@ pub const BENCH: Bench = Bench {
             .scaled("c_sum", 1e-3)?
             .scaled("c_shunt_filter", 1e-3)
     },
+    pictures: &[("mirror-ripple", scene)],
 };
 
 /// What the firmware assumes.
@@ -25,10 +27,9 @@ const COUNTS_PER_A: f64 = 400.0;
 /// Counts of the converter per volt.
 pub const COUNTS_PER_V: f64 = 4096.0 / 3.3;
 
-/// Mean reading and half of its ripple, A, for a tile current and duty. Positive currents cool: the second sense resistor
-/// carries the inductor's current all the time, the first the opposite one while both legs are low.
-fn reading(netlists: &Netlists, current_a: f64, duty: f64) -> Result<[f64; 2]> {
-    let henry = 2.0 * netlists.param("l_leg")?;
+/// The tile's current with its ripple, in the sense resistors. Positive currents cool: the second sense resistor carries the
+/// inductor's current all the time, the first the opposite one while both legs are low.
+fn deck(henry: f64, current_a: f64, duty: f64) -> String {
     let ripple_a = 12.0 * duty * (1.0 - duty) * PERIOD_S / henry;
     let (on_s, off_s) = (duty * PERIOD_S, (1.0 - duty) * PERIOD_S);
     let size_a = current_a.abs();
@@ -37,16 +38,21 @@ fn reading(netlists: &Netlists, current_a: f64, duty: f64) -> Result<[f64; 2]> {
     } else {
         ("sa", "sb")
     };
-    let deck = format!(
+    format!(
         "V3 v3 0 3.3\nV5 v5 0 5\nRa sa 0 {{r_shunt}}\nRb sb 0 {{r_shunt}}\n\
          Vt tri 0 PULSE(-0.5 0.5 0 {on_s:e} {off_s:e} 1n {PERIOD_S:e})\n\
          Vr low 0 PULSE(0 1 {on_s:e} 50n 50n {low_s:e} {PERIOD_S:e})\n\
          B1 0 {always} I={size_a}+{ripple_a}*V(tri)\nB2 {sometimes} 0 I=({size_a}+{ripple_a}*V(tri))*V(low)\n\
-         X1 sa sb v3 v5 adc mirror\n.options reltol=1e-3 method=gear\n.tran 100n 3.12503m 0 300n\n\
-         .meas tran mean avg v(adc) from=3.02083m to=3.125m\n.meas tran ripple pp v(adc) from=3.02083m to=3.125m\n",
+         X1 sa sb v3 v5 adc mirror\n.options reltol=1e-3 method=gear\n.tran 100n 3.12503m 0 300n",
         low_s = off_s - 100e-9,
-    );
-    let measured = ngspice::run("current", netlists, &deck)?;
+    )
+}
+
+/// Mean reading and half of its ripple, A, for a tile current and duty.
+fn reading(netlists: &Netlists, current_a: f64, duty: f64) -> Result<[f64; 2]> {
+    let lines = deck(2.0 * netlists.param("l_leg")?, current_a, duty)
+        + "\n.meas tran mean avg v(adc) from=3.02083m to=3.125m\n.meas tran ripple pp v(adc) from=3.02083m to=3.125m\n";
+    let measured = ngspice::run("current", netlists, &lines)?;
     let ampere = |volt: f64| volt * COUNTS_PER_V / COUNTS_PER_A;
     Ok([
         ampere(measured.get("mean")?),
@@ -103,3 +109,22 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     ));
     Ok(all)
 }
+
+fn scene() -> Scene {
+    Scene {
+        lines: deck(9.4e-6, 6.0, 0.55),
+        time: ("time, us; 6 A at a duty of 0.55, steady", 1e6),
+        range: 3083.0..3125.0,
+        charts: &[(
+            "A",
+            &[
+                ("in the sense resistor", "v(sb)", 200.0),
+                ("behind its filter", "v(x1.fb1)", 200.0),
+                ("reading", "v(adc)", READING_A_PER_V),
+            ],
+        )],
+    }
+}
+
+/// Reading per volt at the converter.
+const READING_A_PER_V: f64 = COUNTS_PER_V / COUNTS_PER_A;

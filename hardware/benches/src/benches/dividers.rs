@@ -13,6 +13,7 @@ pub const BENCH: Bench = Bench {
     run,
     // The converter on the filter's capacitor, without the follower.
     broken: |netlists| netlists.with_line("X1 in follow follower", "Rf in follow 1"),
+    pictures: &[],
 };
 
 /// Change of the voltage with temperature at 25 °C, V/K.

@@ -6,6 +6,7 @@ use super::Bench;
 use super::transients::OPTIONS;
 use crate::netlist::Netlists;
 use crate::ngspice::{self, Measured};
+use crate::picture::Scene;
 use crate::quantity::Quantity;
 
 pub const BENCH: Bench = Bench {
@@ -14,30 +15,38 @@ pub const BENCH: Bench = Bench {
     run,
     // The drive current of the smallest strap.
     broken: |netlists| netlists.with_line("X3 i1 i2 vbr", &format!("{DRIVER} i_src=10m i_snk=20m")),
+    pictures: &[("edges", scene)],
 };
 
 /// The gate driver's line without parameters.
 const DRIVER: &str = "X3 i1 i2 vbr nfault gh1 o1 gl1 sa gh2 o2 gl2 sb gate_driver";
 
-/// Drives half duty into the tile with a Seebeck voltage that makes this current, and measures the pulse at 199 us.
-fn simulate(netlists: &Netlists, seebeck_v: f64) -> Result<Measured> {
-    let deck = format!(
+/// Half duty into the tile with a Seebeck voltage that makes this current.
+pub fn deck(seebeck_v: f64) -> String {
+    format!(
         "V3 v3 0 3.3\nVbr vbr 0 12\nVin1 in1 0 3.3\n\
          Vin2 in2 0 PULSE(3.3 0 1u 5n 5n 5.2033u 10.41667u)\nVen enable 0 3.3\n\
          X1 vbr v3 in1 in2 enable nfault p n sa sb bridge\nVi p pt 0\nXt pt n tile seebeck={seebeck_v}\n\
-         Bin pin 0 V=-12*I(Vbr)\nBout pout 0 V=V(p,n)*I(Vi)\n\
-         {OPTIONS}\n.tran 5n 230u 0 25n\n\
+         {OPTIONS}\n.tran 5n 230u 0 25n"
+    )
+}
+
+/// Simulates [`deck`] and measures the pulse at 199 us.
+pub fn simulate(netlists: &Netlists, seebeck_v: f64) -> Result<Measured> {
+    let lines = format!(
+        "{circuit}\nBin pin 0 V=-12*I(Vbr)\nBout pout 0 V=V(p,n)*I(Vi)\n\
          .meas tran command when v(in2)=1.65 fall=1 td=198u\n.meas tran command_end when v(in2)=1.65 rise=1 td=200u\n\
          .meas tran out when v(x1.o1)=6 rise=1 td=198u\n.meas tran out_end when v(x1.o1)=6 fall=1 td=200u\n\
          .meas tran current avg i(vi) from=114.5833u to=218.75u\n\
          .meas tran ripple pp i(vi) from=114.5833u to=218.75u\n\
-         .meas tran input avg v(pin) from=114.5833u to=218.75u\n.meas tran output avg v(pout) from=114.5833u to=218.75u\n"
+         .meas tran input avg v(pin) from=114.5833u to=218.75u\n.meas tran output avg v(pout) from=114.5833u to=218.75u\n",
+        circuit = deck(seebeck_v),
     );
-    ngspice::run("edges", netlists, &deck)
+    ngspice::run("edges", netlists, &lines)
 }
 
 /// Time by which the output's pulse is shorter than the commanded one, us.
-fn lost_us(measured: &Measured) -> Result<f64> {
+pub fn lost_us(measured: &Measured) -> Result<f64> {
     let commanded = measured.get("command_end")? - measured.get("command")?;
     let actual = measured.get("out_end")? - measured.get("out")?;
     Ok((commanded - actual) * 1e6)
@@ -87,4 +96,26 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
         ),
         Quantity::at_most("loss of bridge and filter at 6 A", loss_w, "W", 3.0),
     ])
+}
+
+fn scene() -> Scene {
+    Scene {
+        lines: deck(-0.6),
+        time: ("time, us", 1e6),
+        range: 197.0..210.0,
+        charts: &[
+            ("V", &[("IN2", "v(in2)", 1.0)]),
+            (
+                "V",
+                &[
+                    ("switching output", "v(x1.o1)", 1.0),
+                    ("gate of its lower switch", "v(x1.gl1)", 1.0),
+                ],
+            ),
+            (
+                "A",
+                &[("inductor", "i(l.x1.l1)", 1.0), ("tile", "i(vi)", 1.0)],
+            ),
+        ],
+    }
 }

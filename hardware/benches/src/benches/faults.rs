@@ -5,6 +5,7 @@ use anyhow::Result;
 use super::{Bench, self_test};
 use crate::netlist::Netlists;
 use crate::ngspice;
+use crate::picture::Scene;
 use crate::quantity::Quantity;
 
 pub const BENCH: Bench = Bench {
@@ -13,6 +14,7 @@ pub const BENCH: Bench = Bench {
     run,
     // The emergency stop's contact is welded.
     broken: |netlists| netlists.with_line("S1 contact vstop", "RS1 contact vstop 1m"),
+    pictures: &[("trip", trip_scene), ("emergency-stop", stop_scene)],
 };
 
 /// Bridge supply above which a switch has not opened, V.
@@ -118,7 +120,7 @@ fn simulate_open(netlists: &Netlists, warm: &str, more: &str) -> Result<ngspice:
     let deck = format!(
         "V12 v12 0 PULSE(0 12 0 1m)\nVt tc 0 {warm}\nVstop stop 0 1\n\
          Vtest test 0 PWL(0 0 20m 0 20.01m 3.3 40m 3.3 40.01m 0)\nVside side 0 0\n\
-         Xn pin 0 tc ntc\nX1 v3 pin in adc divider\nX2 v3 v5 in test side on trip nfault window\n\
+         Xn pin 0 tc ntc\nX1 v3 pin in adc divider\nX2 v3 v5 in test side nrst on trip nfault window\nRn v3 nrst 40k\n\
          X3 v12 v3 stop vstop stopped v5 supply\nX4 vstop vbr on trip vbr_sense supply_switch\nR1 v3 nfault 4.7k\n\
          .options reltol=1e-3 abstol=1n vntol=1m method=gear\n.tran 20u 100m 0 50u\n{wire}\n"
     );
@@ -148,15 +150,19 @@ fn excursions(netlists: &Netlists) -> Result<Vec<Quantity>> {
 }
 
 /// The contact opens at 0.1 ms while the microcontroller drives at full duty, and goes on.
-fn emergency_stop(netlists: &Netlists) -> Result<Vec<Quantity>> {
-    let deck = "V3 v3 0 3.3\nV12 v12 0 12\nVstop stop 0 PWL(0 1 0.1m 1 0.101m 0)\nVon on 0 5\nVtrip trip 0 0\n\
+const EMERGENCY_STOP: &str = "V3 v3 0 3.3\nV12 v12 0 12\nVstop stop 0 PWL(0 1 0.1m 1 0.101m 0)\nVon on 0 5\nVtrip trip 0 0\n\
         Vin1 in1 0 3.3\nVin2 in2 0 0\nVen enable 0 3.3\n\
         X3 v12 v3 stop vstop stopped v5 supply\nX4 vstop vbr on trip vbr_sense supply_switch\n\
         X5 vbr v3 in1 in2 enable nfault p n sa sb bridge\nVi p pt 0\nXt pt n tile\n\
-        .options reltol=3e-3 abstol=10u vntol=5m chgtol=1e-12 method=gear itl4=50\n.tran 40n 1m 0 500n\n\
+        .options reltol=3e-3 abstol=10u vntol=5m chgtol=1e-12 method=gear itl4=50\n.tran 40n 1m 0 500n";
+
+fn emergency_stop(netlists: &Netlists) -> Result<Vec<Quantity>> {
+    let lines = format!(
+        "{EMERGENCY_STOP}\n\
         .meas tran before avg i(vi) from=0.06m to=0.1m\n.meas tran after max i(vi) from=0.9m to=1m\n\
-        .meas tran sensed find v(stopped) at=1m";
-    let measured = ngspice::run("emergency-stop", netlists, deck)?;
+        .meas tran sensed find v(stopped) at=1m"
+    );
+    let measured = ngspice::run("emergency-stop", netlists, &lines)?;
     Ok(vec![
         Quantity::at_least(
             "emergency stop: tile current before",
@@ -177,4 +183,49 @@ fn emergency_stop(netlists: &Netlists) -> Result<Vec<Quantity>> {
             0.5,
         ),
     ])
+}
+
+/// The plate warms from 25 to 46 °C at 45 ms.
+fn trip_scene() -> Scene {
+    Scene {
+        lines: self_test::deck(self_test::SOUND.0, "PWL(0 25 45m 25 45.1m 46)"),
+        time: ("time, ms", 1e3),
+        range: 44.0..58.0,
+        charts: &[
+            ("°C", &[("second display thermistor", "v(tc)", 1.0)]),
+            (
+                "V",
+                &[
+                    ("input of the comparators", "v(x2.buf)", 1.0),
+                    ("hot threshold", "v(x2.hot)", 1.0),
+                ],
+            ),
+            (
+                "V",
+                &[
+                    ("latch: high closes the switch", "v(on)", 1.0),
+                    ("nFAULT", "v(nfault)", 1.0),
+                ],
+            ),
+            ("V", &[("bridge supply", "v(vbr)", 1.0)]),
+        ],
+    }
+}
+
+fn stop_scene() -> Scene {
+    Scene {
+        lines: EMERGENCY_STOP.into(),
+        time: ("time, ms; the button is pressed at 0.1 ms", 1e3),
+        range: 0.0..1.0,
+        charts: &[
+            (
+                "V",
+                &[
+                    ("bridge supply", "v(vbr)", 1.0),
+                    ("sense line (PC13)", "v(stopped)", 1.0),
+                ],
+            ),
+            ("A", &[("tile current", "i(vi)", 1.0)]),
+        ],
+    }
 }

@@ -14,6 +14,7 @@ pub const BENCH: Bench = Bench {
     run,
     // The thermistor's return on the power board, and 1 mohm of copper that both share.
     broken: |netlists| netlists.with("r_star", 1e-3),
+    pictures: &[],
 };
 
 /// Error of a thermistor's reading, K, with its return at a node and a host whose ground is or is not isolated.

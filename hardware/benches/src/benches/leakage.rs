@@ -13,6 +13,7 @@ pub const BENCH: Bench = Bench {
     run,
     // A supply with an ordinary Y capacitor.
     broken: |netlists| netlists.with("c_mains", 2.2e-9),
+    pictures: &[],
 };
 
 /// Largest touch current in normal use, uA (IEC 60601-1, type BF; recalled, check).

@@ -4,17 +4,22 @@ mod current_measurement;
 mod dividers;
 mod edges;
 mod faults;
+mod five_fingers;
 mod force;
 mod ground;
 mod leakage;
+mod multiplexer;
+mod pins;
 mod self_test;
 mod shorts;
 mod thresholds;
+mod timing;
 mod transients;
 
 use anyhow::Result;
 
 use crate::netlist::Netlists;
+use crate::picture::Picture;
 use crate::quantity::Quantity;
 
 /// One bench.
@@ -28,19 +33,25 @@ pub struct Bench {
     pub run: fn(&Netlists) -> Result<Vec<Quantity>>,
     /// The circuit with one deliberate error that the bench must notice.
     pub broken: fn(&Netlists) -> Result<Netlists>,
+    /// What of it people would rather see than read, by the name of the picture.
+    pub pictures: &'static [Picture],
 }
 
 /// All benches.
-pub const ALL: [Bench; 11] = [
+pub const ALL: [Bench; 15] = [
     thresholds::BENCH,
     self_test::BENCH,
     faults::BENCH,
+    pins::BENCH,
     transients::BENCH,
     shorts::BENCH,
     edges::BENCH,
+    timing::BENCH,
     current_measurement::BENCH,
     dividers::BENCH,
     force::BENCH,
     ground::BENCH,
     leakage::BENCH,
+    multiplexer::BENCH,
+    five_fingers::BENCH,
 ];

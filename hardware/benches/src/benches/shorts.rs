@@ -6,6 +6,7 @@ use super::Bench;
 use super::transients::OPTIONS;
 use crate::netlist::Netlists;
 use crate::ngspice;
+use crate::picture::Scene;
 use crate::quantity::Quantity;
 
 pub const BENCH: Bench = Bench {
@@ -19,30 +20,24 @@ pub const BENCH: Bench = Bench {
             "X3 i1 i2 vbr nfault gh1 o1 gl1 sa gh2 o2 gl2 sb gate_driver v_ds=0.96",
         )
     },
+    pictures: &[("shorted-tile", scene)],
 };
 
 fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
     let mut all = Vec::new();
-    // Switches close at 60 us on a bridge that drives 6 A.
     // The current through a shorted tile rises at 0.6 A/us: the inductors do not saturate here, which would be faster.
     for (what, short, most_us) in [
         ("tile shorted", "S1 p n s 0 short", 150.0),
         ("output 1 to ground", "S1 x1.o1 0 s 0 short", 30.0),
         ("output 2 to 12 V", "S1 x1.o2 vbr s 0 short", 30.0),
     ] {
-        let deck = format!(
-            "V3 v3 0 3.3\nVs vs 0 12\nRs vs vx 20m\nLs vx vbr 0.2u\nCs vbr c 20u\nRc c 0 3m\nVin1 in1 0 3.3\n\
-             Vin2 in2 0 PULSE(0 3.3 5.6u 5n 5n 4.8u 10.4166u)\nVen enable 0 3.3\n\
-             X1 vbr v3 in1 in2 enable nfault p n sa sb bridge\nXt p n tile\n\
-             {short}\nVshort s 0 PWL(0 0 60u 0 60.05u 1)\n\
-             .model short sw(vt=0.5 vh=0.1 ron=5m roff=1meg)\n\
-             {OPTIONS}\n.tran 20n {end_us}u 0 60n\n\
-             .meas tran fault_at when v(nfault)=1 fall=1 td=60u\n\
+        let lines = format!(
+            "{circuit}\n.meas tran fault_at when v(nfault)=1 fall=1 td=60u\n\
              .meas tran left find v(x1.gl2) at={late_us}u\n",
-            end_us = 80.0 + most_us,
+            circuit = deck(short, most_us),
             late_us = 78.0 + most_us,
         );
-        let measured = ngspice::run("shorts", netlists, &deck)?;
+        let measured = ngspice::run("shorts", netlists, &lines)?;
         all.push(Quantity::between(
             format!("{what}: until nFAULT"),
             (measured.get("fault_at")? - 60e-6) * 1e6,
@@ -57,4 +52,35 @@ fn run(netlists: &Netlists) -> Result<Vec<Quantity>> {
         ));
     }
     Ok(all)
+}
+
+/// A bridge that drives 6 A, and a switch that closes at 60 us.
+fn deck(short: &str, most_us: f64) -> String {
+    format!(
+        "V3 v3 0 3.3\nVs vs 0 12\nRs vs vx 20m\nLs vx vbr 0.2u\nCs vbr c 20u\nRc c 0 3m\nVin1 in1 0 3.3\n\
+         Vin2 in2 0 PULSE(0 3.3 5.6u 5n 5n 4.8u 10.4166u)\nVen enable 0 3.3\n\
+         X1 vbr v3 in1 in2 enable nfault p n sa sb bridge\nXt p n tile\n\
+         {short}\nVshort s 0 PWL(0 0 60u 0 60.05u 1)\n\
+         .model short sw(vt=0.5 vh=0.1 ron=5m roff=1meg)\n\
+         {OPTIONS}\n.tran 20n {end_us}u 0 60n",
+        end_us = 80.0 + most_us,
+    )
+}
+
+fn scene() -> Scene {
+    Scene {
+        lines: deck("S1 p n s 0 short", 150.0),
+        time: ("time, us; shorted at 60 us", 1e6),
+        range: 40.0..220.0,
+        charts: &[
+            ("A", &[("inductor", "i(l.x1.l1)", 1.0)]),
+            (
+                "V",
+                &[
+                    ("nFAULT", "v(nfault)", 1.0),
+                    ("break input", "v(x1.break)", 1.0),
+                ],
+            ),
+        ],
+    }
 }

@@ -12,6 +12,7 @@ pub const BENCH: Bench = Bench {
     title: "window comparator against 10 and 45 °C, over tolerances and 0 to 50 °C of the board",
     run,
     broken: |netlists| netlists.scaled("r_ladder_bottom", 1.05),
+    pictures: &[],
 };
 
 /// Tolerance of the resistors that set the thresholds: 0.1 %, and 25 ppm/K over 25 K.
@@ -70,7 +71,7 @@ fn trips_and_releases(
         let deck = format!(
             "V3 v3 0 {v3}\nV5 v5 0 {v5}\nVt tc 0 {from}\nVtest test 0 0\nVside side 0 0\n\
              Xn pin 0 tc ntc r25={r25} beta={beta}\nX1 v3 pin in adc divider\n\
-             X2 v3 v5 in test side on trip nfault window\nR1 v3 nfault 4.7k\n\
+             X2 v3 v5 in test side nrst on trip nfault window\nRn v3 nrst 40k\nR1 v3 nfault 4.7k\n\
              .dc Vt {from} {to} {step}\n.meas dc at when v(x2.out)=2.5 {edge}=1\n"
         );
         ngspice::run("thresholds", netlists, &deck)?.get("at")
