@@ -1,8 +1,8 @@
 //! Wiring for five fingers, whose sensors are connected to the converter in turn.
 //!
-//! Each of the eight inputs of the one-finger wiring has an 8:1 analog multiplexer, such as a
-//! 74HC4051, and a voltage follower in front of it. Three lines select the finger for all eight
-//! multiplexers.
+//! Each of the eight inputs of the one-finger wiring has an 8:1 analog multiplexer, such as an
+//! SN74LV4051A, and voltage followers on both sides of it. Three lines select the finger for all
+//! eight multiplexers.
 //!
 //! | finger | bridge IN1, IN2               | bridge enable | nFAULT | comparator test |
 //! |--------|-------------------------------|---------------|--------|-----------------|
